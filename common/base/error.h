@@ -1,0 +1,39 @@
+// The one exception type. Thrown only for what the outside world can cause at start-up or at a
+// boundary: files, configuration, DDS, child processes, malformed messages. Caught once per process
+// (see main_guard.h), where it becomes one line on stderr and the exit code.
+//
+// Bugs are CHECK (check.h); normal absence is a value (std::optional, an enum). The data path does
+// not throw.
+#pragma once
+
+#include <fmt/core.h>
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace shoal {
+
+// Exit codes of every program: 0 clean, 1 run-time failure, 2 bad usage (arguments, configuration).
+enum class ErrorKind { kRuntime = 1, kUsage = 2 };
+
+class Error : public std::runtime_error {
+ public:
+  Error(ErrorKind kind, const std::string& message) : std::runtime_error(message), kind_(kind) {}
+  int exit_code() const { return static_cast<int>(kind_); }
+
+ private:
+  ErrorKind kind_;
+};
+
+// The message is one line: what failed, with which value, what was expected.
+template <class... Args>
+Error RuntimeError(fmt::format_string<Args...> format, Args&&... args) {
+  return Error(ErrorKind::kRuntime, fmt::format(format, std::forward<Args>(args)...));
+}
+template <class... Args>
+Error UsageError(fmt::format_string<Args...> format, Args&&... args) {
+  return Error(ErrorKind::kUsage, fmt::format(format, std::forward<Args>(args)...));
+}
+
+}  // namespace shoal

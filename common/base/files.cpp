@@ -1,0 +1,73 @@
+#include "common/base/files.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <sstream>
+#include <system_error>
+
+#include "common/base/error.h"
+
+namespace shoal {
+namespace {
+
+[[noreturn]] void Fail(const char* what, const std::filesystem::path& path, int error) {
+  throw RuntimeError("{} '{}': {}", what, path.string(), std::strerror(error));
+}
+
+// Writes everything or returns the errno.
+int WriteAll(int fd, std::string_view content) {
+  while (!content.empty()) {
+    const ssize_t n = write(fd, content.data(), content.size());
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) return errno;
+    content.remove_prefix(static_cast<size_t>(n));
+  }
+  return fsync(fd) == 0 ? 0 : errno;
+}
+
+}  // namespace
+
+std::string ReadFile(const std::filesystem::path& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) Fail("cannot read", path, EISDIR);
+  std::ifstream in(path, std::ios::binary);
+  if (!in) Fail("cannot read", path, errno);
+  std::ostringstream content;
+  content << in.rdbuf();
+  if (in.bad()) Fail("cannot read", path, errno);
+  return std::move(content).str();
+}
+
+void WriteFileAtomically(const std::filesystem::path& path, std::string_view content) {
+  const std::filesystem::path temporary = path.string() + ".tmp-" + std::to_string(getpid());
+  const int fd = open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+  if (fd < 0) Fail("cannot write", path, errno);
+  int error = WriteAll(fd, content);
+  if (close(fd) != 0 && error == 0) error = errno;
+  if (error == 0 && rename(temporary.c_str(), path.c_str()) != 0) error = errno;
+  if (error != 0) {
+    unlink(temporary.c_str());
+    Fail("cannot write", path, error);
+  }
+  SyncFolder(path.has_parent_path() ? path.parent_path() : ".");
+}
+
+void SyncFolder(const std::filesystem::path& folder) {
+  const int fd = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (fd < 0) Fail("cannot open folder", folder, errno);
+  const int error = fsync(fd) == 0 ? 0 : errno;
+  close(fd);
+  if (error != 0) Fail("cannot sync folder", folder, error);
+}
+
+void MakeFolders(const std::filesystem::path& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) Fail("cannot create folder", folder, error.value());
+}
+
+}  // namespace shoal

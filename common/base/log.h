@@ -1,0 +1,37 @@
+// Logging: one line per event to stderr and, when asked, to a file. Thread-safe.
+#pragma once
+
+#include <fmt/core.h>
+
+#include <string>
+#include <utility>
+
+namespace shoal::log {
+
+// Call once at start. `name` (role and id, e.g. "actor-3") starts each line; `file` empty = none.
+// A file that cannot be opened throws Error.
+void Start(const std::string& name, const std::string& file);
+
+void WriteDebug(const std::string& line);
+void WriteInfo(const std::string& line);
+void WriteWarning(const std::string& line);
+void WriteError(const std::string& line);
+
+template <class... Args>
+void Debug(fmt::format_string<Args...> format, Args&&... args) {
+  WriteDebug(fmt::format(format, std::forward<Args>(args)...));
+}
+template <class... Args>
+void Info(fmt::format_string<Args...> format, Args&&... args) {
+  WriteInfo(fmt::format(format, std::forward<Args>(args)...));
+}
+template <class... Args>
+void Warning(fmt::format_string<Args...> format, Args&&... args) {
+  WriteWarning(fmt::format(format, std::forward<Args>(args)...));
+}
+template <class... Args>
+void Failure(fmt::format_string<Args...> format, Args&&... args) {
+  WriteError(fmt::format(format, std::forward<Args>(args)...));
+}
+
+}  // namespace shoal::log

@@ -1,0 +1,13 @@
+// The one place per process where exceptions end: runs `body`, maps its result to an exit code and
+// an Error to one line on stderr.
+#pragma once
+
+#include <functional>
+
+namespace shoal {
+
+// Returns body()'s value; Error -> "PROGRAM: error: MESSAGE" and its exit code; any other exception
+// -> the same line and 1.
+int GuardMain(const char* program, const std::function<int()>& body);
+
+}  // namespace shoal

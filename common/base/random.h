@@ -1,0 +1,56 @@
+// Counter-keyed random streams: a stream is named by what it is for, never by who draws from it, so
+// results do not depend on how environments are spread over processes.
+//
+// Generator: xoshiro256++ (Blackman and Vigna 2019, arXiv:1805.01407), seeded by splitmix64.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <initializer_list>
+
+namespace shoal {
+
+// Roles keep streams of different purposes apart. Values are stored in files: never renumber.
+enum class StreamRole : uint64_t {
+  kTrainEnvironment = 1,
+  kEvalEnvironment = 2,
+  kFinalEnvironment = 3,
+  kTrainPolicy = 4,
+  kEvalPolicy = 5,
+  kReplaySampler = 6,
+  kLearnerUpdate = 7,
+  kNetworkInit = 8,
+};
+
+// Mixes the words, in order, into one 64-bit key.
+uint64_t HashWords(std::initializer_list<uint64_t> words);
+// FNV-1a of bytes, finished by one splitmix64 round.
+uint64_t HashBytes(const void* data, uint64_t size);
+
+inline uint64_t StreamKey(uint64_t seed, StreamRole role, uint64_t a = 0, uint64_t b = 0) {
+  return HashWords({seed, static_cast<uint64_t>(role), a, b});
+}
+
+class Random {
+ public:
+  using State = std::array<uint64_t, 4>;
+
+  explicit Random(uint64_t key);
+
+  uint64_t Next();
+  // Uniform in [0, 1), 53 random bits.
+  double Uniform();
+  double Uniform(double low, double high) { return low + (high - low) * Uniform(); }
+  // Uniform in {0, ..., n-1}, n > 0; unbiased (Lemire's rejection).
+  uint64_t Below(uint64_t n);
+  // Standard normal by Box-Muller; both values of a pair are drawn at once, none is kept.
+  double Normal();
+
+  const State& state() const { return state_; }
+  void set_state(const State& state) { state_ = state; }
+
+ private:
+  State state_;
+};
+
+}  // namespace shoal

@@ -1,0 +1,28 @@
+#include "common/base/stop.h"
+
+#include <csignal>
+
+namespace shoal {
+namespace {
+
+std::atomic<int> requests{0};
+static_assert(std::atomic<int>::is_always_lock_free, "used in a signal handler");
+
+void OnSignal(int) { RequestStop(); }
+
+}  // namespace
+
+void InstallStopSignals() {
+  struct sigaction action {};
+  action.sa_handler = OnSignal;
+  sigaction(SIGINT, &action, nullptr);
+  sigaction(SIGTERM, &action, nullptr);
+  action.sa_handler = SIG_IGN;
+  sigaction(SIGPIPE, &action, nullptr);
+}
+
+void RequestStop() { requests.fetch_add(1, std::memory_order_relaxed); }
+bool StopRequested() { return StopRequests() > 0; }
+int StopRequests() { return requests.load(std::memory_order_relaxed); }
+
+}  // namespace shoal

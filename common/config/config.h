@@ -1,0 +1,99 @@
+// The resolved configuration of a run: every key with its default. One struct per section; the
+// JSON key of a member is its dotted path ("learner.batch"). config_keys.cpp lists every key with its
+// range and meaning; docs/configuration.md is made from that list.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace shoal {
+
+struct ObservationConfig {
+  bool pixels = true;
+  std::vector<std::string> cameras{"front", "side"};
+  bool grey = false;
+  int height = 84, width = 84;
+  int stack = 1;
+  std::string goal_mode = "none";  // none | desired | both: goal vectors among the blocks
+  bool proprioception = false;     // the task's `observation` block
+  std::string quality = "fast";    // fast | reference
+};
+
+struct ReplayConfig {
+  int64_t capacity = 100'000;     // records
+  int64_t min_size = 1'000;       // sampleable transitions before the first batch
+  double samples_per_insert = 64;  // batch elements sampled per sampleable transition; 0 = no limit
+  double band = 0;                // width of the limiter's band in samples; 0 = computed
+  std::string storage = "file";   // file | memory
+  int shift_pad = 4;              // DrQ shift in pixels, 0 = none
+  int window_chunks = 4;          // chunks an actor may have unacknowledged
+};
+
+struct LearnerConfig {
+  int batch = 128;
+  std::string precision = "auto";  // auto | f32 | bf16
+  int threads = 0;                 // 0 = cores this process may use
+  double learning_rate = 5e-4;     // actor, critic and temperature
+  double discount = 0.9;
+  double reward_scale = 10;
+  double tau = 0.01;               // target heads: target += tau * (online - target)
+  int actor_period = 2;            // updates per actor and temperature update
+  int target_period = 1;
+  double initial_temperature = 0.1;
+  double target_entropy = 0;       // 0 = -(action size)
+  int weights_period = 20;         // updates between weights broadcasts
+  int request_credits = 3;         // batches asked for ahead
+  int checkpoint_period = 2'000;   // updates between checkpoints
+};
+
+struct NetworkConfig {
+  int pool = 2;                             // average pooling of the input, 1 = none
+  std::vector<int> filters{32, 32, 32};     // 3x3 convolutions
+  std::vector<int> strides{2, 1, 2};
+  int features = 50;                        // trunk: linear, LayerNorm, tanh
+  std::vector<int> hidden{256, 256};        // MLPs of actor and critics
+  bool layer_norm = true;                   // after each hidden layer of the MLPs
+};
+
+struct EvalConfig {
+  int episodes = 50;
+  int64_t interval = 2'500;  // env steps between evaluations
+  int final_episodes = 100;
+  int envs = 4;              // environments stepped together by the evaluation actor
+};
+
+struct StopConfig {
+  double success = 0.98;  // stop after `evaluations` in a row at or above; > 1 = never
+  int evaluations = 2;
+};
+
+struct TransportConfig {
+  std::string interface = "lo";  // network interface name or address
+  int fragment_bytes = 65'000;   // 8000 where peers are behind MTU 1500
+  int chunk_records = 24;        // records per chunk at most (chunks stay below 1 MB)
+  int flush_ms = 100;            // a partial chunk is sent after this long
+};
+
+struct Config {
+  std::string preset;
+  int64_t seed = 1;
+  std::string run_name;       // empty = PRESET-sSEED
+  std::string run_dir = "runs";
+  std::string task = "FetchReachDense";
+  int64_t env_steps = 100'000;  // budget
+  int actors = 0;               // 0 = one per core this process may use, less one, at least 1
+  int envs_per_actor = 4;
+  bool lockstep = false;
+  int lockstep_steps = 8;       // vector steps between weights in lockstep
+  std::string model;            // path of another MJCF file for the task; empty = our own
+  ObservationConfig observation;
+  ReplayConfig replay;
+  LearnerConfig learner;
+  NetworkConfig network;
+  EvalConfig eval;
+  StopConfig stop;
+  TransportConfig transport;
+};
+
+}  // namespace shoal

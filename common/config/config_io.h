@@ -1,0 +1,41 @@
+// Configuration from presets, files and --set; to JSON; checks.
+//
+// Every unknown, duplicate, ill-typed or out-of-range key is refused with Error (kUsage) naming the
+// key, the value and what was expected.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/config/config.h"
+
+namespace shoal {
+
+// Parses strict JSON text: duplicate keys are refused. `source` names the text in errors.
+nlohmann::json ParseStrictJson(std::string_view text, const std::string& source);
+
+// Applies a (nested) JSON object of keys over `config`. `source` names it in errors.
+void ApplyJson(const nlohmann::json& object, const std::string& source, Config* config);
+
+// Applies one "learner.batch=256" (value as JSON; a bare word is a string). A key given twice in
+// `assignments` is refused.
+void ApplyAssignments(const std::vector<std::string>& assignments, Config* config);
+
+// Checks that depend on several keys (chunk size, strides against filters, ...), after everything is
+// applied. Throws Error (kUsage).
+void Validate(const Config& config);
+
+// Every key, nested, in declaration order.
+nlohmann::ordered_json ToJson(const Config& config);
+
+// Markdown table of every key: default, range, meaning. Source of docs/configuration.md.
+std::string DescribeKeys();
+
+// Looks up launch/presets/NAME.json in the preset folders (beside the program, the install prefix,
+// the source tree); throws Error (kUsage) listing the presets there are.
+std::string FindPreset(const std::string& name);
+Config LoadPreset(const std::string& name);
+
+}  // namespace shoal

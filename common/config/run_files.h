@@ -1,0 +1,33 @@
+// What a run folder tells its processes: config.json (schema shoal-config-1: every key, the
+// observation spec and its hash) and cluster.json (schema shoal-cluster-1: where to meet).
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "common/config/config.h"
+#include "common/spec/observation_spec.h"
+
+namespace shoal {
+
+struct RunConfig {
+  Config config;
+  ObservationSpec spec;
+};
+
+void WriteRunConfig(const std::filesystem::path& run, const RunConfig& config);
+// Throws Error on a missing, malformed or inconsistent file (spec and stored hash differ).
+RunConfig ReadRunConfig(const std::filesystem::path& run);
+
+// Where the processes of a run meet. The odd domain above `domain` carries batches.
+struct ClusterAddress {
+  int domain = 0;                 // even, below 100
+  std::string tag;                // run id: processes with another tag do not see each other
+  std::string host = "127.0.0.1";  // of coordinator, replay and learner
+};
+
+void WriteClusterAddress(const std::filesystem::path& run, const ClusterAddress& address);
+ClusterAddress ReadClusterAddress(const std::filesystem::path& run);
+
+}  // namespace shoal

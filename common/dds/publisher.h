@@ -1,0 +1,43 @@
+// Typed writers. M is a message of common/wire/messages.h; topic, domain and QoS follow from M
+// (docs/wire_format.md).
+#pragma once
+
+#include <chrono>
+#include <memory>
+
+#include "common/dds/bus.h"
+#include "common/wire/messages.h"
+
+namespace shoal::dds {
+
+template <class M>
+class Publisher {
+ public:
+  explicit Publisher(Bus& bus);  // borrows the bus
+  ~Publisher();
+  Publisher(const Publisher&) = delete;
+  Publisher& operator=(const Publisher&) = delete;
+
+  // Copies and sends the message. Blocks at most the topic's max_blocking_time (docs); false when it
+  // was not sent within it: keep it and try again. Any thread; one at a time per publisher.
+  bool Write(const M& message);
+  // Matched readers now.
+  int Matched() const;
+  // Waits until all matched readers have acknowledged, for the exit of a process.
+  bool WaitForAcks(std::chrono::milliseconds deadline);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+extern template class Publisher<TransitionChunk>;
+extern template class Publisher<Credit>;
+extern template class Publisher<SampleRequest>;
+extern template class Publisher<BatchShard>;
+extern template class Publisher<WeightsMessage>;
+extern template class Publisher<MetricsMessage>;
+extern template class Publisher<ControlMessage>;
+extern template class Publisher<EvalMessage>;
+
+}  // namespace shoal::dds

@@ -1,0 +1,41 @@
+// Typed readers that call back from a DDS receive thread.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <memory>
+
+#include "common/dds/bus.h"
+#include "common/wire/messages.h"
+
+namespace shoal::dds {
+
+template <class M>
+class Subscriber {
+ public:
+  // `on_message` runs on a receive thread of the bus: it must not block, throw or create entities;
+  // it copies what it keeps. Malformed samples are counted, not delivered.
+  Subscriber(Bus& bus, std::function<void(const M&)> on_message);
+  // After return no callback runs.
+  ~Subscriber();
+  Subscriber(const Subscriber&) = delete;
+  Subscriber& operator=(const Subscriber&) = delete;
+
+  int Matched() const;
+  uint64_t Malformed() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+extern template class Subscriber<TransitionChunk>;
+extern template class Subscriber<Credit>;
+extern template class Subscriber<SampleRequest>;
+extern template class Subscriber<BatchShard>;
+extern template class Subscriber<WeightsMessage>;
+extern template class Subscriber<MetricsMessage>;
+extern template class Subscriber<ControlMessage>;
+extern template class Subscriber<EvalMessage>;
+
+}  // namespace shoal::dds

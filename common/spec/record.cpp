@@ -1,0 +1,36 @@
+#include "common/spec/record.h"
+
+#include <cmath>
+
+namespace shoal {
+
+RecordLayout::RecordLayout(const ObservationSpec& spec)
+    : action_size_(spec.action_size),
+      vector_size_(spec.VectorSize()),
+      frame_bytes_(spec.FrameBytes()) {
+  vector_offset_ = static_cast<int>(sizeof(RecordHeader)) + 4 * action_size_;
+  frame_offset_ = vector_offset_ + 4 * vector_size_;
+  record_bytes_ = (frame_offset_ + frame_bytes_ + 7) / 8 * 8;
+}
+
+const char* RecordFault(const RecordLayout& layout, const uint8_t* record) {
+  const RecordHeader& header = RecordLayout::Header(record);
+  if (header.version != kRecordVersion) return "record version is unknown";
+  if (header.kind != RecordKind::kReset && header.kind != RecordKind::kStep) {
+    return "record kind is unknown";
+  }
+  if ((header.kind == RecordKind::kReset) != (header.index == 0)) {
+    return "record index does not fit its kind";
+  }
+  if ((header.flags & ~(kTerminated | kTruncated | kSuccess)) != 0) return "unknown record flags";
+  if (!std::isfinite(header.reward)) return "reward is not finite";
+  for (float a : layout.Action(record)) {
+    if (!(a >= -1.0f && a <= 1.0f)) return "action is outside [-1, 1]";
+  }
+  for (float v : layout.Vector(record)) {
+    if (!std::isfinite(v)) return "vector observation is not finite";
+  }
+  return nullptr;
+}
+
+}  // namespace shoal

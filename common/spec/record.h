@@ -1,0 +1,90 @@
+// A record: what an actor publishes about one environment at one instant. The same bytes travel in
+// chunks over DDS and lie in the replay's ring.
+//
+//   RecordHeader (80 bytes) | action (A) f32 | vector (V) f32 | frame (C, H, W) u8 | pad to 8
+//
+// A *reset* record holds the first observation of an episode (action and reward are zero). A *step*
+// record holds the action taken, what it earned, and the observation it led to. All little-endian.
+// docs/wire_format.md describes the layout byte by byte.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "common/spec/observation_spec.h"
+
+namespace shoal {
+
+inline constexpr uint8_t kRecordVersion = 1;
+
+enum class RecordKind : uint8_t { kReset = 1, kStep = 2 };
+
+enum RecordFlags : uint8_t {
+  kTerminated = 1,  // the task ended: no bootstrap
+  kTruncated = 2,   // a time limit ended the episode: bootstrap
+  kSuccess = 4,
+};
+
+struct RecordHeader {
+  uint64_t sequence;         // per (actor, session), from 1, without holes
+  uint64_t weights_session;  // policy that chose the action; 0 = uniform random
+  uint64_t weights_update;
+  int64_t time_ns;   // wall clock when made
+  uint32_t env;      // global environment index: the same env whichever actor hosts it
+  uint32_t episode;  // per env, from 0, never re-used within a run
+  uint32_t index;    // 0 = reset; k = after the k-th step
+  float reward;
+  float distance;  // task's goal distance in m after this record; NaN where it has no meaning
+  RecordKind kind;
+  uint8_t flags;  // RecordFlags
+  uint8_t version;
+  uint8_t reserved[5];
+  uint64_t reserved_words[2];
+};
+static_assert(sizeof(RecordHeader) == 80);
+
+// Offsets of the parts of a record under one spec. A value type; cheap to copy.
+class RecordLayout {
+ public:
+  explicit RecordLayout(const ObservationSpec& spec);
+
+  int action_size() const { return action_size_; }
+  int vector_size() const { return vector_size_; }
+  int frame_bytes() const { return frame_bytes_; }
+  // Size of one record, a multiple of 8.
+  int record_bytes() const { return record_bytes_; }
+
+  // Views into a record of record_bytes(), aligned to 8. They borrow it.
+  static RecordHeader& Header(uint8_t* record) { return *reinterpret_cast<RecordHeader*>(record); }
+  static const RecordHeader& Header(const uint8_t* record) {
+    return *reinterpret_cast<const RecordHeader*>(record);
+  }
+  std::span<float> Action(uint8_t* record) const {
+    return {reinterpret_cast<float*>(record + sizeof(RecordHeader)), size_t(action_size_)};
+  }
+  std::span<const float> Action(const uint8_t* record) const {
+    return {reinterpret_cast<const float*>(record + sizeof(RecordHeader)), size_t(action_size_)};
+  }
+  std::span<float> Vector(uint8_t* record) const {
+    return {reinterpret_cast<float*>(record + vector_offset_), size_t(vector_size_)};
+  }
+  std::span<const float> Vector(const uint8_t* record) const {
+    return {reinterpret_cast<const float*>(record + vector_offset_), size_t(vector_size_)};
+  }
+  std::span<uint8_t> Frame(uint8_t* record) const {
+    return {record + frame_offset_, size_t(frame_bytes_)};
+  }
+  std::span<const uint8_t> Frame(const uint8_t* record) const {
+    return {record + frame_offset_, size_t(frame_bytes_)};
+  }
+
+ private:
+  int action_size_, vector_size_, frame_bytes_;
+  int vector_offset_, frame_offset_, record_bytes_;
+};
+
+// What is wrong with a record from outside, or nullptr: version, kind, index/kind agreement, unknown
+// flags, non-finite reward, action outside [-1, 1], non-finite vector.
+const char* RecordFault(const RecordLayout& layout, const uint8_t* record);
+
+}  // namespace shoal

@@ -1,0 +1,109 @@
+// The messages processes exchange, as plain structs. common/dds carries them; nothing here knows DDS.
+// docs/wire_format.md gives topics, QoS and byte layout.
+//
+// Bulk messages borrow their payload: on reception it is valid only during the callback.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace shoal {
+
+// A newer learner session wins whatever its update number; session 0 = no weights yet.
+struct WeightsVersion {
+  uint64_t session = 0;  // wall-clock ns at the learner's start: later starts are larger
+  uint64_t update = 0;   // gradient updates done
+
+  bool operator==(const WeightsVersion&) const = default;
+  bool NewerThan(const WeightsVersion& other) const {
+    return session != other.session ? session > other.session : update > other.update;
+  }
+};
+
+// actor -> replay. `count` records of equal size, sequences first_sequence .. first_sequence+count-1.
+struct TransitionChunk {
+  uint64_t spec_hash = 0;
+  uint32_t actor = 0;
+  uint32_t count = 0;
+  uint64_t session = 0;  // wall-clock ns at the actor's start
+  uint64_t first_sequence = 0;
+  std::span<const uint8_t> payload;
+};
+
+// replay -> actor, per (actor, session): flow control and acknowledgement in one.
+struct Credit {
+  uint64_t replay_session = 0;  // changes when the replay restarts: resend what is not stored
+  uint32_t actor = 0;
+  uint64_t session = 0;
+  uint64_t stored = 0;   // highest sequence up to which every record was dealt with
+  uint64_t allowed = 0;  // highest sequence that may be sent
+  uint64_t spec_hash = 0;  // the replay's: an actor with another one stops, naming both
+};
+
+// learner -> replay. Resent unchanged after a time-out; the answer depends on the request id and the
+// ring's content only.
+struct SampleRequest {
+  uint64_t spec_hash = 0;
+  uint64_t learner_session = 0;
+  uint64_t request = 0;        // from 1; keys the sampler's random stream
+  uint32_t batch = 0;          // B
+  uint64_t after_records = 0;  // served only when this many records are stored (lockstep); 0 = at once
+};
+
+// replay -> learner: part of one batch in the layout of common/wire/batch_layout.h.
+struct BatchShard {
+  uint64_t spec_hash = 0;
+  uint64_t learner_session = 0;
+  uint64_t request = 0;
+  uint32_t shard = 0, shards = 0;
+  uint64_t offset = 0, total_bytes = 0;
+  uint64_t stored_records = 0;  // in the replay when the batch was drawn, over the whole run
+  uint64_t stored_steps = 0;    // of these the step records: the run's env steps
+  std::span<const uint8_t> payload;
+};
+
+// learner -> actors. The payload is a safetensors file of the policy's parameters.
+struct WeightsMessage {
+  uint64_t spec_hash = 0;
+  WeightsVersion version;
+  uint64_t env_steps = 0;  // stored when the version was made
+  uint32_t crc = 0;        // CRC-32 of the payload
+  std::string checkpoint;  // name of the checkpoint folder with the same parameters; may be empty
+  std::span<const uint8_t> payload;
+};
+
+// every process -> coordinator, 1 Hz. Names are those of metrics.jsonl.
+struct MetricsMessage {
+  std::string role;  // "actor" | "eval" | "replay" | "learner" | "coordinator"
+  uint32_t id = 0;
+  std::string host;
+  int32_t pid = 0;
+  std::string state;  // "starting" | "running" | "blocked" | "draining" | "stopping"
+  double time = 0;    // seconds since 1970
+  std::vector<std::string> names;
+  std::vector<double> values;
+};
+
+// coordinator -> all. The newest one holds; `epoch` grows.
+enum class RunState : uint32_t {
+  kRunning = 1,
+  kDraining = 2,  // actors stop stepping, flush what they have and wait until it is stored, exit
+  kStopping = 3,  // everybody finishes what it is at, writes what it must, exits
+};
+struct ControlMessage {
+  uint64_t epoch = 0;
+  RunState state = RunState::kRunning;
+  double time = 0;  // heartbeat: published at least once a second
+};
+
+// eval actor -> coordinator: one finished evaluation, the JSON of eval/*.json (formats.md).
+struct EvalMessage {
+  uint64_t env_steps = 0;
+  WeightsVersion version;
+  std::string checkpoint;
+  std::string json;
+};
+
+}  // namespace shoal
