@@ -44,20 +44,20 @@ json ToJson(const ObservationSpec& spec) {
           {"model_fingerprint", spec.model_fingerprint}};
 }
 
-ObservationSpec ObservationSpecFromJson(const json& json) {
+ObservationSpec ObservationSpecFromJson(const json& object) {
   ObservationSpec spec;
   try {
-    json.at("task").get_to(spec.task);
-    json.at("cameras").get_to(spec.cameras);
-    json.at("channels").get_to(spec.channels);
-    json.at("height").get_to(spec.height);
-    json.at("width").get_to(spec.width);
-    json.at("stack").get_to(spec.stack);
-    for (const auto& block : json.at("blocks")) {
+    object.at("task").get_to(spec.task);
+    object.at("cameras").get_to(spec.cameras);
+    object.at("channels").get_to(spec.channels);
+    object.at("height").get_to(spec.height);
+    object.at("width").get_to(spec.width);
+    object.at("stack").get_to(spec.stack);
+    for (const auto& block : object.at("blocks")) {
       spec.blocks.push_back({block.at("name").get<std::string>(), block.at("size").get<int>()});
     }
-    json.at("action_size").get_to(spec.action_size);
-    json.at("model_fingerprint").get_to(spec.model_fingerprint);
+    object.at("action_size").get_to(spec.action_size);
+    object.at("model_fingerprint").get_to(spec.model_fingerprint);
   } catch (const nlohmann::json::exception& e) {
     throw RuntimeError("observation spec: {}", e.what());
   }

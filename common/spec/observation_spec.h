@@ -42,6 +42,6 @@ struct ObservationSpec {
 
 nlohmann::json ToJson(const ObservationSpec& spec);
 // Throws Error naming the missing or ill-typed key.
-ObservationSpec ObservationSpecFromJson(const nlohmann::json& json);
+ObservationSpec ObservationSpecFromJson(const nlohmann::json& object);
 
 }  // namespace shoal

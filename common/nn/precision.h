@@ -1,0 +1,18 @@
+// Which arithmetic the networks' large products use.
+#pragma once
+
+#include <string>
+
+namespace shoal::nn {
+
+enum class Precision { kF32, kBf16 };
+
+// "auto" -> bf16 where the CPU has it natively, else f32. "bf16" on a CPU without it throws Error.
+Precision ChoosePrecision(const std::string& asked);
+const char* ToString(Precision precision);
+// Sets the threads that the primitives of this process use.
+void SetThreads(int threads);
+// What oneDNN found, e.g. "avx512_core_bf16", for meta.json.
+std::string CpuIsa();
+
+}  // namespace shoal::nn

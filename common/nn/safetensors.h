@@ -1,0 +1,32 @@
+// safetensors files: u64 LE header length, JSON header, raw little-endian row-major data.
+// Format: github.com/huggingface/safetensors; a reader checks every offset against shape and size.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace shoal::nn {
+
+struct NamedTensor {
+  std::string dtype;  // "F32", "BF16", "U64"
+  std::vector<int64_t> shape;
+  std::vector<uint8_t> data;
+};
+
+using TensorMap = std::map<std::string, NamedTensor>;
+
+// The bytes of a file holding `tensors` and the string pairs `metadata`.
+std::string WriteSafetensors(const TensorMap& tensors,
+                             const std::map<std::string, std::string>& metadata);
+
+// `source` names the bytes in errors. Throws Error on anything but a well-formed file.
+TensorMap ReadSafetensors(std::string_view bytes, const std::string& source);
+
+// Every F32 tensor rounded to BF16 (nearest even), for the wire; and back.
+TensorMap ToBf16(const TensorMap& tensors);
+TensorMap ToF32(const TensorMap& tensors);
+
+}  // namespace shoal::nn
