@@ -52,7 +52,7 @@ double Random::Uniform() { return static_cast<double>(Next() >> 11) * 0x1.0p-53;
 
 uint64_t Random::Below(uint64_t n) {
   CHECK(n > 0);
-  using Wide = unsigned __int128;
+  __extension__ using Wide = unsigned __int128;
   Wide product = static_cast<Wide>(Next()) * n;
   if (static_cast<uint64_t>(product) < n) {
     const uint64_t threshold = (0 - n) % n;
