@@ -36,6 +36,7 @@ extern template class Publisher<Credit>;
 extern template class Publisher<SampleRequest>;
 extern template class Publisher<BatchShard>;
 extern template class Publisher<WeightsMessage>;
+extern template class Publisher<EvalWeightsMessage>;
 extern template class Publisher<MetricsMessage>;
 extern template class Publisher<ControlMessage>;
 extern template class Publisher<EvalMessage>;

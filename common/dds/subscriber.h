@@ -34,6 +34,7 @@ extern template class Subscriber<Credit>;
 extern template class Subscriber<SampleRequest>;
 extern template class Subscriber<BatchShard>;
 extern template class Subscriber<WeightsMessage>;
+extern template class Subscriber<EvalWeightsMessage>;
 extern template class Subscriber<MetricsMessage>;
 extern template class Subscriber<ControlMessage>;
 extern template class Subscriber<EvalMessage>;

@@ -49,7 +49,7 @@ struct SampleRequest {
   uint64_t learner_session = 0;
   uint64_t request = 0;        // from 1; keys the sampler's random stream
   uint32_t batch = 0;          // B
-  uint64_t after_records = 0;  // served only when this many records are stored (lockstep); 0 = at once
+  uint64_t after_steps = 0;    // served only when this many step records are stored (lockstep); 0 = at once
 };
 
 // replay -> learner: part of one batch in the layout of common/wire/batch_layout.h.
@@ -73,6 +73,10 @@ struct WeightsMessage {
   std::string checkpoint;  // name of the checkpoint folder with the same parameters; may be empty
   std::span<const uint8_t> payload;
 };
+
+// learner -> evaluation actor: the F32 parameters of a checkpoint to evaluate. A type of its own so
+// that the stream of training weights cannot overwrite it.
+struct EvalWeightsMessage : WeightsMessage {};
 
 // every process -> coordinator, 1 Hz. Names are those of metrics.jsonl.
 struct MetricsMessage {
