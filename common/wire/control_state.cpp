@@ -1,0 +1,24 @@
+#include "common/wire/control_state.h"
+
+namespace shoal {
+
+void ControlState::OnMessage(const ControlMessage& message, SteadyTime now) {
+  const std::lock_guard lock(mutex_);
+  last_heard_ = now;
+  heard_ = true;
+  if (message.epoch < epoch_) return;
+  epoch_ = message.epoch;
+  state_ = message.state;
+}
+
+RunState ControlState::state() const {
+  const std::lock_guard lock(mutex_);
+  return state_;
+}
+
+bool ControlState::CoordinatorLost(SteadyTime now) const {
+  const std::lock_guard lock(mutex_);
+  return now - last_heard_ > (heard_ ? kLease : kFirstLease);
+}
+
+}  // namespace shoal
