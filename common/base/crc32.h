@@ -1,0 +1,11 @@
+// CRC-32 (IEEE 802.3, zlib's) of bytes, for weights on the wire and files.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+namespace shoal {
+
+uint32_t Crc32(std::span<const uint8_t> bytes);
+
+}  // namespace shoal
