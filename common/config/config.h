@@ -1,6 +1,6 @@
 // The resolved configuration of a run: every key with its default. One struct per section; the
-// JSON key of a member is its dotted path ("learner.batch"). config_keys.cpp lists every key with its
-// range and meaning; docs/configuration.md is made from that list.
+// JSON key of a member is its dotted path ("learner.batch"). config_keys.cpp lists every key with
+// its range and meaning; docs/configuration.md is made from that list.
 #pragma once
 
 #include <cstdint>
@@ -21,13 +21,13 @@ struct ObservationConfig {
 };
 
 struct ReplayConfig {
-  int64_t capacity = 100'000;     // records
-  int64_t min_size = 1'000;       // sampleable transitions before the first batch
+  int64_t capacity = 100'000;      // records
+  int64_t min_size = 1'000;        // sampleable transitions before the first batch
   double samples_per_insert = 64;  // batch elements sampled per sampleable transition; 0 = no limit
-  double band = 0;                // width of the limiter's band in samples; 0 = computed
-  std::string storage = "file";   // file | memory
-  int shift_pad = 4;              // DrQ shift in pixels, 0 = none
-  int window_chunks = 4;          // chunks an actor may have unacknowledged
+  double band = 0;                 // width of the limiter's band in samples; 0 = computed
+  std::string storage = "file";    // file | memory
+  int shift_pad = 4;               // DrQ shift in pixels, 0 = none
+  int window_chunks = 4;           // chunks an actor may have unacknowledged
 };
 
 struct LearnerConfig {
@@ -37,30 +37,30 @@ struct LearnerConfig {
   double learning_rate = 5e-4;     // actor, critic and temperature
   double discount = 0.9;
   double reward_scale = 10;
-  double tau = 0.01;               // target heads: target += tau * (online - target)
-  int actor_period = 2;            // updates per actor and temperature update
+  double tau = 0.01;     // target heads: target += tau * (online - target)
+  int actor_period = 2;  // updates per actor and temperature update
   int target_period = 1;
   double initial_temperature = 0.1;
-  double target_entropy = 0;       // 0 = -(action size)
-  int weights_period = 20;         // updates between weights broadcasts
-  int request_credits = 3;         // batches asked for ahead
-  int checkpoint_period = 2'000;   // updates between checkpoints
+  double target_entropy = 0;      // 0 = -(action size)
+  int weights_period = 20;        // updates between weights broadcasts
+  int request_credits = 3;        // batches asked for ahead
+  int checkpoint_period = 2'000;  // updates between checkpoints
 };
 
 struct NetworkConfig {
-  int pool = 2;                             // average pooling of the input, 1 = none
-  std::vector<int> filters{32, 32, 32};     // 3x3 convolutions
+  int pool = 2;                          // average pooling of the input, 1 = none
+  std::vector<int> filters{32, 32, 32};  // 3x3 convolutions
   std::vector<int> strides{2, 1, 2};
-  int features = 50;                        // trunk: linear, LayerNorm, tanh
-  std::vector<int> hidden{256, 256};        // MLPs of actor and critics
-  bool layer_norm = true;                   // after each hidden layer of the MLPs
+  int features = 50;                  // trunk: linear, LayerNorm, tanh
+  std::vector<int> hidden{256, 256};  // MLPs of actor and critics
+  bool layer_norm = true;             // after each hidden layer of the MLPs
 };
 
 struct EvalConfig {
   int episodes = 50;
   int64_t interval = 2'500;  // env steps between evaluations
   int final_episodes = 100;
-  int envs = 4;              // environments stepped together by the evaluation actor
+  int envs = 4;  // environments stepped together by the evaluation actor
 };
 
 struct StopConfig {
@@ -78,15 +78,15 @@ struct TransportConfig {
 struct Config {
   std::string preset;
   int64_t seed = 1;
-  std::string run_name;       // empty = PRESET-sSEED
+  std::string run_name;  // empty = PRESET-sSEED
   std::string run_dir = "runs";
   std::string task = "FetchReachDense";
   int64_t env_steps = 100'000;  // budget
   int actors = 0;               // 0 = one per core this process may use, less one, at least 1
   int envs_per_actor = 4;
   bool lockstep = false;
-  int lockstep_steps = 8;       // vector steps between weights in lockstep
-  std::string model;            // path of another MJCF file for the task; empty = our own
+  int lockstep_steps = 8;  // vector steps between weights in lockstep
+  std::string model;       // path of another MJCF file for the task; empty = our own
   ObservationConfig observation;
   ReplayConfig replay;
   LearnerConfig learner;

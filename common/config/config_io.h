@@ -4,6 +4,7 @@
 // key, the value and what was expected.
 #pragma once
 
+#include <cstdint>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
@@ -19,16 +20,27 @@ nlohmann::json ParseStrictJson(std::string_view text, const std::string& source)
 // Applies a (nested) JSON object of keys over `config`. `source` names it in errors.
 void ApplyJson(const nlohmann::json& object, const std::string& source, Config* config);
 
+// `schema` of a run's config.json (run_files.h).
+inline constexpr char kConfigSchema[] = "shoal-config-1";
+
+// ApplyJson of a file's content. A run's config.json is accepted too: its spec and hashes are
+// skipped.
+void ApplyFile(const std::string& path, Config* config);
+
 // Applies one "learner.batch=256" (value as JSON; a bare word is a string). A key given twice in
 // `assignments` is refused.
 void ApplyAssignments(const std::vector<std::string>& assignments, Config* config);
 
-// Checks that depend on several keys (chunk size, strides against filters, ...), after everything is
-// applied. Throws Error (kUsage).
+// Checks that depend on several keys (chunk size, strides against filters, ...), after everything
+// is applied. Throws Error (kUsage).
 void Validate(const Config& config);
 
 // Every key, nested, in declaration order.
 nlohmann::ordered_json ToJson(const Config& config);
+
+// Of what a run computes: every key but preset, run_name, run_dir, env_steps and stop.*, so that a
+// resumed run may go on for longer.
+uint64_t ConfigHash(const Config& config);
 
 // Markdown table of every key: default, range, meaning. Source of docs/configuration.md.
 std::string DescribeKeys();
@@ -36,6 +48,8 @@ std::string DescribeKeys();
 // Looks up launch/presets/NAME.json in the preset folders (beside the program, the install prefix,
 // the source tree); throws Error (kUsage) listing the presets there are.
 std::string FindPreset(const std::string& name);
+std::vector<std::string> ListPresets();  // sorted
+// Defaults with the preset applied; config.preset is its name.
 Config LoadPreset(const std::string& name);
 
 }  // namespace shoal

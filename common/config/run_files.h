@@ -22,8 +22,8 @@ RunConfig ReadRunConfig(const std::filesystem::path& run);
 
 // Where the processes of a run meet. The odd domain above `domain` carries batches.
 struct ClusterAddress {
-  int domain = 0;                 // even, below 100
-  std::string tag;                // run id: processes with another tag do not see each other
+  int domain = 0;                  // even, below 100
+  std::string tag;                 // run id: processes with another tag do not see each other
   std::string host = "127.0.0.1";  // of coordinator, replay and learner
 };
 

@@ -1,0 +1,211 @@
+#include "common/config/config_io.h"
+
+#include <algorithm>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <type_traits>
+
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/base/random.h"
+#include "common/config/config_keys.h"
+#include "common/config/nearest_key.h"
+
+namespace shoal {
+namespace {
+
+using internal::Key;
+using nlohmann::json;
+
+[[noreturn]] void Refuse(const Key& key, const json& value, const std::string& source) {
+  throw UsageError("{}: {} = {}: expected {}", source, key.path, value.dump(),
+                   internal::Expected(key));
+}
+
+bool IsFileName(const std::string& text) {
+  const auto allowed = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '_' || c == '-';
+  };
+  return !text.empty() && text[0] != '.' && text[0] != '-' && std::ranges::all_of(text, allowed);
+}
+
+// Does the key's rule allow a value that already has the right type?
+struct Allows {
+  const internal::Rule& rule;
+
+  bool operator()(bool) const { return true; }
+  bool operator()(int64_t value) const {
+    const auto* range = std::get_if<internal::IntegerRange>(&rule);
+    return range == nullptr || (value >= range->low && value <= range->high);
+  }
+  bool operator()(double value) const {
+    const auto* range = std::get_if<internal::RealRange>(&rule);
+    if (range == nullptr) return true;
+    return (range->low_open ? value > range->low : value >= range->low) &&
+           (range->high_open ? value < range->high : value <= range->high);
+  }
+  bool operator()(const std::string& value) const {
+    if (const auto* choices = std::get_if<internal::Choices>(&rule)) {
+      return std::ranges::find(choices->words, value) != choices->words.end();
+    }
+    if (const auto* name = std::get_if<internal::FileName>(&rule)) {
+      return IsFileName(value) || (name->optional && value.empty());
+    }
+    return true;
+  }
+};
+
+// Reads one JSON value as T; false when it has another type, does not fit T, or breaks the rule.
+template <class T>
+bool Read(const json& value, const internal::Rule& rule, T* out) {
+  const Allows allows{rule};
+  if constexpr (std::is_same_v<T, bool>) {
+    if (!value.is_boolean()) return false;
+    *out = value.get<bool>();
+    return true;
+  } else if constexpr (std::is_integral_v<T>) {
+    if (!value.is_number_integer()) return false;
+    const bool too_large = value.is_number_unsigned() &&
+                           value.get<uint64_t>() > uint64_t(std::numeric_limits<int64_t>::max());
+    if (too_large || !allows(value.get<int64_t>())) return false;
+    *out = static_cast<T>(value.get<int64_t>());
+    return true;
+  } else if constexpr (std::is_floating_point_v<T>) {
+    if (!value.is_number() || !allows(value.get<double>())) return false;
+    *out = value.get<double>();
+    return true;
+  } else if constexpr (std::is_same_v<T, std::string>) {
+    if (!value.is_string() || !allows(value.get_ref<const std::string&>())) return false;
+    *out = value.get<std::string>();
+    return true;
+  } else {
+    if (!value.is_array()) return false;
+    T list;
+    for (const json& element : value) {
+      typename T::value_type item{};
+      if (!Read(element, rule, &item)) return false;
+      list.push_back(item);
+    }
+    *out = std::move(list);
+    return true;
+  }
+}
+
+void Assign(const Key& key, const json& value, const std::string& source, Config* config) {
+  const auto read = [&](auto* slot) { return Read(value, key.rule, slot); };
+  if (!std::visit(read, key.slot(*config))) Refuse(key, value, source);
+}
+
+const Key* FindKey(std::string_view path) {
+  for (const Key& key : internal::Keys()) {
+    if (key.path == path) return &key;
+  }
+  return nullptr;
+}
+
+bool IsSection(std::string_view path) {
+  const std::string prefix = std::string(path) + ".";
+  return std::ranges::any_of(internal::Keys(),
+                             [&](const Key& key) { return key.path.starts_with(prefix); });
+}
+
+[[noreturn]] void RefuseUnknown(const std::string& path, const std::string& source) {
+  throw UsageError("{}: unknown key '{}', nearest is '{}'", source, path,
+                   internal::NearestKey(path));
+}
+
+void ApplySection(const json& object, const std::string& prefix, const std::string& source,
+                  Config* config) {
+  for (const auto& [name, value] : object.items()) {
+    const std::string path = prefix + name;
+    if (name.find('.') != std::string::npos) {
+      throw UsageError("{}: key '{}': sections are nested objects in JSON, not dotted names",
+                       source, path);
+    }
+    if (const Key* key = FindKey(path)) {
+      Assign(*key, value, source, config);
+    } else if (!IsSection(path)) {
+      RefuseUnknown(path, source);
+    } else if (!value.is_object()) {
+      throw UsageError("{}: {} = {}: expected an object of keys", source, path, value.dump());
+    } else {
+      ApplySection(value, path + ".", source, config);
+    }
+  }
+}
+
+// The value of an assignment: JSON where it is JSON, else the text itself, so that
+// observation.quality=fast needs no quotes.
+json AssignedValue(const Key& key, const std::string& text) {
+  Config scratch;
+  if (std::holds_alternative<std::string*>(key.slot(scratch)) && !text.starts_with('"'))
+    return text;
+  json value = json::parse(text, nullptr, /*allow_exceptions=*/false);
+  return value.is_discarded() ? json(text) : value;
+}
+
+// Keys that say how long a run goes on or where it lies, not what it computes.
+bool PartOfIdentity(std::string_view path) {
+  return path != "preset" && path != "run_name" && path != "run_dir" && path != "env_steps" &&
+         !path.starts_with("stop.");
+}
+
+nlohmann::ordered_json KeysToJson(const Config& config, bool (*wanted)(std::string_view)) {
+  Config copy = config;  // slots are mutable pointers
+  nlohmann::ordered_json object = nlohmann::ordered_json::object();
+  for (const Key& key : internal::Keys()) {
+    if (!wanted(key.path)) continue;
+    const size_t dot = key.path.find('.');
+    const std::string name(key.path.substr(dot == std::string_view::npos ? 0 : dot + 1));
+    auto& section =
+        dot == std::string_view::npos ? object : object[std::string(key.path.substr(0, dot))];
+    std::visit([&](const auto* slot) { section[name] = *slot; }, key.slot(copy));
+  }
+  return object;
+}
+
+}  // namespace
+
+void ApplyJson(const json& object, const std::string& source, Config* config) {
+  if (!object.is_object()) throw UsageError("{}: expected one JSON object of keys", source);
+  ApplySection(object, "", source, config);
+}
+
+void ApplyFile(const std::string& path, Config* config) {
+  json object = ParseStrictJson(ReadFile(path), path);
+  // A run's config.json may be used as a configuration; what describes the run is not a key.
+  if (object.is_object() && object.value("schema", "") == kConfigSchema) {
+    for (const char* name : {"schema", "spec", "spec_hash", "config_hash"}) object.erase(name);
+  }
+  ApplyJson(object, path, config);
+}
+
+void ApplyAssignments(const std::vector<std::string>& assignments, Config* config) {
+  std::set<std::string> seen;
+  for (const std::string& assignment : assignments) {
+    const size_t equals = assignment.find('=');
+    if (equals == std::string::npos || equals == 0) {
+      throw UsageError("--set {}: expected KEY=VALUE", assignment);
+    }
+    const std::string path = assignment.substr(0, equals);
+    const Key* key = FindKey(path);
+    if (key == nullptr && IsSection(path)) {
+      throw UsageError("--set {}: '{}' is a section; set one of its keys", assignment, path);
+    }
+    if (key == nullptr) RefuseUnknown(path, "--set");
+    if (!seen.insert(path).second) throw UsageError("--set: key '{}' given twice", path);
+    Assign(*key, AssignedValue(*key, assignment.substr(equals + 1)), "--set", config);
+  }
+}
+
+nlohmann::ordered_json ToJson(const Config& config) {
+  return KeysToJson(config, [](std::string_view) { return true; });
+}
+
+uint64_t ConfigHash(const Config& config) {
+  const std::string text = KeysToJson(config, PartOfIdentity).dump();
+  return HashBytes(text.data(), text.size());
+}
+
+}  // namespace shoal

@@ -1,0 +1,195 @@
+#include "common/config/config_keys.h"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <limits>
+
+namespace shoal::internal {
+namespace {
+
+constexpr int64_t kMaxInt64 = std::numeric_limits<int64_t>::max();
+constexpr IntegerRange kSteps{1, 1'000'000'000'000};
+
+// A function from a Config to one of its members, as the table stores it.
+#define SHOAL_KEY(path, member, rule, meaning)                       \
+  Key {                                                              \
+    path, [](Config& c) -> Slot { return &c.member; }, rule, meaning \
+  }
+// For keys whose path is spelled like the member.
+#define SHOAL_SAME(member, rule, meaning) SHOAL_KEY(#member, member, (Rule{rule}), meaning)
+
+std::vector<Key> RunKeys() {
+  return {
+      SHOAL_SAME(preset, FileName{true}, "preset the configuration started from"),
+      SHOAL_SAME(seed, (IntegerRange{0, kMaxInt64}), "seed of every random stream"),
+      SHOAL_SAME(run_name, FileName{true}, "name of the run's folder; empty = PRESET-sSEED"),
+      SHOAL_SAME(run_dir, AnyValue{}, "folder that holds the runs"),
+      SHOAL_SAME(task, FileName{}, "task to learn"),
+      SHOAL_SAME(env_steps, kSteps, "budget: training stops after this many env steps"),
+      SHOAL_SAME(actors, (IntegerRange{0, 1024}),
+                 "actor processes; 0 = one per core this process may use, less one, at least 1"),
+      SHOAL_SAME(envs_per_actor, (IntegerRange{1, 256}), "environments stepped by one actor"),
+      SHOAL_SAME(lockstep, AnyValue{},
+                 "one actor, fixed batches, weights at fixed steps: repeats bit for bit"),
+      SHOAL_SAME(lockstep_steps, (IntegerRange{1, 100'000}),
+                 "vector steps between two weights versions in lockstep"),
+      SHOAL_SAME(model, AnyValue{}, "path of another MJCF file for the task; empty = the built-in"),
+  };
+}
+
+std::vector<Key> ObservationKeys() {
+  return {
+      SHOAL_SAME(observation.pixels, AnyValue{}, "render cameras"),
+      SHOAL_SAME(observation.cameras, AnyValue{}, "cameras, in channel order"),
+      SHOAL_SAME(observation.grey, AnyValue{}, "one grey channel per camera instead of RGB"),
+      SHOAL_SAME(observation.height, (IntegerRange{8, 1024}), "image height in pixels"),
+      SHOAL_SAME(observation.width, (IntegerRange{8, 1024}), "image width in pixels"),
+      SHOAL_SAME(observation.stack, (IntegerRange{1, 16}), "frames per observation"),
+      SHOAL_SAME(observation.goal_mode, (Choices{{"none", "desired", "both"}}),
+                 "goal vectors among the observations (both = desired and achieved)"),
+      SHOAL_SAME(observation.proprioception, AnyValue{}, "the task's state vector"),
+      SHOAL_SAME(observation.quality, (Choices{{"fast", "reference"}}),
+                 "fast = no shadows, reflections, multisampling; reference = as the originals"),
+  };
+}
+
+std::vector<Key> ReplayKeys() {
+  return {
+      SHOAL_SAME(replay.capacity, (IntegerRange{64, 1'000'000'000}), "records kept"),
+      SHOAL_SAME(replay.min_size, (IntegerRange{1, 1'000'000'000}),
+                 "sampleable transitions before the first batch"),
+      SHOAL_SAME(replay.samples_per_insert, (RealRange{0, 1e6}),
+                 "batch elements sampled per sampleable transition; 0 = no limit"),
+      SHOAL_SAME(replay.band, (RealRange{0, 1e12}),
+                 "width of the limiter's band in samples; 0 = computed"),
+      SHOAL_SAME(replay.storage, (Choices{{"file", "memory"}}),
+                 "file = ring in the run folder, survives the process; memory = anonymous"),
+      SHOAL_SAME(replay.shift_pad, (IntegerRange{0, 32}), "DrQ random shift in pixels; 0 = none"),
+      SHOAL_SAME(replay.window_chunks, (IntegerRange{2, 1024}),
+                 "chunks an actor may have unacknowledged"),
+  };
+}
+
+std::vector<Key> LearnerKeys() {
+  const RealRange positive{0, 1, true};
+  return {
+      SHOAL_SAME(learner.batch, (IntegerRange{1, 65'536}), "transitions per update"),
+      SHOAL_SAME(learner.precision, (Choices{{"auto", "f32", "bf16"}}),
+                 "arithmetic of the large products; auto = bf16 where the CPU has it natively"),
+      SHOAL_SAME(learner.threads, (IntegerRange{0, 1024}),
+                 "threads of the learner; 0 = cores this process may use"),
+      SHOAL_SAME(learner.learning_rate, positive, "Adam step of actor, critic and temperature"),
+      SHOAL_SAME(learner.discount, (RealRange{0, 1, false, true}), "discount per env step"),
+      SHOAL_SAME(learner.reward_scale, (RealRange{0, 1e6, true}), "factor on every reward"),
+      SHOAL_SAME(learner.tau, positive, "target heads: target += tau * (online - target)"),
+      SHOAL_SAME(learner.actor_period, (IntegerRange{1, 1000}),
+                 "updates per actor and temperature update"),
+      SHOAL_SAME(learner.target_period, (IntegerRange{1, 100'000}), "updates per target update"),
+      SHOAL_SAME(learner.initial_temperature, (RealRange{0, 100, true}),
+                 "entropy temperature at the start"),
+      SHOAL_SAME(learner.target_entropy, (RealRange{-1000, 1000}),
+                 "entropy the temperature aims at, in nats; 0 = -(action size)"),
+      SHOAL_SAME(learner.weights_period, (IntegerRange{1, 1'000'000}),
+                 "updates between weights broadcasts"),
+      SHOAL_SAME(learner.request_credits, (IntegerRange{1, 64}), "batches asked for ahead"),
+      SHOAL_SAME(learner.checkpoint_period, (IntegerRange{1, 1'000'000'000}),
+                 "updates between checkpoints"),
+  };
+}
+
+std::vector<Key> NetworkKeys() {
+  return {
+      SHOAL_SAME(network.pool, (IntegerRange{1, 16}), "average pooling of the images; 1 = none"),
+      SHOAL_SAME(network.filters, (IntegerRange{1, 4096}), "channels of each 3x3 convolution"),
+      SHOAL_SAME(network.strides, (IntegerRange{1, 8}), "stride of each convolution"),
+      SHOAL_SAME(network.features, (IntegerRange{1, 65'536}), "outputs of the trunk"),
+      SHOAL_SAME(network.hidden, (IntegerRange{1, 65'536}), "hidden layers of actor and critics"),
+      SHOAL_SAME(network.layer_norm, AnyValue{}, "LayerNorm after each hidden layer"),
+  };
+}
+
+std::vector<Key> EvalKeys() {
+  return {
+      SHOAL_SAME(eval.episodes, (IntegerRange{1, 100'000}), "episodes of one evaluation"),
+      SHOAL_SAME(eval.interval, kSteps, "env steps between evaluations"),
+      SHOAL_SAME(eval.final_episodes, (IntegerRange{0, 100'000}),
+                 "fresh episodes of the evaluation at the end of a run; 0 = none"),
+      SHOAL_SAME(eval.envs, (IntegerRange{1, 256}),
+                 "environments stepped together by the evaluation actor"),
+      SHOAL_SAME(stop.success, (RealRange{0, 2}),
+                 "stop at this success rate of an evaluation; above 1 = never"),
+      SHOAL_SAME(stop.evaluations, (IntegerRange{1, 1000}),
+                 "evaluations in a row that must reach stop.success"),
+  };
+}
+
+std::vector<Key> TransportKeys() {
+  return {
+      SHOAL_SAME(transport.interface, AnyValue{}, "network interface, by name or address"),
+      SHOAL_SAME(transport.fragment_bytes, (IntegerRange{1024, 65'000}),
+                 "bytes per datagram; 8000 where peers are behind MTU 1500"),
+      SHOAL_SAME(transport.chunk_records, (IntegerRange{1, 4096}), "records per chunk at most"),
+      SHOAL_SAME(transport.flush_ms, (IntegerRange{1, 60'000}),
+                 "milliseconds after which a partial chunk is sent"),
+  };
+}
+
+#undef SHOAL_SAME
+#undef SHOAL_KEY
+
+std::vector<Key> AllKeys() {
+  std::vector<Key> all;
+  for (const auto& section : {RunKeys(), ObservationKeys(), ReplayKeys(), LearnerKeys(),
+                              NetworkKeys(), EvalKeys(), TransportKeys()}) {
+    all.insert(all.end(), section.begin(), section.end());
+  }
+  return all;
+}
+
+// What the rule allows; empty when the type alone says it.
+struct RuleText {
+  std::string operator()(const AnyValue&) const { return ""; }
+  std::string operator()(const IntegerRange& r) const {
+    if (r.high == kMaxInt64) return fmt::format("of at least {}", r.low);
+    return fmt::format("in {}..{}", r.low, r.high);
+  }
+  std::string operator()(const RealRange& r) const {
+    return fmt::format("in {}{}, {}{}", r.low_open ? '(' : '[', r.low, r.high,
+                       r.high_open ? ')' : ']');
+  }
+  std::string operator()(const Choices& c) const {
+    return fmt::format("{}", fmt::join(c.words, " | "));
+  }
+  std::string operator()(const FileName& f) const {
+    return f.optional ? "usable as a file name, or empty" : "usable as a file name";
+  }
+};
+
+struct TypeText {
+  std::string operator()(const bool*) const { return "true or false"; }
+  std::string operator()(const int*) const { return "an integer"; }
+  std::string operator()(const int64_t*) const { return "an integer"; }
+  std::string operator()(const double*) const { return "a number"; }
+  std::string operator()(const std::string*) const { return "a string"; }
+  std::string operator()(const std::vector<int>*) const { return "a list of integers"; }
+  std::string operator()(const std::vector<std::string>*) const { return "a list of strings"; }
+};
+
+}  // namespace
+
+std::span<const Key> Keys() {
+  static const std::vector<Key> keys = AllKeys();
+  return keys;
+}
+
+std::string Expected(const Key& key) {
+  const std::string rule = std::visit(RuleText{}, key.rule);
+  if (std::holds_alternative<Choices>(key.rule)) return rule;
+  Config scratch;
+  const std::string type =
+      std::visit([](const auto* slot) { return TypeText{}(slot); }, key.slot(scratch));
+  return rule.empty() ? type : type + " " + rule;
+}
+
+}  // namespace shoal::internal

@@ -1,0 +1,54 @@
+// The one table of configuration keys. Parsing, printing, --set and the documentation all walk it,
+// so a key exists everywhere or nowhere. Internal to common/config.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+#include "common/config/config.h"
+
+namespace shoal::internal {
+
+// The member of a Config that a key names. Borrows the Config.
+using Slot = std::variant<bool*, int*, int64_t*, double*, std::string*, std::vector<int>*,
+                          std::vector<std::string>*>;
+
+// Bounds of an integer, or of each element of a list of integers; both ends included.
+struct IntegerRange {
+  int64_t low, high;
+};
+// Bounds of a real number; `high` is included, `low` unless open.
+struct RealRange {
+  double low, high;
+  bool low_open = false, high_open = false;
+};
+struct Choices {
+  std::vector<std::string_view> words;
+};
+// Letters, digits, '.', '_', '-'; not starting with '.' or '-': usable as a file name. May be empty
+// where `optional`.
+struct FileName {
+  bool optional = false;
+};
+struct AnyValue {};
+
+using Rule = std::variant<AnyValue, IntegerRange, RealRange, Choices, FileName>;
+
+struct Key {
+  std::string_view path;  // "learner.batch"
+  Slot (*slot)(Config&);
+  Rule rule;
+  std::string_view meaning;  // one line, with the unit
+};
+
+// Every key, in the declaration order of Config.
+std::span<const Key> Keys();
+
+// What the key takes, for errors and documentation: "an integer in 1..65536", "f32 | bf16".
+std::string Expected(const Key& key);
+
+}  // namespace shoal::internal

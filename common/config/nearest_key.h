@@ -1,0 +1,16 @@
+// Spelling help for unknown configuration keys.
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace shoal::internal {
+
+// Edits (insert, delete, replace one character) that turn `a` into `b`.
+int EditDistance(std::string_view a, std::string_view b);
+
+// The known key or section nearest to `path`: by its whole path, or by its last word when `path`
+// has no section ("batch" -> "learner.batch").
+std::string NearestKey(std::string_view path);
+
+}  // namespace shoal::internal

@@ -1,0 +1,85 @@
+#include "common/config/run_files.h"
+
+#include <nlohmann/json.hpp>
+
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/config/config_io.h"
+
+namespace shoal {
+namespace {
+
+using nlohmann::json;
+
+constexpr char kClusterSchema[] = "shoal-cluster-1";
+
+std::string HexHash(uint64_t hash) { return fmt::format("{:016x}", hash); }
+
+json ReadObject(const std::filesystem::path& path, const char* schema) {
+  json object = ParseStrictJson(ReadFile(path), path);
+  if (!object.is_object() || !object.contains("schema") || object["schema"] != schema) {
+    throw RuntimeError("{}: expected an object of schema '{}'", path.string(), schema);
+  }
+  return object;
+}
+
+// The member, or Error naming it.
+template <class T>
+T Member(const json& object, const char* name, const std::filesystem::path& path) {
+  try {
+    return object.at(name).get<T>();
+  } catch (const json::exception&) {
+    throw RuntimeError("{}: '{}' is missing or ill-typed", path.string(), name);
+  }
+}
+
+}  // namespace
+
+void WriteRunConfig(const std::filesystem::path& run, const RunConfig& config) {
+  nlohmann::ordered_json object;
+  object["schema"] = kConfigSchema;
+  object.update(ToJson(config.config));
+  object["config_hash"] = HexHash(ConfigHash(config.config));
+  object["spec"] = ToJson(config.spec);
+  object["spec_hash"] = HexHash(config.spec.Hash());
+  WriteFileAtomically(run / "config.json", object.dump(2) + "\n");
+}
+
+RunConfig ReadRunConfig(const std::filesystem::path& run) {
+  const std::filesystem::path path = run / "config.json";
+  const json object = ReadObject(path, kConfigSchema);
+  RunConfig result;
+  ApplyFile(path, &result.config);
+  Validate(result.config);
+  result.spec = ObservationSpecFromJson(Member<json>(object, "spec", path));
+  const auto stored = Member<std::string>(object, "spec_hash", path);
+  if (stored != HexHash(result.spec.Hash())) {
+    throw RuntimeError("{}: spec_hash is {}, but the spec '{}' has {}", path.string(), stored,
+                       result.spec.Summary(), HexHash(result.spec.Hash()));
+  }
+  return result;
+}
+
+void WriteClusterAddress(const std::filesystem::path& run, const ClusterAddress& address) {
+  const nlohmann::ordered_json object{{"schema", kClusterSchema},
+                                      {"domain", address.domain},
+                                      {"tag", address.tag},
+                                      {"host", address.host}};
+  WriteFileAtomically(run / "cluster.json", object.dump(2) + "\n");
+}
+
+ClusterAddress ReadClusterAddress(const std::filesystem::path& run) {
+  const std::filesystem::path path = run / "cluster.json";
+  const json object = ReadObject(path, kClusterSchema);
+  ClusterAddress address;
+  address.domain = Member<int>(object, "domain", path);
+  address.tag = Member<std::string>(object, "tag", path);
+  address.host = Member<std::string>(object, "host", path);
+  if (address.domain < 0 || address.domain >= 100 || address.domain % 2 != 0) {
+    throw RuntimeError("{}: domain = {}: expected an even number below 100", path.string(),
+                       address.domain);
+  }
+  return address;
+}
+
+}  // namespace shoal
