@@ -1,0 +1,99 @@
+#include "actor/chunk_window.h"
+
+#include <algorithm>
+#include <cstring>
+#include <utility>
+
+#include "common/base/check.h"
+
+namespace shoal::actor {
+
+ChunkWindow::ChunkWindow(const Options& options)
+    : options_(options),
+      // Before the replay's first word the whole window may be sent: it learns of us by that.
+      allowed_(static_cast<uint64_t>(options.chunks - 1) * options.chunk_records) {
+  CHECK(options.chunks >= 3 && options.chunk_records >= 1 && options.record_bytes > 0);
+  for (int i = 0; i < options.chunks; ++i) {
+    Chunk chunk;
+    chunk.bytes.resize(static_cast<size_t>(options.chunk_records) * options.record_bytes);
+    free_.push_back(std::move(chunk));
+  }
+}
+
+size_t ChunkWindow::Room() const {
+  const size_t per_chunk = static_cast<size_t>(options_.chunk_records);
+  const bool open = !kept_.empty() && !kept_.back().closed;
+  return free_.size() * per_chunk + (open ? per_chunk - kept_.back().count : 0);
+}
+
+uint8_t* ChunkWindow::BeginRecord() {
+  if (kept_.empty() || kept_.back().closed) {
+    CHECK(!free_.empty()) << "no room";
+    kept_.push_back(std::move(free_.back()));
+    free_.pop_back();
+    Chunk& fresh = kept_.back();
+    fresh.count = 0;
+    fresh.closed = fresh.sent_before = false;
+  }
+  Chunk& open = kept_.back();
+  uint8_t* record = open.bytes.data() + static_cast<size_t>(open.count) * options_.record_bytes;
+  std::memset(record, 0, static_cast<size_t>(options_.record_bytes));
+  return record;
+}
+
+void ChunkWindow::EndRecord(uint64_t sequence) {
+  CHECK(sequence == last_sequence_ + 1) << sequence << " after " << last_sequence_;
+  CHECK(!kept_.empty() && !kept_.back().closed) << "no record was begun";
+  last_sequence_ = sequence;
+  Chunk& open = kept_.back();
+  if (open.count == 0) open.first_sequence = sequence;
+  if (++open.count == static_cast<uint32_t>(options_.chunk_records)) open.closed = true;
+}
+
+void ChunkWindow::Flush() {
+  if (!kept_.empty() && kept_.back().count > 0) kept_.back().closed = true;
+}
+
+std::optional<TransitionChunk> ChunkWindow::NextToSend() const {
+  if (unsent_from_ >= kept_.size()) return std::nullopt;
+  const Chunk& chunk = kept_[unsent_from_];
+  if (!chunk.closed || chunk.first_sequence + chunk.count - 1 > allowed_) return std::nullopt;
+  TransitionChunk message;
+  message.spec_hash = options_.spec_hash;
+  message.actor = options_.actor;
+  message.session = options_.session;
+  message.count = chunk.count;
+  message.first_sequence = chunk.first_sequence;
+  message.payload = {chunk.bytes.data(), static_cast<size_t>(chunk.count) * options_.record_bytes};
+  return message;
+}
+
+void ChunkWindow::MarkSent() {
+  CHECK(unsent_from_ < kept_.size());
+  Chunk& chunk = kept_[unsent_from_++];
+  if (chunk.sent_before) resent_records_ += chunk.count;
+  chunk.sent_before = true;
+}
+
+void ChunkWindow::OnCredit(const Credit& credit) {
+  if (credit.actor != options_.actor || credit.session != options_.session) return;
+  if (credit.replay_session < replay_session_) return;  // a late word of a replay that is gone
+  if (credit.replay_session > replay_session_) {
+    const bool restarted = replay_session_ != 0;
+    replay_session_ = credit.replay_session;
+    if (restarted) Rewind();
+    allowed_ = credit.allowed;
+  }
+  allowed_ = std::max(allowed_, credit.allowed);
+  stored_ = std::max(stored_, std::min(credit.stored, last_sequence_));
+  while (!kept_.empty() && kept_.front().closed &&
+         kept_.front().first_sequence + kept_.front().count - 1 <= stored_) {
+    free_.push_back(std::move(kept_.front()));
+    kept_.pop_front();
+    if (unsent_from_ > 0) --unsent_from_;
+  }
+}
+
+void ChunkWindow::Rewind() { unsent_from_ = 0; }
+
+}  // namespace shoal::actor

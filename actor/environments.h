@@ -1,0 +1,16 @@
+// The environments of one process.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "actor/worlds/environment.h"
+#include "common/config/run_files.h"
+
+namespace shoal::actor {
+
+// `count` environments sharing one render context. Throws Error naming both sides when what they
+// observe is not what the run's config.json says.
+std::vector<std::unique_ptr<worlds::Environment>> MakeEnvironments(const RunConfig& run, int count);
+
+}  // namespace shoal::actor

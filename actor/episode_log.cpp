@@ -1,0 +1,32 @@
+#include "actor/episode_log.h"
+
+namespace shoal::actor {
+
+void EpisodeLog::Add(const EpisodeFigures& figures) {
+  ++count_;
+  recent_.push_back(figures);
+  if (recent_.size() > kWindow) recent_.pop_front();
+}
+
+EpisodeFigures EpisodeLog::Mean() const {
+  EpisodeFigures mean;
+  if (recent_.empty()) return mean;
+  const double n = static_cast<double>(recent_.size());
+  double length = 0;
+  for (const EpisodeFigures& figures : recent_) {
+    mean.episode_return += figures.episode_return / n;
+    mean.final_distance += figures.final_distance / n;
+    length += figures.length / n;
+  }
+  mean.length = static_cast<int>(length + 0.5);
+  return mean;
+}
+
+double EpisodeLog::SuccessRate() const {
+  if (recent_.empty()) return 0;
+  double successes = 0;
+  for (const EpisodeFigures& figures : recent_) successes += figures.success;
+  return successes / static_cast<double>(recent_.size());
+}
+
+}  // namespace shoal::actor

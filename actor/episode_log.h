@@ -1,0 +1,31 @@
+// Figures of the episodes that ended lately, for metrics.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+
+namespace shoal::actor {
+
+struct EpisodeFigures {
+  double episode_return = 0;
+  int length = 0;
+  bool success = false;
+  double final_distance = 0;  // m; NaN where the task has none
+};
+
+// Means over the last kWindow episodes. One thread.
+class EpisodeLog {
+ public:
+  static constexpr size_t kWindow = 100;
+
+  void Add(const EpisodeFigures& figures);
+  uint64_t count() const { return count_; }
+  EpisodeFigures Mean() const;  // all zero before the first episode
+  double SuccessRate() const;
+
+ private:
+  std::deque<EpisodeFigures> recent_;
+  uint64_t count_ = 0;
+};
+
+}  // namespace shoal::actor

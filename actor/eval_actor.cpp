@@ -1,0 +1,103 @@
+#include "actor/eval_actor.h"
+
+#include <nlohmann/json.hpp>
+
+#include "actor/evaluation.h"
+#include "common/base/log.h"
+#include "common/base/stop.h"
+#include "common/dds/publisher.h"
+#include "common/dds/subscriber.h"
+#include "common/wire/control_state.h"
+#include "common/wire/metrics_report.h"
+
+namespace shoal::actor {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kPoll{100};
+
+// Members are in construction order: receive threads end before what they write to.
+class EvalActor {
+ public:
+  explicit EvalActor(const std::filesystem::path& folder)
+      : run_(ReadRunConfig(folder)),
+        evaluator_(run_),
+        report_("eval", 0),
+        weights_(run_.spec.Hash()),
+        control_(Now()),
+        bus_(ReadClusterAddress(folder), run_.config.transport, dds::Role::kActor),
+        eval_publisher_(bus_),
+        metrics_publisher_(bus_),
+        weights_subscriber_(bus_, [this](const EvalWeightsMessage& m) { weights_.OnMessage(m); }),
+        control_subscriber_(bus_,
+                            [this](const ControlMessage& m) { control_.OnMessage(m, Now()); }) {}
+
+  int Run() {
+    while (control_.state() != RunState::kStopping && !StopRequested()) {
+      if (control_.CoordinatorLost(Now())) {
+        log::Failure("the coordinator is gone: no heartbeat; leaving");
+        return 1;
+      }
+      if (const auto weights = weights_.Take(Now() + kPoll)) Evaluate(*weights);
+      Report("running");
+    }
+    eval_publisher_.WaitForAcks(milliseconds(1000));
+    return 0;
+  }
+
+ private:
+  // One weights version for the whole evaluation; newer ones wait in the inbox.
+  void Evaluate(const ReceivedWeights& weights) {
+    evaluator_.selector().Load(weights);
+    const EpisodeStream stream{run_.config.seed, StreamRole::kEvalEnvironment, weights.env_steps};
+    const SteadyTime start = Now();
+    const auto episodes = evaluator_.Play(run_.config.eval.episodes, stream, [this] {
+      return StopRequested() || control_.state() == RunState::kStopping;
+    });
+    if (episodes.empty()) return;  // stopped half-way
+    const EvaluationLabel label{.policy = "checkpoint",
+                                .checkpoint = weights.checkpoint,
+                                .version = weights.version,
+                                .env_steps = weights.env_steps};
+    EvalMessage message;
+    message.env_steps = weights.env_steps;
+    message.version = weights.version;
+    message.checkpoint = weights.checkpoint;
+    const auto json = EvaluationJson(run_, label, stream, episodes);
+    message.json = json.dump();
+    if (!eval_publisher_.Write(message)) log::Failure("evaluation could not be reported");
+    ++evaluations_;
+    for (const EpisodeResult& episode : episodes) env_steps_ += static_cast<uint64_t>(episode.length);
+    log::Info("evaluation at {} env steps, update {}: {} in {:.1f} s", weights.env_steps,
+              weights.version.update, json.at("aggregate").dump(), SecondsSince(start));
+  }
+
+  void Report(const char* state) {
+    if (!report_.Due(Now())) return;
+    report_.Begin(state);
+    report_.Add("evaluations", static_cast<double>(evaluations_));
+    report_.Add("eval_env_steps", static_cast<double>(env_steps_));
+    report_.Add("weights_refused", static_cast<double>(weights_.refused()));
+    report_.Add("rss_mb", ResidentMegabytes());
+    metrics_publisher_.Write(report_.message());
+  }
+
+  const RunConfig run_;
+  Evaluator evaluator_;
+  MetricsReport report_;
+  WeightsInbox weights_;
+  ControlState control_;
+  dds::Bus bus_;
+  dds::Publisher<EvalMessage> eval_publisher_;
+  dds::Publisher<MetricsMessage> metrics_publisher_;
+  dds::Subscriber<EvalWeightsMessage> weights_subscriber_;
+  dds::Subscriber<ControlMessage> control_subscriber_;
+  uint64_t evaluations_ = 0, env_steps_ = 0;
+};
+
+}  // namespace
+
+int RunEvalActor(const std::filesystem::path& run) { return EvalActor(run).Run(); }
+
+}  // namespace shoal::actor

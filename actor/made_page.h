@@ -1,0 +1,58 @@
+// The *made* counter of an actor session and the next unused episode of each of its environments, in
+// a mapped file that survives SIGKILL of the actor (not power loss): what it says was made and is not
+// stored was lost with the process.
+//
+// File RUN/made/actor-ID-SESSION.page: MadePageHeader, then env_count u32 "next episode".
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace shoal::actor {
+
+struct MadePageHeader {
+  char magic[8];  // "SHOALMD1"
+  uint32_t actor;
+  uint32_t env_count;
+  uint32_t first_env;
+  uint32_t reserved;
+  uint64_t session;
+  uint64_t made;  // records given a sequence
+};
+static_assert(sizeof(MadePageHeader) == 40);
+
+// Owns the mapping. One thread.
+class MadePage {
+ public:
+  // Creates the page of this session; its episodes go on where earlier sessions hosting the same
+  // environments stopped. Throws Error when the folder cannot be written or an older page is broken.
+  MadePage(const std::filesystem::path& run, uint32_t actor, uint64_t session, uint32_t first_env,
+           uint32_t env_count);
+  ~MadePage();
+  MadePage(const MadePage&) = delete;
+  MadePage& operator=(const MadePage&) = delete;
+
+  // Counts one more record; returns its sequence (from 1).
+  uint64_t CountRecord();
+  uint64_t made() const { return header_->made; }
+  // The episode that local environment `e` begins now; never given out again.
+  uint32_t TakeEpisode(uint32_t e);
+
+ private:
+  MadePageHeader* header_ = nullptr;
+  uint32_t* next_episode_ = nullptr;
+  size_t bytes_ = 0;
+};
+
+struct MadeCount {
+  uint32_t actor = 0;
+  uint64_t session = 0;
+  uint64_t made = 0;
+};
+
+// The counters of all sessions of a run, by file name; empty when there are none. Throws Error naming
+// a broken page.
+std::vector<MadeCount> ReadMadePages(const std::filesystem::path& run);
+
+}  // namespace shoal::actor

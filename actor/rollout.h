@@ -1,0 +1,66 @@
+// E environments stepped together: reset, act, step, and one record each time.
+//
+// Borrows everything it is built from. One thread.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "actor/action_selector.h"
+#include "actor/chunk_window.h"
+#include "actor/episode_log.h"
+#include "actor/frame_stack.h"
+#include "actor/made_page.h"
+#include "actor/worlds/environment.h"
+#include "common/base/clock.h"
+
+namespace shoal::actor {
+
+// Seconds spent since the start, by stage.
+struct StageSeconds {
+  double environment = 0;  // physics and rendering
+  double inference = 0;
+};
+
+class Rollout {
+ public:
+  Rollout(const Config& config, const ObservationSpec& spec,
+          std::vector<std::unique_ptr<worlds::Environment>> environments, uint32_t first_env,
+          MadePage& made, ChunkWindow& window, ActionSelector& selector);
+
+  // One step of every environment, episodes beginning where the last ended. False, and nothing
+  // done, while the window has no room for its records.
+  bool TryStep();
+
+  uint64_t env_steps() const { return env_steps_; }
+  const EpisodeLog& episodes() const { return episodes_; }
+  const StageSeconds& seconds() const { return seconds_; }
+
+ private:
+  struct Slot {
+    std::unique_ptr<worlds::Environment> environment;
+    FrameStack stack;
+    EpisodeFigures figures;
+    uint32_t episode = 0;
+    bool running = false;
+  };
+
+  void BeginEpisode(int e);
+  void StepOne(int e);
+  void FillHeader(int e, RecordKind kind, RecordHeader* header) const;
+  void Publish(uint8_t* record);
+
+  const uint64_t seed_;
+  const RecordLayout layout_;
+  const uint32_t first_env_;
+  MadePage& made_;
+  ChunkWindow& window_;
+  ActionSelector& selector_;
+  std::vector<Slot> slots_;
+  EpisodeLog episodes_;
+  StageSeconds seconds_;
+  uint64_t env_steps_ = 0;
+};
+
+}  // namespace shoal::actor

@@ -1,0 +1,249 @@
+#include "actor/training_actor.h"
+
+#include <algorithm>
+
+#include "actor/credit_inbox.h"
+#include "actor/environments.h"
+#include "actor/rollout.h"
+#include "common/base/error.h"
+#include "common/base/log.h"
+#include "common/base/stop.h"
+#include "common/config/lockstep.h"
+#include "common/dds/publisher.h"
+#include "common/dds/subscriber.h"
+#include "common/wire/control_state.h"
+#include "common/wire/metrics_report.h"
+
+namespace shoal::actor {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr seconds kResendAfter{2};       // without progress on what was sent
+constexpr seconds kDrainDeadline{20};    // for the last records to be stored
+constexpr milliseconds kBlockedWait{5};  // per look for credit while there is no room
+constexpr seconds kLockstepDeadline{120};
+
+ChunkWindow::Options WindowOptions(const RunConfig& run, uint32_t id, uint64_t session) {
+  const Config& config = run.config;
+  const int window_chunks = std::max(2, config.replay.window_chunks);
+  if (2 * config.envs_per_actor > window_chunks * config.transport.chunk_records) {
+    throw UsageError(
+        "envs_per_actor {} does not fit the window of {} chunks of {} records: raise "
+        "replay.window_chunks or transport.chunk_records",
+        config.envs_per_actor, window_chunks, config.transport.chunk_records);
+  }
+  return {.spec_hash = run.spec.Hash(),
+          .actor = id,
+          .session = session,
+          .record_bytes = RecordLayout(run.spec).record_bytes(),
+          .chunk_records = config.transport.chunk_records,
+          .chunks = window_chunks + 1};
+}
+
+// Members are in construction order; destruction, the reverse, ends the receive threads' callbacks
+// before the inboxes they write to.
+class TrainingActor {
+ public:
+  TrainingActor(const std::filesystem::path& folder, uint32_t id)
+      : run_(ReadRunConfig(folder)),
+        id_(id),
+        session_(static_cast<uint64_t>(WallTimeNs())),
+        first_env_(id * static_cast<uint32_t>(run_.config.envs_per_actor)),
+        made_(folder, id, session_, first_env_, static_cast<uint32_t>(run_.config.envs_per_actor)),
+        window_(WindowOptions(run_, id, session_)),
+        selector_(run_.config, run_.spec, run_.config.envs_per_actor),
+        rollout_(run_.config, run_.spec, MakeEnvironments(run_, run_.config.envs_per_actor),
+                 first_env_, made_, window_, selector_),
+        report_("actor", id),
+        credits_(id, session_),
+        weights_(run_.spec.Hash()),
+        control_(Now()),
+        bus_(ReadClusterAddress(folder), run_.config.transport, dds::Role::kActor),
+        chunk_publisher_(bus_),
+        metrics_publisher_(bus_),
+        credit_subscriber_(bus_, [this](const Credit& c) { credits_.OnMessage(c); }),
+        weights_subscriber_(bus_, [this](const WeightsMessage& m) { weights_.OnMessage(m); }),
+        control_subscriber_(bus_, [this](const ControlMessage& m) { control_.OnMessage(m, Now()); }) {
+  }
+
+  int Run() {
+    log::Info("session {}: environments {}..{}, {}", session_, first_env_,
+              first_env_ + static_cast<uint32_t>(run_.config.envs_per_actor) - 1,
+              run_.spec.Summary());
+    last_flush_ = last_progress_ = Now();
+    while (control_.state() == RunState::kRunning && !StopRequested()) {
+      if (control_.CoordinatorLost(Now())) {
+        log::Failure("the coordinator is gone: no heartbeat; leaving");
+        Drain();
+        return 1;
+      }
+      TakeWeights();
+      Step();
+      Exchange(Now());
+      Report("running");
+    }
+    return Drain() ? 0 : 1;
+  }
+
+ private:
+  void TakeWeights() {
+    if (run_.config.lockstep) {
+      TakeLockstepWeights();
+    } else if (const auto weights = weights_.TryTake()) {
+      selector_.Load(*weights);
+    }
+  }
+
+  // At the end of each phase everything made is stored, then the weights of that phase's last update
+  // are waited for.
+  void TakeLockstepWeights() {
+    const auto steps = static_cast<int64_t>(rollout_.env_steps()) / run_.config.envs_per_actor;
+    if (steps < LockstepVectorStepsAtPhaseEnd(run_.config, phase_)) return;
+    const uint64_t wanted = LockstepUpdatesAtPhaseEnd(run_.config, phase_);
+    window_.Flush();
+    const SteadyTime deadline = Now() + kLockstepDeadline;
+    while (selector_.version().update < wanted) {
+      if (StopRequested() || control_.state() != RunState::kRunning) return;
+      if (Now() > deadline) {
+        throw RuntimeError("lockstep: no weights of update {} within {} s", wanted,
+                           kLockstepDeadline.count());
+      }
+      Exchange(Now() + kBlockedWait);
+      Report("blocked");
+      if (const auto weights = weights_.TryTake()) selector_.Load(*weights);
+    }
+    ++phase_;
+  }
+
+  void Step() {
+    if (control_.state() != RunState::kRunning || rollout_.TryStep()) return;
+    const SteadyTime start = Now();
+    window_.Flush();
+    Exchange(start + kBlockedWait);
+    blocked_seconds_ += SecondsSince(start);
+  }
+
+  // Hears the replay (waiting for it until `deadline`) and sends what may be sent.
+  void Exchange(SteadyTime deadline) {
+    if (const auto credit = credits_.Take(deadline)) {
+      if (credit->spec_hash != run_.spec.Hash()) {
+        throw RuntimeError("the replay's observation spec {:016x} is not this actor's {:016x} [{}]",
+                           credit->spec_hash, run_.spec.Hash(), run_.spec.Summary());
+      }
+      const uint64_t stored_before = window_.stored();
+      window_.OnCredit(*credit);
+      if (window_.stored() > stored_before) last_progress_ = Now();
+    }
+    if (Now() - last_flush_ >= milliseconds(run_.config.transport.flush_ms)) {
+      window_.Flush();
+      last_flush_ = Now();
+    }
+    if (!window_.HasUnstoredSent()) last_progress_ = Now();
+    if (Now() - last_progress_ > kResendAfter) {
+      window_.Rewind();
+      last_progress_ = Now();
+    }
+    Send();
+  }
+
+  void Send() {
+    const SteadyTime start = Now();
+    // Without a matched reader a volatile writer's samples vanish.
+    while (chunk_publisher_.Matched() > 0) {
+      const auto chunk = window_.NextToSend();
+      if (!chunk) break;
+      if (!chunk_publisher_.Write(*chunk)) {
+        ++write_timeouts_;
+        break;
+      }
+      window_.MarkSent();
+    }
+    send_seconds_ += SecondsSince(start);
+  }
+
+  // Until everything made is stored. False when the deadline came first.
+  bool Drain() {
+    window_.Flush();
+    const SteadyTime deadline = Now() + kDrainDeadline;
+    while (window_.Outstanding() > 0 && Now() < deadline && StopRequests() < 2) {
+      Exchange(Now() + kBlockedWait);
+      Report("draining");
+    }
+    Report("stopping", /*now=*/true);
+    metrics_publisher_.WaitForAcks(milliseconds(500));
+    if (window_.Outstanding() == 0) {
+      log::Info("stopped: {} records made, all stored", made_.made());
+      return true;
+    }
+    log::Failure("stopped with {} of {} records not reported stored within {} s",
+                 window_.Outstanding(), made_.made(), kDrainDeadline.count());
+    return false;
+  }
+
+  void Report(const char* state, bool now = false) {
+    if (!report_.Due(Now()) && !now) return;
+    const double interval = report_.interval_seconds();
+    report_.Begin(state);
+    report_.Add("env_steps", static_cast<double>(rollout_.env_steps()));
+    if (interval > 0) {
+      const auto steps = static_cast<double>(rollout_.env_steps() - reported_steps_);
+      report_.Add("env_steps_per_second", steps / interval);
+    }
+    reported_steps_ = rollout_.env_steps();
+    report_.Add("made", static_cast<double>(made_.made()));
+    report_.Add("outstanding", static_cast<double>(window_.Outstanding()));
+    report_.Add("resends", static_cast<double>(window_.resent_records()));
+    report_.Add("write_timeouts", static_cast<double>(write_timeouts_));
+    report_.Add("weights_refused", static_cast<double>(weights_.refused()));
+    report_.Add("weights_update", static_cast<double>(selector_.version().update));
+    report_.Add("seconds_environment", rollout_.seconds().environment);
+    report_.Add("seconds_inference", rollout_.seconds().inference);
+    report_.Add("seconds_sending", send_seconds_);
+    report_.Add("seconds_blocked", blocked_seconds_);
+    const EpisodeLog& episodes = rollout_.episodes();
+    report_.Add("episodes", static_cast<double>(episodes.count()));
+    if (episodes.count() > 0) {
+      const EpisodeFigures mean = episodes.Mean();
+      report_.Add("rollout_success", episodes.SuccessRate());
+      report_.Add("rollout_return", mean.episode_return);
+      report_.Add("rollout_length", mean.length);
+      report_.Add("rollout_final_distance", mean.final_distance);
+    }
+    report_.Add("rss_mb", ResidentMegabytes());
+    metrics_publisher_.Write(report_.message());
+  }
+
+  const RunConfig run_;
+  const uint32_t id_;
+  const uint64_t session_;
+  const uint32_t first_env_;
+  MadePage made_;
+  ChunkWindow window_;
+  ActionSelector selector_;
+  Rollout rollout_;
+  MetricsReport report_;
+  CreditInbox credits_;
+  WeightsInbox weights_;
+  ControlState control_;
+  dds::Bus bus_;
+  dds::Publisher<TransitionChunk> chunk_publisher_;
+  dds::Publisher<MetricsMessage> metrics_publisher_;
+  dds::Subscriber<Credit> credit_subscriber_;
+  dds::Subscriber<WeightsMessage> weights_subscriber_;
+  dds::Subscriber<ControlMessage> control_subscriber_;
+
+  SteadyTime last_flush_, last_progress_;
+  int64_t phase_ = 0;  // lockstep
+  uint64_t reported_steps_ = 0, write_timeouts_ = 0;
+  double blocked_seconds_ = 0, send_seconds_ = 0;
+};
+
+}  // namespace
+
+int RunTrainingActor(const std::filesystem::path& run, uint32_t id) {
+  return TrainingActor(run, id).Run();
+}
+
+}  // namespace shoal::actor
