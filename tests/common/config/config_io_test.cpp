@@ -1,0 +1,198 @@
+#include "common/config/config_io.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "common/base/error.h"
+#include "common/base/files.h"
+
+namespace shoal {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+// The message of the usage error that `act` throws; empty when it throws none.
+template <class Act>
+std::string UsageMessage(Act act) {
+  try {
+    act();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.exit_code(), 2) << e.what();
+    return e.what();
+  }
+  return "";
+}
+
+std::string JsonMistake(const std::string& text) {
+  return UsageMessage([&] {
+    Config config;
+    ApplyJson(ParseStrictJson(text, "x.json"), "x.json", &config);
+  });
+}
+
+std::string SetMistake(const std::vector<std::string>& assignments) {
+  return UsageMessage([&] {
+    Config config;
+    ApplyAssignments(assignments, &config);
+  });
+}
+
+TEST(ApplyJson, SetsNestedKeysAndLeavesTheOthers) {
+  Config config;
+  ApplyJson(ParseStrictJson(R"({"seed": 7, "learner": {"batch": 32, "discount": 0},
+                                "network": {"filters": [8, 16]}})",
+                            "x.json"),
+            "x.json", &config);
+  EXPECT_EQ(config.seed, 7);
+  EXPECT_EQ(config.learner.batch, 32);
+  EXPECT_EQ(config.learner.discount, 0);
+  EXPECT_THAT(config.network.filters, ElementsAre(8, 16));
+  EXPECT_EQ(config.replay.capacity, Config().replay.capacity);
+}
+
+TEST(ApplyJson, RefusesAnUnknownKeyNamingItAndTheNearest) {
+  EXPECT_THAT(
+      JsonMistake(R"({"learner": {"bach": 3}})"),
+      AllOf(HasSubstr("x.json"), HasSubstr("'learner.bach'"), HasSubstr("'learner.batch'")));
+  EXPECT_THAT(JsonMistake(R"({"batch": 3})"),
+              AllOf(HasSubstr("'batch'"), HasSubstr("'learner.batch'")));
+  EXPECT_THAT(JsonMistake(R"({"replya": {"capacity": 3}})"),
+              AllOf(HasSubstr("'replya'"), HasSubstr("'replay'")));
+  EXPECT_THAT(JsonMistake(R"({"learner.batch": 3})"),
+              AllOf(HasSubstr("'learner.batch'"), HasSubstr("nested")));
+}
+
+TEST(ApplyJson, RefusesAnIllTypedValueNamingKeyValueAndType) {
+  const std::pair<const char*, const char*> cases[] = {
+      {R"({"learner": {"batch": "32"}})", "learner.batch = \"32\": expected an integer"},
+      {R"({"learner": {"batch": 32.5}})", "learner.batch = 32.5: expected an integer"},
+      {R"({"learner": {"tau": true}})", "learner.tau = true: expected a number"},
+      {R"({"lockstep": 1})", "lockstep = 1: expected true or false"},
+      {R"({"task": 1})", "task = 1: expected a string"},
+      {R"({"network": {"filters": 32}})", "network.filters = 32: expected a list of integers"},
+      {R"({"network": {"filters": [1, "a"]}})", "network.filters = [1,\"a\"]: expected a list"},
+      {R"({"observation": {"cameras": [1]}})", "observation.cameras = [1]: expected a list of str"},
+      {R"({"learner": 5})", "learner = 5: expected an object"},
+      {R"({"seed": {"a": 1}})", "seed = {\"a\":1}: expected an integer"},
+      {R"({"seed": null})", "seed = null: expected an integer"},
+  };
+  for (const auto& [text, message] : cases) EXPECT_THAT(JsonMistake(text), HasSubstr(message));
+  EXPECT_THAT(JsonMistake("[1]"), HasSubstr("expected one JSON object"));
+}
+
+TEST(ApplyJson, RefusesAValueOutOfRangeNamingTheRange) {
+  const std::pair<const char*, const char*> cases[] = {
+      {R"({"learner": {"batch": 0}})", "learner.batch = 0: expected an integer in 1..65536"},
+      {R"({"learner": {"batch": 65537}})", "learner.batch = 65537"},
+      {R"({"learner": {"discount": 1}})", "learner.discount = 1: expected a number in [0, 1)"},
+      {R"({"learner": {"tau": 0}})", "learner.tau = 0: expected a number in (0, 1]"},
+      {R"({"learner": {"precision": "f64"}})", "expected auto | f32 | bf16"},
+      {R"({"network": {"strides": [2, 0]}})", "network.strides = [2,0]"},
+      {R"({"seed": -1})", "seed = -1"},
+      {R"({"seed": 18446744073709551615})", "seed = 18446744073709551615"},
+      {R"({"run_name": "../up"})", "run_name = \"../up\""},
+      {R"({"task": ""})", "task = \"\""},
+  };
+  for (const auto& [text, message] : cases) EXPECT_THAT(JsonMistake(text), HasSubstr(message));
+}
+
+TEST(ApplyJson, AcceptsBothEndsOfARange) {
+  Config config;
+  ApplyAssignments({"learner.batch=65536", "learner.tau=1", "learner.discount=0"}, &config);
+  EXPECT_EQ(config.learner.batch, 65536);
+  EXPECT_EQ(config.learner.tau, 1);
+}
+
+TEST(ApplyAssignments, TakesJsonValuesAndBareWords) {
+  Config config;
+  ApplyAssignments({"learner.precision=bf16", "observation.pixels=false", "run_name=7",
+                    "observation.cameras=[\"front\"]", "model=a=b.xml"},
+                   &config);
+  EXPECT_EQ(config.learner.precision, "bf16");
+  EXPECT_FALSE(config.observation.pixels);
+  EXPECT_EQ(config.run_name, "7");
+  EXPECT_EQ(config.model, "a=b.xml");
+  EXPECT_THAT(config.observation.cameras, ElementsAre("front"));
+}
+
+TEST(ApplyAssignments, RefusesMistakesByName) {
+  EXPECT_THAT(SetMistake({"learner.batch"}), HasSubstr("expected KEY=VALUE"));
+  EXPECT_THAT(SetMistake({"=3"}), HasSubstr("expected KEY=VALUE"));
+  EXPECT_THAT(SetMistake({"learner=3"}), HasSubstr("'learner' is a section"));
+  EXPECT_THAT(SetMistake({"learner.bat=3"}), HasSubstr("'learner.batch'"));
+  EXPECT_THAT(SetMistake({"seed=1", "seed=1"}), HasSubstr("'seed' given twice"));
+  EXPECT_THAT(SetMistake({"seed=many"}), HasSubstr("seed = \"many\": expected an integer"));
+  EXPECT_THAT(SetMistake({"seed="}), HasSubstr("seed = \"\""));
+}
+
+TEST(ToJson, RoundTripsEveryKey) {
+  Config config;
+  ApplyAssignments(
+      {"seed=3", "run_name=a.b", "observation.grey=true", "replay.band=12.5", "learner.batch=9",
+       "network.hidden=[5]", "eval.envs=2", "stop.success=1.5", "transport.flush_ms=7"},
+      &config);
+  const nlohmann::ordered_json first = ToJson(config);
+  Config again;
+  ApplyJson(ParseStrictJson(first.dump(), "again"), "again", &again);
+  EXPECT_EQ(ToJson(again), first);
+  EXPECT_EQ(again.stop.success, 1.5);
+}
+
+TEST(ToJson, ListsSectionsInTheOrderOfTheStruct) {
+  std::vector<std::string> names;
+  const nlohmann::ordered_json object = ToJson(Config());
+  for (const auto& [name, value] : object.items()) {
+    if (value.is_object()) names.push_back(name);
+  }
+  EXPECT_THAT(names, ElementsAre("observation", "replay", "learner", "network", "eval", "stop",
+                                 "transport"));
+}
+
+TEST(ConfigHash, ChangesWithWhatIsComputedButNotWithNameOrLength) {
+  const uint64_t base = ConfigHash(Config());
+  const auto hash = [](const std::string& assignment) {
+    Config config;
+    ApplyAssignments({assignment}, &config);
+    return ConfigHash(config);
+  };
+  EXPECT_NE(hash("learner.batch=3"), base);
+  EXPECT_NE(hash("seed=3"), base);
+  EXPECT_EQ(hash("run_name=other"), base);
+  EXPECT_EQ(hash("env_steps=5"), base);
+  EXPECT_EQ(hash("stop.success=2"), base);
+}
+
+TEST(Validate, AcceptsTheDefaults) { Validate(Config()); }
+
+TEST(Validate, RefusesCombinationsThatCannotWork) {
+  const std::pair<std::vector<std::string>, const char*> cases[] = {
+      {{"observation.pixels=false"}, "nothing to observe"},
+      {{"observation.cameras=[]"}, "observation.cameras"},
+      {{"observation.cameras=[\"a\",\"a\"]"}, "'a' is listed twice"},
+      {{"observation.height=1024", "observation.width=1024"}, "6291456 bytes"},
+      {{"network.strides=[1]"}, "network.filters has 3 entries and network.strides 1"},
+      {{"network.pool=5"}, "network.pool = 5"},
+      {{"observation.height=8", "observation.width=8"}, "before convolution 2"},
+      {{"replay.min_size=60000"}, "replay.min_size = 60000"},
+      {{"lockstep=true", "actors=2"}, "lockstep takes one actor"},
+      {{"run_dir="}, "run_dir"},
+      {{"transport.interface="}, "transport.interface"},
+      {{"replay.shift_pad=32", "observation.height=64"}, "replay.shift_pad = 32"},
+  };
+  for (const auto& [assignments, message] : cases) {
+    Config config;
+    ApplyAssignments(assignments, &config);
+    EXPECT_THAT(UsageMessage([&] { Validate(config); }), HasSubstr(message));
+  }
+}
+
+TEST(DescribeKeys, IsWhatTheDocumentationShows) {
+  EXPECT_THAT(ReadFile(SHOAL_SOURCE_DIR "/docs/configuration.md"), HasSubstr(DescribeKeys()));
+}
+
+}  // namespace
+}  // namespace shoal

@@ -1,0 +1,26 @@
+#include "common/config/nearest_key.h"
+
+#include <gtest/gtest.h>
+
+namespace shoal::internal {
+namespace {
+
+TEST(EditDistance, CountsInsertionsDeletionsAndReplacements) {
+  EXPECT_EQ(EditDistance("", ""), 0);
+  EXPECT_EQ(EditDistance("abc", ""), 3);
+  EXPECT_EQ(EditDistance("kitten", "sitting"), 3);
+  EXPECT_EQ(EditDistance("sitting", "kitten"), 3);
+}
+
+TEST(NearestKey, FindsMisspelledPaths) {
+  EXPECT_EQ(NearestKey("learner.bach"), "learner.batch");
+  EXPECT_EQ(NearestKey("sed"), "seed");
+}
+
+TEST(NearestKey, FindsTheSectionOfABareName) {
+  EXPECT_EQ(NearestKey("samples_per_insert"), "replay.samples_per_insert");
+  EXPECT_EQ(NearestKey("chunk_record"), "transport.chunk_records");
+}
+
+}  // namespace
+}  // namespace shoal::internal

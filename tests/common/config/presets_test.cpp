@@ -1,0 +1,52 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "common/base/error.h"
+#include "common/config/config_io.h"
+
+namespace shoal {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsSupersetOf;
+
+TEST(Presets, AllLoadAndAreValid) {
+  const std::vector<std::string> names = ListPresets();
+  EXPECT_THAT(names, IsSupersetOf({"fetch-reach-drq", "fetch-reach-state"}));
+  for (const std::string& name : names) {
+    const Config config = LoadPreset(name);
+    EXPECT_EQ(config.preset, name);
+    Validate(config);
+  }
+}
+
+TEST(Presets, DrqLearnsFromTwoCamerasAlone) {
+  const Config config = LoadPreset("fetch-reach-drq");
+  EXPECT_TRUE(config.observation.pixels);
+  EXPECT_THAT(config.observation.cameras, ElementsAre("front", "side"));
+  EXPECT_EQ(config.observation.goal_mode, "none");
+  EXPECT_FALSE(config.observation.proprioception);
+}
+
+TEST(Presets, StateRendersNothing) {
+  const Config config = LoadPreset("fetch-reach-state");
+  EXPECT_FALSE(config.observation.pixels);
+  EXPECT_TRUE(config.observation.proprioception);
+}
+
+TEST(Presets, RefuseAnUnknownNameListingTheKnown) {
+  for (const char* name : {"no-such", "../presets/fetch-reach-drq", ""}) {
+    try {
+      LoadPreset(name);
+      ADD_FAILURE() << name;
+    } catch (const Error& e) {
+      EXPECT_EQ(e.exit_code(), 2);
+      EXPECT_THAT(e.what(), AllOf(HasSubstr("preset"), HasSubstr("fetch-reach-drq")));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace shoal
