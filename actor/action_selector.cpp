@@ -1,5 +1,7 @@
 #include "actor/action_selector.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 
 namespace shoal::actor {
@@ -18,8 +20,7 @@ ActionSelector::ActionSelector(const Config& config, const ObservationSpec& spec
       actions_(mean_.size()) {}
 
 void ActionSelector::Load(const ReceivedWeights& weights) {
-  const std::string source =
-      fmt::format("weights of update {}", weights.version.update);
+  const std::string source = fmt::format("weights of update {}", weights.version.update);
   policy_.Load(nn::ReadSafetensors(weights.payload, source), source);
   version_ = weights.version;
 }
@@ -38,7 +39,8 @@ std::span<const float> ActionSelector::ActionOf(int e) const {
 
 void ActionSelector::Select(bool deterministic) {
   const bool random = version_.session == 0;
-  if (!random) policy_.Forward(envs_, frames_.data(), vectors_.data(), mean_.data(), log_std_.data());
+  if (!random)
+    policy_.Forward(envs_, frames_.data(), vectors_.data(), mean_.data(), log_std_.data());
   for (int e = 0; e < envs_; ++e) {
     Random& noise = noise_[size_t(e)];
     for (int a = 0; a < action_size_; ++a) {

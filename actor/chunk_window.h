@@ -2,8 +2,8 @@
 // the window the replay allows, kept until it reports them stored, and sent again to a new replay
 // session or when nothing was reported for a while. Duplicates are the replay's to drop.
 //
-// Owns the chunk memory: `chunks` chunks of `chunk_records` records, allocated once. Knows nothing of
-// DDS or clocks. One thread.
+// Owns the chunk memory: `chunks` chunks of `chunk_records` records, allocated once. Knows nothing
+// of DDS or clocks. One thread.
 #pragma once
 
 #include <cstdint>
@@ -37,8 +37,8 @@ class ChunkWindow {
   // Makes the open chunk, if it holds records, ready to be sent.
   void Flush();
 
-  // The next chunk inside the window that was not sent yet. Valid until the next call of a non-const
-  // member.
+  // The next chunk inside the window that was not sent yet. Valid until the next call of a
+  // non-const member.
   std::optional<TransitionChunk> NextToSend() const;
   void MarkSent();
 
@@ -63,11 +63,11 @@ class ChunkWindow {
   };
 
   Options options_;
-  std::deque<Chunk> kept_;        // oldest first; the last one may be open
+  std::deque<Chunk> kept_;  // oldest first; the last one may be open
   std::vector<Chunk> free_;
-  size_t unsent_from_ = 0;        // kept_[i], i < unsent_from_, was sent in this replay session
+  size_t unsent_from_ = 0;  // kept_[i], i < unsent_from_, was sent in this replay session
   uint64_t stored_ = 0;
-  uint64_t allowed_;              // highest sequence that may be sent
+  uint64_t allowed_;  // highest sequence that may be sent
   uint64_t last_sequence_ = 0;
   uint64_t replay_session_ = 0;
   uint64_t resent_records_ = 0;

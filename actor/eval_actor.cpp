@@ -68,7 +68,8 @@ class EvalActor {
     message.json = json.dump();
     if (!eval_publisher_.Write(message)) log::Failure("evaluation could not be reported");
     ++evaluations_;
-    for (const EpisodeResult& episode : episodes) env_steps_ += static_cast<uint64_t>(episode.length);
+    for (const EpisodeResult& episode : episodes)
+      env_steps_ += static_cast<uint64_t>(episode.length);
     log::Info("evaluation at {} env steps, update {}: {} in {:.1f} s", weights.env_steps,
               weights.version.update, json.at("aggregate").dump(), SecondsSince(start));
   }

@@ -6,7 +6,8 @@
 
 namespace shoal::actor {
 
-// Runs until the coordinator ends the run or SIGTERM; returns the exit code. Throws Error at start-up.
+// Runs until the coordinator ends the run or SIGTERM; returns the exit code. Throws Error at
+// start-up.
 int RunEvalActor(const std::filesystem::path& run);
 
 }  // namespace shoal::actor

@@ -31,7 +31,8 @@ void Begin(Seat& seat, int e, int64_t episode, const EpisodeStream& stream,
   seat.running = true;
   seat.last_action.clear();
   const uint64_t key = stream.Key(episode);
-  // Only a policy without weights draws: uniform random actions, apart from the environment's draws.
+  // Only a policy without weights draws: uniform random actions, apart from the environment's
+  // draws.
   selector.BeginEpisode(e, HashWords({key, static_cast<uint64_t>(StreamRole::kEvalPolicy)}));
   seat.environment->Reset(key, {seat.frame, selector.VectorOf(e)});
   seat.stack.Reset(seat.frame);
@@ -78,12 +79,9 @@ ordered_json Aggregate(const std::vector<EpisodeResult>& episodes) {
   for (const EpisodeResult& episode : episodes) {
     variance += std::pow(episode.episode_return - mean, 2) / n;
   }
-  return {{"episodes", episodes.size()},
-          {"success_rate", successes / n},
-          {"return_mean", mean},
-          {"return_std", std::sqrt(variance)},
-          {"length_mean", length},
-          {"final_distance_mean", NumberOrNull(distance)}};
+  return {{"episodes", episodes.size()}, {"success_rate", successes / n},
+          {"return_mean", mean},         {"return_std", std::sqrt(variance)},
+          {"length_mean", length},       {"final_distance_mean", NumberOrNull(distance)}};
 }
 
 }  // namespace
@@ -134,21 +132,21 @@ ordered_json EvaluationJson(const RunConfig& run, const EvaluationLabel& label,
                     {"final_distance", NumberOrNull(episode.final_distance)},
                     {"action_smoothness", episode.action_smoothness}});
   }
-  return {{"schema", "shoal-eval-1"},
-          {"task", run.config.task},
-          {"policy", label.policy},
-          {"checkpoint", label.checkpoint},
-          {"weights_version",
-           {{"session", label.version.session}, {"update", label.version.update}}},
-          {"env_steps", label.env_steps},
-          {"deterministic", label.policy == "checkpoint"},
-          {"cameras", run.spec.cameras},
-          {"seeds", {stream.seed}},
-          {"stream", {{"role", static_cast<uint64_t>(stream.role)}, {"group", stream.group}}},
-          {"episodes", list},
-          {"aggregate", Aggregate(episodes)},
-          {"commit", BuildCommit()},
-          {"created", UtcTimestamp()}};
+  return {
+      {"schema", "shoal-eval-1"},
+      {"task", run.config.task},
+      {"policy", label.policy},
+      {"checkpoint", label.checkpoint},
+      {"weights_version", {{"session", label.version.session}, {"update", label.version.update}}},
+      {"env_steps", label.env_steps},
+      {"deterministic", label.policy == "checkpoint"},
+      {"cameras", run.spec.cameras},
+      {"seeds", {stream.seed}},
+      {"stream", {{"role", static_cast<uint64_t>(stream.role)}, {"group", stream.group}}},
+      {"episodes", list},
+      {"aggregate", Aggregate(episodes)},
+      {"commit", BuildCommit()},
+      {"created", UtcTimestamp()}};
 }
 
 ordered_json EvaluateCheckpoint(const std::filesystem::path& run_folder,

@@ -24,8 +24,8 @@ struct EpisodeResult {
   double action_smoothness = 0;  // mean over steps of |a_t - a_{t-1}|_2; smaller is smoother
 };
 
-// Which episodes are played: episode k starts from StreamKey(seed, role, group, k). Train, evaluation
-// and final streams never meet; `group` makes each evaluation's episodes fresh.
+// Which episodes are played: episode k starts from StreamKey(seed, role, group, k). Train,
+// evaluation and final streams never meet; `group` makes each evaluation's episodes fresh.
 struct EpisodeStream {
   int64_t seed = 0;
   StreamRole role = StreamRole::kEvalEnvironment;
@@ -51,8 +51,8 @@ class Evaluator {
 
   ActionSelector& selector() { return selector_; }
 
-  // Plays `episodes` whole episodes, actions by the mean of the policy (or uniform random before any
-  // weights). Empty when `stop`, asked after each step, said so before they were done.
+  // Plays `episodes` whole episodes, actions by the mean of the policy (or uniform random before
+  // any weights). Empty when `stop`, asked after each step, said so before they were done.
   std::vector<EpisodeResult> Play(int episodes, const EpisodeStream& stream,
                                   const std::function<bool()>& stop);
 

@@ -79,12 +79,12 @@ MadePage::MadePage(const std::filesystem::path& run, uint32_t actor, uint64_t se
     }
   }
   MakeFolders(run / "made");
-  const std::filesystem::path path =
-      run / "made" / fmt::format("actor-{}-{}.page", actor, session);
+  const std::filesystem::path path = run / "made" / fmt::format("actor-{}-{}.page", actor, session);
   WritePage(path, page);
   const int fd = open(path.c_str(), O_RDWR | O_CLOEXEC);
   bytes_ = sizeof page.header + 4 * size_t{env_count};
-  void* mapped = fd < 0 ? MAP_FAILED : mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
+  void* mapped =
+      fd < 0 ? MAP_FAILED : mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
   const int error = errno;
   if (fd >= 0) close(fd);
   if (mapped == MAP_FAILED) {

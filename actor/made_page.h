@@ -1,6 +1,6 @@
-// The *made* counter of an actor session and the next unused episode of each of its environments, in
-// a mapped file that survives SIGKILL of the actor (not power loss): what it says was made and is not
-// stored was lost with the process.
+// The *made* counter of an actor session and the next unused episode of each of its environments,
+// in a mapped file that survives SIGKILL of the actor (not power loss): what it says was made and
+// is not stored was lost with the process.
 //
 // File RUN/made/actor-ID-SESSION.page: MadePageHeader, then env_count u32 "next episode".
 #pragma once
@@ -26,7 +26,8 @@ static_assert(sizeof(MadePageHeader) == 40);
 class MadePage {
  public:
   // Creates the page of this session; its episodes go on where earlier sessions hosting the same
-  // environments stopped. Throws Error when the folder cannot be written or an older page is broken.
+  // environments stopped. Throws Error when the folder cannot be written or an older page is
+  // broken.
   MadePage(const std::filesystem::path& run, uint32_t actor, uint64_t session, uint32_t first_env,
            uint32_t env_count);
   ~MadePage();
@@ -51,8 +52,8 @@ struct MadeCount {
   uint64_t made = 0;
 };
 
-// The counters of all sessions of a run, by file name; empty when there are none. Throws Error naming
-// a broken page.
+// The counters of all sessions of a run, by file name; empty when there are none. Throws Error
+// naming a broken page.
 std::vector<MadeCount> ReadMadePages(const std::filesystem::path& run);
 
 }  // namespace shoal::actor

@@ -1,5 +1,5 @@
-// shoal-actor: one program, four uses: training actor, evaluation actor, evaluation of a checkpoint,
-// description of what the actors of a configuration observe.
+// shoal-actor: one program, four uses: training actor, evaluation actor, evaluation of a
+// checkpoint, description of what the actors of a configuration observe.
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -9,6 +9,7 @@
 #include "actor/training_actor.h"
 #include "actor/worlds/environment.h"
 #include "common/base/build_info.h"
+#include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/log.h"
 #include "common/base/main_guard.h"
@@ -29,8 +30,9 @@ struct Options {
 
 int Describe(const Options& options) {
   shoal::Config config;
-  shoal::ApplyJson(shoal::ParseStrictJson(shoal::ReadFile(options.config_json), options.config_json),
-                   options.config_json, &config);
+  shoal::ApplyJson(
+      shoal::ParseStrictJson(shoal::ReadFile(options.config_json), options.config_json),
+      options.config_json, &config);
   std::shared_ptr<shoal::worlds::RenderContext> render;
   if (config.observation.pixels) render = shoal::worlds::MakeRenderContext(config.observation);
   const auto environment = shoal::worlds::MakeEnvironment(config, render);
@@ -39,10 +41,9 @@ int Describe(const Options& options) {
 }
 
 int Evaluate(const Options& options) {
-  const std::string result =
-      shoal::actor::EvaluateCheckpoint(options.run, options.checkpoint, options.episodes,
-                                       options.seed)
-          .dump(2);
+  const std::string result = shoal::actor::EvaluateCheckpoint(options.run, options.checkpoint,
+                                                              options.episodes, options.seed)
+                                 .dump(2);
   if (options.json.empty()) {
     std::cout << result << std::endl;
   } else {
@@ -57,8 +58,7 @@ int Run(int argc, char** argv) {
   app.set_version_flag("--version", shoal::BuildVersion());
   app.add_option("--run", options.run, "run folder (config.json, cluster.json)");
   app.add_option("--id", options.id, "number of this actor within the run");
-  app.add_option("--role", options.role, "train or eval")
-      ->check(CLI::IsMember({"train", "eval"}));
+  app.add_option("--role", options.role, "train or eval")->check(CLI::IsMember({"train", "eval"}));
   auto* describe = app.add_flag("--describe", options.describe, "print the observation spec");
   app.add_option("--config-json", options.config_json, "configuration for --describe")
       ->needs(describe);

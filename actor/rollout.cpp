@@ -9,9 +9,8 @@
 namespace shoal::actor {
 
 Rollout::Rollout(const Config& config, const ObservationSpec& spec,
-                 std::vector<std::unique_ptr<worlds::Environment>> environments,
-                 uint32_t first_env, MadePage& made, ChunkWindow& window,
-                 ActionSelector& selector)
+                 std::vector<std::unique_ptr<worlds::Environment>> environments, uint32_t first_env,
+                 MadePage& made, ChunkWindow& window, ActionSelector& selector)
     : seed_(static_cast<uint64_t>(config.seed)),
       layout_(spec),
       first_env_(first_env),
@@ -20,7 +19,8 @@ Rollout::Rollout(const Config& config, const ObservationSpec& spec,
       selector_(selector) {
   for (size_t e = 0; e < environments.size(); ++e) {
     slots_.push_back({.environment = std::move(environments[e]),
-                      .stack = FrameStack(selector.FrameStackOf(int(e)), spec.FrameBytes())});
+                      .stack = FrameStack(selector.FrameStackOf(int(e)), spec.FrameBytes()),
+                      .figures = {}});
   }
 }
 
@@ -79,9 +79,9 @@ void Rollout::StepOne(int e) {
   FillHeader(e, RecordKind::kStep, &header);
   header.reward = result.reward;
   header.distance = result.distance;
-  header.flags = static_cast<uint8_t>((result.terminated ? kTerminated : 0) |
-                                      (result.truncated ? kTruncated : 0) |
-                                      (result.success ? kSuccess : 0));
+  header.flags =
+      static_cast<uint8_t>((result.terminated ? kTerminated : 0) |
+                           (result.truncated ? kTruncated : 0) | (result.success ? kSuccess : 0));
   slot.stack.Push(frame);
   std::copy(vector.begin(), vector.end(), selector_.VectorOf(e).begin());
   Publish(record);

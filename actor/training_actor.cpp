@@ -65,8 +65,8 @@ class TrainingActor {
         metrics_publisher_(bus_),
         credit_subscriber_(bus_, [this](const Credit& c) { credits_.OnMessage(c); }),
         weights_subscriber_(bus_, [this](const WeightsMessage& m) { weights_.OnMessage(m); }),
-        control_subscriber_(bus_, [this](const ControlMessage& m) { control_.OnMessage(m, Now()); }) {
-  }
+        control_subscriber_(bus_,
+                            [this](const ControlMessage& m) { control_.OnMessage(m, Now()); }) {}
 
   int Run() {
     log::Info("session {}: environments {}..{}, {}", session_, first_env_,
@@ -96,8 +96,8 @@ class TrainingActor {
     }
   }
 
-  // At the end of each phase everything made is stored, then the weights of that phase's last update
-  // are waited for.
+  // At the end of each phase everything made is stored, then the weights of that phase's last
+  // update are waited for.
   void TakeLockstepWeights() {
     const auto steps = static_cast<int64_t>(rollout_.env_steps()) / run_.config.envs_per_actor;
     if (steps < LockstepVectorStepsAtPhaseEnd(run_.config, phase_)) return;

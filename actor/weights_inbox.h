@@ -23,8 +23,8 @@ class WeightsInbox {
  public:
   explicit WeightsInbox(uint64_t spec_hash) : spec_hash_(spec_hash) {}
 
-  // Receive thread. Keeps the newest version; weights of another spec or with a wrong CRC are counted
-  // and dropped.
+  // Receive thread. Keeps the newest version; weights of another spec or with a wrong CRC are
+  // counted and dropped.
   void OnMessage(const WeightsMessage& message);
 
   // Weights newer than any taken before, if there are any.
