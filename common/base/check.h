@@ -23,7 +23,7 @@ struct Voidify {
 
 }  // namespace shoal::internal
 
-#define CHECK(condition)                     \
-  (condition) ? (void)0                      \
+#define CHECK(condition)                       \
+  (condition) ? (void)0                        \
               : ::shoal::internal::Voidify() & \
                     ::shoal::internal::CheckFailure(__FILE__, __LINE__, #condition).stream()

@@ -12,8 +12,8 @@ namespace shoal {
 // Throws Error naming the path and the system's reason.
 std::string ReadFile(const std::filesystem::path& path);
 
-// Writes `path`.tmp-PID, fsyncs it, renames it over `path`, fsyncs the folder: a reader sees the old
-// file or the new one, never a part. Throws Error; on failure the temporary file is removed.
+// Writes `path`.tmp-PID, fsyncs it, renames it over `path`, fsyncs the folder: a reader sees the
+// old file or the new one, never a part. Throws Error; on failure the temporary file is removed.
 void WriteFileAtomically(const std::filesystem::path& path, std::string_view content);
 
 // fsync of a folder, so that a rename in it survives power loss. Throws Error.

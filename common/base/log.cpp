@@ -13,8 +13,8 @@ namespace shoal::log {
 namespace {
 
 std::shared_ptr<spdlog::logger>& Logger() {
-  static auto logger = std::make_shared<spdlog::logger>(
-      "shoal", std::make_shared<spdlog::sinks::stderr_sink_mt>());
+  static auto logger =
+      std::make_shared<spdlog::logger>("shoal", std::make_shared<spdlog::sinks::stderr_sink_mt>());
   return logger;
 }
 

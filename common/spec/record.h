@@ -83,8 +83,8 @@ class RecordLayout {
   int vector_offset_, frame_offset_, record_bytes_;
 };
 
-// What is wrong with a record from outside, or nullptr: version, kind, index/kind agreement, unknown
-// flags, non-finite reward, action outside [-1, 1], non-finite vector.
+// What is wrong with a record from outside, or nullptr: version, kind, index/kind agreement,
+// unknown flags, non-finite reward, action outside [-1, 1], non-finite vector.
 const char* RecordFault(const RecordLayout& layout, const uint8_t* record);
 
 }  // namespace shoal

@@ -11,9 +11,14 @@ BatchLayout::BatchLayout(const ObservationSpec& spec, int batch)
       action_size_(spec.action_size) {
   CHECK(batch > 0);
   const uint64_t b = static_cast<uint64_t>(batch);
-  const uint64_t sizes[8] = {b * frame_stack_bytes_, b * frame_stack_bytes_, b * vector_size_ * 4,
-                             b * vector_size_ * 4,   b * action_size_ * 4,   b * 4,
-                             b * 4,                  b * 8};
+  const uint64_t sizes[8] = {b * frame_stack_bytes_,
+                             b * frame_stack_bytes_,
+                             b * vector_size_ * 4,
+                             b * vector_size_ * 4,
+                             b * action_size_ * 4,
+                             b * 4,
+                             b * 4,
+                             b * 8};
   uint64_t offset = 0;
   for (int i = 0; i < 8; ++i) {
     offsets_[i] = offset;

@@ -1,5 +1,5 @@
-// What the coordinator last asked for, and whether it is still there. Written by a DDS receive thread,
-// read by the process's loop.
+// What the coordinator last asked for, and whether it is still there. Written by a DDS receive
+// thread, read by the process's loop.
 #pragma once
 
 #include <chrono>

@@ -1,5 +1,5 @@
-// The messages processes exchange, as plain structs. common/dds carries them; nothing here knows DDS.
-// docs/wire_format.md gives topics, QoS and byte layout.
+// The messages processes exchange, as plain structs. common/dds carries them; nothing here knows
+// DDS. docs/wire_format.md gives topics, QoS and byte layout.
 //
 // Bulk messages borrow their payload: on reception it is valid only during the callback.
 #pragma once
@@ -22,7 +22,8 @@ struct WeightsVersion {
   }
 };
 
-// actor -> replay. `count` records of equal size, sequences first_sequence .. first_sequence+count-1.
+// actor -> replay. `count` records of equal size, sequences first_sequence ..
+// first_sequence+count-1.
 struct TransitionChunk {
   uint64_t spec_hash = 0;
   uint32_t actor = 0;
@@ -37,19 +38,20 @@ struct Credit {
   uint64_t replay_session = 0;  // changes when the replay restarts: resend what is not stored
   uint32_t actor = 0;
   uint64_t session = 0;
-  uint64_t stored = 0;   // highest sequence up to which every record was dealt with
-  uint64_t allowed = 0;  // highest sequence that may be sent
+  uint64_t stored = 0;     // highest sequence up to which every record was dealt with
+  uint64_t allowed = 0;    // highest sequence that may be sent
   uint64_t spec_hash = 0;  // the replay's: an actor with another one stops, naming both
 };
 
-// learner -> replay. Resent unchanged after a time-out; the answer depends on the request id and the
-// ring's content only.
+// learner -> replay. Resent unchanged after a time-out; the answer depends on the request id and
+// the ring's content only.
 struct SampleRequest {
   uint64_t spec_hash = 0;
   uint64_t learner_session = 0;
-  uint64_t request = 0;        // from 1; keys the sampler's random stream
-  uint32_t batch = 0;          // B
-  uint64_t after_steps = 0;    // served only when this many step records are stored (lockstep); 0 = at once
+  uint64_t request = 0;  // from 1; keys the sampler's random stream
+  uint32_t batch = 0;    // B
+  uint64_t after_steps =
+      0;  // served only when this many step records are stored (lockstep); 0 = at once
 };
 
 // replay -> learner: part of one batch in the layout of common/wire/batch_layout.h.

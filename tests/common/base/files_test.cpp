@@ -1,0 +1,69 @@
+#include "common/base/files.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+
+#include "common/base/error.h"
+#include "tests/support/temporary_folder.h"
+
+namespace shoal {
+namespace {
+
+int FilesIn(const std::filesystem::path& folder) {
+  return static_cast<int>(std::distance(std::filesystem::directory_iterator(folder), {}));
+}
+
+TEST(Files, WritesAndReplacesWhole) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "x.json";
+  WriteFileAtomically(path, "one");
+  WriteFileAtomically(path, "two!");
+  EXPECT_EQ(ReadFile(path), "two!");
+  EXPECT_EQ(FilesIn(folder.path()), 1);
+}
+
+TEST(Files, AFailedWriteLeavesTheOldFileAndNoOther) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "x.json";
+  WriteFileAtomically(path, "old");
+  const pid_t child = fork();
+  if (child == 0) {  // a file-size limit stands in for a full disk
+    signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{4096, 4096};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    try {
+      WriteFileAtomically(path, std::string(10'000, 'x'));
+    } catch (const Error& e) {
+      _exit(std::string(e.what()).find("x.json") != std::string::npos ? 42 : 43);
+    }
+    _exit(44);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  EXPECT_EQ(WEXITSTATUS(status), 42);
+  EXPECT_EQ(ReadFile(path), "old");
+  EXPECT_EQ(FilesIn(folder.path()), 1);
+}
+
+TEST(Files, ErrorsNameThePath) {
+  const TemporaryFolder folder;
+  for (const auto& act :
+       {+[](const std::filesystem::path& p) { ReadFile(p / "absent"); },
+        +[](const std::filesystem::path& p) { ReadFile(p); },
+        +[](const std::filesystem::path& p) { WriteFileAtomically(p / "absent" / "x", "y"); }}) {
+    try {
+      act(folder.path());
+      FAIL() << "no error";
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find(folder.path().string()), std::string::npos) << e.what();
+      EXPECT_EQ(e.exit_code(), 1);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace shoal
