@@ -1,0 +1,14 @@
+// Goal halves of the Fetch tasks.
+#pragma once
+
+#include <vector>
+
+#include "common/tasks/task.h"
+
+namespace shoal::tasks {
+
+// FetchReach and FetchReachDense. The achieved goal is the position of the grip site; reached
+// within 5 cm; 50 env steps an episode.
+std::vector<Task> FetchTasks();
+
+}  // namespace shoal::tasks

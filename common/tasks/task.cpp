@@ -1,0 +1,43 @@
+#include "common/tasks/task.h"
+
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "common/base/check.h"
+
+namespace shoal::tasks {
+
+Task::Task(Description description) : description_(std::move(description)) {
+  CHECK(description_.achieved_goal.size() == description_.desired_goal.size())
+      << description_.name << ": goals of different size";
+  CHECK(description_.episode_length > 0) << description_.name;
+}
+
+double Task::Distance(std::span<const float> achieved, std::span<const float> desired) const {
+  const auto size = static_cast<size_t>(goal_size());
+  CHECK(achieved.size() == size && desired.size() == size) << achieved.size() << desired.size();
+  double sum = 0;
+  for (size_t i = 0; i < size; ++i) {
+    const double difference = double{achieved[i]} - double{desired[i]};
+    sum += difference * difference;
+  }
+  return std::sqrt(sum);
+}
+
+float Task::Reward(double distance) const {
+  if (description_.reward == RewardKind::kDense) return static_cast<float>(-distance);
+  return distance > description_.distance_threshold ? -1.0f : 0.0f;
+}
+
+void Task::ComputeRewards(std::span<const float> achieved, std::span<const float> desired,
+                          std::span<float> reward) const {
+  const auto size = static_cast<size_t>(goal_size());
+  CHECK(achieved.size() == reward.size() * size) << achieved.size() << " for " << reward.size();
+  CHECK(desired.size() == achieved.size()) << desired.size() << " for " << achieved.size();
+  for (size_t i = 0; i < reward.size(); ++i) {
+    reward[i] = Reward(Distance(achieved.subspan(i * size, size), desired.subspan(i * size, size)));
+  }
+}
+
+}  // namespace shoal::tasks

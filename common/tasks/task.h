@@ -1,0 +1,80 @@
+// The goal half of a task: what an observation consists of, what earns reward, when a goal is
+// reached, how long an episode lasts. Pure data and arithmetic, no physics: the actor computes step
+// rewards with it, and the replay can recompute them for other goals. The physics half of the same
+// name lives in actor/worlds.
+//
+// Dimension letters: N goals in a batch, G numbers of a goal.
+#pragma once
+
+#include <span>
+#include <string>
+#include <vector>
+
+namespace shoal::tasks {
+
+// One number of a block or an action.
+struct Component {
+  std::string name;  // "grip_x"
+  std::string unit;  // "m"; empty = dimensionless
+};
+
+// One named vector of an observation.
+struct Block {
+  std::string name;  // "observation", "achieved_goal", "desired_goal"
+  std::vector<Component> components;
+
+  int size() const { return static_cast<int>(components.size()); }
+};
+
+enum class RewardKind {
+  kSparse,  // -1 while the distance exceeds the threshold, else 0
+  kDense,   // -distance
+};
+
+class Task {
+ public:
+  struct Description {
+    std::string name;               // "FetchReachDense"
+    std::string world;              // name of the physics half: "FetchReach"
+    int episode_length = 0;         // env steps after which an episode is truncated
+    std::vector<Component> action;  // each in [-1, 1]
+    Block observation;              // the state vector
+    Block achieved_goal;            // G components in units of length
+    Block desired_goal;             // the same G components
+    RewardKind reward = RewardKind::kSparse;
+    double distance_threshold = 0;  // m
+  };
+
+  explicit Task(Description description);
+
+  const std::string& name() const { return description_.name; }
+  const std::string& world() const { return description_.world; }
+  int episode_length() const { return description_.episode_length; }
+  const std::vector<Component>& action() const { return description_.action; }
+  int action_size() const { return static_cast<int>(description_.action.size()); }
+  const Block& observation() const { return description_.observation; }
+  const Block& achieved_goal() const { return description_.achieved_goal; }
+  const Block& desired_goal() const { return description_.desired_goal; }
+  int goal_size() const { return description_.desired_goal.size(); }
+  RewardKind reward_kind() const { return description_.reward; }
+  double distance_threshold() const { return description_.distance_threshold; }
+
+  // Goals are the float32 numbers that records carry, so that a reward computed for a record, now
+  // or when sampling, is the same number to the last bit. Sums run in double.
+
+  // Euclidean distance in m of two goals (G each).
+  double Distance(std::span<const float> achieved, std::span<const float> desired) const;
+  // Distance strictly below the threshold.
+  bool Success(double distance) const { return distance < description_.distance_threshold; }
+  // Reward at this distance, unscaled.
+  float Reward(double distance) const;
+  // reward[i] = Reward(Distance(achieved[i], desired[i])) for N goals: achieved, desired (N, G)
+  // row-major, reward (N). CHECK on sizes that disagree.
+  void ComputeRewards(std::span<const float> achieved, std::span<const float> desired,
+                      std::span<float> reward) const;
+
+ private:
+  Description description_;
+};
+
+}  // namespace shoal::tasks

@@ -1,0 +1,37 @@
+#include "common/tasks/task_registry.h"
+
+#include <fmt/ranges.h>
+
+#include "common/base/error.h"
+#include "common/tasks/fetch_tasks.h"
+
+namespace shoal::tasks {
+namespace {
+
+const std::vector<Task>& AllTasks() {
+  static const std::vector<Task> tasks = [] {
+    std::vector<Task> all;
+    for (auto family : {FetchTasks}) {
+      for (Task& task : family()) all.push_back(std::move(task));
+    }
+    return all;
+  }();
+  return tasks;
+}
+
+}  // namespace
+
+const Task& FindTask(const std::string& name) {
+  for (const Task& task : AllTasks()) {
+    if (task.name() == name) return task;
+  }
+  throw UsageError("unknown task '{}'; tasks: {}", name, fmt::join(TaskNames(), ", "));
+}
+
+std::vector<std::string> TaskNames() {
+  std::vector<std::string> names;
+  for (const Task& task : AllTasks()) names.push_back(task.name());
+  return names;
+}
+
+}  // namespace shoal::tasks

@@ -1,0 +1,18 @@
+// Tasks by name. A new task registers its goal half in task_registry.cpp and its physics half in
+// actor/worlds/world_registry.cpp.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/tasks/task.h"
+
+namespace shoal::tasks {
+
+// Lives as long as the process. Throws Error (kUsage) listing the tasks there are.
+const Task& FindTask(const std::string& name);
+
+// In the order of registration.
+std::vector<std::string> TaskNames();
+
+}  // namespace shoal::tasks
