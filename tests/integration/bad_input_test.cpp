@@ -1,0 +1,72 @@
+// Every wrong thing a user can say gets one clear line that names it, and the right exit code.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/support/training_run.h"
+
+namespace shoal {
+namespace {
+
+struct Mistake {
+  std::string name;
+  std::vector<std::string> command;
+  int exit_code;
+  std::vector<std::string> mentions;
+};
+
+class BadInput : public testing::TestWithParam<Mistake> {};
+
+TEST_P(BadInput, GetsOneLineThatNamesIt) {
+  const ProgramResult result = RunProgram(GetParam().command, std::chrono::seconds(30));
+  EXPECT_EQ(ExitCode(result), GetParam().exit_code) << result.out << result.err;
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+  for (const std::string& word : GetParam().mentions) {
+    EXPECT_NE(result.err.find(word), std::string::npos) << "no '" << word << "' in " << result.err;
+  }
+}
+
+std::vector<std::string> TrainWith(const std::string& assignment) {
+  return {"shoal", "train", "--preset", "fetch-reach-state", "--dry-run", "--set", assignment};
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    All, BadInput,
+    testing::Values(
+        Mistake{"UnknownKey", TrainWith("learner.bach=3"), 2, {"learner.bach", "learner.batch"}},
+        Mistake{"IllTyped", TrainWith("learner.batch=many"), 2, {"learner.batch", "many"}},
+        Mistake{"OutOfRange", TrainWith("learner.batch=-1"), 2, {"learner.batch", "-1"}},
+        Mistake{"UnknownTask", TrainWith("task=FetchFly"), 2, {"FetchFly", "FetchReachDense"}},
+        Mistake{"UnknownCamera",
+                {"shoal", "train", "--preset", "fetch-reach-drq", "--dry-run", "--set",
+                 "observation.cameras=[\"moon\"]"},
+                2,
+                {"moon", "front"}},
+        Mistake{"UnknownPreset",
+                {"shoal", "train", "--preset", "nope", "--dry-run"},
+                2,
+                {"nope", "fetch-reach-drq"}},
+        Mistake{"AbsentModel", TrainWith("model=/absent/robot.xml"), 1, {"/absent/robot.xml"}},
+        Mistake{"AbsentConfigFile",
+                {"shoal", "train", "--config", "/absent.json", "--dry-run"},
+                1,
+                {"/absent.json"}},
+        Mistake{"UnknownOption", {"shoal", "train", "--fast"}, 2, {"--fast"}},
+        Mistake{"UnknownCommand", {"shoal", "trian"}, 2, {"trian"}},
+        Mistake{"AbsentCheckpoint",
+                {"shoal", "eval", "--checkpoint", "/absent/checkpoints/best", "--episodes", "1"},
+                1,
+                {"/absent"}},
+        Mistake{"AbsentReference", {"shoal", "env", "replay", "/absent.json"}, 1, {"/absent.json"}},
+        Mistake{"UnknownRenderTask",
+                {"shoal", "env", "render", "FetchFly", "--png", "/absent/x.png"},
+                2,
+                {"FetchFly"}},
+        Mistake{"ReplayWithoutRun", {"shoal-replay", "--run", "/absent"}, 1, {"/absent"}},
+        Mistake{"LearnerWithoutRun", {"shoal-learner", "--run", "/absent"}, 1, {"/absent"}},
+        Mistake{"ActorWithoutRun", {"shoal-actor", "--run", "/absent"}, 1, {"/absent"}},
+        Mistake{"NoInterface", TrainWith("transport.interface=\"eth77\""), 1, {"eth77"}}),
+    [](const auto& test) { return test.param.name; });
+
+}  // namespace
+}  // namespace shoal

@@ -1,0 +1,67 @@
+// The real programs, from `shoal train` to the summary.
+#include "tests/support/training_run.h"
+
+#include <gtest/gtest.h>
+
+namespace shoal {
+namespace {
+
+TEST(TrainingRun, LeavesABalancedAccountAndEveryFile) {
+  const TrainingRun run;
+  const ProgramResult result = run.Train();
+  ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
+
+  const auto meta = run.Json("meta.json");
+  EXPECT_EQ(meta.at("schema"), "shoal-run-1");
+  EXPECT_GE(meta.at("env_steps").get<int64_t>(), 4000);
+  EXPECT_GT(meta.at("updates").get<int64_t>(), 100);
+  ExpectBalanced(meta);
+  for (const char* nothing : {"lost_with_process", "rejected", "after_gap"}) {
+    EXPECT_EQ(meta.at("accounting").at(nothing), 0) << nothing;
+  }
+  for (const char* file : {"config.json", "cluster.json", "metrics.jsonl", "accounting.json",
+                           "checkpoints/best/policy.safetensors", "logs/learner-0.log"}) {
+    EXPECT_TRUE(std::filesystem::exists(run.path() / file)) << file;
+  }
+  int evaluations = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(run.path() / "eval")) {
+    const auto evaluation = nlohmann::json::parse(ReadFile(entry.path()));
+    EXPECT_EQ(evaluation.at("schema"), "shoal-eval-1");
+    EXPECT_EQ(evaluation.at("episodes").size(), 8u);
+    ++evaluations;
+  }
+  EXPECT_GE(evaluations, 3) << "two while training and the final one";
+}
+
+TEST(TrainingRun, EvaluationOfACheckpointRepeats) {
+  const TrainingRun run;
+  const ProgramResult result = run.Train({"--set", "env_steps=1500", "--set", "eval.interval=500"});
+  ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
+  const auto evaluate = [&](const std::string& seed) {
+    const std::string file = (run.parent() / ("eval-" + seed + ".json")).string();
+    const ProgramResult evaluation =
+        RunProgram({"shoal", "eval", "--checkpoint", (run.path() / "checkpoints/best").string(),
+                    "--episodes", "6", "--seed", seed, "--json", file},
+                   std::chrono::seconds(60));
+    EXPECT_EQ(ExitCode(evaluation), 0) << evaluation.err;
+    return nlohmann::json::parse(ReadFile(file)).at("episodes");
+  };
+  const auto first = evaluate("7");
+  EXPECT_EQ(first.size(), 6u);
+  EXPECT_EQ(first, evaluate("7"));
+  EXPECT_NE(first, evaluate("8"));
+}
+
+TEST(TrainingRun, AnExistingRunIsNotOverwritten) {
+  const TrainingRun run;
+  MakeFolders(run.path());
+  WriteFileAtomically(run.path() / "precious", "x");
+  const ProgramResult result = run.Train();
+  EXPECT_NE(ExitCode(result), 0);
+  EXPECT_NE(result.err.find(run.path().string()), std::string::npos) << result.err;
+  EXPECT_EQ(ReadFile(run.path() / "precious"), "x");
+  EXPECT_FALSE(std::filesystem::exists(run.path() / "config.json"));
+}
+
+}  // namespace
+}  // namespace shoal

@@ -1,0 +1,44 @@
+// Runs one of the built programs to its end and reads what it said.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common/base/files.h"
+#include "launch/child_process.h"
+#include "tests/support/temporary_folder.h"
+
+namespace shoal {
+
+struct ProgramResult {
+  bool ended = false;  // false: the deadline came first and it was killed
+  launch::ExitStatus status;
+  std::string out, err;
+};
+
+// command[0] is a program's name in the build's bin folder.
+inline ProgramResult RunProgram(std::vector<std::string> command, std::chrono::seconds deadline) {
+  const TemporaryFolder folder;
+  launch::ProcessSpec spec;
+  spec.role = "test";
+  command[0] = std::string(SHOAL_BIN) + "/" + command[0];
+  spec.command = std::move(command);
+  spec.output = folder.path() / "out";
+  spec.errors = folder.path() / "err";
+  const auto status = launch::RunToEnd(spec, deadline, [] { return false; });
+  ProgramResult result;
+  result.ended = status.has_value();
+  if (status) result.status = *status;
+  result.out = ReadFile(spec.output);
+  result.err = ReadFile(spec.errors);
+  return result;
+}
+
+// Exit code, or -1 when it was killed or did not end.
+inline int ExitCode(const ProgramResult& result) {
+  return result.ended && !result.status.by_signal ? result.status.code : -1;
+}
+
+}  // namespace shoal
