@@ -1,0 +1,45 @@
+#include "common/config/lockstep.h"
+
+#include <cmath>
+
+#include "common/base/check.h"
+
+namespace shoal {
+namespace {
+
+// Keeps a product such as 3 * (1 / 3.0) from being floored to one update less.
+constexpr double kRoundingSlack = 1e-6;
+
+double UpdatesPerPhase(const Config& config) {
+  const double ratio = config.replay.samples_per_insert;
+  if (ratio <= 0) return 1;
+  return ratio * config.lockstep_steps * config.envs_per_actor / config.learner.batch;
+}
+
+}  // namespace
+
+int64_t LockstepVectorStepsAtPhaseEnd(const Config& config, int64_t phase) {
+  CHECK(phase >= 0) << phase;
+  const int64_t envs = config.envs_per_actor;
+  const int64_t period = config.lockstep_steps;
+  const int64_t warm_up = (config.replay.min_size + envs - 1) / envs;
+  return (warm_up + period - 1) / period * period + phase * period;
+}
+
+uint64_t LockstepUpdatesAtPhaseEnd(const Config& config, int64_t phase) {
+  CHECK(phase >= 0) << phase;
+  const double updates = static_cast<double>(phase) * UpdatesPerPhase(config);
+  return static_cast<uint64_t>(std::floor(updates + kRoundingSlack));
+}
+
+uint64_t LockstepStepsBeforeUpdate(const Config& config, uint64_t update) {
+  CHECK(update >= 1);
+  // The first phase that ends with at least `update` updates; the estimate is off by rounding only.
+  auto phase = static_cast<int64_t>(static_cast<double>(update) / UpdatesPerPhase(config));
+  while (phase > 0 && LockstepUpdatesAtPhaseEnd(config, phase - 1) >= update) --phase;
+  while (LockstepUpdatesAtPhaseEnd(config, phase) < update) ++phase;
+  return static_cast<uint64_t>(LockstepVectorStepsAtPhaseEnd(config, phase) *
+                               config.envs_per_actor);
+}
+
+}  // namespace shoal

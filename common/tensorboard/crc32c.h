@@ -1,0 +1,16 @@
+// CRC-32C (Castagnoli, polynomial 0x1EDC6F41 reflected): the checksum of TFRecord files.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+
+namespace shoal::tensorboard {
+
+// Crc32c("123456789") = 0xe3069283.
+uint32_t Crc32c(std::string_view bytes);
+
+// TFRecord stores checksums rotated and offset, so that a CRC of data holding CRCs stays a good
+// one.
+constexpr uint32_t MaskCrc(uint32_t crc) { return ((crc >> 15) | (crc << 17)) + 0xa282ead8u; }
+
+}  // namespace shoal::tensorboard

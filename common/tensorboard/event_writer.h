@@ -1,0 +1,39 @@
+// Scalars as a TensorBoard event file.
+//
+// The file is FOLDER/events.out.tfevents.SECONDS.HOST.PID.NUMBER, a sequence of TFRecords of Event
+// messages. Several processes may write files into one folder; TensorBoard shows them as one run
+// (start it with --reload_multifile=true to follow all of them while they grow).
+//
+// Scalars are kept in memory until Flush, at least every 64 kB. A file always ends at a record's
+// end, unless the process dies within a write; readers ignore such a tail. Threads: one at a time.
+// Errors: Error naming the file when it cannot be made or written.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace shoal::tensorboard {
+
+class EventWriter {
+ public:
+  // Makes the folder and a new file in it.
+  explicit EventWriter(const std::filesystem::path& folder);
+  // Writes what is pending; a failure is logged.
+  ~EventWriter();
+  EventWriter(const EventWriter&) = delete;
+  EventWriter& operator=(const EventWriter&) = delete;
+
+  // One point: x = `step` (env steps everywhere in Shoal), y = `value` rounded to float.
+  void Scalar(const std::string& tag, int64_t step, double value);
+  void Flush();
+
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+  int fd_;
+  std::string pending_;
+};
+
+}  // namespace shoal::tensorboard
