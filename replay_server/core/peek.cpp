@@ -1,0 +1,162 @@
+#include "replay_server/core/peek.h"
+
+#include <algorithm>
+#include <cstdlib>
+#include <memory>
+#include <new>
+#include <optional>
+#include <span>
+
+#include "common/base/error.h"
+#include "common/base/random.h"
+#include "common/config/run_files.h"
+#include "common/wire/batch_layout.h"
+#include "replay_server/core/batch_gather.h"
+#include "replay_server/core/episode_index.h"
+#include "replay_server/core/replay_core.h"
+#include "replay_server/core/ring.h"
+#include "replay_server/core/uniform_sampler.h"
+
+namespace shoal::replay {
+namespace {
+
+constexpr int kBorder = 2;     // pixels between images
+constexpr int kAttempts = 20;  // while a server overwrites what was drawn
+
+struct FreeBatch {
+  void operator()(uint8_t* data) const { std::free(data); }
+};
+
+// A batch of its own memory.
+struct Batch {
+  Batch(const ObservationSpec& spec, int size)
+      : layout(spec, size),
+        data(static_cast<uint8_t*>(std::aligned_alloc(64, layout.total_bytes()))) {
+    if (!data) throw std::bad_alloc();
+  }
+  BatchView View() const { return layout.View(data.get()); }
+
+  BatchLayout layout;
+  std::unique_ptr<uint8_t[], FreeBatch> data;
+};
+
+BatchPlan WithoutShift(BatchPlan plan) {
+  for (BatchPlan::Element& element : plan.elements) element.obs = element.next_obs = {};
+  return plan;
+}
+
+// The server has not overwritten any record that the plan's elements are made of.
+bool StillThere(const Ring& ring, const BatchPlan& plan, int stack) {
+  for (const BatchPlan::Element& element : plan.elements) {
+    uint64_t id = element.id;
+    for (int k = 0; k <= stack && id != 0; ++k) {
+      if (!ring.Holds(id) || !ring.Intact(id)) return false;
+      id = ring.Slot(id).prev;
+    }
+  }
+  return true;
+}
+
+std::string Caption(const Ring& ring, uint64_t id) {
+  const RecordHeader& header = ring.Header(id);
+  return fmt::format("record {} env {} episode {} index {} reward {:.3f}{}{}{}", id, header.env,
+                     header.episode, header.index, header.reward,
+                     (header.flags & kTerminated) != 0 ? " terminated" : "",
+                     (header.flags & kTruncated) != 0 ? " truncated" : "",
+                     (header.flags & kSuccess) != 0 ? " success" : "");
+}
+
+// Paints camera images of a batch into the picture.
+class Painter {
+ public:
+  Painter(const ObservationSpec& spec, int batch, Peek* peek) : spec_(spec), peek_(*peek) {
+    cameras_ = std::max(1, static_cast<int>(spec.cameras.size()));
+    planes_ = spec.channels / cameras_;
+    peek_.width = batch * (spec.width + kBorder) + kBorder;
+    peek_.height = cameras_ * kRows * (spec.height + kBorder) + kBorder;
+    peek_.rgb.assign(static_cast<size_t>(peek_.width) * peek_.height * 3, 64);
+  }
+
+  static constexpr int kRows = 4;  // per camera
+
+  // `frames` (B, K*C, H, W): its newest frames become row `row` of every camera.
+  void PaintRow(std::span<const uint8_t> frames, int row) {
+    const size_t stack_bytes = static_cast<size_t>(spec_.FrameBytes()) * spec_.stack;
+    const size_t newest = stack_bytes - static_cast<size_t>(spec_.FrameBytes());
+    for (size_t b = 0; b < frames.size() / stack_bytes; ++b) {
+      for (int camera = 0; camera < cameras_; ++camera) {
+        const uint8_t* image = frames.data() + b * stack_bytes + newest +
+                               static_cast<size_t>(camera * planes_ * spec_.height * spec_.width);
+        PaintImage(image, static_cast<int>(b), camera * kRows + row);
+      }
+    }
+  }
+
+ private:
+  // `image`: planes_ planes (H, W); grey ones are painted as red = green = blue.
+  void PaintImage(const uint8_t* image, int column, int row) {
+    const int left = kBorder + column * (spec_.width + kBorder);
+    const int top = kBorder + row * (spec_.height + kBorder);
+    for (int i = 0; i < spec_.height; ++i) {
+      for (int j = 0; j < spec_.width; ++j) {
+        uint8_t* pixel = &peek_.rgb[(static_cast<size_t>(top + i) * peek_.width + left + j) * 3];
+        for (int c = 0; c < 3; ++c) {
+          pixel[c] = image[(std::min(c, planes_ - 1) * spec_.height + i) * spec_.width + j];
+        }
+      }
+    }
+  }
+
+  const ObservationSpec& spec_;
+  Peek& peek_;
+  int cameras_, planes_;
+};
+
+// One attempt: nothing when the server was faster.
+std::optional<Peek> TryPeek(const RunConfig& run, const std::filesystem::path& file, int batch,
+                            Random* random) {
+  const Ring ring = Ring::OpenSnapshot(run.spec, file);
+  const EpisodeIndex index(ring, run.spec.stack);
+  if (index.sampleable() == 0) {
+    throw RuntimeError("replay file '{}' holds no step that can be sampled", file.string());
+  }
+  UniformSampler sampler(ring, index);
+  const auto plan = DrawPlan(batch, run.config.replay.shift_pad, &sampler, random);
+  if (!plan || !StillThere(ring, *plan, run.spec.stack)) return std::nullopt;
+  const BatchGather gather(ring, run.spec);
+  const Batch plain(run.spec, batch), shifted(run.spec, batch);
+  gather.Gather(WithoutShift(*plan), plain.View());
+  gather.Gather(*plan, shifted.View());
+
+  Peek peek;
+  peek.records = ring.last_id() - ring.oldest_id() + 1;
+  peek.sampleable = index.sampleable();
+  for (const BatchPlan::Element& e : plan->elements) peek.captions.push_back(Caption(ring, e.id));
+  if (run.spec.HasPixels()) {
+    Painter painter(run.spec, batch, &peek);
+    painter.PaintRow(plain.View().obs_frames, 0);
+    painter.PaintRow(shifted.View().obs_frames, 1);
+    painter.PaintRow(plain.View().next_obs_frames, 2);
+    painter.PaintRow(shifted.View().next_obs_frames, 3);
+  }
+  if (!StillThere(ring, *plan, run.spec.stack)) return std::nullopt;
+  return peek;
+}
+
+}  // namespace
+
+Peek PeekBatch(const std::filesystem::path& folder, int batch, uint64_t seed) {
+  const RunConfig run = ReadRunConfig(folder);
+  if (run.config.replay.storage != "file") {
+    throw UsageError("the run in '{}' keeps its replay in memory (replay.storage): nothing to see",
+                     folder.string());
+  }
+  Random random(StreamKey(seed, StreamRole::kReplaySampler));
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    if (auto peek = TryPeek(run, folder / kRingFile, batch, &random)) return *std::move(peek);
+  }
+  throw RuntimeError("replay file '{}' is overwritten faster than it can be read",
+                     (folder / kRingFile).string());
+}
+
+}  // namespace shoal::replay

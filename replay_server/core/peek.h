@@ -1,0 +1,27 @@
+// A look into the ring of a run, for `shoal replay peek`: what the learner would be given, as a
+// picture, with and without the random shift.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace shoal::replay {
+
+struct Peek {
+  uint64_t records = 0;     // in the ring now
+  uint64_t sampleable = 0;  // steps of these that can be sampled
+  // Picture: (height, width, 3) uint8 RGB, row 0 = top. One column per element. Four rows per
+  // camera: obs, obs shifted, next_obs, next_obs shifted, each the newest frame of its stack.
+  // Empty for a spec without pixels.
+  int width = 0, height = 0;
+  std::vector<uint8_t> rgb;
+  std::vector<std::string> captions;  // per element: record id, env, episode, index, reward, ends
+};
+
+// Draws `batch` elements from the ring of the run in `folder`; a server may be writing to it.
+// Throws Error when there is no ring file, it does not fit the run, or it holds no sampleable step.
+Peek PeekBatch(const std::filesystem::path& folder, int batch, uint64_t seed);
+
+}  // namespace shoal::replay

@@ -1,0 +1,71 @@
+// Samples per insert as a bounded cursor.
+//
+//   cursor = SPI * (steps that became sampleable) - (batch elements sampled),  0 when min_size is
+//            first reached; kept in [-band/2, +band/2]
+//   band   = 2 * (SPI * W + credits * B) at least,  W = records that the windows of all actor
+//            sessions let through unasked, B = batch
+//
+//   sample iff  cursor - B >= -band/2             and min_size steps are sampleable
+//   insert iff  cursor     <= band/2 - SPI * W    or  min_size steps are not
+//
+// Why one side can always move: a batch is held back only while cursor < B - band/2 <= -SPI * W,
+// and credit only while cursor > band/2 - SPI * W >= credits * B; never both. Credit once given
+// cannot be taken back, so up to W more records come after "no": SPI * W above the threshold, still
+// within the band. Inserts that do not become sampleable do not move the cursor and are not held
+// back for it.
+//
+// It acts on credit and on requests; nothing that has come is ever refused. Knows no clock; one
+// owner.
+#pragma once
+
+#include <cstdint>
+
+namespace shoal::replay {
+
+struct LimiterOptions {
+  double samples_per_insert = 0;  // SPI; 0 = no limit but min_size
+  uint64_t min_size = 1;          // sampleable steps before the first batch
+  int batch = 1;                  // B
+  int credits = 1;                // batches the learner asks for ahead
+  uint64_t window_records = 0;    // per actor session
+  double band = 0;                // 0 = computed; a smaller one than computed counts as computed
+  bool lockstep = false;          // actor and learner take turns by themselves: no limit at all
+};
+
+class RateLimiter {
+ public:
+  explicit RateLimiter(const LimiterOptions& options);
+
+  // The least band for this many actor sessions, in samples.
+  static double LeastBand(const LimiterOptions& options, int sessions);
+
+  // Any of these recomputes the band and brings the cursor back into it.
+  void SetSessions(int sessions);
+  void SetSamplesPerInsert(double samples_per_insert);
+  // Draining: the actors flush and leave, the learner finishes; nothing is held back.
+  void SetDraining(bool draining) { draining_ = draining; }
+
+  // `count` steps became sampleable; `sampleable` are so now. Those up to min_size do not count.
+  void Inserted(uint64_t count, uint64_t sampleable);
+  // A batch was drawn.
+  void Sampled();
+
+  bool MayInsert(uint64_t sampleable) const;
+  bool MaySample(uint64_t sampleable) const;
+
+  double cursor() const { return cursor_; }
+  double band() const { return band_; }
+  double samples_per_insert() const { return options_.samples_per_insert; }
+
+ private:
+  bool Limits() const { return options_.samples_per_insert > 0 && !options_.lockstep; }
+  void Rebuild();
+
+  LimiterOptions options_;
+  int sessions_ = 0;
+  double band_ = 0;
+  double cursor_ = 0;
+  bool draining_ = false;
+};
+
+}  // namespace shoal::replay

@@ -1,0 +1,153 @@
+#include "replay_server/core/replay_core.h"
+
+#include <algorithm>
+
+#include "common/base/error.h"
+#include "common/base/random.h"
+
+namespace shoal::replay {
+namespace {
+
+RingOptions OptionsOfRing(const Config& config, const std::filesystem::path& folder) {
+  RingOptions options;
+  if (config.replay.storage == "file") options.file = folder / kRingFile;
+  options.capacity = static_cast<uint64_t>(config.replay.capacity);
+  options.run = config.run_name;
+  return options;
+}
+
+uint64_t WindowRecords(const Config& config) {
+  return static_cast<uint64_t>(std::max(2, config.replay.window_chunks)) *
+         static_cast<uint64_t>(config.transport.chunk_records);
+}
+
+LimiterOptions OptionsOfLimiter(const Config& config) {
+  LimiterOptions options;
+  options.samples_per_insert = config.replay.samples_per_insert;
+  options.min_size = static_cast<uint64_t>(config.replay.min_size);
+  options.batch = config.learner.batch;
+  options.credits = config.learner.request_credits;
+  options.window_records = WindowRecords(config);
+  options.band = config.replay.band;
+  options.lockstep = config.lockstep;
+  const double least = RateLimiter::LeastBand(options, std::max(1, config.actors));
+  if (options.band > 0 && options.band < least) {
+    throw UsageError(
+        "replay.band {} is too small: actors and learner could wait for each other; with {} actors "
+        "at least {} (0 = computed)",
+        options.band, std::max(1, config.actors), least);
+  }
+  return options;
+}
+
+}  // namespace
+
+ReplayCore::ReplayCore(const RunConfig& run, const std::filesystem::path& folder,
+                       uint64_t replay_session)
+    : run_(run),
+      spec_hash_(run.spec.Hash()),
+      replay_session_(replay_session),
+      batch_layout_(run.spec, run.config.learner.batch),
+      ring_(run.spec, OptionsOfRing(run.config, folder)),
+      sessions_(ring_.sessions()),
+      index_(ring_, run.spec.stack),
+      intake_(spec_hash_, &ring_, &sessions_, &index_),
+      sampler_(ring_, index_),
+      gather_(ring_, run.spec),
+      limiter_(OptionsOfLimiter(run.config)),
+      credits_(sessions_, spec_hash_, replay_session, WindowRecords(run.config)),
+      requests_(spec_hash_, static_cast<uint32_t>(run.config.learner.batch),
+                run.config.learner.request_credits) {
+  limiter_.SetSessions(static_cast<int>(sessions_.newest().size()));
+}
+
+uint64_t ReplayCore::window_records() const { return WindowRecords(run_.config); }
+
+ChunkResult ReplayCore::TakeChunk(const TransitionChunk& chunk) {
+  const uint64_t became_before = index_.became_sampleable();
+  const ChunkResult result = intake_.Take(chunk);
+  switch (result.fate) {
+    case ChunkFate::kDealtWith:
+      break;
+    case ChunkFate::kAhead:
+      ++counters_.ahead_chunks;
+      break;
+    case ChunkFate::kSuperseded:
+      ++counters_.superseded_chunks;
+      break;
+    case ChunkFate::kWrongSpec:
+      ++counters_.wrong_spec_chunks;
+      break;
+    case ChunkFate::kMalformed:
+      ++counters_.malformed_chunks;
+      break;
+    case ChunkFate::kTableFull:
+      ++counters_.table_full_chunks;
+      break;
+  }
+  counters_.records += result.stored;
+  counters_.rejected += result.rejected;
+  counters_.after_gap += result.after_gap;
+  counters_.duplicates += result.duplicates;
+  counters_.lost += result.lost;
+  limiter_.SetSessions(static_cast<int>(sessions_.newest().size()));
+  limiter_.Inserted(index_.became_sampleable() - became_before, index_.sampleable());
+  return result;
+}
+
+RequestFate ReplayCore::TakeRequest(const SampleRequest& request) {
+  const RequestFate fate = requests_.Offer(request);
+  if (fate == RequestFate::kWrongSpec || fate == RequestFate::kWrongBatch ||
+      fate == RequestFate::kFull) {
+    ++counters_.refused_requests;
+  }
+  return fate;
+}
+
+std::optional<DrawnBatch> ReplayCore::TryAnswer(uint8_t* data) {
+  const std::optional<SampleRequest> request = requests_.Next(ring_.stored_steps());
+  if (!request) return std::nullopt;
+  const bool repeated = requests_.Answered(*request);
+  if (!repeated && !limiter_.MaySample(index_.sampleable())) return std::nullopt;
+  Random random(StreamKey(static_cast<uint64_t>(run_.config.seed), StreamRole::kReplaySampler,
+                          request->request));
+  const std::optional<BatchPlan> plan =
+      DrawPlan(run_.config.learner.batch, run_.config.replay.shift_pad, &sampler_, &random);
+  if (!plan) return std::nullopt;
+  gather_.Gather(*plan, batch_layout_.View(data));
+  requests_.Pop();
+  if (repeated) {
+    ++counters_.repeated_batches;
+  } else {
+    ++counters_.batches;
+    limiter_.Sampled();
+  }
+  return DrawnBatch{*request, ring_.last_id(), ring_.stored_steps()};
+}
+
+std::vector<Credit> ReplayCore::TakeCredits(bool changed_only) {
+  credits_.Refresh(limiter_.MayInsert(index_.sampleable()));
+  return credits_.Take(changed_only);
+}
+
+Credit ReplayCore::Refusal(const TransitionChunk& chunk) const {
+  return {.replay_session = replay_session_,
+          .actor = chunk.actor,
+          .session = chunk.session,
+          .stored = 0,
+          .allowed = 0,
+          .spec_hash = spec_hash_};
+}
+
+bool ReplayCore::InsertsBlocked() const {
+  return !limiter_.MayInsert(index_.sampleable()) && credits_.Withholding();
+}
+
+bool ReplayCore::SamplesBlocked() const {
+  if (requests_.size() == 0) return false;
+  const std::optional<SampleRequest> next = requests_.Next(ring_.stored_steps());
+  if (!next) return true;
+  return !requests_.Answered(*next) && !limiter_.MaySample(index_.sampleable());
+}
+
+}  // namespace shoal::replay

@@ -1,0 +1,107 @@
+// The replay server without threads, clocks and network: chunks in, credits out; requests in,
+// batches out. Everything below belongs to one owner.
+//
+//   ring            what is stored             episode index   what follows what, what is
+//   sampleable intake          chunks -> ring             session table   accounting sampler,
+//   gather ring -> batch              rate limiter    who must wait credit book     what actors are
+//   told       request queue   what the learner asked for
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/config/run_files.h"
+#include "common/wire/batch_layout.h"
+#include "common/wire/messages.h"
+#include "replay_server/core/batch_gather.h"
+#include "replay_server/core/credit_book.h"
+#include "replay_server/core/episode_index.h"
+#include "replay_server/core/intake.h"
+#include "replay_server/core/rate_limiter.h"
+#include "replay_server/core/request_queue.h"
+#include "replay_server/core/ring.h"
+#include "replay_server/core/session_table.h"
+#include "replay_server/core/uniform_sampler.h"
+
+namespace shoal::replay {
+
+// Name of the ring in a run folder.
+inline constexpr char kRingFile[] = "replay.ring";
+
+// The answer to one request, without its bytes.
+struct DrawnBatch {
+  SampleRequest request;
+  uint64_t stored_records = 0, stored_steps = 0;  // when it was drawn
+};
+
+// Counts since construction, where not said otherwise.
+struct CoreCounters {
+  uint64_t records = 0;  // stored
+  uint64_t rejected = 0, after_gap = 0, duplicates = 0, lost = 0;
+  uint64_t ahead_chunks = 0, superseded_chunks = 0, wrong_spec_chunks = 0, malformed_chunks = 0;
+  uint64_t table_full_chunks = 0;
+  uint64_t batches = 0, repeated_batches = 0;
+  uint64_t refused_requests = 0;  // wrong spec, wrong batch or too many
+};
+
+class ReplayCore {
+ public:
+  // Opens or makes the ring in `folder` (or in memory, as configured). `replay_session` must grow
+  // from start to start. Throws Error: no room, a ring that does not fit, a band that is too small.
+  ReplayCore(const RunConfig& run, const std::filesystem::path& folder, uint64_t replay_session);
+  // The parts refer to each other: neither copied nor moved.
+  ReplayCore(const ReplayCore&) = delete;
+  ReplayCore& operator=(const ReplayCore&) = delete;
+
+  ChunkResult TakeChunk(const TransitionChunk& chunk);
+  RequestFate TakeRequest(const SampleRequest& request);
+
+  // Draws and writes the next batch that is due into `data` (batch_layout().total_bytes(), aligned
+  // to 64); nothing when no request waits or it must wait on.
+  std::optional<DrawnBatch> TryAnswer(uint8_t* data);
+
+  // What to tell the actors: everything, or what has changed since the last call.
+  std::vector<Credit> TakeCredits(bool changed_only);
+  // For an actor of another spec: our hash, no credit.
+  Credit Refusal(const TransitionChunk& chunk) const;
+
+  void SetDraining(bool draining) { limiter_.SetDraining(draining); }
+  void SetSamplesPerInsert(double value) { limiter_.SetSamplesPerInsert(value); }
+
+  // Who waits for whom, now.
+  bool InsertsBlocked() const;  // an actor gets less than its window
+  bool SamplesBlocked() const;  // a request waits for the limiter, min size or after_steps
+
+  const RunConfig& run() const { return run_; }
+  const BatchLayout& batch_layout() const { return batch_layout_; }
+  uint64_t window_records() const;
+  const Ring& ring() const { return ring_; }
+  const EpisodeIndex& index() const { return index_; }
+  const SessionTable& sessions() const { return sessions_; }
+  const RateLimiter& limiter() const { return limiter_; }
+  const RequestQueue& requests() const { return requests_; }
+  const Sampler& sampler() const { return sampler_; }
+  const CoreCounters& counters() const { return counters_; }
+
+ private:
+  const RunConfig run_;
+  const uint64_t spec_hash_;
+  const uint64_t replay_session_;
+  const BatchLayout batch_layout_;
+  Ring ring_;
+  SessionTable sessions_;
+  EpisodeIndex index_;
+  Intake intake_;
+  UniformSampler sampler_;
+  BatchGather gather_;
+  RateLimiter limiter_;
+  CreditBook credits_;
+  RequestQueue requests_;
+  CoreCounters counters_;
+};
+
+}  // namespace shoal::replay

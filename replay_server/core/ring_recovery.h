@@ -1,0 +1,34 @@
+// Reading what an earlier process left in a ring file.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "common/spec/observation_spec.h"
+#include "replay_server/core/mapping.h"
+#include "replay_server/core/ring_format.h"
+
+namespace shoal::replay {
+
+// Throws Error saying what differs unless the file is a whole ring of version kRingVersion for
+// `spec`. Returns its capacity.
+uint64_t CheckRingHeader(const Mapping& mapping, const ObservationSpec& spec,
+                         const std::string& name);
+
+struct RingExtent {
+  uint64_t oldest_id = 1, last_id = 0;  // as Ring
+  uint64_t stored_steps = 0;
+};
+
+// Finds the records. Every slot must hold what a writer that died at some instant leaves: the
+// newest records without holes, and at most one slot half-written. Throws Error naming the slot
+// otherwise.
+RingExtent ScanRing(const Mapping& mapping, const RingGeometry& geometry, const std::string& name);
+
+// The same while another process writes: takes what is there, never throws.
+RingExtent ScanLiveRing(const Mapping& mapping, const RingGeometry& geometry);
+
+// The slot's commit word fits its content.
+bool SlotIntact(const Mapping& mapping, const RingGeometry& geometry, uint64_t slot);
+
+}  // namespace shoal::replay

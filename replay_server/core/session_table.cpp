@@ -1,0 +1,113 @@
+#include "replay_server/core/session_table.h"
+
+#include <atomic>
+
+#include "common/base/check.h"
+#include "common/base/error.h"
+#include "common/base/random.h"
+
+namespace shoal::replay {
+namespace {
+
+uint64_t CheckWord(const SessionCopy& copy) {
+  const auto* bytes = reinterpret_cast<const uint8_t*>(&copy) + sizeof(copy.check);
+  return std::max<uint64_t>(1, HashBytes(bytes, sizeof(copy) - sizeof(copy.check)));
+}
+
+bool Valid(const SessionCopy& copy) { return copy.check != 0 && copy.check == CheckWord(copy); }
+
+bool NeverWritten(const SessionCopy& copy) { return copy.check == 0 && copy.version == 0; }
+
+SessionCounters FromCopy(const SessionCopy& copy) {
+  return {.actor = static_cast<uint32_t>(copy.actor),
+          .session = copy.session,
+          .highest = copy.highest,
+          .rejected = copy.rejected,
+          .after_gap = copy.after_gap,
+          .lost = copy.lost,
+          .duplicates = copy.duplicates};
+}
+
+// The newest valid copy, or nullptr. A session is in use from its first complete copy on, which is
+// copy 1 (version 1); a copy 0 without it means damage.
+const SessionCopy* NewestCopy(const StoredSession& stored) {
+  const bool valid[2] = {Valid(stored.copies[0]), Valid(stored.copies[1])};
+  if (valid[0] && valid[1]) {
+    return &stored.copies[stored.copies[0].version > stored.copies[1].version ? 0 : 1];
+  }
+  if (valid[0]) return &stored.copies[0];
+  return valid[1] ? &stored.copies[1] : nullptr;
+}
+
+}  // namespace
+
+SessionTable::SessionTable(std::span<StoredSession> storage) : storage_(storage) {
+  for (const StoredSession& stored : storage) {
+    const SessionCopy* copy = NewestCopy(stored);
+    if (copy == nullptr) {
+      // Free, or being added when the writer died: then only the first copy was touched.
+      if (NeverWritten(stored.copies[0])) break;
+      throw RuntimeError("the replay file's session {} is damaged; remove the file to start afresh",
+                         size());
+    }
+    sessions_.push_back(FromCopy(*copy));
+    versions_.push_back(copy->version);
+    Index(size() - 1);
+  }
+}
+
+void SessionTable::Index(int i) {
+  const SessionCounters& counters = at(i);
+  by_name_[{counters.actor, counters.session}] = i;
+  const auto [it, added] = newest_.try_emplace(counters.actor, i);
+  if (!added && at(it->second).session < counters.session) it->second = i;
+}
+
+std::optional<int> SessionTable::Find(uint32_t actor, uint64_t session) const {
+  const auto it = by_name_.find({actor, session});
+  return it == by_name_.end() ? std::nullopt : std::optional(it->second);
+}
+
+std::optional<int> SessionTable::Newest(uint32_t actor) const {
+  const auto it = newest_.find(actor);
+  return it == newest_.end() ? std::nullopt : std::optional(it->second);
+}
+
+std::optional<int> SessionTable::Add(uint32_t actor, uint64_t session) {
+  CHECK(!Find(actor, session)) << "actor " << actor << " session " << session;
+  if (sessions_.size() == storage_.size()) return std::nullopt;
+  sessions_.push_back({.actor = actor, .session = session});
+  versions_.push_back(0);
+  const int i = size() - 1;
+  Index(i);
+  Update(i, at(i));
+  return i;
+}
+
+void SessionTable::Update(int i, const SessionCounters& counters) {
+  const size_t index = static_cast<size_t>(i);
+  CHECK(counters.actor == at(i).actor && counters.session == at(i).session);
+  const uint64_t version = ++versions_[index];
+  SessionCopy& copy = storage_[index].copies[version % 2];
+  const std::atomic_ref<uint64_t> check(copy.check);
+  check.store(0, std::memory_order_relaxed);
+  std::atomic_thread_fence(std::memory_order_seq_cst);  // the writer may die between any two stores
+  copy.version = version;
+  copy.session = counters.session;
+  copy.actor = counters.actor;
+  copy.highest = counters.highest;
+  copy.rejected = counters.rejected;
+  copy.after_gap = counters.after_gap;
+  copy.lost = counters.lost;
+  copy.duplicates = counters.duplicates;
+  check.store(CheckWord(copy), std::memory_order_release);
+  sessions_[index] = counters;
+}
+
+uint64_t SessionTable::TotalStored() const {
+  uint64_t total = 0;
+  for (const SessionCounters& counters : sessions_) total += counters.stored();
+  return total;
+}
+
+}  // namespace shoal::replay
