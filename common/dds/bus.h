@@ -2,12 +2,12 @@
 //
 // Coordinator, learner and replay sit at fixed participant indices (0, 1, 2); actors have none and
 // know the servers as peers. The transitions, weights, metrics and control topics live in domain D,
-// the batch topics in D+1, so that a slow batch reader cannot block the rest.
+// the batch topics in D+1, so that a slow batch reader cannot block the rest; only learner and
+// replay join D+1.
 #pragma once
 
+#include <chrono>
 #include <memory>
-#include <optional>
-#include <string>
 
 #include "common/config/config.h"
 #include "common/config/run_files.h"
@@ -25,12 +25,21 @@ void TuneMalloc();
 
 class Bus {
  public:
-  // Joins the run's domains. Throws Error naming the port when another process holds the role's index
-  // or the interface does not exist.
+  // Joins the run's domains. At most one Bus per domain and process. Throws Error naming the port
+  // when another process holds the role's index, the interface when it does not exist, the host
+  // when it does not resolve.
+  //
+  // The environment variable SHOAL_DDS_XML names a file that replaces the built-in Cyclone DDS
+  // configuration; docs/wire_format.md lists the placeholders it may use.
   Bus(const ClusterAddress& address, const TransportConfig& transport, Role role);
+  // Publishers and subscribers of the bus must be gone.
   ~Bus();
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;
+
+  // For tests of faults: drops everything that arrives (deaf) and that is sent (mute), in both
+  // domains, and ends both after `reset_after`.
+  void SetDeafMute(bool deaf, bool mute, std::chrono::milliseconds reset_after);
 
   // Implementation access for publisher.h / subscriber.h. Internal.
   struct Impl;
@@ -40,8 +49,10 @@ class Bus {
   std::unique_ptr<Impl> impl_;
 };
 
-// A free even domain below 100, claimed by joining as its coordinator; tries the next one while the
-// port is taken. `address` gets domain and tag. Throws Error when none is free.
+// A free even domain in 2..98, claimed by joining as its coordinator. Starts at a random one and
+// tries the next while one of the run's fixed ports is taken. `address` gets the domain and, when
+// its tag is empty, a tag that no other run has; its host is where the other processes look for
+// this one. Throws Error when none is free.
 std::unique_ptr<Bus> ClaimDomain(const TransportConfig& transport, ClusterAddress* address);
 
 }  // namespace shoal::dds

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
 #include <memory>
 
 #include "common/dds/bus.h"
@@ -10,16 +11,23 @@
 
 namespace shoal::dds {
 
+// Upper bound of a payload in bytes; receivers drop larger samples. Speed wants chunks and shards
+// of at most 1 MB.
+inline constexpr uint64_t kMaxPayloadBytes = 63'000'000;
+
 template <class M>
 class Publisher {
  public:
-  explicit Publisher(Bus& bus);  // borrows the bus
+  // Borrows the bus. Throws Error when DDS refuses.
+  explicit Publisher(Bus& bus);
+  // Withdraws the writer: late joiners get nothing more, unacknowledged samples are lost.
   ~Publisher();
   Publisher(const Publisher&) = delete;
   Publisher& operator=(const Publisher&) = delete;
 
-  // Copies and sends the message. Blocks at most the topic's max_blocking_time (docs); false when it
-  // was not sent within it: keep it and try again. Any thread; one at a time per publisher.
+  // Copies and sends the message. Blocks at most the topic's max_blocking_time (docs); false when
+  // it was not sent within it: keep it and try again. Any thread; one at a time per publisher. A
+  // reader in this process gets it before the call returns, on this thread.
   bool Write(const M& message);
   // Matched readers now.
   int Matched() const;

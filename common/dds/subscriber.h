@@ -13,14 +13,17 @@ namespace shoal::dds {
 template <class M>
 class Subscriber {
  public:
-  // `on_message` runs on a receive thread of the bus: it must not block, throw or create entities;
-  // it copies what it keeps. Malformed samples are counted, not delivered.
+  // `on_message` runs on a receive thread of the bus (or on the writing thread when the writer is
+  // in this process), one call at a time, and may run before the constructor returns. It must not
+  // block, throw or create entities; it copies what it keeps. Malformed samples are counted, not
+  // delivered. Borrows the bus. Throws Error when DDS refuses.
   Subscriber(Bus& bus, std::function<void(const M&)> on_message);
-  // After return no callback runs.
+  // After return no callback runs. Not to be called from the callback.
   ~Subscriber();
   Subscriber(const Subscriber&) = delete;
   Subscriber& operator=(const Subscriber&) = delete;
 
+  // Matched writers now.
   int Matched() const;
   uint64_t Malformed() const;
 

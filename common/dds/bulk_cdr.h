@@ -1,0 +1,27 @@
+// Parses the bulk messages from serialised CDR as it lies in a receive buffer, without copying the
+// payload. Everything is bounds-checked: the bytes come from the network.
+//
+//   0x00 0x01 (CDR, little-endian) | 2 bytes options | body
+//
+// Fields of the body are aligned to their size, counted from its start; up to 3 bytes of padding
+// may follow. docs/wire_format.md lists the bodies byte by byte.
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "common/wire/messages.h"
+
+namespace shoal::dds {
+
+// First byte of every bulk message; others are refused.
+inline constexpr uint8_t kBulkVersion = 1;
+
+// False when the bytes are truncated, of another version or inconsistent; `message` is then
+// unspecified. The message's payload borrows `cdr`; where `cdr` starts 4 bytes before a multiple of
+// 8, as Cyclone's buffers do, payloads are aligned to 8.
+bool ParseCdr(std::span<const uint8_t> cdr, TransitionChunk* message);
+bool ParseCdr(std::span<const uint8_t> cdr, BatchShard* message);
+bool ParseCdr(std::span<const uint8_t> cdr, WeightsMessage* message);
+
+}  // namespace shoal::dds

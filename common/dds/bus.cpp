@@ -1,0 +1,92 @@
+#include "common/dds/bus.h"
+
+#include "common/base/check.h"
+#include "common/base/error.h"
+#include "common/dds/dds_log.h"
+#include "common/dds/domain_xml.h"
+#include "common/dds/host_network.h"
+// clang-format off
+#include "common/dds/bus_impl.h"
+// clang-format on
+
+namespace shoal::dds {
+namespace {
+
+constexpr size_t kMaxTagBytes = 255;
+
+void CheckAddress(const ClusterAddress& address, const TransportConfig& transport) {
+  if (address.domain < 0 || address.domain > 98 || address.domain % 2 != 0) {
+    throw UsageError("DDS domain {}: expected an even number from 0 to 98", address.domain);
+  }
+  if (address.tag.empty() || address.tag.size() > kMaxTagBytes) {
+    throw UsageError("DDS tag \"{}\": expected 1 to {} characters", address.tag, kMaxTagBytes);
+  }
+  const std::string& interface = transport.interface;
+  const bool exists = IsAddress(interface) ? HostHasAddress(interface) : InterfaceExists(interface);
+  if (!exists) {
+    throw RuntimeError("transport.interface \"{}\" does not exist on this host, which has {}",
+                       interface, InterfaceNames());
+  }
+  if (!HostResolves(address.host)) {
+    throw RuntimeError("host \"{}\" of the run does not resolve to an IPv4 address", address.host);
+  }
+}
+
+void ThrowJoinError(int domain, Role role, const std::string& reason) {
+  const int index = ParticipantIndex(role);
+  if (index >= 0) {
+    for (const int port : {DiscoveryPort(domain, index), DiscoveryPort(domain, index) + 1}) {
+      if (UdpPortFree(port)) continue;
+      throw PortTakenError(RuntimeError(
+          "UDP port {} is taken: another process is the {} of DDS domain {} on this host", port,
+          RoleName(role), domain));
+    }
+  }
+  throw RuntimeError("cannot join DDS domain {} as {}: {}", domain, RoleName(role), reason);
+}
+
+void Join(const std::string& xml_template, const ClusterAddress& address,
+          const TransportConfig& transport, Role role, Plane plane, Entity* domain,
+          Entity* participant) {
+  const int id = PlaneDomain(address, plane);
+  const std::string xml = RenderDomainXml(xml_template, address, transport, role, plane);
+  const DdsErrorCapture capture;
+  const dds_entity_t domain_handle =
+      dds_create_domain(static_cast<dds_domainid_t>(id), xml.c_str());
+  if (domain_handle == DDS_RETCODE_PRECONDITION_NOT_MET) {
+    throw RuntimeError("this process has joined DDS domain {} already", id);
+  }
+  if (domain_handle < 0) ThrowJoinError(id, role, capture.text());
+  *domain = Entity(domain_handle, "a domain");
+  const dds_entity_t handle =
+      dds_create_participant(static_cast<dds_domainid_t>(id), nullptr, nullptr);
+  if (handle < 0) ThrowJoinError(id, role, capture.text());
+  *participant = Entity(handle, "a participant");
+}
+
+}  // namespace
+
+Bus::Bus(const ClusterAddress& address, const TransportConfig& transport, Role role)
+    : impl_(std::make_unique<Impl>()) {
+  CheckAddress(address, transport);
+  RouteDdsLog();
+  const std::string xml = DomainTemplate();
+  Join(xml, address, transport, role, Plane::kMain, &impl_->main_domain, &impl_->main_participant);
+  if (role == Role::kLearner || role == Role::kReplay) {
+    Join(xml, address, transport, role, Plane::kBatch, &impl_->batch_domain,
+         &impl_->batch_participant);
+  }
+}
+
+Bus::~Bus() = default;
+
+void Bus::SetDeafMute(bool deaf, bool mute, std::chrono::milliseconds reset_after) {
+  const dds_duration_t reset = DDS_MSECS(reset_after.count());
+  for (const Entity* domain : {&impl_->main_domain, &impl_->batch_domain}) {
+    if (!*domain) continue;
+    const dds_return_t result = dds_domain_set_deafmute(domain->get(), deaf, mute, reset);
+    CHECK(result == DDS_RETCODE_OK) << dds_strretcode(-result);
+  }
+}
+
+}  // namespace shoal::dds

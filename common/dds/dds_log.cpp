@@ -1,0 +1,41 @@
+#include "common/dds/dds_log.h"
+
+#include <string_view>
+
+#include "common/base/log.h"
+// clang-format off
+#include "dds/dds.h"
+#include "dds/ddsrt/log.h"
+// clang-format on
+
+namespace shoal::dds {
+
+namespace {
+thread_local DdsErrorCapture* current_capture = nullptr;
+}  // namespace
+
+struct DdsLogSink {
+  static void Write(void*, const dds_log_data_t* data) {
+    std::string_view line(data->message, data->size);
+    while (!line.empty() && (line.back() == '\n' || line.back() == '\0')) line.remove_suffix(1);
+    const bool is_error = (data->priority & (DDS_LC_ERROR | DDS_LC_FATAL)) != 0;
+    if (is_error && current_capture != nullptr) {
+      std::string& lines = current_capture->lines_;
+      lines += (lines.empty() ? "" : "; ") + std::string(line);
+    } else if (is_error) {
+      log::Failure("dds: {}", line);
+    } else if ((data->priority & DDS_LC_WARNING) != 0) {
+      log::Warning("dds: {}", line);
+    }
+  }
+};
+
+void RouteDdsLog() { dds_set_log_sink(&DdsLogSink::Write, nullptr); }
+
+DdsErrorCapture::DdsErrorCapture() : outer_(current_capture) { current_capture = this; }
+
+DdsErrorCapture::~DdsErrorCapture() { current_capture = outer_; }
+
+std::string DdsErrorCapture::text() const { return lines_.empty() ? "no reason given" : lines_; }
+
+}  // namespace shoal::dds

@@ -1,0 +1,182 @@
+#include "common/dds/domain_xml.h"
+
+#include <cstdlib>
+#include <initializer_list>
+#include <map>
+
+#include "common/base/check.h"
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/dds/host_network.h"
+
+namespace shoal::dds {
+namespace {
+
+// 65 kB fragments and the retransmission values are what carries megabyte samples at gigabytes per
+// second; with Cyclone's defaults a 10 MB sample takes seconds. MaxSampleSize bounds what one stray
+// datagram can make a receiver allocate.
+constexpr std::string_view kTemplate =
+    R"(<CycloneDDS xmlns="https://cdds.io/config"><Domain id="any">
+ <General>
+  <Interfaces><NetworkInterface @INTERFACE@ multicast="false"/></Interfaces>
+  <AllowMulticast>false</AllowMulticast>
+  <MaxMessageSize>65500B</MaxMessageSize>
+  <MaxRexmitMessageSize>65500B</MaxRexmitMessageSize>
+  <FragmentSize>@FRAGMENT_BYTES@B</FragmentSize>
+ </General>
+ <Discovery>
+  <Tag>@TAG@</Tag>
+  <ParticipantIndex>@INDEX@</ParticipantIndex>
+  <LeaseDuration>4 s</LeaseDuration>
+  <SPDPInterval>1 s</SPDPInterval>
+  @PEERS@
+ </Discovery>
+ <Internal>
+  <SocketReceiveBufferSize max="16MB"/>
+  <NackDelay>5ms</NackDelay>
+  <MaxQueuedRexmitBytes>64MB</MaxQueuedRexmitBytes>
+  <MaxQueuedRexmitMessages>4000</MaxQueuedRexmitMessages>
+  <MaxSampleSize>64MB</MaxSampleSize>
+  <BurstSize><MaxRexmit>2MB</MaxRexmit></BurstSize>
+  @WATERMARKS@
+ </Internal>
+</Domain></CycloneDDS>
+)";
+
+std::string EscapeXml(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      default:
+        escaped += c;
+    }
+  }
+  return escaped;
+}
+
+// The roles at known ports that a process announces itself to.
+std::initializer_list<Role> Peers(Role role, Plane plane) {
+  static constexpr std::initializer_list<Role> kServers = {Role::kCoordinator, Role::kLearner,
+                                                           Role::kReplay};
+  static constexpr std::initializer_list<Role> kBatchServers = {Role::kLearner, Role::kReplay};
+  // Actors answer when they are found; the coordinator is found by everybody.
+  static constexpr std::initializer_list<Role> kNone = {};
+  if (role == Role::kCoordinator) return kNone;
+  return plane == Plane::kBatch ? kBatchServers : kServers;
+}
+
+std::string PeersElement(const ClusterAddress& address, Role role, Plane plane) {
+  std::string element = "<Peers>";
+  for (const Role peer : Peers(role, plane)) {
+    if (peer == role) continue;
+    element += fmt::format("<Peer Address=\"{}:{}\"/>", EscapeXml(address.host),
+                           DiscoveryPort(PlaneDomain(address, plane), ParticipantIndex(peer)));
+  }
+  return element + "</Peers>";
+}
+
+// Bulk writers are few and may fill a pipe; many actors share one receiver's socket buffer.
+const char* WatermarksElement(Role role) {
+  return role == Role::kActor ? "<Watermarks><WhcHigh>2MB</WhcHigh><WhcHighInit>1MB</WhcHighInit>"
+                                "<WhcLow>256kB</WhcLow></Watermarks>"
+                              : "<Watermarks><WhcHigh>8MB</WhcHigh><WhcHighInit>4MB</WhcHighInit>"
+                                "<WhcLow>1MB</WhcLow></Watermarks>";
+}
+
+bool IsPlaceholderName(std::string_view text) {
+  return !text.empty() && text.find_first_not_of("ABCDEFGHIJKLMNOPQRSTUVWXYZ_") == text.npos;
+}
+
+std::string Substitute(std::string_view xml,
+                       const std::map<std::string_view, std::string>& values) {
+  std::string filled;
+  while (!xml.empty()) {
+    const size_t begin = xml.find('@');
+    filled += xml.substr(0, begin);
+    if (begin == xml.npos) break;
+    xml.remove_prefix(begin + 1);
+    const std::string_view name = xml.substr(0, xml.find('@'));
+    if (name.size() == xml.size() || !IsPlaceholderName(name)) {
+      filled += '@';  // a plain character of the text
+      continue;
+    }
+    const auto value = values.find(name);
+    if (value == values.end()) {
+      throw UsageError("DDS configuration: unknown placeholder @{}@", name);
+    }
+    filled += value->second;
+    xml.remove_prefix(name.size() + 1);
+  }
+  return filled;
+}
+
+}  // namespace
+
+int ParticipantIndex(Role role) {
+  switch (role) {
+    case Role::kCoordinator:
+      return 0;
+    case Role::kLearner:
+      return 1;
+    case Role::kReplay:
+      return 2;
+    case Role::kActor:
+      return -1;
+  }
+  CHECK(false) << "role " << static_cast<int>(role);
+  return -1;
+}
+
+const char* RoleName(Role role) {
+  switch (role) {
+    case Role::kCoordinator:
+      return "coordinator";
+    case Role::kLearner:
+      return "learner";
+    case Role::kReplay:
+      return "replay";
+    case Role::kActor:
+      return "actor";
+  }
+  CHECK(false) << "role " << static_cast<int>(role);
+  return "";
+}
+
+int PlaneDomain(const ClusterAddress& address, Plane plane) {
+  return plane == Plane::kMain ? address.domain : address.domain + 1;
+}
+
+std::string_view BuiltInTemplate() { return kTemplate; }
+
+std::string DomainTemplate() {
+  const char* path = std::getenv(kOverrideVariable);
+  return path == nullptr || *path == '\0' ? std::string(kTemplate) : ReadFile(path);
+}
+
+std::string RenderDomainXml(std::string_view xml_template, const ClusterAddress& address,
+                            const TransportConfig& transport, Role role, Plane plane) {
+  const int index = ParticipantIndex(role);
+  const char* attribute = IsAddress(transport.interface) ? "address" : "name";
+  return Substitute(
+      xml_template,
+      {{"INTERFACE", fmt::format("{}=\"{}\"", attribute, EscapeXml(transport.interface))},
+       {"FRAGMENT_BYTES", std::to_string(transport.fragment_bytes)},
+       {"TAG", EscapeXml(address.tag)},
+       {"INDEX", index < 0 ? "none" : std::to_string(index)},
+       {"PEERS", PeersElement(address, role, plane)},
+       {"WATERMARKS", WatermarksElement(role)}});
+}
+
+}  // namespace shoal::dds

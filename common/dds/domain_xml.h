@@ -1,0 +1,40 @@
+// The Cyclone DDS configuration of one process in one domain, as XML.
+//
+// It is a template with placeholders. The built-in one can be replaced as a whole by the file that
+// the environment variable SHOAL_DDS_XML names:
+//
+//   @INTERFACE@       name="lo" or address="10.0.0.3", an attribute of NetworkInterface
+//   @FRAGMENT_BYTES@  transport.fragment_bytes
+//   @TAG@             the run's tag
+//   @INDEX@           participant index: 0 coordinator, 1 learner, 2 replay, none for actors
+//   @PEERS@           the <Peers> element
+//   @WATERMARKS@      the <Watermarks> element: unacknowledged bytes a writer may have
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "common/config/config.h"
+#include "common/config/run_files.h"
+#include "common/dds/bus.h"
+
+namespace shoal::dds {
+
+inline constexpr const char* kOverrideVariable = "SHOAL_DDS_XML";
+
+// 0 coordinator, 1 learner, 2 replay; -1 for actors, which have no fixed port.
+int ParticipantIndex(Role role);
+// "coordinator", ... for messages.
+const char* RoleName(Role role);
+// The id of the DDS domain that carries a plane.
+int PlaneDomain(const ClusterAddress& address, Plane plane);
+
+std::string_view BuiltInTemplate();
+// The built-in template or the content of the file in SHOAL_DDS_XML; throws Error naming that file.
+std::string DomainTemplate();
+
+// Fills the placeholders. Throws Error (kUsage) naming a placeholder that does not exist.
+std::string RenderDomainXml(std::string_view xml_template, const ClusterAddress& address,
+                            const TransportConfig& transport, Role role, Plane plane);
+
+}  // namespace shoal::dds

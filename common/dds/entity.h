@@ -1,0 +1,43 @@
+// Owner of one DDS entity. Internal: include dds headers last, they redefine `restrict` in C++.
+#pragma once
+
+#include <string>
+#include <utility>
+
+#include "common/base/error.h"
+// clang-format off
+#include "dds/dds.h"
+// clang-format on
+
+namespace shoal::dds {
+
+// Move-only; 0 = empty. Deleting an entity deletes its children and waits for running listeners.
+class Entity {
+ public:
+  Entity() = default;
+  // Takes what a dds_create_* call returned; throws Error naming `what` when that is a failure.
+  Entity(dds_entity_t handle, const std::string& what) : handle_(handle) {
+    if (handle < 0) throw RuntimeError("DDS cannot create {}: {}", what, dds_strretcode(-handle));
+  }
+  ~Entity() { Reset(); }
+  Entity(Entity&& other) noexcept : handle_(std::exchange(other.handle_, 0)) {}
+  Entity& operator=(Entity&& other) noexcept {
+    if (this != &other) {
+      Reset();
+      handle_ = std::exchange(other.handle_, 0);
+    }
+    return *this;
+  }
+
+  dds_entity_t get() const { return handle_; }
+  explicit operator bool() const { return handle_ > 0; }
+  void Reset() {
+    if (handle_ > 0) dds_delete(handle_);
+    handle_ = 0;
+  }
+
+ private:
+  dds_entity_t handle_ = 0;
+};
+
+}  // namespace shoal::dds

@@ -1,0 +1,84 @@
+#include "common/dds/host_network.h"
+
+#include <arpa/inet.h>
+#include <ifaddrs.h>
+#include <netdb.h>
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <memory>
+#include <set>
+
+namespace shoal::dds {
+namespace {
+
+using InterfaceList = std::unique_ptr<ifaddrs, decltype(&freeifaddrs)>;
+
+InterfaceList ListInterfaces() {
+  ifaddrs* list = nullptr;
+  if (getifaddrs(&list) != 0) list = nullptr;
+  return {list, &freeifaddrs};
+}
+
+}  // namespace
+
+bool UdpPortFree(int port) {
+  const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  if (fd < 0) return false;
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_addr.s_addr = htonl(INADDR_ANY);
+  address.sin_port = htons(static_cast<uint16_t>(port));
+  const bool bound = bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
+  close(fd);
+  return bound;
+}
+
+bool InterfaceExists(const std::string& name) {
+  const InterfaceList list = ListInterfaces();
+  for (const ifaddrs* item = list.get(); item != nullptr; item = item->ifa_next) {
+    if (name == item->ifa_name) return true;
+  }
+  return false;
+}
+
+bool IsAddress(const std::string& text) {
+  in_addr parsed{};
+  return inet_pton(AF_INET, text.c_str(), &parsed) == 1;
+}
+
+bool HostHasAddress(const std::string& address) {
+  in_addr wanted{};
+  if (inet_pton(AF_INET, address.c_str(), &wanted) != 1) return false;
+  const InterfaceList list = ListInterfaces();
+  for (const ifaddrs* item = list.get(); item != nullptr; item = item->ifa_next) {
+    if (item->ifa_addr == nullptr || item->ifa_addr->sa_family != AF_INET) continue;
+    const auto* own = reinterpret_cast<const sockaddr_in*>(item->ifa_addr);
+    if (own->sin_addr.s_addr == wanted.s_addr) return true;
+  }
+  return false;
+}
+
+std::string InterfaceNames() {
+  std::set<std::string> names;
+  const InterfaceList list = ListInterfaces();
+  for (const ifaddrs* item = list.get(); item != nullptr; item = item->ifa_next) {
+    names.insert(item->ifa_name);
+  }
+  std::string joined;
+  for (const std::string& name : names) joined += (joined.empty() ? "" : ", ") + name;
+  return joined;
+}
+
+bool HostResolves(const std::string& host) {
+  addrinfo hints{};
+  hints.ai_family = AF_INET;
+  hints.ai_socktype = SOCK_DGRAM;
+  addrinfo* found = nullptr;
+  if (getaddrinfo(host.c_str(), nullptr, &hints, &found) != 0) return false;
+  freeaddrinfo(found);
+  return true;
+}
+
+}  // namespace shoal::dds

@@ -1,0 +1,155 @@
+#include "common/dds/subscriber.h"
+
+#include <atomic>
+#include <span>
+#include <utility>
+
+#include "common/base/check.h"
+#include "common/dds/bulk_cdr.h"
+// clang-format off
+#include "common/dds/endpoint.h"
+#include "dds/ddsi/ddsi_serdata.h"
+// clang-format on
+
+namespace shoal::dds {
+namespace {
+
+// Samples taken from the reader's cache at a time.
+constexpr uint32_t kTakeAtOnce = 16;
+
+// A view of a taken sample's CDR bytes; gives the sample back when it goes out of scope.
+class TakenCdr {
+ public:
+  explicit TakenCdr(ddsi_serdata* data)
+      : data_(data), held_(ddsi_serdata_to_ser_ref(data, 0, ddsi_serdata_size(data), &bytes_)) {}
+  ~TakenCdr() {
+    ddsi_serdata_to_ser_unref(held_, &bytes_);
+    ddsi_serdata_unref(data_);
+  }
+  TakenCdr(const TakenCdr&) = delete;
+  TakenCdr& operator=(const TakenCdr&) = delete;
+
+  std::span<const uint8_t> bytes() const {
+    return {static_cast<const uint8_t*>(bytes_.iov_base), bytes_.iov_len};
+  }
+
+ private:
+  ddsi_serdata* data_;
+  ddsrt_iovec_t bytes_{};
+  ddsi_serdata* held_;
+};
+
+// Takes what lies in the reader's cache and calls deliver(well_formed, message) for each sample.
+// False when the cache was empty.
+template <class M, class Deliver>
+bool TakeCdr(dds_entity_t reader, const Deliver& deliver) {
+  ddsi_serdata* samples[kTakeAtOnce];
+  dds_sample_info_t infos[kTakeAtOnce];
+  const dds_return_t taken = dds_takecdr(reader, samples, kTakeAtOnce, infos, DDS_ANY_STATE);
+  for (dds_return_t i = 0; i < taken; ++i) {
+    const TakenCdr cdr(samples[i]);
+    if (!infos[i].valid_data) continue;  // news of a writer's end
+    M message;
+    deliver(ParseCdr(cdr.bytes(), &message), message);
+  }
+  return taken > 0;
+}
+
+// The same for types that Cyclone deserialises.
+template <class M, class Deliver>
+bool TakeValues(dds_entity_t reader, const Deliver& deliver) {
+  void* samples[kTakeAtOnce] = {};
+  dds_sample_info_t infos[kTakeAtOnce];
+  const dds_return_t taken = dds_take(reader, samples, infos, kTakeAtOnce, kTakeAtOnce);
+  for (dds_return_t i = 0; i < taken; ++i) {
+    if (!infos[i].valid_data) continue;
+    M message;
+    const auto& wire = *static_cast<const typename Topic<M>::Wire*>(samples[i]);
+    deliver(FromWire(wire, &message), message);
+  }
+  if (taken > 0) dds_return_loan(reader, samples, taken);
+  return taken > 0;
+}
+
+}  // namespace
+
+template <class M>
+struct Subscriber<M>::Impl {
+  Impl(Bus& bus, std::function<void(const M&)> callback)
+      : on_message(std::move(callback)), topic(CreateTopic<M>(bus)) {
+    // The listener is set as the reader is created: no sample can arrive unnoticed before it.
+    const TopicSettings& settings = Topic<M>::kSettings;
+    const ListenerHandle listener = MakeListener<M>(this);
+    dds_lset_data_available(listener.get(), &Impl::OnData);
+    reader = Entity(dds_create_reader(bus.impl().Participant(settings.plane), topic.get(),
+                                      MakeQos(settings).get(), listener.get()),
+                    std::string("reader of topic ") + settings.name);
+  }
+
+  // Cyclone waits for a running callback before it resets the listener; none starts afterwards.
+  ~Impl() {
+    if (reader) dds_set_listener(reader.get(), nullptr);
+    reader.Reset();
+  }
+
+  // An exception from the callback would unwind through C: noexcept makes it end the process.
+  static void OnData(dds_entity_t handle, void* argument) noexcept {
+    auto* self = static_cast<Impl*>(argument);
+    const auto deliver = [self](bool well_formed, const M& message) {
+      self->Deliver(well_formed, message);
+    };
+    if constexpr (Topic<M>::kSettings.bulk) {
+      while (TakeCdr<M>(handle, deliver)) {
+      }
+    } else {
+      while (TakeValues<M>(handle, deliver)) {
+      }
+    }
+  }
+
+  void Deliver(bool well_formed, const M& message) {
+    if (well_formed) {
+      on_message(message);
+    } else {
+      malformed.fetch_add(1, std::memory_order_relaxed);
+    }
+  }
+
+  std::function<void(const M&)> on_message;
+  std::atomic<uint64_t> malformed{0};
+  Entity topic;
+  Entity reader;
+};
+
+template <class M>
+Subscriber<M>::Subscriber(Bus& bus, std::function<void(const M&)> on_message) {
+  CHECK(on_message != nullptr) << Topic<M>::kSettings.name;
+  impl_ = std::make_unique<Impl>(bus, std::move(on_message));
+}
+
+template <class M>
+Subscriber<M>::~Subscriber() = default;
+
+template <class M>
+int Subscriber<M>::Matched() const {
+  dds_subscription_matched_status_t status{};
+  dds_get_subscription_matched_status(impl_->reader.get(), &status);
+  return static_cast<int>(status.current_count);
+}
+
+template <class M>
+uint64_t Subscriber<M>::Malformed() const {
+  return impl_->malformed.load(std::memory_order_relaxed);
+}
+
+template class Subscriber<TransitionChunk>;
+template class Subscriber<Credit>;
+template class Subscriber<SampleRequest>;
+template class Subscriber<BatchShard>;
+template class Subscriber<WeightsMessage>;
+template class Subscriber<EvalWeightsMessage>;
+template class Subscriber<MetricsMessage>;
+template class Subscriber<ControlMessage>;
+template class Subscriber<EvalMessage>;
+
+}  // namespace shoal::dds
