@@ -1,0 +1,107 @@
+#include "launch/accounting.h"
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/config/config_io.h"
+
+namespace shoal::launch {
+namespace {
+
+using Session = std::pair<uint32_t, uint64_t>;  // actor, session
+
+constexpr char kSchema[] = "shoal-accounting-1";
+
+void AddSession(const Session& name, uint64_t made, const SeenRecords& seen, Accounting* sums) {
+  sums->made += made;
+  sums->stored += seen.stored;
+  sums->rejected += seen.rejected;
+  sums->after_gap += seen.after_gap;
+  sums->duplicates += seen.duplicates;
+  const auto fault = [&](const std::string& what) {
+    sums->faults.push_back(fmt::format("actor {} session {}: {}", name.first, name.second, what));
+  };
+  if (seen.highest > made) {
+    fault(fmt::format("the replay saw sequence {}, but {} were made", seen.highest, made));
+  } else {
+    sums->lost_with_process += made - seen.highest;
+  }
+  const uint64_t dealt = seen.stored + seen.rejected + seen.after_gap;
+  if (dealt != seen.highest) {
+    fault(
+        fmt::format("stored {} + rejected {} + after a gap {} = {}, but sequences up to {} were "
+                    "seen",
+                    seen.stored, seen.rejected, seen.after_gap, dealt, seen.highest));
+  }
+}
+
+}  // namespace
+
+Accounting Account(std::span<const MadeRecords> made, std::span<const SeenRecords> seen,
+                   uint64_t resends) {
+  std::map<Session, std::pair<uint64_t, SeenRecords>> sessions;
+  for (const MadeRecords& m : made) sessions[{m.actor, m.session}].first += m.made;
+  Accounting sums;
+  for (const SeenRecords& s : seen) {
+    SeenRecords& entry = sessions[{s.actor, s.session}].second;
+    if (entry.session != 0) {
+      sums.faults.push_back(
+          fmt::format("actor {} session {}: listed twice by the replay", s.actor, s.session));
+    }
+    entry = s;
+  }
+  for (const auto& [name, counts] : sessions) {
+    AddSession(name, counts.first, counts.second, &sums);
+  }
+  sums.resends = resends;
+  return sums;
+}
+
+std::string Accounting::Line() const {
+  return fmt::format(
+      "records: made {} {} stored {} + lost with a process {} + rejected {} + after a gap {}; "
+      "duplicates {}, resends {}",
+      made, Balances() ? '=' : '?', stored, lost_with_process, rejected, after_gap, duplicates,
+      resends);
+}
+
+std::vector<SeenRecords> ReadSeenRecords(const std::filesystem::path& run) {
+  const std::filesystem::path path = run / "accounting.json";
+  const nlohmann::json object = ParseStrictJson(ReadFile(path), path);
+  std::vector<SeenRecords> seen;
+  try {
+    if (object.at("schema") != kSchema) {
+      throw RuntimeError("{}: expected schema '{}'", path.string(), kSchema);
+    }
+    for (const auto& session : object.at("sessions")) {
+      SeenRecords s;
+      session.at("actor").get_to(s.actor);
+      session.at("session").get_to(s.session);
+      session.at("highest").get_to(s.highest);
+      session.at("stored").get_to(s.stored);
+      session.at("rejected").get_to(s.rejected);
+      session.at("after_gap").get_to(s.after_gap);
+      session.at("duplicates").get_to(s.duplicates);
+      seen.push_back(s);
+    }
+  } catch (const nlohmann::json::exception& e) {
+    throw RuntimeError("{}: {}", path.string(), e.what());
+  }
+  return seen;
+}
+
+nlohmann::ordered_json ToJson(const Accounting& a) {
+  return {{"made", a.made},
+          {"stored", a.stored},
+          {"lost_with_process", a.lost_with_process},
+          {"rejected", a.rejected},
+          {"after_gap", a.after_gap},
+          {"duplicates", a.duplicates},
+          {"resends", a.resends},
+          {"balances", a.Balances()}};
+}
+
+}  // namespace shoal::launch

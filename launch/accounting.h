@@ -1,0 +1,49 @@
+// Where every record went: what the actors made against what the replay dealt with.
+//
+//   made = stored + lost_with_process + rejected + after_gap, exactly; duplicates and resends are
+//   apart. Sequences of a session run 1 .. made; the replay saw 1 .. highest of them.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace shoal::launch {
+
+// One actor session, by its own count (actor/made_page.h).
+struct MadeRecords {
+  uint32_t actor = 0;
+  uint64_t session = 0;
+  uint64_t made = 0;
+};
+
+// The same by the replay's count.
+struct SeenRecords {
+  uint32_t actor = 0;
+  uint64_t session = 0;
+  uint64_t highest = 0;  // sequences 1..highest were dealt with
+  uint64_t stored = 0, rejected = 0, after_gap = 0, duplicates = 0;
+};
+
+struct Accounting {
+  uint64_t made = 0, stored = 0, lost_with_process = 0, rejected = 0, after_gap = 0;
+  uint64_t duplicates = 0, resends = 0;
+  std::vector<std::string> faults;  // one line per session that does not balance
+
+  bool Balances() const { return faults.empty(); }
+  // "made 120 = stored 118 + lost with a process 2 + rejected 0 + after a gap 0; ..."
+  std::string Line() const;
+};
+
+Accounting Account(std::span<const MadeRecords> made, std::span<const SeenRecords> seen,
+                   uint64_t resends);
+
+// accounting.json of a run (shoal-accounting-1), written by the replay. Throws Error.
+std::vector<SeenRecords> ReadSeenRecords(const std::filesystem::path& run);
+
+nlohmann::ordered_json ToJson(const Accounting& accounting);
+
+}  // namespace shoal::launch

@@ -1,0 +1,193 @@
+#include "launch/child_process.h"
+
+#include <fcntl.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <fstream>
+#include <thread>
+
+#include "common/base/clock.h"
+#include "common/base/error.h"
+
+namespace shoal::launch {
+namespace {
+
+using std::chrono::milliseconds;
+
+// A file descriptor that closes itself.
+class Descriptor {
+ public:
+  explicit Descriptor(int fd) : fd_(fd) {}
+  ~Descriptor() { Close(); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int get() const { return fd_; }
+  void Close() {
+    if (fd_ >= 0) close(fd_);
+    fd_ = -1;
+  }
+
+ private:
+  int fd_;
+};
+
+int OpenForAppending(const std::filesystem::path& path) {
+  const int fd = open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
+  if (fd < 0) throw RuntimeError("cannot write '{}': {}", path.string(), std::strerror(errno));
+  return fd;
+}
+
+// Our environment with additions, as NAME=VALUE.
+std::vector<std::string> Environment(
+    const std::vector<std::pair<std::string, std::string>>& additions) {
+  std::vector<std::string> all;
+  for (char** entry = environ; *entry != nullptr; ++entry) {
+    const std::string_view text = *entry;
+    bool replaced = false;
+    for (const auto& [name, value] : additions) replaced |= text.starts_with(name + "=");
+    if (!replaced) all.emplace_back(text);
+  }
+  for (const auto& [name, value] : additions) all.push_back(name + "=" + value);
+  return all;
+}
+
+std::vector<char*> Pointers(std::vector<std::string>& strings) {
+  std::vector<char*> pointers;
+  for (std::string& s : strings) pointers.push_back(s.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
+
+// What the child needs between fork and exec, where memory must not be allocated.
+struct ExecPlan {
+  char* const* argv;
+  char* const* envp;
+  int input, output, errors, report;
+  pid_t parent;
+};
+
+[[noreturn]] void ExecChild(const ExecPlan& plan) {
+  prctl(PR_SET_PDEATHSIG, SIGTERM);
+  if (getppid() != plan.parent) _exit(1);  // it died before the line above
+  setpgid(0, 0);
+  sigset_t none;
+  sigemptyset(&none);
+  sigprocmask(SIG_SETMASK, &none, nullptr);
+  signal(SIGPIPE, SIG_DFL);  // ignored signals survive exec
+  dup2(plan.input, STDIN_FILENO);
+  dup2(plan.output, STDOUT_FILENO);
+  dup2(plan.errors, STDERR_FILENO);
+  execve(plan.argv[0], plan.argv, plan.envp);
+  const int error = errno;
+  [[maybe_unused]] const ssize_t n = write(plan.report, &error, sizeof error);
+  _exit(127);
+}
+
+}  // namespace
+
+std::string ExitStatus::Describe() const {
+  if (!by_signal) return fmt::format("exit code {}", code);
+  const char* name = sigabbrev_np(code);
+  return name ? fmt::format("killed by SIG{}", name) : fmt::format("killed by signal {}", code);
+}
+
+ChildProcess::ChildProcess(const ProcessSpec& spec) {
+  std::vector<std::string> command = spec.command;
+  std::vector<std::string> environment = Environment(spec.environment);
+  const std::vector<char*> argv = Pointers(command), envp = Pointers(environment);
+  const Descriptor input(open("/dev/null", O_RDONLY | O_CLOEXEC));
+  const Descriptor output(OpenForAppending(spec.output));
+  const Descriptor errors(OpenForAppending(spec.errors.empty() ? spec.output : spec.errors));
+  // Closed by a successful exec; carries errno of a failed one.
+  std::array<int, 2> ends{};
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) throw RuntimeError("pipe: {}", std::strerror(errno));
+  const Descriptor report(ends[0]);
+  Descriptor report_end(ends[1]);
+
+  const ExecPlan plan{argv.data(),  envp.data(),      input.get(), output.get(),
+                      errors.get(), report_end.get(), getpid()};
+  pid_ = fork();
+  if (pid_ < 0) throw RuntimeError("cannot start {}: {}", spec.command[0], std::strerror(errno));
+  if (pid_ == 0) ExecChild(plan);
+  report_end.Close();
+  int error = 0;
+  if (read(report.get(), &error, sizeof error) == static_cast<ssize_t>(sizeof error)) {
+    KillAndReap();
+    throw RuntimeError("cannot start '{}': {}", spec.command[0], std::strerror(error));
+  }
+}
+
+ChildProcess::~ChildProcess() { KillAndReap(); }
+
+ChildProcess::ChildProcess(ChildProcess&& other) noexcept
+    : pid_(std::exchange(other.pid_, -1)), ended_(other.ended_) {}
+
+ChildProcess& ChildProcess::operator=(ChildProcess&& other) noexcept {
+  if (this == &other) return *this;
+  KillAndReap();
+  pid_ = std::exchange(other.pid_, -1);
+  ended_ = other.ended_;
+  return *this;
+}
+
+std::optional<ExitStatus> ChildProcess::Poll() {
+  int status = 0;
+  if (ended_ || waitpid(pid_, &status, WNOHANG) != pid_) return ended_;
+  const bool by_signal = WIFSIGNALED(status);
+  ended_ = ExitStatus{by_signal, by_signal ? WTERMSIG(status) : WEXITSTATUS(status)};
+  return ended_;
+}
+
+void ChildProcess::Signal(int signal) {
+  if (!Poll()) kill(pid_, signal);
+}
+
+void ChildProcess::KillAndReap() {
+  if (pid_ < 0 || ended_) return;
+  kill(pid_, SIGKILL);
+  int status = 0;
+  while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
+  }
+  ended_ = ExitStatus{true, SIGKILL};
+}
+
+std::optional<ExitStatus> RunToEnd(const ProcessSpec& spec, std::chrono::seconds deadline,
+                                   const std::function<bool()>& stop) {
+  constexpr milliseconds kPoll{100}, kTerminate{5000};
+  ChildProcess child(spec);
+  const SteadyTime start = Now();
+  std::optional<SteadyTime> terminated;
+  while (true) {
+    if (const auto status = child.Poll()) {
+      return terminated ? std::nullopt : status;
+    }
+    if (!terminated && (Now() - start > deadline || stop())) {
+      child.Signal(SIGTERM);
+      terminated = Now();
+    }
+    if (terminated && Now() - *terminated > kTerminate) child.Signal(SIGKILL);
+    std::this_thread::sleep_for(kPoll);
+  }
+}
+
+std::string LastLine(const std::filesystem::path& file) {
+  constexpr std::streamoff kTail = 4096;
+  std::ifstream in(file, std::ios::binary);
+  if (!in) return "";
+  in.seekg(0, std::ios::end);
+  const std::streamoff size = in.tellg();
+  in.seekg(size > kTail ? size - kTail : 0);
+  std::string line, last;
+  while (std::getline(in, line)) {
+    if (line.find_first_not_of(" \t\r") != std::string::npos) last = line;
+  }
+  return last;
+}
+
+}  // namespace shoal::launch

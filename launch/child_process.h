@@ -1,0 +1,69 @@
+// One program running as a child of this process.
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace shoal::launch {
+
+struct ProcessSpec {
+  std::string role;                                              // "actor", "replay", ...
+  int id = 0;                                                    // within the role
+  std::vector<std::string> command;                              // [0] is the program's path
+  std::vector<std::pair<std::string, std::string>> environment;  // added to our own
+  std::filesystem::path output;  // stdout and stderr are appended to it
+  std::filesystem::path errors;  // stderr, where apart; empty = output
+
+  std::string Name() const { return role + "-" + std::to_string(id); }
+};
+
+struct ExitStatus {
+  bool by_signal = false;
+  int code = 0;  // exit code, or the signal's number
+
+  bool Clean() const { return !by_signal && code == 0; }
+  // "exit code 1", "killed by SIGKILL"
+  std::string Describe() const;
+};
+
+// Owns the child: one that still runs at destruction is killed and reaped. Children get SIGTERM
+// when this process dies, have a process group of their own (Ctrl-C on the terminal does not reach
+// them) and read from /dev/null. Create and use on one thread that lives as long as the child: the
+// kernel ties the death signal to it.
+class ChildProcess {
+ public:
+  // Throws Error naming the program or the file that could not be opened.
+  explicit ChildProcess(const ProcessSpec& spec);
+  ~ChildProcess();
+  ChildProcess(ChildProcess&& other) noexcept;
+  ChildProcess& operator=(ChildProcess&& other) noexcept;
+
+  pid_t pid() const { return pid_; }
+  // Its end, once it has ended; does not wait.
+  std::optional<ExitStatus> Poll();
+  // Nothing happens once it has ended.
+  void Signal(int signal);
+
+ private:
+  void KillAndReap();
+
+  pid_t pid_ = -1;  // -1: moved from
+  std::optional<ExitStatus> ended_;
+};
+
+// Runs a program to its end. SIGTERM, then SIGKILL, after `deadline` or when `stop` says so (asked
+// about ten times a second); empty when that happened.
+std::optional<ExitStatus> RunToEnd(const ProcessSpec& spec, std::chrono::seconds deadline,
+                                   const std::function<bool()>& stop);
+
+// The last line of a file that is not blank, for messages; empty when there is none.
+std::string LastLine(const std::filesystem::path& file);
+
+}  // namespace shoal::launch

@@ -1,0 +1,18 @@
+// The commands of `shoal`, one file each. A command adds itself to the command line; when it is the
+// one given, it stores what to do in `*chosen`, which main runs: its value is the exit code.
+#pragma once
+
+#include <functional>
+
+namespace CLI {
+class App;
+}
+
+namespace shoal::launch {
+
+using Action = std::function<int()>;
+
+void AddTrainCommand(CLI::App& app, Action* chosen);
+void AddEvalCommand(CLI::App& app, Action* chosen);
+
+}  // namespace shoal::launch

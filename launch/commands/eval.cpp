@@ -1,0 +1,64 @@
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/base/stop.h"
+#include "launch/actor_program.h"
+#include "launch/commands/commands.h"
+
+namespace shoal::launch {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct EvalOptions {
+  std::string checkpoint, json;
+  int episodes = 100;
+  int64_t seed = 1;
+};
+
+int Evaluate(const EvalOptions& options) {
+  const fs::path checkpoint = fs::absolute(options.checkpoint).lexically_normal();
+  if (!fs::is_directory(checkpoint)) {
+    throw RuntimeError("no checkpoint folder '{}'", options.checkpoint);
+  }
+  InstallStopSignals();
+  const fs::path folder =
+      checkpoint.has_filename() ? checkpoint : checkpoint.parent_path();  // "best/" -> "best"
+  const fs::path run = folder.parent_path().parent_path();                // RUN/checkpoints/step_N
+  const auto point = EvaluateByActor({.run = run,
+                                      .checkpoint = folder,
+                                      .episodes = options.episodes,
+                                      .seed = options.seed,
+                                      .json = options.json},
+                                     StopRequested);
+  if (!point) throw RuntimeError("evaluation of '{}' interrupted", options.checkpoint);
+  fmt::print("{} episodes of {}: success {:.1f} %, return {:.3f} ({} env steps, {} updates)\n",
+             options.episodes, options.checkpoint, 100 * point->success, point->mean_return,
+             point->env_steps, point->updates);
+  return 0;
+}
+
+}  // namespace
+
+void AddEvalCommand(CLI::App& app, Action* chosen) {
+  CLI::App* command = app.add_subcommand(
+      "eval", "Evaluate a checkpoint on fresh episodes, with the policy's mean actions.");
+  const auto options = std::make_shared<EvalOptions>();
+  command
+      ->add_option("--checkpoint", options->checkpoint, "runs/NAME/checkpoints/best or .../step_N")
+      ->required();
+  command->add_option("--episodes", options->episodes, "Episodes to play")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "Names the episodes: equal seeds, equal episodes")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option("--json", options->json, "File for every episode (schema shoal-eval-1)");
+  command->callback([=] { *chosen = [=] { return Evaluate(*options); }; });
+}
+
+}  // namespace shoal::launch

@@ -1,0 +1,46 @@
+#include <CLI/CLI.hpp>
+#include <memory>
+
+#include "common/config/config_io.h"
+#include "launch/commands/commands.h"
+#include "launch/training_run.h"
+
+namespace shoal::launch {
+namespace {
+
+std::string PresetHelp() {
+  std::string names;
+  for (const std::string& name : ListPresets()) names += (names.empty() ? "" : ", ") + name;
+  return "Configuration to start from: " + names;
+}
+
+}  // namespace
+
+void AddTrainCommand(CLI::App& app, Action* chosen) {
+  CLI::App* command = app.add_subcommand(
+      "train",
+      "Train a policy: starts replay, learner, actors and evaluation, watches them, stops them in "
+      "order and evaluates the best checkpoint. Ctrl-C stops in order, twice at once.");
+  const auto options = std::make_shared<TrainOptions>();
+  const auto describe_keys = std::make_shared<bool>(false);
+  command->add_option("--preset", options->preset, PresetHelp());
+  command->add_option("--config", options->config_file, "JSON file of keys, applied on the preset");
+  command->add_option("--set", options->set, "KEY=VALUE, applied last; may be repeated")
+      ->allow_extra_args(false);
+  command->add_flag("--lockstep", options->lockstep, "Repeat bit for bit (one actor, slower)");
+  command->add_option("--run-name", options->run_name, "Name of the run's folder");
+  command->add_flag("--overwrite", options->overwrite, "Delete a run of that name first");
+  command->add_option("--resume", options->resume, "Go on with a stopped run: its name or folder");
+  command->add_flag("--print-config", options->print_config, "Print every key and exit");
+  command->add_flag("--dry-run", options->dry_run, "Check everything, start nothing");
+  command->add_flag("--describe-keys", *describe_keys, "Print a table of all keys and exit");
+  command->callback([=] {
+    *chosen = [=] {
+      if (!*describe_keys) return RunTraining(*options);
+      std::fputs(DescribeKeys().c_str(), stdout);
+      return 0;
+    };
+  });
+}
+
+}  // namespace shoal::launch

@@ -1,0 +1,246 @@
+#include "launch/coordinator.h"
+
+#include <thread>
+
+#include "common/base/error.h"
+#include "common/base/stop.h"
+#include "common/dds/publisher.h"
+#include "common/dds/subscriber.h"
+#include "launch/evaluations.h"
+#include "launch/message_inbox.h"
+#include "launch/metrics_log.h"
+#include "launch/metrics_view.h"
+#include "launch/ordered_stop.h"
+#include "launch/process_plan.h"
+#include "launch/run_figures.h"
+#include "launch/scalar_log.h"
+
+namespace shoal::launch {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr milliseconds kPoll{50};
+constexpr milliseconds kHeartbeat{300};
+constexpr seconds kMetaPeriod{30};
+constexpr size_t kInboxMessages = 10'000;
+
+const char* ToString(RunState state) {
+  switch (state) {
+    case RunState::kRunning:
+      return "running";
+    case RunState::kDraining:
+      return "draining";
+    case RunState::kStopping:
+      return "stopping";
+  }
+  return "?";
+}
+
+}  // namespace
+
+// Members are in construction order: subscribers end before the inboxes they fill.
+struct Coordinator::Impl {
+  Impl(const std::filesystem::path& folder, const RunConfig& run_config,
+       std::unique_ptr<dds::Bus> claimed, const RunMeta& before, Progress& shown)
+      : run(folder),
+        config(run_config.config),
+        progress(shown),
+        meta(before),
+        rule(config),
+        log(run / "metrics.jsonl", MetricsLogLimits()),
+        scalars(run),
+        supervisor(RestartLimits(), [this](const std::string& line) { progress.Say(line); }),
+        bus(std::move(claimed)),
+        control(*bus),
+        metrics_subscriber(*bus, [this](const MetricsMessage& m) { metrics.Put(m); }),
+        eval_subscriber(*bus, [this](const EvalMessage& m) { evals.Put(m); }) {
+    for (const EvaluationPoint& point : ReadEvaluations(run)) Count(point);
+    meta.target = rule.target();
+  }
+
+  double Elapsed() const { return meta.wall_seconds + SecondsSince(start); }
+  uint64_t EnvSteps() const {
+    return std::max(meta.env_steps,
+                    static_cast<uint64_t>(view.Get("replay", 0, "stored_steps").value_or(0)));
+  }
+
+  RunResult Run();
+  std::string WaitForEnd();
+  void Stop();
+  // Heartbeat, messages, display. What fails in it is remembered as the run's failure.
+  void Tick();
+  void Heartbeat(SteadyTime now);
+  void TakeMessages(SteadyTime now);
+  void OnEvaluation(const EvalMessage& message);
+  void Count(const EvaluationPoint& point);
+  void Fail(const std::string& why);
+  void StoreMeta();
+  // The evaluation at the last multiple of eval.interval has arrived.
+  bool LastEvaluationArrived() const;
+
+  const std::filesystem::path run;
+  const Config config;
+  Progress& progress;
+  RunMeta meta;  // wall_seconds: of the sessions before this one, until the end
+  StopRule rule;
+  std::optional<EvaluationPoint> last_evaluation;
+  MetricsView view;
+  MetricsLog log;
+  ScalarLog scalars;
+  Supervisor supervisor;
+  MessageInbox<MetricsMessage> metrics{kInboxMessages};
+  MessageInbox<EvalMessage> evals{kInboxMessages};
+  std::unique_ptr<dds::Bus> bus;
+  dds::Publisher<ControlMessage> control;
+  dds::Subscriber<MetricsMessage> metrics_subscriber;
+  dds::Subscriber<EvalMessage> eval_subscriber;
+
+  ControlMessage order{.epoch = 1};
+  SteadyTime start = Now();
+  std::optional<SteadyTime> heartbeat, meta_stored;
+  int stops_before_end = 0;  // Ctrl-C's that had been answered when the ordered stop began
+};
+
+Coordinator::Coordinator(const std::filesystem::path& run, const RunConfig& config,
+                         std::unique_ptr<dds::Bus> bus, const RunMeta& meta, Progress& progress)
+    : impl_(std::make_unique<Impl>(run, config, std::move(bus), meta, progress)) {}
+
+Coordinator::~Coordinator() = default;
+
+RunResult Coordinator::Run() { return impl_->Run(); }
+
+RunResult Coordinator::Impl::Run() {
+  for (const ProcessSpec& spec : PlanProcesses(config, run)) supervisor.Start(spec);
+  meta.exit = "running";
+  StoreMeta();
+  meta.exit = WaitForEnd();
+  Stop();
+  meta.env_steps = EnvSteps();
+  meta.wall_seconds = Elapsed();
+  meta.restarts += supervisor.restarts();
+  if (!meta.error.empty()) meta.exit = "failed";
+  return {.meta = meta,
+          .resends = static_cast<uint64_t>(view.Total("actor", "resends")),
+          .clean = supervisor.unclean_exits().empty()};
+}
+
+std::string Coordinator::Impl::WaitForEnd() {
+  while (true) {
+    Tick();
+    if (const auto failure = supervisor.Poll(Now())) Fail(*failure);
+    if (!meta.error.empty()) return "failed";
+    if (StopRequested()) return "interrupted";
+    if (rule.TargetReached()) return "target";
+    if (rule.BudgetSpent(EnvSteps())) return "budget";
+    std::this_thread::sleep_for(kPoll);
+  }
+}
+
+void Coordinator::Impl::Stop() {
+  if (meta.exit == "interrupted") progress.Say("stopping in order; Ctrl-C again to stop at once");
+  if (meta.exit == "target") progress.Say("target reached: stopping in order");
+  if (meta.exit == "budget") progress.Say("budget of env steps spent: stopping in order");
+  stops_before_end = StopRequests();
+  StopInOrder(supervisor, StopDeadlines(),
+              {.announce =
+                   [this](RunState state) {
+                     order.state = state;
+                     ++order.epoch;
+                     heartbeat.reset();  // the next tick tells at once
+                     Tick();
+                   },
+               .tick = [this] { Tick(); },
+               .at_once = [this] { return StopRequests() > stops_before_end; },
+               .say = [this](const std::string& line) { progress.Say(line); },
+               .settled = [this] { return meta.exit != "budget" || LastEvaluationArrived(); }});
+  Tick();  // what arrived last
+}
+
+void Coordinator::Impl::Tick() {
+  const SteadyTime now = Now();
+  Heartbeat(now);
+  try {
+    TakeMessages(now);
+    if (!meta_stored || now - *meta_stored > kMetaPeriod) StoreMeta();
+  } catch (const Error& e) {
+    Fail(e.what());
+  }
+  ProgressFigures figures = CollectFigures(view, now);
+  figures.run = config.run_name;
+  figures.state = ToString(order.state);
+  figures.elapsed_seconds = Elapsed();
+  figures.env_steps = EnvSteps();
+  figures.budget = static_cast<uint64_t>(config.env_steps);
+  figures.last_evaluation = last_evaluation;
+  figures.best = meta.best;
+  figures.processes = supervisor.Running("");
+  figures.restarts = meta.restarts + supervisor.restarts();
+  scalars.WriteRollouts(view, figures, now);
+  progress.Show(figures, now);
+}
+
+void Coordinator::Impl::Heartbeat(SteadyTime now) {
+  if (heartbeat && now - *heartbeat < kHeartbeat) return;
+  order.time = WallTimeSeconds();
+  if (control.Write(order)) heartbeat = now;  // else again at the next tick
+}
+
+void Coordinator::Impl::TakeMessages(SteadyTime now) {
+  for (const MetricsMessage& message : metrics.TakeAll()) {
+    view.OnMessage(message, now);
+    if (!log.Write(message)) {
+      progress.Say("metrics.jsonl cannot be written any more (disk full or size limit)");
+    }
+  }
+  meta.updates =
+      std::max(meta.updates, static_cast<uint64_t>(view.Get("learner", 0, "updates").value_or(0)));
+  for (const EvalMessage& message : evals.TakeAll()) OnEvaluation(message);
+}
+
+void Coordinator::Impl::OnEvaluation(const EvalMessage& message) {
+  const EvaluationPoint point = StoreEvaluation(run, message, Elapsed());
+  const bool best = !meta.best || Better(point, *meta.best);
+  progress.Say(fmt::format(
+      "evaluation at {} env steps, {} updates: success {:.1f} %, return {:.3f}{}", point.env_steps,
+      point.updates, 100 * point.success, point.mean_return, best ? " (best)" : ""));
+  scalars.WriteEvaluation(point);
+  Count(point);
+  StoreMeta();
+  if (!best || point.checkpoint.empty()) return;
+  try {
+    KeepAsBest(run, point.checkpoint);
+  } catch (const Error& e) {
+    progress.Say(e.what());  // the run goes on: the former best is still whole
+  }
+}
+
+void Coordinator::Impl::Count(const EvaluationPoint& point) {
+  rule.OnEvaluation(point);
+  meta.first_success = rule.first_success();
+  last_evaluation = point;
+  if (!meta.best || Better(point, *meta.best)) meta.best = point;
+}
+
+void Coordinator::Impl::Fail(const std::string& why) {
+  if (meta.error.empty()) meta.error = why;
+  progress.Say(why);
+}
+
+void Coordinator::Impl::StoreMeta() {
+  meta_stored = Now();
+  RunMeta now = meta;
+  now.env_steps = EnvSteps();
+  now.wall_seconds = Elapsed();
+  now.restarts += supervisor.restarts();
+  WriteRunMeta(run, config, now);
+}
+
+bool Coordinator::Impl::LastEvaluationArrived() const {
+  const int64_t last = config.env_steps / config.eval.interval * config.eval.interval;
+  return last == 0 ||
+         (last_evaluation && last_evaluation->env_steps >= static_cast<uint64_t>(last));
+}
+
+}  // namespace shoal::launch

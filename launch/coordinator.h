@@ -1,0 +1,39 @@
+// Runs a run: starts its processes, keeps them alive, hears them, shows what they do, decides when
+// to stop, stops them in order.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+
+#include "common/config/run_files.h"
+#include "common/dds/bus.h"
+#include "launch/progress.h"
+#include "launch/run_meta.h"
+
+namespace shoal::launch {
+
+struct RunResult {
+  RunMeta meta;
+  uint64_t resends = 0;  // records actors sent again
+  bool clean = true;     // every process left by itself with code 0
+};
+
+class Coordinator {
+ public:
+  // `run` holds config.json and cluster.json. `meta` is a fresh one, or the resumed run's. Borrows
+  // `progress`. Throws Error.
+  Coordinator(const std::filesystem::path& run, const RunConfig& config,
+              std::unique_ptr<dds::Bus> bus, const RunMeta& meta, Progress& progress);
+  ~Coordinator();
+
+  // Until the target, the budget, Ctrl-C or a failure; no process is left when it returns. Call on
+  // the thread that lives longest (child_process.h). Throws Error when a process cannot be started.
+  RunResult Run();
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace shoal::launch

@@ -1,0 +1,14 @@
+// What this machine offers, as meta.json records it.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+namespace shoal::launch {
+
+// Cores this process may use: its affinity, cut to the cgroup's CPU quota (rounded up). At least 1.
+int UsableCores();
+
+// {cpu, cores, memory_gb, isa, kernel}: cores as above; isa is what the network code found.
+nlohmann::ordered_json DescribeMachine();
+
+}  // namespace shoal::launch

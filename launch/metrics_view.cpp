@@ -1,0 +1,86 @@
+#include "launch/metrics_view.h"
+
+namespace shoal::launch {
+namespace {
+
+template <class Values>
+std::optional<double> Find(const Values& values, std::string_view name) {
+  const auto it = values.find(name);
+  return it == values.end() ? std::nullopt : std::optional(it->second);
+}
+
+}  // namespace
+
+void MetricsView::OnMessage(const MetricsMessage& message, SteadyTime now) {
+  Process& process = processes_[{message.role, message.id}];
+  if (process.pid != message.pid) {
+    for (const auto& [name, value] : process.values) process.ended[name] += value;
+    process.values.clear();
+    process.pid = message.pid;
+    process.time = 0;
+  } else if (message.time <= process.time) {
+    return;
+  }
+  process.previous = std::move(process.values);
+  process.previous_time = process.time;
+  process.values.clear();
+  for (size_t i = 0; i < message.names.size() && i < message.values.size(); ++i) {
+    process.values[message.names[i]] = message.values[i];
+  }
+  process.time = message.time;
+  process.heard = now;
+}
+
+template <class Visit>
+void MetricsView::ForRole(std::string_view role, Visit visit) const {
+  for (const auto& [key, process] : processes_) {
+    if (key.first == role) visit(process);
+  }
+}
+
+std::optional<double> MetricsView::Get(std::string_view role, uint32_t id,
+                                       std::string_view name) const {
+  const auto it = processes_.find({std::string(role), id});
+  return it == processes_.end() ? std::nullopt : Find(it->second.values, name);
+}
+
+std::optional<double> MetricsView::Sum(std::string_view role, std::string_view name,
+                                       SteadyTime now) const {
+  std::optional<double> sum;
+  ForRole(role, [&](const Process& process) {
+    const auto value = Find(process.values, name);
+    if (value && now - process.heard <= kFresh) sum = sum.value_or(0) + *value;
+  });
+  return sum;
+}
+
+std::optional<double> MetricsView::Mean(std::string_view role, std::string_view name,
+                                        std::string_view weight, SteadyTime now) const {
+  double sum = 0, weights = 0;
+  ForRole(role, [&](const Process& process) {
+    const auto value = Find(process.values, name), w = Find(process.values, weight);
+    if (!value || !w || now - process.heard > kFresh) return;
+    sum += *value * *w;
+    weights += *w;
+  });
+  return weights > 0 ? std::optional(sum / weights) : std::nullopt;
+}
+
+std::optional<double> MetricsView::Rate(std::string_view role, std::string_view name) const {
+  const auto it = processes_.find({std::string(role), 0});
+  if (it == processes_.end()) return std::nullopt;
+  const Process& process = it->second;
+  const auto newest = Find(process.values, name), before = Find(process.previous, name);
+  if (!newest || !before || process.time <= process.previous_time) return std::nullopt;
+  return (*newest - *before) / (process.time - process.previous_time);
+}
+
+double MetricsView::Total(std::string_view role, std::string_view name) const {
+  double total = 0;
+  ForRole(role, [&](const Process& process) {
+    total += Find(process.values, name).value_or(0) + Find(process.ended, name).value_or(0);
+  });
+  return total;
+}
+
+}  // namespace shoal::launch

@@ -1,0 +1,55 @@
+// The newest figures of every process of a run, and how fast their counters grow.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "common/base/clock.h"
+#include "common/wire/messages.h"
+
+namespace shoal::launch {
+
+// One thread. Holds two reports per process id and one final value per counter of dead ones.
+class MetricsView {
+ public:
+  // Older reports of the same process (by its pid) are ignored.
+  void OnMessage(const MetricsMessage& message, SteadyTime now);
+
+  // The figure in the newest report of the role's process `id`; empty when it has none.
+  std::optional<double> Get(std::string_view role, uint32_t id, std::string_view name) const;
+  // Sum over the role's processes that reported within kFresh; empty when none has the figure.
+  std::optional<double> Sum(std::string_view role, std::string_view name, SteadyTime now) const;
+  // Mean over them, weighted by the figure `weight`.
+  std::optional<double> Mean(std::string_view role, std::string_view name, std::string_view weight,
+                             SteadyTime now) const;
+  // Growth per second of a counter between the two newest reports of process 0 of the role.
+  std::optional<double> Rate(std::string_view role, std::string_view name) const;
+  // A counter of the role over the whole run: restarted processes begin again at 0, so the last
+  // values of their predecessors are added.
+  double Total(std::string_view role, std::string_view name) const;
+
+  static constexpr std::chrono::seconds kFresh{5};
+
+ private:
+  using Values = std::map<std::string, double, std::less<>>;
+  struct Process {
+    int32_t pid = 0;
+    double time = 0, previous_time = 0;
+    SteadyTime heard;
+    Values values, previous;
+    Values ended;  // sums of the last values of former processes of this id
+  };
+
+  // Calls visit(process) for the role's processes, newest reports only.
+  template <class Visit>
+  void ForRole(std::string_view role, Visit visit) const;
+
+  std::map<std::pair<std::string, uint32_t>, Process> processes_;
+};
+
+}  // namespace shoal::launch

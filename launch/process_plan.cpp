@@ -1,0 +1,48 @@
+#include "launch/process_plan.h"
+
+#include <algorithm>
+
+#include "common/base/error.h"
+#include "launch/run_folder.h"
+
+namespace shoal::launch {
+
+std::filesystem::path ProgramFolder() {
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  if (error) throw RuntimeError("cannot read /proc/self/exe: {}", error.message());
+  return program.parent_path();
+}
+
+ProcessSpec ProgramSpec(const std::string& program, std::vector<std::string> arguments,
+                        int threads) {
+  ProcessSpec spec;
+  spec.command = {(ProgramFolder() / program).string()};
+  std::ranges::move(arguments, std::back_inserter(spec.command));
+  spec.environment = {{"OMP_NUM_THREADS", std::to_string(threads)},
+                      {"OMP_WAIT_POLICY", "passive"},
+                      {"LP_NUM_THREADS", "0"}};
+  return spec;
+}
+
+std::vector<ProcessSpec> PlanProcesses(const Config& config, const std::filesystem::path& run) {
+  std::vector<ProcessSpec> plan;
+  const auto add = [&](const std::string& role, int id, const std::string& program,
+                       std::vector<std::string> arguments, int threads) {
+    arguments.insert(arguments.begin(), {"--run", run.string()});
+    ProcessSpec spec = ProgramSpec(program, std::move(arguments), threads);
+    spec.role = role;
+    spec.id = id;
+    spec.output = LogFile(run, spec.Name());
+    plan.push_back(std::move(spec));
+  };
+  add("replay", 0, "shoal-replay", {}, 1);
+  add("learner", 0, "shoal-learner", {}, config.learner.threads);
+  for (int i = 0; i < config.actors; ++i) {
+    add("actor", i, "shoal-actor", {"--id", std::to_string(i)}, 1);
+  }
+  add("eval", 0, "shoal-actor", {"--role", "eval"}, 1);
+  return plan;
+}
+
+}  // namespace shoal::launch

@@ -1,0 +1,24 @@
+// Which programs a run consists of and how each is started.
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "common/config/config.h"
+#include "launch/child_process.h"
+
+namespace shoal::launch {
+
+// The folder of this program: the others lie beside it.
+std::filesystem::path ProgramFolder();
+
+// PROGRAM of that folder with arguments and the environment every program of ours runs in:
+// `threads` for its computations, no spinning OpenMP threads, no render threads.
+ProcessSpec ProgramSpec(const std::string& program, std::vector<std::string> arguments,
+                        int threads);
+
+// Replay, learner, actors and evaluation actor of a run, in starting order. `config` is resolved
+// (actors and learner.threads above 0).
+std::vector<ProcessSpec> PlanProcesses(const Config& config, const std::filesystem::path& run);
+
+}  // namespace shoal::launch

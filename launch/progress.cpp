@@ -1,0 +1,142 @@
+#include "launch/progress.h"
+
+#include <sys/ioctl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "common/base/error.h"
+
+namespace shoal::launch {
+namespace {
+
+constexpr std::chrono::milliseconds kBlockPeriod{500};
+constexpr std::chrono::seconds kLinePeriod{5};
+constexpr double kHeld = 0.05;  // share of time from which somebody counts as waiting
+
+std::string Number(const std::optional<double>& value, const char* format = "{:.0f}") {
+  return value ? fmt::format(fmt::runtime(format), *value) : "-";
+}
+
+std::string Percent(const std::optional<double>& value) {
+  return value ? fmt::format("{:.0f} %", 100 * *value) : "-";
+}
+
+// Who waits for whom at the limiter.
+std::string LimiterState(const ProgressFigures& f) {
+  if (f.actors_wait.value_or(0) > kHeld) {
+    return "actors wait for the learner " + Percent(f.actors_wait);
+  }
+  if (f.learner_waits.value_or(0) > kHeld) {
+    return "learner waits for the actors " + Percent(f.learner_waits);
+  }
+  return f.actors_wait || f.learner_waits ? "nobody waits" : "-";
+}
+
+std::string Evaluation(const std::optional<EvaluationPoint>& e) {
+  if (!e) return "none yet";
+  return fmt::format("success {:.0f} %, return {:.2f} at {} env steps", 100 * e->success,
+                     e->mean_return, e->env_steps);
+}
+
+int TerminalWidth() {
+  winsize size{};
+  return ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
+}
+
+std::string Bar(double share, int width) {
+  const int full = static_cast<int>(std::min(1.0, std::max(0.0, share)) * width);
+  return std::string(static_cast<size_t>(full), '#') +
+         std::string(static_cast<size_t>(width - full), '.');
+}
+
+}  // namespace
+
+std::string FormatDuration(std::optional<double> seconds) {
+  if (!seconds || !(*seconds >= 0) || *seconds > 1e9) return "-";
+  const auto whole = static_cast<int64_t>(*seconds);
+  const int64_t hours = whole / 3600, minutes = whole / 60 % 60;
+  if (hours > 0) return fmt::format("{}:{:02}:{:02}", hours, minutes, whole % 60);
+  return fmt::format("{:02}:{:02}", minutes, whole % 60);
+}
+
+std::optional<double> SecondsLeft(const ProgressFigures& f) {
+  if (!f.env_steps_per_second || *f.env_steps_per_second <= 0) return std::nullopt;
+  const uint64_t left = f.env_steps < f.budget ? f.budget - f.env_steps : 0;
+  return static_cast<double>(left) / *f.env_steps_per_second;
+}
+
+std::string FormatProgressLine(const ProgressFigures& f) {
+  return fmt::format(
+      "{} {} | {}/{} env steps, {}/s | {} updates, {}/s | eval {} | critic {} actor {} temp {} | "
+      "lag {} | {} | left {}",
+      FormatDuration(f.elapsed_seconds), f.state, f.env_steps, f.budget,
+      Number(f.env_steps_per_second), Number(f.updates), Number(f.updates_per_second, "{:.1f}"),
+      f.last_evaluation ? Percent(f.last_evaluation->success) : "-",
+      Number(f.critic_loss, "{:.3g}"), Number(f.actor_loss, "{:.3g}"),
+      Number(f.temperature, "{:.3g}"), Number(f.policy_lag), LimiterState(f),
+      FormatDuration(SecondsLeft(f)));
+}
+
+std::vector<std::string> FormatProgressBlock(const ProgressFigures& f, int width) {
+  const double share =
+      f.budget > 0 ? static_cast<double>(f.env_steps) / static_cast<double>(f.budget) : 0;
+  std::vector<std::string> lines{
+      fmt::format("{}  {}  {} elapsed, {} left, {} processes, {} restarts", f.run, f.state,
+                  FormatDuration(f.elapsed_seconds), FormatDuration(SecondsLeft(f)), f.processes,
+                  f.restarts),
+      fmt::format("  env steps  {} of {}  {:.0f} %  [{}]  {}/s", f.env_steps, f.budget, 100 * share,
+                  Bar(share, 20), Number(f.env_steps_per_second)),
+      fmt::format("  updates    {}  {}/s", Number(f.updates),
+                  Number(f.updates_per_second, "{:.1f}")),
+      fmt::format("  last eval  {}", Evaluation(f.last_evaluation)),
+      fmt::format("  best       {}   (actors' episodes: {})", Evaluation(f.best),
+                  Percent(f.rollout_success)),
+      fmt::format("  losses     critic {}  actor {}  temperature {}",
+                  Number(f.critic_loss, "{:.4g}"), Number(f.actor_loss, "{:.4g}"),
+                  Number(f.temperature, "{:.3g}")),
+      fmt::format("  flow       policy lag {} updates, {}", Number(f.policy_lag), LimiterState(f)),
+  };
+  for (std::string& line : lines) {
+    if (line.size() > static_cast<size_t>(width)) line.resize(static_cast<size_t>(width));
+  }
+  return lines;
+}
+
+Progress::Progress(const std::string& log_file)
+    : terminal_(isatty(STDOUT_FILENO) == 1), log_(log_file, std::ios::app) {
+  if (!log_) throw RuntimeError("cannot write '{}': {}", log_file, std::strerror(errno));
+}
+
+Progress::~Progress() { std::fflush(stdout); }
+
+void Progress::Show(const ProgressFigures& figures, SteadyTime now) {
+  if (shown_ && now - *shown_ < (terminal_ ? kBlockPeriod : SteadyTime::duration(kLinePeriod))) {
+    return;
+  }
+  shown_ = now;
+  if (!terminal_) {
+    std::printf("%s\n", FormatProgressLine(figures).c_str());
+  } else {
+    EraseBlock();
+    const auto lines = FormatProgressBlock(figures, TerminalWidth() - 1);
+    for (const std::string& line : lines) std::printf("%s\n", line.c_str());
+    block_lines_ = static_cast<int>(lines.size());
+  }
+  std::fflush(stdout);
+}
+
+void Progress::Say(const std::string& line) {
+  EraseBlock();
+  std::printf("%s\n", line.c_str());
+  std::fflush(stdout);
+  log_ << UtcTimestamp() << ' ' << line << std::endl;
+}
+
+void Progress::EraseBlock() {
+  if (block_lines_ > 0) std::printf("\x1b[%dA\x1b[J", block_lines_);  // up, then clear below
+  block_lines_ = 0;
+}
+
+}  // namespace shoal::launch

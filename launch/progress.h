@@ -1,0 +1,63 @@
+// What the user sees of a running run: a live block on a terminal, plain lines elsewhere.
+#pragma once
+
+#include <cstdio>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/base/clock.h"
+#include "launch/stop_rule.h"
+
+namespace shoal::launch {
+
+// Figures that may be missing are empty: nobody has reported them yet.
+struct ProgressFigures {
+  std::string run;    // name
+  std::string state;  // "running", "draining", "stopping"
+  double elapsed_seconds = 0;
+  uint64_t env_steps = 0, budget = 0;
+  std::optional<double> env_steps_per_second;
+  std::optional<double> updates, updates_per_second;
+  std::optional<double> critic_loss, actor_loss, temperature;
+  std::optional<double> policy_lag;       // updates, median
+  std::optional<double> rollout_success;  // rate over the last episodes of the actors
+  std::optional<double> actors_wait;      // share of the last second the limiter held actors
+  std::optional<double> learner_waits;    // the same for the learner
+  std::optional<EvaluationPoint> last_evaluation, best;
+  int processes = 0, restarts = 0;
+};
+
+// "12:05" or "1:02:03"; "-" when unknown.
+std::string FormatDuration(std::optional<double> seconds);
+// Time until the budget is spent at the present rate.
+std::optional<double> SecondsLeft(const ProgressFigures& figures);
+// One plain line.
+std::string FormatProgressLine(const ProgressFigures& figures);
+// The live block, each line at most `width` characters.
+std::vector<std::string> FormatProgressBlock(const ProgressFigures& figures, int width);
+
+// Writes to stdout and copies event lines to a log file. One thread.
+class Progress {
+ public:
+  // Throws Error when the log cannot be opened.
+  explicit Progress(const std::string& log_file);
+  // Leaves the cursor below the last block.
+  ~Progress();
+
+  // Shows the figures: at most twice a second as a block, every 5 s as a line.
+  void Show(const ProgressFigures& figures, SteadyTime now);
+  // One line that stays: above the block on a terminal, with a time in the log.
+  void Say(const std::string& line);
+
+ private:
+  void EraseBlock();
+
+  const bool terminal_;
+  std::ofstream log_;
+  int block_lines_ = 0;
+  std::optional<SteadyTime> shown_;
+};
+
+}  // namespace shoal::launch

@@ -1,0 +1,32 @@
+// Whether and when a process that died is started again. Pure: the caller brings the time.
+#pragma once
+
+#include <chrono>
+#include <deque>
+#include <optional>
+
+#include "common/base/clock.h"
+
+namespace shoal::launch {
+
+struct RestartLimits {
+  int restarts = 5;  // within `window`; one more death fails the run
+  std::chrono::seconds window{60};
+  std::chrono::milliseconds first_delay{200};  // doubles with each death within the window
+  std::chrono::milliseconds longest_delay{5000};
+};
+
+class RestartPolicy {
+ public:
+  explicit RestartPolicy(const RestartLimits& limits) : limits_(limits) {}
+
+  // The process died at `now`: how long to wait before the next start; empty when it died too
+  // often.
+  std::optional<std::chrono::milliseconds> OnDeath(SteadyTime now);
+
+ private:
+  const RestartLimits limits_;
+  std::deque<SteadyTime> deaths_;  // within the window
+};
+
+}  // namespace shoal::launch

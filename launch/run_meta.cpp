@@ -1,0 +1,90 @@
+#include "launch/run_meta.h"
+
+#include <nlohmann/json.hpp>
+
+#include "common/base/build_info.h"
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/config/config_io.h"
+#include "common/nn/precision.h"
+#include "launch/machine.h"
+
+namespace shoal::launch {
+namespace {
+
+using nlohmann::ordered_json;
+
+template <class T>
+ordered_json OrNull(const std::optional<T>& value) {
+  return value ? ordered_json(*value) : ordered_json(nullptr);
+}
+
+ordered_json FirstSuccess(const RunMeta& meta) {
+  if (!meta.first_success) return nullptr;
+  return {{"target", meta.target},
+          {"env_steps", meta.first_success->env_steps},
+          {"updates", meta.first_success->updates},
+          {"wall_seconds", meta.first_success->wall_seconds}};
+}
+
+ordered_json Best(const RunMeta& meta) {
+  if (!meta.best) return nullptr;
+  return {{"checkpoint", meta.best->checkpoint},
+          {"env_steps", meta.best->env_steps},
+          {"updates", meta.best->updates},
+          {"success_rate", meta.best->success},
+          {"return_mean", meta.best->mean_return}};
+}
+
+ordered_json Versions() {
+  return {{"shoal", BuildVersion()},
+          {"compiler", __VERSION__},
+          {"mujoco", SHOAL_MUJOCO_VERSION},
+          {"cyclonedds", SHOAL_CYCLONEDDS_VERSION},
+          {"onednn", SHOAL_ONEDNN_VERSION}};
+}
+
+}  // namespace
+
+void WriteRunMeta(const std::filesystem::path& run, const Config& config, const RunMeta& meta) {
+  const ordered_json object{
+      {"schema", "shoal-run-1"},
+      {"name", config.run_name},
+      {"task", config.task},
+      {"preset", config.preset},
+      {"seed", config.seed},
+      {"commit", BuildCommit()},
+      {"versions", Versions()},
+      {"machine", DescribeMachine()},
+      {"precision", nn::ToString(nn::ChoosePrecision(config.learner.precision))},
+      {"started", meta.started},
+      {"finished", meta.finished.empty() ? ordered_json(nullptr) : ordered_json(meta.finished)},
+      {"env_steps", meta.env_steps},
+      {"updates", meta.updates},
+      {"wall_seconds", meta.wall_seconds},
+      {"first_success", FirstSuccess(meta)},
+      {"best", Best(meta)},
+      {"final_success_rate", OrNull(meta.final_success)},
+      {"accounting", meta.accounting ? ToJson(*meta.accounting) : ordered_json(nullptr)},
+      {"restarts", meta.restarts},
+      {"exit", meta.exit},
+      {"error", meta.error.empty() ? ordered_json(nullptr) : ordered_json(meta.error)}};
+  WriteFileAtomically(run / "meta.json", object.dump(2) + "\n");
+}
+
+RunMeta ReadRunMeta(const std::filesystem::path& run) {
+  const std::filesystem::path path = run / "meta.json";
+  RunMeta meta;
+  if (!std::filesystem::exists(path)) return meta;
+  const nlohmann::json object = ParseStrictJson(ReadFile(path), path);
+  try {
+    object.at("started").get_to(meta.started);
+    object.at("wall_seconds").get_to(meta.wall_seconds);
+    object.at("restarts").get_to(meta.restarts);
+  } catch (const nlohmann::json::exception& e) {
+    throw RuntimeError("{}: {}", path.string(), e.what());
+  }
+  return meta;
+}
+
+}  // namespace shoal::launch

@@ -1,0 +1,35 @@
+// meta.json of a run (shoal-run-1): what ran where, how far it came, how it ended.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "common/config/config.h"
+#include "launch/accounting.h"
+#include "launch/stop_rule.h"
+
+namespace shoal::launch {
+
+struct RunMeta {
+  std::string started, finished;  // UTC; finished is empty while running
+  uint64_t env_steps = 0, updates = 0;
+  double wall_seconds = 0;  // over all sessions of a resumed run
+  double target = 0;
+  std::optional<EvaluationPoint> first_success;
+  std::optional<EvaluationPoint> best;  // of the evaluations while training
+  std::optional<double> final_success;  // of the evaluation at the end
+  std::optional<Accounting> accounting;
+  int restarts = 0;
+  std::string exit = "running";  // then "target", "budget", "interrupted" or "failed"
+  std::string error;             // why, where failed
+};
+
+// Throws Error.
+void WriteRunMeta(const std::filesystem::path& run, const Config& config, const RunMeta& meta);
+
+// What a resumed run goes on from: started and wall_seconds; defaults where the file is missing.
+// Throws Error on a broken file.
+RunMeta ReadRunMeta(const std::filesystem::path& run);
+
+}  // namespace shoal::launch

@@ -1,0 +1,34 @@
+#include "launch/stop_rule.h"
+
+namespace shoal::launch {
+namespace {
+
+constexpr double kUsualTarget = 0.98;
+
+}  // namespace
+
+StopRule::StopRule(const Config& config)
+    : stop_(config.stop),
+      budget_(static_cast<uint64_t>(config.env_steps)),
+      target_(config.stop.success <= 1 ? config.stop.success : kUsualTarget) {}
+
+void StopRule::OnEvaluation(const EvaluationPoint& point) {
+  if (point.success < target_) {
+    streak_ = 0;
+    return;
+  }
+  if (streak_ == 0) streak_start_ = point;
+  ++streak_;
+  if (streak_ >= stop_.evaluations && !first_success_) first_success_ = streak_start_;
+}
+
+bool StopRule::TargetReached() const { return stop_.success <= 1 && streak_ >= stop_.evaluations; }
+
+bool StopRule::BudgetSpent(uint64_t env_steps) const { return env_steps >= budget_; }
+
+bool Better(const EvaluationPoint& a, const EvaluationPoint& b) {
+  if (a.success != b.success) return a.success > b.success;
+  return a.mean_return > b.mean_return;
+}
+
+}  // namespace shoal::launch

@@ -1,0 +1,49 @@
+// When a run has reached what it was started for. Pure.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "common/config/config.h"
+
+namespace shoal::launch {
+
+// One evaluation, as the coordinator sees it.
+struct EvaluationPoint {
+  uint64_t env_steps = 0, updates = 0;
+  double wall_seconds = 0;  // since the run's start
+  double success = 0;       // rate, 0..1
+  double mean_return = 0;   // unscaled
+  std::string checkpoint;   // folder name under checkpoints/
+};
+
+class StopRule {
+ public:
+  explicit StopRule(const Config& config);
+
+  // In the order of evaluation.
+  void OnEvaluation(const EvaluationPoint& point);
+
+  // stop.evaluations in a row reached stop.success.
+  bool TargetReached() const;
+  bool BudgetSpent(uint64_t env_steps) const;
+
+  // What first_success() is measured against: stop.success, or 0.98 where a run never stops at it.
+  double target() const { return target_; }
+  // The first evaluation of the first streak of stop.evaluations at or above target().
+  const std::optional<EvaluationPoint>& first_success() const { return first_success_; }
+
+ private:
+  const StopConfig stop_;
+  const uint64_t budget_;
+  const double target_;
+  int streak_ = 0;
+  EvaluationPoint streak_start_;
+  std::optional<EvaluationPoint> first_success_;
+};
+
+// Is `a` better than `b`: by success, then by return?
+bool Better(const EvaluationPoint& a, const EvaluationPoint& b);
+
+}  // namespace shoal::launch

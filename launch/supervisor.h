@@ -1,0 +1,60 @@
+// Keeps a run's processes alive: starts them, restarts what dies within limits, says why it died.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "launch/child_process.h"
+#include "launch/restart_policy.h"
+
+namespace shoal::launch {
+
+// Knows nothing of DDS. One thread, which must live as long as the children (child_process.h).
+// Destruction kills what still runs.
+class Supervisor {
+ public:
+  // `say` gets one line for each death and restart.
+  Supervisor(const RestartLimits& limits, std::function<void(const std::string&)> say);
+
+  // Starts the process. Throws Error when it cannot be started.
+  void Start(const ProcessSpec& spec);
+
+  // Reaps the dead and starts what is due again. When the run cannot go on - a process died too
+  // often, refused its configuration (exit 2) or met a non-finite number - one line saying which
+  // and why.
+  std::optional<std::string> Poll(SteadyTime now);
+
+  // From now on processes of the role ("" = all) may exit and are not restarted.
+  void ExpectExit(std::string_view role);
+  void Signal(std::string_view role, int signal);
+  // Processes of the role ("" = all) that run or wait for their restart.
+  int Running(std::string_view role) const;
+
+  int restarts() const { return restarts_; }
+  // Expected exits that were not clean, each as one line.
+  const std::vector<std::string>& unclean_exits() const { return unclean_exits_; }
+
+ private:
+  struct Child {
+    ProcessSpec spec;
+    RestartPolicy policy;
+    std::optional<ChildProcess> process;
+    std::optional<SteadyTime> restart_at;
+    bool exit_expected = false;
+    int signalled = 0;  // the last signal sent by Signal
+  };
+
+  std::optional<std::string> OnExit(Child& child, const ExitStatus& status, SteadyTime now);
+  void OnExpectedExit(Child& child, const ExitStatus& status);
+
+  const RestartLimits limits_;
+  std::function<void(const std::string&)> say_;
+  std::vector<Child> children_;
+  int restarts_ = 0;
+  std::vector<std::string> unclean_exits_;
+};
+
+}  // namespace shoal::launch

@@ -1,0 +1,28 @@
+// The options of `shoal train` and the configuration they resolve to.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/config/config.h"
+
+namespace shoal::launch {
+
+struct TrainOptions {
+  std::string preset, config_file;
+  std::vector<std::string> set;  // KEY=VALUE
+  std::string run_name;          // empty = automatic
+  std::string resume;            // run to go on with: its path or its name
+  bool overwrite = false, lockstep = false;
+  bool print_config = false, dry_run = false;
+};
+
+// Preset, then file, then --set, then the other options; `actors` and `learner.threads` filled in
+// for `cores`. Validated. Throws Error (usage).
+Config ResolveConfig(const TrainOptions& options, int cores);
+
+// A resumed run keeps its configuration; only env_steps and stop.* may be set. Throws Error (usage)
+// for other keys or options.
+void ApplyResumeOptions(const TrainOptions& options, Config* config);
+
+}  // namespace shoal::launch

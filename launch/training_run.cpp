@@ -1,0 +1,108 @@
+#include "launch/training_run.h"
+
+#include <fmt/core.h>
+
+#include <nlohmann/json.hpp>
+
+#include "common/base/clock.h"
+#include "common/base/error.h"
+#include "common/base/stop.h"
+#include "common/config/config_io.h"
+#include "common/config/run_files.h"
+#include "common/dds/bus.h"
+#include "launch/actor_program.h"
+#include "launch/coordinator.h"
+#include "launch/machine.h"
+#include "launch/run_end.h"
+#include "launch/run_folder.h"
+
+namespace shoal::launch {
+namespace {
+
+// A run ready to start. Members are in construction order.
+struct PreparedRun {
+  RunFolder folder;
+  RunConfig config;
+  RunMeta meta;
+};
+
+PreparedRun PrepareFresh(const TrainOptions& options, RunConfig config) {
+  const Config& keys = config.config;
+  const std::string base =
+      fmt::format("{}-s{}", keys.preset.empty() ? keys.task : keys.preset, keys.seed);
+  RunFolder folder = keys.run_name.empty()
+                         ? RunFolder::CreateNumbered(keys.run_dir, base)
+                         : RunFolder::Create(keys.run_dir, keys.run_name, options.overwrite);
+  config.config.run_name = folder.name();
+  RunMeta meta;
+  meta.started = UtcTimestamp();
+  return {std::move(folder), std::move(config), meta};
+}
+
+PreparedRun PrepareResumed(const TrainOptions& options) {
+  RunFolder folder = RunFolder::Reopen(Config().run_dir, options.resume);
+  RunConfig config = ReadRunConfig(folder.path());
+  ApplyResumeOptions(options, &config.config);
+  const ObservationSpec now = DescribeObservations(config.config);
+  if (now != config.spec) {
+    throw RuntimeError("the run observed '{}', this program's actors would observe '{}'",
+                       config.spec.Summary(), now.Summary());
+  }
+  RunMeta meta = ReadRunMeta(folder.path());
+  if (meta.started.empty()) meta.started = UtcTimestamp();
+  return {std::move(folder), std::move(config), meta};
+}
+
+void PrintStart(const PreparedRun& run) {
+  const Config& config = run.config.config;
+  fmt::print("run {}: {}\n", run.folder.path().string(), run.config.spec.Summary());
+  fmt::print(
+      "  seed {}, {} env steps; 1 replay, 1 learner ({} threads), {} actor(s) of {} environments, "
+      "1 evaluation actor; logs in {}\n",
+      config.seed, config.env_steps, config.learner.threads, config.actors, config.envs_per_actor,
+      (run.folder.path() / "logs").string());
+  std::fflush(stdout);
+}
+
+int Start(PreparedRun run, std::unique_ptr<dds::Bus> bus, const ClusterAddress& address) {
+  const std::filesystem::path& path = run.folder.path();
+  WriteRunConfig(path, run.config);
+  WriteClusterAddress(path, address);
+  PrintStart(run);
+  Progress progress(LogFile(path, "coordinator").string());
+  RunResult result;
+  {
+    Coordinator coordinator(path, run.config, std::move(bus), run.meta, progress);
+    result = coordinator.Run();
+  }
+  return EndRun(path, run.config.config, std::move(result), progress);
+}
+
+}  // namespace
+
+int RunTraining(const TrainOptions& options) {
+  InstallStopSignals();
+  ClusterAddress address;
+  if (!options.resume.empty()) {
+    PreparedRun run = PrepareResumed(options);
+    if (options.print_config) fmt::print("{}\n", ToJson(run.config.config).dump(2));
+    if (options.print_config || options.dry_run) return 0;
+    auto bus = dds::ClaimDomain(run.config.config.transport, &address);
+    return Start(std::move(run), std::move(bus), address);
+  }
+  RunConfig config{ResolveConfig(options, UsableCores()), {}};
+  if (options.print_config) {
+    fmt::print("{}\n", ToJson(config.config).dump(2));
+    return 0;
+  }
+  config.spec = DescribeObservations(config.config);
+  // Claimed before the folder is made, so that a failure leaves nothing half-written.
+  auto bus = dds::ClaimDomain(config.config.transport, &address);
+  if (options.dry_run) {
+    fmt::print("configuration is good; actors observe: {}\n", config.spec.Summary());
+    return 0;
+  }
+  return Start(PrepareFresh(options, std::move(config)), std::move(bus), address);
+}
+
+}  // namespace shoal::launch
