@@ -11,8 +11,8 @@
 
 namespace shoal::worlds {
 
-// Where an observation is written: frame (C, H, W) u8, row 0 = top, empty without pixels; vector (V)
-// f32, blocks in spec order. The caller owns the memory.
+// Where an observation is written: frame (C, H, W) u8, row 0 = top, empty without pixels; vector
+// (V) f32, blocks in spec order. The caller owns the memory.
 struct ObservationOut {
   std::span<uint8_t> frame;
   std::span<float> vector;
@@ -39,8 +39,8 @@ class Environment {
 class RenderContext;
 std::shared_ptr<RenderContext> MakeRenderContext(const ObservationConfig& observation);
 
-// Throws Error: unknown task (listing those there are), unknown camera, model file that does not load.
-// `render` may be null when config.observation.pixels is false.
+// Throws Error: unknown task (listing those there are), unknown camera, model file that does not
+// load. `render` may be null when config.observation.pixels is false.
 std::unique_ptr<Environment> MakeEnvironment(const Config& config,
                                              std::shared_ptr<RenderContext> render);
 

@@ -1,0 +1,138 @@
+#include "actor/worlds/fetch_arm.h"
+
+#include <mujoco/mujoco.h>
+
+#include <algorithm>
+
+#include "common/base/check.h"
+#include "common/base/error.h"
+
+namespace shoal::worlds {
+namespace {
+
+constexpr double kMetresPerAction = 0.05;
+// Pointing down; the engine normalises it.
+constexpr double kDownQuaternion[4] = {1, 0, 1, 0};
+constexpr double kStartOffset[3] = {-0.498, 0.005, -0.431};  // of the mocap body from the grip site
+constexpr int kSetupEnvSteps = 10;
+
+}  // namespace
+
+FetchArm::FetchArm(World* world, const FetchArmSetup& setup) : world_(world), setup_(setup) {
+  const mjModel& model = world->model();
+  grip_site_ = world->SiteId("robot0:grip");
+  gripper_body_ = world->BodyId("robot0:gripper_link");
+  mocap_ = model.body_mocapid[world->BodyId("robot0:mocap")];
+  if (mocap_ < 0) throw RuntimeError("the model's body 'robot0:mocap' is not a mocap body");
+  const char* const fingers[] = {"robot0:r_gripper_finger_joint", "robot0:l_gripper_finger_joint"};
+  for (size_t i = 0; i < 2; ++i) {
+    const int joint = world->JointId(fingers[i]);
+    finger_position_[i] = model.jnt_qposadr[joint];
+    finger_velocity_[i] = model.jnt_dofadr[joint];
+  }
+  const char* const slides[] = {"robot0:slide0", "robot0:slide1", "robot0:slide2"};
+  for (size_t i = 0; i < 3; ++i) {
+    base_position_[i] = model.jnt_qposadr[world->JointId(slides[i])];
+  }
+}
+
+// "The gripper's frame equals the mocap body's", whatever poses the model was compiled with. The
+// numbers are anchor (3), relative position (3) and relative quaternion (4).
+void FetchArm::AlignWeld() {
+  mjModel& model = world_->model();
+  for (int i = 0; i < model.neq; ++i) {
+    if (model.eq_type[i] != mjEQ_WELD) continue;
+    constexpr double kAligned[] = {0, 0, 0, 0, 0, 0, 1, 0, 0, 0};
+    std::copy(std::begin(kAligned), std::end(kAligned), model.eq_data + mjNEQDATA * i);
+  }
+}
+
+void FetchArm::SetUp() {
+  mjModel& model = world_->model();
+  mjData& data = world_->data();
+  for (size_t i = 0; i < 3; ++i) data.qpos[base_position_[i]] = setup_.base[i];
+  AlignWeld();
+  // Twice, because each call moves the solver's warm start a little.
+  mj_forward(&model, &data);
+  mj_forward(&model, &data);
+
+  const double* grip = data.site_xpos + 3 * grip_site_;
+  for (int i = 0; i < 3; ++i) data.mocap_pos[3 * mocap_ + i] = grip[i] + kStartOffset[i];
+  data.mocap_pos[3 * mocap_ + 2] += setup_.gripper_extra_height;
+  std::copy_n(kDownQuaternion, 4, data.mocap_quat + 4 * mocap_);
+  for (int i = 0; i < kSetupEnvSteps * kEngineStepsPerEnvStep; ++i) mj_step(&model, &data);
+
+  std::copy_n(data.site_xpos + 3 * grip_site_, 3, initial_grip_.begin());
+  initial_time_ = data.time;
+  initial_qpos_.assign(data.qpos, data.qpos + model.nq);
+  initial_qvel_.assign(data.qvel, data.qvel + model.nv);
+}
+
+void FetchArm::RestoreInitialState() {
+  mjData& data = world_->data();
+  CHECK(!initial_qpos_.empty()) << "reset before set-up";
+  mj_resetData(&world_->model(), &data);
+  data.time = initial_time_;
+  std::copy(initial_qpos_.begin(), initial_qpos_.end(), data.qpos);
+  std::copy(initial_qvel_.begin(), initial_qvel_.end(), data.qvel);
+}
+
+void FetchArm::Act(std::span<const double> action) {
+  CHECK(action.size() == 4) << action.size();
+  const mjModel& model = world_->model();
+  mjData& data = world_->data();
+  // Finger motors exist only in tasks that grasp, one per finger joint.
+  const double fingers = setup_.block_gripper ? 0 : action[3];
+  for (int i = 0; i < model.nu; ++i) {
+    data.ctrl[i] = data.qpos[model.jnt_qposadr[model.actuator_trnid[2 * i]]] + fingers;
+  }
+  double* position = data.mocap_pos + 3 * mocap_;
+  double* quaternion = data.mocap_quat + 4 * mocap_;
+  const double* gripper_position = data.xpos + 3 * gripper_body_;
+  const double* gripper_quaternion = data.xquat + 4 * gripper_body_;
+  for (int i = 0; i < 3; ++i) {
+    position[i] = gripper_position[i] + kMetresPerAction * action[static_cast<size_t>(i)];
+  }
+  for (int i = 0; i < 4; ++i) quaternion[i] = gripper_quaternion[i] + kDownQuaternion[i];
+}
+
+void FetchArm::FinishStep() {
+  if (!setup_.block_gripper) return;
+  for (const int finger : finger_position_) world_->data().qpos[finger] = 0;
+  mj_forward(&world_->model(), &world_->data());
+}
+
+std::array<double, 3> FetchArm::GripPosition() const {
+  const double* grip = world_->data().site_xpos + 3 * grip_site_;
+  return {grip[0], grip[1], grip[2]};
+}
+
+double FetchArm::StepSeconds() const {
+  return world_->model().opt.timestep * kEngineStepsPerEnvStep;
+}
+
+// The Jacobian is that of the last kinematics, the velocity the current one, as the engine's own
+// velocity sensors would have it after the same calls.
+std::array<double, 3> FetchArm::GripVelocity() const {
+  const mjModel& model = world_->model();
+  const mjData& data = world_->data();
+  std::vector<double> jacobian(3 * static_cast<size_t>(model.nv));
+  mj_jacSite(&model, &data, jacobian.data(), nullptr, grip_site_);
+  std::array<double, 3> velocity{};
+  mju_mulMatVec(velocity.data(), jacobian.data(), data.qvel, 3, model.nv);
+  for (double& component : velocity) component *= StepSeconds();
+  return velocity;
+}
+
+std::array<double, 2> FetchArm::Fingers() const {
+  const mjData& data = world_->data();
+  return {data.qpos[finger_position_[0]], data.qpos[finger_position_[1]]};
+}
+
+std::array<double, 2> FetchArm::FingerVelocities() const {
+  const mjData& data = world_->data();
+  return {data.qvel[finger_velocity_[0]] * StepSeconds(),
+          data.qvel[finger_velocity_[1]] * StepSeconds()};
+}
+
+}  // namespace shoal::worlds

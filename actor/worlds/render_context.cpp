@@ -1,0 +1,184 @@
+#include "actor/worlds/render_context.h"
+
+#include <GL/gl.h>
+#include <GL/osmesa.h>
+#include <mujoco/mujoco.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "actor/worlds/engine_messages.h"
+#include "actor/worlds/scene_culling.h"
+#include "common/base/check.h"
+#include "common/base/error.h"
+
+namespace shoal::worlds {
+namespace {
+
+// Tessellation of quality `fast`. Fewer stacks and a target's sphere loses its roundness at 84x84.
+constexpr int kFastSlices = 12;
+constexpr int kFastStacks = 3;
+constexpr int kFastQuads = 1;
+constexpr int kDepthBits = 24, kStencilBits = 8, kAccumulationBits = 8;
+// Room for decoration that a user's model may add to its own geoms and sites.
+constexpr int kSpareGeoms = 100;
+
+bool AnyLightCastsShadow(const mjModel& model) {
+  return std::any_of(model.light_castshadow, model.light_castshadow + model.nlight,
+                     [](mjtByte casts) { return casts != 0; });
+}
+
+}  // namespace
+
+struct RenderContext::Engine {
+  OSMesaContext osmesa = nullptr;
+  std::vector<uint8_t> window;  // OSMesa's own buffer; drawing goes to the engine's off-screen one
+  mjrContext context;
+  mjvScene scene;
+  mjvOption option;
+
+  Engine() {
+    mjr_defaultContext(&context);
+    mjv_defaultScene(&scene);
+    mjv_defaultOption(&option);
+  }
+};
+
+RenderContext::RenderContext(const ObservationConfig& observation)
+    : width_(observation.width),
+      height_(observation.height),
+      grey_(observation.grey),
+      fast_(observation.quality == "fast"),
+      pixels_(static_cast<size_t>(width_) * static_cast<size_t>(height_) * 3),
+      engine_(std::make_unique<Engine>()) {
+  CHECK(width_ > 0 && height_ > 0) << width_ << " x " << height_;
+  if (!fast_ && observation.quality != "reference") {
+    throw UsageError("observation.quality is '{}'; expected fast or reference",
+                     observation.quality);
+  }
+  InstallEngineCallbacks();
+  setenv("LP_NUM_THREADS", "0", /*overwrite=*/1);
+  engine_->osmesa = OSMesaCreateContextExt(OSMESA_RGBA, kDepthBits, kStencilBits, kAccumulationBits,
+                                           /*sharelist=*/nullptr);
+  if (engine_->osmesa == nullptr) throw RuntimeError("OSMesa makes no context");
+  engine_->window.resize(static_cast<size_t>(width_) * static_cast<size_t>(height_) * 4);
+}
+
+RenderContext::~RenderContext() {
+  MakeCurrent();
+  mjr_freeContext(&engine_->context);
+  mjv_freeScene(&engine_->scene);
+  OSMesaDestroyContext(engine_->osmesa);
+}
+
+void RenderContext::MakeCurrent() {
+  if (OSMesaGetCurrentContext() == engine_->osmesa) return;
+  CHECK(OSMesaMakeCurrent(engine_->osmesa, engine_->window.data(), GL_UNSIGNED_BYTE, width_,
+                          height_) == GL_TRUE)
+      << "OSMesa context of " << width_ << " x " << height_;
+}
+
+void RenderContext::Attach(World* world) {
+  if (!fingerprint_.empty()) {
+    if (world->fingerprint() != fingerprint_) {
+      throw RuntimeError("a render context draws one model: it has {}, an environment brings {}",
+                         fingerprint_, world->fingerprint());
+    }
+    return;
+  }
+  mjModel& model = world->model();
+  auto& quality = model.vis.quality;
+  // A shadow map that nothing uses would take 64 MB.
+  if (fast_ || !AnyLightCastsShadow(model)) quality.shadowsize = 0;
+  if (fast_) {
+    quality.offsamples = 0;
+    quality.numslices = kFastSlices;
+    quality.numstacks = kFastStacks;
+    quality.numquads = kFastQuads;
+  }
+  model.vis.global.offwidth = width_;
+  model.vis.global.offheight = height_;
+
+  MakeCurrent();
+  mjrContext& context = engine_->context;
+  mjr_makeContext(&model, &context, mjFONTSCALE_50);
+  mjr_setBuffer(mjFB_OFFSCREEN, &context);
+  if (context.currentBuffer != mjFB_OFFSCREEN) {
+    throw RuntimeError("OSMesa has no off-screen buffer of {} x {}", width_, height_);
+  }
+  mjvScene& scene = engine_->scene;
+  mjv_makeScene(&model, &scene, model.ngeom + model.nsite + kSpareGeoms);
+  if (fast_) {
+    scene.flags[mjRND_SHADOW] = 0;
+    scene.flags[mjRND_REFLECTION] = 0;
+    // The sky is most of a picture's fragments: the nearest texel is enough for it.
+    for (int i = 0; i < context.ntexture; ++i) {
+      if (context.textureType[i] != mjTEXTURE_SKYBOX) continue;
+      glBindTexture(GL_TEXTURE_CUBE_MAP, context.texture[i]);
+      glTexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MIN_FILTER, GL_NEAREST);
+      glTexParameteri(GL_TEXTURE_CUBE_MAP, GL_TEXTURE_MAG_FILTER, GL_NEAREST);
+      glBindTexture(GL_TEXTURE_CUBE_MAP, 0);
+    }
+  }
+  fingerprint_ = world->fingerprint();
+}
+
+void RenderContext::Draw(World* world, const CameraView& camera) {
+  mjvCamera view;
+  mjv_defaultCamera(&view);
+  view.type = mjCAMERA_FREE;
+  std::copy(camera.lookat.begin(), camera.lookat.end(), view.lookat);
+  view.distance = camera.distance;
+  view.azimuth = camera.azimuth_degrees;
+  view.elevation = camera.elevation_degrees;
+  mjv_updateScene(&world->model(), &world->data(), &engine_->option, /*pert=*/nullptr, &view,
+                  mjCAT_ALL, &engine_->scene);
+  if (fast_) {
+    RemoveUnseenGeoms(&engine_->scene, static_cast<float>(width_) / static_cast<float>(height_));
+  }
+  const mjrRect viewport{0, 0, width_, height_};
+  mjr_render(viewport, &engine_->scene, &engine_->context);
+  mjr_readPixels(pixels_.data(), nullptr, viewport, &engine_->context);
+}
+
+// (H, W, 3) bottom row first -> (C, H, W) top row first.
+void RenderContext::Pack(uint8_t* planes) const {
+  const auto row_pixels = static_cast<size_t>(width_);
+  const size_t plane = row_pixels * static_cast<size_t>(height_);
+  for (int y = 0; y < height_; ++y) {
+    const uint8_t* from = pixels_.data() + static_cast<size_t>(height_ - 1 - y) * row_pixels * 3;
+    uint8_t* to = planes + static_cast<size_t>(y) * row_pixels;
+    if (grey_) {
+      // Rec. 601 luma in 1/256.
+      for (size_t x = 0; x < row_pixels; ++x) {
+        const int luma = 77 * from[3 * x] + 150 * from[3 * x + 1] + 29 * from[3 * x + 2];
+        to[x] = static_cast<uint8_t>((luma + 128) >> 8);
+      }
+    } else {
+      for (size_t x = 0; x < row_pixels; ++x) {
+        to[x] = from[3 * x];
+        to[plane + x] = from[3 * x + 1];
+        to[2 * plane + x] = from[3 * x + 2];
+      }
+    }
+  }
+}
+
+void RenderContext::Render(World* world, std::span<const CameraView> cameras,
+                           std::span<uint8_t> frame) {
+  CHECK(world->fingerprint() == fingerprint_) << "render before attach";
+  const size_t bytes = static_cast<size_t>(channels_per_camera()) * static_cast<size_t>(height_) *
+                       static_cast<size_t>(width_);
+  CHECK(frame.size() == cameras.size() * bytes) << frame.size() << " bytes for " << cameras.size();
+  MakeCurrent();
+  for (size_t i = 0; i < cameras.size(); ++i) {
+    Draw(world, cameras[i]);
+    Pack(frame.data() + i * bytes);
+  }
+}
+
+std::shared_ptr<RenderContext> MakeRenderContext(const ObservationConfig& observation) {
+  return std::make_shared<RenderContext>(observation);
+}
+
+}  // namespace shoal::worlds

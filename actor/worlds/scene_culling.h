@@ -1,0 +1,13 @@
+// Leaves out of a scene what its camera cannot see.
+#pragma once
+
+struct mjvScene_;
+
+namespace shoal::worlds {
+
+// Removes geoms whose bounding sphere lies outside the view, and fully transparent ones, from a
+// scene whose camera is set. Planes and geoms without a known bound stay. The picture does not
+// change as long as nothing casts shadows or reflects. `aspect`: width / height of the picture.
+void RemoveUnseenGeoms(mjvScene_* scene, float aspect);
+
+}  // namespace shoal::worlds

@@ -1,0 +1,35 @@
+#include "actor/worlds/world.h"
+
+#include <mujoco/mujoco.h>
+
+#include <utility>
+
+#include "actor/worlds/model_loading.h"
+#include "common/base/error.h"
+
+namespace shoal::worlds {
+
+World::World(ModelHandle model)
+    : model_(std::move(model)), fingerprint_(ModelFingerprint(*model_)), data_(MakeData(*model_)) {}
+
+int World::ElementId(int object_type, const char* kind, const std::string& name) const {
+  const int id = mj_name2id(model_.get(), object_type, name.c_str());
+  if (id < 0) throw RuntimeError("the model has no {} named '{}'", kind, name);
+  return id;
+}
+
+int World::BodyId(const std::string& name) const { return ElementId(mjOBJ_BODY, "body", name); }
+int World::SiteId(const std::string& name) const { return ElementId(mjOBJ_SITE, "site", name); }
+int World::JointId(const std::string& name) const { return ElementId(mjOBJ_JOINT, "joint", name); }
+
+void World::Advance(int count) {
+  for (int i = 0; i < count; ++i) mj_step(model_.get(), data_.get());
+  for (const int kind : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC}) {
+    const mjWarningStat& warning = data_->warning[kind];
+    if (warning.number > 0) {
+      throw RuntimeError("the simulation diverged: {}", mju_warningText(kind, warning.lastinfo));
+    }
+  }
+}
+
+}  // namespace shoal::worlds

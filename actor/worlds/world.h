@@ -1,0 +1,67 @@
+// The physics half of a task: a model, its state, and what reset and step do to them. Knows nothing
+// of pixels' layout, rewards for goals or episode lengths.
+//
+// Numbers are the engine's doubles. One thread at a time per world; worlds are independent.
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "actor/worlds/camera_view.h"
+#include "actor/worlds/engine_handles.h"
+#include "common/base/random.h"
+
+namespace shoal::worlds {
+
+class World {
+ public:
+  // What a step yields beyond the observation. Tasks with goals take the reward from their goal
+  // half.
+  struct Outcome {
+    double reward = 0;  // of tasks without goals, unscaled
+    bool terminated = false;
+  };
+
+  // Takes the model, as loaded.
+  explicit World(ModelHandle model);
+  virtual ~World() = default;
+  World(const World&) = delete;
+  World& operator=(const World&) = delete;
+
+  // Starts an episode whose random draws come from `random` in a fixed, documented order. Nothing
+  // of the episodes before remains.
+  virtual void Reset(Random* random) = 0;
+  // `action`: the task's components, each in [-1, 1].
+  virtual Outcome Step(std::span<const double> action) = 0;
+  // The task's blocks; goals are empty for tasks without goals.
+  virtual void Observe(std::span<double> observation, std::span<double> achieved_goal,
+                       std::span<double> desired_goal) const = 0;
+  // Lives as long as the world.
+  virtual std::span<const CameraView> cameras() const = 0;
+
+  mjModel_& model() { return *model_; }
+  const mjModel_& model() const { return *model_; }
+  mjData_& data() { return *data_; }
+  const mjData_& data() const { return *data_; }
+  // Of the model as loaded: see ModelFingerprint.
+  const std::string& fingerprint() const { return fingerprint_; }
+
+  // Ids of named elements; throw Error naming what the model lacks.
+  int BodyId(const std::string& name) const;
+  int SiteId(const std::string& name) const;
+  int JointId(const std::string& name) const;
+
+ protected:
+  // `count` engine steps. Throws Error when the state became non-finite or too large: the engine
+  // then resets itself silently, so nothing after that can be trusted.
+  void Advance(int count);
+
+ private:
+  int ElementId(int object_type, const char* kind, const std::string& name) const;
+
+  ModelHandle model_;
+  std::string fingerprint_;
+  DataHandle data_;
+};
+
+}  // namespace shoal::worlds

@@ -1,0 +1,157 @@
+#include "actor/worlds/world_environment.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "actor/worlds/world_registry.h"
+#include "common/base/check.h"
+#include "common/base/error.h"
+#include "common/base/random.h"
+#include "common/tasks/task_registry.h"
+
+namespace shoal::worlds {
+namespace {
+
+// What makes frames comparable besides the model: quality and the views themselves.
+std::string RenderFingerprint(const std::string& model, const std::string& quality,
+                              const std::vector<CameraView>& cameras) {
+  uint64_t hash =
+      HashWords({HashBytes(model.data(), model.size()), HashBytes(quality.data(), quality.size())});
+  for (const CameraView& camera : cameras) {
+    for (const double number :
+         {camera.lookat[0], camera.lookat[1], camera.lookat[2], camera.distance,
+          camera.azimuth_degrees, camera.elevation_degrees}) {
+      hash = HashWords({hash, std::bit_cast<uint64_t>(number)});
+    }
+  }
+  return fmt::format("{:016x}", hash);
+}
+
+void Size(const tasks::Block& block, std::vector<double>* exact, std::vector<float>* numbers) {
+  exact->assign(static_cast<size_t>(block.size()), 0.0);
+  numbers->assign(static_cast<size_t>(block.size()), 0.0f);
+}
+
+}  // namespace
+
+WorldEnvironment::WorldEnvironment(const tasks::Task& task, std::unique_ptr<World> world,
+                                   const ObservationConfig& observation,
+                                   std::shared_ptr<RenderContext> render)
+    : task_(task), world_(std::move(world)), render_(std::move(render)) {
+  Size(task.observation(), &observation_.exact, &observation_.numbers);
+  Size(task.achieved_goal(), &achieved_goal_.exact, &achieved_goal_.numbers);
+  Size(task.desired_goal(), &desired_goal_.exact, &desired_goal_.numbers);
+  action_.resize(static_cast<size_t>(task.action_size()));
+  if (render_ != nullptr) {
+    for (const std::string& name : observation.cameras) {
+      cameras_.push_back(FindCamera(*world_, name));
+    }
+    render_->Attach(world_.get());
+  }
+  BuildSpec(observation);
+}
+
+void WorldEnvironment::BuildSpec(const ObservationConfig& observation) {
+  const std::string& mode = observation.goal_mode;
+  if (mode != "none" && mode != "desired" && mode != "both") {
+    throw UsageError("observation.goal_mode is '{}'; expected none, desired or both", mode);
+  }
+  spec_.task = task_.name();
+  spec_.stack = observation.stack;
+  spec_.action_size = task_.action_size();
+  spec_.model_fingerprint = world_->fingerprint();
+  if (render_ != nullptr) {
+    spec_.cameras = observation.cameras;
+    spec_.channels = render_->channels_per_camera() * static_cast<int>(cameras_.size());
+    spec_.height = render_->height();
+    spec_.width = render_->width();
+    spec_.model_fingerprint =
+        RenderFingerprint(world_->fingerprint(), observation.quality, cameras_);
+  }
+  if (observation.proprioception || render_ == nullptr) Publish(&observation_, task_.observation());
+  if (mode == "both") Publish(&achieved_goal_, task_.achieved_goal());
+  if (mode != "none") Publish(&desired_goal_, task_.desired_goal());
+}
+
+void WorldEnvironment::Publish(Part* part, const tasks::Block& block) {
+  if (block.size() == 0) return;
+  part->published = true;
+  spec_.blocks.push_back({block.name, block.size()});
+}
+
+// Fetches the state's numbers, rounded once to what records carry.
+void WorldEnvironment::ReadWorld() {
+  world_->Observe(observation_.exact, achieved_goal_.exact, desired_goal_.exact);
+  for (Part* part : {&observation_, &achieved_goal_, &desired_goal_}) {
+    std::transform(part->exact.begin(), part->exact.end(), part->numbers.begin(),
+                   [](double number) { return static_cast<float>(number); });
+  }
+}
+
+void WorldEnvironment::Observe(ObservationOut out) {
+  CHECK(out.vector.size() == static_cast<size_t>(spec_.VectorSize())) << out.vector.size();
+  CHECK(out.frame.size() == static_cast<size_t>(spec_.FrameBytes())) << out.frame.size();
+  auto to = out.vector.begin();
+  for (const Part* part : {&observation_, &achieved_goal_, &desired_goal_}) {
+    if (part->published) to = std::copy(part->numbers.begin(), part->numbers.end(), to);
+  }
+  if (render_ != nullptr) render_->Render(world_.get(), cameras_, out.frame);
+}
+
+float WorldEnvironment::Distance() const {
+  if (task_.goal_size() == 0) return std::numeric_limits<float>::quiet_NaN();
+  return static_cast<float>(task_.Distance(achieved_goal_.numbers, desired_goal_.numbers));
+}
+
+float WorldEnvironment::Reset(uint64_t stream_key, ObservationOut out) {
+  Random random(stream_key);
+  world_->Reset(&random);
+  episode_step_ = 0;
+  ReadWorld();
+  Observe(out);
+  return Distance();
+}
+
+StepResult WorldEnvironment::Step(std::span<const float> action, ObservationOut out) {
+  CHECK(episode_step_ >= 0 && episode_step_ < task_.episode_length())
+      << "step " << episode_step_ << " of an episode of " << task_.episode_length();
+  CHECK(action.size() == action_.size()) << action.size();
+  for (size_t i = 0; i < action.size(); ++i) {
+    if (!(std::fabs(action[i]) <= 1)) {
+      throw RuntimeError("action component {} ({}) is {}; expected a number in [-1, 1]", i,
+                         task_.action()[i].name, action[i]);
+    }
+    action_[i] = action[i];
+  }
+  const World::Outcome outcome = world_->Step(action_);
+  ++episode_step_;
+  ReadWorld();
+  Observe(out);
+
+  StepResult result;
+  result.terminated = outcome.terminated;
+  result.truncated = !outcome.terminated && episode_step_ == task_.episode_length();
+  result.distance = Distance();
+  if (task_.goal_size() == 0) {
+    result.reward = static_cast<float>(outcome.reward);
+  } else {
+    const double distance = task_.Distance(achieved_goal_.numbers, desired_goal_.numbers);
+    result.reward = task_.Reward(distance);
+    result.success = task_.Success(distance);
+  }
+  return result;
+}
+
+std::unique_ptr<Environment> MakeEnvironment(const Config& config,
+                                             std::shared_ptr<RenderContext> render) {
+  const tasks::Task& task = tasks::FindTask(config.task);
+  CHECK(!config.observation.pixels || render != nullptr) << "pixels without a render context";
+  if (!config.observation.pixels) render = nullptr;
+  return std::make_unique<WorldEnvironment>(task, MakeWorld(task.world(), config.model),
+                                            config.observation, std::move(render));
+}
+
+}  // namespace shoal::worlds

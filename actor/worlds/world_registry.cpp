@@ -1,0 +1,38 @@
+#include "actor/worlds/world_registry.h"
+
+#include "actor/worlds/fetch_reach.h"
+#include "common/base/check.h"
+#include "common/base/error.h"
+
+namespace shoal::worlds {
+namespace {
+
+struct Registration {
+  const char* name;
+  std::unique_ptr<World> (*make)(const std::string& model_file);
+};
+
+constexpr Registration kWorlds[] = {
+    {"FetchReach", MakeFetchReach},
+};
+
+}  // namespace
+
+std::unique_ptr<World> MakeWorld(const std::string& name, const std::string& model_file) {
+  for (const Registration& world : kWorlds) {
+    if (name == world.name) return world.make(model_file);
+  }
+  CHECK(false) << "no physics half named " << name;
+  return nullptr;
+}
+
+const CameraView& FindCamera(const World& world, const std::string& name) {
+  std::string names;
+  for (const CameraView& camera : world.cameras()) {
+    if (camera.name == name) return camera;
+    names += (names.empty() ? "" : ", ") + camera.name;
+  }
+  throw UsageError("unknown camera '{}'; cameras of this task: {}", name, names);
+}
+
+}  // namespace shoal::worlds

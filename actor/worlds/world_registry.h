@@ -1,0 +1,18 @@
+// Physics halves by name.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "actor/worlds/world.h"
+
+namespace shoal::worlds {
+
+// `name` is Task::world() of a goal half; a goal half without physics is a bug (CHECK).
+// `model_file` empty = our own model. Throws Error when a model does not load or lacks an element.
+std::unique_ptr<World> MakeWorld(const std::string& name, const std::string& model_file);
+
+// The camera of that name; throws Error (kUsage) listing those there are.
+const CameraView& FindCamera(const World& world, const std::string& name);
+
+}  // namespace shoal::worlds
