@@ -12,10 +12,10 @@ namespace shoal::launch {
 // One evaluation, as the coordinator sees it.
 struct EvaluationPoint {
   uint64_t env_steps = 0, updates = 0;
-  double wall_seconds = 0;  // since the run's start
-  double success = 0;       // rate, 0..1
-  double mean_return = 0;   // unscaled
-  std::string checkpoint;   // folder name under checkpoints/
+  double wall_seconds = 0;   // since the run's start
+  double success = 0;        // rate, 0..1
+  double mean_return = 0;    // unscaled
+  std::string checkpoint{};  // folder name under checkpoints/
 };
 
 class StopRule {

@@ -1,0 +1,106 @@
+#include "launch/accounting.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "tests/support/temporary_folder.h"
+
+namespace shoal::launch {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+constexpr uint64_t kFirst = 1'700'000'000'000'000'001, kSecond = kFirst + 1;
+
+TEST(Account, SumsSessionsAndCountsWhatWasLostWithAProcess) {
+  const MadeRecords made[] = {{0, kFirst, 100}, {0, kSecond, 50}, {1, kFirst, 7}};
+  const SeenRecords seen[] = {
+      {.actor = 0,
+       .session = kFirst,
+       .highest = 90,
+       .stored = 80,
+       .rejected = 4,
+       .after_gap = 6,
+       .duplicates = 5},
+      {.actor = 0, .session = kSecond, .highest = 50, .stored = 50, .duplicates = 1}};
+  const Accounting a = Account(made, seen, 9);
+  EXPECT_TRUE(a.Balances());
+  EXPECT_EQ(a.made, 157u);
+  EXPECT_EQ(a.stored, 130u);
+  EXPECT_EQ(a.lost_with_process, 10u + 7u) << "the third session was never seen";
+  EXPECT_EQ(a.rejected, 4u);
+  EXPECT_EQ(a.after_gap, 6u);
+  EXPECT_EQ(a.duplicates, 6u);
+  EXPECT_EQ(a.resends, 9u);
+  EXPECT_EQ(a.made, a.stored + a.lost_with_process + a.rejected + a.after_gap);
+  EXPECT_THAT(a.Line(), HasSubstr("made 157 = stored 130 + lost with a process 17"));
+}
+
+TEST(Account, SaysWhichSessionTheReplayCannotExplain) {
+  const MadeRecords made[] = {{3, kFirst, 100}};
+  const SeenRecords seen[] = {{.actor = 3, .session = kFirst, .highest = 100, .stored = 99}};
+  const Accounting a = Account(made, seen, 0);
+  EXPECT_THAT(a.faults,
+              ElementsAre(AllOf(HasSubstr("actor 3"), HasSubstr("= 99"), HasSubstr("up to 100"))));
+  EXPECT_THAT(a.Line(), HasSubstr("made 100 ? stored 99"));
+}
+
+TEST(Account, DoesNotLetAnExcessHideALoss) {
+  const MadeRecords made[] = {{0, kFirst, 10}, {1, kFirst, 10}};
+  const SeenRecords seen[] = {{.actor = 0, .session = kFirst, .highest = 10, .stored = 11},
+                              {.actor = 1, .session = kFirst, .highest = 10, .stored = 9}};
+  EXPECT_EQ(Account(made, seen, 0).faults.size(), 2u);
+}
+
+TEST(Account, RefusesRecordsThatNobodyMade) {
+  const SeenRecords seen[] = {{.actor = 0, .session = kFirst, .highest = 5, .stored = 5}};
+  EXPECT_THAT(Account({}, seen, 0).faults, ElementsAre(HasSubstr("but 0 were made")));
+}
+
+TEST(Account, RefusesASessionListedTwice) {
+  const MadeRecords made[] = {{0, kFirst, 5}};
+  const SeenRecords seen[] = {{.actor = 0, .session = kFirst, .highest = 5, .stored = 5},
+                              {.actor = 0, .session = kFirst, .highest = 5, .stored = 5}};
+  EXPECT_FALSE(Account(made, seen, 0).Balances());
+}
+
+TEST(ReadSeenRecords, ReadsTheFileOfTheReplay) {
+  const TemporaryFolder run;
+  WriteFileAtomically(run.path() / "accounting.json",
+                      R"({"schema": "shoal-accounting-1", "sessions": [
+    {"actor": 2, "session": 1700000000000000001, "highest": 9, "stored": 5, "rejected": 1,
+     "after_gap": 3, "duplicates": 4}]})");
+  const auto seen = ReadSeenRecords(run.path());
+  ASSERT_EQ(seen.size(), 1u);
+  EXPECT_EQ(seen[0].actor, 2u);
+  EXPECT_EQ(seen[0].session, kFirst) << "64 bits survive JSON";
+  EXPECT_EQ(seen[0].highest, 9u);
+  EXPECT_EQ(seen[0].stored, 5u);
+  EXPECT_EQ(seen[0].rejected, 1u);
+  EXPECT_EQ(seen[0].after_gap, 3u);
+  EXPECT_EQ(seen[0].duplicates, 4u);
+}
+
+TEST(ReadSeenRecords, RefusesABrokenFileByName) {
+  const TemporaryFolder run;
+  EXPECT_THROW(ReadSeenRecords(run.path()), Error);
+  for (const char* text : {"{", "{}", R"({"schema": "other", "sessions": []})",
+                           R"({"schema": "shoal-accounting-1", "sessions": [{"actor": 1}]})"}) {
+    WriteFileAtomically(run.path() / "accounting.json", text);
+    try {
+      ReadSeenRecords(run.path());
+      ADD_FAILURE() << text;
+    } catch (const Error& e) {
+      EXPECT_THAT(e.what(), HasSubstr("accounting.json"));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace shoal::launch

@@ -1,0 +1,108 @@
+#include "launch/evaluations.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "tests/support/temporary_folder.h"
+
+namespace shoal::launch {
+namespace {
+
+using ::testing::HasSubstr;
+
+EvalMessage Message(uint64_t env_steps, uint64_t updates, double success) {
+  EvalMessage message;
+  message.env_steps = env_steps;
+  message.json =
+      nlohmann::json{
+          {"schema", "shoal-eval-1"},
+          {"env_steps", env_steps},
+          {"checkpoint", "step_" + std::to_string(updates)},
+          {"weights_version", {{"session", 1}, {"update", updates}}},
+          {"aggregate", {{"success_rate", success}, {"return_mean", -2.5}}},
+      }
+          .dump();
+  return message;
+}
+
+class EvaluationsTest : public ::testing::Test {
+ protected:
+  EvaluationsTest() {
+    MakeFolders(run_.path() / "eval");
+    MakeFolders(run_.path() / "checkpoints");
+  }
+  void MakeCheckpoint(const std::string& name, const std::string& content) const {
+    MakeFolders(run_.path() / "checkpoints" / name);
+    WriteFileAtomically(run_.path() / "checkpoints" / name / "policy.safetensors", content);
+  }
+  std::string Best() const {
+    return ReadFile(run_.path() / "checkpoints" / "best" / "policy.safetensors");
+  }
+
+  TemporaryFolder run_;
+};
+
+TEST_F(EvaluationsTest, StoreThenReadGivesThePointsInOrder) {
+  StoreEvaluation(run_.path(), Message(10'000, 900, 0.5), 12.5);
+  const EvaluationPoint stored = StoreEvaluation(run_.path(), Message(2'500, 100, 0.25), 3.5);
+  EXPECT_EQ(stored.env_steps, 2'500u);
+  EXPECT_EQ(stored.updates, 100u);
+  EXPECT_EQ(stored.checkpoint, "step_100");
+  WriteFileAtomically(run_.path() / "eval" / "final.json", "not one of them");
+  const auto points = ReadEvaluations(run_.path());
+  ASSERT_EQ(points.size(), 2u);
+  EXPECT_EQ(points[0].env_steps, 2'500u);
+  EXPECT_EQ(points[0].success, 0.25);
+  EXPECT_EQ(points[0].mean_return, -2.5);
+  EXPECT_EQ(points[0].wall_seconds, 3.5);
+  EXPECT_EQ(points[1].env_steps, 10'000u);
+}
+
+TEST_F(EvaluationsTest, RefusesWhatIsNotAnEvaluation) {
+  for (const char* json : {"", "[]", "{}", R"({"schema": "shoal-eval-1"})"}) {
+    EvalMessage message = Message(1, 1, 1);
+    message.json = json;
+    EXPECT_THROW(StoreEvaluation(run_.path(), message, 0), Error) << json;
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(run_.path() / "eval"));
+}
+
+TEST_F(EvaluationsTest, ATaskWithoutSuccessIsNeverAtTheTarget) {
+  EvalMessage message = Message(1, 1, 1);
+  auto object = nlohmann::json::parse(message.json);
+  object["aggregate"]["success_rate"] = nullptr;
+  EXPECT_EQ(ParseEvaluation(object.dump(), "x").success, 0);
+}
+
+TEST_F(EvaluationsTest, KeepAsBestReplacesTheFormerBest) {
+  MakeCheckpoint("step_1", "one");
+  MakeCheckpoint("step_2", "two");
+  KeepAsBest(run_.path(), "step_1");
+  EXPECT_EQ(Best(), "one");
+  KeepAsBest(run_.path(), "step_2");
+  EXPECT_EQ(Best(), "two");
+  int entries = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(run_.path() / "checkpoints")) {
+    entries += !entry.path().empty();
+  }
+  EXPECT_EQ(entries, 3) << "step_1, step_2 and best: nothing is left over";
+}
+
+TEST_F(EvaluationsTest, KeepAsBestLeavesTheFormerBestWhenTheNewOneIsGone) {
+  MakeCheckpoint("step_1", "one");
+  KeepAsBest(run_.path(), "step_1");
+  try {
+    KeepAsBest(run_.path(), "step_9");
+    ADD_FAILURE();
+  } catch (const Error& e) {
+    EXPECT_THAT(e.what(), HasSubstr("step_9"));
+  }
+  EXPECT_EQ(Best(), "one");
+}
+
+}  // namespace
+}  // namespace shoal::launch

@@ -1,0 +1,101 @@
+#include "launch/run_folder.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "tests/support/temporary_folder.h"
+
+namespace shoal::launch {
+namespace {
+
+using ::testing::HasSubstr;
+
+template <class Act>
+std::string UsageMessage(Act act) {
+  try {
+    act();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.exit_code(), 2) << e.what();
+    return e.what();
+  }
+  return "";
+}
+
+TEST(RunFolderTest, CreatesTheFolderWithItsSubfolders) {
+  const TemporaryFolder dir;
+  const RunFolder run = RunFolder::Create(dir.path() / "runs", "a", false);
+  EXPECT_EQ(run.path(), dir.path() / "runs" / "a");
+  EXPECT_EQ(run.name(), "a");
+  for (const char* folder : {"logs", "eval", "checkpoints", "made"}) {
+    EXPECT_TRUE(std::filesystem::is_directory(run.path() / folder)) << folder;
+  }
+}
+
+TEST(RunFolderTest, RefusesAGivenNameThatExists) {
+  const TemporaryFolder dir;
+  { const RunFolder run = RunFolder::Create(dir.path(), "a", false); }
+  EXPECT_THAT(UsageMessage([&] { RunFolder::Create(dir.path(), "a", false); }),
+              HasSubstr((dir.path() / "a").string()));
+}
+
+TEST(RunFolderTest, NumbersAutomaticNames) {
+  const TemporaryFolder dir;
+  std::vector<std::string> names;
+  for (int i = 0; i < 3; ++i) names.push_back(RunFolder::CreateNumbered(dir.path(), "p-s1").name());
+  EXPECT_THAT(names, ::testing::ElementsAre("p-s1", "p-s1-2", "p-s1-3"));
+}
+
+TEST(RunFolderTest, OverwritesARunOnlyWhenAsked) {
+  const TemporaryFolder dir;
+  {
+    const RunFolder run = RunFolder::Create(dir.path(), "a", false);
+    WriteFileAtomically(run.path() / "config.json", "{}");
+    WriteFileAtomically(run.path() / "old", "x");
+  }
+  const RunFolder run = RunFolder::Create(dir.path(), "a", true);
+  EXPECT_FALSE(std::filesystem::exists(run.path() / "old"));
+}
+
+TEST(RunFolderTest, NeverOverwritesWhatIsNotARun) {
+  const TemporaryFolder dir;
+  MakeFolders(dir.path() / "a");
+  WriteFileAtomically(dir.path() / "a" / "precious", "x");
+  EXPECT_THAT(UsageMessage([&] { RunFolder::Create(dir.path(), "a", true); }),
+              HasSubstr("is not a run"));
+  EXPECT_EQ(ReadFile(dir.path() / "a" / "precious"), "x");
+}
+
+TEST(RunFolderTest, IsHeldAgainstASecondCoordinator) {
+  const TemporaryFolder dir;
+  const RunFolder run = RunFolder::Create(dir.path(), "a", false);
+  WriteFileAtomically(run.path() / "config.json", "{}");
+  EXPECT_THAT(UsageMessage([&] { RunFolder::Reopen(dir.path(), "a"); }), HasSubstr("is running"));
+  EXPECT_THAT(UsageMessage([&] { RunFolder::Create(dir.path(), "a", true); }),
+              HasSubstr("is running"));
+}
+
+TEST(RunFolderTest, ReopensByNameAndByPath) {
+  const TemporaryFolder dir;
+  {
+    const RunFolder run = RunFolder::Create(dir.path(), "a", false);
+    WriteFileAtomically(run.path() / "config.json", "{}");
+  }
+  EXPECT_EQ(RunFolder::Reopen(dir.path(), "a").name(), "a");
+  EXPECT_EQ(RunFolder::Reopen("elsewhere", (dir.path() / "a").string()).name(), "a");
+  EXPECT_EQ(RunFolder::Reopen("elsewhere", (dir.path() / "a").string() + "/").name(), "a");
+  EXPECT_THAT(UsageMessage([&] { RunFolder::Reopen(dir.path(), "b"); }), HasSubstr("no run 'b'"));
+}
+
+TEST(NewestCheckpointTest, ComparesNumbersAndIgnoresOtherNames) {
+  const TemporaryFolder run;
+  EXPECT_EQ(NewestCheckpoint(run.path()), "");
+  for (const char* name : {"step_900", "step_2000", "best", "step_9999.tmp-1", "step_"}) {
+    MakeFolders(run.path() / "checkpoints" / name);
+  }
+  EXPECT_EQ(NewestCheckpoint(run.path()).filename(), "step_2000");
+}
+
+}  // namespace
+}  // namespace shoal::launch

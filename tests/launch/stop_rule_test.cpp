@@ -1,0 +1,65 @@
+#include "launch/stop_rule.h"
+
+#include <gtest/gtest.h>
+
+namespace shoal::launch {
+namespace {
+
+Config Rule(double success, int evaluations) {
+  Config config;
+  config.stop = {.success = success, .evaluations = evaluations};
+  config.env_steps = 1000;
+  return config;
+}
+
+void Feed(StopRule& rule, std::initializer_list<double> successes) {
+  uint64_t steps = 0;
+  for (double success : successes) {
+    rule.OnEvaluation({.env_steps = steps += 100, .updates = steps / 2, .success = success});
+  }
+}
+
+TEST(StopRule, NeedsTheTargetInARow) {
+  StopRule rule(Rule(0.9, 2));
+  Feed(rule, {0.95, 0.5, 0.95});
+  EXPECT_FALSE(rule.TargetReached());
+  EXPECT_FALSE(rule.first_success().has_value());
+  Feed(rule, {0.9});
+  EXPECT_TRUE(rule.TargetReached());
+}
+
+TEST(StopRule, FirstSuccessIsTheStartOfTheFirstStreak) {
+  StopRule rule(Rule(0.9, 2));
+  Feed(rule, {0.95, 0.5, 0.92, 0.93, 0.94, 0.1, 1, 1});
+  ASSERT_TRUE(rule.first_success().has_value());
+  EXPECT_EQ(rule.first_success()->env_steps, 300u);
+  EXPECT_EQ(rule.first_success()->updates, 150u);
+}
+
+TEST(StopRule, AboveOneNeverStopsButMeasuresTheUsualTarget) {
+  StopRule rule(Rule(2, 2));
+  Feed(rule, {0.98, 1});
+  EXPECT_FALSE(rule.TargetReached());
+  EXPECT_EQ(rule.target(), 0.98);
+  ASSERT_TRUE(rule.first_success().has_value());
+  EXPECT_EQ(rule.first_success()->env_steps, 100u);
+}
+
+TEST(StopRule, BudgetIsSpentAtTheLastStep) {
+  const StopRule rule(Rule(0.9, 2));
+  EXPECT_FALSE(rule.BudgetSpent(999));
+  EXPECT_TRUE(rule.BudgetSpent(1000));
+}
+
+TEST(Better, GoesBySuccessThenReturn) {
+  const EvaluationPoint low{.success = 0.8, .mean_return = -1};
+  const EvaluationPoint high{.success = 0.9, .mean_return = -5};
+  const EvaluationPoint higher{.success = 0.9, .mean_return = -4};
+  EXPECT_TRUE(Better(high, low));
+  EXPECT_FALSE(Better(low, high));
+  EXPECT_TRUE(Better(higher, high));
+  EXPECT_FALSE(Better(high, high));
+}
+
+}  // namespace
+}  // namespace shoal::launch

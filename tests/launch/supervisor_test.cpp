@@ -1,0 +1,153 @@
+#include "launch/supervisor.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+
+#include "common/base/files.h"
+#include "tests/launch/wait_until.h"
+#include "tests/support/temporary_folder.h"
+
+namespace shoal::launch {
+namespace {
+
+using std::chrono::milliseconds;
+using ::testing::AllOf;
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+
+constexpr RestartLimits kQuick{.restarts = 3,
+                               .window = std::chrono::seconds(60),
+                               .first_delay = milliseconds(1),
+                               .longest_delay = milliseconds(4)};
+
+class SupervisorTest : public ::testing::Test {
+ protected:
+  ProcessSpec Fake(const std::string& role, int id, const std::string& script) const {
+    ProcessSpec spec;
+    spec.role = role;
+    spec.id = id;
+    spec.command = {"/bin/sh", "-c", "echo started; " + script};
+    spec.output = folder_.path() / (spec.Name() + ".log");
+    return spec;
+  }
+  int Starts(const std::string& name) const {
+    const auto file = folder_.path() / (name + ".log");
+    if (!std::filesystem::exists(file)) return 0;
+    const std::string text = ReadFile(file);
+    int starts = 0;
+    for (size_t at = text.find("started\n"); at != std::string::npos;
+         at = text.find("started\n", at + 1)) {
+      ++starts;
+    }
+    return starts;
+  }
+  // Polls until the run fails; its reason.
+  std::string WaitForFailure() {
+    std::optional<std::string> failure;
+    EXPECT_TRUE(WaitUntil([&] { return (failure = supervisor_.Poll(Now())).has_value(); }));
+    return failure.value_or("");
+  }
+  bool PollUntil(const std::function<bool()>& condition) {
+    return WaitUntil([&] {
+      EXPECT_EQ(supervisor_.Poll(Now()), std::nullopt);
+      return condition();
+    });
+  }
+
+  TemporaryFolder folder_;
+  std::vector<std::string> said_;
+  Supervisor supervisor_{kQuick, [this](const std::string& line) { said_.push_back(line); }};
+};
+
+TEST_F(SupervisorTest, RestartsWhatDiesAndSaysWhy) {
+  supervisor_.Start(Fake("actor", 1,
+                         "if [ -e " + folder_.path().string() +
+                             "/again ]; then sleep 60; fi; touch " + folder_.path().string() +
+                             "/again; echo oops; exit 9"));
+  EXPECT_TRUE(PollUntil([&] { return Starts("actor-1") == 2; }));
+  EXPECT_EQ(supervisor_.restarts(), 1);
+  EXPECT_EQ(supervisor_.Running("actor"), 1);
+  EXPECT_THAT(said_,
+              ElementsAre(AllOf(HasSubstr("actor-1: exit code 9: oops"), HasSubstr("restart in"))));
+}
+
+TEST_F(SupervisorTest, RestartsAProcessThatLeavesWithoutBeingAsked) {
+  supervisor_.Start(Fake(
+      "replay", 0,
+      "[ $(wc -l < " + folder_.path().string() + "/replay-0.log) -ge 2 ] && sleep 60; exit 0"));
+  EXPECT_TRUE(PollUntil([&] { return Starts("replay-0") == 2; }));
+}
+
+TEST_F(SupervisorTest, FailsTheRunWhenAProcessDiesTooOften) {
+  supervisor_.Start(Fake("learner", 0, "echo no luck; exit 1"));
+  EXPECT_THAT(WaitForFailure(),
+              AllOf(HasSubstr("learner-0: exit code 1: no luck"), HasSubstr("more than 3 times")));
+  EXPECT_EQ(Starts("learner-0"), 4) << "the first start and three restarts";
+}
+
+TEST_F(SupervisorTest, WaitsForTheBackOffBeforeARestart) {
+  supervisor_.Start(Fake("actor", 0, "kill -9 $$"));
+  const SteadyTime late = Now() + std::chrono::hours(1);
+  EXPECT_TRUE(WaitUntil([&] { return supervisor_.Poll(late), !said_.empty(); }));
+  EXPECT_EQ(supervisor_.Poll(late), std::nullopt);
+  EXPECT_EQ(supervisor_.restarts(), 0);
+  EXPECT_EQ(supervisor_.Poll(late + milliseconds(1)), std::nullopt);
+  EXPECT_EQ(supervisor_.restarts(), 1);
+}
+
+TEST_F(SupervisorTest, DoesNotRestartARefusedConfiguration) {
+  supervisor_.Start(Fake("learner", 0, "echo bad batch; exit 2"));
+  EXPECT_THAT(WaitForFailure(), HasSubstr("learner-0: exit code 2: bad batch"));
+  EXPECT_EQ(Starts("learner-0"), 1);
+}
+
+TEST_F(SupervisorTest, DoesNotRestartAfterANonFiniteNumber) {
+  supervisor_.Start(Fake("learner", 0, "echo 'learner: critic loss is not finite'; exit 1"));
+  EXPECT_THAT(WaitForFailure(), HasSubstr("not finite"));
+  EXPECT_EQ(Starts("learner-0"), 1);
+}
+
+TEST_F(SupervisorTest, LetsExpectedExitsBe) {
+  supervisor_.Start(Fake("actor", 0, "exit 0"));
+  supervisor_.Start(Fake("learner", 0, "exec sleep 60"));
+  supervisor_.ExpectExit("actor");
+  EXPECT_TRUE(PollUntil([&] { return supervisor_.Running("actor") == 0; }));
+  EXPECT_EQ(supervisor_.Running(""), 1);
+  EXPECT_THAT(said_, IsEmpty());
+  EXPECT_THAT(supervisor_.unclean_exits(), IsEmpty());
+}
+
+TEST_F(SupervisorTest, RemembersUncleanExpectedExits) {
+  supervisor_.Start(Fake("actor", 0, "echo 3 records left; exit 1"));
+  supervisor_.ExpectExit("");
+  EXPECT_TRUE(PollUntil([&] { return supervisor_.Running("") == 0; }));
+  EXPECT_THAT(supervisor_.unclean_exits(),
+              ElementsAre(HasSubstr("actor-0: exit code 1: 3 records left")));
+}
+
+TEST_F(SupervisorTest, ForgetsAPendingRestartOfAnExpectedExit) {
+  supervisor_.Start(Fake("actor", 0, "exit 1"));
+  const SteadyTime late = Now() + std::chrono::hours(1);
+  EXPECT_TRUE(WaitUntil([&] { return supervisor_.Poll(late), !said_.empty(); }));
+  supervisor_.ExpectExit("actor");
+  EXPECT_EQ(supervisor_.Running("actor"), 0);
+  supervisor_.Poll(late + std::chrono::hours(1));
+  EXPECT_EQ(supervisor_.restarts(), 0);
+}
+
+TEST_F(SupervisorTest, SignalsOneRoleOnly) {
+  supervisor_.Start(Fake("actor", 0, "exec sleep 60"));
+  supervisor_.Start(Fake("learner", 0, "exec sleep 60"));
+  supervisor_.ExpectExit("");
+  supervisor_.Signal("actor", SIGTERM);
+  EXPECT_TRUE(PollUntil([&] { return supervisor_.Running("actor") == 0; }));
+  EXPECT_EQ(supervisor_.Running("learner"), 1);
+}
+
+}  // namespace
+}  // namespace shoal::launch

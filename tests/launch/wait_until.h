@@ -1,0 +1,22 @@
+// Waits for what other processes do.
+#pragma once
+
+#include <chrono>
+#include <thread>
+
+#include "common/base/clock.h"
+
+namespace shoal {
+
+// Asks until `condition` holds; false when it did not within ten seconds.
+template <class Condition>
+bool WaitUntil(Condition condition) {
+  const SteadyTime start = Now();
+  while (!condition()) {
+    if (SecondsSince(start) > 10) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  return true;
+}
+
+}  // namespace shoal
