@@ -1,0 +1,35 @@
+// shoal-replay: the replay server of a run.
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "common/base/error.h"
+#include "common/base/log.h"
+#include "common/base/main_guard.h"
+#include "common/base/stop.h"
+#include "common/dds/bus.h"
+#include "replay_server/service/replay_service.h"
+
+namespace {
+
+int Run(int argc, char** argv) {
+  std::string folder;
+  CLI::App app("Stores transitions and hands out batches for one run.", "shoal-replay");
+  app.add_option("--run", folder, "folder of the run")->required();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& e) {
+    return app.exit(e);
+  } catch (const CLI::ParseError& e) {
+    throw shoal::UsageError("{}", e.what());
+  }
+  shoal::InstallStopSignals();
+  shoal::log::Start("replay-0", "");
+  return shoal::replay::RunReplayService(folder);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  shoal::dds::TuneMalloc();
+  return shoal::GuardMain("shoal-replay", [&] { return Run(argc, argv); });
+}

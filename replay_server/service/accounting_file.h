@@ -1,0 +1,23 @@
+// accounting.json of a run (schema shoal-accounting-1): what became of every record, per actor
+// session.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "replay_server/core/session_table.h"
+
+namespace shoal::replay {
+
+inline constexpr char kAccountingFile[] = "accounting.json";
+
+// {schema, sessions: [{actor, session, highest, stored, rejected, after_gap, lost, duplicates}]}
+// with highest = stored + rejected + after_gap + lost.
+std::string AccountingJson(const SessionTable& sessions);
+
+// Replaces the file: readers see the old one or the new one. Not synced, so that a busy disk does
+// not hold up the caller; WriteFileAtomically (common/base/files.h) is for the last one. Throws
+// Error.
+void ReplaceFile(const std::filesystem::path& path, const std::string& content);
+
+}  // namespace shoal::replay

@@ -1,0 +1,93 @@
+// The bulk writes of batches, on a thread of their own: a slow network holds up batches, not
+// intake.
+//
+// Owns a few batch buffers. The service thread fills one and hands it over; it comes back when all
+// its shards are written or given up. A batch is given up when its learner session is replaced,
+// when no learner is there, or when a shard could not be written for kShardDeadline: the learner
+// asks again.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <cstdint>
+#include <cstdlib>
+#include <deque>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "common/wire/messages.h"
+#include "replay_server/core/replay_core.h"
+
+namespace shoal::replay {
+
+// Bytes of a batch in one shard: below 1 MB with its header.
+inline constexpr uint64_t kShardBytes = 960 * 1024;
+
+// What the sender writes to: DDS, or a fake.
+class ShardWriter {
+ public:
+  virtual ~ShardWriter() = default;
+  // False when it was not sent within the writer's own deadline.
+  virtual bool Write(const BatchShard& shard) = 0;
+  // A learner is there to read.
+  virtual bool HasReader() = 0;
+};
+
+class BatchSender {
+ public:
+  static constexpr std::chrono::seconds kReaderDeadline{2};
+  static constexpr std::chrono::seconds kShardDeadline{6};
+
+  // Borrows the writer. `on_free` is called on the sender's thread whenever a buffer is free again.
+  BatchSender(uint64_t spec_hash, uint64_t batch_bytes, int buffers, ShardWriter* writer,
+              std::function<void()> on_free);
+  // Gives up what is not sent.
+  ~BatchSender();
+  BatchSender(const BatchSender&) = delete;
+  BatchSender& operator=(const BatchSender&) = delete;
+
+  // A free buffer of batch_bytes, aligned to 64, or nullptr while all are on their way. It stays
+  // free until Send().
+  uint8_t* FreeBuffer();
+  // Sends the batch in the buffer that FreeBuffer() returned.
+  void Send(const DrawnBatch& batch, uint8_t* buffer);
+  // Batches of other sessions are given up.
+  void SetLearnerSession(uint64_t session) { learner_session_ = session; }
+
+  uint64_t sent() const { return sent_; }
+  uint64_t given_up() const { return given_up_; }
+
+ private:
+  struct FreeBytes {
+    void operator()(uint8_t* data) const { std::free(data); }
+  };
+  struct Outgoing {
+    DrawnBatch batch;
+    uint8_t* buffer = nullptr;
+  };
+
+  void Run();
+  bool SendShards(const Outgoing& outgoing);
+  bool SendShard(const BatchShard& shard);
+  bool WaitForReader(const DrawnBatch& batch);
+  bool Wanted(uint64_t session) const { return !stopping_ && session == learner_session_; }
+
+  const uint64_t spec_hash_, batch_bytes_;
+  ShardWriter& writer_;
+  const std::function<void()> on_free_;
+  std::vector<std::unique_ptr<uint8_t[], FreeBytes>> memory_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::vector<uint8_t*> free_;
+  std::deque<Outgoing> queue_;
+  std::atomic<bool> stopping_{false};
+  std::atomic<uint64_t> learner_session_{0};
+  std::atomic<uint64_t> sent_{0}, given_up_{0};
+  std::thread thread_;  // last: starts when everything else is there
+};
+
+}  // namespace shoal::replay

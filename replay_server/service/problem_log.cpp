@@ -1,0 +1,52 @@
+#include "replay_server/service/problem_log.h"
+
+#include "common/base/log.h"
+
+namespace shoal::replay {
+
+void ProblemLog::Note(const TransitionChunk& chunk, const ChunkResult& result) {
+  if (result.fate == ChunkFate::kWrongSpec) {
+    other_spec_ = chunk.spec_hash;
+    other_spec_actor_ = chunk.actor;
+  }
+  if (result.fault != nullptr) {
+    fault_ = result.fault;
+    fault_actor_ = chunk.actor;
+  }
+}
+
+void ProblemLog::Report(SteadyTime now, const CoreCounters& counters, uint64_t dropped_chunks) {
+  if (now - last_ < kInterval) return;
+  last_ = now;
+  const CoreCounters before = std::exchange(reported_, counters);
+  if (const uint64_t n = counters.wrong_spec_chunks - before.wrong_spec_chunks) {
+    log::Warning("{} chunks refused: actor {} has observation spec {:016x}, the run has {:016x}", n,
+                 other_spec_actor_, other_spec_, spec_hash_);
+  }
+  if (const uint64_t n = counters.rejected - before.rejected) {
+    log::Warning("{} records rejected; the last one, of actor {}: {}", n, fault_actor_, fault_);
+  }
+  if (const uint64_t n = counters.after_gap - before.after_gap) {
+    log::Warning("{} records not used: an earlier one of their episode is missing", n);
+  }
+  if (const uint64_t n = counters.lost - before.lost) log::Warning("{} records never came", n);
+  if (const uint64_t n = counters.malformed_chunks - before.malformed_chunks) {
+    log::Warning("{} chunks refused: their length or sequences make no sense", n);
+  }
+  if (const uint64_t n = counters.table_full_chunks - before.table_full_chunks) {
+    log::Warning("{} chunks refused: {} actor sessions are known, no room for more", n,
+                 kMaxSessions);
+  }
+  if (const uint64_t n = counters.refused_requests - before.refused_requests) {
+    log::Warning(
+        "{} batch requests refused; the last one: batch {}, spec {:016x} (the run's {:016x})", n,
+        refused_request_.batch, refused_request_.spec_hash, spec_hash_);
+  }
+  if (dropped_chunks > reported_drops_) {
+    log::Warning("{} chunks dropped: no buffer was free; their actors send them again",
+                 dropped_chunks - reported_drops_);
+  }
+  reported_drops_ = dropped_chunks;
+}
+
+}  // namespace shoal::replay

@@ -1,0 +1,211 @@
+#include "replay_server/service/replay_service.h"
+
+#include <algorithm>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "common/base/clock.h"
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/base/log.h"
+#include "common/base/stop.h"
+#include "common/config/run_files.h"
+#include "common/dds/bus.h"
+#include "common/dds/publisher.h"
+#include "common/dds/subscriber.h"
+#include "common/wire/control_state.h"
+#include "common/wire/metrics_report.h"
+#include "replay_server/core/replay_core.h"
+#include "replay_server/service/accounting_file.h"
+#include "replay_server/service/batch_sender.h"
+#include "replay_server/service/problem_log.h"
+#include "replay_server/service/service_inbox.h"
+#include "replay_server/service/service_report.h"
+
+namespace shoal::replay {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr milliseconds kPoll{100};     // between looks at control and stop requests
+constexpr int kBatchBuffers = 2;       // one being filled, one being sent
+constexpr seconds kCreditInterval{1};  // between repetitions of every credit
+constexpr seconds kFarewell{2};        // without a chunk, after the coordinator is gone
+constexpr seconds kFarewellLimit{20};
+
+class DdsShardWriter : public ShardWriter {
+ public:
+  explicit DdsShardWriter(dds::Bus& bus) : publisher_(bus) {}
+  bool Write(const BatchShard& shard) override { return publisher_.Write(shard); }
+  bool HasReader() override { return publisher_.Matched() > 0; }
+
+ private:
+  dds::Publisher<BatchShard> publisher_;
+};
+
+// Members are in construction order; destruction, the reverse, ends the receive threads' callbacks
+// and the sender before what they use.
+class ReplayService {
+ public:
+  explicit ReplayService(const std::filesystem::path& folder)
+      : folder_(folder),
+        core_(ReadRunConfig(folder), folder, static_cast<uint64_t>(WallTimeNs())),
+        inbox_(SpecHash(), ChunkBytes(), MaxChunks()),
+        problems_(SpecHash()),
+        control_(Now()),
+        bus_(ReadClusterAddress(folder), Settings().transport, dds::Role::kReplay),
+        credit_publisher_(bus_),
+        metrics_publisher_(bus_),
+        shard_writer_(bus_),
+        sender_(SpecHash(), core_.batch_layout().total_bytes(), kBatchBuffers, &shard_writer_,
+                [this] { inbox_.Wake(); }),
+        report_(core_, inbox_, sender_),
+        control_subscriber_(bus_,
+                            [this](const ControlMessage& m) { control_.OnMessage(m, Now()); }),
+        request_subscriber_(bus_, [this](const SampleRequest& r) { inbox_.OnRequest(r); }),
+        chunk_subscriber_(bus_, [this](const TransitionChunk& c) { inbox_.OnChunk(c); }) {}
+
+  int Run() {
+    const Ring& ring = core_.ring();
+    log::Info("ring of {} records, {:.0f} MB, {}; {} records of the run stored, {} sampleable",
+              ring.capacity(), static_cast<double>(ring.bytes()) / 1e6, Settings().replay.storage,
+              ring.last_id(), core_.index().sampleable());
+    last_turn_ = Now();
+    int exit_code = 0;
+    while (!StopRequested() && control_.state() != RunState::kStopping) {
+      if (control_.CoordinatorLost(Now())) {
+        log::Failure("the coordinator is gone: no heartbeat; leaving");
+        SayFarewell();
+        exit_code = 1;
+        break;
+      }
+      core_.SetDraining(control_.state() == RunState::kDraining);
+      Turn();
+    }
+    Finish();
+    return exit_code;
+  }
+
+ private:
+  const Config& Settings() const { return core_.run().config; }
+  uint64_t SpecHash() const { return core_.run().spec.Hash(); }
+  uint64_t ChunkBytes() const {
+    return static_cast<uint64_t>(Settings().transport.chunk_records) *
+           static_cast<uint64_t>(core_.ring().layout().record_bytes());
+  }
+  // Every actor session may have its window under way, in full chunks and one part of one, twice
+  // when it sends again.
+  size_t MaxChunks() const {
+    const size_t known = core_.sessions().newest().size();
+    const size_t sessions = std::max(known, static_cast<size_t>(std::max(1, Settings().actors)));
+    const int window_chunks = std::max(2, Settings().replay.window_chunks);
+    return (sessions + 1) * 2 * static_cast<size_t>(window_chunks + 1);
+  }
+
+  // One turn of the service: takes what came, answers one request, tells what has changed.
+  void Turn() {
+    const bool inserts_blocked = core_.InsertsBlocked(), samples_blocked = core_.SamplesBlocked();
+    Take(inbox_.Wait(answered_ ? Now() : Now() + kPoll));
+    AnswerOne();
+    Publish(core_.TakeCredits(/*changed_only=*/true));
+    const SteadyTime now = Now();
+    report_.AddTime(std::chrono::duration<double>(now - last_turn_).count(), inserts_blocked,
+                    samples_blocked);
+    last_turn_ = now;
+    if (now - last_credits_ >= kCreditInterval) {
+      last_credits_ = now;
+      Publish(core_.TakeCredits(/*changed_only=*/false));
+      inbox_.SetMaxChunks(MaxChunks());
+    }
+    if (report_.Due(now)) Report(control_.state() == RunState::kDraining ? "draining" : "running");
+  }
+
+  void Take(ServiceInbox::Arrivals arrivals) {
+    for (std::unique_ptr<PooledChunk>& pooled : arrivals.chunks) {
+      const ChunkResult result = core_.TakeChunk(pooled->chunk);
+      problems_.Note(pooled->chunk, result);
+      if (result.fate == ChunkFate::kWrongSpec) Publish({core_.Refusal(pooled->chunk)});
+      inbox_.Release(std::move(pooled));
+      last_chunk_ = Now();
+    }
+    for (const SampleRequest& request : arrivals.requests) {
+      const RequestFate fate = core_.TakeRequest(request);
+      if (fate != RequestFate::kQueued && fate != RequestFate::kAlreadyQueued) {
+        problems_.NoteRefused(request);
+      }
+    }
+    sender_.SetLearnerSession(core_.requests().learner_session());
+  }
+
+  void AnswerOne() {
+    answered_ = false;
+    uint8_t* buffer = sender_.FreeBuffer();
+    if (buffer == nullptr) return;
+    const std::optional<DrawnBatch> batch = core_.TryAnswer(buffer);
+    if (!batch) return;
+    sender_.Send(*batch, buffer);
+    answered_ = true;
+  }
+
+  void Publish(const std::vector<Credit>& credits) {
+    for (const Credit& credit : credits) credit_publisher_.Write(credit);
+  }
+
+  void Report(const char* state) {
+    metrics_publisher_.Write(report_.Make(state));
+    problems_.Report(Now(), core_.counters(), inbox_.DroppedChunks());
+    try {
+      ReplaceFile(folder_ / kAccountingFile, AccountingJson(core_.sessions()));
+    } catch (const Error& e) {
+      // The run goes on; the next second tries again, and Finish() insists.
+      log::Warning("{}", e.what());
+    }
+  }
+
+  // The actors notice the coordinator's end too, and send what they have: it is stored.
+  void SayFarewell() {
+    const SteadyTime start = Now();
+    last_chunk_ = start;
+    core_.SetDraining(true);
+    while (Now() - last_chunk_ < kFarewell && Now() - start < kFarewellLimit && !StopRequested()) {
+      Turn();
+    }
+  }
+
+  void Finish() {
+    Take(inbox_.Wait(Now()));
+    Publish(core_.TakeCredits(/*changed_only=*/false));
+    metrics_publisher_.Write(report_.Make("stopping"));
+    WriteFileAtomically(folder_ / kAccountingFile, AccountingJson(core_.sessions()));
+    metrics_publisher_.WaitForAcks(milliseconds(500));
+    credit_publisher_.WaitForAcks(milliseconds(500));
+    log::Info("stopped: {} records of the run stored, {} batches drawn", core_.ring().last_id(),
+              core_.counters().batches);
+  }
+
+  const std::filesystem::path folder_;
+  ReplayCore core_;
+  ServiceInbox inbox_;
+  ProblemLog problems_;
+  ControlState control_;
+  dds::Bus bus_;
+  dds::Publisher<Credit> credit_publisher_;
+  dds::Publisher<MetricsMessage> metrics_publisher_;
+  DdsShardWriter shard_writer_;
+  BatchSender sender_;
+  ServiceReport report_;
+  dds::Subscriber<ControlMessage> control_subscriber_;
+  dds::Subscriber<SampleRequest> request_subscriber_;
+  dds::Subscriber<TransitionChunk> chunk_subscriber_;
+
+  SteadyTime last_turn_{}, last_credits_{}, last_chunk_{};
+  bool answered_ = false;  // a batch in the last turn: there may be another one to draw
+};
+
+}  // namespace
+
+int RunReplayService(const std::filesystem::path& folder) { return ReplayService(folder).Run(); }
+
+}  // namespace shoal::replay
