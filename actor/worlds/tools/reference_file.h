@@ -1,0 +1,44 @@
+// A recorded trajectory of the original Fetch environments, to compare our physics with: what the
+// format vrl-ref-1 holds of it.
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace shoal::worlds {
+
+// The state right after the reset or after a step. Positions in m, velocities in the engine's
+// units.
+struct ReferenceState {
+  std::vector<double> observation;  // (10)
+  std::array<double, 3> achieved_goal{};
+  std::vector<double> qpos, qvel;  // in the order of joint_names
+  std::array<double, 4> grip_quaternion{};
+};
+
+struct ReferenceStep {
+  std::vector<double> action;  // (4), each in [-1, 1]
+  ReferenceState state;
+  double distance = 0;
+  double reward_sparse = 0, reward_dense = 0;
+  bool success = false;
+};
+
+struct ReferenceTrajectory {
+  std::string environment;  // "FetchReach-v4"
+  std::string sequence;     // name of the action sequence: "random0"
+  std::array<double, 3> initial_grip{};
+  std::array<double, 3> desired_goal{};
+  std::vector<std::string> joint_names;
+  ReferenceState reset;
+  std::vector<ReferenceStep> steps;
+};
+
+// Throws Error naming the file and the key: unreadable, not JSON, another format, an environment
+// that cannot be replayed (naming those that can), a key missing, ill-typed, of the wrong length,
+// not finite or (actions) outside [-1, 1].
+ReferenceTrajectory ReadReference(const std::filesystem::path& path);
+
+}  // namespace shoal::worlds

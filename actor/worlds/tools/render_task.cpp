@@ -1,0 +1,57 @@
+#include "actor/worlds/tools/render_task.h"
+
+#include "actor/worlds/environment.h"
+#include "common/base/error.h"
+#include "common/base/random.h"
+#include "common/tasks/task_registry.h"
+
+namespace shoal::worlds {
+namespace {
+
+constexpr int kLargestSide = 4096;
+
+void CheckSide(const char* name, int side) {
+  if (side >= 1 && side <= kLargestSide) return;
+  throw UsageError("{} is {}; expected 1 to {}", name, side, kLargestSide);
+}
+
+}  // namespace
+
+Picture RenderTask(const RenderRequest& request) {
+  const tasks::Task& task = tasks::FindTask(request.task);
+  CheckSide("width", request.width);
+  CheckSide("height", request.height);
+  if (request.env_steps < 0 || request.env_steps > task.episode_length()) {
+    throw UsageError("{} env steps before the picture; an episode of {} has {}", request.env_steps,
+                     task.name(), task.episode_length());
+  }
+  Config config;
+  config.task = request.task;
+  config.model = request.model;
+  config.observation.cameras = {request.camera};
+  config.observation.width = request.width;
+  config.observation.height = request.height;
+  config.observation.quality = request.quality;
+  const auto environment = MakeEnvironment(config, MakeRenderContext(config.observation));
+
+  const size_t plane = static_cast<size_t>(request.width) * static_cast<size_t>(request.height);
+  std::vector<uint8_t> frame(3 * plane);
+  const auto seed = static_cast<uint64_t>(request.seed);
+  environment->Reset(StreamKey(seed, StreamRole::kEvalEnvironment), {frame, {}});
+  Random actions(StreamKey(seed, StreamRole::kEvalPolicy));
+  std::vector<float> action(static_cast<size_t>(task.action_size()));
+  for (int step = 0; step < request.env_steps; ++step) {
+    for (float& component : action) component = static_cast<float>(actions.Uniform(-1, 1));
+    environment->Step(action, {frame, {}});
+  }
+
+  Picture picture{request.width, request.height, std::vector<uint8_t>(3 * plane)};
+  for (size_t pixel = 0; pixel < plane; ++pixel) {
+    for (size_t channel = 0; channel < 3; ++channel) {
+      picture.pixels[3 * pixel + channel] = frame[channel * plane + pixel];
+    }
+  }
+  return picture;
+}
+
+}  // namespace shoal::worlds

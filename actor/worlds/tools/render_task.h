@@ -1,0 +1,30 @@
+// One picture of a task, to look at.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace shoal::worlds {
+
+// (H, W, 3) uint8, row 0 = top, interleaved RGB: as image::WritePng takes it.
+struct Picture {
+  int width = 0, height = 0;
+  std::vector<uint8_t> pixels;
+};
+
+struct RenderRequest {
+  std::string task;    // "FetchReachDense"
+  std::string camera;  // "front"
+  int width = 480, height = 480;
+  std::string quality = "reference";  // fast | reference
+  int env_steps = 0;  // uniform random actions before the picture, below the episode's length
+  int64_t seed = 1;   // of the goal and of the actions
+  std::string model;  // path of another MJCF file; empty = our own
+};
+
+// Throws Error (kUsage) on an unknown task, camera or quality, a size that is not 1..4096 and more
+// env steps than an episode has.
+Picture RenderTask(const RenderRequest& request);
+
+}  // namespace shoal::worlds
