@@ -42,4 +42,12 @@ uint64_t LockstepStepsBeforeUpdate(const Config& config, uint64_t update) {
                                config.envs_per_actor);
 }
 
+uint64_t LockstepLastUpdate(const Config& config) {
+  const int64_t envs = config.envs_per_actor;
+  const int64_t vector_steps = (config.env_steps + envs - 1) / envs;
+  const int64_t beyond = vector_steps - LockstepVectorStepsAtPhaseEnd(config, 0);
+  const int64_t period = config.lockstep_steps;
+  return LockstepUpdatesAtPhaseEnd(config, beyond <= 0 ? 0 : (beyond + period - 1) / period);
+}
+
 }  // namespace shoal

@@ -33,4 +33,8 @@ uint64_t LockstepUpdatesAtPhaseEnd(const Config& config, int64_t phase);
 // Step records that must be stored before the batch of update `update` >= 1 is drawn.
 uint64_t LockstepStepsBeforeUpdate(const Config& config, uint64_t update);
 
+// The run's last update: that of the first phase at whose end config.env_steps steps are stored.
+// The learner asks for no batch beyond it, so that where a run ends does not depend on timing.
+uint64_t LockstepLastUpdate(const Config& config);
+
 }  // namespace shoal

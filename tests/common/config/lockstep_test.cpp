@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 namespace shoal {
 namespace {
 
@@ -62,6 +64,15 @@ TEST(Lockstep, AnUpdateWaitsForExactlyTheStepsOfItsPhase) {
       }
     }
     EXPECT_GT(update, 1u);
+  }
+}
+
+TEST(Lockstep, TheLastUpdateIsThatOfTheFirstPhaseThatSpendsTheBudget) {
+  Config config = Lockstep(1000, 4, 8, 64, 128);  // phase p ends after 4 * (256 + 8 p) env steps
+  for (const auto& [budget, phase] :
+       {std::pair{500, 0}, {1024, 0}, {1025, 1}, {1056, 1}, {1057, 2}, {1200, 6}}) {
+    config.env_steps = budget;
+    EXPECT_EQ(LockstepLastUpdate(config), 16u * phase) << budget;
   }
 }
 

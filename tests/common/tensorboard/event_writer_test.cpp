@@ -68,15 +68,14 @@ TEST_F(EventWriterTest, WritesAScalarInGoldenBytes) {
   writer.Flush();
   const auto payloads = Payloads(ReadFile(writer.path()));
   ASSERT_EQ(payloads.size(), 2u);
-  const std::string golden(
+  const char golden[] =
       "\x10\xac\x02"  // field 2: step 300
       "\x2a\x0c"      // field 5: summary, 12 bytes
       "\x0a\x0a"      // field 1: value, 10 bytes
       "\x0a\x03"
-      "a/b"  // field 1: tag
-      "\x15\0\0\xc0\x3f",
-      19);  // field 2: float 1.5
-  EXPECT_EQ(AfterWallTime(payloads[1]), golden);
+      "a/b"                // field 1: tag
+      "\x15\0\0\xc0\x3f";  // field 2: float 1.5
+  EXPECT_EQ(AfterWallTime(payloads[1]), std::string(golden, sizeof golden - 1));
 }
 
 TEST_F(EventWriterTest, NamesTheFileAsTensorBoardExpects) {

@@ -1,0 +1,105 @@
+#include "learner/batch_assembler.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "common/base/check.h"
+
+namespace shoal::learner {
+namespace {
+
+// Bounds the memory that a malformed shard count can claim; batches have tens of shards.
+constexpr uint32_t kMaxShards = 65'536;
+
+}  // namespace
+
+BatchAssembler::BatchAssembler(uint64_t spec_hash, uint64_t learner_session, uint64_t batch_bytes,
+                               int buffers)
+    : spec_hash_(spec_hash),
+      learner_session_(learner_session),
+      batch_bytes_(batch_bytes),
+      slots_(static_cast<size_t>(buffers)) {
+  CHECK(batch_bytes > 0 && batch_bytes % 64 == 0) << batch_bytes;
+  for (Slot& slot : slots_) {
+    slot.data.reset(static_cast<uint8_t*>(std::aligned_alloc(64, batch_bytes)));
+    CHECK(slot.data != nullptr) << "no memory for a batch of " << batch_bytes << " bytes";
+  }
+}
+
+bool BatchAssembler::Expect(uint64_t request) {
+  CHECK(request > 0 && Find(request) == nullptr) << request;
+  Slot* slot = Find(0);
+  if (slot == nullptr) return false;
+  slot->request = request;
+  slot->whole = false;
+  slot->pieces.clear();
+  slot->missing = 0;
+  return true;
+}
+
+BatchAssembler::Verdict BatchAssembler::Add(const BatchShard& shard) {
+  if (shard.spec_hash != spec_hash_) return Verdict::kWrongSpec;
+  if (shard.learner_session != learner_session_) return Verdict::kStaleSession;
+  Slot* slot = shard.request == 0 ? nullptr : Find(shard.request);
+  if (slot == nullptr) return Verdict::kUnknownRequest;
+  if (!WellFormed(shard)) return Verdict::kMalformed;
+  if (slot->whole) return Verdict::kDuplicate;
+
+  const bool empty = slot->pieces.empty();
+  const bool same_answer = !empty && slot->pieces.size() == shard.shards &&
+                           slot->stored_records == shard.stored_records &&
+                           slot->stored_steps == shard.stored_steps;
+  if (!same_answer) {
+    slot->stored_records = shard.stored_records;
+    slot->stored_steps = shard.stored_steps;
+    slot->pieces.assign(shard.shards, Piece());
+    slot->missing = shard.shards;
+  }
+  Piece& piece = slot->pieces[shard.shard];
+  if (piece.bytes > 0) return Verdict::kDuplicate;
+  std::memcpy(slot->data.get() + shard.offset, shard.payload.data(), shard.payload.size());
+  piece = {shard.offset, shard.payload.size()};
+  if (--slot->missing == 0) {
+    slot->whole = Tiled(*slot);
+    if (slot->whole) return Verdict::kCompleted;
+    slot->pieces.clear();  // the request is sent again
+    return Verdict::kMalformed;
+  }
+  return same_answer || empty ? Verdict::kTaken : Verdict::kStartedOver;
+}
+
+std::optional<BatchAssembler::Assembled> BatchAssembler::TryGet(uint64_t request) {
+  Slot* slot = Find(request);
+  CHECK(slot != nullptr) << request;
+  if (!slot->whole) return std::nullopt;
+  return Assembled{slot->data.get(), slot->stored_records, slot->stored_steps};
+}
+
+void BatchAssembler::Release(uint64_t request) {
+  Slot* slot = Find(request);
+  CHECK(slot != nullptr) << request;
+  slot->request = 0;
+}
+
+BatchAssembler::Slot* BatchAssembler::Find(uint64_t request) {
+  const auto slot = std::ranges::find(slots_, request, &Slot::request);
+  return slot == slots_.end() ? nullptr : &*slot;
+}
+
+bool BatchAssembler::WellFormed(const BatchShard& shard) const {
+  const uint64_t bytes = shard.payload.size();
+  return shard.total_bytes == batch_bytes_ && shard.shards > 0 && shard.shards <= kMaxShards &&
+         shard.shard < shard.shards && bytes > 0 && shard.offset <= batch_bytes_ &&
+         bytes <= batch_bytes_ - shard.offset;
+}
+
+bool BatchAssembler::Tiled(const Slot& slot) const {
+  uint64_t end = 0;
+  for (const Piece& piece : slot.pieces) {
+    if (piece.offset != end) return false;
+    end += piece.bytes;
+  }
+  return end == batch_bytes_;
+}
+
+}  // namespace shoal::learner

@@ -1,0 +1,77 @@
+// Puts the shards of batches together in buffers of its own. Pure: no DDS, threads or clocks.
+//
+// A batch is asked for with a request id; the answer is a set of shards that tile its bytes
+// (common/wire/batch_layout.h). Shards may come in any order, several batches at once, some twice.
+// When a request is answered anew (it was sent again, the replay has restarted), the answer may
+// hold other transitions: shards of two answers are never mixed, the newer one starts over. Answers
+// are told apart by what the replay held when they were drawn.
+//
+// Bound: `buffers` batches; a shard that belongs to none of them is counted by the caller and
+// dropped.
+#pragma once
+
+#include <cstdint>
+#include <cstdlib>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "common/wire/messages.h"
+
+namespace shoal::learner {
+
+class BatchAssembler {
+ public:
+  enum class Verdict {
+    kTaken,           // copied into its batch
+    kStartedOver,     // taken, as the first shard of another answer; the former one was dropped
+    kCompleted,       // taken, and its batch is whole now
+    kDuplicate,       // had been taken before
+    kUnknownRequest,  // never expected, or done with
+    kStaleSession,    // answers another learner session
+    kWrongSpec,       // another observation spec
+    kMalformed,       // sizes or offsets that no batch of this layout has
+  };
+
+  struct Assembled {
+    uint8_t* data;  // aligned to 64; valid until Release
+    uint64_t stored_records, stored_steps;
+  };
+
+  // Batches of `batch_bytes` each; memory for `buffers` of them is taken at once.
+  BatchAssembler(uint64_t spec_hash, uint64_t learner_session, uint64_t batch_bytes, int buffers);
+
+  // Takes a free buffer for `request`, which must not be in use. False when there is none.
+  bool Expect(uint64_t request);
+  Verdict Add(const BatchShard& shard);
+  // The batch of `request` once it is whole.
+  std::optional<Assembled> TryGet(uint64_t request);
+  // Frees the buffer of `request`.
+  void Release(uint64_t request);
+
+ private:
+  struct Free {
+    void operator()(uint8_t* data) const { std::free(data); }
+  };
+  struct Piece {
+    uint64_t offset = 0, bytes = 0;  // bytes 0: not here yet
+  };
+  struct Slot {
+    uint64_t request = 0;  // 0: free
+    std::unique_ptr<uint8_t, Free> data;
+    bool whole = false;
+    uint64_t stored_records = 0, stored_steps = 0;  // tell answers apart
+    std::vector<Piece> pieces;                      // per shard
+    uint32_t missing = 0;                           // shards; 0 and no pieces: none here yet
+  };
+
+  Slot* Find(uint64_t request);
+  bool WellFormed(const BatchShard& shard) const;
+  // Whether the slot's pieces, all here, tile the batch without holes or overlaps.
+  bool Tiled(const Slot& slot) const;
+
+  const uint64_t spec_hash_, learner_session_, batch_bytes_;
+  std::vector<Slot> slots_;
+};
+
+}  // namespace shoal::learner

@@ -1,0 +1,158 @@
+#include "learner/batch_source.h"
+
+#include <algorithm>
+#include <limits>
+#include <utility>
+#include <vector>
+
+#include "common/base/check.h"
+#include "common/base/error.h"
+#include "common/config/lockstep.h"
+
+namespace shoal::learner {
+namespace {
+
+// A request that could not be sent is tried again after this long.
+constexpr std::chrono::milliseconds kRetryAfter{100};
+
+uint64_t LastRequest(const Config& config) {
+  return config.lockstep ? LockstepLastUpdate(config) : std::numeric_limits<uint64_t>::max();
+}
+
+}  // namespace
+
+BatchSource::BatchSource(const RunConfig& run, uint64_t learner_session, uint64_t first_request,
+                         Send send, std::chrono::milliseconds resend_after)
+    : run_(run),
+      spec_hash_(run.spec.Hash()),
+      learner_session_(learner_session),
+      last_request_(LastRequest(run.config)),
+      layout_(run.spec, run.config.learner.batch),
+      send_(std::move(send)),
+      resend_after_(resend_after),
+      assembler_(spec_hash_, learner_session, layout_.total_bytes(),
+                 run.config.learner.request_credits + 1),
+      next_request_(first_request) {
+  CHECK(first_request > 0);
+}
+
+void BatchSource::OnShard(const BatchShard& shard) {
+  using Verdict = BatchAssembler::Verdict;
+  const std::lock_guard lock(mutex_);
+  const Verdict verdict = assembler_.Add(shard);
+  switch (verdict) {
+    case Verdict::kStartedOver:
+      ++counters_.dropped_answers;
+      [[fallthrough]];
+    case Verdict::kTaken:
+    case Verdict::kCompleted:
+      break;
+    case Verdict::kDuplicate:
+      ++counters_.duplicate_shards;
+      return;
+    case Verdict::kUnknownRequest:
+    case Verdict::kStaleSession:
+      ++counters_.unknown_shards;
+      return;
+    case Verdict::kMalformed:
+      ++counters_.malformed_shards;
+      return;
+    case Verdict::kWrongSpec:
+      other_spec_hash_ = shard.spec_hash;
+      arrived_.notify_one();
+      return;
+  }
+  const auto outstanding = std::ranges::find(outstanding_, shard.request, &Outstanding::request);
+  if (outstanding != outstanding_.end()) {
+    outstanding->next_send =
+        verdict == Verdict::kCompleted ? SteadyTime::max() : Now() + resend_after_;
+  }
+  arrived_.notify_one();
+}
+
+std::optional<Batch> BatchSource::Next(SteadyTime deadline) {
+  std::unique_lock lock(mutex_);
+  if (handed_out_ != 0) assembler_.Release(std::exchange(handed_out_, 0));
+  while (true) {
+    Extend();
+    SendDue(lock);
+    RefuseOtherSpec();
+    if (auto batch = TakeFirst()) {
+      // The replay works on the next ones while this one is used.
+      Extend();
+      SendDue(lock);
+      return batch;
+    }
+    if (Now() >= deadline) return std::nullopt;
+    SteadyTime wake = deadline;
+    for (const Outstanding& o : outstanding_) wake = std::min(wake, o.next_send);
+    arrived_.wait_until(lock, wake);
+  }
+}
+
+BatchCounters BatchSource::counters() const {
+  const std::lock_guard lock(mutex_);
+  return counters_;
+}
+
+SampleRequest BatchSource::MakeRequest(uint64_t request) const {
+  const Config& config = run_.config;
+  return {.spec_hash = spec_hash_,
+          .learner_session = learner_session_,
+          .request = request,
+          .batch = static_cast<uint32_t>(config.learner.batch),
+          .after_steps = config.lockstep ? LockstepStepsBeforeUpdate(config, request) : 0};
+}
+
+void BatchSource::Extend() {
+  const auto credits = static_cast<size_t>(run_.config.learner.request_credits);
+  while (outstanding_.size() < credits && next_request_ <= last_request_) {
+    CHECK(assembler_.Expect(next_request_)) << "one buffer per credit and one for the caller";
+    outstanding_.push_back({.request = next_request_++});
+  }
+}
+
+void BatchSource::SendDue(std::unique_lock<std::mutex>& lock) {
+  const SteadyTime now = Now();
+  std::vector<uint64_t> due;
+  for (Outstanding& o : outstanding_) {
+    if (o.next_send > now) continue;
+    due.push_back(o.request);
+    o.next_send = now + resend_after_;
+    if (std::exchange(o.sent, true)) ++counters_.resent_requests;
+  }
+  if (due.empty()) return;
+  lock.unlock();
+  std::vector<uint64_t> unsent;
+  for (const uint64_t request : due) {
+    if (!send_(MakeRequest(request))) unsent.push_back(request);
+  }
+  lock.lock();
+  for (Outstanding& o : outstanding_) {
+    if (!std::ranges::count(unsent, o.request) || assembler_.TryGet(o.request)) continue;
+    o.sent = false;
+    o.next_send = Now() + kRetryAfter;
+  }
+}
+
+std::optional<Batch> BatchSource::TakeFirst() {
+  if (outstanding_.empty()) return std::nullopt;
+  const uint64_t request = outstanding_.front().request;
+  const auto assembled = assembler_.TryGet(request);
+  if (!assembled) return std::nullopt;
+  outstanding_.pop_front();
+  handed_out_ = request;
+  return Batch{.view = layout_.View(assembled->data),
+               .request = request,
+               .stored_records = assembled->stored_records,
+               .stored_steps = assembled->stored_steps};
+}
+
+void BatchSource::RefuseOtherSpec() const {
+  if (other_spec_hash_ == 0) return;
+  throw RuntimeError(
+      "the replay sends batches of observation spec {:016x}; this run's is {:016x} [{}]",
+      other_spec_hash_, spec_hash_, run_.spec.Summary());
+}
+
+}  // namespace shoal::learner

@@ -1,0 +1,37 @@
+// Where the training loop gets its batches from.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "common/base/clock.h"
+#include "common/wire/batch_layout.h"
+
+namespace shoal::learner {
+
+struct Batch {
+  BatchView view;                                 // valid until the stream's Next is called again
+  uint64_t request = 0;                           // that it answers
+  uint64_t stored_records = 0, stored_steps = 0;  // in the replay when it was drawn, whole run
+};
+
+// What went wrong so far, and what it was put right with.
+struct BatchCounters {
+  uint64_t resent_requests = 0;
+  uint64_t duplicate_shards = 0;
+  uint64_t unknown_shards = 0;    // of requests done with, or of a former learner session
+  uint64_t malformed_shards = 0;  // sizes or offsets no batch has
+  uint64_t dropped_answers = 0;   // incomplete ones overtaken by another answer
+};
+
+class BatchStream {
+ public:
+  virtual ~BatchStream() = default;
+
+  // The next batch in the order of request ids, waiting until `deadline`; none: nothing is lost,
+  // ask again. Throws Error when the sender's observation spec is another one.
+  virtual std::optional<Batch> Next(SteadyTime deadline) = 0;
+  virtual BatchCounters counters() const = 0;
+};
+
+}  // namespace shoal::learner

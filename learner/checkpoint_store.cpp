@@ -1,0 +1,112 @@
+#include "learner/checkpoint_store.h"
+
+#include <algorithm>
+#include <functional>
+#include <nlohmann/json.hpp>
+
+#include "common/base/build_info.h"
+#include "common/base/clock.h"
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/base/log.h"
+#include "common/base/random.h"
+#include "common/config/config_io.h"
+
+namespace shoal::learner {
+namespace {
+
+namespace fs = std::filesystem;
+
+uint64_t HashOf(const Config& config) {
+  const std::string text = ToJson(config).dump();
+  return HashBytes(text.data(), text.size());
+}
+
+}  // namespace
+
+CheckpointStore::CheckpointStore(const fs::path& run_folder, const RunConfig& run)
+    : folder_(run_folder / "checkpoints"), run_(run), config_hash_(HashOf(run.config)) {
+  MakeFolders(folder_);
+  std::error_code ignored;
+  for (const auto& entry : fs::directory_iterator(folder_)) {
+    const std::string name = entry.path().filename();
+    if (name.starts_with(".step_")) fs::remove_all(entry.path(), ignored);
+  }
+}
+
+std::optional<Checkpoint> CheckpointStore::RestoreNewest() {
+  std::vector<fs::path> refused;
+  std::string newest_fault;
+  for (const uint64_t updates : Existing()) {
+    const std::string name = CheckpointName(updates);
+    try {
+      Checkpoint checkpoint = ReadCheckpoint(folder_ / name, run_.spec.Hash());
+      if (checkpoint.state.config_hash != config_hash_) {
+        log::Warning("{} was written with another configuration: going on with the present one",
+                     name);
+      }
+      for (const fs::path& path : refused) {
+        std::error_code ignored;
+        fs::remove_all(folder_ / ("refused_" + path.filename().string()), ignored);
+        fs::rename(path, folder_ / ("refused_" + path.filename().string()), ignored);
+      }
+      return checkpoint;
+    } catch (const Error& e) {
+      if (newest_fault.empty()) newest_fault = e.what();
+      log::Warning("checkpoint refused: {}", e.what());
+      refused.push_back(folder_ / name);
+    }
+  }
+  if (refused.empty()) return std::nullopt;
+  throw RuntimeError("none of {} checkpoint(s) can be used; the newest: {}", refused.size(),
+                     newest_fault);
+}
+
+std::string CheckpointStore::Write(const CheckpointState& state, const nn::TensorMap& learner,
+                                   const nn::TensorMap& policy,
+                                   const std::set<std::string>& wanted) {
+  WriteCheckpoint(folder_, state, learner, policy, Meta(state));
+  const std::vector<uint64_t> existing = Existing();
+  for (size_t i = kKept; i < existing.size(); ++i) {
+    const std::string name = CheckpointName(existing[i]);
+    if (!wanted.contains(name)) Remove(name);
+  }
+  return CheckpointName(state.updates);
+}
+
+std::vector<uint64_t> CheckpointStore::Existing() const {
+  std::vector<uint64_t> existing;
+  for (const auto& entry : fs::directory_iterator(folder_)) {
+    const auto updates = CheckpointUpdates(entry.path().filename());
+    if (updates && entry.is_directory()) existing.push_back(*updates);
+  }
+  std::ranges::sort(existing, std::greater());
+  return existing;
+}
+
+// Renamed first, so that nobody finds a checkpoint with half of its files.
+void CheckpointStore::Remove(const std::string& name) {
+  std::error_code error;
+  const fs::path going = folder_ / ("." + name + ".old");
+  fs::rename(folder_ / name, going, error);
+  if (!error) fs::remove_all(going, error);
+  if (error) log::Warning("cannot remove checkpoint {}: {}", name, error.message());
+}
+
+nlohmann::ordered_json CheckpointStore::Meta(const CheckpointState& state) const {
+  return {{"schema", "shoal-checkpoint-meta-1"},
+          {"checkpoint", CheckpointName(state.updates)},
+          {"run", run_.config.run_name},
+          {"task", run_.config.task},
+          {"preset", run_.config.preset},
+          {"seed", run_.config.seed},
+          {"updates", state.updates},
+          {"env_steps", state.env_steps},
+          {"precision", state.precision},
+          {"observation", run_.spec.Summary()},
+          {"version", BuildVersion()},
+          {"commit", BuildCommit()},
+          {"created", UtcTimestamp()}};
+}
+
+}  // namespace shoal::learner

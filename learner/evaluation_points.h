@@ -1,0 +1,50 @@
+// Says when the run has reached an evaluation point, a multiple of eval.interval env steps, and
+// hands the evaluation actor the F32 parameters of the checkpoint made there.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "common/config/run_files.h"
+#include "common/wire/messages.h"
+#include "learner/outlet.h"
+#include "learner/sac_agent.h"
+
+namespace shoal::learner {
+
+// Borrows agent and outlet. One thread.
+class EvaluationPoints {
+ public:
+  // `env_steps`: stored when a former learner of the run stopped; points up to there are behind.
+  EvaluationPoints(const RunConfig& run, uint64_t session, uint64_t env_steps,
+                   const SacAgent& agent, Outlet& outlet);
+
+  // True once per multiple of the interval that `env_steps` has come to or passed since the last
+  // call; several passed at once are one point.
+  bool Reached(uint64_t env_steps);
+
+  // Hands out the agent's parameters, which are those of `checkpoint`. What the transport does not
+  // take at once is sent by Retry; a newer point takes the place of an unsent one.
+  void Send(const std::string& checkpoint, uint64_t env_steps);
+  void Retry();
+  bool AllSent() const { return !unsent_; }
+
+  // Updates of the point handed out last; 0 = none yet.
+  uint64_t last_updates() const { return last_updates_; }
+  uint64_t overtaken() const { return overtaken_; }
+
+ private:
+  const uint64_t spec_hash_, session_, interval_;
+  const SacAgent& agent_;
+  Outlet& outlet_;
+  uint64_t next_;  // env steps
+  struct Unsent {
+    EvalWeightsMessage message;  // its payload is `bytes`
+    std::string bytes;
+  };
+  std::optional<Unsent> unsent_;
+  uint64_t last_updates_ = 0, overtaken_ = 0;
+};
+
+}  // namespace shoal::learner

@@ -1,0 +1,109 @@
+#include "learner/learner_program.h"
+
+#include <optional>
+
+#include "common/base/error.h"
+#include "common/base/log.h"
+#include "common/config/run_files.h"
+#include "common/dds/publisher.h"
+#include "common/dds/subscriber.h"
+#include "common/tensorboard/event_writer.h"
+#include "learner/batch_source.h"
+#include "learner/checkpoint_store.h"
+#include "learner/dds_outlet.h"
+#include "learner/openmp_environment.h"
+#include "learner/sac_agent.h"
+#include "learner/training_loop.h"
+
+namespace shoal::learner {
+namespace {
+
+// Members are in construction order: subscribers, which end first, write to what is above them.
+class Learner {
+ public:
+  Learner(const std::filesystem::path& folder, const RunConfig& run, int threads)
+      : run_(run),
+        session_(static_cast<uint64_t>(WallTimeNs())),
+        precision_(nn::ChoosePrecision(run.config.learner.precision)),
+        agent_(run.config, run.spec, precision_),
+        checkpoints_(folder, run),
+        restored_(Restore()),
+        events_(folder / "tensorboard"),
+        control_(Now()),
+        bus_(ReadClusterAddress(folder), run.config.transport, dds::Role::kLearner),
+        outlet_(bus_),
+        requests_(bus_),
+        batches_(run, session_, agent_.updates() + 1,
+                 [this](const SampleRequest& request) { return requests_.Write(request); }),
+        shard_subscriber_(bus_, [this](const BatchShard& shard) { batches_.OnShard(shard); }),
+        evaluation_subscriber_(
+            bus_,
+            [this](const EvalMessage& m) { pending_evaluations_.OnEvaluated(m.version.update); }),
+        control_subscriber_(bus_,
+                            [this](const ControlMessage& m) { control_.OnMessage(m, Now()); }) {
+    log::Info("session {}: {} ({}), {} thread(s), batches of {}, {}", session_,
+              nn::ToString(precision_), nn::CpuIsa(), threads, run.config.learner.batch,
+              run.spec.Summary());
+  }
+
+  int Run() {
+    TrainingLoop loop({.run = run_,
+                       .precision = precision_,
+                       .session = session_,
+                       .agent = agent_,
+                       .batches = batches_,
+                       .outlet = outlet_,
+                       .checkpoints = checkpoints_,
+                       .pending_evaluations = pending_evaluations_,
+                       .control = control_,
+                       .events = events_},
+                      restored_);
+    if (loop.Run() == TrainingLoop::End::kStopped) return 0;
+    log::Failure("the coordinator is gone: no heartbeat; a checkpoint was written; leaving");
+    return 1;
+  }
+
+ private:
+  std::optional<CheckpointState> Restore() {
+    const std::optional<Checkpoint> checkpoint = checkpoints_.RestoreNewest();
+    if (!checkpoint) return std::nullopt;
+    agent_.Restore(checkpoint->tensors, (checkpoint->folder / "learner.safetensors").string());
+    if (agent_.updates() != checkpoint->state.updates) {
+      throw RuntimeError("'{}': parameters of update {}, but state.json says {}",
+                         checkpoint->folder.string(), agent_.updates(), checkpoint->state.updates);
+    }
+    log::Info("restored {}: {} updates, {} env steps", checkpoint->folder.filename().string(),
+              checkpoint->state.updates, checkpoint->state.env_steps);
+    return checkpoint->state;
+  }
+
+  const RunConfig run_;
+  const uint64_t session_;
+  const nn::Precision precision_;
+  SacAgent agent_;
+  CheckpointStore checkpoints_;
+  const std::optional<CheckpointState> restored_;
+  tensorboard::EventWriter events_;
+  PendingEvaluations pending_evaluations_;
+  ControlState control_;
+  dds::Bus bus_;
+  DdsOutlet outlet_;
+  dds::Publisher<SampleRequest> requests_;
+  BatchSource batches_;
+  dds::Subscriber<BatchShard> shard_subscriber_;
+  dds::Subscriber<EvalMessage> evaluation_subscriber_;
+  dds::Subscriber<ControlMessage> control_subscriber_;
+};
+
+}  // namespace
+
+int RunLearner(const std::filesystem::path& folder, char** argv) {
+  const RunConfig run = ReadRunConfig(folder);
+  const int asked = run.config.learner.threads;
+  const int threads = asked > 0 ? asked : AvailableCores();
+  EnsurePassiveOpenMp(threads, argv);
+  nn::SetThreads(threads);
+  return Learner(folder, run, threads).Run();
+}
+
+}  // namespace shoal::learner

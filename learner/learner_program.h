@@ -1,0 +1,13 @@
+// The learner of a run, put together: networks, batches and weights over DDS, checkpoints.
+#pragma once
+
+#include <filesystem>
+
+namespace shoal::learner {
+
+// Trains run `run` from its newest checkpoint, or from the start, until it is told to stop; `argv`
+// is the program's, for OpenMP (openmp_environment.h). Returns the exit code: 0 stopped in order, 1
+// the coordinator is gone. Throws Error.
+int RunLearner(const std::filesystem::path& run, char** argv);
+
+}  // namespace shoal::learner

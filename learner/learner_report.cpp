@@ -1,0 +1,94 @@
+#include "learner/learner_report.h"
+
+#include <utility>
+
+#include "common/base/log.h"
+
+namespace shoal::learner {
+
+LearnerReport::LearnerReport(const RunConfig& run, tensorboard::EventWriter& events)
+    : events_(events),
+      guard_(run.config, run.spec.HasPixels()),
+      report_("learner", 0),
+      last_made_(Now()) {}
+
+void LearnerReport::OnUpdate(const UpdateStats& stats, const Batch& batch, uint64_t updates) {
+  if (!any_updates_) {
+    any_updates_ = true;
+    first_update_ = Now();
+    first_env_steps_ = batch.stored_steps;
+  }
+  window_.Add(stats);
+  policy_lag_ = ComputePolicyLag(batch.view.weights_update, updates);
+}
+
+const MetricsMessage& LearnerReport::Make(const LearnerFigures& figures) {
+  const int updates = window_.updates();
+  if (updates > 0) {
+    mean_ = window_.Mean();
+    for (const std::string& warning : guard_.Check(mean_, updates, Now())) {
+      log::Warning("{}", warning);
+    }
+    WriteScalars(figures);
+  }
+  window_.Clear();
+  const auto add = [&](const char* name, auto value) {
+    report_.Add(name, static_cast<double>(value));
+  };
+  report_.Begin(figures.state);
+  add("updates", figures.updates);
+  add("env_steps", figures.env_steps);
+  const double interval = SecondsSince(std::exchange(last_made_, Now()));
+  add("updates_per_second", interval > 0 ? updates / interval : 0.0);
+  if (any_updates_) AddUpdateFigures();
+  add("seconds_waiting", figures.seconds.waiting);
+  add("seconds_update", figures.seconds.update);
+  add("seconds_publish", figures.seconds.publish);
+  add("seconds_checkpoint", figures.seconds.checkpoint);
+  add("weights_sent", figures.weights_sent);
+  add("weights_unsent", figures.weights_unsent);
+  add("evaluations_overtaken", figures.evaluations_overtaken);
+  add("checkpoints", figures.checkpoints);
+  add("eval_updates", figures.eval_updates);
+  add("drained", figures.drained);
+  add("resent_requests", figures.batches.resent_requests);
+  add("duplicate_shards", figures.batches.duplicate_shards);
+  add("unknown_shards", figures.batches.unknown_shards);
+  add("malformed_shards", figures.batches.malformed_shards);
+  add("dropped_answers", figures.batches.dropped_answers);
+  add("warnings", guard_.warnings());
+  add("rss_mb", ResidentMegabytes());
+  return report_.message();
+}
+
+void LearnerReport::AddUpdateFigures() {
+  report_.Add("critic_loss", mean_.critic_loss);
+  report_.Add("actor_loss", mean_.actor_loss);
+  report_.Add("temperature", mean_.temperature);
+  report_.Add("temperature_loss", mean_.temperature_loss);
+  report_.Add("q_mean", mean_.q_mean);
+  report_.Add("target_mean", mean_.target_mean);
+  report_.Add("entropy", mean_.entropy);
+  report_.Add("action_saturation", mean_.action_saturation);
+  report_.Add("critic_grad_norm", mean_.critic_grad_norm);
+  report_.Add("actor_grad_norm", mean_.actor_grad_norm);
+  report_.Add("policy_lag_p50", policy_lag_.p50);
+  report_.Add("policy_lag_p95", policy_lag_.p95);
+}
+
+void LearnerReport::WriteScalars(const LearnerFigures& figures) {
+  const auto x = static_cast<int64_t>(figures.env_steps);
+  events_.Scalar("train/critic_loss", x, mean_.critic_loss);
+  events_.Scalar("train/actor_loss", x, mean_.actor_loss);
+  events_.Scalar("train/ent_coef", x, mean_.temperature);
+  events_.Scalar("train/ent_coef_loss", x, mean_.temperature_loss);
+  events_.Scalar("train/n_updates", x, static_cast<double>(figures.updates));
+  const double seconds = SecondsSince(first_update_);
+  if (seconds > 0 && figures.env_steps > first_env_steps_) {
+    events_.Scalar("time/fps", x,
+                   static_cast<double>(figures.env_steps - first_env_steps_) / seconds);
+  }
+  events_.Flush();
+}
+
+}  // namespace shoal::learner

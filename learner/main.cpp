@@ -1,0 +1,37 @@
+// shoal-learner: the learner process of a run.
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "common/base/build_info.h"
+#include "common/base/error.h"
+#include "common/base/log.h"
+#include "common/base/main_guard.h"
+#include "common/base/stop.h"
+#include "common/dds/bus.h"
+#include "learner/learner_program.h"
+
+namespace {
+
+int Run(int argc, char** argv) {
+  std::string run;
+  CLI::App app("Trains the policy of a run on batches from its replay.");
+  app.set_version_flag("--version", shoal::BuildVersion());
+  app.add_option("--run", run, "run folder (config.json, cluster.json)")->required();
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& e) {
+    return app.exit(e);
+  } catch (const CLI::ParseError& e) {
+    throw shoal::UsageError("{}", e.what());
+  }
+  shoal::log::Start("learner-0", "");
+  shoal::InstallStopSignals();
+  return shoal::learner::RunLearner(run, argv);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  shoal::dds::TuneMalloc();
+  return shoal::GuardMain("shoal-learner", [&] { return Run(argc, argv); });
+}

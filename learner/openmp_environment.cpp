@@ -1,0 +1,37 @@
+#include "learner/openmp_environment.h"
+
+#include <sched.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
+#include "common/base/error.h"
+
+namespace shoal::learner {
+namespace {
+
+// Set on the way: a second start would be one too many.
+constexpr char kGuard[] = "SHOAL_OPENMP_SET";
+
+}  // namespace
+
+int AvailableCores() {
+  cpu_set_t set;
+  if (sched_getaffinity(0, sizeof set, &set) != 0) return 1;
+  return std::max(1, CPU_COUNT(&set));
+}
+
+void EnsurePassiveOpenMp(int threads, char** argv) {
+  if (std::getenv("OMP_WAIT_POLICY") != nullptr || std::getenv(kGuard) != nullptr) return;
+  setenv(kGuard, "1", 1);
+  setenv("OMP_WAIT_POLICY", "passive", 1);
+  setenv("OMP_NUM_THREADS", std::to_string(threads).c_str(), 1);
+  execv("/proc/self/exe", argv);
+  throw RuntimeError("cannot start '{}' anew: {}", argv[0], std::strerror(errno));
+}
+
+}  // namespace shoal::learner

@@ -1,0 +1,64 @@
+// Watches an agent's figures for training that runs but does not learn, and says so with numbers.
+// Pure: the caller gives the figures and the time, and logs what comes back.
+//
+//   all-equal frames      mean pixel deviation within a frame below kMinSpread grey levels
+//   saturated actions     more than kMaxSaturation of the action components beyond |a| = 0.99
+//   collapsed temperature below kMinTemperatureShare of the initial one
+//   rising critic loss    the mean over kLossUpdates updates has risen kRises times in a row, to
+//   more
+//                         than kRiseFactor times the smallest such mean
+//
+// Each kind is repeated at most once per kRepeat. Flat success is the coordinator's to see.
+#pragma once
+
+#include <array>
+#include <chrono>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/base/clock.h"
+#include "common/config/config.h"
+#include "learner/sac_agent.h"
+
+namespace shoal::learner {
+
+class TrainingGuard {
+ public:
+  // `has_pixels`: whether frame_spread means anything.
+  TrainingGuard(const Config& config, bool has_pixels);
+
+  // Means over `updates` > 0 updates since the last call. Returns the warnings that are due.
+  std::vector<std::string> Check(const UpdateStats& mean, int updates, SteadyTime now);
+
+  uint64_t warnings() const { return warnings_; }
+
+  static constexpr float kMinSpread = 1;
+  static constexpr float kMaxSaturation = 0.95f;
+  static constexpr float kMinTemperatureShare = 1e-4f;
+  static constexpr int kLossUpdates = 1'000;
+  static constexpr int kRises = 5;
+  static constexpr double kRiseFactor = 10;
+  static constexpr std::chrono::seconds kRepeat{60};
+
+ private:
+  enum Kind { kFrames, kSaturation, kTemperature, kCriticLoss, kKinds };
+
+  // Adds the updates to the running mean of the critic loss.
+  void FollowLoss(const UpdateStats& mean, int updates);
+
+  const double initial_temperature_;
+  const bool has_pixels_;
+  std::array<std::optional<SteadyTime>, kKinds> said_;
+  uint64_t warnings_ = 0;
+
+  double loss_sum_ = 0;  // over loss_updates_ updates of the mean that is being built
+  int loss_updates_ = 0;
+  std::optional<double> smallest_loss_, last_loss_;
+  int rises_ = 0;  // in a row, up to last_loss_
+};
+
+// The line that ends a run whose update was not finite.
+std::string DescribeNonFinite(const UpdateStats& stats, uint64_t updates);
+
+}  // namespace shoal::learner

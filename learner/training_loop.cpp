@@ -1,0 +1,181 @@
+#include "learner/training_loop.h"
+
+#include <thread>
+#include <utility>
+
+#include "common/base/error.h"
+#include "common/base/log.h"
+#include "common/base/stop.h"
+#include "common/config/lockstep.h"
+
+namespace shoal::learner {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr milliseconds kPoll{100};            // the longest that control is not looked at
+constexpr milliseconds kBlockedAfter{1'000};  // without a batch
+
+// Adds the seconds of its scope to `total`.
+class ScopedSeconds {
+ public:
+  explicit ScopedSeconds(double& total) : total_(total), start_(Now()) {}
+  ~ScopedSeconds() { total_ += SecondsSince(start_); }
+  ScopedSeconds(const ScopedSeconds&) = delete;
+  ScopedSeconds& operator=(const ScopedSeconds&) = delete;
+
+ private:
+  double& total_;
+  const SteadyTime start_;
+};
+
+}  // namespace
+
+TrainingLoop::TrainingLoop(const Parts& parts, const std::optional<CheckpointState>& restored)
+    : parts_(parts),
+      config_(parts_.run.config),
+      weights_(parts.run, parts.precision, parts.session, parts.agent, parts.outlet),
+      evaluations_(parts.run, parts.session, restored ? restored->env_steps : 0, parts.agent,
+                   parts.outlet),
+      report_(parts.run, parts.events),
+      waiting_since_(Now()) {
+  if (!restored) return;
+  env_steps_ = restored->env_steps;
+  request_ = restored->request;
+  saved_updates_ = restored->updates;
+}
+
+TrainingLoop::End TrainingLoop::Run() {
+  if (parts_.agent.updates() > 0) weights_.Send(env_steps_);
+  bool lost = false;
+  while (!lost && !StopRequested() && parts_.control.state() != RunState::kStopping) {
+    if (parts_.control.state() == RunState::kDraining) {
+      Drain();
+    } else {
+      TryTrain();
+    }
+    evaluations_.Retry();
+    Report();
+    lost = parts_.control.CoordinatorLost(Now());
+  }
+  stopping_ = true;
+  Report(/*now=*/true);
+  if (parts_.agent.updates() > 0) WriteCheckpoint();
+  Report(/*now=*/true);
+  log::Info("stopped after {} updates, {} env steps", parts_.agent.updates(), env_steps_);
+  return lost ? End::kCoordinatorLost : End::kStopped;
+}
+
+bool TrainingLoop::TryTrain() {
+  std::optional<Batch> batch;
+  {
+    const ScopedSeconds timed(seconds_.waiting);
+    batch = parts_.batches.Next(Now() + kPoll);
+  }
+  if (!batch) return false;
+  UpdateStats stats;
+  {
+    const ScopedSeconds timed(seconds_.update);
+    stats = parts_.agent.Update(batch->view);
+  }
+  if (!stats.finite) {
+    throw RuntimeError("{}; last good checkpoint: {}",
+                       DescribeNonFinite(stats, parts_.agent.updates()),
+                       saved_updates_ ? CheckpointName(*saved_updates_) : "none");
+  }
+  AfterUpdate(*batch, stats);
+  waiting_since_ = Now();
+  return true;
+}
+
+void TrainingLoop::AfterUpdate(const Batch& batch, const UpdateStats& stats) {
+  const uint64_t updates = parts_.agent.updates();
+  env_steps_ = batch.stored_steps;
+  request_ = batch.request;
+  report_.OnUpdate(stats, batch, updates);
+  {
+    const ScopedSeconds timed(seconds_.publish);
+    weights_.AfterUpdate(env_steps_);
+  }
+  if (evaluations_.Reached(env_steps_)) {
+    MakeEvaluationPoint();
+  } else if (updates % static_cast<uint64_t>(config_.learner.checkpoint_period) == 0) {
+    WriteCheckpoint();
+  }
+}
+
+void TrainingLoop::MakeEvaluationPoint() {
+  const std::string name = WriteCheckpoint();
+  parts_.pending_evaluations.Add(parts_.agent.updates(), name);
+  const ScopedSeconds timed(seconds_.publish);
+  evaluations_.Send(name, env_steps_);
+}
+
+std::string TrainingLoop::WriteCheckpoint() {
+  const uint64_t updates = parts_.agent.updates();
+  if (saved_updates_ == updates) return CheckpointName(updates);
+  const ScopedSeconds timed(seconds_.checkpoint);
+  const CheckpointState state{.updates = updates,
+                              .env_steps = env_steps_,
+                              .request = request_,
+                              .learner_session = parts_.session,
+                              .config_hash = parts_.checkpoints.config_hash(),
+                              .spec_hash = parts_.run.spec.Hash(),
+                              .precision = nn::ToString(parts_.precision)};
+  const std::string name =
+      parts_.checkpoints.Write(state, parts_.agent.AllTensors(), parts_.agent.PolicyTensors(),
+                               parts_.pending_evaluations.Names());
+  saved_updates_ = updates;
+  ++checkpoints_written_;
+  return name;
+}
+
+void TrainingLoop::Drain() {
+  if (!drain_start_) {
+    drain_start_ = waiting_since_ = Now();
+    log::Info("draining");
+  }
+  if (drained_) {  // the parameters stay those of the last evaluation point
+    std::this_thread::sleep_for(kPoll);
+    return;
+  }
+  if (!DrainingIsOver(TryTrain())) return;
+  drained_ = true;
+  if (parts_.agent.updates() > 0 && evaluations_.last_updates() != parts_.agent.updates()) {
+    MakeEvaluationPoint();
+  }
+  log::Info("drained after {} updates, {} env steps", parts_.agent.updates(), env_steps_);
+}
+
+bool TrainingLoop::DrainingIsOver(bool trained) const {
+  const SteadyTime now = Now();
+  if (now - *drain_start_ > kDrainMost) return true;
+  if (config_.lockstep && parts_.agent.updates() >= LockstepLastUpdate(config_)) return true;
+  if (!config_.lockstep && config_.replay.samples_per_insert <= 0) return true;
+  return !trained && now - waiting_since_ > parts_.drain_idle;
+}
+
+void TrainingLoop::Report(bool now) {
+  if (!report_.Due() && !now) return;
+  const LearnerFigures figures{.state = State(),
+                               .updates = parts_.agent.updates(),
+                               .env_steps = env_steps_,
+                               .weights_sent = weights_.sent(),
+                               .weights_unsent = weights_.unsent(),
+                               .evaluations_overtaken = evaluations_.overtaken(),
+                               .checkpoints = checkpoints_written_,
+                               .eval_updates = evaluations_.last_updates(),
+                               .drained = drained_,
+                               .seconds = seconds_,
+                               .batches = parts_.batches.counters()};
+  parts_.outlet.Publish(report_.Make(figures));
+}
+
+const char* TrainingLoop::State() const {
+  if (stopping_) return "stopping";
+  if (drain_start_) return "draining";
+  if (parts_.agent.updates() == 0) return "starting";
+  return Now() - waiting_since_ > kBlockedAfter ? "blocked" : "running";
+}
+
+}  // namespace shoal::learner

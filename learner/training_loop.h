@@ -1,0 +1,88 @@
+// The learner's loop: batch, update, and what follows from it (weights, evaluation points,
+// checkpoints, reports), until the run drains or stops.
+//
+// Checkpoints are written every learner.checkpoint_period updates, at each evaluation point, when
+// draining is over (an evaluation point too) and at the end. Draining is over when the replay gives
+// no batches any more: kDrainIdle without one, in lockstep after the run's last update, without a
+// samples-per-insert limit at once, and after kDrainMost in any case.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "common/base/clock.h"
+#include "common/config/run_files.h"
+#include "common/tensorboard/event_writer.h"
+#include "common/wire/control_state.h"
+#include "learner/batch_stream.h"
+#include "learner/checkpoint_store.h"
+#include "learner/evaluation_points.h"
+#include "learner/learner_report.h"
+#include "learner/outlet.h"
+#include "learner/pending_evaluations.h"
+#include "learner/sac_agent.h"
+#include "learner/weights_sender.h"
+
+namespace shoal::learner {
+
+// Borrows what Parts refers to. One thread.
+// Errors: Error when an update is not finite, a file cannot be written, or batches are of another
+// spec; the checkpoints written before stay as they are.
+class TrainingLoop {
+ public:
+  struct Parts {
+    RunConfig run;
+    nn::Precision precision = nn::Precision::kF32;
+    uint64_t session = 0;  // this learner's: wall-clock ns at its start
+    SacAgent& agent;       // fresh, or as in `restored`
+    BatchStream& batches;
+    Outlet& outlet;
+    CheckpointStore& checkpoints;
+    PendingEvaluations& pending_evaluations;
+    const ControlState& control;
+    tensorboard::EventWriter& events;
+    std::chrono::milliseconds drain_idle = kDrainIdle;
+  };
+
+  enum class End { kStopped, kCoordinatorLost };
+
+  // `restored`: the state of the checkpoint that the agent was restored from.
+  TrainingLoop(const Parts& parts, const std::optional<CheckpointState>& restored);
+
+  // Until kStopping, a stop signal, or the coordinator's death; a last checkpoint is then written.
+  End Run();
+
+  static constexpr std::chrono::milliseconds kDrainIdle{2'000};
+  static constexpr std::chrono::seconds kDrainMost{30};
+
+ private:
+  // Waits a moment for a batch and uses it. False: none came.
+  bool TryTrain();
+  void AfterUpdate(const Batch& batch, const UpdateStats& stats);
+  void MakeEvaluationPoint();
+  // Writes a checkpoint of the agent as it is, unless the newest one is that. Returns its name.
+  std::string WriteCheckpoint();
+  // Draining: goes on training until it is over, then makes the last evaluation point, once.
+  void Drain();
+  bool DrainingIsOver(bool trained) const;
+  void Report(bool now = false);
+  const char* State() const;
+
+  const Parts parts_;
+  const Config& config_;
+  WeightsSender weights_;
+  EvaluationPoints evaluations_;
+  LearnerReport report_;
+  LearnerSeconds seconds_;
+  uint64_t env_steps_ = 0;  // stored when the last batch was drawn
+  uint64_t request_ = 0;    // of that batch
+  uint64_t checkpoints_written_ = 0;
+  std::optional<uint64_t> saved_updates_;  // of the newest checkpoint
+  SteadyTime waiting_since_;               // the last batch, or the start
+  std::optional<SteadyTime> drain_start_;
+  bool drained_ = false, stopping_ = false;
+};
+
+}  // namespace shoal::learner

@@ -1,0 +1,48 @@
+#include "learner/weights_sender.h"
+
+#include "common/base/crc32.h"
+#include "common/config/lockstep.h"
+#include "common/nn/safetensors.h"
+
+namespace shoal::learner {
+
+WeightsSender::WeightsSender(const RunConfig& run, nn::Precision precision, uint64_t session,
+                             const SacAgent& agent, Outlet& outlet)
+    : config_(run.config),
+      spec_hash_(run.spec.Hash()),
+      session_(session),
+      precision_(precision),
+      agent_(agent),
+      outlet_(outlet) {}
+
+void WeightsSender::AfterUpdate(uint64_t env_steps) {
+  due_ = due_ || Due(agent_.updates());
+  if (!due_) return;
+  if (!config_.lockstep && Now() - last_sent_ < kPatience && !outlet_.WeightsArrived()) return;
+  Send(env_steps);
+}
+
+void WeightsSender::Send(uint64_t env_steps) {
+  nn::TensorMap tensors = agent_.PolicyTensors();
+  if (precision_ == nn::Precision::kBf16) tensors = nn::ToBf16(tensors);
+  const std::string bytes = nn::WriteSafetensors(tensors, {});
+  WeightsMessage message;
+  message.spec_hash = spec_hash_;
+  message.version = {session_, agent_.updates()};
+  message.env_steps = env_steps;
+  message.payload = {reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()};
+  message.crc = Crc32(message.payload);
+  due_ = !outlet_.Publish(message);
+  ++(due_ ? unsent_ : sent_);
+  last_sent_ = Now();
+}
+
+bool WeightsSender::Due(uint64_t updates) {
+  if (!config_.lockstep) {
+    return updates == 1 || updates % static_cast<uint64_t>(config_.learner.weights_period) == 0;
+  }
+  while (LockstepUpdatesAtPhaseEnd(config_, phase_) < updates) ++phase_;
+  return LockstepUpdatesAtPhaseEnd(config_, phase_) == updates;
+}
+
+}  // namespace shoal::learner

@@ -1,0 +1,50 @@
+// Sends the policy's parameters to the actors as the updates go by: at the first update, then every
+// learner.weights_period; in lockstep at the end of each phase. BF16 when the precision is, else
+// F32.
+//
+// Weights that are due while readers still lack the last ones wait for them, at most kPatience, so
+// that slow readers are not starved; not in lockstep, where actors wait for exactly these.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+
+#include "common/base/clock.h"
+#include "common/config/run_files.h"
+#include "learner/outlet.h"
+#include "learner/sac_agent.h"
+
+namespace shoal::learner {
+
+// Borrows agent and outlet. One thread.
+class WeightsSender {
+ public:
+  WeightsSender(const RunConfig& run, nn::Precision precision, uint64_t session,
+                const SacAgent& agent, Outlet& outlet);
+
+  // Call after each update: sends when it is time.
+  void AfterUpdate(uint64_t env_steps);
+  // Sends at once: after a restart, so that actors need not wait.
+  void Send(uint64_t env_steps);
+
+  uint64_t sent() const { return sent_; }
+  // Tries that the transport did not take; newer weights follow.
+  uint64_t unsent() const { return unsent_; }
+
+  static constexpr std::chrono::milliseconds kPatience{500};
+
+ private:
+  bool Due(uint64_t updates);
+
+  const Config config_;
+  const uint64_t spec_hash_, session_;
+  const nn::Precision precision_;
+  const SacAgent& agent_;
+  Outlet& outlet_;
+  bool due_ = false;
+  SteadyTime last_sent_{};
+  int64_t phase_ = 0;  // lockstep: the first one whose end is not reached
+  uint64_t sent_ = 0, unsent_ = 0;
+};
+
+}  // namespace shoal::learner
