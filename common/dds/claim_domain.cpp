@@ -1,3 +1,5 @@
+#include "common/dds/claim_domain.h"
+
 #include <unistd.h>
 
 #include <random>
@@ -17,9 +19,9 @@ namespace {
 constexpr int kFirstDomain = 2, kLastDomain = 98;
 constexpr int kDomains = (kLastDomain - kFirstDomain) / 2 + 1;
 
-// Whether all fixed ports of a run in that domain can be had. The coordinator's come first and end
-// the search when taken, so that a living run's other processes are never disturbed by the attempt.
-bool PortsFree(int domain) {
+}  // namespace
+
+bool RunPortsFree(int domain) {
   ClusterAddress address;
   address.domain = domain;
   for (const Plane plane : {Plane::kMain, Plane::kBatch}) {
@@ -32,8 +34,6 @@ bool PortsFree(int domain) {
   return true;
 }
 
-}  // namespace
-
 std::unique_ptr<Bus> ClaimDomain(const TransportConfig& transport, ClusterAddress* address) {
   ClusterAddress claim = *address;
   if (claim.tag.empty()) claim.tag = fmt::format("shoal-{:x}-{}", WallTimeNs(), getpid());
@@ -41,7 +41,7 @@ std::unique_ptr<Bus> ClaimDomain(const TransportConfig& transport, ClusterAddres
   const int first = static_cast<int>(random() % kDomains);
   for (int i = 0; i < kDomains; ++i) {
     claim.domain = kFirstDomain + 2 * ((first + i) % kDomains);
-    if (!PortsFree(claim.domain)) continue;
+    if (!RunPortsFree(claim.domain)) continue;
     try {
       auto bus = std::make_unique<Bus>(claim, transport, Role::kCoordinator);
       *address = claim;

@@ -1,0 +1,143 @@
+// Example messages numbered n, the same in every process, for tests that compare what was sent with
+// what arrived. Every field has a value of its own that depends on n.
+#pragma once
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/base/random.h"
+#include "common/wire/messages.h"
+
+namespace shoal::dds {
+
+// `payload_bytes` pseudo-random bytes that depend on n.
+inline std::vector<uint8_t> ExamplePayload(uint64_t n, size_t payload_bytes) {
+  std::vector<uint8_t> payload(payload_bytes);
+  Random random(n);
+  for (uint8_t& byte : payload) byte = static_cast<uint8_t>(random.Next());
+  return payload;
+}
+
+inline void Fill(uint64_t n, TransitionChunk* m) {
+  *m = {.spec_hash = n + 1000,
+        .actor = 3,
+        .count = 1,
+        .session = 4,
+        .first_sequence = n,
+        .payload = m->payload};
+}
+inline void Fill(uint64_t n, Credit* m) {
+  *m = {.replay_session = 5,
+        .actor = 3,
+        .session = 4,
+        .stored = n,
+        .allowed = n + 100,
+        .spec_hash = n + 1000};
+}
+inline void Fill(uint64_t n, SampleRequest* m) {
+  *m = {.spec_hash = n + 1000,
+        .learner_session = 6,
+        .request = n,
+        .batch = 128,
+        .after_steps = n + 7};
+}
+inline void Fill(uint64_t n, BatchShard* m) {
+  *m = {.spec_hash = n + 1000,
+        .learner_session = 6,
+        .request = n,
+        .shard = 2,
+        .shards = 9,
+        .offset = n * 64,
+        .total_bytes = n * 64 + m->payload.size() + 1,
+        .stored_records = n + 8,
+        .stored_steps = n + 9,
+        .payload = m->payload};
+}
+inline void Fill(uint64_t n, WeightsMessage* m) {
+  m->spec_hash = n + 1000;
+  m->version = {6, n};
+  m->env_steps = n + 10;
+  m->crc = static_cast<uint32_t>(n + 11);
+  m->checkpoint = fmt::format("step_{}", n);
+}
+inline void Fill(uint64_t n, MetricsMessage* m) {
+  *m = {.role = "actor",
+        .id = 3,
+        .host = "host-ü",
+        .pid = -12,
+        .state = "running",
+        .time = static_cast<double>(n),
+        .names = {"a/b", "", "c"},
+        .values = {0.1, -1e300, static_cast<double>(n)}};
+}
+inline void Fill(uint64_t n, ControlMessage* m) {
+  *m = {.epoch = n, .state = RunState::kDraining, .time = static_cast<double>(n) + 0.5};
+}
+inline void Fill(uint64_t n, EvalMessage* m) {
+  *m = {.env_steps = n + 12,
+        .version = {6, n},
+        .checkpoint = "best",
+        .json = fmt::format("{{\"n\": {}}}", n)};
+}
+
+// The number n of a message, for counting what is missing.
+inline uint64_t Number(const TransitionChunk& m) { return m.first_sequence; }
+inline uint64_t Number(const Credit& m) { return m.stored; }
+inline uint64_t Number(const SampleRequest& m) { return m.request; }
+inline uint64_t Number(const BatchShard& m) { return m.request; }
+inline uint64_t Number(const WeightsMessage& m) { return m.version.update; }
+inline uint64_t Number(const MetricsMessage& m) { return static_cast<uint64_t>(m.time); }
+inline uint64_t Number(const ControlMessage& m) { return m.epoch; }
+inline uint64_t Number(const EvalMessage& m) { return m.version.update; }
+
+// Every field as one line of text; payloads as size and hash.
+inline std::string Bytes(std::span<const uint8_t> payload) {
+  return fmt::format("{}:{:x}", payload.size(), HashBytes(payload.data(), payload.size()));
+}
+inline std::string Describe(const TransitionChunk& m) {
+  return fmt::format("{} {} {} {} {} {}", m.spec_hash, m.actor, m.count, m.session,
+                     m.first_sequence, Bytes(m.payload));
+}
+inline std::string Describe(const Credit& m) {
+  return fmt::format("{} {} {} {} {} {}", m.replay_session, m.actor, m.session, m.stored, m.allowed,
+                     m.spec_hash);
+}
+inline std::string Describe(const SampleRequest& m) {
+  return fmt::format("{} {} {} {} {}", m.spec_hash, m.learner_session, m.request, m.batch,
+                     m.after_steps);
+}
+inline std::string Describe(const BatchShard& m) {
+  return fmt::format("{} {} {} {} {} {} {} {} {} {}", m.spec_hash, m.learner_session, m.request,
+                     m.shard, m.shards, m.offset, m.total_bytes, m.stored_records, m.stored_steps,
+                     Bytes(m.payload));
+}
+inline std::string Describe(const WeightsMessage& m) {
+  return fmt::format("{} {} {} {} {} {} {}", m.spec_hash, m.version.session, m.version.update,
+                     m.env_steps, m.crc, m.checkpoint, Bytes(m.payload));
+}
+inline std::string Describe(const MetricsMessage& m) {
+  return fmt::format("{} {} {} {} {} {} [{}] [{}]", m.role, m.id, m.host, m.pid, m.state, m.time,
+                     fmt::join(m.names, ","), fmt::join(m.values, ","));
+}
+inline std::string Describe(const ControlMessage& m) {
+  return fmt::format("{} {} {}", m.epoch, static_cast<uint32_t>(m.state), m.time);
+}
+inline std::string Describe(const EvalMessage& m) {
+  return fmt::format("{} {} {} {} {}", m.env_steps, m.version.session, m.version.update,
+                     m.checkpoint, m.json);
+}
+
+// Builds message n and calls use(message) while its payload lives.
+template <class M, class Use>
+void WithExample(uint64_t n, const std::vector<uint8_t>& payload, const Use& use) {
+  M message;
+  if constexpr (requires { message.payload; }) message.payload = payload;
+  Fill(n, &message);
+  use(message);
+}
+
+}  // namespace shoal::dds

@@ -1,0 +1,50 @@
+// A dds_peer in a process of its own, driven over pipes.
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <csignal>
+#include <string>
+
+#include "common/config/run_files.h"
+
+namespace shoal::dds {
+
+class PeerProcess {
+ public:
+  // Starts it and waits until it has joined; fails the test otherwise, with what it wrote to
+  // stderr.
+  PeerProcess(const std::string& role, const ClusterAddress& address);
+  // Kills it when it has not ended.
+  ~PeerProcess();
+  PeerProcess(const PeerProcess&) = delete;
+  PeerProcess& operator=(const PeerProcess&) = delete;
+
+  // Sends a command and returns the answer line; "got" lines in between are kept for NextGot. Empty
+  // when none comes within the deadline or the process is gone.
+  std::string Ask(const std::string& command,
+                  std::chrono::milliseconds deadline = std::chrono::seconds(40));
+  // Like Ask, in two steps.
+  void Send(const std::string& command);
+  std::string Answer(std::chrono::milliseconds deadline = std::chrono::seconds(40));
+  // The next "got" line; empty when none comes within the deadline.
+  std::string NextGot(std::chrono::milliseconds deadline = std::chrono::seconds(10));
+
+  void Signal(int signal) const { kill(pid_, signal); }
+  // SIGKILL, and waits for the end.
+  void Kill();
+
+ private:
+  // The next line, whatever it is.
+  std::string ReadLine(std::chrono::steady_clock::time_point end);
+  std::string NextLine(bool want_got, std::chrono::milliseconds deadline);
+
+  pid_t pid_ = -1;
+  int to_child_ = -1, from_child_ = -1;
+  std::string buffer_;           // read, not yet a whole line
+  std::string pending_got_;      // lines seen while waiting for an answer
+  std::string pending_answers_;  // lines seen while waiting for a "got"
+};
+
+}  // namespace shoal::dds

@@ -1,0 +1,204 @@
+#include "common/dds/subscriber.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <memory>
+#include <thread>
+#include <vector>
+
+#include "common/base/error.h"
+#include "common/dds/publisher.h"
+// clang-format off
+#include "shoal.h"
+#include "dds/dds.h"
+// clang-format on
+
+// One process: writers and readers of one participant, where a write calls back at once.
+
+namespace shoal::dds {
+namespace {
+
+class SubscriberTest : public ::testing::Test {
+ protected:
+  void SetUp() override { bus_ = ClaimDomain(TransportConfig{}, &address_); }
+
+  ClusterAddress address_;
+  std::unique_ptr<Bus> bus_;
+};
+
+// A writer of a topic that sends what our Publisher never would.
+class RawWriter {
+ public:
+  RawWriter(int domain, const dds_topic_descriptor_t* type, const char* topic,
+            dds_data_representation_id_t representation) {
+    participant_ = dds_create_participant(static_cast<dds_domainid_t>(domain), nullptr, nullptr);
+    dds_qos_t* qos = dds_create_qos();
+    dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
+    dds_qset_durability(qos, DDS_DURABILITY_TRANSIENT_LOCAL);
+    dds_qset_data_representation(qos, 1, &representation);
+    const dds_entity_t handle = dds_create_topic(participant_, type, topic, qos, nullptr);
+    writer_ = dds_create_writer(participant_, handle, qos, nullptr);
+    EXPECT_GT(writer_, 0) << dds_strretcode(-writer_);
+    dds_delete_qos(qos);
+  }
+  ~RawWriter() { dds_delete(participant_); }
+  RawWriter(const RawWriter&) = delete;
+  RawWriter& operator=(const RawWriter&) = delete;
+
+  void Write(const void* sample) { EXPECT_EQ(dds_write(writer_, sample), DDS_RETCODE_OK); }
+
+ private:
+  dds_entity_t participant_, writer_;
+};
+
+TEST_F(SubscriberTest, ALateReaderGetsOnlyTheNewestControlMessage) {
+  Publisher<ControlMessage> publisher(*bus_);
+  for (uint64_t epoch = 1; epoch <= 5; ++epoch) {
+    EXPECT_TRUE(publisher.Write({.epoch = epoch, .state = RunState::kRunning, .time = 1}));
+  }
+  std::vector<uint64_t> epochs;
+  const Subscriber<ControlMessage> subscriber(
+      *bus_, [&](const ControlMessage& message) { epochs.push_back(message.epoch); });
+  EXPECT_EQ(epochs, std::vector<uint64_t>{5});
+}
+
+TEST_F(SubscriberTest, ALateReaderGetsTheLast32Evaluations) {
+  Publisher<EvalMessage> publisher(*bus_);
+  for (uint64_t n = 1; n <= 40; ++n) {
+    publisher.Write({.env_steps = n, .version = {}, .checkpoint = "", .json = "{}"});
+  }
+  std::vector<uint64_t> env_steps;
+  const Subscriber<EvalMessage> subscriber(
+      *bus_, [&](const EvalMessage& message) { env_steps.push_back(message.env_steps); });
+  ASSERT_EQ(env_steps.size(), 32u);
+  EXPECT_EQ(env_steps.front(), 9u);
+  EXPECT_EQ(env_steps.back(), 40u);
+}
+
+TEST_F(SubscriberTest, CreditsAreKeptPerActorAndSession) {
+  Publisher<Credit> publisher(*bus_);
+  for (const uint32_t actor : {0u, 1u}) {
+    for (const uint64_t session : {7u, 8u}) {
+      for (uint64_t stored = 1; stored <= 3; ++stored) {
+        publisher.Write({.replay_session = 1,
+                         .actor = actor,
+                         .session = session,
+                         .stored = stored,
+                         .allowed = stored,
+                         .spec_hash = 0});
+      }
+    }
+  }
+  int received = 0;
+  const Subscriber<Credit> subscriber(*bus_, [&](const Credit& credit) {
+    ++received;
+    EXPECT_EQ(credit.stored, 3u);
+  });
+  EXPECT_EQ(received, 4);
+}
+
+TEST_F(SubscriberTest, ALateReaderGetsNoOldMetrics) {
+  Publisher<MetricsMessage> publisher(*bus_);
+  MetricsMessage message;
+  message.role = "actor";
+  publisher.Write(message);
+  int received = 0;
+  const Subscriber<MetricsMessage> subscriber(*bus_, [&](const MetricsMessage&) { ++received; });
+  EXPECT_EQ(received, 0);
+  publisher.Write(message);
+  EXPECT_EQ(received, 1);
+}
+
+TEST_F(SubscriberTest, WeightsAndEvaluationWeightsDoNotMix) {
+  Publisher<EvalWeightsMessage> publisher(*bus_);
+  const std::vector<uint8_t> payload(100, 1);
+  EvalWeightsMessage message;
+  message.version = {1, 1};
+  message.payload = payload;
+  publisher.Write(message);
+  int training = 0, evaluation = 0;
+  const Subscriber<WeightsMessage> a(*bus_, [&](const WeightsMessage&) { ++training; });
+  const Subscriber<EvalWeightsMessage> b(*bus_, [&](const EvalWeightsMessage&) { ++evaluation; });
+  EXPECT_EQ(training, 0);
+  EXPECT_EQ(evaluation, 1);
+}
+
+TEST_F(SubscriberTest, BulkMessagesOfAnotherVersionAreCountedNotDelivered) {
+  std::atomic<int> delivered{0};
+  const Subscriber<WeightsMessage> subscriber(*bus_, [&](const WeightsMessage&) { ++delivered; });
+  RawWriter writer(address_.domain, &shoal_idl_Weights_desc, "weights_v1",
+                   DDS_DATA_REPRESENTATION_XCDR1);
+  std::vector<uint8_t> payload(10, 1);
+  char checkpoint[] = "";
+  shoal_idl_Weights weights{2, 0, 1, 1, 0, 0, {10, 10, payload.data(), false}, checkpoint};
+  writer.Write(&weights);
+  EXPECT_EQ(delivered, 0);
+  EXPECT_EQ(subscriber.Malformed(), 1u);
+  weights.version = 1;
+  writer.Write(&weights);
+  EXPECT_EQ(delivered, 1);
+  EXPECT_EQ(subscriber.Malformed(), 1u);
+}
+
+TEST_F(SubscriberTest, ControlOfAnUnknownStateIsCountedNotDelivered) {
+  std::atomic<int> delivered{0};
+  const Subscriber<ControlMessage> subscriber(*bus_, [&](const ControlMessage&) { ++delivered; });
+  RawWriter writer(address_.domain, &shoal_idl_Control_desc, "control",
+                   DDS_DATA_REPRESENTATION_XCDR2);
+  const shoal_idl_Control control{1, 77, 1.0};
+  writer.Write(&control);
+  EXPECT_EQ(delivered, 0);
+  EXPECT_EQ(subscriber.Malformed(), 1u);
+}
+
+TEST_F(SubscriberTest, NoCallbackRunsAfterTheDestructor) {
+  Publisher<ControlMessage> publisher(*bus_);
+  std::atomic<bool> alive{false};
+  std::atomic<int> calls{0}, late_calls{0};
+  const std::jthread writer([&](const std::stop_token& stop) {
+    for (uint64_t n = 1; !stop.stop_requested(); ++n) {
+      publisher.Write({.epoch = n, .state = RunState::kRunning, .time = 1});
+    }
+  });
+  for (int i = 0; i < 300; ++i) {
+    const int before = calls;
+    alive = true;
+    {
+      const Subscriber<ControlMessage> subscriber(*bus_, [&](const ControlMessage&) {
+        ++calls;
+        if (!alive) ++late_calls;
+      });
+      while (calls < before + 3) std::this_thread::yield();
+    }
+    alive = false;
+  }
+  EXPECT_EQ(late_calls, 0);
+}
+
+TEST_F(SubscriberTest, MatchedCountsPeersOfBothSides) {
+  Publisher<ControlMessage> publisher(*bus_);
+  EXPECT_EQ(publisher.Matched(), 0);
+  const auto ignore = [](const ControlMessage&) {};
+  const Subscriber<ControlMessage> first(*bus_, ignore);
+  {
+    const Subscriber<ControlMessage> second(*bus_, ignore);
+    EXPECT_EQ(publisher.Matched(), 2);
+    EXPECT_EQ(second.Matched(), 1);
+  }
+  EXPECT_EQ(publisher.Matched(), 1);
+}
+
+TEST(SubscriberDeathTest, OnlyLearnerAndReplayReachTheBatchTopics) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");
+  EXPECT_DEATH(
+      {
+        ClusterAddress address;
+        const auto bus = ClaimDomain(TransportConfig{}, &address);
+        const Subscriber<BatchShard> subscriber(*bus, [](const BatchShard&) {});
+      },
+      "batch domain");
+}
+
+}  // namespace
+}  // namespace shoal::dds

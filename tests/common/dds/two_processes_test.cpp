@@ -1,0 +1,159 @@
+// What two processes exchange through the sockets: this one is the coordinator that holds the
+// domain.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "common/dds/bus.h"
+#include "tests/common/dds/example_messages.h"
+#include "tests/common/dds/peer_process.h"
+
+namespace shoal::dds {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+class TwoProcessesTest : public ::testing::Test {
+ protected:
+  void SetUp() override { bus_ = ClaimDomain(TransportConfig{}, &address_); }
+
+  ClusterAddress address_;
+  std::unique_ptr<Bus> bus_;
+};
+
+template <class M>
+std::string Expected(const std::string& name, uint64_t n, size_t payload_bytes) {
+  std::string text;
+  WithExample<M>(n, ExamplePayload(n, payload_bytes),
+                 [&](const M& message) { text = Describe(message); });
+  return "got " + name + " " + text;
+}
+
+// Message n of `name` arrives at the receiver with every field as it was sent.
+template <class M>
+void ExpectSame(PeerProcess& sender, PeerProcess& receiver, const std::string& name) {
+  constexpr uint64_t kNumber = 41;
+  constexpr size_t kPayloadBytes = 100'000;
+  EXPECT_EQ(receiver.Ask("show " + name), "ok");
+  EXPECT_EQ(sender.Ask("publish " + name), "ok");
+  EXPECT_EQ(sender.Ask("match " + name + " 1 10000"), "matched 1");
+  EXPECT_THAT(sender.Ask(fmt::format("write {} {} 1 {}", name, kNumber, kPayloadBytes)),
+              StartsWith("wrote 1 "));
+  EXPECT_EQ(receiver.NextGot(), Expected<M>(name, kNumber, kPayloadBytes));
+}
+
+TEST_F(TwoProcessesTest, MessagesBetweenActorAndReplayArriveAsSent) {
+  PeerProcess replay("replay", address_), actor("actor", address_);
+  ExpectSame<TransitionChunk>(actor, replay, "TransitionChunk");
+  ExpectSame<Credit>(replay, actor, "Credit");
+}
+
+TEST_F(TwoProcessesTest, MessagesBetweenLearnerAndReplayArriveAsSent) {
+  PeerProcess learner("learner", address_), replay("replay", address_);
+  ExpectSame<SampleRequest>(learner, replay, "SampleRequest");
+  ExpectSame<BatchShard>(replay, learner, "BatchShard");
+}
+
+TEST_F(TwoProcessesTest, MessagesFromLearnerToActorArriveAsSent) {
+  PeerProcess learner("learner", address_), actor("actor", address_);
+  ExpectSame<WeightsMessage>(learner, actor, "WeightsMessage");
+  ExpectSame<EvalWeightsMessage>(learner, actor, "EvalWeightsMessage");
+}
+
+TEST_F(TwoProcessesTest, MessagesBetweenActorAndCoordinatorArriveAsSent) {
+  bus_.reset();
+  PeerProcess coordinator("coordinator", address_), actor("actor", address_);
+  ExpectSame<MetricsMessage>(actor, coordinator, "MetricsMessage");
+  ExpectSame<EvalMessage>(actor, coordinator, "EvalMessage");
+  ExpectSame<ControlMessage>(coordinator, actor, "ControlMessage");
+}
+
+TEST_F(TwoProcessesTest, ALateActorGetsTheNewestWeightsCreditAndControl) {
+  bus_.reset();
+  PeerProcess coordinator("coordinator", address_), learner("learner", address_),
+      replay("replay", address_);
+  learner.Ask("publish WeightsMessage");
+  learner.Ask("write WeightsMessage 1 3 3000000");
+  replay.Ask("publish Credit");
+  replay.Ask("write Credit 1 3 0");
+  coordinator.Ask("publish ControlMessage");
+  coordinator.Ask("write ControlMessage 1 3 0");
+  PeerProcess actor("actor", address_);
+  const auto newest = [&](const std::string& name) {
+    EXPECT_EQ(actor.Ask("show " + name), "ok");
+    const std::string got = actor.NextGot();
+    EXPECT_THAT(actor.Ask("received " + name + " 1 0"), StartsWith("received 1 "));
+    return got;
+  };
+  // The payload is that of the first message of the write.
+  const std::vector<uint8_t> payload = ExamplePayload(1, 3'000'000);
+  WithExample<WeightsMessage>(3, payload, [&](const WeightsMessage& message) {
+    EXPECT_EQ(newest("WeightsMessage"), "got WeightsMessage " + Describe(message));
+  });
+  EXPECT_EQ(newest("Credit"), Expected<Credit>("Credit", 3, 0));
+  EXPECT_EQ(newest("ControlMessage"), Expected<ControlMessage>("ControlMessage", 3, 0));
+}
+
+TEST_F(TwoProcessesTest, ProcessesOfAnotherTagAreNotSeen) {
+  PeerProcess replay("replay", address_);
+  ClusterAddress other = address_;
+  other.tag += "-other";
+  PeerProcess stranger("actor", other), actor("actor", address_);
+  replay.Ask("subscribe TransitionChunk");
+  stranger.Ask("publish TransitionChunk");
+  actor.Ask("publish TransitionChunk");
+  EXPECT_EQ(actor.Ask("match TransitionChunk 1 10000"), "matched 1");
+  EXPECT_EQ(replay.Ask("match TransitionChunk 1 10000"), "matched 1");
+  EXPECT_EQ(stranger.Ask("match TransitionChunk 1 1500"), "matched 0");
+}
+
+// Speed is recorded, not judged: the machine is shared.
+TEST_F(TwoProcessesTest, MegabyteShardsAtFullSpeedLoseNothing) {
+  constexpr uint64_t kShards = 2000;
+  constexpr uint64_t kBytes = 1'000'000;
+  PeerProcess learner("learner", address_), replay("replay", address_);
+  learner.Ask("subscribe BatchShard");
+  replay.Ask("publish BatchShard");
+  ASSERT_EQ(replay.Ask("match BatchShard 1 10000"), "matched 1");
+  const std::string wrote = replay.Ask(fmt::format("write BatchShard 1 {} {}", kShards, kBytes));
+  EXPECT_THAT(wrote, HasSubstr(fmt::format("wrote {} ", kShards)));
+  EXPECT_EQ(learner.Ask(fmt::format("received BatchShard {} 20000", kShards)),
+            fmt::format("received {} gaps 0 bytes {} malformed 0", kShards, kShards * kBytes));
+  RecordProperty("shards_1MB", wrote);
+}
+
+TEST_F(TwoProcessesTest, ChunksFromFourActorsAtOnceLoseNothing) {
+  constexpr uint64_t kChunks = 200;
+  PeerProcess replay("replay", address_);
+  replay.Ask("subscribe TransitionChunk");
+  std::vector<std::unique_ptr<PeerProcess>> actors;
+  for (int i = 0; i < 4; ++i) {
+    actors.push_back(std::make_unique<PeerProcess>("actor", address_));
+    actors.back()->Ask("publish TransitionChunk");
+    ASSERT_EQ(actors.back()->Ask("match TransitionChunk 1 10000"), "matched 1");
+  }
+  for (auto& actor : actors) {
+    actor->Send(fmt::format("write TransitionChunk 1 {} 1000000", kChunks));
+  }
+  for (auto& actor : actors) {
+    EXPECT_THAT(actor->Answer(), StartsWith(fmt::format("wrote {} ", kChunks)));
+  }
+  EXPECT_THAT(replay.Ask(fmt::format("received TransitionChunk {} 20000", 4 * kChunks)),
+              StartsWith(fmt::format("received {} ", 4 * kChunks)));
+}
+
+TEST_F(TwoProcessesTest, AChunkIsAnsweredByItsCredit) {
+  PeerProcess replay("replay", address_), actor("actor", address_);
+  replay.Ask("answer");
+  const std::string small = actor.Ask("roundtrip 300 200000");
+  EXPECT_THAT(small, StartsWith("microseconds "));
+  const std::string large = actor.Ask("roundtrip 300 1000000");
+  EXPECT_THAT(large, StartsWith("microseconds "));
+  RecordProperty("round_trip_200kB", small);
+  RecordProperty("round_trip_1MB", large);
+}
+
+}  // namespace
+}  // namespace shoal::dds

@@ -1,0 +1,135 @@
+#include "tests/layering/include_rules.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <regex>
+#include <set>
+
+namespace shoal {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::vector<std::string> kTopFolders = {"common",  "actor",  "replay_server",
+                                              "learner", "launch", "tests"};
+
+// Start of an include path -> the folder that wraps the library.
+const std::map<std::string, std::string> kHomes = {
+    {"dds/", "common/dds"},     {"dnnl", "common/nn"},       {"oneapi/", "common/nn"},
+    {"Eigen/", "common/nn"},    {"mujoco/", "actor/worlds"}, {"GL/", "actor/worlds"},
+    {"spdlog/", "common/base"}, {"png.h", "common/image"},
+};
+
+const std::set<std::string> kEmptyNames = {"utils", "util",    "helpers", "helper",
+                                           "misc",  "manager", "common"};
+
+std::vector<fs::path> Sources(const fs::path& root) {
+  static const std::set<std::string> kExtensions = {".h", ".cpp", ".cc", ".c"};
+  std::vector<fs::path> sources;
+  for (const std::string& folder : kTopFolders) {
+    if (!fs::is_directory(root / folder)) continue;
+    for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
+      if (entry.is_regular_file() && kExtensions.contains(entry.path().extension().string())) {
+        sources.push_back(entry.path().lexically_relative(root));
+      }
+    }
+  }
+  std::ranges::sort(sources);
+  return sources;
+}
+
+// First two folders of a path: "common/dds"; "launch" where there is only one.
+std::string Room(const fs::path& path) {
+  std::vector<std::string> parts;
+  for (const auto& part : path.parent_path()) parts.push_back(part.string());
+  if (parts.empty()) return "";
+  return parts.size() == 1 ? parts[0] : parts[0] + "/" + parts[1];
+}
+
+std::string Top(const fs::path& path) { return path.begin()->string(); }
+
+// Folders of common in the order of its CMakeLists.txt.
+std::vector<std::string> CommonOrder(const fs::path& root) {
+  std::vector<std::string> order;
+  std::ifstream file(root / "common/CMakeLists.txt");
+  static const std::regex kLine(R"(^\s*add_subdirectory\((\w+)\))");
+  std::smatch match;
+  for (std::string line; std::getline(file, line);) {
+    if (std::regex_search(line, match, kLine)) order.push_back("common/" + match[1].str());
+  }
+  return order;
+}
+
+bool MayUseFolder(const fs::path& file, const fs::path& included,
+                  const std::vector<std::string>& common_order) {
+  static const std::map<std::string, int> kRank = {{"common", 0},        {"actor", 1},
+                                                   {"replay_server", 1}, {"learner", 1},
+                                                   {"launch", 2},        {"tests", 3}};
+  const std::string from = Top(file), to = Top(included);
+  if (from != to) return kRank.at(from) > kRank.at(to);
+  if (from != "common" || Room(file) == Room(included)) return true;
+  const auto from_place = std::ranges::find(common_order, Room(file));
+  const auto to_place = std::ranges::find(common_order, Room(included));
+  return from_place != common_order.end() && to_place < from_place;
+}
+
+// What is wrong with including `included` in `file`, or nothing.
+std::string IncludeFault(const fs::path& file, const std::string& included,
+                         const std::vector<std::string>& common_order) {
+  if (std::ranges::find(kTopFolders, Top(included)) != kTopFolders.end()) {
+    if (MayUseFolder(file, included, common_order)) return "";
+    return fmt::format("{} may not use {}", Room(file), included);
+  }
+  for (const auto& [start, home] : kHomes) {
+    if (!included.starts_with(start) || Room(file) == home) continue;
+    if (file.string().starts_with("tests/" + home + "/")) continue;
+    return fmt::format("<{}> belongs to {} alone", included, home);
+  }
+  return "";
+}
+
+std::string NameFault(const fs::path& file) {
+  for (const auto& part : file.lexically_relative(Top(file))) {
+    if (kEmptyNames.contains(part.stem().string()) && part != "common") {
+      return fmt::format("\"{}\" says nothing", part.string());
+    }
+  }
+  return "";
+}
+
+void CheckFile(const fs::path& root, const fs::path& file,
+               const std::vector<std::string>& common_order, std::vector<std::string>* breaches) {
+  static const std::regex kInclude(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
+  std::ifstream stream(root / file);
+  bool once = false;
+  int number = 0;
+  std::smatch match;
+  for (std::string line; std::getline(stream, line);) {
+    ++number;
+    once = once || line == "#pragma once";
+    if (!std::regex_search(line, match, kInclude)) continue;
+    const std::string fault = IncludeFault(file, match[1].str(), common_order);
+    if (!fault.empty()) breaches->push_back(fmt::format("{}:{}: {}", file.string(), number, fault));
+  }
+  if (file.extension() == ".h" && !once) {
+    breaches->push_back(fmt::format("{}:1: no #pragma once", file.string()));
+  }
+  const std::string fault = NameFault(file);
+  if (!fault.empty()) breaches->push_back(fmt::format("{}:1: {}", file.string(), fault));
+}
+
+}  // namespace
+
+std::vector<std::string> FindBreaches(const fs::path& root) {
+  const std::vector<std::string> common_order = CommonOrder(root);
+  std::vector<std::string> breaches;
+  for (const fs::path& file : Sources(root)) CheckFile(root, file, common_order, &breaches);
+  return breaches;
+}
+
+size_t CountSources(const fs::path& root) { return Sources(root).size(); }
+
+}  // namespace shoal

@@ -1,0 +1,23 @@
+// Which folder may include what, read off the source tree.
+//
+// - common < actor, replay_server, learner < launch < tests: a folder uses itself and those before
+//   it; the three in the middle do not use each other.
+// - Inside common, a folder uses those before it in the order of common/CMakeLists.txt.
+// - A third-party library with a home (DDS, oneDNN, MuJoCo, ...) is included there and in that
+//   folder's tests alone.
+// - Headers begin with #pragma once after their comment; no file is called utils, helpers, ...
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace shoal {
+
+// One line per breach: "FILE:LINE: what". `root` is the root of the source tree.
+std::vector<std::string> FindBreaches(const std::filesystem::path& root);
+
+// Source files seen, to tell a clean tree from an empty one.
+size_t CountSources(const std::filesystem::path& root);
+
+}  // namespace shoal
