@@ -17,8 +17,8 @@ class Policy {
          int max_batch);
   ~Policy();
 
-  // Takes F32 or BF16 tensors by name; throws Error naming a missing tensor or a wrong shape, and then
-  // keeps its former weights.
+  // Takes F32 or BF16 tensors by name; throws Error naming a missing tensor or a wrong shape, and
+  // then keeps its former weights.
   void Load(const TensorMap& tensors, const std::string& source);
 
   // frames (B, K*C, H, W) u8 (unread without pixels), vector (B, V) f32 (unread when V = 0).

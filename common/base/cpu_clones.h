@@ -1,0 +1,12 @@
+// SHOAL_CPU_CLONES before a function: the compiler builds it for several generations of x86-64 CPUs
+// and the loader picks one, so that plain loops are as wide as the machine. Not for templates.
+//
+// The choice is made by ifunc resolvers, which run before the thread sanitizer is ready: built with
+// it there is one version only.
+#pragma once
+
+#if defined(__x86_64__) && !defined(__SANITIZE_THREAD__)
+#define SHOAL_CPU_CLONES __attribute__((target_clones("arch=x86-64-v4", "avx2", "default")))
+#else
+#define SHOAL_CPU_CLONES
+#endif

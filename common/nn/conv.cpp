@@ -1,0 +1,150 @@
+#include "common/nn/conv.h"
+
+#include "common/base/check.h"
+#include "common/nn/relu_mask.h"
+
+namespace shoal::nn {
+namespace {
+
+using dnnl::memory;
+
+constexpr auto kAlgorithm = dnnl::algorithm::convolution_auto;
+
+}  // namespace
+
+Conv::Conv(const LayerContext& context, const std::string& name, int stride, const memory& source,
+           const memory& source_gradient)
+    : strides_{stride, stride},
+      weight_(context.parameters->Find(name + ".weight")),
+      bias_(context.parameters->Find(name + ".bias")) {
+  const memory::desc source_desc = source.get_desc();
+  const memory::dims dims = source_desc.dims();
+  const memory::data_type type = source_desc.data_type();
+  const memory::dims weight_dims = weight_.shape();
+  CHECK(dims[1] == weight_dims[1]) << name << ": source has " << dims[1] << " channels";
+  const memory::dims output_dims = {dims[0], weight_dims[0],
+                                    (dims[2] - weight_dims[2]) / stride + 1,
+                                    (dims[3] - weight_dims[3]) / stride + 1};
+  weight_values_ = memory(PlainF32(weight_dims), CpuEngine(), nullptr);
+  bias_values_ = memory(PlainF32({weight_dims[0]}), CpuEngine(), nullptr);
+
+  dnnl::post_ops relu;
+  relu.append_eltwise(1.f, dnnl::algorithm::eltwise_relu, 0.f, 0.f);
+  dnnl::primitive_attr attributes = Attributes();
+  attributes.set_post_ops(relu);
+  const dnnl::convolution_forward::primitive_desc forward({dnnl::prop_kind::forward_training,
+                                                           kAlgorithm,
+                                                           AnyLayout(dims, type),
+                                                           AnyLayout(weight_dims, type),
+                                                           bias_values_.get_desc(),
+                                                           AnyLayout(output_dims, type),
+                                                           strides_,
+                                                           {0, 0},
+                                                           {0, 0}},
+                                                          attributes, CpuEngine());
+  output_ = MakeMemory(forward.dst_desc());
+  forward_source_ = Relayout::Before(source, forward.src_desc(), context.scratchpad);
+  forward_weight_ = Relayout::Before(weight_values_, forward.weights_desc(), context.scratchpad);
+  forward_ = Op(forward,
+                {{DNNL_ARG_SRC, forward_source_.memory()},
+                 {DNNL_ARG_WEIGHTS, forward_weight_.memory()},
+                 {DNNL_ARG_BIAS, bias_values_},
+                 {DNNL_ARG_DST, output_}},
+                context.scratchpad);
+  if (!context.training) return;
+  output_gradient_ = MakeMemory(output_.get_desc());
+  BuildBackwardWeights(context, source, forward);
+  if (source_gradient) BuildBackwardData(context, source_gradient, forward);
+}
+
+void Conv::BuildBackwardWeights(const LayerContext& context, const memory& source,
+                                const dnnl::convolution_forward::primitive_desc& forward) {
+  const memory::desc source_desc = source.get_desc(), output_desc = output_.get_desc();
+  const memory::dims weight_dims = weight_.shape();
+  const dnnl::convolution_backward_weights::primitive_desc backward(
+      {kAlgorithm,
+       AnyLayout(source_desc.dims(), source_desc.data_type()),
+       AnyLayout(weight_dims, memory::data_type::f32),
+       bias_values_.get_desc(),
+       AnyLayout(output_desc.dims(), output_desc.data_type()),
+       strides_,
+       {0, 0},
+       {0, 0}},
+      Attributes(), CpuEngine(), forward);
+  const memory weight_target(PlainF32(weight_dims), CpuEngine(), weight_.gradient());
+  const memory bias_target(bias_values_.get_desc(), CpuEngine(), bias_.gradient());
+  weights_source_ = Relayout::Before(source, backward.src_desc(), context.scratchpad);
+  weights_output_gradient_ =
+      Relayout::Before(output_gradient_, backward.diff_dst_desc(), context.scratchpad);
+  weight_gradient_ =
+      Relayout::After(backward.diff_weights_desc(), weight_target, context.scratchpad);
+  backward_weights_ = Op(backward,
+                         {{DNNL_ARG_SRC, weights_source_.memory()},
+                          {DNNL_ARG_DIFF_DST, weights_output_gradient_.memory()},
+                          {DNNL_ARG_DIFF_WEIGHTS, weight_gradient_.memory()},
+                          {DNNL_ARG_DIFF_BIAS, bias_target}},
+                         context.scratchpad);
+}
+
+void Conv::BuildBackwardData(const LayerContext& context, const memory& source_gradient,
+                             const dnnl::convolution_forward::primitive_desc& forward) {
+  has_source_gradient_ = true;
+  const memory::desc target = source_gradient.get_desc(), output_desc = output_.get_desc();
+  const dnnl::convolution_backward_data::primitive_desc backward(
+      {kAlgorithm,
+       AnyLayout(target.dims(), target.data_type()),
+       AnyLayout(weight_.shape(), target.data_type()),
+       AnyLayout(output_desc.dims(), output_desc.data_type()),
+       strides_,
+       {0, 0},
+       {0, 0}},
+      Attributes(), CpuEngine(), forward);
+  data_output_gradient_ =
+      Relayout::Before(output_gradient_, backward.diff_dst_desc(), context.scratchpad);
+  data_weight_ = Relayout::Before(weight_values_, backward.weights_desc(), context.scratchpad);
+  source_gradient_ = Relayout::After(backward.diff_src_desc(), source_gradient, context.scratchpad);
+  backward_data_ = Op(backward,
+                      {{DNNL_ARG_DIFF_DST, data_output_gradient_.memory()},
+                       {DNNL_ARG_WEIGHTS, data_weight_.memory()},
+                       {DNNL_ARG_DIFF_SRC, source_gradient_.memory()}},
+                      context.scratchpad);
+}
+
+void Conv::Refresh() {
+  weight_values_.set_data_handle(const_cast<float*>(weight_.value()));
+  bias_values_.set_data_handle(const_cast<float*>(bias_.value()));
+  forward_weight_.Run();
+  if (has_source_gradient_) data_weight_.Run();
+}
+
+void Conv::Forward() {
+  forward_source_.Run();
+  forward_.Run();
+}
+
+void Conv::MaskOutputGradient() {
+  const memory::desc desc = output_.get_desc();
+  if (desc.data_type() == memory::data_type::bf16) {
+    MaskWhereZero(static_cast<const uint16_t*>(output_.get_data_handle()),
+                  int64_t(desc.get_size() / sizeof(uint16_t)),
+                  static_cast<uint16_t*>(output_gradient_.get_data_handle()));
+  } else {
+    MaskWhereZero(static_cast<const float*>(output_.get_data_handle()),
+                  int64_t(desc.get_size() / sizeof(float)),
+                  static_cast<float*>(output_gradient_.get_data_handle()));
+  }
+}
+
+void Conv::Backward() {
+  MaskOutputGradient();
+  weights_source_.Run();
+  weights_output_gradient_.Run();
+  backward_weights_.Run();
+  weight_gradient_.Run();
+  if (!has_source_gradient_) return;
+  data_output_gradient_.Run();
+  backward_data_.Run();
+  source_gradient_.Run();
+}
+
+}  // namespace shoal::nn

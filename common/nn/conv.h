@@ -1,0 +1,55 @@
+// 3x3 convolution without padding, then ReLU.
+//
+//   y[b, n, i, j] = max(0, bias[n] + sum_{c,u,v} weight[n, c, u, v] x[b, c, i*stride+u,
+//   j*stride+v])
+//
+// Dimensions: B batch, C channels in, N filters, (H, W) in, (h, w) out = (H-3)/stride+1, ...
+// oneDNN chooses the layouts in memory; neighbouring layers share them where it can.
+#pragma once
+
+#include <string>
+
+#include "common/nn/layer_context.h"
+
+namespace shoal::nn {
+
+class Conv {
+ public:
+  // Parameters `name`.weight (N, C, 3, 3) and `name`.bias (N). source (B, C, H, W) in the compute
+  // type. `source_gradient` has the source's description; empty: never asked for.
+  Conv(const LayerContext& context, const std::string& name, int stride, const dnnl::memory& source,
+       const dnnl::memory& source_gradient);
+
+  // (B, N, h, w) in the compute type.
+  const dnnl::memory& output() const { return output_; }
+  // dL/dy with the output's description: filled before Backward, which overwrites it. Empty in
+  // inference.
+  const dnnl::memory& output_gradient() const { return output_gradient_; }
+
+  void Refresh();
+  void Forward();
+  // Gradients of the parameters, and of the source where it was asked for.
+  void Backward();
+
+ private:
+  void BuildBackwardWeights(const LayerContext& context, const dnnl::memory& source,
+                            const dnnl::convolution_forward::primitive_desc& forward);
+  void BuildBackwardData(const LayerContext& context, const dnnl::memory& source_gradient,
+                         const dnnl::convolution_forward::primitive_desc& forward);
+  // dL/dy = 0 where y = 0.
+  void MaskOutputGradient();
+
+  dnnl::memory::dims strides_;
+  Parameter weight_, bias_;
+  dnnl::memory weight_values_, bias_values_;  // the parameters' arrays, row-major f32
+  dnnl::memory output_, output_gradient_;
+  Relayout forward_source_, forward_weight_;
+  Op forward_;
+  Relayout weights_source_, weights_output_gradient_, weight_gradient_;
+  Op backward_weights_;
+  Relayout data_output_gradient_, data_weight_, source_gradient_;
+  Op backward_data_;
+  bool has_source_gradient_ = false;
+};
+
+}  // namespace shoal::nn

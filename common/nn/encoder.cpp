@@ -1,0 +1,47 @@
+#include "common/nn/encoder.h"
+
+#include "common/base/check.h"
+#include "common/nn/frame_pooling.h"
+#include "common/nn/network_parameters.h"
+
+namespace shoal::nn {
+
+Encoder::Encoder(const LayerContext& context, const NetworkConfig& network,
+                 const ObservationSpec& spec)
+    : planes_(context.batch * spec.stack * spec.channels),
+      height_(spec.height),
+      width_(spec.width),
+      pool_(network.pool) {
+  CHECK(spec.HasPixels() && !network.filters.empty());
+  const MapSize pooled = PooledSize(network, spec);
+  input_ = MakeMemory(
+      dnnl::memory::desc({context.batch, spec.stack * spec.channels, pooled.height, pooled.width},
+                         ComputeType(context.precision), dnnl::memory::format_tag::nchw));
+  dnnl::memory source = input_, source_gradient;
+  for (size_t i = 0; i < network.filters.size(); ++i) {
+    convs_.push_back(std::make_unique<Conv>(context, "encoder.conv" + std::to_string(i),
+                                            network.strides[i], source, source_gradient));
+    source = convs_.back()->output();
+    source_gradient = convs_.back()->output_gradient();
+  }
+}
+
+void Encoder::Refresh() {
+  for (const auto& conv : convs_) conv->Refresh();
+}
+
+void Encoder::Forward(const uint8_t* frames) {
+  const FrameShape shape{planes_, height_, width_};
+  if (input_.get_desc().data_type() == dnnl::memory::data_type::bf16) {
+    PoolFramesToBf16(frames, shape, pool_, static_cast<uint16_t*>(input_.get_data_handle()));
+  } else {
+    PoolFrames(frames, shape, pool_, static_cast<float*>(input_.get_data_handle()));
+  }
+  for (const auto& conv : convs_) conv->Forward();
+}
+
+void Encoder::Backward() {
+  for (size_t i = convs_.size(); i-- > 0;) convs_[i]->Backward();
+}
+
+}  // namespace shoal::nn

@@ -1,0 +1,36 @@
+// Frames to feature map: average pooling, scaling and 3x3 convolutions with ReLU.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "common/config/config.h"
+#include "common/nn/conv.h"
+#include "common/nn/layer_context.h"
+#include "common/spec/observation_spec.h"
+
+namespace shoal::nn {
+
+class Encoder {
+ public:
+  // Parameters encoder.conv{i}.*. The spec has pixels.
+  Encoder(const LayerContext& context, const NetworkConfig& network, const ObservationSpec& spec);
+
+  // (B, N, h, w) in the compute type, layout chosen by oneDNN; overwritten by every Forward.
+  const dnnl::memory& features() const { return convs_.back()->output(); }
+  // dL/dfeatures, filled before Backward, which overwrites it.
+  const dnnl::memory& features_gradient() const { return convs_.back()->output_gradient(); }
+
+  void Refresh();
+  // frames (B, K*C, H, W) u8.
+  void Forward(const uint8_t* frames);
+  void Backward();
+
+ private:
+  int planes_, height_, width_, pool_;
+  dnnl::memory input_;  // (B, K*C, H/pool, W/pool) row-major in the compute type
+  std::vector<std::unique_ptr<Conv>> convs_;
+};
+
+}  // namespace shoal::nn

@@ -1,0 +1,113 @@
+#include "common/nn/linear.h"
+
+#include "common/base/check.h"
+
+namespace shoal::nn {
+namespace {
+
+using dnnl::memory;
+
+// The precision whose compute type is the source's.
+Precision PrecisionOf(const memory& source) {
+  return source.get_desc().data_type() == memory::data_type::bf16 ? Precision::kBf16
+                                                                  : Precision::kF32;
+}
+
+}  // namespace
+
+Linear::Linear(const LayerContext& context, const std::string& name, const memory& source,
+               const memory& source_gradient)
+    : outputs_(int(context.parameters->Find(name + ".bias").shape()[0])),
+      weight_(context.parameters->Find(name + ".weight")),
+      bias_(context.parameters->Find(name + ".bias")),
+      output_gradient_(context.batch, outputs_, PrecisionOf(source)) {
+  const memory::desc source_desc = source.get_desc();
+  memory::dims weight_dims = source_desc.dims();
+  weight_dims[0] = outputs_;
+  weight_values_ = memory(PlainF32(weight_dims), CpuEngine(), nullptr);
+  bias_values_ = memory(PlainF32({outputs_}), CpuEngine(), nullptr);
+  output_ = MakeMemory(PlainF32({context.batch, outputs_}));
+  CHECK(int64_t(PlainF32(weight_dims).get_size()) ==
+        int64_t(sizeof(float)) * outputs_ * weight_.shape()[1])
+      << name << ": source does not fit the weights";
+
+  const dnnl::inner_product_forward::primitive_desc forward(
+      {dnnl::prop_kind::forward_training, AnyLayout(source_desc.dims(), source_desc.data_type()),
+       AnyLayout(weight_dims, source_desc.data_type()), bias_values_.get_desc(),
+       output_.get_desc()},
+      Attributes(), CpuEngine());
+  forward_source_ = Relayout::Before(source, forward.src_desc(), context.scratchpad);
+  forward_weight_ = Relayout::Before(weight_values_, forward.weights_desc(), context.scratchpad);
+  forward_ = Op(forward,
+                {{DNNL_ARG_SRC, forward_source_.memory()},
+                 {DNNL_ARG_WEIGHTS, forward_weight_.memory()},
+                 {DNNL_ARG_BIAS, bias_values_},
+                 {DNNL_ARG_DST, output_}},
+                context.scratchpad);
+  if (context.training) BuildBackward(context, source, source_gradient, forward);
+}
+
+void Linear::BuildBackward(const LayerContext& context, const memory& source,
+                           const memory& source_gradient,
+                           const dnnl::inner_product_forward::primitive_desc& forward) {
+  const memory::desc source_desc = source.get_desc();
+  const memory::desc weight_desc = weight_values_.get_desc();
+  const memory& gradient = output_gradient_.compute();
+  const dnnl::inner_product_backward_weights::primitive_desc weights(
+      {AnyLayout(source_desc.dims(), source_desc.data_type()),
+       AnyLayout(weight_desc.dims(), memory::data_type::f32), bias_values_.get_desc(),
+       gradient.get_desc()},
+      Attributes(), CpuEngine(), forward);
+  const memory weight_target(weight_desc, CpuEngine(), weight_.gradient());
+  const memory bias_target(bias_values_.get_desc(), CpuEngine(), bias_.gradient());
+  backward_source_ = Relayout::Before(source, weights.src_desc(), context.scratchpad);
+  weight_gradient_ =
+      Relayout::After(weights.diff_weights_desc(), weight_target, context.scratchpad);
+  backward_weights_ = Op(weights,
+                         {{DNNL_ARG_SRC, backward_source_.memory()},
+                          {DNNL_ARG_DIFF_DST, gradient},
+                          {DNNL_ARG_DIFF_WEIGHTS, weight_gradient_.memory()},
+                          {DNNL_ARG_DIFF_BIAS, bias_target}},
+                         context.scratchpad);
+  if (!source_gradient) return;
+  has_source_gradient_ = true;
+  const memory::desc target = source_gradient.get_desc();
+  const dnnl::inner_product_backward_data::primitive_desc data(
+      {AnyLayout(target.dims(), target.data_type()),
+       AnyLayout(weight_desc.dims(), source_desc.data_type()), gradient.get_desc()},
+      Attributes(), CpuEngine(), forward);
+  backward_weight_ = Relayout::Before(weight_values_, data.weights_desc(), context.scratchpad);
+  source_gradient_ = Relayout::After(data.diff_src_desc(), source_gradient, context.scratchpad);
+  backward_data_ = Op(data,
+                      {{DNNL_ARG_DIFF_DST, gradient},
+                       {DNNL_ARG_WEIGHTS, backward_weight_.memory()},
+                       {DNNL_ARG_DIFF_SRC, source_gradient_.memory()}},
+                      context.scratchpad);
+}
+
+void Linear::Refresh() {
+  weight_values_.set_data_handle(const_cast<float*>(weight_.value()));
+  bias_values_.set_data_handle(const_cast<float*>(bias_.value()));
+  forward_weight_.Run();
+  if (has_source_gradient_) backward_weight_.Run();
+}
+
+void Linear::Forward() {
+  forward_source_.Run();
+  forward_.Run();
+}
+
+void Linear::Backward(Gradients wanted) {
+  output_gradient_.Commit();
+  if (wanted.parameters) {
+    backward_source_.Run();
+    backward_weights_.Run();
+    weight_gradient_.Run();
+  }
+  if (wanted.source && has_source_gradient_) {
+    backward_data_.Run();
+    source_gradient_.Run();
+  }
+}
+
+}  // namespace shoal::nn

@@ -1,0 +1,53 @@
+// Linear layer.
+//
+//   y[b, o] = sum_i weight[o, i] x[b, i] + bias[o]
+//
+// Dimensions: B batch, I inputs, O outputs. A source of four dimensions (B, C, H, W) counts as its
+// row-major flattening whatever its layout in memory.
+#pragma once
+
+#include <string>
+
+#include "common/nn/layer_context.h"
+#include "common/nn/rows.h"
+
+namespace shoal::nn {
+
+class Linear {
+ public:
+  // Parameters `name`.weight (O, I) and `name`.bias (O). The products are computed in the source's
+  // type. `source_gradient` is where Backward puts dL/dx, of the source's dimensions; empty: never
+  // asked for.
+  Linear(const LayerContext& context, const std::string& name, const dnnl::memory& source,
+         const dnnl::memory& source_gradient);
+
+  int outputs() const { return outputs_; }
+  const float* output() const { return static_cast<const float*>(output_.get_data_handle()); }
+  float* output() { return static_cast<float*>(output_.get_data_handle()); }
+  // dL/dy (B, O) f32: fill before Backward.
+  float* output_gradient() { return output_gradient_.values(); }
+
+  void Refresh();
+  void Forward();
+  void Backward(Gradients wanted);
+
+ private:
+  void BuildBackward(const LayerContext& context, const dnnl::memory& source,
+                     const dnnl::memory& source_gradient,
+                     const dnnl::inner_product_forward::primitive_desc& forward);
+
+  int outputs_ = 0;
+  Parameter weight_, bias_;
+  dnnl::memory weight_values_, bias_values_;  // the parameters' arrays, row-major f32
+  dnnl::memory output_;                       // (B, O) f32
+  Rows output_gradient_;
+  Relayout forward_source_, forward_weight_;
+  Op forward_;
+  Relayout backward_source_, weight_gradient_;
+  Op backward_weights_;
+  Relayout backward_weight_, source_gradient_;
+  Op backward_data_;
+  bool has_source_gradient_ = false;
+};
+
+}  // namespace shoal::nn

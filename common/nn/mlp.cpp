@@ -1,0 +1,45 @@
+#include "common/nn/mlp.h"
+
+#include <algorithm>
+
+namespace shoal::nn {
+
+Mlp::Mlp(const LayerContext& context, const std::string& name, int hidden_layers, const Rows& input)
+    : input_gradient_(context.batch, input.columns(), Precision::kF32) {
+  const Rows* source = &input;
+  const Rows* source_gradient = &input_gradient_;
+  for (int i = 0; i < hidden_layers; ++i) {
+    const bool last = i + 1 == hidden_layers;
+    hidden_.push_back(std::make_unique<DenseLayer>(
+        context, name + ".layer" + std::to_string(i), Activation::kRelu, source->compute(),
+        source_gradient->f32(), last ? Precision::kF32 : context.precision));
+    source = &hidden_.back()->output();
+    hidden_gradients_.push_back(
+        std::make_unique<Rows>(context.batch, source->columns(), Precision::kF32));
+    source_gradient = hidden_gradients_.back().get();
+  }
+  output_ =
+      std::make_unique<Linear>(context, name + ".output", source->f32(), source_gradient->f32());
+}
+
+void Mlp::Refresh() {
+  for (const auto& layer : hidden_) layer->Refresh();
+  output_->Refresh();
+}
+
+void Mlp::Forward() {
+  for (const auto& layer : hidden_) layer->Forward();
+  output_->Forward();
+}
+
+void Mlp::Backward(const float* output_gradient, Gradients wanted) {
+  const size_t size = size_t(input_gradient_.batch()) * size_t(output_->outputs());
+  std::copy_n(output_gradient, size, output_->output_gradient());
+  output_->Backward({wanted.parameters, wanted.source || !hidden_.empty()});
+  for (size_t i = hidden_.size(); i-- > 0;) {
+    hidden_[i]->Backward(hidden_gradients_[i]->values(),
+                         {wanted.parameters, wanted.source || i > 0});
+  }
+}
+
+}  // namespace shoal::nn

@@ -1,0 +1,39 @@
+// Multi-layer perceptron: hidden layers (linear, LayerNorm where configured, ReLU), linear output.
+// The output layer is computed in f32.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/nn/dense_layer.h"
+#include "common/nn/layer_context.h"
+#include "common/nn/linear.h"
+#include "common/nn/rows.h"
+
+namespace shoal::nn {
+
+class Mlp {
+ public:
+  // Parameters `name`.layer{i}.* for i < hidden_layers and `name`.output.*. Reads `input`, which it
+  // borrows and whose owner commits it.
+  Mlp(const LayerContext& context, const std::string& name, int hidden_layers, const Rows& input);
+
+  int outputs() const { return output_->outputs(); }
+  const float* output() const { return output_->output(); }  // (B, outputs)
+  // dL/dinput (B, I), after Backward with wanted.source.
+  const float* input_gradient() const { return input_gradient_.values(); }
+
+  void Refresh();
+  void Forward();
+  // output_gradient: (B, outputs).
+  void Backward(const float* output_gradient, Gradients wanted);
+
+ private:
+  Rows input_gradient_;
+  std::vector<std::unique_ptr<Rows>> hidden_gradients_;  // dL/dy of hidden layer i
+  std::vector<std::unique_ptr<DenseLayer>> hidden_;
+  std::unique_ptr<Linear> output_;
+};
+
+}  // namespace shoal::nn

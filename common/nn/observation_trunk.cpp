@@ -1,0 +1,50 @@
+#include "common/nn/observation_trunk.h"
+
+#include <algorithm>
+
+namespace shoal::nn {
+namespace {
+
+int TrunkFeatures(const LayerContext& context, const std::string& head,
+                  const ObservationSpec& spec) {
+  return spec.HasPixels() ? int(context.parameters->Find(head + ".trunk.bias").shape()[0]) : 0;
+}
+
+}  // namespace
+
+ObservationTrunk::ObservationTrunk(const LayerContext& context, const std::string& head,
+                                   const ObservationSpec& spec, int extra_columns,
+                                   const dnnl::memory& features,
+                                   const dnnl::memory& features_gradient)
+    : features_(TrunkFeatures(context, head, spec)),
+      vector_size_(spec.VectorSize()),
+      extra_column_(features_ + vector_size_),
+      input_(context.batch, extra_column_ + extra_columns, context.precision) {
+  if (!spec.HasPixels()) return;
+  dense_.emplace(context, head + ".trunk", Activation::kTanh, features, features_gradient,
+                 Precision::kF32);
+  dense_gradient_.resize(size_t(context.batch) * size_t(features_));
+}
+
+void ObservationTrunk::Refresh() {
+  if (dense_) dense_->Refresh();
+}
+
+void ObservationTrunk::Forward(const float* vector) {
+  if (dense_) {
+    dense_->Forward();
+    input_.SetColumns(0, features_, dense_->output().values());
+  }
+  input_.SetColumns(features_, vector_size_, vector);
+}
+
+void ObservationTrunk::Backward(const float* input_gradient) {
+  if (!dense_) return;
+  for (int b = 0; b < input_.batch(); ++b) {
+    std::copy_n(input_gradient + int64_t(b) * input_.columns(), features_,
+                dense_gradient_.data() + int64_t(b) * features_);
+  }
+  dense_->Backward(dense_gradient_.data(), {.parameters = true, .source = true});
+}
+
+}  // namespace shoal::nn

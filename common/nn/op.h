@@ -1,0 +1,97 @@
+// A oneDNN primitive bound to its memories. Only common/nn includes this header.
+#pragma once
+
+#include <dnnl.hpp>
+#include <initializer_list>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "common/nn/precision.h"
+
+namespace shoal::nn {
+
+// The CPU engine of the process.
+const dnnl::engine& CpuEngine();
+
+// Type of the inputs of large products; their sums are always f32.
+inline dnnl::memory::data_type ComputeType(Precision precision) {
+  return precision == Precision::kBf16 ? dnnl::memory::data_type::bf16
+                                       : dnnl::memory::data_type::f32;
+}
+
+// Row-major f32 description of `dims`.
+dnnl::memory::desc PlainF32(const dnnl::memory::dims& dims);
+// Description that leaves the layout to the primitive.
+dnnl::memory::desc AnyLayout(const dnnl::memory::dims& dims, dnnl::memory::data_type type);
+// Zeroed memory, owned by the handle.
+dnnl::memory MakeMemory(const dnnl::memory::desc& desc);
+
+// Attributes every primitive here is built with: we own its scratch memory, because oneDNN's own is
+// per thread and a network may be built by one thread and run by another.
+dnnl::primitive_attr Attributes();
+
+// Scratch memory that the operations of one network share: they run one after another.
+class Scratchpad {
+ public:
+  // Called while a network is built.
+  void Reserve(const dnnl::memory::desc& desc);
+  // Called by the first run; the memory stays.
+  void* Data();
+
+ private:
+  size_t bytes_ = 0;
+  dnnl::memory memory_;
+};
+
+// One primitive with its arguments. Movable; the memories are shared handles. Run() from one thread
+// at a time, under a ThreadScope of the size it was built in.
+class Op {
+ public:
+  Op() = default;
+  template <class PrimitiveDesc>
+  Op(const PrimitiveDesc& desc, std::initializer_list<std::pair<int, dnnl::memory>> arguments,
+     std::shared_ptr<Scratchpad> scratchpad)
+      : Op(dnnl::primitive(desc.get()), desc.scratchpad_desc(), arguments, std::move(scratchpad)) {}
+  // Copies `from` to `to`, changing layout and type.
+  static Op Reorder(const dnnl::memory& from, const dnnl::memory& to,
+                    std::shared_ptr<Scratchpad> scratchpad);
+
+  void Run();
+
+ private:
+  Op(dnnl::primitive primitive, const dnnl::memory::desc& scratch,
+     std::initializer_list<std::pair<int, dnnl::memory>> arguments,
+     std::shared_ptr<Scratchpad> scratchpad);
+
+  dnnl::primitive primitive_;
+  std::vector<dnnl::memory> memories_;
+  std::vector<dnnl_exec_arg_t> arguments_;
+  dnnl::memory scratch_;  // empty where the primitive needs none
+  std::shared_ptr<Scratchpad> scratchpad_;
+};
+
+// A memory in the layout one primitive asks for, beside the layout everybody else uses. Where the
+// two agree it is the same memory and Run does nothing.
+class Relayout {
+ public:
+  Relayout() = default;
+  // Run() brings `source` into the layout `wanted`, before a primitive that reads memory().
+  static Relayout Before(const dnnl::memory& source, const dnnl::memory::desc& wanted,
+                         std::shared_ptr<Scratchpad> scratchpad);
+  // Run() brings memory(), written by a primitive in the layout `produced`, to `target`.
+  static Relayout After(const dnnl::memory::desc& produced, const dnnl::memory& target,
+                        std::shared_ptr<Scratchpad> scratchpad);
+
+  const dnnl::memory& memory() const { return memory_; }
+  void Run() {
+    if (needed_) reorder_.Run();
+  }
+
+ private:
+  dnnl::memory memory_;
+  Op reorder_;
+  bool needed_ = false;
+};
+
+}  // namespace shoal::nn

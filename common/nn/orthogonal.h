@@ -1,0 +1,18 @@
+// Orthogonal initialisation.
+//
+//   Q R = G,  G (m, n) ~ N(0, 1),  W = gain * Q diag(sign R)
+//
+// uniform over matrices with orthonormal columns (rows where W is wider than tall).
+// Source: Saxe et al. 2013, arXiv:1312.6120; signs: Mezzadri 2006, arXiv:math-ph/0609050.
+#pragma once
+
+#include <cstdint>
+
+#include "common/base/random.h"
+
+namespace shoal::nn {
+
+// weights (rows, cols) row-major.
+void FillOrthogonal(int64_t rows, int64_t cols, double gain, Random* random, float* weights);
+
+}  // namespace shoal::nn

@@ -1,0 +1,29 @@
+// Loops on the threads that oneDNN's primitives use (GNU OpenMP's pool).
+#pragma once
+
+#include <functional>
+
+namespace shoal::nn {
+
+// Threads that networks built from now on use; 1 until SetThreads.
+int Threads();
+
+// The pool's size for the calling thread while this lives: a network is built and run under the
+// size it was built with, because its primitives partition their work when built.
+class ThreadScope {
+ public:
+  explicit ThreadScope(int threads);
+  ~ThreadScope();
+  ThreadScope(const ThreadScope&) = delete;
+  ThreadScope& operator=(const ThreadScope&) = delete;
+
+ private:
+  int former_;
+};
+
+// Splits [0, n) into one contiguous range per thread of the current scope and runs body(begin, end)
+// on each; returns when all are done. Ranges depend on n and the number of threads only. The body
+// must not throw.
+void ParallelFor(int n, const std::function<void(int begin, int end)>& body);
+
+}  // namespace shoal::nn

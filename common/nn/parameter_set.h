@@ -1,0 +1,81 @@
+// Parameters that are trained together, in one array, so that an optimiser step is one pass.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/nn/network_parameters.h"
+#include "common/nn/safetensors.h"
+
+namespace shoal::nn {
+
+class ParameterSet;
+
+// One parameter of a set: row-major f32. Borrows the set.
+class Parameter {
+ public:
+  Parameter() = default;
+  Parameter(const ParameterSet* set, int64_t offset, const ParameterShape* shape)
+      : set_(set), offset_(offset), shape_(shape) {}
+
+  const std::vector<int64_t>& shape() const { return shape_->shape; }
+  // Moves with every optimiser step: fetch it when it is needed.
+  const float* value() const;
+  // Stays. Null in a set without gradients.
+  float* gradient() const;
+
+ private:
+  const ParameterSet* set_ = nullptr;
+  int64_t offset_ = 0;
+  const ParameterShape* shape_ = nullptr;
+};
+
+// Owns values, gradients and a second array of values, into which an optimiser writes: exchanging
+// the two applies its step, exchanging them again takes it back. Not movable: layers borrow it.
+//
+// Each parameter starts at a multiple of 16 floats; the gaps hold zeros in all arrays.
+class ParameterSet {
+ public:
+  enum class Use { kTraining, kInference };  // kInference: no gradients, no second array
+
+  ParameterSet(std::vector<ParameterShape> shapes, Use use);
+  ParameterSet(const ParameterSet&) = delete;
+  ParameterSet& operator=(const ParameterSet&) = delete;
+
+  // Orthogonal weights (gain sqrt 2 for convolutions, 1 for linears), zero biases, unit norms; the
+  // stream of a parameter is keyed by seed and name.
+  void Initialise(uint64_t seed);
+
+  bool Has(std::string_view name) const;
+  // CHECKs that there is one.
+  Parameter Find(std::string_view name) const;
+  // Where the first parameter whose name starts with `prefix` begins; size() if there is none.
+  int64_t OffsetOf(std::string_view prefix) const;
+
+  int64_t size() const { return int64_t(values_.size()); }  // floats, gaps included
+  const float* values() const { return values_.data(); }
+  float* values() { return values_.data(); }
+  float* next_values() { return next_values_.data(); }
+  const float* gradients() const { return gradients_.data(); }
+  void Exchange() { values_.swap(next_values_); }
+
+  // The arrays of this set's layout (values, Adam moments) to named tensors and back. `prefix` goes
+  // before each name.
+  void Export(const float* array, const std::string& prefix, TensorMap* tensors) const;
+  // Takes F32 and BF16. Throws Error naming a missing tensor or a wrong type or shape; `array` may
+  // then be partly written.
+  void Import(const TensorMap& tensors, const std::string& prefix, const std::string& source,
+              float* array) const;
+
+ private:
+  friend class Parameter;
+
+  std::vector<ParameterShape> shapes_;
+  std::vector<int64_t> offsets_;
+  std::vector<float> values_, next_values_;
+  mutable std::vector<float> gradients_;
+};
+
+}  // namespace shoal::nn

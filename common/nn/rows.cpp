@@ -1,0 +1,32 @@
+#include "common/nn/rows.h"
+
+#include <cstring>
+
+#include "common/base/check.h"
+#include "common/nn/bf16.h"
+
+namespace shoal::nn {
+
+Rows::Rows(int batch, int columns, Precision precision) : batch_(batch), columns_(columns) {
+  f32_ = compute_ = MakeMemory(PlainF32({batch, columns}));
+  if (precision == Precision::kBf16) {
+    compute_ = MakeMemory(dnnl::memory::desc({batch, columns}, dnnl::memory::data_type::bf16,
+                                             dnnl::memory::format_tag::ab));
+  }
+}
+
+void Rows::SetColumns(int first, int count, const float* source) {
+  CHECK(first >= 0 && count >= 0 && first + count <= columns_);
+  if (count == 0) return;
+  for (int b = 0; b < batch_; ++b) {
+    std::memcpy(values() + int64_t(b) * columns_ + first, source + int64_t(b) * count,
+                size_t(count) * sizeof(float));
+  }
+}
+
+void Rows::Commit() {
+  if (compute_ == f32_) return;
+  FloatsToBf16(values(), size(), static_cast<uint16_t*>(compute_.get_data_handle()));
+}
+
+}  // namespace shoal::nn

@@ -1,0 +1,23 @@
+#include "learner/agent/batch_faults.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace shoal::learner {
+namespace {
+
+bool AllFinite(std::span<const float> values) {
+  return std::all_of(values.begin(), values.end(), [](float x) { return std::isfinite(x); });
+}
+
+}  // namespace
+
+bool AllFinite(const BatchView& batch) {
+  return AllFinite(std::span<const float>(batch.obs_vector)) &&
+         AllFinite(std::span<const float>(batch.next_obs_vector)) &&
+         AllFinite(std::span<const float>(batch.action)) &&
+         AllFinite(std::span<const float>(batch.reward)) &&
+         AllFinite(std::span<const float>(batch.bootstrap));
+}
+
+}  // namespace shoal::learner

@@ -1,0 +1,52 @@
+#include "learner/agent/losses.h"
+
+#include <algorithm>
+
+namespace shoal::learner {
+
+void TdTargets(int batch, const TargetInputs& inputs, const TargetRates& rates, float* y) {
+  for (int b = 0; b < batch; ++b) {
+    const float value = std::min(inputs.next_q[0][b], inputs.next_q[1][b]) -
+                        rates.temperature * inputs.next_log_prob[b];
+    y[b] = rates.reward_scale * inputs.reward[b] + inputs.bootstrap[b] * rates.discount * value;
+  }
+}
+
+CriticLoss CriticLossForward(int batch, const float* q0, const float* q1, const float* y) {
+  double loss = 0, q_sum = 0, y_sum = 0;
+  for (int b = 0; b < batch; ++b) {
+    const double e0 = double(q0[b]) - y[b], e1 = double(q1[b]) - y[b];
+    loss += e0 * e0 + e1 * e1;
+    q_sum += double(q0[b]) + q1[b];
+    y_sum += y[b];
+  }
+  return {float(loss / batch), float(q_sum / (2 * batch)), float(y_sum / batch)};
+}
+
+void CriticLossBackward(int batch, const float* q, const float* y, float* q_gradient) {
+  for (int b = 0; b < batch; ++b) q_gradient[b] = 2 * (q[b] - y[b]) / float(batch);
+}
+
+float ActorLossForward(int batch, const float* log_prob, const float* q0, const float* q1,
+                       float temperature) {
+  double loss = 0;
+  for (int b = 0; b < batch; ++b) {
+    loss += double(temperature) * log_prob[b] - std::min(q0[b], q1[b]);
+  }
+  return float(loss / batch);
+}
+
+void ActorLossBackward(int batch, const float* q0, const float* q1, float* q0_gradient,
+                       float* q1_gradient) {
+  for (int b = 0; b < batch; ++b) {
+    const bool first = q0[b] <= q1[b];
+    q0_gradient[b] = first ? -1.f / float(batch) : 0.f;
+    q1_gradient[b] = first ? 0.f : -1.f / float(batch);
+  }
+}
+
+float TemperatureLoss(float temperature, float entropy, float target_entropy) {
+  return temperature * (entropy - target_entropy);
+}
+
+}  // namespace shoal::learner

@@ -1,0 +1,204 @@
+// One update, in order:
+//
+//   1. targets     next_obs -> encoder -> actor, target heads -> y                     (Eq. 1)
+//   2. critic      obs -> encoder -> critic heads -> loss -> encoder and critic step    (Eq. 2)
+//   3. actor       the features of 2, detached -> actor -> critic heads -> actor step   (Eq. 3)
+//   4. temperature from the log-probabilities of 3                                      (Eq. 4)
+//   5. target heads follow the critic's
+//
+// 3 and 4 every actor_period updates, 5 every target_period, both from the first update on. The
+// encoder keeps one set of activations, so next_obs goes through it first. The temperature in 1 and
+// 3 is the one before this update.
+#include "learner/sac_agent.h"
+
+#include <cmath>
+#include <limits>
+
+#include "common/base/check.h"
+#include "common/base/random.h"
+#include "common/nn/frame_pooling.h"
+#include "common/nn/parallel.h"
+#include "common/nn/tensor_counter.h"
+#include "learner/agent/batch_faults.h"
+#include "learner/agent/losses.h"
+#include "learner/agent/sac_networks.h"
+#include "learner/agent/squashed_gaussian.h"
+
+namespace shoal::learner {
+namespace {
+
+constexpr const char* kUpdates = "agent.updates";
+
+// Above this, squares of gradients would overflow in Adam's second moment.
+bool Usable(float loss, double gradient_squares) {
+  return std::isfinite(loss) && gradient_squares < std::numeric_limits<float>::max();
+}
+
+double GradientSquares(const nn::ParameterSet& parameters) {
+  return nn::SumOfSquares(parameters.gradients(), parameters.size());
+}
+
+}  // namespace
+
+struct SacAgent::Impl {
+  Impl(const Config& run_config, const ObservationSpec& observation_spec, nn::Precision precision)
+      : config(run_config),
+        spec(observation_spec),
+        batch_size(run_config.learner.batch),
+        target_entropy(float(run_config.learner.target_entropy == 0
+                                 ? -observation_spec.action_size
+                                 : run_config.learner.target_entropy)),
+        threads(nn::Threads()),
+        networks(run_config, observation_spec, precision),
+        gaussian(batch_size, spec.action_size),
+        targets(size_t(batch_size)),
+        q_gradients{targets, targets},
+        action_gradient(size_t(batch_size) * size_t(spec.action_size)),
+        mean_gradient(action_gradient),
+        log_std_gradient(action_gradient) {}
+
+  void ComputeTargets(const BatchView& batch, float temperature, Random* random);
+  bool UpdateCritic(const BatchView& batch, UpdateStats* stats);
+  bool UpdateActor(const BatchView& batch, float temperature, Random* random, UpdateStats* stats);
+
+  const Config config;
+  const ObservationSpec spec;
+  const int batch_size;  // B
+  const float target_entropy;
+  const int threads;
+  SacNetworks networks;
+  uint64_t updates = 0;
+  UpdateStats last;  // carries the actor's values to updates without one
+
+  SquashedGaussian gaussian;
+  std::vector<float> targets;                                           // y (B)
+  std::array<std::vector<float>, 2> q_gradients;                        // (B)
+  std::vector<float> action_gradient, mean_gradient, log_std_gradient;  // (B, A)
+};
+
+void SacAgent::Impl::ComputeTargets(const BatchView& batch, float temperature, Random* random) {
+  const float* vector = batch.next_obs_vector.data();
+  if (networks.encoder) networks.encoder->Forward(batch.next_obs_frames.data());
+  networks.actor->Forward(vector);
+  gaussian.Sample(networks.actor->mean(), networks.actor->log_std(), random);
+  networks.target->ForwardObservation(vector);
+  networks.target->ForwardAction(gaussian.action());
+  const TargetInputs inputs{batch.reward.data(),
+                            batch.bootstrap.data(),
+                            {networks.target->q(0), networks.target->q(1)},
+                            gaussian.log_prob()};
+  TdTargets(batch_size, inputs,
+            {float(config.learner.reward_scale), float(config.learner.discount), temperature},
+            targets.data());
+}
+
+// False where the loss or its gradient is not finite; then no parameter has changed.
+bool SacAgent::Impl::UpdateCritic(const BatchView& batch, UpdateStats* stats) {
+  if (networks.encoder) networks.encoder->Forward(batch.obs_frames.data());
+  networks.critic->ForwardObservation(batch.obs_vector.data());
+  networks.critic->ForwardAction(batch.action.data());
+  const float *q0 = networks.critic->q(0), *q1 = networks.critic->q(1);
+  const CriticLoss loss = CriticLossForward(batch_size, q0, q1, targets.data());
+  CriticLossBackward(batch_size, q0, targets.data(), q_gradients[0].data());
+  CriticLossBackward(batch_size, q1, targets.data(), q_gradients[1].data());
+  networks.critic->Backward(q_gradients[0].data(), q_gradients[1].data());
+  if (networks.encoder) networks.encoder->Backward();
+  const double squares = GradientSquares(networks.critic_parameters);
+  stats->critic_loss = loss.loss;
+  stats->q_mean = loss.q_mean;
+  stats->target_mean = loss.target_mean;
+  stats->critic_grad_norm = float(std::sqrt(squares));
+  if (!Usable(loss.loss, squares)) return false;
+  networks.critic_optimiser.Step();
+  networks.RefreshCritic();
+  return true;
+}
+
+// The features are still those of obs. False where the loss or its gradient is not finite; then
+// neither actor nor temperature has changed.
+bool SacAgent::Impl::UpdateActor(const BatchView& batch, float temperature, Random* random,
+                                 UpdateStats* stats) {
+  const float* vector = batch.obs_vector.data();
+  networks.actor->Forward(vector);
+  gaussian.Sample(networks.actor->mean(), networks.actor->log_std(), random);
+  networks.critic->ForwardObservation(vector);
+  networks.critic->ForwardAction(gaussian.action());
+  const float *q0 = networks.critic->q(0), *q1 = networks.critic->q(1);
+  stats->actor_loss = ActorLossForward(batch_size, gaussian.log_prob(), q0, q1, temperature);
+  ActorLossBackward(batch_size, q0, q1, q_gradients[0].data(), q_gradients[1].data());
+  networks.critic->BackwardAction(q_gradients[0].data(), q_gradients[1].data(),
+                                  action_gradient.data());
+  gaussian.Backward(action_gradient.data(), temperature / float(batch_size), mean_gradient.data(),
+                    log_std_gradient.data());
+  networks.actor->Backward(mean_gradient.data(), log_std_gradient.data());
+  const double squares = GradientSquares(networks.actor_parameters);
+  stats->actor_grad_norm = float(std::sqrt(squares));
+  stats->entropy = gaussian.Entropy();
+  stats->action_saturation = gaussian.Saturation();
+  stats->temperature_loss = TemperatureLoss(temperature, stats->entropy, target_entropy);
+  if (!Usable(stats->actor_loss, squares) || !std::isfinite(stats->temperature_loss)) return false;
+  networks.actor_optimiser.Step();
+  networks.RefreshActor();
+  networks.StepTemperature(stats->temperature_loss);
+  return true;
+}
+
+SacAgent::SacAgent(const Config& config, const ObservationSpec& spec, nn::Precision precision) {
+  const nn::ThreadScope scope(nn::Threads());
+  impl_ = std::make_unique<Impl>(config, spec, precision);
+}
+
+SacAgent::~SacAgent() = default;
+
+UpdateStats SacAgent::Update(const BatchView& batch) {
+  Impl& agent = *impl_;
+  CHECK(int(batch.reward.size()) == agent.batch_size) << "batch of " << batch.reward.size();
+  const nn::ThreadScope scope(agent.threads);
+  const LearnerConfig& learner = agent.config.learner;
+  UpdateStats stats = agent.last;
+  stats.frame_spread = float(nn::MeanFrameSpread(batch.obs_frames.data(),
+                                                 agent.spec.HasPixels() ? agent.batch_size : 0,
+                                                 agent.spec.stack * agent.spec.FrameBytes()));
+  stats.temperature = agent.networks.Temperature();
+  stats.finite = AllFinite(batch);
+  if (!stats.finite) return stats;
+
+  Random random(StreamKey(uint64_t(agent.config.seed), StreamRole::kLearnerUpdate, agent.updates));
+  const float temperature = agent.networks.Temperature();
+  agent.ComputeTargets(batch, temperature, &random);
+  stats.finite = agent.UpdateCritic(batch, &stats);
+  if (!stats.finite) return stats;
+  if (agent.updates % uint64_t(learner.actor_period) == 0 &&
+      !agent.UpdateActor(batch, temperature, &random, &stats)) {
+    agent.networks.critic_optimiser.Undo();
+    agent.networks.RefreshCritic();
+    stats.finite = false;
+    return stats;
+  }
+  if (agent.updates % uint64_t(learner.target_period) == 0) {
+    agent.networks.MoveTarget(float(learner.tau));
+  }
+  ++agent.updates;
+  stats.temperature = agent.networks.Temperature();
+  agent.last = stats;
+  return stats;
+}
+
+uint64_t SacAgent::updates() const { return impl_->updates; }
+
+nn::TensorMap SacAgent::PolicyTensors() const { return impl_->networks.PolicyTensors(); }
+
+nn::TensorMap SacAgent::AllTensors() const {
+  nn::TensorMap tensors = impl_->networks.AllTensors();
+  nn::ExportCounter(kUpdates, impl_->updates, &tensors);
+  return tensors;
+}
+
+void SacAgent::Restore(const nn::TensorMap& tensors, const std::string& source) {
+  const nn::ThreadScope scope(impl_->threads);
+  const uint64_t updates = nn::ImportCounter(tensors, kUpdates, source);
+  impl_->networks.Restore(tensors, source);
+  impl_->updates = updates;
+}
+
+}  // namespace shoal::learner
