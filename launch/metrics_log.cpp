@@ -1,7 +1,6 @@
 #include "launch/metrics_log.h"
 
 #include <cerrno>
-#include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
@@ -25,8 +24,7 @@ bool MetricsLog::Write(const MetricsMessage& message) {
                               {"id", message.id},   {"host", message.host},
                               {"pid", message.pid}, {"state", message.state}};
   for (size_t i = 0; i < message.names.size() && i < message.values.size(); ++i) {
-    const double value = message.values[i];
-    line[message.names[i]] = std::isfinite(value) ? nlohmann::ordered_json(value) : nullptr;
+    line[message.names[i]] = message.values[i];  // JSON has null for what is not finite
   }
   const std::string text = line.dump() + "\n";
   const bool room = bytes_ + text.size() <= limits_.most_bytes;

@@ -35,9 +35,13 @@ TEST(RunFolderTest, CreatesTheFolderWithItsSubfolders) {
 
 TEST(RunFolderTest, RefusesAGivenNameThatExists) {
   const TemporaryFolder dir;
-  { const RunFolder run = RunFolder::Create(dir.path(), "a", false); }
+  {
+    const RunFolder run = RunFolder::Create(dir.path(), "a", false);
+    WriteFileAtomically(run.path() / "config.json", "{}");
+  }
   EXPECT_THAT(UsageMessage([&] { RunFolder::Create(dir.path(), "a", false); }),
-              HasSubstr((dir.path() / "a").string()));
+              HasSubstr((dir.path() / "a").string() + "' exists"));
+  EXPECT_TRUE(std::filesystem::exists(dir.path() / "a" / "config.json"));
 }
 
 TEST(RunFolderTest, NumbersAutomaticNames) {
