@@ -43,7 +43,6 @@ class RenderContext {
 
   void MakeCurrent();
   void Draw(World* world, const CameraView& camera);
-  void Pack(uint8_t* planes) const;
 
   int width_, height_;
   bool grey_;
