@@ -12,7 +12,7 @@
 namespace shoal::replay {
 namespace {
 
-constexpr std::chrono::milliseconds kReaderPoll{5};
+constexpr std::chrono::milliseconds kPause{5};  // between tries
 
 }  // namespace
 
@@ -83,7 +83,7 @@ bool BatchSender::WaitForReader(const DrawnBatch& batch) {
   while (!writer_.HasReader()) {
     if (!Wanted(batch.request.learner_session) || Now() > deadline) return false;
     std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, kReaderPoll, [this] { return stopping_.load(); });
+    changed_.wait_for(lock, kPause, [this] { return stopping_.load(); });
   }
   return true;
 }
@@ -117,6 +117,8 @@ bool BatchSender::SendShard(const BatchShard& shard) {
                    shard.request, shard.shard, shard.shards, kShardDeadline.count());
       return false;
     }
+    std::unique_lock lock(mutex_);  // a writer that fails at once must not make this a busy loop
+    changed_.wait_for(lock, kPause, [this] { return stopping_.load(); });
   }
   return false;
 }

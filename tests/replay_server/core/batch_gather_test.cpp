@@ -1,0 +1,153 @@
+#include "replay_server/core/batch_gather.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <deque>
+#include <memory>
+#include <set>
+
+#include "tests/replay_server/record_script.h"
+
+namespace shoal::replay {
+namespace {
+
+// Draws the ids it is told to.
+class ListedSampler : public Sampler {
+ public:
+  explicit ListedSampler(std::deque<uint64_t> ids) : ids_(std::move(ids)) {}
+  std::optional<uint64_t> Draw(Random*) override {
+    if (ids_.empty()) return std::nullopt;
+    const uint64_t id = ids_.front();
+    ids_.pop_front();
+    return id;
+  }
+  uint64_t redraws() const override { return 0; }
+
+ private:
+  std::deque<uint64_t> ids_;
+};
+
+// One episode of four steps in ids 1 (reset) .. 5, the last one with `flags`; then another reset.
+class BatchGatherTest : public testing::Test {
+ protected:
+  void Fill(const ObservationSpec& spec, uint8_t flags) {
+    spec_ = spec;
+    ring_.emplace(spec_, RingOptions{.file = {}, .capacity = 32, .run = ""});
+    for (uint32_t i = 0; i < 5; ++i) {
+      records_.push_back(MakeRecord(spec_, 0, 0, 0, i, i + 1, i == 4 ? flags : uint8_t{0}));
+      ring_->Append(0, 1, i, records_.back().data());
+    }
+    ring_->Append(0, 1, 0, MakeRecord(spec_, 0, 0, 1, 0, 6).data());
+  }
+
+  BatchView Gather(const BatchPlan& plan) {
+    const BatchLayout layout(spec_, static_cast<int>(plan.elements.size()));
+    memory_.reset(static_cast<uint8_t*>(std::aligned_alloc(64, layout.total_bytes())));
+    const BatchView view = layout.View(memory_.get());
+    BatchGather(*ring_, spec_).Gather(plan, view);
+    return view;
+  }
+
+  // The frame of the episode's record `index`, shifted.
+  std::vector<uint8_t> Frame(size_t index, Shift shift) {
+    const auto frame = ring_->layout().Frame(records_[index].data());
+    std::vector<uint8_t> out(frame.size());
+    ShiftPlanes(frame.data(), spec_.channels, spec_.height, spec_.width, shift, out.data());
+    return out;
+  }
+  std::vector<uint8_t> Stack(std::initializer_list<size_t> indices, Shift shift) {
+    std::vector<uint8_t> stack;
+    for (const size_t index : indices) {
+      const auto frame = Frame(index, shift);
+      stack.insert(stack.end(), frame.begin(), frame.end());
+    }
+    return stack;
+  }
+  static std::vector<uint8_t> Bytes(std::span<const uint8_t> bytes) {
+    return {bytes.begin(), bytes.end()};
+  }
+
+  struct FreeBytes {
+    void operator()(uint8_t* data) const { std::free(data); }
+  };
+  ObservationSpec spec_;
+  std::optional<Ring> ring_;
+  std::vector<std::vector<uint8_t>> records_;
+  std::unique_ptr<uint8_t[], FreeBytes> memory_;
+};
+
+TEST_F(BatchGatherTest, AStackAtAnEpisodesStartRepeatsTheFirstFrame) {
+  Fill(TinySpec(3), kTruncated);
+  const BatchView first = Gather({.elements = {{.id = 2, .obs = {}, .next_obs = {}}}});
+  EXPECT_EQ(Bytes(first.obs_frames), Stack({0, 0, 0}, {}));
+  EXPECT_EQ(Bytes(first.next_obs_frames), Stack({0, 0, 1}, {}));
+  const BatchView last = Gather({.elements = {{.id = 5, .obs = {}, .next_obs = {}}}});
+  EXPECT_EQ(Bytes(last.obs_frames), Stack({1, 2, 3}, {}));
+  EXPECT_EQ(Bytes(last.next_obs_frames), Stack({2, 3, 4}, {}));
+}
+
+TEST_F(BatchGatherTest, OneShiftHoldsForAllFramesAndChannelsOfAStackAndAnotherForTheNext) {
+  Fill(TinySpec(2, 9, 7), 0);
+  const Shift obs{.dx = 2, .dy = -1}, next{.dx = -3, .dy = 4};
+  const BatchView view = Gather({.elements = {{.id = 4, .obs = obs, .next_obs = next}}});
+  EXPECT_EQ(Bytes(view.obs_frames), Stack({1, 2}, obs));
+  EXPECT_EQ(Bytes(view.next_obs_frames), Stack({2, 3}, next));
+}
+
+TEST_F(BatchGatherTest, ATimeLimitBootstrapsATerminationDoesNot) {
+  const BatchPlan plan{
+      .elements = {{.id = 4, .obs = {}, .next_obs = {}}, {.id = 5, .obs = {}, .next_obs = {}}}};
+  for (const uint8_t flags : {uint8_t{kTruncated}, uint8_t{kTerminated},
+                              uint8_t{kTerminated | kTruncated | kSuccess}, uint8_t{kSuccess}}) {
+    records_.clear();
+    Fill(TinySpec(1), flags);
+    const BatchView view = Gather(plan);
+    EXPECT_EQ(view.bootstrap[0], 1.0f);
+    EXPECT_EQ(view.bootstrap[1], (flags & kTerminated) != 0 ? 0.0f : 1.0f) << int{flags};
+  }
+}
+
+TEST_F(BatchGatherTest, WorksWithoutPixels) {
+  ObservationSpec spec = TinySpec(1);
+  spec.cameras.clear();
+  spec.channels = spec.height = spec.width = 0;
+  Fill(spec, 0);
+  const BatchView view = Gather({.elements = {{.id = 3, .obs = {}, .next_obs = {}}}});
+  EXPECT_TRUE(view.obs_frames.empty());
+  EXPECT_TRUE(std::ranges::equal(view.obs_vector, ring_->layout().Vector(records_[1].data())));
+  EXPECT_TRUE(std::ranges::equal(view.next_obs_vector, ring_->layout().Vector(records_[2].data())));
+  EXPECT_TRUE(std::ranges::equal(view.action, ring_->layout().Action(records_[2].data())));
+}
+
+TEST_F(BatchGatherTest, PlansShiftObservationAndNextIndependently) {
+  Fill(TinySpec(1), 0);
+  ListedSampler sampler(std::deque<uint64_t>(200, 2));
+  Random random(3);
+  const auto plan = DrawPlan(200, 4, &sampler, &random);
+  ASSERT_TRUE(plan);
+  int same = 0;
+  for (const BatchPlan::Element& element : plan->elements) {
+    same += element.obs == element.next_obs ? 1 : 0;
+  }
+  EXPECT_LT(same, 20) << "one of 81 pairs of offsets is equal by chance";
+}
+
+TEST_F(BatchGatherTest, APlanIsWholeOrNothing) {
+  Fill(TinySpec(1), 0);
+  ListedSampler sampler({2, 3});
+  Random random(3);
+  EXPECT_FALSE(DrawPlan(3, 4, &sampler, &random));
+}
+
+TEST_F(BatchGatherTest, ChecksTheShapeOfTheOutput) {
+  Fill(TinySpec(1), 0);
+  const BatchLayout layout(spec_, 2);
+  memory_.reset(static_cast<uint8_t*>(std::aligned_alloc(64, layout.total_bytes())));
+  const BatchPlan plan{.elements = {{.id = 4, .obs = {}, .next_obs = {}}}};
+  EXPECT_DEATH(BatchGather(*ring_, spec_).Gather(plan, layout.View(memory_.get())),
+               "a batch of 2 for a plan of 1");
+}
+
+}  // namespace
+}  // namespace shoal::replay

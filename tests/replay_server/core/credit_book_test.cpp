@@ -1,0 +1,75 @@
+#include "replay_server/core/credit_book.h"
+
+#include <gtest/gtest.h>
+
+namespace shoal::replay {
+namespace {
+
+class CreditBookTest : public testing::Test {
+ protected:
+  void DealtWith(int session, uint64_t highest) {
+    SessionCounters counters = table_.at(session);
+    counters.highest = highest;
+    table_.Update(session, counters);
+  }
+  std::vector<Credit> Changed(bool may_insert) {
+    book_.Refresh(may_insert);
+    return book_.Take(/*changed_only=*/true);
+  }
+
+  std::vector<StoredSession> storage_ = std::vector<StoredSession>(8);
+  SessionTable table_{storage_};
+  CreditBook book_{table_, /*spec_hash=*/5, /*replay_session=*/77, /*window_records=*/10};
+};
+
+TEST_F(CreditBookTest, ANewSessionGetsItsWindow) {
+  table_.Add(3, 30);
+  const auto credits = Changed(true);
+  ASSERT_EQ(credits.size(), 1u);
+  EXPECT_EQ(credits[0].actor, 3u);
+  EXPECT_EQ(credits[0].session, 30u);
+  EXPECT_EQ(credits[0].replay_session, 77u);
+  EXPECT_EQ(credits[0].spec_hash, 5u);
+  EXPECT_EQ(credits[0].stored, 0u);
+  EXPECT_EQ(credits[0].allowed, 10u);
+  EXPECT_TRUE(Changed(true).empty());
+  EXPECT_EQ(book_.Take(/*changed_only=*/false).size(), 1u);
+}
+
+TEST_F(CreditBookTest, WithheldCreditReportsWhatIsStoredAndAllowsNoMore) {
+  table_.Add(3, 30);
+  Changed(true);
+  DealtWith(0, 7);
+  EXPECT_FALSE(book_.Withholding());
+  const auto credits = Changed(false);
+  ASSERT_EQ(credits.size(), 1u);
+  EXPECT_EQ(credits[0].stored, 7u);
+  EXPECT_EQ(credits[0].allowed, 10u);
+  EXPECT_TRUE(book_.Withholding());
+  EXPECT_EQ(Changed(true)[0].allowed, 17u);
+  EXPECT_FALSE(book_.Withholding());
+}
+
+TEST_F(CreditBookTest, AllowedIsNeverLowerThanStored) {
+  table_.Add(3, 30);
+  Changed(false);
+  DealtWith(0, 25);
+  EXPECT_EQ(Changed(false)[0].allowed, 25u);
+}
+
+TEST_F(CreditBookTest, OnlyTheNewestSessionOfAnActorHasCredit) {
+  table_.Add(3, 30);
+  DealtWith(0, 9);
+  table_.Add(4, 1);
+  Changed(true);
+  table_.Add(3, 31);
+  const auto credits = Changed(true);
+  ASSERT_EQ(credits.size(), 1u);
+  EXPECT_EQ(credits[0].session, 31u);
+  EXPECT_EQ(credits[0].allowed, 10u) << "sequences begin anew";
+  EXPECT_EQ(book_.sessions(), 2);
+  EXPECT_EQ(book_.Take(false).size(), 2u);
+}
+
+}  // namespace
+}  // namespace shoal::replay

@@ -1,0 +1,106 @@
+#include "replay_server/core/episode_index.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/replay_server/record_script.h"
+
+namespace shoal::replay {
+namespace {
+
+// One environment; stores records by index, as a good actor would.
+class EpisodeIndexTest : public testing::Test {
+ protected:
+  void Open(int stack, uint64_t capacity) {
+    spec_ = TinySpec(stack);
+    ring_.emplace(spec_, RingOptions{.file = {}, .capacity = capacity, .run = ""});
+    index_.emplace(*ring_, stack);
+  }
+  uint64_t Store(uint32_t env, uint32_t episode, uint32_t index, uint8_t flags = 0) {
+    const auto record = MakeRecord(spec_, 0, env, episode, index, 1, flags);
+    const auto prev = index_->Predecessor(0, 1, RecordLayout::Header(record.data()));
+    if (!prev) return 0;
+    const uint64_t id = ring_->Append(0, 1, *prev, record.data());
+    index_->Added(id);
+    return id;
+  }
+
+  ObservationSpec spec_;
+  std::optional<Ring> ring_;
+  std::optional<EpisodeIndex> index_;
+};
+
+TEST_F(EpisodeIndexTest, EveryStepAfterAResetIsSampleableWhateverTheStack) {
+  Open(/*stack=*/3, 100);
+  for (uint32_t i = 0; i < 5; ++i) Store(0, 0, i);
+  EXPECT_FALSE(index_->Sampleable(1)) << "a reset is no transition";
+  EXPECT_EQ(index_->sampleable(), 4u);
+}
+
+TEST_F(EpisodeIndexTest, OverwritingAFrameTakesTheStepsThatNeedIt) {
+  Open(/*stack=*/2, 6);
+  for (uint32_t i = 0; i < 6; ++i) Store(0, 0, i);  // ids 1..6, index = id - 1
+  EXPECT_EQ(index_->sampleable(), 5u);
+  // Record 7 overwrites the reset, which the stacks of steps 2 and 3 reach.
+  Store(0, 0, 6);
+  EXPECT_FALSE(index_->Sampleable(2));
+  EXPECT_FALSE(index_->Sampleable(3));
+  EXPECT_TRUE(index_->Sampleable(4));
+  EXPECT_EQ(index_->sampleable(), 4u);
+  Store(0, 0, 7);
+  EXPECT_FALSE(index_->Sampleable(4));
+  EXPECT_EQ(index_->sampleable(), 4u);
+}
+
+TEST_F(EpisodeIndexTest, AStepWhosePredecessorIsOverwrittenIsNotSampleable) {
+  Open(/*stack=*/1, 4);
+  Store(0, 0, 0);
+  Store(0, 0, 1);
+  for (uint32_t i = 0; i < 4; ++i) Store(1, 0, i);
+  const uint64_t late = Store(0, 0, 2);
+  ASSERT_NE(late, 0u);
+  EXPECT_FALSE(index_->Sampleable(late));
+  const uint64_t next = Store(0, 0, 3);
+  EXPECT_TRUE(index_->Sampleable(next));
+}
+
+TEST_F(EpisodeIndexTest, OnlyTheNextIndexOfTheOpenEpisodeFollows) {
+  Open(1, 100);
+  Store(0, 4, 0);
+  EXPECT_EQ(Store(0, 4, 2), 0u) << "skips one";
+  EXPECT_EQ(Store(0, 5, 1), 0u) << "of another episode";
+  EXPECT_EQ(Store(1, 4, 1), 0u) << "of another environment";
+  EXPECT_NE(Store(0, 4, 1, kTerminated), 0u);
+  EXPECT_EQ(Store(0, 4, 2), 0u) << "after the end";
+}
+
+TEST_F(EpisodeIndexTest, CountsEpisodesThatWereCutShort) {
+  Open(1, 100);
+  Store(0, 0, 0);
+  Store(0, 0, 1, kTruncated);
+  Store(0, 1, 0);
+  EXPECT_EQ(index_->cut_episodes(), 0u);
+  Store(0, 2, 0);
+  EXPECT_EQ(index_->cut_episodes(), 1u) << "a reset in the middle";
+  index_->Close(0, 1, 0);
+  index_->Close(0, 1, 0);
+  EXPECT_EQ(index_->cut_episodes(), 2u) << "closed once";
+  EXPECT_EQ(Store(0, 2, 1), 0u);
+}
+
+TEST_F(EpisodeIndexTest, ARebuiltIndexEqualsTheOneThatGrew) {
+  Open(/*stack=*/2, 23);
+  RecordScript script(spec_, 0, 1, 3);
+  for (uint64_t sequence = 1; sequence <= 100; ++sequence) {
+    const RecordHeader& header = RecordLayout::Header(script.At(sequence).data());
+    index_->Added(
+        ring_->Append(0, 1, *index_->Predecessor(0, 1, header), script.At(sequence).data()));
+    const EpisodeIndex rebuilt(*ring_, 2);
+    ASSERT_EQ(rebuilt.sampleable(), index_->sampleable());
+    for (uint64_t id = 1; id <= sequence; ++id) {
+      ASSERT_EQ(rebuilt.Sampleable(id), index_->Sampleable(id));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace shoal::replay

@@ -1,0 +1,184 @@
+#include "replay_server/core/intake.h"
+
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "tests/replay_server/record_script.h"
+
+namespace shoal::replay {
+namespace {
+
+class IntakeTest : public testing::Test {
+ protected:
+  const SessionCounters& Counters(const RecordScript& script) {
+    return sessions_.at(*sessions_.Find(script.actor(), script.session()));
+  }
+
+  // A chunk of hand-made records with sequences from `first`.
+  TransitionChunk Chunk(uint64_t first, const std::vector<std::vector<uint8_t>>& records) {
+    payload_.clear();
+    for (const auto& r : records) payload_.insert(payload_.end(), r.begin(), r.end());
+    return {.spec_hash = spec_.Hash(),
+            .actor = 7,
+            .count = static_cast<uint32_t>(records.size()),
+            .session = 70,
+            .first_sequence = first,
+            .payload = payload_};
+  }
+  std::vector<uint8_t> Record(uint32_t episode, uint32_t index, uint64_t sequence,
+                              uint8_t flags = 0) {
+    return MakeRecord(spec_, 7, /*env=*/0, episode, index, sequence, flags);
+  }
+
+  const ObservationSpec spec_ = TinySpec(1);
+  Ring ring_{spec_, {.file = {}, .capacity = 100, .run = "test"}};
+  SessionTable sessions_{ring_.sessions()};
+  EpisodeIndex index_{ring_, 1};
+  Intake intake_{spec_.Hash(), &ring_, &sessions_, &index_};
+  RecordScript a_{spec_, 0, 10}, b_{spec_, 1, 11};
+  std::vector<uint8_t> payload_;
+};
+
+TEST_F(IntakeTest, StoresRecordsVerbatim) {
+  ASSERT_EQ(intake_.Take(a_.Chunk(1, 5)).stored, 5u);
+  const auto bytes = static_cast<size_t>(ring_.layout().record_bytes());
+  for (uint64_t id = 1; id <= 5; ++id) {
+    const uint8_t* stored = ring_.Record(id);
+    EXPECT_EQ(std::vector<uint8_t>(stored, stored + bytes), a_.At(id));
+    EXPECT_EQ(ring_.Slot(id).session, 10u);
+  }
+}
+
+TEST_F(IntakeTest, DropsAndCountsDuplicates) {
+  intake_.Take(a_.Chunk(1, 5));
+  const ChunkResult result = intake_.Take(a_.Chunk(3, 5));
+  EXPECT_EQ(result.duplicates, 3u);
+  EXPECT_EQ(result.stored, 2u);
+  EXPECT_EQ(intake_.Take(a_.Chunk(1, 7)).duplicates, 7u);
+  EXPECT_EQ(Counters(a_).duplicates, 10u);
+  EXPECT_EQ(Counters(a_).stored(), 7u);
+  EXPECT_EQ(ring_.last_id(), 7u);
+}
+
+TEST_F(IntakeTest, KeepsTwoInterleavedActorsApart) {
+  for (uint64_t k = 0; k < 20; ++k) {
+    intake_.Take(a_.Chunk(1 + 2 * k, 2));
+    intake_.Take(b_.Chunk(1 + 2 * k, 2));
+  }
+  EXPECT_EQ(Counters(a_).stored(), 40u);
+  EXPECT_EQ(Counters(b_).stored(), 40u);
+  for (uint64_t id = 1; id <= 80; ++id) {
+    const uint64_t prev = ring_.Slot(id).prev;
+    EXPECT_TRUE(prev == 0 || ring_.Slot(prev).actor == ring_.Slot(id).actor);
+  }
+}
+
+TEST_F(IntakeTest, SetsAsideWhatIsAheadUntilTheMissingOnesCome) {
+  intake_.Take(a_.Chunk(1, 4));
+  EXPECT_EQ(intake_.Take(a_.Chunk(9, 4)).fate, ChunkFate::kAhead);
+  EXPECT_EQ(Counters(a_).highest, 4u);
+  EXPECT_EQ(intake_.Take(a_.Chunk(5, 4)).stored, 4u);
+  EXPECT_EQ(intake_.Take(a_.Chunk(9, 4)).stored, 4u);
+  EXPECT_EQ(Counters(a_).lost, 0u);
+  EXPECT_EQ(Counters(a_).stored(), 12u);
+}
+
+TEST_F(IntakeTest, TakesTheMissingOnesAsLostWhenTheActorHasNothingOlder) {
+  intake_.Take(a_.Chunk(1, 4));
+  EXPECT_EQ(intake_.Take(a_.Chunk(9, 4)).fate, ChunkFate::kAhead);
+  EXPECT_EQ(intake_.Take(a_.Chunk(13, 4)).fate, ChunkFate::kAhead);
+  EXPECT_EQ(intake_.Take(a_.Chunk(9, 4)).fate, ChunkFate::kAhead);
+  EXPECT_EQ(intake_.Take(a_.Chunk(13, 4)).fate, ChunkFate::kAhead);
+  const ChunkResult result = intake_.Take(a_.Chunk(9, 4));
+  EXPECT_EQ(result.fate, ChunkFate::kDealtWith);
+  EXPECT_EQ(result.lost, 4u);
+  const SessionCounters& c = Counters(a_);
+  EXPECT_EQ(c.highest, 12u);
+  EXPECT_EQ(c.stored() + c.rejected + c.after_gap + c.lost, 12u);
+}
+
+TEST_F(IntakeTest, AGapClosesTheEpisodeAtTheLastStoredRecord) {
+  intake_.Take(Chunk(1, {Record(0, 0, 1), Record(0, 1, 2)}));
+  for (int i = 0; i < Intake::kAheadOffers; ++i) {
+    intake_.Take(Chunk(4, {Record(0, 3, 4), Record(0, 4, 5), Record(1, 0, 6), Record(1, 1, 7)}));
+  }
+  const SessionCounters& c = sessions_.at(0);
+  EXPECT_EQ(c.lost, 1u);
+  EXPECT_EQ(c.after_gap, 2u);
+  EXPECT_EQ(c.stored(), 4u);
+  EXPECT_EQ(index_.cut_episodes(), 1u);
+  EXPECT_EQ(index_.sampleable(), 2u);
+}
+
+TEST_F(IntakeTest, AMalformedRecordIsCountedAndClosesItsEpisode) {
+  auto bad = Record(0, 2, 3);
+  RecordLayout::Header(bad.data()).reward = std::numeric_limits<float>::quiet_NaN();
+  // The same index once more, well-formed: the episode is closed all the same.
+  const ChunkResult result =
+      intake_.Take(Chunk(1, {Record(0, 0, 1), Record(0, 1, 2), bad, Record(0, 2, 4),
+                             Record(0, 3, 5), Record(1, 0, 6)}));
+  EXPECT_EQ(result.rejected, 1u);
+  EXPECT_STREQ(result.fault, "reward is not finite");
+  EXPECT_EQ(result.after_gap, 2u);
+  EXPECT_EQ(result.stored, 3u);
+  EXPECT_EQ(sessions_.at(0).highest, 6u);
+}
+
+TEST_F(IntakeTest, ARecordWithAnotherSequenceThanItsPlaceIsRejected) {
+  EXPECT_EQ(intake_.Take(Chunk(1, {Record(0, 0, 1), Record(0, 1, 9)})).rejected, 1u);
+}
+
+TEST_F(IntakeTest, NothingFollowsTheEndOfAnEpisode) {
+  const ChunkResult result =
+      intake_.Take(Chunk(1, {Record(0, 0, 1), Record(0, 1, 2, kTruncated), Record(0, 2, 3)}));
+  EXPECT_EQ(result.stored, 2u);
+  EXPECT_EQ(result.after_gap, 1u);
+}
+
+TEST_F(IntakeTest, ANewSessionOfTheActorNeverContinuesTheFormerOnesEpisode) {
+  intake_.Take(Chunk(1, {Record(0, 0, 1), Record(0, 1, 2)}));
+  TransitionChunk chunk = Chunk(1, {Record(0, 2, 1), Record(1, 0, 2), Record(1, 1, 3)});
+  chunk.session = 71;
+  const ChunkResult result = intake_.Take(chunk);
+  EXPECT_EQ(result.after_gap, 1u);
+  EXPECT_EQ(result.stored, 2u);
+  EXPECT_EQ(ring_.Slot(3).prev, 0u);
+}
+
+TEST_F(IntakeTest, RefusesLateChunksOfASupersededSession) {
+  RecordScript old_session(spec_, 0, 9);
+  intake_.Take(old_session.Chunk(1, 3));
+  intake_.Take(a_.Chunk(1, 3));
+  EXPECT_EQ(intake_.Take(old_session.Chunk(4, 3)).fate, ChunkFate::kSuperseded);
+  EXPECT_EQ(Counters(old_session).highest, 3u);
+}
+
+TEST_F(IntakeTest, RefusesChunksOfAnotherSpecAndMalformedOnes) {
+  TransitionChunk chunk = a_.Chunk(1, 3);
+  chunk.spec_hash ^= 1;
+  EXPECT_EQ(intake_.Take(chunk).fate, ChunkFate::kWrongSpec);
+  chunk = a_.Chunk(1, 3);
+  chunk.payload = chunk.payload.subspan(8);
+  EXPECT_EQ(intake_.Take(chunk).fate, ChunkFate::kMalformed);
+  chunk = a_.Chunk(1, 3);
+  chunk.first_sequence = 0;
+  EXPECT_EQ(intake_.Take(chunk).fate, ChunkFate::kMalformed);
+  chunk = a_.Chunk(1, 3);
+  chunk.first_sequence = UINT64_MAX - 1;
+  EXPECT_EQ(intake_.Take(chunk).fate, ChunkFate::kMalformed);
+  EXPECT_EQ(ring_.last_id(), 0u);
+  EXPECT_EQ(sessions_.size(), 0);
+}
+
+TEST_F(IntakeTest, RefusesNewSessionsWhenTheTableIsFull) {
+  for (uint32_t actor = 0; actor < kMaxSessions; ++actor) {
+    RecordScript script(spec_, actor, 1);
+    ASSERT_EQ(intake_.Take(script.Chunk(1, 1)).fate, ChunkFate::kDealtWith);
+  }
+  RecordScript one_more(spec_, kMaxSessions, 1);
+  EXPECT_EQ(intake_.Take(one_more.Chunk(1, 1)).fate, ChunkFate::kTableFull);
+}
+
+}  // namespace
+}  // namespace shoal::replay

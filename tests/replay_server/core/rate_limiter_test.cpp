@@ -1,0 +1,235 @@
+#include "replay_server/core/rate_limiter.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "common/base/random.h"
+
+namespace shoal::replay {
+namespace {
+
+LimiterOptions Options() {
+  return {.samples_per_insert = 2,
+          .min_size = 10,
+          .batch = 8,
+          .credits = 2,
+          .window_records = 6,
+          .band = 0,
+          .lockstep = false};
+}
+
+TEST(RateLimiter, TheCursorAfterEachCall) {
+  RateLimiter limiter(Options());
+  limiter.SetSessions(1);
+  // Least band: 2 * (2 * 6 + 2 * 8). Batches down to -28, inserts while the cursor is at most 16.
+  EXPECT_EQ(limiter.band(), 56);
+  EXPECT_FALSE(limiter.MaySample(9));
+  EXPECT_TRUE(limiter.MayInsert(9));
+  limiter.Inserted(10, 10);
+  EXPECT_EQ(limiter.cursor(), 0) << "up to min size nothing counts";
+  EXPECT_TRUE(limiter.MaySample(10)) << "the learner begins at once";
+  limiter.Inserted(3, 13);
+  EXPECT_EQ(limiter.cursor(), 6);
+  limiter.Sampled();
+  EXPECT_EQ(limiter.cursor(), -2);
+  limiter.Sampled();
+  limiter.Sampled();
+  EXPECT_EQ(limiter.cursor(), -18);
+  EXPECT_TRUE(limiter.MaySample(13));
+  limiter.Sampled();
+  EXPECT_EQ(limiter.cursor(), -26);
+  EXPECT_FALSE(limiter.MaySample(13)) << "-26 - 8 is below -28";
+  limiter.Inserted(3, 16);
+  EXPECT_EQ(limiter.cursor(), -20);
+  EXPECT_TRUE(limiter.MaySample(16));
+  limiter.Inserted(18, 34);
+  EXPECT_EQ(limiter.cursor(), 16);
+  EXPECT_TRUE(limiter.MayInsert(34));
+  limiter.Inserted(1, 35);
+  EXPECT_EQ(limiter.cursor(), 18);
+  EXPECT_FALSE(limiter.MayInsert(35));
+  limiter.Sampled();
+  EXPECT_EQ(limiter.cursor(), 10);
+  EXPECT_TRUE(limiter.MayInsert(35));
+}
+
+TEST(RateLimiter, InsertsThatCrossMinSizeCountFromThere) {
+  RateLimiter limiter(Options());
+  limiter.SetSessions(1);
+  limiter.Inserted(12, 12);
+  EXPECT_EQ(limiter.cursor(), 4);
+}
+
+TEST(RateLimiter, InsertsAreNeverWithheldBelowMinSize) {
+  RateLimiter limiter(Options());
+  limiter.SetSessions(1);
+  limiter.Inserted(40, 50);
+  ASSERT_FALSE(limiter.MayInsert(50));
+  EXPECT_TRUE(limiter.MayInsert(9)) << "the ring has overwritten what was sampleable";
+}
+
+TEST(RateLimiter, TheBandFollowsSessionsAndRatioAndTheCursorStaysInIt) {
+  RateLimiter limiter(Options());
+  limiter.SetSessions(4);
+  EXPECT_EQ(limiter.band(), 2 * (2 * 24 + 16));
+  limiter.Inserted(32, 100);
+  EXPECT_EQ(limiter.cursor(), 64);
+  limiter.SetSessions(1);
+  EXPECT_EQ(limiter.cursor(), 28);
+  limiter.SetSamplesPerInsert(10);
+  EXPECT_EQ(limiter.band(), 2 * (60 + 16));
+}
+
+TEST(RateLimiter, AWiderBandIsTakenANarrowerOneIsNot) {
+  LimiterOptions options = Options();
+  options.band = 1000;
+  RateLimiter wide(options);
+  wide.SetSessions(1);
+  EXPECT_EQ(wide.band(), 1000);
+  options.band = 10;
+  RateLimiter narrow(options);
+  narrow.SetSessions(1);
+  EXPECT_EQ(narrow.band(), 56);
+}
+
+TEST(RateLimiter, NoLimitMeansMinSizeOnly) {
+  LimiterOptions options = Options();
+  options.samples_per_insert = 0;
+  RateLimiter limiter(options);
+  limiter.SetSessions(1);
+  for (int i = 0; i < 1000; ++i) limiter.Sampled();
+  EXPECT_TRUE(limiter.MaySample(10));
+  EXPECT_FALSE(limiter.MaySample(9));
+  limiter.Inserted(100'000, 100'000);
+  EXPECT_TRUE(limiter.MayInsert(100'000));
+}
+
+TEST(RateLimiter, LockstepAndDrainingHoldNothingBack) {
+  LimiterOptions options = Options();
+  options.lockstep = true;
+  RateLimiter lockstep(options);
+  lockstep.SetSessions(1);
+  lockstep.Inserted(1000, 1000);
+  EXPECT_TRUE(lockstep.MayInsert(1000));
+  EXPECT_TRUE(lockstep.MaySample(1));
+  EXPECT_FALSE(lockstep.MaySample(0));
+
+  RateLimiter draining(Options());
+  draining.SetSessions(1);
+  for (int i = 0; i < 10; ++i) draining.Sampled();
+  ASSERT_FALSE(draining.MaySample(50));
+  draining.SetDraining(true);
+  EXPECT_TRUE(draining.MaySample(50));
+  draining.Inserted(500, 550);
+  EXPECT_TRUE(draining.MayInsert(550));
+  draining.SetDraining(false);
+  EXPECT_FALSE(draining.MayInsert(550));
+}
+
+// Actors with windows and a learner that wants more always, around one limiter. Not every record
+// becomes sampleable, the ring overwrites, processes die and come back, the ratio changes.
+class World {
+ public:
+  World(const LimiterOptions& options, uint64_t seed)
+      : options_(options), limiter_(options), random_(seed) {
+    Scale(1 + random_.Below(4));
+  }
+
+  void Event() {
+    const uint64_t kind = random_.Below(100);
+    if (kind < 55) return TrySend();
+    if (kind < 95) return TrySample();
+    if (kind == 95) return Scale(1 + random_.Below(5));
+    if (kind == 96) return Kill();
+    if (kind == 97) limiter_.SetSamplesPerInsert(static_cast<double>(1 + random_.Below(64)));
+    if (kind == 98) sampleable_ -= std::min(sampleable_, random_.Below(200));  // overwritten
+    if (kind == 99) limiter_ = Restarted();
+  }
+
+  // One side can move: a batch may be drawn, or some actor may send now or once it is told so.
+  bool SomeoneCanMove() {
+    Refresh();
+    const bool can_send = std::ranges::any_of(actors_, [](const Actor& a) { return a.credit > 0; });
+    return can_send || limiter_.MaySample(sampleable_);
+  }
+
+  bool InBand() const { return std::abs(limiter_.cursor()) <= limiter_.band() / 2; }
+  uint64_t batches() const { return batches_; }
+  uint64_t records() const { return records_; }
+
+ private:
+  struct Actor {
+    uint64_t credit = 0;  // records it may send
+  };
+
+  void Refresh() {
+    if (!limiter_.MayInsert(sampleable_)) return;
+    for (Actor& actor : actors_) actor.credit = options_.window_records;
+  }
+
+  void TrySend() {
+    Refresh();
+    Actor& actor = actors_[random_.Below(actors_.size())];
+    if (actor.credit == 0) return;
+    const uint64_t records = 1 + random_.Below(actor.credit);
+    const uint64_t useful = random_.Below(records + 1);
+    actor.credit -= records;
+    records_ += records;
+    sampleable_ = std::min<uint64_t>(sampleable_ + useful, 5000);
+    limiter_.Inserted(useful, sampleable_);
+  }
+
+  void TrySample() {
+    if (!limiter_.MaySample(sampleable_)) return;
+    limiter_.Sampled();
+    ++batches_;
+  }
+
+  void Scale(uint64_t actors) {
+    actors_.resize(actors);
+    limiter_.SetSessions(static_cast<int>(actors));
+  }
+
+  // Its window is gone with it; its successor is told anew.
+  void Kill() { actors_[random_.Below(actors_.size())] = {}; }
+
+  // The server died: what was inserted and sampled before is not remembered.
+  RateLimiter Restarted() {
+    LimiterOptions options = options_;
+    options.samples_per_insert = limiter_.samples_per_insert();
+    RateLimiter limiter(options);
+    limiter.SetSessions(static_cast<int>(actors_.size()));
+    return limiter;
+  }
+
+  const LimiterOptions options_;
+  RateLimiter limiter_;
+  Random random_;
+  std::vector<Actor> actors_;
+  uint64_t sampleable_ = 0, batches_ = 0, records_ = 0;
+};
+
+TEST(RateLimiterProperty, OneSideCanAlwaysMove) {
+  for (uint64_t seed = 1; seed <= 60; ++seed) {
+    LimiterOptions options = Options();
+    Random random(seed);
+    options.samples_per_insert = static_cast<double>(random.Below(100)) / 4;
+    options.min_size = 1 + random.Below(300);
+    options.batch = 1 + static_cast<int>(random.Below(512));
+    options.credits = 1 + static_cast<int>(random.Below(4));
+    options.window_records = 2 + random.Below(100);
+    World world(options, seed);
+    for (int i = 0; i < 3000; ++i) {
+      world.Event();
+      ASSERT_TRUE(world.SomeoneCanMove()) << "seed " << seed << ", event " << i;
+      ASSERT_TRUE(world.InBand()) << "seed " << seed << ", event " << i;
+    }
+    EXPECT_GT(world.batches(), 0u) << "seed " << seed;
+    EXPECT_GT(world.records(), 300u) << "seed " << seed;
+  }
+}
+
+}  // namespace
+}  // namespace shoal::replay

@@ -1,0 +1,198 @@
+#include "replay_server/core/replay_core.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "common/base/error.h"
+#include "tests/replay_server/record_script.h"
+#include "tests/support/temporary_folder.h"
+
+namespace shoal::replay {
+namespace {
+
+using testing::HasSubstr;
+
+class ReplayCoreTest : public testing::Test {
+ protected:
+  ReplayCoreTest() : run_(TinyRun(2, 64)) { run_.config.replay.shift_pad = 1; }
+
+  void Start() { core_.emplace(run_, folder_.path(), ++replay_session_); }
+  ChunkResult Store(RecordScript* script, uint64_t first, uint32_t count) {
+    return core_->TakeChunk(script->Chunk(first, count));
+  }
+  RequestFate Ask(uint64_t request, uint64_t after_steps = 0, uint64_t session = 1) {
+    return core_->TakeRequest({.spec_hash = run_.spec.Hash(),
+                               .learner_session = session,
+                               .request = request,
+                               .batch = static_cast<uint32_t>(run_.config.learner.batch),
+                               .after_steps = after_steps});
+  }
+  // The next batch's bytes; empty when nothing is answered.
+  std::vector<uint8_t> Answer() {
+    const uint64_t bytes = core_->batch_layout().total_bytes();
+    const std::unique_ptr<void, decltype(&std::free)> data(std::aligned_alloc(64, bytes),
+                                                           &std::free);
+    std::memset(data.get(), 0, bytes);
+    drawn_ = core_->TryAnswer(static_cast<uint8_t*>(data.get()));
+    if (!drawn_) return {};
+    const auto* begin = static_cast<const uint8_t*>(data.get());
+    return {begin, begin + bytes};
+  }
+
+  RunConfig run_;
+  TemporaryFolder folder_;
+  std::optional<ReplayCore> core_;
+  std::optional<DrawnBatch> drawn_;
+  uint64_t replay_session_ = 0;
+  RecordScript actor_{TinySpec(2), 0, 10};
+};
+
+TEST_F(ReplayCoreTest, ARepeatedRequestGetsTheSameBytesAndAnotherOneOthers) {
+  Start();
+  Store(&actor_, 1, 40);
+  Ask(1);
+  const auto first = Answer();
+  ASSERT_FALSE(first.empty());
+  Ask(2);
+  EXPECT_NE(Answer(), first);
+  Ask(1);
+  EXPECT_EQ(Answer(), first);
+  EXPECT_EQ(core_->counters().repeated_batches, 1u);
+  EXPECT_EQ(core_->counters().batches, 2u);
+}
+
+TEST_F(ReplayCoreTest, AnswersDependOnSeedAndRequestOnlyNotOnTheLearnersSession) {
+  Start();
+  Store(&actor_, 1, 40);
+  Ask(5);
+  const auto first = Answer();
+  Ask(5, 0, /*session=*/9);
+  EXPECT_EQ(Answer(), first);
+  run_.config.seed += 1;
+  Start();
+  Store(&actor_, 1, 40);
+  Ask(5);
+  EXPECT_NE(Answer(), first);
+}
+
+TEST_F(ReplayCoreTest, ABatchWaitsForItsStepsAndTellsWhatWasStored) {
+  run_.config.lockstep = true;
+  run_.config.replay.min_size = 20;
+  Start();
+  Store(&actor_, 1, 3);
+  ASSERT_EQ(Ask(1, /*after_steps=*/10), RequestFate::kQueued);
+  EXPECT_TRUE(Answer().empty());
+  EXPECT_TRUE(core_->SamplesBlocked());
+  for (uint64_t next = 4; core_->ring().stored_steps() < 10; ++next) {
+    EXPECT_TRUE(Answer().empty());
+    Store(&actor_, next, 1);
+  }
+  EXPECT_FALSE(core_->SamplesBlocked());
+  EXPECT_FALSE(Answer().empty()) << "lockstep has its own rule for the beginning";
+  EXPECT_EQ(drawn_->stored_steps, 10u);
+  EXPECT_EQ(drawn_->stored_records, core_->ring().last_id());
+}
+
+TEST_F(ReplayCoreTest, TheLimiterWithholdsCreditAndBatchesAndOneOfThemAlwaysMoves) {
+  run_.config.replay.samples_per_insert = 2;
+  run_.config.replay.min_size = 8;
+  Start();
+  uint64_t next = 1, request = 1;
+  // The actor sends as far as it is allowed to; no batch is asked for.
+  const auto send_all = [&] {
+    for (;;) {
+      const auto credits = core_->TakeCredits(false);
+      if (!credits.empty() && credits[0].allowed < next) return;
+      Store(&actor_, next++, 1);
+    }
+  };
+  send_all();
+  EXPECT_TRUE(core_->InsertsBlocked());
+  EXPECT_GT(core_->limiter().cursor(), 0);
+  uint64_t batches = 0;
+  for (; Ask(request) == RequestFate::kQueued && !Answer().empty(); ++request) ++batches;
+  EXPECT_TRUE(core_->SamplesBlocked());
+  EXPECT_FALSE(core_->InsertsBlocked());
+  EXPECT_GT(batches, 0u);
+  const uint64_t sent_before = next;
+  send_all();
+  EXPECT_GT(next, sent_before);
+  EXPECT_FALSE(Answer().empty()) << "the request that waited";
+}
+
+TEST_F(ReplayCoreTest, AResentRequestIsNotChargedToTheLimiter) {
+  run_.config.replay.samples_per_insert = 2;
+  Start();
+  Store(&actor_, 1, 8);
+  Ask(1);
+  ASSERT_FALSE(Answer().empty());
+  const double cursor = core_->limiter().cursor();
+  for (int i = 0; i < 100; ++i) {
+    Ask(1);
+    ASSERT_FALSE(Answer().empty());
+  }
+  EXPECT_EQ(core_->limiter().cursor(), cursor);
+}
+
+TEST_F(ReplayCoreTest, DrainingLetsTheLearnerFinishAndTheActorsFlush) {
+  run_.config.replay.samples_per_insert = 0.5;
+  Start();
+  Store(&actor_, 1, 12);
+  for (uint64_t request = 1; request < 100; ++request) {
+    Ask(request);
+    if (Answer().empty()) break;
+  }
+  ASSERT_TRUE(core_->SamplesBlocked());
+  core_->SetDraining(true);
+  EXPECT_FALSE(Answer().empty());
+}
+
+TEST_F(ReplayCoreTest, ARestartedServerKnowsItsActorsAndRebuildsTheCursor) {
+  run_.config.replay.storage = "file";
+  run_.config.replay.samples_per_insert = 2;
+  Start();
+  Store(&actor_, 1, 30);
+  ASSERT_NE(core_->limiter().cursor(), 0);
+  const uint64_t sampleable = core_->index().sampleable();
+  core_.reset();
+  Start();
+  EXPECT_EQ(core_->limiter().cursor(), 0);
+  EXPECT_EQ(core_->index().sampleable(), sampleable);
+  const auto credits = core_->TakeCredits(true);
+  ASSERT_EQ(credits.size(), 1u);
+  EXPECT_EQ(credits[0].replay_session, 2u);
+  EXPECT_EQ(credits[0].stored, 30u);
+  EXPECT_EQ(credits[0].allowed, 38u);
+  EXPECT_EQ(Store(&actor_, 29, 4).stored, 2u) << "episodes go on across the restart";
+}
+
+TEST_F(ReplayCoreTest, AnActorOfAnotherSpecIsToldOurs) {
+  Start();
+  TransitionChunk chunk = actor_.Chunk(1, 2);
+  chunk.spec_hash ^= 1;
+  EXPECT_EQ(core_->TakeChunk(chunk).fate, ChunkFate::kWrongSpec);
+  const Credit refusal = core_->Refusal(chunk);
+  EXPECT_EQ(refusal.spec_hash, run_.spec.Hash());
+  EXPECT_EQ(refusal.session, 10u);
+  EXPECT_EQ(refusal.allowed, 0u);
+  EXPECT_EQ(core_->counters().wrong_spec_chunks, 1u);
+}
+
+TEST_F(ReplayCoreTest, RefusesABandInWhichBothCouldWait) {
+  run_.config.replay.samples_per_insert = 2;
+  run_.config.replay.band = 10;
+  try {
+    Start();
+    FAIL();
+  } catch (const Error& e) {
+    // 2 * (2 * 8 records of window + 3 credits * 8)
+    EXPECT_THAT(e.what(), HasSubstr("replay.band 10 is too small"));
+    EXPECT_THAT(e.what(), HasSubstr("at least 80"));
+    EXPECT_EQ(e.exit_code(), 2);
+  }
+}
+
+}  // namespace
+}  // namespace shoal::replay

@@ -1,0 +1,88 @@
+#include "replay_server/core/session_table.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "common/base/error.h"
+
+namespace shoal::replay {
+namespace {
+
+class SessionTableTest : public testing::Test {
+ protected:
+  std::vector<StoredSession> storage_ = std::vector<StoredSession>(4);
+};
+
+TEST_F(SessionTableTest, CountersOutliveTheTable) {
+  const SessionCounters counters{.actor = 3,
+                                 .session = 30,
+                                 .highest = 20,
+                                 .rejected = 1,
+                                 .after_gap = 2,
+                                 .lost = 3,
+                                 .duplicates = 4};
+  {
+    SessionTable table(storage_);
+    table.Add(2, 20);
+    table.Update(*table.Add(3, 30), counters);
+  }
+  const SessionTable table(storage_);
+  ASSERT_EQ(table.size(), 2);
+  EXPECT_EQ(table.at(*table.Find(3, 30)), counters);
+  EXPECT_EQ(counters.stored(), 14u);
+  EXPECT_EQ(table.TotalStored(), 14u);
+  EXPECT_FALSE(table.Find(3, 20).has_value());
+}
+
+TEST_F(SessionTableTest, AnUpdateCutShortLeavesTheFormerCounters) {
+  {
+    SessionTable table(storage_);
+    table.Add(1, 10);
+    table.Update(0, {.actor = 1, .session = 10, .highest = 5});
+    table.Update(0, {.actor = 1, .session = 10, .highest = 6});
+  }
+  // Version 3 lies in copy 1; the writer died after it had begun to change it.
+  storage_[0].copies[1].check = 0;
+  storage_[0].copies[1].highest = 999;
+  EXPECT_EQ(SessionTable(storage_).at(0).highest, 5u);
+}
+
+TEST_F(SessionTableTest, AnAddCutShortLeavesNoSession) {
+  { SessionTable(storage_).Add(1, 10); }
+  storage_[0].copies[1].check = 0;
+  SessionTable table(storage_);
+  EXPECT_EQ(table.size(), 0);
+  EXPECT_EQ(*table.Add(1, 11), 0);
+  EXPECT_EQ(SessionTable(storage_).at(0).session, 11u);
+}
+
+TEST_F(SessionTableTest, RefusesASessionWithTwoDamagedCopies) {
+  {
+    SessionTable table(storage_);
+    table.Add(1, 10);
+    table.Update(0, {.actor = 1, .session = 10, .highest = 5});
+  }
+  storage_[0].copies[0].highest ^= 1;
+  storage_[0].copies[1].highest ^= 1;
+  EXPECT_THROW(SessionTable{storage_}, Error);
+}
+
+TEST_F(SessionTableTest, TheNewestSessionOfAnActorIsTheOneThatStartedLast) {
+  SessionTable table(storage_);
+  table.Add(1, 20);
+  table.Add(1, 10);
+  table.Add(2, 5);
+  EXPECT_EQ(table.at(*table.Newest(1)).session, 20u);
+  EXPECT_EQ(table.newest().size(), 2u);
+  EXPECT_FALSE(table.Newest(3).has_value());
+}
+
+TEST_F(SessionTableTest, IsBounded) {
+  SessionTable table(storage_);
+  for (uint64_t session = 1; session <= 4; ++session) EXPECT_TRUE(table.Add(1, session));
+  EXPECT_FALSE(table.Add(1, 5));
+}
+
+}  // namespace
+}  // namespace shoal::replay

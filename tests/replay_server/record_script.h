@@ -1,0 +1,151 @@
+// Records whose every byte follows from who made them, so that tests can tell them apart.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <cstring>
+#include <map>
+#include <span>
+#include <vector>
+
+#include "common/base/random.h"
+#include "common/config/run_files.h"
+#include "common/spec/record.h"
+#include "common/wire/messages.h"
+
+namespace shoal::replay {
+
+// Small and odd on purpose: record sizes that are no multiple of anything.
+inline ObservationSpec TinySpec(int stack, int height = 3, int width = 5) {
+  ObservationSpec spec;
+  spec.task = "Test";
+  spec.cameras = {"a", "b"};
+  spec.channels = 2;
+  spec.height = height;
+  spec.width = width;
+  spec.stack = stack;
+  spec.blocks = {{"observation", 3}};
+  spec.action_size = 2;
+  spec.model_fingerprint = "fingerprint";
+  return spec;
+}
+
+inline RunConfig TinyRun(int stack, int64_t capacity) {
+  RunConfig run;
+  run.spec = TinySpec(stack);
+  run.config.run_name = "tiny";
+  run.config.actors = 1;
+  run.config.replay.storage = "memory";
+  run.config.replay.capacity = capacity;
+  run.config.replay.min_size = 4;
+  run.config.replay.samples_per_insert = 0;
+  run.config.replay.shift_pad = 0;
+  run.config.replay.window_chunks = 2;
+  run.config.learner.batch = 8;
+  run.config.transport.chunk_records = 4;
+  return run;
+}
+
+// One record; pixels, vector, action and reward follow from (actor, env, episode, index).
+inline std::vector<uint8_t> MakeRecord(const ObservationSpec& spec, uint32_t actor, uint32_t env,
+                                       uint32_t episode, uint32_t index, uint64_t sequence,
+                                       uint8_t flags = 0) {
+  const RecordLayout layout(spec);
+  // Records are read through casts to 8-byte fields: vector's memory is aligned for these.
+  std::vector<uint8_t> record(static_cast<size_t>(layout.record_bytes()));
+  Random random(HashWords({actor, env, episode, index}));
+  RecordHeader& header = RecordLayout::Header(record.data());
+  header.sequence = sequence;
+  header.weights_update = random.Below(1000);
+  header.env = env;
+  header.episode = episode;
+  header.index = index;
+  header.kind = index == 0 ? RecordKind::kReset : RecordKind::kStep;
+  header.flags = flags;
+  header.version = kRecordVersion;
+  for (uint8_t& pixel : layout.Frame(record.data())) pixel = static_cast<uint8_t>(random.Next());
+  for (float& v : layout.Vector(record.data())) v = static_cast<float>(random.Uniform(-2, 2));
+  if (index == 0) return record;
+  header.reward = static_cast<float>(random.Uniform(-1, 1));
+  for (float& a : layout.Action(record.data())) a = static_cast<float>(random.Uniform(-1, 1));
+  return record;
+}
+
+// What an actor session publishes: `envs` environments step in turn, episodes of random length end
+// terminated or truncated. Sequences run from 1; the same arguments give the same records.
+class RecordScript {
+ public:
+  RecordScript(const ObservationSpec& spec, uint32_t actor, uint64_t session, uint32_t envs = 2,
+               int mean_length = 6)
+      : spec_(spec),
+        actor_(actor),
+        session_(session),
+        envs_(envs),
+        mean_length_(mean_length),
+        random_(HashWords({actor, session})) {}
+
+  uint32_t actor() const { return actor_; }
+  uint64_t session() const { return session_; }
+
+  // The record with this sequence.
+  const std::vector<uint8_t>& At(uint64_t sequence) {
+    while (records_.size() < sequence) Make();
+    return records_[sequence - 1];
+  }
+
+  // Records first .. first+count-1 as a chunk. Valid until the next call.
+  TransitionChunk Chunk(uint64_t first, uint32_t count) {
+    payload_.clear();
+    for (uint32_t k = 0; k < count; ++k) {
+      const std::vector<uint8_t>& record = At(first + k);
+      payload_.insert(payload_.end(), record.begin(), record.end());
+    }
+    return {.spec_hash = spec_.Hash(),
+            .actor = actor_,
+            .count = count,
+            .session = session_,
+            .first_sequence = first,
+            .payload = payload_};
+  }
+
+  // Makes the record malformed: its action is out of range.
+  void Spoil(uint64_t sequence) {
+    At(sequence);
+    const RecordLayout layout(spec_);
+    layout.Action(records_[sequence - 1].data())[0] = 2;
+  }
+
+ private:
+  void Make() {
+    const uint64_t sequence = records_.size() + 1;
+    const uint32_t env = actor_ * envs_ + static_cast<uint32_t>(random_.Below(envs_));
+    Where& where = where_[env];
+    if (where.ended) where = {.episode = where.episode + 1, .index = 0, .ended = false};
+    uint8_t flags = 0;
+    if (where.index > 0 && random_.Below(static_cast<uint64_t>(mean_length_)) == 0) {
+      flags = static_cast<uint8_t>(1 + random_.Below(3));
+      where.ended = true;
+    }
+    // Session in the episode number: episodes are never used again within a run.
+    const uint32_t episode = static_cast<uint32_t>(session_ * 1000) + where.episode;
+    records_.push_back(MakeRecord(spec_, actor_, env, episode, where.index, sequence, flags));
+    ++where.index;
+  }
+
+  struct Where {
+    uint32_t episode = 0, index = 0;
+    bool ended = true;
+  };
+
+  const ObservationSpec spec_;
+  const uint32_t actor_;
+  const uint64_t session_;
+  const uint32_t envs_;
+  const int mean_length_;
+  Random random_;
+  std::map<uint32_t, Where> where_;
+  std::vector<std::vector<uint8_t>> records_;
+  std::vector<uint8_t> payload_;
+};
+
+}  // namespace shoal::replay

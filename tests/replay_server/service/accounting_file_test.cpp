@@ -1,0 +1,52 @@
+#include "replay_server/service/accounting_file.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "tests/support/temporary_folder.h"
+
+namespace shoal::replay {
+namespace {
+
+TEST(AccountingFile, ListsEverySessionWithItsCounters) {
+  std::vector<StoredSession> storage(4);
+  SessionTable table(storage);
+  table.Add(1, 1'700'000'000'000'000'001);
+  table.Update(0, {.actor = 1,
+                   .session = 1'700'000'000'000'000'001,
+                   .highest = 20,
+                   .rejected = 1,
+                   .after_gap = 2,
+                   .lost = 3,
+                   .duplicates = 4});
+  table.Add(2, 5);
+  EXPECT_EQ(nlohmann::json::parse(AccountingJson(table)), nlohmann::json::parse(R"({
+    "schema": "shoal-accounting-1",
+    "sessions": [
+      {"actor": 1, "session": 1700000000000000001, "highest": 20, "stored": 14, "rejected": 1,
+       "after_gap": 2, "lost": 3, "duplicates": 4},
+      {"actor": 2, "session": 5, "highest": 0, "stored": 0, "rejected": 0, "after_gap": 0,
+       "lost": 0, "duplicates": 0}]})"));
+}
+
+TEST(AccountingFile, IsReplacedAsAWhole) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "accounting.json";
+  ReplaceFile(path, "a longer first content");
+  ReplaceFile(path, "second");
+  EXPECT_EQ(ReadFile(path), "second");
+  EXPECT_FALSE(std::filesystem::exists(path.string() + ".new"));
+}
+
+TEST(AccountingFile, SaysWhereItCannotBeWritten) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "missing" / "accounting.json";
+  EXPECT_THROW(ReplaceFile(path, "x"), Error);
+}
+
+}  // namespace
+}  // namespace shoal::replay
