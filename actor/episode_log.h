@@ -1,6 +1,7 @@
 // Figures of the episodes that ended lately, for metrics.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <deque>
 
