@@ -18,6 +18,7 @@ constexpr char kSchema[] = "shoal-accounting-1";
 void AddSession(const Session& name, uint64_t made, const SeenRecords& seen, Accounting* sums) {
   sums->made += made;
   sums->stored += seen.stored;
+  sums->lost_with_process += seen.lost;
   sums->rejected += seen.rejected;
   sums->after_gap += seen.after_gap;
   sums->duplicates += seen.duplicates;
@@ -29,12 +30,12 @@ void AddSession(const Session& name, uint64_t made, const SeenRecords& seen, Acc
   } else {
     sums->lost_with_process += made - seen.highest;
   }
-  const uint64_t dealt = seen.stored + seen.rejected + seen.after_gap;
+  const uint64_t dealt = seen.stored + seen.rejected + seen.after_gap + seen.lost;
   if (dealt != seen.highest) {
     fault(
-        fmt::format("stored {} + rejected {} + after a gap {} = {}, but sequences up to {} were "
-                    "seen",
-                    seen.stored, seen.rejected, seen.after_gap, dealt, seen.highest));
+        fmt::format("stored {} + rejected {} + after a gap {} + lost {} = {}, but sequences up to "
+                    "{} were dealt with",
+                    seen.stored, seen.rejected, seen.after_gap, seen.lost, dealt, seen.highest));
   }
 }
 
@@ -84,6 +85,7 @@ std::vector<SeenRecords> ReadSeenRecords(const std::filesystem::path& run) {
       session.at("stored").get_to(s.stored);
       session.at("rejected").get_to(s.rejected);
       session.at("after_gap").get_to(s.after_gap);
+      session.at("lost").get_to(s.lost);
       session.at("duplicates").get_to(s.duplicates);
       seen.push_back(s);
     }

@@ -1,7 +1,9 @@
 // Where every record went: what the actors made against what the replay dealt with.
 //
 //   made = stored + lost_with_process + rejected + after_gap, exactly; duplicates and resends are
-//   apart. Sequences of a session run 1 .. made; the replay saw 1 .. highest of them.
+//   apart. Sequences of a session run 1 .. made; the replay dealt with 1 .. highest of them.
+//   lost_with_process is what an actor's death kept from the replay, made - highest, and what the
+//   replay counts as lost, such as the memory of one that was killed.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +27,7 @@ struct SeenRecords {
   uint32_t actor = 0;
   uint64_t session = 0;
   uint64_t highest = 0;  // sequences 1..highest were dealt with
-  uint64_t stored = 0, rejected = 0, after_gap = 0, duplicates = 0;
+  uint64_t stored = 0, rejected = 0, after_gap = 0, lost = 0, duplicates = 0;
 };
 
 struct Accounting {

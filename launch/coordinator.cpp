@@ -77,8 +77,10 @@ struct Coordinator::Impl {
   void Count(const EvaluationPoint& point);
   void Fail(const std::string& why);
   void StoreMeta();
-  // The evaluation at the last multiple of eval.interval has arrived.
-  bool LastEvaluationArrived() const;
+  // Whether the learner may be told to stop: where the budget ended the run (and in lockstep, which
+  // must end the same way each time), it finishes what the stored steps allow and its last
+  // evaluation arrives.
+  bool Settled() const;
 
   const std::filesystem::path run;
   const Config config;
@@ -154,7 +156,7 @@ void Coordinator::Impl::Stop() {
                .tick = [this] { Tick(); },
                .at_once = [this] { return StopRequests() > stops_before_end; },
                .say = [this](const std::string& line) { progress.Say(line); },
-               .settled = [this] { return meta.exit != "budget" || LastEvaluationArrived(); }});
+               .settled = [this] { return Settled(); }});
   Tick();  // what arrived last
 }
 
@@ -177,7 +179,11 @@ void Coordinator::Impl::Tick() {
   figures.best = meta.best;
   figures.processes = supervisor.Running("");
   figures.restarts = meta.restarts + supervisor.restarts();
-  scalars.WriteRollouts(view, figures, now);
+  try {
+    scalars.WriteRollouts(view, figures, now);
+  } catch (const Error& e) {
+    Fail(e.what());
+  }
   progress.Show(figures, now);
 }
 
@@ -224,8 +230,9 @@ void Coordinator::Impl::Count(const EvaluationPoint& point) {
 }
 
 void Coordinator::Impl::Fail(const std::string& why) {
-  if (meta.error.empty()) meta.error = why;
-  progress.Say(why);
+  if (!meta.error.empty()) return;  // the first one is the reason; a full disk would repeat itself
+  meta.error = why;
+  progress.Say("error: " + why);
 }
 
 void Coordinator::Impl::StoreMeta() {
@@ -237,10 +244,11 @@ void Coordinator::Impl::StoreMeta() {
   WriteRunMeta(run, config, now);
 }
 
-bool Coordinator::Impl::LastEvaluationArrived() const {
-  const int64_t last = config.env_steps / config.eval.interval * config.eval.interval;
-  return last == 0 ||
-         (last_evaluation && last_evaluation->env_steps >= static_cast<uint64_t>(last));
+bool Coordinator::Impl::Settled() const {
+  if (meta.exit != "budget" && !(config.lockstep && meta.exit == "target")) return true;
+  if (view.Get("learner", 0, "drained").value_or(0) == 0) return false;
+  const double evaluated = last_evaluation ? static_cast<double>(last_evaluation->updates) : 0;
+  return evaluated >= view.Get("learner", 0, "eval_updates").value_or(0);
 }
 
 }  // namespace shoal::launch

@@ -17,6 +17,8 @@ int Run(int argc, char** argv) {
   shoal::launch::Action chosen;
   shoal::launch::AddTrainCommand(app, &chosen);
   shoal::launch::AddEvalCommand(app, &chosen);
+  shoal::launch::AddEnvCommand(app, &chosen);
+  shoal::launch::AddReplayCommand(app, &chosen);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& e) {

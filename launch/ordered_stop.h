@@ -12,7 +12,7 @@ namespace shoal::launch {
 
 struct StopDeadlines {
   std::chrono::milliseconds drain{30'000};     // actors, after kDraining
-  std::chrono::milliseconds settle{90'000};    // for `settled`, once the actors have left
+  std::chrono::milliseconds settle{120'000};   // for `settled`, once the actors have left
   std::chrono::milliseconds finish{60'000};    // the others, after kStopping
   std::chrono::milliseconds terminate{5'000};  // after SIGTERM, before SIGKILL
 };

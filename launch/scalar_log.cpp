@@ -13,6 +13,7 @@ void ScalarLog::WriteEvaluation(const EvaluationPoint& point) {
   const auto step = static_cast<int64_t>(point.env_steps);
   writer_.Scalar("eval/mean_reward", step, point.mean_return);
   writer_.Scalar("eval/success_rate", step, point.success);
+  writer_.Flush();
 }
 
 void ScalarLog::WriteRollouts(const MetricsView& view, const ProgressFigures& figures,
@@ -25,7 +26,7 @@ void ScalarLog::WriteRollouts(const MetricsView& view, const ProgressFigures& fi
   write("rollout/ep_rew_mean", view.Mean("actor", "rollout_return", "episodes", now));
   write("rollout/success_rate", figures.rollout_success);
   write("rollout/ep_len_mean", view.Mean("actor", "rollout_length", "episodes", now));
-  write("time/fps", figures.env_steps_per_second);
+  writer_.Flush();
 }
 
 }  // namespace shoal::launch

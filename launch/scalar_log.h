@@ -11,14 +11,14 @@
 
 namespace shoal::launch {
 
-// Writes to RUN/tensorboard. One thread.
+// Writes to RUN/tensorboard, beside the learner's file. One thread. Errors: Error on a full disk.
 class ScalarLog {
  public:
   explicit ScalarLog(const std::filesystem::path& run);  // throws Error
 
   // eval/mean_reward, eval/success_rate.
   void WriteEvaluation(const EvaluationPoint& point);
-  // rollout/ep_rew_mean, rollout/success_rate, rollout/ep_len_mean, time/fps; every 5 s.
+  // rollout/ep_rew_mean, rollout/success_rate, rollout/ep_len_mean; every 5 s.
   void WriteRollouts(const MetricsView& view, const ProgressFigures& figures, SteadyTime now);
 
  private:

@@ -42,6 +42,16 @@ TEST(Account, SumsSessionsAndCountsWhatWasLostWithAProcess) {
   EXPECT_THAT(a.Line(), HasSubstr("made 157 = stored 130 + lost with a process 17"));
 }
 
+TEST(Account, CountsWhatAKilledReplayHeldAsLost) {
+  const MadeRecords made[] = {{0, kFirst, 12}};
+  const SeenRecords seen[] = {
+      {.actor = 0, .session = kFirst, .highest = 10, .stored = 6, .lost = 4}};
+  const Accounting a = Account(made, seen, 0);
+  EXPECT_TRUE(a.Balances());
+  EXPECT_EQ(a.lost_with_process, 2u + 4u);
+  EXPECT_EQ(a.made, a.stored + a.lost_with_process + a.rejected + a.after_gap);
+}
+
 TEST(Account, SaysWhichSessionTheReplayCannotExplain) {
   const MadeRecords made[] = {{3, kFirst, 100}};
   const SeenRecords seen[] = {{.actor = 3, .session = kFirst, .highest = 100, .stored = 99}};
@@ -75,7 +85,7 @@ TEST(ReadSeenRecords, ReadsTheFileOfTheReplay) {
   WriteFileAtomically(run.path() / "accounting.json",
                       R"({"schema": "shoal-accounting-1", "sessions": [
     {"actor": 2, "session": 1700000000000000001, "highest": 9, "stored": 5, "rejected": 1,
-     "after_gap": 3, "duplicates": 4}]})");
+     "after_gap": 2, "lost": 1, "duplicates": 4}]})");
   const auto seen = ReadSeenRecords(run.path());
   ASSERT_EQ(seen.size(), 1u);
   EXPECT_EQ(seen[0].actor, 2u);
@@ -83,7 +93,8 @@ TEST(ReadSeenRecords, ReadsTheFileOfTheReplay) {
   EXPECT_EQ(seen[0].highest, 9u);
   EXPECT_EQ(seen[0].stored, 5u);
   EXPECT_EQ(seen[0].rejected, 1u);
-  EXPECT_EQ(seen[0].after_gap, 3u);
+  EXPECT_EQ(seen[0].after_gap, 2u);
+  EXPECT_EQ(seen[0].lost, 1u);
   EXPECT_EQ(seen[0].duplicates, 4u);
 }
 

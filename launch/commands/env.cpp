@@ -1,0 +1,79 @@
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "actor/worlds/tools/render_task.h"
+#include "actor/worlds/tools/replay_reference.h"
+#include "common/image/png.h"
+#include "launch/commands/commands.h"
+
+namespace shoal::launch {
+namespace {
+
+int Render(const worlds::RenderRequest& request, const std::string& png) {
+  const worlds::Picture picture = worlds::RenderTask(request);
+  image::WritePng(png, picture.width, picture.height, 3, picture.pixels);
+  std::cout << png << ": " << request.task << ", camera " << request.camera << ", " << picture.width
+            << "x" << picture.height << ", after " << request.env_steps << " env steps\n";
+  return 0;
+}
+
+int Replay(const std::vector<std::string>& files, bool json) {
+  bool passed = true;
+  nlohmann::ordered_json reports = nlohmann::ordered_json::array();
+  for (const std::string& file : files) {
+    const worlds::ReplayReport report = worlds::ReplayReference(file);
+    passed = passed && report.passed;
+    if (json) {
+      reports.push_back(worlds::ToJson(report));
+    } else {
+      std::cout << worlds::ToText(report) << std::endl;
+    }
+  }
+  // One file gives its report itself, several a list of them.
+  if (json) std::cout << (files.size() == 1 ? reports[0] : reports).dump(2) << std::endl;
+  return passed ? 0 : 1;
+}
+
+void AddRender(CLI::App& env, Action* chosen) {
+  CLI::App* command = env.add_subcommand("render", "One picture of a task, to look at.");
+  const auto request = std::make_shared<worlds::RenderRequest>();
+  const auto png = std::make_shared<std::string>();
+  request->camera = "front";
+  command->add_option("task", request->task, "Task, e.g. FetchReachDense")->required();
+  command->add_option("--camera", request->camera, "Camera of the task")->capture_default_str();
+  command->add_option("--png", *png, "File to write")->required();
+  command->add_option("--steps", request->env_steps, "Random env steps before the picture")
+      ->capture_default_str();
+  command->add_option("--seed", request->seed, "Of the goal and the actions")
+      ->capture_default_str();
+  command->add_option("--quality", request->quality, "fast | reference")->capture_default_str();
+  command->add_option("--width", request->width, "Pixels")->capture_default_str();
+  command->add_option("--height", request->height, "Pixels")->capture_default_str();
+  command->add_option("--model", request->model, "Another MJCF file for the task");
+  command->callback([=] { *chosen = [=] { return Render(*request, *png); }; });
+}
+
+void AddReplay(CLI::App& env, Action* chosen) {
+  CLI::App* command = env.add_subcommand(
+      "replay",
+      "Replay recorded trajectories of the original environments in our physics and say how far "
+      "apart the two get. Exit code 1 when that is more than the tolerance.");
+  const auto files = std::make_shared<std::vector<std::string>>();
+  const auto json = std::make_shared<bool>(false);
+  command->add_option("files", *files, "Trajectories (JSON, format vrl-ref-1)")->required();
+  command->add_flag("--json", *json, "Print JSON (schema shoal-parity-1; a list for many files)");
+  command->callback([=] { *chosen = [=] { return Replay(*files, *json); }; });
+}
+
+}  // namespace
+
+void AddEnvCommand(CLI::App& app, Action* chosen) {
+  CLI::App* env = app.add_subcommand("env", "Look at environments.");
+  env->require_subcommand(1);
+  AddRender(*env, chosen);
+  AddReplay(*env, chosen);
+}
+
+}  // namespace shoal::launch

@@ -1,0 +1,51 @@
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+
+#include "common/image/png.h"
+#include "launch/commands/commands.h"
+#include "replay_server/core/peek.h"
+
+namespace shoal::launch {
+namespace {
+
+struct PeekOptions {
+  std::string run, png;
+  int batch = 8;
+  uint64_t seed = 1;
+};
+
+int Peek(const PeekOptions& options) {
+  const replay::Peek peek = replay::PeekBatch(options.run, options.batch, options.seed);
+  std::cout << peek.records << " records in the ring, " << peek.sampleable
+            << " steps can be sampled\n";
+  for (const std::string& caption : peek.captions) std::cout << "  " << caption << "\n";
+  if (options.png.empty()) return 0;
+  if (peek.rgb.empty()) {
+    std::cout << "no picture: the run observes no pixels\n";
+    return 0;
+  }
+  image::WritePng(options.png, peek.width, peek.height, 3, peek.rgb);
+  std::cout << options.png << ": one column per element; rows per camera: observation, shifted, "
+            << "next observation, shifted\n";
+  return 0;
+}
+
+}  // namespace
+
+void AddReplayCommand(CLI::App& app, Action* chosen) {
+  CLI::App* replay = app.add_subcommand("replay", "Look into a run's replay.");
+  replay->require_subcommand(1);
+  CLI::App* command =
+      replay->add_subcommand("peek", "Draw a batch as the learner would get it and show it.");
+  const auto options = std::make_shared<PeekOptions>();
+  command->add_option("--run", options->run, "Run folder")->required();
+  command->add_option("--png", options->png, "File for the batch as a picture");
+  command->add_option("--batch", options->batch, "Elements to draw")
+      ->check(CLI::Range(1, 64))
+      ->capture_default_str();
+  command->add_option("--seed", options->seed, "Of the draw")->capture_default_str();
+  command->callback([=] { *chosen = [=] { return Peek(*options); }; });
+}
+
+}  // namespace shoal::launch
