@@ -139,7 +139,8 @@ void TrainingLoop::Drain() {
     std::this_thread::sleep_for(kPoll);
     return;
   }
-  if (!DrainingIsOver(TryTrain())) return;
+  if (TryTrain()) ++drain_batches_;
+  if (!DrainingIsOver()) return;
   drained_ = true;
   if (parts_.agent.updates() > 0 && evaluations_.last_updates() != parts_.agent.updates()) {
     MakeEvaluationPoint();
@@ -147,12 +148,19 @@ void TrainingLoop::Drain() {
   log::Info("drained after {} updates, {} env steps", parts_.agent.updates(), env_steps_);
 }
 
-bool TrainingLoop::DrainingIsOver(bool trained) const {
+bool TrainingLoop::DrainingIsOver() const {
   const SteadyTime now = Now();
-  if (now - *drain_start_ > kDrainMost) return true;
-  if (config_.lockstep && parts_.agent.updates() >= LockstepLastUpdate(config_)) return true;
-  if (!config_.lockstep && config_.replay.samples_per_insert <= 0) return true;
-  return !trained && now - waiting_since_ > parts_.drain_idle;
+  if (now - *drain_start_ > kDrainMost || now - waiting_since_ > parts_.drain_idle) return true;
+  if (config_.lockstep) return parts_.agent.updates() >= LockstepLastUpdate(config_);
+  // Batches asked for before draining began may be older than it.
+  return drain_batches_ > config_.learner.request_credits && RatioReached();
+}
+
+bool TrainingLoop::RatioReached() const {
+  const double granted =
+      config_.replay.samples_per_insert *
+      (static_cast<double>(env_steps_) - static_cast<double>(config_.replay.min_size));
+  return static_cast<double>(parts_.agent.updates()) * config_.learner.batch >= granted;
 }
 
 void TrainingLoop::Report(bool now) {

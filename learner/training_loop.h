@@ -2,9 +2,12 @@
 // checkpoints, reports), until the run drains or stops.
 //
 // Checkpoints are written every learner.checkpoint_period updates, at each evaluation point, when
-// draining is over (an evaluation point too) and at the end. Draining is over when the replay gives
-// no batches any more: kDrainIdle without one, in lockstep after the run's last update, without a
-// samples-per-insert limit at once, and after kDrainMost in any case.
+// draining is over (an evaluation point too) and at the end.
+//
+// Draining: the replay no longer holds batches back, so the learner itself stops, once it has seen
+// what was stored when draining began and has done the updates that samples_per_insert grants for
+// it (in lockstep: the run's last update). It is over as well kDrainIdle after the last batch, and
+// after kDrainMost.
 #pragma once
 
 #include <chrono>
@@ -66,7 +69,9 @@ class TrainingLoop {
   std::string WriteCheckpoint();
   // Draining: goes on training until it is over, then makes the last evaluation point, once.
   void Drain();
-  bool DrainingIsOver(bool trained) const;
+  bool DrainingIsOver() const;
+  // Whether the updates done are those that samples_per_insert grants for the steps stored.
+  bool RatioReached() const;
   void Report(bool now = false);
   const char* State() const;
 
@@ -82,6 +87,7 @@ class TrainingLoop {
   std::optional<uint64_t> saved_updates_;  // of the newest checkpoint
   SteadyTime waiting_since_;               // the last batch, or the start
   std::optional<SteadyTime> drain_start_;
+  int drain_batches_ = 0;  // used while draining
   bool drained_ = false, stopping_ = false;
 };
 

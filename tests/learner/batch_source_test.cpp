@@ -1,0 +1,187 @@
+#include "learner/batch_source.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+#include <vector>
+
+#include "common/base/error.h"
+#include "common/config/lockstep.h"
+#include "tests/learner/training_fixture.h"
+
+namespace shoal::learner {
+namespace {
+
+using std::chrono::milliseconds;
+
+constexpr uint64_t kSession = 5;
+constexpr milliseconds kLong{20'000};  // never waited for in a test that passes
+
+class BatchSourceTest : public testing::Test {
+ protected:
+  BatchSource& Make(uint64_t first_request = 1, milliseconds resend_after = kLong) {
+    source_.emplace(
+        run_, kSession, first_request,
+        [this](const SampleRequest& request) {
+          requests_.push_back(request);
+          return accepting_;
+        },
+        resend_after);
+    return *source_;
+  }
+
+  // Answers a request in one shard; its rewards are the request's number.
+  void Answer(uint64_t request, uint64_t stored_steps = 100) {
+    const BatchLayout layout(run_.spec, run_.config.learner.batch);
+    std::vector<uint8_t> space(layout.total_bytes() + 64);
+    uint8_t* data = space.data() + (64 - reinterpret_cast<uintptr_t>(space.data()) % 64) % 64;
+    for (float& reward : layout.View(data).reward) reward = static_cast<float>(request);
+    BatchShard shard;
+    shard.spec_hash = spec_hash_;
+    shard.learner_session = kSession;
+    shard.request = request;
+    shard.shards = 1;
+    shard.total_bytes = layout.total_bytes();
+    shard.stored_records = stored_steps + 2;
+    shard.stored_steps = stored_steps;
+    shard.payload = {data, layout.total_bytes()};
+    source_->OnShard(shard);
+  }
+
+  std::vector<uint64_t> Asked() const {
+    std::vector<uint64_t> ids;
+    for (const SampleRequest& request : requests_) ids.push_back(request.request);
+    return ids;
+  }
+
+  RunConfig run_ = SmallRun();  // two credits
+  uint64_t spec_hash_ = run_.spec.Hash();
+  bool accepting_ = true;
+  std::vector<SampleRequest> requests_;
+  std::optional<BatchSource> source_;
+};
+
+TEST_F(BatchSourceTest, KeepsItsCreditsOutstanding) {
+  BatchSource& source = Make();
+  EXPECT_FALSE(source.Next(Now()));
+  EXPECT_EQ(Asked(), (std::vector<uint64_t>{1, 2}));
+  EXPECT_EQ(requests_[0].spec_hash, run_.spec.Hash());
+  EXPECT_EQ(requests_[0].learner_session, kSession);
+  EXPECT_EQ(requests_[0].batch, 4u);
+  EXPECT_EQ(requests_[0].after_steps, 0u);
+  Answer(1);
+  ASSERT_TRUE(source.Next(Now()));
+  EXPECT_EQ(Asked(), (std::vector<uint64_t>{1, 2, 3})) << "asked before the batch is used";
+}
+
+TEST_F(BatchSourceTest, HandsOutBatchesInTheOrderOfRequests) {
+  BatchSource& source = Make();
+  source.Next(Now());
+  Answer(2);
+  EXPECT_FALSE(source.Next(Now())) << "the first is not here yet";
+  Answer(1, 70);
+  const auto first = source.Next(Now());
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->request, 1u);
+  EXPECT_EQ(first->stored_steps, 70u);
+  EXPECT_EQ(first->stored_records, 72u);
+  EXPECT_EQ(first->view.reward[3], 1.0f);
+  const auto second = source.Next(Now());
+  ASSERT_TRUE(second);
+  EXPECT_EQ(second->request, 2u);
+  EXPECT_EQ(second->view.reward[0], 2.0f);
+}
+
+TEST_F(BatchSourceTest, ABatchStaysWholeUntilTheNextIsAskedFor) {
+  BatchSource& source = Make();
+  source.Next(Now());
+  Answer(1);
+  const auto batch = source.Next(Now());
+  Answer(2);
+  Answer(3);
+  Answer(4);  // not asked for yet: no buffer
+  EXPECT_EQ(batch->view.reward[0], 1.0f);
+  EXPECT_EQ(source.counters().unknown_shards, 1u);
+}
+
+TEST_F(BatchSourceTest, GoesOnWhereAFormerLearnerStopped) {
+  Make(/*first_request=*/41).Next(Now());
+  EXPECT_EQ(Asked(), (std::vector<uint64_t>{41, 42}));
+}
+
+TEST_F(BatchSourceTest, SendsTheSameRequestAgainWhenNothingComes) {
+  BatchSource& source = Make(1, milliseconds(5));
+  while (source.counters().resent_requests < 4) source.Next(Now() + milliseconds(5));
+  ASSERT_GE(requests_.size(), 6u);
+  std::map<uint64_t, int> times;
+  for (const SampleRequest& request : requests_) {
+    ++times[request.request];
+    EXPECT_EQ(request.learner_session, kSession);
+    EXPECT_EQ(request.batch, 4u);
+  }
+  EXPECT_EQ(times.size(), 2u);
+  EXPECT_GE(times[1], 3);
+  Answer(1);
+  Answer(1);
+  EXPECT_TRUE(source.Next(Now()));
+  EXPECT_EQ(source.counters().duplicate_shards, 1u);
+}
+
+TEST_F(BatchSourceTest, DoesNotSendAgainWhatHasArrived) {
+  BatchSource& source = Make(1, milliseconds(5));
+  source.Next(Now());
+  Answer(2);
+  while (source.counters().resent_requests < 5) source.Next(Now() + milliseconds(5));
+  EXPECT_EQ(std::ranges::count(Asked(), 2u), 1);
+}
+
+TEST_F(BatchSourceTest, TriesAgainSoonWhenARequestCouldNotBeSent) {
+  accepting_ = false;
+  BatchSource& source = Make();
+  source.Next(Now());
+  accepting_ = true;
+  requests_.clear();
+  const SteadyTime deadline = Now() + kLong;
+  while (requests_.size() < 2 && Now() < deadline) source.Next(Now() + milliseconds(10));
+  EXPECT_EQ(Asked(), (std::vector<uint64_t>{1, 2}));
+  EXPECT_EQ(source.counters().resent_requests, 0u);
+}
+
+TEST_F(BatchSourceTest, RefusesBatchesOfAnotherSpecNamingBoth) {
+  BatchSource& source = Make();
+  source.Next(Now());
+  spec_hash_ = 0xabcdef;
+  Answer(1);
+  try {
+    source.Next(Now());
+    FAIL() << "took a batch of another spec";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("0000000000abcdef"), std::string::npos) << e.what();
+    EXPECT_NE(std::string(e.what()).find(fmt::format("{:016x}", run_.spec.Hash())),
+              std::string::npos)
+        << e.what();
+  }
+}
+
+TEST_F(BatchSourceTest, InLockstepWaitsForPhasesAndEndsWithTheRun) {
+  run_.config.lockstep = true;
+  run_.config.envs_per_actor = 1;
+  run_.config.lockstep_steps = 4;     // one update per phase of four steps
+  run_.config.env_steps = 8 + 3 * 4;  // three phases beyond the minimum
+  BatchSource& source = Make();
+  for (uint64_t update = 1; update <= 3; ++update) {
+    source.Next(Now());
+    Answer(update);
+    ASSERT_TRUE(source.Next(Now()));
+  }
+  EXPECT_FALSE(source.Next(Now()));
+  EXPECT_EQ(Asked(), (std::vector<uint64_t>{1, 2, 3}));
+  EXPECT_EQ(requests_[0].after_steps, 12u);
+  EXPECT_EQ(requests_[1].after_steps, 16u);
+  EXPECT_EQ(requests_[2].after_steps, 20u);
+}
+
+}  // namespace
+}  // namespace shoal::learner

@@ -1,0 +1,114 @@
+#include "learner/training_guard.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <limits>
+
+namespace shoal::learner {
+namespace {
+
+using std::chrono::seconds;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr SteadyTime kStart{seconds(1000)};
+
+// What a run that learns shows.
+UpdateStats Healthy() {
+  UpdateStats stats;
+  stats.critic_loss = 0.5f;
+  stats.temperature = 0.05f;
+  stats.action_saturation = 0.3f;
+  stats.frame_spread = 40;
+  return stats;
+}
+
+class TrainingGuardTest : public testing::Test {
+ protected:
+  // Warnings after one report with `critic_loss` over a whole window of updates.
+  std::vector<std::string> AfterLoss(float critic_loss) {
+    UpdateStats stats = Healthy();
+    stats.critic_loss = critic_loss;
+    now_ += seconds(1);
+    return guard_.Check(stats, TrainingGuard::kLossUpdates, now_);
+  }
+
+  TrainingGuard guard_{Config(), /*has_pixels=*/true};
+  SteadyTime now_ = kStart;
+};
+
+TEST_F(TrainingGuardTest, IsSilentAboutAHealthyRun) {
+  for (int i = 0; i < 100; ++i) EXPECT_THAT(AfterLoss(i % 2 ? 0.5f : 0.4f), IsEmpty());
+  EXPECT_EQ(guard_.warnings(), 0u);
+}
+
+TEST_F(TrainingGuardTest, NamesFramesOfOneColour) {
+  UpdateStats stats = Healthy();
+  stats.frame_spread = 0.25f;
+  EXPECT_THAT(guard_.Check(stats, 10, now_), ElementsAre(HasSubstr("0.250 grey levels")));
+  TrainingGuard without_pixels(Config(), /*has_pixels=*/false);
+  EXPECT_THAT(without_pixels.Check(stats, 10, now_), IsEmpty());
+}
+
+TEST_F(TrainingGuardTest, NamesSaturatedActions) {
+  UpdateStats stats = Healthy();
+  stats.action_saturation = 0.97f;
+  EXPECT_THAT(guard_.Check(stats, 10, now_), ElementsAre(HasSubstr("97.0 %")));
+}
+
+TEST_F(TrainingGuardTest, NamesACollapsedTemperature) {
+  UpdateStats stats = Healthy();
+  stats.temperature = 5e-6f;  // began at 0.1
+  EXPECT_THAT(guard_.Check(stats, 10, now_),
+              ElementsAre(testing::AllOf(HasSubstr("5e-06"), HasSubstr("0.1"))));
+}
+
+TEST_F(TrainingGuardTest, RepeatsAWarningOnceAMinuteAndCountsIt) {
+  UpdateStats stats = Healthy();
+  stats.action_saturation = 1;
+  int warnings = 0;
+  for (int second = 0; second < 150; ++second) {
+    warnings += static_cast<int>(guard_.Check(stats, 10, kStart + seconds(second)).size());
+  }
+  EXPECT_EQ(warnings, 3);
+  EXPECT_EQ(guard_.warnings(), 3u);
+}
+
+TEST_F(TrainingGuardTest, NamesACriticLossThatKeepsRising) {
+  float loss = 0.1f;
+  for (int i = 0; i < TrainingGuard::kRises; ++i) {
+    EXPECT_THAT(AfterLoss(loss), IsEmpty()) << i;
+    loss *= 2;
+  }
+  EXPECT_THAT(AfterLoss(loss), ElementsAre(HasSubstr("5 rises in a row, once 0.1")));
+}
+
+TEST_F(TrainingGuardTest, ASlowRiseOfTheCriticLossIsNotWorthALine) {
+  float loss = 0.1f;
+  for (int i = 0; i < 20; ++i) {
+    EXPECT_THAT(AfterLoss(loss), IsEmpty()) << i;
+    loss *= 1.05f;
+  }
+}
+
+TEST_F(TrainingGuardTest, AFallEndsARise) {
+  for (const float loss : {0.1f, 0.2f, 0.5f, 1.0f, 2.0f, 1.9f, 4.0f, 8.0f, 16.0f, 32.0f}) {
+    EXPECT_THAT(AfterLoss(loss), IsEmpty()) << loss;
+  }
+  EXPECT_EQ(AfterLoss(64.0f).size(), 1u);
+}
+
+TEST(DescribeNonFinite, NamesTheUpdateAndItsNumbers) {
+  UpdateStats stats = Healthy();
+  stats.critic_loss = std::numeric_limits<float>::quiet_NaN();
+  stats.finite = false;
+  const std::string line = DescribeNonFinite(stats, 41);
+  EXPECT_THAT(line, HasSubstr("update 42"));
+  EXPECT_THAT(line, HasSubstr("critic loss nan"));
+  EXPECT_EQ(line.find('\n'), std::string::npos);
+}
+
+}  // namespace
+}  // namespace shoal::learner

@@ -1,0 +1,403 @@
+// The loop with a real, small agent; batches, readers and the coordinator are played by the test.
+#include "learner/training_loop.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <functional>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "common/base/crc32.h"
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/base/random.h"
+#include "tests/learner/training_fixture.h"
+#include "tests/support/temporary_folder.h"
+
+namespace shoal::learner {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::seconds;
+using testing::ElementsAre;
+
+constexpr uint64_t kSession = 77;
+
+// Gives batches whose content depends on the request alone; `before` is called before each one.
+class PlayedBatches final : public BatchStream {
+ public:
+  PlayedBatches(const RunConfig& run, uint64_t first_request)
+      : layout_(run.spec, run.config.learner.batch),
+        space_(layout_.total_bytes() + 64),
+        next_(first_request) {}
+
+  std::optional<Batch> Next(SteadyTime) override {
+    if (before) before(next_);
+    if (next_ > last_request) return std::nullopt;
+    uint8_t* data = space_.data() + (64 - reinterpret_cast<uintptr_t>(space_.data()) % 64) % 64;
+    const BatchView view = layout_.View(data);
+    Random random(HashWords({next_}));
+    for (const auto& values : {view.obs_vector, view.next_obs_vector, view.action, view.reward}) {
+      for (float& value : values) value = static_cast<float>(random.Uniform(-1, 1));
+    }
+    for (float& value : view.bootstrap) value = 1;
+    for (uint64_t& update : view.weights_update) update = 0;
+    if (next_ == poisoned_request) view.reward[0] = std::numeric_limits<float>::quiet_NaN();
+    const uint64_t steps = stored_steps(next_);
+    return Batch{
+        .view = view, .request = next_++, .stored_records = steps + 1, .stored_steps = steps};
+  }
+  BatchCounters counters() const override { return {}; }
+  uint64_t given() const { return next_ - 1; }
+
+  std::function<void(uint64_t request)> before;
+  uint64_t last_request = std::numeric_limits<uint64_t>::max();
+  uint64_t poisoned_request = 0;
+  std::function<uint64_t(uint64_t request)> stored_steps = [](uint64_t r) { return 10 * r; };
+
+ private:
+  const BatchLayout layout_;
+  std::vector<uint8_t> space_;
+  uint64_t next_;
+};
+
+// Keeps what is sent.
+class KeptMessages final : public Outlet {
+ public:
+  struct Sent {
+    uint64_t update, env_steps;
+    std::string checkpoint, payload;
+  };
+
+  bool Publish(const WeightsMessage& m) override { return Keep(m, accept_weights, &weights); }
+  bool WeightsArrived() override { return readers_keep_up; }
+  bool Publish(const EvalWeightsMessage& m) override {
+    const bool accept = reject_evaluations-- <= 0;
+    if (Keep(m, accept, &evaluations) && on_evaluation) on_evaluation();
+    return accept;
+  }
+  void Publish(const MetricsMessage& m) override { reports.push_back(m); }
+
+  std::vector<uint64_t> Updates(const std::vector<Sent>& sent) const {
+    std::vector<uint64_t> updates;
+    for (const Sent& s : sent) updates.push_back(s.update);
+    return updates;
+  }
+
+  std::vector<Sent> weights, evaluations;
+  std::vector<MetricsMessage> reports;
+  bool accept_weights = true, readers_keep_up = true;
+  int reject_evaluations = 0;
+  std::function<void()> on_evaluation;
+  uint64_t spec_hash = 0;
+
+ private:
+  bool Keep(const WeightsMessage& m, bool accept, std::vector<Sent>* sent) {
+    if (!accept) return false;
+    EXPECT_EQ(m.spec_hash, spec_hash);
+    EXPECT_EQ(m.version.session, kSession);
+    EXPECT_EQ(m.crc, Crc32(m.payload));
+    sent->push_back({m.version.update, m.env_steps, m.checkpoint,
+                     std::string(m.payload.begin(), m.payload.end())});
+    return true;
+  }
+};
+
+class TrainingLoopTest : public testing::Test {
+ protected:
+  // One learner process: from the newest checkpoint until `stop_after` batches were given.
+  TrainingLoop::End Train(uint64_t stop_after,
+                          const std::function<void(PlayedBatches&)>& script = {}) {
+    outlet_.spec_hash = run_.spec.Hash();
+    SacAgent agent(run_.config, run_.spec, precision_);
+    CheckpointStore checkpoints(folder_.path(), run_);
+    std::optional<CheckpointState> restored;
+    if (const auto checkpoint = checkpoints.RestoreNewest()) {
+      agent.Restore(checkpoint->tensors, "test");
+      restored = checkpoint->state;
+    }
+    tensorboard::EventWriter events(folder_.path() / "tensorboard");
+    PlayedBatches batches(run_, agent.updates() + 1);
+    batches.last_request = stop_after;
+    batches.before = [&](uint64_t request) {
+      if (request > stop_after) Say(RunState::kStopping);
+    };
+    if (script) script(batches);
+    TrainingLoop loop({.run = run_,
+                       .precision = precision_,
+                       .session = kSession,
+                       .agent = agent,
+                       .batches = batches,
+                       .outlet = outlet_,
+                       .checkpoints = checkpoints,
+                       .pending_evaluations = pending_,
+                       .control = control_,
+                       .events = events,
+                       .drain_idle = std::chrono::milliseconds(20)},
+                      restored);
+    const TrainingLoop::End end = loop.Run();
+    given_ = batches.given();
+    updates_ = agent.updates();
+    return end;
+  }
+
+  void Say(RunState state) {
+    control_.OnMessage({.epoch = ++epoch_, .state = state, .time = 0}, Now());
+  }
+
+  // Of the last report.
+  double Figure(const std::string& name) const {
+    const MetricsMessage& report = outlet_.reports.back();
+    const auto at = std::ranges::find(report.names, name);
+    EXPECT_NE(at, report.names.end()) << name;
+    return at == report.names.end() ? -1 : report.values[size_t(at - report.names.begin())];
+  }
+
+  std::set<std::string> Checkpoints() const {
+    std::set<std::string> names;
+    for (const auto& entry : fs::directory_iterator(folder_.path() / "checkpoints")) {
+      names.insert(entry.path().filename());
+    }
+    return names;
+  }
+  fs::path Checkpoint(const std::string& name) const {
+    return folder_.path() / "checkpoints" / name;
+  }
+
+  const TemporaryFolder folder_;
+  RunConfig run_ = SmallRun();  // weights every 5 updates
+  nn::Precision precision_ = nn::Precision::kF32;
+  KeptMessages outlet_;
+  PendingEvaluations pending_;
+  ControlState control_{Now()};
+  uint64_t epoch_ = 0;
+  uint64_t given_ = 0, updates_ = 0;
+};
+
+TEST_F(TrainingLoopTest, SendsWeightsAtTheFirstUpdateAndEveryPeriod) {
+  EXPECT_EQ(Train(12), TrainingLoop::End::kStopped);
+  EXPECT_THAT(outlet_.Updates(outlet_.weights), ElementsAre(1, 5, 10));
+  EXPECT_EQ(outlet_.weights[1].env_steps, 50u);
+  const auto tensors = nn::ReadSafetensors(outlet_.weights[1].payload, "weights");
+  ASSERT_FALSE(tensors.empty());
+  for (const auto& [name, tensor] : tensors) EXPECT_EQ(tensor.dtype, "F32") << name;
+  EXPECT_NE(outlet_.weights[1].payload, outlet_.weights[2].payload);
+}
+
+TEST_F(TrainingLoopTest, SendsBf16WeightsWhenThatIsThePrecision) {
+  // The products' precision does not matter to the loop; ask the agent for what any CPU has.
+  SacAgent agent(run_.config, run_.spec, nn::Precision::kF32);
+  outlet_.spec_hash = run_.spec.Hash();
+  WeightsSender(run_, nn::Precision::kBf16, kSession, agent, outlet_).Send(0);
+  ASSERT_EQ(outlet_.weights.size(), 1u);
+  for (const auto& [name, t] : nn::ReadSafetensors(outlet_.weights[0].payload, "weights")) {
+    EXPECT_EQ(t.dtype, "BF16") << name;
+  }
+}
+
+TEST_F(TrainingLoopTest, WithoutBatchesNothingIsSentOrWritten) {
+  Train(0);
+  EXPECT_TRUE(outlet_.weights.empty());
+  EXPECT_TRUE(Checkpoints().empty());
+}
+
+TEST_F(TrainingLoopTest, ALearnerThatResumedSendsItsWeightsAtOnce) {
+  Train(7);
+  const auto before = outlet_.weights.size();
+  Say(RunState::kRunning);
+  Train(7);
+  ASSERT_EQ(outlet_.weights.size(), before + 1);
+  EXPECT_EQ(outlet_.weights.back().update, 7u);
+  EXPECT_EQ(outlet_.weights.back().env_steps, 70u);
+}
+
+TEST_F(TrainingLoopTest, WeightsThatWereNotTakenAreFollowedByNewerOnes) {
+  outlet_.accept_weights = false;
+  Train(8, [&](PlayedBatches& batches) {
+    batches.before = [this](uint64_t request) {
+      if (request == 8) outlet_.accept_weights = true;
+      if (request > 8) Say(RunState::kStopping);
+    };
+  });
+  EXPECT_THAT(outlet_.Updates(outlet_.weights), ElementsAre(8));
+}
+
+TEST_F(TrainingLoopTest, SlowReadersAreNotOverrun) {
+  outlet_.readers_keep_up = false;
+  Train(30, [&](PlayedBatches& batches) {
+    batches.before = [this](uint64_t request) {
+      if (request == 28) outlet_.readers_keep_up = true;
+      if (request > 30) Say(RunState::kStopping);
+    };
+  });
+  const auto updates = outlet_.Updates(outlet_.weights);
+  // Without readers only patience would send more, and the thirty updates are done well within it.
+  EXPECT_THAT(updates, ElementsAre(1, 28, 30));
+}
+
+TEST_F(TrainingLoopTest, MakesAnEvaluationPointAtEachMultipleOfTheInterval) {
+  run_.config.eval.interval = 40;  // ten steps per batch
+  Train(10);
+  EXPECT_THAT(outlet_.Updates(outlet_.evaluations), ElementsAre(4, 8));
+  for (const auto& sent : outlet_.evaluations) {
+    EXPECT_EQ(sent.checkpoint, CheckpointName(sent.update));
+    EXPECT_EQ(sent.env_steps, 10 * sent.update);
+    const fs::path folder = Checkpoint(sent.checkpoint);
+    EXPECT_EQ(ReadCheckpoint(folder, run_.spec.Hash()).state.env_steps, sent.env_steps);
+    const auto evaluated = nn::ReadSafetensors(sent.payload, "evaluation");
+    const auto stored = nn::ReadSafetensors(ReadFile(folder / "policy.safetensors"), "policy");
+    ASSERT_EQ(evaluated.size(), stored.size());
+    for (const auto& [name, tensor] : evaluated) {
+      EXPECT_EQ(tensor.dtype, "F32");
+      EXPECT_EQ(tensor.data, stored.at(name).data) << name;
+    }
+  }
+}
+
+TEST_F(TrainingLoopTest, SeveralMultiplesPassedAtOnceAreOnePoint) {
+  run_.config.eval.interval = 3;
+  Train(2);
+  EXPECT_THAT(outlet_.Updates(outlet_.evaluations), ElementsAre(1, 2));
+}
+
+TEST_F(TrainingLoopTest, AnUnsentEvaluationPointIsSentAgain) {
+  run_.config.eval.interval = 40;
+  outlet_.reject_evaluations = 2;
+  Train(7);
+  EXPECT_THAT(outlet_.Updates(outlet_.evaluations), ElementsAre(4));
+  EXPECT_EQ(outlet_.evaluations[0].checkpoint, "step_000000004");
+  EXPECT_EQ(outlet_.evaluations[0].env_steps, 40u);
+}
+
+TEST_F(TrainingLoopTest, KeepsCheckpointsThatWaitForTheirEvaluation) {
+  run_.config.eval.interval = 20;
+  run_.config.learner.checkpoint_period = 1;
+  Train(9, [&](PlayedBatches& batches) {
+    batches.before = [this](uint64_t request) {
+      if (request == 8) pending_.OnEvaluated(4);  // 2 was passed over
+      if (request > 9) Say(RunState::kStopping);
+    };
+  });
+  EXPECT_THAT(Checkpoints(), ElementsAre("step_000000004", "step_000000006", "step_000000007",
+                                         "step_000000008", "step_000000009"));
+}
+
+TEST_F(TrainingLoopTest, WritesCheckpointsEveryPeriodAndAtTheEnd) {
+  run_.config.learner.checkpoint_period = 4;
+  Train(9);
+  EXPECT_THAT(Checkpoints(), ElementsAre("step_000000004", "step_000000008", "step_000000009"));
+  const CheckpointState state =
+      ReadCheckpoint(Checkpoint("step_000000009"), run_.spec.Hash()).state;
+  EXPECT_EQ(state.updates, 9u);
+  EXPECT_EQ(state.env_steps, 90u);
+  EXPECT_EQ(state.request, 9u);
+  EXPECT_EQ(state.learner_session, kSession);
+  EXPECT_EQ(state.precision, "f32");
+}
+
+TEST_F(TrainingLoopTest, ARunInTwoPartsEndsWithTheSameBytes) {
+  Train(10);
+  const std::string whole = ReadFile(Checkpoint("step_000000010") / "learner.safetensors");
+  fs::remove_all(folder_.path() / "checkpoints");
+  Say(RunState::kRunning);
+  Train(6);
+  Say(RunState::kRunning);
+  Train(10);
+  EXPECT_TRUE(ReadFile(Checkpoint("step_000000010") / "learner.safetensors") == whole);
+}
+
+TEST_F(TrainingLoopTest, ANonFiniteUpdateEndsTheRunAndKeepsTheLastGoodCheckpoint) {
+  run_.config.learner.checkpoint_period = 4;
+  try {
+    Train(100, [](PlayedBatches& batches) { batches.poisoned_request = 7; });
+    FAIL() << "trained on not-a-number";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.exit_code(), 1);
+    EXPECT_THAT(e.what(), testing::HasSubstr("update 7 is not finite"));
+    EXPECT_THAT(e.what(), testing::HasSubstr("step_000000004"));
+  }
+  EXPECT_THAT(Checkpoints(), ElementsAre("step_000000004"));
+  EXPECT_EQ(ReadCheckpoint(Checkpoint("step_000000004"), run_.spec.Hash()).state.updates, 4u);
+}
+
+TEST_F(TrainingLoopTest, DrainingEndsWithTheUpdatesThatTheStoredStepsGrant) {
+  // 48 steps are stored when draining begins: (48 - 8) * 1 samples are granted, 10 batches of 4.
+  outlet_.on_evaluation = [this] { Say(RunState::kStopping); };
+  Train(1000, [&](PlayedBatches& batches) {
+    batches.stored_steps = [](uint64_t request) { return request < 3 ? 12 * request : 48; };
+    batches.before = [this](uint64_t request) {
+      if (request == 3) Say(RunState::kDraining);
+    };
+  });
+  EXPECT_EQ(updates_, 10u);
+  EXPECT_THAT(outlet_.Updates(outlet_.evaluations), ElementsAre(10));
+  EXPECT_TRUE(Checkpoints().contains("step_000000010"));
+}
+
+TEST_F(TrainingLoopTest, DrainingEndsWhenNoMoreBatchesCome) {
+  outlet_.on_evaluation = [this] { Say(RunState::kStopping); };
+  Train(6, [&](PlayedBatches& batches) {
+    batches.before = [this](uint64_t request) {
+      if (request == 5) Say(RunState::kDraining);
+    };
+  });
+  EXPECT_THAT(outlet_.Updates(outlet_.evaluations), ElementsAre(6));
+}
+
+TEST_F(TrainingLoopTest, ADrainedLearnerTrainsNoMoreAndSaysSo) {
+  run_.config.replay.samples_per_insert = 0;  // no limit: three more batches tell what is stored
+  outlet_.reject_evaluations = 2;             // sent in the second pass after draining was over
+  outlet_.on_evaluation = [this] { Say(RunState::kStopping); };
+  Train(1000, [&](PlayedBatches& batches) {
+    batches.before = [this](uint64_t request) {
+      if (request == 5) Say(RunState::kDraining);
+    };
+  });
+  EXPECT_EQ(given_, 8u) << "the one being waited for when draining began, and three more";
+  EXPECT_THAT(outlet_.Updates(outlet_.evaluations), ElementsAre(8));
+  EXPECT_EQ(Figure("drained"), 1);
+  EXPECT_EQ(Figure("eval_updates"), 8);
+}
+
+TEST_F(TrainingLoopTest, WithoutACoordinatorItWritesACheckpointAndLeaves) {
+  run_.config.learner.checkpoint_period = 1000;
+  const TrainingLoop::End end = Train(1000, [&](PlayedBatches& batches) {
+    batches.before = [this](uint64_t request) {
+      if (request != 4) return;
+      control_.OnMessage({.epoch = ++epoch_}, Now() - ControlState::kLease - seconds(1));
+    };
+  });
+  EXPECT_EQ(end, TrainingLoop::End::kCoordinatorLost);
+  EXPECT_THAT(Checkpoints(), ElementsAre("step_000000004"));
+}
+
+TEST_F(TrainingLoopTest, InLockstepSendsWeightsAtTheEndsOfPhasesOnly) {
+  run_.config.lockstep = true;
+  run_.config.envs_per_actor = 2;
+  run_.config.lockstep_steps = 6;  // 12 steps, 3 updates per phase
+  outlet_.readers_keep_up = false;
+  Train(10);
+  EXPECT_THAT(outlet_.Updates(outlet_.weights), ElementsAre(3, 6, 9));
+}
+
+TEST_F(TrainingLoopTest, ReportsWhatItDid) {
+  Train(5);
+  ASSERT_FALSE(outlet_.reports.empty());
+  const MetricsMessage& last = outlet_.reports.back();
+  EXPECT_EQ(last.role, "learner");
+  EXPECT_EQ(last.state, "stopping");
+  EXPECT_EQ(Figure("updates"), 5);
+  EXPECT_EQ(Figure("env_steps"), 50);
+  EXPECT_EQ(Figure("weights_sent"), 2);
+  EXPECT_EQ(Figure("checkpoints"), 1);
+  EXPECT_GT(Figure("critic_loss"), 0);
+  EXPECT_GT(Figure("temperature"), 0);
+  EXPECT_EQ(Figure("policy_lag_p50"), 5);
+  EXPECT_GT(Figure("seconds_update"), 0);
+  EXPECT_EQ(last.names.size(), last.values.size());
+}
+
+}  // namespace
+}  // namespace shoal::learner
