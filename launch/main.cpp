@@ -9,8 +9,22 @@
 
 namespace {
 
+// The first word that should be a command and is none; empty when there is no such word.
+std::string UnknownCommand(const CLI::App& app, int argc, char** argv) {
+  const CLI::App* level = &app;
+  const auto any = [](const CLI::App*) { return true; };
+  for (int i = 1; i < argc && argv[i][0] != '-' && !level->get_subcommands(any).empty(); ++i) {
+    const auto named = level->get_subcommands(
+        [&](const CLI::App* command) { return command->get_name() == argv[i]; });
+    if (named.empty()) return argv[i];
+    level = named[0];
+  }
+  return "";
+}
+
 int Run(int argc, char** argv) {
-  CLI::App app("Shoal trains robot policies from pixels with SAC and DrQ, on many processes.");
+  CLI::App app("Shoal trains robot policies from pixels with SAC and DrQ, on many processes.",
+               "shoal");
   app.set_version_flag("--version",
                        fmt::format("shoal {} ({})", shoal::BuildVersion(), shoal::BuildCommit()));
   app.require_subcommand(1);
@@ -23,6 +37,11 @@ int Run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::Success& e) {
     return app.exit(e);  // --help, --version
+  } catch (const CLI::RequiredError& e) {
+    const std::string unknown = UnknownCommand(app, argc, argv);
+    if (!unknown.empty())
+      throw shoal::UsageError("unknown command '{}' (see shoal --help)", unknown);
+    throw shoal::UsageError("{} (see shoal --help)", e.what());
   } catch (const CLI::ParseError& e) {
     throw shoal::UsageError("{} (see shoal --help)", e.what());
   }
