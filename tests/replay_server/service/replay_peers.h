@@ -1,0 +1,190 @@
+// The rest of a run around a replay server: coordinator, actors and learner, all on one bus.
+#pragma once
+
+#include <atomic>
+#include <condition_variable>
+#include <functional>
+#include <map>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "common/base/clock.h"
+#include "common/config/run_files.h"
+#include "common/dds/bus.h"
+#include "common/dds/publisher.h"
+#include "common/dds/subscriber.h"
+#include "common/wire/batch_layout.h"
+#include "tests/replay_server/record_script.h"
+
+namespace shoal::replay {
+
+// Joins as the learner (the one role besides the replay's that is on both domains). One test
+// thread.
+class ReplayPeers {
+ public:
+  ReplayPeers(const RunConfig& run, const ClusterAddress& address)
+      : run_(run),
+        bus_(address, run.config.transport, dds::Role::kLearner),
+        control_(bus_),
+        chunks_(bus_),
+        requests_(bus_),
+        credits_(bus_, [this](const Credit& c) { OnCredit(c); }),
+        shards_(bus_, [this](const BatchShard& s) { OnShard(s); }),
+        metrics_(bus_, [this](const MetricsMessage& m) { OnMetrics(m); }) {}
+
+  // A heartbeat. Every wait below sends them too, unless `silent`.
+  void Beat() {
+    if (silent || Now() - last_beat_ < std::chrono::milliseconds(200)) return;
+    last_beat_ = Now();
+    control_.Write({.epoch = 1, .state = state, .time = WallTimeSeconds()});
+  }
+  void Stop() {
+    control_.Write({.epoch = 2, .state = RunState::kStopping, .time = WallTimeSeconds()});
+  }
+
+  // Waits until `done` (called under the lock) or the deadline.
+  bool WaitFor(const std::function<bool()>& done,
+               std::chrono::seconds deadline = std::chrono::seconds(20)) {
+    const SteadyTime end = Now() + deadline;
+    while (true) {
+      Beat();
+      std::unique_lock lock(mutex_);
+      if (changed_.wait_for(lock, std::chrono::milliseconds(50), done)) return true;
+      if (Now() > end) return false;
+    }
+  }
+
+  // The replay's readers are there: what is written from now on arrives.
+  bool WaitForReplay() {
+    return WaitFor([this] { return chunks_.Matched() > 0 && requests_.Matched() > 0; });
+  }
+
+  // Sends the script's records up to `last` as a good actor does, until they are reported stored.
+  bool Deliver(RecordScript* script, uint64_t last) {
+    const SteadyTime end = Now() + std::chrono::seconds(30);
+    SteadyTime progress{};
+    uint64_t sent = Stored(*script), known = sent;
+    while (Now() < end) {
+      const uint64_t stored = Stored(*script);
+      if (stored >= last) return true;
+      // Nothing new for a while, or a new replay session: once more from the oldest.
+      if (stored > known) progress = Now();
+      if (stored > sent || Now() - progress > std::chrono::milliseconds(300)) {
+        sent = stored;
+        progress = Now();
+      }
+      known = stored;
+      const uint64_t limit = std::min(last, std::max(Allowed(*script), Window()));
+      while (sent < limit) {
+        const auto count = static_cast<uint32_t>(std::min<uint64_t>(
+            limit - sent, static_cast<uint64_t>(run_.config.transport.chunk_records)));
+        if (!chunks_.Write(script->Chunk(sent + 1, count))) break;
+        sent += count;
+      }
+      Beat();
+      std::unique_lock lock(mutex_);
+      changed_.wait_for(lock, std::chrono::milliseconds(20),
+                        [&] { return credit_[script->actor()].stored > stored; });
+    }
+    return false;
+  }
+  bool Write(const TransitionChunk& chunk) { return chunks_.Write(chunk); }
+
+  // Asks for a batch and puts it together; empty when it does not come. Asks again like a learner.
+  std::vector<uint8_t> Batch(uint64_t request) {
+    {
+      const std::lock_guard lock(mutex_);
+      batch_.assign(BatchLayout(run_.spec, run_.config.learner.batch).total_bytes(), 0);
+      missing_shards_.reset();
+      wanted_ = request;
+    }
+    for (int attempt = 0; attempt < 4; ++attempt) {
+      requests_.Write({.spec_hash = run_.spec.Hash(),
+                       .learner_session = 5,
+                       .request = request,
+                       .batch = static_cast<uint32_t>(run_.config.learner.batch),
+                       .after_steps = 0});
+      if (WaitFor([this] { return missing_shards_ && missing_shards_->empty(); },
+                  std::chrono::seconds(5))) {
+        const std::lock_guard lock(mutex_);
+        return batch_;
+      }
+    }
+    return {};
+  }
+
+  Credit LastCredit(uint32_t actor) {
+    const std::lock_guard lock(mutex_);
+    return credit_[actor];
+  }
+  // For use in WaitFor's predicate only.
+  const Credit& CreditLocked(uint32_t actor) { return credit_[actor]; }
+  const std::map<std::string, double>& MetricsLocked() { return newest_metrics_; }
+
+  RunState state = RunState::kRunning;
+  bool silent = false;
+
+ private:
+  uint64_t Stored(const RecordScript& script) {
+    const Credit credit = LastCredit(script.actor());
+    return credit.session == script.session() ? credit.stored : 0;
+  }
+  uint64_t Allowed(const RecordScript& script) {
+    const Credit credit = LastCredit(script.actor());
+    return credit.session == script.session() ? credit.allowed : 0;
+  }
+  uint64_t Window() const {
+    return static_cast<uint64_t>(run_.config.replay.window_chunks *
+                                 run_.config.transport.chunk_records);
+  }
+
+  void OnCredit(const Credit& credit) {
+    const std::lock_guard lock(mutex_);
+    if (credit.replay_session < credit_[credit.actor].replay_session) return;
+    credit_[credit.actor] = credit;
+    changed_.notify_all();
+  }
+  void OnShard(const BatchShard& shard) {
+    const std::lock_guard lock(mutex_);
+    if (shard.request != wanted_ || shard.offset + shard.payload.size() > batch_.size()) return;
+    std::ranges::copy(shard.payload, batch_.begin() + static_cast<std::ptrdiff_t>(shard.offset));
+    if (!missing_shards_) {
+      missing_shards_.emplace();
+      for (uint32_t i = 0; i < shard.shards; ++i) missing_shards_->insert(i);
+    }
+    missing_shards_->erase(shard.shard);
+    changed_.notify_all();
+  }
+  void OnMetrics(const MetricsMessage& message) {
+    const std::lock_guard lock(mutex_);
+    if (message.role != "replay") return;
+    for (size_t i = 0; i < message.names.size(); ++i) {
+      newest_metrics_[message.names[i]] = message.values[i];
+    }
+    changed_.notify_all();
+  }
+
+  const RunConfig run_;
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::map<uint32_t, Credit> credit_;
+  std::vector<uint8_t> batch_;
+  uint64_t wanted_ = 0;
+  std::optional<std::set<uint32_t>> missing_shards_;
+  std::map<std::string, double> newest_metrics_;
+  SteadyTime last_beat_{};
+
+  dds::Bus bus_;
+  dds::Publisher<ControlMessage> control_;
+  dds::Publisher<TransitionChunk> chunks_;
+  dds::Publisher<SampleRequest> requests_;
+  dds::Subscriber<Credit> credits_;
+  dds::Subscriber<BatchShard> shards_;
+  dds::Subscriber<MetricsMessage> metrics_;
+};
+
+}  // namespace shoal::replay

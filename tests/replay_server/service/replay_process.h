@@ -1,0 +1,68 @@
+// shoal-replay in a process of its own, with its stderr in a file.
+#pragma once
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "common/base/clock.h"
+#include "common/base/files.h"
+
+namespace shoal::replay {
+
+class ReplayProcess {
+ public:
+  ReplayProcess(std::vector<std::string> arguments, const std::filesystem::path& errors)
+      : errors_(errors) {
+    arguments.insert(arguments.begin(), std::string(SHOAL_BIN) + "/shoal-replay");
+    std::vector<char*> argv;
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    argv.push_back(nullptr);
+    pid_ = fork();
+    if (pid_ != 0) return;
+    const int fd = open(errors.c_str(), O_WRONLY | O_CREAT | O_APPEND, 0600);
+    dup2(fd, STDERR_FILENO);
+    dup2(fd, STDOUT_FILENO);
+    execv(argv[0], argv.data());
+    _exit(127);
+  }
+  ~ReplayProcess() {
+    if (pid_ > 0) Kill();
+  }
+  ReplayProcess(const ReplayProcess&) = delete;
+  ReplayProcess& operator=(const ReplayProcess&) = delete;
+
+  void Signal(int signal) { kill(pid_, signal); }
+  void Kill() {
+    Signal(SIGKILL);
+    waitpid(pid_, nullptr, 0);
+    pid_ = -1;
+  }
+  // The exit code; nothing when it does not end within the deadline or was killed.
+  std::optional<int> ExitCode(std::chrono::seconds deadline) {
+    const SteadyTime end = Now() + deadline;
+    int status = 0;
+    while (waitpid(pid_, &status, WNOHANG) == 0) {
+      if (Now() > end) return std::nullopt;
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));  // a poll with a deadline
+    }
+    pid_ = -1;
+    return WIFEXITED(status) ? std::optional(WEXITSTATUS(status)) : std::nullopt;
+  }
+  std::string Errors() const { return ReadFile(errors_); }
+
+ private:
+  const std::filesystem::path errors_;
+  pid_t pid_ = -1;
+};
+
+}  // namespace shoal::replay
