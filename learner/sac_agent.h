@@ -21,7 +21,7 @@ struct UpdateStats {
   float entropy = 0;            // -mean log pi
   float action_saturation = 0;  // share of sampled action components with |a| > 0.99
   float critic_grad_norm = 0, actor_grad_norm = 0;
-  float frame_spread = 0;       // mean over the batch of a frame's pixel standard deviation, grey levels
+  float frame_spread = 0;       // standard deviation of a frame's pixels, grey levels; mean over 32 frames
   bool finite = true;           // false: a loss or weight is not finite; the update was not applied
 };
 

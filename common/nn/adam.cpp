@@ -25,13 +25,14 @@ SHOAL_CPU_CLONES void AdamRange(const AdamArrays& arrays, int64_t begin, int64_t
                                 float root_scale) {
   constexpr float b1 = float(kBeta1), c1 = float(1 - kBeta1);
   constexpr float b2 = float(kBeta2), c2 = float(1 - kBeta2), epsilon = float(kEpsilon);
-  const float* __restrict g = arrays.gradient;
-  const float* __restrict m = arrays.m;
-  const float* __restrict v = arrays.v;
-  const float* __restrict w = arrays.value;
-  float* __restrict next_m = arrays.next_m;
-  float* __restrict next_v = arrays.next_v;
-  float* __restrict next_w = arrays.next_value;
+  const float* g = arrays.gradient;
+  const float* m = arrays.m;
+  const float* v = arrays.v;
+  const float* w = arrays.value;
+  float* next_m = arrays.next_m;
+  float* next_v = arrays.next_v;
+  float* next_w = arrays.next_value;
+#pragma omp simd
   for (int64_t i = begin; i < end; ++i) {
     next_m[i] = b1 * m[i] + c1 * g[i];
     next_v[i] = b2 * v[i] + c2 * g[i] * g[i];

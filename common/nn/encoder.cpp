@@ -24,6 +24,25 @@ Encoder::Encoder(const LayerContext& context, const NetworkConfig& network,
     source = convs_.back()->output();
     source_gradient = convs_.back()->output_gradient();
   }
+  BuildFeatures(context);
+}
+
+// The heads see rows, whatever layout the last convolution has: one copy here is cheaper than one
+// in each of them.
+void Encoder::BuildFeatures(const LayerContext& context) {
+  const dnnl::memory& map = convs_.back()->output();
+  const dnnl::memory::dims dims = map.get_desc().dims();
+  const dnnl::memory::data_type type = map.get_desc().data_type();
+  const dnnl::memory::desc plain(dims, type, dnnl::memory::format_tag::nchw);
+  const dnnl::memory::desc rows({dims[0], dims[1] * dims[2] * dims[3]}, type,
+                                dnnl::memory::format_tag::ab);
+  flatten_ = Relayout::Before(map, plain, context.scratchpad);
+  features_ = dnnl::memory(rows, CpuEngine(), flatten_.memory().get_data_handle());
+  if (!context.training) return;
+  features_gradient_ = MakeMemory(rows);
+  const dnnl::memory gradient_map(plain, CpuEngine(), features_gradient_.get_data_handle());
+  unflatten_gradient_ =
+      Op::Reorder(gradient_map, convs_.back()->output_gradient(), context.scratchpad);
 }
 
 void Encoder::Refresh() {
@@ -38,9 +57,11 @@ void Encoder::Forward(const uint8_t* frames) {
     PoolFrames(frames, shape, pool_, static_cast<float*>(input_.get_data_handle()));
   }
   for (const auto& conv : convs_) conv->Forward();
+  flatten_.Run();
 }
 
 void Encoder::Backward() {
+  unflatten_gradient_.Run();
   for (size_t i = convs_.size(); i-- > 0;) convs_[i]->Backward();
 }
 

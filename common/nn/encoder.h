@@ -17,10 +17,10 @@ class Encoder {
   // Parameters encoder.conv{i}.*. The spec has pixels.
   Encoder(const LayerContext& context, const NetworkConfig& network, const ObservationSpec& spec);
 
-  // (B, N, h, w) in the compute type, layout chosen by oneDNN; overwritten by every Forward.
-  const dnnl::memory& features() const { return convs_.back()->output(); }
-  // dL/dfeatures, filled before Backward, which overwrites it.
-  const dnnl::memory& features_gradient() const { return convs_.back()->output_gradient(); }
+  // (B, N*h*w) row-major in the compute type; overwritten by every Forward.
+  const dnnl::memory& features() const { return features_; }
+  // dL/dfeatures, filled before Backward. Empty in inference.
+  const dnnl::memory& features_gradient() const { return features_gradient_; }
 
   void Refresh();
   // frames (B, K*C, H, W) u8.
@@ -28,9 +28,14 @@ class Encoder {
   void Backward();
 
  private:
+  void BuildFeatures(const LayerContext& context);
+
   int planes_, height_, width_, pool_;
   dnnl::memory input_;  // (B, K*C, H/pool, W/pool) row-major in the compute type
   std::vector<std::unique_ptr<Conv>> convs_;
+  Relayout flatten_;  // of the last convolution's output
+  dnnl::memory features_, features_gradient_;
+  Op unflatten_gradient_;
 };
 
 }  // namespace shoal::nn

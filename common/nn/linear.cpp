@@ -22,14 +22,12 @@ Linear::Linear(const LayerContext& context, const std::string& name, const memor
       bias_(context.parameters->Find(name + ".bias")),
       output_gradient_(context.batch, outputs_, PrecisionOf(source)) {
   const memory::desc source_desc = source.get_desc();
-  memory::dims weight_dims = source_desc.dims();
-  weight_dims[0] = outputs_;
+  const memory::dims weight_dims = weight_.shape();
   weight_values_ = memory(PlainF32(weight_dims), CpuEngine(), nullptr);
   bias_values_ = memory(PlainF32({outputs_}), CpuEngine(), nullptr);
   output_ = MakeMemory(PlainF32({context.batch, outputs_}));
-  CHECK(int64_t(PlainF32(weight_dims).get_size()) ==
-        int64_t(sizeof(float)) * outputs_ * weight_.shape()[1])
-      << name << ": source does not fit the weights";
+  CHECK(source_desc.dims()[1] == weight_dims[1])
+      << name << ": source has " << source_desc.dims()[1] << " columns";
 
   const dnnl::inner_product_forward::primitive_desc forward(
       {dnnl::prop_kind::forward_training, AnyLayout(source_desc.dims(), source_desc.data_type()),

@@ -2,8 +2,7 @@
 //
 //   y[b, o] = sum_i weight[o, i] x[b, i] + bias[o]
 //
-// Dimensions: B batch, I inputs, O outputs. A source of four dimensions (B, C, H, W) counts as its
-// row-major flattening whatever its layout in memory.
+// Dimensions: B batch, I inputs, O outputs.
 #pragma once
 
 #include <string>
@@ -15,9 +14,9 @@ namespace shoal::nn {
 
 class Linear {
  public:
-  // Parameters `name`.weight (O, I) and `name`.bias (O). The products are computed in the source's
-  // type. `source_gradient` is where Backward puts dL/dx, of the source's dimensions; empty: never
-  // asked for.
+  // Parameters `name`.weight (O, I) and `name`.bias (O). source: (B, I)
+  // row-major; the products are computed in its type. `source_gradient` is where Backward puts
+  // dL/dx, (B, I); empty: never asked for.
   Linear(const LayerContext& context, const std::string& name, const dnnl::memory& source,
          const dnnl::memory& source_gradient);
 

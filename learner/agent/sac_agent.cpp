@@ -11,8 +11,11 @@
 // 3 is the one before this update.
 #include "learner/sac_agent.h"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "common/base/check.h"
 #include "common/base/random.h"
@@ -28,6 +31,7 @@ namespace shoal::learner {
 namespace {
 
 constexpr const char* kUpdates = "agent.updates";
+constexpr int kSpreadFrames = 32;
 
 // Above this, squares of gradients would overflow in Adam's second moment.
 bool Usable(float loss, double gradient_squares) {
@@ -57,6 +61,7 @@ struct SacAgent::Impl {
         mean_gradient(action_gradient),
         log_std_gradient(action_gradient) {}
 
+  float FrameSpread(const BatchView& batch) const;
   void ComputeTargets(const BatchView& batch, float temperature, Random* random);
   bool UpdateCritic(const BatchView& batch, UpdateStats* stats);
   bool UpdateActor(const BatchView& batch, float temperature, Random* random, UpdateStats* stats);
@@ -75,6 +80,13 @@ struct SacAgent::Impl {
   std::array<std::vector<float>, 2> q_gradients;                        // (B)
   std::vector<float> action_gradient, mean_gradient, log_std_gradient;  // (B, A)
 };
+
+// A batch is a random sample, so its first frames stand for all.
+float SacAgent::Impl::FrameSpread(const BatchView& batch) const {
+  if (!spec.HasPixels()) return 0;
+  return float(nn::MeanFrameSpread(batch.obs_frames.data(), std::min(batch_size, kSpreadFrames),
+                                   spec.stack * spec.FrameBytes()));
+}
 
 void SacAgent::Impl::ComputeTargets(const BatchView& batch, float temperature, Random* random) {
   const float* vector = batch.next_obs_vector.data();
