@@ -203,7 +203,7 @@ TEST(BulkCdr, RefusesShardsOutsideTheirBatch) {
   EXPECT_TRUE(Accepts<BatchShard>(Shard({.offset = 12})));
   EXPECT_FALSE(Accepts<BatchShard>(Shard({.offset = 13})));
   EXPECT_FALSE(Accepts<BatchShard>(Shard({.offset = 21})));
-  EXPECT_FALSE(Accepts<BatchShard>(Shard({.offset = UINT64_MAX - 3})));
+  EXPECT_FALSE(Accepts<BatchShard>(Shard({.offset = UINT64_MAX - 3, .total_bytes = UINT64_MAX})));
   EXPECT_FALSE(Accepts<BatchShard>(Shard({.payload = ""})));
 }
 

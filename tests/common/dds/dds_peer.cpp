@@ -1,19 +1,22 @@
 // The other process of the DDS tests: joins a domain in a role and does what it reads from stdin,
 // one answer line on stdout per command. T is the name of a message type.
 //
-//   dds_peer ROLE DOMAIN TAG
+//   dds_peer ROLE DOMAIN TAG   says "joined"
+//   dds_peer claim             is the coordinator of a free domain; says "joined DOMAIN TAG"
 //
 //   subscribe T                counts what arrives; "ok"
 //   show T                     subscribes and also prints "got T DESCRIPTION" for each message
 //   publish T                  creates the writer; "ok"
-//   match T N MS               waits until reader and writer of T together have N peers; "matched
-//   N" write T FIRST COUNT BYTES  writes numbered messages, repeating those that are refused;
+//   match T N MS               waits until reader and writer of T together have N peers;
+//                              "matched N"
+//   write T FIRST COUNT BYTES  writes numbered messages, repeating those that are refused;
 //                              "wrote COUNT refused N seconds S"
 //   try T N BYTES              one write; "sent MS" or "refused MS"
 //   received T COUNT MS        waits for COUNT messages; "received N gaps N bytes N malformed N"
 //   acknowledged T MS          "yes" or "no"
 //   answer                     stores nothing, but answers every chunk with a credit; "ok"
-//   roundtrip COUNT BYTES      chunk out, credit back, COUNT times; "microseconds MEDIAN MAX"
+//   roundtrip COUNT BYTES      chunk out, credit back, COUNT > 1 times; "microseconds MEDIAN MAX,
+//                              first FIRST": the first one waits for the reader's side of matching
 //   deafmute MS                drops everything in and out; "ok"
 //   quit
 #include <sys/prctl.h>
@@ -190,9 +193,11 @@ std::string RoundTrip(Bus& bus, uint64_t count, size_t payload_bytes) {
     if (!arrived.wait_for(lock, kWriteDeadline, [&] { return stored == n; })) return "lost";
     microseconds.push_back(SecondsSince(sent) * 1e6);
   }
+  const double first = microseconds.front();
+  microseconds.erase(microseconds.begin());
   std::ranges::sort(microseconds);
-  return fmt::format("microseconds {:.0f} {:.0f}", microseconds[microseconds.size() / 2],
-                     microseconds.back());
+  return fmt::format("microseconds {:.0f} {:.0f}, first {:.0f}",
+                     microseconds[microseconds.size() / 2], microseconds.back(), first);
 }
 
 using Endpoints = std::map<std::string, std::unique_ptr<AnyEndpoint>>;
@@ -258,20 +263,32 @@ void Serve(Bus& bus) {
   }
 }
 
-int Run(int argc, char** argv) {
-  prctl(PR_SET_PDEATHSIG, SIGKILL);
-  if (argc != 4) throw UsageError("usage: dds_peer ROLE DOMAIN TAG");
+std::unique_ptr<Bus> Join(const std::vector<std::string>& arguments) {
   static const std::map<std::string, Role> kRoles = {{"coordinator", Role::kCoordinator},
                                                      {"learner", Role::kLearner},
                                                      {"replay", Role::kReplay},
                                                      {"actor", Role::kActor}};
-  TuneMalloc();
   ClusterAddress address;
-  address.domain = std::stoi(argv[2]);
-  address.tag = argv[3];
-  Bus bus(address, TransportConfig{}, kRoles.at(argv[1]));
-  Say("joined");
-  Serve(bus);
+  std::unique_ptr<Bus> bus;
+  if (arguments.size() == 1 && arguments[0] == "claim") {
+    bus = ClaimDomain(TransportConfig{}, &address);
+    Say(fmt::format("joined {} {}", address.domain, address.tag));
+  } else if (arguments.size() == 3 && kRoles.contains(arguments[0])) {
+    address.domain = std::stoi(arguments[1]);
+    address.tag = arguments[2];
+    bus = std::make_unique<Bus>(address, TransportConfig{}, kRoles.at(arguments[0]));
+    Say("joined");
+  } else {
+    throw UsageError("usage: dds_peer ROLE DOMAIN TAG | dds_peer claim");
+  }
+  return bus;
+}
+
+int Run(int argc, char** argv) {
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  TuneMalloc();
+  const std::unique_ptr<Bus> bus = Join({argv + 1, argv + argc});
+  Serve(*bus);
   return 0;
 }
 

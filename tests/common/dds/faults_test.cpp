@@ -25,8 +25,6 @@ using ::testing::StartsWith;
 
 class FaultsTest : public ::testing::Test {
  protected:
-  void SetUp() override { bus_ = ClaimDomain(TransportConfig{}, &address_); }
-
   // An actor's writer and a replay's reader of chunks, matched.
   void Connect(PeerProcess& actor, PeerProcess& replay) {
     replay.Ask("subscribe TransitionChunk");
@@ -34,18 +32,17 @@ class FaultsTest : public ::testing::Test {
     ASSERT_EQ(actor.Ask("match TransitionChunk 1 10000"), "matched 1");
   }
 
-  ClusterAddress address_;
-  std::unique_ptr<Bus> bus_;
+  PeerProcess coordinator_;
+  const ClusterAddress address_ = coordinator_.address();
 };
 
 TEST_F(FaultsTest, ASecondCoordinatorIsRefusedNamingThePort) {
-  bus_.reset();
-  const PeerProcess coordinator("coordinator", address_);
   try {
     const Bus second(address_, TransportConfig{}, Role::kCoordinator);
     FAIL() << "two coordinators in one domain";
   } catch (const Error& error) {
-    EXPECT_THAT(error.what(), HasSubstr(std::to_string(DiscoveryPort(address_.domain, 0))));
+    EXPECT_THAT(error.what(),
+                HasSubstr(fmt::format("UDP port {} is taken", DiscoveryPort(address_.domain, 0))));
     EXPECT_THAT(error.what(), HasSubstr("coordinator"));
   }
 }

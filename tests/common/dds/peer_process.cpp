@@ -7,6 +7,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <sstream>
 #include <vector>
 
 #include "common/base/check.h"
@@ -27,15 +28,29 @@ std::string PopLine(std::string* lines) {
 
 }  // namespace
 
-PeerProcess::PeerProcess(const std::string& role, const ClusterAddress& address) {
+PeerProcess::PeerProcess(const std::string& role, const ClusterAddress& address)
+    : address_(address) {
+  Spawn({role, std::to_string(address.domain), address.tag});
+  EXPECT_EQ(Answer(), "joined") << role;
+}
+
+PeerProcess::PeerProcess() {
+  Spawn({"claim"});
+  std::istringstream answer(Answer());
+  std::string word;
+  answer >> word >> address_.domain >> address_.tag;
+  EXPECT_EQ(word, "joined");
+}
+
+void PeerProcess::Spawn(std::vector<std::string> words) {
+  std::signal(SIGPIPE, SIG_IGN);  // a command to a peer that died fails the test, not kills it
   int down[2], up[2];
   CHECK(pipe2(down, O_CLOEXEC) == 0 && pipe2(up, O_CLOEXEC) == 0);
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, down[0], STDIN_FILENO);
   posix_spawn_file_actions_adddup2(&actions, up[1], STDOUT_FILENO);
-  std::vector<std::string> words = {std::string(SHOAL_BIN) + "/dds_peer", role,
-                                    std::to_string(address.domain), address.tag};
+  words.insert(words.begin(), std::string(SHOAL_BIN) + "/dds_peer");
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
@@ -46,7 +61,6 @@ PeerProcess::PeerProcess(const std::string& role, const ClusterAddress& address)
   close(up[1]);
   to_child_ = down[1];
   from_child_ = up[0];
-  EXPECT_EQ(Answer(), "joined") << role;
 }
 
 PeerProcess::~PeerProcess() {

@@ -6,6 +6,7 @@
 #include <chrono>
 #include <csignal>
 #include <string>
+#include <vector>
 
 #include "common/config/run_files.h"
 
@@ -13,13 +14,17 @@ namespace shoal::dds {
 
 class PeerProcess {
  public:
-  // Starts it and waits until it has joined; fails the test otherwise, with what it wrote to
-  // stderr.
+  // Starts it and waits until it has joined; fails the test otherwise (the reason is on stderr).
   PeerProcess(const std::string& role, const ClusterAddress& address);
+  // The coordinator of a domain that it claims; address() tells which.
+  PeerProcess();
   // Kills it when it has not ended.
   ~PeerProcess();
   PeerProcess(const PeerProcess&) = delete;
   PeerProcess& operator=(const PeerProcess&) = delete;
+
+  // Of the claimed domain.
+  const ClusterAddress& address() const { return address_; }
 
   // Sends a command and returns the answer line; "got" lines in between are kept for NextGot. Empty
   // when none comes within the deadline or the process is gone.
@@ -36,10 +41,12 @@ class PeerProcess {
   void Kill();
 
  private:
+  void Spawn(std::vector<std::string> arguments);
   // The next line, whatever it is.
   std::string ReadLine(std::chrono::steady_clock::time_point end);
   std::string NextLine(bool want_got, std::chrono::milliseconds deadline);
 
+  ClusterAddress address_;
   pid_t pid_ = -1;
   int to_child_ = -1, from_child_ = -1;
   std::string buffer_;           // read, not yet a whole line

@@ -155,10 +155,11 @@ TEST_F(SubscriberTest, ControlOfAnUnknownStateIsCountedNotDelivered) {
 TEST_F(SubscriberTest, NoCallbackRunsAfterTheDestructor) {
   Publisher<ControlMessage> publisher(*bus_);
   std::atomic<bool> alive{false};
-  std::atomic<int> calls{0}, late_calls{0};
+  std::atomic<int> calls{0}, late_calls{0}, writes{0};
   const std::jthread writer([&](const std::stop_token& stop) {
     for (uint64_t n = 1; !stop.stop_requested(); ++n) {
       publisher.Write({.epoch = n, .state = RunState::kRunning, .time = 1});
+      ++writes;
     }
   });
   for (int i = 0; i < 300; ++i) {
@@ -172,6 +173,8 @@ TEST_F(SubscriberTest, NoCallbackRunsAfterTheDestructor) {
       while (calls < before + 3) std::this_thread::yield();
     }
     alive = false;
+    const int after = writes;
+    while (writes < after + 3) std::this_thread::yield();
   }
   EXPECT_EQ(late_calls, 0);
 }

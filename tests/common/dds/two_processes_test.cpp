@@ -1,5 +1,4 @@
-// What two processes exchange through the sockets: this one is the coordinator that holds the
-// domain.
+// What two processes exchange through the sockets.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -17,10 +16,8 @@ using ::testing::StartsWith;
 
 class TwoProcessesTest : public ::testing::Test {
  protected:
-  void SetUp() override { bus_ = ClaimDomain(TransportConfig{}, &address_); }
-
-  ClusterAddress address_;
-  std::unique_ptr<Bus> bus_;
+  PeerProcess coordinator_;
+  const ClusterAddress address_ = coordinator_.address();
 };
 
 template <class M>
@@ -63,28 +60,25 @@ TEST_F(TwoProcessesTest, MessagesFromLearnerToActorArriveAsSent) {
 }
 
 TEST_F(TwoProcessesTest, MessagesBetweenActorAndCoordinatorArriveAsSent) {
-  bus_.reset();
-  PeerProcess coordinator("coordinator", address_), actor("actor", address_);
-  ExpectSame<MetricsMessage>(actor, coordinator, "MetricsMessage");
-  ExpectSame<EvalMessage>(actor, coordinator, "EvalMessage");
-  ExpectSame<ControlMessage>(coordinator, actor, "ControlMessage");
+  PeerProcess actor("actor", address_);
+  ExpectSame<MetricsMessage>(actor, coordinator_, "MetricsMessage");
+  ExpectSame<EvalMessage>(actor, coordinator_, "EvalMessage");
+  ExpectSame<ControlMessage>(coordinator_, actor, "ControlMessage");
 }
 
 TEST_F(TwoProcessesTest, ALateActorGetsTheNewestWeightsCreditAndControl) {
-  bus_.reset();
-  PeerProcess coordinator("coordinator", address_), learner("learner", address_),
-      replay("replay", address_);
+  PeerProcess learner("learner", address_), replay("replay", address_);
   learner.Ask("publish WeightsMessage");
   learner.Ask("write WeightsMessage 1 3 3000000");
   replay.Ask("publish Credit");
   replay.Ask("write Credit 1 3 0");
-  coordinator.Ask("publish ControlMessage");
-  coordinator.Ask("write ControlMessage 1 3 0");
+  coordinator_.Ask("publish ControlMessage");
+  coordinator_.Ask("write ControlMessage 1 3 0");
   PeerProcess actor("actor", address_);
   const auto newest = [&](const std::string& name) {
     EXPECT_EQ(actor.Ask("show " + name), "ok");
     const std::string got = actor.NextGot();
-    EXPECT_THAT(actor.Ask("received " + name + " 1 0"), StartsWith("received 1 "));
+    EXPECT_THAT(actor.Ask("received " + name + " 1 5000"), StartsWith("received 1 "));
     return got;
   };
   // The payload is that of the first message of the write.
