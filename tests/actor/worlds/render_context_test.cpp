@@ -1,0 +1,295 @@
+#include "actor/worlds/render_context.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <mujoco/mujoco.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+
+#include "actor/worlds/fetch_reach.h"
+#include "actor/worlds/tools/reference_file.h"
+#include "actor/worlds/world_registry.h"
+#include "common/base/error.h"
+#include "common/base/files.h"
+
+namespace shoal::worlds {
+namespace {
+
+constexpr int kSide = 84;
+constexpr size_t kPlane = kSide * kSide;
+
+using Frame = std::vector<uint8_t>;  // (3, 84, 84)
+
+struct Pixel {
+  double x = 0, y = 0;  // column and row from the top left, in pixels
+};
+
+ObservationConfig Observation(const std::string& quality, bool grey = false) {
+  ObservationConfig observation;
+  observation.height = observation.width = kSide;
+  observation.quality = quality;
+  observation.grey = grey;
+  return observation;
+}
+
+Frame Render(RenderContext* context, World* world, const std::string& camera) {
+  context->Attach(world);
+  Frame frame(static_cast<size_t>(context->channels_per_camera()) * kPlane);
+  context->Render(world, std::span(&FindCamera(*world, camera), 1), frame);
+  return frame;
+}
+
+double MeanAbsoluteError(const Frame& a, const Frame& b) {
+  EXPECT_EQ(a.size(), b.size());
+  double sum = 0;
+  for (size_t i = 0; i < a.size(); ++i) sum += std::abs(int{a[i]} - int{b[i]});
+  return sum / static_cast<double>(a.size());
+}
+
+// Where a pinhole camera with these angles sees a point.
+Pixel Project(const CameraView& camera, const std::array<double, 3>& point) {
+  const double azimuth = camera.azimuth_degrees * M_PI / 180;
+  const double elevation = camera.elevation_degrees * M_PI / 180;
+  const std::array<double, 3> forward{std::cos(elevation) * std::cos(azimuth),
+                                      std::cos(elevation) * std::sin(azimuth), std::sin(elevation)};
+  const std::array<double, 3> right{std::sin(azimuth), -std::cos(azimuth), 0};
+  const std::array<double, 3> up{-std::sin(elevation) * std::cos(azimuth),
+                                 -std::sin(elevation) * std::sin(azimuth), std::cos(elevation)};
+  double depth = camera.distance, x = 0, y = 0;
+  for (size_t i = 0; i < 3; ++i) {
+    const double offset = point[i] - camera.lookat[i];
+    depth += forward[i] * offset;
+    x += right[i] * offset;
+    y += up[i] * offset;
+  }
+  const double focal = kSide / 2.0 / std::tan(22.5 * M_PI / 180);
+  return {kSide / 2.0 + focal * x / depth, kSide / 2.0 - focal * y / depth};
+}
+
+// Centre of the pixels that are red, blue-for-red frames included as what they are: not red.
+std::optional<Pixel> RedCentre(const Frame& frame, int* count) {
+  Pixel sum;
+  *count = 0;
+  for (size_t i = 0; i < kPlane; ++i) {
+    const int red = frame[i], green = frame[kPlane + i], blue = frame[2 * kPlane + i];
+    if (red < 90 || red < 2 * green || red < 2 * blue) continue;
+    sum.x += static_cast<double>(i % kSide) + 0.5;
+    sum.y += static_cast<double>(i / kSide) + 0.5;
+    ++*count;
+  }
+  if (*count == 0) return std::nullopt;
+  return Pixel{sum.x / *count, sum.y / *count};
+}
+
+std::vector<uint8_t> DecodeBase64(const std::string& text) {
+  static const std::string kDigits =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::vector<uint8_t> bytes;
+  uint32_t bits = 0;
+  int count = 0;
+  for (const char letter : text) {
+    const size_t digit = kDigits.find(letter);
+    if (digit == std::string::npos) break;  // padding
+    bits = (bits << 6) | static_cast<uint32_t>(digit);
+    count += 6;
+    if (count < 8) continue;
+    count -= 8;
+    bytes.push_back(static_cast<uint8_t>(bits >> count));
+  }
+  return bytes;
+}
+
+struct GoldenFrame {
+  int after_step = 0;
+  Frame frame;
+};
+
+// Frames of the original environment with its own meshes.
+std::vector<GoldenFrame> GoldenFrames() {
+  const auto document =
+      nlohmann::json::parse(ReadFile(SHOAL_GOLDEN "/reference/fetch_Reach_frames_84.json"));
+  std::vector<GoldenFrame> golden;
+  for (const auto& entry : document.at("frames")) {
+    const std::vector<uint8_t> pixels = DecodeBase64(entry.at("rgb_base64"));
+    GoldenFrame& frame = golden.emplace_back();
+    frame.after_step = entry.at("after_step");
+    frame.frame.resize(3 * kPlane);
+    for (size_t i = 0; i < 3 * kPlane; ++i) frame.frame[i % 3 * kPlane + i / 3] = pixels.at(i);
+  }
+  return golden;
+}
+
+double ErrorAgainstOriginal(const std::string& quality, const GoldenFrame& golden) {
+  const ReferenceTrajectory trajectory =
+      ReadReference(SHOAL_GOLDEN "/reference/fetch_Reach_random_hold5.json");
+  FetchReach world("");
+  world.ResetTo(trajectory.desired_goal);
+  for (int i = 0; i < golden.after_step; ++i) {
+    world.Step(trajectory.steps[static_cast<size_t>(i)].action);
+  }
+  RenderContext context(Observation(quality));
+  return MeanAbsoluteError(Render(&context, &world, "gymnasium"), golden.frame);
+}
+
+TEST(RenderContext, ReferenceFramesLookLikeTheOriginals) {
+  const std::vector<GoldenFrame> golden = GoldenFrames();
+  ASSERT_EQ(golden.size(), 2u);
+  for (const GoldenFrame& frame : golden) {
+    const double error = ErrorAgainstOriginal("reference", frame);
+    RecordProperty("grey_levels_after_" + std::to_string(frame.after_step), std::to_string(error));
+    EXPECT_LE(error, 2.5) << "after step " << frame.after_step;
+  }
+}
+
+TEST(RenderContext, FastFramesLookAlmostLikeTheOriginals) {
+  for (const GoldenFrame& frame : GoldenFrames()) {
+    const double error = ErrorAgainstOriginal("fast", frame);
+    RecordProperty("grey_levels_after_" + std::to_string(frame.after_step), std::to_string(error));
+    EXPECT_LE(error, 3.5) << "after step " << frame.after_step;
+  }
+}
+
+// Rows count from the top, columns from the left, and red is red: each would be wrong elsewhere.
+TEST(RenderContext, TheTargetIsRedAndWhereItsGoalProjects) {
+  FetchReach world("");
+  RenderContext context(Observation("fast"));
+  for (const char* camera : {"front", "side", "close"}) {
+    // Off centre in both directions for each camera, and not behind the gripper.
+    for (const std::array<double, 3> goal :
+         {std::array<double, 3>{1.47, 0.88, 0.45}, {1.23, 0.63, 0.43}, {1.47, 0.63, 0.62}}) {
+      world.ResetTo(goal);
+      int count = 0;
+      const auto seen = RedCentre(Render(&context, &world, camera), &count);
+      ASSERT_TRUE(seen.has_value()) << camera;
+      const Pixel expected = Project(FindCamera(world, camera), goal);
+      EXPECT_NEAR(seen->x, expected.x, 0.8) << camera;
+      EXPECT_NEAR(seen->y, expected.y, 0.8) << camera;
+    }
+  }
+}
+
+TEST(RenderContext, TheTargetIsVisibleInBothDefaultCamerasWhereverItIs) {
+  FetchReach world("");
+  RenderContext context(Observation("fast"));
+  Random random(5);
+  int unseen = 0;
+  constexpr int kGoals = 60;
+  for (int i = 0; i < kGoals; ++i) {
+    world.Reset(&random);
+    for (const char* camera : {"front", "side"}) {
+      int count = 0;
+      RedCentre(Render(&context, &world, camera), &count);
+      if (count < 3) ++unseen;
+    }
+  }
+  // Behind the gripper, or sunk into the table: as in the original.
+  EXPECT_LE(unseen, kGoals / 10);
+}
+
+TEST(RenderContext, TheSkyIsGreenTheTableWhiteAndTheTopRowIsTheTop) {
+  FetchReach world("");
+  world.ResetTo({1.47, 0.88, 0.6});
+  RenderContext context(Observation("fast"));
+  const Frame frame = Render(&context, &world, "gymnasium");
+  const auto colour = [&](int row, int column) {
+    const size_t at = static_cast<size_t>(row * kSide + column);
+    return std::array<int, 3>{frame[at], frame[kPlane + at], frame[2 * kPlane + at]};
+  };
+  for (const int column : {0, 83}) {
+    EXPECT_NEAR(colour(0, column)[0], 115, 6);
+    EXPECT_NEAR(colour(0, column)[1], 219, 6);
+    EXPECT_NEAR(colour(0, column)[2], 145, 6);
+  }
+  const Pixel table = Project(FindCamera(world, "gymnasium"), {1.45, 0.5, 0.4});
+  const Pixel floor = Project(FindCamera(world, "gymnasium"), {1.6, 0.2, 0});
+  EXPECT_EQ(colour(int(table.y), int(table.x)), (std::array<int, 3>{255, 255, 255}));
+  EXPECT_NEAR(colour(int(floor.y), int(floor.x))[0], 61, 4);
+}
+
+TEST(RenderContext, GreyIsOneChannelOfTheSamePicture) {
+  FetchReach world("");
+  world.ResetTo({1.4, 0.7, 0.5});
+  RenderContext colour(Observation("fast")), grey(Observation("fast", /*grey=*/true));
+  const Frame rgb = Render(&colour, &world, "front"), luma = Render(&grey, &world, "front");
+  ASSERT_EQ(luma.size(), kPlane);
+  for (size_t i = 0; i < kPlane; ++i) {
+    const double expected = 0.299 * rgb[i] + 0.587 * rgb[kPlane + i] + 0.114 * rgb[2 * kPlane + i];
+    ASSERT_NEAR(luma[i], expected, 1.0) << i;
+  }
+}
+
+TEST(RenderContext, CamerasOfOneFrameFollowEachOther) {
+  FetchReach world("");
+  world.ResetTo({1.4, 0.7, 0.5});
+  RenderContext context(Observation("fast"));
+  const Frame front = Render(&context, &world, "front"), side = Render(&context, &world, "side");
+  const std::vector<CameraView> cameras{FindCamera(world, "front"), FindCamera(world, "side")};
+  Frame both(6 * kPlane);
+  context.Render(&world, cameras, both);
+  EXPECT_TRUE(std::equal(front.begin(), front.end(), both.begin()));
+  EXPECT_TRUE(std::equal(side.begin(), side.end(), both.begin() + 3 * kPlane));
+  EXPECT_GT(MeanAbsoluteError(front, side), 10);
+}
+
+TEST(RenderContext, TwoContextsDrawTheSameBytes) {
+  FetchReach world("");
+  world.ResetTo({1.4, 0.7, 0.5});
+  RenderContext first(Observation("fast")), second(Observation("fast"));
+  const Frame once = Render(&first, &world, "close");
+  EXPECT_EQ(Render(&second, &world, "close"), once);
+  EXPECT_EQ(Render(&first, &world, "close"), once);
+}
+
+TEST(RenderContext, WorldsThatShareAContextAreDrawnEachAsItIs) {
+  FetchReach left(""), right("");
+  left.ResetTo({1.45, 0.65, 0.5});
+  right.ResetTo({1.25, 0.85, 0.5});
+  RenderContext context(Observation("fast")), other(Observation("fast"));
+  const Frame left_alone = Render(&other, &left, "front");
+  const Frame left_frame = Render(&context, &left, "front");
+  const Frame right_frame = Render(&context, &right, "front");
+  EXPECT_EQ(left_frame, left_alone);
+  EXPECT_NE(left_frame, right_frame);
+  EXPECT_EQ(Render(&context, &left, "front"), left_alone);
+}
+
+TEST(RenderContext, DrawingDoesNotChangeThePhysics) {
+  FetchReach drawn(""), blind("");
+  drawn.ResetTo({1.4, 0.7, 0.5});
+  blind.ResetTo({1.4, 0.7, 0.5});
+  RenderContext context(Observation("fast"));
+  for (int i = 0; i < 10; ++i) {
+    Render(&context, &drawn, "side");
+    drawn.Step(std::array<double, 4>{0.3, -0.2, 0.4, 0});
+    blind.Step(std::array<double, 4>{0.3, -0.2, 0.4, 0});
+  }
+  EXPECT_EQ(drawn.arm().GripPosition(), blind.arm().GripPosition());
+  EXPECT_EQ(drawn.arm().GripVelocity(), blind.arm().GripVelocity());
+}
+
+TEST(RenderContext, RefusesAWorldWithAnotherModel) {
+  FetchReach ours("");
+  FetchReach other(SHOAL_TEST_DATA "/other_reach.xml");
+  RenderContext context(Observation("fast"));
+  context.Attach(&ours);
+  EXPECT_THROW(context.Attach(&other), Error);
+}
+
+TEST(RenderContext, RefusesAnUnknownQuality) {
+  EXPECT_THROW(RenderContext context(Observation("beautiful")), Error);
+}
+
+TEST(RenderContext, KeepsTheRasterisersThreadsOut) {
+  setenv("LP_NUM_THREADS", "4", 1);
+  const RenderContext context(Observation("fast"));
+  EXPECT_STREQ(getenv("LP_NUM_THREADS"), "0");
+}
+
+}  // namespace
+}  // namespace shoal::worlds

@@ -1,0 +1,319 @@
+#include "actor/worlds/world_environment.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+#include "actor/worlds/model_loading.h"
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/tasks/task_registry.h"
+#include "tests/support/temporary_folder.h"
+
+namespace shoal::worlds {
+namespace {
+
+Config StateOnly(const std::string& task = "FetchReachDense") {
+  Config config;
+  config.task = task;
+  config.observation.pixels = false;
+  config.observation.goal_mode = "both";
+  return config;
+}
+
+Config Pixels() {
+  Config config;
+  config.task = "FetchReachDense";
+  return config;
+}
+
+std::unique_ptr<Environment> Make(const Config& config) {
+  return MakeEnvironment(config, config.observation.pixels ? MakeRenderContext(config.observation)
+                                                           : std::shared_ptr<RenderContext>());
+}
+
+// An environment with room for its observations and the actions of one stream.
+struct Player {
+  explicit Player(std::unique_ptr<Environment> made)
+      : environment(std::move(made)),
+        frame(static_cast<size_t>(environment->spec().FrameBytes())),
+        vector(static_cast<size_t>(environment->spec().VectorSize())) {}
+
+  float Reset(uint64_t key) {
+    actions = Random(key + 1);
+    return environment->Reset(key, {frame, vector});
+  }
+  StepResult Step() {
+    std::array<float, 4> action{};
+    for (float& component : action) component = static_cast<float>(actions.Uniform(-1, 1));
+    return environment->Step(action, {frame, vector});
+  }
+  // Frames and vectors of the reset and `steps` steps.
+  std::pair<std::vector<uint8_t>, std::vector<float>> Play(uint64_t key, int steps) {
+    Reset(key);
+    auto seen = std::pair(frame, vector);
+    for (int i = 0; i < steps; ++i) {
+      Step();
+      seen.first.insert(seen.first.end(), frame.begin(), frame.end());
+      seen.second.insert(seen.second.end(), vector.begin(), vector.end());
+    }
+    return seen;
+  }
+
+  std::unique_ptr<Environment> environment;
+  std::vector<uint8_t> frame;
+  std::vector<float> vector;
+  Random actions{0};
+};
+
+std::vector<std::string> BlockNames(const Config& config) {
+  std::vector<std::string> names;
+  const auto environment = Make(config);
+  for (const BlockSpec& block : environment->spec().blocks) names.push_back(block.name);
+  return names;
+}
+
+using Names = std::vector<std::string>;
+
+TEST(WorldEnvironment, PixelsAloneCarryNoBlocks) {
+  const auto environment = Make(Pixels());
+  const ObservationSpec& spec = environment->spec();
+  EXPECT_TRUE(spec.blocks.empty());
+  EXPECT_EQ(spec.cameras, (Names{"front", "side"}));
+  EXPECT_EQ(spec.channels, 6);
+  EXPECT_EQ(spec.height, 84);
+  EXPECT_EQ(spec.width, 84);
+  EXPECT_EQ(spec.action_size, 4);
+  EXPECT_EQ(spec.task, "FetchReachDense");
+}
+
+TEST(WorldEnvironment, TheGoalModeDecidesTheGoalBlocks) {
+  Config config = Pixels();
+  config.observation.goal_mode = "desired";
+  EXPECT_EQ(BlockNames(config), Names{"desired_goal"});
+  config.observation.goal_mode = "both";
+  EXPECT_EQ(BlockNames(config), (Names{"achieved_goal", "desired_goal"}));
+  config.observation.proprioception = true;
+  EXPECT_EQ(BlockNames(config), (Names{"observation", "achieved_goal", "desired_goal"}));
+  config.observation.goal_mode = "none";
+  EXPECT_EQ(BlockNames(config), Names{"observation"});
+}
+
+TEST(WorldEnvironment, WithoutPixelsTheObservationBlockIsAlwaysThere) {
+  Config config = StateOnly();
+  EXPECT_EQ(BlockNames(config), (Names{"observation", "achieved_goal", "desired_goal"}));
+  config.observation.goal_mode = "none";
+  EXPECT_EQ(BlockNames(config), Names{"observation"});
+  const auto environment = Make(config);
+  EXPECT_FALSE(environment->spec().HasPixels());
+  EXPECT_EQ(environment->spec().FrameBytes(), 0);
+  EXPECT_TRUE(environment->spec().cameras.empty());
+}
+
+TEST(WorldEnvironment, BlocksLieInSpecOrder) {
+  Player player(Make(StateOnly()));
+  const float distance = player.Reset(3);
+  const std::span<const float> vector(player.vector);
+  ASSERT_EQ(vector.size(), 16u);
+  const auto grip = vector.first(3), achieved = vector.subspan(10, 3), desired = vector.last(3);
+  EXPECT_TRUE(std::equal(grip.begin(), grip.end(), achieved.begin()));
+  EXPECT_FLOAT_EQ(distance, std::hypot(achieved[0] - desired[0], achieved[1] - desired[1],
+                                       achieved[2] - desired[2]));
+}
+
+TEST(WorldEnvironment, AnEpisodeIsTruncatedAtItsFiftiethStepAndNeverTerminates) {
+  Player player(Make(StateOnly()));
+  for (int episode = 0; episode < 2; ++episode) {
+    player.Reset(static_cast<uint64_t>(episode));
+    for (int step = 1; step <= 50; ++step) {
+      const StepResult result = player.Step();
+      EXPECT_FALSE(result.terminated);
+      EXPECT_EQ(result.truncated, step == 50) << step;
+    }
+  }
+}
+
+TEST(WorldEnvironment, TheStepRewardIsTheGoalHalfsRewardOfThePublishedGoals) {
+  for (const char* name : {"FetchReach", "FetchReachDense"}) {
+    const tasks::Task& task = tasks::FindTask(name);
+    Player player(Make(StateOnly(name)));
+    const std::span<const float> vector(player.vector);
+    const auto achieved = vector.subspan(10, 3), desired = vector.last(3);
+    const float start = player.Reset(4);
+    ASSERT_GT(start, 0.05f);
+    int successes = 0;
+    for (int step = 0; step < 50; ++step) {
+      std::array<float, 4> action{};
+      for (size_t i = 0; i < 3; ++i) {
+        action[i] = std::clamp(10 * (desired[i] - achieved[i]), -1.0f, 1.0f);
+      }
+      const StepResult result = player.environment->Step(action, {{}, player.vector});
+      float reward = 0;
+      task.ComputeRewards(achieved, desired, std::span(&reward, 1));
+      ASSERT_EQ(result.reward, reward);
+      ASSERT_EQ(result.success, result.distance < 0.05f);
+      successes += result.success;
+    }
+    // Moving towards the goal reaches it and stays; the first steps are still far away.
+    EXPECT_GT(successes, 30);
+    EXPECT_LT(successes, 50);
+  }
+}
+
+TEST(WorldEnvironment, EqualKeysGiveBitIdenticalEpisodesWhateverHappenedBefore) {
+  Config config = Pixels();
+  config.observation.goal_mode = "both";
+  Player fresh(Make(config)), used(Make(config));
+  used.Play(100, 7);
+  used.Play(101, 50);
+  const auto episode = fresh.Play(102, 12);
+  EXPECT_EQ(used.Play(102, 12), episode);
+  EXPECT_NE(used.Play(103, 12), episode);
+}
+
+TEST(WorldEnvironment, InterleavedEnvironmentsOfOneContextDoNotTouchEachOther) {
+  Config config = Pixels();
+  config.observation.goal_mode = "both";
+  Player alone(Make(config));
+  const auto expected = alone.Play(7, 6);
+  const auto render = MakeRenderContext(config.observation);
+  Player left(MakeEnvironment(config, render)), right(MakeEnvironment(config, render));
+  left.Reset(7);
+  right.Reset(8);
+  auto seen = std::pair(left.frame, left.vector);
+  for (int i = 0; i < 6; ++i) {
+    right.Step();
+    left.Step();
+    seen.first.insert(seen.first.end(), left.frame.begin(), left.frame.end());
+    seen.second.insert(seen.second.end(), left.vector.begin(), left.vector.end());
+  }
+  EXPECT_EQ(seen, expected);
+}
+
+TEST(WorldEnvironment, DrawingDoesNotChangeAnEpisode) {
+  Config config = Pixels();
+  config.observation.goal_mode = "both";
+  config.observation.proprioception = true;
+  Player seeing(Make(config)), blind(Make(StateOnly()));
+  EXPECT_EQ(seeing.Play(9, 15).second, blind.Play(9, 15).second);
+}
+
+TEST(WorldEnvironment, TheFingerprintIsThatOfModelAndPicture) {
+  const auto fingerprint = [](const Config& config) {
+    return Make(config)->spec().model_fingerprint;
+  };
+  const Config config = Pixels();
+  Config quality = config, cameras = config;
+  quality.observation.quality = "reference";
+  cameras.observation.cameras = {"side", "front"};
+  EXPECT_EQ(fingerprint(config), fingerprint(config));
+  EXPECT_NE(fingerprint(config), fingerprint(quality));
+  EXPECT_NE(fingerprint(config), fingerprint(cameras));
+  EXPECT_NE(fingerprint(config), fingerprint(StateOnly()));
+  Config model = StateOnly();
+  model.model = SHOAL_TEST_DATA "/other_reach.xml";
+  EXPECT_NE(fingerprint(model), fingerprint(StateOnly()));
+}
+
+TEST(WorldEnvironment, RefusesWhatDoesNotExistByName) {
+  const auto message = [](const Config& config) -> std::string {
+    try {
+      Make(config);
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  Config config = Pixels();
+  config.task = "FetchJuggle";
+  EXPECT_THAT(message(config), testing::HasSubstr("FetchJuggle"));
+  config = Pixels();
+  config.observation.cameras = {"front", "behind"};
+  EXPECT_THAT(message(config), testing::HasSubstr("behind"));
+  config = StateOnly();
+  config.observation.goal_mode = "some";
+  EXPECT_THAT(message(config), testing::HasSubstr("some"));
+  config = StateOnly();
+  config.model = "/nonexistent.xml";
+  EXPECT_THAT(message(config), testing::HasSubstr("/nonexistent.xml"));
+}
+
+TEST(WorldEnvironment, AnActionOutsideItsBoundsOrNotANumberIsAnErrorNamingIt) {
+  Player player(Make(StateOnly()));
+  for (const float bad : {1.01f, -2.0f, std::numeric_limits<float>::quiet_NaN()}) {
+    player.Reset(1);
+    const std::array<float, 4> action{0, 0, bad, 0};
+    try {
+      player.environment->Step(action, {{}, player.vector});
+      FAIL() << "took " << bad;
+    } catch (const Error& error) {
+      EXPECT_THAT(error.what(), testing::HasSubstr("2 (dz)"));
+    }
+  }
+}
+
+TEST(WorldEnvironmentDeathTest, AStepNeedsAnEpisode) {
+  Player player(Make(StateOnly()));
+  EXPECT_DEATH(player.Step(), "step -1");
+  player.Reset(1);
+  for (int i = 0; i < 50; ++i) player.Step();
+  EXPECT_DEATH(player.Step(), "step 50");
+}
+
+// A task without goals: its reward and its end come from the physics half.
+class Countdown final : public World {
+ public:
+  Countdown() : World(Load()) {}
+
+  void Reset(Random*) override { left_ = 3; }
+  Outcome Step(std::span<const double> action) override {
+    --left_;
+    return {.reward = action[0], .terminated = left_ == 0};
+  }
+  void Observe(std::span<double> observation, std::span<double>, std::span<double>) const override {
+    observation[0] = left_;
+  }
+  std::span<const CameraView> cameras() const override { return {}; }
+
+ private:
+  static ModelHandle Load() {
+    const TemporaryFolder folder;
+    WriteFileAtomically(folder.path() / "nothing.xml", "<mujoco><worldbody/></mujoco>");
+    return LoadModel("", (folder.path() / "nothing.xml").string());
+  }
+
+  int left_ = 0;
+};
+
+TEST(WorldEnvironment, TasksWithoutGoalsTakeRewardAndEndFromThePhysics) {
+  tasks::Task::Description description;
+  description.name = "Countdown";
+  description.episode_length = 5;
+  description.action = {{"push", ""}};
+  description.observation = {"observation", {{"left", ""}}};
+  const tasks::Task task(description);
+  ObservationConfig observation;
+  observation.goal_mode = "both";
+  WorldEnvironment environment(task, std::make_unique<Countdown>(), observation, nullptr);
+  ASSERT_EQ(environment.spec().blocks, (std::vector<BlockSpec>{{"observation", 1}}));
+
+  std::array<float, 1> left{};
+  const std::array<float, 1> action{0.25f};
+  EXPECT_TRUE(std::isnan(environment.Reset(1, {{}, left})));
+  for (int step = 1; step <= 3; ++step) {
+    const StepResult result = environment.Step(action, {{}, left});
+    EXPECT_EQ(result.reward, 0.25f);
+    EXPECT_EQ(result.terminated, step == 3);
+    EXPECT_FALSE(result.truncated);
+    EXPECT_FALSE(result.success);
+    EXPECT_TRUE(std::isnan(result.distance));
+  }
+  EXPECT_EQ(left[0], 0.0f);
+}
+
+}  // namespace
+}  // namespace shoal::worlds
