@@ -70,11 +70,14 @@ struct ExecPlan {
   char* const* envp;
   int input, output, errors, report;
   pid_t parent;
+  bool outlives_parent;
 };
 
 [[noreturn]] void ExecChild(const ExecPlan& plan) {
-  prctl(PR_SET_PDEATHSIG, SIGTERM);
-  if (getppid() != plan.parent) _exit(1);  // it died before the line above
+  if (!plan.outlives_parent) {
+    prctl(PR_SET_PDEATHSIG, SIGTERM);
+    if (getppid() != plan.parent) _exit(1);  // it died before the line above
+  }
   setpgid(0, 0);
   sigset_t none;
   sigemptyset(&none);
@@ -111,7 +114,7 @@ ChildProcess::ChildProcess(const ProcessSpec& spec) {
   Descriptor report_end(ends[1]);
 
   const ExecPlan plan{argv.data(),  envp.data(),      input.get(), output.get(),
-                      errors.get(), report_end.get(), getpid()};
+                      errors.get(), report_end.get(), getpid(),    spec.outlives_parent};
   pid_ = fork();
   if (pid_ < 0) throw RuntimeError("cannot start {}: {}", spec.command[0], std::strerror(errno));
   if (pid_ == 0) ExecChild(plan);

@@ -20,6 +20,7 @@ struct ProcessSpec {
   std::vector<std::pair<std::string, std::string>> environment;  // added to our own
   std::filesystem::path output;  // stdout and stderr are appended to it
   std::filesystem::path errors;  // stderr, where apart; empty = output
+  bool outlives_parent = false;  // gets no SIGTERM when this process dies
 
   std::string Name() const { return role + "-" + std::to_string(id); }
 };

@@ -37,6 +37,9 @@ std::vector<ProcessSpec> PlanProcesses(const Config& config, const std::filesyst
     plan.push_back(std::move(spec));
   };
   add("replay", 0, "shoal-replay", {}, 1);
+  // When the coordinator is killed, the actors' last records want a replay that stores them: it
+  // leaves by itself when the heartbeat has been missing and nothing comes any more.
+  plan.back().outlives_parent = true;
   add("learner", 0, "shoal-learner", {}, config.learner.threads);
   for (int i = 0; i < config.actors; ++i) {
     add("actor", i, "shoal-actor", {"--id", std::to_string(i)}, 1);

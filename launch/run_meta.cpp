@@ -80,6 +80,8 @@ RunMeta ReadRunMeta(const std::filesystem::path& run) {
   try {
     object.at("started").get_to(meta.started);
     object.at("wall_seconds").get_to(meta.wall_seconds);
+    object.at("env_steps").get_to(meta.env_steps);
+    object.at("updates").get_to(meta.updates);
     object.at("restarts").get_to(meta.restarts);
   } catch (const nlohmann::json::exception& e) {
     throw RuntimeError("{}: {}", path.string(), e.what());

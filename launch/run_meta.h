@@ -28,7 +28,8 @@ struct RunMeta {
 // Throws Error.
 void WriteRunMeta(const std::filesystem::path& run, const Config& config, const RunMeta& meta);
 
-// What a resumed run goes on from: started and wall_seconds; defaults where the file is missing.
+// What a resumed run goes on from: started, wall_seconds and the counters; defaults where the file
+// is missing.
 // Throws Error on a broken file.
 RunMeta ReadRunMeta(const std::filesystem::path& run);
 

@@ -46,6 +46,27 @@ bool Alive(pid_t pid) {
   return stat >> number >> name >> state && state != "Z" && state != "X";
 }
 
+// A child, alive, of a process that has just been killed.
+pid_t OrphanOf(const ProcessSpec& spec) {
+  int ends[2];
+  EXPECT_EQ(pipe(ends), 0);
+  const pid_t parent = fork();
+  if (parent == 0) {
+    const ChildProcess child(spec);
+    const pid_t pid = child.pid();
+    if (write(ends[1], &pid, sizeof pid) != sizeof pid) _exit(1);
+    while (true) pause();
+  }
+  pid_t orphan = 0;
+  EXPECT_EQ(read(ends[0], &orphan, sizeof orphan), ssize_t{sizeof orphan});
+  EXPECT_TRUE(Alive(orphan));
+  kill(parent, SIGKILL);
+  waitpid(parent, nullptr, 0);
+  close(ends[0]);
+  close(ends[1]);
+  return orphan;
+}
+
 TEST_F(ChildProcessTest, ReportsTheExitCode) {
   ChildProcess child(Shell("exit 7"));
   const auto status = Wait(child);
@@ -125,24 +146,18 @@ TEST_F(ChildProcessTest, IsKilledWithItsOwner) {
 }
 
 TEST_F(ChildProcessTest, EndsWhenItsParentIsKilled) {
-  int ends[2];
-  ASSERT_EQ(pipe(ends), 0);
-  const pid_t parent = fork();
-  ASSERT_GE(parent, 0);
-  if (parent == 0) {
-    const ChildProcess child(Shell("exec sleep 60"));
-    const pid_t pid = child.pid();
-    if (write(ends[1], &pid, sizeof pid) != sizeof pid) _exit(1);
-    while (true) pause();
-  }
-  pid_t grandchild = 0;
-  ASSERT_EQ(read(ends[0], &grandchild, sizeof grandchild), ssize_t{sizeof grandchild});
-  EXPECT_TRUE(Alive(grandchild));
-  kill(parent, SIGKILL);
-  waitpid(parent, nullptr, 0);
-  EXPECT_TRUE(WaitUntil([&] { return !Alive(grandchild); }));
-  close(ends[0]);
-  close(ends[1]);
+  const pid_t orphan = OrphanOf(Shell("exec sleep 60"));
+  EXPECT_TRUE(WaitUntil([&] { return !Alive(orphan); }));
+}
+
+TEST_F(ChildProcessTest, GoesOnWithoutItsParentWhenAsked) {
+  ProcessSpec spec = Shell("exec sleep 60");
+  spec.outlives_parent = true;
+  const pid_t orphan = OrphanOf(spec);
+  const pid_t other = OrphanOf(Shell("exec sleep 60"));
+  EXPECT_TRUE(WaitUntil([&] { return !Alive(other); }));
+  EXPECT_TRUE(Alive(orphan));
+  kill(orphan, SIGKILL);
 }
 
 TEST_F(ChildProcessTest, RunToEndReturnsTheStatus) {

@@ -17,6 +17,7 @@ TEST(PlanProcesses, StartsServersBeforeActorsAndOneProcessPerActor) {
   std::vector<std::string> names;
   for (const ProcessSpec& spec : PlanProcesses(config, "runs/a")) {
     names.push_back(spec.Name());
+    EXPECT_EQ(spec.outlives_parent, spec.role == "replay");
     EXPECT_EQ(spec.output, "runs/a/logs/" + spec.Name() + ".log");
     EXPECT_THAT(spec.environment, Contains(Pair("OMP_WAIT_POLICY", "passive")));
     EXPECT_THAT(spec.environment, Contains(Pair("LP_NUM_THREADS", "0")));
