@@ -34,7 +34,7 @@ class Learner {
         outlet_(bus_),
         requests_(bus_),
         batches_(run, session_, agent_.updates() + 1,
-                 [this](const SampleRequest& request) { return requests_.Write(request); }),
+                 [this](const SampleRequest& request) { return Ask(request); }),
         shard_subscriber_(bus_, [this](const BatchShard& shard) { batches_.OnShard(shard); }),
         evaluation_subscriber_(
             bus_,
@@ -64,6 +64,11 @@ class Learner {
   }
 
  private:
+  // Without a matched reader the transport would take the request and lose it.
+  bool Ask(const SampleRequest& request) {
+    return requests_.Matched() > 0 && requests_.Write(request);
+  }
+
   std::optional<CheckpointState> Restore() {
     const std::optional<Checkpoint> checkpoint = checkpoints_.RestoreNewest();
     if (!checkpoint) return std::nullopt;

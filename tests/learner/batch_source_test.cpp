@@ -3,8 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstring>
+#include <condition_variable>
+#include <deque>
 #include <map>
+#include <mutex>
+#include <thread>
 #include <vector>
 
 #include "common/base/error.h"
@@ -181,6 +184,42 @@ TEST_F(BatchSourceTest, InLockstepWaitsForPhasesAndEndsWithTheRun) {
   EXPECT_EQ(requests_[0].after_steps, 12u);
   EXPECT_EQ(requests_[1].after_steps, 16u);
   EXPECT_EQ(requests_[2].after_steps, 20u);
+}
+
+// The receive thread answers while batches are read, each request with shards in turn.
+TEST_F(BatchSourceTest, ReadsBatchesWhileAReceiveThreadFillsOthers) {
+  constexpr uint64_t kBatches = 300;
+  std::mutex mutex;
+  std::condition_variable asked;
+  std::deque<uint64_t> queue;
+  source_.emplace(
+      run_, kSession, 1,
+      [&](const SampleRequest& request) {
+        const std::lock_guard lock(mutex);
+        queue.push_back(request.request);
+        asked.notify_one();
+        return true;
+      },
+      kLong);
+  std::thread receiver([&] {
+    for (uint64_t answered = 0; answered < kBatches; ++answered) {
+      std::unique_lock lock(mutex);
+      if (!asked.wait_for(lock, kLong, [&] { return !queue.empty(); })) return;
+      const uint64_t request = queue.front();
+      queue.pop_front();
+      lock.unlock();
+      Answer(request);
+    }
+  });
+  for (uint64_t request = 1; request <= kBatches; ++request) {
+    const auto batch = source_->Next(Now() + kLong);
+    ASSERT_TRUE(batch);
+    ASSERT_EQ(batch->request, request);
+    for (const float reward : batch->view.reward) {
+      ASSERT_EQ(reward, static_cast<float>(request));
+    }
+  }
+  receiver.join();
 }
 
 }  // namespace
