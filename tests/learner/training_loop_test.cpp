@@ -6,13 +6,10 @@
 
 #include <algorithm>
 #include <functional>
-#include <limits>
-#include <nlohmann/json.hpp>
 
-#include "common/base/crc32.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
-#include "common/base/random.h"
+#include "tests/learner/played_parts.h"
 #include "tests/learner/training_fixture.h"
 #include "tests/support/temporary_folder.h"
 
@@ -25,92 +22,13 @@ using testing::ElementsAre;
 
 constexpr uint64_t kSession = 77;
 
-// Gives batches whose content depends on the request alone; `before` is called before each one.
-class PlayedBatches final : public BatchStream {
- public:
-  PlayedBatches(const RunConfig& run, uint64_t first_request)
-      : layout_(run.spec, run.config.learner.batch),
-        space_(layout_.total_bytes() + 64),
-        next_(first_request) {}
-
-  std::optional<Batch> Next(SteadyTime) override {
-    if (before) before(next_);
-    if (next_ > last_request) return std::nullopt;
-    uint8_t* data = space_.data() + (64 - reinterpret_cast<uintptr_t>(space_.data()) % 64) % 64;
-    const BatchView view = layout_.View(data);
-    Random random(HashWords({next_}));
-    for (const auto& values : {view.obs_vector, view.next_obs_vector, view.action, view.reward}) {
-      for (float& value : values) value = static_cast<float>(random.Uniform(-1, 1));
-    }
-    for (float& value : view.bootstrap) value = 1;
-    for (uint64_t& update : view.weights_update) update = 0;
-    if (next_ == poisoned_request) view.reward[0] = std::numeric_limits<float>::quiet_NaN();
-    const uint64_t steps = stored_steps(next_);
-    return Batch{
-        .view = view, .request = next_++, .stored_records = steps + 1, .stored_steps = steps};
-  }
-  BatchCounters counters() const override { return {}; }
-  uint64_t given() const { return next_ - 1; }
-
-  std::function<void(uint64_t request)> before;
-  uint64_t last_request = std::numeric_limits<uint64_t>::max();
-  uint64_t poisoned_request = 0;
-  std::function<uint64_t(uint64_t request)> stored_steps = [](uint64_t r) { return 10 * r; };
-
- private:
-  const BatchLayout layout_;
-  std::vector<uint8_t> space_;
-  uint64_t next_;
-};
-
-// Keeps what is sent.
-class KeptMessages final : public Outlet {
- public:
-  struct Sent {
-    uint64_t update, env_steps;
-    std::string checkpoint, payload;
-  };
-
-  bool Publish(const WeightsMessage& m) override { return Keep(m, accept_weights, &weights); }
-  bool WeightsArrived() override { return readers_keep_up; }
-  bool Publish(const EvalWeightsMessage& m) override {
-    const bool accept = reject_evaluations-- <= 0;
-    if (Keep(m, accept, &evaluations) && on_evaluation) on_evaluation();
-    return accept;
-  }
-  void Publish(const MetricsMessage& m) override { reports.push_back(m); }
-
-  std::vector<uint64_t> Updates(const std::vector<Sent>& sent) const {
-    std::vector<uint64_t> updates;
-    for (const Sent& s : sent) updates.push_back(s.update);
-    return updates;
-  }
-
-  std::vector<Sent> weights, evaluations;
-  std::vector<MetricsMessage> reports;
-  bool accept_weights = true, readers_keep_up = true;
-  int reject_evaluations = 0;
-  std::function<void()> on_evaluation;
-  uint64_t spec_hash = 0;
-
- private:
-  bool Keep(const WeightsMessage& m, bool accept, std::vector<Sent>* sent) {
-    if (!accept) return false;
-    EXPECT_EQ(m.spec_hash, spec_hash);
-    EXPECT_EQ(m.version.session, kSession);
-    EXPECT_EQ(m.crc, Crc32(m.payload));
-    sent->push_back({m.version.update, m.env_steps, m.checkpoint,
-                     std::string(m.payload.begin(), m.payload.end())});
-    return true;
-  }
-};
-
 class TrainingLoopTest : public testing::Test {
  protected:
   // One learner process: from the newest checkpoint until `stop_after` batches were given.
   TrainingLoop::End Train(uint64_t stop_after,
                           const std::function<void(PlayedBatches&)>& script = {}) {
     outlet_.spec_hash = run_.spec.Hash();
+    outlet_.session = kSession;
     SacAgent agent(run_.config, run_.spec, precision_);
     CheckpointStore checkpoints(folder_.path(), run_);
     std::optional<CheckpointState> restored;
@@ -190,6 +108,7 @@ TEST_F(TrainingLoopTest, SendsBf16WeightsWhenThatIsThePrecision) {
   // The products' precision does not matter to the loop; ask the agent for what any CPU has.
   SacAgent agent(run_.config, run_.spec, nn::Precision::kF32);
   outlet_.spec_hash = run_.spec.Hash();
+  outlet_.session = kSession;
   WeightsSender(run_, nn::Precision::kBf16, kSession, agent, outlet_).Send(0);
   ASSERT_EQ(outlet_.weights.size(), 1u);
   for (const auto& [name, t] : nn::ReadSafetensors(outlet_.weights[0].payload, "weights")) {

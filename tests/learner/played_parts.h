@@ -1,0 +1,101 @@
+// The training loop's surroundings, played: batches made up, messages kept.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/base/crc32.h"
+#include "common/base/random.h"
+#include "common/config/run_files.h"
+#include "learner/batch_stream.h"
+#include "learner/outlet.h"
+
+namespace shoal::learner {
+
+// Gives batches whose content depends on the request alone; `before` is called before each one.
+class PlayedBatches final : public BatchStream {
+ public:
+  PlayedBatches(const RunConfig& run, uint64_t first_request)
+      : layout_(run.spec, run.config.learner.batch),
+        space_(layout_.total_bytes() + 64),
+        next_(first_request) {}
+
+  std::optional<Batch> Next(SteadyTime) override {
+    if (before) before(next_);
+    if (next_ > last_request) return std::nullopt;
+    uint8_t* data = space_.data() + (64 - reinterpret_cast<uintptr_t>(space_.data()) % 64) % 64;
+    const BatchView view = layout_.View(data);
+    Random random(HashWords({next_}));
+    for (const auto& values : {view.obs_vector, view.next_obs_vector, view.action, view.reward}) {
+      for (float& value : values) value = static_cast<float>(random.Uniform(-1, 1));
+    }
+    for (float& value : view.bootstrap) value = 1;
+    for (uint64_t& update : view.weights_update) update = 0;
+    if (next_ == poisoned_request) view.reward[0] = std::numeric_limits<float>::quiet_NaN();
+    const uint64_t steps = stored_steps(next_);
+    return Batch{
+        .view = view, .request = next_++, .stored_records = steps + 1, .stored_steps = steps};
+  }
+  BatchCounters counters() const override { return {}; }
+  uint64_t given() const { return next_ - 1; }
+
+  std::function<void(uint64_t request)> before;
+  uint64_t last_request = std::numeric_limits<uint64_t>::max();
+  uint64_t poisoned_request = 0;
+  std::function<uint64_t(uint64_t request)> stored_steps = [](uint64_t r) { return 10 * r; };
+
+ private:
+  const BatchLayout layout_;
+  std::vector<uint8_t> space_;
+  uint64_t next_;
+};
+
+// Keeps what is sent.
+class KeptMessages final : public Outlet {
+ public:
+  struct Sent {
+    uint64_t update, env_steps;
+    std::string checkpoint, payload;
+  };
+
+  bool Publish(const WeightsMessage& m) override { return Keep(m, accept_weights, &weights); }
+  bool WeightsArrived() override { return readers_keep_up; }
+  bool Publish(const EvalWeightsMessage& m) override {
+    const bool accept = reject_evaluations-- <= 0;
+    if (Keep(m, accept, &evaluations) && on_evaluation) on_evaluation();
+    return accept;
+  }
+  void Publish(const MetricsMessage& m) override { reports.push_back(m); }
+
+  std::vector<uint64_t> Updates(const std::vector<Sent>& sent) const {
+    std::vector<uint64_t> updates;
+    for (const Sent& s : sent) updates.push_back(s.update);
+    return updates;
+  }
+
+  std::vector<Sent> weights, evaluations;
+  std::vector<MetricsMessage> reports;
+  bool accept_weights = true, readers_keep_up = true;
+  int reject_evaluations = 0;
+  std::function<void()> on_evaluation;
+  uint64_t spec_hash = 0, session = 0;  // that every message must carry
+
+ private:
+  bool Keep(const WeightsMessage& m, bool accept, std::vector<Sent>* sent) {
+    if (!accept) return false;
+    EXPECT_EQ(m.spec_hash, spec_hash);
+    EXPECT_EQ(m.version.session, session);
+    EXPECT_EQ(m.crc, Crc32(m.payload));
+    sent->push_back({m.version.update, m.env_steps, m.checkpoint,
+                     std::string(m.payload.begin(), m.payload.end())});
+    return true;
+  }
+};
+
+}  // namespace shoal::learner
