@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <fstream>
 #include <map>
-#include <regex>
 #include <set>
+#include <string_view>
 
 namespace shoal {
 namespace {
@@ -51,14 +51,29 @@ std::string Room(const fs::path& path) {
 
 std::string Top(const fs::path& path) { return path.begin()->string(); }
 
+// Removes white space and then `start` from the front; false when something else is there.
+bool Skip(std::string_view start, std::string_view* text) {
+  text->remove_prefix(std::min(text->find_first_not_of(" \t"), text->size()));
+  if (!text->starts_with(start)) return false;
+  text->remove_prefix(start.size());
+  return true;
+}
+
+// What a line includes; empty when it is no #include.
+std::string IncludedPath(std::string_view line) {
+  if (!Skip("#", &line) || !Skip("include", &line)) return "";
+  if (!Skip("<", &line) && !Skip("\"", &line)) return "";
+  return std::string(line.substr(0, line.find_first_of(">\"")));
+}
+
 // Folders of common in the order of its CMakeLists.txt.
 std::vector<std::string> CommonOrder(const fs::path& root) {
   std::vector<std::string> order;
   std::ifstream file(root / "common/CMakeLists.txt");
-  static const std::regex kLine(R"(^\s*add_subdirectory\((\w+)\))");
-  std::smatch match;
   for (std::string line; std::getline(file, line);) {
-    if (std::regex_search(line, match, kLine)) order.push_back("common/" + match[1].str());
+    std::string_view rest = line;
+    if (!Skip("add_subdirectory(", &rest)) continue;
+    order.push_back("common/" + std::string(rest.substr(0, rest.find(')'))));
   }
   return order;
 }
@@ -102,16 +117,15 @@ std::string NameFault(const fs::path& file) {
 
 void CheckFile(const fs::path& root, const fs::path& file,
                const std::vector<std::string>& common_order, std::vector<std::string>* breaches) {
-  static const std::regex kInclude(R"(^\s*#\s*include\s*[<"]([^>"]+)[>"])");
   std::ifstream stream(root / file);
   bool once = false;
   int number = 0;
-  std::smatch match;
   for (std::string line; std::getline(stream, line);) {
     ++number;
     once = once || line == "#pragma once";
-    if (!std::regex_search(line, match, kInclude)) continue;
-    const std::string fault = IncludeFault(file, match[1].str(), common_order);
+    const std::string included = IncludedPath(line);
+    if (included.empty()) continue;
+    const std::string fault = IncludeFault(file, included, common_order);
     if (!fault.empty()) breaches->push_back(fmt::format("{}:{}: {}", file.string(), number, fault));
   }
   if (file.extension() == ".h" && !once) {
