@@ -1,0 +1,141 @@
+#include "common/nn/parameter_set.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+
+#include "common/base/error.h"
+#include "common/base/random.h"
+#include "common/nn/orthogonal.h"
+#include "common/nn/tensor_counter.h"
+
+namespace shoal::nn {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+ParameterSet MakeSet() {
+  return ParameterSet({{"a.weight", {3, 5}}, {"a.norm.weight", {3}}, {"b.bias", {7}}},
+                      ParameterSet::Use::kTraining);
+}
+
+TEST(ParameterSet, ParametersAreApartAndAligned) {
+  const ParameterSet set = MakeSet();
+  const float* base = set.values();
+  EXPECT_EQ(set.Find("a.weight").value() - base, 0);
+  EXPECT_EQ(set.Find("a.norm.weight").value() - base, 16);
+  EXPECT_EQ(set.Find("b.bias").value() - base, 32);
+  EXPECT_EQ(set.size(), 48);
+  EXPECT_EQ(set.OffsetOf("b."), 32);
+  EXPECT_EQ(set.OffsetOf("nothing"), set.size());
+}
+
+TEST(ParameterSet, InitialiseGivesUnitNormsZeroBiasesAndWeightsByName) {
+  ParameterSet one = MakeSet(), same = MakeSet(), other = MakeSet();
+  one.Initialise(1);
+  same.Initialise(1);
+  other.Initialise(2);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(one.Find("a.norm.weight").value()[i], 1.f);
+  for (int i = 0; i < 7; ++i) EXPECT_EQ(one.Find("b.bias").value()[i], 0.f);
+  EXPECT_NE(one.Find("a.weight").value()[0], 0.f);
+  const size_t bytes = size_t(one.size()) * sizeof(float);
+  EXPECT_EQ(std::memcmp(one.values(), same.values(), bytes), 0);
+  EXPECT_NE(std::memcmp(one.values(), other.values(), bytes), 0);
+}
+
+TEST(ParameterSet, ExportThenImportGivesTheSameValues) {
+  ParameterSet from = MakeSet(), to = MakeSet();
+  from.Initialise(3);
+  TensorMap tensors;
+  from.Export(from.values(), "x.", &tensors);
+  EXPECT_EQ(tensors.at("x.a.weight").shape, (std::vector<int64_t>{3, 5}));
+  to.Import(tensors, "x.", "test", to.values());
+  EXPECT_EQ(std::memcmp(from.values(), to.values(), size_t(from.size()) * sizeof(float)), 0);
+}
+
+TEST(ParameterSet, ImportTakesBf16) {
+  ParameterSet from = MakeSet(), to = MakeSet();
+  from.Initialise(3);
+  TensorMap tensors;
+  from.Export(from.values(), "", &tensors);
+  to.Import(ToBf16(tensors), "", "test", to.values());
+  for (int64_t i = 0; i < from.size(); ++i) {
+    EXPECT_NEAR(to.values()[i], from.values()[i], 0.004 * std::abs(from.values()[i]));
+  }
+}
+
+TEST(ParameterSet, ImportNamesWhatIsMissingOrMisshaped) {
+  ParameterSet set = MakeSet();
+  TensorMap tensors;
+  set.Export(set.values(), "", &tensors);
+  const auto import = [&] { set.Import(tensors, "", "weights 7", set.values()); };
+
+  tensors.at("b.bias").shape = {7, 1};
+  EXPECT_THAT(import, ThrowsMessage<Error>(AllOf(HasSubstr("weights 7"), HasSubstr("b.bias"),
+                                                 HasSubstr("7x1"), HasSubstr("expected 7"))));
+  tensors.at("b.bias").shape = {7};
+  tensors.at("b.bias").dtype = "U64";
+  EXPECT_THAT(import, ThrowsMessage<Error>(AllOf(HasSubstr("b.bias"), HasSubstr("U64"))));
+  tensors.at("b.bias").dtype = "F32";
+  tensors.at("b.bias").data.pop_back();
+  EXPECT_THAT(import, ThrowsMessage<Error>(AllOf(HasSubstr("b.bias"), HasSubstr("27 bytes"))));
+  tensors.erase("b.bias");
+  EXPECT_THAT(import, ThrowsMessage<Error>(AllOf(HasSubstr("b.bias"), HasSubstr("missing"))));
+}
+
+TEST(TensorCounter, GoesThroughTensorsUnchangedAndOthersAreRefused) {
+  TensorMap tensors;
+  ExportCounter("n", 0x0123456789abcdefu, &tensors);
+  EXPECT_EQ(ImportCounter(tensors, "n", "test"), 0x0123456789abcdefu);
+  EXPECT_THROW(ImportCounter(tensors, "m", "test"), Error);
+  tensors.at("n").dtype = "F32";
+  EXPECT_THROW(ImportCounter(tensors, "n", "test"), Error);
+}
+
+// Rows of a wide matrix, columns of a tall one, are orthogonal and of length `gain`.
+void ExpectOrthogonal(int64_t rows, int64_t cols, double gain) {
+  Random random(5);
+  std::vector<float> w(size_t(rows * cols));
+  FillOrthogonal(rows, cols, gain, &random, w.data());
+  const bool wide = cols >= rows;
+  const int64_t n = std::min(rows, cols), length = std::max(rows, cols);
+  for (int64_t a = 0; a < n; ++a) {
+    for (int64_t b = 0; b <= a; ++b) {
+      double dot = 0;
+      for (int64_t k = 0; k < length; ++k) {
+        const int64_t i = wide ? a * cols + k : k * cols + a;
+        const int64_t j = wide ? b * cols + k : k * cols + b;
+        dot += double(w[size_t(i)]) * w[size_t(j)];
+      }
+      ASSERT_NEAR(dot, a == b ? gain * gain : 0, 1e-5) << a << " " << b;
+    }
+  }
+}
+
+TEST(Orthogonal, RowsOrColumnsAreOrthogonalAndOfTheGainsLength) {
+  ExpectOrthogonal(5, 17, 1.0);
+  ExpectOrthogonal(17, 5, std::sqrt(2.0));
+  ExpectOrthogonal(8, 8, 1.0);
+  ExpectOrthogonal(1, 9, 1.0);
+}
+
+// Without the correction of signs, QR gives a matrix whose diagonal of R has one sign: entries of
+// the first column would be biased.
+TEST(Orthogonal, FirstEntryIsPositiveAsOftenAsNegative) {
+  constexpr int kDraws = 2'000;
+  Random random(11);
+  int positive = 0;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    float w[4];
+    FillOrthogonal(2, 2, 1.0, &random, w);
+    positive += w[0] > 0;
+  }
+  EXPECT_NEAR(positive, kDraws / 2, 5 * std::sqrt(kDraws * 0.25));
+}
+
+}  // namespace
+}  // namespace shoal::nn

@@ -1,0 +1,105 @@
+#include "common/nn/policy.h"
+
+#include <gmock/gmock.h>
+
+#include "common/base/error.h"
+#include "common/nn/actor_head.h"
+#include "tests/common/nn/network_fixture.h"
+
+namespace shoal::nn {
+namespace {
+
+class PolicyTest : public NetworkTest {
+ protected:
+  struct Output {
+    std::vector<float> mean, log_std;
+  };
+
+  TensorMap Tensors() const {
+    TensorMap tensors;
+    parameters_->Export(parameters_->values(), "", &tensors);
+    return tensors;
+  }
+
+  Output Run(Policy* policy, int batch) const {
+    Output output;
+    output.mean.resize(size_t(batch * spec_.action_size));
+    output.log_std = output.mean;
+    policy->Forward(batch, frames_.data(), ToFloats(vector_).data(), output.mean.data(),
+                    output.log_std.data());
+    return output;
+  }
+};
+
+TEST_P(PolicyTest, ForwardIsTheTrainedActorsForward) {
+  for (const bool pixels : {true, false}) {
+    Build(pixels);
+    ActorHead actor(Context(*parameters_, kBatch), network_, spec_, features());
+    actor.Refresh();
+    actor.Forward(ToFloats(vector_).data());
+    Policy policy(network_, spec_, GetParam(), kBatch);
+    policy.Load(Tensors(), "test");
+    const Output output = Run(&policy, kBatch);
+    EXPECT_EQ(output.mean, std::vector<float>(actor.mean(), actor.mean() + kBatch * 3));
+    EXPECT_EQ(output.log_std, std::vector<float>(actor.log_std(), actor.log_std() + kBatch * 3));
+  }
+}
+
+TEST_P(PolicyTest, EveryBatchSizeGivesTheReferencesResult) {
+  Build(/*pixels=*/true);
+  Policy policy(network_, spec_, GetParam(), kBatch);
+  policy.Load(Tensors(), "test");
+  const auto exact =
+      reference_->Actor(kBatch, reference_->Features(kBatch, frames_.data()), vector_);
+  for (int batch = 1; batch <= kBatch; ++batch) {
+    const Output output = Run(&policy, batch);
+    const auto first = [&](const reference::Values& values) {
+      return reference::Values(values.begin(), values.begin() + batch * 3);
+    };
+    // Twice the tolerance of a head: the encoder's rounding comes on top.
+    EXPECT_LT(RelativeError(output.mean, first(exact.mean)), 2 * Tolerance(GetParam())) << batch;
+    EXPECT_LT(RelativeError(output.log_std, first(exact.log_std)), 2 * Tolerance(GetParam()));
+  }
+}
+
+TEST_P(PolicyTest, LoadReachesBatchSizesUsedBefore) {
+  Build(/*pixels=*/true);
+  Policy policy(network_, spec_, GetParam(), kBatch), fresh(network_, spec_, GetParam(), kBatch);
+  policy.Load(Tensors(), "test");
+  Run(&policy, 2);
+  TensorMap changed = Tensors();
+  for (int64_t i = 0; i < parameters_->size(); ++i) parameters_->values()[i] *= 0.5f;
+  changed = Tensors();
+  policy.Load(changed, "test");
+  fresh.Load(changed, "test");
+  EXPECT_EQ(Run(&policy, 2).mean, Run(&fresh, 2).mean);
+}
+
+TEST_P(PolicyTest, TakesWeightsRoundedForTheWire) {
+  Build(/*pixels=*/true);
+  Policy policy(network_, spec_, GetParam(), kBatch), rounded(network_, spec_, GetParam(), kBatch);
+  policy.Load(Tensors(), "test");
+  rounded.Load(ToBf16(Tensors()), "test");
+  const std::vector<float> mean = Run(&policy, kBatch).mean;
+  EXPECT_LT(RelativeError(Run(&rounded, kBatch).mean, ToDoubles(mean)),
+            Tolerance(Precision::kBf16));
+}
+
+TEST_P(PolicyTest, KeepsItsWeightsWhenNewOnesAreRefused) {
+  Build(/*pixels=*/true);
+  Policy policy(network_, spec_, GetParam(), kBatch);
+  policy.Load(Tensors(), "test");
+  const std::vector<float> before = Run(&policy, kBatch).mean;
+  std::fill_n(parameters_->values(), parameters_->size(), 0.f);
+  TensorMap incomplete = Tensors();
+  incomplete.erase("actor.mlp.output.bias");
+  EXPECT_THAT([&] { policy.Load(incomplete, "weights 12"); },
+              testing::ThrowsMessage<Error>(testing::AllOf(
+                  testing::HasSubstr("weights 12"), testing::HasSubstr("actor.mlp.output.bias"))));
+  EXPECT_EQ(Run(&policy, kBatch).mean, before);
+}
+
+INSTANTIATE_PRECISIONS(PolicyTest);
+
+}  // namespace
+}  // namespace shoal::nn

@@ -1,0 +1,158 @@
+#include "tests/common/nn/reference.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace shoal::nn::reference {
+namespace {
+
+// Calls visit(y index, x index, weight index, filter) for every product of the convolution.
+template <class Visit>
+void ForConvProducts(const ConvShape& s, const Visit& visit) {
+  const int h = s.out_height(), w = s.out_width();
+  for (int b = 0; b < s.batch; ++b) {
+    for (int n = 0; n < s.filters; ++n) {
+      for (int i = 0; i < h; ++i) {
+        for (int j = 0; j < w; ++j) {
+          for (int c = 0; c < s.channels; ++c) {
+            for (int u = 0; u < 3; ++u) {
+              for (int v = 0; v < 3; ++v) {
+                const int row = i * s.stride + u, column = j * s.stride + v;
+                visit(((b * s.filters + n) * h + i) * w + j,
+                      ((b * s.channels + c) * s.height + row) * s.width + column,
+                      ((n * s.channels + c) * 3 + u) * 3 + v);
+              }
+            }
+          }
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Values ConvForward(const ConvShape& s, const Values& x, const Values& weight, const Values& bias) {
+  const int map = s.out_height() * s.out_width();
+  Values y(size_t(s.batch * s.filters * map));
+  for (size_t k = 0; k < y.size(); ++k) y[k] = bias[(k / size_t(map)) % size_t(s.filters)];
+  ForConvProducts(s, [&](int at, int from, int with) {
+    y[size_t(at)] += x[size_t(from)] * weight[size_t(with)];
+  });
+  return Relu(y);
+}
+
+Gradient ConvBackward(const ConvShape& s, const Values& x, const Values& weight, const Values& y,
+                      const Values& dy) {
+  const int map = s.out_height() * s.out_width();
+  Values masked = dy;
+  for (size_t k = 0; k < y.size(); ++k) {
+    if (y[k] <= 0) masked[k] = 0;
+  }
+  Gradient gradient{Values(x.size()), Values(weight.size()), Values(size_t(s.filters))};
+  for (size_t k = 0; k < y.size(); ++k) {
+    gradient.bias[(k / size_t(map)) % size_t(s.filters)] += masked[k];
+  }
+  ForConvProducts(s, [&](int at, int from, int with) {
+    gradient.source[size_t(from)] += masked[size_t(at)] * weight[size_t(with)];
+    gradient.weight[size_t(with)] += masked[size_t(at)] * x[size_t(from)];
+  });
+  return gradient;
+}
+
+Values LinearForward(int batch, const Values& x, const Values& weight, const Values& bias) {
+  const size_t outputs = bias.size(), inputs = weight.size() / outputs;
+  Values y(size_t(batch) * outputs);
+  for (size_t b = 0; b < size_t(batch); ++b) {
+    for (size_t o = 0; o < outputs; ++o) {
+      y[b * outputs + o] = bias[o];
+      for (size_t i = 0; i < inputs; ++i) {
+        y[b * outputs + o] += weight[o * inputs + i] * x[b * inputs + i];
+      }
+    }
+  }
+  return y;
+}
+
+Gradient LinearBackward(int batch, const Values& x, const Values& weight, const Values& dy) {
+  const size_t outputs = dy.size() / size_t(batch), inputs = weight.size() / outputs;
+  Gradient gradient{Values(x.size()), Values(weight.size()), Values(outputs)};
+  for (size_t b = 0; b < size_t(batch); ++b) {
+    for (size_t o = 0; o < outputs; ++o) {
+      const double d = dy[b * outputs + o];
+      gradient.bias[o] += d;
+      for (size_t i = 0; i < inputs; ++i) {
+        gradient.source[b * inputs + i] += d * weight[o * inputs + i];
+        gradient.weight[o * inputs + i] += d * x[b * inputs + i];
+      }
+    }
+  }
+  return gradient;
+}
+
+namespace {
+
+// xhat of one row, and rstd.
+double Normalise(const double* x, size_t n, double* xhat) {
+  double mean = 0, variance = 0;
+  for (size_t j = 0; j < n; ++j) mean += x[j] / double(n);
+  for (size_t j = 0; j < n; ++j) variance += (x[j] - mean) * (x[j] - mean) / double(n);
+  const double rstd = 1 / std::sqrt(variance + 1e-5);
+  for (size_t j = 0; j < n; ++j) xhat[j] = (x[j] - mean) * rstd;
+  return rstd;
+}
+
+}  // namespace
+
+Values LayerNormForward(int batch, const Values& x, const Values& weight, const Values& bias) {
+  const size_t n = weight.size();
+  Values y(x.size()), xhat(n);
+  for (size_t b = 0; b < size_t(batch); ++b) {
+    Normalise(x.data() + b * n, n, xhat.data());
+    for (size_t j = 0; j < n; ++j) y[b * n + j] = weight[j] * xhat[j] + bias[j];
+  }
+  return y;
+}
+
+Gradient LayerNormBackward(int batch, const Values& x, const Values& weight, const Values& dy) {
+  const size_t n = weight.size();
+  Gradient gradient{Values(x.size()), Values(n), Values(n)};
+  Values xhat(n);
+  for (size_t b = 0; b < size_t(batch); ++b) {
+    const double rstd = Normalise(x.data() + b * n, n, xhat.data());
+    double sum = 0, dot = 0;
+    for (size_t j = 0; j < n; ++j) {
+      sum += dy[b * n + j] * weight[j];
+      dot += dy[b * n + j] * weight[j] * xhat[j];
+      gradient.weight[j] += dy[b * n + j] * xhat[j];
+      gradient.bias[j] += dy[b * n + j];
+    }
+    for (size_t j = 0; j < n; ++j) {
+      gradient.source[b * n + j] =
+          rstd * (dy[b * n + j] * weight[j] - sum / double(n) - xhat[j] * dot / double(n));
+    }
+  }
+  return gradient;
+}
+
+Values Relu(Values x) {
+  for (double& value : x) value = std::max(value, 0.0);
+  return x;
+}
+
+Values Tanh(Values x) {
+  for (double& value : x) value = std::tanh(value);
+  return x;
+}
+
+Values Beside(int batch, const Values& left, const Values& right) {
+  const size_t n = left.size() / size_t(batch), m = right.size() / size_t(batch);
+  Values both;
+  for (size_t b = 0; b < size_t(batch); ++b) {
+    both.insert(both.end(), left.begin() + long(b * n), left.begin() + long((b + 1) * n));
+    both.insert(both.end(), right.begin() + long(b * m), right.begin() + long((b + 1) * m));
+  }
+  return both;
+}
+
+}  // namespace shoal::nn::reference

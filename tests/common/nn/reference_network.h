@@ -1,0 +1,50 @@
+// The networks of the agent in double, evaluated from named tensors.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+
+#include "common/config/config.h"
+#include "common/nn/safetensors.h"
+#include "common/spec/observation_spec.h"
+#include "tests/common/nn/reference.h"
+
+namespace shoal::nn::reference {
+
+class Network {
+ public:
+  // Takes the F32 tensors; the others are ignored.
+  Network(const TensorMap& tensors, const NetworkConfig& config, const ObservationSpec& spec);
+
+  // One value of one parameter, to be changed and put back.
+  double& at(const std::string& name, size_t index) { return parameters_.at(name).at(index); }
+  const std::map<std::string, Values>& parameters() const { return parameters_; }
+
+  // frames (B, K*C, H, W) u8 -> (B, N*h*w).
+  Values Features(int batch, const uint8_t* frames) const;
+  // What the MLPs of `head` see: trunk of the features beside the vector (B, V).
+  Values Observation(const std::string& head, int batch, const Values& features,
+                     const Values& vector) const;
+  // `name`: actor.mlp, critic.q1, ... input (B, I).
+  Values Mlp(const std::string& name, int batch, const Values& input) const;
+  struct Gaussian {
+    Values mean, log_std;  // (B, A)
+  };
+  Gaussian Actor(int batch, const Values& features, const Values& vector) const;
+  // q_i (B) of head.q1 and head.q2 for action (B, A).
+  struct TwinQ {
+    Values q1, q2;
+  };
+  TwinQ Critic(const std::string& head, int batch, const Values& features, const Values& vector,
+               const Values& action) const;
+
+ private:
+  const Values& P(const std::string& name) const { return parameters_.at(name); }
+
+  NetworkConfig config_;
+  ObservationSpec spec_;
+  std::map<std::string, Values> parameters_;
+};
+
+}  // namespace shoal::nn::reference

@@ -1,0 +1,91 @@
+// A small agent and batches for it.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/base/random.h"
+#include "common/nn/precision.h"
+#include "learner/sac_agent.h"
+
+namespace shoal::learner {
+
+// A batch with memory of its own, filled with random values.
+class RandomBatch {
+ public:
+  RandomBatch(const ObservationSpec& spec, int batch, uint64_t key)
+      : layout_(spec, batch),
+        memory_(
+            static_cast<uint8_t*>(std::aligned_alloc(64, (layout_.total_bytes() + 63) / 64 * 64)),
+            &std::free) {
+    std::memset(memory_.get(), 0, layout_.total_bytes());
+    Random random(key);
+    const BatchView view = View();
+    for (uint8_t& pixel : view.obs_frames) pixel = uint8_t(random.Next());
+    for (uint8_t& pixel : view.next_obs_frames) pixel = uint8_t(random.Next());
+    for (float& value : view.obs_vector) value = float(random.Normal());
+    for (float& value : view.next_obs_vector) value = float(random.Normal());
+    for (float& value : view.action) value = float(random.Uniform(-1, 1));
+    for (float& value : view.reward) value = float(random.Normal());
+    for (float& value : view.bootstrap) value = random.Uniform() < 0.8 ? 1.f : 0.f;
+  }
+
+  BatchView View() const { return layout_.View(memory_.get()); }
+
+ private:
+  BatchLayout layout_;
+  std::unique_ptr<uint8_t, decltype(&std::free)> memory_;
+};
+
+// 18x16 grey frames in stacks of 2 beside a vector of 2, 2 actions.
+inline ObservationSpec SmallSpec() {
+  ObservationSpec spec;
+  spec.task = "test";
+  spec.cameras = {"front"};
+  spec.channels = 1;
+  spec.height = 18;
+  spec.width = 16;
+  spec.stack = 2;
+  spec.blocks = {{"goal", 2}};
+  spec.action_size = 2;
+  return spec;
+}
+
+inline Config SmallConfig() {
+  Config config;
+  config.seed = 7;
+  config.learner.batch = 6;
+  config.learner.reward_scale = 2;
+  config.network.filters = {4, 6};
+  config.network.strides = {1, 2};
+  config.network.features = 9;
+  config.network.hidden = {12, 11};
+  return config;
+}
+
+inline std::vector<float> Floats(const nn::TensorMap& tensors, const std::string& name) {
+  const nn::NamedTensor& tensor = tensors.at(name);
+  std::vector<float> values(tensor.data.size() / sizeof(float));
+  std::memcpy(values.data(), tensor.data.data(), tensor.data.size());
+  return values;
+}
+
+// Names of the tensors that differ, among those that start with `prefix`.
+inline std::vector<std::string> Differences(const nn::TensorMap& a, const nn::TensorMap& b,
+                                            const std::string& prefix = "") {
+  std::vector<std::string> names;
+  EXPECT_EQ(a.size(), b.size());
+  for (const auto& [name, tensor] : a) {
+    if (name.starts_with(prefix) && tensor.data != b.at(name).data) names.push_back(name);
+  }
+  return names;
+}
+
+}  // namespace shoal::learner

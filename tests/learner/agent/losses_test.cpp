@@ -1,0 +1,75 @@
+#include "learner/agent/losses.h"
+
+#include "tests/common/nn/gradient_check.h"
+
+namespace shoal::learner {
+namespace {
+
+using nn::CentralDifference;
+using nn::RandomValues;
+using nn::ToFloats;
+using nn::reference::Values;
+
+TEST(TdTargets, TakeTheSmallerHeadLessTheEntropyTermAndNothingAfterATerminal) {
+  const float reward[2] = {0.5f, -1.f}, bootstrap[2] = {1.f, 0.f};
+  const float q1[2] = {3.f, 100.f}, q2[2] = {4.f, 100.f}, log_prob[2] = {2.f, 50.f};
+  float y[2];
+  TdTargets(2, {reward, bootstrap, {q1, q2}, log_prob},
+            {.reward_scale = 10, .discount = 0.5f, .temperature = 0.25f}, y);
+  EXPECT_FLOAT_EQ(y[0], 5.f + 0.5f * (3.f - 0.25f * 2.f));
+  EXPECT_FLOAT_EQ(y[1], -10.f);
+  TdTargets(2, {reward, bootstrap, {q2, q1}, log_prob},
+            {.reward_scale = 10, .discount = 0.5f, .temperature = 0.25f}, y);
+  EXPECT_FLOAT_EQ(y[0], 6.25f);
+}
+
+TEST(CriticLoss, IsTheSumOverHeadsOfTheMeanSquare) {
+  const float q0[2] = {1.f, 2.f}, q1[2] = {0.f, 5.f}, y[2] = {1.f, 4.f};
+  const CriticLoss loss = CriticLossForward(2, q0, q1, y);
+  EXPECT_FLOAT_EQ(loss.loss, (0.f + 4.f) / 2 + (1.f + 1.f) / 2);
+  EXPECT_FLOAT_EQ(loss.q_mean, 2.f);
+  EXPECT_FLOAT_EQ(loss.target_mean, 2.5f);
+}
+
+TEST(CriticLoss, GradientIsTheCentralDifference) {
+  constexpr int kBatch = 5;
+  Values q0 = RandomValues(kBatch, 1);
+  const Values q1 = RandomValues(kBatch, 2), y = RandomValues(kBatch, 3);
+  const auto loss = [&] {
+    double sum = 0;
+    for (size_t b = 0; b < kBatch; ++b) {
+      sum += (q0[b] - y[b]) * (q0[b] - y[b]) + (q1[b] - y[b]) * (q1[b] - y[b]);
+    }
+    return sum / kBatch;
+  };
+  EXPECT_NEAR(
+      CriticLossForward(kBatch, ToFloats(q0).data(), ToFloats(q1).data(), ToFloats(y).data()).loss,
+      loss(), 1e-6);
+  std::vector<float> gradient(kBatch);
+  CriticLossBackward(kBatch, ToFloats(q0).data(), ToFloats(y).data(), gradient.data());
+  for (size_t b = 0; b < kBatch; ++b) {
+    EXPECT_NEAR(gradient[b], CentralDifference(&q0[b], loss), 1e-6);
+  }
+}
+
+TEST(ActorLoss, IsTheMeanOfEntropyTermLessTheSmallerValue) {
+  const float log_prob[2] = {2.f, -1.f}, q0[2] = {3.f, 7.f}, q1[2] = {4.f, 5.f};
+  EXPECT_FLOAT_EQ(ActorLossForward(2, log_prob, q0, q1, 0.5f), ((1.f - 3.f) + (-0.5f - 5.f)) / 2);
+}
+
+TEST(ActorLoss, GradientGoesToTheSmallerHeadAlone) {
+  const float q0[3] = {3.f, 7.f, 1.f}, q1[3] = {4.f, 5.f, 1.f};
+  float g0[3], g1[3];
+  ActorLossBackward(3, q0, q1, g0, g1);
+  const float share = -1.f / 3;
+  EXPECT_EQ(std::vector<float>(g0, g0 + 3), (std::vector<float>{share, 0, share}));
+  EXPECT_EQ(std::vector<float>(g1, g1 + 3), (std::vector<float>{0, share, 0}));
+}
+
+TEST(TemperatureLoss, IsNegativeWhereEntropyIsTooLowSoThatTheTemperatureRises) {
+  EXPECT_FLOAT_EQ(TemperatureLoss(0.2f, /*entropy=*/-5.f, /*target_entropy=*/-3.f), -0.4f);
+  EXPECT_FLOAT_EQ(TemperatureLoss(0.2f, -1.f, -3.f), 0.4f);
+}
+
+}  // namespace
+}  // namespace shoal::learner

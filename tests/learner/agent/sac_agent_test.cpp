@@ -1,0 +1,273 @@
+#include "learner/sac_agent.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+
+#include "common/base/error.h"
+#include "common/nn/policy.h"
+#include "tests/learner/agent/agent_fixture.h"
+
+namespace shoal::learner {
+namespace {
+
+using nn::Precision;
+using nn::TensorMap;
+using testing::IsEmpty;
+using testing::Not;
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+SacAgent SmallAgent(const Config& config, Precision precision = Precision::kF32) {
+  return SacAgent(config, SmallSpec(), precision);
+}
+
+void UpdateTimes(SacAgent* agent, int updates, uint64_t first_key = 100) {
+  for (int u = 0; u < updates; ++u) {
+    const RandomBatch batch(SmallSpec(), SmallConfig().learner.batch, first_key + uint64_t(u));
+    ASSERT_TRUE(agent->Update(batch.View()).finite);
+  }
+}
+
+// Both precisions where the CPU has them.
+std::vector<Precision> Precisions() {
+  if (nn::ChoosePrecision("auto") == Precision::kBf16) return {Precision::kF32, Precision::kBf16};
+  return {Precision::kF32};
+}
+
+TEST(SacAgent, EncoderAndCriticGetNoGradientFromTheActor) {
+  Config with = SmallConfig(), without = SmallConfig();
+  with.learner.actor_period = 1;
+  without.learner.actor_period = 1'000;
+  SacAgent a = SmallAgent(with), b = SmallAgent(without);
+  UpdateTimes(&a, 1);
+  b.Restore(a.AllTensors(), "a");
+  UpdateTimes(&a, 1, 200);
+  UpdateTimes(&b, 1, 200);
+  const TensorMap after_a = a.AllTensors(), after_b = b.AllTensors();
+  for (const char* prefix :
+       {"encoder.", "critic.", "target.", "adam.m.encoder.", "adam.m.critic."}) {
+    EXPECT_THAT(Differences(after_a, after_b, prefix), IsEmpty());
+  }
+  for (const char* prefix : {"actor.", "temperature.", "adam.m.actor."}) {
+    EXPECT_THAT(Differences(after_a, after_b, prefix), Not(IsEmpty()));
+  }
+}
+
+TEST(SacAgent, ActorAndTemperatureMoveEveryPeriodAndTheirStatisticsStayBetween) {
+  Config config = SmallConfig();
+  config.learner.actor_period = 3;
+  SacAgent agent = SmallAgent(config);
+  UpdateStats last;
+  for (int u = 0; u < 7; ++u) {
+    const TensorMap before = agent.AllTensors();
+    const RandomBatch batch(SmallSpec(), config.learner.batch, uint64_t(u));
+    const UpdateStats stats = agent.Update(batch.View());
+    const TensorMap after = agent.AllTensors();
+    EXPECT_THAT(Differences(before, after, "critic."), Not(IsEmpty()));
+    const bool moved = !Differences(before, after, "actor.").empty();
+    EXPECT_EQ(moved, u % 3 == 0) << u;
+    EXPECT_EQ(!Differences(before, after, "temperature.").empty(), moved) << u;
+    if (!moved) {
+      EXPECT_EQ(stats.actor_loss, last.actor_loss);
+      EXPECT_EQ(stats.temperature, last.temperature);
+    }
+    last = stats;
+  }
+}
+
+TEST(SacAgent, TargetsStartAtTheCriticAndMoveByTauEveryPeriod) {
+  Config config = SmallConfig();
+  config.learner.tau = 0.25;
+  config.learner.target_period = 2;
+  SacAgent agent = SmallAgent(config);
+  const TensorMap start = agent.AllTensors();
+  for (int u = 0; u < 3; ++u) {
+    const TensorMap before = agent.AllTensors();
+    UpdateTimes(&agent, 1, uint64_t(u));
+    const TensorMap after = agent.AllTensors();
+    int compared = 0;
+    for (const auto& [name, tensor] : after) {
+      if (!name.starts_with("target.")) continue;
+      const std::string online = "critic." + name.substr(std::string("target.").size());
+      EXPECT_EQ(start.at(name).data, start.at(online).data) << name;
+      const auto x = Floats(before, name), y = Floats(after, online), moved = Floats(after, name);
+      for (size_t i = 0; i < x.size(); ++i, ++compared) {
+        const float expected = u % 2 == 0 ? x[i] + 0.25f * (y[i] - x[i]) : x[i];
+        ASSERT_NEAR(moved[i], expected, 1e-7) << name << " " << u;
+      }
+    }
+    EXPECT_GT(compared, 100);
+  }
+}
+
+TEST(SacAgent, RestoredAgentGoesOnByteForByteForAHundredUpdates) {
+  for (const Precision precision : Precisions()) {
+    SacAgent original = SmallAgent(SmallConfig(), precision);
+    UpdateTimes(&original, 7);
+    Config config = SmallConfig();
+    config.seed = SmallConfig().seed;
+    SacAgent restored = SmallAgent(config, precision);
+    // Through the bytes of a file, as a checkpoint does.
+    restored.Restore(
+        nn::ReadSafetensors(nn::WriteSafetensors(original.AllTensors(), {}), "checkpoint"),
+        "checkpoint");
+    EXPECT_EQ(restored.updates(), 7u);
+    UpdateTimes(&original, 100, 500);
+    UpdateTimes(&restored, 100, 500);
+    EXPECT_THAT(Differences(original.AllTensors(), restored.AllTensors()), IsEmpty());
+  }
+}
+
+TEST(SacAgent, RunsRepeatByteForByteWithTheSameNumberOfThreads) {
+  for (const Precision precision : Precisions()) {
+    for (const int threads : {1, 2}) {
+      nn::SetThreads(threads);
+      SacAgent a = SmallAgent(SmallConfig(), precision), b = SmallAgent(SmallConfig(), precision);
+      UpdateTimes(&a, 5);
+      UpdateTimes(&b, 5);
+      EXPECT_THAT(Differences(a.AllTensors(), b.AllTensors()), IsEmpty()) << threads;
+    }
+  }
+  nn::SetThreads(1);
+}
+
+TEST(SacAgent, SeedsGiveDifferentNetworks) {
+  Config other = SmallConfig();
+  other.seed = 8;
+  EXPECT_THAT(Differences(SmallAgent(SmallConfig()).AllTensors(), SmallAgent(other).AllTensors(),
+                          "encoder."),
+              Not(IsEmpty()));
+}
+
+TEST(SacAgent, NonFiniteInputIsReportedAndChangesNothing) {
+  SacAgent agent = SmallAgent(SmallConfig());
+  UpdateTimes(&agent, 3);
+  const TensorMap before = agent.AllTensors();
+  const auto expect_refused = [&](auto member, float value) {
+    const RandomBatch batch(SmallSpec(), SmallConfig().learner.batch, 9);
+    BatchView view = batch.View();
+    (view.*member)[1] = value;
+    EXPECT_FALSE(agent.Update(view).finite);
+    EXPECT_THAT(Differences(before, agent.AllTensors()), IsEmpty());
+  };
+  expect_refused(&BatchView::obs_vector, kNan);
+  expect_refused(&BatchView::next_obs_vector, INFINITY);
+  expect_refused(&BatchView::action, kNan);
+  expect_refused(&BatchView::reward, -INFINITY);
+  expect_refused(&BatchView::bootstrap, kNan);
+  expect_refused(&BatchView::reward, 1e25f);  // finite, but its squared error is not
+  UpdateTimes(&agent, 1);                     // and it goes on
+  EXPECT_EQ(agent.updates(), 4u);
+}
+
+// A learning rate at which the critic's step is finite and its next output is not: the actor's loss
+// shows it, and the critic's step has to be taken back.
+TEST(SacAgent, NonFiniteActorLossTakesTheCriticsStepBack) {
+  Config config = SmallConfig();
+  config.learner.learning_rate = 1e37;
+  SacAgent agent = SmallAgent(config);
+  const TensorMap before = agent.AllTensors();
+  const RandomBatch batch(SmallSpec(), config.learner.batch, 1);
+  const UpdateStats stats = agent.Update(batch.View());
+  EXPECT_TRUE(std::isfinite(stats.critic_loss));
+  EXPECT_FALSE(stats.finite);
+  EXPECT_THAT(Differences(before, agent.AllTensors()), IsEmpty());
+  // The layers have the former weights back as well: the critic's loss is what it was.
+  EXPECT_EQ(agent.Update(batch.View()).critic_loss, stats.critic_loss);
+}
+
+TEST(SacAgent, RestoreRefusesWhatDoesNotFitAndChangesNothing) {
+  SacAgent agent = SmallAgent(SmallConfig()), other = SmallAgent(SmallConfig());
+  UpdateTimes(&other, 2);
+  const TensorMap before = agent.AllTensors();
+  for (const char* name : {"encoder.conv1.bias", "actor.mlp.output.weight", "target.q2.output.bias",
+                           "adam.v.critic.q1.layer0.weight", "adam.steps.temperature",
+                           "temperature.log", "agent.updates"}) {
+    TensorMap tensors = other.AllTensors();
+    ASSERT_EQ(tensors.count(name), 1u) << name;
+    tensors.at(name).shape.push_back(2);
+    EXPECT_THROW(agent.Restore(tensors, "checkpoint"), Error) << name;
+    tensors.erase(name);
+    EXPECT_THAT([&] { agent.Restore(tensors, "checkpoint 5"); },
+                testing::ThrowsMessage<Error>(
+                    testing::AllOf(testing::HasSubstr("checkpoint 5"), testing::HasSubstr(name))));
+    EXPECT_THAT(Differences(before, agent.AllTensors()), IsEmpty()) << name;
+  }
+  // The layers too: both go on alike.
+  SacAgent untouched = SmallAgent(SmallConfig());
+  UpdateTimes(&agent, 2);
+  UpdateTimes(&untouched, 2);
+  EXPECT_THAT(Differences(agent.AllTensors(), untouched.AllTensors()), IsEmpty());
+}
+
+TEST(SacAgent, PolicyTensorsAreTheAgentsOwnAndLoadIntoAPolicy) {
+  SacAgent agent = SmallAgent(SmallConfig());
+  UpdateTimes(&agent, 2);
+  const TensorMap policy = agent.PolicyTensors(), all = agent.AllTensors();
+  for (const auto& [name, tensor] : policy) {
+    EXPECT_TRUE(name.starts_with("encoder.") || name.starts_with("actor.")) << name;
+    EXPECT_EQ(tensor.data, all.at(name).data) << name;
+  }
+  nn::Policy loaded(SmallConfig().network, SmallSpec(), Precision::kF32, 4);
+  EXPECT_NO_THROW(loaded.Load(policy, "agent"));
+}
+
+TEST(SacAgent, Bf16StartsWithTheLossesOfF32) {
+  if (Precisions().size() < 2) GTEST_SKIP() << "this CPU has no bf16 arithmetic";
+  const RandomBatch batch(SmallSpec(), SmallConfig().learner.batch, 3);
+  const UpdateStats f32 = SmallAgent(SmallConfig()).Update(batch.View());
+  const UpdateStats bf16 = SmallAgent(SmallConfig(), Precision::kBf16).Update(batch.View());
+  EXPECT_NEAR(bf16.critic_loss, f32.critic_loss, 0.05 * f32.critic_loss);
+  EXPECT_NEAR(bf16.critic_grad_norm, f32.critic_grad_norm, 0.1 * f32.critic_grad_norm);
+  EXPECT_NEAR(bf16.entropy, f32.entropy, 0.05 * std::abs(f32.entropy));
+}
+
+TEST(SacAgent, FrameSpreadIsZeroForEqualPixels) {
+  SacAgent agent = SmallAgent(SmallConfig());
+  const RandomBatch batch(SmallSpec(), SmallConfig().learner.batch, 3);
+  // Bytes uniform on 0..255 have deviation sqrt((256^2 - 1) / 12) = 73.9.
+  EXPECT_NEAR(agent.Update(batch.View()).frame_spread, 73.9, 3);
+  std::ranges::fill(batch.View().obs_frames, uint8_t(90));
+  EXPECT_EQ(agent.Update(batch.View()).frame_spread, 0.f);
+}
+
+// A bandit: reward -(a - s0 / 2)^2, every step terminal. The best action is s0 / 2; a policy that
+// ignores the state is off by 0.25 on average, uniform actions by 0.56.
+TEST(SacAgent, LearnsABandit) {
+  ObservationSpec spec;
+  spec.task = "bandit";
+  spec.blocks = {{"state", 2}};
+  spec.action_size = 1;
+  Config config;
+  config.learner.batch = 64;
+  config.learner.learning_rate = 3e-3;
+  config.learner.reward_scale = 5;
+  config.network.hidden = {32, 32};
+  SacAgent agent(config, spec, Precision::kF32);
+  Random random(1);
+  for (int u = 0; u < 400; ++u) {
+    const RandomBatch batch(spec, config.learner.batch, uint64_t(u));
+    const BatchView view = batch.View();
+    for (size_t b = 0; b < view.reward.size(); ++b) {
+      view.obs_vector[2 * b] = float(random.Uniform(-1, 1));
+      const float error = view.action[b] - view.obs_vector[2 * b] / 2;
+      view.reward[b] = -error * error;
+      view.bootstrap[b] = 0;
+    }
+    ASSERT_TRUE(agent.Update(view).finite);
+  }
+  nn::Policy policy(config.network, spec, Precision::kF32, 1);
+  policy.Load(agent.PolicyTensors(), "agent");
+  double error = 0;
+  for (int i = 0; i < 41; ++i) {
+    const float state[2] = {float(i - 20) / 20, 0.f};
+    float mean = 0, log_std = 0;
+    policy.Forward(1, nullptr, state, &mean, &log_std);
+    error += std::abs(std::tanh(mean) - state[0] / 2) / 41;
+  }
+  EXPECT_LT(error, 0.08);
+}
+
+}  // namespace
+}  // namespace shoal::learner

@@ -1,0 +1,143 @@
+// One whole update against a double in double: losses, and every gradient by central differences.
+//
+// The gradients of the first update are read off Adam's first moment: m = (1 - 0.9) g.
+#include <numbers>
+
+#include "tests/common/nn/gradient_check.h"
+#include "tests/common/nn/reference_network.h"
+#include "tests/learner/agent/agent_fixture.h"
+
+namespace shoal::learner {
+namespace {
+
+using nn::CentralDifference;
+using nn::ToDoubles;
+using nn::reference::Network;
+using nn::reference::Values;
+
+constexpr double kFirstMoment = 0.1;
+
+struct Sample {
+  Values action, log_prob;
+};
+
+class SacGradientTest : public testing::Test {
+ protected:
+  SacGradientTest() : agent_(config_, spec_, nn::Precision::kF32), data_(spec_, batch_size_, 3) {}
+
+  // tanh-Gaussian actions with the noise the agent draws: (B, A) per call.
+  Sample Draw(const Network::Gaussian& gaussian, const Values& noise) const {
+    Sample sample{{}, Values(size_t(batch_size_))};
+    const size_t actions = size_t(spec_.action_size);
+    for (size_t i = 0; i < noise.size(); ++i) {
+      const double u = gaussian.mean[i] + std::exp(gaussian.log_std[i]) * noise[i];
+      sample.action.push_back(std::tanh(u));
+      sample.log_prob[i / actions] += -0.5 * noise[i] * noise[i] - gaussian.log_std[i] -
+                                      0.5 * std::log(2 * std::numbers::pi) -
+                                      std::log(1 - std::tanh(u) * std::tanh(u));
+    }
+    return sample;
+  }
+
+  Values Noise(Random* random) const {
+    Values noise(size_t(batch_size_ * spec_.action_size));
+    for (double& value : noise) value = float(random->Normal());
+    return noise;
+  }
+
+  Values Targets(const Network& network, const Values& noise) const {
+    const BatchView view = data_.View();
+    const Values features = network.Features(batch_size_, view.next_obs_frames.data());
+    const Values vector = ToDoubles(view.next_obs_vector);
+    const Sample next = Draw(network.Actor(batch_size_, features, vector), noise);
+    const auto q = network.Critic("target", batch_size_, features, vector, next.action);
+    Values y;
+    for (size_t b = 0; b < size_t(batch_size_); ++b) {
+      const double value =
+          std::min(q.q1[b], q.q2[b]) - config_.learner.initial_temperature * next.log_prob[b];
+      y.push_back(config_.learner.reward_scale * view.reward[b] +
+                  view.bootstrap[b] * config_.learner.discount * value);
+    }
+    return y;
+  }
+
+  double CriticLoss(const Network& network, const Values& y) const {
+    const BatchView view = data_.View();
+    const auto q =
+        network.Critic("critic", batch_size_, network.Features(batch_size_, view.obs_frames.data()),
+                       ToDoubles(view.obs_vector), ToDoubles(view.action));
+    double loss = 0;
+    for (size_t b = 0; b < y.size(); ++b) {
+      loss += (q.q1[b] - y[b]) * (q.q1[b] - y[b]) + (q.q2[b] - y[b]) * (q.q2[b] - y[b]);
+    }
+    return loss / batch_size_;
+  }
+
+  // The actor of `network` judged by the critic of `critic`, on given features.
+  double ActorLoss(const Network& network, const Network& critic, const Values& features,
+                   const Values& noise) const {
+    const Values vector = ToDoubles(data_.View().obs_vector);
+    const Sample sample = Draw(network.Actor(batch_size_, features, vector), noise);
+    const auto q = critic.Critic("critic", batch_size_, features, vector, sample.action);
+    double loss = 0;
+    for (size_t b = 0; b < sample.log_prob.size(); ++b) {
+      loss += config_.learner.initial_temperature * sample.log_prob[b] - std::min(q.q1[b], q.q2[b]);
+    }
+    return loss / batch_size_;
+  }
+
+  void ExpectMoments(const nn::TensorMap& after, const std::string& prefix, Network* network,
+                     const std::function<double()>& loss) const {
+    for (const auto& [name, values] : network->parameters()) {
+      if (!name.starts_with(prefix)) continue;
+      const std::vector<float> moment = Floats(after, "adam.m." + name);
+      std::vector<float> some;
+      Values exact;
+      for (size_t i = 0; i < values.size(); i += 1 + values.size() / 8) {
+        some.push_back(moment[i]);
+        exact.push_back(kFirstMoment * CentralDifference(&network->at(name, i), loss));
+      }
+      EXPECT_LT(nn::RelativeError(some, exact), 1e-3) << name;
+    }
+  }
+
+  const ObservationSpec spec_ = SmallSpec();
+  const Config config_ = SmallConfig();
+  const int batch_size_ = config_.learner.batch;
+  SacAgent agent_;
+  RandomBatch data_;
+};
+
+TEST_F(SacGradientTest, FirstUpdateFollowsTheEquations) {
+  const nn::TensorMap before = agent_.AllTensors();
+  const UpdateStats stats = agent_.Update(data_.View());
+  const nn::TensorMap after = agent_.AllTensors();
+  Network network(before, config_.network, spec_);
+  const Network updated(after, config_.network, spec_);
+  Random random(StreamKey(uint64_t(config_.seed), StreamRole::kLearnerUpdate, 0));
+  const Values next_noise = Noise(&random), noise = Noise(&random);
+
+  const Values y = Targets(network, next_noise);
+  const auto critic_loss = [&] { return CriticLoss(network, y); };
+  EXPECT_NEAR(stats.critic_loss, critic_loss(), 1e-4 * critic_loss());
+  ExpectMoments(after, "encoder.", &network, critic_loss);
+  ExpectMoments(after, "critic.", &network, critic_loss);
+
+  // The actor sees the features of before and the critic of after its step.
+  const Values features = network.Features(batch_size_, data_.View().obs_frames.data());
+  const auto actor_loss = [&] { return ActorLoss(network, updated, features, noise); };
+  EXPECT_NEAR(stats.actor_loss, actor_loss(), 1e-4 * std::abs(actor_loss()));
+  ExpectMoments(after, "actor.", &network, actor_loss);
+
+  const Sample sample =
+      Draw(network.Actor(batch_size_, features, ToDoubles(data_.View().obs_vector)), noise);
+  double entropy = 0;
+  for (const double log_prob : sample.log_prob) entropy -= log_prob / batch_size_;
+  EXPECT_NEAR(stats.entropy, entropy, 1e-4);
+  const double temperature_loss =
+      config_.learner.initial_temperature * (entropy + spec_.action_size);
+  EXPECT_NEAR(Floats(after, "adam.m.temperature.log")[0], kFirstMoment * temperature_loss, 1e-5);
+}
+
+}  // namespace
+}  // namespace shoal::learner
