@@ -33,6 +33,7 @@ TEST(ParseStrictJson, RefusesADuplicateKeyNamingItsPath) {
 }
 
 TEST(ParseStrictJson, AllowsTheSameKeyInDifferentObjects) {
+  EXPECT_EQ(Mistake(R"({"a": {"k": 1}, "k": 2})"), "");
   EXPECT_EQ(Mistake(R"({"a": {"k": 1}, "b": {"k": 1, "a": 2}, "l": [{"k": 1}, {"k": 2}]})"), "");
 }
 
