@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <nlohmann/json.hpp>
 
 #include "common/base/error.h"
@@ -71,6 +72,10 @@ TEST(ReferenceFile, NamesAnIllTypedOrWronglySizedKey) {
               HasSubstr("'trajectory[2].distance' is not a finite number"));
   EXPECT_THAT(ComplaintAfter([](json& d) {
                 d["desired_goal"] = {1, 2};
+              }),
+              HasSubstr("'desired_goal' is not 3 finite numbers"));
+  EXPECT_THAT(ComplaintAfter([](json& d) {
+                d["desired_goal"] = {1, 2, 3, 4};
               }),
               HasSubstr("'desired_goal' is not 3 finite numbers"));
   EXPECT_THAT(ComplaintAfter([](json& d) { d["reset"]["obs"][4] = nullptr; }),
