@@ -105,7 +105,7 @@ TEST_F(TwoProcessesTest, ProcessesOfAnotherTagAreNotSeen) {
 
 // Speed is recorded, not judged: the machine is shared.
 TEST_F(TwoProcessesTest, MegabyteShardsAtFullSpeedLoseNothing) {
-  constexpr uint64_t kShards = 2000;
+  constexpr uint64_t kShards = 500;
   constexpr uint64_t kBytes = 1'000'000;
   PeerProcess learner("learner", address_), replay("replay", address_);
   learner.Ask("subscribe BatchShard");
