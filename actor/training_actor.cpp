@@ -117,8 +117,17 @@ class TrainingActor {
     ++phase_;
   }
 
+  // A lockstep run ends at the phase in which the budget is reached, whatever the clocks say.
+  bool LockstepDone() const {
+    return run_.config.lockstep && phase_ > 0 &&
+           static_cast<int64_t>(rollout_.env_steps()) >= run_.config.env_steps &&
+           rollout_.env_steps() / static_cast<uint64_t>(run_.config.envs_per_actor) ==
+               static_cast<uint64_t>(LockstepVectorStepsAtPhaseEnd(run_.config, phase_ - 1));
+  }
+
   void Step() {
-    if (control_.state() != RunState::kRunning || rollout_.TryStep()) return;
+    if (control_.state() != RunState::kRunning) return;
+    if (!LockstepDone() && rollout_.TryStep()) return;
     const SteadyTime start = Now();
     window_.Flush();
     Exchange(start + kBlockedWait);

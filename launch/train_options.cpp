@@ -39,8 +39,11 @@ Config ResolveConfig(const TrainOptions& options, int cores) {
   }
   if (!options.run_name.empty()) ApplyAssignments({"run_name=" + options.run_name}, &config);
   if (options.lockstep) config.lockstep = true;
-  if (config.actors == 0) config.actors = config.lockstep ? 1 : std::max(1, cores - 1);
-  if (config.learner.threads == 0) config.learner.threads = cores;
+  // Threads of one update wait for each other, so a core shared with an actor stalls them all.
+  if (config.learner.threads == 0) config.learner.threads = std::max(1, cores / 2);
+  if (config.actors == 0) {
+    config.actors = config.lockstep ? 1 : std::max(1, cores - config.learner.threads);
+  }
   Validate(config);
   return config;
 }

@@ -9,7 +9,6 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/log.h"
-#include "common/base/random.h"
 #include "common/config/config_io.h"
 
 namespace shoal::learner {
@@ -17,15 +16,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-uint64_t HashOf(const Config& config) {
-  const std::string text = ToJson(config).dump();
-  return HashBytes(text.data(), text.size());
-}
-
 }  // namespace
 
 CheckpointStore::CheckpointStore(const fs::path& run_folder, const RunConfig& run)
-    : folder_(run_folder / "checkpoints"), run_(run), config_hash_(HashOf(run.config)) {
+    : folder_(run_folder / "checkpoints"), run_(run), config_hash_(ConfigHash(run.config)) {
   MakeFolders(folder_);
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(folder_)) {

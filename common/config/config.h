@@ -33,7 +33,7 @@ struct ReplayConfig {
 struct LearnerConfig {
   int batch = 128;
   std::string precision = "auto";  // auto | f32 | bf16
-  int threads = 0;                 // 0 = cores this process may use
+  int threads = 0;                 // 0 = half the cores this process may use, at least 1
   double learning_rate = 5e-4;     // actor, critic and temperature
   double discount = 0.9;
   double reward_scale = 10;
@@ -82,7 +82,7 @@ struct Config {
   std::string run_dir = "runs";
   std::string task = "FetchReachDense";
   int64_t env_steps = 100'000;  // budget
-  int actors = 0;               // 0 = one per core this process may use, less one, at least 1
+  int actors = 0;               // 0 = one per core the learner leaves, at least 1
   int envs_per_actor = 4;
   bool lockstep = false;
   int lockstep_steps = 8;  // vector steps between weights in lockstep

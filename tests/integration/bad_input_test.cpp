@@ -46,7 +46,7 @@ INSTANTIATE_TEST_SUITE_P(
                 {"shoal", "train", "--preset", "nope", "--dry-run"},
                 2,
                 {"nope", "fetch-reach-drq"}},
-        Mistake{"AbsentModel", TrainWith("model=/absent/robot.xml"), 1, {"/absent/robot.xml"}},
+        Mistake{"AbsentModel", TrainWith("model=/absent/robot.xml"), 2, {"/absent/robot.xml"}},
         Mistake{"AbsentConfigFile",
                 {"shoal", "train", "--config", "/absent.json", "--dry-run"},
                 1,

@@ -6,6 +6,7 @@
 #include <fstream>
 #include <thread>
 
+#include "common/base/clock.h"
 #include "tests/support/training_run.h"
 
 namespace shoal {
@@ -41,7 +42,7 @@ json WaitForReport(const std::filesystem::path& run, const std::string& role, Do
 
 class RunningTraining {
  public:
-  explicit RunningTraining(const std::vector<std::string>& more) : child_(Spec(more)) {}
+  explicit RunningTraining(const TrainingRun::Keys& keys) : child_(Spec(keys)) {}
 
   const std::filesystem::path path() const { return run_.path(); }
 
@@ -76,10 +77,10 @@ class RunningTraining {
   const TrainingRun& run() const { return run_; }
 
  private:
-  launch::ProcessSpec Spec(const std::vector<std::string>& more) const {
+  launch::ProcessSpec Spec(const TrainingRun::Keys& keys) const {
     launch::ProcessSpec spec;
     spec.role = "train";
-    spec.command = run_.Command(more);
+    spec.command = run_.Command(keys);
     spec.command[0] = std::string(SHOAL_BIN) + "/shoal";
     spec.output = run_.parent() / "output";
     return spec;
@@ -90,8 +91,7 @@ class RunningTraining {
 };
 
 TEST(Kill, TrainingSurvivesTheDeathOfEachRole) {
-  RunningTraining training(
-      {"--set", "env_steps=30000", "--set", "actors=2", "--set", "eval.interval=10000"});
+  RunningTraining training({{"env_steps", "30000"}, {"actors", "2"}, {"eval.interval", "10000"}});
   training.WaitForMoreSteps(1500);
   for (const char* role : {"actor", "replay", "learner", "eval"}) {
     training.KillAndWaitForSuccessor(role);

@@ -13,8 +13,8 @@ struct Outcome {
 Outcome RunInLockstep(const std::string& seed) {
   const TrainingRun run;
   const ProgramResult result =
-      run.Train({"--lockstep", "--set", "env_steps=1200", "--set", "eval.interval=600", "--set",
-                 "actors=1", "--set", "seed=" + seed});
+      run.Train({{"env_steps", "1200"}, {"eval.interval", "600"}, {"actors", "1"}, {"seed", seed}},
+                {"--lockstep"});
   EXPECT_EQ(ExitCode(result), 0) << result.out << result.err;
   Outcome outcome;
   std::filesystem::path newest;

@@ -35,7 +35,7 @@ TEST(TrainingRun, LeavesABalancedAccountAndEveryFile) {
 
 TEST(TrainingRun, EvaluationOfACheckpointRepeats) {
   const TrainingRun run;
-  const ProgramResult result = run.Train({"--set", "env_steps=1500", "--set", "eval.interval=500"});
+  const ProgramResult result = run.Train({{"env_steps", "1500"}, {"eval.interval", "500"}});
   ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
   const auto evaluate = [&](const std::string& seed) {
     const std::string file = (run.parent() / ("eval-" + seed + ".json")).string();

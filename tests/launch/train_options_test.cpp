@@ -40,8 +40,8 @@ TEST(ResolveConfig, AppliesPresetThenFileThenSet) {
 }
 
 TEST(ResolveConfig, FillsActorsAndThreadsForTheCores) {
-  EXPECT_EQ(ResolveConfig({}, 8).actors, 7);
-  EXPECT_EQ(ResolveConfig({}, 8).learner.threads, 8);
+  EXPECT_EQ(ResolveConfig({}, 8).actors, 4);
+  EXPECT_EQ(ResolveConfig({}, 8).learner.threads, 4);
   EXPECT_EQ(ResolveConfig({}, 1).actors, 1);
   TrainOptions lockstep;
   lockstep.lockstep = true;

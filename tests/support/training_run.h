@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -14,26 +15,30 @@ namespace shoal {
 
 class TrainingRun {
  public:
-  // Arguments of `shoal train` for a short run from state; `more` is appended.
-  std::vector<std::string> Command(const std::vector<std::string>& more = {}) const {
-    std::vector<std::string> command{"shoal",      "train",
-                                     "--preset",   "fetch-reach-state",
-                                     "--run-name", "run",
-                                     "--set",      "run_dir=" + folder_.path().string(),
-                                     "--set",      "env_steps=4000",
-                                     "--set",      "eval.interval=2000",
-                                     "--set",      "eval.episodes=8",
-                                     "--set",      "eval.final_episodes=8",
-                                     "--set",      "replay.samples_per_insert=32",
-                                     "--set",      "learner.threads=1",
-                                     "--set",      "stop.success=2"};
-    command.insert(command.end(), more.begin(), more.end());
+  using Keys = std::map<std::string, std::string>;
+
+  // Command line of `shoal train` for a short run from state; `keys` go over the defaults here,
+  // `flags` are appended.
+  std::vector<std::string> Command(const Keys& keys = {},
+                                   const std::vector<std::string>& flags = {}) const {
+    Keys all{{"env_steps", "4000"},        {"eval.episodes", "8"},
+             {"eval.final_episodes", "8"}, {"eval.interval", "2000"},
+             {"learner.threads", "1"},     {"replay.samples_per_insert", "32"},
+             {"stop.success", "2"},        {"run_dir", folder_.path().string()}};
+    for (const auto& [key, value] : keys) all[key] = value;
+    std::vector<std::string> command{"shoal",      "train", "--preset", "fetch-reach-state",
+                                     "--run-name", "run"};
+    for (const auto& [key, value] : all) {
+      command.push_back("--set");
+      command.push_back(key + "=" + value);
+    }
+    command.insert(command.end(), flags.begin(), flags.end());
     return command;
   }
 
-  ProgramResult Train(const std::vector<std::string>& more = {},
+  ProgramResult Train(const Keys& keys = {}, const std::vector<std::string>& flags = {},
                       std::chrono::seconds deadline = std::chrono::seconds(180)) const {
-    return RunProgram(Command(more), deadline);
+    return RunProgram(Command(keys, flags), deadline);
   }
 
   std::filesystem::path path() const { return folder_.path() / "run"; }

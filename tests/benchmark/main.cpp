@@ -1,0 +1,49 @@
+// shoal-bench: ratios of one run, as JSON (schema shoal-bench-1) on stdout. `./run bench`.
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "common/base/build_info.h"
+#include "common/base/error.h"
+#include "common/base/main_guard.h"
+#include "common/nn/precision.h"
+#include "launch/machine.h"
+#include "tests/benchmark/paired_timing.h"
+
+namespace {
+
+int Run(int argc, char** argv) {
+  int repetitions = 7, threads = 1;
+  double seconds = 0.5;
+  CLI::App app("Measures Shoal's stages, each against another way of doing the same.");
+  app.add_option("--repetitions", repetitions, "pairs per row")->check(CLI::Range(1, 1000));
+  app.add_option("--seconds", seconds, "of each side of a pair")->check(CLI::Range(0.001, 60.0));
+  app.add_option("--threads", threads, "of the networks")->check(CLI::Range(1, 1024));
+  CLI11_PARSE(app, argc, argv);
+  shoal::nn::SetThreads(threads);
+
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  for (const auto& pairings : {shoal::bench::ReplayPairings(), shoal::bench::NetworkPairings(),
+                               shoal::bench::WorldPairings()}) {
+    for (const shoal::bench::Pairing& pairing : pairings) {
+      const auto row = shoal::bench::TimePair(pairing, repetitions, seconds);
+      rows.push_back(ToJson(row));
+      std::cerr << fmt::format("{}: {:.0f} {}, {:.2f} x {} ({:.0f}), spread {:.2f}\n", row.stage,
+                               row.figure, row.unit, row.ratio, row.against, row.against_figure,
+                               row.spread);
+    }
+  }
+  const nlohmann::ordered_json report{{"schema", "shoal-bench-1"},
+                                      {"commit", shoal::BuildCommit()},
+                                      {"machine", shoal::launch::DescribeMachine()},
+                                      {"network_threads", threads},
+                                      {"rows", rows}};
+  std::cout << report.dump(2) << std::endl;
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return shoal::GuardMain("shoal-bench", [&] { return Run(argc, argv); });
+}

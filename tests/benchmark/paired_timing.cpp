@@ -1,0 +1,64 @@
+#include "tests/benchmark/paired_timing.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "common/base/clock.h"
+
+namespace shoal::bench {
+namespace {
+
+double CallsPerSecond(const std::function<void()>& act, double seconds) {
+  const SteadyTime start = Now();
+  int calls = 0;
+  do {
+    act();
+    ++calls;
+  } while (SecondsSince(start) < seconds);
+  return calls / SecondsSince(start);
+}
+
+double Median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  const size_t middle = values.size() / 2;
+  return values.size() % 2 == 1 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
+}
+
+}  // namespace
+
+Row TimePair(const Pairing& pairing, int repetitions, double seconds) {
+  pairing.ours();
+  pairing.other();
+  std::vector<double> ours, other, ratios;
+  for (int i = 0; i < repetitions; ++i) {
+    ours.push_back(CallsPerSecond(pairing.ours, seconds));
+    other.push_back(CallsPerSecond(pairing.other, seconds));
+    ratios.push_back(ours.back() / other.back());
+  }
+  const auto [least, most] = std::minmax_element(ratios.begin(), ratios.end());
+  Row row;
+  row.stage = pairing.stage;
+  row.unit = pairing.unit;
+  row.against = pairing.against;
+  row.figure = Median(ours) * pairing.units_per_call;
+  row.against_figure = Median(other) * pairing.units_per_call;
+  row.ratio = Median(ratios);
+  row.spread = (*most - *least) / row.ratio;
+  row.target = pairing.target;
+  row.repetitions = repetitions;
+  return row;
+}
+
+nlohmann::ordered_json ToJson(const Row& row) {
+  return {{"stage", row.stage},
+          {"figure", row.figure},
+          {"unit", row.unit},
+          {"against", row.against},
+          {"against_figure", row.against_figure},
+          {"ratio", row.ratio},
+          {"target", row.target > 0 ? nlohmann::ordered_json(row.target) : nullptr},
+          {"repetitions", row.repetitions},
+          {"spread", row.spread}};
+}
+
+}  // namespace shoal::bench

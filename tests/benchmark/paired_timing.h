@@ -1,0 +1,39 @@
+// Times two ways of doing one thing in turn, A B A B …, so that a machine whose speed drifts does
+// not favour either.
+#pragma once
+
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+namespace shoal::bench {
+
+// One row of schema shoal-bench-1. Figures are rates (per second), medians of the repetitions;
+// ratio = median of figure / against_figure, pair by pair; spread = (largest - smallest ratio) /
+// ratio.
+struct Row {
+  std::string stage, unit, against;
+  double figure = 0, against_figure = 0, ratio = 0, spread = 0;
+  double target = 0;  // smallest ratio that is meant; 0 = none
+  int repetitions = 0;
+};
+
+struct Pairing {
+  std::string stage, unit, against;
+  double units_per_call = 1;
+  double target = 0;
+  std::function<void()> ours, other;
+};
+
+// Each side runs for about `seconds` per repetition; the first, uncounted call of each warms up.
+Row TimePair(const Pairing& pairing, int repetitions, double seconds);
+
+nlohmann::ordered_json ToJson(const Row& row);
+
+// What is measured, one function per room.
+std::vector<Pairing> ReplayPairings();
+std::vector<Pairing> NetworkPairings();
+std::vector<Pairing> WorldPairings();
+
+}  // namespace shoal::bench
