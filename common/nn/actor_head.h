@@ -1,4 +1,5 @@
-// The policy above the encoder: trunk and MLP to a Gaussian over actions before tanh.
+// The policy above the encoder: trunk and MLP to a Gaussian over actions before tanh (Eq. 4 of
+// docs/algorithm.md).
 //
 //   (mean, r) = MLP(trunk(features), vector)
 //   log_std = -5 + 3.5 (tanh(r) + 1)      in [-5, 2]

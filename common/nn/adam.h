@@ -1,4 +1,5 @@
-// Adam and the moving average of target networks: one pass over a whole parameter set.
+// Adam and the moving average of target networks, each one pass over a whole parameter set (Eq. 10
+// and 9 of docs/algorithm.md).
 //
 //   m' = b1 m + (1 - b1) g            b1 = 0.9, b2 = 0.999, eps = 1e-8
 //   v' = b2 v + (1 - b2) g^2

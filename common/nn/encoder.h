@@ -1,4 +1,5 @@
-// Frames to feature map: average pooling, scaling and 3x3 convolutions with ReLU.
+// Frames to feature map: average pooling, scaling and 3x3 convolutions with ReLU (Eq. 2 of
+// docs/algorithm.md).
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // What an MLP sees of an observation: the trunk's features (linear, LayerNorm, tanh of the feature
-// map) beside the vector.
+// map) beside the vector (Eq. 3 of docs/algorithm.md).
 //
 //   input[b] = [ tanh(LN(weight features[b] + bias)) | vector[b] | extra columns ]
 //

@@ -1,5 +1,5 @@
 // The three losses of SAC and their gradients with respect to the networks' outputs.
-// Equations are numbered as in docs/algorithm.md. Dimensions: B batch; all arrays (B) f32.
+// Equations are those of docs/algorithm.md. Dimensions: B batch; all arrays (B) f32.
 // Source: Haarnoja et al. 2018, arXiv:1812.05905.
 #pragma once
 
@@ -17,17 +17,17 @@ struct TargetRates {
   float reward_scale, discount, temperature;
 };
 
-// Eq. 1:  y = reward_scale r + bootstrap discount (min_i q'_i - temperature log pi')
+// Eq. 5:  y = reward_scale r + bootstrap discount (min_i q'_i - temperature log pi')
 void TdTargets(int batch, const TargetInputs& inputs, const TargetRates& rates, float* y);
 
-// Eq. 2:  L = sum_i mean_b (q_i - y)^2;   dL/dq_i = 2 (q_i - y) / B
+// Eq. 6:  L = sum_i mean_b (q_i - y)^2;   dL/dq_i = 2 (q_i - y) / B
 struct CriticLoss {
   float loss, q_mean, target_mean;  // q_mean over both heads
 };
 CriticLoss CriticLossForward(int batch, const float* q0, const float* q1, const float* y);
 void CriticLossBackward(int batch, const float* q, const float* y, float* q_gradient);
 
-// Eq. 3:  L = mean_b (temperature log pi - min_i q_i)
+// Eq. 7:  L = mean_b (temperature log pi - min_i q_i)
 //   dL/dlogpi = temperature / B;   dL/dq_i = -1 / B for the smaller of the two (q_0 on a tie), else
 //   0
 float ActorLossForward(int batch, const float* log_prob, const float* q0, const float* q1,
@@ -35,7 +35,7 @@ float ActorLossForward(int batch, const float* log_prob, const float* q0, const 
 void ActorLossBackward(int batch, const float* q0, const float* q1, float* q0_gradient,
                        float* q1_gradient);
 
-// Eq. 4:  L = temperature (entropy - target_entropy) with entropy = -mean_b log pi held fixed;
+// Eq. 8:  L = temperature (entropy - target_entropy) with entropy = -mean_b log pi held fixed;
 //   dL/dlog temperature = L
 float TemperatureLoss(float temperature, float entropy, float target_entropy);
 

@@ -1,10 +1,10 @@
-// One update, in order:
+// One update, in order (equations of docs/algorithm.md):
 //
-//   1. targets     next_obs -> encoder -> actor, target heads -> y                     (Eq. 1)
-//   2. critic      obs -> encoder -> critic heads -> loss -> encoder and critic step    (Eq. 2)
-//   3. actor       the features of 2, detached -> actor -> critic heads -> actor step   (Eq. 3)
-//   4. temperature from the log-probabilities of 3                                      (Eq. 4)
-//   5. target heads follow the critic's
+//   1. targets     next_obs -> encoder -> actor, target heads -> y                     (Eq. 5)
+//   2. critic      obs -> encoder -> critic heads -> loss -> encoder and critic step   (Eq. 6)
+//   3. actor       the features of 2, detached -> actor -> critic heads -> actor step  (Eq. 7)
+//   4. temperature from the log-probabilities of 3                                     (Eq. 8)
+//   5. target heads follow the critic's                                                (Eq. 9)
 //
 // 3 and 4 every actor_period updates, 5 every target_period, both from the first update on. The
 // encoder keeps one set of activations, so next_obs goes through it first. The temperature in 1 and
@@ -19,12 +19,12 @@
 
 #include "common/base/check.h"
 #include "common/base/random.h"
+#include "common/nn/actor_critic.h"
 #include "common/nn/frame_pooling.h"
 #include "common/nn/parallel.h"
 #include "common/nn/tensor_counter.h"
 #include "learner/agent/batch_faults.h"
 #include "learner/agent/losses.h"
-#include "learner/agent/sac_networks.h"
 #include "learner/agent/squashed_gaussian.h"
 
 namespace shoal::learner {
@@ -38,10 +38,6 @@ bool Usable(float loss, double gradient_squares) {
   return std::isfinite(loss) && gradient_squares < std::numeric_limits<float>::max();
 }
 
-double GradientSquares(const nn::ParameterSet& parameters) {
-  return nn::SumOfSquares(parameters.gradients(), parameters.size());
-}
-
 }  // namespace
 
 struct SacAgent::Impl {
@@ -53,7 +49,11 @@ struct SacAgent::Impl {
                                  ? -observation_spec.action_size
                                  : run_config.learner.target_entropy)),
         threads(nn::Threads()),
-        networks(run_config, observation_spec, precision),
+        networks(run_config.network, observation_spec, precision,
+                 {.batch = batch_size,
+                  .seed = uint64_t(run_config.seed),
+                  .learning_rate = run_config.learner.learning_rate,
+                  .initial_temperature = run_config.learner.initial_temperature}),
         gaussian(batch_size, spec.action_size),
         targets(size_t(batch_size)),
         q_gradients{targets, targets},
@@ -71,7 +71,7 @@ struct SacAgent::Impl {
   const int batch_size;  // B
   const float target_entropy;
   const int threads;
-  SacNetworks networks;
+  nn::ActorCritic networks;
   uint64_t updates = 0;
   UpdateStats last;  // carries the actor's values to updates without one
 
@@ -90,39 +90,31 @@ float SacAgent::Impl::FrameSpread(const BatchView& batch) const {
 
 void SacAgent::Impl::ComputeTargets(const BatchView& batch, float temperature, Random* random) {
   const float* vector = batch.next_obs_vector.data();
-  if (networks.encoder) networks.encoder->Forward(batch.next_obs_frames.data());
-  networks.actor->Forward(vector);
-  gaussian.Sample(networks.actor->mean(), networks.actor->log_std(), random);
-  networks.target->ForwardObservation(vector);
-  networks.target->ForwardAction(gaussian.action());
-  const TargetInputs inputs{batch.reward.data(),
-                            batch.bootstrap.data(),
-                            {networks.target->q(0), networks.target->q(1)},
-                            gaussian.log_prob()};
-  TdTargets(batch_size, inputs,
-            {float(config.learner.reward_scale), float(config.learner.discount), temperature},
-            targets.data());
+  networks.Encode(batch.next_obs_frames.data());
+  const auto [mean, log_std] = networks.ForwardActor(vector);
+  gaussian.Sample(mean, log_std, random);
+  const auto [q0, q1] = networks.ForwardTarget(vector, gaussian.action());
+  const TargetInputs inputs{
+      batch.reward.data(), batch.bootstrap.data(), {q0, q1}, gaussian.log_prob()};
+  const TargetRates rates{float(config.learner.reward_scale), float(config.learner.discount),
+                          temperature};
+  TdTargets(batch_size, inputs, rates, targets.data());
 }
 
 // False where the loss or its gradient is not finite; then no parameter has changed.
 bool SacAgent::Impl::UpdateCritic(const BatchView& batch, UpdateStats* stats) {
-  if (networks.encoder) networks.encoder->Forward(batch.obs_frames.data());
-  networks.critic->ForwardObservation(batch.obs_vector.data());
-  networks.critic->ForwardAction(batch.action.data());
-  const float *q0 = networks.critic->q(0), *q1 = networks.critic->q(1);
+  networks.Encode(batch.obs_frames.data());
+  const auto [q0, q1] = networks.ForwardCritic(batch.obs_vector.data(), batch.action.data());
   const CriticLoss loss = CriticLossForward(batch_size, q0, q1, targets.data());
   CriticLossBackward(batch_size, q0, targets.data(), q_gradients[0].data());
   CriticLossBackward(batch_size, q1, targets.data(), q_gradients[1].data());
-  networks.critic->Backward(q_gradients[0].data(), q_gradients[1].data());
-  if (networks.encoder) networks.encoder->Backward();
-  const double squares = GradientSquares(networks.critic_parameters);
+  const double squares = networks.BackwardCritic(q_gradients[0].data(), q_gradients[1].data());
   stats->critic_loss = loss.loss;
   stats->q_mean = loss.q_mean;
   stats->target_mean = loss.target_mean;
   stats->critic_grad_norm = float(std::sqrt(squares));
   if (!Usable(loss.loss, squares)) return false;
-  networks.critic_optimiser.Step();
-  networks.RefreshCritic();
+  networks.StepCritic();
   return true;
 }
 
@@ -131,26 +123,21 @@ bool SacAgent::Impl::UpdateCritic(const BatchView& batch, UpdateStats* stats) {
 bool SacAgent::Impl::UpdateActor(const BatchView& batch, float temperature, Random* random,
                                  UpdateStats* stats) {
   const float* vector = batch.obs_vector.data();
-  networks.actor->Forward(vector);
-  gaussian.Sample(networks.actor->mean(), networks.actor->log_std(), random);
-  networks.critic->ForwardObservation(vector);
-  networks.critic->ForwardAction(gaussian.action());
-  const float *q0 = networks.critic->q(0), *q1 = networks.critic->q(1);
+  const auto [mean, log_std] = networks.ForwardActor(vector);
+  gaussian.Sample(mean, log_std, random);
+  const auto [q0, q1] = networks.ForwardCritic(vector, gaussian.action());
   stats->actor_loss = ActorLossForward(batch_size, gaussian.log_prob(), q0, q1, temperature);
   ActorLossBackward(batch_size, q0, q1, q_gradients[0].data(), q_gradients[1].data());
-  networks.critic->BackwardAction(q_gradients[0].data(), q_gradients[1].data(),
-                                  action_gradient.data());
+  networks.BackwardAction(q_gradients[0].data(), q_gradients[1].data(), action_gradient.data());
   gaussian.Backward(action_gradient.data(), temperature / float(batch_size), mean_gradient.data(),
                     log_std_gradient.data());
-  networks.actor->Backward(mean_gradient.data(), log_std_gradient.data());
-  const double squares = GradientSquares(networks.actor_parameters);
+  const double squares = networks.BackwardActor(mean_gradient.data(), log_std_gradient.data());
   stats->actor_grad_norm = float(std::sqrt(squares));
   stats->entropy = gaussian.Entropy();
   stats->action_saturation = gaussian.Saturation();
   stats->temperature_loss = TemperatureLoss(temperature, stats->entropy, target_entropy);
   if (!Usable(stats->actor_loss, squares) || !std::isfinite(stats->temperature_loss)) return false;
-  networks.actor_optimiser.Step();
-  networks.RefreshActor();
+  networks.StepActor();
   networks.StepTemperature(stats->temperature_loss);
   return true;
 }
@@ -182,8 +169,7 @@ UpdateStats SacAgent::Update(const BatchView& batch) {
   if (!stats.finite) return stats;
   if (agent.updates % uint64_t(learner.actor_period) == 0 &&
       !agent.UpdateActor(batch, temperature, &random, &stats)) {
-    agent.networks.critic_optimiser.Undo();
-    agent.networks.RefreshCritic();
+    agent.networks.UndoStepCritic();
     stats.finite = false;
     return stats;
   }

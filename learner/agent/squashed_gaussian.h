@@ -1,4 +1,5 @@
-// Actions of a Gaussian squashed by tanh, their log-probabilities and the gradients of both.
+// Actions of a Gaussian squashed by tanh, their log-probabilities and the gradients of both (Eq. 4
+// of docs/algorithm.md).
 //
 //   u = mean + sigma * eps,   sigma = exp(log_std),   eps ~ N(0, 1)
 //   a = tanh(u)

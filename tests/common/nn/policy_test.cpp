@@ -72,7 +72,9 @@ TEST_P(PolicyTest, LoadReachesBatchSizesUsedBefore) {
   changed = Tensors();
   policy.Load(changed, "test");
   fresh.Load(changed, "test");
-  EXPECT_EQ(Run(&policy, 2).mean, Run(&fresh, 2).mean);
+  for (const int batch : {2, kBatch}) {
+    EXPECT_EQ(Run(&policy, batch).mean, Run(&fresh, batch).mean) << batch;
+  }
 }
 
 TEST_P(PolicyTest, TakesWeightsRoundedForTheWire) {
