@@ -142,7 +142,7 @@ class Answerer {
  public:
   explicit Answerer(Bus& bus)
       : publisher_(bus),
-        thread_([this](std::stop_token stop) { Run(stop); }),
+        thread_([this](const std::stop_token& stop) { Run(stop); }),
         subscriber_(bus, [this](const TransitionChunk& chunk) {
           const std::lock_guard lock(mutex_);
           newest_ = chunk.first_sequence;

@@ -21,7 +21,7 @@ namespace {
 std::string PopLine(std::string* lines) {
   const size_t end = lines->find('\n');
   if (end == std::string::npos) return "";
-  const std::string line = lines->substr(0, end);
+  std::string line = lines->substr(0, end);
   lines->erase(0, end + 1);
   return line;
 }
@@ -52,6 +52,7 @@ void PeerProcess::Spawn(std::vector<std::string> words) {
   posix_spawn_file_actions_adddup2(&actions, up[1], STDOUT_FILENO);
   words.insert(words.begin(), std::string(SHOAL_BIN) + "/dds_peer");
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   const int result = posix_spawn(&pid_, arguments[0], &actions, nullptr, arguments.data(), environ);
