@@ -13,6 +13,12 @@
 #include "common/base/check.h"
 #include "common/base/error.h"
 
+#ifdef __SANITIZE_ADDRESS__
+// OSMesa keeps a few hundred bytes of every context it destroys.
+extern "C" const char* __lsan_default_suppressions();
+extern "C" const char* __lsan_default_suppressions() { return "leak:libOSMesa.so\n"; }
+#endif
+
 namespace shoal::worlds {
 namespace {
 
