@@ -154,6 +154,22 @@ TEST_F(IntakeTest, RefusesLateChunksOfASupersededSession) {
   EXPECT_EQ(Counters(old_session).highest, 3u);
 }
 
+TEST_F(IntakeTest, CountsARecordWhoseWriterDiedBeforeItCouldCountIt) {
+  intake_.Take(a_.Chunk(1, 3));
+  const auto prev =
+      index_.Predecessor(0, 10, RecordLayout::Header(a_.At(4).data()));  // and no more than this:
+  ring_.Append(0, 10, *prev, a_.At(4).data());
+  SessionTable sessions(ring_.sessions());
+  EpisodeIndex index(ring_, 1);
+  ASSERT_EQ(sessions.at(0).highest, 3u);
+  Intake intake(spec_.Hash(), &ring_, &sessions, &index);
+  EXPECT_EQ(sessions.at(0).highest, 4u);
+  EXPECT_EQ(sessions.at(0).stored(), 4u);
+  const ChunkResult result = intake.Take(a_.Chunk(4, 2));
+  EXPECT_EQ(result.duplicates, 1u);
+  EXPECT_EQ(result.stored, 1u);
+}
+
 TEST_F(IntakeTest, RefusesChunksOfAnotherSpecAndMalformedOnes) {
   TransitionChunk chunk = a_.Chunk(1, 3);
   chunk.spec_hash ^= 1;
