@@ -24,6 +24,6 @@ struct Voidify {
 }  // namespace shoal::internal
 
 #define CHECK(condition)                       \
-  (condition) ? (void)0                        \
+  (condition) ? static_cast<void>(0)           \
               : ::shoal::internal::Voidify() & \
                     ::shoal::internal::CheckFailure(__FILE__, __LINE__, #condition).stream()
