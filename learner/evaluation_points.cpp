@@ -28,7 +28,7 @@ void EvaluationPoints::Send(const std::string& checkpoint, uint64_t env_steps) {
                  unsent_->message.checkpoint, checkpoint);
   }
   Unsent& point = unsent_.emplace();
-  point.bytes = nn::WriteSafetensors(agent_.PolicyTensors(), {});
+  point.bytes = nn::WriteSafetensors(agent_.AveragedPolicyTensors(), {});
   point.message.spec_hash = spec_hash_;
   point.message.version = {session_, agent_.updates()};
   point.message.env_steps = env_steps;

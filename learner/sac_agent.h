@@ -14,15 +14,17 @@
 
 namespace shoal::learner {
 
-// Means over the batch of one update. Actor and temperature values are those of the last actor update.
+// Means over the batch of one update. Actor and temperature values are those of the last actor
+// update.
 struct UpdateStats {
   float critic_loss = 0, actor_loss = 0, temperature = 0, temperature_loss = 0;
   float q_mean = 0, target_mean = 0;
   float entropy = 0;            // -mean log pi
   float action_saturation = 0;  // share of sampled action components with |a| > 0.99
   float critic_grad_norm = 0, actor_grad_norm = 0;
-  float frame_spread = 0;       // standard deviation of a frame's pixels, grey levels; mean over 32 frames
-  bool finite = true;           // false: a loss or weight is not finite; the update was not applied
+  float frame_spread =
+      0;               // standard deviation of a frame's pixels, grey levels; mean over 32 frames
+  bool finite = true;  // false: a loss or weight is not finite; the update was not applied
 };
 
 class SacAgent {
@@ -37,8 +39,11 @@ class SacAgent {
 
   // F32 parameters an actor needs (names as nn::Policy loads them).
   nn::TensorMap PolicyTensors() const;
-  // Everything an exact resume needs: parameters, targets, Adam moments and steps, log temperature,
-  // update counter.
+  // The same, averaged over the latest updates: what is evaluated and kept as a checkpoint's
+  // policy.
+  nn::TensorMap AveragedPolicyTensors() const;
+  // Everything an exact resume needs: parameters, targets, averages, Adam moments and steps, log
+  // temperature, update counter.
   nn::TensorMap AllTensors() const;
   // Throws Error naming a missing tensor or a wrong shape; then nothing has changed.
   void Restore(const nn::TensorMap& tensors, const std::string& source);

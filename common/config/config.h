@@ -37,8 +37,9 @@ struct LearnerConfig {
   double learning_rate = 5e-4;     // actor, critic and temperature
   double discount = 0.9;
   double reward_scale = 10;
-  double tau = 0.01;     // target heads: target += tau * (online - target)
-  int actor_period = 2;  // updates per actor and temperature update
+  double tau = 0.01;            // target heads: target += tau * (online - target)
+  double average_rate = 0.005;  // evaluated policy: average += rate * (policy - average); 1 = none
+  int actor_period = 2;         // updates per actor and temperature update
   int target_period = 1;
   double initial_temperature = 0.1;
   double target_entropy = 0;      // 0 = -(action size)

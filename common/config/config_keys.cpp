@@ -83,6 +83,9 @@ std::vector<Key> LearnerKeys() {
       SHOAL_SAME(learner.discount, (RealRange{0, 1, false, true}), "discount per env step"),
       SHOAL_SAME(learner.reward_scale, (RealRange{0, 1e6, true}), "factor on every reward"),
       SHOAL_SAME(learner.tau, positive, "target heads: target += tau * (online - target)"),
+      SHOAL_SAME(
+          learner.average_rate, positive,
+          "evaluated policy, per update: average += rate * (policy - average); 1 = no average"),
       SHOAL_SAME(learner.actor_period, (IntegerRange{1, 1000}),
                  "updates per actor and temperature update"),
       SHOAL_SAME(learner.target_period, (IntegerRange{1, 100'000}), "updates per target update"),

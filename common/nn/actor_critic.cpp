@@ -16,6 +16,7 @@ namespace shoal::nn {
 namespace {
 
 constexpr const char* kLogTemperature = "temperature.log";
+constexpr const char* kAverage = "average.";
 
 // The encoder first, so that the heads are one contiguous range.
 std::vector<ParameterShape> EncoderAndCritic(const NetworkConfig& network,
@@ -47,6 +48,8 @@ struct ActorCritic::Impl {
   void Import(const TensorMap& tensors, const std::string& source);
 
   ParameterSet critic_set, actor_set, target_set, temperature_set;
+  // Moving averages; the encoder's has the layout of the first part of critic_set.
+  ParameterSet encoder_average, actor_average;
   Adam critic_optimiser, actor_optimiser, temperature_optimiser;
   const int64_t critic_heads;      // where critic.* begins in critic_set; target_set has its layout
   std::optional<Encoder> encoder;  // empty without pixels
@@ -60,15 +63,20 @@ ActorCritic::Impl::Impl(const NetworkConfig& network, const ObservationSpec& spe
       actor_set(ActorParameters(network, spec), ParameterSet::Use::kTraining),
       target_set(CriticParameters(network, spec, "target"), ParameterSet::Use::kInference),
       temperature_set({{kLogTemperature, {1}}}, ParameterSet::Use::kTraining),
+      encoder_average(EncoderParameters(network, spec), ParameterSet::Use::kInference),
+      actor_average(ActorParameters(network, spec), ParameterSet::Use::kInference),
       critic_optimiser(&critic_set, options.learning_rate),
       actor_optimiser(&actor_set, options.learning_rate),
       temperature_optimiser(&temperature_set, options.learning_rate),
       critic_heads(critic_set.OffsetOf("critic.")) {
   CHECK(critic_set.size() - critic_heads == target_set.size());
+  CHECK(encoder_average.size() == critic_heads);
   critic_set.Initialise(options.seed);
   actor_set.Initialise(options.seed);
   std::copy_n(critic_set.values() + critic_heads, target_set.size(), target_set.values());
   temperature_set.values()[0] = float(std::log(options.initial_temperature));
+  std::copy_n(critic_set.values(), encoder_average.size(), encoder_average.values());
+  std::copy_n(actor_set.values(), actor_average.size(), actor_average.values());
   Build(network, spec, precision, options.batch);
   RefreshAll();
 }
@@ -106,6 +114,9 @@ TensorMap ActorCritic::Impl::Export() const {
   for (const ParameterSet* set : {&critic_set, &actor_set, &target_set, &temperature_set}) {
     set->Export(set->values(), "", &tensors);
   }
+  for (const ParameterSet* set : {&encoder_average, &actor_average}) {
+    set->Export(set->values(), kAverage, &tensors);
+  }
   critic_optimiser.Export("critic", &tensors);
   actor_optimiser.Export("actor", &tensors);
   temperature_optimiser.Export("temperature", &tensors);
@@ -115,6 +126,9 @@ TensorMap ActorCritic::Impl::Export() const {
 void ActorCritic::Impl::Import(const TensorMap& tensors, const std::string& source) {
   for (ParameterSet* set : {&critic_set, &actor_set, &target_set, &temperature_set}) {
     set->Import(tensors, "", source, set->values());
+  }
+  for (ParameterSet* set : {&encoder_average, &actor_average}) {
+    set->Import(tensors, kAverage, source, set->values());
   }
   critic_optimiser.Import(tensors, "critic", source);
   actor_optimiser.Import(tensors, "actor", source);
@@ -191,6 +205,22 @@ void ActorCritic::MoveTarget(float tau) {
   MoveTowards(tau, impl_->critic_set.values() + impl_->critic_heads, impl_->target_set.size(),
               impl_->target_set.values());
   impl_->target->Refresh();
+}
+
+void ActorCritic::MovePolicyAverage(float rate) {
+  const auto move = [rate](const ParameterSet& online, ParameterSet* average) {
+    MoveTowards(rate, online.values(), average->size(), average->values());
+  };
+  move(impl_->critic_set, &impl_->encoder_average);
+  move(impl_->actor_set, &impl_->actor_average);
+}
+
+TensorMap ActorCritic::AveragedPolicyTensors() const {
+  TensorMap policy;
+  for (const ParameterSet* set : {&impl_->encoder_average, &impl_->actor_average}) {
+    set->Export(set->values(), "", &policy);
+  }
+  return policy;
 }
 
 TensorMap ActorCritic::PolicyTensors() const {

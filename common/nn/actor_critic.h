@@ -4,6 +4,7 @@
 //   encoder.*, critic.*    trained by the critic's loss, one optimiser
 //   actor.*                trained by the actor's loss on the same features, detached
 //   target.*               trunk and heads that follow critic.*; there is no target encoder
+//   average.*              moving average of encoder.* and actor.*
 //   temperature.log        one number
 //
 // Dimensions: B batch, A actions, V vector size, K*C channels. Arrays are row-major f32; a result
@@ -71,8 +72,12 @@ class ActorCritic {
   // target += tau * (critic - target), trunk and heads.
   void MoveTarget(float tau);
 
-  // encoder.* and actor.*, F32.
+  // average += rate * (policy - average), encoder and actor.
+  void MovePolicyAverage(float rate);
+
+  // encoder.* and actor.*, F32: the newest ones, and their moving average.
   TensorMap PolicyTensors() const;
+  TensorMap AveragedPolicyTensors() const;
   // All parameters, optimiser moments and steps.
   TensorMap AllTensors() const;
   // Throws Error naming a missing tensor or a wrong shape; then nothing has changed.

@@ -5,6 +5,7 @@
 //   3. actor       the features of 2, detached -> actor -> critic heads -> actor step  (Eq. 7)
 //   4. temperature from the log-probabilities of 3                                     (Eq. 8)
 //   5. target heads follow the critic's                                                (Eq. 9)
+//   6. the averaged policy follows encoder and actor                                  (Eq. 12)
 //
 // 3 and 4 every actor_period updates, 5 every target_period, both from the first update on. The
 // encoder keeps one set of activations, so next_obs goes through it first. The temperature in 1 and
@@ -176,6 +177,7 @@ UpdateStats SacAgent::Update(const BatchView& batch) {
   if (agent.updates % uint64_t(learner.target_period) == 0) {
     agent.networks.MoveTarget(float(learner.tau));
   }
+  agent.networks.MovePolicyAverage(float(learner.average_rate));
   ++agent.updates;
   stats.temperature = agent.networks.Temperature();
   agent.last = stats;
@@ -185,6 +187,10 @@ UpdateStats SacAgent::Update(const BatchView& batch) {
 uint64_t SacAgent::updates() const { return impl_->updates; }
 
 nn::TensorMap SacAgent::PolicyTensors() const { return impl_->networks.PolicyTensors(); }
+
+nn::TensorMap SacAgent::AveragedPolicyTensors() const {
+  return impl_->networks.AveragedPolicyTensors();
+}
 
 nn::TensorMap SacAgent::AllTensors() const {
   nn::TensorMap tensors = impl_->networks.AllTensors();

@@ -213,6 +213,33 @@ TEST(SacAgent, PolicyTensorsAreTheAgentsOwnAndLoadIntoAPolicy) {
   EXPECT_NO_THROW(loaded.Load(policy, "agent"));
 }
 
+TEST(SacAgent, TheAveragedPolicyFollowsByTheRate) {
+  Config config = SmallConfig();
+  config.learner.average_rate = 0.25;
+  SacAgent agent = SmallAgent(config);
+  TensorMap average = agent.AveragedPolicyTensors();
+  EXPECT_THAT(Differences(average, agent.PolicyTensors()), IsEmpty()) << "it starts as the policy";
+  UpdateTimes(&agent, 3);
+  average = agent.AveragedPolicyTensors();
+  UpdateTimes(&agent, 1);
+  const TensorMap policy = agent.PolicyTensors(), moved = agent.AveragedPolicyTensors();
+  ASSERT_EQ(moved.size(), policy.size());
+  bool differs = false;
+  for (const auto& [name, tensor] : moved) {
+    const auto number = [&name](const TensorMap& tensors, size_t i) {
+      float value = 0;
+      std::memcpy(&value, tensors.at(name).data.data() + 4 * i, 4);
+      return value;
+    };
+    for (size_t i = 0; i < tensor.data.size() / 4; ++i) {
+      const float before = number(average, i), target = number(policy, i);
+      EXPECT_NEAR(number(moved, i), before + 0.25f * (target - before), 1e-6f) << name;
+      differs |= number(moved, i) != target;
+    }
+  }
+  EXPECT_TRUE(differs);
+}
+
 TEST(SacAgent, Bf16StartsWithTheLossesOfF32) {
   if (Precisions().size() < 2) GTEST_SKIP() << "this CPU has no bf16 arithmetic";
   const RandomBatch batch(SmallSpec(), SmallConfig().learner.batch, 3);
