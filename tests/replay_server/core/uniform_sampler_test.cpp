@@ -27,9 +27,11 @@ class BiasedSampler : public Sampler {
 
 class UniformSamplerTest : public testing::Test {
  protected:
+  // At least that many; the newest one is sampleable, so that a draw that leaves it out is seen.
   void Store(uint64_t records) {
     RecordScript script(spec_, 0, 1, 2, /*mean_length=*/4);
-    for (uint64_t sequence = 1; sequence <= records; ++sequence) {
+    for (uint64_t sequence = 1;
+         sequence <= records || (records > 1 && !index_.Sampleable(ring_.last_id())); ++sequence) {
       const RecordHeader& header = RecordLayout::Header(script.At(sequence).data());
       index_.Added(
           ring_.Append(0, 1, *index_.Predecessor(0, 1, header), script.At(sequence).data()));
