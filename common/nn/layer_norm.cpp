@@ -11,7 +11,7 @@ namespace shoal::nn {
 namespace {
 
 constexpr float kEpsilon = 1e-5f;
-constexpr int kMinParallel = 1 << 15;  // elements below which waking other threads costs more
+constexpr int kMinParallel = 1 << 17;  // elements below which waking other threads costs more
 
 // Runs body(begin, end) over rows, in parallel where there is enough to do.
 template <class Body>

@@ -129,8 +129,10 @@ TEST_F(BatchSenderTest, GivesUpTheBatchesOfAReplacedLearnerSession) {
   writer_.Refuse(-1);
   Send(1, 1);
   Send(2, 2);
+  const SteadyTime start = Now();
   sender_.SetLearnerSession(8);
   ASSERT_TRUE(WaitForEnds(2));
+  EXPECT_LT(Now() - start, BatchSender::kShardDeadline) << "at once, not for want of progress";
   EXPECT_TRUE(writer_.shards_.empty());
   EXPECT_EQ(sender_.given_up(), 2u);
 }
