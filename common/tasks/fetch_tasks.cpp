@@ -8,23 +8,35 @@ namespace {
 constexpr int kEpisodeLength = 50;
 constexpr double kDistanceThreshold = 0.05;
 
-Block PositionBlock(const std::string& name) {
-  return {name, {{"x", "m"}, {"y", "m"}, {"z", "m"}}};
+Block PositionBlock(const std::string& name, const std::string& what) {
+  return {name,
+          {{"x", "m", what + ", x in the world"},
+           {"y", "m", what + ", y in the world"},
+           {"z", "m", what + ", height above the floor"}}};
 }
 
 // Velocities are those of one env step: metres moved in the 0.04 s of a step at the present speed.
 Block ReachObservation() {
   return {"observation",
-          {{"grip_x", "m"},
-           {"grip_y", "m"},
-           {"grip_z", "m"},
-           {"right_finger", "m"},
-           {"left_finger", "m"},
-           {"grip_velocity_x", "m/step"},
-           {"grip_velocity_y", "m/step"},
-           {"grip_velocity_z", "m/step"},
-           {"right_finger_velocity", "m/step"},
-           {"left_finger_velocity", "m/step"}}};
+          {{"grip_x", "m", "point between the fingers, x in the world"},
+           {"grip_y", "m", "point between the fingers, y in the world"},
+           {"grip_z", "m", "point between the fingers, height above the floor"},
+           {"right_finger", "m", "opening of the right finger; held shut"},
+           {"left_finger", "m", "opening of the left finger; held shut"},
+           {"grip_velocity_x", "m/step", "velocity of the point between the fingers, x"},
+           {"grip_velocity_y", "m/step", "velocity of the point between the fingers, y"},
+           {"grip_velocity_z", "m/step", "velocity of the point between the fingers, z"},
+           {"right_finger_velocity", "m/step", "velocity of the right finger"},
+           {"left_finger_velocity", "m/step", "velocity of the left finger"}}};
+}
+
+// Each in [-1, 1]: the gripper is pulled towards 5 cm times the number, and lags behind.
+std::vector<Component> Action() {
+  return {{"dx", "", "moves the gripper along x, 1 = towards 5 cm further", -1, 1},
+          {"dy", "", "moves the gripper along y, 1 = towards 5 cm further", -1, 1},
+          {"dz", "", "moves the gripper up, 1 = towards 5 cm further", -1, 1},
+          {"gripper", "", "1 opens and -1 shuts the fingers; no effect while they are held shut",
+           -1, 1}};
 }
 
 Task FetchTask(const std::string& world, Block observation, RewardKind reward) {
@@ -32,10 +44,10 @@ Task FetchTask(const std::string& world, Block observation, RewardKind reward) {
   description.name = world + (reward == RewardKind::kDense ? "Dense" : "");
   description.world = world;
   description.episode_length = kEpisodeLength;
-  description.action = {{"dx", ""}, {"dy", ""}, {"dz", ""}, {"gripper", ""}};
+  description.action = Action();
   description.observation = std::move(observation);
-  description.achieved_goal = PositionBlock("achieved_goal");
-  description.desired_goal = PositionBlock("desired_goal");
+  description.achieved_goal = PositionBlock("achieved_goal", "point between the fingers");
+  description.desired_goal = PositionBlock("desired_goal", "target");
   description.reward = reward;
   description.distance_threshold = kDistanceThreshold;
   return Task(std::move(description));

@@ -6,6 +6,7 @@
 // Dimension letters: N goals in a batch, G numbers of a goal.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -14,8 +15,12 @@ namespace shoal::tasks {
 
 // One number of a block or an action.
 struct Component {
-  std::string name;  // "grip_x"
-  std::string unit;  // "m"; empty = dimensionless
+  std::string name;          // "grip_x"
+  std::string unit = "";     // "m"; empty = dimensionless
+  std::string meaning = "";  // one line, for people
+  // In `unit`, both ends included; infinite where the task sets none.
+  double low = -std::numeric_limits<double>::infinity();
+  double high = std::numeric_limits<double>::infinity();
 };
 
 // One named vector of an observation.

@@ -21,6 +21,23 @@ TEST(TaskRegistry, NamesAreUniqueAndFindTheirTask) {
   EXPECT_EQ(seen, (std::set<std::string>{"FetchReach", "FetchReachDense"}));
 }
 
+TEST(TaskRegistry, EveryNumberSaysWhatItMeansAndActionsAreBounded) {
+  for (const std::string& name : TaskNames()) {
+    const Task& task = FindTask(name);
+    for (const Component& axis : task.action()) {
+      EXPECT_NE(axis.meaning, "") << name << " action " << axis.name;
+      EXPECT_EQ(axis.low, -1) << name << " action " << axis.name;
+      EXPECT_EQ(axis.high, 1) << name << " action " << axis.name;
+    }
+    for (const Block* block : {&task.observation(), &task.achieved_goal(), &task.desired_goal()}) {
+      for (const Component& number : block->components) {
+        EXPECT_NE(number.meaning, "") << name << " " << block->name << " " << number.name;
+        EXPECT_LT(number.low, number.high) << name << " " << block->name << " " << number.name;
+      }
+    }
+  }
+}
+
 TEST(TaskRegistry, AnUnknownTaskIsAUsageErrorThatListsTheTasks) {
   try {
     FindTask("FetchReech");
