@@ -2,12 +2,11 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
-#include <mutex>
 #include <optional>
 #include <utility>
 
 #include "common/base/clock.h"
+#include "common/base/mutex.h"
 #include "common/wire/messages.h"
 
 namespace shoal::actor {
@@ -19,24 +18,25 @@ class CreditInbox {
   // Receive thread. Words to others are ignored.
   void OnMessage(const Credit& credit) {
     if (credit.actor != actor_ || credit.session != session_) return;
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     newest_ = credit;
-    arrived_.notify_all();
+    arrived_.NotifyAll();
   }
 
   // The newest word not taken before; waits for one until `deadline`.
   std::optional<Credit> Take(SteadyTime deadline) {
-    std::unique_lock lock(mutex_);
-    arrived_.wait_until(lock, deadline, [&] { return newest_.has_value(); });
+    const MutexLock lock(mutex_);
+    while (!newest_ && arrived_.WaitUntil(mutex_, deadline)) {
+    }
     return std::exchange(newest_, std::nullopt);
   }
 
  private:
   const uint32_t actor_;
   const uint64_t session_;
-  std::mutex mutex_;
-  std::condition_variable arrived_;
-  std::optional<Credit> newest_;
+  Mutex mutex_;
+  ConditionVariable arrived_;
+  std::optional<Credit> newest_ SHOAL_GUARDED_BY(mutex_);
 };
 
 }  // namespace shoal::actor

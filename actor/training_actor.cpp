@@ -48,7 +48,6 @@ class TrainingActor {
  public:
   TrainingActor(const std::filesystem::path& folder, uint32_t id)
       : run_(ReadRunConfig(folder)),
-        id_(id),
         session_(static_cast<uint64_t>(WallTimeNs())),
         first_env_(id * static_cast<uint32_t>(run_.config.envs_per_actor)),
         made_(folder, id, session_, first_env_, static_cast<uint32_t>(run_.config.envs_per_actor)),
@@ -225,7 +224,6 @@ class TrainingActor {
   }
 
   const RunConfig run_;
-  const uint32_t id_;
   const uint64_t session_;
   const uint32_t first_env_;
   MadePage made_;

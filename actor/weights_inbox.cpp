@@ -7,7 +7,7 @@
 namespace shoal::actor {
 
 void WeightsInbox::OnMessage(const WeightsMessage& message) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (message.spec_hash != spec_hash_ || Crc32(message.payload) != message.crc) {
     ++refused_;
     return;
@@ -17,28 +17,28 @@ void WeightsInbox::OnMessage(const WeightsMessage& message) {
   newest_ = ReceivedWeights{
       message.version, message.env_steps, message.checkpoint,
       std::string(reinterpret_cast<const char*>(message.payload.data()), message.payload.size())};
-  arrived_.notify_all();
+  arrived_.NotifyAll();
 }
 
-std::optional<ReceivedWeights> WeightsInbox::TryTake() {
-  const std::lock_guard lock(mutex_);
-  if (!newest_) return std::nullopt;
-  taken_ = newest_->version;
+std::optional<ReceivedWeights> WeightsInbox::TakeNewest() {
+  if (newest_) taken_ = newest_->version;
   return std::exchange(newest_, std::nullopt);
 }
 
+std::optional<ReceivedWeights> WeightsInbox::TryTake() {
+  const MutexLock lock(mutex_);
+  return TakeNewest();
+}
+
 std::optional<ReceivedWeights> WeightsInbox::Take(SteadyTime deadline) {
-  {
-    std::unique_lock lock(mutex_);
-    if (!arrived_.wait_until(lock, deadline, [&] { return newest_.has_value(); })) {
-      return std::nullopt;
-    }
+  const MutexLock lock(mutex_);
+  while (!newest_ && arrived_.WaitUntil(mutex_, deadline)) {
   }
-  return TryTake();
+  return TakeNewest();
 }
 
 uint64_t WeightsInbox::refused() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return refused_;
 }
 

@@ -1,13 +1,12 @@
 // The newest weights received, handed from the DDS receive thread to the acting loop.
 #pragma once
 
-#include <condition_variable>
 #include <cstdint>
-#include <mutex>
 #include <optional>
 #include <string>
 
 #include "common/base/clock.h"
+#include "common/base/mutex.h"
 #include "common/wire/messages.h"
 
 namespace shoal::actor {
@@ -35,12 +34,14 @@ class WeightsInbox {
   uint64_t refused() const;
 
  private:
+  std::optional<ReceivedWeights> TakeNewest() SHOAL_REQUIRES(mutex_);
+
   const uint64_t spec_hash_;
-  mutable std::mutex mutex_;
-  std::condition_variable arrived_;
-  std::optional<ReceivedWeights> newest_;
-  WeightsVersion taken_;
-  uint64_t refused_ = 0;
+  mutable Mutex mutex_;
+  ConditionVariable arrived_;
+  std::optional<ReceivedWeights> newest_ SHOAL_GUARDED_BY(mutex_);
+  WeightsVersion taken_ SHOAL_GUARDED_BY(mutex_);
+  uint64_t refused_ SHOAL_GUARDED_BY(mutex_) = 0;
 };
 
 }  // namespace shoal::actor

@@ -2,9 +2,10 @@
 #pragma once
 
 #include <cstdint>
-#include <mutex>
 #include <utility>
 #include <vector>
+
+#include "common/base/mutex.h"
 
 namespace shoal::launch {
 
@@ -16,7 +17,7 @@ class MessageInbox {
   explicit MessageInbox(size_t capacity) : capacity_(capacity) {}
 
   void Put(const M& message) {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     if (messages_.size() < capacity_) {
       messages_.push_back(message);
     } else {
@@ -25,20 +26,20 @@ class MessageInbox {
   }
 
   std::vector<M> TakeAll() {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     return std::exchange(messages_, {});
   }
 
   uint64_t dropped() const {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     return dropped_;
   }
 
  private:
   const size_t capacity_;
-  mutable std::mutex mutex_;
-  std::vector<M> messages_;
-  uint64_t dropped_ = 0;
+  mutable Mutex mutex_;
+  std::vector<M> messages_ SHOAL_GUARDED_BY(mutex_);
+  uint64_t dropped_ SHOAL_GUARDED_BY(mutex_) = 0;
 };
 
 }  // namespace shoal::launch

@@ -38,7 +38,7 @@ BatchSource::BatchSource(const RunConfig& run, uint64_t learner_session, uint64_
 
 void BatchSource::OnShard(const BatchShard& shard) {
   using Verdict = BatchAssembler::Verdict;
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   const Verdict verdict = assembler_.Add(shard);
   switch (verdict) {
     case Verdict::kStartedOver:
@@ -59,7 +59,7 @@ void BatchSource::OnShard(const BatchShard& shard) {
       return;
     case Verdict::kWrongSpec:
       other_spec_hash_ = shard.spec_hash;
-      arrived_.notify_one();
+      arrived_.NotifyOne();
       return;
   }
   const auto outstanding = std::ranges::find(outstanding_, shard.request, &Outstanding::request);
@@ -67,31 +67,30 @@ void BatchSource::OnShard(const BatchShard& shard) {
     outstanding->next_send =
         verdict == Verdict::kCompleted ? SteadyTime::max() : Now() + resend_after_;
   }
-  arrived_.notify_one();
+  arrived_.NotifyOne();
 }
 
 std::optional<Batch> BatchSource::Next(SteadyTime deadline) {
-  std::unique_lock lock(mutex_);
-  if (handed_out_ != 0) assembler_.Release(std::exchange(handed_out_, 0));
-  while (true) {
-    Extend();
-    SendDue(lock);
-    RefuseOtherSpec();
-    if (auto batch = TakeFirst()) {
-      // The replay works on the next ones while this one is used.
-      Extend();
-      SendDue(lock);
-      return batch;
-    }
-    if (Now() >= deadline) return std::nullopt;
-    SteadyTime wake = deadline;
-    for (const Outstanding& o : outstanding_) wake = std::min(wake, o.next_send);
-    arrived_.wait_until(lock, wake);
+  {
+    const MutexLock lock(mutex_);
+    if (handed_out_ != 0) assembler_.Release(std::exchange(handed_out_, 0));
   }
+  std::optional<Batch> batch;
+  while (!batch) {
+    SendDue();
+    const MutexLock lock(mutex_);
+    RefuseOtherSpec();
+    batch = TakeFirst();
+    if (batch) break;
+    if (Now() >= deadline) return std::nullopt;
+    arrived_.WaitUntil(mutex_, std::min(deadline, NextDue()));
+  }
+  SendDue();  // the replay works on the next ones while this one is used
+  return batch;
 }
 
 BatchCounters BatchSource::counters() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return counters_;
 }
 
@@ -112,7 +111,23 @@ void BatchSource::Extend() {
   }
 }
 
-void BatchSource::SendDue(std::unique_lock<std::mutex>& lock) {
+void BatchSource::SendDue() {
+  std::vector<uint64_t> due;
+  {
+    const MutexLock lock(mutex_);
+    Extend();
+    due = TakeDue();
+  }
+  std::vector<uint64_t> unsent;
+  for (const uint64_t request : due) {
+    if (!send_(MakeRequest(request))) unsent.push_back(request);
+  }
+  if (unsent.empty()) return;
+  const MutexLock lock(mutex_);
+  TryAgain(unsent);
+}
+
+std::vector<uint64_t> BatchSource::TakeDue() {
   const SteadyTime now = Now();
   std::vector<uint64_t> due;
   for (Outstanding& o : outstanding_) {
@@ -121,18 +136,21 @@ void BatchSource::SendDue(std::unique_lock<std::mutex>& lock) {
     o.next_send = now + resend_after_;
     if (std::exchange(o.sent, true)) ++counters_.resent_requests;
   }
-  if (due.empty()) return;
-  lock.unlock();
-  std::vector<uint64_t> unsent;
-  for (const uint64_t request : due) {
-    if (!send_(MakeRequest(request))) unsent.push_back(request);
-  }
-  lock.lock();
+  return due;
+}
+
+void BatchSource::TryAgain(const std::vector<uint64_t>& unsent) {
   for (Outstanding& o : outstanding_) {
     if (!std::ranges::count(unsent, o.request) || assembler_.TryGet(o.request)) continue;
     o.sent = false;
     o.next_send = Now() + kRetryAfter;
   }
+}
+
+SteadyTime BatchSource::NextDue() const {
+  SteadyTime next = SteadyTime::max();
+  for (const Outstanding& o : outstanding_) next = std::min(next, o.next_send);
+  return next;
 }
 
 std::optional<Batch> BatchSource::TakeFirst() {

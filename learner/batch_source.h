@@ -8,11 +8,12 @@
 #pragma once
 
 #include <chrono>
-#include <condition_variable>
 #include <deque>
 #include <functional>
-#include <mutex>
+#include <optional>
+#include <vector>
 
+#include "common/base/mutex.h"
 #include "common/config/run_files.h"
 #include "learner/batch_assembler.h"
 #include "learner/batch_stream.h"
@@ -44,12 +45,15 @@ class BatchSource final : public BatchStream {
   };
 
   SampleRequest MakeRequest(uint64_t request) const;
-  // Expects further requests while credits and buffers last.
-  void Extend();
-  // Sends what is due; gives up the lock while it does.
-  void SendDue(std::unique_lock<std::mutex>& lock);
-  std::optional<Batch> TakeFirst();
-  void RefuseOtherSpec() const;
+  // Expects further requests while credits and buffers last, and sends what is due.
+  void SendDue() SHOAL_EXCLUDES(mutex_);
+  void Extend() SHOAL_REQUIRES(mutex_);
+  std::vector<uint64_t> TakeDue() SHOAL_REQUIRES(mutex_);
+  void TryAgain(const std::vector<uint64_t>& unsent) SHOAL_REQUIRES(mutex_);
+  std::optional<Batch> TakeFirst() SHOAL_REQUIRES(mutex_);
+  // When the next request is due to be sent again.
+  SteadyTime NextDue() const SHOAL_REQUIRES(mutex_);
+  void RefuseOtherSpec() const SHOAL_REQUIRES(mutex_);
 
   const RunConfig run_;
   const uint64_t spec_hash_;
@@ -59,14 +63,15 @@ class BatchSource final : public BatchStream {
   const Send send_;
   const std::chrono::milliseconds resend_after_;
 
-  mutable std::mutex mutex_;
-  std::condition_variable arrived_;
-  BatchAssembler assembler_;
-  std::deque<Outstanding> outstanding_;  // ascending request ids
-  uint64_t next_request_;
-  uint64_t handed_out_ = 0;       // request whose batch the caller holds; 0 = none
-  uint64_t other_spec_hash_ = 0;  // of a refused shard; 0 = none
-  BatchCounters counters_;
+  mutable Mutex mutex_;
+  ConditionVariable arrived_;
+  BatchAssembler assembler_ SHOAL_GUARDED_BY(mutex_);
+  std::deque<Outstanding> outstanding_ SHOAL_GUARDED_BY(mutex_);  // ascending request ids
+  uint64_t next_request_ SHOAL_GUARDED_BY(mutex_);
+  // Request whose batch the caller holds; 0 = none.
+  uint64_t handed_out_ SHOAL_GUARDED_BY(mutex_) = 0;
+  uint64_t other_spec_hash_ SHOAL_GUARDED_BY(mutex_) = 0;  // of a refused shard; 0 = none
+  BatchCounters counters_ SHOAL_GUARDED_BY(mutex_);
 };
 
 }  // namespace shoal::learner

@@ -4,9 +4,10 @@
 
 #include <cstdint>
 #include <map>
-#include <mutex>
 #include <set>
 #include <string>
+
+#include "common/base/mutex.h"
 
 namespace shoal::learner {
 
@@ -24,8 +25,8 @@ class PendingEvaluations {
   static constexpr size_t kMost = 6;
 
  private:
-  mutable std::mutex mutex_;
-  std::map<uint64_t, std::string> pending_;  // by updates
+  mutable Mutex mutex_;
+  std::map<uint64_t, std::string> pending_ SHOAL_GUARDED_BY(mutex_);  // by updates
 };
 
 }  // namespace shoal::learner

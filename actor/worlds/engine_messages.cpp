@@ -9,6 +9,7 @@
 
 #include "common/base/error.h"
 #include "common/base/log.h"
+#include "common/base/mutex.h"
 
 namespace shoal::worlds {
 namespace {
@@ -23,11 +24,11 @@ void CountWarning(const char* message) {
   ++warnings;
   // Texts are few (one per kind of warning and place), so the map stays small; still bounded.
   constexpr size_t kMostTexts = 256;
-  static std::mutex mutex;
+  static Mutex mutex;
   static std::map<std::string, int64_t> counts;
   int64_t count = 0;
   {
-    const std::lock_guard lock(mutex);
+    const MutexLock lock(mutex);
     if (counts.size() >= kMostTexts && counts.count(message) == 0) return;
     count = ++counts[message];
   }

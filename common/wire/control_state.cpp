@@ -3,7 +3,7 @@
 namespace shoal {
 
 void ControlState::OnMessage(const ControlMessage& message, SteadyTime now) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   last_heard_ = now;
   heard_ = true;
   if (message.epoch < epoch_) return;
@@ -12,12 +12,12 @@ void ControlState::OnMessage(const ControlMessage& message, SteadyTime now) {
 }
 
 RunState ControlState::state() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return state_;
 }
 
 bool ControlState::CoordinatorLost(SteadyTime now) const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return now - last_heard_ > (heard_ ? kLease : kFirstLease);
 }
 

@@ -3,9 +3,9 @@
 #pragma once
 
 #include <chrono>
-#include <mutex>
 
 #include "common/base/clock.h"
+#include "common/base/mutex.h"
 #include "common/wire/messages.h"
 
 namespace shoal {
@@ -26,11 +26,11 @@ class ControlState {
   static constexpr std::chrono::seconds kFirstLease{30};
 
  private:
-  mutable std::mutex mutex_;
-  SteadyTime last_heard_;
-  bool heard_ = false;
-  uint64_t epoch_ = 0;
-  RunState state_ = RunState::kRunning;
+  mutable Mutex mutex_;
+  SteadyTime last_heard_ SHOAL_GUARDED_BY(mutex_);
+  bool heard_ SHOAL_GUARDED_BY(mutex_) = false;
+  uint64_t epoch_ SHOAL_GUARDED_BY(mutex_) = 0;
+  RunState state_ SHOAL_GUARDED_BY(mutex_) = RunState::kRunning;
 };
 
 }  // namespace shoal

@@ -13,6 +13,7 @@ namespace shoal::replay {
 namespace {
 
 constexpr std::chrono::milliseconds kPause{5};  // between tries
+constexpr std::chrono::seconds kIdleWait{60};   // for a batch; then it looks again
 
 }  // namespace
 
@@ -33,41 +34,53 @@ BatchSender::BatchSender(uint64_t spec_hash, uint64_t batch_bytes, int buffers, 
 
 BatchSender::~BatchSender() {
   {
-    const std::lock_guard lock(mutex_);
+    const MutexLock lock(mutex_);
     stopping_ = true;
-    changed_.notify_all();
+    changed_.NotifyAll();
   }
   thread_.join();
 }
 
 uint8_t* BatchSender::FreeBuffer() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return free_.empty() ? nullptr : free_.back();
 }
 
 void BatchSender::Send(const DrawnBatch& batch, uint8_t* buffer) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   CHECK(!free_.empty());
   // The sender may have put another buffer behind it since FreeBuffer().
   const auto it = std::ranges::find(free_, buffer);
   CHECK(it != free_.end());
   free_.erase(it);
   queue_.push_back({batch, buffer});
-  changed_.notify_one();
+  changed_.NotifyOne();
+}
+
+std::optional<BatchSender::Outgoing> BatchSender::TakeNext() {
+  const MutexLock lock(mutex_);
+  while (!stopping_ && queue_.empty()) changed_.WaitUntil(mutex_, Now() + kIdleWait);
+  if (stopping_) return std::nullopt;
+  const Outgoing outgoing = queue_.front();
+  queue_.pop_front();
+  return outgoing;
+}
+
+void BatchSender::Pause() {
+  const MutexLock lock(mutex_);
+  const SteadyTime until = Now() + kPause;
+  while (!stopping_ && changed_.WaitUntil(mutex_, until)) {
+  }
 }
 
 void BatchSender::Run() {
   try {
-    std::unique_lock lock(mutex_);
-    while (true) {
-      changed_.wait(lock, [this] { return stopping_ || !queue_.empty(); });
-      if (stopping_) return;
-      const Outgoing outgoing = queue_.front();
-      queue_.pop_front();
-      lock.unlock();
-      ++(SendShards(outgoing) ? sent_ : given_up_);
-      lock.lock();
-      free_.push_back(outgoing.buffer);
+    while (const auto outgoing = TakeNext()) {
+      ++(SendShards(*outgoing) ? sent_ : given_up_);
+      {
+        const MutexLock lock(mutex_);
+        free_.push_back(outgoing->buffer);
+      }
       on_free_();
     }
   } catch (const std::exception& e) {
@@ -82,8 +95,7 @@ bool BatchSender::WaitForReader(const DrawnBatch& batch) {
   const SteadyTime deadline = Now() + kReaderDeadline;
   while (!writer_.HasReader()) {
     if (!Wanted(batch.request.learner_session) || Now() > deadline) return false;
-    std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, kPause, [this] { return stopping_.load(); });
+    Pause();
   }
   return true;
 }
@@ -117,8 +129,7 @@ bool BatchSender::SendShard(const BatchShard& shard) {
                    shard.request, shard.shard, shard.shards, kShardDeadline.count());
       return false;
     }
-    std::unique_lock lock(mutex_);  // a writer that fails at once must not make this a busy loop
-    changed_.wait_for(lock, kPause, [this] { return stopping_.load(); });
+    Pause();  // a writer that fails at once must not make this a busy loop
   }
   return false;
 }

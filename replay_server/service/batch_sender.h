@@ -9,16 +9,16 @@
 
 #include <atomic>
 #include <chrono>
-#include <condition_variable>
 #include <cstdint>
 #include <cstdlib>
 #include <deque>
 #include <functional>
 #include <memory>
-#include <mutex>
+#include <optional>
 #include <thread>
 #include <vector>
 
+#include "common/base/mutex.h"
 #include "common/wire/messages.h"
 #include "replay_server/core/replay_core.h"
 
@@ -71,6 +71,10 @@ class BatchSender {
   };
 
   void Run();
+  // The next batch to send; waits for it. Nothing when stopping.
+  std::optional<Outgoing> TakeNext();
+  // Between tries; ends early when stopping.
+  void Pause();
   bool SendShards(const Outgoing& outgoing);
   bool SendShard(const BatchShard& shard);
   bool WaitForReader(const DrawnBatch& batch);
@@ -80,10 +84,10 @@ class BatchSender {
   ShardWriter& writer_;
   const std::function<void()> on_free_;
   std::vector<std::unique_ptr<uint8_t[], FreeBytes>> memory_;
-  std::mutex mutex_;
-  std::condition_variable changed_;
-  std::vector<uint8_t*> free_;
-  std::deque<Outgoing> queue_;
+  Mutex mutex_;
+  ConditionVariable changed_;
+  std::vector<uint8_t*> free_ SHOAL_GUARDED_BY(mutex_);
+  std::deque<Outgoing> queue_ SHOAL_GUARDED_BY(mutex_);
   std::atomic<bool> stopping_{false};
   std::atomic<uint64_t> learner_session_{0};
   std::atomic<uint64_t> sent_{0}, given_up_{0};

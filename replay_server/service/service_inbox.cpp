@@ -9,7 +9,7 @@ ServiceInbox::ServiceInbox(uint64_t spec_hash, uint64_t chunk_bytes, size_t max_
     : spec_hash_(spec_hash), chunk_words_((chunk_bytes + 7) / 8), max_chunks_(max_chunks) {}
 
 std::unique_ptr<PooledChunk> ServiceInbox::TakeBuffer() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (!free_.empty()) {
     std::unique_ptr<PooledChunk> buffer = std::move(free_.back());
     free_.pop_back();
@@ -34,58 +34,58 @@ void ServiceInbox::OnChunk(const TransitionChunk& chunk) {
     if (!chunk.payload.empty()) std::memcpy(bytes, chunk.payload.data(), chunk.payload.size());
     buffer->chunk.payload = {bytes, chunk.payload.size()};
   }
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   waiting_.chunks.push_back(std::move(buffer));
-  arrived_.notify_one();
+  arrived_.NotifyOne();
 }
 
 void ServiceInbox::OnRequest(const SampleRequest& request) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   if (waiting_.requests.size() >= kMaxRequests) {
     ++dropped_requests_;
     return;
   }
   waiting_.requests.push_back(request);
-  arrived_.notify_one();
+  arrived_.NotifyOne();
 }
 
 void ServiceInbox::Wake() {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   woken_ = true;
-  arrived_.notify_one();
+  arrived_.NotifyOne();
 }
 
 ServiceInbox::Arrivals ServiceInbox::Wait(SteadyTime deadline) {
-  std::unique_lock lock(mutex_);
-  arrived_.wait_until(lock, deadline, [this] {
-    return woken_ || !waiting_.chunks.empty() || !waiting_.requests.empty();
-  });
+  const MutexLock lock(mutex_);
+  while (!woken_ && waiting_.chunks.empty() && waiting_.requests.empty()) {
+    if (!arrived_.WaitUntil(mutex_, deadline)) break;
+  }
   woken_ = false;
   return std::exchange(waiting_, {});
 }
 
 void ServiceInbox::Release(std::unique_ptr<PooledChunk> chunk) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   free_.push_back(std::move(chunk));
 }
 
 void ServiceInbox::SetMaxChunks(size_t max_chunks) {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   max_chunks_ = max_chunks;
 }
 
 size_t ServiceInbox::Depth() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return waiting_.chunks.size() + waiting_.requests.size();
 }
 
 uint64_t ServiceInbox::DroppedChunks() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return dropped_chunks_;
 }
 
 uint64_t ServiceInbox::DroppedRequests() const {
-  const std::lock_guard lock(mutex_);
+  const MutexLock lock(mutex_);
   return dropped_requests_;
 }
 

@@ -3,14 +3,13 @@
 // it again.
 #pragma once
 
-#include <condition_variable>
 #include <cstdint>
 #include <deque>
 #include <memory>
-#include <mutex>
 #include <vector>
 
 #include "common/base/clock.h"
+#include "common/base/mutex.h"
 #include "common/wire/messages.h"
 
 namespace shoal::replay {
@@ -56,14 +55,15 @@ class ServiceInbox {
 
   const uint64_t spec_hash_;
   const size_t chunk_words_;
-  mutable std::mutex mutex_;
-  std::condition_variable arrived_;
-  Arrivals waiting_;
-  std::vector<std::unique_ptr<PooledChunk>> free_;
-  size_t max_chunks_;
-  size_t chunks_ = 0;  // buffers there are, wherever they are
-  bool woken_ = false;
-  uint64_t dropped_chunks_ = 0, dropped_requests_ = 0;
+  mutable Mutex mutex_;
+  ConditionVariable arrived_;
+  Arrivals waiting_ SHOAL_GUARDED_BY(mutex_);
+  std::vector<std::unique_ptr<PooledChunk>> free_ SHOAL_GUARDED_BY(mutex_);
+  size_t max_chunks_ SHOAL_GUARDED_BY(mutex_);
+  size_t chunks_ SHOAL_GUARDED_BY(mutex_) = 0;  // buffers there are, wherever they are
+  bool woken_ SHOAL_GUARDED_BY(mutex_) = false;
+  uint64_t dropped_chunks_ SHOAL_GUARDED_BY(mutex_) = 0;
+  uint64_t dropped_requests_ SHOAL_GUARDED_BY(mutex_) = 0;
 };
 
 }  // namespace shoal::replay
