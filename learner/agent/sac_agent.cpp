@@ -156,9 +156,7 @@ UpdateStats SacAgent::Update(const BatchView& batch) {
   const nn::ThreadScope scope(agent.threads);
   const LearnerConfig& learner = agent.config.learner;
   UpdateStats stats = agent.last;
-  stats.frame_spread = float(nn::MeanFrameSpread(batch.obs_frames.data(),
-                                                 agent.spec.HasPixels() ? agent.batch_size : 0,
-                                                 agent.spec.stack * agent.spec.FrameBytes()));
+  stats.frame_spread = agent.FrameSpread(batch);
   stats.temperature = agent.networks.Temperature();
   stats.finite = AllFinite(batch);
   if (!stats.finite) return stats;
