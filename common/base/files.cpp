@@ -56,6 +56,15 @@ void WriteFileAtomically(const std::filesystem::path& path, std::string_view con
   SyncFolder(path.has_parent_path() ? path.parent_path() : ".");
 }
 
+void CheckWritable(const std::filesystem::path& path) {
+  std::error_code error;
+  if (std::filesystem::is_directory(path, error)) Fail("cannot write", path, EISDIR);
+  const std::filesystem::path folder = path.has_parent_path() ? path.parent_path() : ".";
+  if (!std::filesystem::exists(folder, error)) Fail("cannot write", path, ENOENT);
+  if (!std::filesystem::is_directory(folder, error)) Fail("cannot write", path, ENOTDIR);
+  if (access(folder.c_str(), W_OK) != 0) Fail("cannot write", path, errno);
+}
+
 void SyncFolder(const std::filesystem::path& folder) {
   const int fd = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (fd < 0) Fail("cannot open folder", folder, errno);

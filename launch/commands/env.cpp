@@ -7,6 +7,7 @@
 #include "actor/worlds/tools/replay_reference.h"
 #include "common/image/png.h"
 #include "launch/commands/commands.h"
+#include "launch/commands/env_tasks.h"
 
 namespace shoal::launch {
 namespace {
@@ -72,6 +73,7 @@ void AddReplay(CLI::App& env, Action* chosen) {
 void AddEnvCommand(CLI::App& app, Action* chosen) {
   CLI::App* env = app.add_subcommand("env", "Look at environments.");
   env->require_subcommand(1);
+  AddEnvTaskCommands(*env, chosen);
   AddRender(*env, chosen);
   AddReplay(*env, chosen);
 }

@@ -65,5 +65,23 @@ TEST(Files, ErrorsNameThePath) {
   }
 }
 
+TEST(Files, WhatCannotBeWrittenIsRefusedBeforehandAndNothingIsTouched) {
+  const TemporaryFolder folder;
+  WriteFileAtomically(folder.path() / "there", "old");
+  CheckWritable(folder.path() / "new");
+  CheckWritable(folder.path() / "there");
+  EXPECT_EQ(ReadFile(folder.path() / "there"), "old");
+  EXPECT_EQ(FilesIn(folder.path()), 1);
+  for (const std::filesystem::path& bad :
+       {folder.path(), folder.path() / "absent" / "x", folder.path() / "there" / "x"}) {
+    try {
+      CheckWritable(bad);
+      ADD_FAILURE() << bad << " passed";
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find(bad.string()), std::string::npos) << e.what();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace shoal

@@ -1,0 +1,57 @@
+// What a task is, for people and programs: its numbers with units, meaning and bounds, what its
+// actions do, what it rewards, where its cameras stand. Declared facts come from the task's goal
+// half; ranges and effects of actions are measured in its physics half.
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "actor/worlds/camera_view.h"
+#include "common/tasks/task.h"
+
+namespace shoal::worlds {
+
+struct MeasuredRange {
+  double low = 0, high = 0;
+};
+
+// What one action component does: each number of the state vector after `env_steps` steps of
+// `command` along this axis alone, less what it is after as many steps of no action from the same
+// start.
+struct AxisProbe {
+  int axis = 0;
+  double command = 0;  // -1 or 1
+  int env_steps = 0;   // fewer than asked for where the episode ended
+  std::vector<double> change;
+};
+
+struct TaskDescription {
+  const tasks::Task* task = nullptr;
+  double env_step_seconds = 0;  // simulated
+  std::string fingerprint;      // of the model
+  std::vector<CameraView> cameras;
+  int random_env_steps = 0;  // that the ranges were seen in
+  // One per number of the observation, the achieved and the desired goal.
+  std::vector<MeasuredRange> observation, achieved_goal, desired_goal;
+  std::vector<AxisProbe> probes;  // two per axis: -1, then 1
+};
+
+struct DescribeRequest {
+  std::string task;
+  std::string model = "";      // path of another MJCF file; empty = our own
+  int probe_env_steps = 5;     // of one command
+  int random_env_steps = 500;  // of uniform random actions, over as many episodes as that takes
+  int64_t seed = 1;
+};
+
+// Throws Error (kUsage) on an unknown task, listing those there are.
+TaskDescription DescribeTask(const DescribeRequest& request);
+
+// Schema shoal-env-1. Infinite bounds are null.
+nlohmann::ordered_json ToJson(const TaskDescription& description);
+// For people.
+std::string ToText(const TaskDescription& description);
+
+}  // namespace shoal::worlds
