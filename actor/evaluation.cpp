@@ -132,21 +132,22 @@ ordered_json EvaluationJson(const RunConfig& run, const EvaluationLabel& label,
                     {"final_distance", NumberOrNull(episode.final_distance)},
                     {"action_smoothness", episode.action_smoothness}});
   }
-  return {
-      {"schema", "shoal-eval-1"},
-      {"task", run.config.task},
-      {"policy", label.policy},
-      {"checkpoint", label.checkpoint},
-      {"weights_version", {{"session", label.version.session}, {"update", label.version.update}}},
-      {"env_steps", label.env_steps},
-      {"deterministic", label.policy == "checkpoint"},
-      {"cameras", run.spec.cameras},
-      {"seeds", {stream.seed}},
-      {"stream", {{"role", static_cast<uint64_t>(stream.role)}, {"group", stream.group}}},
-      {"episodes", list},
-      {"aggregate", Aggregate(episodes)},
-      {"commit", BuildCommit()},
-      {"created", UtcTimestamp()}};
+  const bool random = label.policy == "random";
+  const ordered_json version{{"session", label.version.session}, {"update", label.version.update}};
+  return {{"schema", "shoal-eval-1"},
+          {"task", run.config.task},
+          {"policy", label.policy},
+          {"checkpoint", random ? ordered_json(nullptr) : ordered_json(label.checkpoint)},
+          {"weights_version", random ? ordered_json(nullptr) : version},
+          {"env_steps", label.env_steps},
+          {"deterministic", !random},
+          {"cameras", run.spec.cameras},
+          {"seeds", {stream.seed}},
+          {"stream", {{"role", static_cast<uint64_t>(stream.role)}, {"group", stream.group}}},
+          {"episodes", list},
+          {"aggregate", Aggregate(episodes)},
+          {"commit", BuildCommit()},
+          {"created", UtcTimestamp()}};
 }
 
 ordered_json EvaluateCheckpoint(const std::filesystem::path& run_folder,

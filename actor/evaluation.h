@@ -37,9 +37,9 @@ struct EpisodeStream {
 
 // What eval/*.json says about where the numbers come from.
 struct EvaluationLabel {
-  std::string policy;      // "checkpoint" | "random"
-  std::string checkpoint;  // folder name
-  WeightsVersion version;
+  std::string policy;           // "checkpoint" | "random": then there is no checkpoint and version
+  std::string checkpoint = "";  // folder name
+  WeightsVersion version = {};
   uint64_t env_steps = 0;
 };
 

@@ -5,9 +5,12 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "actor/random_baseline.h"
+#include "actor/worlds/tools/reward_check.h"
 #include "actor/worlds/tools/task_description.h"
 #include "actor/worlds/tools/task_table.h"
 #include "common/base/files.h"
+#include "common/base/stop.h"
 
 namespace shoal::launch {
 namespace {
@@ -26,10 +29,42 @@ int Describe(const worlds::DescribeRequest& request, const std::string& json) {
   return 0;
 }
 
+int CheckRewards(const worlds::RewardCheckRequest& request, const std::string& json) {
+  if (!json.empty()) CheckWritable(json);
+  const worlds::RewardCheck check = worlds::CheckRewards(request);
+  if (!json.empty()) WriteFileAtomically(json, worlds::ToJson(check).dump(2) + "\n");
+  std::cout << worlds::ToText(check) << std::flush;
+  return check.Passed() ? 0 : 1;
+}
+
+int PlayRandom(const actor::RandomRequest& request, const std::string& json) {
+  if (!json.empty()) CheckWritable(json);
+  InstallStopSignals();
+  const nlohmann::ordered_json result = actor::PlayRandom(request, StopRequested);
+  if (!json.empty()) WriteFileAtomically(json, result.dump(2) + "\n");
+  std::cout << actor::RandomText(result) << std::flush;
+  return 0;
+}
+
+// Options that several commands take.
+void AddJson(CLI::App* command, const std::string& schema, std::string* json) {
+  command->add_option("--json", *json,
+                      "File for the same, replaced if it is there (schema " + schema + ")");
+}
+void AddTask(CLI::App* command, std::string* task, std::string* model) {
+  command->add_option("task", *task, "Task, e.g. FetchReachDense")->required();
+  command->add_option("--model", *model, "Another MJCF file for the task");
+}
+void AddSeed(CLI::App* command, int64_t* seed) {
+  command->add_option("--seed", *seed, "Of the episodes and the random actions")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+}
+
 void AddList(CLI::App& env, Action* chosen) {
   CLI::App* command = env.add_subcommand("list", "Every task there is, one line each.");
   const auto json = std::make_shared<std::string>();
-  command->add_option("--json", *json, "File for the same (schema shoal-env-list-1)");
+  AddJson(command, "shoal-env-list-1", json.get());
   command->callback([=] { *chosen = [=] { return List(*json); }; });
 }
 
@@ -40,19 +75,46 @@ void AddDescribe(CLI::App& env, Action* chosen) {
       "does when moved alone, its reward and cameras.");
   const auto request = std::make_shared<worlds::DescribeRequest>();
   const auto json = std::make_shared<std::string>();
-  command->add_option("task", request->task, "Task, e.g. FetchReachDense")->required();
-  command->add_option("--json", *json, "File for the same (schema shoal-env-1)");
+  AddTask(command, &request->task, &request->model);
+  AddJson(command, "shoal-env-1", json.get());
   command->add_option("--probe-steps", request->probe_env_steps, "Env steps of one command")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
   command->add_option("--random-steps", request->random_env_steps, "Env steps to measure ranges in")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
-  command->add_option("--seed", request->seed, "Of the episodes and the random actions")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  command->add_option("--model", request->model, "Another MJCF file for the task");
+  AddSeed(command, &request->seed);
   command->callback([=] { *chosen = [=] { return Describe(*request, *json); }; });
+}
+
+void AddRewardCheck(CLI::App& env, Action* chosen) {
+  CLI::App* command = env.add_subcommand("reward-check",
+                                         "Is every step's reward what the goal half computes and "
+                                         "what the formula says, also for goals "
+                                         "put in later? Exit code 1 when a number differs.");
+  const auto request = std::make_shared<worlds::RewardCheckRequest>();
+  const auto json = std::make_shared<std::string>();
+  AddTask(command, &request->task, &request->model);
+  AddJson(command, "shoal-reward-check-1", json.get());
+  command->add_option("--steps", request->env_steps, "Random env steps to check")
+      ->check(CLI::Range(1, 100'000))
+      ->capture_default_str();
+  AddSeed(command, &request->seed);
+  command->callback([=] { *chosen = [=] { return CheckRewards(*request, *json); }; });
+}
+
+void AddRandom(CLI::App& env, Action* chosen) {
+  CLI::App* command = env.add_subcommand(
+      "random", "What uniform random actions earn, and how that depends on the threshold.");
+  const auto request = std::make_shared<actor::RandomRequest>();
+  const auto json = std::make_shared<std::string>();
+  AddTask(command, &request->task, &request->model);
+  AddJson(command, "shoal-eval-1", json.get());
+  command->add_option("--episodes", request->episodes, "Episodes to play")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  AddSeed(command, &request->seed);
+  command->callback([=] { *chosen = [=] { return PlayRandom(*request, *json); }; });
 }
 
 }  // namespace
@@ -60,6 +122,8 @@ void AddDescribe(CLI::App& env, Action* chosen) {
 void AddEnvTaskCommands(CLI::App& env, Action* chosen) {
   AddList(env, chosen);
   AddDescribe(env, chosen);
+  AddRandom(env, chosen);
+  AddRewardCheck(env, chosen);
 }
 
 }  // namespace shoal::launch

@@ -1,4 +1,4 @@
-// What tasks are: env list, env describe.
+// What tasks are and earn: env list, env describe, env random, env reward-check.
 #pragma once
 
 #include "launch/commands/commands.h"

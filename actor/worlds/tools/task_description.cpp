@@ -6,7 +6,7 @@
 #include <limits>
 #include <span>
 
-#include "actor/worlds/environment.h"
+#include "actor/worlds/tools/open_environment.h"
 #include "actor/worlds/world_registry.h"
 #include "common/base/random.h"
 #include "common/tasks/task_registry.h"
@@ -15,33 +15,6 @@ namespace shoal::worlds {
 namespace {
 
 using tasks::Task;
-
-// An environment that shows every number of its task: observation, achieved goal, desired goal.
-class OpenEnvironment {
- public:
-  OpenEnvironment(const Task& task, const std::string& model) {
-    Config config;
-    config.task = task.name();
-    config.model = model;
-    config.observation.pixels = false;
-    config.observation.proprioception = true;
-    config.observation.goal_mode = "both";
-    environment_ = MakeEnvironment(config, nullptr);
-    numbers_.resize(static_cast<size_t>(environment_->spec().VectorSize()));
-  }
-
-  void Reset(uint64_t stream_key) { environment_->Reset(stream_key, {{}, numbers_}); }
-  // False when the episode has ended.
-  bool Step(std::span<const float> action) {
-    const StepResult result = environment_->Step(action, {{}, numbers_});
-    return !result.terminated && !result.truncated;
-  }
-  const std::vector<float>& numbers() const { return numbers_; }
-
- private:
-  std::unique_ptr<Environment> environment_;
-  std::vector<float> numbers_;
-};
 
 std::vector<MeasuredRange> MeasureRanges(const Task& task, const DescribeRequest& request) {
   OpenEnvironment environment(task, request.model);
@@ -54,20 +27,8 @@ std::vector<MeasuredRange> MeasureRanges(const Task& task, const DescribeRequest
       ranges[i] = {std::min(ranges[i].low, number), std::max(ranges[i].high, number)};
     }
   };
-  const auto seed = static_cast<uint64_t>(request.seed);
-  Random actions(StreamKey(seed, StreamRole::kEvalPolicy));
-  std::vector<float> action(static_cast<size_t>(task.action_size()));
-  uint64_t episode = 0;
-  bool running = false;
-  for (int step = 0; step < request.random_env_steps; ++step) {
-    if (!running) {
-      environment.Reset(StreamKey(seed, StreamRole::kEvalEnvironment, episode++));
-      include();
-    }
-    for (float& component : action) component = static_cast<float>(actions.Uniform(-1, 1));
-    running = environment.Step(action);
-    include();
-  }
+  PlayRandomSteps(&environment, request.random_env_steps, request.seed, include,
+                  [&](const StepResult&) { include(); });
   return ranges;
 }
 
@@ -79,15 +40,17 @@ AxisProbe Probe(OpenEnvironment* environment, const Task& task, const DescribeRe
     environment->Reset(
         StreamKey(static_cast<uint64_t>(request.seed), StreamRole::kEvalEnvironment));
     int played = 0;
-    for (bool running = true; running && played < steps; ++played)
-      running = environment->Step(action);
+    for (bool running = true; running && played < steps; ++played) {
+      const StepResult result = environment->Step(action);
+      running = !result.terminated && !result.truncated;
+    }
     return played;
   };
   AxisProbe probe{.axis = axis, .command = command, .env_steps = 0, .change = {}};
   // As many steps as both rollouts last.
   const int still_steps = play(0, request.probe_env_steps);
   probe.env_steps = play(command, still_steps);
-  const std::vector<float> moved = environment->numbers();
+  const std::vector<float> moved(environment->numbers().begin(), environment->numbers().end());
   play(0, probe.env_steps);
   for (int i = 0; i < task.observation().size(); ++i) {
     const auto at = static_cast<size_t>(i);

@@ -1,0 +1,74 @@
+#include "actor/random_baseline.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "actor/evaluation.h"
+#include "common/base/error.h"
+#include "common/tasks/task_registry.h"
+
+namespace shoal::actor {
+namespace {
+
+using nlohmann::ordered_json;
+
+// m; the task's own threshold joins them.
+constexpr double kThresholds[] = {0.01, 0.02, 0.03, 0.05, 0.075, 0.1, 0.15, 0.2, 0.3, 0.5};
+
+ordered_json SuccessByThreshold(const tasks::Task& task,
+                                const std::vector<EpisodeResult>& episodes) {
+  if (task.goal_size() == 0) return nullptr;
+  std::vector<double> thresholds(std::begin(kThresholds), std::end(kThresholds));
+  thresholds.push_back(task.distance_threshold());
+  std::ranges::sort(thresholds);
+  const auto repeats = std::ranges::unique(thresholds);
+  thresholds.erase(repeats.begin(), repeats.end());
+  ordered_json curve = ordered_json::array();
+  for (const double threshold : thresholds) {
+    const auto successes = std::ranges::count_if(
+        episodes, [&](const EpisodeResult& e) { return e.final_distance < threshold; });
+    curve.push_back(
+        {{"threshold", threshold},
+         {"success_rate", static_cast<double>(successes) / static_cast<double>(episodes.size())}});
+  }
+  return curve;
+}
+
+}  // namespace
+
+ordered_json PlayRandom(const RandomRequest& request, const std::function<bool()>& stop) {
+  const tasks::Task& task = tasks::FindTask(request.task);
+  RunConfig run;
+  run.config.task = request.task;
+  run.config.model = request.model;
+  run.config.observation.pixels = false;
+  run.config.observation.proprioception = true;
+  run.spec = worlds::MakeEnvironment(run.config, nullptr)->spec();
+  Evaluator evaluator(run);  // its policy never gets weights: uniform random actions
+  const EpisodeStream stream{request.seed, StreamRole::kFinalEnvironment, 0};
+  const std::vector<EpisodeResult> episodes = evaluator.Play(request.episodes, stream, stop);
+  if (episodes.empty()) throw RuntimeError("random episodes of {} interrupted", request.task);
+  ordered_json result = EvaluationJson(run, {.policy = "random"}, stream, episodes);
+  result["success_by_threshold"] = SuccessByThreshold(task, episodes);
+  return result;
+}
+
+std::string RandomText(const ordered_json& result) {
+  const ordered_json& all = result.at("aggregate");
+  std::string text = fmt::format(
+      "{}: {} random episodes, success {:.1f} %, return {:.3f} +- {:.3f}, length {:.1f}\n",
+      result.at("task").get<std::string>(), all.at("episodes").get<int>(),
+      100 * all.at("success_rate").get<double>(), all.at("return_mean").get<double>(),
+      all.at("return_std").get<double>(), all.at("length_mean").get<double>());
+  const ordered_json& curve = result.at("success_by_threshold");
+  if (curve.is_null()) return text;
+  text += fmt::format("  final distance {:.4f} m; success by threshold:\n",
+                      all.at("final_distance_mean").get<double>());
+  for (const ordered_json& point : curve) {
+    text += fmt::format("    {:.3f} m {:6.1f} %\n", point.at("threshold").get<double>(),
+                        100 * point.at("success_rate").get<double>());
+  }
+  return text;
+}
+
+}  // namespace shoal::actor
