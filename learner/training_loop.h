@@ -44,7 +44,7 @@ class TrainingLoop {
     Outlet& outlet;
     CheckpointStore& checkpoints;
     PendingEvaluations& pending_evaluations;
-    const ControlState& control;
+    ControlState& control;
     tensorboard::EventWriter& events;
     std::chrono::milliseconds drain_idle = kDrainIdle;
   };

@@ -1,5 +1,7 @@
 #include "common/base/main_guard.h"
 
+#include <sys/stat.h>
+
 #include <cstdio>
 #include <exception>
 
@@ -8,6 +10,7 @@
 namespace shoal {
 
 int GuardMain(const char* program, const std::function<int()>& body) {
+  umask(0077);  // what a program writes is its user's own
   try {
     return body();
   } catch (const Error& e) {

@@ -1,5 +1,6 @@
-// The one place per process where exceptions end: runs `body`, maps its result to an exit code and
-// an Error to one line on stderr.
+// The frame of every main: files that the program makes belong to its user alone (umask 077), and
+// exceptions end here: runs `body`, maps its result to an exit code and an Error to one line on
+// stderr.
 #pragma once
 
 #include <functional>

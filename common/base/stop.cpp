@@ -10,6 +10,11 @@ static_assert(std::atomic<int>::is_always_lock_free, "used in a signal handler")
 
 void OnSignal(int) { RequestStop(); }
 
+void OnHangUp(int) {
+  int none = 0;
+  requests.compare_exchange_strong(none, 1, std::memory_order_relaxed);
+}
+
 }  // namespace
 
 void InstallStopSignals() {
@@ -17,6 +22,12 @@ void InstallStopSignals() {
   action.sa_handler = OnSignal;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
+  struct sigaction hang_up {};
+  sigaction(SIGHUP, nullptr, &hang_up);
+  if (hang_up.sa_handler != SIG_IGN) {
+    hang_up.sa_handler = OnHangUp;
+    sigaction(SIGHUP, &hang_up, nullptr);
+  }
   action.sa_handler = SIG_IGN;
   sigaction(SIGPIPE, &action, nullptr);
 }

@@ -1,12 +1,14 @@
-// One process-wide request to stop, set by SIGINT / SIGTERM, a failed thread or the death of the
-// parent. Polled by every loop; never un-set.
+// One process-wide request to stop, set by SIGINT / SIGTERM / SIGHUP (the terminal's or the
+// parent's end). Polled by every loop; never un-set.
 #pragma once
 
 #include <atomic>
 
 namespace shoal {
 
-// Installs handlers for SIGINT and SIGTERM that call RequestStop, and ignores SIGPIPE.
+// Installs handlers for SIGINT and SIGTERM that call RequestStop, for SIGHUP (unless it is ignored,
+// as under nohup), and ignores SIGPIPE. SIGHUP asks for a stop but never for haste: the kernel
+// sends a parent's death once per thread that the parent had.
 void InstallStopSignals();
 // Async-signal-safe.
 void RequestStop();

@@ -4,7 +4,7 @@ namespace shoal {
 
 void ControlState::OnMessage(const ControlMessage& message, SteadyTime now) {
   const MutexLock lock(mutex_);
-  last_heard_ = now;
+  silence_.Heard(now);
   heard_ = true;
   if (message.epoch < epoch_) return;
   epoch_ = message.epoch;
@@ -16,9 +16,9 @@ RunState ControlState::state() const {
   return state_;
 }
 
-bool ControlState::CoordinatorLost(SteadyTime now) const {
+bool ControlState::CoordinatorLost(SteadyTime now) {
   const MutexLock lock(mutex_);
-  return now - last_heard_ > (heard_ ? kLease : kFirstLease);
+  return silence_.Look(now) > (heard_ ? kLease : kFirstLease);
 }
 
 }  // namespace shoal

@@ -6,6 +6,7 @@
 
 #include "common/base/clock.h"
 #include "common/base/mutex.h"
+#include "common/base/silence.h"
 #include "common/wire/messages.h"
 
 namespace shoal {
@@ -13,21 +14,23 @@ namespace shoal {
 class ControlState {
  public:
   // `start`: when waiting for the first heartbeat began.
-  explicit ControlState(SteadyTime start) : last_heard_(start) {}
+  explicit ControlState(SteadyTime start) : silence_(start) {}
 
   // Any thread. Older epochs than the newest seen are ignored.
   void OnMessage(const ControlMessage& message, SteadyTime now);
 
   RunState state() const;
-  // No heartbeat for kLease (kFirstLease before the first one): the coordinator is gone.
-  bool CoordinatorLost(SteadyTime now) const;
+  // No heartbeat for kLease (kFirstLease before the first one): the coordinator is gone. To be
+  // asked several times a second: time in which this process itself did not run is not counted.
+  bool CoordinatorLost(SteadyTime now);
 
-  static constexpr std::chrono::seconds kLease{10};
+  // Longer than a coordinator stopped for ten seconds needs to be heard again.
+  static constexpr std::chrono::seconds kLease{15};
   static constexpr std::chrono::seconds kFirstLease{30};
 
  private:
   mutable Mutex mutex_;
-  SteadyTime last_heard_ SHOAL_GUARDED_BY(mutex_);
+  Silence silence_ SHOAL_GUARDED_BY(mutex_);
   bool heard_ SHOAL_GUARDED_BY(mutex_) = false;
   uint64_t epoch_ SHOAL_GUARDED_BY(mutex_) = 0;
   RunState state_ SHOAL_GUARDED_BY(mutex_) = RunState::kRunning;

@@ -17,6 +17,7 @@ namespace shoal::learner {
 namespace {
 
 namespace fs = std::filesystem;
+using std::chrono::milliseconds;
 using std::chrono::seconds;
 using testing::ElementsAre;
 
@@ -287,7 +288,9 @@ TEST_F(TrainingLoopTest, WithoutACoordinatorItWritesACheckpointAndLeaves) {
   const TrainingLoop::End end = Train(1000, [&](PlayedBatches& batches) {
     batches.before = [this](uint64_t request) {
       if (request != 4) return;
-      control_.OnMessage({.epoch = ++epoch_}, Now() - ControlState::kLease - seconds(1));
+      const SteadyTime heard = Now() - ControlState::kLease - seconds(1);
+      control_.OnMessage({.epoch = ++epoch_}, heard);
+      for (int i = 0; i <= 32; ++i) control_.CoordinatorLost(heard + i * milliseconds(500));
     };
   });
   EXPECT_EQ(end, TrainingLoop::End::kCoordinatorLost);

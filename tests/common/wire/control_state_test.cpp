@@ -5,6 +5,7 @@
 namespace shoal {
 namespace {
 
+using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 ControlMessage Message(uint64_t epoch, RunState state) {
@@ -25,15 +26,32 @@ TEST(ControlState, TheNewestEpochHolds) {
   EXPECT_EQ(control.state(), RunState::kStopping);
 }
 
+// When a process that looks ten times a second from `from` on takes the coordinator for lost.
+SteadyTime LostAt(ControlState* control, SteadyTime from) {
+  SteadyTime now = from;
+  while (!control->CoordinatorLost(now) && now < from + seconds(100)) now += milliseconds(100);
+  return now;
+}
+
 TEST(ControlState, TheLeaseRunsFromTheLastHeartbeat) {
   const SteadyTime start = Now();
   ControlState control(start);
-  EXPECT_FALSE(control.CoordinatorLost(start + ControlState::kFirstLease));
-  EXPECT_TRUE(control.CoordinatorLost(start + ControlState::kFirstLease + seconds(1)));
-  const SteadyTime heard = start + seconds(5);
+  EXPECT_EQ(LostAt(&control, start), start + ControlState::kFirstLease + milliseconds(100));
+  const SteadyTime heard = start + seconds(40);
   control.OnMessage(Message(1, RunState::kRunning), heard);
-  EXPECT_FALSE(control.CoordinatorLost(heard + ControlState::kLease));
-  EXPECT_TRUE(control.CoordinatorLost(heard + ControlState::kLease + seconds(1)));
+  EXPECT_EQ(LostAt(&control, heard), heard + ControlState::kLease + milliseconds(100));
+}
+
+TEST(ControlState, AProcessThatWasStoppedDoesNotTakeTheCoordinatorForLost) {
+  const SteadyTime start = Now();
+  ControlState control(start);
+  control.OnMessage(Message(1, RunState::kRunning), start);
+  EXPECT_FALSE(control.CoordinatorLost(start + milliseconds(100)));
+  const SteadyTime awake = start + seconds(600);
+  EXPECT_FALSE(control.CoordinatorLost(awake)) << "the heartbeats are still unread";
+  control.OnMessage(Message(1, RunState::kRunning), awake + milliseconds(10));
+  EXPECT_EQ(LostAt(&control, awake + milliseconds(10)),
+            awake + milliseconds(110) + ControlState::kLease);
 }
 
 }  // namespace

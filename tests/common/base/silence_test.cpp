@@ -1,0 +1,36 @@
+#include "common/base/silence.h"
+
+#include <gtest/gtest.h>
+
+namespace shoal {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+const SteadyTime kStart = SteadyTime() + seconds(1000);
+
+TEST(Silence, GrowsWhileNothingIsHeard) {
+  Silence silence(kStart);
+  for (int i = 1; i <= 50; ++i) {
+    EXPECT_EQ(silence.Look(kStart + milliseconds(100 * i)), milliseconds(100 * i));
+  }
+  silence.Heard(kStart + seconds(6));
+  EXPECT_EQ(silence.Look(kStart + milliseconds(6500)), milliseconds(500));
+}
+
+TEST(Silence, OwnAbsenceCountsLittle) {
+  Silence silence(kStart);
+  EXPECT_EQ(silence.Look(kStart + seconds(1)), seconds(1));
+  EXPECT_EQ(silence.Look(kStart + seconds(3600)), seconds(2)) << "stopped for an hour";
+  EXPECT_EQ(silence.Look(kStart + milliseconds(3'600'500)), milliseconds(2500));
+}
+
+TEST(Silence, ALateWordOfAnotherThreadDoesNotCountBackwards) {
+  Silence silence(kStart);
+  silence.Heard(kStart + seconds(5));
+  EXPECT_EQ(silence.Look(kStart + seconds(4)), seconds(0));
+}
+
+}  // namespace
+}  // namespace shoal

@@ -1,0 +1,37 @@
+#include "common/base/stop.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <csignal>
+
+namespace shoal {
+namespace {
+
+// Exit code of a fresh process: the stop requests counted after the signals.
+void CountRequests(std::initializer_list<int> signals) {
+  InstallStopSignals();
+  for (const int signal : signals) raise(signal);
+  _exit(StopRequests());
+}
+
+TEST(Stop, EachCtrlCCounts) {
+  EXPECT_EXIT(CountRequests({}), testing::ExitedWithCode(0), "");
+  EXPECT_EXIT(CountRequests({SIGINT, SIGINT, SIGTERM}), testing::ExitedWithCode(3), "");
+}
+
+TEST(Stop, AHangUpAsksForAStopButNeverForHaste) {
+  EXPECT_EXIT(CountRequests({SIGHUP, SIGHUP, SIGHUP}), testing::ExitedWithCode(1), "");
+  EXPECT_EXIT(CountRequests({SIGINT, SIGHUP}), testing::ExitedWithCode(1), "");
+}
+
+TEST(Stop, AnIgnoredHangUpStaysIgnored) {
+  const auto under_nohup = [] {
+    signal(SIGHUP, SIG_IGN);
+    CountRequests({SIGHUP});
+  };
+  EXPECT_EXIT(under_nohup(), testing::ExitedWithCode(0), "");
+}
+
+}  // namespace
+}  // namespace shoal
