@@ -5,6 +5,7 @@
 #include "actor/evaluation.h"
 #include "common/base/log.h"
 #include "common/base/stop.h"
+#include "common/config/run_membership.h"
 #include "common/dds/publisher.h"
 #include "common/dds/subscriber.h"
 #include "common/wire/control_state.h"
@@ -21,7 +22,8 @@ constexpr milliseconds kPoll{100};
 class EvalActor {
  public:
   explicit EvalActor(const std::filesystem::path& folder)
-      : run_(ReadRunConfig(folder)),
+      : member_(folder),
+        run_(ReadRunConfig(folder)),
         evaluator_(run_),
         report_("eval", 0),
         weights_(run_.spec.Hash()),
@@ -53,6 +55,7 @@ class EvalActor {
     const EpisodeStream stream{run_.config.seed, StreamRole::kEvalEnvironment, weights.env_steps};
     const SteadyTime start = Now();
     const auto episodes = evaluator_.Play(run_.config.eval.episodes, stream, [this] {
+      Report("evaluating");
       return StopRequested() || control_.state() == RunState::kStopping;
     });
     if (episodes.empty()) return;  // stopped half-way
@@ -84,6 +87,7 @@ class EvalActor {
     metrics_publisher_.Write(report_.message());
   }
 
+  const RunMembership member_;
   const RunConfig run_;
   Evaluator evaluator_;
   MetricsReport report_;

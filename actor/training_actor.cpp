@@ -9,6 +9,8 @@
 #include "common/base/log.h"
 #include "common/base/stop.h"
 #include "common/config/lockstep.h"
+#include "common/config/run_membership.h"
+#include "common/config/session_number.h"
 #include "common/dds/publisher.h"
 #include "common/dds/subscriber.h"
 #include "common/wire/control_state.h"
@@ -20,8 +22,10 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr seconds kResendAfter{2};       // without progress on what was sent
-constexpr seconds kDrainDeadline{20};    // for the last records to be stored
+constexpr seconds kResendAfter{2};  // without progress on what was sent
+// For the last records to be stored. When the coordinator and with it the learner is gone, the
+// limiter may hold them back until the replay has noticed, too.
+constexpr seconds kDrainDeadline = ControlState::kLease + seconds(10);
 constexpr milliseconds kBlockedWait{5};  // per look for credit while there is no room
 constexpr seconds kLockstepDeadline{120};
 
@@ -47,8 +51,9 @@ ChunkWindow::Options WindowOptions(const RunConfig& run, uint32_t id, uint64_t s
 class TrainingActor {
  public:
   TrainingActor(const std::filesystem::path& folder, uint32_t id)
-      : run_(ReadRunConfig(folder)),
-        session_(static_cast<uint64_t>(WallTimeNs())),
+      : member_(folder),
+        run_(ReadRunConfig(folder)),
+        session_(NextSession(folder, fmt::format("actor-{}", id), WallTimeNs())),
         first_env_(id * static_cast<uint32_t>(run_.config.envs_per_actor)),
         made_(folder, id, session_, first_env_, static_cast<uint32_t>(run_.config.envs_per_actor)),
         window_(WindowOptions(run_, id, session_)),
@@ -174,8 +179,8 @@ class TrainingActor {
   // Until everything made is stored. False when the deadline came first.
   bool Drain() {
     window_.Flush();
-    const SteadyTime deadline = Now() + kDrainDeadline;
-    while (window_.Outstanding() > 0 && Now() < deadline && StopRequests() < 2) {
+    const SteadyTime start = Now();
+    while (window_.Outstanding() > 0 && Now() - start < kDrainDeadline && StopRequests() < 2) {
       Exchange(Now() + kBlockedWait);
       Report("draining");
     }
@@ -185,8 +190,8 @@ class TrainingActor {
       log::Info("stopped: {} records made, all stored", made_.made());
       return true;
     }
-    log::Failure("stopped with {} of {} records not reported stored within {} s",
-                 window_.Outstanding(), made_.made(), kDrainDeadline.count());
+    log::Failure("stopped with {} of {} records not reported stored within {:.1f} s",
+                 window_.Outstanding(), made_.made(), SecondsSince(start));
     return false;
   }
 
@@ -223,6 +228,7 @@ class TrainingActor {
     metrics_publisher_.Write(report_.message());
   }
 
+  const RunMembership member_;
   const RunConfig run_;
   const uint64_t session_;
   const uint32_t first_env_;

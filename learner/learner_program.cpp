@@ -5,6 +5,8 @@
 #include "common/base/error.h"
 #include "common/base/log.h"
 #include "common/config/run_files.h"
+#include "common/config/run_membership.h"
+#include "common/config/session_number.h"
 #include "common/dds/publisher.h"
 #include "common/dds/subscriber.h"
 #include "common/tensorboard/event_writer.h"
@@ -22,8 +24,9 @@ namespace {
 class Learner {
  public:
   Learner(const std::filesystem::path& folder, const RunConfig& run, int threads)
-      : run_(run),
-        session_(static_cast<uint64_t>(WallTimeNs())),
+      : member_(folder),
+        run_(run),
+        session_(NextSession(folder, "learner-0", WallTimeNs())),
         precision_(nn::ChoosePrecision(run.config.learner.precision)),
         agent_(run.config, run.spec, precision_),
         checkpoints_(folder, run),
@@ -82,6 +85,7 @@ class Learner {
     return checkpoint->state;
   }
 
+  const RunMembership member_;
   const RunConfig run_;
   const uint64_t session_;
   const nn::Precision precision_;

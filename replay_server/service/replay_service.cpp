@@ -11,6 +11,8 @@
 #include "common/base/log.h"
 #include "common/base/stop.h"
 #include "common/config/run_files.h"
+#include "common/config/run_membership.h"
+#include "common/config/session_number.h"
 #include "common/dds/bus.h"
 #include "common/dds/publisher.h"
 #include "common/dds/subscriber.h"
@@ -51,7 +53,8 @@ class ReplayService {
  public:
   explicit ReplayService(const std::filesystem::path& folder)
       : folder_(folder),
-        core_(ReadRunConfig(folder), folder, static_cast<uint64_t>(WallTimeNs())),
+        member_(folder),
+        core_(ReadRunConfig(folder), folder, NextSession(folder, "replay-0", WallTimeNs())),
         inbox_(SpecHash(), ChunkBytes(), MaxChunks()),
         problems_(SpecHash()),
         control_(Now()),
@@ -186,6 +189,7 @@ class ReplayService {
   }
 
   const std::filesystem::path folder_;
+  const RunMembership member_;
   ReplayCore core_;
   ServiceInbox inbox_;
   ProblemLog problems_;

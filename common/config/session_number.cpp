@@ -1,0 +1,41 @@
+#include "common/config/session_number.h"
+
+#include <algorithm>
+#include <charconv>
+#include <string_view>
+
+#include "common/base/error.h"
+#include "common/base/files.h"
+
+namespace shoal {
+namespace {
+
+namespace fs = std::filesystem;
+
+// 0 when there was none.
+uint64_t LastSession(const fs::path& file) {
+  std::error_code error;
+  if (!fs::exists(file, error)) return 0;
+  const std::string text = ReadFile(file);
+  const char* end = text.data() + text.size();
+  uint64_t last = 0;
+  const auto [parsed, fault] = std::from_chars(text.data(), end, last);
+  if (fault != std::errc() || std::string_view(parsed, end) != "\n") {
+    throw RuntimeError("'{}' does not hold a session number; remove it to begin with the clock's",
+                       file.string());
+  }
+  return last;
+}
+
+}  // namespace
+
+uint64_t NextSession(const fs::path& run, const std::string& process, int64_t wall_time_ns) {
+  const fs::path file = run / "sessions" / process;
+  MakeFolders(file.parent_path());
+  const auto clock = static_cast<uint64_t>(std::max<int64_t>(1, wall_time_ns));
+  const uint64_t session = std::max(clock, LastSession(file) + 1);
+  WriteFileAtomically(file, std::to_string(session) + "\n");
+  return session;
+}
+
+}  // namespace shoal

@@ -1,0 +1,17 @@
+// The number of a process's session: wall-clock nanoseconds at its start, but always above those of
+// its predecessors in the run. Peers take the higher number for the newer process, so a clock that
+// was set back must not make a restarted process look like an old one.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+namespace shoal {
+
+// The next session of `process` ("actor-3"); RUN/sessions/PROCESS remembers it. `wall_time_ns` is
+// the clock's word. Throws Error when the file is not a number or cannot be written.
+uint64_t NextSession(const std::filesystem::path& run, const std::string& process,
+                     int64_t wall_time_ns);
+
+}  // namespace shoal

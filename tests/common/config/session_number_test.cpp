@@ -1,0 +1,47 @@
+#include "common/config/session_number.h"
+
+#include <gtest/gtest.h>
+
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "tests/support/temporary_folder.h"
+
+namespace shoal {
+namespace {
+
+TEST(SessionNumber, IsTheClockWhileItGoesForward) {
+  const TemporaryFolder run;
+  EXPECT_EQ(NextSession(run.path(), "actor-0", 1000), 1000u);
+  EXPECT_EQ(NextSession(run.path(), "actor-0", 2000), 2000u);
+}
+
+TEST(SessionNumber, StillGrowsAfterTheClockWasSetBack) {
+  const TemporaryFolder run;
+  EXPECT_EQ(NextSession(run.path(), "replay-0", 5000), 5000u);
+  EXPECT_EQ(NextSession(run.path(), "replay-0", 10), 5001u);
+  EXPECT_EQ(NextSession(run.path(), "replay-0", -7), 5002u);
+  EXPECT_EQ(NextSession(run.path(), "replay-0", 6000), 6000u);
+}
+
+TEST(SessionNumber, EachProcessHasItsOwn) {
+  const TemporaryFolder run;
+  EXPECT_EQ(NextSession(run.path(), "actor-0", 5000), 5000u);
+  EXPECT_EQ(NextSession(run.path(), "actor-1", 10), 10u);
+}
+
+TEST(SessionNumber, ADamagedFileIsRefusedByName) {
+  const TemporaryFolder run;
+  NextSession(run.path(), "actor-0", 5000);
+  for (const char* content : {"", "50", "50x\n", "-3\n", "99999999999999999999999\n"}) {
+    WriteFileAtomically(run.path() / "sessions" / "actor-0", content);
+    try {
+      NextSession(run.path(), "actor-0", 5000);
+      ADD_FAILURE() << "took '" << content << "'";
+    } catch (const Error& e) {
+      EXPECT_NE(std::string(e.what()).find("sessions/actor-0"), std::string::npos) << e.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace shoal
