@@ -75,7 +75,7 @@ struct ExecPlan {
 
 [[noreturn]] void ExecChild(const ExecPlan& plan) {
   if (!plan.outlives_parent) {
-    prctl(PR_SET_PDEATHSIG, SIGTERM);
+    prctl(PR_SET_PDEATHSIG, SIGHUP);
     if (getppid() != plan.parent) _exit(1);  // it died before the line above
   }
   setpgid(0, 0);
@@ -83,6 +83,7 @@ struct ExecPlan {
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);
   signal(SIGPIPE, SIG_DFL);  // ignored signals survive exec
+  signal(SIGHUP, SIG_DFL);   // also under nohup: it is our death's message
   dup2(plan.input, STDIN_FILENO);
   dup2(plan.output, STDOUT_FILENO);
   dup2(plan.errors, STDERR_FILENO);

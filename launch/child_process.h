@@ -20,7 +20,7 @@ struct ProcessSpec {
   std::vector<std::pair<std::string, std::string>> environment;  // added to our own
   std::filesystem::path output;  // stdout and stderr are appended to it
   std::filesystem::path errors;  // stderr, where apart; empty = output
-  bool outlives_parent = false;  // gets no SIGTERM when this process dies
+  bool outlives_parent = false;  // gets no SIGHUP when this process dies
 
   std::string Name() const { return role + "-" + std::to_string(id); }
 };
@@ -34,7 +34,7 @@ struct ExitStatus {
   std::string Describe() const;
 };
 
-// Owns the child: one that still runs at destruction is killed and reaped. Children get SIGTERM
+// Owns the child: one that still runs at destruction is killed and reaped. Children get SIGHUP
 // when this process dies, have a process group of their own (Ctrl-C on the terminal does not reach
 // them) and read from /dev/null. Create and use on one thread that lives as long as the child: the
 // kernel ties the death signal to it.

@@ -51,7 +51,8 @@ struct Coordinator::Impl {
         rule(config),
         log(run / "metrics.jsonl", MetricsLogLimits()),
         scalars(run),
-        supervisor(RestartLimits(), [this](const std::string& line) { progress.Say(line); }),
+        supervisor(RestartLimits(), HangLimits(),
+                   [this](const std::string& line) { progress.Say(line); }),
         bus(std::move(claimed)),
         control(*bus),
         metrics_subscriber(*bus, [this](const MetricsMessage& m) { metrics.Put(m); }),
@@ -196,6 +197,7 @@ void Coordinator::Impl::Heartbeat(SteadyTime now) {
 void Coordinator::Impl::TakeMessages(SteadyTime now) {
   for (const MetricsMessage& message : metrics.TakeAll()) {
     view.OnMessage(message, now);
+    supervisor.Heard(message.role, static_cast<int>(message.id), message.pid, now);
     if (!log.Write(message)) {
       progress.Say("metrics.jsonl cannot be written any more (disk full or size limit)");
     }

@@ -16,7 +16,9 @@ MetricsLog::MetricsLog(const std::filesystem::path& file, const MetricsLogLimits
 
 bool MetricsLog::Write(const MetricsMessage& message) {
   double& last = last_[{message.role, message.id}];
-  if (bytes_ >= limits_.thin_bytes && message.time - last < limits_.thin_seconds) {
+  // A clock that was set back must not silence a process until it has caught up.
+  const double since = message.time - last;
+  if (bytes_ >= limits_.thin_bytes && since >= 0 && since < limits_.thin_seconds) {
     ++left_out_;
     return true;
   }

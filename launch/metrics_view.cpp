@@ -18,8 +18,6 @@ void MetricsView::OnMessage(const MetricsMessage& message, SteadyTime now) {
     process.values.clear();
     process.pid = message.pid;
     process.time = 0;
-  } else if (message.time <= process.time) {
-    return;
   }
   process.previous = std::move(process.values);
   process.previous_time = process.time;

@@ -17,7 +17,8 @@ namespace shoal::launch {
 // One thread. Holds two reports per process id and one final value per counter of dead ones.
 class MetricsView {
  public:
-  // Older reports of the same process (by its pid) are ignored.
+  // Reports of one process (by its pid) come in the order they were made; their wall-clock times
+  // say nothing about it, because that clock may be set back.
   void OnMessage(const MetricsMessage& message, SteadyTime now);
 
   // The figure in the newest report of the role's process `id`; empty when it has none.

@@ -9,6 +9,7 @@
 #include "launch/accounting.h"
 #include "launch/actor_program.h"
 #include "launch/run_folder.h"
+#include "launch/run_leftovers.h"
 
 namespace shoal::launch {
 namespace {
@@ -77,6 +78,7 @@ void PrintSummary(const fs::path& run, const RunResult& result,
 int EndRun(const fs::path& run, const Config& config, RunResult result, Progress& progress) {
   RunMeta& meta = result.meta;
   bool good = result.clean && meta.exit != "failed";
+  RemoveUnfinishedFiles(run);
   const auto fail = [&](const std::string& why) {
     good = false;
     if (meta.error.empty()) meta.error = why;

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <csignal>
 #include <utility>
 
 namespace shoal::launch {
@@ -26,31 +27,64 @@ std::string Describe(const ProcessSpec& spec, const ExitStatus& status,
 
 }  // namespace
 
-Supervisor::Supervisor(const RestartLimits& limits, std::function<void(const std::string&)> say)
-    : limits_(limits), say_(std::move(say)) {}
+Supervisor::Supervisor(const RestartLimits& limits, const HangLimits& hang_limits,
+                       std::function<void(const std::string&)> say)
+    : limits_(limits), hang_limits_(hang_limits), say_(std::move(say)) {}
 
 void Supervisor::Start(const ProcessSpec& spec) {
+  const SteadyTime now = Now();
   Child child{.spec = spec,
               .policy = RestartPolicy(limits_),
-              .process = ChildProcess(spec),
+              .process = std::nullopt,
+              .silence = Silence(now),
               .restart_at = std::nullopt};
+  Launch(child, now);
   children_.push_back(std::move(child));
+}
+
+void Supervisor::Launch(Child& child, SteadyTime now) {
+  child.process.emplace(child.spec);
+  child.silence = Silence(now);
+  child.heard = child.hung = false;
+}
+
+void Supervisor::Heard(std::string_view role, int id, pid_t pid, SteadyTime now) {
+  for (Child& child : children_) {
+    if (child.spec.role != role || child.spec.id != id) continue;
+    if (!child.process || child.process->pid() != pid) continue;
+    child.silence.Heard(now);
+    child.heard = true;
+  }
 }
 
 std::optional<std::string> Supervisor::Poll(SteadyTime now) {
   for (Child& child : children_) {
     if (child.process) {
       const auto status = child.process->Poll();
-      if (!status) continue;
+      if (!status) {
+        KillIfHung(child, now);
+        continue;
+      }
       child.process.reset();
       if (auto failure = OnExit(child, *status, now)) return failure;
     } else if (child.restart_at && now >= *child.restart_at) {
       child.restart_at.reset();
-      child.process.emplace(child.spec);
+      Launch(child, now);
       ++restarts_;
     }
   }
   return std::nullopt;
+}
+
+// Processes that were told to leave are the ordered stop's, which has deadlines of its own.
+void Supervisor::KillIfHung(Child& child, SteadyTime now) {
+  if (child.exit_expected || child.hung) return;
+  const std::chrono::seconds limit = child.heard ? hang_limits_.report : hang_limits_.start;
+  if (child.silence.Look(now) <= limit) return;
+  child.hung = true;
+  say_(fmt::format("{} (pid {}) hangs: no report for {} s; killed", child.spec.Name(),
+                   child.process->pid(), limit.count()));
+  child.process->Signal(SIGKILL);  // which a stopped process obeys, too
 }
 
 std::optional<std::string> Supervisor::OnExit(Child& child, const ExitStatus& status,
@@ -97,6 +131,14 @@ void Supervisor::Signal(std::string_view role, int signal) {
     child.signalled = signal;
     child.process->Signal(signal);
   }
+}
+
+pid_t Supervisor::Pid(std::string_view role, int id) const {
+  for (const Child& child : children_) {
+    if (child.spec.role == role && child.spec.id == id && child.process)
+      return child.process->pid();
+  }
+  return 0;
 }
 
 int Supervisor::Running(std::string_view role) const {

@@ -1,4 +1,6 @@
 // Keeps a run's processes alive: starts them, restarts what dies within limits, says why it died.
+// A process that is there but says nothing any more - stopped, deadlocked, thrashing - is killed
+// and counts as dead from then on.
 #pragma once
 
 #include <functional>
@@ -7,24 +9,36 @@
 #include <string_view>
 #include <vector>
 
+#include "common/base/silence.h"
 #include "launch/child_process.h"
 #include "launch/restart_policy.h"
 
 namespace shoal::launch {
+
+// Silence after which a running process is taken for hung. Ten times what a process stopped for a
+// moment or starved by its machine needs to be heard again; starting up takes longer.
+struct HangLimits {
+  std::chrono::seconds start{120};  // before its first report
+  std::chrono::seconds report{30};  // since its last one
+};
 
 // Knows nothing of DDS. One thread, which must live as long as the children (child_process.h).
 // Destruction kills what still runs.
 class Supervisor {
  public:
   // `say` gets one line for each death and restart.
-  Supervisor(const RestartLimits& limits, std::function<void(const std::string&)> say);
+  Supervisor(const RestartLimits& limits, const HangLimits& hang_limits,
+             std::function<void(const std::string&)> say);
 
   // Starts the process. Throws Error when it cannot be started.
   void Start(const ProcessSpec& spec);
 
-  // Reaps the dead and starts what is due again. When the run cannot go on - a process died too
-  // often, refused its configuration (exit 2) or met a non-finite number - one line saying which
-  // and why.
+  // The process has reported. Words of a predecessor (another pid) do not count.
+  void Heard(std::string_view role, int id, pid_t pid, SteadyTime now);
+
+  // Kills the hung, reaps the dead and starts what is due again. When the run cannot go on - a
+  // process died too often, refused its configuration (exit 2) or met a non-finite number - one
+  // line saying which and why.
   std::optional<std::string> Poll(SteadyTime now);
 
   // From now on processes of the role ("" = all) may exit and are not restarted.
@@ -32,6 +46,9 @@ class Supervisor {
   void Signal(std::string_view role, int signal);
   // Processes of the role ("" = all) that run or wait for their restart.
   int Running(std::string_view role) const;
+
+  // The running process's; 0 when there is none.
+  pid_t Pid(std::string_view role, int id) const;
 
   int restarts() const { return restarts_; }
   // Expected exits that were not clean, each as one line.
@@ -42,15 +59,21 @@ class Supervisor {
     ProcessSpec spec;
     RestartPolicy policy;
     std::optional<ChildProcess> process;
+    Silence silence;  // of `process`
+    bool heard = false;
+    bool hung = false;  // and killed for it
     std::optional<SteadyTime> restart_at;
     bool exit_expected = false;
     int signalled = 0;  // the last signal sent by Signal
   };
 
+  void Launch(Child& child, SteadyTime now);
+  void KillIfHung(Child& child, SteadyTime now);
   std::optional<std::string> OnExit(Child& child, const ExitStatus& status, SteadyTime now);
   void OnExpectedExit(Child& child, const ExitStatus& status);
 
   const RestartLimits limits_;
+  const HangLimits hang_limits_;
   std::function<void(const std::string&)> say_;
   std::vector<Child> children_;
   int restarts_ = 0;

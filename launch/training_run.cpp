@@ -15,6 +15,7 @@
 #include "launch/machine.h"
 #include "launch/run_end.h"
 #include "launch/run_folder.h"
+#include "launch/run_leftovers.h"
 
 namespace shoal::launch {
 namespace {
@@ -66,6 +67,12 @@ void PrintStart(const PreparedRun& run) {
 
 int Start(PreparedRun run, std::unique_ptr<dds::Bus> bus, const ClusterAddress& address) {
   const std::filesystem::path& path = run.folder.path();
+  WaitForFormerProcesses(path, kFormerProcessesDeadline, StopRequested,
+                         [](const std::string& line) {
+                           fmt::print("{}\n", line);
+                           std::fflush(stdout);
+                         });
+  RemoveUnfinishedFiles(path);
   WriteRunConfig(path, run.config);
   WriteClusterAddress(path, address);
   PrintStart(run);

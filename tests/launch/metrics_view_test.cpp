@@ -32,11 +32,14 @@ TEST(MetricsView, MissingFiguresAreEmpty) {
   EXPECT_EQ(view.Total("actor", "resends"), 0);
 }
 
-TEST(MetricsView, KeepsTheNewestReport) {
+TEST(MetricsView, KeepsTheLastReportThoughTheClockWasSetBack) {
   MetricsView view;
-  view.OnMessage(Report("learner", 0, 7, 2, {{"updates", 20}}), kNow);
-  view.OnMessage(Report("learner", 0, 7, 1, {{"updates", 10}}), kNow);
+  view.OnMessage(Report("learner", 0, 7, 5000, {{"updates", 10}}), kNow);
+  view.OnMessage(Report("learner", 0, 7, 1401, {{"updates", 20}}), kNow);
   EXPECT_EQ(view.Get("learner", 0, "updates"), 20);
+  EXPECT_FALSE(view.Rate("learner", "updates")) << "over a span of less than nothing";
+  view.OnMessage(Report("learner", 0, 7, 1402, {{"updates", 30}}), kNow);
+  EXPECT_EQ(view.Rate("learner", "updates"), 10);
 }
 
 TEST(MetricsView, SumsAndWeighsFreshProcessesOnly) {

@@ -52,7 +52,7 @@ class OrderedStop : public ::testing::Test {
   std::vector<RunState> announced_;
   int ticks_ = 0;
   bool at_once_ = false;
-  Supervisor supervisor_{RestartLimits(),
+  Supervisor supervisor_{RestartLimits(), HangLimits(),
                          [this](const std::string& line) { said_.push_back(line); }};
 };
 

@@ -61,7 +61,8 @@ class SupervisorTest : public ::testing::Test {
 
   TemporaryFolder folder_;
   std::vector<std::string> said_;
-  Supervisor supervisor_{kQuick, [this](const std::string& line) { said_.push_back(line); }};
+  Supervisor supervisor_{kQuick, HangLimits(),
+                         [this](const std::string& line) { said_.push_back(line); }};
 };
 
 TEST_F(SupervisorTest, RestartsWhatDiesAndSaysWhy) {
@@ -110,6 +111,54 @@ TEST_F(SupervisorTest, DoesNotRestartAfterANonFiniteNumber) {
   supervisor_.Start(Fake("learner", 0, "echo 'learner: critic loss is not finite'; exit 1"));
   EXPECT_THAT(WaitForFailure(), HasSubstr("not finite"));
   EXPECT_EQ(Starts("learner-0"), 1);
+}
+
+// Looks twice a second of the supervisor's time until something is said; the time it took.
+std::chrono::milliseconds SilenceUntilSaid(Supervisor* supervisor,
+                                           const std::vector<std::string>& said, SteadyTime start) {
+  SteadyTime now = start;
+  while (said.empty() && now < start + std::chrono::hours(1)) {
+    now += milliseconds(500);
+    EXPECT_EQ(supervisor->Poll(now), std::nullopt);
+  }
+  return std::chrono::duration_cast<milliseconds>(now - start);
+}
+
+TEST_F(SupervisorTest, KillsAndRestartsAProcessThatSaysNothingAnyMore) {
+  supervisor_.Start(Fake("learner", 0, "kill -STOP $$"));
+  ASSERT_TRUE(WaitUntil([&] { return Starts("learner-0") == 1; }));
+  const SteadyTime start = Now();
+  supervisor_.Heard("learner", 0, supervisor_.Pid("learner", 0), start);
+  const milliseconds silence = SilenceUntilSaid(&supervisor_, said_, start);
+  EXPECT_EQ(silence, HangLimits().report + milliseconds(500));
+  ASSERT_THAT(said_, ElementsAre(AllOf(HasSubstr("learner-0"), HasSubstr("hangs"),
+                                       HasSubstr("no report for 30 s"))));
+  EXPECT_TRUE(PollUntil([&] { return Starts("learner-0") == 2; }));
+  EXPECT_THAT(said_[1], HasSubstr("learner-0: killed by SIGKILL"));
+}
+
+TEST_F(SupervisorTest, GivesAProcessLongerForItsFirstReport) {
+  supervisor_.Start(Fake("replay", 0, "exec sleep 60"));
+  const SteadyTime start = Now();
+  const pid_t predecessor = 1;
+  supervisor_.Heard("replay", 0, predecessor, start);
+  EXPECT_GE(SilenceUntilSaid(&supervisor_, said_, start), HangLimits().start);
+  EXPECT_THAT(said_, ElementsAre(HasSubstr("no report for 120 s")));
+}
+
+TEST_F(SupervisorTest, DoesNotTakeItsOwnAbsenceForAHang) {
+  supervisor_.Start(Fake("actor", 0, "exec sleep 60"));
+  const SteadyTime start = Now();
+  supervisor_.Heard("actor", 0, supervisor_.Pid("actor", 0), start);
+  EXPECT_EQ(supervisor_.Poll(start + std::chrono::hours(1)), std::nullopt);
+  EXPECT_THAT(said_, IsEmpty());
+}
+
+TEST_F(SupervisorTest, LeavesTheHangingOfThoseWhoMayExitToTheOrderedStop) {
+  supervisor_.Start(Fake("actor", 0, "exec sleep 60"));
+  supervisor_.ExpectExit("actor");
+  SilenceUntilSaid(&supervisor_, said_, Now());
+  EXPECT_THAT(said_, IsEmpty());
 }
 
 TEST_F(SupervisorTest, LetsExpectedExitsBe) {
