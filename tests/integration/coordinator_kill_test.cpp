@@ -1,0 +1,85 @@
+// SIGKILL of the coordinator: its processes store what they have, leave a checkpoint and go; the
+// run goes on with --resume, and its account still balances.
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/prctl.h>
+#include <sys/wait.h>
+
+#include "common/config/run_membership.h"
+#include "common/wire/control_state.h"
+#include "tests/support/processes.h"
+#include "tests/support/running_training.h"
+
+namespace shoal {
+namespace {
+
+using nlohmann::json;
+using std::chrono::seconds;
+
+// From the coordinator's death: the lease, the replay's farewell to actors that still send, and a
+// moment for a loaded machine.
+constexpr seconds kLeave = ControlState::kLease + seconds(15);
+
+std::vector<std::string> Resume(const TrainingRun& run) {
+  return {"shoal", "train", "--resume", run.path().string(), "--set", "env_steps=9000"};
+}
+
+// The exit code of an orphan that this process has inherited; -1 when it was killed.
+int ExitCodeOf(pid_t pid) {
+  int status = 0;
+  EXPECT_EQ(waitpid(pid, &status, 0), pid);
+  return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+}
+
+TEST(CoordinatorKill, ProcessesLeaveInOrderAndResumeGoesOn) {
+  prctl(PR_SET_CHILD_SUBREAPER, 1);  // orphans become ours: their exit codes can be read
+  const TrainingRun run;
+  const TrainingRun::Keys keys{
+      {"env_steps", "1000000"}, {"actors", "2"}, {"eval.interval", "2000"}};
+  uint64_t updates_before = 0;
+  {
+    RunningTraining training(run, run.Command(keys));
+    ASSERT_TRUE(training.WaitForSteps(4000)) << training.Output();
+    updates_before =
+        static_cast<uint64_t>(training.reports().Last("learner").value("updates", 0.0));
+    const std::vector<pid_t> orphans = ChildrenOf(training.pid());
+    EXPECT_EQ(orphans.size(), 5u) << "replay, learner, two actors, evaluation actor";
+    ASSERT_EQ(kill(training.pid(), SIGKILL), 0);
+    EXPECT_EQ(training.End(seconds(5)), -1);
+    for (const pid_t pid : orphans) {
+      const std::vector<std::string> command = CommandLine(pid);
+      ASSERT_TRUE(WaitUntilEnded(pid, kLeave)) << (command.empty() ? "?" : command[0]);
+      EXPECT_NE(ExitCodeOf(pid), -1) << "left by itself";
+    }
+  }
+  EXPECT_EQ(AnyMember(run.path()), std::nullopt);
+  EXPECT_NE(ReadFile(run.path() / "logs" / "replay-0.log").find("coordinator is gone"),
+            std::string::npos);
+
+  RunningTraining resumed(run, Resume(run));
+  ASSERT_EQ(resumed.End(seconds(240)), 0) << resumed.Output();
+  const json meta = run.Json("meta.json");
+  ExpectBalanced(meta);
+  EXPECT_EQ(meta.at("accounting").at("lost_with_process"), 0) << "everything made was stored";
+  EXPECT_GE(meta.at("env_steps").get<int64_t>(), 9000);
+  EXPECT_GE(meta.at("updates").get<uint64_t>(), updates_before) << "from the orphans' checkpoint";
+  EXPECT_NE(ReadFile(run.path() / "logs" / "learner-0.log").find("restored step_"),
+            std::string::npos);
+}
+
+TEST(CoordinatorKill, AResumeAtOnceWaitsForTheFormerProcesses) {
+  const TrainingRun run;
+  {
+    RunningTraining training(run, run.Command({{"env_steps", "1000000"}, {"actors", "1"}}));
+    ASSERT_TRUE(training.WaitForSteps(2000)) << training.Output();
+    ASSERT_EQ(kill(training.pid(), SIGKILL), 0);
+    EXPECT_EQ(training.End(seconds(5)), -1);
+  }
+  RunningTraining resumed(run, Resume(run));
+  ASSERT_EQ(resumed.End(seconds(240)), 0) << resumed.Output();
+  EXPECT_NE(resumed.Output().find("waiting up to 60 s"), std::string::npos) << resumed.Output();
+  ExpectBalanced(run.Json("meta.json"));
+}
+
+}  // namespace
+}  // namespace shoal

@@ -1,0 +1,41 @@
+// Which process of a run is struck when, and how: drawn from a seed.
+#pragma once
+
+#include <chrono>
+#include <deque>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "common/base/clock.h"
+#include "common/base/random.h"
+
+namespace shoal::soak {
+
+enum class FaultKind { kKill, kStop };
+
+struct Fault {
+  std::string process;  // "actor-1", "coordinator"
+  FaultKind kind = FaultKind::kKill;
+  std::chrono::milliseconds delay{};  // after the run had recovered from the fault before
+  std::string killed_meanwhile;       // another process, killed while this one is stopped; or none
+};
+
+// Draws faults. A process is not killed more often than a run's restart limit allows, and the
+// coordinator is only stopped (its death ends a run: tests/integration/coordinator_kill_test.cpp).
+class FaultPlan {
+ public:
+  // `processes` without the coordinator.
+  FaultPlan(uint64_t seed, std::vector<std::string> processes);
+
+  Fault Next(SteadyTime now);
+
+ private:
+  std::string Victim(SteadyTime now);  // of a kill
+
+  const std::vector<std::string> processes_;
+  Random random_;
+  std::map<std::string, std::deque<SteadyTime>> kills_;
+};
+
+}  // namespace shoal::soak

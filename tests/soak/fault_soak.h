@@ -1,0 +1,22 @@
+// Faults at random moments against one training run.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+
+namespace shoal::soak {
+
+struct SoakOptions {
+  std::filesystem::path folder;    // an empty one
+  std::filesystem::path programs;  // where shoal is
+  int actors = 2;
+  uint64_t seed = 1;
+};
+
+// Strikes `faults` times, prints a line for each, stops the run and checks what it left. Throws
+// Broken (run_under_test.h) at the first broken rule. The result is for people: counts, recovery
+// times, the account.
+nlohmann::ordered_json SoakFaults(const SoakOptions& options, int faults);
+
+}  // namespace shoal::soak

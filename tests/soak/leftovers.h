@@ -1,0 +1,20 @@
+// What a run must not leave behind.
+#pragma once
+
+#include <filesystem>
+#include <set>
+#include <string>
+
+namespace shoal::soak {
+
+// Names of the shared memory objects of this machine.
+std::set<std::string> SharedMemoryObjects();
+
+// Throws Broken (run_under_test.h) naming what a run that has ended left: processes, UDP ports,
+// shared memory that is not in `before`, half-written or temporary files, files that others may
+// read.
+void CheckNothingIsLeft(const std::filesystem::path& run,
+                        const std::filesystem::path& temporary_files,
+                        const std::set<std::string>& shared_memory_before);
+
+}  // namespace shoal::soak

@@ -1,0 +1,66 @@
+// shoal-soak: strikes a training run's processes at random moments and checks that nothing is lost
+// and nothing is left.
+#include <sys/prctl.h>
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/base/main_guard.h"
+#include "launch/process_plan.h"
+#include "tests/soak/fault_soak.h"
+#include "tests/soak/run_under_test.h"
+
+namespace {
+
+struct Options {
+  int faults = 10;
+  shoal::soak::SoakOptions soak;
+  std::string json;
+};
+
+std::filesystem::path FreshFolder() {
+  std::string name = (std::filesystem::temp_directory_path() / "shoal-soak-XXXXXX").string();
+  if (mkdtemp(name.data()) == nullptr) throw shoal::RuntimeError("cannot create '{}'", name);
+  return name;
+}
+
+int Run(int argc, char** argv) {
+  Options options;
+  CLI::App app("Strikes a training run's processes at random moments.", "shoal-soak");
+  app.add_option("--faults", options.faults, "SIGKILLs and ten-second SIGSTOPs")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--seed", options.soak.seed, "of victims and moments")->capture_default_str();
+  app.add_option("--actors", options.soak.actors, "actor processes")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
+  app.add_option("--json", options.json, "file for the result");
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& e) {
+    return app.exit(e);
+  } catch (const CLI::ParseError& e) {
+    throw shoal::UsageError("{}", e.what());
+  }
+  prctl(PR_SET_CHILD_SUBREAPER, 1);  // what a run leaves behind becomes a child of ours
+  options.soak.programs = shoal::launch::ProgramFolder();
+  options.soak.folder = FreshFolder();
+  try {
+    const auto result = shoal::soak::SoakFaults(options.soak, options.faults);
+    fmt::print("{}\n", result.dump(2));
+    if (!options.json.empty()) shoal::WriteFileAtomically(options.json, result.dump(2) + "\n");
+  } catch (const shoal::soak::Broken& e) {
+    throw shoal::RuntimeError("{} (seed {}; files kept in '{}')", e.what(), options.soak.seed,
+                              options.soak.folder.string());
+  }
+  std::filesystem::remove_all(options.soak.folder);
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return shoal::GuardMain("shoal-soak", [&] { return Run(argc, argv); });
+}

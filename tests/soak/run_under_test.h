@@ -1,0 +1,74 @@
+// A cheap training run of the real programs, from outside: its processes, what they report, its
+// end.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "launch/child_process.h"
+#include "tests/support/report_reader.h"
+
+namespace shoal::soak {
+
+// A rule was broken; the message says which and how.
+struct Broken : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+struct RunOptions {
+  std::filesystem::path folder;  // an empty one: gets the run, its output and its temporary files
+  std::filesystem::path programs;
+  int actors = 2;
+  int64_t seed = 1;
+  std::vector<std::string> keys;  // further KEY=VALUE
+};
+
+class RunUnderTest {
+ public:
+  // Starts it; returns once replay and learner make progress. Throws Broken.
+  explicit RunUnderTest(const RunOptions& options);
+
+  const std::filesystem::path& path() const { return path_; }
+  std::filesystem::path temporary_files() const { return options_.folder / "tmp"; }
+  // "replay-0", "learner-0", "actor-0", ..., "eval-0".
+  std::vector<std::string> ProcessNames() const;
+  // The living process of that name ("coordinator" too); 0 while it is being restarted.
+  pid_t Pid(const std::string& name) const;
+
+  struct Progress {
+    double stored_steps = 0, updates = 0;
+  };
+  // Of the newest reports. Throws Broken when stored records have become fewer.
+  Progress TakeProgress();
+  // Waits until `process` (not `former`) has reported after `since`, steps were stored and updates
+  // done since `before`. Throws Broken at `deadline`.
+  void AwaitRecovery(const std::string& process, pid_t former, const Progress& before,
+                     std::chrono::seconds deadline);
+
+  // Stops it by SIGINT and waits. Throws Broken unless it ends with 0 and balances.
+  nlohmann::json End(std::chrono::seconds deadline);
+  // Throws Broken when the coordinator has ended.
+  void CheckAlive();
+  // Last lines of the coordinator's output, for messages.
+  std::string Output() const;
+
+ private:
+  launch::ProcessSpec Spec() const;
+  void CheckAcknowledged(const nlohmann::json& accounting);
+  const nlohmann::json& Report(const std::string& process);
+
+  const RunOptions options_;
+  const std::filesystem::path path_;
+  launch::ChildProcess coordinator_;
+  ReportReader reports_;
+  double most_stored_ = 0;
+  // What each actor process had been told was stored, by its last report.
+  std::map<std::pair<std::string, pid_t>, double> acknowledged_;
+};
+
+}  // namespace shoal::soak

@@ -1,0 +1,64 @@
+// What /proc says about processes.
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "common/base/clock.h"
+
+namespace shoal {
+
+// 'R', 'S', 'T' (stopped), 'Z' ...; empty when there is no such process.
+inline std::optional<char> ProcessState(pid_t pid) {
+  std::ifstream in("/proc/" + std::to_string(pid) + "/stat");
+  std::string stat;
+  if (!std::getline(in, stat)) return std::nullopt;
+  const size_t name_end = stat.rfind(')');
+  if (name_end == std::string::npos || name_end + 2 >= stat.size()) return std::nullopt;
+  return stat[name_end + 2];
+}
+
+// It has ended, whether or not its parent has taken notice.
+inline bool HasEnded(pid_t pid) {
+  const auto state = ProcessState(pid);
+  return !state || *state == 'Z' || *state == 'X';
+}
+
+inline bool WaitUntilEnded(pid_t pid, std::chrono::seconds deadline) {
+  const SteadyTime end = Now() + deadline;
+  while (!HasEnded(pid)) {
+    if (Now() > end) return false;
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  return true;
+}
+
+// The words of its command line; empty when there is no such process (or it is a zombie).
+inline std::vector<std::string> CommandLine(pid_t pid) {
+  std::ifstream in("/proc/" + std::to_string(pid) + "/cmdline", std::ios::binary);
+  std::vector<std::string> words;
+  for (std::string word; std::getline(in, word, '\0');) words.push_back(word);
+  return words;
+}
+
+// Children of the process, zombies included.
+inline std::vector<pid_t> ChildrenOf(pid_t parent) {
+  std::vector<pid_t> children;
+  std::error_code error;
+  const std::filesystem::path tasks = "/proc/" + std::to_string(parent) + "/task";
+  for (std::filesystem::directory_iterator it(tasks, error), end; !error && it != end;
+       it.increment(error)) {
+    std::ifstream in(it->path() / "children");
+    for (pid_t child = 0; in >> child;) children.push_back(child);
+  }
+  return children;
+}
+
+}  // namespace shoal

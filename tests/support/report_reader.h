@@ -1,0 +1,56 @@
+// Follows a run's metrics.jsonl: the newest report of each process.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+
+#include "common/base/clock.h"
+
+namespace shoal {
+
+class ReportReader {
+ public:
+  explicit ReportReader(const std::filesystem::path& run) : file_(run / "metrics.jsonl") {}
+
+  // The newest report of role's process `id`; null when there is none yet.
+  const nlohmann::json& Last(const std::string& role, int id = 0) {
+    ReadOn();
+    return last_[{role, id}];
+  }
+  // Looks until done(newest report), a report being there; null when `deadline` came first.
+  template <class Done>
+  nlohmann::json WaitFor(const std::string& role, Done done,
+                         std::chrono::seconds deadline = std::chrono::seconds(60), int id = 0) {
+    const SteadyTime end = Now() + deadline;
+    do {
+      const nlohmann::json& report = Last(role, id);
+      if (!report.is_null() && done(report)) return report;
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    } while (Now() < end);
+    return {};
+  }
+
+ private:
+  void ReadOn() {
+    std::ifstream in(file_);
+    in.seekg(offset_);
+    for (std::string line; std::getline(in, line) && !in.eof();) {
+      offset_ = in.tellg();
+      nlohmann::json report = nlohmann::json::parse(line, nullptr, /*allow_exceptions=*/false);
+      if (!report.is_object() || !report.contains("role") || !report.contains("id")) continue;
+      const std::pair key{report["role"].get<std::string>(), report["id"].get<int>()};
+      last_[key] = std::move(report);
+    }
+  }
+
+  const std::filesystem::path file_;
+  std::streamoff offset_ = 0;
+  std::map<std::pair<std::string, int>, nlohmann::json> last_;
+};
+
+}  // namespace shoal

@@ -1,0 +1,70 @@
+// A training run of the real programs that goes on while the test does something to it.
+#pragma once
+
+#include <chrono>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "common/base/clock.h"
+#include "launch/child_process.h"
+#include "tests/support/report_reader.h"
+#include "tests/support/training_run.h"
+
+namespace shoal {
+
+class RunningTraining {
+ public:
+  // Starts `shoal train` with the words of TrainingRun::Command (or of a resume).
+  RunningTraining(const TrainingRun& run, std::vector<std::string> command)
+      : run_(run), reports_(run.path()), child_(Spec(run, std::move(command))) {}
+
+  pid_t pid() const { return child_.pid(); }
+  ReportReader& reports() { return reports_; }
+
+  // Waits until the replay has stored `steps` more steps. False when it did not in time.
+  bool WaitForMoreSteps(int64_t steps) {
+    const auto any = reports_.WaitFor("replay", [](const auto&) { return true; });
+    return !any.is_null() && WaitForSteps(Stored(any) + steps);
+  }
+  bool WaitForSteps(int64_t steps, std::chrono::seconds deadline = std::chrono::seconds(60)) {
+    return !reports_
+                .WaitFor(
+                    "replay", [&](const auto& r) { return Stored(r) >= steps; }, deadline)
+                .is_null();
+  }
+
+  // Waits for the end; exit code, or -1 when it was killed or did not end.
+  int End(std::chrono::seconds deadline) {
+    const SteadyTime end = Now() + deadline;
+    while (Now() < end) {
+      if (const auto status = child_.Poll()) return status->by_signal ? -1 : status->code;
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    return -1;
+  }
+
+  std::string Output() const { return ReadFile(OutputFile(run_)); }
+
+ private:
+  static std::filesystem::path OutputFile(const TrainingRun& run) {
+    return run.parent() / "output";
+  }
+  static launch::ProcessSpec Spec(const TrainingRun& run, std::vector<std::string> command) {
+    launch::ProcessSpec spec;
+    spec.role = "train";
+    spec.command = std::move(command);
+    spec.command[0] = std::string(SHOAL_BIN) + "/shoal";
+    spec.output = OutputFile(run);
+    return spec;
+  }
+  static int64_t Stored(const nlohmann::json& report) {
+    return static_cast<int64_t>(report.value("stored_steps", 0.0));
+  }
+
+  const TrainingRun& run_;
+  ReportReader reports_;
+  launch::ChildProcess child_;
+};
+
+}  // namespace shoal
