@@ -3,8 +3,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "actor/worlds/tools/contact_sheet.h"
 #include "actor/worlds/tools/render_task.h"
 #include "actor/worlds/tools/replay_reference.h"
+#include "common/base/error.h"
+#include "common/base/files.h"
 #include "common/image/png.h"
 #include "launch/commands/commands.h"
 #include "launch/commands/env_tasks.h"
@@ -17,6 +20,15 @@ int Render(const worlds::RenderRequest& request, const std::string& png) {
   image::WritePng(png, picture.width, picture.height, 3, picture.pixels);
   std::cout << png << ": " << request.task << ", camera " << request.camera << ", " << picture.width
             << "x" << picture.height << ", after " << request.env_steps << " env steps\n";
+  return 0;
+}
+
+int DrawSheet(const worlds::ContactSheetRequest& request, const std::string& png) {
+  CheckWritable(png);
+  const worlds::Picture sheet = worlds::DrawContactSheet(worlds::PlanContactSheet(), request);
+  image::WritePng(png, sheet.width, sheet.height, 3, sheet.pixels);
+  std::cout << png << ": every task, camera and quality, " << sheet.width << "x" << sheet.height
+            << "\n";
   return 0;
 }
 
@@ -38,11 +50,14 @@ int Replay(const std::vector<std::string>& files, bool json) {
 }
 
 void AddRender(CLI::App& env, Action* chosen) {
-  CLI::App* command = env.add_subcommand("render", "One picture of a task, to look at.");
+  CLI::App* command = env.add_subcommand(
+      "render", "One picture of a task, or of all tasks, cameras and qualities, to look at.");
   const auto request = std::make_shared<worlds::RenderRequest>();
+  const auto whole = std::make_shared<bool>(false);
+  const auto sheet = std::make_shared<worlds::ContactSheetRequest>();
   const auto png = std::make_shared<std::string>();
   request->camera = "front";
-  command->add_option("task", request->task, "Task, e.g. FetchReachDense")->required();
+  CLI::Option* task = command->add_option("task", request->task, "Task, e.g. FetchReachDense");
   command->add_option("--camera", request->camera, "Camera of the task")->capture_default_str();
   command->add_option("--png", *png, "File to write")->required();
   command->add_option("--steps", request->env_steps, "Random env steps before the picture")
@@ -53,7 +68,23 @@ void AddRender(CLI::App& env, Action* chosen) {
   command->add_option("--width", request->width, "Pixels")->capture_default_str();
   command->add_option("--height", request->height, "Pixels")->capture_default_str();
   command->add_option("--model", request->model, "Another MJCF file for the task");
-  command->callback([=] { *chosen = [=] { return Render(*request, *png); }; });
+  CLI::Option* all =
+      command
+          ->add_flag("--contact-sheet", *whole, "All tasks, cameras and qualities in one picture")
+          ->excludes(task);
+  for (const char* other : {"--camera", "--steps", "--quality", "--width", "--height", "--model"}) {
+    all->excludes(command->get_option(other));
+  }
+  command->add_option("--tile", sheet->side, "Pixels a side of a contact sheet's pictures")
+      ->needs(all)
+      ->capture_default_str();
+  command->callback([=] {
+    if (!*whole && task->count() == 0) {
+      throw UsageError("env render: expected a task or --contact-sheet");
+    }
+    sheet->seed = request->seed;
+    *chosen = [=] { return *whole ? DrawSheet(*sheet, *png) : Render(*request, *png); };
+  });
 }
 
 void AddReplay(CLI::App& env, Action* chosen) {

@@ -10,7 +10,7 @@ OpenEnvironment::OpenEnvironment(const tasks::Task& task, const std::string& mod
   config.model = model;
   config.observation.pixels = false;
   config.observation.proprioception = true;
-  config.observation.goal_mode = "both";
+  config.observation.goal_mode = task.goal_size() > 0 ? "both" : "none";
   environment_ = MakeEnvironment(config, nullptr);
   numbers_.resize(static_cast<size_t>(environment_->spec().VectorSize()));
 }
