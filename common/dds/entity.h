@@ -1,10 +1,12 @@
 // Owner of one DDS entity. Internal: include dds headers last, they redefine `restrict` in C++.
 #pragma once
 
+#include <chrono>
 #include <string>
 #include <utility>
 
 #include "common/base/error.h"
+#include "common/base/watchdog.h"
 // clang-format off
 #include "dds/dds.h"
 // clang-format on
@@ -31,12 +33,19 @@ class Entity {
 
   dds_entity_t get() const { return handle_; }
   explicit operator bool() const { return handle_ > 0; }
+  // Known to hang now and then when a peer goes away at the same moment; a process that only wanted
+  // to leave then leaves without it.
   void Reset() {
-    if (handle_ > 0) dds_delete(handle_);
+    if (handle_ > 0) {
+      const Watchdog watchdog("deleting a DDS entity", kDeleteLimit);
+      dds_delete(handle_);
+    }
     handle_ = 0;
   }
 
  private:
+  static constexpr std::chrono::seconds kDeleteLimit{30};
+
   dds_entity_t handle_ = 0;
 };
 
