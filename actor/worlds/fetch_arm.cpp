@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "actor/worlds/site_motion.h"
 #include "common/base/check.h"
 #include "common/base/error.h"
 
@@ -18,12 +19,16 @@ constexpr int kSetupEnvSteps = 10;
 
 }  // namespace
 
-FetchArm::FetchArm(World* world, const FetchArmSetup& setup) : world_(world), setup_(setup) {
+FetchArm::FetchArm(World* world, const FetchArmSetup& setup, Physics physics)
+    : world_(world), setup_(setup) {
   const mjModel& model = world->model();
   grip_site_ = world->SiteId("robot0:grip");
   gripper_body_ = world->BodyId("robot0:gripper_link");
-  mocap_ = model.body_mocapid[world->BodyId("robot0:mocap")];
-  if (mocap_ < 0) throw RuntimeError("the model's body 'robot0:mocap' is not a mocap body");
+  const int mocap_body = world->BodyId("robot0:mocap");
+  mocap_ = model.body_mocapid[mocap_body];
+  if (mocap_ < 0) {
+    throw RuntimeError("{}: body 'robot0:mocap' is not a mocap body", world->source());
+  }
   const char* const fingers[] = {"robot0:r_gripper_finger_joint", "robot0:l_gripper_finger_joint"};
   for (size_t i = 0; i < 2; ++i) {
     const int joint = world->JointId(fingers[i]);
@@ -34,16 +39,29 @@ FetchArm::FetchArm(World* world, const FetchArmSetup& setup) : world_(world), se
   for (size_t i = 0; i < 3; ++i) {
     base_position_[i] = model.jnt_qposadr[world->JointId(slides[i])];
   }
+  FindMotors();
+  PrepareWeld(world, mocap_body, gripper_body_, physics);
 }
 
-// "The gripper's frame equals the mocap body's", whatever poses the model was compiled with. The
-// numbers are anchor (3), relative position (3) and relative quaternion (4).
-void FetchArm::AlignWeld() {
-  mjModel& model = world_->model();
-  for (int i = 0; i < model.neq; ++i) {
-    if (model.eq_type[i] != mjEQ_WELD) continue;
-    constexpr double kAligned[] = {0, 0, 0, 0, 0, 0, 1, 0, 0, 0};
-    std::copy(std::begin(kAligned), std::end(kAligned), model.eq_data + mjNEQDATA * i);
+// Every actuator is taken for a finger's position servo.
+void FetchArm::FindMotors() {
+  const mjModel& model = world_->model();
+  for (int i = 0; i < model.nu; ++i) {
+    const int joint = model.actuator_trnid[2 * i];
+    if (model.actuator_trntype[i] != mjTRN_JOINT || model.jnt_type[joint] == mjJNT_FREE ||
+        model.jnt_type[joint] == mjJNT_BALL) {
+      throw RuntimeError("{}: actuator {} does not drive a slide or hinge joint", world_->source(),
+                         i);
+    }
+    motor_position_.push_back(model.jnt_qposadr[joint]);
+  }
+  if (setup_.block_gripper) return;
+  for (const int finger : finger_position_) {
+    if (std::find(motor_position_.begin(), motor_position_.end(), finger) ==
+        motor_position_.end()) {
+      throw RuntimeError("{} has no actuator for both of the gripper's finger joints",
+                         world_->source());
+    }
   }
 }
 
@@ -51,7 +69,6 @@ void FetchArm::SetUp() {
   mjModel& model = world_->model();
   mjData& data = world_->data();
   for (size_t i = 0; i < 3; ++i) data.qpos[base_position_[i]] = setup_.base[i];
-  AlignWeld();
   // Twice, because each call moves the solver's warm start a little.
   mj_forward(&model, &data);
   mj_forward(&model, &data);
@@ -84,7 +101,7 @@ void FetchArm::Act(std::span<const double> action) {
   // Finger motors exist only in tasks that grasp, one per finger joint.
   const double fingers = setup_.block_gripper ? 0 : action[3];
   for (int i = 0; i < model.nu; ++i) {
-    data.ctrl[i] = data.qpos[model.jnt_qposadr[model.actuator_trnid[2 * i]]] + fingers;
+    data.ctrl[i] = data.qpos[motor_position_[static_cast<size_t>(i)]] + fingers;
   }
   double* position = data.mocap_pos + 3 * mocap_;
   double* quaternion = data.mocap_quat + 4 * mocap_;
@@ -102,24 +119,14 @@ void FetchArm::FinishStep() {
   mj_forward(&world_->model(), &world_->data());
 }
 
-std::array<double, 3> FetchArm::GripPosition() const {
-  const double* grip = world_->data().site_xpos + 3 * grip_site_;
-  return {grip[0], grip[1], grip[2]};
-}
+std::array<double, 3> FetchArm::GripPosition() const { return PositionOfSite(*world_, grip_site_); }
 
 double FetchArm::StepSeconds() const {
   return world_->model().opt.timestep * kEngineStepsPerEnvStep;
 }
 
-// The Jacobian is that of the last kinematics, the velocity the current one, as the engine's own
-// velocity sensors would have it after the same calls.
 std::array<double, 3> FetchArm::GripVelocity() const {
-  const mjModel& model = world_->model();
-  const mjData& data = world_->data();
-  std::vector<double> jacobian(3 * static_cast<size_t>(model.nv));
-  mj_jacSite(&model, &data, jacobian.data(), nullptr, grip_site_);
-  std::array<double, 3> velocity{};
-  mju_mulMatVec(velocity.data(), jacobian.data(), data.qvel, 3, model.nv);
+  std::array<double, 3> velocity = VelocityOfSite(*world_, grip_site_).linear;
   for (double& component : velocity) component *= StepSeconds();
   return velocity;
 }

@@ -11,6 +11,7 @@
 #include <span>
 #include <vector>
 
+#include "actor/worlds/fetch_weld.h"
 #include "actor/worlds/world.h"
 
 namespace shoal::worlds {
@@ -27,9 +28,10 @@ class FetchArm {
   static constexpr int kEngineStepsPerEnvStep = 20;
 
   // Throws Error naming what the model lacks.
-  FetchArm(World* world, const FetchArmSetup& setup);
+  FetchArm(World* world, const FetchArmSetup& setup, Physics physics);
 
-  // Once, after loading: moves the gripper to where episodes start and keeps that state.
+  // Once, after loading and placing an object: moves the gripper to where episodes start and keeps
+  // that state.
   void SetUp();
   // Grip site in m, as the last of the setup's engine steps left it: one such step stale.
   const std::array<double, 3>& initial_grip() const { return initial_grip_; }
@@ -54,13 +56,14 @@ class FetchArm {
   double StepSeconds() const;
 
  private:
-  void AlignWeld();
+  void FindMotors();
 
   World* world_;
   FetchArmSetup setup_;
   int grip_site_, gripper_body_, mocap_;
   std::array<int, 2> finger_position_, finger_velocity_;  // (right, left) in qpos, qvel
   std::array<int, 3> base_position_;                      // slides in qpos
+  std::vector<int> motor_position_;  // in qpos: of the joint that each actuator drives
   std::array<double, 3> initial_grip_{};
   double initial_time_ = 0;
   std::vector<double> initial_qpos_, initial_qvel_;

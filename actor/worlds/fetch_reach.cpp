@@ -1,11 +1,7 @@
 #include "actor/worlds/fetch_reach.h"
 
-#include <mujoco/mujoco.h>
-
 #include <algorithm>
 
-#include "actor/worlds/fetch_cameras.h"
-#include "actor/worlds/model_loading.h"
 #include "common/base/check.h"
 
 namespace shoal::worlds {
@@ -17,52 +13,31 @@ constexpr FetchArmSetup kSetup{
 
 }  // namespace
 
-std::unique_ptr<World> MakeFetchReach(const std::string& model_file) {
-  return std::make_unique<FetchReach>(model_file);
+std::unique_ptr<World> MakeFetchReach(const WorldOptions& options) {
+  return std::make_unique<FetchReach>(options);
 }
 
-FetchReach::FetchReach(const std::string& model_file)
-    : World(LoadModel("fetch_reach.xml", model_file)), arm_(this, kSetup) {
-  target_site_ = SiteId("target0");
-  arm_.SetUp();
+FetchReach::FetchReach(const WorldOptions& options)
+    : FetchWorld("fetch_reach.xml", options, kSetup) {
+  SetUpArm();
 }
 
 void FetchReach::Reset(Random* random) {
-  std::array<double, 3> goal = arm_.initial_grip();
+  std::array<double, 3> goal = arm().initial_grip();
   for (double& coordinate : goal) coordinate += random->Uniform(-kGoalRange, kGoalRange);
   ResetTo(goal);
-}
-
-void FetchReach::ResetTo(const std::array<double, 3>& goal) {
-  goal_ = goal;
-  arm_.RestoreInitialState();
-  // The target's marker sits on a body that neither moves nor turns.
-  const double* body = model().body_pos + 3 * model().site_bodyid[target_site_];
-  for (int i = 0; i < 3; ++i) {
-    model().site_pos[3 * target_site_ + i] = goal[static_cast<size_t>(i)] - body[i];
-  }
-  mj_forward(&model(), &data());
-}
-
-World::Outcome FetchReach::Step(std::span<const double> action) {
-  arm_.Act(action);
-  Advance(FetchArm::kEngineStepsPerEnvStep);
-  arm_.FinishStep();
-  return {};
 }
 
 void FetchReach::Observe(std::span<double> observation, std::span<double> achieved_goal,
                          std::span<double> desired_goal) const {
   CHECK(observation.size() == 10) << observation.size();
-  const std::array<double, 3> grip = arm_.GripPosition();
+  const std::array<double, 3> grip = arm().GripPosition();
   auto out = std::copy_n(grip.begin(), 3, observation.begin());
-  out = std::copy_n(arm_.Fingers().begin(), 2, out);
-  out = std::copy_n(arm_.GripVelocity().begin(), 3, out);
-  std::copy_n(arm_.FingerVelocities().begin(), 2, out);
+  out = std::copy_n(arm().Fingers().begin(), 2, out);
+  out = std::copy_n(arm().GripVelocity().begin(), 3, out);
+  std::copy_n(arm().FingerVelocities().begin(), 2, out);
   std::copy(grip.begin(), grip.end(), achieved_goal.begin());
-  std::copy(goal_.begin(), goal_.end(), desired_goal.begin());
+  std::copy(goal().begin(), goal().end(), desired_goal.begin());
 }
-
-std::span<const CameraView> FetchReach::cameras() const { return FetchCameras(); }
 
 }  // namespace shoal::worlds

@@ -4,6 +4,7 @@
 
 #include <cstring>
 #include <filesystem>
+#include <string_view>
 #include <vector>
 
 #include "actor/worlds/engine_messages.h"
@@ -17,23 +18,21 @@ namespace {
 
 constexpr int kErrorBytes = 1000;
 
-// The embedded files as the engine's virtual files.
-class EmbeddedFolder {
+// Files in memory that the engine finds by name, whatever folder it looks in.
+class VirtualFolder {
  public:
-  EmbeddedFolder() : vfs_(std::make_unique<mjVFS>()) {
-    mj_defaultVFS(vfs_.get());
-    for (const ModelFile& file : EmbeddedModelFiles()) {
-      const std::string name(file.name);
-      const int size = static_cast<int>(file.text.size());
-      CHECK(mj_makeEmptyFileVFS(vfs_.get(), name.c_str(), size) == 0) << name;
-      const int index = mj_findFileVFS(vfs_.get(), name.c_str());
-      CHECK(index >= 0) << name;
-      std::memcpy(vfs_->filedata[index], file.text.data(), file.text.size());
-    }
+  VirtualFolder() : vfs_(std::make_unique<mjVFS>()) { mj_defaultVFS(vfs_.get()); }
+  ~VirtualFolder() { mj_deleteVFS(vfs_.get()); }
+  VirtualFolder(const VirtualFolder&) = delete;
+  VirtualFolder& operator=(const VirtualFolder&) = delete;
+
+  void Add(const std::string& name, std::string_view text) {
+    CHECK(mj_makeEmptyFileVFS(vfs_.get(), name.c_str(), static_cast<int>(text.size())) == 0)
+        << name;
+    const int index = mj_findFileVFS(vfs_.get(), name.c_str());
+    CHECK(index >= 0) << name;
+    std::memcpy(vfs_->filedata[index], text.data(), text.size());
   }
-  ~EmbeddedFolder() { mj_deleteVFS(vfs_.get()); }
-  EmbeddedFolder(const EmbeddedFolder&) = delete;
-  EmbeddedFolder& operator=(const EmbeddedFolder&) = delete;
 
   const mjVFS* get() const { return vfs_.get(); }
 
@@ -46,21 +45,30 @@ class EmbeddedFolder {
 void ModelDeleter::operator()(mjModel_* model) const { mj_deleteModel(model); }
 void DataDeleter::operator()(mjData_* data) const { mj_deleteData(data); }
 
-ModelHandle LoadModel(const std::string& name, const std::string& user_file) {
+ModelHandle LoadModel(const std::string& name, const std::string& user_file,
+                      const std::string& addition) {
   InstallEngineCallbacks();
-  char reason[kErrorBytes] = "";
-  ModelHandle model;
-  if (user_file.empty()) {
-    model.reset(mj_loadXML(name.c_str(), EmbeddedFolder().get(), reason, kErrorBytes));
-    CHECK(model != nullptr) << name << ": " << reason;
-  } else {
-    if (!std::filesystem::is_regular_file(user_file)) {
-      throw UsageError("model file '{}' does not exist", user_file);
-    }
-    model.reset(mj_loadXML(user_file.c_str(), nullptr, reason, kErrorBytes));
-    if (model == nullptr)
-      throw RuntimeError("model file '{}' does not load: {}", user_file, reason);
+  if (!user_file.empty() && !std::filesystem::is_regular_file(user_file)) {
+    throw UsageError("model file '{}' does not exist", user_file);
   }
+  VirtualFolder folder;
+  if (user_file.empty()) {
+    for (const ModelFile& file : EmbeddedModelFiles())
+      folder.Add(std::string(file.name), file.text);
+  }
+  std::filesystem::path root = user_file.empty() ? name : user_file;
+  if (!addition.empty()) {
+    // A root of our own in the same folder that includes the model's: the engine looks for includes
+    // and meshes beside the root.
+    constexpr const char* kRoot = "shoal_model_with_addition.xml";
+    folder.Add(kRoot, fmt::format("<mujoco><include file=\"{}\"/>{}</mujoco>",
+                                  root.filename().string(), addition));
+    root.replace_filename(kRoot);
+  }
+  char reason[kErrorBytes] = "";
+  ModelHandle model(mj_loadXML(root.c_str(), folder.get(), reason, kErrorBytes));
+  CHECK(model != nullptr || !user_file.empty()) << name << ": " << reason;
+  if (model == nullptr) throw RuntimeError("model file '{}' does not load: {}", user_file, reason);
   return model;
 }
 

@@ -8,9 +8,11 @@
 namespace shoal::worlds {
 
 // Compiles the embedded file `name` ("fetch_reach.xml"), or, when `user_file` is not empty, the
-// file at that path (its includes and meshes are looked up beside it). Throws Error with the
-// engine's reason when it does not load.
-ModelHandle LoadModel(const std::string& name, const std::string& user_file);
+// file at that path (its includes and meshes are looked up beside it). `addition`: MJCF elements
+// ("<equality>...</equality>") that the model gets after its own. Throws Error with the engine's
+// reason when it does not load.
+ModelHandle LoadModel(const std::string& name, const std::string& user_file,
+                      const std::string& addition = "");
 
 // State of a model, with all of its buffers.
 DataHandle MakeData(const mjModel_& model);

@@ -9,12 +9,15 @@
 
 namespace shoal::worlds {
 
-World::World(ModelHandle model)
-    : model_(std::move(model)), fingerprint_(ModelFingerprint(*model_)), data_(MakeData(*model_)) {}
+World::World(ModelHandle model, const std::string& model_file)
+    : model_(std::move(model)),
+      source_(model_file.empty() ? "the model" : fmt::format("model file '{}'", model_file)),
+      fingerprint_(ModelFingerprint(*model_)),
+      data_(MakeData(*model_)) {}
 
 int World::ElementId(int object_type, const char* kind, const std::string& name) const {
   const int id = mj_name2id(model_.get(), object_type, name.c_str());
-  if (id < 0) throw RuntimeError("the model has no {} named '{}'", kind, name);
+  if (id < 0) throw RuntimeError("{} has no {} named '{}'", source_, kind, name);
   return id;
 }
 

@@ -22,8 +22,8 @@ class World {
     bool terminated = false;
   };
 
-  // Takes the model, as loaded.
-  explicit World(ModelHandle model);
+  // Takes the model, as loaded; `model_file` is where a user's came from, empty = our own.
+  explicit World(ModelHandle model, const std::string& model_file = "");
   virtual ~World() = default;
   World(const World&) = delete;
   World& operator=(const World&) = delete;
@@ -46,7 +46,10 @@ class World {
   // Of the model as loaded: see ModelFingerprint.
   const std::string& fingerprint() const { return fingerprint_; }
 
-  // Ids of named elements; throw Error naming what the model lacks.
+  // What messages call the model: "the model" or "model file 'mine.xml'".
+  const std::string& source() const { return source_; }
+
+  // Ids of named elements; throw Error naming the model and what it lacks.
   int BodyId(const std::string& name) const;
   int SiteId(const std::string& name) const;
   int JointId(const std::string& name) const;
@@ -60,6 +63,7 @@ class World {
   int ElementId(int object_type, const char* kind, const std::string& name) const;
 
   ModelHandle model_;
+  std::string source_;
   std::string fingerprint_;
   DataHandle data_;
 };

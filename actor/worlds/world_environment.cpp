@@ -150,7 +150,8 @@ std::unique_ptr<Environment> MakeEnvironment(const Config& config,
   const tasks::Task& task = tasks::FindTask(config.task);
   CHECK(!config.observation.pixels || render != nullptr) << "pixels without a render context";
   if (!config.observation.pixels) render = nullptr;
-  return std::make_unique<WorldEnvironment>(task, MakeWorld(task.world(), config.model),
+  return std::make_unique<WorldEnvironment>(task,
+                                            MakeWorld(task.world(), {config.model, config.physics}),
                                             config.observation, std::move(render));
 }
 

@@ -1,5 +1,6 @@
 #include "actor/worlds/world_registry.h"
 
+#include "actor/worlds/fetch_object_world.h"
 #include "actor/worlds/fetch_reach.h"
 #include "common/base/check.h"
 #include "common/base/error.h"
@@ -9,18 +10,21 @@ namespace {
 
 struct Registration {
   const char* name;
-  std::unique_ptr<World> (*make)(const std::string& model_file);
+  std::unique_ptr<World> (*make)(const WorldOptions& options);
 };
 
 constexpr Registration kWorlds[] = {
     {"FetchReach", MakeFetchReach},
+    {"FetchPush", MakeFetchPush},
+    {"FetchSlide", MakeFetchSlide},
+    {"FetchPickAndPlace", MakeFetchPickAndPlace},
 };
 
 }  // namespace
 
-std::unique_ptr<World> MakeWorld(const std::string& name, const std::string& model_file) {
+std::unique_ptr<World> MakeWorld(const std::string& name, const WorldOptions& options) {
   for (const Registration& world : kWorlds) {
-    if (name == world.name) return world.make(model_file);
+    if (name == world.name) return world.make(options);
   }
   CHECK(false) << "no physics half named " << name;
   return nullptr;

@@ -86,8 +86,9 @@ struct Config {
   int actors = 0;               // 0 = one per core the learner leaves, at least 1
   int envs_per_actor = 4;
   bool lockstep = false;
-  int lockstep_steps = 8;  // vector steps between weights in lockstep
-  std::string model;       // path of another MJCF file for the task; empty = our own
+  int lockstep_steps = 8;           // vector steps between weights in lockstep
+  std::string model;                // path of another MJCF file for the task; empty = our own
+  std::string physics = "mujoco2";  // mujoco2 | mujoco3: whose version of the Fetch weld
   ObservationConfig observation;
   ReplayConfig replay;
   LearnerConfig learner;

@@ -35,6 +35,8 @@ std::vector<Key> RunKeys() {
       SHOAL_SAME(lockstep_steps, (IntegerRange{1, 100'000}),
                  "vector steps between two weights versions in lockstep"),
       SHOAL_SAME(model, AnyValue{}, "path of another MJCF file for the task; empty = the built-in"),
+      SHOAL_SAME(physics, (Choices{{"mujoco2", "mujoco3"}}),
+                 "Fetch: how stiffly the arm's orientation is held, as in this version of MuJoCo"),
   };
 }
 

@@ -8,46 +8,83 @@ namespace {
 constexpr int kEpisodeLength = 50;
 constexpr double kDistanceThreshold = 0.05;
 
-Block PositionBlock(const std::string& name, const std::string& what) {
-  return {name,
-          {{"x", "m", what + ", x in the world"},
-           {"y", "m", what + ", y in the world"},
-           {"z", "m", what + ", height above the floor"}}};
+using Components = std::vector<Component>;
+
+// Three numbers of one kind: x, y, z in the world.
+Components Vector(const std::string& prefix, const std::string& unit, const std::string& what) {
+  return {{prefix + "x", unit, what + ", x in the world"},
+          {prefix + "y", unit, what + ", y in the world"},
+          {prefix + "z", unit, what + ", z in the world (up)"}};
 }
 
-// Velocities are those of one env step: metres moved in the 0.04 s of a step at the present speed.
+Components Fingers(bool held_shut) {
+  const std::string note = held_shut ? "; held shut" : "";
+  return {{"right_finger", "m", "opening of the right finger" + note},
+          {"left_finger", "m", "opening of the left finger" + note}};
+}
+
+Components FingerVelocities() {
+  return {{"right_finger_velocity", "m/step", "velocity of the right finger"},
+          {"left_finger_velocity", "m/step", "velocity of the left finger"}};
+}
+
+Block Join(const std::vector<Components>& parts) {
+  Block block{"observation", {}};
+  for (const Components& part : parts) {
+    block.components.insert(block.components.end(), part.begin(), part.end());
+  }
+  return block;
+}
+
+constexpr const char* kGrip = "point between the fingers";
+
+// Velocities are those of one env step: what a thing moves or turns in the 0.04 s of a step at its
+// present speed.
 Block ReachObservation() {
-  return {"observation",
-          {{"grip_x", "m", "point between the fingers, x in the world"},
-           {"grip_y", "m", "point between the fingers, y in the world"},
-           {"grip_z", "m", "point between the fingers, height above the floor"},
-           {"right_finger", "m", "opening of the right finger; held shut"},
-           {"left_finger", "m", "opening of the left finger; held shut"},
-           {"grip_velocity_x", "m/step", "velocity of the point between the fingers, x"},
-           {"grip_velocity_y", "m/step", "velocity of the point between the fingers, y"},
-           {"grip_velocity_z", "m/step", "velocity of the point between the fingers, z"},
-           {"right_finger_velocity", "m/step", "velocity of the right finger"},
-           {"left_finger_velocity", "m/step", "velocity of the left finger"}}};
+  return Join({Vector("grip_", "m", kGrip), Fingers(/*held_shut=*/true),
+               Vector("grip_velocity_", "m/step", "velocity of the point between the fingers"),
+               FingerVelocities()});
+}
+
+Block ObjectObservation(bool fingers_held_shut) {
+  return Join({Vector("grip_", "m", kGrip), Vector("object_", "m", "object's centre"),
+               Vector("object_from_grip_", "m", "object's centre seen from between the fingers"),
+               Fingers(fingers_held_shut),
+               Vector("object_angle_", "rad", "object's Euler angle, jumping at +-pi"),
+               Vector("object_velocity_from_grip_", "m/step",
+                      "velocity of the object less that of the point between the fingers"),
+               Vector("object_angular_velocity_", "rad/step", "angular velocity of the object"),
+               Vector("grip_velocity_", "m/step", "velocity of the point between the fingers"),
+               FingerVelocities()});
 }
 
 // Each in [-1, 1]: the gripper is pulled towards 5 cm times the number, and lags behind.
-std::vector<Component> Action() {
+Components Action(bool fingers_held_shut) {
   return {{"dx", "", "moves the gripper along x, 1 = towards 5 cm further", -1, 1},
           {"dy", "", "moves the gripper along y, 1 = towards 5 cm further", -1, 1},
           {"dz", "", "moves the gripper up, 1 = towards 5 cm further", -1, 1},
-          {"gripper", "", "1 opens and -1 shuts the fingers; no effect while they are held shut",
+          {"gripper", "",
+           fingers_held_shut ? "no effect: the fingers are held shut"
+                             : "1 opens and -1 shuts the fingers, with full force",
            -1, 1}};
 }
 
-Task FetchTask(const std::string& world, Block observation, RewardKind reward) {
+struct Family {
+  const char* world;
+  bool has_object, fingers_held_shut;
+};
+
+Task FetchTask(const Family& family, RewardKind reward) {
+  const bool shut = family.fingers_held_shut;
   Task::Description description;
-  description.name = world + (reward == RewardKind::kDense ? "Dense" : "");
-  description.world = world;
+  description.name = family.world + std::string(reward == RewardKind::kDense ? "Dense" : "");
+  description.world = family.world;
   description.episode_length = kEpisodeLength;
-  description.action = Action();
-  description.observation = std::move(observation);
-  description.achieved_goal = PositionBlock("achieved_goal", "point between the fingers");
-  description.desired_goal = PositionBlock("desired_goal", "target");
+  description.action = Action(shut);
+  description.observation = family.has_object ? ObjectObservation(shut) : ReachObservation();
+  description.achieved_goal = {"achieved_goal",
+                               Vector("", "m", family.has_object ? "object's centre" : kGrip)};
+  description.desired_goal = {"desired_goal", Vector("", "m", "target")};
   description.reward = reward;
   description.distance_threshold = kDistanceThreshold;
   return Task(std::move(description));
@@ -56,8 +93,14 @@ Task FetchTask(const std::string& world, Block observation, RewardKind reward) {
 }  // namespace
 
 std::vector<Task> FetchTasks() {
-  return {FetchTask("FetchReach", ReachObservation(), RewardKind::kSparse),
-          FetchTask("FetchReach", ReachObservation(), RewardKind::kDense)};
+  std::vector<Task> tasks;
+  for (const Family& family :
+       {Family{"FetchReach", false, true}, Family{"FetchPush", true, true},
+        Family{"FetchSlide", true, true}, Family{"FetchPickAndPlace", true, false}}) {
+    tasks.push_back(FetchTask(family, RewardKind::kSparse));
+    tasks.push_back(FetchTask(family, RewardKind::kDense));
+  }
+  return tasks;
 }
 
 }  // namespace shoal::tasks

@@ -7,8 +7,9 @@
 
 namespace shoal::tasks {
 
-// FetchReach and FetchReachDense. The achieved goal is the position of the grip site; reached
-// within 5 cm; 50 env steps an episode.
+// FetchReach, FetchPush, FetchSlide and FetchPickAndPlace, each also as ...Dense. The achieved goal
+// is the position of the grip site in Reach, of the object in the others; reached within 5 cm; 50
+// env steps an episode.
 std::vector<Task> FetchTasks();
 
 }  // namespace shoal::tasks

@@ -5,7 +5,7 @@
 
 #include "actor/worlds/tools/contact_sheet.h"
 #include "actor/worlds/tools/render_task.h"
-#include "actor/worlds/tools/replay_reference.h"
+#include "actor/worlds/tools/replay_file.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/image/png.h"
@@ -32,20 +32,21 @@ int DrawSheet(const worlds::ContactSheetRequest& request, const std::string& png
   return 0;
 }
 
-int Replay(const std::vector<std::string>& files, bool json) {
+int Replay(const std::vector<std::string>& files, const worlds::ReplayOptions& options, bool json) {
   bool passed = true;
   nlohmann::ordered_json reports = nlohmann::ordered_json::array();
   for (const std::string& file : files) {
-    const worlds::ReplayReport report = worlds::ReplayReference(file);
-    passed = passed && report.passed;
-    if (json) {
-      reports.push_back(worlds::ToJson(report));
-    } else {
-      std::cout << worlds::ToText(report) << std::endl;
+    for (const worlds::ReplayReport& report : worlds::ReplayFile(file, options)) {
+      passed = passed && report.passed;
+      if (json) {
+        reports.push_back(worlds::ToJson(report));
+      } else {
+        std::cout << worlds::ToText(report) << std::endl;
+      }
     }
   }
-  // One file gives its report itself, several a list of them.
-  if (json) std::cout << (files.size() == 1 ? reports[0] : reports).dump(2) << std::endl;
+  // One report is given itself, several as a list.
+  if (json) std::cout << (reports.size() == 1 ? reports[0] : reports).dump(2) << std::endl;
   return passed ? 0 : 1;
 }
 
@@ -93,10 +94,18 @@ void AddReplay(CLI::App& env, Action* chosen) {
       "Replay recorded trajectories of the original environments in our physics and say how far "
       "apart the two get. Exit code 1 when that is more than the tolerance.");
   const auto files = std::make_shared<std::vector<std::string>>();
+  const auto options = std::make_shared<worlds::ReplayOptions>();
   const auto json = std::make_shared<bool>(false);
-  command->add_option("files", *files, "Trajectories (JSON, format vrl-ref-1)")->required();
-  command->add_flag("--json", *json, "Print JSON (schema shoal-parity-1; a list for many files)");
-  command->callback([=] { *chosen = [=] { return Replay(*files, *json); }; });
+  command
+      ->add_option("files", *files,
+                   "Trajectories (JSON, format vrl-ref-1), or grip positions in newer versions of "
+                   "MuJoCo (vrl-xversion-1) beside trajectories of the same actions")
+      ->required();
+  command->add_option("--model", options->model, "Another MJCF file for the task");
+  command->add_option("--physics", options->physics,
+                      "mujoco2 | mujoco3; the default is what the file was made with");
+  command->add_flag("--json", *json, "Print JSON (schema shoal-parity-1; a list for many reports)");
+  command->callback([=] { *chosen = [=] { return Replay(*files, *options, *json); }; });
 }
 
 }  // namespace

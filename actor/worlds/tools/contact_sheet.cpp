@@ -79,7 +79,7 @@ void Paste(const Picture& from, int x, int y, Picture* to) {
 ContactSheetRows PlanContactSheet() {
   ContactSheetRows rows;
   for (const auto& [name, tasks] : TasksByWorld()) {
-    const auto world = MakeWorld(name, /*model_file=*/"");
+    const auto world = MakeWorld(name, {});
     std::vector<ContactSheetTile> row;
     for (const CameraView& camera : world->cameras()) {
       for (const char* quality : {"fast", "reference"})

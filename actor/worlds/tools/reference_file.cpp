@@ -1,94 +1,41 @@
 #include "actor/worlds/tools/reference_file.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
+#include <string_view>
 
-#include "common/base/error.h"
-#include "common/base/files.h"
+#include "actor/worlds/tools/measurement_reader.h"
+#include "common/tasks/task_registry.h"
 
 namespace shoal::worlds {
 namespace {
 
 using nlohmann::json;
 
-constexpr const char* kFormat = "vrl-ref-1";
-constexpr const char* kReplayable = "FetchReach-v4";
-constexpr size_t kObservationSize = 10, kActionSize = 4, kMostSteps = 100'000;
+// Each of the published names is a task of ours and its version.
+constexpr std::string_view kVersion = "-v4";
+constexpr const char* kReplayable[] = {"FetchReach-v4", "FetchPush-v4", "FetchSlide-v4",
+                                       "FetchPickAndPlace-v4"};
+constexpr size_t kActionSize = 4, kMostSteps = 100'000;
 
-// One JSON object of the file, knowing the path of keys that leads to it.
-class Reader {
- public:
-  Reader(const std::filesystem::path& file, const json& object, std::string where)
-      : file_(file), object_(object), where_(std::move(where)) {
-    if (!object.is_object()) throw Fault(where_.empty() ? "the file" : where_, "is not an object");
-  }
-
-  Error Fault(const std::string& what, const std::string& problem) const {
-    return RuntimeError("reference file '{}': {} {}", file_.string(), what, problem);
-  }
-
-  std::string Path(const std::string& key) const {
-    return where_.empty() ? key : where_ + "." + key;
-  }
-
-  const json& At(const std::string& key) const {
-    const auto found = object_.find(key);
-    if (found == object_.end()) throw Fault("key '" + Path(key) + "'", "is missing");
-    return *found;
-  }
-
-  Reader Object(const std::string& key) const { return Reader(file_, At(key), Path(key)); }
-
-  std::string Text(const std::string& key) const {
-    const json& value = At(key);
-    if (!value.is_string()) throw Fault("key '" + Path(key) + "'", "is not a string");
-    return value.get<std::string>();
-  }
-
-  double Number(const std::string& key) const {
-    const json& value = At(key);
-    if (!value.is_number() || !std::isfinite(value.get<double>())) {
-      throw Fault("key '" + Path(key) + "'", "is not a finite number");
-    }
-    return value.get<double>();
-  }
-
-  std::vector<double> Numbers(const std::string& key, size_t size) const {
-    const json& value = At(key);
-    const bool good = value.is_array() && value.size() == size &&
-                      std::all_of(value.begin(), value.end(), [](const json& element) {
-                        return element.is_number() && std::isfinite(element.get<double>());
-                      });
-    if (!good)
-      throw Fault("key '" + Path(key) + "'", fmt::format("is not {} finite numbers", size));
-    return value.get<std::vector<double>>();
-  }
-
-  template <size_t kSize>
-  std::array<double, kSize> Numbers(const std::string& key) const {
-    std::array<double, kSize> numbers{};
-    std::ranges::copy(Numbers(key, kSize), numbers.begin());
-    return numbers;
-  }
-
- private:
-  const std::filesystem::path& file_;
-  const json& object_;
-  std::string where_;
+struct Sizes {
+  size_t observation, qpos, qvel;
 };
 
-ReferenceState ReadState(const Reader& from, size_t joints) {
+ReferenceState ReadState(const MeasurementReader& from, const Sizes& sizes) {
   ReferenceState state;
-  state.observation = from.Numbers("obs", kObservationSize);
+  state.observation = from.Numbers("obs", sizes.observation);
   state.achieved_goal = from.Numbers<3>("achieved_goal");
-  state.qpos = from.Numbers("qpos", joints);
-  state.qvel = from.Numbers("qvel", joints);
+  state.qpos = from.Numbers("qpos", sizes.qpos);
+  state.qvel = from.Numbers("qvel", sizes.qvel);
   state.grip_quaternion = from.Numbers<4>("grip_xquat");
+  state.contacts = static_cast<int>(from.Number("ncon"));
   return state;
 }
 
-ReferenceStep ReadStep(const Reader& from, size_t joints) {
+ReferenceStep ReadStep(const MeasurementReader& from, const Sizes& sizes) {
   ReferenceStep step;
   step.action = from.Numbers("action", kActionSize);
   for (const double component : step.action) {
@@ -96,7 +43,7 @@ ReferenceStep ReadStep(const Reader& from, size_t joints) {
       throw from.Fault("key '" + from.Path("action") + "'", "has a component outside [-1, 1]");
     }
   }
-  step.state = ReadState(from, joints);
+  step.state = ReadState(from, sizes);
   step.distance = from.Number("distance");
   step.reward_sparse = from.Number("reward_sparse");
   step.reward_dense = from.Number("reward_dense");
@@ -104,49 +51,53 @@ ReferenceStep ReadStep(const Reader& from, size_t joints) {
   return step;
 }
 
-std::vector<std::string> ReadNames(const Reader& from, const std::string& key) {
-  const json& value = from.At(key);
-  const bool good = value.is_array() && !value.empty() &&
-                    std::all_of(value.begin(), value.end(),
-                                [](const json& element) { return element.is_string(); });
-  if (!good) throw from.Fault("key '" + key + "'", "is not a list of names");
-  return value.get<std::vector<std::string>>();
+void ReadIdentity(const MeasurementReader& root, ReferenceTrajectory* trajectory) {
+  const std::string format = root.Text("format");
+  if (format != kReferenceFormat) {
+    throw root.Fault("key 'format'",
+                     fmt::format("is '{}'; expected '{}'", format, kReferenceFormat));
+  }
+  trajectory->environment = root.Text("env");
+  if (std::ranges::find(kReplayable, trajectory->environment) == std::end(kReplayable)) {
+    throw root.Fault("key 'env'",
+                     fmt::format("is '{}', which cannot be replayed; known: {}",
+                                 trajectory->environment, fmt::join(kReplayable, ", ")));
+  }
+  trajectory->task =
+      trajectory->environment.substr(0, trajectory->environment.size() - kVersion.size());
+  trajectory->has_object = trajectory->task != "FetchReach";
+  trajectory->sequence = root.Text("sequence");
 }
 
 }  // namespace
 
 ReferenceTrajectory ReadReference(const std::filesystem::path& path) {
-  json document;
-  try {
-    document = json::parse(ReadFile(path));
-  } catch (const json::exception& problem) {
-    throw RuntimeError("reference file '{}' is not JSON: {}", path.string(), problem.what());
-  }
-  const Reader root(path, document, "");
-  const std::string format = root.Text("format");
-  if (format != kFormat) {
-    throw root.Fault("key 'format'", fmt::format("is '{}'; expected '{}'", format, kFormat));
-  }
+  const json document = ReadJson(path);
+  const MeasurementReader root(path, document, "");
   ReferenceTrajectory trajectory;
-  trajectory.environment = root.Text("env");
-  if (trajectory.environment != kReplayable) {
-    throw root.Fault("key 'env'", fmt::format("is '{}', which cannot be replayed; known: {}",
-                                              trajectory.environment, kReplayable));
-  }
-  trajectory.sequence = root.Text("sequence");
+  ReadIdentity(root, &trajectory);
   trajectory.initial_grip = root.Numbers<3>("initial_gripper_xpos");
   trajectory.desired_goal = root.Numbers<3>("desired_goal");
-  trajectory.joint_names = ReadNames(root, "joint_names");
+  trajectory.joint_names = root.Names("joint_names");
+  // The last joint is the object's: seven coordinates, six velocities.
   const size_t joints = trajectory.joint_names.size();
-  trajectory.reset = ReadState(root.Object("reset"), joints);
+  Sizes sizes{static_cast<size_t>(tasks::FindTask(trajectory.task).observation().size()), joints,
+              joints};
+  if (trajectory.has_object) {
+    trajectory.table_height = root.Number("height_offset");
+    trajectory.object_xy = root.Numbers<2>("object_xy");
+    sizes.qpos += 6;
+    sizes.qvel += 5;
+  }
+  trajectory.reset = ReadState(root.Object("reset"), sizes);
 
   const json& steps = root.At("trajectory");
   if (!steps.is_array() || steps.empty() || steps.size() > kMostSteps) {
     throw root.Fault("key 'trajectory'", "is not a list of steps");
   }
   for (size_t i = 0; i < steps.size(); ++i) {
-    const Reader step(path, steps[i], fmt::format("trajectory[{}]", i));
-    trajectory.steps.push_back(ReadStep(step, joints));
+    const MeasurementReader step(path, steps[i], fmt::format("trajectory[{}]", i));
+    trajectory.steps.push_back(ReadStep(step, sizes));
   }
   return trajectory;
 }

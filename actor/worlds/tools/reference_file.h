@@ -9,13 +9,16 @@
 
 namespace shoal::worlds {
 
+constexpr const char* kReferenceFormat = "vrl-ref-1";
+
 // The state right after the reset or after a step. Positions in m, velocities in the engine's
 // units.
 struct ReferenceState {
-  std::vector<double> observation;  // (10)
+  std::vector<double> observation;  // (10) Reach, (25) with an object
   std::array<double, 3> achieved_goal{};
-  std::vector<double> qpos, qvel;  // in the order of joint_names
+  std::vector<double> qpos, qvel;  // joints in the order of joint_names, a free joint's 7 and 6
   std::array<double, 4> grip_quaternion{};
+  int contacts = 0;
 };
 
 struct ReferenceStep {
@@ -28,8 +31,12 @@ struct ReferenceStep {
 
 struct ReferenceTrajectory {
   std::string environment;  // "FetchReach-v4"
+  std::string task;         // "FetchReach"
   std::string sequence;     // name of the action sequence: "random0"
+  bool has_object = false;
   std::array<double, 3> initial_grip{};
+  double table_height = 0;            // of the object's site after the set-up; 0 without object
+  std::array<double, 2> object_xy{};  // at the reset; 0 without object
   std::array<double, 3> desired_goal{};
   std::vector<std::string> joint_names;
   ReferenceState reset;

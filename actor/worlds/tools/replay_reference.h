@@ -1,46 +1,33 @@
-// Parity with the original environments: replays a recorded trajectory's goal and actions in our
-// physics and says how far apart the two get.
+// Parity with the original environments: replays a recorded trajectory's start, goal and actions in
+// our physics and says how far apart the two get.
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
+#include "actor/worlds/tools/parity_report.h"
+#include "actor/worlds/tools/reference_file.h"
+
 namespace shoal::worlds {
 
-// Largest absolute difference of one quantity over the reset and all steps, over all its
-// components.
-struct Deviation {
-  std::string quantity;  // "grip_position"
-  std::string unit;      // of the difference: "m"; empty = dimensionless or mixed
-  double largest = 0;
-  int at_step = 0;       // env step where it occurs, 0 = reset
-  double tolerance = 0;  // what it may be; 0 = for information, not judged
-
-  bool Passed() const { return tolerance == 0 || largest <= tolerance; }
-};
-
-struct ReplayReport {
-  std::string file, environment, sequence;
-  int steps = 0;
-  double tolerance = 0;  // m, of this sequence
-  std::vector<Deviation> deviations;
-  // Steps where the sparse reward or the success flag differ although the reference's distance is
-  // further from the threshold than the tolerance.
-  int reward_mismatches = 0, success_mismatches = 0;
-  bool passed = false;
+struct ReplayOptions {
+  std::string model;    // path of another MJCF file; empty = our own
+  std::string physics;  // empty = that of the file: mujoco2 for trajectories
 };
 
 // Tolerances: 1e-5 m; 1e-3 m for const_z_close and 1e-2 m for const_y, where the arm folds onto
 // itself and hulls of stand-in shapes meet. Positions, distances and dense rewards are judged,
-// velocities and joint coordinates reported. Throws Error on a file that cannot be read or
-// replayed; see ReadReference.
-ReplayReport ReplayReference(const std::filesystem::path& path);
+// velocities, angles and joint coordinates reported.
+//
+// Slide's puck is judged until it is hit: until the first step after which its linear speed in the
+// reference exceeds 0.01 m/s. (At rest it trembles at 0.001 to 0.002 m/s, a hit gives it 0.1 or
+// more.) From there on the puck's path is chaotic: input noise of 1e-8 grows to centimetres.
+//
+// Throws Error on a file that cannot be read or replayed; see ReadReference.
+ReplayReport ReplayReference(const std::filesystem::path& path, const ReplayOptions& options = {});
 
-// Schema shoal-parity-1.
-nlohmann::ordered_json ToJson(const ReplayReport& report);
-// For people: a line per quantity, the verdict last.
-std::string ToText(const ReplayReport& report);
+// The first env step that counts as hit, 0 = none.
+int FirstHit(const ReferenceTrajectory& reference);
 
 }  // namespace shoal::worlds

@@ -73,7 +73,7 @@ TaskDescription DescribeTask(const DescribeRequest& request) {
   const Task& task = tasks::FindTask(request.task);
   TaskDescription description;
   description.task = &task;
-  const auto world = MakeWorld(task.world(), request.model);
+  const auto world = MakeWorld(task.world(), {.model = request.model});
   description.fingerprint = world->fingerprint();
   description.cameras.assign(world->cameras().begin(), world->cameras().end());
   description.env_step_seconds = SecondsOfAStep(task, world.get(), request.seed);

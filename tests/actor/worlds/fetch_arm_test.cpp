@@ -21,20 +21,20 @@ constexpr std::array<double, 3> kInitialGrip{1.3418550217, 0.7491005081, 0.53470
 constexpr std::array<double, 4> kForward{1, 0, 0, 0};
 
 TEST(FetchArm, StartsWhereTheOriginalDoes) {
-  const FetchReach world("");
+  const FetchReach world;
   for (size_t i = 0; i < 3; ++i) {
     EXPECT_NEAR(world.arm().initial_grip()[i], kInitialGrip[i], 1e-8) << i;
   }
 }
 
 TEST(FetchArm, TheGripPointsDown) {
-  const FetchReach world("");
+  const FetchReach world;
   const double* matrix = world.data().xmat + 9 * world.BodyId("robot0:gripper_link");
   EXPECT_NEAR(matrix[6], -1, 1e-3);  // the gripper's x axis along -z
 }
 
 TEST(FetchArm, FollowsAFullActionWithALag) {
-  FetchReach world("");
+  FetchReach world;
   world.ResetTo({1.4, 0.7, 0.5});
   const double start = world.arm().GripPosition()[0];
   world.Step(kForward);
@@ -46,7 +46,7 @@ TEST(FetchArm, FollowsAFullActionWithALag) {
 }
 
 TEST(FetchArm, VelocityIsMovementPerEnvStep) {
-  FetchReach world("");
+  FetchReach world;
   world.ResetTo({1.4, 0.7, 0.5});
   for (int i = 0; i < 3; ++i) world.Step(kForward);
   const double velocity = world.arm().GripVelocity()[0];
@@ -61,7 +61,7 @@ TEST(FetchArm, VelocityIsMovementPerEnvStep) {
 }
 
 TEST(FetchArm, ABlockedGripperStaysShutWhateverTheAction) {
-  FetchReach open(""), shut("");
+  FetchReach open, shut;
   open.ResetTo({1.4, 0.7, 0.5});
   shut.ResetTo({1.4, 0.7, 0.5});
   for (int i = 0; i < 5; ++i) {
@@ -77,7 +77,7 @@ TEST(FetchArm, AModelWithoutTheArmIsRefusedNamingWhatItLacks) {
   const auto path = folder.path() / "empty.xml";
   WriteFileAtomically(path, "<mujoco><worldbody/></mujoco>");
   try {
-    FetchReach world(path.string());
+    FetchReach world({.model = path.string()});
     FAIL() << "made a Fetch world of an empty model";
   } catch (const Error& error) {
     EXPECT_THAT(error.what(), testing::HasSubstr("robot0:grip"));

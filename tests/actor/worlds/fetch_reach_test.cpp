@@ -41,7 +41,7 @@ std::vector<double> Episode(World* world, uint64_t key, int steps) {
 }
 
 TEST(FetchReach, GoalsFillTheCubeAroundTheStartAndNothingElse) {
-  FetchReach world("");
+  FetchReach world;
   const auto& centre = world.arm().initial_grip();
   constexpr int kDraws = 500;
   std::array<double, 3> low{1e9, 1e9, 1e9}, high{-1e9, -1e9, -1e9}, sum{};
@@ -68,7 +68,7 @@ TEST(FetchReach, GoalsFillTheCubeAroundTheStartAndNothingElse) {
 }
 
 TEST(FetchReach, TheGoalTakesThreeDrawsInTheOrderXYZ) {
-  FetchReach world("");
+  FetchReach world;
   Random random(11), same(11);
   world.Reset(&random);
   const Blocks blocks = Observe(world);
@@ -79,7 +79,7 @@ TEST(FetchReach, TheGoalTakesThreeDrawsInTheOrderXYZ) {
 }
 
 TEST(FetchReach, AnEpisodeDoesNotDependOnTheOnesBefore) {
-  FetchReach fresh(""), used("");
+  FetchReach fresh, used;
   Episode(&used, 1, 20);
   Episode(&used, 2, 3);
   EXPECT_EQ(Episode(&fresh, 3, 20), Episode(&used, 3, 20));
@@ -87,7 +87,7 @@ TEST(FetchReach, AnEpisodeDoesNotDependOnTheOnesBefore) {
 }
 
 TEST(FetchReach, InterleavedWorldsDoNotTouchEachOther) {
-  FetchReach alone(""), left(""), right("");
+  FetchReach alone, left, right;
   const std::vector<double> expected = Episode(&alone, 5, 10);
   Random random(5), other(6);
   left.Reset(&random);
@@ -106,7 +106,7 @@ TEST(FetchReach, InterleavedWorldsDoNotTouchEachOther) {
 }
 
 TEST(FetchReach, TheTargetsMarkerSitsAtTheGoal) {
-  FetchReach world("");
+  FetchReach world;
   const std::array<double, 3> goal{1.25, 0.85, 0.61};
   world.ResetTo(goal);
   const double* marker = world.data().site_xpos + 3 * world.SiteId("target0");
@@ -116,7 +116,7 @@ TEST(FetchReach, TheTargetsMarkerSitsAtTheGoal) {
 }
 
 TEST(FetchReach, TheAchievedGoalIsTheGrip) {
-  FetchReach world("");
+  FetchReach world;
   world.ResetTo({1.25, 0.85, 0.61});
   world.Step(std::array<double, 4>{0.2, -0.4, 0.6, 0});
   const Blocks blocks = Observe(world);
@@ -126,7 +126,7 @@ TEST(FetchReach, TheAchievedGoalIsTheGrip) {
 }
 
 TEST(FetchReach, TheCrossStandsAtTheWorldsOriginRightAfterAReset) {
-  FetchReach world("");
+  FetchReach world;
   world.ResetTo({1.25, 0.85, 0.61});
   const double* cross = world.data().xpos + 3 * world.BodyId("robot0:mocap");
   EXPECT_EQ(std::vector<double>(cross, cross + 3), (std::vector<double>{0, 0, 0}));
@@ -136,7 +136,7 @@ TEST(FetchReach, TheCrossStandsAtTheWorldsOriginRightAfterAReset) {
 
 TEST(FetchReach, RunsWithoutEngineWarnings) {
   const int64_t before = EngineWarnings();
-  FetchReach world("");
+  FetchReach world;
   Episode(&world, 8, 50);
   EXPECT_EQ(EngineWarnings(), before);
 }

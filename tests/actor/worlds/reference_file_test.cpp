@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <functional>
 #include <nlohmann/json.hpp>
 
@@ -56,6 +57,20 @@ TEST(ReferenceFile, ReadsWhatTheFileHolds) {
   EXPECT_EQ(trajectory.reset.qpos, document["reset"]["qpos"].get<std::vector<double>>());
 }
 
+TEST(ReferenceFile, ReadsTheObjectOfTasksThatHaveOne) {
+  const std::string path = SHOAL_GOLDEN "/reference/fetch_Push_zero.json";
+  const ReferenceTrajectory trajectory = ReadReference(path);
+  const json document = json::parse(ReadFile(path));
+  EXPECT_EQ(trajectory.task, "FetchPush");
+  EXPECT_TRUE(trajectory.has_object);
+  EXPECT_EQ(trajectory.object_xy, (document["object_xy"].get<std::array<double, 2>>()));
+  EXPECT_EQ(trajectory.table_height, document["height_offset"].get<double>());
+  EXPECT_EQ(trajectory.reset.observation.size(), 25u);
+  EXPECT_EQ(trajectory.reset.qpos.size(), 22u);
+  EXPECT_EQ(trajectory.reset.qvel.size(), 21u);
+  EXPECT_EQ(trajectory.reset.contacts, document["reset"]["ncon"].get<int>());
+}
+
 TEST(ReferenceFile, NamesAMissingKeyByItsPath) {
   EXPECT_THAT(ComplaintAfter([](json& d) { d.erase("desired_goal"); }),
               HasSubstr("'desired_goal' is missing"));
@@ -96,9 +111,9 @@ TEST(ReferenceFile, RefusesActionsOutsideTheirBounds) {
 TEST(ReferenceFile, RefusesOtherFormatsAndEnvironments) {
   EXPECT_THAT(ComplaintAfter([](json& d) { d["format"] = "vrl-ref-2"; }),
               AllOf(HasSubstr("vrl-ref-2"), HasSubstr("vrl-ref-1")));
-  EXPECT_THAT(ComplaintAfter([](json& d) { d["env"] = "FetchPush-v4"; }),
-              AllOf(HasSubstr("FetchPush-v4"), HasSubstr("cannot be replayed"),
-                    HasSubstr("FetchReach-v4")));
+  EXPECT_THAT(ComplaintAfter([](json& d) { d["env"] = "FetchThrow-v4"; }),
+              AllOf(HasSubstr("FetchThrow-v4"), HasSubstr("cannot be replayed"),
+                    HasSubstr("FetchReach-v4"), HasSubstr("FetchPickAndPlace-v4")));
 }
 
 TEST(ReferenceFile, RefusesWhatIsNotJson) {

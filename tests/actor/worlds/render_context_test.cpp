@@ -128,7 +128,7 @@ std::vector<GoldenFrame> GoldenFrames() {
 double ErrorAgainstOriginal(const std::string& quality, const GoldenFrame& golden) {
   const ReferenceTrajectory trajectory =
       ReadReference(SHOAL_GOLDEN "/reference/fetch_Reach_random_hold5.json");
-  FetchReach world("");
+  FetchReach world;
   world.ResetTo(trajectory.desired_goal);
   for (int i = 0; i < golden.after_step; ++i) {
     world.Step(trajectory.steps[static_cast<size_t>(i)].action);
@@ -157,7 +157,7 @@ TEST(RenderContext, FastFramesLookAlmostLikeTheOriginals) {
 
 // Rows count from the top, columns from the left, and red is red: each would be wrong elsewhere.
 TEST(RenderContext, TheTargetIsRedAndWhereItsGoalProjects) {
-  FetchReach world("");
+  FetchReach world;
   RenderContext context(Observation("fast"));
   for (const char* camera : {"front", "side", "close"}) {
     // Off centre in both directions for each camera, and not behind the gripper.
@@ -175,7 +175,7 @@ TEST(RenderContext, TheTargetIsRedAndWhereItsGoalProjects) {
 }
 
 TEST(RenderContext, TheTargetIsVisibleInBothDefaultCamerasWhereverItIs) {
-  FetchReach world("");
+  FetchReach world;
   RenderContext context(Observation("fast"));
   Random random(5);
   int unseen = 0;
@@ -193,7 +193,7 @@ TEST(RenderContext, TheTargetIsVisibleInBothDefaultCamerasWhereverItIs) {
 }
 
 TEST(RenderContext, TheSkyIsGreenTheTableWhiteAndTheTopRowIsTheTop) {
-  FetchReach world("");
+  FetchReach world;
   world.ResetTo({1.47, 0.88, 0.6});
   RenderContext context(Observation("fast"));
   const Frame frame = Render(&context, &world, "gymnasium");
@@ -213,7 +213,7 @@ TEST(RenderContext, TheSkyIsGreenTheTableWhiteAndTheTopRowIsTheTop) {
 }
 
 TEST(RenderContext, GreyIsOneChannelOfTheSamePicture) {
-  FetchReach world("");
+  FetchReach world;
   world.ResetTo({1.4, 0.7, 0.5});
   RenderContext colour(Observation("fast")), grey(Observation("fast", /*grey=*/true));
   const Frame rgb = Render(&colour, &world, "front"), luma = Render(&grey, &world, "front");
@@ -225,7 +225,7 @@ TEST(RenderContext, GreyIsOneChannelOfTheSamePicture) {
 }
 
 TEST(RenderContext, CamerasOfOneFrameFollowEachOther) {
-  FetchReach world("");
+  FetchReach world;
   world.ResetTo({1.4, 0.7, 0.5});
   RenderContext context(Observation("fast"));
   const Frame front = Render(&context, &world, "front"), side = Render(&context, &world, "side");
@@ -238,7 +238,7 @@ TEST(RenderContext, CamerasOfOneFrameFollowEachOther) {
 }
 
 TEST(RenderContext, TwoContextsDrawTheSameBytes) {
-  FetchReach world("");
+  FetchReach world;
   world.ResetTo({1.4, 0.7, 0.5});
   RenderContext first(Observation("fast")), second(Observation("fast"));
   const Frame once = Render(&first, &world, "close");
@@ -246,7 +246,7 @@ TEST(RenderContext, TwoContextsDrawTheSameBytes) {
 }
 
 TEST(RenderContext, AContextDrawsIntoItsOwnBufferWhicheverWasUsedLast) {
-  FetchReach world("");
+  FetchReach world;
   world.ResetTo({1.4, 0.7, 0.5});
   RenderContext fast(Observation("fast")), reference(Observation("reference"));
   const Frame once = Render(&fast, &world, "close");
@@ -257,7 +257,7 @@ TEST(RenderContext, AContextDrawsIntoItsOwnBufferWhicheverWasUsedLast) {
 }
 
 TEST(RenderContext, WorldsThatShareAContextAreDrawnEachAsItIs) {
-  FetchReach left(""), right("");
+  FetchReach left, right;
   left.ResetTo({1.45, 0.65, 0.5});
   right.ResetTo({1.25, 0.85, 0.5});
   RenderContext context(Observation("fast")), other(Observation("fast"));
@@ -270,7 +270,7 @@ TEST(RenderContext, WorldsThatShareAContextAreDrawnEachAsItIs) {
 }
 
 TEST(RenderContext, DrawingDoesNotChangeThePhysics) {
-  FetchReach drawn(""), blind("");
+  FetchReach drawn, blind;
   drawn.ResetTo({1.4, 0.7, 0.5});
   blind.ResetTo({1.4, 0.7, 0.5});
   RenderContext context(Observation("fast"));
@@ -284,8 +284,8 @@ TEST(RenderContext, DrawingDoesNotChangeThePhysics) {
 }
 
 TEST(RenderContext, RefusesAWorldWithAnotherModel) {
-  FetchReach ours("");
-  FetchReach other(SHOAL_TEST_DATA "/other_reach.xml");
+  FetchReach ours;
+  FetchReach other({.model = SHOAL_TEST_DATA "/other_reach.xml"});
   RenderContext context(Observation("fast"));
   context.Attach(&ours);
   EXPECT_THROW(context.Attach(&other), Error);

@@ -13,12 +13,12 @@ using testing::HasSubstr;
 
 TEST(WorldRegistry, EveryTaskHasAPhysicsHalf) {
   for (const std::string& name : tasks::TaskNames()) {
-    EXPECT_NE(MakeWorld(tasks::FindTask(name).world(), ""), nullptr) << name;
+    EXPECT_NE(MakeWorld(tasks::FindTask(name).world(), {}), nullptr) << name;
   }
 }
 
 TEST(WorldRegistry, FindsCamerasByNameAndListsThemOtherwise) {
-  const auto world = MakeWorld("FetchReach", "");
+  const auto world = MakeWorld("FetchReach", {});
   for (const char* name : {"gymnasium", "close", "front", "side"}) {
     EXPECT_EQ(FindCamera(*world, name).name, name);
   }
@@ -33,7 +33,7 @@ TEST(WorldRegistry, FindsCamerasByNameAndListsThemOtherwise) {
 }
 
 TEST(WorldRegistryDeathTest, AGoalHalfWithoutPhysicsIsABug) {
-  EXPECT_DEATH(MakeWorld("Juggling", ""), "Juggling");
+  EXPECT_DEATH(MakeWorld("Juggling", {}), "Juggling");
 }
 
 }  // namespace

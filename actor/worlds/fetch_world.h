@@ -1,0 +1,51 @@
+// What the physics halves of all Fetch tasks share: the arm, the goal and its marker, the order of
+// engine calls in reset and step.
+//
+// Behaviour of Gymnasium-Robotics' Fetch environments, v4. A model of a user's must have the named
+// elements of ours: bodies robot0:mocap (mocap) and robot0:gripper_link, welded in this order;
+// sites robot0:grip and target0; joints robot0:slide0 to 2, robot0:r_gripper_finger_joint and
+// robot0:l_gripper_finger_joint; with an object also the free joint object0:joint and the site
+// object0. Whatever is lacking is named.
+#pragma once
+
+#include <array>
+#include <string>
+
+#include "actor/worlds/fetch_arm.h"
+#include "actor/worlds/world.h"
+#include "actor/worlds/world_options.h"
+
+namespace shoal::worlds {
+
+class FetchWorld : public World {
+ public:
+  // Starts an episode with this goal and, in tasks with an object, with the object there (m, world
+  // frame). Height and rotation of the object are what the set-up left.
+  void ResetTo(const std::array<double, 3>& goal, const std::array<double, 2>& object_xy = {});
+
+  Outcome Step(std::span<const double> action) final;
+  std::span<const CameraView> cameras() const final;
+
+  const FetchArm& arm() const { return arm_; }
+  // Site of the object, -1 in tasks without.
+  virtual int object_site() const { return -1; }
+
+ protected:
+  // `model_name`: the embedded model to load unless the options name a user's.
+  FetchWorld(const std::string& model_name, const WorldOptions& options,
+             const FetchArmSetup& setup);
+
+  // Called by ResetTo once the kept state is restored.
+  virtual void PlaceObject(const std::array<double, 2>& /*xy*/) {}
+
+  // Once, at the end of the constructor, the object placed: see FetchArm::SetUp.
+  void SetUpArm() { arm_.SetUp(); }
+  const std::array<double, 3>& goal() const { return goal_; }
+
+ private:
+  FetchArm arm_;
+  int target_site_;
+  std::array<double, 3> goal_{};
+};
+
+}  // namespace shoal::worlds

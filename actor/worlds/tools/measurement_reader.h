@@ -1,0 +1,51 @@
+// JSON files of measurements, read strictly: what is missing or ill-typed is named by the path of
+// keys that leads to it.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "common/base/error.h"
+
+namespace shoal::worlds {
+
+// Throws Error when the file cannot be read or is not JSON.
+nlohmann::json ReadJson(const std::filesystem::path& path);
+
+// One JSON object of a file. Borrows both. All functions throw Error naming the file and the key.
+class MeasurementReader {
+ public:
+  MeasurementReader(const std::filesystem::path& file, const nlohmann::json& object,
+                    std::string where);
+
+  Error Fault(const std::string& what, const std::string& problem) const;
+  // "reset.obs" for the key "obs" of the object that "reset" leads to.
+  std::string Path(const std::string& key) const;
+
+  bool Has(const std::string& key) const { return object_.contains(key); }
+  const nlohmann::json& object() const { return object_; }
+  const nlohmann::json& At(const std::string& key) const;
+  MeasurementReader Object(const std::string& key) const;
+  std::string Text(const std::string& key) const;
+  double Number(const std::string& key) const;
+  std::vector<double> Numbers(const std::string& key, size_t size) const;
+  std::vector<std::string> Names(const std::string& key) const;
+
+  template <size_t kSize>
+  std::array<double, kSize> Numbers(const std::string& key) const {
+    std::array<double, kSize> numbers{};
+    std::ranges::copy(Numbers(key, kSize), numbers.begin());
+    return numbers;
+  }
+
+ private:
+  const std::filesystem::path& file_;
+  const nlohmann::json& object_;
+  std::string where_;
+};
+
+}  // namespace shoal::worlds

@@ -1,0 +1,72 @@
+#include "actor/worlds/tools/replay_file.h"
+
+#include <memory>
+
+#include "actor/worlds/fetch_world.h"
+#include "actor/worlds/tools/cross_version_file.h"
+#include "actor/worlds/tools/measurement_reader.h"
+#include "actor/worlds/world_registry.h"
+#include "common/base/error.h"
+#include "common/base/log.h"
+
+namespace shoal::worlds {
+namespace {
+
+constexpr const char* kVersion = "3.3.8";
+constexpr double kTolerance = 1e-3, kDriftTolerance = 3e-3, kFoldingTolerance = 1.5e-2;
+
+ReplayReport ReplaySequence(const std::filesystem::path& path, const CrossVersionSequence& sequence,
+                            const std::string& physics) {
+  ReplayReport report;
+  report.file = path.string();
+  report.environment = sequence.task + ", MuJoCo " + sequence.version;
+  report.sequence = sequence.sequence;
+  report.physics = physics;
+  report.steps = static_cast<int>(sequence.actions.size());
+  report.tolerance = CrossVersionTolerance(sequence.task, sequence.sequence);
+  const std::unique_ptr<World> made = MakeWorld(sequence.task, {.model = "", .physics = physics});
+  auto& world = dynamic_cast<FetchWorld&>(*made);
+  report.Compare("initial_grip", "m", report.tolerance, world.arm().initial_grip(),
+                 sequence.initial_grip, 0);
+  world.ResetTo(sequence.desired_goal, sequence.object_xy);
+  for (size_t i = 0; i < sequence.actions.size(); ++i) {
+    world.Step(sequence.actions[i]);
+    report.Compare("grip_position", "m", report.tolerance, world.arm().GripPosition(),
+                   sequence.grip[i], static_cast<int>(i) + 1);
+  }
+  report.Judge();
+  return report;
+}
+
+}  // namespace
+
+double CrossVersionTolerance(const std::string& task, const std::string& sequence) {
+  if (sequence == "const_y") return kFoldingTolerance;
+  const bool aloft = task == "FetchReach" || task == "FetchPickAndPlace";
+  return sequence == "zero" && aloft ? kDriftTolerance : kTolerance;
+}
+
+std::vector<ReplayReport> ReplayFile(const std::filesystem::path& path,
+                                     const ReplayOptions& options) {
+  const nlohmann::json document = ReadJson(path);
+  if (MeasurementReader(path, document, "").Text("format") != kCrossVersionFormat) {
+    return {ReplayReference(path, options)};
+  }
+  if (!options.model.empty()) {
+    throw UsageError("'{}' holds several tasks; it cannot be replayed with one model file",
+                     path.string());
+  }
+  const std::string physics = options.physics.empty() ? "mujoco3" : options.physics;
+  const CrossVersionFile file = ReadCrossVersions(path, kVersion);
+  for (const std::string& name : file.left_out) {
+    log::Warning("{}: {} left out: no trajectory beside the file tells its actions", path.string(),
+                 name);
+  }
+  std::vector<ReplayReport> reports;
+  for (const CrossVersionSequence& sequence : file.sequences) {
+    reports.push_back(ReplaySequence(path, sequence, physics));
+  }
+  return reports;
+}
+
+}  // namespace shoal::worlds
