@@ -1,5 +1,7 @@
 #include "common/dds/bus.h"
 
+#include <charconv>
+
 #include "common/base/check.h"
 #include "common/base/error.h"
 #include "common/dds/dds_log.h"
@@ -14,11 +16,11 @@ namespace {
 
 constexpr size_t kMaxTagBytes = 255;
 
-void CheckAddress(const ClusterAddress& address, const TransportConfig& transport) {
+void CheckAddress(const ClusterAddress& address, const TransportConfig& transport, Role role) {
   if (address.domain < 0 || address.domain > 98 || address.domain % 2 != 0) {
     throw UsageError("DDS domain {}: expected an even number from 0 to 98", address.domain);
   }
-  if (address.tag.empty() || address.tag.size() > kMaxTagBytes) {
+  if (role != Role::kClient && (address.tag.empty() || address.tag.size() > kMaxTagBytes)) {
     throw UsageError("DDS tag \"{}\": expected 1 to {} characters", address.tag, kMaxTagBytes);
   }
   const std::string& interface = transport.interface;
@@ -68,13 +70,20 @@ void Join(const std::string& xml_template, const ClusterAddress& address,
 
 Bus::Bus(const ClusterAddress& address, const TransportConfig& transport, Role role)
     : impl_(std::make_unique<Impl>()) {
-  CheckAddress(address, transport);
+  CheckAddress(address, transport, role);
   RouteDdsLog();
   const std::string xml = DomainTemplate();
-  Join(xml, address, transport, role, Plane::kMain, &impl_->main_domain, &impl_->main_participant);
+  if (role != Role::kClient) {
+    Join(xml, address, transport, role, Plane::kMain, &impl_->main_domain,
+         &impl_->main_participant);
+  }
   if (role == Role::kLearner || role == Role::kReplay) {
     Join(xml, address, transport, role, Plane::kBatch, &impl_->batch_domain,
          &impl_->batch_participant);
+  }
+  if (role == Role::kCoordinator || role == Role::kClient) {
+    Join(xml, address, transport, role, Plane::kOperate, &impl_->operate_domain,
+         &impl_->operate_participant);
   }
 }
 
@@ -82,11 +91,34 @@ Bus::~Bus() = default;
 
 void Bus::SetDeafMute(bool deaf, bool mute, std::chrono::milliseconds reset_after) {
   const dds_duration_t reset = DDS_MSECS(reset_after.count());
-  for (const Entity* domain : {&impl_->main_domain, &impl_->batch_domain}) {
+  for (const Entity* domain : {&impl_->main_domain, &impl_->batch_domain, &impl_->operate_domain}) {
     if (!*domain) continue;
     const dds_return_t result = dds_domain_set_deafmute(domain->get(), deaf, mute, reset);
     CHECK(result == DDS_RETCODE_OK) << dds_strretcode(-result);
   }
+}
+
+int OperatePort(const ClusterAddress& address) {
+  return DiscoveryPort(PlaneDomain(address, Plane::kOperate), ParticipantIndex(Role::kCoordinator));
+}
+
+ClusterAddress ParsePeer(const std::string& peer) {
+  const size_t colon = peer.rfind(':');
+  ClusterAddress address;
+  int port = 0;
+  if (colon != std::string::npos && colon > 0) {
+    const char* end = peer.data() + peer.size();
+    const auto [stop, error] = std::from_chars(peer.data() + colon + 1, end, port);
+    if (error != std::errc() || stop != end) port = 0;
+  }
+  for (address.domain = 0; address.domain <= 98; address.domain += 2) {
+    if (OperatePort(address) != port) continue;
+    address.host = peer.substr(0, colon);
+    return address;
+  }
+  throw UsageError(
+      "peer \"{}\": expected HOST:PORT as the run shows them when it starts, with port {} + 500 n",
+      peer, OperatePort(ClusterAddress()));
 }
 
 }  // namespace shoal::dds

@@ -2,22 +2,26 @@
 //
 // Coordinator, learner and replay sit at fixed participant indices (0, 1, 2); actors have none and
 // know the servers as peers. The transitions, weights, metrics and control topics live in domain D,
-// the batch topics in D+1, so that a slow batch reader cannot block the rest; only learner and
-// replay join D+1.
+// the batch topics in D+1, so that a slow batch reader cannot block the rest; learner and replay
+// join D+1. So does the coordinator, there without the run's tag, so that it and these two do not
+// see each other: it shows the run to, and takes orders from, clients that know nothing but its
+// address.
 #pragma once
 
 #include <chrono>
 #include <memory>
+#include <string>
 
 #include "common/config/config.h"
 #include "common/config/run_files.h"
 
 namespace shoal::dds {
 
-enum class Role { kCoordinator, kLearner, kReplay, kActor };
+// kClient: a program that watches or steers a run from outside.
+enum class Role { kCoordinator, kLearner, kReplay, kActor, kClient };
 
-// Which of the two domains a topic lives in.
-enum class Plane { kMain, kBatch };
+// kMain: domain D. kBatch: domain D+1. kOperate: domain D+1 without a tag.
+enum class Plane { kMain, kBatch, kOperate };
 
 // Sets malloc options that keep megabyte samples out of mmap (facts: 5x throughput). Call first in
 // main, before threads.
@@ -25,9 +29,9 @@ void TuneMalloc();
 
 class Bus {
  public:
-  // Joins the run's domains. At most one Bus per domain and process. Throws Error naming the port
-  // when another process holds the role's index, the interface when it does not exist, the host
-  // when it does not resolve.
+  // Joins the run's domains that the role has to do with. At most one Bus per domain and process.
+  // Throws Error naming the port when another process holds the role's index, the interface when it
+  // does not exist, the host when it does not resolve.
   //
   // The environment variable SHOAL_DDS_XML names a file that replaces the built-in Cyclone DDS
   // configuration; docs/wire_format.md lists the placeholders it may use.
@@ -54,5 +58,14 @@ class Bus {
 // its tag is empty, a tag that no other run has; its host is where the other processes look for
 // this one. Throws Error when none is free.
 std::unique_ptr<Bus> ClaimDomain(const TransportConfig& transport, ClusterAddress* address);
+
+// UDP port at which clients find the coordinator of a run.
+int OperatePort(const ClusterAddress& address);
+// The address of a run whose coordinator is found at "HOST:PORT", for clients: without a tag.
+// Throws Error (kUsage) when it is not of that form or no coordinator uses the port.
+ClusterAddress ParsePeer(const std::string& peer);
+// The interface of this host, by its address, from which `host` is reached. Throws Error when the
+// name does not resolve or there is no way.
+std::string InterfaceTowards(const std::string& host);
 
 }  // namespace shoal::dds

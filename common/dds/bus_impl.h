@@ -15,11 +15,20 @@ class PortTakenError : public Error {
 
 // Members are deleted in reverse order: participants before their domain.
 struct Bus::Impl {
-  Entity main_domain, main_participant;
-  Entity batch_domain, batch_participant;  // empty for coordinator and actors
+  Entity main_domain, main_participant;        // all but clients
+  Entity batch_domain, batch_participant;      // learner and replay
+  Entity operate_domain, operate_participant;  // coordinator and clients
 
   dds_entity_t Participant(Plane plane) const {
-    return (plane == Plane::kMain ? main_participant : batch_participant).get();
+    switch (plane) {
+      case Plane::kMain:
+        return main_participant.get();
+      case Plane::kBatch:
+        return batch_participant.get();
+      case Plane::kOperate:
+        break;
+    }
+    return operate_participant.get();
   }
 };
 

@@ -26,7 +26,6 @@ bool RunPortsFree(int domain) {
   address.domain = domain;
   for (const Plane plane : {Plane::kMain, Plane::kBatch}) {
     for (const Role role : {Role::kCoordinator, Role::kLearner, Role::kReplay}) {
-      if (plane == Plane::kBatch && role == Role::kCoordinator) continue;
       const int port = DiscoveryPort(PlaneDomain(address, plane), ParticipantIndex(role));
       if (!UdpPortFree(port) || !UdpPortFree(port + 1)) return false;
     }

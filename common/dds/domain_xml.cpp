@@ -73,7 +73,9 @@ std::initializer_list<Role> Peers(Role role, Plane plane) {
   static constexpr std::initializer_list<Role> kBatchServers = {Role::kLearner, Role::kReplay};
   // Actors answer when they are found; the coordinator is found by everybody.
   static constexpr std::initializer_list<Role> kNone = {};
+  static constexpr std::initializer_list<Role> kCoordinator = {Role::kCoordinator};
   if (role == Role::kCoordinator) return kNone;
+  if (role == Role::kClient) return kCoordinator;
   return plane == Plane::kBatch ? kBatchServers : kServers;
 }
 
@@ -89,10 +91,11 @@ std::string PeersElement(const ClusterAddress& address, Role role, Plane plane) 
 
 // Bulk writers are few and may fill a pipe; many actors share one receiver's socket buffer.
 const char* WatermarksElement(Role role) {
-  return role == Role::kActor ? "<Watermarks><WhcHigh>2MB</WhcHigh><WhcHighInit>1MB</WhcHighInit>"
-                                "<WhcLow>256kB</WhcLow></Watermarks>"
-                              : "<Watermarks><WhcHigh>8MB</WhcHigh><WhcHighInit>4MB</WhcHighInit>"
-                                "<WhcLow>1MB</WhcLow></Watermarks>";
+  return ParticipantIndex(role) < 0
+             ? "<Watermarks><WhcHigh>2MB</WhcHigh><WhcHighInit>1MB</WhcHighInit>"
+               "<WhcLow>256kB</WhcLow></Watermarks>"
+             : "<Watermarks><WhcHigh>8MB</WhcHigh><WhcHighInit>4MB</WhcHighInit>"
+               "<WhcLow>1MB</WhcLow></Watermarks>";
 }
 
 bool IsPlaceholderName(std::string_view text) {
@@ -133,6 +136,7 @@ int ParticipantIndex(Role role) {
     case Role::kReplay:
       return 2;
     case Role::kActor:
+    case Role::kClient:
       return -1;
   }
   CHECK(false) << "role " << static_cast<int>(role);
@@ -149,6 +153,8 @@ const char* RoleName(Role role) {
       return "replay";
     case Role::kActor:
       return "actor";
+    case Role::kClient:
+      return "client";
   }
   CHECK(false) << "role " << static_cast<int>(role);
   return "";
@@ -173,7 +179,7 @@ std::string RenderDomainXml(std::string_view xml_template, const ClusterAddress&
       xml_template,
       {{"INTERFACE", fmt::format("{}=\"{}\"", attribute, EscapeXml(transport.interface))},
        {"FRAGMENT_BYTES", std::to_string(transport.fragment_bytes)},
-       {"TAG", EscapeXml(address.tag)},
+       {"TAG", plane == Plane::kOperate ? "" : EscapeXml(address.tag)},
        {"INDEX", index < 0 ? "none" : std::to_string(index)},
        {"PEERS", PeersElement(address, role, plane)},
        {"WATERMARKS", WatermarksElement(role)}});

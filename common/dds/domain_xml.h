@@ -5,8 +5,8 @@
 //
 //   @INTERFACE@       name="lo" or address="10.0.0.3", an attribute of NetworkInterface
 //   @FRAGMENT_BYTES@  transport.fragment_bytes
-//   @TAG@             the run's tag
-//   @INDEX@           participant index: 0 coordinator, 1 learner, 2 replay, none for actors
+//   @TAG@             the run's tag; empty in the domain of clients
+//   @INDEX@           participant index: 0 coordinator, 1 learner, 2 replay, none for others
 //   @PEERS@           the <Peers> element
 //   @WATERMARKS@      the <Watermarks> element: unacknowledged bytes a writer may have
 #pragma once
@@ -22,7 +22,7 @@ namespace shoal::dds {
 
 inline constexpr const char* kOverrideVariable = "SHOAL_DDS_XML";
 
-// 0 coordinator, 1 learner, 2 replay; -1 for actors, which have no fixed port.
+// 0 coordinator, 1 learner, 2 replay; -1 for actors and clients, which have no fixed port.
 int ParticipantIndex(Role role);
 // "coordinator", ... for messages.
 const char* RoleName(Role role);

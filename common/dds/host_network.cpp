@@ -7,8 +7,13 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
 #include <memory>
 #include <set>
+
+#include "common/base/error.h"
+#include "common/dds/bus.h"
 
 namespace shoal::dds {
 namespace {
@@ -79,6 +84,29 @@ bool HostResolves(const std::string& host) {
   if (getaddrinfo(host.c_str(), nullptr, &hints, &found) != 0) return false;
   freeaddrinfo(found);
   return true;
+}
+
+std::string InterfaceTowards(const std::string& host) {
+  addrinfo hints{};
+  hints.ai_family = AF_INET;
+  hints.ai_socktype = SOCK_DGRAM;
+  addrinfo* found = nullptr;
+  if (getaddrinfo(host.c_str(), "9", &hints, &found) != 0) {
+    throw RuntimeError("host \"{}\" does not resolve to an IPv4 address", host);
+  }
+  const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> owner(found, &freeaddrinfo);
+  // Connecting a datagram socket sends nothing: it only asks the routing table.
+  const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  sockaddr_in own{};
+  socklen_t size = sizeof(own);
+  const bool routed = fd >= 0 && connect(fd, found->ai_addr, found->ai_addrlen) == 0 &&
+                      getsockname(fd, reinterpret_cast<sockaddr*>(&own), &size) == 0;
+  const int reason = errno;
+  if (fd >= 0) close(fd);
+  if (!routed) throw RuntimeError("no way to host \"{}\": {}", host, std::strerror(reason));
+  char text[INET_ADDRSTRLEN] = "";
+  inet_ntop(AF_INET, &own.sin_addr, text, sizeof(text));
+  return text;
 }
 
 }  // namespace shoal::dds

@@ -35,7 +35,7 @@ struct Publisher<M>::Impl {
 
   Entity topic;
   Entity writer;
-  StringPointers pointers;
+  WireBuffers buffers;
   SteadyTime last_failure_log{};
 };
 
@@ -51,7 +51,7 @@ bool Publisher<M>::Write(const M& message) {
     CHECK(message.payload.size() <= kMaxPayloadBytes)
         << Topic<M>::kSettings.name << ": payload of " << message.payload.size() << " bytes";
   }
-  const typename Topic<M>::Wire sample = ToWire(message, &impl_->pointers);
+  const typename Topic<M>::Wire sample = ToWire(message, &impl_->buffers);
   const dds_return_t result = dds_write(impl_->writer.get(), &sample);
   if (result != DDS_RETCODE_OK && result != DDS_RETCODE_TIMEOUT) impl_->LogFailure(result);
   return result == DDS_RETCODE_OK;
@@ -78,5 +78,8 @@ template class Publisher<EvalWeightsMessage>;
 template class Publisher<MetricsMessage>;
 template class Publisher<ControlMessage>;
 template class Publisher<EvalMessage>;
+template class Publisher<RunViewMessage>;
+template class Publisher<CommandMessage>;
+template class Publisher<ReplyMessage>;
 
 }  // namespace shoal::dds

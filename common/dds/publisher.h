@@ -48,5 +48,8 @@ extern template class Publisher<EvalWeightsMessage>;
 extern template class Publisher<MetricsMessage>;
 extern template class Publisher<ControlMessage>;
 extern template class Publisher<EvalMessage>;
+extern template class Publisher<RunViewMessage>;
+extern template class Publisher<CommandMessage>;
+extern template class Publisher<ReplyMessage>;
 
 }  // namespace shoal::dds

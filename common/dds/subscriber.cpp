@@ -151,5 +151,8 @@ template class Subscriber<EvalWeightsMessage>;
 template class Subscriber<MetricsMessage>;
 template class Subscriber<ControlMessage>;
 template class Subscriber<EvalMessage>;
+template class Subscriber<RunViewMessage>;
+template class Subscriber<CommandMessage>;
+template class Subscriber<ReplyMessage>;
 
 }  // namespace shoal::dds

@@ -41,5 +41,8 @@ extern template class Subscriber<EvalWeightsMessage>;
 extern template class Subscriber<MetricsMessage>;
 extern template class Subscriber<ControlMessage>;
 extern template class Subscriber<EvalMessage>;
+extern template class Subscriber<RunViewMessage>;
+extern template class Subscriber<CommandMessage>;
+extern template class Subscriber<ReplyMessage>;
 
 }  // namespace shoal::dds

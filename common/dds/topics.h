@@ -76,4 +76,25 @@ struct Topic<EvalMessage> {
   static constexpr TopicSettings kSettings{"eval", Plane::kMain, 32, true, false, 100ms};
 };
 
+template <>
+struct Topic<RunViewMessage> {
+  using Wire = shoal_idl_RunView;
+  static constexpr const dds_topic_descriptor_t* kType = &shoal_idl_RunView_desc;
+  static constexpr TopicSettings kSettings{"run_view", Plane::kOperate, 1, true, false, 100ms};
+};
+
+template <>
+struct Topic<CommandMessage> {
+  using Wire = shoal_idl_Command;
+  static constexpr const dds_topic_descriptor_t* kType = &shoal_idl_Command_desc;
+  static constexpr TopicSettings kSettings{"command", Plane::kOperate, 1, false, false, 100ms};
+};
+
+template <>
+struct Topic<ReplyMessage> {
+  using Wire = shoal_idl_Reply;
+  static constexpr const dds_topic_descriptor_t* kType = &shoal_idl_Reply_desc;
+  static constexpr TopicSettings kSettings{"reply", Plane::kOperate, 1, false, false, 100ms};
+};
+
 }  // namespace shoal::dds

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "common/base/check.h"
 #include "common/dds/bulk_cdr.h"
 
 namespace shoal::dds {
@@ -16,60 +17,125 @@ shoal_idl_Bytes Borrow(std::span<const uint8_t> bytes) {
   return {size, size, const_cast<uint8_t*>(bytes.data()), false};
 }
 
-// A string that an old sender left out reads as a null pointer.
-std::string Text(const char* text) { return text == nullptr ? std::string() : std::string(text); }
-
-}  // namespace
-
-shoal_idl_TransitionChunk ToWire(const TransitionChunk& message, StringPointers*) {
-  return {kBulkVersion,           message.actor, message.spec_hash,      message.session,
-          message.first_sequence, message.count, Borrow(message.payload)};
+shoal_idl_Doubles Borrow(const std::vector<double>& values) {
+  const auto size = static_cast<uint32_t>(values.size());
+  return {size, size, const_cast<double*>(values.data()), false};
 }
 
-shoal_idl_BatchShard ToWire(const BatchShard& message, StringPointers*) {
-  return {kBulkVersion,         message.shard,  message.spec_hash,      message.learner_session,
-          message.request,      message.offset, message.total_bytes,    message.stored_records,
-          message.stored_steps, message.shards, Borrow(message.payload)};
+// Appends pointers to the strings to `pointers`, which has room for them and must not move.
+shoal_idl_Strings Borrow(const std::vector<std::string>& strings, std::vector<char*>* pointers) {
+  CHECK(pointers->capacity() - pointers->size() >= strings.size());
+  char** first = pointers->data() + pointers->size();
+  for (const std::string& text : strings) pointers->push_back(Borrow(text));
+  const auto size = static_cast<uint32_t>(strings.size());
+  return {size, size, first, false};
 }
 
-shoal_idl_Weights ToWire(const WeightsMessage& message, StringPointers*) {
-  return {
-      kBulkVersion,      message.spec_hash, message.version.session, message.version.update,
-      message.env_steps, message.crc,       Borrow(message.payload), Borrow(message.checkpoint)};
-}
-
-shoal_idl_Credit ToWire(const Credit& message, StringPointers*) {
-  return {message.actor,  message.session, message.replay_session,
-          message.stored, message.allowed, message.spec_hash};
-}
-
-shoal_idl_SampleRequest ToWire(const SampleRequest& message, StringPointers*) {
-  return {message.spec_hash, message.learner_session, message.request, message.after_steps,
-          message.batch};
-}
-
-shoal_idl_Metrics ToWire(const MetricsMessage& message, StringPointers* pointers) {
-  pointers->clear();
-  for (const std::string& name : message.names) pointers->push_back(Borrow(name));
-  const auto names = static_cast<uint32_t>(pointers->size());
-  const auto values = static_cast<uint32_t>(message.values.size());
+shoal_idl_Metrics MetricsToWire(const MetricsMessage& message, std::vector<char*>* pointers) {
   return {Borrow(message.role),
           message.id,
           Borrow(message.host),
           message.pid,
           Borrow(message.state),
           message.time,
-          {names, names, pointers->data(), false},
-          {values, values, const_cast<double*>(message.values.data()), false}};
+          Borrow(message.names, pointers),
+          Borrow(message.values)};
 }
 
-shoal_idl_Control ToWire(const ControlMessage& message, StringPointers*) {
-  return {message.epoch, static_cast<uint32_t>(message.state), message.time};
+// A string that an old sender left out reads as a null pointer.
+std::string Text(const char* text) { return text == nullptr ? std::string() : std::string(text); }
+
+std::vector<std::string> Texts(const shoal_idl_Strings& wire) {
+  std::vector<std::string> texts;
+  for (uint32_t i = 0; i < wire._length; ++i) texts.push_back(Text(wire._buffer[i]));
+  return texts;
 }
 
-shoal_idl_Eval ToWire(const EvalMessage& message, StringPointers*) {
+std::vector<double> Numbers(const shoal_idl_Doubles& wire) {
+  return {wire._buffer, wire._buffer + wire._length};
+}
+
+}  // namespace
+
+shoal_idl_TransitionChunk ToWire(const TransitionChunk& message, WireBuffers*) {
+  return {kBulkVersion,           message.actor, message.spec_hash,      message.session,
+          message.first_sequence, message.count, Borrow(message.payload)};
+}
+
+shoal_idl_BatchShard ToWire(const BatchShard& message, WireBuffers*) {
+  return {kBulkVersion,         message.shard,  message.spec_hash,      message.learner_session,
+          message.request,      message.offset, message.total_bytes,    message.stored_records,
+          message.stored_steps, message.shards, Borrow(message.payload)};
+}
+
+shoal_idl_Weights ToWire(const WeightsMessage& message, WireBuffers*) {
+  return {
+      kBulkVersion,      message.spec_hash, message.version.session, message.version.update,
+      message.env_steps, message.crc,       Borrow(message.payload), Borrow(message.checkpoint)};
+}
+
+shoal_idl_Credit ToWire(const Credit& message, WireBuffers*) {
+  return {message.actor,  message.session, message.replay_session,
+          message.stored, message.allowed, message.spec_hash};
+}
+
+shoal_idl_SampleRequest ToWire(const SampleRequest& message, WireBuffers*) {
+  return {message.spec_hash, message.learner_session, message.request, message.after_steps,
+          message.batch};
+}
+
+shoal_idl_Metrics ToWire(const MetricsMessage& message, WireBuffers* buffers) {
+  buffers->strings.clear();
+  buffers->strings.reserve(message.names.size());
+  return MetricsToWire(message, &buffers->strings);
+}
+
+shoal_idl_Control ToWire(const ControlMessage& message, WireBuffers* buffers) {
+  buffers->strings.clear();
+  buffers->strings.reserve(message.setting_names.size());
+  return {message.epoch, static_cast<uint32_t>(message.state), message.time,
+          Borrow(message.setting_names, &buffers->strings), Borrow(message.setting_values)};
+}
+
+shoal_idl_Eval ToWire(const EvalMessage& message, WireBuffers*) {
   return {message.env_steps, message.version.session, message.version.update,
           Borrow(message.checkpoint), Borrow(message.json)};
+}
+
+shoal_idl_RunView ToWire(const RunViewMessage& message, WireBuffers* buffers) {
+  size_t strings = 0;
+  for (const MetricsMessage& process : message.processes) strings += process.names.size();
+  buffers->strings.clear();
+  buffers->strings.reserve(strings);
+  buffers->processes.clear();
+  for (const MetricsMessage& process : message.processes) {
+    buffers->processes.push_back(MetricsToWire(process, &buffers->strings));
+  }
+  buffers->events.clear();
+  for (const RunEvent& event : message.events) {
+    buffers->events.push_back({event.number, event.time, Borrow(event.text)});
+  }
+  const auto processes = static_cast<uint32_t>(buffers->processes.size());
+  const auto events = static_cast<uint32_t>(buffers->events.size());
+  return {Borrow(message.schema),
+          Borrow(message.run),
+          message.time,
+          Borrow(message.state),
+          message.env_steps,
+          message.updates,
+          {processes, processes, buffers->processes.data(), false},
+          {events, events, buffers->events.data(), false}};
+}
+
+shoal_idl_Command ToWire(const CommandMessage& message, WireBuffers* buffers) {
+  buffers->strings.clear();
+  buffers->strings.reserve(message.arguments.size());
+  return {message.client, message.request, Borrow(message.verb),
+          Borrow(message.arguments, &buffers->strings)};
+}
+
+shoal_idl_Reply ToWire(const ReplyMessage& message, WireBuffers*) {
+  return {message.client, message.request, message.accepted, Borrow(message.text)};
 }
 
 bool FromWire(const shoal_idl_Credit& wire, Credit* message) {
@@ -98,11 +164,8 @@ bool FromWire(const shoal_idl_Metrics& wire, MetricsMessage* message) {
   message->pid = wire.pid;
   message->state = Text(wire.state);
   message->time = wire.time;
-  message->names.clear();
-  for (uint32_t i = 0; i < wire.names._length; ++i) {
-    message->names.push_back(Text(wire.names._buffer[i]));
-  }
-  message->values.assign(wire.values._buffer, wire.values._buffer + wire.values._length);
+  message->names = Texts(wire.names);
+  message->values = Numbers(wire.values);
   return !message->role.empty() && message->names.size() == message->values.size() &&
          std::isfinite(wire.time);
 }
@@ -111,9 +174,12 @@ bool FromWire(const shoal_idl_Control& wire, ControlMessage* message) {
   message->epoch = wire.epoch;
   message->state = static_cast<RunState>(wire.state);
   message->time = wire.time;
+  message->setting_names = Texts(wire.setting_names);
+  message->setting_values = Numbers(wire.setting_values);
   const bool known = message->state == RunState::kRunning ||
                      message->state == RunState::kDraining || message->state == RunState::kStopping;
-  return known && std::isfinite(wire.time);
+  return known && std::isfinite(wire.time) &&
+         message->setting_names.size() == message->setting_values.size();
 }
 
 bool FromWire(const shoal_idl_Eval& wire, EvalMessage* message) {
@@ -122,6 +188,42 @@ bool FromWire(const shoal_idl_Eval& wire, EvalMessage* message) {
   message->checkpoint = Text(wire.checkpoint);
   message->json = Text(wire.json);
   return !message->json.empty();
+}
+
+bool FromWire(const shoal_idl_RunView& wire, RunViewMessage* message) {
+  message->schema = Text(wire.schema);
+  message->run = Text(wire.run);
+  message->time = wire.time;
+  message->state = Text(wire.state);
+  message->env_steps = wire.env_steps;
+  message->updates = wire.updates;
+  message->processes.resize(wire.processes._length);
+  bool good = !message->schema.empty() && std::isfinite(wire.time);
+  for (uint32_t i = 0; i < wire.processes._length; ++i) {
+    good = FromWire(wire.processes._buffer[i], &message->processes[i]) && good;
+  }
+  message->events.clear();
+  for (uint32_t i = 0; i < wire.events._length; ++i) {
+    const shoal_idl_RunEvent& event = wire.events._buffer[i];
+    message->events.push_back({event.number, event.time, Text(event.text)});
+  }
+  return good;
+}
+
+bool FromWire(const shoal_idl_Command& wire, CommandMessage* message) {
+  message->client = wire.client;
+  message->request = wire.request;
+  message->verb = Text(wire.verb);
+  message->arguments = Texts(wire.arguments);
+  return wire.client > 0 && wire.request > 0 && !message->verb.empty();
+}
+
+bool FromWire(const shoal_idl_Reply& wire, ReplyMessage* message) {
+  message->client = wire.client;
+  message->request = wire.request;
+  message->accepted = wire.accepted;
+  message->text = Text(wire.text);
+  return wire.client > 0 && wire.request > 0;
 }
 
 }  // namespace shoal::dds

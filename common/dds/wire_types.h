@@ -14,22 +14,33 @@
 
 namespace shoal::dds {
 
-// Pointer array of a sequence of strings; kept by the publisher between calls.
-using StringPointers = std::vector<char*>;
+// Memory of sequences whose elements are not laid out as the message has them; kept by the
+// publisher between calls.
+struct WireBuffers {
+  std::vector<char*> strings;
+  std::vector<shoal_idl_Metrics> processes;
+  std::vector<shoal_idl_RunEvent> events;
+};
 
-shoal_idl_TransitionChunk ToWire(const TransitionChunk& message, StringPointers* pointers);
-shoal_idl_BatchShard ToWire(const BatchShard& message, StringPointers* pointers);
-shoal_idl_Weights ToWire(const WeightsMessage& message, StringPointers* pointers);
-shoal_idl_Credit ToWire(const Credit& message, StringPointers* pointers);
-shoal_idl_SampleRequest ToWire(const SampleRequest& message, StringPointers* pointers);
-shoal_idl_Metrics ToWire(const MetricsMessage& message, StringPointers* pointers);
-shoal_idl_Control ToWire(const ControlMessage& message, StringPointers* pointers);
-shoal_idl_Eval ToWire(const EvalMessage& message, StringPointers* pointers);
+shoal_idl_TransitionChunk ToWire(const TransitionChunk& message, WireBuffers* buffers);
+shoal_idl_BatchShard ToWire(const BatchShard& message, WireBuffers* buffers);
+shoal_idl_Weights ToWire(const WeightsMessage& message, WireBuffers* buffers);
+shoal_idl_Credit ToWire(const Credit& message, WireBuffers* buffers);
+shoal_idl_SampleRequest ToWire(const SampleRequest& message, WireBuffers* buffers);
+shoal_idl_Metrics ToWire(const MetricsMessage& message, WireBuffers* buffers);
+shoal_idl_Control ToWire(const ControlMessage& message, WireBuffers* buffers);
+shoal_idl_Eval ToWire(const EvalMessage& message, WireBuffers* buffers);
+shoal_idl_RunView ToWire(const RunViewMessage& message, WireBuffers* buffers);
+shoal_idl_Command ToWire(const CommandMessage& message, WireBuffers* buffers);
+shoal_idl_Reply ToWire(const ReplyMessage& message, WireBuffers* buffers);
 
 bool FromWire(const shoal_idl_Credit& wire, Credit* message);
 bool FromWire(const shoal_idl_SampleRequest& wire, SampleRequest* message);
 bool FromWire(const shoal_idl_Metrics& wire, MetricsMessage* message);
 bool FromWire(const shoal_idl_Control& wire, ControlMessage* message);
 bool FromWire(const shoal_idl_Eval& wire, EvalMessage* message);
+bool FromWire(const shoal_idl_RunView& wire, RunViewMessage* message);
+bool FromWire(const shoal_idl_Command& wire, CommandMessage* message);
+bool FromWire(const shoal_idl_Reply& wire, ReplyMessage* message);
 
 }  // namespace shoal::dds

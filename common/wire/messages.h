@@ -86,7 +86,7 @@ struct MetricsMessage {
   uint32_t id = 0;
   std::string host;
   int32_t pid = 0;
-  std::string state;  // "starting" | "running" | "blocked" | "draining" | "stopping"
+  std::string state;  // "starting" | "running" | "blocked" | "idle" | "draining" | "stopping"
   double time = 0;    // seconds since 1970
   std::vector<std::string> names;
   std::vector<double> values;
@@ -102,6 +102,10 @@ struct ControlMessage {
   uint64_t epoch = 0;
   RunState state = RunState::kRunning;
   double time = 0;  // heartbeat: published at least once a second
+  // Configuration keys changed while the run goes on, with their present values; the others are
+  // those of config.json. Equally long.
+  std::vector<std::string> setting_names{};
+  std::vector<double> setting_values{};
 };
 
 // eval actor -> coordinator: one finished evaluation, the JSON of eval/*.json (formats.md).
@@ -110,6 +114,39 @@ struct EvalMessage {
   WeightsVersion version;
   std::string checkpoint;
   std::string json;
+};
+
+// Something that happened in a run, as one line for people. Numbers grow by one from 1.
+struct RunEvent {
+  uint64_t number = 0;
+  double time = 0;  // seconds since 1970
+  std::string text;
+};
+
+// coordinator -> whoever watches, 1 Hz: the whole run at once.
+struct RunViewMessage {
+  std::string schema = "shoal-top-1";
+  std::string run{};    // name
+  double time = 0;      // seconds since 1970
+  std::string state{};  // "running" | "draining" | "stopping" | "evaluating" | "ended"
+  uint64_t env_steps = 0, updates = 0;
+  std::vector<MetricsMessage> processes{};  // by role and id
+  std::vector<RunEvent> events{};           // the last ones, oldest first
+};
+
+// A client -> coordinator: an order. Sent again unchanged until its reply comes; carried out once.
+struct CommandMessage {
+  uint64_t client = 0;   // names the sender
+  uint64_t request = 0;  // from 1, per client
+  std::string verb;      // "scale" | "set" | "stop"
+  std::vector<std::string> arguments{};
+};
+
+// coordinator -> that client.
+struct ReplyMessage {
+  uint64_t client = 0, request = 0;
+  bool accepted = false;
+  std::string text;  // one line: what was done, or why not
 };
 
 }  // namespace shoal

@@ -85,8 +85,9 @@ TEST(ClaimDomain, KeepsATagThatIsGiven) {
 TEST(ClaimDomain, ADomainIsTakenWhenAnyFixedPortOfItsPairIs) {
   const int domain = FreeAddress().domain;
   ASSERT_TRUE(RunPortsFree(domain));
-  for (const int port : {DiscoveryPort(domain, 0), DiscoveryPort(domain, 2) + 1,
-                         DiscoveryPort(domain + 1, 1), DiscoveryPort(domain + 1, 2)}) {
+  for (const int port :
+       {DiscoveryPort(domain, 0), DiscoveryPort(domain, 2) + 1, DiscoveryPort(domain + 1, 0),
+        DiscoveryPort(domain + 1, 1), DiscoveryPort(domain + 1, 2)}) {
     const PortHolder holder(port);
     EXPECT_FALSE(RunPortsFree(domain)) << port;
   }

@@ -218,6 +218,9 @@ Endpoints AllEndpoints() {
   Add<MetricsMessage>(&endpoints, "MetricsMessage");
   Add<ControlMessage>(&endpoints, "ControlMessage");
   Add<EvalMessage>(&endpoints, "EvalMessage");
+  Add<RunViewMessage>(&endpoints, "RunViewMessage");
+  Add<CommandMessage>(&endpoints, "CommandMessage");
+  Add<ReplyMessage>(&endpoints, "ReplyMessage");
   return endpoints;
 }
 
@@ -267,7 +270,8 @@ std::unique_ptr<Bus> Join(const std::vector<std::string>& arguments) {
   static const std::map<std::string, Role> kRoles = {{"coordinator", Role::kCoordinator},
                                                      {"learner", Role::kLearner},
                                                      {"replay", Role::kReplay},
-                                                     {"actor", Role::kActor}};
+                                                     {"actor", Role::kActor},
+                                                     {"client", Role::kClient}};
   ClusterAddress address;
   std::unique_ptr<Bus> bus;
   if (arguments.size() == 1 && arguments[0] == "claim") {

@@ -75,13 +75,37 @@ inline void Fill(uint64_t n, MetricsMessage* m) {
         .values = {0.1, -1e300, static_cast<double>(n)}};
 }
 inline void Fill(uint64_t n, ControlMessage* m) {
-  *m = {.epoch = n, .state = RunState::kDraining, .time = static_cast<double>(n) + 0.5};
+  *m = {.epoch = n,
+        .state = RunState::kDraining,
+        .time = static_cast<double>(n) + 0.5,
+        .setting_names = {"eval.interval", "b"},
+        .setting_values = {static_cast<double>(n), -0.25}};
 }
 inline void Fill(uint64_t n, EvalMessage* m) {
   *m = {.env_steps = n + 12,
         .version = {6, n},
         .checkpoint = "best",
         .json = fmt::format("{{\"n\": {}}}", n)};
+}
+
+inline void Fill(uint64_t n, RunViewMessage* m) {
+  m->run = "run-ü";
+  m->time = static_cast<double>(n) + 0.25;
+  m->state = "evaluating";
+  m->env_steps = n + 13;
+  m->updates = n;
+  m->processes.resize(3);
+  for (uint64_t i = 0; i < m->processes.size(); ++i) Fill(n + i, &m->processes[i]);
+  m->processes[1].names.clear();  // no two processes report the same figures
+  m->processes[1].values.clear();
+  m->events = {{.number = n, .time = 1.5, .text = "first"},
+               {.number = n + 1, .time = 2, .text = ""}};
+}
+inline void Fill(uint64_t n, CommandMessage* m) {
+  *m = {.client = 7, .request = n, .verb = "set", .arguments = {"eval.interval=5", ""}};
+}
+inline void Fill(uint64_t n, ReplyMessage* m) {
+  *m = {.client = 7, .request = n, .accepted = true, .text = "done"};
 }
 
 // The number n of a message, for counting what is missing.
@@ -93,6 +117,9 @@ inline uint64_t Number(const WeightsMessage& m) { return m.version.update; }
 inline uint64_t Number(const MetricsMessage& m) { return static_cast<uint64_t>(m.time); }
 inline uint64_t Number(const ControlMessage& m) { return m.epoch; }
 inline uint64_t Number(const EvalMessage& m) { return m.version.update; }
+inline uint64_t Number(const RunViewMessage& m) { return m.updates; }
+inline uint64_t Number(const CommandMessage& m) { return m.request; }
+inline uint64_t Number(const ReplyMessage& m) { return m.request; }
 
 // Every field as one line of text; payloads as size and hash.
 inline std::string Bytes(std::span<const uint8_t> payload) {
@@ -124,11 +151,26 @@ inline std::string Describe(const MetricsMessage& m) {
                      fmt::join(m.names, ","), fmt::join(m.values, ","));
 }
 inline std::string Describe(const ControlMessage& m) {
-  return fmt::format("{} {} {}", m.epoch, static_cast<uint32_t>(m.state), m.time);
+  return fmt::format("{} {} {} [{}] [{}]", m.epoch, static_cast<uint32_t>(m.state), m.time,
+                     fmt::join(m.setting_names, ","), fmt::join(m.setting_values, ","));
 }
 inline std::string Describe(const EvalMessage& m) {
   return fmt::format("{} {} {} {} {}", m.env_steps, m.version.session, m.version.update,
                      m.checkpoint, m.json);
+}
+
+inline std::string Describe(const RunViewMessage& m) {
+  std::string text =
+      fmt::format("{} {} {} {} {} {}", m.schema, m.run, m.time, m.state, m.env_steps, m.updates);
+  for (const MetricsMessage& process : m.processes) text += " (" + Describe(process) + ")";
+  for (const RunEvent& e : m.events) text += fmt::format(" ({} {} {})", e.number, e.time, e.text);
+  return text;
+}
+inline std::string Describe(const CommandMessage& m) {
+  return fmt::format("{} {} {} [{}]", m.client, m.request, m.verb, fmt::join(m.arguments, ","));
+}
+inline std::string Describe(const ReplyMessage& m) {
+  return fmt::format("{} {} {} {}", m.client, m.request, m.accepted, m.text);
 }
 
 // Builds message n and calls use(message) while its payload lives.

@@ -66,6 +66,15 @@ TEST_F(TwoProcessesTest, MessagesBetweenActorAndCoordinatorArriveAsSent) {
   ExpectSame<ControlMessage>(coordinator_, actor, "ControlMessage");
 }
 
+TEST_F(TwoProcessesTest, MessagesBetweenCoordinatorAndClientArriveAsSent) {
+  ClusterAddress without_tag = address_;
+  without_tag.tag = "-";  // a client knows host and port only
+  PeerProcess client("client", without_tag);
+  ExpectSame<RunViewMessage>(coordinator_, client, "RunViewMessage");
+  ExpectSame<CommandMessage>(client, coordinator_, "CommandMessage");
+  ExpectSame<ReplyMessage>(coordinator_, client, "ReplyMessage");
+}
+
 TEST_F(TwoProcessesTest, ALateActorGetsTheNewestWeightsCreditAndControl) {
   PeerProcess learner("learner", address_), replay("replay", address_);
   learner.Ask("publish WeightsMessage");

@@ -9,8 +9,8 @@ namespace {
 
 template <class M>
 bool SurvivesTheWay(const M& message) {
-  StringPointers pointers;
-  const auto wire = ToWire(message, &pointers);
+  WireBuffers buffers;
+  const auto wire = ToWire(message, &buffers);
   M back;
   return FromWire(wire, &back);
 }
@@ -28,9 +28,9 @@ TEST(WireTypes, PayloadsAreBorrowedNotCopied) {
   const std::vector<uint8_t> payload{1, 2, 3};
   TransitionChunk chunk;
   chunk.payload = payload;
-  StringPointers pointers;
-  EXPECT_EQ(ToWire(chunk, &pointers).payload._buffer, payload.data());
-  EXPECT_FALSE(ToWire(chunk, &pointers).payload._release);
+  WireBuffers buffers;
+  EXPECT_EQ(ToWire(chunk, &buffers).payload._buffer, payload.data());
+  EXPECT_FALSE(ToWire(chunk, &buffers).payload._release);
 }
 
 TEST(WireTypes, MetricsNeedARoleATimeAndAValuePerName) {
@@ -79,9 +79,9 @@ TEST(WireTypes, SessionsAndRequestsStartAtOne) {
 
 // A sender of an older version leaves new fields of an @appendable type out.
 TEST(WireTypes, StringsThatAreMissingReadAsEmpty) {
-  StringPointers pointers;
+  WireBuffers buffers;
   const MetricsMessage message = ValidMetrics();
-  shoal_idl_Metrics wire = ToWire(message, &pointers);
+  shoal_idl_Metrics wire = ToWire(message, &buffers);
   wire.host = nullptr;
   MetricsMessage back;
   EXPECT_TRUE(FromWire(wire, &back));
