@@ -94,6 +94,17 @@ void ChunkWindow::OnCredit(const Credit& credit) {
   }
 }
 
+std::optional<int64_t> ChunkWindow::OldestUnstoredNs() const {
+  if (Outstanding() == 0 || kept_.empty()) return std::nullopt;
+  const Chunk& oldest = kept_.front();
+  const uint64_t dealt_with =
+      stored_ < oldest.first_sequence ? 0 : stored_ + 1 - oldest.first_sequence;
+  CHECK(dealt_with < oldest.count) << "a chunk that is stored was kept";
+  return RecordLayout::Header(oldest.bytes.data() +
+                              dealt_with * static_cast<size_t>(options_.record_bytes))
+      .time_ns;
+}
+
 void ChunkWindow::Rewind() { unsent_from_ = 0; }
 
 }  // namespace shoal::actor

@@ -48,6 +48,10 @@ class ChunkWindow {
   void Rewind();
 
   uint64_t stored() const { return stored_; }
+  // Records that may still be begun and sent under the present credit.
+  uint64_t CreditLeft() const { return allowed_ > last_sequence_ ? allowed_ - last_sequence_ : 0; }
+  // When the oldest record not yet reported stored was made (its time_ns); empty when all are.
+  std::optional<int64_t> OldestUnstoredNs() const;
   // Records begun in this session and not yet reported stored.
   uint64_t Outstanding() const { return last_sequence_ - stored_; }
   bool HasUnstoredSent() const { return unsent_from_ > 0; }

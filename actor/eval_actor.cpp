@@ -1,6 +1,7 @@
 #include "actor/eval_actor.h"
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "actor/evaluation.h"
 #include "common/base/log.h"
@@ -42,7 +43,7 @@ class EvalActor {
         return 1;
       }
       if (const auto weights = weights_.Take(Now() + kPoll)) Evaluate(*weights);
-      Report("running");
+      Report("idle");
     }
     eval_publisher_.WaitForAcks(milliseconds(1000));
     return 0;
@@ -54,7 +55,11 @@ class EvalActor {
     evaluator_.selector().Load(weights);
     const EpisodeStream stream{run_.config.seed, StreamRole::kEvalEnvironment, weights.env_steps};
     const SteadyTime start = Now();
-    const auto episodes = evaluator_.Play(run_.config.eval.episodes, stream, [this] {
+    SteadyTime counted = start;
+    const auto episodes = evaluator_.Play(run_.config.eval.episodes, stream, [&] {
+      const SteadyTime now = Now();
+      evaluating_seconds_ +=
+          std::chrono::duration<double>(now - std::exchange(counted, now)).count();
       Report("evaluating");
       return StopRequested() || control_.state() == RunState::kStopping;
     });
@@ -83,7 +88,8 @@ class EvalActor {
     report_.Add("evaluations", static_cast<double>(evaluations_));
     report_.Add("eval_env_steps", static_cast<double>(env_steps_));
     report_.Add("weights_refused", static_cast<double>(weights_.refused()));
-    report_.Add("rss_mb", ResidentMegabytes());
+    report_.AddSeconds("evaluating", evaluating_seconds_);
+    report_.AddResources();
     metrics_publisher_.Write(report_.message());
   }
 
@@ -99,6 +105,7 @@ class EvalActor {
   dds::Subscriber<EvalWeightsMessage> weights_subscriber_;
   dds::Subscriber<ControlMessage> control_subscriber_;
   uint64_t evaluations_ = 0, env_steps_ = 0;
+  double evaluating_seconds_ = 0;
 };
 
 }  // namespace

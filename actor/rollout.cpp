@@ -5,6 +5,7 @@
 
 #include "common/base/check.h"
 #include "common/base/random.h"
+#include "common/wire/scoped_seconds.h"
 
 namespace shoal::actor {
 
@@ -27,21 +28,30 @@ Rollout::Rollout(const Config& config, const ObservationSpec& spec,
 bool Rollout::TryStep() {
   const int envs = static_cast<int>(slots_.size());
   if (window_.Room() < 2 * slots_.size()) return false;
-  SteadyTime start = Now();
-  for (int e = 0; e < envs; ++e) {
-    if (!slots_[size_t(e)].running) BeginEpisode(e);
+  {
+    const ScopedSeconds timed(environment_seconds_);
+    for (int e = 0; e < envs; ++e) {
+      if (!slots_[size_t(e)].running) BeginEpisode(e);
+    }
   }
-  seconds_.environment += SecondsSince(start);
-
-  start = Now();
-  selector_.Select(/*deterministic=*/false);
-  seconds_.inference += SecondsSince(start);
-
-  start = Now();
-  for (int e = 0; e < envs; ++e) StepOne(e);
-  seconds_.environment += SecondsSince(start);
+  {
+    const ScopedSeconds timed(inference_seconds_);
+    selector_.Select(/*deterministic=*/false);
+  }
+  {
+    const ScopedSeconds timed(environment_seconds_);
+    for (int e = 0; e < envs; ++e) StepOne(e);
+  }
   env_steps_ += slots_.size();
   return true;
+}
+
+StageSeconds Rollout::seconds() const {
+  StageSeconds seconds;
+  for (const Slot& slot : slots_) seconds.rendering += slot.environment->render_seconds();
+  seconds.physics = environment_seconds_ - seconds.rendering;
+  seconds.inference = inference_seconds_;
+  return seconds;
 }
 
 void Rollout::BeginEpisode(int e) {

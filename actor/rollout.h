@@ -19,7 +19,8 @@ namespace shoal::actor {
 
 // Seconds spent since the start, by stage.
 struct StageSeconds {
-  double environment = 0;  // physics and rendering
+  double physics = 0;  // and all else that an environment does but rendering
+  double rendering = 0;
   double inference = 0;
 };
 
@@ -35,7 +36,7 @@ class Rollout {
 
   uint64_t env_steps() const { return env_steps_; }
   const EpisodeLog& episodes() const { return episodes_; }
-  const StageSeconds& seconds() const { return seconds_; }
+  StageSeconds seconds() const;
 
  private:
   struct Slot {
@@ -59,7 +60,7 @@ class Rollout {
   ActionSelector& selector_;
   std::vector<Slot> slots_;
   EpisodeLog episodes_;
-  StageSeconds seconds_;
+  double environment_seconds_ = 0, inference_seconds_ = 0;
   uint64_t env_steps_ = 0;
 };
 

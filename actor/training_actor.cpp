@@ -15,6 +15,7 @@
 #include "common/dds/subscriber.h"
 #include "common/wire/control_state.h"
 #include "common/wire/metrics_report.h"
+#include "common/wire/scoped_seconds.h"
 
 namespace shoal::actor {
 namespace {
@@ -96,6 +97,7 @@ class TrainingActor {
     if (run_.config.lockstep) {
       TakeLockstepWeights();
     } else if (const auto weights = weights_.TryTake()) {
+      const ScopedSeconds timed(weights_seconds_);
       selector_.Load(*weights);
     }
   }
@@ -108,6 +110,7 @@ class TrainingActor {
     const uint64_t wanted = LockstepUpdatesAtPhaseEnd(run_.config, phase_);
     window_.Flush();
     const SteadyTime deadline = Now() + kLockstepDeadline;
+    const ScopedSeconds timed(weights_seconds_);
     while (selector_.version().update < wanted) {
       if (StopRequested() || control_.state() != RunState::kRunning) return;
       if (Now() > deadline) {
@@ -133,9 +136,10 @@ class TrainingActor {
     if (control_.state() != RunState::kRunning) return;
     if (!LockstepDone() && rollout_.TryStep()) return;
     const SteadyTime start = Now();
+    const double publishing_before = publish_seconds_;
     window_.Flush();
     Exchange(start + kBlockedWait);
-    blocked_seconds_ += SecondsSince(start);
+    blocked_seconds_ += SecondsSince(start) - (publish_seconds_ - publishing_before);
   }
 
   // Hears the replay (waiting for it until `deadline`) and sends what may be sent.
@@ -162,7 +166,7 @@ class TrainingActor {
   }
 
   void Send() {
-    const SteadyTime start = Now();
+    const ScopedSeconds timed(publish_seconds_);
     // Without a matched reader a volatile writer's samples vanish.
     while (chunk_publisher_.Matched() > 0) {
       const auto chunk = window_.NextToSend();
@@ -173,7 +177,6 @@ class TrainingActor {
       }
       window_.MarkSent();
     }
-    send_seconds_ += SecondsSince(start);
   }
 
   // Until everything made is stored. False when the deadline came first.
@@ -197,35 +200,45 @@ class TrainingActor {
 
   void Report(const char* state, bool now = false) {
     if (!report_.Due(Now()) && !now) return;
-    const double interval = report_.interval_seconds();
+    const auto env_steps = static_cast<double>(rollout_.env_steps());
     report_.Begin(state);
-    report_.Add("env_steps", static_cast<double>(rollout_.env_steps()));
-    if (interval > 0) {
-      const auto steps = static_cast<double>(rollout_.env_steps() - reported_steps_);
-      report_.Add("env_steps_per_second", steps / interval);
-    }
-    reported_steps_ = rollout_.env_steps();
+    report_.Add("env_steps", env_steps);
+    report_.AddRate("env_steps_per_second", env_steps);
     report_.Add("made", static_cast<double>(made_.made()));
     report_.Add("outstanding", static_cast<double>(window_.Outstanding()));
+    report_.Add("credit", static_cast<double>(window_.CreditLeft()));
+    const auto oldest = window_.OldestUnstoredNs();
+    report_.Add("queue_age_seconds",
+                oldest ? 1e-9 * static_cast<double>(WallTimeNs() - *oldest) : 0);
     report_.Add("resends", static_cast<double>(window_.resent_records()));
     report_.Add("write_timeouts", static_cast<double>(write_timeouts_));
     report_.Add("weights_refused", static_cast<double>(weights_.refused()));
     report_.Add("weights_update", static_cast<double>(selector_.version().update));
-    report_.Add("seconds_environment", rollout_.seconds().environment);
-    report_.Add("seconds_inference", rollout_.seconds().inference);
-    report_.Add("seconds_sending", send_seconds_);
-    report_.Add("seconds_blocked", blocked_seconds_);
+    AddStages();
+    AddEpisodes();
+    report_.AddResources();
+    metrics_publisher_.Write(report_.message());
+  }
+
+  void AddStages() {
+    const StageSeconds stages = rollout_.seconds();
+    report_.AddSeconds("physics", stages.physics);
+    report_.AddSeconds("rendering", stages.rendering);
+    report_.AddSeconds("inference", stages.inference);
+    report_.AddSeconds("publishing", publish_seconds_);
+    report_.AddSeconds("waiting_credit", blocked_seconds_);
+    report_.AddSeconds("weights", weights_seconds_);
+  }
+
+  void AddEpisodes() {
     const EpisodeLog& episodes = rollout_.episodes();
     report_.Add("episodes", static_cast<double>(episodes.count()));
-    if (episodes.count() > 0) {
-      const EpisodeFigures mean = episodes.Mean();
-      report_.Add("rollout_success", episodes.SuccessRate());
-      report_.Add("rollout_return", mean.episode_return);
-      report_.Add("rollout_length", mean.length);
-      report_.Add("rollout_final_distance", mean.final_distance);
-    }
-    report_.Add("rss_mb", ResidentMegabytes());
-    metrics_publisher_.Write(report_.message());
+    if (episodes.count() == 0) return;
+    const EpisodeFigures mean = episodes.Mean();
+    report_.Add("rollout_success", episodes.SuccessRate());
+    report_.Add("rollout_return", mean.episode_return);
+    report_.Add("rollout_length", mean.length);
+    report_.Add("rollout_final_distance", mean.final_distance);
   }
 
   const RunMembership member_;
@@ -249,8 +262,8 @@ class TrainingActor {
 
   SteadyTime last_flush_, last_progress_;
   int64_t phase_ = 0;  // lockstep
-  uint64_t reported_steps_ = 0, write_timeouts_ = 0;
-  double blocked_seconds_ = 0, send_seconds_ = 0;
+  uint64_t write_timeouts_ = 0;
+  double blocked_seconds_ = 0, publish_seconds_ = 0, weights_seconds_ = 0;
 };
 
 }  // namespace

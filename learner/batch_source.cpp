@@ -91,7 +91,11 @@ std::optional<Batch> BatchSource::Next(SteadyTime deadline) {
 
 BatchCounters BatchSource::counters() const {
   const MutexLock lock(mutex_);
-  return counters_;
+  BatchCounters counters = counters_;
+  counters.requests_outstanding = outstanding_.size();
+  counters.ready = static_cast<uint64_t>(
+      std::ranges::count(outstanding_, SteadyTime::max(), &Outstanding::next_send));
+  return counters;
 }
 
 SampleRequest BatchSource::MakeRequest(uint64_t request) const {

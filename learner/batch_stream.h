@@ -15,8 +15,10 @@ struct Batch {
   uint64_t stored_records = 0, stored_steps = 0;  // in the replay when it was drawn, whole run
 };
 
-// What went wrong so far, and what it was put right with.
+// What is under way, what went wrong so far, and what it was put right with.
 struct BatchCounters {
+  uint64_t requests_outstanding = 0;  // batches asked for and not handed out, now
+  uint64_t ready = 0;                 // of these whole, waiting to be used
   uint64_t resent_requests = 0;
   uint64_t duplicate_shards = 0;
   uint64_t unknown_shards = 0;    // of requests done with, or of a former learner session

@@ -21,6 +21,12 @@ bool EvaluationPoints::Reached(uint64_t env_steps) {
   return true;
 }
 
+void EvaluationPoints::SetInterval(uint64_t interval, uint64_t env_steps) {
+  if (interval == interval_) return;
+  interval_ = interval;
+  next_ = (env_steps / interval_ + 1) * interval_;
+}
+
 void EvaluationPoints::Send(const std::string& checkpoint, uint64_t env_steps) {
   if (unsent_) {
     ++overtaken_;

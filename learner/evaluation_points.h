@@ -24,6 +24,10 @@ class EvaluationPoints {
   // call; several passed at once are one point.
   bool Reached(uint64_t env_steps);
 
+  // Replaces eval.interval; the next point is its first multiple beyond `env_steps`.
+  void SetInterval(uint64_t interval, uint64_t env_steps);
+  uint64_t interval() const { return interval_; }
+
   // Hands out the agent's parameters, which are those of `checkpoint`. What the transport does not
   // take at once is sent by Retry; a newer point takes the place of an unsent one.
   void Send(const std::string& checkpoint, uint64_t env_steps);
@@ -35,7 +39,8 @@ class EvaluationPoints {
   uint64_t overtaken() const { return overtaken_; }
 
  private:
-  const uint64_t spec_hash_, session_, interval_;
+  const uint64_t spec_hash_, session_;
+  uint64_t interval_;  // env steps
   const SacAgent& agent_;
   Outlet& outlet_;
   uint64_t next_;  // env steps

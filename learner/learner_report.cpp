@@ -1,16 +1,11 @@
 #include "learner/learner_report.h"
 
-#include <utility>
-
 #include "common/base/log.h"
 
 namespace shoal::learner {
 
 LearnerReport::LearnerReport(const RunConfig& run, tensorboard::EventWriter& events)
-    : events_(events),
-      guard_(run.config, run.spec.HasPixels()),
-      report_("learner", 0),
-      last_made_(Now()) {}
+    : events_(events), guard_(run.config, run.spec.HasPixels()), report_("learner", 0) {}
 
 void LearnerReport::OnUpdate(const UpdateStats& stats, const Batch& batch, uint64_t updates) {
   if (!any_updates_) {
@@ -19,7 +14,7 @@ void LearnerReport::OnUpdate(const UpdateStats& stats, const Batch& batch, uint6
     first_env_steps_ = batch.stored_steps;
   }
   window_.Add(stats);
-  policy_lag_ = ComputePolicyLag(batch.view.weights_update, updates);
+  AddDataAges(batch.view.weights_update, updates, &data_ages_);
 }
 
 const MetricsMessage& LearnerReport::Make(const LearnerFigures& figures) {
@@ -38,13 +33,15 @@ const MetricsMessage& LearnerReport::Make(const LearnerFigures& figures) {
   report_.Begin(figures.state);
   add("updates", figures.updates);
   add("env_steps", figures.env_steps);
-  const double interval = SecondsSince(std::exchange(last_made_, Now()));
-  add("updates_per_second", interval > 0 ? updates / interval : 0.0);
+  updates_made_ += static_cast<uint64_t>(updates);
+  report_.AddRate("updates_per_second", static_cast<double>(updates_made_));
   if (any_updates_) AddUpdateFigures();
-  add("seconds_waiting", figures.seconds.waiting);
-  add("seconds_update", figures.seconds.update);
-  add("seconds_publish", figures.seconds.publish);
-  add("seconds_checkpoint", figures.seconds.checkpoint);
+  AddTimes(figures.seconds);
+  add("requests_outstanding", figures.batches.requests_outstanding);
+  add("batches_ready", figures.batches.ready);
+  add("samples_per_insert", figures.samples_per_insert);
+  add("eval_interval", figures.eval_interval);
+  add("weights_period", figures.weights_period);
   add("weights_sent", figures.weights_sent);
   add("weights_unsent", figures.weights_unsent);
   add("evaluations_overtaken", figures.evaluations_overtaken);
@@ -57,7 +54,7 @@ const MetricsMessage& LearnerReport::Make(const LearnerFigures& figures) {
   add("malformed_shards", figures.batches.malformed_shards);
   add("dropped_answers", figures.batches.dropped_answers);
   add("warnings", guard_.warnings());
-  add("rss_mb", ResidentMegabytes());
+  report_.AddResources();
   return report_.message();
 }
 
@@ -72,8 +69,17 @@ void LearnerReport::AddUpdateFigures() {
   report_.Add("action_saturation", mean_.action_saturation);
   report_.Add("critic_grad_norm", mean_.critic_grad_norm);
   report_.Add("actor_grad_norm", mean_.actor_grad_norm);
-  report_.Add("policy_lag_p50", policy_lag_.p50);
-  report_.Add("policy_lag_p95", policy_lag_.p95);
+  if (const auto ages = data_ages_.Take()) data_age_ = *ages;
+  report_.AddQuantiles("data_age_updates", data_age_);
+}
+
+void LearnerReport::AddTimes(const LearnerSeconds& seconds) {
+  report_.AddSeconds("waiting_data", seconds.waiting);
+  report_.AddSeconds("forward", seconds.update.forward);
+  report_.AddSeconds("backward", seconds.update.backward);
+  report_.AddSeconds("optimiser", seconds.update.optimiser);
+  report_.AddSeconds("weights", seconds.weights);
+  report_.AddSeconds("checkpoint", seconds.checkpoint);
 }
 
 void LearnerReport::WriteScalars(const LearnerFigures& figures) {

@@ -4,10 +4,10 @@
 // otherwise:
 //   updates, env_steps, warnings, and counters of weights, checkpoints, batches: totals
 //   updates_per_second, critic_loss, actor_loss, temperature, temperature_loss, q_mean,
-//   target_mean, entropy, action_saturation, critic_grad_norm, actor_grad_norm policy_lag_p50,
-//   policy_lag_p95    updates, of the last batch seconds_waiting, seconds_update, seconds_publish,
-//   seconds_checkpoint    since the start; the
-//                                     growth per second is the share of the learner's time
+//   target_mean, entropy, action_saturation, critic_grad_norm, actor_grad_norm
+//   data_age_updates_p50, _p90, _p99  updates since the weights that chose the actions
+//   seconds_STAGE, share_STAGE        where the learner's time went
+//   samples_per_insert, eval_interval, weights_period   in force
 //   eval_updates                      updates of the last evaluation point handed out
 //   drained                           1 once draining is over
 #pragma once
@@ -26,9 +26,9 @@ namespace shoal::learner {
 
 // Where the learner's seconds went since its start.
 struct LearnerSeconds {
-  double waiting = 0;  // for batches
-  double update = 0;
-  double publish = 0;     // weights
+  double waiting = 0;     // for batches
+  UpdateSeconds update;   // networks and optimiser
+  double weights = 0;     // publishing them
   double checkpoint = 0;  // writing and syncing
 };
 
@@ -39,6 +39,7 @@ struct LearnerFigures {
   uint64_t checkpoints = 0;  // written
   uint64_t eval_updates = 0;
   bool drained = false;
+  double samples_per_insert = 0, eval_interval = 0, weights_period = 0;
   LearnerSeconds seconds;
   BatchCounters batches;
 };
@@ -57,16 +58,18 @@ class LearnerReport {
 
  private:
   void AddUpdateFigures();
+  void AddTimes(const LearnerSeconds& seconds);
   void WriteScalars(const LearnerFigures& figures);
 
   tensorboard::EventWriter& events_;
   TrainingGuard guard_;
   MetricsReport report_;
-  SteadyTime last_made_;
   UpdateWindow window_;
   UpdateStats mean_;  // of the last interval with updates
   bool any_updates_ = false;
-  PolicyLag policy_lag_;
+  uint64_t updates_made_ = 0;  // by this process
+  QuantileWindow data_ages_;
+  Quantiles data_age_;  // of the last interval with updates
   SteadyTime first_update_{};
   uint64_t first_env_steps_ = 0;  // stored then
 };

@@ -27,6 +27,13 @@ struct UpdateStats {
   bool finite = true;  // false: a loss or weight is not finite; the update was not applied
 };
 
+// Where the seconds of all updates went.
+struct UpdateSeconds {
+  double forward = 0;  // checks of the batch and losses too
+  double backward = 0;
+  double optimiser = 0;  // and what follows it: targets, averages
+};
+
 class SacAgent {
  public:
   // Initialises the networks from config.seed. Random draws of update u come from the stream
@@ -36,6 +43,8 @@ class SacAgent {
 
   UpdateStats Update(const BatchView& batch);
   uint64_t updates() const;
+  // Since the construction.
+  const UpdateSeconds& seconds() const;
 
   // F32 parameters an actor needs (names as nn::Policy loads them).
   nn::TensorMap PolicyTensors() const;

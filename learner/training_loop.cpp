@@ -1,5 +1,6 @@
 #include "learner/training_loop.h"
 
+#include <algorithm>
 #include <thread>
 #include <utility>
 
@@ -7,6 +8,7 @@
 #include "common/base/log.h"
 #include "common/base/stop.h"
 #include "common/config/lockstep.h"
+#include "common/wire/scoped_seconds.h"
 
 namespace shoal::learner {
 namespace {
@@ -15,19 +17,6 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kPoll{100};            // the longest that control is not looked at
 constexpr milliseconds kBlockedAfter{1'000};  // without a batch
-
-// Adds the seconds of its scope to `total`.
-class ScopedSeconds {
- public:
-  explicit ScopedSeconds(double& total) : total_(total), start_(Now()) {}
-  ~ScopedSeconds() { total_ += SecondsSince(start_); }
-  ScopedSeconds(const ScopedSeconds&) = delete;
-  ScopedSeconds& operator=(const ScopedSeconds&) = delete;
-
- private:
-  double& total_;
-  const SteadyTime start_;
-};
 
 }  // namespace
 
@@ -38,6 +27,8 @@ TrainingLoop::TrainingLoop(const Parts& parts, const std::optional<CheckpointSta
       evaluations_(parts.run, parts.session, restored ? restored->env_steps : 0, parts.agent,
                    parts.outlet),
       report_(parts.run, parts.events),
+      samples_per_insert_(config_.replay.samples_per_insert),
+      granted_from_steps_(static_cast<uint64_t>(config_.replay.min_size)),
       waiting_since_(Now()) {
   if (!restored) return;
   env_steps_ = restored->env_steps;
@@ -49,6 +40,7 @@ TrainingLoop::End TrainingLoop::Run() {
   if (parts_.agent.updates() > 0) weights_.Send(env_steps_);
   bool lost = false;
   while (!lost && !StopRequested() && parts_.control.state() != RunState::kStopping) {
+    ApplySettings();
     if (parts_.control.state() == RunState::kDraining) {
       Drain();
     } else {
@@ -73,11 +65,7 @@ bool TrainingLoop::TryTrain() {
     batch = parts_.batches.Next(Now() + kPoll);
   }
   if (!batch) return false;
-  UpdateStats stats;
-  {
-    const ScopedSeconds timed(seconds_.update);
-    stats = parts_.agent.Update(batch->view);
-  }
+  const UpdateStats stats = parts_.agent.Update(batch->view);
   if (!stats.finite) {
     throw RuntimeError("{}; last good checkpoint: {}",
                        DescribeNonFinite(stats, parts_.agent.updates()),
@@ -94,7 +82,7 @@ void TrainingLoop::AfterUpdate(const Batch& batch, const UpdateStats& stats) {
   request_ = batch.request;
   report_.OnUpdate(stats, batch, updates);
   {
-    const ScopedSeconds timed(seconds_.publish);
+    const ScopedSeconds timed(seconds_.weights);
     weights_.AfterUpdate(env_steps_);
   }
   if (evaluations_.Reached(env_steps_)) {
@@ -107,7 +95,7 @@ void TrainingLoop::AfterUpdate(const Batch& batch, const UpdateStats& stats) {
 void TrainingLoop::MakeEvaluationPoint() {
   const std::string name = WriteCheckpoint();
   parts_.pending_evaluations.Add(parts_.agent.updates(), name);
-  const ScopedSeconds timed(seconds_.publish);
+  const ScopedSeconds timed(seconds_.weights);
   evaluations_.Send(name, env_steps_);
 }
 
@@ -156,15 +144,33 @@ bool TrainingLoop::DrainingIsOver() const {
   return drain_batches_ > config_.learner.request_credits && RatioReached();
 }
 
+double TrainingLoop::GrantedSamples() const {
+  const auto steps = static_cast<double>(env_steps_) - static_cast<double>(granted_from_steps_);
+  return granted_before_ + samples_per_insert_ * std::max(steps, 0.0);
+}
+
 bool TrainingLoop::RatioReached() const {
-  const double granted =
-      config_.replay.samples_per_insert *
-      (static_cast<double>(env_steps_) - static_cast<double>(config_.replay.min_size));
-  return static_cast<double>(parts_.agent.updates()) * config_.learner.batch >= granted;
+  return static_cast<double>(parts_.agent.updates()) * config_.learner.batch >= GrantedSamples();
+}
+
+void TrainingLoop::ApplySettings() {
+  const ControlState& control = parts_.control;
+  weights_.SetPeriod(static_cast<uint64_t>(
+      control.SettingOr("learner.weights_period", config_.learner.weights_period)));
+  evaluations_.SetInterval(static_cast<uint64_t>(control.SettingOr(
+                               "eval.interval", static_cast<double>(config_.eval.interval))),
+                           env_steps_);
+  const double ratio =
+      control.SettingOr("replay.samples_per_insert", config_.replay.samples_per_insert);
+  if (ratio == samples_per_insert_) return;
+  granted_before_ = GrantedSamples();
+  granted_from_steps_ = std::max(env_steps_, granted_from_steps_);
+  samples_per_insert_ = ratio;
 }
 
 void TrainingLoop::Report(bool now) {
   if (!report_.Due() && !now) return;
+  seconds_.update = parts_.agent.seconds();
   const LearnerFigures figures{.state = State(),
                                .updates = parts_.agent.updates(),
                                .env_steps = env_steps_,
@@ -174,6 +180,9 @@ void TrainingLoop::Report(bool now) {
                                .checkpoints = checkpoints_written_,
                                .eval_updates = evaluations_.last_updates(),
                                .drained = drained_,
+                               .samples_per_insert = samples_per_insert_,
+                               .eval_interval = static_cast<double>(evaluations_.interval()),
+                               .weights_period = static_cast<double>(weights_.period()),
                                .seconds = seconds_,
                                .batches = parts_.batches.counters()};
   parts_.outlet.Publish(report_.Make(figures));

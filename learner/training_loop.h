@@ -70,8 +70,13 @@ class TrainingLoop {
   // Draining: goes on training until it is over, then makes the last evaluation point, once.
   void Drain();
   bool DrainingIsOver() const;
-  // Whether the updates done are those that samples_per_insert grants for the steps stored.
+  // Batch elements that samples_per_insert grants for the steps stored, each value of it for the
+  // steps it was in force for, as far as this process knows.
+  double GrantedSamples() const;
+  // Whether the updates done are those granted.
   bool RatioReached() const;
+  // Takes over what was changed while the run goes on.
+  void ApplySettings();
   void Report(bool now = false);
   const char* State() const;
 
@@ -81,8 +86,11 @@ class TrainingLoop {
   EvaluationPoints evaluations_;
   LearnerReport report_;
   LearnerSeconds seconds_;
-  uint64_t env_steps_ = 0;  // stored when the last batch was drawn
-  uint64_t request_ = 0;    // of that batch
+  double samples_per_insert_;    // in force
+  double granted_before_ = 0;    // samples, up to granted_from_steps_
+  uint64_t granted_from_steps_;  // env steps from which samples_per_insert_ counts
+  uint64_t env_steps_ = 0;       // stored when the last batch was drawn
+  uint64_t request_ = 0;         // of that batch
   uint64_t checkpoints_written_ = 0;
   std::optional<uint64_t> saved_updates_;  // of the newest checkpoint
   SteadyTime waiting_since_;               // the last batch, or the start

@@ -1,7 +1,6 @@
 #include "learner/update_window.h"
 
 #include <algorithm>
-#include <cmath>
 
 namespace shoal::learner {
 namespace {
@@ -28,17 +27,11 @@ UpdateStats UpdateWindow::Mean() const {
   return mean;
 }
 
-PolicyLag ComputePolicyLag(std::span<const uint64_t> weights_update, uint64_t updates) {
-  if (weights_update.empty()) return {};
-  std::vector<uint64_t> lags;
-  lags.reserve(weights_update.size());
-  for (const uint64_t chosen : weights_update) lags.push_back(updates - std::min(chosen, updates));
-  std::ranges::sort(lags);
-  const auto percentile = [&](double share) {
-    const double rank = std::ceil(share * static_cast<double>(lags.size()));
-    return static_cast<double>(lags[static_cast<size_t>(std::max(rank, 1.0)) - 1]);
-  };
-  return {percentile(0.5), percentile(0.95)};
+void AddDataAges(std::span<const uint64_t> weights_update, uint64_t updates,
+                 QuantileWindow* window) {
+  for (const uint64_t chosen : weights_update) {
+    window->Add(static_cast<double>(updates - std::min(chosen, updates)));
+  }
 }
 
 }  // namespace shoal::learner

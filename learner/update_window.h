@@ -1,11 +1,10 @@
-// The updates of one report interval: means of their figures and the age of the policies that chose
-// the last batch's actions.
+// The updates of one report interval: means of their figures and the age of the data they used.
 #pragma once
 
 #include <cstdint>
 #include <span>
-#include <vector>
 
+#include "common/wire/quantile_window.h"
 #include "learner/sac_agent.h"
 
 namespace shoal::learner {
@@ -25,14 +24,11 @@ class UpdateWindow {
   UpdateStats sum_;
 };
 
-// How many updates ago the weights that chose an action were made; a random action counts as chosen
-// by the untrained policy, update 0.
-struct PolicyLag {
-  double p50 = 0, p95 = 0;
-};
-
-// `weights_update` (B) of a batch; `updates`: done now. Values beyond it (of a learner that was
-// ahead before it restarted) count as 0. Percentiles are nearest-rank.
-PolicyLag ComputePolicyLag(std::span<const uint64_t> weights_update, uint64_t updates);
+// Adds the age of a batch's data: how many updates ago the weights that chose each action were
+// made. A random action counts as chosen by the untrained policy, update 0. `weights_update` (B) of
+// the batch; `updates`: done now. Values beyond it (of a learner that was ahead before it
+// restarted) count as 0.
+void AddDataAges(std::span<const uint64_t> weights_update, uint64_t updates,
+                 QuantileWindow* window);
 
 }  // namespace shoal::learner

@@ -13,7 +13,8 @@ WeightsSender::WeightsSender(const RunConfig& run, nn::Precision precision, uint
       session_(session),
       precision_(precision),
       agent_(agent),
-      outlet_(outlet) {}
+      outlet_(outlet),
+      period_(static_cast<uint64_t>(config_.learner.weights_period)) {}
 
 void WeightsSender::AfterUpdate(uint64_t env_steps) {
   due_ = due_ || Due(agent_.updates());
@@ -39,7 +40,7 @@ void WeightsSender::Send(uint64_t env_steps) {
 
 bool WeightsSender::Due(uint64_t updates) {
   if (!config_.lockstep) {
-    return updates == 1 || updates % static_cast<uint64_t>(config_.learner.weights_period) == 0;
+    return updates == 1 || updates % period_ == 0;
   }
   while (LockstepUpdatesAtPhaseEnd(config_, phase_) < updates) ++phase_;
   return LockstepUpdatesAtPhaseEnd(config_, phase_) == updates;

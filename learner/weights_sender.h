@@ -27,6 +27,10 @@ class WeightsSender {
   // Sends at once: after a restart, so that actors need not wait.
   void Send(uint64_t env_steps);
 
+  // Replaces learner.weights_period. Not for lockstep.
+  void SetPeriod(uint64_t updates) { period_ = updates; }
+  uint64_t period() const { return period_; }
+
   uint64_t sent() const { return sent_; }
   // Tries that the transport did not take; newer weights follow.
   uint64_t unsent() const { return unsent_; }
@@ -41,6 +45,7 @@ class WeightsSender {
   const nn::Precision precision_;
   const SacAgent& agent_;
   Outlet& outlet_;
+  uint64_t period_;
   bool due_ = false;
   SteadyTime last_sent_{};
   int64_t phase_ = 0;  // lockstep: the first one whose end is not reached

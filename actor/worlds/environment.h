@@ -33,6 +33,8 @@ class Environment {
   virtual float Reset(uint64_t stream_key, ObservationOut out) = 0;
   // `action` (A), each in [-1, 1].
   virtual StepResult Step(std::span<const float> action, ObservationOut out) = 0;
+  // Seconds spent drawing frames since the construction.
+  virtual double render_seconds() const = 0;
 };
 
 // Shares one off-screen render context between the environments of a process (one thread).

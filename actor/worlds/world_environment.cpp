@@ -11,6 +11,7 @@
 #include "common/base/error.h"
 #include "common/base/random.h"
 #include "common/tasks/task_registry.h"
+#include "common/wire/scoped_seconds.h"
 
 namespace shoal::worlds {
 namespace {
@@ -98,7 +99,9 @@ void WorldEnvironment::Observe(ObservationOut out) {
   for (const Part* part : {&observation_, &achieved_goal_, &desired_goal_}) {
     if (part->published) to = std::copy(part->numbers.begin(), part->numbers.end(), to);
   }
-  if (render_ != nullptr) render_->Render(world_.get(), cameras_, out.frame);
+  if (render_ == nullptr) return;
+  const ScopedSeconds timed(render_seconds_);
+  render_->Render(world_.get(), cameras_, out.frame);
 }
 
 float WorldEnvironment::Distance() const {

@@ -25,6 +25,7 @@ class WorldEnvironment final : public Environment {
   const ObservationSpec& spec() const override { return spec_; }
   float Reset(uint64_t stream_key, ObservationOut out) override;
   StepResult Step(std::span<const float> action, ObservationOut out) override;
+  double render_seconds() const override { return render_seconds_; }
 
  private:
   // A block of the task: its numbers as records carry them, and whether observations do.
@@ -47,6 +48,7 @@ class WorldEnvironment final : public Environment {
   ObservationSpec spec_;
   Part observation_, achieved_goal_, desired_goal_;
   std::vector<double> action_;
+  double render_seconds_ = 0;
   int episode_step_ = -1;  // env steps since the reset; -1 = never reset
 };
 

@@ -9,11 +9,21 @@ void ControlState::OnMessage(const ControlMessage& message, SteadyTime now) {
   if (message.epoch < epoch_) return;
   epoch_ = message.epoch;
   state_ = message.state;
+  setting_names_ = message.setting_names;
+  setting_values_ = message.setting_values;
 }
 
 RunState ControlState::state() const {
   const MutexLock lock(mutex_);
   return state_;
+}
+
+double ControlState::SettingOr(std::string_view key, double configured) const {
+  const MutexLock lock(mutex_);
+  for (size_t i = 0; i < setting_names_.size() && i < setting_values_.size(); ++i) {
+    if (setting_names_[i] == key) return setting_values_[i];
+  }
+  return configured;
 }
 
 bool ControlState::CoordinatorLost(SteadyTime now) {

@@ -3,6 +3,9 @@
 #pragma once
 
 #include <chrono>
+#include <string>
+#include <string_view>
+#include <vector>
 
 #include "common/base/clock.h"
 #include "common/base/mutex.h"
@@ -20,6 +23,8 @@ class ControlState {
   void OnMessage(const ControlMessage& message, SteadyTime now);
 
   RunState state() const;
+  // The present value of a configuration key: `configured` unless it was changed in this run.
+  double SettingOr(std::string_view key, double configured) const;
   // No heartbeat for kLease (kFirstLease before the first one): the coordinator is gone. To be
   // asked several times a second: time in which this process itself did not run is not counted.
   bool CoordinatorLost(SteadyTime now);
@@ -34,6 +39,8 @@ class ControlState {
   bool heard_ SHOAL_GUARDED_BY(mutex_) = false;
   uint64_t epoch_ SHOAL_GUARDED_BY(mutex_) = 0;
   RunState state_ SHOAL_GUARDED_BY(mutex_) = RunState::kRunning;
+  std::vector<std::string> setting_names_ SHOAL_GUARDED_BY(mutex_);
+  std::vector<double> setting_values_ SHOAL_GUARDED_BY(mutex_);
 };
 
 }  // namespace shoal

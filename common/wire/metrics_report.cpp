@@ -1,12 +1,16 @@
 #include "common/wire/metrics_report.h"
 
+#include <sys/resource.h>
 #include <unistd.h>
 
+#include <filesystem>
 #include <fstream>
+#include <utility>
 
 namespace shoal {
 
-MetricsReport::MetricsReport(const std::string& role, uint32_t id) : last_(Now()) {
+MetricsReport::MetricsReport(const std::string& role, uint32_t id)
+    : last_due_(Now()), last_begin_(last_due_) {
   char host[256] = "unknown";
   gethostname(host, sizeof host - 1);
   message_.role = role;
@@ -16,14 +20,13 @@ MetricsReport::MetricsReport(const std::string& role, uint32_t id) : last_(Now()
 }
 
 bool MetricsReport::Due(SteadyTime now) {
-  const double elapsed = std::chrono::duration<double>(now - last_).count();
-  if (elapsed < 1.0) return false;
-  last_ = now;
-  interval_seconds_ = elapsed;
+  if (now - last_due_ < std::chrono::seconds(1)) return false;
+  last_due_ = now;
   return true;
 }
 
 void MetricsReport::Begin(const std::string& state) {
+  interval_seconds_ = SecondsSince(std::exchange(last_begin_, Now()));
   message_.state = state;
   message_.time = WallTimeSeconds();
   message_.names.clear();
@@ -35,11 +38,57 @@ void MetricsReport::Add(const std::string& name, double value) {
   message_.values.push_back(value);
 }
 
+void MetricsReport::AddQuantiles(const std::string& name, QuantileWindow* window) {
+  if (const auto quantiles = window->Take()) AddQuantiles(name, *quantiles);
+}
+
+void MetricsReport::AddQuantiles(const std::string& name, const Quantiles& quantiles) {
+  Add(name + "_p50", quantiles.p50);
+  Add(name + "_p90", quantiles.p90);
+  Add(name + "_p99", quantiles.p99);
+}
+
+void MetricsReport::AddRate(const std::string& name, double total) {
+  const double before = std::exchange(totals_[name], total);
+  if (interval_seconds_ >= kShortest) Add(name, (total - before) / interval_seconds_);
+}
+
+void MetricsReport::AddSeconds(const std::string& stage, double total) {
+  Add("seconds_" + stage, total);
+  AddRate("share_" + stage, total);
+}
+
+void MetricsReport::AddResources() {
+  Add("rss_mb", ResidentMegabytes());
+  Add("open_files", OpenFiles());
+  Add("cpu_seconds", CpuSeconds());
+  AddRate("cpu_share", CpuSeconds());
+}
+
 double ResidentMegabytes() {
   std::ifstream statm("/proc/self/statm");
   uint64_t total_pages = 0, resident_pages = 0;
   statm >> total_pages >> resident_pages;
   return static_cast<double>(resident_pages) * static_cast<double>(sysconf(_SC_PAGESIZE)) / 1e6;
+}
+
+int OpenFiles() {
+  int files = 0;
+  std::error_code error;
+  for (std::filesystem::directory_iterator it("/proc/self/fd", error), end; !error && it != end;
+       it.increment(error)) {
+    ++files;
+  }
+  return files > 0 ? files - 1 : 0;
+}
+
+double CpuSeconds() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  const auto seconds = [](const timeval& t) {
+    return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_usec) * 1e-6;
+  };
+  return seconds(usage.ru_utime) + seconds(usage.ru_stime);
 }
 
 }  // namespace shoal

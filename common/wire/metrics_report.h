@@ -1,10 +1,13 @@
-// A process's 1 Hz report: says when it is due and fills in who reports.
+// A process's 1 Hz report: says when it is due and fills in who reports. Every name that a process
+// adds is in the table of metric_names.h.
 #pragma once
 
+#include <map>
 #include <string>
 
 #include "common/base/clock.h"
 #include "common/wire/messages.h"
+#include "common/wire/quantile_window.h"
 
 namespace shoal {
 
@@ -13,23 +16,43 @@ class MetricsReport {
  public:
   MetricsReport(const std::string& role, uint32_t id);
 
-  // True once a second; the interval then ends here.
+  // True once a second; then, or at any other time, Begin.
   bool Due(SteadyTime now);
-  // Seconds of the interval that ended last.
+
+  // Empties the report, ends the interval; then Add each figure once.
+  void Begin(const std::string& state);
+  // Seconds of the interval that ended at Begin.
   double interval_seconds() const { return interval_seconds_; }
 
-  // Empties the report; then Add each figure once.
-  void Begin(const std::string& state);
   void Add(const std::string& name, double value);
+  // NAME_p50, NAME_p90 and NAME_p99; nothing where the window is empty. Empties it.
+  void AddQuantiles(const std::string& name, QuantileWindow* window);
+  void AddQuantiles(const std::string& name, const Quantiles& quantiles);
+  // `total` grows: its growth per second of the interval that ended, nothing where that is too
+  // short to tell.
+  void AddRate(const std::string& name, double total);
+  // Time spent in a stage, of seconds since the start: seconds_STAGE and share_STAGE, the share of
+  // the interval that ended.
+  void AddSeconds(const std::string& stage, double total);
+  // What the process takes of its host: rss_mb, open_files, cpu_seconds, cpu_share.
+  void AddResources();
+
   const MetricsMessage& message() const { return message_; }
 
  private:
+  static constexpr double kShortest = 0.1;  // seconds; shares of less say nothing
+
   MetricsMessage message_;
-  SteadyTime last_;
+  SteadyTime last_due_, last_begin_;
   double interval_seconds_ = 0;
+  std::map<std::string, double> totals_;  // of AddRate, at the last Begin
 };
 
 // Resident memory of this process.
 double ResidentMegabytes();
+// Open file descriptors of this process, without the one it takes to count them.
+int OpenFiles();
+// Processor time of this process, all threads, user and system.
+double CpuSeconds();
 
 }  // namespace shoal

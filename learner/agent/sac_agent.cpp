@@ -16,9 +16,11 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <utility>
 #include <vector>
 
 #include "common/base/check.h"
+#include "common/base/clock.h"
 #include "common/base/random.h"
 #include "common/nn/actor_critic.h"
 #include "common/nn/frame_pooling.h"
@@ -62,6 +64,11 @@ struct SacAgent::Impl {
         mean_gradient(action_gradient),
         log_std_gradient(action_gradient) {}
 
+  // The time since the last call, or the update's beginning, went into this stage.
+  void Spent(double* stage) {
+    const SteadyTime now = Now();
+    *stage += std::chrono::duration<double>(now - std::exchange(counted_until, now)).count();
+  }
   float FrameSpread(const BatchView& batch) const;
   void ComputeTargets(const BatchView& batch, float temperature, Random* random);
   bool UpdateCritic(const BatchView& batch, UpdateStats* stats);
@@ -74,6 +81,8 @@ struct SacAgent::Impl {
   const int threads;
   nn::ActorCritic networks;
   uint64_t updates = 0;
+  UpdateSeconds seconds;
+  SteadyTime counted_until;
   UpdateStats last;  // carries the actor's values to updates without one
 
   SquashedGaussian gaussian;
@@ -100,6 +109,7 @@ void SacAgent::Impl::ComputeTargets(const BatchView& batch, float temperature, R
   const TargetRates rates{float(config.learner.reward_scale), float(config.learner.discount),
                           temperature};
   TdTargets(batch_size, inputs, rates, targets.data());
+  Spent(&seconds.forward);
 }
 
 // False where the loss or its gradient is not finite; then no parameter has changed.
@@ -107,15 +117,18 @@ bool SacAgent::Impl::UpdateCritic(const BatchView& batch, UpdateStats* stats) {
   networks.Encode(batch.obs_frames.data());
   const auto [q0, q1] = networks.ForwardCritic(batch.obs_vector.data(), batch.action.data());
   const CriticLoss loss = CriticLossForward(batch_size, q0, q1, targets.data());
+  Spent(&seconds.forward);
   CriticLossBackward(batch_size, q0, targets.data(), q_gradients[0].data());
   CriticLossBackward(batch_size, q1, targets.data(), q_gradients[1].data());
   const double squares = networks.BackwardCritic(q_gradients[0].data(), q_gradients[1].data());
+  Spent(&seconds.backward);
   stats->critic_loss = loss.loss;
   stats->q_mean = loss.q_mean;
   stats->target_mean = loss.target_mean;
   stats->critic_grad_norm = float(std::sqrt(squares));
   if (!Usable(loss.loss, squares)) return false;
   networks.StepCritic();
+  Spent(&seconds.optimiser);
   return true;
 }
 
@@ -128,11 +141,13 @@ bool SacAgent::Impl::UpdateActor(const BatchView& batch, float temperature, Rand
   gaussian.Sample(mean, log_std, random);
   const auto [q0, q1] = networks.ForwardCritic(vector, gaussian.action());
   stats->actor_loss = ActorLossForward(batch_size, gaussian.log_prob(), q0, q1, temperature);
+  Spent(&seconds.forward);
   ActorLossBackward(batch_size, q0, q1, q_gradients[0].data(), q_gradients[1].data());
   networks.BackwardAction(q_gradients[0].data(), q_gradients[1].data(), action_gradient.data());
   gaussian.Backward(action_gradient.data(), temperature / float(batch_size), mean_gradient.data(),
                     log_std_gradient.data());
   const double squares = networks.BackwardActor(mean_gradient.data(), log_std_gradient.data());
+  Spent(&seconds.backward);
   stats->actor_grad_norm = float(std::sqrt(squares));
   stats->entropy = gaussian.Entropy();
   stats->action_saturation = gaussian.Saturation();
@@ -140,6 +155,7 @@ bool SacAgent::Impl::UpdateActor(const BatchView& batch, float temperature, Rand
   if (!Usable(stats->actor_loss, squares) || !std::isfinite(stats->temperature_loss)) return false;
   networks.StepActor();
   networks.StepTemperature(stats->temperature_loss);
+  Spent(&seconds.optimiser);
   return true;
 }
 
@@ -155,6 +171,7 @@ UpdateStats SacAgent::Update(const BatchView& batch) {
   CHECK(int(batch.reward.size()) == agent.batch_size) << "batch of " << batch.reward.size();
   const nn::ThreadScope scope(agent.threads);
   const LearnerConfig& learner = agent.config.learner;
+  agent.counted_until = Now();
   UpdateStats stats = agent.last;
   stats.frame_spread = agent.FrameSpread(batch);
   stats.temperature = agent.networks.Temperature();
@@ -176,6 +193,7 @@ UpdateStats SacAgent::Update(const BatchView& batch) {
     agent.networks.MoveTarget(float(learner.tau));
   }
   agent.networks.MovePolicyAverage(float(learner.average_rate));
+  agent.Spent(&agent.seconds.optimiser);
   ++agent.updates;
   stats.temperature = agent.networks.Temperature();
   agent.last = stats;
@@ -183,6 +201,8 @@ UpdateStats SacAgent::Update(const BatchView& batch) {
 }
 
 uint64_t SacAgent::updates() const { return impl_->updates; }
+
+const UpdateSeconds& SacAgent::seconds() const { return impl_->seconds; }
 
 nn::TensorMap SacAgent::PolicyTensors() const { return impl_->networks.PolicyTensors(); }
 

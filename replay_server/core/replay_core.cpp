@@ -1,6 +1,7 @@
 #include "replay_server/core/replay_core.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "common/base/error.h"
 #include "common/base/random.h"
@@ -111,10 +112,11 @@ std::optional<DrawnBatch> ReplayCore::TryAnswer(uint8_t* data) {
   if (!repeated && !limiter_.MaySample(index_.sampleable())) return std::nullopt;
   Random random(StreamKey(static_cast<uint64_t>(run_.config.seed), StreamRole::kReplaySampler,
                           request->request));
-  const std::optional<BatchPlan> plan =
+  std::optional<BatchPlan> plan =
       DrawPlan(run_.config.learner.batch, run_.config.replay.shift_pad, &sampler_, &random);
   if (!plan) return std::nullopt;
   gather_.Gather(*plan, batch_layout_.View(data));
+  last_plan_ = *std::move(plan);
   requests_.Pop();
   if (repeated) {
     ++counters_.repeated_batches;

@@ -63,6 +63,8 @@ class ReplayCore {
   // Draws and writes the next batch that is due into `data` (batch_layout().total_bytes(), aligned
   // to 64); nothing when no request waits or it must wait on.
   std::optional<DrawnBatch> TryAnswer(uint8_t* data);
+  // The elements of the batch drawn last.
+  const BatchPlan& last_plan() const { return last_plan_; }
 
   // What to tell the actors: everything, or what has changed since the last call.
   std::vector<Credit> TakeCredits(bool changed_only);
@@ -102,6 +104,7 @@ class ReplayCore {
   CreditBook credits_;
   RequestQueue requests_;
   CoreCounters counters_;
+  BatchPlan last_plan_;
 };
 
 }  // namespace shoal::replay

@@ -76,7 +76,9 @@ void BatchSender::Pause() {
 void BatchSender::Run() {
   try {
     while (const auto outgoing = TakeNext()) {
+      const SteadyTime start = Now();
       ++(SendShards(*outgoing) ? sent_ : given_up_);
+      sending_seconds_ = sending_seconds_ + SecondsSince(start);  // this thread alone writes it
       {
         const MutexLock lock(mutex_);
         free_.push_back(outgoing->buffer);

@@ -60,6 +60,8 @@ class BatchSender {
 
   uint64_t sent() const { return sent_; }
   uint64_t given_up() const { return given_up_; }
+  // Spent on sending, with the waits for the learner to take it.
+  double sending_seconds() const { return sending_seconds_; }
 
  private:
   struct FreeBytes {
@@ -91,6 +93,7 @@ class BatchSender {
   std::atomic<bool> stopping_{false};
   std::atomic<uint64_t> learner_session_{0};
   std::atomic<uint64_t> sent_{0}, given_up_{0};
+  std::atomic<double> sending_seconds_{0};
   std::thread thread_;  // last: starts when everything else is there
 };
 

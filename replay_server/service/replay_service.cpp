@@ -18,9 +18,11 @@
 #include "common/dds/subscriber.h"
 #include "common/wire/control_state.h"
 #include "common/wire/metrics_report.h"
+#include "common/wire/scoped_seconds.h"
 #include "replay_server/core/replay_core.h"
 #include "replay_server/service/accounting_file.h"
 #include "replay_server/service/batch_sender.h"
+#include "replay_server/service/flow_ages.h"
 #include "replay_server/service/problem_log.h"
 #include "replay_server/service/service_inbox.h"
 #include "replay_server/service/service_report.h"
@@ -55,9 +57,10 @@ class ReplayService {
       : folder_(folder),
         member_(folder),
         core_(ReadRunConfig(folder), folder, NextSession(folder, "replay-0", WallTimeNs())),
+        control_(Now()),
         inbox_(SpecHash(), ChunkBytes(), MaxChunks()),
         problems_(SpecHash()),
-        control_(Now()),
+        ages_(core_.ring().layout(), Settings().learner.request_credits),
         bus_(ReadClusterAddress(folder), Settings().transport, dds::Role::kReplay),
         credit_publisher_(bus_),
         metrics_publisher_(bus_),
@@ -102,7 +105,8 @@ class ReplayService {
   // when it sends again.
   size_t MaxChunks() const {
     const size_t known = core_.sessions().newest().size();
-    const size_t sessions = std::max(known, static_cast<size_t>(std::max(1, Settings().actors)));
+    const double actors = control_.SettingOr("actors", Settings().actors);
+    const size_t sessions = std::max(known, static_cast<size_t>(std::max(1.0, actors)));
     const int window_chunks = std::max(2, Settings().replay.window_chunks);
     return (sessions + 1) * 2 * static_cast<size_t>(window_chunks + 1);
   }
@@ -110,25 +114,43 @@ class ReplayService {
   // One turn of the service: takes what came, answers one request, tells what has changed.
   void Turn() {
     const bool inserts_blocked = core_.InsertsBlocked(), samples_blocked = core_.SamplesBlocked();
-    Take(inbox_.Wait(answered_ ? Now() : Now() + kPoll));
+    Take(WaitForArrivals(answered_ ? Now() : Now() + kPoll));
     AnswerOne();
     Publish(core_.TakeCredits(/*changed_only=*/true));
     const SteadyTime now = Now();
-    report_.AddTime(std::chrono::duration<double>(now - last_turn_).count(), inserts_blocked,
-                    samples_blocked);
+    const double elapsed = std::chrono::duration<double>(now - last_turn_).count();
+    if (inserts_blocked) seconds_.blocked_insert += elapsed;
+    if (samples_blocked) seconds_.blocked_sample += elapsed;
     last_turn_ = now;
     if (now - last_credits_ >= kCreditInterval) {
       last_credits_ = now;
       Publish(core_.TakeCredits(/*changed_only=*/false));
       inbox_.SetMaxChunks(MaxChunks());
     }
+    ApplySettings();
     if (report_.Due(now)) Report(control_.state() == RunState::kDraining ? "draining" : "running");
   }
 
+  void ApplySettings() {
+    const double ratio =
+        control_.SettingOr("replay.samples_per_insert", Settings().replay.samples_per_insert);
+    if (ratio == core_.limiter().samples_per_insert()) return;
+    log::Info("replay.samples_per_insert is now {}", ratio);
+    core_.SetSamplesPerInsert(ratio);
+  }
+
+  ServiceInbox::Arrivals WaitForArrivals(SteadyTime deadline) {
+    const ScopedSeconds timed(seconds_.idle);
+    return inbox_.Wait(deadline);
+  }
+
   void Take(ServiceInbox::Arrivals arrivals) {
+    const ScopedSeconds timed(seconds_.inserting);
     for (std::unique_ptr<PooledChunk>& pooled : arrivals.chunks) {
       const ChunkResult result = core_.TakeChunk(pooled->chunk);
       problems_.Note(pooled->chunk, result);
+      report_.NoteQueueAge(SecondsSince(pooled->arrived));
+      if (result.fate == ChunkFate::kDealtWith) ages_.OnChunk(pooled->chunk, WallTimeNs());
       if (result.fate == ChunkFate::kWrongSpec) Publish({core_.Refusal(pooled->chunk)});
       inbox_.Release(std::move(pooled));
       last_chunk_ = Now();
@@ -137,6 +159,8 @@ class ReplayService {
       const RequestFate fate = core_.TakeRequest(request);
       if (fate != RequestFate::kQueued && fate != RequestFate::kAlreadyQueued) {
         problems_.NoteRefused(request);
+      } else {
+        ages_.OnRequest(request);
       }
     }
     sender_.SetLearnerSession(core_.requests().learner_session());
@@ -146,8 +170,10 @@ class ReplayService {
     answered_ = false;
     uint8_t* buffer = sender_.FreeBuffer();
     if (buffer == nullptr) return;
+    const ScopedSeconds timed(seconds_.sampling);
     const std::optional<DrawnBatch> batch = core_.TryAnswer(buffer);
     if (!batch) return;
+    ages_.OnBatch(core_.last_plan(), core_.ring(), WallTimeNs());
     sender_.Send(*batch, buffer);
     answered_ = true;
   }
@@ -157,7 +183,7 @@ class ReplayService {
   }
 
   void Report(const char* state) {
-    metrics_publisher_.Write(report_.Make(state));
+    metrics_publisher_.Write(report_.Make(state, seconds_, &ages_));
     problems_.Report(Now(), core_.counters(), inbox_.DroppedChunks());
     try {
       ReplaceFile(folder_ / kAccountingFile, AccountingJson(core_.sessions()));
@@ -180,7 +206,7 @@ class ReplayService {
   void Finish() {
     Take(inbox_.Wait(Now()));
     Publish(core_.TakeCredits(/*changed_only=*/false));
-    metrics_publisher_.Write(report_.Make("stopping"));
+    metrics_publisher_.Write(report_.Make("stopping", seconds_, &ages_));
     WriteFileAtomically(folder_ / kAccountingFile, AccountingJson(core_.sessions()));
     metrics_publisher_.WaitForAcks(milliseconds(500));
     credit_publisher_.WaitForAcks(milliseconds(500));
@@ -191,9 +217,10 @@ class ReplayService {
   const std::filesystem::path folder_;
   const RunMembership member_;
   ReplayCore core_;
+  ControlState control_;
   ServiceInbox inbox_;
   ProblemLog problems_;
-  ControlState control_;
+  FlowAges ages_;
   dds::Bus bus_;
   dds::Publisher<Credit> credit_publisher_;
   dds::Publisher<MetricsMessage> metrics_publisher_;
@@ -204,6 +231,7 @@ class ReplayService {
   dds::Subscriber<SampleRequest> request_subscriber_;
   dds::Subscriber<TransitionChunk> chunk_subscriber_;
 
+  ServiceSeconds seconds_;
   SteadyTime last_turn_{}, last_credits_{}, last_chunk_{};
   bool answered_ = false;  // a batch in the last turn: there may be another one to draw
 };

@@ -34,6 +34,7 @@ void ServiceInbox::OnChunk(const TransitionChunk& chunk) {
     if (!chunk.payload.empty()) std::memcpy(bytes, chunk.payload.data(), chunk.payload.size());
     buffer->chunk.payload = {bytes, chunk.payload.size()};
   }
+  buffer->arrived = Now();
   const MutexLock lock(mutex_);
   waiting_.chunks.push_back(std::move(buffer));
   arrived_.NotifyOne();

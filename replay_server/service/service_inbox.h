@@ -18,6 +18,7 @@ namespace shoal::replay {
 struct PooledChunk {
   TransitionChunk chunk;  // chunk.payload views `words`
   std::vector<uint64_t> words;
+  SteadyTime arrived{};
 };
 
 class ServiceInbox {

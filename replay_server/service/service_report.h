@@ -2,41 +2,52 @@
 // are of the whole run.
 #pragma once
 
+#include <algorithm>
 #include <string>
 
 #include "common/base/clock.h"
 #include "common/wire/metrics_report.h"
 #include "replay_server/core/replay_core.h"
 #include "replay_server/service/batch_sender.h"
+#include "replay_server/service/flow_ages.h"
 #include "replay_server/service/service_inbox.h"
 
 namespace shoal::replay {
 
+// Where the service thread's seconds went since its start.
+struct ServiceSeconds {
+  double inserting = 0;  // chunks into the ring
+  double sampling = 0;   // batches out of it
+  double idle = 0;       // waiting for either
+  // With inserts or samples held back: apart, while doing any of the above.
+  double blocked_insert = 0, blocked_sample = 0;
+};
+
 class ServiceReport {
  public:
-  // Borrows all three.
+  // Borrows all of them.
   ServiceReport(const ReplayCore& core, const ServiceInbox& inbox, const BatchSender& sender)
       : core_(core), inbox_(inbox), sender_(sender), report_("replay", 0) {}
 
-  // `seconds` went by in which inserts, samples or neither were blocked.
-  void AddTime(double seconds, bool inserts_blocked, bool samples_blocked);
+  // A chunk waited this long in the inbox.
+  void NoteQueueAge(double seconds) { queue_age_seconds_ = std::max(queue_age_seconds_, seconds); }
   bool Due(SteadyTime now) { return report_.Due(now); }
-  // Fills in every figure.
-  const MetricsMessage& Make(const std::string& state);
+  // Fills in every figure. Empties the windows of `ages`.
+  const MetricsMessage& Make(const std::string& state, const ServiceSeconds& seconds,
+                             FlowAges* ages);
 
  private:
   void Add(const std::string& name, uint64_t value) {
     report_.Add(name, static_cast<double>(value));
   }
-  // A count and its rate over the last interval.
-  void AddRate(const std::string& name, uint64_t value, uint64_t* before);
+  void AddTimes(const ServiceSeconds& seconds);
+  void AddTroubles();
 
   const ReplayCore& core_;
   const ServiceInbox& inbox_;
   const BatchSender& sender_;
   MetricsReport report_;
-  double blocked_insert_seconds_ = 0, blocked_sample_seconds_ = 0;
-  uint64_t records_before_ = 0, sampled_before_ = 0;
+  double queue_age_seconds_ = 0;  // largest of the interval
 };
 
 }  // namespace shoal::replay

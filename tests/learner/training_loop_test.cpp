@@ -318,8 +318,8 @@ TEST_F(TrainingLoopTest, ReportsWhatItDid) {
   EXPECT_EQ(Figure("checkpoints"), 1);
   EXPECT_GT(Figure("critic_loss"), 0);
   EXPECT_GT(Figure("temperature"), 0);
-  EXPECT_EQ(Figure("policy_lag_p50"), 5);
-  EXPECT_GT(Figure("seconds_update"), 0);
+  EXPECT_EQ(Figure("data_age_updates_p99"), 5);
+  EXPECT_GT(Figure("seconds_forward"), 0);
   EXPECT_EQ(last.names.size(), last.values.size());
 }
 

@@ -32,19 +32,24 @@ TEST(UpdateWindow, IsZeroWhenEmpty) {
   EXPECT_EQ(UpdateWindow().updates(), 0);
 }
 
-TEST(PolicyLag, IsTheNearestRankOfUpdatesSince) {
+TEST(DataAges, AreUpdatesSinceTheWeightsThatActed) {
   std::vector<uint64_t> chosen;
-  for (uint64_t i = 1; i <= 100; ++i) chosen.push_back(1000 - i);  // lags 1..100
-  const PolicyLag lag = ComputePolicyLag(chosen, 1000);
-  EXPECT_EQ(lag.p50, 50);
-  EXPECT_EQ(lag.p95, 95);
+  for (uint64_t i = 1; i <= 100; ++i) chosen.push_back(1000 - i);  // ages 1..100
+  QuantileWindow window;
+  AddDataAges(chosen, 1000, &window);
+  const auto ages = window.Take();
+  ASSERT_TRUE(ages);
+  EXPECT_EQ(ages->p50, 50);
+  EXPECT_EQ(ages->p90, 90);
 }
 
-TEST(PolicyLag, CountsPoliciesOfALearnerThatWasAheadAsNew) {
-  const std::vector<uint64_t> chosen{2000, 2000, 400};
-  EXPECT_EQ(ComputePolicyLag(chosen, 500).p50, 0);
-  EXPECT_EQ(ComputePolicyLag(chosen, 500).p95, 100);
-  EXPECT_EQ(ComputePolicyLag({}, 500).p95, 0);
+TEST(DataAges, CountPoliciesOfALearnerThatWasAheadAsNew) {
+  QuantileWindow window;
+  AddDataAges(std::vector<uint64_t>{2000, 2000, 400}, 500, &window);
+  const auto ages = window.Take();
+  ASSERT_TRUE(ages);
+  EXPECT_EQ(ages->p50, 0);
+  EXPECT_EQ(ages->p99, 100);
 }
 
 }  // namespace

@@ -26,6 +26,22 @@ TEST(ControlState, TheNewestEpochHolds) {
   EXPECT_EQ(control.state(), RunState::kStopping);
 }
 
+TEST(ControlState, SettingsOfTheNewestEpochReplaceConfiguredValues) {
+  const SteadyTime start = Now();
+  ControlState control(start);
+  EXPECT_EQ(control.SettingOr("eval.interval", 100), 100);
+  ControlMessage message = Message(2, RunState::kRunning);
+  message.setting_names = {"actors", "eval.interval"};
+  message.setting_values = {3, 50};
+  control.OnMessage(message, start);
+  EXPECT_EQ(control.SettingOr("eval.interval", 100), 50);
+  EXPECT_EQ(control.SettingOr("eval", 100), 100);
+  control.OnMessage(Message(1, RunState::kRunning), start);
+  EXPECT_EQ(control.SettingOr("eval.interval", 100), 50);
+  control.OnMessage(Message(3, RunState::kRunning), start);
+  EXPECT_EQ(control.SettingOr("eval.interval", 100), 100);
+}
+
 // When a process that looks ten times a second from `from` on takes the coordinator for lost.
 SteadyTime LostAt(ControlState* control, SteadyTime from) {
   SteadyTime now = from;

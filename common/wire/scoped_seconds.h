@@ -1,0 +1,21 @@
+// Adds the seconds of its scope to a total.
+#pragma once
+
+#include "common/base/clock.h"
+
+namespace shoal {
+
+// Borrows the total, which one thread writes.
+class ScopedSeconds {
+ public:
+  explicit ScopedSeconds(double& total) : total_(total), start_(Now()) {}
+  ~ScopedSeconds() { total_ += SecondsSince(start_); }
+  ScopedSeconds(const ScopedSeconds&) = delete;
+  ScopedSeconds& operator=(const ScopedSeconds&) = delete;
+
+ private:
+  double& total_;
+  const SteadyTime start_;
+};
+
+}  // namespace shoal

@@ -1,0 +1,114 @@
+#include "common/wire/metrics_report.h"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <map>
+#include <thread>
+#include <vector>
+
+#include "common/wire/scoped_seconds.h"
+
+namespace shoal {
+namespace {
+
+std::map<std::string, double> Figures(const MetricsReport& report) {
+  std::map<std::string, double> figures;
+  for (size_t i = 0; i < report.message().names.size(); ++i) {
+    EXPECT_TRUE(figures.emplace(report.message().names[i], report.message().values[i]).second)
+        << report.message().names[i] << " twice";
+  }
+  return figures;
+}
+
+// Until `seconds` after `start`: reports need intervals that can be told.
+void WaitUntilSince(SteadyTime start, double seconds) {
+  while (SecondsSince(start) < seconds) std::this_thread::yield();
+}
+
+TEST(MetricsReport, IsDueOnceASecond) {
+  const SteadyTime start = Now();
+  MetricsReport report("actor", 3);
+  EXPECT_FALSE(report.Due(start + std::chrono::milliseconds(500)));
+  EXPECT_TRUE(report.Due(start + std::chrono::milliseconds(1500)));
+  EXPECT_FALSE(report.Due(start + std::chrono::milliseconds(1600)));
+  EXPECT_TRUE(report.Due(start + std::chrono::milliseconds(2600)));
+}
+
+TEST(MetricsReport, SaysWhoReports) {
+  MetricsReport report("actor", 3);
+  report.Begin("blocked");
+  EXPECT_EQ(report.message().role, "actor");
+  EXPECT_EQ(report.message().id, 3u);
+  EXPECT_EQ(report.message().pid, getpid());
+  EXPECT_EQ(report.message().state, "blocked");
+  EXPECT_GT(report.message().time, 1.6e9);
+  EXPECT_TRUE(report.message().names.empty());
+}
+
+TEST(MetricsReport, SharesAndRatesAreOfTheIntervalThatEnded) {
+  const SteadyTime start = Now();
+  MetricsReport report("actor", 0);
+  WaitUntilSince(start, 0.12);
+  report.Begin("running");
+  const double first = report.interval_seconds();
+  EXPECT_GE(first, 0.11);
+  report.AddSeconds("physics", 0.03);
+  report.AddRate("steps_per_second", 30);
+  EXPECT_NEAR(Figures(report).at("seconds_physics"), 0.03, 1e-9);
+  EXPECT_NEAR(Figures(report).at("share_physics"), 0.03 / first, 1e-9);
+  EXPECT_NEAR(Figures(report).at("steps_per_second"), 30 / first, 1e-9);
+  WaitUntilSince(start, 0.25);
+  report.Begin("running");
+  const double second = report.interval_seconds();
+  report.AddSeconds("physics", 0.09);
+  EXPECT_NEAR(Figures(report).at("seconds_physics"), 0.09, 1e-9);
+  EXPECT_NEAR(Figures(report).at("share_physics"), 0.06 / second, 1e-9);
+}
+
+TEST(MetricsReport, AnIntervalTooShortHasNoShares) {
+  MetricsReport report("actor", 0);
+  report.Begin("running");
+  report.AddSeconds("physics", 0.03);
+  EXPECT_EQ(Figures(report).count("share_physics"), 0u);
+  EXPECT_EQ(Figures(report).count("seconds_physics"), 1u);
+}
+
+TEST(MetricsReport, QuantilesOfNothingAreLeftOut) {
+  MetricsReport report("actor", 0);
+  QuantileWindow window;
+  report.Begin("running");
+  report.AddQuantiles("lag", &window);
+  EXPECT_TRUE(Figures(report).empty());
+  window.Add(4);
+  report.AddQuantiles("lag", &window);
+  EXPECT_EQ(Figures(report).at("lag_p50"), 4);
+  EXPECT_EQ(Figures(report).at("lag_p90"), 4);
+  EXPECT_EQ(Figures(report).at("lag_p99"), 4);
+}
+
+TEST(Resources, OpenFilesAreCounted) {
+  const int before = OpenFiles();
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  EXPECT_EQ(OpenFiles(), before + 2);
+  close(ends[0]);
+  close(ends[1]);
+  EXPECT_EQ(OpenFiles(), before);
+}
+
+TEST(Resources, MemoryAndProcessorTimeGrowWithUse) {
+  const double memory = ResidentMegabytes(), cpu = CpuSeconds();
+  const std::vector<char> used(64'000'000, 1);
+  EXPECT_GT(ResidentMegabytes(), memory + 50);
+  double total = 0;
+  {
+    const ScopedSeconds timed(total);
+    WaitUntilSince(Now(), 0.05);
+  }
+  EXPECT_GE(total, 0.05);
+  EXPECT_GT(CpuSeconds(), cpu);
+}
+
+}  // namespace
+}  // namespace shoal
