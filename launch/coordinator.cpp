@@ -6,6 +6,7 @@
 #include "common/base/stop.h"
 #include "common/dds/publisher.h"
 #include "common/dds/subscriber.h"
+#include "common/wire/metrics_report.h"
 #include "launch/evaluations.h"
 #include "launch/message_inbox.h"
 #include "launch/metrics_log.h"
@@ -42,10 +43,11 @@ const char* ToString(RunState state) {
 
 // Members are in construction order: subscribers end before the inboxes they fill.
 struct Coordinator::Impl {
-  Impl(const std::filesystem::path& folder, const RunConfig& run_config,
-       std::unique_ptr<dds::Bus> claimed, const RunMeta& before, Progress& shown)
+  Impl(const std::filesystem::path& folder, const RunConfig& run_config, dds::Bus& bus,
+       const RunMeta& before, OperatorDesk& run_desk, Progress& shown)
       : run(folder),
         config(run_config.config),
+        desk(run_desk),
         progress(shown),
         meta(before),
         rule(config),
@@ -53,10 +55,10 @@ struct Coordinator::Impl {
         scalars(run),
         supervisor(RestartLimits(), HangLimits(),
                    [this](const std::string& line) { progress.Say(line); }),
-        bus(std::move(claimed)),
-        control(*bus),
-        metrics_subscriber(*bus, [this](const MetricsMessage& m) { metrics.Put(m); }),
-        eval_subscriber(*bus, [this](const EvalMessage& m) { evals.Put(m); }) {
+        own_report("coordinator", 0),
+        control(bus),
+        metrics_subscriber(bus, [this](const MetricsMessage& m) { metrics.Put(m); }),
+        eval_subscriber(bus, [this](const EvalMessage& m) { evals.Put(m); }) {
     for (const EvaluationPoint& point : ReadEvaluations(run)) Count(point);
     meta.target = rule.target();
   }
@@ -72,6 +74,8 @@ struct Coordinator::Impl {
   void Stop();
   // Heartbeat, messages, display. What fails in it is remembered as the run's failure.
   void Tick();
+  ProgressFigures Figures(SteadyTime now) const;
+  void ShowView(const ProgressFigures& figures, SteadyTime now);
   void Heartbeat(SteadyTime now);
   void TakeMessages(SteadyTime now);
   void OnEvaluation(const EvalMessage& message);
@@ -85,6 +89,7 @@ struct Coordinator::Impl {
 
   const std::filesystem::path run;
   const Config config;
+  OperatorDesk& desk;
   Progress& progress;
   RunMeta meta;  // wall_seconds: of the sessions before this one, until the end
   StopRule rule;
@@ -95,7 +100,7 @@ struct Coordinator::Impl {
   Supervisor supervisor;
   MessageInbox<MetricsMessage> metrics{kInboxMessages};
   MessageInbox<EvalMessage> evals{kInboxMessages};
-  std::unique_ptr<dds::Bus> bus;
+  MetricsReport own_report;
   dds::Publisher<ControlMessage> control;
   dds::Subscriber<MetricsMessage> metrics_subscriber;
   dds::Subscriber<EvalMessage> eval_subscriber;
@@ -106,9 +111,9 @@ struct Coordinator::Impl {
   int stops_before_end = 0;  // Ctrl-C's that had been answered when the ordered stop began
 };
 
-Coordinator::Coordinator(const std::filesystem::path& run, const RunConfig& config,
-                         std::unique_ptr<dds::Bus> bus, const RunMeta& meta, Progress& progress)
-    : impl_(std::make_unique<Impl>(run, config, std::move(bus), meta, progress)) {}
+Coordinator::Coordinator(const std::filesystem::path& run, const RunConfig& config, dds::Bus& bus,
+                         const RunMeta& meta, OperatorDesk& desk, Progress& progress)
+    : impl_(std::make_unique<Impl>(run, config, bus, meta, desk, progress)) {}
 
 Coordinator::~Coordinator() = default;
 
@@ -170,6 +175,17 @@ void Coordinator::Impl::Tick() {
   } catch (const Error& e) {
     Fail(e.what());
   }
+  const ProgressFigures figures = Figures(now);
+  try {
+    scalars.WriteRollouts(view, figures, now);
+  } catch (const Error& e) {
+    Fail(e.what());
+  }
+  ShowView(figures, now);
+  progress.Show(figures, now);
+}
+
+ProgressFigures Coordinator::Impl::Figures(SteadyTime now) const {
   ProgressFigures figures = CollectFigures(view, now);
   figures.run = config.run_name;
   figures.state = ToString(order.state);
@@ -180,12 +196,23 @@ void Coordinator::Impl::Tick() {
   figures.best = meta.best;
   figures.processes = supervisor.Running("");
   figures.restarts = meta.restarts + supervisor.restarts();
-  try {
-    scalars.WriteRollouts(view, figures, now);
-  } catch (const Error& e) {
-    Fail(e.what());
-  }
-  progress.Show(figures, now);
+  return figures;
+}
+
+// The coordinator's own report is made here: it watches itself as it does the others.
+void Coordinator::Impl::ShowView(const ProgressFigures& figures, SteadyTime now) {
+  if (!desk.Due(now)) return;
+  own_report.Begin(figures.state);
+  AddRunFigures(figures, &own_report);
+  const MetricsMessage& own = own_report.message();
+  view.OnMessage(own, now);
+  log.Write(own);
+  RunViewMessage shown;
+  shown.state = figures.state;
+  shown.env_steps = figures.env_steps;
+  shown.updates = meta.updates;
+  shown.processes = view.Reports(now);
+  desk.Show(std::move(shown), now);
 }
 
 void Coordinator::Impl::Heartbeat(SteadyTime now) {

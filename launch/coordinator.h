@@ -8,6 +8,7 @@
 
 #include "common/config/run_files.h"
 #include "common/dds/bus.h"
+#include "launch/operator_desk.h"
 #include "launch/progress.h"
 #include "launch/run_meta.h"
 
@@ -22,9 +23,9 @@ struct RunResult {
 class Coordinator {
  public:
   // `run` holds config.json and cluster.json. `meta` is a fresh one, or the resumed run's. Borrows
-  // `progress`. Throws Error.
-  Coordinator(const std::filesystem::path& run, const RunConfig& config,
-              std::unique_ptr<dds::Bus> bus, const RunMeta& meta, Progress& progress);
+  // the coordinator's bus, `desk` and `progress`. Throws Error.
+  Coordinator(const std::filesystem::path& run, const RunConfig& config, dds::Bus& bus,
+              const RunMeta& meta, OperatorDesk& desk, Progress& progress);
   ~Coordinator();
 
   // Until the target, the budget, Ctrl-C or a failure; no process is left when it returns. Call on

@@ -31,6 +31,7 @@ int Run(int argc, char** argv) {
   shoal::launch::Action chosen;
   shoal::launch::AddTrainCommand(app, &chosen);
   shoal::launch::AddEvalCommand(app, &chosen);
+  shoal::launch::AddTopCommand(app, &chosen);
   shoal::launch::AddEnvCommand(app, &chosen);
   shoal::launch::AddReplayCommand(app, &chosen);
   try {

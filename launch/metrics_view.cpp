@@ -27,6 +27,7 @@ void MetricsView::OnMessage(const MetricsMessage& message, SteadyTime now) {
   }
   process.time = message.time;
   process.heard = now;
+  process.newest = message;
 }
 
 template <class Visit>
@@ -79,6 +80,16 @@ double MetricsView::Total(std::string_view role, std::string_view name) const {
     total += Find(process.values, name).value_or(0) + Find(process.ended, name).value_or(0);
   });
   return total;
+}
+
+std::vector<MetricsMessage> MetricsView::Reports(SteadyTime now) const {
+  std::vector<MetricsMessage> reports;
+  for (const auto& [key, process] : processes_) {
+    if (now - process.heard > kForget) continue;
+    reports.push_back(process.newest);
+    if (now - process.heard > kFresh) reports.back().state = "silent";
+  }
+  return reports;
 }
 
 }  // namespace shoal::launch

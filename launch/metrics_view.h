@@ -34,7 +34,12 @@ class MetricsView {
   // values of their predecessors are added.
   double Total(std::string_view role, std::string_view name) const;
 
+  // The newest report of every process, by role and id. Those not heard for kFresh are "silent",
+  // those not heard for kForget are left out.
+  std::vector<MetricsMessage> Reports(SteadyTime now) const;
+
   static constexpr std::chrono::seconds kFresh{5};
+  static constexpr std::chrono::seconds kForget{60};
 
  private:
   using Values = std::map<std::string, double, std::less<>>;
@@ -42,6 +47,7 @@ class MetricsView {
     int32_t pid = 0;
     double time = 0, previous_time = 0;
     SteadyTime heard;
+    MetricsMessage newest;
     Values values, previous;
     Values ended;  // sums of the last values of former processes of this id
   };

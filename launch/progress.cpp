@@ -5,6 +5,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include "common/base/error.h"
 
@@ -96,7 +97,8 @@ std::vector<std::string> FormatProgressBlock(const ProgressFigures& f, int width
       fmt::format("  losses     critic {}  actor {}  temperature {}",
                   Number(f.critic_loss, "{:.4g}"), Number(f.actor_loss, "{:.4g}"),
                   Number(f.temperature, "{:.3g}")),
-      fmt::format("  flow       policy lag {} updates, {}", Number(f.policy_lag), LimiterState(f)),
+      fmt::format("  flow       policy lag {} updates, data {} updates old, {}",
+                  Number(f.policy_lag), Number(f.data_age), LimiterState(f)),
   };
   for (std::string& line : lines) {
     if (line.size() > static_cast<size_t>(width)) line.resize(static_cast<size_t>(width));
@@ -104,8 +106,10 @@ std::vector<std::string> FormatProgressBlock(const ProgressFigures& f, int width
   return lines;
 }
 
-Progress::Progress(const std::string& log_file)
-    : terminal_(isatty(STDOUT_FILENO) == 1), log_(log_file, std::ios::app) {
+Progress::Progress(const std::string& log_file, std::function<void(const std::string&)> on_say)
+    : terminal_(isatty(STDOUT_FILENO) == 1), on_say_(std::move(on_say)) {
+  if (log_file.empty()) return;
+  log_.open(log_file, std::ios::app);
   if (!log_) throw RuntimeError("cannot write '{}': {}", log_file, std::strerror(errno));
 }
 
@@ -131,7 +135,8 @@ void Progress::Say(const std::string& line) {
   EraseBlock();
   std::printf("%s\n", line.c_str());
   std::fflush(stdout);
-  log_ << UtcTimestamp() << ' ' << line << std::endl;
+  if (log_.is_open()) log_ << UtcTimestamp() << ' ' << line << std::endl;
+  if (on_say_) on_say_(line);
 }
 
 void Progress::EraseBlock() {

@@ -3,6 +3,7 @@
 
 #include <cstdio>
 #include <fstream>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -21,7 +22,8 @@ struct ProgressFigures {
   std::optional<double> env_steps_per_second;
   std::optional<double> updates, updates_per_second;
   std::optional<double> critic_loss, actor_loss, temperature;
-  std::optional<double> policy_lag;       // updates, median
+  std::optional<double> policy_lag;       // of the policies that act, updates, median
+  std::optional<double> data_age;         // of the batches' data, updates, median
   std::optional<double> rollout_success;  // rate over the last episodes of the actors
   std::optional<double> actors_wait;      // share of the last second the limiter held actors
   std::optional<double> learner_waits;    // the same for the learner
@@ -41,8 +43,10 @@ std::vector<std::string> FormatProgressBlock(const ProgressFigures& figures, int
 // Writes to stdout and copies event lines to a log file. One thread.
 class Progress {
  public:
-  // Throws Error when the log cannot be opened.
-  explicit Progress(const std::string& log_file);
+  // `on_say` hears every line that is said. Throws Error when the log cannot be opened; an empty
+  // name is no log.
+  explicit Progress(const std::string& log_file,
+                    std::function<void(const std::string&)> on_say = nullptr);
   // Leaves the cursor below the last block.
   ~Progress();
 
@@ -56,6 +60,7 @@ class Progress {
 
   const bool terminal_;
   std::ofstream log_;
+  const std::function<void(const std::string&)> on_say_;
   int block_lines_ = 0;
   std::optional<SteadyTime> shown_;
 };

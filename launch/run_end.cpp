@@ -33,7 +33,7 @@ fs::path JudgedCheckpoint(const fs::path& run) {
 }
 
 std::optional<EvaluationPoint> EvaluateAtEnd(const fs::path& run, const Config& config,
-                                             Progress& progress) {
+                                             OperatorDesk& desk, Progress& progress) {
   const fs::path checkpoint = JudgedCheckpoint(run);
   if (config.eval.final_episodes == 0 || checkpoint.empty()) return std::nullopt;
   const int stops = StopRequests();
@@ -44,7 +44,10 @@ std::optional<EvaluationPoint> EvaluateAtEnd(const fs::path& run, const Config& 
                                       .episodes = config.eval.final_episodes,
                                       .seed = config.seed,
                                       .json = run / "eval" / "final.json"},
-                                     [stops] { return StopRequests() > stops; });
+                                     [stops, &desk] {
+                                       desk.ShowAgain("evaluating", Now());
+                                       return StopRequests() > stops;
+                                     });
   if (!point) progress.Say("the evaluation was left out");
   return point;
 }
@@ -75,7 +78,8 @@ void PrintSummary(const fs::path& run, const RunResult& result,
 
 }  // namespace
 
-int EndRun(const fs::path& run, const Config& config, RunResult result, Progress& progress) {
+int EndRun(const fs::path& run, const Config& config, RunResult result, OperatorDesk& desk,
+           Progress& progress) {
   RunMeta& meta = result.meta;
   bool good = result.clean && meta.exit != "failed";
   RemoveUnfinishedFiles(run);
@@ -96,7 +100,7 @@ int EndRun(const fs::path& run, const Config& config, RunResult result, Progress
   }
   std::optional<EvaluationPoint> final_evaluation;
   try {
-    final_evaluation = EvaluateAtEnd(run, config, progress);
+    final_evaluation = EvaluateAtEnd(run, config, desk, progress);
     if (final_evaluation) meta.final_success = final_evaluation->success;
   } catch (const Error& e) {
     fail(e.what());

@@ -12,6 +12,6 @@ namespace shoal::launch {
 // Prints the summary and returns the run's exit code: 1 when it failed, a process left with an
 // error, or the records do not balance.
 int EndRun(const std::filesystem::path& run, const Config& config, RunResult result,
-           Progress& progress);
+           OperatorDesk& desk, Progress& progress);
 
 }  // namespace shoal::launch

@@ -1,6 +1,7 @@
-// Which reported figures make up the progress display.
+// Which reported figures make up the progress display, in the coordinator and far from it.
 #pragma once
 
+#include "common/wire/metrics_report.h"
 #include "launch/metrics_view.h"
 #include "launch/progress.h"
 
@@ -8,5 +9,10 @@ namespace shoal::launch {
 
 // Fills the figures that processes report; the others keep their defaults.
 ProgressFigures CollectFigures(const MetricsView& view, SteadyTime now);
+
+// Adds what the coordinator alone knows to its own report.
+void AddRunFigures(const ProgressFigures& figures, MetricsReport* report);
+// What a view shows, as the run's own progress display has it.
+ProgressFigures FiguresOfView(const RunViewMessage& view, SteadyTime now);
 
 }  // namespace shoal::launch

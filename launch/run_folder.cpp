@@ -1,7 +1,6 @@
 #include "launch/run_folder.h"
 
 #include <fcntl.h>
-#include <sys/file.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -47,7 +46,23 @@ int64_t StepOf(const std::string& name) {
   return error == std::errc() && stop == end ? step : -1;
 }
 
+struct flock WholeFile(short type) {
+  struct flock lock {};
+  lock.l_type = type;
+  lock.l_whence = SEEK_SET;
+  return lock;
+}
+
 }  // namespace
+
+bool IsHeld(const fs::path& run) {
+  const int file = open((run / ".lock").c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return false;
+  struct flock lock = WholeFile(F_WRLCK);
+  const bool held = fcntl(file, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
+  close(file);
+  return held;
+}
 
 RunFolder RunFolder::Create(const fs::path& dir, const std::string& name, bool overwrite) {
   const fs::path path = dir / name;
@@ -84,7 +99,9 @@ RunFolder::RunFolder(fs::path path) : path_(std::move(path)) {
   const fs::path lock = path_ / ".lock";
   lock_ = open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
   if (lock_ < 0) throw RuntimeError("cannot write '{}': {}", lock.string(), std::strerror(errno));
-  if (flock(lock_, LOCK_EX | LOCK_NB) != 0) {
+  // Locks of this kind can be asked for without being taken.
+  struct flock whole = WholeFile(F_WRLCK);
+  if (fcntl(lock_, F_OFD_SETLK, &whole) != 0) {
     close(std::exchange(lock_, -1));
     throw UsageError("run '{}' is running (its coordinator holds {})", path_.string(),
                      lock.string());

@@ -6,7 +6,8 @@
 
 namespace shoal::launch {
 
-// Holds an exclusive lock on the run until destruction (or death of the process).
+// Holds an exclusive lock on the run until destruction (or death of the process and of those it
+// forked without exec).
 class RunFolder {
  public:
   // Creates DIR/NAME. A given name whose folder exists is refused (usage error) unless `overwrite`,
@@ -32,6 +33,10 @@ class RunFolder {
   std::filesystem::path path_;
   int lock_ = -1;
 };
+
+// Whether a coordinator holds the run in this folder: asks, without holding it. On another host's
+// disk this works where the file system passes locks on (NFS does).
+bool IsHeld(const std::filesystem::path& run);
 
 // logs/PROCESS.log of a run.
 std::filesystem::path LogFile(const std::filesystem::path& run, const std::string& process);

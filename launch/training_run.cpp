@@ -54,7 +54,7 @@ PreparedRun PrepareResumed(const TrainOptions& options) {
   return {std::move(folder), std::move(config), meta};
 }
 
-void PrintStart(const PreparedRun& run) {
+void PrintStart(const PreparedRun& run, const ClusterAddress& address) {
   const Config& config = run.config.config;
   fmt::print("run {}: {}\n", run.folder.path().string(), run.config.spec.Summary());
   fmt::print(
@@ -62,6 +62,8 @@ void PrintStart(const PreparedRun& run) {
       "1 evaluation actor; logs in {}\n",
       config.seed, config.env_steps, config.learner.threads, config.actors, config.envs_per_actor,
       (run.folder.path() / "logs").string());
+  fmt::print("  watch it with: shoal top --run {}, or --peer {}:{}\n", run.folder.path().string(),
+             address.host, dds::OperatePort(address));
   std::fflush(stdout);
 }
 
@@ -75,14 +77,18 @@ int Start(PreparedRun run, std::unique_ptr<dds::Bus> bus, const ClusterAddress& 
   RemoveUnfinishedFiles(path);
   WriteRunConfig(path, run.config);
   WriteClusterAddress(path, address);
-  PrintStart(run);
-  Progress progress(LogFile(path, "coordinator").string());
+  PrintStart(run, address);
+  OperatorDesk desk(*bus, run.config.config.run_name);
+  Progress progress(LogFile(path, "coordinator").string(),
+                    [&desk](const std::string& line) { desk.AddEvent(line); });
   RunResult result;
   {
-    Coordinator coordinator(path, run.config, std::move(bus), run.meta, progress);
+    Coordinator coordinator(path, run.config, *bus, run.meta, desk, progress);
     result = coordinator.Run();
   }
-  return EndRun(path, run.config.config, std::move(result), progress);
+  const int exit_code = EndRun(path, run.config.config, std::move(result), desk, progress);
+  desk.ShowEnd(exit_code);
+  return exit_code;
 }
 
 }  // namespace

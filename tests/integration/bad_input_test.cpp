@@ -118,6 +118,13 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"ReplayWithoutRun", {"shoal-replay", "--run", "/absent"}, 1, {"/absent"}},
         Mistake{"LearnerWithoutRun", {"shoal-learner", "--run", "/absent"}, 1, {"/absent"}},
         Mistake{"ActorWithoutRun", {"shoal-actor", "--run", "/absent"}, 1, {"/absent"}},
+        Mistake{"TopOfAbsentRun", {"shoal", "top", "--run", "nope"}, 2, {"nope", "config.json"}},
+        Mistake{"TopOfNothing", {"shoal", "top", "--run-dir", "/absent"}, 1, {"/absent", "--peer"}},
+        Mistake{"TopOfAMalformedPeer", {"shoal", "top", "--peer", "box:80"}, 2, {"box:80"}},
+        Mistake{"TopOfASilentPeer",
+                {"shoal", "top", "--peer", "127.0.0.1:32160"},
+                1,
+                {"127.0.0.1:32160", "did not answer"}},
         Mistake{"NoInterface", TrainWith("transport.interface=\"eth77\""), 1, {"eth77"}}),
     [](const auto& test) { return test.param.name; });
 

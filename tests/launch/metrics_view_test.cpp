@@ -71,5 +71,20 @@ TEST(MetricsView, TotalsSurviveRestarts) {
   EXPECT_EQ(view.Total("actor", "resends"), 17);
 }
 
+TEST(MetricsView, ReportsSayWhoIsSilentAndForgetWhoIsGone) {
+  MetricsView view;
+  view.OnMessage(Report("replay", 0, 3, 1, {{"stored", 1}}), kNow);
+  view.OnMessage(Report("actor", 1, 2, 1, {{"made", 2}}), kNow - seconds(6));
+  view.OnMessage(Report("actor", 0, 1, 1, {}), kNow - seconds(61));
+  const std::vector<MetricsMessage> reports = view.Reports(kNow);
+  ASSERT_EQ(reports.size(), 2u);
+  EXPECT_EQ(reports[0].role, "actor");
+  EXPECT_EQ(reports[0].id, 1u);
+  EXPECT_EQ(reports[0].state, "silent");
+  EXPECT_EQ(reports[0].values, std::vector<double>{2});
+  EXPECT_EQ(reports[1].role, "replay");
+  EXPECT_NE(reports[1].state, "silent");
+}
+
 }  // namespace
 }  // namespace shoal::launch

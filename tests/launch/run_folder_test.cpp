@@ -80,6 +80,19 @@ TEST(RunFolderTest, IsHeldAgainstASecondCoordinator) {
               HasSubstr("is running"));
 }
 
+TEST(RunFolderTest, AskingWhetherItIsHeldDoesNotHoldIt) {
+  const TemporaryFolder dir;
+  EXPECT_FALSE(IsHeld(dir.path() / "a"));
+  {
+    const RunFolder run = RunFolder::Create(dir.path(), "a", false);
+    WriteFileAtomically(run.path() / "config.json", "{}");
+    EXPECT_TRUE(IsHeld(run.path()));
+    EXPECT_TRUE(IsHeld(run.path()));
+  }
+  EXPECT_FALSE(IsHeld(dir.path() / "a"));
+  EXPECT_EQ(RunFolder::Reopen(dir.path(), "a").name(), "a");
+}
+
 TEST(RunFolderTest, ReopensByNameAndByPath) {
   const TemporaryFolder dir;
   {

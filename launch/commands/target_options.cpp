@@ -1,0 +1,16 @@
+#include "launch/commands/target_options.h"
+
+#include <CLI/CLI.hpp>
+
+namespace shoal::launch {
+
+void AddTargetOptions(CLI::App& command, TargetOptions* options) {
+  command.add_option("--run", options->run,
+                     "Name or folder of the run; the only one that is running when not given");
+  command.add_option("--peer", options->peer,
+                     "HOST:PORT of a run anywhere, as the run showed it when it started");
+  command.add_option("--run-dir", options->run_dir, "Folder that holds the runs")
+      ->capture_default_str();
+}
+
+}  // namespace shoal::launch

@@ -1,0 +1,15 @@
+// The options that say which run a command is about.
+#pragma once
+
+#include "launch/run_target.h"
+
+namespace CLI {
+class App;
+}
+
+namespace shoal::launch {
+
+// Adds --run, --peer and --run-dir. `options` must live as long as the command line.
+void AddTargetOptions(CLI::App& command, TargetOptions* options);
+
+}  // namespace shoal::launch

@@ -1,0 +1,33 @@
+// Which running run a command is about: by name, by address, or the only one there is.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "common/config/config.h"
+#include "common/config/run_files.h"
+
+namespace shoal::launch {
+
+struct TargetOptions {
+  std::string run;   // name within run_dir, or path of the folder
+  std::string peer;  // HOST:PORT of the coordinator's side for clients
+  std::string run_dir = "runs";
+};
+
+struct RunTarget {
+  std::string name;              // for messages: the run's name or the peer
+  std::filesystem::path folder;  // empty when given by peer
+  ClusterAddress address;
+  TransportConfig transport;
+};
+
+// Folders in `dir` that are runs (have a config.json), sorted by name; empty when there is no
+// `dir`.
+std::vector<std::filesystem::path> ListRuns(const std::filesystem::path& dir);
+
+// Throws Error: both run and peer given, no such run, not running, none or several running.
+RunTarget ResolveTarget(const TargetOptions& options);
+
+}  // namespace shoal::launch

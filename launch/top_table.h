@@ -1,0 +1,28 @@
+// `shoal top` as text: one row per process, sorted by any column; or one line. Pure.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/wire/messages.h"
+
+namespace shoal::launch {
+
+// How the rows are sorted. Column 0 is the order of roles; numbers sort from the largest down.
+struct TopOrder {
+  int column = 0;
+  bool reversed = false;
+};
+
+int TopColumns();
+// The heading of a column.
+std::string TopColumnName(int column);
+
+// Heading lines, then one row per process; each at most `width` characters (0 = no limit).
+std::vector<std::string> FormatTop(const RunViewMessage& view, const TopOrder& order, int width);
+// The whole run as one plain line.
+std::string FormatTopLine(const RunViewMessage& view);
+// shoal-top-1, indented.
+std::string TopJson(const RunViewMessage& view);
+
+}  // namespace shoal::launch

@@ -1,0 +1,52 @@
+// What `shoal` says about the run of a test to those who watch or steer it.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <chrono>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "common/base/clock.h"
+#include "tests/support/training_run.h"
+
+namespace shoal {
+
+// `shoal` with these words, looking for runs where the test's run is.
+inline ProgramResult RunShoal(const TrainingRun& run, std::vector<std::string> words,
+                              std::chrono::seconds deadline = std::chrono::seconds(90)) {
+  words.insert(words.begin(), "shoal");
+  words.push_back("--run-dir");
+  words.push_back(run.parent().string());
+  return RunProgram(words, deadline);
+}
+
+// The view of `shoal top --once --json`, asked for again until `done` holds; null, and a failure of
+// the test, when it did not in time.
+template <class Done>
+nlohmann::json WaitForView(const TrainingRun& run, Done done,
+                           std::chrono::seconds deadline = std::chrono::seconds(90)) {
+  const SteadyTime end = Now() + deadline;
+  ProgramResult top;
+  while (Now() < end) {
+    top = RunShoal(run, {"top", "--once", "--json"});
+    const auto view = nlohmann::json::parse(top.out, nullptr, /*allow_exceptions=*/false);
+    if (ExitCode(top) == 0 && view.is_object() && done(view)) return view;
+    std::this_thread::sleep_for(std::chrono::milliseconds(200));
+  }
+  ADD_FAILURE() << "no such view within " << deadline.count() << " s; the last: " << top.out
+                << top.err;
+  return {};
+}
+
+// The process of a role in a view; null when there is none.
+inline nlohmann::json ProcessOf(const nlohmann::json& view, const std::string& role, int id = 0) {
+  for (const nlohmann::json& process : view.at("processes")) {
+    if (process.at("role") == role && process.at("id") == id) return process;
+  }
+  return {};
+}
+
+}  // namespace shoal
