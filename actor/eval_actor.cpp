@@ -22,14 +22,14 @@ constexpr milliseconds kPoll{100};
 // Members are in construction order: receive threads end before what they write to.
 class EvalActor {
  public:
-  explicit EvalActor(const std::filesystem::path& folder)
+  EvalActor(const std::filesystem::path& folder, const dds::Reach& reach)
       : member_(folder),
         run_(ReadRunConfig(folder)),
         evaluator_(run_),
         report_("eval", 0),
         weights_(run_.spec.Hash()),
         control_(Now()),
-        bus_(ReadClusterAddress(folder), run_.config.transport, dds::Role::kActor),
+        bus_(dds::FindPlace(folder, run_.config.transport, reach), dds::Role::kActor),
         eval_publisher_(bus_),
         metrics_publisher_(bus_),
         weights_subscriber_(bus_, [this](const EvalWeightsMessage& m) { weights_.OnMessage(m); }),
@@ -110,6 +110,8 @@ class EvalActor {
 
 }  // namespace
 
-int RunEvalActor(const std::filesystem::path& run) { return EvalActor(run).Run(); }
+int RunEvalActor(const std::filesystem::path& run, const dds::Reach& reach) {
+  return EvalActor(run, reach).Run();
+}
 
 }  // namespace shoal::actor

@@ -4,10 +4,12 @@
 
 #include <filesystem>
 
+#include "common/dds/reach.h"
+
 namespace shoal::actor {
 
 // Runs until the coordinator ends the run or SIGTERM; returns the exit code. Throws Error at
 // start-up.
-int RunEvalActor(const std::filesystem::path& run);
+int RunEvalActor(const std::filesystem::path& run, const dds::Reach& reach);
 
 }  // namespace shoal::actor

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "actor/eval_actor.h"
 #include "actor/evaluation.h"
@@ -14,6 +15,7 @@
 #include "common/base/log.h"
 #include "common/base/main_guard.h"
 #include "common/base/stop.h"
+#include "common/base/stop_with_input.h"
 #include "common/config/config_io.h"
 #include "common/dds/bus.h"
 #include "common/nn/precision.h"
@@ -25,7 +27,8 @@ struct Options {
   uint32_t id = 0;
   int episodes = 100;
   int64_t seed = 1;
-  bool describe = false;
+  bool describe = false, stop_with_input = false;
+  shoal::dds::Reach reach;
 };
 
 int Describe(const Options& options) {
@@ -59,6 +62,13 @@ int Run(int argc, char** argv) {
   app.add_option("--run", options.run, "run folder (config.json, cluster.json)");
   app.add_option("--id", options.id, "number of this actor within the run");
   app.add_option("--role", options.role, "train or eval")->check(CLI::IsMember({"train", "eval"}));
+  app.add_option("--peer", options.reach.peer,
+                 "HOST[:PORT] of the servers instead of cluster.json's");
+  app.add_option("--interface", options.reach.interface,
+                 "network interface of this host instead of transport.interface");
+  app.add_flag(
+      "--stop-with-input", options.stop_with_input,
+      "stop when standard input ends: a remote shell's way to say that its caller is gone");
   auto* describe = app.add_flag("--describe", options.describe, "print the observation spec");
   app.add_option("--config-json", options.config_json, "configuration for --describe")
       ->needs(describe);
@@ -83,12 +93,14 @@ int Run(int argc, char** argv) {
   if (options.run.empty()) throw shoal::UsageError("--run DIR is required");
   shoal::InstallStopSignals();
   if (!options.checkpoint.empty()) return Evaluate(options);
+  std::optional<shoal::StopWithInput> stop_with_input;
+  if (options.stop_with_input) stop_with_input.emplace();
   if (options.role == "eval") {
     shoal::log::Start("eval-0", "");
-    return shoal::actor::RunEvalActor(options.run);
+    return shoal::actor::RunEvalActor(options.run, options.reach);
   }
   shoal::log::Start(fmt::format("actor-{}", options.id), "");
-  return shoal::actor::RunTrainingActor(options.run, options.id);
+  return shoal::actor::RunTrainingActor(options.run, options.id, options.reach);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "actor/actor_lock.h"
 #include "actor/credit_inbox.h"
 #include "actor/environments.h"
 #include "actor/rollout.h"
@@ -27,6 +28,7 @@ constexpr seconds kResendAfter{2};  // without progress on what was sent
 // For the last records to be stored. When the coordinator and with it the learner is gone, the
 // limiter may hold them back until the replay has noticed, too.
 constexpr seconds kDrainDeadline = ControlState::kLease + seconds(10);
+constexpr seconds kLockDeadline = kDrainDeadline + seconds(15);  // for a predecessor to drain
 constexpr milliseconds kBlockedWait{5};  // per look for credit while there is no room
 constexpr seconds kLockstepDeadline{120};
 
@@ -51,9 +53,10 @@ ChunkWindow::Options WindowOptions(const RunConfig& run, uint32_t id, uint64_t s
 // before the inboxes they write to.
 class TrainingActor {
  public:
-  TrainingActor(const std::filesystem::path& folder, uint32_t id)
+  TrainingActor(const std::filesystem::path& folder, uint32_t id, const dds::Reach& reach)
       : member_(folder),
         run_(ReadRunConfig(folder)),
+        lock_(folder, id, kLockDeadline, StopRequested),
         session_(NextSession(folder, fmt::format("actor-{}", id), WallTimeNs())),
         first_env_(id * static_cast<uint32_t>(run_.config.envs_per_actor)),
         made_(folder, id, session_, first_env_, static_cast<uint32_t>(run_.config.envs_per_actor)),
@@ -65,7 +68,7 @@ class TrainingActor {
         credits_(id, session_),
         weights_(run_.spec.Hash()),
         control_(Now()),
-        bus_(ReadClusterAddress(folder), run_.config.transport, dds::Role::kActor),
+        bus_(dds::FindPlace(folder, run_.config.transport, reach), dds::Role::kActor),
         chunk_publisher_(bus_),
         metrics_publisher_(bus_),
         credit_subscriber_(bus_, [this](const Credit& c) { credits_.OnMessage(c); }),
@@ -243,6 +246,7 @@ class TrainingActor {
 
   const RunMembership member_;
   const RunConfig run_;
+  const ActorLock lock_;
   const uint64_t session_;
   const uint32_t first_env_;
   MadePage made_;
@@ -268,8 +272,8 @@ class TrainingActor {
 
 }  // namespace
 
-int RunTrainingActor(const std::filesystem::path& run, uint32_t id) {
-  return TrainingActor(run, id).Run();
+int RunTrainingActor(const std::filesystem::path& run, uint32_t id, const dds::Reach& reach) {
+  return TrainingActor(run, id, reach).Run();
 }
 
 }  // namespace shoal::actor

@@ -2,6 +2,7 @@
 
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 #include "common/base/error.h"
@@ -42,12 +43,19 @@ void AddSession(const Session& name, uint64_t made, const SeenRecords& seen, Acc
 }  // namespace
 
 Accounting Account(std::span<const MadeRecords> made, std::span<const SeenRecords> seen,
-                   uint64_t resends) {
-  std::map<Session, std::pair<uint64_t, SeenRecords>> sessions;
-  for (const MadeRecords& m : made) sessions[{m.actor, m.session}].first += m.made;
+                   uint64_t resends, uint32_t own_actors) {
+  struct Counts {
+    std::optional<uint64_t> made;
+    SeenRecords seen;
+  };
+  std::map<Session, Counts> sessions;
+  for (const MadeRecords& m : made) {
+    auto& count = sessions[{m.actor, m.session}].made;
+    count = count.value_or(0) + m.made;
+  }
   Accounting sums;
   for (const SeenRecords& s : seen) {
-    SeenRecords& entry = sessions[{s.actor, s.session}].second;
+    SeenRecords& entry = sessions[{s.actor, s.session}].seen;
     if (entry.session != 0) {
       sums.faults.push_back(
           fmt::format("actor {} session {}: listed twice by the replay", s.actor, s.session));
@@ -55,18 +63,25 @@ Accounting Account(std::span<const MadeRecords> made, std::span<const SeenRecord
     entry = s;
   }
   for (const auto& [name, counts] : sessions) {
-    AddSession(name, counts.first, counts.second, &sums);
+    const bool unknown = !counts.made && name.first >= own_actors;
+    if (unknown) ++sums.sessions_without_page;
+    AddSession(name, unknown ? counts.seen.highest : counts.made.value_or(0), counts.seen, &sums);
   }
   sums.resends = resends;
   return sums;
 }
 
 std::string Accounting::Line() const {
+  const std::string unknown =
+      sessions_without_page == 0
+          ? ""
+          : fmt::format("; {} session(s) without a counter page: made as far as the replay saw",
+                        sessions_without_page);
   return fmt::format(
       "records: made {} {} stored {} + lost with a process {} + rejected {} + after a gap {}; "
-      "duplicates {}, resends {}",
+      "duplicates {}, resends {}{}",
       made, Balances() ? '=' : '?', stored, lost_with_process, rejected, after_gap, duplicates,
-      resends);
+      resends, unknown);
 }
 
 std::vector<SeenRecords> ReadSeenRecords(const std::filesystem::path& run) {
@@ -103,6 +118,7 @@ nlohmann::ordered_json ToJson(const Accounting& a) {
           {"after_gap", a.after_gap},
           {"duplicates", a.duplicates},
           {"resends", a.resends},
+          {"sessions_without_page", a.sessions_without_page},
           {"balances", a.Balances()}};
 }
 

@@ -33,6 +33,9 @@ struct SeenRecords {
 struct Accounting {
   uint64_t made = 0, stored = 0, lost_with_process = 0, rejected = 0, after_gap = 0;
   uint64_t duplicates = 0, resends = 0;
+  // Of actors started by hand, or on a host that cannot be reached any more: what the replay saw
+  // counts as made, what they made beyond it is unknown.
+  uint64_t sessions_without_page = 0;
   std::vector<std::string> faults;  // one line per session that does not balance
 
   bool Balances() const { return faults.empty(); }
@@ -40,8 +43,9 @@ struct Accounting {
   std::string Line() const;
 };
 
+// Sessions of actors below `own_actors` must have a page; without one they are a fault.
 Accounting Account(std::span<const MadeRecords> made, std::span<const SeenRecords> seen,
-                   uint64_t resends);
+                   uint64_t resends, uint32_t own_actors);
 
 // accounting.json of a run (shoal-accounting-1), written by the replay. Throws Error.
 std::vector<SeenRecords> ReadSeenRecords(const std::filesystem::path& run);

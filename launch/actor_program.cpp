@@ -1,9 +1,5 @@
 #include "launch/actor_program.h"
 
-#include <unistd.h>
-
-#include <cerrno>
-#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "common/base/error.h"
@@ -12,6 +8,7 @@
 #include "common/config/config_io.h"
 #include "launch/evaluations.h"
 #include "launch/process_plan.h"
+#include "launch/scratch_folder.h"
 
 namespace shoal::launch {
 namespace {
@@ -21,28 +18,6 @@ namespace fs = std::filesystem;
 constexpr char kProgram[] = "shoal-actor";
 constexpr std::chrono::seconds kDescribeDeadline{60};
 constexpr std::chrono::seconds kStartDeadline{60}, kEpisodeDeadline{60};
-
-// A folder that goes away with its owner.
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    std::string name = (fs::temp_directory_path() / "shoal-XXXXXX").string();
-    if (mkdtemp(name.data()) == nullptr) {
-      throw RuntimeError("cannot create folder '{}': {}", name, std::strerror(errno));
-    }
-    path_ = name;
-  }
-  ~ScratchFolder() {
-    std::error_code error;
-    fs::remove_all(path_, error);
-  }
-  ScratchFolder(const ScratchFolder&) = delete;
-  ScratchFolder& operator=(const ScratchFolder&) = delete;
-  const fs::path& path() const { return path_; }
-
- private:
-  fs::path path_;
-};
 
 // The program's own error line, without its name, as an Error of the same exit code.
 Error FailureOf(const ExitStatus& status, const fs::path& errors) {

@@ -20,27 +20,33 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// A file descriptor that closes itself.
-class Descriptor {
- public:
-  explicit Descriptor(int fd) : fd_(fd) {}
-  ~Descriptor() { Close(); }
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  int get() const { return fd_; }
-  void Close() {
-    if (fd_ >= 0) close(fd_);
-    fd_ = -1;
-  }
+Descriptor Open(const std::filesystem::path& path, int flags) {
+  const int fd = open(path.c_str(), flags | O_CLOEXEC, 0644);
+  if (fd >= 0) return Descriptor(fd);
+  throw RuntimeError("cannot {} '{}': {}", (flags & O_CREAT) != 0 ? "write" : "read", path.string(),
+                     std::strerror(errno));
+}
 
- private:
-  int fd_;
+Descriptor OpenForAppending(const std::filesystem::path& path) {
+  return Open(path, O_WRONLY | O_CREAT | O_APPEND);
+}
+
+struct Pipe {
+  Pipe() {
+    std::array<int, 2> ends{};
+    if (pipe2(ends.data(), O_CLOEXEC) != 0) throw RuntimeError("pipe: {}", std::strerror(errno));
+    read = Descriptor(ends[0]);
+    write = Descriptor(ends[1]);
+  }
+  Descriptor read, write;
 };
 
-int OpenForAppending(const std::filesystem::path& path) {
-  const int fd = open(path.c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0644);
-  if (fd < 0) throw RuntimeError("cannot write '{}': {}", path.string(), std::strerror(errno));
-  return fd;
+// What the child reads from; `held` gets our end of it where there is one.
+Descriptor OpenInput(const ProcessSpec& spec, Descriptor* held) {
+  if (!spec.holds_input) return Open(spec.input.empty() ? "/dev/null" : spec.input, O_RDONLY);
+  Pipe pipe;
+  *held = std::move(pipe.write);
+  return std::move(pipe.read);
 }
 
 // Our environment with additions, as NAME=VALUE.
@@ -105,23 +111,19 @@ ChildProcess::ChildProcess(const ProcessSpec& spec) {
   std::vector<std::string> command = spec.command;
   std::vector<std::string> environment = Environment(spec.environment);
   const std::vector<char*> argv = Pointers(command), envp = Pointers(environment);
-  const Descriptor input(open("/dev/null", O_RDONLY | O_CLOEXEC));
-  const Descriptor output(OpenForAppending(spec.output));
-  const Descriptor errors(OpenForAppending(spec.errors.empty() ? spec.output : spec.errors));
-  // Closed by a successful exec; carries errno of a failed one.
-  std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) throw RuntimeError("pipe: {}", std::strerror(errno));
-  const Descriptor report(ends[0]);
-  Descriptor report_end(ends[1]);
+  const Descriptor input = OpenInput(spec, &held_input_);
+  const Descriptor output = OpenForAppending(spec.output);
+  const Descriptor errors = OpenForAppending(spec.errors.empty() ? spec.output : spec.errors);
+  Pipe report;  // closed by a successful exec; carries errno of a failed one
 
-  const ExecPlan plan{argv.data(),  envp.data(),      input.get(), output.get(),
-                      errors.get(), report_end.get(), getpid(),    spec.outlives_parent};
+  const ExecPlan plan{argv.data(),  envp.data(),        input.get(), output.get(),
+                      errors.get(), report.write.get(), getpid(),    spec.outlives_parent};
   pid_ = fork();
   if (pid_ < 0) throw RuntimeError("cannot start {}: {}", spec.command[0], std::strerror(errno));
   if (pid_ == 0) ExecChild(plan);
-  report_end.Close();
+  report.write.Close();
   int error = 0;
-  if (read(report.get(), &error, sizeof error) == static_cast<ssize_t>(sizeof error)) {
+  if (read(report.read.get(), &error, sizeof error) == static_cast<ssize_t>(sizeof error)) {
     KillAndReap();
     throw RuntimeError("cannot start '{}': {}", spec.command[0], std::strerror(error));
   }
@@ -130,12 +132,15 @@ ChildProcess::ChildProcess(const ProcessSpec& spec) {
 ChildProcess::~ChildProcess() { KillAndReap(); }
 
 ChildProcess::ChildProcess(ChildProcess&& other) noexcept
-    : pid_(std::exchange(other.pid_, -1)), ended_(other.ended_) {}
+    : pid_(std::exchange(other.pid_, -1)),
+      held_input_(std::move(other.held_input_)),
+      ended_(other.ended_) {}
 
 ChildProcess& ChildProcess::operator=(ChildProcess&& other) noexcept {
   if (this == &other) return *this;
   KillAndReap();
   pid_ = std::exchange(other.pid_, -1);
+  held_input_ = std::move(other.held_input_);
   ended_ = other.ended_;
   return *this;
 }

@@ -11,6 +11,8 @@
 #include <utility>
 #include <vector>
 
+#include "launch/descriptor.h"
+
 namespace shoal::launch {
 
 struct ProcessSpec {
@@ -18,9 +20,12 @@ struct ProcessSpec {
   int id = 0;                                                    // within the role
   std::vector<std::string> command;                              // [0] is the program's path
   std::vector<std::pair<std::string, std::string>> environment;  // added to our own
+  std::filesystem::path input;   // stdin is read from it; empty = /dev/null
   std::filesystem::path output;  // stdout and stderr are appended to it
   std::filesystem::path errors;  // stderr, where apart; empty = output
   bool outlives_parent = false;  // gets no SIGHUP when this process dies
+  bool holds_input = false;      // stdin is a pipe that closes when this process lets go of it
+  bool elsewhere = false;        // a remote shell: its exit code 255 is a lost connection
 
   std::string Name() const { return role + "-" + std::to_string(id); }
 };
@@ -36,8 +41,8 @@ struct ExitStatus {
 
 // Owns the child: one that still runs at destruction is killed and reaped. Children get SIGHUP
 // when this process dies, have a process group of their own (Ctrl-C on the terminal does not reach
-// them) and read from /dev/null. Create and use on one thread that lives as long as the child: the
-// kernel ties the death signal to it.
+// them) and read from /dev/null unless told otherwise. Create and use on one thread that lives as
+// long as the child: the kernel ties the death signal to it.
 class ChildProcess {
  public:
   // Throws Error naming the program or the file that could not be opened.
@@ -55,7 +60,8 @@ class ChildProcess {
  private:
   void KillAndReap();
 
-  pid_t pid_ = -1;  // -1: moved from
+  pid_t pid_ = -1;         // -1: moved from
+  Descriptor held_input_;  // our end of the child's input
   std::optional<ExitStatus> ended_;
 };
 

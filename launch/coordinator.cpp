@@ -44,9 +44,11 @@ const char* ToString(RunState state) {
 // Members are in construction order: subscribers end before the inboxes they fill.
 struct Coordinator::Impl {
   Impl(const std::filesystem::path& folder, const RunConfig& run_config, dds::Bus& bus,
-       const RunMeta& before, OperatorDesk& run_desk, Progress& shown)
+       const RunMeta& before, const std::vector<RemoteHost>& remote_hosts, OperatorDesk& run_desk,
+       Progress& shown)
       : run(folder),
         config(run_config.config),
+        hosts(remote_hosts),
         desk(run_desk),
         progress(shown),
         meta(before),
@@ -89,6 +91,7 @@ struct Coordinator::Impl {
 
   const std::filesystem::path run;
   const Config config;
+  const std::vector<RemoteHost> hosts;
   OperatorDesk& desk;
   Progress& progress;
   RunMeta meta;  // wall_seconds: of the sessions before this one, until the end
@@ -112,15 +115,16 @@ struct Coordinator::Impl {
 };
 
 Coordinator::Coordinator(const std::filesystem::path& run, const RunConfig& config, dds::Bus& bus,
-                         const RunMeta& meta, OperatorDesk& desk, Progress& progress)
-    : impl_(std::make_unique<Impl>(run, config, bus, meta, desk, progress)) {}
+                         const RunMeta& meta, const std::vector<RemoteHost>& hosts,
+                         OperatorDesk& desk, Progress& progress)
+    : impl_(std::make_unique<Impl>(run, config, bus, meta, hosts, desk, progress)) {}
 
 Coordinator::~Coordinator() = default;
 
 RunResult Coordinator::Run() { return impl_->Run(); }
 
 RunResult Coordinator::Impl::Run() {
-  for (const ProcessSpec& spec : PlanProcesses(config, run)) supervisor.Start(spec);
+  for (const ProcessSpec& spec : PlanProcesses(config, run, hosts)) supervisor.Start(spec);
   meta.exit = "running";
   StoreMeta();
   meta.exit = WaitForEnd();

@@ -5,11 +5,13 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "common/config/run_files.h"
 #include "common/dds/bus.h"
 #include "launch/operator_desk.h"
 #include "launch/progress.h"
+#include "launch/remote_host.h"
 #include "launch/run_meta.h"
 
 namespace shoal::launch {
@@ -22,10 +24,11 @@ struct RunResult {
 
 class Coordinator {
  public:
-  // `run` holds config.json and cluster.json. `meta` is a fresh one, or the resumed run's. Borrows
-  // the coordinator's bus, `desk` and `progress`. Throws Error.
+  // `run` holds config.json and cluster.json. `meta` is a fresh one, or the resumed run's. `hosts`
+  // have the run (run_hosts.h). Borrows the coordinator's bus, `desk` and `progress`. Throws Error.
   Coordinator(const std::filesystem::path& run, const RunConfig& config, dds::Bus& bus,
-              const RunMeta& meta, OperatorDesk& desk, Progress& progress);
+              const RunMeta& meta, const std::vector<RemoteHost>& hosts, OperatorDesk& desk,
+              Progress& progress);
   ~Coordinator();
 
   // Until the target, the budget, Ctrl-C or a failure; no process is left when it returns. Call on

@@ -25,7 +25,14 @@ ProcessSpec ProgramSpec(const std::string& program, std::vector<std::string> arg
   return spec;
 }
 
-std::vector<ProcessSpec> PlanProcesses(const Config& config, const std::filesystem::path& run) {
+ActorRange ActorsOf(const Config& config, const std::vector<RemoteHost>& hosts, size_t index) {
+  int first = config.actors;
+  for (size_t i = index; i < hosts.size(); ++i) first -= hosts[i].actors;
+  return {.first = first, .count = hosts[index].actors};
+}
+
+std::vector<ProcessSpec> PlanProcesses(const Config& config, const std::filesystem::path& run,
+                                       const std::vector<RemoteHost>& hosts) {
   std::vector<ProcessSpec> plan;
   const auto add = [&](const std::string& role, int id, const std::string& program,
                        std::vector<std::string> arguments, int threads) {
@@ -41,8 +48,15 @@ std::vector<ProcessSpec> PlanProcesses(const Config& config, const std::filesyst
   // leaves by itself when the heartbeat has been missing and nothing comes any more.
   plan.back().outlives_parent = true;
   add("learner", 0, "shoal-learner", {}, config.learner.threads);
-  for (int i = 0; i < config.actors; ++i) {
+  const int actors_here = hosts.empty() ? config.actors : ActorsOf(config, hosts, 0).first;
+  for (int i = 0; i < actors_here; ++i) {
     add("actor", i, "shoal-actor", {"--id", std::to_string(i)}, 1);
+  }
+  for (size_t host = 0; host < hosts.size(); ++host) {
+    const ActorRange actors = ActorsOf(config, hosts, host);
+    for (int i = actors.first; i < actors.first + actors.count; ++i) {
+      plan.push_back(RemoteActor(hosts[host], i, run));
+    }
   }
   add("eval", 0, "shoal-actor", {"--role", "eval"}, 1);
   return plan;

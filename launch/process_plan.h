@@ -6,6 +6,7 @@
 
 #include "common/config/config.h"
 #include "launch/child_process.h"
+#include "launch/remote_host.h"
 
 namespace shoal::launch {
 
@@ -18,7 +19,13 @@ ProcessSpec ProgramSpec(const std::string& program, std::vector<std::string> arg
                         int threads);
 
 // Replay, learner, actors and evaluation actor of a run, in starting order. `config` is resolved
-// (actors and learner.threads above 0).
-std::vector<ProcessSpec> PlanProcesses(const Config& config, const std::filesystem::path& run);
+// (actors and learner.threads above 0); hosts whose run folder is known run the actors that
+// ActorsOf says.
+std::vector<ProcessSpec> PlanProcesses(const Config& config, const std::filesystem::path& run,
+                                       const std::vector<RemoteHost>& hosts = {});
+
+// The actors of hosts[index]: their numbers follow those of the hosts before it, which follow those
+// of this host. config.actors counts them all.
+ActorRange ActorsOf(const Config& config, const std::vector<RemoteHost>& hosts, size_t index);
 
 }  // namespace shoal::launch

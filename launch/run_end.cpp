@@ -9,6 +9,7 @@
 #include "launch/accounting.h"
 #include "launch/actor_program.h"
 #include "launch/run_folder.h"
+#include "launch/run_hosts.h"
 #include "launch/run_leftovers.h"
 
 namespace shoal::launch {
@@ -17,13 +18,14 @@ namespace {
 namespace fs = std::filesystem;
 
 // Empty when no record was ever made.
-std::optional<Accounting> AccountRun(const fs::path& run, uint64_t resends) {
+std::optional<Accounting> AccountRun(const fs::path& run, const Config& config, uint64_t resends) {
   std::vector<MadeRecords> made;
   for (const actor::MadeCount& page : actor::ReadMadePages(run)) {
     made.push_back({page.actor, page.session, page.made});
   }
   if (made.empty() && !fs::exists(run / "accounting.json")) return std::nullopt;
-  return Account(made, ReadSeenRecords(run), resends);
+  return Account(made, ReadSeenRecords(run), resends,
+                 static_cast<uint32_t>(ActorsHere(run, config)));
 }
 
 // The checkpoint a run is judged by: the best evaluated one, else the newest.
@@ -89,7 +91,7 @@ int EndRun(const fs::path& run, const Config& config, RunResult result, Operator
     progress.Say("error: " + why);
   };
   try {
-    meta.accounting = AccountRun(run, result.resends);
+    meta.accounting = AccountRun(run, config, result.resends);
     if (meta.accounting) {
       for (const std::string& fault : meta.accounting->faults) {
         fail("records do not balance: " + fault);

@@ -3,10 +3,21 @@
 #include <fmt/core.h>
 
 #include <csignal>
+#include <limits>
 #include <utility>
 
 namespace shoal::launch {
 namespace {
+
+// What ssh leaves with when the connection fails; whose other codes are the program's.
+constexpr int kDisconnected = 255;
+
+// A host that cannot be reached may come back: tried for as long as the run lasts.
+RestartLimits ConnectionLimits(RestartLimits limits) {
+  limits.restarts = std::numeric_limits<int>::max();
+  limits.longest_delay = std::chrono::seconds(10);
+  return limits;
+}
 
 bool Is(std::string_view role, const ProcessSpec& spec) {
   return role.empty() || role == spec.role;
@@ -35,6 +46,7 @@ void Supervisor::Start(const ProcessSpec& spec) {
   const SteadyTime now = Now();
   Child child{.spec = spec,
               .policy = RestartPolicy(limits_),
+              .connection = RestartPolicy(ConnectionLimits(limits_)),
               .process = std::nullopt,
               .silence = Silence(now),
               .restart_at = std::nullopt};
@@ -51,7 +63,7 @@ void Supervisor::Launch(Child& child, SteadyTime now) {
 void Supervisor::Heard(std::string_view role, int id, pid_t pid, SteadyTime now) {
   for (Child& child : children_) {
     if (child.spec.role != role || child.spec.id != id) continue;
-    if (!child.process || child.process->pid() != pid) continue;
+    if (!child.process || (child.process->pid() != pid && !child.spec.elsewhere)) continue;
     child.silence.Heard(now);
     child.heard = true;
   }
@@ -96,7 +108,9 @@ std::optional<std::string> Supervisor::OnExit(Child& child, const ExitStatus& st
   const std::string last_line = LastLine(child.spec.output);
   const std::string death = Describe(child.spec, status, last_line);
   if (Hopeless(status, last_line)) return death;
-  const auto delay = child.policy.OnDeath(now);
+  const bool disconnected =
+      child.spec.elsewhere && !status.by_signal && status.code == kDisconnected;
+  const auto delay = (disconnected ? child.connection : child.policy).OnDeath(now);
   if (!delay) {
     return fmt::format("{} (died more than {} times within {} s)", death, limits_.restarts,
                        limits_.window.count());

@@ -33,7 +33,8 @@ class Supervisor {
   // Starts the process. Throws Error when it cannot be started.
   void Start(const ProcessSpec& spec);
 
-  // The process has reported. Words of a predecessor (another pid) do not count.
+  // The process has reported. Words of a predecessor (another pid) do not count;
+  // elsewhere our child is the remote shell, whose pid nobody reports.
   void Heard(std::string_view role, int id, pid_t pid, SteadyTime now);
 
   // Kills the hung, reaps the dead and starts what is due again. When the run cannot go on - a
@@ -58,6 +59,7 @@ class Supervisor {
   struct Child {
     ProcessSpec spec;
     RestartPolicy policy;
+    RestartPolicy connection;  // for lost connections to a process elsewhere
     std::optional<ChildProcess> process;
     Silence silence;  // of `process`
     bool heard = false;

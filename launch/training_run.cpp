@@ -15,6 +15,7 @@
 #include "launch/machine.h"
 #include "launch/run_end.h"
 #include "launch/run_folder.h"
+#include "launch/run_hosts.h"
 #include "launch/run_leftovers.h"
 
 namespace shoal::launch {
@@ -25,9 +26,10 @@ struct PreparedRun {
   RunFolder folder;
   RunConfig config;
   RunMeta meta;
+  Hosts hosts;
 };
 
-PreparedRun PrepareFresh(const TrainOptions& options, RunConfig config) {
+PreparedRun PrepareFresh(const TrainOptions& options, RunConfig config, Hosts hosts) {
   const Config& keys = config.config;
   const std::string base =
       fmt::format("{}-s{}", keys.preset.empty() ? keys.task : keys.preset, keys.seed);
@@ -37,7 +39,19 @@ PreparedRun PrepareFresh(const TrainOptions& options, RunConfig config) {
   config.config.run_name = folder.name();
   RunMeta meta;
   meta.started = UtcTimestamp();
-  return {std::move(folder), std::move(config), meta};
+  return {std::move(folder), std::move(config), meta, std::move(hosts)};
+}
+
+// Those the run had, or others in their place.
+Hosts ResumedHosts(const TrainOptions& options, const std::filesystem::path& run,
+                   const Config& config) {
+  if (!std::filesystem::exists(HostsFile(run))) {
+    if (options.hosts.empty()) return {};
+    throw UsageError("--hosts: run '{}' was started without; it goes on without", run.string());
+  }
+  Hosts hosts = ReadHostsFile(options.hosts.empty() ? HostsFile(run).string() : options.hosts);
+  CheckResumedHosts(hosts, config);
+  return hosts;
 }
 
 PreparedRun PrepareResumed(const TrainOptions& options) {
@@ -51,7 +65,8 @@ PreparedRun PrepareResumed(const TrainOptions& options) {
   }
   RunMeta meta = ReadRunMeta(folder.path());
   if (meta.started.empty()) meta.started = UtcTimestamp();
-  return {std::move(folder), std::move(config), meta};
+  Hosts hosts = ResumedHosts(options, folder.path(), config.config);
+  return {std::move(folder), std::move(config), meta, std::move(hosts)};
 }
 
 void PrintStart(const PreparedRun& run, const ClusterAddress& address) {
@@ -62,9 +77,16 @@ void PrintStart(const PreparedRun& run, const ClusterAddress& address) {
       "1 evaluation actor; logs in {}\n",
       config.seed, config.env_steps, config.learner.threads, config.actors, config.envs_per_actor,
       (run.folder.path() / "logs").string());
+  for (const RemoteHost& host : run.hosts.hosts) {
+    fmt::print("  {} of the actors on {}, in {}\n", host.actors, host.name, host.run.string());
+  }
   fmt::print("  watch it with: shoal top --run {}, or --peer {}:{}\n", run.folder.path().string(),
              address.host, dds::OperatePort(address));
   std::fflush(stdout);
+}
+
+std::string ServersHost(const Hosts& hosts) {
+  return hosts.address.empty() ? ClusterAddress().host : hosts.address;
 }
 
 int Start(PreparedRun run, std::unique_ptr<dds::Bus> bus, const ClusterAddress& address) {
@@ -77,15 +99,20 @@ int Start(PreparedRun run, std::unique_ptr<dds::Bus> bus, const ClusterAddress& 
   RemoveUnfinishedFiles(path);
   WriteRunConfig(path, run.config);
   WriteClusterAddress(path, address);
-  PrintStart(run, address);
   OperatorDesk desk(*bus, run.config.config.run_name);
   Progress progress(LogFile(path, "coordinator").string(),
                     [&desk](const std::string& line) { desk.AddEvent(line); });
+  const auto say = [&](const std::string& line) { progress.Say(line); };
+  PushToHosts(path, run.config.config, address.tag, &run.hosts, say, StopRequested);
+  PrintStart(run, address);
   RunResult result;
   {
-    Coordinator coordinator(path, run.config, *bus, run.meta, desk, progress);
+    Coordinator coordinator(path, run.config, *bus, run.meta, run.hosts.hosts, desk, progress);
     result = coordinator.Run();
   }
+  const int stops = StopRequests();
+  FetchFromHosts(path, run.config.config, run.hosts, say,
+                 [stops] { return StopRequests() > stops; });
   const int exit_code = EndRun(path, run.config.config, std::move(result), desk, progress);
   desk.ShowEnd(exit_code);
   return exit_code;
@@ -99,23 +126,33 @@ int RunTraining(const TrainOptions& options) {
   if (!options.resume.empty()) {
     PreparedRun run = PrepareResumed(options);
     if (options.print_config) fmt::print("{}\n", ToJson(run.config.config).dump(2));
-    if (options.print_config || options.dry_run) return 0;
+    if (options.print_config) return 0;
+    CheckHosts(run.hosts, StopRequested);
+    if (options.dry_run) return 0;
+    address.host = ServersHost(run.hosts);
     auto bus = dds::ClaimDomain(run.config.config.transport, &address);
     return Start(std::move(run), std::move(bus), address);
   }
   RunConfig config{ResolveConfig(options, UsableCores()), {}};
+  Hosts hosts;
+  if (!options.hosts.empty()) {
+    hosts = ReadHostsFile(options.hosts);
+    ApplyHosts(hosts, &config.config);
+  }
   if (options.print_config) {
     fmt::print("{}\n", ToJson(config.config).dump(2));
     return 0;
   }
   config.spec = DescribeObservations(config.config);
+  CheckHosts(hosts, StopRequested);
+  address.host = ServersHost(hosts);
   // Claimed before the folder is made, so that a failure leaves nothing half-written.
   auto bus = dds::ClaimDomain(config.config.transport, &address);
   if (options.dry_run) {
     fmt::print("configuration is good; actors observe: {}\n", config.spec.Summary());
     return 0;
   }
-  return Start(PrepareFresh(options, std::move(config)), std::move(bus), address);
+  return Start(PrepareFresh(options, std::move(config), std::move(hosts)), std::move(bus), address);
 }
 
 }  // namespace shoal::launch

@@ -23,7 +23,8 @@ namespace {
 // Members are in construction order: subscribers, which end first, write to what is above them.
 class Learner {
  public:
-  Learner(const std::filesystem::path& folder, const RunConfig& run, int threads)
+  Learner(const std::filesystem::path& folder, const RunConfig& run, const dds::Reach& reach,
+          int threads)
       : member_(folder),
         run_(run),
         session_(NextSession(folder, "learner-0", WallTimeNs())),
@@ -33,7 +34,7 @@ class Learner {
         restored_(Restore()),
         events_(folder / "tensorboard"),
         control_(Now()),
-        bus_(ReadClusterAddress(folder), run.config.transport, dds::Role::kLearner),
+        bus_(dds::FindPlace(folder, run.config.transport, reach), dds::Role::kLearner),
         outlet_(bus_),
         requests_(bus_),
         batches_(run, session_, agent_.updates() + 1,
@@ -106,13 +107,13 @@ class Learner {
 
 }  // namespace
 
-int RunLearner(const std::filesystem::path& folder, char** argv) {
+int RunLearner(const std::filesystem::path& folder, const dds::Reach& reach, char** argv) {
   const RunConfig run = ReadRunConfig(folder);
   const int asked = run.config.learner.threads;
   const int threads = asked > 0 ? asked : AvailableCores();
   EnsurePassiveOpenMp(threads, argv);
   nn::SetThreads(threads);
-  return Learner(folder, run, threads).Run();
+  return Learner(folder, run, reach, threads).Run();
 }
 
 }  // namespace shoal::learner

@@ -14,9 +14,13 @@ namespace {
 
 int Run(int argc, char** argv) {
   std::string run;
+  shoal::dds::Reach reach;
   CLI::App app("Trains the policy of a run on batches from its replay.");
   app.set_version_flag("--version", shoal::BuildVersion());
   app.add_option("--run", run, "run folder (config.json, cluster.json)")->required();
+  app.add_option("--peer", reach.peer, "HOST[:PORT] of the servers instead of cluster.json's");
+  app.add_option("--interface", reach.interface,
+                 "network interface of this host instead of transport.interface");
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& e) {
@@ -26,7 +30,7 @@ int Run(int argc, char** argv) {
   }
   shoal::log::Start("learner-0", "");
   shoal::InstallStopSignals();
-  return shoal::learner::RunLearner(run, argv);
+  return shoal::learner::RunLearner(run, reach, argv);
 }
 
 }  // namespace

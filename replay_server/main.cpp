@@ -13,8 +13,12 @@ namespace {
 
 int Run(int argc, char** argv) {
   std::string folder;
+  shoal::dds::Reach reach;
   CLI::App app("Stores transitions and hands out batches for one run.", "shoal-replay");
   app.add_option("--run", folder, "folder of the run")->required();
+  app.add_option("--peer", reach.peer, "HOST[:PORT] of the servers instead of cluster.json's");
+  app.add_option("--interface", reach.interface,
+                 "network interface of this host instead of transport.interface");
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& e) {
@@ -24,7 +28,7 @@ int Run(int argc, char** argv) {
   }
   shoal::InstallStopSignals();
   shoal::log::Start("replay-0", "");
-  return shoal::replay::RunReplayService(folder);
+  return shoal::replay::RunReplayService(folder, reach);
 }
 
 }  // namespace

@@ -131,7 +131,8 @@ std::vector<Key> EvalKeys() {
 
 std::vector<Key> TransportKeys() {
   return {
-      SHOAL_SAME(transport.interface, AnyValue{}, "network interface, by name or address"),
+      SHOAL_SAME(transport.interface, AnyValue{},
+                 "network interface, by name or address; auto = the one that leads to the servers"),
       SHOAL_SAME(transport.fragment_bytes, (IntegerRange{1024, 65'000}),
                  "bytes per datagram; 8000 where peers are behind MTU 1500"),
       SHOAL_SAME(transport.chunk_records, (IntegerRange{1, 4096}), "records per chunk at most"),

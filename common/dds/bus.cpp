@@ -16,6 +16,12 @@ namespace {
 
 constexpr size_t kMaxTagBytes = 255;
 
+// `transport` with the interface that "auto" stands for.
+TransportConfig ResolveInterface(const ClusterAddress& address, TransportConfig transport) {
+  if (transport.interface == "auto") transport.interface = InterfaceTowards(address.host);
+  return transport;
+}
+
 void CheckAddress(const ClusterAddress& address, const TransportConfig& transport, Role role) {
   if (address.domain < 0 || address.domain > 98 || address.domain % 2 != 0) {
     throw UsageError("DDS domain {}: expected an even number from 0 to 98", address.domain);
@@ -23,14 +29,15 @@ void CheckAddress(const ClusterAddress& address, const TransportConfig& transpor
   if (role != Role::kClient && (address.tag.empty() || address.tag.size() > kMaxTagBytes)) {
     throw UsageError("DDS tag \"{}\": expected 1 to {} characters", address.tag, kMaxTagBytes);
   }
+  if (!HostResolves(address.host)) {
+    throw RuntimeError("host \"{}\" of the run does not resolve to an IPv4 address", address.host);
+  }
   const std::string& interface = transport.interface;
+  if (interface == "auto") return;
   const bool exists = IsAddress(interface) ? HostHasAddress(interface) : InterfaceExists(interface);
   if (!exists) {
     throw RuntimeError("transport.interface \"{}\" does not exist on this host, which has {}",
                        interface, InterfaceNames());
-  }
-  if (!HostResolves(address.host)) {
-    throw RuntimeError("host \"{}\" of the run does not resolve to an IPv4 address", address.host);
   }
 }
 
@@ -68,9 +75,10 @@ void Join(const std::string& xml_template, const ClusterAddress& address,
 
 }  // namespace
 
-Bus::Bus(const ClusterAddress& address, const TransportConfig& transport, Role role)
+Bus::Bus(const ClusterAddress& address, const TransportConfig& asked, Role role)
     : impl_(std::make_unique<Impl>()) {
-  CheckAddress(address, transport, role);
+  CheckAddress(address, asked, role);
+  const TransportConfig transport = ResolveInterface(address, asked);
   RouteDdsLog();
   const std::string xml = DomainTemplate();
   if (role != Role::kClient) {

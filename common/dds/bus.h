@@ -14,6 +14,7 @@
 
 #include "common/config/config.h"
 #include "common/config/run_files.h"
+#include "common/dds/reach.h"
 
 namespace shoal::dds {
 
@@ -31,11 +32,13 @@ class Bus {
  public:
   // Joins the run's domains that the role has to do with. At most one Bus per domain and process.
   // Throws Error naming the port when another process holds the role's index, the interface when it
-  // does not exist, the host when it does not resolve.
+  // does not exist, the host when it does not resolve. transport.interface "auto" is the interface
+  // by which the kernel reaches the address's host.
   //
   // The environment variable SHOAL_DDS_XML names a file that replaces the built-in Cyclone DDS
   // configuration; docs/wire_format.md lists the placeholders it may use.
   Bus(const ClusterAddress& address, const TransportConfig& transport, Role role);
+  Bus(const Place& place, Role role) : Bus(place.address, place.transport, role) {}
   // Publishers and subscribers of the bus must be gone.
   ~Bus();
   Bus(const Bus&) = delete;

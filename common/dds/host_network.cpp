@@ -26,6 +26,19 @@ InterfaceList ListInterfaces() {
   return {list, &freeifaddrs};
 }
 
+using AddressList = std::unique_ptr<addrinfo, decltype(&freeaddrinfo)>;
+
+// The host's IPv4 addresses with the port ("" = none); null when there are none.
+AddressList Resolve(const std::string& host, const std::string& port) {
+  addrinfo hints{};
+  hints.ai_family = AF_INET;
+  hints.ai_socktype = SOCK_DGRAM;
+  addrinfo* found = nullptr;
+  const char* service = port.empty() ? nullptr : port.c_str();
+  if (getaddrinfo(host.c_str(), service, &hints, &found) != 0) found = nullptr;
+  return {found, &freeaddrinfo};
+}
+
 }  // namespace
 
 bool UdpPortFree(int port) {
@@ -76,25 +89,11 @@ std::string InterfaceNames() {
   return joined;
 }
 
-bool HostResolves(const std::string& host) {
-  addrinfo hints{};
-  hints.ai_family = AF_INET;
-  hints.ai_socktype = SOCK_DGRAM;
-  addrinfo* found = nullptr;
-  if (getaddrinfo(host.c_str(), nullptr, &hints, &found) != 0) return false;
-  freeaddrinfo(found);
-  return true;
-}
+bool HostResolves(const std::string& host) { return Resolve(host, "") != nullptr; }
 
 std::string InterfaceTowards(const std::string& host) {
-  addrinfo hints{};
-  hints.ai_family = AF_INET;
-  hints.ai_socktype = SOCK_DGRAM;
-  addrinfo* found = nullptr;
-  if (getaddrinfo(host.c_str(), "9", &hints, &found) != 0) {
-    throw RuntimeError("host \"{}\" does not resolve to an IPv4 address", host);
-  }
-  const std::unique_ptr<addrinfo, decltype(&freeaddrinfo)> owner(found, &freeaddrinfo);
+  const AddressList found = Resolve(host, "9");
+  if (found == nullptr) throw RuntimeError("host \"{}\" does not resolve to an IPv4 address", host);
   // Connecting a datagram socket sends nothing: it only asks the routing table.
   const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   sockaddr_in own{};

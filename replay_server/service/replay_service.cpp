@@ -53,7 +53,7 @@ class DdsShardWriter : public ShardWriter {
 // and the sender before what they use.
 class ReplayService {
  public:
-  explicit ReplayService(const std::filesystem::path& folder)
+  ReplayService(const std::filesystem::path& folder, const dds::Reach& reach)
       : folder_(folder),
         member_(folder),
         core_(ReadRunConfig(folder), folder, NextSession(folder, "replay-0", WallTimeNs())),
@@ -61,7 +61,7 @@ class ReplayService {
         inbox_(SpecHash(), ChunkBytes(), MaxChunks()),
         problems_(SpecHash()),
         ages_(core_.ring().layout(), Settings().learner.request_credits),
-        bus_(ReadClusterAddress(folder), Settings().transport, dds::Role::kReplay),
+        bus_(dds::FindPlace(folder, Settings().transport, reach), dds::Role::kReplay),
         credit_publisher_(bus_),
         metrics_publisher_(bus_),
         shard_writer_(bus_),
@@ -238,6 +238,8 @@ class ReplayService {
 
 }  // namespace
 
-int RunReplayService(const std::filesystem::path& folder) { return ReplayService(folder).Run(); }
+int RunReplayService(const std::filesystem::path& folder, const dds::Reach& reach) {
+  return ReplayService(folder, reach).Run();
+}
 
 }  // namespace shoal::replay

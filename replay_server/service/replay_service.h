@@ -4,11 +4,13 @@
 
 #include <filesystem>
 
+#include "common/dds/reach.h"
+
 namespace shoal::replay {
 
 // Serves the run in `folder` until the coordinator says stop (0), SIGTERM comes (0), or the
 // coordinator is gone (1: what the actors still send is stored first). Leaves accounting.json.
 // Throws Error.
-int RunReplayService(const std::filesystem::path& folder);
+int RunReplayService(const std::filesystem::path& folder, const dds::Reach& reach);
 
 }  // namespace shoal::replay

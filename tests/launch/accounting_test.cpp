@@ -29,7 +29,7 @@ TEST(Account, SumsSessionsAndCountsWhatWasLostWithAProcess) {
        .after_gap = 6,
        .duplicates = 5},
       {.actor = 0, .session = kSecond, .highest = 50, .stored = 50, .duplicates = 1}};
-  const Accounting a = Account(made, seen, 9);
+  const Accounting a = Account(made, seen, 9, 2);
   EXPECT_TRUE(a.Balances());
   EXPECT_EQ(a.made, 157u);
   EXPECT_EQ(a.stored, 130u);
@@ -46,7 +46,7 @@ TEST(Account, CountsWhatAKilledReplayHeldAsLost) {
   const MadeRecords made[] = {{0, kFirst, 12}};
   const SeenRecords seen[] = {
       {.actor = 0, .session = kFirst, .highest = 10, .stored = 6, .lost = 4}};
-  const Accounting a = Account(made, seen, 0);
+  const Accounting a = Account(made, seen, 0, 4);
   EXPECT_TRUE(a.Balances());
   EXPECT_EQ(a.lost_with_process, 2u + 4u);
   EXPECT_EQ(a.made, a.stored + a.lost_with_process + a.rejected + a.after_gap);
@@ -55,7 +55,7 @@ TEST(Account, CountsWhatAKilledReplayHeldAsLost) {
 TEST(Account, SaysWhichSessionTheReplayCannotExplain) {
   const MadeRecords made[] = {{3, kFirst, 100}};
   const SeenRecords seen[] = {{.actor = 3, .session = kFirst, .highest = 100, .stored = 99}};
-  const Accounting a = Account(made, seen, 0);
+  const Accounting a = Account(made, seen, 0, 4);
   EXPECT_THAT(a.faults,
               ElementsAre(AllOf(HasSubstr("actor 3"), HasSubstr("= 99"), HasSubstr("up to 100"))));
   EXPECT_THAT(a.Line(), HasSubstr("made 100 ? stored 99"));
@@ -65,19 +65,32 @@ TEST(Account, DoesNotLetAnExcessHideALoss) {
   const MadeRecords made[] = {{0, kFirst, 10}, {1, kFirst, 10}};
   const SeenRecords seen[] = {{.actor = 0, .session = kFirst, .highest = 10, .stored = 11},
                               {.actor = 1, .session = kFirst, .highest = 10, .stored = 9}};
-  EXPECT_EQ(Account(made, seen, 0).faults.size(), 2u);
+  EXPECT_EQ(Account(made, seen, 0, 4).faults.size(), 2u);
 }
 
 TEST(Account, RefusesRecordsThatNobodyMade) {
   const SeenRecords seen[] = {{.actor = 0, .session = kFirst, .highest = 5, .stored = 5}};
-  EXPECT_THAT(Account({}, seen, 0).faults, ElementsAre(HasSubstr("but 0 were made")));
+  EXPECT_THAT(Account({}, seen, 0, 4).faults, ElementsAre(HasSubstr("but 0 were made")));
+}
+
+TEST(Account, CountsASessionElsewhereWithoutItsPageAsFarAsTheReplaySaw) {
+  const MadeRecords made[] = {{0, kFirst, 10}};
+  const SeenRecords seen[] = {
+      {.actor = 0, .session = kFirst, .highest = 10, .stored = 10},
+      {.actor = 1, .session = kFirst, .highest = 5, .stored = 4, .lost = 1}};
+  const Accounting a = Account(made, seen, 0, 1);
+  EXPECT_TRUE(a.Balances());
+  EXPECT_EQ(a.sessions_without_page, 1u);
+  EXPECT_EQ(a.made, 15u);
+  EXPECT_THAT(a.Line(), HasSubstr("1 session(s) without a counter page"));
+  EXPECT_FALSE(Account(made, seen, 0, 2).Balances()) << "actor 1 is one of our own";
 }
 
 TEST(Account, RefusesASessionListedTwice) {
   const MadeRecords made[] = {{0, kFirst, 5}};
   const SeenRecords seen[] = {{.actor = 0, .session = kFirst, .highest = 5, .stored = 5},
                               {.actor = 0, .session = kFirst, .highest = 5, .stored = 5}};
-  EXPECT_FALSE(Account(made, seen, 0).Balances());
+  EXPECT_FALSE(Account(made, seen, 0, 4).Balances());
 }
 
 TEST(ReadSeenRecords, ReadsTheFileOfTheReplay) {

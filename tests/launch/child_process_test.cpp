@@ -67,6 +67,26 @@ pid_t OrphanOf(const ProcessSpec& spec) {
   return orphan;
 }
 
+TEST_F(ChildProcessTest, ReadsItsInputFromAFile) {
+  WriteFileAtomically(folder_.path() / "in", "from a file");
+  ProcessSpec spec = Shell("cat");
+  spec.input = folder_.path() / "in";
+  ChildProcess child(spec);
+  Wait(child);
+  EXPECT_EQ(Output(), "from a file");
+}
+
+TEST_F(ChildProcessTest, TheInputItHoldsEndsWithIt) {
+  ProcessSpec spec = Shell("exec 3<&0; (cat; echo end) <&3 3<&- & echo $!; exec sleep 100 3<&-");
+  spec.holds_input = true;
+  std::optional<ChildProcess> child(spec);
+  ASSERT_TRUE(WaitUntil([&] { return !LastLine(spec.output).empty(); }));
+  const pid_t reader = std::stoi(LastLine(spec.output));
+  EXPECT_TRUE(Alive(reader));
+  child.reset();
+  EXPECT_TRUE(WaitUntil([&] { return LastLine(spec.output) == "end"; }));
+}
+
 TEST_F(ChildProcessTest, ReportsTheExitCode) {
   ChildProcess child(Shell("exit 7"));
   const auto status = Wait(child);

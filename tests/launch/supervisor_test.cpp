@@ -65,6 +65,15 @@ class SupervisorTest : public ::testing::Test {
                          [this](const std::string& line) { said_.push_back(line); }};
 };
 
+TEST_F(SupervisorTest, GoesOnTryingToReachAProcessElsewhere) {
+  ProcessSpec lost = Fake("actor", 0, "exit 255"), here = Fake("actor", 1, "exit 255");
+  lost.elsewhere = true;
+  supervisor_.Start(lost);
+  EXPECT_TRUE(PollUntil([&] { return Starts("actor-0") > kQuick.restarts + 2; }));
+  supervisor_.Start(here);
+  EXPECT_THAT(WaitForFailure(), HasSubstr("actor-1"));
+}
+
 TEST_F(SupervisorTest, RestartsWhatDiesAndSaysWhy) {
   supervisor_.Start(Fake("actor", 1,
                          "if [ -e " + folder_.path().string() +

@@ -48,6 +48,15 @@ inline std::vector<std::string> CommandLine(pid_t pid) {
   return words;
 }
 
+// 0 when there is no such process.
+inline pid_t ParentOf(pid_t pid) {
+  std::ifstream in("/proc/" + std::to_string(pid) + "/status");
+  for (std::string line; std::getline(in, line);) {
+    if (line.starts_with("PPid:")) return std::stoi(line.substr(5));
+  }
+  return 0;
+}
+
 // Children of the process, zombies included.
 inline std::vector<pid_t> ChildrenOf(pid_t parent) {
   std::vector<pid_t> children;

@@ -1,0 +1,26 @@
+// Stops a process when whoever holds the other end of its standard input is gone. A remote shell
+// closes it when its client dies, where no signal and no parent's death would be seen.
+#pragma once
+
+#include <thread>
+
+namespace shoal {
+
+// Reads standard input, and discards it, on a thread of its own; calls RequestStop (stop.h) at its
+// end. One per process.
+class StopWithInput {
+ public:
+  // Throws Error when the system gives no pipe.
+  StopWithInput();
+  ~StopWithInput();
+  StopWithInput(const StopWithInput&) = delete;
+  StopWithInput& operator=(const StopWithInput&) = delete;
+
+ private:
+  void Watch() const;
+
+  int wake_read_ = -1, wake_write_ = -1;  // closing the latter ends the thread
+  std::thread thread_;
+};
+
+}  // namespace shoal

@@ -1,0 +1,37 @@
+// The hosts of a run (schema shoal-hosts-1), as `shoal train --hosts FILE` reads them and the run
+// folder keeps them in hosts.json. docs/cluster.md explains each key.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace shoal::launch {
+
+// A machine that runs training actors for us.
+struct RemoteHost {
+  std::string name;                // unique; names the host in messages
+  int actors = 1;                  // at least 1
+  std::vector<std::string> ssh;    // command that takes one more word, a shell command line
+  std::filesystem::path programs;  // folder of shoal-actor there; absolute
+  std::filesystem::path folder;    // folder for run folders there; relative = to the login's
+  std::string interface = "auto";  // as transport.interface
+  bool shared = false;             // sees our run folder under the same path: nothing is copied
+  std::filesystem::path run;       // the run's folder there, once a run has one
+};
+
+struct Hosts {
+  std::string address;    // under which every host reaches coordinator, learner and replay
+  std::string interface;  // of this host; empty = transport.interface
+  int actors_here = -1;   // -1 = as the key `actors` says
+  std::vector<RemoteHost> hosts;
+
+  int RemoteActors() const;
+};
+
+// Throws Error: an unknown, duplicate, missing, ill-typed or out-of-range key is a usage error that
+// names file and key.
+Hosts ReadHostsFile(const std::filesystem::path& file);
+void WriteHostsFile(const std::filesystem::path& file, const Hosts& hosts);
+
+}  // namespace shoal::launch
