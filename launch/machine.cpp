@@ -48,8 +48,15 @@ std::string CpuName() {
 
 }  // namespace
 
+CoreLimits ReadCoreLimits() {
+  return {.online = static_cast<int>(sysconf(_SC_NPROCESSORS_ONLN)),
+          .affinity = AffinityCores(),
+          .quota = QuotaCores()};
+}
+
 int UsableCores() {
-  const double cores = std::min<double>(AffinityCores(), std::ceil(QuotaCores()));
+  const CoreLimits limits = ReadCoreLimits();
+  const double cores = std::min<double>(limits.affinity, std::ceil(limits.quota));
   return std::max(1, static_cast<int>(cores));
 }
 

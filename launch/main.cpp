@@ -34,6 +34,7 @@ int Run(int argc, char** argv) {
   shoal::launch::AddTopCommand(app, &chosen);
   shoal::launch::AddEnvCommand(app, &chosen);
   shoal::launch::AddReplayCommand(app, &chosen);
+  shoal::launch::AddCheckCommand(app, &chosen);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& e) {

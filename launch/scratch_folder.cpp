@@ -1,15 +1,16 @@
 #include "launch/scratch_folder.h"
 
+#include <stdlib.h>
+
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
 
 #include "common/base/error.h"
 
 namespace shoal::launch {
 
-ScratchFolder::ScratchFolder() {
-  std::string name = (std::filesystem::temp_directory_path() / "shoal-XXXXXX").string();
+ScratchFolder::ScratchFolder(const std::filesystem::path& parent) {
+  std::string name = (parent / "shoal-XXXXXX").string();
   if (mkdtemp(name.data()) == nullptr) {
     throw RuntimeError("cannot create folder '{}': {}", name, std::strerror(errno));
   }

@@ -1,17 +1,19 @@
-// A folder of our own among the system's temporary ones.
+// A folder that goes away with its owner, and with everything in it.
 #pragma once
 
 #include <filesystem>
 
 namespace shoal::launch {
 
-// Goes away with its owner, with everything in it. Throws Error when it cannot be made.
 class ScratchFolder {
  public:
-  ScratchFolder();
+  // Made in `parent`; throws Error naming it when that fails.
+  explicit ScratchFolder(
+      const std::filesystem::path& parent = std::filesystem::temp_directory_path());
   ~ScratchFolder();
   ScratchFolder(const ScratchFolder&) = delete;
   ScratchFolder& operator=(const ScratchFolder&) = delete;
+
   const std::filesystem::path& path() const { return path_; }
 
  private:

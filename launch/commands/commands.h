@@ -16,6 +16,7 @@ void AddTrainCommand(CLI::App& app, Action* chosen);
 void AddEvalCommand(CLI::App& app, Action* chosen);
 void AddEnvCommand(CLI::App& app, Action* chosen);  // see env.cpp and env_tasks.cpp
 void AddTopCommand(CLI::App& app, Action* chosen);
+void AddCheckCommand(CLI::App& app, Action* chosen);
 void AddReplayCommand(CLI::App& app, Action* chosen);  // replay peek
 
 }  // namespace shoal::launch

@@ -1,0 +1,85 @@
+#include "launch/check/check.h"
+
+#include "actor/worlds/environment.h"
+#include "common/base/error.h"
+#include "common/config/config_io.h"
+#include "common/nn/precision.h"
+#include "common/wire/batch_layout.h"
+#include "launch/check/loopback.h"
+#include "launch/check/machine_lines.h"
+#include "launch/check/training_probe.h"
+#include "launch/check/world_lines.h"
+#include "launch/machine.h"
+#include "launch/scratch_folder.h"
+#include "replay_server/core/ring_format.h"
+#include "replay_server/core/storage_limits.h"
+
+namespace shoal::launch {
+namespace {
+
+constexpr char kPreset[] = "fetch-reach-drq";
+constexpr int kUpdates = 20;
+constexpr std::chrono::milliseconds kLoopbackTime{1500};
+constexpr double kUpdatesPerSecond = 30;            // that loopback must keep up with
+constexpr uint64_t kBytesPerProcess = 150'000'000;  // of a run from pixels, as metrics.jsonl has it
+
+Needs NeedsOf(const Config& config) {
+  const ObservationSpec spec =
+      worlds::MakeEnvironment(config, worlds::MakeRenderContext(config.observation))->spec();
+  Needs needs;
+  const replay::RingGeometry geometry(spec, static_cast<uint64_t>(config.replay.capacity));
+  needs.ring_bytes = geometry.total_bytes();
+  needs.batch_bytes = BatchLayout(spec, config.learner.batch).total_bytes();
+  needs.flight_bytes = needs.batch_bytes * static_cast<uint64_t>(config.learner.request_credits);
+  // Actors, evaluation actor, learner, replay, coordinator.
+  needs.process_bytes = kBytesPerProcess * static_cast<uint64_t>(UsableCores() + 4);
+  return needs;
+}
+
+}  // namespace
+
+std::vector<CheckLine> CheckMachine(const CheckRequest& request,
+                                    const std::function<void(const CheckLine&)>& show) {
+  std::vector<CheckLine> lines;
+  const auto look = [&](const std::string& name, const std::string& advice,
+                        const std::function<CheckLine()>& at) {
+    lines.push_back(Guarded(name, advice, at));
+    show(lines.back());
+    return lines.back().verdict != Verdict::kFail;
+  };
+  nn::SetThreads(1);
+  look("cpu", "use an x86-64 CPU that oneDNN supports",
+       [] { return JudgeCpu(nn::CpuIsa(), nn::ToString(nn::ChoosePrecision("auto"))); });
+  look("cores", "", [] { return JudgeCores(ReadCoreLimits()); });
+
+  Config config;
+  Needs needs;
+  const bool preset = look("preset", "presets lie beside the program or in share/shoal", [&] {
+    config = LoadPreset(kPreset);
+    needs = NeedsOf(config);
+    return CheckLine{"preset", Verdict::kOk, fmt::format("{}: task {}", kPreset, config.task), ""};
+  });
+  if (!preset) return lines;
+  look("rendering", "install libosmesa6 (./run build does)",
+       [&] { return LookAtPictures(config); });
+  look("physics", "use Debian's libmujoco2.2.2: another engine has other physics", LookAtPhysics);
+  look("dds loopback", "see that UDP passes on the loopback interface and no firewall drops it",
+       [&] {
+         return JudgeLoopback(MeasureLoopback(config.transport, kLoopbackTime),
+                              kUpdatesPerSecond * static_cast<double>(needs.batch_bytes) / 1e6);
+       });
+  look("disk", "free some space, lower replay.capacity or move run_dir",
+       [&] { return LookAtDisk(request.run_dir, needs); });
+  look("memory", "", [&] {
+    const replay::MemoryRoom room = replay::AvailableMemory();
+    return JudgeMemory(room.bytes, room.source, needs);
+  });
+  look("shared memory", "", [&] { return LookAtSharedMemory("/dev/shm", needs); });
+  look("training", "run the tests (./run test) to see which part fails", [&] {
+    const ScratchFolder folder(ExistingFolder(request.run_dir));
+    return JudgeTraining(ProbeTraining(config, folder.path(), kUpdates));
+  });
+  return lines;
+}
+
+}  // namespace shoal::launch

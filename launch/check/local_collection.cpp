@@ -1,0 +1,75 @@
+#include "launch/check/local_collection.h"
+
+#include "actor/environments.h"
+#include "common/base/error.h"
+
+namespace shoal::launch {
+namespace {
+
+constexpr uint64_t kSession = 1;  // of actor, replay and learner alike: each lives once
+
+actor::ChunkWindow::Options WindowOptions(const RunConfig& run) {
+  return {.spec_hash = run.spec.Hash(),
+          .actor = 0,
+          .session = kSession,
+          .record_bytes = RecordLayout(run.spec).record_bytes(),
+          .chunk_records = run.config.transport.chunk_records,
+          .chunks = run.config.replay.window_chunks + 1};
+}
+
+}  // namespace
+
+LocalCollection::LocalCollection(const RunConfig& run, const std::filesystem::path& folder)
+    : run_(run),
+      core_(run_, folder, kSession),
+      made_(folder, /*actor=*/0, kSession, /*first_env=*/0,
+            static_cast<uint32_t>(run_.config.envs_per_actor)),
+      window_(WindowOptions(run_)),
+      selector_(run_.config, run_.spec, run_.config.envs_per_actor),
+      rollout_(run_.config, run_.spec, actor::MakeEnvironments(run_, run_.config.envs_per_actor),
+               /*first_env=*/0, made_, window_, selector_),
+      batch_(static_cast<uint8_t*>(
+                 std::aligned_alloc(64, (core_.batch_layout().total_bytes() + 63) / 64 * 64)),
+             &std::free) {
+  if (batch_ == nullptr) throw RuntimeError("no memory for a batch");
+}
+
+void LocalCollection::Collect(uint64_t env_steps) {
+  const uint64_t until = rollout_.env_steps() + env_steps;
+  while (rollout_.env_steps() < until) {
+    if (!rollout_.TryStep()) {
+      throw RuntimeError("the replay stores nothing more after {} records",
+                         core_.counters().records);
+    }
+    Deliver();
+  }
+}
+
+// Sends what there is; a window that stays shut shows in the next TryStep.
+void LocalCollection::Deliver() {
+  window_.Flush();
+  for (const Credit& credit : core_.TakeCredits(/*changed_only=*/false)) window_.OnCredit(credit);
+  while (const auto chunk = window_.NextToSend()) {
+    const replay::ChunkResult result = core_.TakeChunk(*chunk);
+    if (result.fate != replay::ChunkFate::kDealtWith || result.stored != chunk->count) {
+      throw RuntimeError("the replay stored {} of {} records: {}", result.stored, chunk->count,
+                         result.fault == nullptr ? "not taken" : result.fault);
+    }
+    window_.MarkSent();
+    for (const Credit& credit : core_.TakeCredits(/*changed_only=*/true)) window_.OnCredit(credit);
+  }
+}
+
+BatchView LocalCollection::Draw() {
+  core_.TakeRequest({.spec_hash = run_.spec.Hash(),
+                     .learner_session = kSession,
+                     .request = ++requests_,
+                     .batch = static_cast<uint32_t>(run_.config.learner.batch),
+                     .after_steps = 0});
+  if (!core_.TryAnswer(batch_.get())) {
+    throw RuntimeError("the replay gives no batch with {} records", core_.counters().records);
+  }
+  return core_.batch_layout().View(batch_.get());
+}
+
+}  // namespace shoal::launch

@@ -1,0 +1,51 @@
+// Actor and replay of a run in one process, without DDS: environments play random actions, records
+// go through the actor's chunk window into a replay core, batches come out as the learner gets
+// them.
+#pragma once
+
+#include <cstdint>
+#include <cstdlib>
+#include <filesystem>
+#include <memory>
+
+#include "actor/action_selector.h"
+#include "actor/chunk_window.h"
+#include "actor/made_page.h"
+#include "actor/rollout.h"
+#include "common/config/run_files.h"
+#include "common/wire/batch_layout.h"
+#include "replay_server/core/replay_core.h"
+
+namespace shoal::launch {
+
+// One thread. Borrows nothing.
+class LocalCollection {
+ public:
+  // `folder` gets the actor's page of made records and, with replay.storage = file, the ring.
+  // Throws Error: an environment that is not the run's, no room for the ring.
+  LocalCollection(const RunConfig& run, const std::filesystem::path& folder);
+
+  // Plays at least `env_steps` more and stores them. Throws Error when the replay does not take a
+  // record, saying why.
+  void Collect(uint64_t env_steps);
+
+  // Draws the next batch. Valid until the next call. Throws Error when the replay gives none.
+  BatchView Draw();
+
+  const replay::ReplayCore& core() const { return core_; }
+  const actor::Rollout& rollout() const { return rollout_; }
+
+ private:
+  void Deliver();
+
+  const RunConfig run_;
+  replay::ReplayCore core_;
+  actor::MadePage made_;
+  actor::ChunkWindow window_;
+  actor::ActionSelector selector_;
+  actor::Rollout rollout_;
+  std::unique_ptr<uint8_t, decltype(&std::free)> batch_;
+  uint64_t requests_ = 0;
+};
+
+}  // namespace shoal::launch

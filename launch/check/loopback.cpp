@@ -1,0 +1,152 @@
+#include "launch/check/loopback.h"
+
+#include <algorithm>
+#include <optional>
+#include <vector>
+
+#include "common/base/clock.h"
+#include "common/base/error.h"
+#include "common/base/mutex.h"
+#include "common/base/stop.h"
+#include "common/config/run_files.h"
+#include "common/dds/bus.h"
+#include "common/dds/publisher.h"
+#include "common/dds/subscriber.h"
+#include "launch/child_process.h"
+#include "launch/process_plan.h"
+#include "launch/scratch_folder.h"
+
+namespace shoal::launch {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr size_t kChunkBytes = 1'000'000;
+constexpr uint64_t kWindow = 4;  // chunks
+constexpr seconds kMeetingDeadline{15}, kAcknowledgementDeadline{5};
+constexpr milliseconds kPoll{20}, kGreeting{100};
+constexpr seconds kPeerLife{60};  // if nobody ends it
+
+// The highest number that was heard, handed from a receive thread to one that waits.
+class HighestHeard {
+ public:
+  void Hear(uint64_t number) {
+    {
+      const MutexLock lock(mutex_);
+      if (heard_ && number <= *heard_) return;
+      heard_ = number;
+    }
+    changed_.NotifyAll();
+  }
+  // What is known at the deadline, or once it is at least `wanted`; nothing while nothing was
+  // heard.
+  std::optional<uint64_t> WaitFor(uint64_t wanted, SteadyTime deadline) {
+    const MutexLock lock(mutex_);
+    while (!(heard_ && *heard_ >= wanted)) {
+      if (!changed_.WaitUntil(mutex_, deadline)) break;
+    }
+    return heard_;
+  }
+
+ private:
+  Mutex mutex_;
+  ConditionVariable changed_;
+  std::optional<uint64_t> heard_ SHOAL_GUARDED_BY(mutex_);
+};
+
+// Waits until the peer's greeting has come and our writer knows its reader: what is sent before
+// that is lost.
+void Meet(HighestHeard* acknowledged, const dds::Publisher<TransitionChunk>& publisher,
+          ChildProcess* peer) {
+  const SteadyTime deadline = Now() + kMeetingDeadline;
+  while (Now() < deadline && !StopRequested()) {
+    const bool greeted = acknowledged->WaitFor(UINT64_MAX, Now() + kPoll).has_value();
+    if (greeted && publisher.Matched() > 0) return;
+    if (const auto ended = peer->Poll()) {
+      throw RuntimeError("the second process ended with {}", ended->Describe());
+    }
+  }
+  throw RuntimeError("two processes did not find each other within {} s", kMeetingDeadline.count());
+}
+
+}  // namespace
+
+LoopbackRate MeasureLoopback(const TransportConfig& transport, milliseconds duration) {
+  const ScratchFolder folder;
+  ClusterAddress address;
+  const auto bus = dds::ClaimDomain(transport, &address);
+  WriteClusterAddress(folder.path(), address);
+  HighestHeard acknowledged;
+  dds::Publisher<TransitionChunk> publisher(*bus);
+  const dds::Subscriber<Credit> credits(
+      *bus, [&](const Credit& credit) { acknowledged.Hear(credit.stored); });
+  ProcessSpec spec = ProgramSpec("shoal", {"check", "--loopback-peer", folder.path().string()}, 1);
+  spec.role = "loopback";
+  spec.output = folder.path() / "peer.log";
+  ChildProcess peer(spec);
+  Meet(&acknowledged, publisher, &peer);
+
+  const std::vector<uint8_t> payload(kChunkBytes, 0x5a);
+  TransitionChunk chunk;
+  chunk.count = 1;
+  chunk.session = 1;
+  chunk.payload = payload;
+  uint64_t sent = 0, arrived = 0;
+  const SteadyTime start = Now();
+  const auto wait_for = [&](uint64_t number) {
+    arrived = acknowledged.WaitFor(number, Now() + kAcknowledgementDeadline).value_or(0);
+    if (arrived >= number) return;
+    throw RuntimeError("chunk {} of {} was not acknowledged within {} s", arrived + 1, sent,
+                       kAcknowledgementDeadline.count());
+  };
+  while (Now() - start < duration && !StopRequested()) {
+    chunk.first_sequence = sent + 1;
+    if (!publisher.Write(chunk)) continue;  // pressure: try again
+    ++sent;
+    if (sent > kWindow) wait_for(sent - kWindow);
+  }
+  wait_for(sent);
+  return {.chunks = arrived, .bytes = arrived * kChunkBytes, .seconds = SecondsSince(start)};
+}
+
+int RunLoopbackPeer(const std::filesystem::path& folder, const TransportConfig& transport) {
+  dds::Bus bus(ReadClusterAddress(folder), transport, dds::Role::kReplay);
+  HighestHeard stored;
+  stored.Hear(0);
+  dds::Publisher<Credit> publisher(bus);
+  uint64_t next = 1;  // touched by the receive thread alone
+  const dds::Subscriber<TransitionChunk> chunks(bus, [&](const TransitionChunk& chunk) {
+    if (chunk.first_sequence != next || chunk.payload.size() != kChunkBytes) return;
+    stored.Hear(next++);
+  });
+  Credit credit;
+  credit.replay_session = credit.session = 1;
+  const SteadyTime end = Now() + kPeerLife;
+  while (!StopRequested() && Now() < end) {
+    publisher.Write(credit);
+    credit.stored = stored.WaitFor(credit.stored + 1, Now() + kGreeting).value_or(0);
+  }
+  return 0;
+}
+
+CheckLine JudgeLoopback(const LoopbackRate& rate, double needed) {
+  CheckLine line{"dds loopback", Verdict::kOk,
+                 fmt::format("{:.0f} MB/s in chunks of 1 MB between two processes; the default "
+                             "preset at 30 updates/s moves {:.0f} MB/s",
+                             rate.MegabytesPerSecond(), needed),
+                 ""};
+  if (rate.chunks == 0) {
+    line.verdict = Verdict::kFail;
+    line.finding = "nothing arrived";
+    line.advice = "see that the firewall lets UDP through on the loopback interface";
+  } else if (rate.MegabytesPerSecond() < needed) {
+    line.verdict = Verdict::kWarn;
+    line.advice =
+        "the learner will wait for batches: free a core, or raise net.core.rmem_max to "
+        "16 MB (sysctl -w net.core.rmem_max=16777216)";
+  }
+  return line;
+}
+
+}  // namespace shoal::launch

@@ -1,0 +1,35 @@
+// How fast DDS moves megabyte chunks between two processes of this machine, through common/dds and
+// with the credits of a run.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <filesystem>
+
+#include "common/config/config.h"
+#include "launch/check/check_line.h"
+
+namespace shoal::launch {
+
+struct LoopbackRate {
+  uint64_t chunks = 0;  // that arrived, in order
+  uint64_t bytes = 0;
+  double seconds = 0;  // from the first chunk to the last acknowledgement
+
+  double MegabytesPerSecond() const {
+    return seconds > 0 ? static_cast<double>(bytes) / seconds / 1e6 : 0;
+  }
+};
+
+// Starts a second process of this program (RunLoopbackPeer), sends chunks of 1 MB for `duration`,
+// at most four unacknowledged, and says what arrived. Throws Error when the two do not find each
+// other or a chunk is not acknowledged in time.
+LoopbackRate MeasureLoopback(const TransportConfig& transport, std::chrono::milliseconds duration);
+
+// The other side: acknowledges chunks until it is told to stop. `folder` holds cluster.json.
+int RunLoopbackPeer(const std::filesystem::path& folder, const TransportConfig& transport);
+
+// `needed`: MB/s that a run of the default preset moves.
+CheckLine JudgeLoopback(const LoopbackRate& rate, double needed);
+
+}  // namespace shoal::launch

@@ -1,0 +1,126 @@
+#include "launch/check/machine_lines.h"
+
+#include <fcntl.h>
+#include <sys/statvfs.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cmath>
+#include <cstring>
+
+#include "common/base/error.h"
+#include "replay_server/core/storage_limits.h"
+
+namespace shoal::launch {
+namespace {
+
+namespace fs = std::filesystem;
+
+double Megabytes(uint64_t bytes) { return static_cast<double>(bytes) / 1e6; }
+
+uint64_t FreeBytes(const fs::path& folder) {
+  struct statvfs disk {};
+  if (statvfs(folder.c_str(), &disk) != 0) {
+    throw RuntimeError("cannot ask for the free space of '{}': {}", folder.string(),
+                       std::strerror(errno));
+  }
+  return uint64_t{disk.f_bavail} * disk.f_frsize;
+}
+
+}  // namespace
+
+CheckLine JudgeCpu(const std::string& isa, const std::string& precision) {
+  CheckLine line{"cpu", Verdict::kOk, fmt::format("{}, precision {}", isa, precision), ""};
+  const bool wide = isa.starts_with("avx2") || isa.starts_with("avx512");
+  if (!wide) {
+    line.verdict = Verdict::kWarn;
+    line.advice =
+        "no AVX2: updates take several times as long; use a newer machine or a virtual "
+        "machine that passes the CPU's features on";
+  }
+  return line;
+}
+
+CheckLine JudgeCores(const CoreLimits& limits) {
+  const int usable =
+      std::max(1, static_cast<int>(std::min<double>(limits.affinity, std::ceil(limits.quota))));
+  const std::string quota = std::isinf(limits.quota)
+                                ? "no cgroup quota"
+                                : fmt::format("cgroup quota {:.2g}", limits.quota);
+  CheckLine line{"cores", Verdict::kOk,
+                 fmt::format("{} usable of {} online (affinity {}, {})", usable, limits.online,
+                             limits.affinity, quota),
+                 ""};
+  if (usable < 2) {
+    line.verdict = Verdict::kWarn;
+    line.advice = "learner and actors share one core and take turns; give the process two or more";
+  }
+  return line;
+}
+
+fs::path ExistingFolder(const fs::path& path) {
+  fs::path folder = fs::absolute(path).lexically_normal();
+  std::error_code error;
+  while (!fs::is_directory(folder, error) && folder.has_relative_path()) {
+    folder = folder.parent_path();
+  }
+  return folder;
+}
+
+CheckLine LookAtDisk(const fs::path& run_dir, const Needs& needs) {
+  const fs::path folder = ExistingFolder(run_dir);
+  if (access(folder.c_str(), W_OK) != 0) {
+    throw RuntimeError("cannot write to '{}': {}", folder.string(), std::strerror(errno));
+  }
+  replay::CheckDiskRoom(folder, needs.ring_bytes);
+  return {"disk", Verdict::kOk,
+          fmt::format("{:.0f} MB free in '{}', the default preset's replay takes {:.0f} MB",
+                      Megabytes(FreeBytes(folder)), folder.string(), Megabytes(needs.ring_bytes)),
+          ""};
+}
+
+CheckLine JudgeMemory(uint64_t available, const std::string& source, const Needs& needs) {
+  const uint64_t comfortable = needs.process_bytes + needs.ring_bytes;
+  CheckLine line{"memory", Verdict::kOk,
+                 fmt::format("{:.0f} MB available ({}); the default preset's processes take {:.0f} "
+                             "MB, its replay's pages {:.0f} MB",
+                             Megabytes(available), source, Megabytes(needs.process_bytes),
+                             Megabytes(needs.ring_bytes)),
+                 ""};
+  if (available < needs.process_bytes) {
+    line.verdict = Verdict::kFail;
+    line.advice = "free memory or raise the container's limit";
+  } else if (available < comfortable) {
+    line.verdict = Verdict::kWarn;
+    line.advice =
+        "sampling reads from the disk once the replay has outgrown the memory; lower "
+        "replay.capacity";
+  }
+  return line;
+}
+
+CheckLine LookAtSharedMemory(const fs::path& folder, const Needs& needs) {
+  CheckLine line{"shared memory", Verdict::kOk, "", ""};
+  std::string name = (folder / "shoal-check-XXXXXX").string();
+  const int file = mkostemp(name.data(), O_CLOEXEC);
+  // A reservation that goes at once.
+  const int error =
+      file < 0 ? errno : posix_fallocate(file, 0, static_cast<off_t>(needs.flight_bytes));
+  if (file >= 0) {
+    close(file);
+    unlink(name.c_str());
+  }
+  if (error == 0) {
+    line.finding =
+        fmt::format("{:.0f} MB free in '{}', all batches in flight would take {:.0f} MB",
+                    Megabytes(FreeBytes(folder)), folder.string(), Megabytes(needs.flight_bytes));
+    return line;
+  }
+  line.verdict = Verdict::kWarn;
+  line.finding = fmt::format("no {:.0f} MB to be had in '{}': {}", Megabytes(needs.flight_bytes),
+                             folder.string(), std::strerror(error));
+  line.advice = "mount a larger one (a container's --shm-size=256m)";
+  return line;
+}
+
+}  // namespace shoal::launch

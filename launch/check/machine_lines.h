@@ -1,0 +1,38 @@
+// What the machine offers: arithmetic, cores, room on disk and in memory.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "launch/check/check_line.h"
+#include "launch/machine.h"
+
+namespace shoal::launch {
+
+// `isa` and `precision` as common/nn names them: "avx512_core_bf16", "bf16".
+CheckLine JudgeCpu(const std::string& isa, const std::string& precision);
+
+CheckLine JudgeCores(const CoreLimits& limits);
+
+// What a run of the default preset needs.
+struct Needs {
+  uint64_t ring_bytes = 0;     // of the replay, a file in the run folder
+  uint64_t batch_bytes = 0;    // of one batch
+  uint64_t flight_bytes = 0;   // of all batches asked for ahead
+  uint64_t process_bytes = 0;  // of memory for all processes, without the ring
+};
+
+// Room for the ring in `run_dir` or, as long as that is not there, in the folder it will be made
+// in.
+CheckLine LookAtDisk(const std::filesystem::path& run_dir, const Needs& needs);
+// Nearest folder of a path that is there.
+std::filesystem::path ExistingFolder(const std::filesystem::path& path);
+
+// `available`: bytes, limited by `source`. The ring's pages want to stay in memory.
+CheckLine JudgeMemory(uint64_t available, const std::string& source, const Needs& needs);
+
+// Shared memory: `folder` ("/dev/shm") takes a mapped file of all batches in flight.
+CheckLine LookAtSharedMemory(const std::filesystem::path& folder, const Needs& needs);
+
+}  // namespace shoal::launch

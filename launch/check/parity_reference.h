@@ -1,0 +1,11 @@
+// A recorded trajectory of the original FetchReach, embedded: the first 12 steps of the sequence
+// random0 (format vrl-ref-1), so that parity can be checked where no reference files are.
+#pragma once
+
+#include <string_view>
+
+namespace shoal::launch {
+
+std::string_view ParityReference();
+
+}  // namespace shoal::launch
