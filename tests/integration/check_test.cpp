@@ -1,0 +1,50 @@
+// `shoal check` as a user runs it.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/support/program.h"
+
+namespace shoal {
+namespace {
+
+TEST(Check, AMachineThatBuildsShoalCanTrain) {
+  const TemporaryFolder folder;
+  const std::string json = (folder.path() / "check.json").string();
+  WriteFileAtomically(json, "an older one");
+  const ProgramResult result =
+      RunProgram({"shoal", "check", "--run-dir", folder.path().string(), "--json", json},
+                 std::chrono::seconds(60));
+  ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
+  const auto report = nlohmann::json::parse(ReadFile(json));
+  EXPECT_EQ(report.at("schema"), "shoal-check-1");
+  EXPECT_NE(report.at("verdict"), "FAIL");
+  std::vector<std::string> names;
+  for (const auto& check : report.at("checks")) {
+    names.push_back(check.at("name"));
+    EXPECT_NE(check.at("finding"), "") << names.back();
+    EXPECT_EQ(check.at("verdict") == "OK", check.at("advice") == "") << names.back();
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"cpu", "cores", "preset", "rendering", "physics",
+                                             "dds loopback", "disk", "memory", "shared memory",
+                                             "training"}));
+  int left = 0;
+  for ([[maybe_unused]] const auto& entry : std::filesystem::directory_iterator(folder.path())) {
+    ++left;
+  }
+  EXPECT_EQ(left, 1) << "the report alone";
+}
+
+// A folder that takes no runs: the kernel lets nobody write there, not even root.
+TEST(Check, AFolderThatTakesNoRunsFailsTheLinesThatNeedIt) {
+  const ProgramResult result =
+      RunProgram({"shoal", "check", "--run-dir", "/proc/sys"}, std::chrono::seconds(60));
+  EXPECT_EQ(ExitCode(result), 1) << result.out << result.err;
+  EXPECT_NE(result.out.find("FAIL  disk"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("FAIL  training"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("/proc/sys"), std::string::npos) << result.out;
+  EXPECT_NE(result.out.find("OK    rendering"), std::string::npos) << "the others are looked at";
+}
+
+}  // namespace
+}  // namespace shoal

@@ -1,0 +1,79 @@
+#include "launch/check/machine_lines.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "common/base/error.h"
+#include "tests/support/temporary_folder.h"
+
+namespace shoal::launch {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr Needs kNeeds{.ring_bytes = 1'000'000,
+                       .batch_bytes = 10'000,
+                       .flight_bytes = 30'000,
+                       .process_bytes = 500'000};
+
+TEST(MachineLines, ACpuWithoutAvx2IsAWarning) {
+  EXPECT_EQ(JudgeCpu("avx512_core_bf16", "bf16").verdict, Verdict::kOk);
+  EXPECT_EQ(JudgeCpu("avx2", "f32").verdict, Verdict::kOk);
+  const CheckLine old = JudgeCpu("sse41", "f32");
+  EXPECT_EQ(old.verdict, Verdict::kWarn);
+  EXPECT_THAT(old.finding, HasSubstr("sse41"));
+  EXPECT_THAT(old.advice, HasSubstr("AVX2"));
+}
+
+TEST(MachineLines, CoresAreTheLeastOfAffinityAndQuota) {
+  const auto line = [](int affinity, double quota) {
+    return JudgeCores({.online = 8, .affinity = affinity, .quota = quota});
+  };
+  EXPECT_THAT(line(4, INFINITY).finding, HasSubstr("4 usable of 8"));
+  EXPECT_THAT(line(4, INFINITY).finding, HasSubstr("no cgroup quota"));
+  EXPECT_THAT(line(4, 2.5).finding, HasSubstr("3 usable of 8"));
+  EXPECT_EQ(line(2, INFINITY).verdict, Verdict::kOk);
+  EXPECT_EQ(line(1, INFINITY).verdict, Verdict::kWarn);
+  EXPECT_EQ(line(8, 0.5).verdict, Verdict::kWarn);
+}
+
+TEST(MachineLines, TheRingMustFitOnTheDiskOfTheRunFolder) {
+  const TemporaryFolder folder;
+  const CheckLine fits = LookAtDisk(folder.path() / "runs" / "deep", kNeeds);
+  EXPECT_EQ(fits.verdict, Verdict::kOk);
+  EXPECT_THAT(fits.finding, HasSubstr(folder.path().string()));
+  Needs huge = kNeeds;
+  huge.ring_bytes = uint64_t{1} << 60;
+  EXPECT_THROW(LookAtDisk(folder.path(), huge), Error);
+}
+
+TEST(MachineLines, TheNearestFolderThatIsThereIsLookedAt) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(ExistingFolder(folder.path()), folder.path());
+  EXPECT_EQ(ExistingFolder(folder.path() / "a" / "b"), folder.path());
+  EXPECT_EQ(ExistingFolder("/absent/a"), "/");
+}
+
+TEST(MachineLines, MemoryFailsBelowTheProcessesAndWarnsBelowTheRing) {
+  EXPECT_EQ(JudgeMemory(2'000'000, "MemAvailable", kNeeds).verdict, Verdict::kOk);
+  EXPECT_EQ(JudgeMemory(1'499'999, "MemAvailable", kNeeds).verdict, Verdict::kWarn);
+  EXPECT_EQ(JudgeMemory(499'999, "MemAvailable", kNeeds).verdict, Verdict::kFail);
+  EXPECT_THAT(JudgeMemory(1, "memory.max", kNeeds).finding, HasSubstr("memory.max"));
+}
+
+TEST(MachineLines, SharedMemoryIsReservedForProofAndGivenBack) {
+  const TemporaryFolder folder;
+  EXPECT_EQ(LookAtSharedMemory(folder.path(), kNeeds).verdict, Verdict::kOk);
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+  const CheckLine none = LookAtSharedMemory(folder.path() / "absent", kNeeds);
+  EXPECT_EQ(none.verdict, Verdict::kWarn);
+  EXPECT_THAT(none.finding, HasSubstr("absent"));
+  Needs huge = kNeeds;
+  huge.flight_bytes = uint64_t{1} << 60;
+  EXPECT_EQ(LookAtSharedMemory(folder.path(), huge).verdict, Verdict::kWarn);
+}
+
+}  // namespace
+}  // namespace shoal::launch
