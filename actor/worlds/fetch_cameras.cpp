@@ -1,13 +1,39 @@
 #include "actor/worlds/fetch_cameras.h"
 
 namespace shoal::worlds {
+namespace {
+
+// As Gymnasium-Robotics has it.
+CameraView Gymnasium() { return {"gymnasium", {1.3, 0.75, 0.55}, 2.5, 132, -14}; }
+
+}  // namespace
 
 std::span<const CameraView> FetchCameras() {
   static const CameraView cameras[] = {
       {"front", {1.34, 0.75, 0.53}, 0.75, 180, -30},
       {"side", {1.34, 0.75, 0.53}, 0.75, 90, -30},
       {"close", {1.34, 0.75, 0.53}, 1.1, 132, -35},
-      {"gymnasium", {1.3, 0.75, 0.55}, 2.5, 132, -14},
+      Gymnasium(),
+  };
+  return cameras;
+}
+
+std::span<const CameraView> FetchPickAndPlaceCameras() {
+  static const CameraView cameras[] = {
+      {"front", {1.34, 0.75, 0.6}, 1.05, 180, -20},
+      {"side", {1.34, 0.75, 0.6}, 1.05, 90, -20},
+      {"close", {1.34, 0.75, 0.6}, 1.2, 132, -35},
+      Gymnasium(),
+  };
+  return cameras;
+}
+
+std::span<const CameraView> FetchSlideCameras() {
+  static const CameraView cameras[] = {
+      {"front", {1.3, 0.75, 0.42}, 1.3, 180, -35},
+      {"side", {1.32, 0.75, 0.42}, 1.3, 90, -35},
+      {"close", {1.34, 0.75, 0.42}, 1.5, 132, -35},
+      Gymnasium(),
   };
   return cameras;
 }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "actor/worlds/fetch_cameras.h"
 #include "actor/worlds/site_motion.h"
 #include "common/base/check.h"
 #include "common/base/error.h"
@@ -18,6 +19,7 @@ constexpr double kShareInTheAir = 0.5;
 
 constexpr FetchObjectSetup kPush{
     .model = "fetch_push.xml",
+    .cameras = FetchCameras,
     .arm = {.base = {0.405, 0.48, 0}, .gripper_extra_height = 0, .block_gripper = true},
     .object = {1.25, 0.53, 0.4},
     .object_range = 0.15,
@@ -26,6 +28,7 @@ constexpr FetchObjectSetup kPush{
 // and spinning, belongs to the published task.
 constexpr FetchObjectSetup kSlide{
     .model = "fetch_slide.xml",
+    .cameras = FetchSlideCameras,
     .arm = {.base = {0.05, 0.48, 0}, .gripper_extra_height = -0.02, .block_gripper = true},
     .object = {1.7, 1.1, 0.41},
     .object_range = 0.1,
@@ -33,6 +36,7 @@ constexpr FetchObjectSetup kSlide{
     .goal_offset_x = 0.4};
 constexpr FetchObjectSetup kPickAndPlace{
     .model = "fetch_pick_and_place.xml",
+    .cameras = FetchPickAndPlaceCameras,
     .arm = {.base = {0.405, 0.48, 0}, .gripper_extra_height = 0.2, .block_gripper = false},
     .object = {1.25, 0.53, 0.4},
     .object_range = 0.15,
@@ -52,7 +56,9 @@ std::unique_ptr<World> MakeFetchPickAndPlace(const WorldOptions& options) {
 }
 
 FetchObjectWorld::FetchObjectWorld(const FetchObjectSetup& setup, const WorldOptions& options)
-    : FetchWorld(setup.model, options, setup.arm), setup_(setup), object_site_(SiteId("object0")) {
+    : FetchWorld(setup.model, options, setup.arm, setup.cameras()),
+      setup_(setup),
+      object_site_(SiteId("object0")) {
   const int joint = JointId("object0:joint");
   if (model().jnt_type[joint] != mjJNT_FREE) {
     throw RuntimeError("{}: joint 'object0:joint' is not a free joint", source());

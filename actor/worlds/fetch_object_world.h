@@ -4,6 +4,7 @@
 
 #include <array>
 #include <memory>
+#include <span>
 
 #include "actor/worlds/fetch_world.h"
 
@@ -11,6 +12,7 @@ namespace shoal::worlds {
 
 struct FetchObjectSetup {
   const char* model;  // "fetch_push.xml"
+  std::span<const CameraView> (*cameras)();
   FetchArmSetup arm;
   std::array<double, 3> object{};  // position before the set-up's engine steps, m; unturned
   double object_range = 0;         // of the object around the grip, each axis, m

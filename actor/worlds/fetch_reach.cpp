@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "actor/worlds/fetch_cameras.h"
 #include "common/base/check.h"
 
 namespace shoal::worlds {
@@ -18,7 +19,7 @@ std::unique_ptr<World> MakeFetchReach(const WorldOptions& options) {
 }
 
 FetchReach::FetchReach(const WorldOptions& options)
-    : FetchWorld("fetch_reach.xml", options, kSetup) {
+    : FetchWorld("fetch_reach.xml", options, kSetup, FetchCameras()) {
   SetUpArm();
 }
 

@@ -2,17 +2,17 @@
 
 #include <mujoco/mujoco.h>
 
-#include "actor/worlds/fetch_cameras.h"
 #include "actor/worlds/fetch_weld.h"
 #include "actor/worlds/model_loading.h"
 
 namespace shoal::worlds {
 
 FetchWorld::FetchWorld(const std::string& model_name, const WorldOptions& options,
-                       const FetchArmSetup& setup)
+                       const FetchArmSetup& setup, std::span<const CameraView> cameras)
     : World(LoadModel(model_name, options.model, WeldAddition(ParsePhysics(options.physics))),
             options.model),
       arm_(this, setup, ParsePhysics(options.physics)),
+      cameras_(cameras),
       target_site_(SiteId("target0")) {}
 
 void FetchWorld::ResetTo(const std::array<double, 3>& goal,
@@ -34,7 +34,5 @@ World::Outcome FetchWorld::Step(std::span<const double> action) {
   arm_.FinishStep();
   return {};
 }
-
-std::span<const CameraView> FetchWorld::cameras() const { return FetchCameras(); }
 
 }  // namespace shoal::worlds

@@ -24,16 +24,17 @@ class FetchWorld : public World {
   void ResetTo(const std::array<double, 3>& goal, const std::array<double, 2>& object_xy = {});
 
   Outcome Step(std::span<const double> action) final;
-  std::span<const CameraView> cameras() const final;
+  std::span<const CameraView> cameras() const final { return cameras_; }
 
   const FetchArm& arm() const { return arm_; }
   // Site of the object, -1 in tasks without.
   virtual int object_site() const { return -1; }
 
  protected:
-  // `model_name`: the embedded model to load unless the options name a user's.
-  FetchWorld(const std::string& model_name, const WorldOptions& options,
-             const FetchArmSetup& setup);
+  // `model_name`: the embedded model to load unless the options name a user's. `cameras` outlive
+  // the world.
+  FetchWorld(const std::string& model_name, const WorldOptions& options, const FetchArmSetup& setup,
+             std::span<const CameraView> cameras);
 
   // Called by ResetTo once the kept state is restored.
   virtual void PlaceObject(const std::array<double, 2>& /*xy*/) {}
@@ -44,6 +45,7 @@ class FetchWorld : public World {
 
  private:
   FetchArm arm_;
+  std::span<const CameraView> cameras_;
   int target_site_;
   std::array<double, 3> goal_{};
 };
