@@ -15,10 +15,12 @@ namespace {
 int Run(int argc, char** argv) {
   int repetitions = 7, threads = 1;
   double seconds = 0.5;
+  std::string only;
   CLI::App app("Measures Shoal's stages, each against another way of doing the same.");
   app.add_option("--repetitions", repetitions, "pairs per row")->check(CLI::Range(1, 1000));
   app.add_option("--seconds", seconds, "of each side of a pair")->check(CLI::Range(0.001, 60.0));
   app.add_option("--threads", threads, "of the networks")->check(CLI::Range(1, 1024));
+  app.add_option("--only", only, "rows whose stage contains this text");
   CLI11_PARSE(app, argc, argv);
   shoal::nn::SetThreads(threads);
 
@@ -26,6 +28,7 @@ int Run(int argc, char** argv) {
   for (const auto& pairings : {shoal::bench::ReplayPairings(), shoal::bench::NetworkPairings(),
                                shoal::bench::WorldPairings()}) {
     for (const shoal::bench::Pairing& pairing : pairings) {
+      if (pairing.stage.find(only) == std::string::npos) continue;
       const auto row = shoal::bench::TimePair(pairing, repetitions, seconds);
       rows.push_back(ToJson(row));
       std::cerr << fmt::format("{}: {:.0f} {}, {:.2f} x {} ({:.0f}), spread {:.2f}\n", row.stage,

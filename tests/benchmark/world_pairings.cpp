@@ -9,8 +9,11 @@ namespace {
 // One environment stepped for ever with a fixed action.
 class Stepper {
  public:
-  Stepper(bool pixels, const std::vector<std::string>& cameras, const std::string& quality) {
+  Stepper(const std::string& task, const std::vector<std::string>& cameras,
+          const std::string& quality) {
+    const bool pixels = !cameras.empty();
     Config config;
+    config.task = task;
     config.observation.pixels = pixels;
     config.observation.cameras = cameras;
     config.observation.quality = quality;
@@ -38,29 +41,33 @@ class Stepper {
 }  // namespace
 
 std::vector<Pairing> WorldPairings() {
-  const auto make = [](bool pixels, std::vector<std::string> cameras, const char* quality) {
-    const auto stepper = std::make_shared<Stepper>(pixels, cameras, quality);
+  const auto make = [](const std::string& task, const std::vector<std::string>& cameras,
+                       const char* quality) {
+    const auto stepper = std::make_shared<Stepper>(task, cameras, quality);
     return [stepper] { stepper->Step(); };
   };
-  const auto physics = make(false, {}, "fast");
-  const auto two = make(true, {"front", "side"}, "fast");
-  return {{.stage = "FetchReachDense with one 84x84 camera, fast",
-           .unit = "env steps/s",
-           .against = "physics alone",
-           .target = 0.5,
-           .ours = make(true, {"front"}, "fast"),
-           .other = physics},
-          {.stage = "FetchReachDense with two 84x84 cameras, fast",
-           .unit = "env steps/s",
-           .against = "physics alone",
-           .target = 0.35,
-           .ours = two,
-           .other = physics},
-          {.stage = "FetchReachDense with two 84x84 cameras, fast",
-           .unit = "env steps/s",
-           .against = "quality reference",
-           .ours = two,
-           .other = make(true, {"front", "side"}, "reference")}};
+  std::vector<Pairing> pairings;
+  for (const std::string task : {"FetchReach", "FetchPush", "FetchSlide", "FetchPickAndPlace"}) {
+    const auto physics = make(task, {}, "fast");
+    pairings.push_back({.stage = task + " with one 84x84 camera, fast",
+                        .unit = "env steps/s",
+                        .against = "physics alone",
+                        .target = 0.5,
+                        .ours = make(task, {"front"}, "fast"),
+                        .other = physics});
+    pairings.push_back({.stage = task + " with two 84x84 cameras, fast",
+                        .unit = "env steps/s",
+                        .against = "physics alone",
+                        .target = 0.35,
+                        .ours = make(task, {"front", "side"}, "fast"),
+                        .other = physics});
+  }
+  pairings.push_back({.stage = "FetchReach with two 84x84 cameras, fast",
+                      .unit = "env steps/s",
+                      .against = "quality reference",
+                      .ours = make("FetchReach", {"front", "side"}, "fast"),
+                      .other = make("FetchReach", {"front", "side"}, "reference")});
+  return pairings;
 }
 
 }  // namespace shoal::bench
