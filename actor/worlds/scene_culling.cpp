@@ -2,7 +2,9 @@
 
 #include <mujoco/mujoco.h>
 
+#include <array>
 #include <cmath>
+#include <optional>
 
 namespace shoal::worlds {
 namespace {
@@ -12,56 +14,77 @@ struct Vector {
 };
 
 Vector From(const float* v) { return {v[0], v[1], v[2]}; }
+Vector Sum(float a, Vector u, float b, Vector v) {
+  return {a * u.x + b * v.x, a * u.y + b * v.y, a * u.z + b * v.z};
+}
 float Dot(Vector a, Vector b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 Vector Cross(Vector a, Vector b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
-// The five planes of the view without the far one, through the camera's position. A side plane's
-// inward normal leans from the axis `right` or `up` by the half angle.
+// How far the geom reaches from its centre along a unit vector; no value = unknown.
+std::optional<float> Reach(const mjvGeom& geom, Vector along) {
+  const auto axis = [&geom](int i) {
+    return Vector{geom.mat[i], geom.mat[3 + i], geom.mat[6 + i]};
+  };
+  const float x = Dot(along, axis(0)), y = Dot(along, axis(1)), z = Dot(along, axis(2));
+  const float* size = geom.size;
+  switch (geom.type) {
+    case mjGEOM_SPHERE:
+      return size[0];
+    case mjGEOM_ELLIPSOID:
+      return std::sqrt(size[0] * size[0] * x * x + size[1] * size[1] * y * y +
+                       size[2] * size[2] * z * z);
+    case mjGEOM_BOX:
+      return size[0] * std::fabs(x) + size[1] * std::fabs(y) + size[2] * std::fabs(z);
+    case mjGEOM_CYLINDER:
+      return size[0] * std::sqrt(x * x + y * y) + size[2] * std::fabs(z);
+    case mjGEOM_CAPSULE:
+      return size[0] + size[2] * std::fabs(z);
+    case mjGEOM_PLANE:
+      return std::nullopt;
+    default:
+      if (geom.modelrbound > 0) return geom.modelrbound;
+      return std::nullopt;
+  }
+}
+
+// The view's planes without the far one; normals point out of the view.
 class Frustum {
  public:
   Frustum(const mjvScene& scene, float aspect) {
     // The engine draws the mean of the scene's two (stereo) cameras.
     const mjvGLCamera& left = scene.camera[0];
-    const mjvGLCamera& right = scene.camera[1];
-    position_ = {(left.pos[0] + right.pos[0]) / 2, (left.pos[1] + right.pos[1]) / 2,
-                 (left.pos[2] + right.pos[2]) / 2};
-    forward_ = From(left.forward);
-    up_ = From(left.up);
-    right_ = Cross(forward_, up_);
-    near_ = left.frustum_near;
+    const Vector position = Sum(0.5f, From(left.pos), 0.5f, From(scene.camera[1].pos));
+    const Vector forward = From(left.forward), up = From(left.up), right = Cross(forward, up);
     const float tangent_y = left.frustum_top / left.frustum_near;
     const float tangent_x = tangent_y * aspect;
-    cos_x_ = 1 / std::sqrt(1 + tangent_x * tangent_x);
-    sin_x_ = tangent_x * cos_x_;
-    cos_y_ = 1 / std::sqrt(1 + tangent_y * tangent_y);
-    sin_y_ = tangent_y * cos_y_;
+    const float cos_x = 1 / std::sqrt(1 + tangent_x * tangent_x), sin_x = tangent_x * cos_x;
+    const float cos_y = 1 / std::sqrt(1 + tangent_y * tangent_y), sin_y = tangent_y * cos_y;
+    planes_ = {{{Sum(cos_x, right, -sin_x, forward), 0},
+                {Sum(-cos_x, right, -sin_x, forward), 0},
+                {Sum(cos_y, up, -sin_y, forward), 0},
+                {Sum(-cos_y, up, -sin_y, forward), 0},
+                {Sum(-1, forward, 0, forward), -left.frustum_near}}};
+    for (Plane& plane : planes_) plane.offset += Dot(plane.normal, position);
   }
 
-  bool MaySee(const float* center, float radius) const {
-    const Vector p = From(center);
-    const Vector offset{p.x - position_.x, p.y - position_.y, p.z - position_.z};
-    const float depth = Dot(offset, forward_);
-    const float x = std::fabs(Dot(offset, right_));
-    const float y = std::fabs(Dot(offset, up_));
-    return depth > near_ - radius && x * cos_x_ - depth * sin_x_ < radius &&
-           y * cos_y_ - depth * sin_y_ < radius;
+  bool MaySee(const mjvGeom& geom) const {
+    for (const Plane& plane : planes_) {
+      const std::optional<float> reach = Reach(geom, plane.normal);
+      if (!reach) return true;
+      if (Dot(plane.normal, From(geom.pos)) - plane.offset > *reach) return false;
+    }
+    return true;
   }
 
  private:
-  Vector position_, forward_, up_, right_;
-  float near_, cos_x_, sin_x_, cos_y_, sin_y_;
+  struct Plane {
+    Vector normal;
+    float offset;  // of its points along the normal
+  };
+  std::array<Plane, 5> planes_;
 };
-
-// Radius of a sphere around the geom's centre that holds it, 0 = unknown.
-float BoundingRadius(const mjvGeom& geom) {
-  if (geom.type == mjGEOM_PLANE) return 0;
-  if (geom.modelrbound > 0) return geom.modelrbound;
-  // Sites carry no bound; the sum of the sizes bounds every shape a site can have.
-  if (geom.objtype == mjOBJ_SITE) return geom.size[0] + geom.size[1] + geom.size[2];
-  return 0;
-}
 
 }  // namespace
 
@@ -70,9 +93,7 @@ void RemoveUnseenGeoms(mjvScene* scene, float aspect) {
   int kept = 0;
   for (int i = 0; i < scene->ngeom; ++i) {
     const mjvGeom& geom = scene->geoms[i];
-    const float radius = BoundingRadius(geom);
-    const bool seen = geom.rgba[3] > 0 && (radius <= 0 || frustum.MaySee(geom.pos, radius));
-    if (!seen) continue;
+    if (geom.rgba[3] <= 0 || !frustum.MaySee(geom)) continue;
     if (kept != i) scene->geoms[kept] = geom;
     ++kept;
   }

@@ -5,8 +5,9 @@ struct mjvScene_;
 
 namespace shoal::worlds {
 
-// Removes geoms whose bounding sphere lies outside the view, and fully transparent ones, from a
-// scene whose camera is set. Planes and geoms without a known bound stay. The picture does not
+// Removes geoms that lie outside one of the view's planes, and fully transparent ones, from a scene
+// whose camera is set. Primitive shapes are bounded by what they are, others by their bounding
+// sphere; planes and geoms without a known bound stay. The picture does not
 // change as long as nothing casts shadows or reflects. `aspect`: width / height of the picture.
 void RemoveUnseenGeoms(mjvScene_* scene, float aspect);
 

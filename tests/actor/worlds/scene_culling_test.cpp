@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 #include <mujoco/mujoco.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <vector>
@@ -41,6 +42,7 @@ class SphereScene {
     geom.pos[1] = y;
     geom.pos[2] = z;
     geom.size[0] = geom.size[1] = geom.size[2] = geom.modelrbound = radius;
+    geom.mat[0] = geom.mat[4] = geom.mat[8] = 1;
     geom.rgba[3] = 1;
     return geom;
   }
@@ -104,6 +106,76 @@ TEST(SceneCulling, KeepsEveryGeomOfWhichAPointIsInView) {
   EXPECT_LT(seen.size(), size_t(in_view) + 50);
 }
 
+// A geom that is turned and as long as it is thin; points of the shape itself.
+struct Shape {
+  int type;
+  bool (*holds)(double x, double y,
+                double z);  // of sizes 0.1, 0.2, 1.5 (round ones: 0.1, 0.1, 1.5)
+};
+
+class CulledShape : public testing::TestWithParam<Shape> {};
+
+TEST_P(CulledShape, IsKeptWhereAPointIsInViewAndHardlyElsewhere) {
+  const Shape& shape = GetParam();
+  SphereScene scene;
+  Random random(4);
+  for (int i = 0; i < 400; ++i) {
+    mjvGeom& geom = scene.Add(float(random.Uniform(-3, 6)), float(random.Uniform(-5, 5)),
+                              float(random.Uniform(-4, 4)), 1.8f);
+    geom.type = shape.type;
+    geom.size[0] = 0.1f;
+    geom.size[1] = shape.type == mjGEOM_BOX || shape.type == mjGEOM_ELLIPSOID ? 0.2f : 0.1f;
+    geom.size[2] = 1.5f;
+    const double axis[] = {random.Uniform(-1, 1), random.Uniform(-1, 1), random.Uniform(-1, 1)};
+    double quaternion[4] = {random.Uniform(-1, 1), axis[0], axis[1], axis[2]}, matrix[9];
+    mju_normalize4(quaternion);
+    mju_quat2Mat(matrix, quaternion);
+    mju_n2f(geom.mat, matrix, 9);
+  }
+  std::vector<bool> kept(scene.geoms().size());
+  for (const int id : scene.Seen()) kept[size_t(id)] = true;
+  int in_view = 0, kept_in_vain = 0;
+  for (size_t i = 0; i < kept.size(); ++i) {
+    const mjvGeom& geom = scene.geoms()[i];
+    bool seen = false;
+    for (int draw = 0; draw < 3000 && !seen; ++draw) {
+      const double x = random.Uniform(-0.2, 0.2), y = random.Uniform(-0.2, 0.2);
+      const double z = random.Uniform(-1.6, 1.6);
+      if (!shape.holds(x, y, z)) continue;
+      float point[3];
+      for (int k = 0; k < 3; ++k) {
+        point[k] = geom.pos[k] + geom.mat[3 * k] * float(x) + geom.mat[3 * k + 1] * float(y) +
+                   geom.mat[3 * k + 2] * float(z);
+      }
+      seen = InView(point[0], point[1], point[2]);
+    }
+    in_view += seen;
+    kept_in_vain += kept[i] && !seen;
+    EXPECT_TRUE(kept[i] || !seen) << i;
+  }
+  EXPECT_GT(in_view, 60);
+  EXPECT_LT(kept_in_vain, in_view / 5);
+}
+
+bool InBox(double x, double y, double z) {
+  return std::fabs(x) <= 0.1 && std::fabs(y) <= 0.2 && std::fabs(z) <= 1.5;
+}
+bool InCylinder(double x, double y, double z) {
+  return std::hypot(x, y) <= 0.1 && std::fabs(z) <= 1.5;
+}
+bool InCapsule(double x, double y, double z) {
+  return std::hypot(x, y, std::max(0.0, std::fabs(z) - 1.5)) <= 0.1;
+}
+bool InEllipsoid(double x, double y, double z) {
+  return std::hypot(x / 0.1, y / 0.2, z / 1.5) <= 1;
+}
+
+INSTANTIATE_TEST_SUITE_P(SceneCulling, CulledShape,
+                         testing::Values(Shape{mjGEOM_BOX, InBox},
+                                         Shape{mjGEOM_CYLINDER, InCylinder},
+                                         Shape{mjGEOM_CAPSULE, InCapsule},
+                                         Shape{mjGEOM_ELLIPSOID, InEllipsoid}));
+
 TEST(SceneCulling, LeavesOutWhatIsBehindBesideOrInvisible) {
   SphereScene scene;
   scene.Add(-3, 0, 0, 1);
@@ -117,7 +189,9 @@ TEST(SceneCulling, LeavesOutWhatIsBehindBesideOrInvisible) {
 TEST(SceneCulling, KeepsPlanesAndWhatHasNoBound) {
   SphereScene scene;
   scene.Add(-3, 0, 0, 1).type = mjGEOM_PLANE;
-  scene.Add(-3, 0, 0, 1).modelrbound = 0;
+  mjvGeom& unbounded = scene.Add(-3, 0, 0, 1);
+  unbounded.type = mjGEOM_MESH;
+  unbounded.modelrbound = 0;
   EXPECT_EQ(scene.Seen(), (std::vector<int>{0, 1}));
 }
 
