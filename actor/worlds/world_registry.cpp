@@ -11,20 +11,25 @@ namespace {
 struct Registration {
   const char* name;
   std::unique_ptr<World> (*make)(const WorldOptions& options);
+  bool has_mujoco3 = false;  // physics besides mujoco2
 };
 
 constexpr Registration kWorlds[] = {
-    {"FetchReach", MakeFetchReach},
-    {"FetchPush", MakeFetchPush},
-    {"FetchSlide", MakeFetchSlide},
-    {"FetchPickAndPlace", MakeFetchPickAndPlace},
+    {"FetchReach", MakeFetchReach, true},
+    {"FetchPush", MakeFetchPush, true},
+    {"FetchSlide", MakeFetchSlide, true},
+    {"FetchPickAndPlace", MakeFetchPickAndPlace, true},
 };
 
 }  // namespace
 
 std::unique_ptr<World> MakeWorld(const std::string& name, const WorldOptions& options) {
   for (const Registration& world : kWorlds) {
-    if (name == world.name) return world.make(options);
+    if (name != world.name) continue;
+    if (options.physics != "mujoco2" && !world.has_mujoco3) {
+      throw UsageError("physics is '{}'; {} has mujoco2 only", options.physics, name);
+    }
+    return world.make(options);
   }
   CHECK(false) << "no physics half named " << name;
   return nullptr;

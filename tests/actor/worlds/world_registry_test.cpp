@@ -17,6 +17,18 @@ TEST(WorldRegistry, EveryTaskHasAPhysicsHalf) {
   }
 }
 
+TEST(WorldRegistry, OnlyFetchHasThePhysicsOfMujoco3) {
+  for (const std::string& name : tasks::TaskNames()) {
+    const std::string& world = tasks::FindTask(name).world();
+    const WorldOptions options{.model = "", .physics = "mujoco3"};
+    if (world.starts_with("Fetch")) {
+      EXPECT_NE(MakeWorld(world, options), nullptr) << name;
+    } else {
+      EXPECT_THROW(MakeWorld(world, options), Error) << name;
+    }
+  }
+}
+
 TEST(WorldRegistry, FindsCamerasByNameAndListsThemOtherwise) {
   const auto world = MakeWorld("FetchReach", {});
   for (const char* name : {"gymnasium", "close", "front", "side"}) {
