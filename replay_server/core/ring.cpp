@@ -95,7 +95,7 @@ uint64_t Ring::Append(uint32_t actor, uint64_t session, uint64_t prev, const uin
   // From here until the commit word is back the slot belongs to nobody. The process may be killed
   // between any two stores, so the compiler must keep their order: hence the fence.
   CommitWord(slot).store(0, std::memory_order_relaxed);
-  std::atomic_thread_fence(std::memory_order_seq_cst);
+  std::atomic_signal_fence(std::memory_order_seq_cst);
   if (id > geometry_.capacity) oldest_id_ = std::max(oldest_id_, id - geometry_.capacity + 1);
   slot->id = id;
   slot->prev = prev;

@@ -91,7 +91,7 @@ void SessionTable::Update(int i, const SessionCounters& counters) {
   SessionCopy& copy = storage_[index].copies[version % 2];
   const std::atomic_ref<uint64_t> check(copy.check);
   check.store(0, std::memory_order_relaxed);
-  std::atomic_thread_fence(std::memory_order_seq_cst);  // the writer may die between any two stores
+  std::atomic_signal_fence(std::memory_order_seq_cst);  // the writer may die between any two stores
   copy.version = version;
   copy.session = counters.session;
   copy.actor = counters.actor;
