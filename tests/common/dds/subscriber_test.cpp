@@ -146,7 +146,9 @@ TEST_F(SubscriberTest, ControlOfAnUnknownStateIsCountedNotDelivered) {
   const Subscriber<ControlMessage> subscriber(*bus_, [&](const ControlMessage&) { ++delivered; });
   RawWriter writer(address_.domain, &shoal_idl_Control_desc, "control",
                    DDS_DATA_REPRESENTATION_XCDR2);
-  const shoal_idl_Control control{1, 77, 1.0};
+  shoal_idl_Control control{};
+  control.epoch = 1;
+  control.state = 77;
   writer.Write(&control);
   EXPECT_EQ(delivered, 0);
   EXPECT_EQ(subscriber.Malformed(), 1u);
