@@ -7,6 +7,7 @@
 #include "common/dds/dds_log.h"
 #include "common/dds/domain_xml.h"
 #include "common/dds/host_network.h"
+#include "common/dds/steady_waits.h"
 // clang-format off
 #include "common/dds/bus_impl.h"
 // clang-format on
@@ -80,6 +81,7 @@ Bus::Bus(const ClusterAddress& address, const TransportConfig& asked, Role role)
   CheckAddress(address, asked, role);
   const TransportConfig transport = ResolveInterface(address, asked);
   RouteDdsLog();
+  RequireSteadyWaits();
   const std::string xml = DomainTemplate();
   if (role != Role::kClient) {
     Join(xml, address, transport, role, Plane::kMain, &impl_->main_domain,
