@@ -9,11 +9,13 @@
 namespace shoal::replay {
 namespace {
 
-RingOptions OptionsOfRing(const Config& config, const std::filesystem::path& folder) {
+RingOptions OptionsOfRing(const Config& config, const std::filesystem::path& folder,
+                          uint64_t steps_before) {
   RingOptions options;
   if (config.replay.storage == "file") options.file = folder / kRingFile;
   options.capacity = static_cast<uint64_t>(config.replay.capacity);
   options.run = config.run_name;
+  options.steps_before = steps_before;
   return options;
 }
 
@@ -44,12 +46,12 @@ LimiterOptions OptionsOfLimiter(const Config& config) {
 }  // namespace
 
 ReplayCore::ReplayCore(const RunConfig& run, const std::filesystem::path& folder,
-                       uint64_t replay_session)
+                       uint64_t replay_session, uint64_t steps_before)
     : run_(run),
       spec_hash_(run.spec.Hash()),
       replay_session_(replay_session),
       batch_layout_(run.spec, run.config.learner.batch),
-      ring_(run.spec, OptionsOfRing(run.config, folder)),
+      ring_(run.spec, OptionsOfRing(run.config, folder, steps_before)),
       sessions_(ring_.sessions()),
       index_(ring_, run.spec.stack),
       intake_(spec_hash_, &ring_, &sessions_, &index_),

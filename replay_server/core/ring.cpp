@@ -6,6 +6,7 @@
 
 #include "common/base/check.h"
 #include "common/base/error.h"
+#include "replay_server/core/frame_check.h"
 #include "replay_server/core/ring_recovery.h"
 
 namespace shoal::replay {
@@ -54,8 +55,10 @@ Ring::Ring(const ObservationSpec& spec, uint64_t capacity, Mapping mapping)
 Ring::Ring(const ObservationSpec& spec, const RingOptions& options)
     : layout_(spec), geometry_(spec, options.capacity) {
   CHECK(options.capacity > 0);
+  CHECK(options.steps_before == 0 || options.file.empty());
   if (!Exists(options.file)) {
     mapping_ = MakeRing(spec, options);
+    stored_steps_ = options.steps_before;
     return;
   }
   const std::string name = options.file.string();
@@ -103,7 +106,8 @@ uint64_t Ring::Append(uint32_t actor, uint64_t session, uint64_t prev, const uin
   slot->steps = stored_steps_ + (is_step ? 1 : 0);
   slot->actor = actor;
   slot->reserved = 0;
-  slot->reserved_words[0] = slot->reserved_words[1] = 0;
+  slot->frame_check = FrameCheck(FrameOf(geometry_, record));
+  slot->reserved_word = 0;
   auto* stored = reinterpret_cast<uint8_t*>(slot + 1);
   std::memcpy(stored, record, geometry_.record_bytes);
   CommitWord(slot).store(SlotCommit(geometry_, *slot, stored), std::memory_order_release);

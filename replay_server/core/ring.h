@@ -19,6 +19,9 @@ struct RingOptions {
   std::filesystem::path file;  // empty: anonymous memory, nothing survives
   uint64_t capacity = 0;       // records
   std::string run;             // stored in the file for people
+  // Step records that earlier servers of the run stored, in memory that is gone; not for a file,
+  // which tells.
+  uint64_t steps_before = 0;
 };
 
 class Ring {

@@ -1,4 +1,4 @@
-// The ring file, version 1. All little-endian.
+// The ring file, version 2. All little-endian.
 //
 //   RingHeader, padded to 4096 bytes
 //   StoredSession[kMaxSessions]          accounting per (actor, session); two copies each
@@ -8,18 +8,19 @@
 // the newest `capacity` records.
 //
 // What survives: the death of the writing process at any instant (the pages belong to the kernel).
-// Not a power failure: nothing is synced. The commit word covers the slot header and the record
-// without its frame, so that recovery need not read the pixels; a damaged pixel goes unnoticed.
+// Not a power failure: nothing is synced. The commit word covers the slot header, with the frame's
+// check word in it, and the record before its frame: a flipped bit anywhere in a record is noticed.
 #pragma once
 
 #include <cstdint>
+#include <span>
 
 #include "common/spec/record.h"
 
 namespace shoal::replay {
 
 inline constexpr char kRingMagic[8] = {'S', 'H', 'O', 'A', 'L', 'R', 'N', 'G'};
-inline constexpr uint32_t kRingVersion = 1;
+inline constexpr uint32_t kRingVersion = 2;
 inline constexpr uint32_t kMaxSessions = 4096;
 inline constexpr uint64_t kRingHeaderBytes = 4096;
 
@@ -63,14 +64,15 @@ struct SlotHeader {
   uint64_t steps;    // step records stored up to and with this one, over the whole run
   uint32_t actor;
   uint32_t reserved;
-  uint64_t reserved_words[2];
+  uint64_t frame_check;  // FrameCheck of the record's frame
+  uint64_t reserved_word;
 };
 static_assert(sizeof(SlotHeader) == 64);
 
 // Sizes and offsets of a ring. A value type.
 struct RingGeometry {
   uint64_t record_bytes = 0;
-  uint64_t prefix_bytes = 0;  // of a record before its frame: what the commit word covers
+  uint64_t prefix_bytes = 0;  // of a record before its frame: what the commit word covers itself
   uint64_t capacity = 0;
 
   RingGeometry() = default;
@@ -86,6 +88,11 @@ struct RingGeometry {
   }
   uint64_t total_bytes() const { return slots_offset() + capacity * slot_bytes(); }
 };
+
+// The frame of a stored record.
+inline std::span<const uint8_t> FrameOf(const RingGeometry& geometry, const uint8_t* record) {
+  return {record + geometry.prefix_bytes, geometry.record_bytes - geometry.prefix_bytes};
+}
 
 // The commit word of a slot: never 0.
 uint64_t SlotCommit(const RingGeometry& geometry, const SlotHeader& slot, const uint8_t* record);

@@ -6,6 +6,7 @@
 
 #include "common/base/error.h"
 #include "common/base/random.h"
+#include "replay_server/core/frame_check.h"
 
 namespace shoal::replay {
 namespace {
@@ -70,7 +71,8 @@ uint64_t CheckRingHeader(const Mapping& mapping, const ObservationSpec& spec,
 bool SlotIntact(const Mapping& mapping, const RingGeometry& geometry, uint64_t slot) {
   const SlotHeader& header = SlotAt(mapping, geometry, slot);
   const auto* record = reinterpret_cast<const uint8_t*>(&header + 1);
-  return header.commit != 0 && header.commit == SlotCommit(geometry, header, record);
+  return header.commit != 0 && header.commit == SlotCommit(geometry, header, record) &&
+         header.frame_check == FrameCheck(FrameOf(geometry, record));
 }
 
 RingExtent ScanRing(const Mapping& mapping, const RingGeometry& geometry, const std::string& name) {

@@ -28,7 +28,7 @@ RingExtent ScanRing(const Mapping& mapping, const RingGeometry& geometry, const 
 // The same while another process writes: takes what is there, never throws.
 RingExtent ScanLiveRing(const Mapping& mapping, const RingGeometry& geometry);
 
-// The slot's commit word fits its content.
+// The slot's commit word and frame check fit its content.
 bool SlotIntact(const Mapping& mapping, const RingGeometry& geometry, uint64_t slot);
 
 }  // namespace shoal::replay

@@ -11,9 +11,12 @@ namespace shoal::replay {
 
 inline constexpr char kAccountingFile[] = "accounting.json";
 
-// {schema, sessions: [{actor, session, highest, stored, rejected, after_gap, lost, duplicates}]}
-// with highest = stored + rejected + after_gap + lost.
-std::string AccountingJson(const SessionTable& sessions);
+// {schema, stored_steps, sessions: [{actor, session, highest, stored, rejected, after_gap, lost,
+// duplicates}]} with highest = stored + rejected + after_gap + lost.
+std::string AccountingJson(const SessionTable& sessions, uint64_t stored_steps);
+
+// The stored_steps that an earlier server of the run left; 0 when there was none. Throws Error.
+uint64_t StoredStepsBefore(const std::filesystem::path& run);
 
 // Replaces the file: readers see the old one or the new one. Not synced, so that a busy disk does
 // not hold up the caller; WriteFileAtomically (common/base/files.h) is for the last one. Throws

@@ -49,6 +49,20 @@ class DdsShardWriter : public ShardWriter {
   dds::Publisher<BatchShard> publisher_;
 };
 
+// Steps that earlier servers of the run kept in memory; a file of the ring tells by itself.
+uint64_t StepsInMemoryThatIsGone(const std::filesystem::path& folder) {
+  const Config config = ReadRunConfig(folder).config;
+  if (config.replay.storage != "memory") return 0;
+  const uint64_t steps = StoredStepsBefore(folder);
+  if (steps > 0) {
+    log::Warning(
+        "replay.storage=memory: the {} env steps stored by earlier servers are gone; refilling to "
+        "{} sampleable transitions (replay.min_size) before training goes on",
+        steps, config.replay.min_size);
+  }
+  return steps;
+}
+
 // Members are in construction order; destruction, the reverse, ends the receive threads' callbacks
 // and the sender before what they use.
 class ReplayService {
@@ -56,7 +70,8 @@ class ReplayService {
   ReplayService(const std::filesystem::path& folder, const dds::Reach& reach)
       : folder_(folder),
         member_(folder),
-        core_(ReadRunConfig(folder), folder, NextSession(folder, "replay-0", WallTimeNs())),
+        core_(ReadRunConfig(folder), folder, NextSession(folder, "replay-0", WallTimeNs()),
+              StepsInMemoryThatIsGone(folder)),
         control_(Now()),
         inbox_(SpecHash(), ChunkBytes(), MaxChunks()),
         problems_(SpecHash()),
@@ -186,7 +201,8 @@ class ReplayService {
     metrics_publisher_.Write(report_.Make(state, seconds_, &ages_));
     problems_.Report(Now(), core_.counters(), inbox_.DroppedChunks());
     try {
-      ReplaceFile(folder_ / kAccountingFile, AccountingJson(core_.sessions()));
+      ReplaceFile(folder_ / kAccountingFile,
+                  AccountingJson(core_.sessions(), core_.ring().stored_steps()));
     } catch (const Error& e) {
       // The run goes on; the next second tries again, and Finish() insists.
       log::Warning("{}", e.what());
@@ -207,7 +223,8 @@ class ReplayService {
     Take(inbox_.Wait(Now()));
     Publish(core_.TakeCredits(/*changed_only=*/false));
     metrics_publisher_.Write(report_.Make("stopping", seconds_, &ages_));
-    WriteFileAtomically(folder_ / kAccountingFile, AccountingJson(core_.sessions()));
+    WriteFileAtomically(folder_ / kAccountingFile,
+                        AccountingJson(core_.sessions(), core_.ring().stored_steps()));
     metrics_publisher_.WaitForAcks(milliseconds(500));
     credit_publisher_.WaitForAcks(milliseconds(500));
     log::Info("stopped: {} records of the run stored, {} batches drawn", core_.ring().last_id(),

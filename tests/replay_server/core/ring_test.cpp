@@ -140,7 +140,7 @@ TEST_F(RingTest, RefusesAFileOfAnotherSpecCapacityOrVersion) {
   larger.capacity = 17;
   EXPECT_THAT(Refusal(spec_, larger), HasSubstr("room for 16 records, replay.capacity is 17"));
   FlipBit(offsetof(RingHeader, version));
-  EXPECT_THAT(Refusal(), HasSubstr("version 5, this program reads version 1"));
+  EXPECT_THAT(Refusal(), HasSubstr("version 6, this program reads version 2"));
 }
 
 TEST_F(RingTest, RefusesTruncatedFilesAndGarbage) {
@@ -156,7 +156,7 @@ TEST_F(RingTest, RefusesTruncatedFilesAndGarbage) {
   EXPECT_THAT(Refusal(), HasSubstr("is not a replay file"));
 }
 
-TEST_F(RingTest, RefusesAFileWithAFlippedBitAnywhereButInPixels) {
+TEST_F(RingTest, RefusesAFileWithAFlippedBitAnywhereInItsRecords) {
   WriteRing(20);
   const std::string intact = ReadFile(file_);
   ASSERT_EQ(Refusal(), "");
@@ -164,7 +164,7 @@ TEST_F(RingTest, RefusesAFileWithAFlippedBitAnywhereButInPixels) {
   for (uint64_t i = 0; i < sizeof(RingHeader); i += 5) offsets.push_back(i);
   for (uint64_t slot = 0; slot < kCapacity; ++slot) {
     const uint64_t start = geometry_.slots_offset() + slot * geometry_.slot_bytes();
-    for (uint64_t i = 0; i < sizeof(SlotHeader) + geometry_.prefix_bytes; i += 13) {
+    for (uint64_t i = 0; i < sizeof(SlotHeader) + geometry_.record_bytes; i += 13) {
       offsets.push_back(start + i);
     }
   }
@@ -222,6 +222,15 @@ TEST_F(RingTest, AFullDiskIsAClearErrorAndLeavesNothing) {
 TEST_F(RingTest, MoreMemoryThanThereIsIsAClearError) {
   const RingOptions options = {.file = {}, .capacity = uint64_t{1} << 40, .run = ""};
   EXPECT_THAT(Refusal(spec_, options), HasSubstr("set replay.storage=file"));
+}
+
+TEST_F(RingTest, InMemoryTheCountOfStepsGoesOnWhereEarlierServersWere) {
+  Ring ring(spec_, {.file = {}, .capacity = kCapacity, .run = "", .steps_before = 500});
+  EXPECT_EQ(ring.stored_steps(), 500u);
+  EXPECT_EQ(ring.last_id(), 0u) << "the records are gone";
+  const auto record = MakeRecord(spec_, 0, 0, 0, 1, 1);
+  ring.Append(0, 1, 0, record.data());
+  EXPECT_EQ(ring.stored_steps(), 501u);
 }
 
 TEST_F(RingTest, AFolderThatIsNotThereIsAClearError) {
