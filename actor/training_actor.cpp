@@ -4,7 +4,6 @@
 
 #include "actor/actor_lock.h"
 #include "actor/credit_inbox.h"
-#include "actor/environments.h"
 #include "actor/rollout.h"
 #include "common/base/error.h"
 #include "common/base/log.h"
@@ -53,7 +52,8 @@ ChunkWindow::Options WindowOptions(const RunConfig& run, uint32_t id, uint64_t s
 // before the inboxes they write to.
 class TrainingActor {
  public:
-  TrainingActor(const std::filesystem::path& folder, uint32_t id, const dds::Reach& reach)
+  TrainingActor(const std::filesystem::path& folder, uint32_t id, const dds::Reach& reach,
+                const EnvironmentFactory& make)
       : member_(folder),
         run_(ReadRunConfig(folder)),
         lock_(folder, id, kLockDeadline, StopRequested),
@@ -62,8 +62,8 @@ class TrainingActor {
         made_(folder, id, session_, first_env_, static_cast<uint32_t>(run_.config.envs_per_actor)),
         window_(WindowOptions(run_, id, session_)),
         selector_(run_.config, run_.spec, run_.config.envs_per_actor),
-        rollout_(run_.config, run_.spec, MakeEnvironments(run_, run_.config.envs_per_actor),
-                 first_env_, made_, window_, selector_),
+        rollout_(run_.config, run_.spec, make(run_, run_.config.envs_per_actor), first_env_, made_,
+                 window_, selector_),
         report_("actor", id),
         credits_(id, session_),
         weights_(run_.spec.Hash()),
@@ -186,7 +186,8 @@ class TrainingActor {
   bool Drain() {
     window_.Flush();
     const SteadyTime start = Now();
-    while (window_.Outstanding() > 0 && Now() - start < kDrainDeadline && StopRequests() < 2) {
+    const int asked = StopRequests();  // asked once more: at once
+    while (window_.Outstanding() > 0 && Now() - start < kDrainDeadline && StopRequests() == asked) {
       Exchange(Now() + kBlockedWait);
       Report("draining");
     }
@@ -272,8 +273,9 @@ class TrainingActor {
 
 }  // namespace
 
-int RunTrainingActor(const std::filesystem::path& run, uint32_t id, const dds::Reach& reach) {
-  return TrainingActor(run, id, reach).Run();
+int RunTrainingActor(const std::filesystem::path& run, uint32_t id, const dds::Reach& reach,
+                     const EnvironmentFactory& make) {
+  return TrainingActor(run, id, reach, make).Run();
 }
 
 }  // namespace shoal::actor

@@ -6,14 +6,12 @@ namespace shoal {
 namespace {
 
 std::atomic<int> requests{0};
+std::atomic<bool> hung_up{false};
 static_assert(std::atomic<int>::is_always_lock_free, "used in a signal handler");
 
 void OnSignal(int) { RequestStop(); }
 
-void OnHangUp(int) {
-  int none = 0;
-  requests.compare_exchange_strong(none, 1, std::memory_order_relaxed);
-}
+void OnHangUp(int) { hung_up.store(true, std::memory_order_relaxed); }
 
 }  // namespace
 
@@ -33,7 +31,9 @@ void InstallStopSignals() {
 }
 
 void RequestStop() { requests.fetch_add(1, std::memory_order_relaxed); }
-bool StopRequested() { return StopRequests() > 0; }
+bool StopRequested() {
+  return StopRequests() > 0 || hung_up.load(std::memory_order_relaxed);
+}
 int StopRequests() { return requests.load(std::memory_order_relaxed); }
 
 }  // namespace shoal

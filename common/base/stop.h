@@ -7,13 +7,13 @@
 namespace shoal {
 
 // Installs handlers for SIGINT and SIGTERM that call RequestStop, for SIGHUP (unless it is ignored,
-// as under nohup), and ignores SIGPIPE. SIGHUP asks for a stop but never for haste: the kernel
-// sends a parent's death once per thread that the parent had.
+// as under nohup), and ignores SIGPIPE. SIGHUP asks for a stop but is not counted, so that it
+// never means haste: the kernel sends a parent's death once per thread that the parent had.
 void InstallStopSignals();
 // Async-signal-safe.
 void RequestStop();
 bool StopRequested();
-// How many times a stop was asked for: a second Ctrl-C means "now".
+// How many times a stop was asked for but by SIGHUP: a second Ctrl-C means "now".
 int StopRequests();
 
 }  // namespace shoal

@@ -8,21 +8,22 @@
 namespace shoal {
 namespace {
 
-// Exit code of a fresh process: the stop requests counted after the signals.
+// Exit code of a fresh process: the stop requests counted after the signals, 100 more when a stop
+// is requested at all.
 void CountRequests(std::initializer_list<int> signals) {
   InstallStopSignals();
   for (const int signal : signals) raise(signal);
-  _exit(StopRequests());
+  _exit(StopRequests() + (StopRequested() ? 100 : 0));
 }
 
 TEST(Stop, EachCtrlCCounts) {
   EXPECT_EXIT(CountRequests({}), testing::ExitedWithCode(0), "");
-  EXPECT_EXIT(CountRequests({SIGINT, SIGINT, SIGTERM}), testing::ExitedWithCode(3), "");
+  EXPECT_EXIT(CountRequests({SIGINT, SIGINT, SIGTERM}), testing::ExitedWithCode(103), "");
 }
 
 TEST(Stop, AHangUpAsksForAStopButNeverForHaste) {
-  EXPECT_EXIT(CountRequests({SIGHUP, SIGHUP, SIGHUP}), testing::ExitedWithCode(1), "");
-  EXPECT_EXIT(CountRequests({SIGINT, SIGHUP}), testing::ExitedWithCode(1), "");
+  EXPECT_EXIT(CountRequests({SIGHUP, SIGHUP, SIGHUP}), testing::ExitedWithCode(100), "");
+  EXPECT_EXIT(CountRequests({SIGINT, SIGHUP}), testing::ExitedWithCode(101), "");
 }
 
 TEST(Stop, AnIgnoredHangUpStaysIgnored) {
