@@ -155,7 +155,10 @@ void Coordinator::Impl::Stop() {
   if (meta.exit == "target") progress.Say("target reached: stopping in order");
   if (meta.exit == "budget") progress.Say("budget of env steps spent: stopping in order");
   stops_before_end = StopRequests();
-  StopInOrder(supervisor, StopDeadlines(),
+  StopDeadlines deadlines;
+  // Without a replay nothing can be stored any more.
+  if (supervisor.Running("replay") == 0) deadlines.drain = milliseconds(0);
+  StopInOrder(supervisor, deadlines,
               {.announce =
                    [this](RunState state) {
                      order.state = state;

@@ -1,4 +1,7 @@
-// metrics.jsonl: one line per process and second, {t, role, id, state, pid, NAME: value, ...}.
+// metrics.jsonl: {t, role, id, host, pid, state, NAME: value, ...} per line. A line per process and
+// second for the first minutes; then each process gets one as often as keeps the file within its
+// hourly budget, whatever the number of processes. The first report of a process and its last words
+// (state "stopping") are always written. Figures have six significant digits, counts all of theirs.
 #pragma once
 
 #include <chrono>
@@ -13,9 +16,9 @@
 namespace shoal::launch {
 
 struct MetricsLogLimits {
-  uint64_t thin_bytes = 128'000'000;  // from here on a line per process every `thin_seconds`
-  uint64_t most_bytes = 256'000'000;  // nothing is written beyond
-  double thin_seconds = 10;
+  uint64_t burst_bytes = 1'500'000;     // every report is written until here
+  uint64_t bytes_per_hour = 3'000'000;  // beyond
+  uint64_t most_bytes = 256'000'000;    // nothing is written beyond this
 };
 
 // Appends to the file, so that a resumed run goes on in it. One thread.
@@ -34,7 +37,14 @@ class MetricsLog {
   const MetricsLogLimits limits_;
   uint64_t bytes_ = 0, left_out_ = 0;
   bool failed_ = false;
-  std::map<std::pair<std::string, uint32_t>, double> last_;  // time of each process's last line
+  struct Last {  // line of a process
+    double time = 0;
+    int32_t pid = 0;
+    size_t bytes = 0;
+  };
+  bool Due(const MetricsMessage& message, const Last& last) const;
+
+  std::map<std::pair<std::string, uint32_t>, Last> last_;
 };
 
 }  // namespace shoal::launch

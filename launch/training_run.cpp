@@ -1,7 +1,10 @@
 #include "launch/training_run.h"
 
 #include <fmt/core.h>
+#include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "common/base/clock.h"
@@ -17,6 +20,8 @@
 #include "launch/run_folder.h"
 #include "launch/run_hosts.h"
 #include "launch/run_leftovers.h"
+#include "replay_server/core/ring_format.h"
+#include "replay_server/core/storage_limits.h"
 
 namespace shoal::launch {
 namespace {
@@ -65,8 +70,35 @@ PreparedRun PrepareResumed(const TrainOptions& options) {
   }
   RunMeta meta = ReadRunMeta(folder.path());
   if (meta.started.empty()) meta.started = UtcTimestamp();
+  if (config.config.replay.storage == "memory" && meta.env_steps > 0) {
+    fmt::print(
+        "replay.storage=memory: what was stored is gone; training goes on once the replay has been "
+        "refilled to {} sampleable transitions (replay.min_size)\n",
+        config.config.replay.min_size);
+  }
   Hosts hosts = ResumedHosts(options, folder.path(), config.config);
   return {std::move(folder), std::move(config), meta, std::move(hosts)};
+}
+
+// Asked before anything is made or started. A run that exists has its ring.
+void CheckReplayRoom(const RunConfig& run, bool exists) {
+  const Config& config = run.config;
+  const replay::RingGeometry geometry(run.spec, static_cast<uint64_t>(config.replay.capacity));
+  if (config.replay.storage == "memory") {
+    replay::CheckMemoryRoom(geometry.total_bytes());
+  } else if (!exists) {
+    std::error_code error;
+    std::filesystem::path folder = std::filesystem::absolute(config.run_dir);
+    while (!std::filesystem::exists(folder, error) && folder.has_relative_path()) {
+      folder = folder.parent_path();
+    }
+    if (access(folder.c_str(), W_OK) != 0) {
+      throw RuntimeError("cannot create folder '{}': {}",
+                         (std::filesystem::path(config.run_dir) / config.run_name).string(),
+                         std::strerror(errno));
+    }
+    replay::CheckDiskRoom(folder, geometry.total_bytes());
+  }
 }
 
 void PrintStart(const PreparedRun& run, const ClusterAddress& address) {
@@ -127,6 +159,7 @@ int RunTraining(const TrainOptions& options) {
     PreparedRun run = PrepareResumed(options);
     if (options.print_config) fmt::print("{}\n", ToJson(run.config.config).dump(2));
     if (options.print_config) return 0;
+    CheckReplayRoom(run.config, /*exists=*/true);
     CheckHosts(run.hosts, StopRequested);
     if (options.dry_run) return 0;
     address.host = ServersHost(run.hosts);
@@ -144,6 +177,7 @@ int RunTraining(const TrainOptions& options) {
     return 0;
   }
   config.spec = DescribeObservations(config.config);
+  CheckReplayRoom(config, /*exists=*/false);
   CheckHosts(hosts, StopRequested);
   address.host = ServersHost(hosts);
   // Claimed before the folder is made, so that a failure leaves nothing half-written.

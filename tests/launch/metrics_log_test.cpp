@@ -47,27 +47,65 @@ TEST(MetricsLog, WritesOneObjectPerLineAndAppends) {
   EXPECT_TRUE(lines[1]["env_steps"].is_null());
 }
 
-TEST(MetricsLog, ThinsOutWhenLongAndStopsWhenFull) {
+TEST(MetricsLog, KeepsCountsExactAndRoundsOtherFigures) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "metrics.jsonl";
-  MetricsLog log(file, {.thin_bytes = 200, .most_bytes = 400, .thin_seconds = 10});
-  bool complained = false;
-  for (int second = 0; second < 200; ++second) complained |= !log.Write(Report(second));
+  MetricsLog log(file, {});
+  log.Write(Report(1'795'252'995.7923207, 123'456'789'012));
+  log.Write(Report(1'795'252'996.7923207, 9444.184449640406));
+  log.Write(Report(1'795'252'997.7923207, -1.25e-9));
   const auto lines = Lines(file);
-  ASSERT_GE(lines.size(), 4u);
-  EXPECT_EQ(lines[1]["t"].get<double>() - lines[0]["t"].get<double>(), 1);
-  EXPECT_EQ(lines.back()["t"].get<double>() - lines[lines.size() - 2]["t"].get<double>(), 10);
-  EXPECT_LE(std::filesystem::file_size(file), 400u);
-  EXPECT_TRUE(complained);
-  EXPECT_EQ(log.lines_left_out() + lines.size(), 200u);
+  ASSERT_EQ(lines.size(), 3u);
+  EXPECT_EQ(lines[0]["t"], 1'795'252'995.792);
+  EXPECT_EQ(lines[0]["env_steps"], 123'456'789'012);
+  EXPECT_EQ(lines[1]["env_steps"], 9444.18);
+  EXPECT_EQ(lines[2]["env_steps"], -1.25e-9);
 }
 
-TEST(MetricsLog, ComplainsOnce) {
+// Reports of three processes every second for `hours`; bytes of the file.
+uint64_t BytesAfter(double hours) {
   const TemporaryFolder folder;
-  MetricsLog log(folder.path() / "metrics.jsonl",
-                 {.thin_bytes = 1000, .most_bytes = 10, .thin_seconds = 10});
-  EXPECT_FALSE(log.Write(Report(1)));
-  EXPECT_TRUE(log.Write(Report(2)));
+  const auto file = folder.path() / "metrics.jsonl";
+  MetricsLog log(file, {.burst_bytes = 20'000, .bytes_per_hour = 40'000, .most_bytes = 1'000'000});
+  for (int second = 0; second < static_cast<int>(3600 * hours); ++second) {
+    for (uint32_t id = 0; id < 3; ++id) {
+      MetricsMessage report = Report(second);
+      report.id = id;
+      EXPECT_TRUE(log.Write(report));
+    }
+  }
+  return std::filesystem::file_size(file);
+}
+
+TEST(MetricsLog, AnHourCostsItsBudgetWhateverTheProcessesSay) {
+  EXPECT_LE(BytesAfter(1), 61'000u);
+  EXPECT_GE(BytesAfter(1), 50'000u);
+  EXPECT_LE(BytesAfter(3), 141'000u);
+}
+
+TEST(MetricsLog, AlwaysWritesTheFirstReportOfAProcessAndItsLastWords) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "metrics.jsonl";
+  MetricsLog log(file, {.burst_bytes = 0, .bytes_per_hour = 1, .most_bytes = 100'000});
+  MetricsMessage report = Report(1);
+  for (int i = 0; i < 5; ++i) log.Write(report);
+  report.state = "stopping";
+  log.Write(report);
+  report.pid = 78;
+  log.Write(report);
+  EXPECT_EQ(Lines(file).size(), 3u);
+  EXPECT_EQ(log.lines_left_out(), 4u);
+}
+
+TEST(MetricsLog, StopsWhenFullAndComplainsOnce) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "metrics.jsonl";
+  MetricsLog log(file, {.most_bytes = 400});
+  int complaints = 0;
+  for (int second = 0; second < 20; ++second) complaints += !log.Write(Report(second));
+  EXPECT_EQ(complaints, 1);
+  EXPECT_LE(std::filesystem::file_size(file), 400u);
+  EXPECT_GE(Lines(file).size(), 3u);
 }
 
 TEST(MetricsLog, NamesAFileThatCannotBeOpened) {
