@@ -2,6 +2,7 @@
 #pragma once
 
 #include <chrono>
+#include <csignal>
 #include <string>
 #include <thread>
 #include <vector>
@@ -15,9 +16,12 @@ namespace shoal {
 
 class RunningTraining {
  public:
+  using Environment = std::vector<std::pair<std::string, std::string>>;
+
   // Starts `shoal train` with the words of TrainingRun::Command (or of a resume).
-  RunningTraining(const TrainingRun& run, std::vector<std::string> command)
-      : run_(run), reports_(run.path()), child_(Spec(run, std::move(command))) {}
+  RunningTraining(const TrainingRun& run, std::vector<std::string> command,
+                  const Environment& environment = {})
+      : run_(run), reports_(run.path()), child_(Spec(run, std::move(command), environment)) {}
 
   pid_t pid() const { return child_.pid(); }
   ReportReader& reports() { return reports_; }
@@ -34,6 +38,8 @@ class RunningTraining {
                 .is_null();
   }
 
+  // Ctrl-C.
+  void Interrupt() { child_.Signal(SIGINT); }
   // Waits for the end; exit code, or -1 when it was killed or did not end.
   int End(std::chrono::seconds deadline) {
     const SteadyTime end = Now() + deadline;
@@ -50,12 +56,14 @@ class RunningTraining {
   static std::filesystem::path OutputFile(const TrainingRun& run) {
     return run.parent() / "output";
   }
-  static launch::ProcessSpec Spec(const TrainingRun& run, std::vector<std::string> command) {
+  static launch::ProcessSpec Spec(const TrainingRun& run, std::vector<std::string> command,
+                                  const Environment& environment) {
     launch::ProcessSpec spec;
     spec.role = "train";
     spec.command = std::move(command);
     spec.command[0] = std::string(SHOAL_BIN) + "/shoal";
     spec.output = OutputFile(run);
+    spec.environment = environment;
     return spec;
   }
   static int64_t Stored(const nlohmann::json& report) {

@@ -1,0 +1,53 @@
+// The wall clock is set back and forth under a run in which processes die: it goes on.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include "tests/support/running_training.h"
+
+namespace shoal {
+namespace {
+
+using nlohmann::json;
+using std::chrono::seconds;
+
+void KillAndWaitForSuccessor(RunningTraining* training, const std::string& role) {
+  const pid_t victim = training->reports().Last(role).at("pid").get<pid_t>();
+  ASSERT_EQ(kill(victim, SIGKILL), 0) << role;
+  const json after =
+      training->reports().WaitFor(role, [&](const json& r) { return r.at("pid") != victim; });
+  ASSERT_FALSE(after.is_null()) << role << ": " << training->Output();
+}
+
+TEST(Clock, ARunGoesOnWhileItIsSetBackAndForth) {
+  const TrainingRun run;
+  const std::filesystem::path skew = run.parent() / "skew";
+  const auto set_clock = [&](int offset) { WriteFileAtomically(skew, std::to_string(offset)); };
+  set_clock(0);
+  RunningTraining training(
+      run, run.Command({{"env_steps", "1000000"}, {"actors", "1"}, {"eval.final_episodes", "0"}}),
+      {{"LD_PRELOAD", SHOAL_SKEWED_CLOCK}, {"SHOAL_CLOCK_SKEW", skew.string()}});
+  ASSERT_TRUE(training.WaitForSteps(1500)) << training.Output();
+  const double before = training.reports().Last("replay").at("t");
+  for (const int offset : {-3600, 7200}) {
+    set_clock(offset);
+    ASSERT_TRUE(training.WaitForMoreSteps(500)) << training.Output();
+    for (const char* role : {"actor", "replay", "learner"}) {
+      KillAndWaitForSuccessor(&training, role);
+      ASSERT_TRUE(training.WaitForMoreSteps(500)) << role << ": " << training.Output();
+    }
+    const double updates = training.reports().Last("learner").at("updates");
+    EXPECT_FALSE(
+        training.reports()
+            .WaitFor("learner", [&](const json& r) { return r.at("updates") > updates + 10; })
+            .is_null())
+        << training.Output();
+  }
+  const double after = training.reports().Last("replay").at("t");
+  EXPECT_GT(after - before, 7000) << "the clock of the processes was not set";
+  training.Interrupt();
+  ASSERT_EQ(training.End(seconds(120)), 0) << training.Output();
+  ExpectBalanced(run.Json("meta.json"));
+}
+
+}  // namespace
+}  // namespace shoal

@@ -1,0 +1,167 @@
+// What the machine can do to a run: no room, no permission, no port, little memory. Each gets one
+// clear line, and what was whole before stays whole.
+#include <arpa/inet.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/support/isolation.h"
+#include "tests/support/running_training.h"
+
+namespace shoal {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::seconds;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+#define SHOAL_NEEDS(expression) \
+  if (const std::string no = (expression); !no.empty()) GTEST_SKIP() << no
+
+// The only line on stderr.
+void ExpectOneErrorLine(const ProgramResult& result, const auto& matcher) {
+  EXPECT_EQ(ExitCode(result), 1) << result.out << result.err;
+  EXPECT_THAT(result.err, matcher);
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+}
+
+TEST(Surroundings, ARingThatDoesNotFitTheDiskIsRefusedWithBothSizes) {
+  SHOAL_NEEDS(OwnMounts());
+  const TrainingRun run;
+  const SmallDisk disk(run.parent(), "8m");
+  SHOAL_NEEDS(disk.why_not());
+  ExpectOneErrorLine(run.Train({}, {}, seconds(60)),
+                     AllOf(HasSubstr("the replay file needs 13 MB"), HasSubstr("are free in"),
+                           HasSubstr("replay.capacity")));
+  EXPECT_FALSE(fs::exists(run.path())) << "nothing half-written";
+}
+
+// Fills what is left of a disk while it lives.
+class Filler {
+ public:
+  explicit Filler(const fs::path& file) : file_(file) {
+    std::ofstream out(file, std::ios::binary);
+    const std::string block(4096, 'x');
+    while (out.write(block.data(), std::streamsize(block.size())).flush()) {
+    }
+  }
+  ~Filler() { fs::remove(file_); }
+
+ private:
+  const fs::path file_;
+};
+
+TEST(Surroundings, ADiskThatFillsUpEndsTheRunAndLeavesWhatIsThereUsable) {
+  SHOAL_NEEDS(OwnMounts());
+  const TrainingRun run;
+  const SmallDisk disk(run.parent(), "64m");
+  SHOAL_NEEDS(disk.why_not());
+  const TrainingRun::Keys keys{{"env_steps", "1000000"},
+                               {"actors", "1"},
+                               {"replay.capacity", "5000"},
+                               {"eval.final_episodes", "0"},
+                               {"learner.checkpoint_period", "200"}};
+  {
+    RunningTraining training(run, run.Command(keys));
+    ASSERT_TRUE(training.WaitForSteps(3000)) << training.Output();
+    const Filler filler(run.parent() / "filler");
+    ASSERT_EQ(training.End(seconds(120)), 1) << training.Output();
+  }
+  const std::string log = ReadFile(run.path() / "logs" / "learner-0.log");
+  EXPECT_NE(log.find("No space left on device"), std::string::npos) << log;
+  const ProgramResult resumed = RunProgram(
+      {"shoal", "train", "--resume", run.path().string(), "--set", "env_steps=6000"}, seconds(180));
+  ASSERT_EQ(ExitCode(resumed), 0) << resumed.out << resumed.err;
+  const auto meta = run.Json("meta.json");
+  ExpectBalanced(meta);
+  EXPECT_GE(meta.at("env_steps").get<int64_t>(), 6000);
+}
+
+TEST(Surroundings, AFolderThatMayNotBeWrittenIsNamed) {
+  const TemporaryFolder folder;
+  const fs::path locked = folder.path() / "locked";
+  fs::create_directory(locked);
+  fs::permissions(folder.path(), fs::perms::all);
+  fs::permissions(locked, fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read |
+                              fs::perms::others_exec);
+  launch::ProcessSpec spec;
+  spec.role = "test";
+  spec.output = folder.path() / "out";
+  spec.errors = folder.path() / "err";
+  spec.environment = {{"TMPDIR", folder.path().string()}};
+  // Root may write anywhere: the program then runs as nobody.
+  if (geteuid() == 0) {
+    spec.command = {"/usr/bin/setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"};
+  }
+  for (const std::string& word :
+       {std::string(SHOAL_BIN) + "/shoal", std::string("train"), std::string("--preset"),
+        std::string("fetch-reach-state"), std::string("--set"), "run_dir=" + locked.string()}) {
+    spec.command.push_back(word);
+  }
+  const auto status = launch::RunToEnd(spec, seconds(60), [] { return false; });
+  ASSERT_TRUE(status);
+  EXPECT_EQ(status->code, 1);
+  const std::string error = ReadFile(spec.errors);
+  EXPECT_THAT(error, AllOf(HasSubstr("cannot create folder"), HasSubstr(locked.string()),
+                           HasSubstr("Permission denied")));
+  EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << error;
+}
+
+TEST(Surroundings, AReadOnlyDiskIsNamed) {
+  SHOAL_NEEDS(OwnMounts());
+  const TrainingRun run;
+  const SmallDisk disk(run.parent(), "1m", MS_RDONLY);
+  SHOAL_NEEDS(disk.why_not());
+  ExpectOneErrorLine(run.Train({}, {}, seconds(60)),
+                     AllOf(HasSubstr(run.path().string()), HasSubstr("Read-only file system")));
+}
+
+TEST(Surroundings, WhenEveryDomainIsTakenThePortsAreNamed) {
+  SHOAL_NEEDS(OwnNetwork());
+  std::vector<int> sockets;
+  for (int port = 7400; port < 33000; ++port) {
+    const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    sockaddr_in address{};
+    address.sin_family = AF_INET;
+    address.sin_port = htons(static_cast<uint16_t>(port));
+    // One port per domain is enough: discovery ports lie 250 apart.
+    if ((port - 7400) % 250 == 10) {
+      ASSERT_EQ(bind(fd, reinterpret_cast<sockaddr*>(&address), sizeof address), 0) << port;
+      sockets.push_back(fd);
+    } else {
+      close(fd);
+    }
+  }
+  const TrainingRun run;
+  ExpectOneErrorLine(
+      run.Train({}, {}, seconds(60)),
+      AllOf(HasSubstr("DDS domains from 2 to 98 are taken"), HasSubstr("UDP ports")));
+  EXPECT_FALSE(fs::exists(run.path())) << "nothing half-written";
+  for (const int fd : sockets) close(fd);
+}
+
+TEST(Surroundings, TrainingNeedsNoSharedMemory) {
+  SHOAL_NEEDS(OwnMounts());
+  const SmallDisk disk("/dev/shm", "4k");
+  SHOAL_NEEDS(disk.why_not());
+  const TrainingRun run;
+  const ProgramResult result =
+      run.Train({{"env_steps", "2000"}, {"actors", "1"}, {"eval.final_episodes", "0"}});
+  ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
+  ExpectBalanced(run.Json("meta.json"));
+}
+
+TEST(Surroundings, AReplayBeyondTheMemoryLimitIsRefusedNamingTheLimit) {
+  const MemoryLimit limit(400'000'000);
+  SHOAL_NEEDS(limit.why_not());
+  const TrainingRun run;
+  ExpectOneErrorLine(
+      run.Train({{"replay.storage", "memory"}, {"replay.capacity", "5000000"}}, {}, seconds(60)),
+      AllOf(HasSubstr("MB of memory"), HasSubstr(limit.group().string()),
+            HasSubstr("replay.capacity")));
+}
+
+}  // namespace
+}  // namespace shoal
