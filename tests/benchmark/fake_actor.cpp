@@ -1,0 +1,88 @@
+// shoal-fake-actor: the real training actor over environments that cost nothing but time: frames
+// are written, not rendered, and each step takes a fixed span, slept. For measuring what many
+// actors cost the others.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <thread>
+
+#include "actor/training_actor.h"
+#include "common/base/clock.h"
+#include "common/base/error.h"
+#include "common/base/log.h"
+#include "common/base/main_guard.h"
+#include "common/base/random.h"
+#include "common/base/stop.h"
+#include "common/dds/bus.h"
+#include "common/nn/precision.h"
+
+namespace {
+
+constexpr int kEpisodeSteps = 50;
+
+class FakeEnvironment final : public shoal::worlds::Environment {
+ public:
+  FakeEnvironment(const shoal::ObservationSpec& spec, std::chrono::microseconds step)
+      : spec_(spec), step_(step), random_(0) {}
+
+  const shoal::ObservationSpec& spec() const override { return spec_; }
+
+  float Reset(uint64_t stream_key, shoal::worlds::ObservationOut out) override {
+    random_ = shoal::Random(stream_key);
+    steps_ = 0;
+    due_ = shoal::Now();
+    Observe(out);
+    return 1;
+  }
+
+  shoal::worlds::StepResult Step(std::span<const float>,
+                                 shoal::worlds::ObservationOut out) override {
+    due_ += step_;
+    std::this_thread::sleep_until(due_);  // the span of a step is what is being simulated
+    Observe(out);
+    return {.reward = -1, .truncated = ++steps_ == kEpisodeSteps, .distance = 1};
+  }
+
+  double render_seconds() const override { return 0; }
+
+ private:
+  void Observe(shoal::worlds::ObservationOut out) {
+    std::ranges::fill(out.frame, static_cast<uint8_t>(random_.Next()));
+    for (float& value : out.vector) value = static_cast<float>(random_.Uniform(-1, 1));
+  }
+
+  const shoal::ObservationSpec spec_;
+  const std::chrono::microseconds step_;
+  shoal::Random random_;
+  shoal::SteadyTime due_{};
+  int steps_ = 0;
+};
+
+int Run(int argc, char** argv) {
+  std::string run;
+  uint32_t id = 0;
+  int step_microseconds = 10'000;
+  CLI::App app("A training actor over environments that cost nothing but time.");
+  app.add_option("--run", run, "run folder")->required();
+  app.add_option("--id", id, "number of this actor within the run");
+  app.add_option("--step-us", step_microseconds, "span of a step")->check(CLI::PositiveNumber);
+  CLI11_PARSE(app, argc, argv);
+  shoal::nn::SetThreads(1);
+  shoal::InstallStopSignals();
+  shoal::log::Start(fmt::format("actor-{}", id), "");
+  const auto make = [&](const shoal::RunConfig& config, int count) {
+    std::vector<std::unique_ptr<shoal::worlds::Environment>> environments;
+    for (int i = 0; i < count; ++i) {
+      environments.push_back(std::make_unique<FakeEnvironment>(
+          config.spec, std::chrono::microseconds(step_microseconds)));
+    }
+    return environments;
+  };
+  return shoal::actor::RunTrainingActor(run, id, {}, make);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  shoal::dds::TuneMalloc();
+  return shoal::GuardMain("shoal-fake-actor", [&] { return Run(argc, argv); });
+}

@@ -1,0 +1,94 @@
+// shoal-bench-actors: one replay server under 4, 16 and 64 actor processes, as JSON (schema
+// shoal-bench-1) on stdout. `./run bench-actors`.
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "common/base/build_info.h"
+#include "common/base/error.h"
+#include "common/base/main_guard.h"
+#include "launch/machine.h"
+#include "launch/process_plan.h"
+#include "tests/benchmark/many_actors.h"
+
+namespace {
+
+using shoal::bench::ManyActorsFigures;
+using shoal::bench::ManyActorsOptions;
+
+// A fresh folder that goes away with its owner.
+class Folder {
+ public:
+  Folder() {
+    std::string name = std::filesystem::temp_directory_path() / "shoal-bench-XXXXXX";
+    if (mkdtemp(name.data()) == nullptr) throw shoal::RuntimeError("cannot create '{}'", name);
+    path_ = name;
+  }
+  ~Folder() {
+    std::error_code error;
+    std::filesystem::remove_all(path_, error);
+  }
+  Folder(const Folder&) = delete;
+  Folder& operator=(const Folder&) = delete;
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  std::filesystem::path path_;
+};
+
+nlohmann::ordered_json Row(const ManyActorsFigures& figures, const ManyActorsFigures& few) {
+  return {{"stage", fmt::format("replay server under {} actor processes", figures.actors)},
+          {"figure", figures.replay_us_per_transition},
+          {"unit", "us of CPU per transition"},
+          {"against", fmt::format("{} actor processes", few.actors)},
+          {"against_figure", few.replay_us_per_transition},
+          {"ratio", figures.replay_us_per_transition / few.replay_us_per_transition},
+          {"transitions_per_second", figures.transitions_per_second},
+          {"actor_us_per_transition", figures.actor_us_per_transition},
+          {"start_seconds", figures.start_seconds},
+          {"found_seconds", figures.found_seconds},
+          {"made", figures.made},
+          {"stored", figures.stored},
+          {"lost_with_process", figures.lost}};
+}
+
+int Run(int argc, char** argv) {
+  std::vector<int> counts{4, 16, 64};
+  ManyActorsOptions options;
+  CLI::App app("Measures a replay server under many actor processes.");
+  app.add_option("--actors", counts, "numbers of actor processes")->check(CLI::Range(1, 1024));
+  app.add_option("--steps-per-second", options.steps_per_second, "of each actor")
+      ->check(CLI::Range(1.0, 1e5));
+  app.add_option("--seconds", options.seconds, "measured for each number")
+      ->check(CLI::Range(1.0, 600.0));
+  CLI11_PARSE(app, argc, argv);
+  options.programs = shoal::launch::ProgramFolder();
+
+  nlohmann::ordered_json rows = nlohmann::ordered_json::array();
+  std::optional<ManyActorsFigures> few;
+  for (const int actors : counts) {
+    const Folder folder;
+    options.folder = folder.path();
+    options.actors = actors;
+    const ManyActorsFigures figures = shoal::bench::MeasureManyActors(options);
+    if (!few) few = figures;
+    rows.push_back(Row(figures, *few));
+    std::cerr << fmt::format(
+        "{} actors: started in {:.2f} s, all found {:.2f} s later; {:.0f} transitions/s, {:.1f} us "
+        "of the replay each\n",
+        actors, figures.start_seconds, figures.found_seconds, figures.transitions_per_second,
+        figures.replay_us_per_transition);
+  }
+  const nlohmann::ordered_json report{{"schema", "shoal-bench-1"},
+                                      {"commit", shoal::BuildCommit()},
+                                      {"machine", shoal::launch::DescribeMachine()},
+                                      {"rows", rows}};
+  std::cout << report.dump(2) << std::endl;
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return shoal::GuardMain("shoal-bench-actors", [&] { return Run(argc, argv); });
+}
