@@ -1,0 +1,79 @@
+// Checkpoints: any bytes are refused with Error or are whole. First byte:
+//   0  the rest is state.json beside two files of a real checkpoint
+//   1  the rest is learner.safetensors; state.json is made to fit it, so that the checksums do not
+//      keep the input from the reader behind them
+//   2  the rest is a policy as an actor gets it over the wire
+#include <nlohmann/json.hpp>
+
+#include "common/base/check.h"
+#include "common/base/crc32.h"
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/nn/policy.h"
+#include "learner/checkpoint.h"
+#include "tests/fuzz/fuzz_target.h"
+#include "tests/learner/agent/agent_fixture.h"
+
+namespace shoal::learner {
+namespace {
+
+constexpr uint64_t kSpec = 0xfeedfacecafebeef;
+
+std::filesystem::path RealCheckpoint() {
+  const nn::NamedTensor tensor{"F32", {2, 3}, std::vector<uint8_t>(24, 1)};
+  WriteCheckpoint(fuzz::Scratch(), {.updates = 3, .spec_hash = kSpec, .precision = "f32"},
+                  {{"a", tensor}}, {{"b", tensor}}, {{"schema", "x"}});
+  return fuzz::Scratch() / CheckpointName(3);
+}
+
+uint32_t Crc(std::string_view bytes) {
+  return Crc32({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
+}
+
+void ReadWithState(const std::filesystem::path& folder, const std::string& state) {
+  static const std::string learner = ReadFile(folder / "learner.safetensors");
+  fuzz::WriteScratch(folder / "learner.safetensors", learner);
+  fuzz::WriteScratch(folder / "state.json", state);
+  ReadCheckpoint(folder, kSpec);
+}
+
+void ReadWithLearner(const std::filesystem::path& folder, const std::string& learner) {
+  static const std::string state = ReadFile(folder / "state.json");
+  nlohmann::ordered_json json = nlohmann::ordered_json::parse(state);
+  json.erase("crc32");
+  json["files"]["learner.safetensors"] = {{"bytes", learner.size()}, {"crc32", Crc(learner)}};
+  json["crc32"] = Crc(json.dump());
+  fuzz::WriteScratch(folder / "learner.safetensors", learner);
+  fuzz::WriteScratch(folder / "state.json", json.dump(2) + "\n");
+  const Checkpoint checkpoint = ReadCheckpoint(folder, kSpec);
+  // What was taken says the same when written and read again.
+  const std::string written = nn::WriteSafetensors(checkpoint.tensors, {});
+  const nn::TensorMap again = nn::ReadSafetensors(written, "again");
+  CHECK(again.size() == checkpoint.tensors.size());
+  for (const auto& [name, tensor] : again) CHECK(tensor.data == checkpoint.tensors.at(name).data);
+}
+
+void LoadPolicy(const std::string& bytes) {
+  static nn::Policy policy(SmallConfig().network, SmallSpec(), nn::Precision::kF32, 1);
+  policy.Load(nn::ReadSafetensors(bytes, "weights"), "weights");
+}
+
+void Read(uint8_t mode, const std::string& bytes) {
+  static const std::filesystem::path folder = RealCheckpoint();
+  if (mode == 0) return ReadWithState(folder, bytes);
+  if (mode == 1) return ReadWithLearner(folder, bytes);
+  LoadPolicy(bytes);
+}
+
+}  // namespace
+}  // namespace shoal::learner
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  if (size == 0) return 0;
+  try {
+    shoal::learner::Read(data[0], shoal::fuzz::Text(data + 1, size - 1));
+  } catch (const shoal::Error& e) {
+    shoal::fuzz::CheckOneLine(e.what());
+  }
+  return 0;
+}

@@ -1,0 +1,43 @@
+// Configuration: any text is refused with Error or gives a configuration that survives being
+// written and read again. First byte: 0 = a JSON file, else --set assignments, one per line.
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "common/base/check.h"
+#include "common/base/error.h"
+#include "common/config/config_io.h"
+#include "tests/fuzz/fuzz_target.h"
+
+namespace shoal {
+namespace {
+
+Config Read(uint8_t mode, const std::string& text) {
+  Config config;
+  if (mode == 0) {
+    ApplyJson(ParseStrictJson(text, "input"), "input", &config);
+  } else {
+    std::istringstream lines(text);
+    std::vector<std::string> assignments;
+    for (std::string line; std::getline(lines, line);) assignments.push_back(line);
+    ApplyAssignments(assignments, &config);
+  }
+  Validate(config);
+  return config;
+}
+
+}  // namespace
+}  // namespace shoal
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  if (size == 0) return 0;
+  try {
+    const shoal::Config config = shoal::Read(data[0], shoal::fuzz::Text(data + 1, size - 1));
+    const std::string written = shoal::ToJson(config).dump();
+    shoal::Config again;
+    shoal::ApplyJson(shoal::ParseStrictJson(written, "written"), "written", &again);
+    CHECK(shoal::ToJson(again).dump() == written) << written;
+  } catch (const shoal::Error& e) {
+    shoal::fuzz::CheckOneLine(e.what());
+  }
+  return 0;
+}

@@ -1,0 +1,51 @@
+#include "tests/fuzz/fuzz_target.h"
+
+#include <stdlib.h>
+
+#include <fstream>
+
+#include "common/base/check.h"
+
+namespace shoal::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+
+class ScratchFolder {
+ public:
+  ScratchFolder() {
+    const fs::path memory = "/dev/shm";
+    std::error_code error;
+    const fs::path parent = fs::is_directory(memory, error) ? memory : fs::temp_directory_path();
+    std::string name = parent / "shoal-fuzz-XXXXXX";
+    CHECK(mkdtemp(name.data()) != nullptr) << name;
+    path_ = name;
+  }
+  ~ScratchFolder() {
+    std::error_code error;
+    fs::remove_all(path_, error);
+  }
+  const fs::path& path() const { return path_; }
+
+ private:
+  fs::path path_;
+};
+
+}  // namespace
+
+void CheckOneLine(std::string_view message) {
+  CHECK(!message.empty());
+  CHECK(message.find('\n') == std::string_view::npos) << message;
+}
+
+const fs::path& Scratch() {
+  static const ScratchFolder scratch;
+  return scratch.path();
+}
+
+void WriteScratch(const fs::path& file, std::string_view content) {
+  std::ofstream out(file, std::ios::binary | std::ios::trunc);
+  out.write(content.data(), static_cast<std::streamsize>(content.size()));
+}
+
+}  // namespace shoal::fuzz

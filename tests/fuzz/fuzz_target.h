@@ -1,0 +1,27 @@
+// What the fuzz targets share. Each target defines libFuzzer's entry point; replay_corpus.cpp runs
+// it over files where libFuzzer is not linked.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size);
+
+namespace shoal::fuzz {
+
+inline std::string Text(const uint8_t* data, size_t size) {
+  return {reinterpret_cast<const char*>(data), size};
+}
+
+// Ends the process unless the message of a refusal is one line with something in it.
+void CheckOneLine(std::string_view message);
+
+// A folder in memory for targets that read files; one per process, removed at its end.
+const std::filesystem::path& Scratch();
+// Writes a file without fsync.
+void WriteScratch(const std::filesystem::path& file, std::string_view content);
+
+}  // namespace shoal::fuzz
