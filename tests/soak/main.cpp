@@ -1,5 +1,5 @@
 // shoal-soak: strikes a training run's processes at random moments and checks that nothing is lost
-// and nothing is left.
+// and nothing is left; or leaves the run alone and checks that nothing grows.
 #include <sys/prctl.h>
 
 #include <CLI/CLI.hpp>
@@ -11,11 +11,13 @@
 #include "launch/process_plan.h"
 #include "tests/soak/fault_soak.h"
 #include "tests/soak/run_under_test.h"
+#include "tests/soak/steady_soak.h"
 
 namespace {
 
 struct Options {
   int faults = 10;
+  double steady_minutes = 0;
   shoal::soak::SoakOptions soak;
   std::string json;
 };
@@ -28,10 +30,14 @@ std::filesystem::path FreshFolder() {
 
 int Run(int argc, char** argv) {
   Options options;
-  CLI::App app("Strikes a training run's processes at random moments.", "shoal-soak");
+  CLI::App app("Strikes a training run's processes at random moments, or watches it for leaks.",
+               "shoal-soak");
   app.add_option("--faults", options.faults, "SIGKILLs and ten-second SIGSTOPs")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  app.add_option("--steady", options.steady_minutes,
+                 "instead of faults, leave the run alone for so many minutes and look for trends")
+      ->check(CLI::PositiveNumber);
   app.add_option("--seed", options.soak.seed, "of victims and moments")->capture_default_str();
   app.add_option("--actors", options.soak.actors, "actor processes")
       ->check(CLI::PositiveNumber)
@@ -48,7 +54,9 @@ int Run(int argc, char** argv) {
   options.soak.programs = shoal::launch::ProgramFolder();
   options.soak.folder = FreshFolder();
   try {
-    const auto result = shoal::soak::SoakFaults(options.soak, options.faults);
+    const auto result = options.steady_minutes > 0
+                            ? shoal::soak::SoakSteadily(options.soak, options.steady_minutes)
+                            : shoal::soak::SoakFaults(options.soak, options.faults);
     fmt::print("{}\n", result.dump(2));
     if (!options.json.empty()) shoal::WriteFileAtomically(options.json, result.dump(2) + "\n");
   } catch (const shoal::soak::Broken& e) {

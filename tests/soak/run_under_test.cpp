@@ -164,6 +164,17 @@ void RunUnderTest::AwaitRecovery(const std::string& process, pid_t former, const
   }
 }
 
+std::map<std::string, double> RunUnderTest::QueueDepths() {
+  std::map<std::string, double> depths;
+  depths["replay-0 chunks waiting"] = Figure(Report("replay-0"), "queue_depth");
+  depths["replay-0 requests waiting"] = Figure(Report("replay-0"), "requests_waiting");
+  for (int i = 0; i < options_.actors; ++i) {
+    const std::string name = fmt::format("actor-{}", i);
+    depths[name + " records outstanding"] = Figure(Report(name), "outstanding");
+  }
+  return depths;
+}
+
 void RunUnderTest::CheckAlive() {
   if (const auto status = coordinator_.Poll()) {
     throw Broken(fmt::format("the run has ended ({}): {}", status->Describe(), Output()));

@@ -50,6 +50,9 @@ class RunUnderTest {
   void AwaitRecovery(const std::string& process, pid_t former, const Progress& before,
                      std::chrono::seconds deadline);
 
+  // What waits where, by the newest reports: figure -> how much.
+  std::map<std::string, double> QueueDepths();
+
   // Stops it by SIGINT and waits. Throws Broken unless it ends with 0 and balances.
   nlohmann::json End(std::chrono::seconds deadline);
   // Throws Broken when the coordinator has ended.

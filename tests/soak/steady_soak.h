@@ -1,0 +1,17 @@
+// A run that is left alone: do memory, open files, threads, queues and files on disk stay as they
+// are?
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "tests/soak/fault_soak.h"
+
+namespace shoal::soak {
+
+// Trains for `minutes` after a warm-up of a quarter of it (at least two minutes), looks every five
+// seconds. Throws Broken (run_under_test.h) when a figure grows by more than 1 % in ten minutes
+// beyond three standard errors, or logs and metrics by more than 5 MB an hour. The result lists
+// every figure.
+nlohmann::ordered_json SoakSteadily(const SoakOptions& options, double minutes);
+
+}  // namespace shoal::soak

@@ -1,0 +1,29 @@
+// Whether a figure that is looked at again and again grows.
+#pragma once
+
+#include <vector>
+
+namespace shoal::soak {
+
+class Trend {
+ public:
+  void Add(double seconds, double value);
+
+  int samples() const { return static_cast<int>(values_.size()); }
+  double Mean() const;
+  // Slope of the least-squares line, in units per second. 0 with fewer than two samples.
+  double Slope() const;
+  // That slope over ten minutes, in percent of the mean (of 1 where the mean is less: a queue of
+  // none that grows by one in ten minutes grows by 100 %).
+  double PercentPerTenMinutes() const;
+  // One standard error of the latter, from the scatter around the line.
+  double PercentError() const;
+
+ private:
+  double Scale() const;   // from Slope to percent per ten minutes
+  double Spread() const;  // sum of squared distances of the times from their mean
+
+  std::vector<double> seconds_, values_;
+};
+
+}  // namespace shoal::soak
