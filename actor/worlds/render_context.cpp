@@ -25,7 +25,7 @@ namespace {
 // Tessellation of quality `fast`. Stacks decide what a goal just above the table shows of itself:
 // with three, a cap of 4 mm is a point that no pixel sees. More of either takes longer and looks
 // the same at 84x84.
-constexpr int kFastSlices = 7;
+constexpr int kFastSlices = 10;
 constexpr int kFastStacks = 4;
 constexpr int kFastQuads = 1;
 constexpr int kDepthBits = 24, kStencilBits = 8, kAccumulationBits = 8;
