@@ -66,6 +66,8 @@ int Run(int argc, char** argv) {
                  "HOST[:PORT] of the servers instead of cluster.json's");
   app.add_option("--interface", options.reach.interface,
                  "network interface of this host instead of transport.interface");
+  app.add_option("--secure", options.reach.secure,
+                 "folder of credentials instead of cluster.json's (shoal secure init)");
   app.add_flag(
       "--stop-with-input", options.stop_with_input,
       "stop when standard input ends: a remote shell's way to say that its caller is gone");

@@ -17,6 +17,7 @@ struct RemoteHost {
   std::filesystem::path folder;    // folder for run folders there; relative = to the login's
   std::string interface = "auto";  // as transport.interface
   bool shared = false;             // sees our run folder under the same path: nothing is copied
+  std::filesystem::path secure;    // the actors' credentials there, once pushed; empty = as here
   std::filesystem::path run;       // the run's folder there, once a run has one
 };
 

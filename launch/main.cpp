@@ -35,6 +35,7 @@ int Run(int argc, char** argv) {
   shoal::launch::AddEnvCommand(app, &chosen);
   shoal::launch::AddReplayCommand(app, &chosen);
   shoal::launch::AddCheckCommand(app, &chosen);
+  shoal::launch::AddSecureCommand(app, &chosen);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& e) {

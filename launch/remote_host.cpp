@@ -5,6 +5,8 @@
 #include "common/base/build_info.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/config/run_files.h"
+#include "common/credentials/credentials.h"
 #include "launch/run_folder.h"
 #include "launch/scratch_folder.h"
 
@@ -15,7 +17,9 @@ namespace fs = std::filesystem;
 
 constexpr std::chrono::seconds kDeadline{30};  // for one command there
 constexpr char kDdsOverride[] = "SHOAL_DDS_XML";
-constexpr char kDdsCopy[] = "dds.xml";  // its copy in the run's folder there
+constexpr char kDdsCopy[] = "dds.xml";    // its copy in the run's folder there
+constexpr char kSecureCopy[] = "secure";  // the actors' credentials there
+constexpr char kActorRole[] = "actor";
 
 // Programs are looked up on the path.
 std::vector<std::string> OnPath(std::vector<std::string> command) {
@@ -112,15 +116,25 @@ void PushRun(const fs::path& run, const ActorRange& actors, RemoteHost* host,
     WriteFileAtomically(scratch.path() / kDdsCopy, ReadFile(file));
     pack.insert(pack.end(), {"-C", scratch.path(), kDdsCopy});
   }
+  if (const std::string secure = ReadClusterAddress(run).secure; !secure.empty()) {
+    MakeFolders(scratch.path() / kSecureCopy);
+    pack.insert(pack.end(), {"-C", scratch.path(), kSecureCopy});
+    for (const fs::path& file : CredentialFiles(secure, kActorRole)) {
+      WriteFileAtomically(scratch.path() / kSecureCopy / file.filename(), ReadFile(file));
+    }
+    host->secure = kSecureCopy;  // in the run's folder there
+  }
   RunOrThrow("tar of " + run.string(), pack, "", "", stop);
   const std::string folder = ShellLine({host->run});
   const std::string unpack = fmt::format(
-      "umask 077 && mkdir -p {0}/made && cd {0} && rm -f config.json cluster.json {1} && tar -x "
+      "umask 077 && mkdir -p {0}/made && cd {0} && rm -rf config.json cluster.json {1} {2} && tar "
+      "-x "
       "--skip-old-files --no-same-owner -f - && pwd",
-      folder, kDdsCopy);
+      folder, kDdsCopy, kSecureCopy);
   RunOrThrow(fmt::format("host {}: copying the run to '{}'", host->name, host->run.string()),
              Through(*host, unpack), archive, answer, stop);
   host->run = LastLine(answer);
+  if (!host->secure.empty()) host->secure = host->run / kSecureCopy;
   if (!host->run.is_absolute()) {
     throw RuntimeError("host {}: expected the path of its run folder, got '{}'", host->name,
                        host->run.string());
@@ -158,6 +172,7 @@ ProcessSpec RemoteActor(const RemoteHost& host, int id, const fs::path& run) {
                                        host.interface,
                                        "--stop-with-input"};
   words.insert(words.end(), actor.begin(), actor.end());
+  if (!host.secure.empty()) words.insert(words.end(), {"--secure", host.secure});
   ProcessSpec spec;
   spec.role = "actor";
   spec.id = id;

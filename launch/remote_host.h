@@ -28,9 +28,10 @@ struct ActorRange {
   bool Holds(uint32_t id) const { return int(id) >= first && int(id) < first + count; }
 };
 
-// Copies config.json, cluster.json, the DDS configuration of SHOAL_DDS_XML and the counter pages of
-// these actors to host->run, which becomes absolute. A page that is there already stays. Nothing
-// is done for a host that shares our run folder. Throws Error naming the host.
+// Copies config.json, cluster.json, the DDS configuration of SHOAL_DDS_XML, the credentials of an
+// actor where the run is secured and the counter pages of these actors to host->run, which becomes
+// absolute. A page that is there already stays. Nothing is done for a host that shares our run
+// folder. Throws Error naming the host.
 void PushRun(const std::filesystem::path& run, const ActorRange& actors, RemoteHost* host,
              const StopQuestion& stop);
 

@@ -13,6 +13,7 @@ struct TrainOptions {
   std::vector<std::string> set;  // KEY=VALUE
   std::string run_name;          // empty = automatic
   std::string hosts;             // file of other hosts; empty = none, or those of the resumed run
+  std::string secure;            // folder of credentials; empty = none, or the resumed run's
   std::string resume;            // run to go on with: its path or its name
   bool overwrite = false, lockstep = false;
   bool print_config = false, dry_run = false;

@@ -121,6 +121,12 @@ std::string ServersHost(const Hosts& hosts) {
   return hosts.address.empty() ? ClusterAddress().host : hosts.address;
 }
 
+// Absolute: every process of the run reads it from cluster.json.
+std::string SecureFolder(const TrainOptions& options) {
+  if (options.secure.empty()) return "";
+  return std::filesystem::absolute(options.secure).lexically_normal();
+}
+
 int Start(PreparedRun run, std::unique_ptr<dds::Bus> bus, const ClusterAddress& address) {
   const std::filesystem::path& path = run.folder.path();
   WaitForFormerProcesses(path, kFormerProcessesDeadline, StopRequested,
@@ -163,6 +169,8 @@ int RunTraining(const TrainOptions& options) {
     CheckHosts(run.hosts, StopRequested);
     if (options.dry_run) return 0;
     address.host = ServersHost(run.hosts);
+    address.secure = options.secure.empty() ? ReadClusterAddress(run.folder.path()).secure
+                                            : SecureFolder(options);
     auto bus = dds::ClaimDomain(run.config.config.transport, &address);
     return Start(std::move(run), std::move(bus), address);
   }
@@ -180,6 +188,7 @@ int RunTraining(const TrainOptions& options) {
   CheckReplayRoom(config, /*exists=*/false);
   CheckHosts(hosts, StopRequested);
   address.host = ServersHost(hosts);
+  address.secure = SecureFolder(options);
   // Claimed before the folder is made, so that a failure leaves nothing half-written.
   auto bus = dds::ClaimDomain(config.config.transport, &address);
   if (options.dry_run) {

@@ -19,6 +19,8 @@ int Run(int argc, char** argv) {
   app.add_option("--peer", reach.peer, "HOST[:PORT] of the servers instead of cluster.json's");
   app.add_option("--interface", reach.interface,
                  "network interface of this host instead of transport.interface");
+  app.add_option("--secure", reach.secure,
+                 "folder of credentials instead of cluster.json's (shoal secure init)");
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& e) {

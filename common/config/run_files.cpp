@@ -61,10 +61,11 @@ RunConfig ReadRunConfig(const std::filesystem::path& run) {
 }
 
 void WriteClusterAddress(const std::filesystem::path& run, const ClusterAddress& address) {
-  const nlohmann::ordered_json object{{"schema", kClusterSchema},
-                                      {"domain", address.domain},
-                                      {"tag", address.tag},
-                                      {"host", address.host}};
+  nlohmann::ordered_json object{{"schema", kClusterSchema},
+                                {"domain", address.domain},
+                                {"tag", address.tag},
+                                {"host", address.host}};
+  if (!address.secure.empty()) object["secure"] = address.secure;
   WriteFileAtomically(run / "cluster.json", object.dump(2) + "\n");
 }
 
@@ -75,6 +76,7 @@ ClusterAddress ReadClusterAddress(const std::filesystem::path& run) {
   address.domain = Member<int>(object, "domain", path);
   address.tag = Member<std::string>(object, "tag", path);
   address.host = Member<std::string>(object, "host", path);
+  if (object.contains("secure")) address.secure = Member<std::string>(object, "secure", path);
   if (address.domain < 0 || address.domain >= 100 || address.domain % 2 != 0) {
     throw RuntimeError("{}: domain = {}: expected an even number below 100", path.string(),
                        address.domain);

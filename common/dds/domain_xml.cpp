@@ -7,7 +7,9 @@
 #include "common/base/check.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/dds/escape_xml.h"
 #include "common/dds/host_network.h"
+#include "common/dds/security_xml.h"
 
 namespace shoal::dds {
 namespace {
@@ -40,31 +42,9 @@ constexpr std::string_view kTemplate =
   <BurstSize><MaxRexmit>2MB</MaxRexmit></BurstSize>
   @WATERMARKS@
  </Internal>
+ @SECURITY@
 </Domain></CycloneDDS>
 )";
-
-std::string EscapeXml(std::string_view text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      default:
-        escaped += c;
-    }
-  }
-  return escaped;
-}
 
 // The roles at known ports that a process announces itself to.
 std::initializer_list<Role> Peers(Role role, Plane plane) {
@@ -174,6 +154,10 @@ std::string DomainTemplate() {
 std::string RenderDomainXml(std::string_view xml_template, const ClusterAddress& address,
                             const TransportConfig& transport, Role role, Plane plane) {
   const int index = ParticipantIndex(role);
+  if (!address.secure.empty() && xml_template.find("@SECURITY@") == xml_template.npos) {
+    throw UsageError("{}: the run is secured, but @SECURITY@ does not stand in the file",
+                     kOverrideVariable);
+  }
   const char* attribute = IsAddress(transport.interface) ? "address" : "name";
   return Substitute(
       xml_template,
@@ -182,7 +166,8 @@ std::string RenderDomainXml(std::string_view xml_template, const ClusterAddress&
        {"TAG", plane == Plane::kOperate ? "" : EscapeXml(address.tag)},
        {"INDEX", index < 0 ? "none" : std::to_string(index)},
        {"PEERS", PeersElement(address, role, plane)},
-       {"WATERMARKS", WatermarksElement(role)}});
+       {"WATERMARKS", WatermarksElement(role)},
+       {"SECURITY", SecurityElement(address.secure, role)}});
 }
 
 }  // namespace shoal::dds

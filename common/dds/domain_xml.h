@@ -9,6 +9,7 @@
 //   @INDEX@           participant index: 0 coordinator, 1 learner, 2 replay, none for others
 //   @PEERS@           the <Peers> element
 //   @WATERMARKS@      the <Watermarks> element: unacknowledged bytes a writer may have
+//   @SECURITY@        the <Security> element of a secured run, else nothing
 #pragma once
 
 #include <string>
@@ -33,7 +34,8 @@ std::string_view BuiltInTemplate();
 // The built-in template or the content of the file in SHOAL_DDS_XML; throws Error naming that file.
 std::string DomainTemplate();
 
-// Fills the placeholders. Throws Error (kUsage) naming a placeholder that does not exist.
+// Fills the placeholders. Throws Error (kUsage) naming a placeholder that does not exist, or when a
+// secured run's has no @SECURITY@; Error when the credentials do not serve.
 std::string RenderDomainXml(std::string_view xml_template, const ClusterAddress& address,
                             const TransportConfig& transport, Role role, Plane plane);
 

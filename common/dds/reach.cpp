@@ -22,6 +22,7 @@ Place FindPlace(const std::filesystem::path& run, const TransportConfig& transpo
   Place place{ReadClusterAddress(run), transport};
   if (!reach.peer.empty()) ApplyPeer(reach.peer, &place.address);
   if (!reach.interface.empty()) place.transport.interface = reach.interface;
+  if (!reach.secure.empty()) place.address.secure = reach.secure;
   return place;
 }
 

@@ -17,6 +17,7 @@ void AddEvalCommand(CLI::App& app, Action* chosen);
 void AddEnvCommand(CLI::App& app, Action* chosen);  // see env.cpp and env_tasks.cpp
 void AddTopCommand(CLI::App& app, Action* chosen);
 void AddCheckCommand(CLI::App& app, Action* chosen);
+void AddSecureCommand(CLI::App& app, Action* chosen);  // secure init
 void AddReplayCommand(CLI::App& app, Action* chosen);  // replay peek
 
 }  // namespace shoal::launch

@@ -32,6 +32,8 @@ void AddTrainCommand(CLI::App& app, Action* chosen) {
   command->add_flag("--overwrite", options->overwrite, "Delete a run of that name first");
   command->add_option("--hosts", options->hosts,
                       "JSON file of other hosts that run actors (docs/cluster.md)");
+  command->add_option("--secure", options->secure,
+                      "Folder of credentials (shoal secure init): authenticated and encrypted");
   command->add_option("--resume", options->resume, "Go on with a stopped run: its name or folder");
   command->add_flag("--print-config", options->print_config, "Print every key and exit");
   command->add_flag("--dry-run", options->dry_run, "Check everything, start nothing");

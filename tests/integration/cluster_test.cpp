@@ -111,6 +111,27 @@ TEST_F(Cluster, AnActorOnAnotherHostTrains) {
   EXPECT_GT(meta.at("accounting").at("made"), far_records);
 }
 
+TEST_F(Cluster, ASecuredRunTrainsOnAnotherHostAndOnlyActorsKeysGoThere) {
+  const std::string secure = (run_.parent() / "secure").string();
+  const ProgramResult made = RunProgram({"shoal", "secure", "init", secure}, seconds(20));
+  ASSERT_EQ(ExitCode(made), 0) << made.err;
+  std::vector<std::string> flags = Hosts(net_.Shell());
+  flags.insert(flags.end(), {"--secure", secure});
+  const ProgramResult result = run_.Train(Keys("4000"), flags);
+  ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
+  const json meta = run_.Json("meta.json");
+  ExpectBalanced(meta);
+  EXPECT_EQ(meta.at("accounting").at("lost_with_process"), 0);
+  EXPECT_EQ(meta.at("accounting").at("sessions_without_page"), 0);
+  int keys = 0;
+  for (const auto& file : std::filesystem::recursive_directory_iterator(run_.parent() / "far")) {
+    if (file.path().extension() != ".key") continue;
+    EXPECT_EQ(file.path().filename(), "actor.key");
+    ++keys;
+  }
+  EXPECT_EQ(keys, 1);
+}
+
 TEST_F(Cluster, CatchesUpAfterSevenSecondsWithoutALinkThatLosesDatagrams) {
   LoseDatagrams(50);
   RunningTraining training = Start(net_.Shell());

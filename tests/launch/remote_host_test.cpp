@@ -8,6 +8,8 @@
 #include "common/base/build_info.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/config/run_files.h"
+#include "common/credentials/credentials.h"
 #include "launch/process_plan.h"
 #include "tests/support/temporary_folder.h"
 
@@ -32,7 +34,7 @@ class RemoteHostTest : public ::testing::Test {
     MakeFolders(run_ / "made");
     MakeFolders(host_.programs);
     Write(run_ / "config.json", "config");
-    Write(run_ / "cluster.json", "cluster");
+    WriteClusterAddress(run_, {.domain = 40, .tag = "first", .host = "10.0.0.1", .secure = ""});
   }
   static void Write(const fs::path& file, const std::string& text) {
     WriteFileAtomically(file, text);
@@ -84,7 +86,7 @@ TEST_F(RemoteHostTest, PushesWhatItsActorsNeedAndFetchesWhatTheyLeft) {
   PushRun(run_, actors, &host_, Never);
   EXPECT_EQ(host_.run, folder_.path() / "a folder's name");
   EXPECT_EQ(ReadFile(host_.run / "config.json"), "config");
-  EXPECT_EQ(ReadFile(host_.run / "cluster.json"), "cluster");
+  EXPECT_EQ(ReadClusterAddress(host_.run).tag, "first");
   EXPECT_EQ(ReadFile(host_.run / "made" / "actor-2-5.page"), "earlier");
   EXPECT_FALSE(fs::exists(host_.run / "made" / "actor-1-5.page"));
 
@@ -104,10 +106,25 @@ TEST_F(RemoteHostTest, ASecondPushRenewsTheAddressAndKeepsThePagesThatAreThere) 
   PushRun(run_, actors, &host_, Never);
   Write(host_.run / "made" / "actor-0-5.page", "there");
   Write(run_ / "made" / "actor-0-5.page", "older");
-  Write(run_ / "cluster.json", "another domain");
+  WriteClusterAddress(run_, {.domain = 42, .tag = "second", .host = "10.0.0.1", .secure = ""});
   PushRun(run_, actors, &host_, Never);
-  EXPECT_EQ(ReadFile(host_.run / "cluster.json"), "another domain");
+  EXPECT_EQ(ReadClusterAddress(host_.run).tag, "second");
   EXPECT_EQ(ReadFile(host_.run / "made" / "actor-0-5.page"), "there");
+}
+
+TEST_F(RemoteHostTest, TakesAnActorsCredentialsAlongAndNobodyElses) {
+  const fs::path secure = folder_.path() / "secure";
+  CreateCredentials(secure, std::vector<RoleRights>{{"actor", {"a"}, {}}, {"learner", {"b"}, {}}},
+                    ValidForDays(1));
+  WriteClusterAddress(run_, {.domain = 40, .tag = "t", .host = "h", .secure = secure});
+  PushRun(run_, {.first = 0, .count = 1}, &host_, Never);
+  CheckCredentials(host_.run / "secure", "actor", std::time(nullptr));
+  EXPECT_FALSE(fs::exists(host_.run / "secure" / "learner.key"));
+  EXPECT_FALSE(fs::exists(host_.run / "secure" / "ca.key"));
+  EXPECT_EQ(fs::status(host_.run / "secure" / "actor.key").permissions(),
+            fs::perms::owner_read | fs::perms::owner_write);
+  EXPECT_THAT(RemoteActor(host_, 0, run_).command.back(),
+              HasSubstr((host_.run / "secure").filename().string()));
 }
 
 TEST_F(RemoteHostTest, AFolderThatIsNotThereIsAnErrorThatNamesTheHost) {

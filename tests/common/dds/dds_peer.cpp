@@ -1,8 +1,10 @@
 // The other process of the DDS tests: joins a domain in a role and does what it reads from stdin,
 // one answer line on stdout per command. T is the name of a message type.
 //
-//   dds_peer ROLE DOMAIN TAG   says "joined"
-//   dds_peer claim             is the coordinator of a free domain; says "joined DOMAIN TAG"
+//   dds_peer ROLE DOMAIN TAG [SECURE]   says "joined"
+//   dds_peer claim [SECURE]             is the coordinator of a free domain; "joined DOMAIN TAG"
+//
+// SECURE is a folder of credentials.
 //
 //   subscribe T                counts what arrives; "ok"
 //   show T                     subscribes and also prints "got T DESCRIPTION" for each message
@@ -274,16 +276,19 @@ std::unique_ptr<Bus> Join(const std::vector<std::string>& arguments) {
                                                      {"client", Role::kClient}};
   ClusterAddress address;
   std::unique_ptr<Bus> bus;
-  if (arguments.size() == 1 && arguments[0] == "claim") {
+  const size_t count = arguments.size();
+  if ((count == 1 || count == 2) && arguments[0] == "claim") {
+    if (count == 2) address.secure = arguments[1];
     bus = ClaimDomain(TransportConfig{}, &address);
     Say(fmt::format("joined {} {}", address.domain, address.tag));
-  } else if (arguments.size() == 3 && kRoles.contains(arguments[0])) {
+  } else if ((count == 3 || count == 4) && kRoles.contains(arguments[0])) {
+    if (count == 4) address.secure = arguments[3];
     address.domain = std::stoi(arguments[1]);
     address.tag = arguments[2];
     bus = std::make_unique<Bus>(address, TransportConfig{}, kRoles.at(arguments[0]));
     Say("joined");
   } else {
-    throw UsageError("usage: dds_peer ROLE DOMAIN TAG | dds_peer claim");
+    throw UsageError("usage: dds_peer ROLE DOMAIN TAG [SECURE] | dds_peer claim [SECURE]");
   }
   return bus;
 }

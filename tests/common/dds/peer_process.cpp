@@ -30,12 +30,16 @@ std::string PopLine(std::string* lines) {
 
 PeerProcess::PeerProcess(const std::string& role, const ClusterAddress& address)
     : address_(address) {
-  Spawn({role, std::to_string(address.domain), address.tag});
+  std::vector<std::string> words{role, std::to_string(address.domain), address.tag};
+  if (!address.secure.empty()) words.push_back(address.secure);
+  Spawn(std::move(words));
   EXPECT_EQ(Answer(), "joined") << role;
 }
 
-PeerProcess::PeerProcess() {
-  Spawn({"claim"});
+PeerProcess::PeerProcess(const std::string& secure) {
+  address_.secure = secure;
+  Spawn(secure.empty() ? std::vector<std::string>{"claim"}
+                       : std::vector<std::string>{"claim", secure});
   std::istringstream answer(Answer());
   std::string word;
   answer >> word >> address_.domain >> address_.tag;

@@ -17,7 +17,9 @@ class PeerProcess {
   // Starts it and waits until it has joined; fails the test otherwise (the reason is on stderr).
   PeerProcess(const std::string& role, const ClusterAddress& address);
   // The coordinator of a domain that it claims; address() tells which.
-  PeerProcess();
+  PeerProcess() : PeerProcess(std::string()) {}
+  // The same with a folder of credentials.
+  explicit PeerProcess(const std::string& secure);
   // Kills it when it has not ended.
   ~PeerProcess();
   PeerProcess(const PeerProcess&) = delete;

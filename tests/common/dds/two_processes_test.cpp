@@ -6,6 +6,7 @@
 
 #include "common/dds/bus.h"
 #include "tests/common/dds/example_messages.h"
+#include "tests/common/dds/exchange.h"
 #include "tests/common/dds/peer_process.h"
 
 namespace shoal::dds {
@@ -19,27 +20,6 @@ class TwoProcessesTest : public ::testing::Test {
   PeerProcess coordinator_;
   const ClusterAddress address_ = coordinator_.address();
 };
-
-template <class M>
-std::string Expected(const std::string& name, uint64_t n, size_t payload_bytes) {
-  std::string text;
-  WithExample<M>(n, ExamplePayload(n, payload_bytes),
-                 [&](const M& message) { text = Describe(message); });
-  return "got " + name + " " + text;
-}
-
-// Message n of `name` arrives at the receiver with every field as it was sent.
-template <class M>
-void ExpectSame(PeerProcess& sender, PeerProcess& receiver, const std::string& name) {
-  constexpr uint64_t kNumber = 41;
-  constexpr size_t kPayloadBytes = 100'000;
-  EXPECT_EQ(receiver.Ask("show " + name), "ok");
-  EXPECT_EQ(sender.Ask("publish " + name), "ok");
-  EXPECT_EQ(sender.Ask("match " + name + " 1 10000"), "matched 1");
-  EXPECT_THAT(sender.Ask(fmt::format("write {} {} 1 {}", name, kNumber, kPayloadBytes)),
-              StartsWith("wrote 1 "));
-  EXPECT_EQ(receiver.NextGot(), Expected<M>(name, kNumber, kPayloadBytes));
-}
 
 TEST_F(TwoProcessesTest, MessagesBetweenActorAndReplayArriveAsSent) {
   PeerProcess replay("replay", address_), actor("actor", address_);

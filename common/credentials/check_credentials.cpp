@@ -1,0 +1,64 @@
+#include <fmt/chrono.h>
+#include <openssl/err.h>
+
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/credentials/credentials.h"
+#include "common/credentials/openssl_objects.h"
+
+namespace shoal {
+namespace {
+
+namespace fs = std::filesystem;
+using credentials::Certificate;
+using credentials::Key;
+
+std::string Date(const ASN1_TIME* time) {
+  std::tm parts{};
+  if (ASN1_TIME_to_tm(time, &parts) != 1) return "an unreadable date";
+  return fmt::format("{:%Y-%m-%d %H:%M:%S} UTC", parts);
+}
+
+void CheckValidity(const X509* certificate, const fs::path& file, std::time_t now) {
+  const ASN1_TIME* from = X509_get0_notBefore(certificate);
+  const ASN1_TIME* until = X509_get0_notAfter(certificate);
+  if (ASN1_TIME_cmp_time_t(until, now) < 0) {
+    throw RuntimeError("certificate '{}' has expired on {}: make others with shoal secure init",
+                       file.string(), Date(until));
+  }
+  if (ASN1_TIME_cmp_time_t(from, now) > 0) {
+    throw RuntimeError("certificate '{}' is valid from {} only: is this clock right?",
+                       file.string(), Date(from));
+  }
+}
+
+}  // namespace
+
+std::array<fs::path, 5> CredentialFiles(const fs::path& folder, const std::string& role) {
+  return {folder / "ca.pem", folder / "governance.p7s", folder / (role + ".pem"),
+          folder / (role + ".key"), folder / (role + ".p7s")};
+}
+
+void CheckCredentials(const fs::path& folder, const std::string& role, std::time_t now) {
+  const auto [ca_file, governance, file, key_file, permissions] = CredentialFiles(folder, role);
+  const Certificate ca = credentials::ReadCertificate(ca_file);
+  const Certificate certificate = credentials::ReadCertificate(file);
+  const Key key = credentials::ReadKey(key_file);
+  for (const fs::path& document : {governance, permissions}) {
+    if (ReadFile(document).empty()) throw RuntimeError("'{}' is empty", document.string());
+  }
+  CheckValidity(ca.get(), ca_file, now);
+  CheckValidity(certificate.get(), file, now);
+  const Key ca_key(X509_get_pubkey(ca.get()));
+  if (ca_key == nullptr || X509_verify(certificate.get(), ca_key.get()) != 1) {
+    ERR_clear_error();
+    throw RuntimeError("certificate '{}' was not made by the authority of '{}'", file.string(),
+                       ca_file.string());
+  }
+  if (X509_check_private_key(certificate.get(), key.get()) != 1) {
+    ERR_clear_error();
+    throw RuntimeError("'{}' is not the key of certificate '{}'", key_file.string(), file.string());
+  }
+}
+
+}  // namespace shoal

@@ -1,0 +1,41 @@
+// OpenSSL's objects, owned. Internal to common/credentials.
+#pragma once
+
+#include <openssl/bio.h>
+#include <openssl/evp.h>
+#include <openssl/pkcs7.h>
+#include <openssl/x509.h>
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace shoal::credentials {
+
+template <auto kFree>
+struct Free {
+  template <class T>
+  void operator()(T* object) const {
+    kFree(object);
+  }
+};
+
+using Key = std::unique_ptr<EVP_PKEY, Free<EVP_PKEY_free>>;
+using Certificate = std::unique_ptr<X509, Free<X509_free>>;
+using Signed = std::unique_ptr<PKCS7, Free<PKCS7_free>>;
+using Buffer = std::unique_ptr<BIO, Free<BIO_free_all>>;
+
+// The oldest error that OpenSSL keeps for this thread, as text; clears them all.
+std::string OpensslReason();
+// Throws Error with OpenSSL's reason when `good` is false: "cannot WHAT: REASON".
+void Require(bool good, std::string_view what);
+
+Buffer MakeBuffer(std::string_view content = "");
+std::string Content(const Buffer& buffer);
+
+// The PEM file's. Throws Error naming it.
+Certificate ReadCertificate(const std::filesystem::path& file);
+Key ReadKey(const std::filesystem::path& file);
+
+}  // namespace shoal::credentials

@@ -1,0 +1,35 @@
+// A message of each kind from one process to another.
+#pragma once
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/common/dds/example_messages.h"
+#include "tests/common/dds/peer_process.h"
+
+namespace shoal::dds {
+
+template <class M>
+inline std::string Expected(const std::string& name, uint64_t n, size_t payload_bytes) {
+  std::string text;
+  WithExample<M>(n, ExamplePayload(n, payload_bytes),
+                 [&](const M& message) { text = Describe(message); });
+  return "got " + name + " " + text;
+}
+
+// Message n of `name` arrives at the receiver with every field as it was sent.
+template <class M>
+inline void ExpectSame(PeerProcess& sender, PeerProcess& receiver, const std::string& name) {
+  constexpr uint64_t kNumber = 41;
+  constexpr size_t kPayloadBytes = 100'000;
+  EXPECT_EQ(receiver.Ask("show " + name), "ok");
+  EXPECT_EQ(sender.Ask("publish " + name), "ok");
+  EXPECT_EQ(sender.Ask("match " + name + " 1 10000"), "matched 1");
+  EXPECT_THAT(sender.Ask(fmt::format("write {} {} 1 {}", name, kNumber, kPayloadBytes)),
+              ::testing::StartsWith("wrote 1 "));
+  EXPECT_EQ(receiver.NextGot(), Expected<M>(name, kNumber, kPayloadBytes));
+}
+
+}  // namespace shoal::dds

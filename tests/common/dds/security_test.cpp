@@ -1,0 +1,172 @@
+// Secured domains: each role does what it must and no more, strangers neither join nor read.
+#include <arpa/inet.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <linux/if_ether.h>
+#include <linux/if_packet.h>
+#include <net/if.h>
+#include <poll.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <ctime>
+
+#include "common/base/clock.h"
+#include "common/base/error.h"
+#include "common/dds/bus.h"
+#include "common/dds/domain_xml.h"
+#include "common/dds/role_rights.h"
+#include "tests/common/dds/exchange.h"
+#include "tests/support/temporary_folder.h"
+
+namespace shoal::dds {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::StartsWith;
+
+class SecurityTest : public ::testing::Test {
+ protected:
+  // A folder of credentials of an authority of its own.
+  std::string Credentials(const std::string& name, const Validity& validity = ValidForDays(1)) {
+    const auto folder = parent_.path() / name;
+    CreateCredentials(folder, AllRoleRights(), validity);
+    return folder.string();
+  }
+
+  TemporaryFolder parent_;
+  const std::string secure_ = Credentials("secure");
+  PeerProcess coordinator_{secure_};
+  const ClusterAddress address_ = coordinator_.address();
+};
+
+TEST_F(SecurityTest, EachRoleExchangesItsMessages) {
+  PeerProcess replay("replay", address_), learner("learner", address_), actor("actor", address_);
+  ExpectSame<TransitionChunk>(actor, replay, "TransitionChunk");
+  ExpectSame<Credit>(replay, actor, "Credit");
+  ExpectSame<SampleRequest>(learner, replay, "SampleRequest");
+  ExpectSame<BatchShard>(replay, learner, "BatchShard");
+  ExpectSame<WeightsMessage>(learner, actor, "WeightsMessage");
+  ExpectSame<EvalWeightsMessage>(learner, actor, "EvalWeightsMessage");
+  ExpectSame<MetricsMessage>(actor, coordinator_, "MetricsMessage");
+  ExpectSame<EvalMessage>(actor, coordinator_, "EvalMessage");
+  ExpectSame<ControlMessage>(coordinator_, actor, "ControlMessage");
+  ClusterAddress without_tag = address_;
+  without_tag.tag = "-";
+  PeerProcess client("client", without_tag);
+  ExpectSame<RunViewMessage>(coordinator_, client, "RunViewMessage");
+  ExpectSame<CommandMessage>(client, coordinator_, "CommandMessage");
+}
+
+// The stranger announces itself to the run all the time that the lawful actor needs to be matched,
+// and two more seconds.
+void ExpectKeptOut(PeerProcess& stranger, const ClusterAddress& run) {
+  EXPECT_EQ(stranger.Ask("subscribe WeightsMessage"), "ok");
+  EXPECT_EQ(stranger.Ask("publish TransitionChunk"), "ok");
+  PeerProcess learner("learner", run), replay("replay", run), actor("actor", run);
+  EXPECT_EQ(learner.Ask("publish WeightsMessage"), "ok");
+  EXPECT_EQ(replay.Ask("subscribe TransitionChunk"), "ok");
+  ExpectSame<WeightsMessage>(learner, actor, "WeightsMessage");
+  EXPECT_EQ(stranger.Ask("match WeightsMessage 1 2000"), "matched 0");
+  EXPECT_EQ(stranger.Ask("match TransitionChunk 1 100"), "matched 0");
+  EXPECT_EQ(learner.Ask("match WeightsMessage 2 100"), "matched 1") << "the lawful actor alone";
+  EXPECT_EQ(replay.Ask("match TransitionChunk 1 100"), "matched 0");
+  EXPECT_THAT(stranger.Ask("received WeightsMessage 1 100"), StartsWith("received 0 "));
+}
+
+TEST_F(SecurityTest, AProcessWithoutCredentialsNeitherJoinsNorReads) {
+  ClusterAddress plain = address_;
+  plain.secure.clear();
+  PeerProcess stranger("actor", plain);
+  ExpectKeptOut(stranger, address_);
+}
+
+TEST_F(SecurityTest, AProcessWithAnotherAuthoritysCredentialsNeitherJoinsNorReads) {
+  ClusterAddress other = address_;
+  other.secure = Credentials("other");
+  PeerProcess stranger("actor", other);
+  ExpectKeptOut(stranger, address_);
+}
+
+TEST_F(SecurityTest, AnActorsCredentialsDoNotLetItSendWeights) {
+  PeerProcess actor("actor", address_);
+  EXPECT_EQ(actor.Ask("publish TransitionChunk"), "ok");
+  EXPECT_EQ(actor.Ask("publish WeightsMessage"), "") << "it ends with an error";
+}
+
+// Everything that crosses the loopback interface while it lives.
+class Eavesdropper {
+ public:
+  Eavesdropper() : fd_(socket(AF_PACKET, SOCK_DGRAM | SOCK_CLOEXEC, htons(ETH_P_IP))) {
+    if (fd_ < 0) return;
+    sockaddr_ll place{};
+    place.sll_family = AF_PACKET;
+    place.sll_protocol = htons(ETH_P_IP);
+    place.sll_ifindex = static_cast<int>(if_nametoindex("lo"));
+    EXPECT_EQ(bind(fd_, reinterpret_cast<const sockaddr*>(&place), sizeof place), 0);
+    const int bytes = 16 << 20;
+    setsockopt(fd_, SOL_SOCKET, SO_RCVBUFFORCE, &bytes, sizeof bytes);
+  }
+  ~Eavesdropper() {
+    if (fd_ >= 0) close(fd_);
+  }
+  bool listens() const { return fd_ >= 0; }
+  // Whether a packet that has come holds the bytes.
+  bool Heard(std::span<const uint8_t> wanted) const {
+    std::vector<uint8_t> packet(70'000);
+    pollfd ready{.fd = fd_, .events = POLLIN, .revents = 0};
+    while (poll(&ready, 1, 0) > 0) {
+      const ssize_t size = recv(fd_, packet.data(), packet.size(), 0);
+      if (size <= 0) return false;
+      const std::span<const uint8_t> bytes(packet.data(), static_cast<size_t>(size));
+      if (!std::ranges::search(bytes, wanted).empty()) return true;
+    }
+    return false;
+  }
+
+ private:
+  int fd_;
+};
+
+// Whether somebody on the network sees what the learner sends to an actor.
+bool WeightsAreReadable(const ClusterAddress& address) {
+  const Eavesdropper eavesdropper;
+  PeerProcess learner("learner", address), actor("actor", address);
+  ExpectSame<WeightsMessage>(learner, actor, "WeightsMessage");
+  const std::vector<uint8_t> payload = ExamplePayload(41, 100'000);  // ExpectSame's
+  return eavesdropper.Heard(std::span(payload).first(64));
+}
+
+TEST_F(SecurityTest, NobodyOnTheNetworkReadsWhatIsSent) {
+  if (!Eavesdropper().listens()) GTEST_SKIP() << "needs CAP_NET_RAW";
+  const PeerProcess plain;
+  EXPECT_TRUE(WeightsAreReadable(plain.address())) << "the check itself does not see anything";
+  EXPECT_FALSE(WeightsAreReadable(address_));
+}
+
+// The line that a process which cannot join ends with.
+std::string JoinError(const ClusterAddress& address) {
+  try {
+    const Bus bus(address, TransportConfig{}, Role::kActor);
+    return "joined";
+  } catch (const Error& e) {
+    return e.what();
+  }
+}
+
+TEST_F(SecurityTest, CredentialsThatDoNotServeAreNamed) {
+  ClusterAddress address = address_;
+  address.secure = Credentials("old", {.from = 0, .until = 1'000'000});
+  EXPECT_THAT(JoinError(address), AllOf(HasSubstr("old/ca.pem"), HasSubstr("expired")));
+  address.secure = "/absent";
+  EXPECT_THAT(JoinError(address), HasSubstr("/absent/ca.pem"));
+}
+
+TEST_F(SecurityTest, ATemplateThatWouldLeaveSecurityOutIsRefused) {
+  EXPECT_THROW(RenderDomainXml("<CycloneDDS/>", address_, {}, Role::kActor, Plane::kMain), Error);
+}
+
+}  // namespace
+}  // namespace shoal::dds
