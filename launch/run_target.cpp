@@ -69,10 +69,16 @@ RunTarget ResolveTarget(const TargetOptions& options) {
   if (!options.run.empty() && !options.peer.empty()) {
     throw UsageError("--run {} and --peer {}: give one of them", options.run, options.peer);
   }
-  if (!options.peer.empty()) return TargetOfPeer(options.peer);
+  if (!options.peer.empty()) {
+    RunTarget target = TargetOfPeer(options.peer);
+    target.address.secure = options.secure;
+    return target;
+  }
   const fs::path folder = options.run.empty() ? OnlyRunningRun(options.run_dir) : FindRun(options);
   if (!IsHeld(folder)) throw RuntimeError("run '{}' is not running", folder.string());
-  return TargetOfFolder(folder);
+  RunTarget target = TargetOfFolder(folder);
+  if (!options.secure.empty()) target.address.secure = options.secure;
+  return target;
 }
 
 }  // namespace shoal::launch

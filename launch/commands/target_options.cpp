@@ -9,6 +9,8 @@ void AddTargetOptions(CLI::App& command, TargetOptions* options) {
                      "Name or folder of the run; the only one that is running when not given");
   command.add_option("--peer", options->peer,
                      "HOST:PORT of a run anywhere, as the run showed it when it started");
+  command.add_option("--secure", options->secure,
+                     "Folder of credentials of a secured run, with --peer (shoal secure init)");
   command.add_option("--run-dir", options->run_dir, "Folder that holds the runs")
       ->capture_default_str();
 }

@@ -9,7 +9,7 @@ class App;
 
 namespace shoal::launch {
 
-// Adds --run, --peer and --run-dir. `options` must live as long as the command line.
+// Adds --run, --peer, --secure and --run-dir. `options` must live as long as the command line.
 void AddTargetOptions(CLI::App& command, TargetOptions* options);
 
 }  // namespace shoal::launch
