@@ -1,8 +1,10 @@
 // launch/slurm/train.sbatch under a Slurm of the test's own: controller, node and authentication on
 // this machine, in a scratch folder.
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <array>
 #include <csignal>
 #include <thread>
 
