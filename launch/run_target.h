@@ -14,7 +14,7 @@ struct TargetOptions {
   std::string run;   // name within run_dir, or path of the folder
   std::string peer;  // HOST:PORT of the coordinator's side for clients
   std::string run_dir = "runs";
-  std::string secure;  // folder of credentials; empty = as the run's cluster.json says
+  std::string secure = {};  // folder of credentials; empty = as the run's cluster.json says
 };
 
 struct RunTarget {

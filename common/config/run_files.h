@@ -25,7 +25,7 @@ struct ClusterAddress {
   int domain = 0;                  // even, below 100
   std::string tag;                 // run id: processes with another tag do not see each other
   std::string host = "127.0.0.1";  // of coordinator, replay and learner
-  std::string secure;              // folder of credentials (common/credentials); empty = none
+  std::string secure = {};         // folder of credentials (common/credentials); empty = none
 };
 
 void WriteClusterAddress(const std::filesystem::path& run, const ClusterAddress& address);

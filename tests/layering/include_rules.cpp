@@ -20,8 +20,7 @@ const std::vector<std::string> kTopFolders = {"common",  "actor",  "replay_serve
 const std::map<std::string, std::string> kHomes = {
     {"dds/", "common/dds"},     {"dnnl", "common/nn"},       {"oneapi/", "common/nn"},
     {"Eigen/", "common/nn"},    {"mujoco/", "actor/worlds"}, {"GL/", "actor/worlds"},
-    {"spdlog/", "common/base"}, {"png.h", "common/image"},
-    {"openssl/", "common/credentials"},
+    {"spdlog/", "common/base"}, {"png.h", "common/image"},   {"openssl/", "common/credentials"},
 };
 
 const std::set<std::string> kEmptyNames = {"utils", "util",    "helpers", "helper",
