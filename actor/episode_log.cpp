@@ -13,10 +13,15 @@ EpisodeFigures EpisodeLog::Mean() const {
   if (recent_.empty()) return mean;
   const double n = static_cast<double>(recent_.size());
   double length = 0;
+  mean.drawn_masses = recent_.back().drawn_masses;
+  for (worlds::DrawnMass& drawn : mean.drawn_masses) drawn.mass_kg = 0;
   for (const EpisodeFigures& figures : recent_) {
     mean.episode_return += figures.episode_return / n;
     mean.final_distance += figures.final_distance / n;
     length += figures.length / n;
+    for (size_t i = 0; i < mean.drawn_masses.size(); ++i) {
+      mean.drawn_masses[i].mass_kg += figures.drawn_masses[i].mass_kg / n;
+    }
   }
   mean.length = static_cast<int>(length + 0.5);
   return mean;

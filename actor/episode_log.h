@@ -4,6 +4,9 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
+#include <vector>
+
+#include "actor/worlds/environment.h"
 
 namespace shoal::actor {
 
@@ -11,7 +14,8 @@ struct EpisodeFigures {
   double episode_return = 0;
   int length = 0;
   bool success = false;
-  double final_distance = 0;  // m; NaN where the task has none
+  double final_distance = 0;                      // m; NaN where the task has none
+  std::vector<worlds::DrawnMass> drawn_masses{};  // empty unless randomized
 };
 
 // Means over the last kWindow episodes. One thread.
@@ -21,7 +25,8 @@ class EpisodeLog {
 
   void Add(const EpisodeFigures& figures);
   uint64_t count() const { return count_; }
-  EpisodeFigures Mean() const;  // all zero before the first episode
+  // All zero before the first episode. Episodes of one run draw the same bodies' masses.
+  EpisodeFigures Mean() const;
   double SuccessRate() const;
 
  private:

@@ -9,6 +9,7 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/stop.h"
+#include "common/tasks/task_registry.h"
 
 namespace shoal::actor {
 namespace {
@@ -35,6 +36,8 @@ void Begin(Seat& seat, int e, int64_t episode, const EpisodeStream& stream,
   // draws.
   selector.BeginEpisode(e, HashWords({key, static_cast<uint64_t>(StreamRole::kEvalPolicy)}));
   seat.environment->Reset(key, {seat.frame, selector.VectorOf(e)});
+  const auto masses = seat.environment->drawn_masses();
+  seat.result.drawn_masses.assign(masses.begin(), masses.end());
   seat.stack.Reset(seat.frame);
 }
 
@@ -67,7 +70,20 @@ ordered_json NumberOrNull(double value) {
   return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
 }
 
-ordered_json Aggregate(const std::vector<EpisodeResult>& episodes) {
+ordered_json EpisodeJson(const EpisodeResult& episode, bool has_success) {
+  ordered_json object{{"seed", episode.seed},
+                      {"success", has_success ? ordered_json(episode.success) : nullptr},
+                      {"return", episode.episode_return},
+                      {"length", episode.length},
+                      {"final_distance", NumberOrNull(episode.final_distance)},
+                      {"action_smoothness", episode.action_smoothness}};
+  for (const worlds::DrawnMass& drawn : episode.drawn_masses) {
+    object["body_mass"][drawn.body] = drawn.mass_kg;
+  }
+  return object;
+}
+
+ordered_json Aggregate(const std::vector<EpisodeResult>& episodes, bool has_success) {
   const double n = static_cast<double>(episodes.size());
   double successes = 0, mean = 0, length = 0, distance = 0, variance = 0;
   for (const EpisodeResult& episode : episodes) {
@@ -79,9 +95,12 @@ ordered_json Aggregate(const std::vector<EpisodeResult>& episodes) {
   for (const EpisodeResult& episode : episodes) {
     variance += std::pow(episode.episode_return - mean, 2) / n;
   }
-  return {{"episodes", episodes.size()}, {"success_rate", successes / n},
-          {"return_mean", mean},         {"return_std", std::sqrt(variance)},
-          {"length_mean", length},       {"final_distance_mean", NumberOrNull(distance)}};
+  return {{"episodes", episodes.size()},
+          {"success_rate", has_success ? ordered_json(successes / n) : nullptr},
+          {"return_mean", mean},
+          {"return_std", std::sqrt(variance)},
+          {"length_mean", length},
+          {"final_distance_mean", NumberOrNull(distance)}};
 }
 
 }  // namespace
@@ -123,14 +142,10 @@ std::vector<EpisodeResult> Evaluator::Play(int episodes, const EpisodeStream& st
 ordered_json EvaluationJson(const RunConfig& run, const EvaluationLabel& label,
                             const EpisodeStream& stream,
                             const std::vector<EpisodeResult>& episodes) {
+  const bool has_success = tasks::FindTask(run.config.task).has_success();
   ordered_json list = ordered_json::array();
   for (const EpisodeResult& episode : episodes) {
-    list.push_back({{"seed", episode.seed},
-                    {"success", episode.success},
-                    {"return", episode.episode_return},
-                    {"length", episode.length},
-                    {"final_distance", NumberOrNull(episode.final_distance)},
-                    {"action_smoothness", episode.action_smoothness}});
+    list.push_back(EpisodeJson(episode, has_success));
   }
   const bool random = label.policy == "random";
   const ordered_json version{{"session", label.version.session}, {"update", label.version.update}};
@@ -145,7 +160,7 @@ ordered_json EvaluationJson(const RunConfig& run, const EvaluationLabel& label,
           {"seeds", {stream.seed}},
           {"stream", {{"role", static_cast<uint64_t>(stream.role)}, {"group", stream.group}}},
           {"episodes", list},
-          {"aggregate", Aggregate(episodes)},
+          {"aggregate", Aggregate(episodes, has_success)},
           {"commit", BuildCommit()},
           {"created", UtcTimestamp()}};
 }

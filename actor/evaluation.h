@@ -16,12 +16,13 @@
 namespace shoal::actor {
 
 struct EpisodeResult {
-  int64_t seed = 0;  // number of the episode in its stream
-  bool success = false;
-  double episode_return = 0;  // unscaled
-  int length = 0;
+  int64_t seed = 0;              // number of the episode in its stream
+  bool success = false;          // false where the task has none
+  double episode_return = 0;     // unscaled
+  int length = 0;                // env steps
   double final_distance = 0;     // m; NaN where the task has none
   double action_smoothness = 0;  // mean over steps of |a_t - a_{t-1}|_2; smaller is smoother
+  std::vector<worlds::DrawnMass> drawn_masses{};  // empty unless randomized
 };
 
 // Which episodes are played: episode k starts from StreamKey(seed, role, group, k). Train,
@@ -62,7 +63,9 @@ class Evaluator {
   ActionSelector selector_;
 };
 
-// The object of eval/*.json, schema shoal-eval-1.
+// The object of eval/*.json, schema shoal-eval-1. success, success_rate, final_distance and its
+// mean are null where the task has no such thing; body_mass (body -> kg) is there for randomized
+// episodes.
 nlohmann::ordered_json EvaluationJson(const RunConfig& run, const EvaluationLabel& label,
                                       const EpisodeStream& stream,
                                       const std::vector<EpisodeResult>& episodes);

@@ -69,6 +69,8 @@ void Rollout::BeginEpisode(int e) {
   FillHeader(e, RecordKind::kReset, &header);
   header.distance = slot.environment->Reset(
       StreamKey(seed_, StreamRole::kTrainEnvironment, env, slot.episode), {frame, vector});
+  const auto masses = slot.environment->drawn_masses();
+  slot.figures.drawn_masses.assign(masses.begin(), masses.end());
   slot.stack.Reset(frame);
   std::copy(vector.begin(), vector.end(), selector_.VectorOf(e).begin());
   Publish(record);

@@ -13,6 +13,7 @@
 #include "common/config/session_number.h"
 #include "common/dds/publisher.h"
 #include "common/dds/subscriber.h"
+#include "common/tasks/task_registry.h"
 #include "common/wire/control_state.h"
 #include "common/wire/metrics_report.h"
 #include "common/wire/scoped_seconds.h"
@@ -239,10 +240,14 @@ class TrainingActor {
     report_.Add("episodes", static_cast<double>(episodes.count()));
     if (episodes.count() == 0) return;
     const EpisodeFigures mean = episodes.Mean();
-    report_.Add("rollout_success", episodes.SuccessRate());
+    const tasks::Task& task = tasks::FindTask(run_.config.task);
+    if (task.has_success()) report_.Add("rollout_success", episodes.SuccessRate());
     report_.Add("rollout_return", mean.episode_return);
     report_.Add("rollout_length", mean.length);
-    report_.Add("rollout_final_distance", mean.final_distance);
+    if (task.goal_size() > 0) report_.Add("rollout_final_distance", mean.final_distance);
+    for (const worlds::DrawnMass& drawn : mean.drawn_masses) {
+      report_.Add("rollout_mass_" + drawn.body, drawn.mass_kg);
+    }
   }
 
   const RunMembership member_;

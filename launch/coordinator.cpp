@@ -244,9 +244,8 @@ void Coordinator::Impl::TakeMessages(SteadyTime now) {
 void Coordinator::Impl::OnEvaluation(const EvalMessage& message) {
   const EvaluationPoint point = StoreEvaluation(run, message, Elapsed());
   const bool best = !meta.best || Better(point, *meta.best);
-  progress.Say(fmt::format(
-      "evaluation at {} env steps, {} updates: success {:.1f} %, return {:.3f}{}", point.env_steps,
-      point.updates, 100 * point.success, point.mean_return, best ? " (best)" : ""));
+  progress.Say(fmt::format("evaluation at {} env steps, {} updates: {}{}", point.env_steps,
+                           point.updates, FormatScore(point), best ? " (best)" : ""));
   scalars.WriteEvaluation(point);
   Count(point);
   StoreMeta();

@@ -36,8 +36,9 @@ EvaluationPoint PointOf(const ordered_json& object, const std::string& source) {
     object.at("weights_version").at("update").get_to(point.updates);
     object.at("checkpoint").get_to(point.checkpoint);
     aggregate.at("return_mean").get_to(point.mean_return);
-    // A task without success of its own is never at the target.
-    if (!aggregate.at("success_rate").is_null()) aggregate["success_rate"].get_to(point.success);
+    if (const ordered_json& success = aggregate.at("success_rate"); !success.is_null()) {
+      point.success = success.get<double>();
+    }
     point.wall_seconds = object.value("wall_seconds", 0.0);
   } catch (const nlohmann::json::exception& e) {
     throw RuntimeError("{}: {}", source, e.what());

@@ -37,8 +37,13 @@ std::string LimiterState(const ProgressFigures& f) {
 
 std::string Evaluation(const std::optional<EvaluationPoint>& e) {
   if (!e) return "none yet";
-  return fmt::format("success {:.0f} %, return {:.2f} at {} env steps", 100 * e->success,
-                     e->mean_return, e->env_steps);
+  return fmt::format("{} at {} env steps", FormatScore(*e), e->env_steps);
+}
+
+// Of the plain line: the rate alone, or the return where the task has no success.
+std::string ShortScore(const std::optional<EvaluationPoint>& e) {
+  if (!e) return "-";
+  return e->success ? Percent(e->success) : fmt::format("return {:.2f}", e->mean_return);
 }
 
 int TerminalWidth() {
@@ -74,10 +79,9 @@ std::string FormatProgressLine(const ProgressFigures& f) {
       "lag {} | {} | left {}",
       FormatDuration(f.elapsed_seconds), f.state, f.env_steps, f.budget,
       Number(f.env_steps_per_second), Number(f.updates), Number(f.updates_per_second, "{:.1f}"),
-      f.last_evaluation ? Percent(f.last_evaluation->success) : "-",
-      Number(f.critic_loss, "{:.3g}"), Number(f.actor_loss, "{:.3g}"),
-      Number(f.temperature, "{:.3g}"), Number(f.policy_lag), LimiterState(f),
-      FormatDuration(SecondsLeft(f)));
+      ShortScore(f.last_evaluation), Number(f.critic_loss, "{:.3g}"),
+      Number(f.actor_loss, "{:.3g}"), Number(f.temperature, "{:.3g}"), Number(f.policy_lag),
+      LimiterState(f), FormatDuration(SecondsLeft(f)));
 }
 
 std::vector<std::string> FormatProgressBlock(const ProgressFigures& f, int width) {

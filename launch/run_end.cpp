@@ -61,15 +61,14 @@ void PrintSummary(const fs::path& run, const RunResult& result,
                            run.string(), meta.exit, meta.env_steps, meta.updates,
                            FormatDuration(meta.wall_seconds), meta.wall_seconds));
   if (final_evaluation) {
-    progress.Say(fmt::format("  final evaluation: success {:.1f} %, return {:.3f} ({})",
-                             100 * final_evaluation->success, final_evaluation->mean_return,
+    progress.Say(fmt::format("  final evaluation: {} ({})", FormatScore(*final_evaluation),
                              (run / "eval/final.json").string()));
   }
   if (meta.first_success) {
     progress.Say(fmt::format("  success >= {:.0f} % from {} env steps, {} updates, {:.0f} s on",
                              100 * meta.target, meta.first_success->env_steps,
                              meta.first_success->updates, meta.first_success->wall_seconds));
-  } else {
+  } else if (meta.best && meta.best->success) {
     progress.Say(fmt::format("  success >= {:.0f} % was not reached", 100 * meta.target));
   }
   if (meta.accounting) progress.Say("  " + meta.accounting->Line());
@@ -103,7 +102,10 @@ int EndRun(const fs::path& run, const Config& config, RunResult result, Operator
   std::optional<EvaluationPoint> final_evaluation;
   try {
     final_evaluation = EvaluateAtEnd(run, config, desk, progress);
-    if (final_evaluation) meta.final_success = final_evaluation->success;
+    if (final_evaluation) {
+      meta.final_success = final_evaluation->success;
+      meta.final_return = final_evaluation->mean_return;
+    }
   } catch (const Error& e) {
     fail(e.what());
   }

@@ -24,17 +24,17 @@ namespace {
 void AddEvaluation(const std::string& prefix, const std::optional<EvaluationPoint>& point,
                    MetricsReport* report) {
   if (!point) return;
-  report->Add(prefix + "_success", point->success);
+  if (point->success) report->Add(prefix + "_success", *point->success);
   report->Add(prefix + "_return", point->mean_return);
   report->Add(prefix + "_env_steps", static_cast<double>(point->env_steps));
 }
 
 std::optional<EvaluationPoint> FindEvaluation(const MetricsView& view, const std::string& prefix) {
   const auto get = [&](const char* name) { return view.Get("coordinator", 0, prefix + name); };
-  if (!get("_success")) return std::nullopt;
+  if (!get("_return")) return std::nullopt;
   EvaluationPoint point;
-  point.success = *get("_success");
-  point.mean_return = get("_return").value_or(0);
+  point.success = get("_success");
+  point.mean_return = *get("_return");
   point.env_steps = static_cast<uint64_t>(get("_env_steps").value_or(0));
   return point;
 }

@@ -32,7 +32,7 @@ ordered_json Best(const RunMeta& meta) {
   return {{"checkpoint", meta.best->checkpoint},
           {"env_steps", meta.best->env_steps},
           {"updates", meta.best->updates},
-          {"success_rate", meta.best->success},
+          {"success_rate", OrNull(meta.best->success)},
           {"return_mean", meta.best->mean_return}};
 }
 
@@ -65,6 +65,7 @@ void WriteRunMeta(const std::filesystem::path& run, const Config& config, const 
       {"first_success", FirstSuccess(meta)},
       {"best", Best(meta)},
       {"final_success_rate", OrNull(meta.final_success)},
+      {"final_return_mean", OrNull(meta.final_return)},
       {"accounting", meta.accounting ? ToJson(*meta.accounting) : ordered_json(nullptr)},
       {"restarts", meta.restarts},
       {"exit", meta.exit},

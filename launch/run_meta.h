@@ -19,6 +19,7 @@ struct RunMeta {
   std::optional<EvaluationPoint> first_success;
   std::optional<EvaluationPoint> best;  // of the evaluations while training
   std::optional<double> final_success;  // of the evaluation at the end
+  std::optional<double> final_return;   // its mean return
   std::optional<Accounting> accounting;
   int restarts = 0;
   std::string exit = "running";  // then "target", "budget", "interrupted" or "failed"

@@ -12,7 +12,7 @@ ScalarLog::ScalarLog(const std::filesystem::path& run) : writer_(run / "tensorbo
 void ScalarLog::WriteEvaluation(const EvaluationPoint& point) {
   const auto step = static_cast<int64_t>(point.env_steps);
   writer_.Scalar("eval/mean_reward", step, point.mean_return);
-  writer_.Scalar("eval/success_rate", step, point.success);
+  if (point.success) writer_.Scalar("eval/success_rate", step, *point.success);
   writer_.Flush();
 }
 

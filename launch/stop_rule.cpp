@@ -1,5 +1,7 @@
 #include "launch/stop_rule.h"
 
+#include <fmt/core.h>
+
 namespace shoal::launch {
 namespace {
 
@@ -13,7 +15,7 @@ StopRule::StopRule(const Config& config)
       target_(config.stop.success <= 1 ? config.stop.success : kUsualTarget) {}
 
 void StopRule::OnEvaluation(const EvaluationPoint& point) {
-  if (point.success < target_) {
+  if (!point.success || *point.success < target_) {
     streak_ = 0;
     return;
   }
@@ -25,6 +27,11 @@ void StopRule::OnEvaluation(const EvaluationPoint& point) {
 bool StopRule::TargetReached() const { return stop_.success <= 1 && streak_ >= stop_.evaluations; }
 
 bool StopRule::BudgetSpent(uint64_t env_steps) const { return env_steps >= budget_; }
+
+std::string FormatScore(const EvaluationPoint& point) {
+  const std::string score = fmt::format("return {:.3f}", point.mean_return);
+  return point.success ? fmt::format("success {:.1f} %, {}", 100 * *point.success, score) : score;
+}
 
 bool Better(const EvaluationPoint& a, const EvaluationPoint& b) {
   if (a.success != b.success) return a.success > b.success;

@@ -12,10 +12,10 @@ namespace shoal::launch {
 // One evaluation, as the coordinator sees it.
 struct EvaluationPoint {
   uint64_t env_steps = 0, updates = 0;
-  double wall_seconds = 0;   // since the run's start
-  double success = 0;        // rate, 0..1
-  double mean_return = 0;    // unscaled
-  std::string checkpoint{};  // folder name under checkpoints/
+  double wall_seconds = 0;        // since the run's start
+  std::optional<double> success;  // rate, 0..1; empty where the task has no success of its own
+  double mean_return = 0;         // unscaled
+  std::string checkpoint{};       // folder name under checkpoints/
 };
 
 class StopRule {
@@ -25,7 +25,8 @@ class StopRule {
   // In the order of evaluation.
   void OnEvaluation(const EvaluationPoint& point);
 
-  // stop.evaluations in a row reached stop.success.
+  // stop.evaluations in a row reached stop.success. Never for a task without success: its runs end
+  // by their budget.
   bool TargetReached() const;
   bool BudgetSpent(uint64_t env_steps) const;
 
@@ -43,7 +44,10 @@ class StopRule {
   std::optional<EvaluationPoint> first_success_;
 };
 
-// Is `a` better than `b`: by success, then by return?
+// "success 98.0 %, return -0.970", or the return alone where there is no success.
+std::string FormatScore(const EvaluationPoint& point);
+
+// Is `a` better than `b`: by success where the task has one, then by return?
 bool Better(const EvaluationPoint& a, const EvaluationPoint& b);
 
 }  // namespace shoal::launch

@@ -1,4 +1,4 @@
-// Cameras of a task as configuration data: views of the engine's free camera.
+// Cameras of a task as configuration data: views of the engine's free camera, and the model's own.
 #pragma once
 
 #include <array>
@@ -6,14 +6,17 @@
 
 namespace shoal::worlds {
 
-// The camera looks at `lookat` from `distance`; azimuth 0 looks along +x, 90 along +y; negative
-// elevation looks down. The vertical field of view is the model's (45 degrees by default).
+// A free view looks at `lookat` from `distance`; azimuth 0 looks along +x, 90 along +y; negative
+// elevation looks down. Its vertical field of view is the model's (45 degrees by default).
+//
+// A camera of the model, which may follow a body, has `model_camera` and ignores those numbers.
 struct CameraView {
   std::string name;
-  std::array<double, 3> lookat;  // m
-  double distance;               // m
-  double azimuth_degrees;
-  double elevation_degrees;
+  std::array<double, 3> lookat{};  // m
+  double distance = 0;             // m
+  double azimuth_degrees = 0;
+  double elevation_degrees = 0;
+  int model_camera = -1;  // number of the camera in the model; -1 = a free view
 };
 
 }  // namespace shoal::worlds

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 
 #include "common/config/config.h"
 #include "common/spec/observation_spec.h"
@@ -18,10 +19,18 @@ struct ObservationOut {
   std::span<float> vector;
 };
 
+// Of one env step, that is of all its control steps (see action_repeat).
 struct StepResult {
-  float reward = 0;  // unscaled
-  bool terminated = false, truncated = false, success = false;
-  float distance = 0;  // of achieved to desired goal in m; NaN where the task has none
+  float reward = 0;  // unscaled, summed over the control steps
+  bool terminated = false, truncated = false;
+  bool success = false;  // after the last control step; false where the task has none
+  float distance = 0;    // of achieved to desired goal in m; NaN where the task has none
+};
+
+// What was drawn for an episode: a body's mass in kg.
+struct DrawnMass {
+  std::string body;
+  double mass_kg = 0;
 };
 
 class Environment {
@@ -31,10 +40,13 @@ class Environment {
   // Starts the episode named by the stream key: equal keys give bit-identical episodes for equal
   // actions, whatever happened before. Returns the distance at the start.
   virtual float Reset(uint64_t stream_key, ObservationOut out) = 0;
-  // `action` (A), each in [-1, 1].
+  // `action` (A), each in [-1, 1], is repeated for the control steps of an env step, or until the
+  // episode ends; the observation is taken once, after the last.
   virtual StepResult Step(std::span<const float> action, ObservationOut out) = 0;
   // Seconds spent drawing frames since the construction.
   virtual double render_seconds() const = 0;
+  // Drawn at the last reset, in the order drawn; empty unless the configuration randomizes.
+  virtual std::span<const DrawnMass> drawn_masses() const = 0;
 };
 
 // Shares one off-screen render context between the environments of a process (one thread).

@@ -2,9 +2,13 @@
 
 #include <mujoco/mujoco.h>
 
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
+#include <map>
+#include <mutex>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "actor/worlds/engine_messages.h"
@@ -45,9 +49,13 @@ class VirtualFolder {
 void ModelDeleter::operator()(mjModel_* model) const { mj_deleteModel(model); }
 void DataDeleter::operator()(mjData_* data) const { mj_deleteData(data); }
 
-ModelHandle LoadModel(const std::string& name, const std::string& user_file,
-                      const std::string& addition) {
-  InstallEngineCallbacks();
+namespace {
+
+ModelHandle Compile(const std::string& name, const std::string& user_file,
+                    const std::string& addition) {
+  // The engine strews the stars of a procedural sky with the C library's generator, which nobody
+  // else uses: with this seed every process has the same sky.
+  std::srand(1);
   if (!user_file.empty() && !std::filesystem::is_regular_file(user_file)) {
     throw UsageError("model file '{}' does not exist", user_file);
   }
@@ -70,6 +78,22 @@ ModelHandle LoadModel(const std::string& name, const std::string& user_file,
   CHECK(model != nullptr || !user_file.empty()) << name << ": " << reason;
   if (model == nullptr) throw RuntimeError("model file '{}' does not load: {}", user_file, reason);
   return model;
+}
+
+}  // namespace
+
+ModelHandle LoadModel(const std::string& name, const std::string& user_file,
+                      const std::string& addition) {
+  InstallEngineCallbacks();
+  if (!user_file.empty()) return Compile(name, user_file, addition);
+  static std::mutex mutex;
+  static std::map<std::pair<std::string, std::string>, ModelHandle> compiled;
+  const std::lock_guard lock(mutex);
+  ModelHandle& original = compiled[{name, addition}];
+  if (original == nullptr) original = Compile(name, "", addition);
+  ModelHandle copy(mj_copyModel(nullptr, original.get()));
+  if (copy == nullptr) throw RuntimeError("MuJoCo: no memory for a copy of model '{}'", name);
+  return copy;
 }
 
 DataHandle MakeData(const mjModel_& model) {

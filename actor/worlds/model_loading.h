@@ -7,10 +7,11 @@
 
 namespace shoal::worlds {
 
-// Compiles the embedded file `name` ("fetch_reach.xml"), or, when `user_file` is not empty, the
-// file at that path (its includes and meshes are looked up beside it). `addition`: MJCF elements
-// ("<equality>...</equality>") that the model gets after its own. Throws Error with the engine's
-// reason when it does not load.
+// A copy of the embedded file `name` ("fetch_reach.xml"), compiled once per process, or, when
+// `user_file` is not empty, the file at that path, compiled now (its includes and meshes are looked
+// up beside it). `addition`: MJCF elements ("<equality>...</equality>") that the model gets after
+// its own. Equal text gives equal models, procedural textures included. Any thread, one at a time
+// for files of users. Throws Error with the engine's reason when it does not load.
 ModelHandle LoadModel(const std::string& name, const std::string& user_file,
                       const std::string& addition = "");
 

@@ -37,6 +37,44 @@ bool AnyLightCastsShadow(const mjModel& model) {
                      [](mjtByte casts) { return casts != 0; });
 }
 
+mjvCamera EngineCamera(const CameraView& camera) {
+  mjvCamera view;
+  mjv_defaultCamera(&view);
+  if (camera.model_camera >= 0) {
+    view.type = mjCAMERA_FIXED;  // the engine's word for any camera of the model
+    view.fixedcamid = camera.model_camera;
+    return view;
+  }
+  view.type = mjCAMERA_FREE;
+  std::copy(camera.lookat.begin(), camera.lookat.end(), view.lookat);
+  view.distance = camera.distance;
+  view.azimuth = camera.azimuth_degrees;
+  view.elevation = camera.elevation_degrees;
+  return view;
+}
+
+// Where a light casts shadows the engine adds its part in a pass of its own, after texturing: a
+// textured floor is brighter than full light times its texture. Without that pass the parts are
+// summed before texturing, where the sum would be cut off at full light.
+void LeaveLightUnclamped() {
+  constexpr GLenum kClampVertexColor = 0x891A;
+  const auto clamp_color =
+      reinterpret_cast<void (*)(GLenum, GLenum)>(OSMesaGetProcAddress("glClampColorARB"));
+  if (clamp_color == nullptr) throw RuntimeError("OSMesa has no glClampColorARB");
+  clamp_color(kClampVertexColor, GL_FALSE);
+}
+
+// The pass without shadow casters is cut off at full light all the same.
+void LimitHeadlight(mjvScene* scene) {
+  for (int i = 0; i < scene->nlight; ++i) {
+    mjvLight& light = scene->lights[i];
+    if (!light.headlight) continue;
+    for (int channel = 0; channel < 3; ++channel) {
+      light.diffuse[channel] = std::min(light.diffuse[channel], 1 - light.ambient[channel]);
+    }
+  }
+}
+
 }  // namespace
 
 struct RenderContext::Engine {
@@ -103,7 +141,8 @@ void RenderContext::Attach(World* world) {
     quality.offsamples = 0;
     quality.numslices = kFastSlices;
     quality.numstacks = kFastStacks;
-    quality.numquads = kFastQuads;
+    // Light that falls off over a floor needs the floor's own division.
+    if (!AnyLightCastsShadow(model)) quality.numquads = kFastQuads;
   }
   model.vis.global.offwidth = width_;
   model.vis.global.offheight = height_;
@@ -120,6 +159,8 @@ void RenderContext::Attach(World* world) {
   if (fast_) {
     scene.flags[mjRND_SHADOW] = 0;
     scene.flags[mjRND_REFLECTION] = 0;
+    light_unclamped_ = AnyLightCastsShadow(model);
+    if (light_unclamped_) LeaveLightUnclamped();
     // The sky is most of a picture's fragments: the nearest texel is enough for it.
     for (int i = 0; i < context.ntexture; ++i) {
       if (context.textureType[i] != mjTEXTURE_SKYBOX) continue;
@@ -133,15 +174,10 @@ void RenderContext::Attach(World* world) {
 }
 
 void RenderContext::Draw(World* world, const CameraView& camera) {
-  mjvCamera view;
-  mjv_defaultCamera(&view);
-  view.type = mjCAMERA_FREE;
-  std::copy(camera.lookat.begin(), camera.lookat.end(), view.lookat);
-  view.distance = camera.distance;
-  view.azimuth = camera.azimuth_degrees;
-  view.elevation = camera.elevation_degrees;
+  mjvCamera view = EngineCamera(camera);
   mjv_updateScene(&world->model(), &world->data(), &engine_->option, /*pert=*/nullptr, &view,
                   mjCAT_ALL, &engine_->scene);
+  if (light_unclamped_) LimitHeadlight(&engine_->scene);
   if (fast_) {
     RemoveUnseenGeoms(&engine_->scene, static_cast<float>(width_) / static_cast<float>(height_));
   }

@@ -47,8 +47,9 @@ class RenderContext {
   int width_, height_;
   bool grey_;
   bool fast_;
-  std::string fingerprint_;      // of the model, empty before the first Attach
-  std::vector<uint8_t> pixels_;  // (H, W, 3), row 0 = bottom, as the engine reads them
+  bool light_unclamped_ = false;  // stands in for passes of lights that would cast shadows
+  std::string fingerprint_;       // of the model, empty before the first Attach
+  std::vector<uint8_t> pixels_;   // (H, W, 3), row 0 = bottom, as the engine reads them
   std::unique_ptr<Engine> engine_;
 };
 

@@ -24,9 +24,17 @@ int World::ElementId(int object_type, const char* kind, const std::string& name)
 int World::BodyId(const std::string& name) const { return ElementId(mjOBJ_BODY, "body", name); }
 int World::SiteId(const std::string& name) const { return ElementId(mjOBJ_SITE, "site", name); }
 int World::JointId(const std::string& name) const { return ElementId(mjOBJ_JOINT, "joint", name); }
+int World::GeomId(const std::string& name) const { return ElementId(mjOBJ_GEOM, "geom", name); }
+int World::SensorId(const std::string& name) const {
+  return ElementId(mjOBJ_SENSOR, "sensor", name);
+}
 
 void World::Advance(int count) {
   for (int i = 0; i < count; ++i) mj_step(model_.get(), data_.get());
+  CheckState();
+}
+
+void World::CheckState() const {
   for (const int kind : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC}) {
     const mjWarningStat& warning = data_->warning[kind];
     if (warning.number > 0) {

@@ -1,6 +1,8 @@
 // The physics half of a task: a model, its state, and what reset and step do to them. Knows nothing
 // of pixels' layout, rewards for goals or episode lengths.
 //
+// A step here is a control step; repeating actions is the environment's business.
+//
 // Numbers are the engine's doubles. One thread at a time per world; worlds are independent.
 #pragma once
 
@@ -36,7 +38,7 @@ class World {
   // The task's blocks; goals are empty for tasks without goals.
   virtual void Observe(std::span<double> observation, std::span<double> achieved_goal,
                        std::span<double> desired_goal) const = 0;
-  // Lives as long as the world.
+  // The first is the one to look at by default. Lives as long as the world.
   virtual std::span<const CameraView> cameras() const = 0;
 
   mjModel_& model() { return *model_; }
@@ -53,11 +55,15 @@ class World {
   int BodyId(const std::string& name) const;
   int SiteId(const std::string& name) const;
   int JointId(const std::string& name) const;
+  int GeomId(const std::string& name) const;
+  int SensorId(const std::string& name) const;
 
  protected:
-  // `count` engine steps. Throws Error when the state became non-finite or too large: the engine
-  // then resets itself silently, so nothing after that can be trusted.
+  // `count` engine steps, then CheckState.
   void Advance(int count);
+  // Throws Error when the state became non-finite or too large: the engine then resets itself
+  // silently, so nothing after that can be trusted.
+  void CheckState() const;
 
  private:
   int ElementId(int object_type, const char* kind, const std::string& name) const;

@@ -24,7 +24,7 @@ std::string RenderFingerprint(const std::string& model, const std::string& quali
   for (const CameraView& camera : cameras) {
     for (const double number :
          {camera.lookat[0], camera.lookat[1], camera.lookat[2], camera.distance,
-          camera.azimuth_degrees, camera.elevation_degrees}) {
+          camera.azimuth_degrees, camera.elevation_degrees, double(camera.model_camera)}) {
       hash = HashWords({hash, std::bit_cast<uint64_t>(number)});
     }
   }
@@ -39,26 +39,33 @@ void Size(const tasks::Block& block, std::vector<double>* exact, std::vector<flo
 }  // namespace
 
 WorldEnvironment::WorldEnvironment(const tasks::Task& task, std::unique_ptr<World> world,
-                                   const ObservationConfig& observation,
-                                   std::shared_ptr<RenderContext> render)
-    : task_(task), world_(std::move(world)), render_(std::move(render)) {
+                                   const Config& config, std::shared_ptr<RenderContext> render)
+    : task_(task),
+      action_repeat_(config.action_repeat > 0 ? config.action_repeat : task.action_repeat()),
+      world_(std::move(world)),
+      masses_(*world_, config.randomization.body_mass),
+      render_(std::move(render)) {
   Size(task.observation(), &observation_.exact, &observation_.numbers);
   Size(task.achieved_goal(), &achieved_goal_.exact, &achieved_goal_.numbers);
   Size(task.desired_goal(), &desired_goal_.exact, &desired_goal_.numbers);
   action_.resize(static_cast<size_t>(task.action_size()));
   if (render_ != nullptr) {
-    for (const std::string& name : observation.cameras) {
+    for (const std::string& name : config.observation.cameras) {
       cameras_.push_back(FindCamera(*world_, name));
     }
     render_->Attach(world_.get());
   }
-  BuildSpec(observation);
+  BuildSpec(config.observation);
 }
 
 void WorldEnvironment::BuildSpec(const ObservationConfig& observation) {
   const std::string& mode = observation.goal_mode;
   if (mode != "none" && mode != "desired" && mode != "both") {
     throw UsageError("observation.goal_mode is '{}'; expected none, desired or both", mode);
+  }
+  if (mode != "none" && task_.goal_size() == 0) {
+    throw UsageError("observation.goal_mode is '{}', but task {} has no goals; expected none", mode,
+                     task_.name());
   }
   spec_.task = task_.name();
   spec_.stack = observation.stack;
@@ -104,23 +111,22 @@ void WorldEnvironment::Observe(ObservationOut out) {
   render_->Render(world_.get(), cameras_, out.frame);
 }
 
-float WorldEnvironment::Distance() const {
-  if (task_.goal_size() == 0) return std::numeric_limits<float>::quiet_NaN();
-  return static_cast<float>(task_.Distance(achieved_goal_.numbers, desired_goal_.numbers));
+double WorldEnvironment::Distance() const {
+  if (task_.goal_size() == 0) return std::numeric_limits<double>::quiet_NaN();
+  return task_.Distance(achieved_goal_.numbers, desired_goal_.numbers);
 }
 
 float WorldEnvironment::Reset(uint64_t stream_key, ObservationOut out) {
   Random random(stream_key);
+  masses_.Draw(&random, world_.get());
   world_->Reset(&random);
-  episode_step_ = 0;
+  control_step_ = 0;
   ReadWorld();
   Observe(out);
-  return Distance();
+  return static_cast<float>(Distance());
 }
 
-StepResult WorldEnvironment::Step(std::span<const float> action, ObservationOut out) {
-  CHECK(episode_step_ >= 0 && episode_step_ < task_.episode_length())
-      << "step " << episode_step_ << " of an episode of " << task_.episode_length();
+void WorldEnvironment::CheckAction(std::span<const float> action) {
   CHECK(action.size() == action_.size()) << action.size();
   for (size_t i = 0; i < action.size(); ++i) {
     if (!(std::fabs(action[i]) <= 1)) {
@@ -129,22 +135,34 @@ StepResult WorldEnvironment::Step(std::span<const float> action, ObservationOut 
     }
     action_[i] = action[i];
   }
-  const World::Outcome outcome = world_->Step(action_);
-  ++episode_step_;
-  ReadWorld();
-  Observe(out);
+}
 
-  StepResult result;
-  result.terminated = outcome.terminated;
-  result.truncated = !outcome.terminated && episode_step_ == task_.episode_length();
-  result.distance = Distance();
+// One control step: adds its reward, replaces the rest.
+void WorldEnvironment::StepWorld(StepResult* result) {
+  const World::Outcome outcome = world_->Step(action_);
+  ++control_step_;
+  ReadWorld();
+  const double distance = Distance();
+  result->terminated = outcome.terminated;
+  result->truncated = !outcome.terminated && control_step_ == task_.episode_length();
+  result->distance = static_cast<float>(distance);
   if (task_.goal_size() == 0) {
-    result.reward = static_cast<float>(outcome.reward);
+    result->reward += static_cast<float>(outcome.reward);
   } else {
-    const double distance = task_.Distance(achieved_goal_.numbers, desired_goal_.numbers);
-    result.reward = task_.Reward(distance);
-    result.success = task_.Success(distance);
+    result->reward += task_.Reward(distance);
+    result->success = task_.Success(distance);
   }
+}
+
+StepResult WorldEnvironment::Step(std::span<const float> action, ObservationOut out) {
+  CHECK(control_step_ >= 0 && control_step_ < task_.episode_length())
+      << "step " << control_step_ << " of an episode of " << task_.episode_length();
+  CheckAction(action);
+  StepResult result;
+  for (int i = 0; i < action_repeat_ && !result.terminated && !result.truncated; ++i) {
+    StepWorld(&result);
+  }
+  Observe(out);
   return result;
 }
 
@@ -153,9 +171,8 @@ std::unique_ptr<Environment> MakeEnvironment(const Config& config,
   const tasks::Task& task = tasks::FindTask(config.task);
   CHECK(!config.observation.pixels || render != nullptr) << "pixels without a render context";
   if (!config.observation.pixels) render = nullptr;
-  return std::make_unique<WorldEnvironment>(task,
-                                            MakeWorld(task.world(), {config.model, config.physics}),
-                                            config.observation, std::move(render));
+  return std::make_unique<WorldEnvironment>(
+      task, MakeWorld(task.world(), {config.model, config.physics}), config, std::move(render));
 }
 
 }  // namespace shoal::worlds

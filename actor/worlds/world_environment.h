@@ -9,6 +9,7 @@
 
 #include "actor/worlds/camera_view.h"
 #include "actor/worlds/environment.h"
+#include "actor/worlds/mass_randomization.h"
 #include "actor/worlds/render_context.h"
 #include "actor/worlds/world.h"
 #include "common/tasks/task.h"
@@ -17,15 +18,17 @@ namespace shoal::worlds {
 
 class WorldEnvironment final : public Environment {
  public:
-  // `task` outlives the environment. `render` null = no pixels, whatever `observation` says of
-  // cameras. Throws Error (kUsage) on a camera or goal mode that does not exist.
-  WorldEnvironment(const tasks::Task& task, std::unique_ptr<World> world,
-                   const ObservationConfig& observation, std::shared_ptr<RenderContext> render);
+  // `task` outlives the environment. `render` null = no pixels, whatever the configuration says of
+  // cameras. Of `config` it takes observation, randomization and action_repeat. Throws Error
+  // (kUsage) on a camera, goal mode or body that does not exist.
+  WorldEnvironment(const tasks::Task& task, std::unique_ptr<World> world, const Config& config,
+                   std::shared_ptr<RenderContext> render);
 
   const ObservationSpec& spec() const override { return spec_; }
   float Reset(uint64_t stream_key, ObservationOut out) override;
   StepResult Step(std::span<const float> action, ObservationOut out) override;
   double render_seconds() const override { return render_seconds_; }
+  std::span<const DrawnMass> drawn_masses() const override { return masses_.drawn(); }
 
  private:
   // A block of the task: its numbers as records carry them, and whether observations do.
@@ -36,20 +39,25 @@ class WorldEnvironment final : public Environment {
   };
 
   void BuildSpec(const ObservationConfig& observation);
+  void CheckAction(std::span<const float> action);
+  void StepWorld(StepResult* result);
   void Publish(Part* part, const tasks::Block& block);
   void ReadWorld();
   void Observe(ObservationOut out);
-  float Distance() const;
+  // NaN without goals.
+  double Distance() const;
 
   const tasks::Task& task_;
+  const int action_repeat_;
   std::unique_ptr<World> world_;
+  MassRandomization masses_;
   std::shared_ptr<RenderContext> render_;
   std::vector<CameraView> cameras_;
   ObservationSpec spec_;
   Part observation_, achieved_goal_, desired_goal_;
   std::vector<double> action_;
   double render_seconds_ = 0;
-  int episode_step_ = -1;  // env steps since the reset; -1 = never reset
+  int control_step_ = -1;  // since the reset; -1 = never reset
 };
 
 }  // namespace shoal::worlds

@@ -1,7 +1,14 @@
 #include "actor/worlds/world_registry.h"
 
+#include "actor/worlds/ball_in_cup_catch.h"
+#include "actor/worlds/cartpole_swingup.h"
+#include "actor/worlds/cheetah_run.h"
 #include "actor/worlds/fetch_object_world.h"
 #include "actor/worlds/fetch_reach.h"
+#include "actor/worlds/finger_spin.h"
+#include "actor/worlds/hopper.h"
+#include "actor/worlds/reacher_easy.h"
+#include "actor/worlds/walker_walk.h"
 #include "common/base/check.h"
 #include "common/base/error.h"
 
@@ -14,11 +21,27 @@ struct Registration {
   bool has_mujoco3 = false;  // physics besides mujoco2
 };
 
+// For worlds without a choice of physics.
+template <std::unique_ptr<World> (*make)(const std::string& model_file)>
+std::unique_ptr<World> OfModel(const WorldOptions& options) {
+  return make(options.model);
+}
+
 constexpr Registration kWorlds[] = {
     {"FetchReach", MakeFetchReach, true},
     {"FetchPush", MakeFetchPush, true},
     {"FetchSlide", MakeFetchSlide, true},
     {"FetchPickAndPlace", MakeFetchPickAndPlace, true},
+    {"Hopper-v4", OfModel<MakeHopperV4>},
+    {"Hopper-v5", OfModel<MakeHopperV5>},
+    {"CustomHopper-source", OfModel<MakeCustomHopperSource>},
+    {"CustomHopper-target", OfModel<MakeCustomHopperTarget>},
+    {"cartpole_swingup", OfModel<MakeCartpoleSwingup>},
+    {"reacher_easy", OfModel<MakeReacherEasy>},
+    {"cheetah_run", OfModel<MakeCheetahRun>},
+    {"ball_in_cup_catch", OfModel<MakeBallInCupCatch>},
+    {"finger_spin", OfModel<MakeFingerSpin>},
+    {"walker_walk", OfModel<MakeWalkerWalk>},
 };
 
 }  // namespace

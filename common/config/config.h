@@ -3,7 +3,9 @@
 // its range and meaning; docs/configuration.md is made from that list.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -18,6 +20,11 @@ struct ObservationConfig {
   std::string goal_mode = "none";  // none | desired | both: goal vectors among the blocks
   bool proprioception = false;     // the task's `observation` block
   std::string quality = "fast";    // fast | reference
+};
+
+// Physical quantities drawn anew for every episode, uniformly in [low, high].
+struct RandomizationConfig {
+  std::map<std::string, std::array<double, 2>> body_mass;  // body -> kg; empty = as modelled
 };
 
 struct ReplayConfig {
@@ -89,7 +96,9 @@ struct Config {
   int lockstep_steps = 8;           // vector steps between weights in lockstep
   std::string model;                // path of another MJCF file for the task; empty = our own
   std::string physics = "mujoco2";  // mujoco2 | mujoco3: whose version of the Fetch weld
+  int action_repeat = 0;            // control steps per env step; 0 = the task's own
   ObservationConfig observation;
+  RandomizationConfig randomization;
   ReplayConfig replay;
   LearnerConfig learner;
   NetworkConfig network;

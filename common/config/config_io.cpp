@@ -17,6 +17,7 @@ namespace {
 
 using internal::Key;
 using nlohmann::json;
+using Intervals = std::map<std::string, std::array<double, 2>>;
 
 [[noreturn]] void Refuse(const Key& key, const json& value, const std::string& source) {
   throw UsageError("{}: {} = {}: expected {}", source, key.path, value.dump(),
@@ -78,6 +79,16 @@ bool Read(const json& value, const internal::Rule& rule, T* out) {
   } else if constexpr (std::is_same_v<T, std::string>) {
     if (!value.is_string() || !allows(value.get_ref<const std::string&>())) return false;
     *out = value.get<std::string>();
+    return true;
+  } else if constexpr (std::is_same_v<T, Intervals>) {
+    if (!value.is_object()) return false;
+    Intervals intervals;
+    for (const auto& [name, bounds] : value.items()) {
+      if (!bounds.is_array() || bounds.size() != 2) return false;
+      auto& [low, high] = intervals[name];
+      if (!Read(bounds[0], rule, &low) || !Read(bounds[1], rule, &high) || low > high) return false;
+    }
+    *out = std::move(intervals);
     return true;
   } else {
     if (!value.is_array()) return false;

@@ -37,6 +37,10 @@ std::vector<Key> RunKeys() {
       SHOAL_SAME(model, AnyValue{}, "path of another MJCF file for the task; empty = the built-in"),
       SHOAL_SAME(physics, (Choices{{"mujoco2", "mujoco3"}}),
                  "Fetch: how stiffly the arm's orientation is held, as in this version of MuJoCo"),
+      SHOAL_SAME(
+          action_repeat, (IntegerRange{0, 100}),
+          "control steps for which an env step repeats its action, rewards added up; 0 = the "
+          "task's own"),
   };
 }
 
@@ -53,6 +57,13 @@ std::vector<Key> ObservationKeys() {
       SHOAL_SAME(observation.proprioception, AnyValue{}, "the task's state vector"),
       SHOAL_SAME(observation.quality, (Choices{{"fast", "reference"}}),
                  "fast = no shadows, reflections, multisampling; reference = as the originals"),
+  };
+}
+
+std::vector<Key> RandomizationKeys() {
+  return {
+      SHOAL_SAME(randomization.body_mass, (RealRange{0, 1e6, true}),
+                 "kg, drawn uniformly for each episode, body by body; {} = as modelled"),
   };
 }
 
@@ -146,8 +157,8 @@ std::vector<Key> TransportKeys() {
 
 std::vector<Key> AllKeys() {
   std::vector<Key> all;
-  for (const auto& section : {RunKeys(), ObservationKeys(), ReplayKeys(), LearnerKeys(),
-                              NetworkKeys(), EvalKeys(), TransportKeys()}) {
+  for (const auto& section : {RunKeys(), ObservationKeys(), RandomizationKeys(), ReplayKeys(),
+                              LearnerKeys(), NetworkKeys(), EvalKeys(), TransportKeys()}) {
     all.insert(all.end(), section.begin(), section.end());
   }
   return all;
@@ -180,6 +191,9 @@ struct TypeText {
   std::string operator()(const std::string*) const { return "a string"; }
   std::string operator()(const std::vector<int>*) const { return "a list of integers"; }
   std::string operator()(const std::vector<std::string>*) const { return "a list of strings"; }
+  std::string operator()(const std::map<std::string, std::array<double, 2>>*) const {
+    return "an object of intervals {name: [low, high], ...}, low <= high, each";
+  }
 };
 
 }  // namespace

@@ -2,7 +2,9 @@
 // so a key exists everywhere or nowhere. Internal to common/config.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <map>
 #include <span>
 #include <string>
 #include <string_view>
@@ -15,13 +17,14 @@ namespace shoal::internal {
 
 // The member of a Config that a key names. Borrows the Config.
 using Slot = std::variant<bool*, int*, int64_t*, double*, std::string*, std::vector<int>*,
-                          std::vector<std::string>*>;
+                          std::vector<std::string>*, std::map<std::string, std::array<double, 2>>*>;
 
 // Bounds of an integer, or of each element of a list of integers; both ends included.
 struct IntegerRange {
   int64_t low, high;
 };
-// Bounds of a real number; `high` is included, `low` unless open.
+// Bounds of a real number, or of both ends of each interval of a map; `high` is included, `low`
+// unless open.
 struct RealRange {
   double low, high;
   bool low_open = false, high_open = false;

@@ -11,11 +11,17 @@ namespace shoal::tasks {
 Task::Task(Description description) : description_(std::move(description)) {
   CHECK(description_.achieved_goal.size() == description_.desired_goal.size())
       << description_.name << ": goals of different size";
-  CHECK(description_.episode_length > 0) << description_.name;
+  CHECK(description_.episode_length > 0 && description_.action_repeat > 0) << description_.name;
+}
+
+int Task::EnvStepsPerEpisode(int repeat) const {
+  CHECK(repeat > 0) << repeat;
+  return (description_.episode_length + repeat - 1) / repeat;
 }
 
 double Task::Distance(std::span<const float> achieved, std::span<const float> desired) const {
   const auto size = static_cast<size_t>(goal_size());
+  CHECK(size > 0) << name() << " has no goals";
   CHECK(achieved.size() == size && desired.size() == size) << achieved.size() << desired.size();
   double sum = 0;
   for (size_t i = 0; i < size; ++i) {
@@ -26,6 +32,7 @@ double Task::Distance(std::span<const float> achieved, std::span<const float> de
 }
 
 float Task::Reward(double distance) const {
+  CHECK(goal_size() > 0) << name() << " has no goals";
   if (description_.reward == RewardKind::kDense) return static_cast<float>(-distance);
   return distance > description_.distance_threshold ? -1.0f : 0.0f;
 }

@@ -3,6 +3,13 @@
 // rewards with it, and the replay can recompute them for other goals. The physics half of the same
 // name lives in actor/worlds.
 //
+// A task without goals (goal_size() == 0) describes its observation, its action and its episodes
+// only: reward and termination come from the physics half, and success and distance have no
+// meaning.
+//
+// A *control step* is one step of the task as published; an env step repeats one action for
+// `action_repeat` of them.
+//
 // Dimension letters: N goals in a batch, G numbers of a goal.
 #pragma once
 
@@ -41,13 +48,15 @@ class Task {
   struct Description {
     std::string name;               // "FetchReachDense"
     std::string world;              // name of the physics half: "FetchReach"
-    int episode_length = 0;         // env steps after which an episode is truncated
+    int episode_length = 0;         // control steps after which an episode is truncated
+    int action_repeat = 1;          // control steps of an env step, unless configured otherwise
     std::vector<Component> action;  // each in [-1, 1]
     Block observation;              // the state vector
     Block achieved_goal;            // G components in units of length
     Block desired_goal;             // the same G components
     RewardKind reward = RewardKind::kSparse;
     double distance_threshold = 0;  // m
+    std::string physics_reward;     // without goals: what the physics half pays for, for people
   };
 
   explicit Task(Description description);
@@ -55,15 +64,24 @@ class Task {
   const std::string& name() const { return description_.name; }
   const std::string& world() const { return description_.world; }
   int episode_length() const { return description_.episode_length; }
+  int action_repeat() const { return description_.action_repeat; }
+  // Env steps after which an episode is truncated: ceil(episode_length / repeat). The last of them
+  // may hold fewer control steps.
+  int EnvStepsPerEpisode(int repeat) const;
   const std::vector<Component>& action() const { return description_.action; }
   int action_size() const { return static_cast<int>(description_.action.size()); }
   const Block& observation() const { return description_.observation; }
   const Block& achieved_goal() const { return description_.achieved_goal; }
   const Block& desired_goal() const { return description_.desired_goal; }
   int goal_size() const { return description_.desired_goal.size(); }
+  // Does an episode succeed or fail? Tasks without goals only have a return.
+  bool has_success() const { return goal_size() > 0; }
   RewardKind reward_kind() const { return description_.reward; }
   double distance_threshold() const { return description_.distance_threshold; }
+  const std::string& physics_reward() const { return description_.physics_reward; }
 
+  // What follows is for tasks with goals (else CHECK).
+  //
   // Goals are the float32 numbers that records carry, so that a reward computed for a record, now
   // or when sampling, is the same number to the last bit. Sums run in double.
 

@@ -3,7 +3,9 @@
 #include <fmt/ranges.h>
 
 #include "common/base/error.h"
+#include "common/tasks/control_tasks.h"
 #include "common/tasks/fetch_tasks.h"
+#include "common/tasks/hopper_tasks.h"
 
 namespace shoal::tasks {
 namespace {
@@ -11,7 +13,7 @@ namespace {
 const std::vector<Task>& AllTasks() {
   static const std::vector<Task> tasks = [] {
     std::vector<Task> all;
-    for (auto family : {FetchTasks}) {
+    for (auto family : {FetchTasks, HopperTasks, ControlTasks}) {
       for (Task& task : family()) all.push_back(std::move(task));
     }
     return all;

@@ -18,7 +18,7 @@ namespace {
 int Render(const worlds::RenderRequest& request, const std::string& png) {
   const worlds::Picture picture = worlds::RenderTask(request);
   image::WritePng(png, picture.width, picture.height, 3, picture.pixels);
-  std::cout << png << ": " << request.task << ", camera " << request.camera << ", " << picture.width
+  std::cout << png << ": " << request.task << ", camera " << picture.camera << ", " << picture.width
             << "x" << picture.height << ", after " << request.env_steps << " env steps\n";
   return 0;
 }
@@ -57,9 +57,8 @@ void AddRender(CLI::App& env, Action* chosen) {
   const auto whole = std::make_shared<bool>(false);
   const auto sheet = std::make_shared<worlds::ContactSheetRequest>();
   const auto png = std::make_shared<std::string>();
-  request->camera = "front";
   CLI::Option* task = command->add_option("task", request->task, "Task, e.g. FetchReachDense");
-  command->add_option("--camera", request->camera, "Camera of the task")->capture_default_str();
+  command->add_option("--camera", request->camera, "Camera of the task; its first by default");
   command->add_option("--png", *png, "File to write")->required();
   command->add_option("--steps", request->env_steps, "Random env steps before the picture")
       ->capture_default_str();

@@ -36,9 +36,8 @@ int Evaluate(const EvalOptions& options) {
                                       .json = options.json},
                                      StopRequested);
   if (!point) throw RuntimeError("evaluation of '{}' interrupted", options.checkpoint);
-  fmt::print("{} episodes of {}: success {:.1f} %, return {:.3f} ({} env steps, {} updates)\n",
-             options.episodes, options.checkpoint, 100 * point->success, point->mean_return,
-             point->env_steps, point->updates);
+  fmt::print("{} episodes of {}: {} ({} env steps, {} updates)\n", options.episodes,
+             options.checkpoint, FormatScore(*point), point->env_steps, point->updates);
   return 0;
 }
 

@@ -71,11 +71,13 @@ TEST_F(EvaluationsTest, RefusesWhatIsNotAnEvaluation) {
   EXPECT_TRUE(std::filesystem::is_empty(run_.path() / "eval"));
 }
 
-TEST_F(EvaluationsTest, ATaskWithoutSuccessIsNeverAtTheTarget) {
+TEST_F(EvaluationsTest, ATaskWithoutSuccessHasNoneAndStillAReturn) {
   EvalMessage message = Message(1, 1, 1);
   auto object = nlohmann::json::parse(message.json);
   object["aggregate"]["success_rate"] = nullptr;
-  EXPECT_EQ(ParseEvaluation(object.dump(), "x").success, 0);
+  const EvaluationPoint point = ParseEvaluation(object.dump(), "x");
+  EXPECT_EQ(point.success, std::nullopt);
+  EXPECT_EQ(point.mean_return, -2.5);
 }
 
 TEST_F(EvaluationsTest, KeepAsBestReplacesTheFormerBest) {

@@ -49,6 +49,14 @@ TEST(FormatProgressLine, HoldsEveryFigureAndADashForMissingOnes) {
                     HasSubstr("left 01:40")));
 }
 
+TEST(FormatProgressLine, ShowsTheReturnWhereThereIsNoSuccess) {
+  ProgressFigures f = Sample();
+  f.last_evaluation->success.reset();
+  f.last_evaluation->mean_return = 312.5;
+  EXPECT_THAT(FormatProgressLine(f), HasSubstr("eval return 312.50"));
+  EXPECT_THAT(FormatProgressBlock(f, 100)[3], HasSubstr("last eval  return 312.500 at 2500"));
+}
+
 TEST(FormatProgressLine, SaysWhoWaitsForWhom) {
   ProgressFigures f = Sample();
   EXPECT_THAT(FormatProgressLine(f), Not(HasSubstr("wait")));
@@ -72,7 +80,7 @@ TEST(FormatProgressBlock, NeverExceedsTheWidth) {
 TEST(FormatProgressBlock, ShowsTheLastEvaluation) {
   std::string text;
   for (const std::string& line : FormatProgressBlock(Sample(), 100)) text += line + "\n";
-  EXPECT_THAT(text, AllOf(HasSubstr("success 40 %, return -3.25 at 2500 env steps"),
+  EXPECT_THAT(text, AllOf(HasSubstr("success 40.0 %, return -3.250 at 2500 env steps"),
                           HasSubstr("[#####...............]"), HasSubstr("none yet")));
 }
 

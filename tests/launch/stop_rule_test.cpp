@@ -51,6 +51,28 @@ TEST(StopRule, BudgetIsSpentAtTheLastStep) {
   EXPECT_TRUE(rule.BudgetSpent(1000));
 }
 
+TEST(StopRule, ATaskWithoutSuccessOnlyEndsByItsBudget) {
+  StopRule rule(Rule(0, 1));  // a target that any success rate would reach
+  for (uint64_t steps : {100u, 200u, 300u}) {
+    rule.OnEvaluation({.env_steps = steps, .success = std::nullopt, .mean_return = 1000});
+  }
+  EXPECT_FALSE(rule.TargetReached());
+  EXPECT_FALSE(rule.first_success().has_value());
+  EXPECT_TRUE(rule.BudgetSpent(1000));
+}
+
+TEST(FormatScore, LeavesOutASuccessThatIsNotThere) {
+  EXPECT_EQ(FormatScore({.success = 0.98, .mean_return = -0.97}), "success 98.0 %, return -0.970");
+  EXPECT_EQ(FormatScore({.success = std::nullopt, .mean_return = 312.5}), "return 312.500");
+}
+
+TEST(Better, GoesByReturnWhereThereIsNoSuccess) {
+  const EvaluationPoint low{.success = std::nullopt, .mean_return = 10};
+  const EvaluationPoint high{.success = std::nullopt, .mean_return = 300};
+  EXPECT_TRUE(Better(high, low));
+  EXPECT_FALSE(Better(low, high));
+}
+
 TEST(Better, GoesBySuccessThenReturn) {
   const EvaluationPoint low{.success = 0.8, .mean_return = -1};
   const EvaluationPoint high{.success = 0.9, .mean_return = -5};

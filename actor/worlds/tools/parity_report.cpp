@@ -28,7 +28,7 @@ void ReplayReport::Compare(const std::string& quantity, const std::string& unit,
 }
 
 void ReplayReport::Judge() {
-  passed = reward_mismatches == 0 && success_mismatches == 0 &&
+  passed = reward_mismatches == 0 && success_mismatches == 0 && termination_mismatches == 0 &&
            std::all_of(deviations.begin(), deviations.end(),
                        [](const Deviation& deviation) { return deviation.Passed(); });
 }
@@ -54,6 +54,7 @@ nlohmann::ordered_json ToJson(const ReplayReport& report) {
                               {"reward_mismatches", report.reward_mismatches},
                               {"success_mismatches", report.success_mismatches},
                               {"contact_mismatches", report.contact_mismatches},
+                              {"termination_mismatches", report.termination_mismatches},
                               {"chaotic_from", nullptr},
                               {"passed", report.passed}};
   if (!report.model.empty()) json["model"] = report.model;
@@ -77,9 +78,10 @@ std::string ToText(const ReplayReport& report) {
     text +=
         fmt::format("  object not judged from step {} on, where it is hit\n", report.chaotic_from);
   }
-  text += fmt::format("  {} reward, {} success and {} contact mismatches\n{}\n",
-                      report.reward_mismatches, report.success_mismatches,
-                      report.contact_mismatches, report.passed ? "passed" : "FAILED");
+  text +=
+      fmt::format("  {} reward, {} success, {} contact and {} termination mismatches\n{}\n",
+                  report.reward_mismatches, report.success_mismatches, report.contact_mismatches,
+                  report.termination_mismatches, report.passed ? "passed" : "FAILED");
   return text;
 }
 

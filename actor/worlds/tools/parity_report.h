@@ -25,12 +25,13 @@ struct ReplayReport {
   std::string physics;  // "mujoco2", "mujoco3"
   std::string model;    // the user's file, empty = ours
   int steps = 0;
-  double tolerance = 0;  // m, of this sequence
+  double tolerance = 0;  // of this sequence; m where there is a goal
   std::vector<Deviation> deviations;
   // Steps where the sparse reward or the success flag differ although the reference's distance is
   // further from the threshold than the tolerance.
   int reward_mismatches = 0, success_mismatches = 0;
-  int contact_mismatches = 0;  // reset and steps with another number of contacts; not judged
+  int contact_mismatches = 0;      // reset and steps with another number of contacts; not judged
+  int termination_mismatches = 0;  // steps that terminate in one and not in the other
   // First env step whose object is not judged any more, nor what follows from it (Slide, from the
   // puck's first hit on); 0 = judged to the end.
   int chaotic_from = 0;

@@ -1,6 +1,7 @@
 #include "actor/worlds/tools/render_task.h"
 
 #include "actor/worlds/environment.h"
+#include "actor/worlds/world_registry.h"
 #include "common/base/error.h"
 #include "common/base/random.h"
 #include "common/tasks/task_registry.h"
@@ -19,16 +20,20 @@ void CheckSide(const char* name, int side) {
 
 Picture RenderTask(const RenderRequest& request) {
   const tasks::Task& task = tasks::FindTask(request.task);
+  const int episode = task.EnvStepsPerEpisode(task.action_repeat());
   CheckSide("width", request.width);
   CheckSide("height", request.height);
-  if (request.env_steps < 0 || request.env_steps > task.episode_length()) {
+  if (request.env_steps < 0 || request.env_steps > episode) {
     throw UsageError("{} env steps before the picture; an episode of {} has {}", request.env_steps,
-                     task.name(), task.episode_length());
+                     task.name(), episode);
   }
   Config config;
   config.task = request.task;
   config.model = request.model;
-  config.observation.cameras = {request.camera};
+  config.observation.cameras = {
+      request.camera.empty()
+          ? MakeWorld(task.world(), {.model = request.model})->cameras().front().name
+          : request.camera};
   config.observation.width = request.width;
   config.observation.height = request.height;
   config.observation.quality = request.quality;
@@ -42,10 +47,15 @@ Picture RenderTask(const RenderRequest& request) {
   std::vector<float> action(static_cast<size_t>(task.action_size()));
   for (int step = 0; step < request.env_steps; ++step) {
     for (float& component : action) component = static_cast<float>(actions.Uniform(-1, 1));
-    environment->Step(action, {frame, {}});
+    const StepResult result = environment->Step(action, {frame, {}});
+    if (result.terminated && step + 1 < request.env_steps) {
+      throw RuntimeError("the episode of seed {} terminates at env step {}; asked for {}",
+                         request.seed, step + 1, request.env_steps);
+    }
   }
 
-  Picture picture{request.width, request.height, std::vector<uint8_t>(3 * plane)};
+  Picture picture{request.width, request.height, std::vector<uint8_t>(3 * plane),
+                  config.observation.cameras.front()};
   for (size_t pixel = 0; pixel < plane; ++pixel) {
     for (size_t channel = 0; channel < 3; ++channel) {
       picture.pixels[3 * pixel + channel] = frame[channel * plane + pixel];

@@ -11,20 +11,21 @@ namespace shoal::worlds {
 struct Picture {
   int width = 0, height = 0;
   std::vector<uint8_t> pixels;
+  std::string camera = "";  // where one is known
 };
 
 struct RenderRequest {
   std::string task;    // "FetchReachDense"
-  std::string camera;  // "front"
+  std::string camera;  // "front"; empty = the task's first
   int width = 480, height = 480;
   std::string quality = "reference";  // fast | reference
-  int env_steps = 0;  // uniform random actions before the picture, below the episode's length
+  int env_steps = 0;  // uniform random actions before the picture, at most an episode's
   int64_t seed = 1;   // of the goal and of the actions
   std::string model;  // path of another MJCF file; empty = our own
 };
 
 // Throws Error (kUsage) on an unknown task, camera or quality, a size that is not 1..4096 and more
-// env steps than an episode has.
+// env steps than an episode has; (kRuntime) when the task terminates the episode before.
 Picture RenderTask(const RenderRequest& request);
 
 }  // namespace shoal::worlds

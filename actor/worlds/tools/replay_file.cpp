@@ -5,6 +5,8 @@
 #include "actor/worlds/fetch_world.h"
 #include "actor/worlds/tools/cross_version_file.h"
 #include "actor/worlds/tools/measurement_reader.h"
+#include "actor/worlds/tools/replay_states.h"
+#include "actor/worlds/tools/state_reference.h"
 #include "actor/worlds/world_registry.h"
 #include "common/base/error.h"
 #include "common/base/log.h"
@@ -49,8 +51,10 @@ double CrossVersionTolerance(const std::string& task, const std::string& sequenc
 std::vector<ReplayReport> ReplayFile(const std::filesystem::path& path,
                                      const ReplayOptions& options) {
   const nlohmann::json document = ReadJson(path);
-  if (MeasurementReader(path, document, "").Text("format") != kCrossVersionFormat) {
-    return {ReplayReference(path, options)};
+  const MeasurementReader root(path, document, "");
+  if (root.Text("format") != kCrossVersionFormat) {
+    const bool goals = !IsStateEnvironment(root.Text("env"));
+    return {goals ? ReplayReference(path, options) : ReplayStates(path, options)};
   }
   if (!options.model.empty()) {
     throw UsageError("'{}' holds several tasks; it cannot be replayed with one model file",

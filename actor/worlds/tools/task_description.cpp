@@ -64,7 +64,7 @@ double SecondsOfAStep(const Task& task, World* world, int64_t seed) {
   world->Reset(&random);
   const double before = world->data().time;
   world->Step(std::vector<double>(static_cast<size_t>(task.action_size())));
-  return world->data().time - before;
+  return (world->data().time - before) * task.action_repeat();
 }
 
 }  // namespace

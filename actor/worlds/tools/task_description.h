@@ -29,7 +29,7 @@ struct AxisProbe {
 
 struct TaskDescription {
   const tasks::Task* task = nullptr;
-  double env_step_seconds = 0;  // simulated
+  double env_step_seconds = 0;  // simulated, with the task's own action repeat
   std::string fingerprint;      // of the model
   std::vector<CameraView> cameras;
   int random_env_steps = 0;  // that the ranges were seen in

@@ -23,7 +23,7 @@ constexpr size_t kShownChanges = 3;
 constexpr double kShownShare = 0.1;
 
 std::string RewardFormula(const Task& task) {
-  if (task.goal_size() == 0) return "given by the physics half";
+  if (task.goal_size() == 0) return task.physics_reward();
   if (task.reward_kind() == tasks::RewardKind::kDense) {
     return "-|achieved_goal - desired_goal|";
   }
@@ -57,6 +57,9 @@ ordered_json ToJson(const Block& block, const std::vector<MeasuredRange>& ranges
 }
 
 ordered_json ToJson(const CameraView& camera) {
+  if (camera.model_camera >= 0) {
+    return {{"name", camera.name}, {"model_camera", camera.model_camera}};
+  }
   return {{"name", camera.name},
           {"lookat", camera.lookat},
           {"distance", camera.distance},
@@ -146,7 +149,8 @@ ordered_json ToJson(const TaskDescription& description) {
       {"task", task.name()},
       {"world", task.world()},
       {"model_fingerprint", description.fingerprint},
-      {"episode_length", task.episode_length()},
+      {"episode_length", task.EnvStepsPerEpisode(task.action_repeat())},
+      {"action_repeat", task.action_repeat()},
       {"env_step_seconds", description.env_step_seconds},
       {"reward",
        {{"kind", RewardName(task)},
@@ -163,9 +167,9 @@ ordered_json ToJson(const TaskDescription& description) {
 
 std::string ToText(const TaskDescription& description) {
   const Task& task = *description.task;
-  std::string text =
-      fmt::format("{}: episodes of {} env steps of {:.4g} s, model {}\n", task.name(),
-                  task.episode_length(), description.env_step_seconds, description.fingerprint);
+  std::string text = fmt::format("{}: episodes of {} env steps of {:.4g} s, model {}\n",
+                                 task.name(), task.EnvStepsPerEpisode(task.action_repeat()),
+                                 description.env_step_seconds, description.fingerprint);
   text += fmt::format("  reward {}: {}\n", RewardName(task), RewardFormula(task));
   if (task.goal_size() > 0) {
     text +=
@@ -179,6 +183,10 @@ std::string ToText(const TaskDescription& description) {
   text += BlockText(task.desired_goal(), description.desired_goal);
   text += "  cameras\n";
   for (const CameraView& camera : description.cameras) {
+    if (camera.model_camera >= 0) {
+      text += fmt::format("    {:<12} camera {} of the model\n", camera.name, camera.model_camera);
+      continue;
+    }
     text += fmt::format(
         "    {:<12} looks at ({}, {}, {}) m from {} m, azimuth {}, elevation {} degrees\n",
         camera.name, camera.lookat[0], camera.lookat[1], camera.lookat[2], camera.distance,

@@ -23,7 +23,7 @@ std::string TaskTable() {
     const Task& task = tasks::FindTask(name);
     text += fmt::format("{:<24} {:<18} {:>6} {:>11} {:>4} {:>7}  {}\n", name, task.world(),
                         task.action_size(), task.observation().size(), task.goal_size(),
-                        task.episode_length(), RewardName(task));
+                        task.EnvStepsPerEpisode(task.action_repeat()), RewardName(task));
   }
   return text;
 }
@@ -37,7 +37,7 @@ ordered_json TaskTableJson() {
                     {"action_size", task.action_size()},
                     {"observation_size", task.observation().size()},
                     {"goal_size", task.goal_size()},
-                    {"episode_length", task.episode_length()},
+                    {"episode_length", task.EnvStepsPerEpisode(task.action_repeat())},
                     {"reward", RewardName(task)}});
   }
   return {{"schema", "shoal-env-list-1"}, {"tasks", rows}};

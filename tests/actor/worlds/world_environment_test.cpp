@@ -269,7 +269,7 @@ class Countdown final : public World {
  public:
   Countdown() : World(Load()) {}
 
-  void Reset(Random*) override { left_ = 3; }
+  void Reset(Random*) override { left_ = 7; }
   Outcome Step(std::span<const double> action) override {
     --left_;
     return {.reward = action[0], .terminated = left_ == 0};
@@ -289,30 +289,92 @@ class Countdown final : public World {
   int left_ = 0;
 };
 
-TEST(WorldEnvironment, TasksWithoutGoalsTakeRewardAndEndFromThePhysics) {
+tasks::Task CountdownTask(int episode_length) {
   tasks::Task::Description description;
   description.name = "Countdown";
-  description.episode_length = 5;
+  description.episode_length = episode_length;
   description.action = {{"push", ""}};
   description.observation = {"observation", {{"left", ""}}};
-  const tasks::Task task(description);
-  ObservationConfig observation;
-  observation.goal_mode = "both";
-  WorldEnvironment environment(task, std::make_unique<Countdown>(), observation, nullptr);
+  return tasks::Task(description);
+}
+
+TEST(WorldEnvironment, TasksWithoutGoalsTakeRewardAndEndFromThePhysics) {
+  const tasks::Task task = CountdownTask(/*episode_length=*/10);
+  WorldEnvironment environment(task, std::make_unique<Countdown>(), Config(), nullptr);
   ASSERT_EQ(environment.spec().blocks, (std::vector<BlockSpec>{{"observation", 1}}));
 
   std::array<float, 1> left{};
   const std::array<float, 1> action{0.25f};
   EXPECT_TRUE(std::isnan(environment.Reset(1, {{}, left})));
-  for (int step = 1; step <= 3; ++step) {
+  for (int step = 1; step <= 7; ++step) {
     const StepResult result = environment.Step(action, {{}, left});
     EXPECT_EQ(result.reward, 0.25f);
-    EXPECT_EQ(result.terminated, step == 3);
+    EXPECT_EQ(result.terminated, step == 7);
     EXPECT_FALSE(result.truncated);
     EXPECT_FALSE(result.success);
     EXPECT_TRUE(std::isnan(result.distance));
   }
   EXPECT_EQ(left[0], 0.0f);
+}
+
+TEST(WorldEnvironment, ATaskWithoutGoalsHasNoGoalBlocks) {
+  const tasks::Task task = CountdownTask(5);
+  Config config;
+  config.observation.goal_mode = "both";
+  try {
+    WorldEnvironment environment(task, std::make_unique<Countdown>(), config, nullptr);
+    FAIL() << "observes goals that are not there";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.exit_code(), 2);
+    EXPECT_THAT(error.what(), testing::HasSubstr("Countdown has no goals"));
+  }
+}
+
+// 7 control steps to the end of the task, 5 or 10 to that of the episode; 3 to an env step.
+TEST(WorldEnvironment, ActionRepeatAddsRewardsAndStopsWhereTheEpisodeEnds) {
+  for (const int episode_length : {5, 10}) {
+    const tasks::Task task = CountdownTask(episode_length);
+    Config config;
+    config.action_repeat = 3;
+    WorldEnvironment environment(task, std::make_unique<Countdown>(), config, nullptr);
+    std::array<float, 1> left{};
+    const std::array<float, 1> action{0.25f};
+    environment.Reset(1, {{}, left});
+    StepResult result;
+    std::vector<float> rewards, seen;
+    while (!result.terminated && !result.truncated) {
+      result = environment.Step(action, {{}, left});
+      rewards.push_back(result.reward);
+      seen.push_back(left[0]);
+    }
+    if (episode_length == 5) {
+      EXPECT_EQ(rewards, (std::vector<float>{0.75f, 0.5f}));
+      EXPECT_EQ(seen, (std::vector<float>{4, 2}));
+      EXPECT_TRUE(result.truncated);
+    } else {
+      EXPECT_EQ(rewards, (std::vector<float>{0.75f, 0.75f, 0.25f}));
+      EXPECT_EQ(seen, (std::vector<float>{4, 1, 0}));
+      EXPECT_TRUE(result.terminated);
+    }
+  }
+}
+
+TEST(WorldEnvironment, ActionRepeatOfATaskWithGoalsAddsTheRewardsOfItsControlSteps) {
+  Config twice = StateOnly();
+  twice.action_repeat = 2;
+  Player single(Make(StateOnly())), repeated(Make(twice));
+  single.Reset(3);
+  repeated.Reset(3);
+  const std::array<float, 4> action{0.5f, -0.5f, 0, 0};
+  for (int env_step = 1; env_step <= 25; ++env_step) {
+    const float first = single.environment->Step(action, {{}, single.vector}).reward;
+    const StepResult second = single.environment->Step(action, {{}, single.vector});
+    const StepResult both = repeated.environment->Step(action, {{}, repeated.vector});
+    EXPECT_FLOAT_EQ(both.reward, first + second.reward);
+    EXPECT_EQ(both.distance, second.distance);
+    EXPECT_EQ(both.truncated, env_step == 25);
+    EXPECT_EQ(repeated.vector, single.vector);
+  }
 }
 
 }  // namespace

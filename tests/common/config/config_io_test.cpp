@@ -54,6 +54,33 @@ TEST(ApplyJson, SetsNestedKeysAndLeavesTheOthers) {
   EXPECT_EQ(config.replay.capacity, Config().replay.capacity);
 }
 
+TEST(ApplyJson, TakesIntervalsByName) {
+  Config config;
+  ApplyJson(ParseStrictJson(R"({"randomization": {"body_mass": {"thigh": [3.5, 4.5],
+                                "foot": [5, 5]}}})",
+                            "x.json"),
+            "x.json", &config);
+  using Interval = std::array<double, 2>;
+  EXPECT_THAT(config.randomization.body_mass, ElementsAre(std::pair("foot", Interval{5, 5}),
+                                                          std::pair("thigh", Interval{3.5, 4.5})));
+  // And back, whole: a later value replaces an earlier one.
+  Config other;
+  ApplyAssignments({R"(randomization.body_mass={"leg":[1,2]})"}, &other);
+  ApplyJson(ToJson(config), "again", &other);
+  EXPECT_EQ(other.randomization.body_mass, config.randomization.body_mass);
+  EXPECT_NE(ConfigHash(config), ConfigHash(Config()));
+}
+
+TEST(ApplyJson, RefusesIntervalsThatAreNone) {
+  for (const char* bad :
+       {"[3, 4]", "{\"thigh\": 3}", "{\"thigh\": [3]}", "{\"thigh\": [4, 3]}",
+        "{\"thigh\": [0, 3]}", "{\"thigh\": [1, 2, 3]}", "{\"thigh\": [\"a\", 2]}"}) {
+    EXPECT_THAT(JsonMistake(std::string(R"({"randomization": {"body_mass": )") + bad + "}}"),
+                AllOf(HasSubstr("randomization.body_mass"), HasSubstr("low <= high")))
+        << bad;
+  }
+}
+
 TEST(ApplyJson, RefusesAnUnknownKeyNamingItAndTheNearest) {
   EXPECT_THAT(
       JsonMistake(R"({"learner": {"bach": 3}})"),
@@ -148,8 +175,8 @@ TEST(ToJson, ListsSectionsInTheOrderOfTheStruct) {
   for (const auto& [name, value] : object.items()) {
     if (value.is_object()) names.push_back(name);
   }
-  EXPECT_THAT(names, ElementsAre("observation", "replay", "learner", "network", "eval", "stop",
-                                 "transport"));
+  EXPECT_THAT(names, ElementsAre("observation", "randomization", "replay", "learner", "network",
+                                 "eval", "stop", "transport"));
 }
 
 TEST(ConfigHash, ChangesWithWhatIsComputedButNotWithNameOrLength) {

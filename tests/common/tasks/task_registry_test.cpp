@@ -18,7 +18,55 @@ TEST(TaskRegistry, NamesAreUniqueAndFindTheirTask) {
     EXPECT_TRUE(seen.insert(name).second) << name;
     EXPECT_EQ(FindTask(name).name(), name);
   }
-  EXPECT_TRUE(seen.contains("FetchReach") && seen.contains("FetchPickAndPlaceDense"));
+  for (const char* name :
+       {"FetchReach", "FetchPickAndPlaceDense", "Hopper-v4", "Hopper-v5", "CustomHopper-source",
+        "CustomHopper-target", "cartpole_swingup", "reacher_easy", "cheetah_run",
+        "ball_in_cup_catch", "finger_spin", "walker_walk"}) {
+    EXPECT_TRUE(seen.contains(name)) << name;
+  }
+}
+
+TEST(TaskRegistry, OnlyTasksWithGoalsKnowSuccess) {
+  EXPECT_TRUE(FindTask("FetchReach").has_success());
+  for (const char* name : {"Hopper-v5", "walker_walk"}) {
+    EXPECT_EQ(FindTask(name).goal_size(), 0) << name;
+    EXPECT_FALSE(FindTask(name).has_success()) << name;
+  }
+}
+
+TEST(TaskRegistry, EpisodesAndRepeatsAreAsPublished) {
+  const struct {
+    const char* name;
+    int control_steps, repeat, env_steps;
+  } rows[] = {{"FetchReach", 50, 1, 50},
+              {"Hopper-v5", 1000, 1, 1000},
+              {"CustomHopper-source", 500, 1, 500},
+              {"cartpole_swingup", 1000, 8, 125},
+              {"reacher_easy", 1000, 4, 250},
+              {"cheetah_run", 1000, 4, 250},
+              {"ball_in_cup_catch", 1000, 4, 250},
+              {"finger_spin", 1000, 2, 500},
+              {"walker_walk", 1000, 2, 500}};
+  for (const auto& row : rows) {
+    const Task& task = FindTask(row.name);
+    EXPECT_EQ(task.episode_length(), row.control_steps) << row.name;
+    EXPECT_EQ(task.action_repeat(), row.repeat) << row.name;
+    EXPECT_EQ(task.EnvStepsPerEpisode(task.action_repeat()), row.env_steps) << row.name;
+  }
+  EXPECT_EQ(FindTask("ball_in_cup_catch").EnvStepsPerEpisode(6), 167);
+}
+
+TEST(TaskRegistry, TasksWithoutGoalsHaveThePublishedSizes) {
+  const struct {
+    const char* name;
+    int action, observation;
+  } rows[] = {{"Hopper-v4", 3, 11},   {"cartpole_swingup", 1, 5},  {"reacher_easy", 2, 6},
+              {"cheetah_run", 6, 17}, {"ball_in_cup_catch", 2, 8}, {"finger_spin", 2, 9},
+              {"walker_walk", 6, 24}};
+  for (const auto& row : rows) {
+    EXPECT_EQ(FindTask(row.name).action_size(), row.action) << row.name;
+    EXPECT_EQ(FindTask(row.name).observation().size(), row.observation) << row.name;
+  }
 }
 
 TEST(TaskRegistry, EveryNumberSaysWhatItMeansAndActionsAreBounded) {

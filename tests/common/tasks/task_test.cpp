@@ -53,6 +53,11 @@ TEST(Task, ABatchEqualsItsRowsBitForBit) {
   }
 }
 
+TEST(TaskDeathTest, ATaskWithoutGoalsHasNoDistanceAndNoGoalReward) {
+  EXPECT_DEATH(FindTask("Hopper-v5").Distance({}, {}), "no goals");
+  EXPECT_DEATH(FindTask("Hopper-v5").Reward(0), "no goals");
+}
+
 TEST(TaskDeathTest, RefusesGoalsOfAnotherSize) {
   std::array<float, 2> reward{};
   EXPECT_DEATH(FindTask("FetchReach").ComputeRewards(kAchieved, kDesired, reward), "CHECK|9 for 2");

@@ -1,0 +1,34 @@
+// Physics half of cheetah_run: run forward.
+//
+//   reward = torso's forward speed / (10 m/s), at least 0, at most 1
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+
+#include "actor/worlds/control_world.h"
+
+namespace shoal::worlds {
+
+class CheetahRun final : public ControlWorld {
+ public:
+  // `model_file` empty = our own model. Throws Error when it does not load or lacks an element.
+  explicit CheetahRun(const std::string& model_file);
+
+  // See the goal half for the order. No goals.
+  void Observe(std::span<double> observation, std::span<double> achieved_goal,
+               std::span<double> desired_goal) const override;
+
+ private:
+  void Draw(Random* random) override;
+  // Two seconds without control; positions and velocities of then are the episode's start.
+  void Settle() override;
+  double Reward() const override;
+
+  int velocity_;  // of the whole body's centre of mass, in sensordata
+};
+
+std::unique_ptr<World> MakeCheetahRun(const std::string& model_file);
+
+}  // namespace shoal::worlds

@@ -1,0 +1,33 @@
+// Physics half of finger_spin: keep a hinged body spinning by flicking it.
+//
+//   reward = 1 while the spinner turns at 15 rad/s or faster, in the negative sense, else 0
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+
+#include "actor/worlds/control_world.h"
+
+namespace shoal::worlds {
+
+class FingerSpin final : public ControlWorld {
+ public:
+  // `model_file` empty = our own model. Throws Error when it does not load or lacks an element.
+  explicit FingerSpin(const std::string& model_file);
+
+  // See the goal half for the order. No goals.
+  void Observe(std::span<double> observation, std::span<double> achieved_goal,
+               std::span<double> desired_goal) const override;
+
+ private:
+  void Draw(Random* random) override;
+  double Reward() const override;
+
+  int spinner_, tip_;             // body, site
+  int touch_top_, touch_bottom_;  // in sensordata
+};
+
+std::unique_ptr<World> MakeFingerSpin(const std::string& model_file);
+
+}  // namespace shoal::worlds

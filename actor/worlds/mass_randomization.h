@@ -1,0 +1,44 @@
+// Uniform domain randomization: masses of bodies drawn anew for each episode.
+//
+//   mass_b ~ Uniform[low_b, high_b], body by body in alphabetical order
+//
+// As in the field's environments only the mass itself is written, into the world's own copy of the
+// model: inertias and what the compiler derived from them (inverse weights, subtree masses) stay.
+#pragma once
+
+#include <array>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "actor/worlds/environment.h"
+#include "actor/worlds/world.h"
+#include "common/base/random.h"
+
+namespace shoal::worlds {
+
+class MassRandomization {
+ public:
+  // intervals: body -> [low, high] in kg, 0 < low <= high. Throws Error (kUsage) naming a body that
+  // the model does not have, and those it has.
+  MassRandomization(const World& world,
+                    const std::map<std::string, std::array<double, 2>>& intervals);
+
+  // Draws one number per body and writes it into the model of `world`, to be called before the
+  // world's reset. One thread.
+  void Draw(Random* random, World* world);
+  // In the order drawn; masses of the last Draw.
+  std::span<const DrawnMass> drawn() const { return drawn_; }
+
+ private:
+  struct Interval {
+    int body;
+    double low, high;  // kg
+  };
+
+  std::vector<Interval> intervals_;
+  std::vector<DrawnMass> drawn_;
+};
+
+}  // namespace shoal::worlds

@@ -1,0 +1,20 @@
+#include "actor/worlds/model_cameras.h"
+
+#include <mujoco/mujoco.h>
+
+#include "common/base/error.h"
+
+namespace shoal::worlds {
+
+std::vector<CameraView> ModelCameras(const mjModel_& model) {
+  std::vector<CameraView> cameras;
+  for (int i = 0; i < model.ncam; ++i) {
+    const char* name = mj_id2name(&model, mjOBJ_CAMERA, i);
+    if (name == nullptr) continue;
+    cameras.push_back({.name = name, .model_camera = i});
+  }
+  if (cameras.empty()) throw RuntimeError("the model has no named camera");
+  return cameras;
+}
+
+}  // namespace shoal::worlds

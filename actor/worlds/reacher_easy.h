@@ -1,0 +1,37 @@
+// Physics half of reacher_easy: bring the fingertip to a target in the plane.
+//
+//   reward = 1 while finger and target overlap, else 0
+#pragma once
+
+#include <array>
+#include <memory>
+#include <span>
+#include <string>
+
+#include "actor/worlds/control_world.h"
+
+namespace shoal::worlds {
+
+class ReacherEasy final : public ControlWorld {
+ public:
+  // `model_file` empty = our own model. Throws Error when it does not load or lacks an element.
+  explicit ReacherEasy(const std::string& model_file);
+
+  // Where the target's centre is from the next reset on (m); a drawn episode places it anew.
+  void PlaceTarget(const std::array<double, 2>& position);
+  // See the goal half for the order. No goals.
+  void Observe(std::span<double> observation, std::span<double> achieved_goal,
+               std::span<double> desired_goal) const override;
+
+ private:
+  void Draw(Random* random) override;
+  double Reward() const override;
+  // From the finger to the target, m.
+  std::array<double, 2> ToTarget() const;
+
+  int finger_, target_;  // geoms
+};
+
+std::unique_ptr<World> MakeReacherEasy(const std::string& model_file);
+
+}  // namespace shoal::worlds

@@ -1,0 +1,33 @@
+// Physics half of walker_walk: walk forward upright.
+//
+//   reward = (3 standing + upright) / 4 * (5 move + 1) / 6, each in [0, 1]
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+
+#include "actor/worlds/control_world.h"
+
+namespace shoal::worlds {
+
+class WalkerWalk final : public ControlWorld {
+ public:
+  // `model_file` empty = our own model. Throws Error when it does not load or lacks an element.
+  explicit WalkerWalk(const std::string& model_file);
+
+  // See the goal half for the order. No goals.
+  void Observe(std::span<double> observation, std::span<double> achieved_goal,
+               std::span<double> desired_goal) const override;
+
+ private:
+  void Draw(Random* random) override;
+  double Reward() const override;
+
+  int torso_;     // body; the limbs follow it
+  int velocity_;  // of the whole body's centre of mass, in sensordata
+};
+
+std::unique_ptr<World> MakeWalkerWalk(const std::string& model_file);
+
+}  // namespace shoal::worlds

@@ -1,0 +1,79 @@
+#include "actor/evaluation.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+namespace shoal::actor {
+namespace {
+
+RunConfig RunOf(const std::string& task) {
+  RunConfig run;
+  run.config.task = task;
+  return run;
+}
+
+std::vector<EpisodeResult> TwoEpisodes(double final_distance) {
+  return {{.seed = 0,
+           .success = true,
+           .episode_return = 10,
+           .length = 4,
+           .final_distance = final_distance},
+          {.seed = 1,
+           .success = false,
+           .episode_return = 20,
+           .length = 6,
+           .final_distance = final_distance}};
+}
+
+TEST(EvaluationJson, ATaskWithGoalsHasSuccessAndDistance) {
+  const auto json = EvaluationJson(RunOf("FetchReach"), {}, {}, TwoEpisodes(0.25));
+  EXPECT_EQ(json["episodes"][0]["success"], true);
+  EXPECT_EQ(json["episodes"][1]["final_distance"], 0.25);
+  EXPECT_EQ(json["aggregate"]["success_rate"], 0.5);
+  EXPECT_EQ(json["aggregate"]["final_distance_mean"], 0.25);
+}
+
+TEST(EvaluationJson, WhatATaskDoesNotHaveIsNull) {
+  const auto json = EvaluationJson(RunOf("Hopper-v5"), {}, {},
+                                   TwoEpisodes(std::numeric_limits<double>::quiet_NaN()));
+  for (const auto& episode : json["episodes"]) {
+    EXPECT_TRUE(episode["success"].is_null());
+    EXPECT_TRUE(episode["final_distance"].is_null());
+    EXPECT_FALSE(episode.contains("body_mass"));
+  }
+  EXPECT_TRUE(json["aggregate"]["success_rate"].is_null());
+  EXPECT_TRUE(json["aggregate"]["final_distance_mean"].is_null());
+  EXPECT_EQ(json["aggregate"]["return_mean"], 15);
+  EXPECT_EQ(json["aggregate"]["return_std"], 5);
+  EXPECT_EQ(json["aggregate"]["length_mean"], 5);
+}
+
+// The whole way: configuration, environment, JSON.
+TEST(EvaluationJson, HoldsTheMassesDrawnForEachEpisode) {
+  RunConfig run = RunOf("CustomHopper-source");
+  run.config.observation.pixels = false;
+  run.config.observation.proprioception = true;
+  run.config.randomization.body_mass = {{"thigh", {3.4, 4.4}}, {"leg", {2.2, 3.2}}};
+  run.config.eval.envs = 2;
+  run.config.network.hidden = {8};
+  run.spec = worlds::MakeEnvironment(run.config, nullptr)->spec();
+  Evaluator evaluator(run);
+  const EpisodeStream stream{7, StreamRole::kFinalEnvironment, 0};
+  const auto json =
+      EvaluationJson(run, {}, stream, evaluator.Play(3, stream, [] { return false; }));
+  std::vector<double> thighs;
+  for (const auto& episode : json["episodes"]) {
+    ASSERT_EQ(episode["body_mass"].size(), 2u);
+    EXPECT_GE(episode["body_mass"]["leg"], 2.2);
+    EXPECT_LE(episode["body_mass"]["leg"], 3.2);
+    thighs.push_back(episode["body_mass"]["thigh"]);
+  }
+  EXPECT_NE(thighs[0], thighs[1]);
+  EXPECT_NE(thighs[1], thighs[2]);
+}
+
+}  // namespace
+}  // namespace shoal::actor
