@@ -43,6 +43,7 @@ class FakeEnvironment final : public shoal::worlds::Environment {
   }
 
   double render_seconds() const override { return 0; }
+  std::span<const shoal::worlds::DrawnMass> drawn_masses() const override { return {}; }
 
  private:
   void Observe(shoal::worlds::ObservationOut out) {
