@@ -14,8 +14,8 @@ struct Reach {
   // HOST, or HOST:PORT as the run shows it when it starts, instead of cluster.json's host and
   // domain; empty = as cluster.json says.
   std::string peer;
-  std::string interface;  // instead of config.json's transport.interface; empty = as that says
-  std::string secure;     // instead of cluster.json's folder of credentials; empty = as that says
+  std::string interface;    // instead of config.json's transport.interface; empty = as that says
+  std::string secure = "";  // instead of cluster.json's folder of credentials; empty = as that says
 };
 
 // Where a process meets its run and through which interface of this host.
