@@ -16,11 +16,13 @@ class CreditInbox {
   CreditInbox(uint32_t actor, uint64_t session) : actor_(actor), session_(session) {}
 
   // Receive thread. Words to others are ignored.
-  void OnMessage(const Credit& credit) {
-    if (credit.actor != actor_ || credit.session != session_) return;
-    const MutexLock lock(mutex_);
-    newest_ = credit;
-    arrived_.NotifyAll();
+  void OnMessage(const CreditsMessage& message) {
+    for (const Credit& credit : message.credits) {
+      if (credit.actor != actor_ || credit.session != session_) continue;
+      const MutexLock lock(mutex_);
+      newest_ = credit;
+      arrived_.NotifyAll();
+    }
   }
 
   // The newest word not taken before; waits for one until `deadline`.

@@ -72,7 +72,7 @@ class TrainingActor {
         bus_(dds::FindPlace(folder, run_.config.transport, reach), dds::Role::kActor),
         chunk_publisher_(bus_),
         metrics_publisher_(bus_),
-        credit_subscriber_(bus_, [this](const Credit& c) { credits_.OnMessage(c); }),
+        credit_subscriber_(bus_, [this](const CreditsMessage& m) { credits_.OnMessage(m); }),
         weights_subscriber_(bus_, [this](const WeightsMessage& m) { weights_.OnMessage(m); }),
         control_subscriber_(bus_,
                             [this](const ControlMessage& m) { control_.OnMessage(m, Now()); }) {}
@@ -266,7 +266,7 @@ class TrainingActor {
   dds::Bus bus_;
   dds::Publisher<TransitionChunk> chunk_publisher_;
   dds::Publisher<MetricsMessage> metrics_publisher_;
-  dds::Subscriber<Credit> credit_subscriber_;
+  dds::Subscriber<CreditsMessage> credit_subscriber_;
   dds::Subscriber<WeightsMessage> weights_subscriber_;
   dds::Subscriber<ControlMessage> control_subscriber_;
 

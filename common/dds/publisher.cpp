@@ -70,7 +70,7 @@ bool Publisher<M>::WaitForAcks(std::chrono::milliseconds deadline) {
 }
 
 template class Publisher<TransitionChunk>;
-template class Publisher<Credit>;
+template class Publisher<CreditsMessage>;
 template class Publisher<SampleRequest>;
 template class Publisher<BatchShard>;
 template class Publisher<WeightsMessage>;

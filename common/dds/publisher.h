@@ -40,7 +40,7 @@ class Publisher {
 };
 
 extern template class Publisher<TransitionChunk>;
-extern template class Publisher<Credit>;
+extern template class Publisher<CreditsMessage>;
 extern template class Publisher<SampleRequest>;
 extern template class Publisher<BatchShard>;
 extern template class Publisher<WeightsMessage>;

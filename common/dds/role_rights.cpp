@@ -22,10 +22,10 @@ std::vector<RoleRights> AllRoleRights() {
       {RoleName(Role::kLearner),
        Names<WeightsMessage, EvalWeightsMessage, SampleRequest, MetricsMessage>(),
        Names<BatchShard, EvalMessage, ControlMessage>()},
-      {RoleName(Role::kReplay), Names<Credit, BatchShard, MetricsMessage>(),
+      {RoleName(Role::kReplay), Names<CreditsMessage, BatchShard, MetricsMessage>(),
        Names<TransitionChunk, SampleRequest, ControlMessage>()},
       {RoleName(Role::kActor), Names<TransitionChunk, EvalMessage, MetricsMessage>(),
-       Names<Credit, WeightsMessage, EvalWeightsMessage, ControlMessage>()},
+       Names<CreditsMessage, WeightsMessage, EvalWeightsMessage, ControlMessage>()},
       {RoleName(Role::kClient), Names<CommandMessage>(), Names<RunViewMessage, ReplyMessage>()},
   };
 }

@@ -148,7 +148,7 @@ uint64_t Subscriber<M>::Malformed() const {
 }
 
 template class Subscriber<TransitionChunk>;
-template class Subscriber<Credit>;
+template class Subscriber<CreditsMessage>;
 template class Subscriber<SampleRequest>;
 template class Subscriber<BatchShard>;
 template class Subscriber<WeightsMessage>;

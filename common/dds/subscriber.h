@@ -33,7 +33,7 @@ class Subscriber {
 };
 
 extern template class Subscriber<TransitionChunk>;
-extern template class Subscriber<Credit>;
+extern template class Subscriber<CreditsMessage>;
 extern template class Subscriber<SampleRequest>;
 extern template class Subscriber<BatchShard>;
 extern template class Subscriber<WeightsMessage>;

@@ -20,10 +20,10 @@ struct Topic<TransitionChunk> {
 };
 
 template <>
-struct Topic<Credit> {
-  using Wire = shoal_idl_Credit;
-  static constexpr const dds_topic_descriptor_t* kType = &shoal_idl_Credit_desc;
-  static constexpr TopicSettings kSettings{"credit", Plane::kMain, 1, true, false, 100ms};
+struct Topic<CreditsMessage> {
+  using Wire = shoal_idl_Credits;
+  static constexpr const dds_topic_descriptor_t* kType = &shoal_idl_Credits_desc;
+  static constexpr TopicSettings kSettings{"credits", Plane::kMain, 16, true, false, 100ms};
 };
 
 template <>

@@ -74,9 +74,14 @@ shoal_idl_Weights ToWire(const WeightsMessage& message, WireBuffers*) {
       message.env_steps, message.crc,       Borrow(message.payload), Borrow(message.checkpoint)};
 }
 
-shoal_idl_Credit ToWire(const Credit& message, WireBuffers*) {
-  return {message.actor,  message.session, message.replay_session,
-          message.stored, message.allowed, message.spec_hash};
+shoal_idl_Credits ToWire(const CreditsMessage& message, WireBuffers* buffers) {
+  buffers->credits.clear();
+  for (const Credit& credit : message.credits) {
+    buffers->credits.push_back({credit.actor, credit.session, credit.replay_session, credit.stored,
+                                credit.allowed, credit.spec_hash});
+  }
+  const auto size = static_cast<uint32_t>(buffers->credits.size());
+  return {{size, size, buffers->credits.data(), false}};
 }
 
 shoal_idl_SampleRequest ToWire(const SampleRequest& message, WireBuffers*) {
@@ -138,14 +143,20 @@ shoal_idl_Reply ToWire(const ReplyMessage& message, WireBuffers*) {
   return {message.client, message.request, message.accepted, Borrow(message.text)};
 }
 
-bool FromWire(const shoal_idl_Credit& wire, Credit* message) {
-  *message = {.replay_session = wire.replay_session,
-              .actor = wire.actor,
-              .session = wire.session,
-              .stored = wire.stored,
-              .allowed = wire.allowed,
-              .spec_hash = wire.spec_hash};
-  return wire.replay_session > 0 && wire.session > 0;
+bool FromWire(const shoal_idl_Credits& wire, CreditsMessage* message) {
+  message->credits.clear();
+  bool good = true;
+  for (uint32_t i = 0; i < wire.changed._length; ++i) {
+    const shoal_idl_Credit& credit = wire.changed._buffer[i];
+    good = good && credit.replay_session > 0 && credit.session > 0;
+    message->credits.push_back({.replay_session = credit.replay_session,
+                                .actor = credit.actor,
+                                .session = credit.session,
+                                .stored = credit.stored,
+                                .allowed = credit.allowed,
+                                .spec_hash = credit.spec_hash});
+  }
+  return good;
 }
 
 bool FromWire(const shoal_idl_SampleRequest& wire, SampleRequest* message) {

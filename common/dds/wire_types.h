@@ -18,6 +18,7 @@ namespace shoal::dds {
 // publisher between calls.
 struct WireBuffers {
   std::vector<char*> strings;
+  std::vector<shoal_idl_Credit> credits;
   std::vector<shoal_idl_Metrics> processes;
   std::vector<shoal_idl_RunEvent> events;
 };
@@ -25,7 +26,7 @@ struct WireBuffers {
 shoal_idl_TransitionChunk ToWire(const TransitionChunk& message, WireBuffers* buffers);
 shoal_idl_BatchShard ToWire(const BatchShard& message, WireBuffers* buffers);
 shoal_idl_Weights ToWire(const WeightsMessage& message, WireBuffers* buffers);
-shoal_idl_Credit ToWire(const Credit& message, WireBuffers* buffers);
+shoal_idl_Credits ToWire(const CreditsMessage& message, WireBuffers* buffers);
 shoal_idl_SampleRequest ToWire(const SampleRequest& message, WireBuffers* buffers);
 shoal_idl_Metrics ToWire(const MetricsMessage& message, WireBuffers* buffers);
 shoal_idl_Control ToWire(const ControlMessage& message, WireBuffers* buffers);
@@ -34,7 +35,7 @@ shoal_idl_RunView ToWire(const RunViewMessage& message, WireBuffers* buffers);
 shoal_idl_Command ToWire(const CommandMessage& message, WireBuffers* buffers);
 shoal_idl_Reply ToWire(const ReplyMessage& message, WireBuffers* buffers);
 
-bool FromWire(const shoal_idl_Credit& wire, Credit* message);
+bool FromWire(const shoal_idl_Credits& wire, CreditsMessage* message);
 bool FromWire(const shoal_idl_SampleRequest& wire, SampleRequest* message);
 bool FromWire(const shoal_idl_Metrics& wire, MetricsMessage* message);
 bool FromWire(const shoal_idl_Control& wire, ControlMessage* message);

@@ -33,7 +33,7 @@ struct TransitionChunk {
   std::span<const uint8_t> payload;
 };
 
-// replay -> actor, per (actor, session): flow control and acknowledgement in one.
+// The replay's word to one actor session: flow control and acknowledgement in one.
 struct Credit {
   uint64_t replay_session = 0;  // changes when the replay restarts: resend what is not stored
   uint32_t actor = 0;
@@ -41,6 +41,11 @@ struct Credit {
   uint64_t stored = 0;     // highest sequence up to which every record was dealt with
   uint64_t allowed = 0;    // highest sequence that may be sent
   uint64_t spec_hash = 0;  // the replay's: an actor with another one stops, naming both
+};
+
+// replay -> all actors: what has changed, in one message, since each message goes to every actor.
+struct CreditsMessage {
+  std::vector<Credit> credits;
 };
 
 // learner -> replay. Resent unchanged after a time-out; the answer depends on the request id and

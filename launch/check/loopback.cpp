@@ -79,8 +79,9 @@ LoopbackRate MeasureLoopback(const TransportConfig& transport, milliseconds dura
   WriteClusterAddress(folder.path(), address);
   HighestHeard acknowledged;
   dds::Publisher<TransitionChunk> publisher(*bus);
-  const dds::Subscriber<Credit> credits(
-      *bus, [&](const Credit& credit) { acknowledged.Hear(credit.stored); });
+  const dds::Subscriber<CreditsMessage> credits(*bus, [&](const CreditsMessage& message) {
+    for (const Credit& credit : message.credits) acknowledged.Hear(credit.stored);
+  });
   ProcessSpec spec = ProgramSpec("shoal", {"check", "--loopback-peer", folder.path().string()}, 1);
   spec.role = "loopback";
   spec.output = folder.path() / "peer.log";
@@ -114,7 +115,7 @@ int RunLoopbackPeer(const std::filesystem::path& folder, const TransportConfig& 
   dds::Bus bus(ReadClusterAddress(folder), transport, dds::Role::kReplay);
   HighestHeard stored;
   stored.Hear(0);
-  dds::Publisher<Credit> publisher(bus);
+  dds::Publisher<CreditsMessage> publisher(bus);
   uint64_t next = 1;  // touched by the receive thread alone
   const dds::Subscriber<TransitionChunk> chunks(bus, [&](const TransitionChunk& chunk) {
     if (chunk.first_sequence != next || chunk.payload.size() != kChunkBytes) return;
@@ -124,7 +125,7 @@ int RunLoopbackPeer(const std::filesystem::path& folder, const TransportConfig& 
   credit.replay_session = credit.session = 1;
   const SteadyTime end = Now() + kPeerLife;
   while (!StopRequested() && Now() < end) {
-    publisher.Write(credit);
+    publisher.Write({{credit}});
     credit.stored = stored.WaitFor(credit.stored + 1, Now() + kGreeting).value_or(0);
   }
   return 0;

@@ -30,6 +30,8 @@ std::vector<Credit> CreditBook::Take(bool changed_only) {
   for (auto& [actor, account] : accounts_) {
     if (changed_only && !account.changed) continue;
     account.changed = false;
+    account.told = true;
+    account.told_stored = account.stored;
     credits.push_back({.replay_session = replay_session_,
                        .actor = actor,
                        .session = account.session,
@@ -38,6 +40,14 @@ std::vector<Credit> CreditBook::Take(bool changed_only) {
                        .spec_hash = spec_hash_});
   }
   return credits;
+}
+
+bool CreditBook::Urgent() const {
+  return std::ranges::any_of(accounts_, [this](const auto& entry) {
+    const Account& account = entry.second;
+    return account.changed &&
+           (!account.told || account.stored - account.told_stored >= window_records_ / 2);
+  });
 }
 
 bool CreditBook::Withholding() const {

@@ -26,6 +26,10 @@ class CreditBook {
   // Credits of newest sessions; `changed_only`: those that differ from what was taken last.
   std::vector<Credit> Take(bool changed_only);
 
+  // What has changed should be told now: an actor has half of its window or less left by what was
+  // taken last, or has not been told anything yet.
+  bool Urgent() const;
+
   // Actor sessions with a window.
   int sessions() const { return static_cast<int>(accounts_.size()); }
   // Some session has less than its window.
@@ -35,7 +39,8 @@ class CreditBook {
   struct Account {
     uint64_t session = 0;
     uint64_t stored = 0, allowed = 0;
-    bool changed = true;
+    uint64_t told_stored = 0;
+    bool changed = true, told = false;
   };
 
   const SessionTable& sessions_;

@@ -134,6 +134,11 @@ std::vector<Credit> ReplayCore::TakeCredits(bool changed_only) {
   return credits_.Take(changed_only);
 }
 
+bool ReplayCore::CreditsUrgent() {
+  credits_.Refresh(limiter_.MayInsert(index_.sampleable()));
+  return credits_.Urgent();
+}
+
 Credit ReplayCore::Refusal(const TransitionChunk& chunk) const {
   return {.replay_session = replay_session_,
           .actor = chunk.actor,

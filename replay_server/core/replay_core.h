@@ -70,6 +70,8 @@ class ReplayCore {
 
   // What to tell the actors: everything, or what has changed since the last call.
   std::vector<Credit> TakeCredits(bool changed_only);
+  // CreditBook::Urgent, after taking over what has come.
+  bool CreditsUrgent();
   // For an actor of another spec: our hash, no credit.
   Credit Refusal(const TransitionChunk& chunk) const;
 

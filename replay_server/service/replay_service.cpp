@@ -33,8 +33,11 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr milliseconds kPoll{100};     // between looks at control and stop requests
-constexpr int kBatchBuffers = 2;       // one being filled, one being sent
+constexpr milliseconds kPoll{100};  // between looks at control and stop requests
+constexpr int kBatchBuffers = 2;    // one being filled, one being sent
+// Each word about credit goes to every actor, so that with many of them words are collected for a
+// moment: then what a transition costs does not grow with their number.
+constexpr milliseconds kCreditSpacing{20};
 constexpr seconds kCreditInterval{1};  // between repetitions of every credit
 constexpr seconds kFarewell{2};        // without a chunk, after the coordinator is gone
 constexpr seconds kFarewellLimit{20};
@@ -129,10 +132,10 @@ class ReplayService {
   // One turn of the service: takes what came, answers one request, tells what has changed.
   void Turn() {
     const bool inserts_blocked = core_.InsertsBlocked(), samples_blocked = core_.SamplesBlocked();
-    Take(WaitForArrivals(answered_ ? Now() : Now() + kPoll));
+    Take(WaitForArrivals(answered_ ? Now() : Now() + (credits_wait_ ? kCreditSpacing : kPoll)));
     AnswerOne();
-    Publish(core_.TakeCredits(/*changed_only=*/true));
     const SteadyTime now = Now();
+    TellChangedCredits(now);
     const double elapsed = std::chrono::duration<double>(now - last_turn_).count();
     if (inserts_blocked) seconds_.blocked_insert += elapsed;
     if (samples_blocked) seconds_.blocked_sample += elapsed;
@@ -144,6 +147,13 @@ class ReplayService {
     }
     ApplySettings();
     if (report_.Due(now)) Report(control_.state() == RunState::kDraining ? "draining" : "running");
+  }
+
+  void TellChangedCredits(SteadyTime now) {
+    credits_wait_ = !core_.CreditsUrgent() && now - last_told_ < kCreditSpacing;
+    if (credits_wait_) return;
+    last_told_ = now;
+    Publish(core_.TakeCredits(/*changed_only=*/true));
   }
 
   void ApplySettings() {
@@ -194,7 +204,7 @@ class ReplayService {
   }
 
   void Publish(const std::vector<Credit>& credits) {
-    for (const Credit& credit : credits) credit_publisher_.Write(credit);
+    if (!credits.empty()) credit_publisher_.Write({credits});
   }
 
   void Report(const char* state) {
@@ -239,7 +249,7 @@ class ReplayService {
   ProblemLog problems_;
   FlowAges ages_;
   dds::Bus bus_;
-  dds::Publisher<Credit> credit_publisher_;
+  dds::Publisher<CreditsMessage> credit_publisher_;
   dds::Publisher<MetricsMessage> metrics_publisher_;
   DdsShardWriter shard_writer_;
   BatchSender sender_;
@@ -250,7 +260,9 @@ class ReplayService {
 
   ServiceSeconds seconds_;
   SteadyTime last_turn_{}, last_credits_{}, last_chunk_{};
-  bool answered_ = false;  // a batch in the last turn: there may be another one to draw
+  SteadyTime last_told_{};
+  bool credits_wait_ = false;  // words about credit are being collected
+  bool answered_ = false;      // a batch in the last turn: there may be another one to draw
 };
 
 }  // namespace

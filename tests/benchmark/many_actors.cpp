@@ -75,7 +75,7 @@ class Bystander {
   Bystander(std::unique_ptr<dds::Bus> bus)
       : bus_(std::move(bus)),
         control_(*bus_),
-        credits_(*bus_, [this](const Credit& credit) { OnCredit(credit); }),
+        credits_(*bus_, [this](const CreditsMessage& message) { OnCredits(message); }),
         metrics_(*bus_, [this](const MetricsMessage& message) { OnMetrics(message); }) {}
 
   // Looks and sends heartbeats until `done`. False at the deadline.
@@ -111,9 +111,11 @@ class Bystander {
     order_.time = WallTimeSeconds();
     control_.Write(order_);
   }
-  void OnCredit(const Credit& credit) {
+  void OnCredits(const CreditsMessage& message) {
     const std::lock_guard lock(mutex_);
-    if (credit.stored > 0) answered_.insert(credit.actor);
+    for (const Credit& credit : message.credits) {
+      if (credit.stored > 0) answered_.insert(credit.actor);
+    }
   }
   void OnMetrics(const MetricsMessage& message) {
     if (message.role != "replay") return;
@@ -130,7 +132,7 @@ class Bystander {
   SteadyTime last_beat_{};
   std::unique_ptr<dds::Bus> bus_;
   dds::Publisher<ControlMessage> control_;
-  dds::Subscriber<Credit> credits_;
+  dds::Subscriber<CreditsMessage> credits_;
   dds::Subscriber<MetricsMessage> metrics_;
 };
 

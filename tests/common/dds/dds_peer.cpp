@@ -160,11 +160,12 @@ class Answerer {
         arrived_.wait(lock, stop, [&] { return newest_ != answered; });
         answered = newest_;
       }
-      WithExample<Credit>(answered, {}, [&](const Credit& credit) { publisher_.Write(credit); });
+      WithExample<CreditsMessage>(
+          answered, {}, [&](const CreditsMessage& credits) { publisher_.Write(credits); });
     }
   }
 
-  Publisher<Credit> publisher_;
+  Publisher<CreditsMessage> publisher_;
   std::mutex mutex_;
   std::condition_variable_any arrived_;
   uint64_t newest_ = 0;  // guarded by mutex_
@@ -177,9 +178,9 @@ std::string RoundTrip(Bus& bus, uint64_t count, size_t payload_bytes) {
   std::condition_variable arrived;
   uint64_t stored = 0;
   Publisher<TransitionChunk> publisher(bus);
-  const Subscriber<Credit> subscriber(bus, [&](const Credit& credit) {
+  const Subscriber<CreditsMessage> subscriber(bus, [&](const CreditsMessage& credits) {
     const std::lock_guard lock(mutex);
-    stored = credit.stored;
+    stored = credits.credits.front().stored;
     arrived.notify_all();
   });
   const SteadyTime start = Now();
@@ -212,7 +213,7 @@ void Add(Endpoints* endpoints, const std::string& name) {
 Endpoints AllEndpoints() {
   Endpoints endpoints;
   Add<TransitionChunk>(&endpoints, "TransitionChunk");
-  Add<Credit>(&endpoints, "Credit");
+  Add<CreditsMessage>(&endpoints, "CreditsMessage");
   Add<SampleRequest>(&endpoints, "SampleRequest");
   Add<BatchShard>(&endpoints, "BatchShard");
   Add<WeightsMessage>(&endpoints, "WeightsMessage");

@@ -38,6 +38,11 @@ inline void Fill(uint64_t n, Credit* m) {
         .allowed = n + 100,
         .spec_hash = n + 1000};
 }
+inline void Fill(uint64_t n, CreditsMessage* m) {
+  m->credits.resize(2);
+  Fill(n, &m->credits[0]);
+  Fill(n + 1, &m->credits[1]);
+}
 inline void Fill(uint64_t n, SampleRequest* m) {
   *m = {.spec_hash = n + 1000,
         .learner_session = 6,
@@ -110,7 +115,7 @@ inline void Fill(uint64_t n, ReplyMessage* m) {
 
 // The number n of a message, for counting what is missing.
 inline uint64_t Number(const TransitionChunk& m) { return m.first_sequence; }
-inline uint64_t Number(const Credit& m) { return m.stored; }
+inline uint64_t Number(const CreditsMessage& m) { return m.credits.at(0).stored; }
 inline uint64_t Number(const SampleRequest& m) { return m.request; }
 inline uint64_t Number(const BatchShard& m) { return m.request; }
 inline uint64_t Number(const WeightsMessage& m) { return m.version.update; }
@@ -132,6 +137,11 @@ inline std::string Describe(const TransitionChunk& m) {
 inline std::string Describe(const Credit& m) {
   return fmt::format("{} {} {} {} {} {}", m.replay_session, m.actor, m.session, m.stored, m.allowed,
                      m.spec_hash);
+}
+inline std::string Describe(const CreditsMessage& m) {
+  std::string all;
+  for (const Credit& credit : m.credits) all += Describe(credit) + "; ";
+  return all;
 }
 inline std::string Describe(const SampleRequest& m) {
   return fmt::format("{} {} {} {} {}", m.spec_hash, m.learner_session, m.request, m.batch,

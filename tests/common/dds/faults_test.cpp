@@ -51,16 +51,16 @@ TEST_F(FaultsTest, AKilledReplayIsFoundAgainOnItsPortAndForgottenAfterItsLease) 
   PeerProcess actor("actor", address_);
   auto replay = std::make_unique<PeerProcess>("replay", address_);
   Connect(actor, *replay);
-  actor.Ask("show Credit");
+  actor.Ask("show CreditsMessage");
   EXPECT_THAT(actor.Ask("write TransitionChunk 1 5 1000"), StartsWith("wrote 5 "));
   replay->Kill();
   replay = std::make_unique<PeerProcess>("replay", address_);
   const SteadyTime restarted = Now();
   replay->Ask("subscribe TransitionChunk");
-  replay->Ask("publish Credit");
-  replay->Ask("write Credit 9 1 0");
+  replay->Ask("publish CreditsMessage");
+  replay->Ask("write CreditsMessage 9 1 0");
   // The credit of the new one arrives: from then on chunks reach it.
-  EXPECT_THAT(actor.NextGot(), StartsWith("got Credit"));
+  EXPECT_THAT(actor.NextGot(), StartsWith("got CreditsMessage"));
   EXPECT_LT(SecondsSince(restarted), 8) << "lease of 4 s and a little";
   EXPECT_EQ(actor.Ask("match TransitionChunk 1 8000"), "matched 1") << "the dead one's lease ended";
   EXPECT_THAT(actor.Ask("write TransitionChunk 6 5 1000"), StartsWith("wrote 5 refused 0"));

@@ -45,7 +45,7 @@ class SecurityTest : public ::testing::Test {
 TEST_F(SecurityTest, EachRoleExchangesItsMessages) {
   PeerProcess replay("replay", address_), learner("learner", address_), actor("actor", address_);
   ExpectSame<TransitionChunk>(actor, replay, "TransitionChunk");
-  ExpectSame<Credit>(replay, actor, "Credit");
+  ExpectSame<CreditsMessage>(replay, actor, "CreditsMessage");
   ExpectSame<SampleRequest>(learner, replay, "SampleRequest");
   ExpectSame<BatchShard>(replay, learner, "BatchShard");
   ExpectSame<WeightsMessage>(learner, actor, "WeightsMessage");

@@ -24,7 +24,7 @@ class TwoProcessesTest : public ::testing::Test {
 TEST_F(TwoProcessesTest, MessagesBetweenActorAndReplayArriveAsSent) {
   PeerProcess replay("replay", address_), actor("actor", address_);
   ExpectSame<TransitionChunk>(actor, replay, "TransitionChunk");
-  ExpectSame<Credit>(replay, actor, "Credit");
+  ExpectSame<CreditsMessage>(replay, actor, "CreditsMessage");
 }
 
 TEST_F(TwoProcessesTest, MessagesBetweenLearnerAndReplayArriveAsSent) {
@@ -59,8 +59,8 @@ TEST_F(TwoProcessesTest, ALateActorGetsTheNewestWeightsCreditAndControl) {
   PeerProcess learner("learner", address_), replay("replay", address_);
   learner.Ask("publish WeightsMessage");
   learner.Ask("write WeightsMessage 1 3 3000000");
-  replay.Ask("publish Credit");
-  replay.Ask("write Credit 1 3 0");
+  replay.Ask("publish CreditsMessage");
+  replay.Ask("write CreditsMessage 3 1 0");
   coordinator_.Ask("publish ControlMessage");
   coordinator_.Ask("write ControlMessage 1 3 0");
   PeerProcess actor("actor", address_);
@@ -75,7 +75,7 @@ TEST_F(TwoProcessesTest, ALateActorGetsTheNewestWeightsCreditAndControl) {
   WithExample<WeightsMessage>(3, payload, [&](const WeightsMessage& message) {
     EXPECT_EQ(newest("WeightsMessage"), "got WeightsMessage " + Describe(message));
   });
-  EXPECT_EQ(newest("Credit"), Expected<Credit>("Credit", 3, 0));
+  EXPECT_EQ(newest("CreditsMessage"), Expected<CreditsMessage>("CreditsMessage", 3, 0));
   EXPECT_EQ(newest("ControlMessage"), Expected<ControlMessage>("ControlMessage", 3, 0));
 }
 

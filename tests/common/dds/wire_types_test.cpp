@@ -59,12 +59,12 @@ TEST(WireTypes, ControlStatesAreTheThreeThatExist) {
 }
 
 TEST(WireTypes, SessionsAndRequestsStartAtOne) {
-  Credit credit;
-  credit.replay_session = 1;
-  credit.session = 2;
-  EXPECT_TRUE(SurvivesTheWay(credit));
-  credit.session = 0;
-  EXPECT_FALSE(SurvivesTheWay(credit));
+  CreditsMessage credits;
+  EXPECT_TRUE(SurvivesTheWay(credits));
+  credits.credits = {{.replay_session = 1, .session = 2}, {.replay_session = 1, .session = 3}};
+  EXPECT_TRUE(SurvivesTheWay(credits));
+  credits.credits[1].session = 0;
+  EXPECT_FALSE(SurvivesTheWay(credits));
   SampleRequest request;
   request.learner_session = 1;
   request.request = 1;

@@ -50,6 +50,23 @@ TEST_F(CreditBookTest, WithheldCreditReportsWhatIsStoredAndAllowsNoMore) {
   EXPECT_FALSE(book_.Withholding());
 }
 
+TEST_F(CreditBookTest, WordsAreUrgentToNewSessionsAndWhenHalfAWindowIsUsed) {
+  EXPECT_FALSE(book_.Urgent());
+  table_.Add(3, 30);
+  book_.Refresh(true);
+  EXPECT_TRUE(book_.Urgent()) << "it has heard nothing yet";
+  book_.Take(true);
+  EXPECT_FALSE(book_.Urgent());
+  DealtWith(0, 4);
+  book_.Refresh(true);
+  EXPECT_FALSE(book_.Urgent()) << "six of ten are left";
+  DealtWith(0, 5);
+  book_.Refresh(true);
+  EXPECT_TRUE(book_.Urgent());
+  book_.Take(true);
+  EXPECT_FALSE(book_.Urgent());
+}
+
 TEST_F(CreditBookTest, AllowedIsNeverLowerThanStored) {
   table_.Add(3, 30);
   Changed(false);

@@ -32,7 +32,10 @@ class ReplayPeers {
         control_(bus_),
         chunks_(bus_),
         requests_(bus_),
-        credits_(bus_, [this](const Credit& c) { OnCredit(c); }),
+        credits_(bus_,
+                 [this](const CreditsMessage& m) {
+                   for (const Credit& credit : m.credits) OnCredit(credit);
+                 }),
         shards_(bus_, [this](const BatchShard& s) { OnShard(s); }),
         metrics_(bus_, [this](const MetricsMessage& m) { OnMetrics(m); }) {}
 
@@ -182,7 +185,7 @@ class ReplayPeers {
   dds::Publisher<ControlMessage> control_;
   dds::Publisher<TransitionChunk> chunks_;
   dds::Publisher<SampleRequest> requests_;
-  dds::Subscriber<Credit> credits_;
+  dds::Subscriber<CreditsMessage> credits_;
   dds::Subscriber<BatchShard> shards_;
   dds::Subscriber<MetricsMessage> metrics_;
 };
