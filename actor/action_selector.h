@@ -29,6 +29,10 @@ class ActionSelector {
   // Starts the exploration stream of an episode of local environment `e`.
   void BeginEpisode(int e, uint64_t stream_key) { noise_[size_t(e)] = Random(stream_key); }
 
+  // Where that stream is, to go on with it in another process.
+  const Random::State& NoiseOf(int e) const { return noise_[size_t(e)].state(); }
+  void SetNoise(int e, const Random::State& state) { noise_[size_t(e)].set_state(state); }
+
   // Where the loop writes the observations: (E, K*C, H, W) u8 and (E, V) f32.
   std::span<uint8_t> FrameStackOf(int e);
   std::span<float> VectorOf(int e);

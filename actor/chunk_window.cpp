@@ -10,8 +10,11 @@ namespace shoal::actor {
 
 ChunkWindow::ChunkWindow(const Options& options)
     : options_(options),
+      stored_(options.records_before),
       // Before the replay's first word the whole window may be sent: it learns of us by that.
-      allowed_(static_cast<uint64_t>(options.chunks - 1) * options.chunk_records) {
+      allowed_(options.records_before +
+               static_cast<uint64_t>(options.chunks - 1) * options.chunk_records),
+      last_sequence_(options.records_before) {
   CHECK(options.chunks >= 3 && options.chunk_records >= 1 && options.record_bytes > 0);
   for (int i = 0; i < options.chunks; ++i) {
     Chunk chunk;

@@ -23,8 +23,9 @@ class ChunkWindow {
     uint32_t actor = 0;
     uint64_t session = 0;
     int record_bytes = 0;
-    int chunk_records = 0;  // records per chunk at most
-    int chunks = 0;         // >= 3: the replay's window and the open one
+    int chunk_records = 0;        // records per chunk at most
+    int chunks = 0;               // >= 3: the replay's window and the open one
+    uint64_t records_before = 0;  // of a session that goes on; all of them stored
   };
   explicit ChunkWindow(const Options& options);
 
@@ -70,9 +71,9 @@ class ChunkWindow {
   std::deque<Chunk> kept_;  // oldest first; the last one may be open
   std::vector<Chunk> free_;
   size_t unsent_from_ = 0;  // kept_[i], i < unsent_from_, was sent in this replay session
-  uint64_t stored_ = 0;
+  uint64_t stored_;
   uint64_t allowed_;  // highest sequence that may be sent
-  uint64_t last_sequence_ = 0;
+  uint64_t last_sequence_;
   uint64_t replay_session_ = 0;
   uint64_t resent_records_ = 0;
 };

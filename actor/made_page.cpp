@@ -80,7 +80,8 @@ MadePage::MadePage(const std::filesystem::path& run, uint32_t actor, uint64_t se
   }
   MakeFolders(run / "made");
   const std::filesystem::path path = run / "made" / fmt::format("actor-{}-{}.page", actor, session);
-  WritePage(path, page);
+  std::error_code error_code;
+  if (!std::filesystem::exists(path, error_code)) WritePage(path, page);
   const int fd = open(path.c_str(), O_RDWR | O_CLOEXEC);
   bytes_ = sizeof page.header + 4 * size_t{env_count};
   void* mapped =

@@ -25,9 +25,9 @@ static_assert(sizeof(MadePageHeader) == 40);
 // Owns the mapping. One thread.
 class MadePage {
  public:
-  // Creates the page of this session; its episodes go on where earlier sessions hosting the same
-  // environments stopped. Throws Error when the folder cannot be written or an older page is
-  // broken.
+  // Creates the page of this session, or goes on with it where the session goes on (lockstep); its
+  // episodes go on where earlier sessions hosting the same environments stopped. Throws Error when
+  // the folder cannot be written or an older page is broken.
   MadePage(const std::filesystem::path& run, uint32_t actor, uint64_t session, uint32_t first_env,
            uint32_t env_count);
   ~MadePage();

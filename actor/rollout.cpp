@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "common/base/check.h"
+#include "common/base/error.h"
 #include "common/base/random.h"
 #include "common/wire/scoped_seconds.h"
 
@@ -21,7 +22,8 @@ Rollout::Rollout(const Config& config, const ObservationSpec& spec,
   for (size_t e = 0; e < environments.size(); ++e) {
     slots_.push_back({.environment = std::move(environments[e]),
                       .stack = FrameStack(selector.FrameStackOf(int(e)), spec.FrameBytes()),
-                      .figures = {}});
+                      .figures = {},
+                      .actions = {}});
   }
 }
 
@@ -60,6 +62,7 @@ void Rollout::BeginEpisode(int e) {
   slot.episode = made_.TakeEpisode(static_cast<uint32_t>(e));
   slot.figures = {};
   slot.running = true;
+  slot.actions.clear();
   selector_.BeginEpisode(e, StreamKey(seed_, StreamRole::kTrainPolicy, env, slot.episode));
 
   uint8_t* record = window_.BeginRecord();
@@ -83,6 +86,7 @@ void Rollout::StepOne(int e) {
   const std::span<float> vector = layout_.Vector(record);
   const std::span<const float> action = selector_.ActionOf(e);
   std::copy(action.begin(), action.end(), layout_.Action(record).begin());
+  slot.actions.insert(slot.actions.end(), action.begin(), action.end());
   const worlds::StepResult result = slot.environment->Step(action, {frame, vector});
 
   ++slot.figures.length;
@@ -104,6 +108,59 @@ void Rollout::StepOne(int e) {
     episodes_.Add(slot.figures);
     slot.running = false;
   }
+}
+
+RolloutState Rollout::State() const {
+  RolloutState state;
+  state.env_steps = env_steps_;
+  for (int e = 0; e < static_cast<int>(slots_.size()); ++e) {
+    const Slot& slot = slots_[size_t(e)];
+    state.episodes.push_back({.episode = slot.episode,
+                              .running = slot.running,
+                              .noise = selector_.NoiseOf(e),
+                              .actions = slot.running ? slot.actions : std::vector<float>()});
+  }
+  return state;
+}
+
+void Rollout::Restore(const RolloutState& state) {
+  CHECK(env_steps_ == 0);
+  if (state.episodes.size() != slots_.size()) {
+    throw RuntimeError("the actor's state is of {} environments, it has {}", state.episodes.size(),
+                       slots_.size());
+  }
+  env_steps_ = state.env_steps;
+  for (size_t e = 0; e < slots_.size(); ++e) {
+    if (state.episodes[e].running) PlayAgain(static_cast<int>(e), state.episodes[e]);
+  }
+}
+
+void Rollout::PlayAgain(int e, const EpisodeState& state) {
+  Slot& slot = slots_[size_t(e)];
+  std::vector<uint8_t> memory(static_cast<size_t>(layout_.record_bytes()));
+  const std::span<uint8_t> frame = layout_.Frame(memory.data());
+  const std::span<float> vector = layout_.Vector(memory.data());
+  const auto observed = [&] {
+    std::copy(vector.begin(), vector.end(), selector_.VectorOf(e).begin());
+  };
+  const uint64_t env = first_env_ + static_cast<uint64_t>(e);
+  slot.environment->Reset(StreamKey(seed_, StreamRole::kTrainEnvironment, env, state.episode),
+                          {frame, vector});
+  slot.stack.Reset(frame);
+  observed();
+  const size_t action_size = layout_.Action(memory.data()).size();
+  for (size_t at = 0; at + action_size <= state.actions.size(); at += action_size) {
+    const worlds::StepResult result =
+        slot.environment->Step({state.actions.data() + at, action_size}, {frame, vector});
+    slot.stack.Push(frame);
+    observed();
+    ++slot.figures.length;
+    slot.figures.episode_return += result.reward;
+  }
+  slot.episode = state.episode;
+  slot.running = true;
+  slot.actions = state.actions;
+  selector_.SetNoise(e, state.noise);
 }
 
 void Rollout::FillHeader(int e, RecordKind kind, RecordHeader* header) const {

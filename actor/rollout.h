@@ -12,6 +12,7 @@
 #include "actor/episode_log.h"
 #include "actor/frame_stack.h"
 #include "actor/made_page.h"
+#include "actor/rollout_state.h"
 #include "actor/worlds/environment.h"
 #include "common/base/clock.h"
 
@@ -34,6 +35,12 @@ class Rollout {
   // done, while the window has no room for its records.
   bool TryStep();
 
+  // Where it is, without session and count of records, which are others'.
+  RolloutState State() const;
+  // Goes on where another process was, before the first step: plays the running episodes again by
+  // their actions, publishing nothing. Throws Error when the state is of other environments.
+  void Restore(const RolloutState& state);
+
   uint64_t env_steps() const { return env_steps_; }
   const EpisodeLog& episodes() const { return episodes_; }
   StageSeconds seconds() const;
@@ -45,10 +52,12 @@ class Rollout {
     EpisodeFigures figures;
     uint32_t episode = 0;
     bool running = false;
+    std::vector<float> actions;  // of the running episode
   };
 
   void BeginEpisode(int e);
   void StepOne(int e);
+  void PlayAgain(int e, const EpisodeState& state);
   void FillHeader(int e, RecordKind kind, RecordHeader* header) const;
   void Publish(uint8_t* record);
 

@@ -32,7 +32,8 @@ constexpr seconds kLockDeadline = kDrainDeadline + seconds(15);  // for a predec
 constexpr milliseconds kBlockedWait{5};  // per look for credit while there is no room
 constexpr seconds kLockstepDeadline{120};
 
-ChunkWindow::Options WindowOptions(const RunConfig& run, uint32_t id, uint64_t session) {
+ChunkWindow::Options WindowOptions(const RunConfig& run, uint32_t id, uint64_t session,
+                                   uint64_t records_before) {
   const Config& config = run.config;
   const int window_chunks = std::max(2, config.replay.window_chunks);
   if (2 * config.envs_per_actor > window_chunks * config.transport.chunk_records) {
@@ -46,7 +47,8 @@ ChunkWindow::Options WindowOptions(const RunConfig& run, uint32_t id, uint64_t s
           .session = session,
           .record_bytes = RecordLayout(run.spec).record_bytes(),
           .chunk_records = config.transport.chunk_records,
-          .chunks = window_chunks + 1};
+          .chunks = window_chunks + 1,
+          .records_before = records_before};
 }
 
 // Members are in construction order; destruction, the reverse, ends the receive threads' callbacks
@@ -58,10 +60,14 @@ class TrainingActor {
       : member_(folder),
         run_(ReadRunConfig(folder)),
         lock_(folder, id, kLockDeadline, StopRequested),
-        session_(NextSession(folder, fmt::format("actor-{}", id), WallTimeNs())),
+        folder_(folder),
+        id_(id),
+        resumed_(run_.config.lockstep ? TakeRolloutState(folder, id) : std::nullopt),
+        session_(resumed_ ? resumed_->session
+                          : NextSession(folder, fmt::format("actor-{}", id), WallTimeNs())),
         first_env_(id * static_cast<uint32_t>(run_.config.envs_per_actor)),
         made_(folder, id, session_, first_env_, static_cast<uint32_t>(run_.config.envs_per_actor)),
-        window_(WindowOptions(run_, id, session_)),
+        window_(WindowOptions(run_, id, session_, resumed_ ? resumed_->made : 0)),
         selector_(run_.config, run_.spec, run_.config.envs_per_actor),
         rollout_(run_.config, run_.spec, make(run_, run_.config.envs_per_actor), first_env_, made_,
                  window_, selector_),
@@ -82,6 +88,7 @@ class TrainingActor {
               first_env_ + static_cast<uint32_t>(run_.config.envs_per_actor) - 1,
               run_.spec.Summary());
     last_flush_ = last_progress_ = Now();
+    if (resumed_) Resume();
     while (control_.state() == RunState::kRunning && !StopRequested()) {
       if (control_.CoordinatorLost(Now())) {
         log::Failure("the coordinator is gone: no heartbeat; leaving");
@@ -93,10 +100,34 @@ class TrainingActor {
       Exchange(Now());
       Report("running");
     }
-    return Drain() ? 0 : 1;
+    const bool stored = Drain();
+    if (stored && run_.config.lockstep) {
+      RolloutState state = rollout_.State();
+      state.session = session_;
+      state.made = made_.made();
+      WriteRolloutState(folder_, id_, state);
+    }
+    return stored ? 0 : 1;
   }
 
  private:
+  // In lockstep: goes on exactly where the former process left. Half-way through a phase it acted
+  // by the weights of the phase before, which the learner offers first when it resumes.
+  void Resume() {
+    if (made_.made() != resumed_->made) {
+      throw RuntimeError("actor {} made {} records, its state was left at {}", id_, made_.made(),
+                         resumed_->made);
+    }
+    rollout_.Restore(*resumed_);
+    const auto steps = static_cast<int64_t>(rollout_.env_steps()) / run_.config.envs_per_actor;
+    while (LockstepVectorStepsAtPhaseEnd(run_.config, phase_) < steps) ++phase_;
+    log::Info("lockstep: goes on after {} env steps, in phase {}", rollout_.env_steps(), phase_);
+    const bool half_way = LockstepVectorStepsAtPhaseEnd(run_.config, phase_) > steps;
+    if (half_way && phase_ > 0) {
+      AwaitLockstepWeights(LockstepUpdatesAtPhaseEnd(run_.config, phase_ - 1));
+    }
+  }
+
   void TakeWeights() {
     if (run_.config.lockstep) {
       TakeLockstepWeights();
@@ -113,10 +144,15 @@ class TrainingActor {
     if (steps < LockstepVectorStepsAtPhaseEnd(run_.config, phase_)) return;
     const uint64_t wanted = LockstepUpdatesAtPhaseEnd(run_.config, phase_);
     window_.Flush();
+    if (AwaitLockstepWeights(wanted)) ++phase_;
+  }
+
+  // False when the run ends first.
+  bool AwaitLockstepWeights(uint64_t wanted) {
     const SteadyTime deadline = Now() + kLockstepDeadline;
     const ScopedSeconds timed(weights_seconds_);
     while (selector_.version().update < wanted) {
-      if (StopRequested() || control_.state() != RunState::kRunning) return;
+      if (StopRequested() || control_.state() != RunState::kRunning) return false;
       if (Now() > deadline) {
         throw RuntimeError("lockstep: no weights of update {} within {} s", wanted,
                            kLockstepDeadline.count());
@@ -125,7 +161,7 @@ class TrainingActor {
       Report("blocked");
       if (const auto weights = weights_.TryTake()) selector_.Load(*weights);
     }
-    ++phase_;
+    return true;
   }
 
   // A lockstep run ends at the phase in which the budget is reached, whatever the clocks say.
@@ -253,6 +289,9 @@ class TrainingActor {
   const RunMembership member_;
   const RunConfig run_;
   const ActorLock lock_;
+  const std::filesystem::path folder_;
+  const uint32_t id_;
+  const std::optional<RolloutState> resumed_;  // lockstep
   const uint64_t session_;
   const uint32_t first_env_;
   MadePage made_;

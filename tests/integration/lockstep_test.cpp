@@ -1,6 +1,7 @@
 // In lockstep a whole run through the real processes repeats bit for bit.
 #include <gtest/gtest.h>
 
+#include "tests/support/running_training.h"
 #include "tests/support/training_run.h"
 
 namespace shoal {
@@ -10,6 +11,15 @@ struct Outcome {
   std::string learner, evaluations;
 };
 
+// learner.safetensors of the newest checkpoint.
+std::string LearnerOf(const TrainingRun& run) {
+  std::filesystem::path newest;
+  for (const auto& entry : std::filesystem::directory_iterator(run.path() / "checkpoints")) {
+    if (entry.path().filename() != "best") newest = std::max(newest, entry.path());
+  }
+  return ReadFile(newest / "learner.safetensors");
+}
+
 Outcome RunInLockstep(const std::string& seed) {
   const TrainingRun run;
   const ProgramResult result =
@@ -17,16 +27,38 @@ Outcome RunInLockstep(const std::string& seed) {
                 {"--lockstep"});
   EXPECT_EQ(ExitCode(result), 0) << result.out << result.err;
   Outcome outcome;
-  std::filesystem::path newest;
-  for (const auto& entry : std::filesystem::directory_iterator(run.path() / "checkpoints")) {
-    if (entry.path().filename() != "best") newest = std::max(newest, entry.path());
-  }
-  outcome.learner = ReadFile(newest / "learner.safetensors");
+  outcome.learner = LearnerOf(run);
   for (const auto& entry : std::filesystem::directory_iterator(run.path() / "eval")) {
     outcome.evaluations +=
         nlohmann::json::parse(ReadFile(entry.path())).at("episodes").dump() + "\n";
   }
   return outcome;
+}
+
+TEST(Lockstep, AnInterruptedRunGoesOnBitForBit) {
+  const TrainingRun::Keys keys{{"env_steps", "2000"}, {"actors", "1"}, {"eval.interval", "1000"}};
+  const TrainingRun whole, interrupted;
+  const ProgramResult result = whole.Train(keys, {"--lockstep"});
+  ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
+  // Twice: where the learner has hardly begun, and later.
+  std::vector<std::string> command = interrupted.Command(keys, {"--lockstep"});
+  for (const int64_t steps : {1030, 1450}) {
+    RunningTraining training(interrupted, command);
+    ASSERT_TRUE(training.WaitForSteps(steps)) << training.Output();
+    training.Interrupt();
+    ASSERT_EQ(training.End(std::chrono::seconds(120)), 0) << training.Output();
+    ASSERT_LT(interrupted.Json("meta.json").at("env_steps").get<int64_t>(), 2000)
+        << "ended before it was interrupted";
+    command = {"shoal", "train", "--resume", interrupted.path().string()};
+  }
+  RunningTraining last(interrupted, command);
+  ASSERT_EQ(last.End(std::chrono::seconds(180)), 0) << last.Output();
+  const auto one = whole.Json("meta.json"), other = interrupted.Json("meta.json");
+  EXPECT_EQ(one.at("env_steps"), other.at("env_steps"));
+  EXPECT_EQ(one.at("updates"), other.at("updates"));
+  EXPECT_GT(one.at("updates").get<int64_t>(), 50);
+  ExpectBalanced(other);
+  EXPECT_TRUE(LearnerOf(whole) == LearnerOf(interrupted)) << "learner.safetensors differs";
 }
 
 TEST(Lockstep, TheSameSeedGivesTheSameBytes) {
