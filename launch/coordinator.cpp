@@ -7,7 +7,10 @@
 #include "common/dds/publisher.h"
 #include "common/dds/subscriber.h"
 #include "common/wire/metrics_report.h"
+#include "launch/command_handler.h"
 #include "launch/evaluations.h"
+#include "launch/live_settings.h"
+#include "launch/machine.h"
 #include "launch/message_inbox.h"
 #include "launch/metrics_log.h"
 #include "launch/metrics_view.h"
@@ -49,6 +52,8 @@ struct Coordinator::Impl {
       : run(folder),
         config(run_config.config),
         hosts(remote_hosts),
+        settings(config),
+        handler(settings, Effects()),
         desk(run_desk),
         progress(shown),
         meta(before),
@@ -61,8 +66,18 @@ struct Coordinator::Impl {
         control(bus),
         metrics_subscriber(bus, [this](const MetricsMessage& m) { metrics.Put(m); }),
         eval_subscriber(bus, [this](const EvalMessage& m) { evals.Put(m); }) {
+    settings.Restore(meta.changes);
+    settings.AddTo(&order);
+    rule.Change(settings.config());
     for (const EvaluationPoint& point : ReadEvaluations(run)) Count(point);
     meta.target = rule.target();
+  }
+
+  CommandHandler::Effects Effects() {
+    return {.running = [this] { return order.state == RunState::kRunning && !stop_asked; },
+            .stop = [this] { stop_asked = true; },
+            .scale = [this](int from, int to) { Scale(from, to); },
+            .note = [this](const SettingChange& change) { Note(change); }};
   }
 
   double Elapsed() const { return meta.wall_seconds + SecondsSince(start); }
@@ -71,8 +86,13 @@ struct Coordinator::Impl {
                     static_cast<uint64_t>(view.Get("replay", 0, "stored_steps").value_or(0)));
   }
 
-  RunResult Run();
-  std::string WaitForEnd();
+  RunResult Run(const std::function<void()>& on_started);
+  std::string WaitForEnd(const std::function<void()>& on_started);
+  // Every process of the run has reported.
+  bool Started() const;
+  void TakeCommands();
+  void Scale(int from, int to);
+  void Note(SettingChange change);
   void Stop();
   // Heartbeat, messages, display. What fails in it is remembered as the run's failure.
   void Tick();
@@ -90,8 +110,10 @@ struct Coordinator::Impl {
   bool Settled() const;
 
   const std::filesystem::path run;
-  const Config config;
+  const Config config;  // as the run was started
   const std::vector<RemoteHost> hosts;
+  LiveSettings settings;
+  CommandHandler handler;
   OperatorDesk& desk;
   Progress& progress;
   RunMeta meta;  // wall_seconds: of the sessions before this one, until the end
@@ -111,6 +133,9 @@ struct Coordinator::Impl {
   ControlMessage order{.epoch = 1};
   SteadyTime start = Now();
   std::optional<SteadyTime> heartbeat, meta_stored;
+  bool stop_asked = false;  // by a command
+  bool meta_due = false;    // something happened that it records
+  const int usable_cores = UsableCores();
   int stops_before_end = 0;  // Ctrl-C's that had been answered when the ordered stop began
 };
 
@@ -121,13 +146,17 @@ Coordinator::Coordinator(const std::filesystem::path& run, const RunConfig& conf
 
 Coordinator::~Coordinator() = default;
 
-RunResult Coordinator::Run() { return impl_->Run(); }
+RunResult Coordinator::Run(const std::function<void()>& on_started) {
+  return impl_->Run(on_started);
+}
 
-RunResult Coordinator::Impl::Run() {
-  for (const ProcessSpec& spec : PlanProcesses(config, run, hosts)) supervisor.Start(spec);
+RunResult Coordinator::Impl::Run(const std::function<void()>& on_started) {
+  for (const ProcessSpec& spec : PlanProcesses(settings.config(), run, hosts)) {
+    supervisor.Start(spec);
+  }
   meta.exit = "running";
   StoreMeta();
-  meta.exit = WaitForEnd();
+  meta.exit = WaitForEnd(on_started);
   Stop();
   meta.env_steps = EnvSteps();
   meta.wall_seconds = Elapsed();
@@ -135,23 +164,71 @@ RunResult Coordinator::Impl::Run() {
   if (!meta.error.empty()) meta.exit = "failed";
   return {.meta = meta,
           .resends = static_cast<uint64_t>(view.Total("actor", "resends")),
-          .clean = supervisor.unclean_exits().empty()};
+          .clean = supervisor.unclean_exits().empty(),
+          .bottleneck = FindBottleneck(view, usable_cores, settings.config().actors)};
 }
 
-std::string Coordinator::Impl::WaitForEnd() {
+std::string Coordinator::Impl::WaitForEnd(const std::function<void()>& on_started) {
+  bool started = on_started == nullptr;
   while (true) {
     Tick();
+    if (!started && Started()) {
+      on_started();
+      started = true;
+    }
     if (const auto failure = supervisor.Poll(Now())) Fail(*failure);
     if (!meta.error.empty()) return "failed";
-    if (StopRequested()) return "interrupted";
+    if (StopRequested() || stop_asked) return "interrupted";
     if (rule.TargetReached()) return "target";
     if (rule.BudgetSpent(EnvSteps())) return "budget";
     std::this_thread::sleep_for(kPoll);
   }
 }
 
+bool Coordinator::Impl::Started() const {
+  return view.Processes("replay") > 0 && view.Processes("learner") > 0 &&
+         view.Processes("eval") > 0 && view.Processes("actor") >= settings.config().actors;
+}
+
+void Coordinator::Impl::TakeCommands() {
+  for (const CommandMessage& command : desk.TakeCommands()) {
+    const ReplyMessage reply = handler.Handle(command);
+    std::string line = "command: " + command.verb;
+    for (const std::string& argument : command.arguments) line += " " + argument;
+    progress.Say(fmt::format("{}: {}{}", line, reply.accepted ? "" : "refused: ", reply.text));
+    desk.Answer(reply);
+  }
+}
+
+// The actors with the highest numbers go first.
+void Coordinator::Impl::Scale(int from, int to) {
+  if (!hosts.empty()) {
+    throw RuntimeError("a run on several hosts has the actors that its hosts file says");
+  }
+  for (int id = from; id < to; ++id) supervisor.Start(ActorProcess(run, id));
+  for (int id = from - 1; id >= to; --id) supervisor.Retire("actor", id, Now());
+}
+
+void Coordinator::Impl::Note(SettingChange change) {
+  change.time = UtcTimestamp();
+  change.env_steps = EnvSteps();
+  change.updates = meta.updates;
+  meta.changes.push_back(std::move(change));
+  rule.Change(settings.config());
+  meta.target = rule.target();
+  meta.first_success = rule.first_success();
+  settings.AddTo(&order);
+  ++order.epoch;
+  heartbeat.reset();  // the next tick tells at once
+  meta_due = true;
+}
+
 void Coordinator::Impl::Stop() {
-  if (meta.exit == "interrupted") progress.Say("stopping in order; Ctrl-C again to stop at once");
+  if (stop_asked && meta.exit == "interrupted") {
+    progress.Say("stopping in order, as commanded");
+  } else if (meta.exit == "interrupted") {
+    progress.Say("stopping in order; Ctrl-C again to stop at once");
+  }
   if (meta.exit == "target") progress.Say("target reached: stopping in order");
   if (meta.exit == "budget") progress.Say("budget of env steps spent: stopping in order");
   stops_before_end = StopRequests();
@@ -178,7 +255,8 @@ void Coordinator::Impl::Tick() {
   Heartbeat(now);
   try {
     TakeMessages(now);
-    if (!meta_stored || now - *meta_stored > kMetaPeriod) StoreMeta();
+    TakeCommands();
+    if (meta_due || !meta_stored || now - *meta_stored > kMetaPeriod) StoreMeta();
   } catch (const Error& e) {
     Fail(e.what());
   }
@@ -198,7 +276,7 @@ ProgressFigures Coordinator::Impl::Figures(SteadyTime now) const {
   figures.state = ToString(order.state);
   figures.elapsed_seconds = Elapsed();
   figures.env_steps = EnvSteps();
-  figures.budget = static_cast<uint64_t>(config.env_steps);
+  figures.budget = static_cast<uint64_t>(settings.config().env_steps);
   figures.last_evaluation = last_evaluation;
   figures.best = meta.best;
   figures.processes = supervisor.Running("");
@@ -211,6 +289,7 @@ void Coordinator::Impl::ShowView(const ProgressFigures& figures, SteadyTime now)
   if (!desk.Due(now)) return;
   own_report.Begin(figures.state);
   AddRunFigures(figures, &own_report);
+  AddOrders(settings.config(), usable_cores, &own_report);
   const MetricsMessage& own = own_report.message();
   view.OnMessage(own, now);
   log.Write(own);
@@ -272,6 +351,7 @@ void Coordinator::Impl::Fail(const std::string& why) {
 
 void Coordinator::Impl::StoreMeta() {
   meta_stored = Now();
+  meta_due = false;
   RunMeta now = meta;
   now.env_steps = EnvSteps();
   now.wall_seconds = Elapsed();

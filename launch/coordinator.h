@@ -3,12 +3,14 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "common/config/run_files.h"
 #include "common/dds/bus.h"
+#include "launch/bottleneck.h"
 #include "launch/operator_desk.h"
 #include "launch/progress.h"
 #include "launch/remote_host.h"
@@ -20,6 +22,7 @@ struct RunResult {
   RunMeta meta;
   uint64_t resends = 0;  // records actors sent again
   bool clean = true;     // every process left by itself with code 0
+  Bottleneck bottleneck;
 };
 
 class Coordinator {
@@ -31,9 +34,11 @@ class Coordinator {
               Progress& progress);
   ~Coordinator();
 
-  // Until the target, the budget, Ctrl-C or a failure; no process is left when it returns. Call on
-  // the thread that lives longest (child_process.h). Throws Error when a process cannot be started.
-  RunResult Run();
+  // Until the target, the budget, Ctrl-C, `shoal stop` or a failure; no process is left when it
+  // returns. Call on the thread that lives longest (child_process.h). Throws Error when a process
+  // cannot be started. `on_started` is called once, when every process has reported for the first
+  // time; may be null.
+  RunResult Run(const std::function<void()>& on_started);
 
  private:
   struct Impl;

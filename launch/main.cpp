@@ -32,6 +32,9 @@ int Run(int argc, char** argv) {
   shoal::launch::AddTrainCommand(app, &chosen);
   shoal::launch::AddEvalCommand(app, &chosen);
   shoal::launch::AddTopCommand(app, &chosen);
+  shoal::launch::AddRunsCommand(app, &chosen);
+  shoal::launch::AddSteerCommands(app, &chosen);
+  shoal::launch::AddAttachCommand(app, &chosen);
   shoal::launch::AddEnvCommand(app, &chosen);
   shoal::launch::AddReplayCommand(app, &chosen);
   shoal::launch::AddCheckCommand(app, &chosen);

@@ -85,11 +85,18 @@ double MetricsView::Total(std::string_view role, std::string_view name) const {
 std::vector<MetricsMessage> MetricsView::Reports(SteadyTime now) const {
   std::vector<MetricsMessage> reports;
   for (const auto& [key, process] : processes_) {
-    if (now - process.heard > kForget) continue;
+    const bool silent = now - process.heard > kFresh;
+    if (now - process.heard > kForget || (silent && process.newest.state == "stopping")) continue;
     reports.push_back(process.newest);
-    if (now - process.heard > kFresh) reports.back().state = "silent";
+    if (silent) reports.back().state = "silent";
   }
   return reports;
+}
+
+int MetricsView::Processes(std::string_view role) const {
+  int count = 0;
+  ForRole(role, [&](const Process&) { ++count; });
+  return count;
 }
 
 }  // namespace shoal::launch

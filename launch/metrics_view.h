@@ -35,8 +35,14 @@ class MetricsView {
   double Total(std::string_view role, std::string_view name) const;
 
   // The newest report of every process, by role and id. Those not heard for kFresh are "silent",
-  // those not heard for kForget are left out.
+  // those not heard for
+  // kForget, or that had said that they stop, are left out.
   std::vector<MetricsMessage> Reports(SteadyTime now) const;
+
+  // Seconds that the role's processes have run, restarted and ended ones included.
+  double Seconds(std::string_view role) const { return Total(role, "uptime_seconds"); }
+  // Processes of the role that ever reported, by id.
+  int Processes(std::string_view role) const;
 
   static constexpr std::chrono::seconds kFresh{5};
   static constexpr std::chrono::seconds kForget{60};

@@ -28,4 +28,7 @@ std::vector<ProcessSpec> PlanProcesses(const Config& config, const std::filesyst
 // of this host. config.actors counts them all.
 ActorRange ActorsOf(const Config& config, const std::vector<RemoteHost>& hosts, size_t index);
 
+// One actor of this host.
+ProcessSpec ActorProcess(const std::filesystem::path& run, int id);
+
 }  // namespace shoal::launch

@@ -110,8 +110,9 @@ std::vector<std::string> FormatProgressBlock(const ProgressFigures& f, int width
   return lines;
 }
 
-Progress::Progress(const std::string& log_file, std::function<void(const std::string&)> on_say)
-    : terminal_(isatty(STDOUT_FILENO) == 1), on_say_(std::move(on_say)) {
+Progress::Progress(const std::string& log_file, std::function<void(const std::string&)> on_say,
+                   bool plain)
+    : terminal_(!plain && isatty(STDOUT_FILENO) == 1), on_say_(std::move(on_say)) {
   if (log_file.empty()) return;
   log_.open(log_file, std::ios::app);
   if (!log_) throw RuntimeError("cannot write '{}': {}", log_file, std::strerror(errno));

@@ -43,10 +43,10 @@ std::vector<std::string> FormatProgressBlock(const ProgressFigures& figures, int
 // Writes to stdout and copies event lines to a log file. One thread.
 class Progress {
  public:
-  // `on_say` hears every line that is said. Throws Error when the log cannot be opened; an empty
-  // name is no log.
+  // `on_say` hears every line that is said. `plain`: lines, even on a terminal. Throws Error when
+  // the log cannot be opened; an empty name is no log.
   explicit Progress(const std::string& log_file,
-                    std::function<void(const std::string&)> on_say = nullptr);
+                    std::function<void(const std::string&)> on_say = nullptr, bool plain = false);
   // Leaves the cursor below the last block.
   ~Progress();
 

@@ -25,7 +25,7 @@ class RestartPolicy {
   std::optional<std::chrono::milliseconds> OnDeath(SteadyTime now);
 
  private:
-  const RestartLimits limits_;
+  RestartLimits limits_;
   std::deque<SteadyTime> deaths_;  // within the window
 };
 

@@ -10,6 +10,7 @@
 #include "common/base/clock.h"
 #include "common/base/mutex.h"
 #include "common/dds/bus.h"
+#include "common/dds/publisher.h"
 #include "common/dds/subscriber.h"
 #include "launch/run_target.h"
 
@@ -26,15 +27,30 @@ class RunClient {
   // The first view. Throws Error naming the run when the coordinator does not answer in time.
   RunViewMessage FirstView();
 
+  // Sends a command and returns what the coordinator did. Throws Error: refused, with its reason,
+  // or no answer in time.
+  std::string Order(const std::string& verb, const std::vector<std::string>& arguments);
+
   static constexpr std::chrono::seconds kAnswer{5};
 
  private:
+  // The reply to the command; empty when there is none within kAnswer.
+  std::optional<ReplyMessage> Ask(const CommandMessage& command);
+
   const RunTarget target_;
+  const uint64_t client_;  // names this client among all
+  uint64_t requests_ = 0;
   Mutex mutex_;
   ConditionVariable arrived_;
   std::optional<RunViewMessage> view_ SHOAL_GUARDED_BY(mutex_);
+  std::optional<ReplyMessage> reply_ SHOAL_GUARDED_BY(mutex_);
   dds::Bus bus_;
+  dds::Publisher<CommandMessage> commands_;
+  dds::Subscriber<ReplyMessage> replies_;
   dds::Subscriber<RunViewMessage> views_;  // last: its callback uses the rest
 };
+
+// The exit code of a run that has ended, from its last view.
+int ExitCodeOf(const RunViewMessage& view);
 
 }  // namespace shoal::launch

@@ -72,7 +72,9 @@ void PrintSummary(const fs::path& run, const RunResult& result,
     progress.Say(fmt::format("  success >= {:.0f} % was not reached", 100 * meta.target));
   }
   if (meta.accounting) progress.Say("  " + meta.accounting->Line());
-  for (const char* name : {"meta.json", "metrics.jsonl", "eval", "checkpoints", "tensorboard"}) {
+  for (const std::string& line : FormatBottleneck(result.bottleneck)) progress.Say("  " + line);
+  for (const char* name :
+       {"meta.json", "bottleneck.json", "metrics.jsonl", "eval", "checkpoints", "tensorboard"}) {
     if (fs::exists(run / name)) progress.Say(fmt::format("  {}", (run / name).string()));
   }
 }
@@ -101,6 +103,7 @@ int EndRun(const fs::path& run, const Config& config, RunResult result, Operator
   }
   std::optional<EvaluationPoint> final_evaluation;
   try {
+    WriteBottleneck(run, result.bottleneck);
     final_evaluation = EvaluateAtEnd(run, config, desk, progress);
     if (final_evaluation) {
       meta.final_success = final_evaluation->success;

@@ -46,7 +46,6 @@ void AddRunFigures(const ProgressFigures& figures, MetricsReport* report) {
     if (value) report->Add(name, *value);
   };
   report->Add("elapsed_seconds", figures.elapsed_seconds);
-  report->Add("budget_env_steps", static_cast<double>(figures.budget));
   add("env_steps_per_second", figures.env_steps_per_second);
   add("updates_per_second", figures.updates_per_second);
   add("rollout_success", figures.rollout_success);
@@ -57,6 +56,14 @@ void AddRunFigures(const ProgressFigures& figures, MetricsReport* report) {
   report->Add("processes", figures.processes);
   report->Add("restarts", figures.restarts);
   report->AddResources();
+}
+
+void AddOrders(const Config& config, int usable_cores, MetricsReport* report) {
+  report->Add("actors", config.actors);
+  report->Add("budget_env_steps", static_cast<double>(config.env_steps));
+  report->Add("stop_success", config.stop.success);
+  report->Add("stop_evaluations", config.stop.evaluations);
+  report->Add("usable_cores", usable_cores);
 }
 
 ProgressFigures FiguresOfView(const RunViewMessage& message, SteadyTime now) {

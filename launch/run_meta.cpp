@@ -36,6 +36,30 @@ ordered_json Best(const RunMeta& meta) {
           {"return_mean", meta.best->mean_return}};
 }
 
+ordered_json Changes(const RunMeta& meta) {
+  ordered_json list = ordered_json::array();
+  for (const SettingChange& change : meta.changes) {
+    list.push_back({{"time", change.time},
+                    {"env_steps", change.env_steps},
+                    {"updates", change.updates},
+                    {"key", change.key},
+                    {"from", change.from},
+                    {"to", change.to}});
+  }
+  return list;
+}
+
+SettingChange ReadChange(const nlohmann::json& object) {
+  SettingChange change;
+  object.at("time").get_to(change.time);
+  object.at("env_steps").get_to(change.env_steps);
+  object.at("updates").get_to(change.updates);
+  object.at("key").get_to(change.key);
+  object.at("from").get_to(change.from);
+  object.at("to").get_to(change.to);
+  return change;
+}
+
 ordered_json Versions() {
   return {{"shoal", BuildVersion()},
           {"compiler", __VERSION__},
@@ -67,6 +91,7 @@ void WriteRunMeta(const std::filesystem::path& run, const Config& config, const 
       {"final_success_rate", OrNull(meta.final_success)},
       {"final_return_mean", OrNull(meta.final_return)},
       {"accounting", meta.accounting ? ToJson(*meta.accounting) : ordered_json(nullptr)},
+      {"changes", Changes(meta)},
       {"restarts", meta.restarts},
       {"exit", meta.exit},
       {"error", meta.error.empty() ? ordered_json(nullptr) : ordered_json(meta.error)}};
@@ -84,6 +109,9 @@ RunMeta ReadRunMeta(const std::filesystem::path& run) {
     object.at("env_steps").get_to(meta.env_steps);
     object.at("updates").get_to(meta.updates);
     object.at("restarts").get_to(meta.restarts);
+    for (const auto& change : object.value("changes", nlohmann::json::array())) {
+      meta.changes.push_back(ReadChange(change));
+    }
   } catch (const nlohmann::json::exception& e) {
     throw RuntimeError("{}: {}", path.string(), e.what());
   }

@@ -4,9 +4,11 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/config/config.h"
 #include "launch/accounting.h"
+#include "launch/live_settings.h"
 #include "launch/stop_rule.h"
 
 namespace shoal::launch {
@@ -21,6 +23,7 @@ struct RunMeta {
   std::optional<double> final_success;  // of the evaluation at the end
   std::optional<double> final_return;   // its mean return
   std::optional<Accounting> accounting;
+  std::vector<SettingChange> changes;  // of keys, while the run went on
   int restarts = 0;
   std::string exit = "running";  // then "target", "budget", "interrupted" or "failed"
   std::string error;             // why, where failed
@@ -29,9 +32,8 @@ struct RunMeta {
 // Throws Error.
 void WriteRunMeta(const std::filesystem::path& run, const Config& config, const RunMeta& meta);
 
-// What a resumed run goes on from: started, wall_seconds and the counters; defaults where the file
-// is missing.
-// Throws Error on a broken file.
+// What a resumed run goes on from: started, wall_seconds, the counters and the changes; defaults
+// where the file is missing. Throws Error on a broken file.
 RunMeta ReadRunMeta(const std::filesystem::path& run);
 
 }  // namespace shoal::launch

@@ -7,14 +7,32 @@ namespace {
 
 constexpr double kUsualTarget = 0.98;
 
+double TargetOf(const Config& config) {
+  return config.stop.success <= 1 ? config.stop.success : kUsualTarget;
+}
+
 }  // namespace
 
 StopRule::StopRule(const Config& config)
     : stop_(config.stop),
       budget_(static_cast<uint64_t>(config.env_steps)),
-      target_(config.stop.success <= 1 ? config.stop.success : kUsualTarget) {}
+      target_(TargetOf(config)) {}
 
 void StopRule::OnEvaluation(const EvaluationPoint& point) {
+  points_.push_back(point);
+  Judge(point);
+}
+
+void StopRule::Change(const Config& config) {
+  stop_ = config.stop;
+  budget_ = static_cast<uint64_t>(config.env_steps);
+  target_ = TargetOf(config);
+  streak_ = 0;
+  first_success_.reset();
+  for (const EvaluationPoint& point : points_) Judge(point);
+}
+
+void StopRule::Judge(const EvaluationPoint& point) {
   if (!point.success || *point.success < target_) {
     streak_ = 0;
     return;

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/config/config.h"
 
@@ -24,6 +25,8 @@ class StopRule {
 
   // In the order of evaluation.
   void OnEvaluation(const EvaluationPoint& point);
+  // Judges by the new env_steps and stop.* from now on, former evaluations too.
+  void Change(const Config& config);
 
   // stop.evaluations in a row reached stop.success. Never for a task without success: its runs end
   // by their budget.
@@ -36,9 +39,12 @@ class StopRule {
   const std::optional<EvaluationPoint>& first_success() const { return first_success_; }
 
  private:
-  const StopConfig stop_;
-  const uint64_t budget_;
-  const double target_;
+  void Judge(const EvaluationPoint& point);
+
+  StopConfig stop_;
+  uint64_t budget_;
+  double target_;
+  std::vector<EvaluationPoint> points_;
   int streak_ = 0;
   EvaluationPoint streak_start_;
   std::optional<EvaluationPoint> first_success_;

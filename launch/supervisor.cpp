@@ -44,14 +44,37 @@ Supervisor::Supervisor(const RestartLimits& limits, const HangLimits& hang_limit
 
 void Supervisor::Start(const ProcessSpec& spec) {
   const SteadyTime now = Now();
+  for (Child& child : children_) {
+    if (child.spec.Name() != spec.Name() || !child.exit_expected || !child.process) continue;
+    child.successor = spec;
+    return;
+  }
+  std::erase_if(children_, [&](const Child& child) {  // what is left of a retired one
+    return child.spec.Name() == spec.Name() && child.exit_expected && !child.process;
+  });
   Child child{.spec = spec,
               .policy = RestartPolicy(limits_),
               .connection = RestartPolicy(ConnectionLimits(limits_)),
               .process = std::nullopt,
               .silence = Silence(now),
-              .restart_at = std::nullopt};
+              .restart_at = std::nullopt,
+              .leave_by = std::nullopt,
+              .successor = std::nullopt};
   Launch(child, now);
   children_.push_back(std::move(child));
+}
+
+void Supervisor::Retire(std::string_view role, int id, SteadyTime now) {
+  for (Child& child : children_) {
+    if (child.spec.role != role || child.spec.id != id) continue;
+    child.successor.reset();
+    child.restart_at.reset();
+    if (child.exit_expected) continue;
+    child.exit_expected = true;
+    child.leave_by = now + kRetire;
+    child.signalled = SIGTERM;
+    if (child.process) child.process->Signal(SIGTERM);
+  }
 }
 
 void Supervisor::Launch(Child& child, SteadyTime now) {
@@ -75,6 +98,7 @@ std::optional<std::string> Supervisor::Poll(SteadyTime now) {
       const auto status = child.process->Poll();
       if (!status) {
         KillIfHung(child, now);
+        KillIfOverdue(child, now);
         continue;
       }
       child.process.reset();
@@ -86,6 +110,14 @@ std::optional<std::string> Supervisor::Poll(SteadyTime now) {
     }
   }
   return std::nullopt;
+}
+
+void Supervisor::KillIfOverdue(Child& child, SteadyTime now) {
+  if (!child.leave_by || now < *child.leave_by) return;
+  child.leave_by.reset();
+  say_(fmt::format("{} (pid {}) did not leave within {} s: killed", child.spec.Name(),
+                   child.process->pid(), kRetire.count()));
+  child.process->Signal(SIGKILL);
 }
 
 // Processes that were told to leave are the ordered stop's, which has deadlines of its own.
@@ -103,6 +135,13 @@ std::optional<std::string> Supervisor::OnExit(Child& child, const ExitStatus& st
                                               SteadyTime now) {
   if (child.exit_expected) {
     OnExpectedExit(child, status);
+    child.leave_by.reset();
+    if (child.successor) {
+      child.spec = *std::exchange(child.successor, std::nullopt);
+      child.exit_expected = false;
+      child.signalled = 0;
+      Launch(child, now);
+    }
     return std::nullopt;
   }
   const std::string last_line = LastLine(child.spec.output);
@@ -136,6 +175,7 @@ void Supervisor::ExpectExit(std::string_view role) {
     if (!Is(role, child.spec)) continue;
     child.exit_expected = true;
     child.restart_at.reset();
+    child.successor.reset();
   }
 }
 

@@ -30,8 +30,11 @@ class Supervisor {
   Supervisor(const RestartLimits& limits, const HangLimits& hang_limits,
              std::function<void(const std::string&)> say);
 
-  // Starts the process. Throws Error when it cannot be started.
+  // Starts the process; where its predecessor was retired and has not left yet, once that has.
+  // Throws Error when it cannot be started.
   void Start(const ProcessSpec& spec);
+  // Ends one process for good: SIGTERM, and SIGKILL when it has not left after kRetire.
+  void Retire(std::string_view role, int id, SteadyTime now);
 
   // The process has reported. Words of a predecessor (another pid) do not count;
   // elsewhere our child is the remote shell, whose pid nobody reports.
@@ -52,6 +55,10 @@ class Supervisor {
   pid_t Pid(std::string_view role, int id) const;
 
   int restarts() const { return restarts_; }
+
+  // What a retired actor needs to flush what it has, and more.
+  static constexpr std::chrono::seconds kRetire{40};
+
   // Expected exits that were not clean, each as one line.
   const std::vector<std::string>& unclean_exits() const { return unclean_exits_; }
 
@@ -66,11 +73,14 @@ class Supervisor {
     bool hung = false;  // and killed for it
     std::optional<SteadyTime> restart_at;
     bool exit_expected = false;
-    int signalled = 0;  // the last signal sent by Signal
+    std::optional<SteadyTime> leave_by;    // retired: SIGKILL then
+    std::optional<ProcessSpec> successor;  // to be started once it has left
+    int signalled = 0;                     // the last signal sent by Signal or Retire
   };
 
   void Launch(Child& child, SteadyTime now);
   void KillIfHung(Child& child, SteadyTime now);
+  void KillIfOverdue(Child& child, SteadyTime now);
   std::optional<std::string> OnExit(Child& child, const ExitStatus& status, SteadyTime now);
   void OnExpectedExit(Child& child, const ExitStatus& status);
 

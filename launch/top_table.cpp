@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "launch/bottleneck.h"
 #include "launch/run_figures.h"
 
 namespace shoal::launch {
@@ -185,6 +186,14 @@ std::string Rendered(const Row& row, const std::vector<size_t>& widths) {
   return line;
 }
 
+// What to do about where the time has gone since the processes' start.
+std::string AdviceFor(const RunViewMessage& message) {
+  MetricsView view;
+  for (const Process& process : message.processes) view.OnMessage(process, Now());
+  const auto asked = [&](const char* name) { return view.Get("coordinator", 0, name).value_or(0); };
+  return FindBottleneck(view, asked("usable_cores"), static_cast<int>(asked("actors"))).advice;
+}
+
 }  // namespace
 
 int TopColumns() { return static_cast<int>(std::size(kColumns)); }
@@ -192,7 +201,7 @@ int TopColumns() { return static_cast<int>(std::size(kColumns)); }
 std::string TopColumnName(int column) { return kColumns[column].name; }
 
 std::vector<std::string> FormatTop(const RunViewMessage& view, const TopOrder& order, int width) {
-  std::vector<std::string> lines = {FormatTopLine(view), ""};
+  std::vector<std::string> lines = {FormatTopLine(view), AdviceFor(view)};
   Row heading;
   for (const Column& column : kColumns) heading.push_back({column.name});
   const std::vector<Row> rows = SortedRows(view, order);

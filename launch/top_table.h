@@ -18,7 +18,8 @@ int TopColumns();
 // The heading of a column.
 std::string TopColumnName(int column);
 
-// Heading lines, then one row per process; each at most `width` characters (0 = no limit).
+// The run as one line, advice, a heading, then one row per process; each at most `width` characters
+// (0 = no limit).
 std::vector<std::string> FormatTop(const RunViewMessage& view, const TopOrder& order, int width);
 // The whole run as one plain line.
 std::string FormatTopLine(const RunViewMessage& view);

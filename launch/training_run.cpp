@@ -15,7 +15,11 @@
 #include "common/dds/bus.h"
 #include "launch/actor_program.h"
 #include "launch/coordinator.h"
+#include "launch/detachment.h"
+#include "launch/live_settings.h"
 #include "launch/machine.h"
+#include "launch/operator_desk.h"
+#include "launch/prometheus_endpoint.h"
 #include "launch/run_end.h"
 #include "launch/run_folder.h"
 #include "launch/run_hosts.h"
@@ -59,9 +63,24 @@ Hosts ResumedHosts(const TrainOptions& options, const std::filesystem::path& run
   return hosts;
 }
 
+// What --set changes of a run that was steered is one change more: the last one holds.
+void NoteResumeOptions(const TrainOptions& options, const Config& before, RunMeta* meta) {
+  if (before.lockstep) return;
+  LiveSettings settings(before);
+  settings.Restore(meta->changes);
+  for (const std::string& assignment : options.set) {
+    SettingChange change = settings.Assign(assignment);
+    change.time = UtcTimestamp();
+    change.env_steps = meta->env_steps;
+    change.updates = meta->updates;
+    meta->changes.push_back(std::move(change));
+  }
+}
+
 PreparedRun PrepareResumed(const TrainOptions& options) {
   RunFolder folder = RunFolder::Reopen(Config().run_dir, options.resume);
   RunConfig config = ReadRunConfig(folder.path());
+  const Config before = config.config;
   ApplyResumeOptions(options, &config.config);
   const ObservationSpec now = DescribeObservations(config.config);
   if (now != config.spec) {
@@ -70,6 +89,7 @@ PreparedRun PrepareResumed(const TrainOptions& options) {
   }
   RunMeta meta = ReadRunMeta(folder.path());
   if (meta.started.empty()) meta.started = UtcTimestamp();
+  NoteResumeOptions(options, before, &meta);
   if (config.config.replay.storage == "memory" && meta.env_steps > 0) {
     fmt::print(
         "replay.storage=memory: what was stored is gone; training goes on once the replay has been "
@@ -127,7 +147,17 @@ std::string SecureFolder(const TrainOptions& options) {
   return std::filesystem::absolute(options.secure).lexically_normal();
 }
 
-int Start(PreparedRun run, std::unique_ptr<dds::Bus> bus, const ClusterAddress& address) {
+void PrintDetached(const PreparedRun& run) {
+  const std::string path = run.folder.path().string();
+  fmt::print(
+      "started; it goes on by itself (coordinator pid {}): shoal attach --run {}, shoal stop "
+      "--run {}\n",
+      getpid(), path, path);
+}
+
+// `detachment` is null when the run stays with this terminal.
+int Start(PreparedRun run, const TrainOptions& options, std::unique_ptr<dds::Bus> bus,
+          const ClusterAddress& address, Detachment* detachment) {
   const std::filesystem::path& path = run.folder.path();
   WaitForFormerProcesses(path, kFormerProcessesDeadline, StopRequested,
                          [](const std::string& line) {
@@ -135,18 +165,30 @@ int Start(PreparedRun run, std::unique_ptr<dds::Bus> bus, const ClusterAddress& 
                            std::fflush(stdout);
                          });
   RemoveUnfinishedFiles(path);
+  std::optional<PrometheusEndpoint> prometheus;
+  if (!options.prometheus.empty()) prometheus.emplace(options.prometheus);
   WriteRunConfig(path, run.config);
   WriteClusterAddress(path, address);
-  OperatorDesk desk(*bus, run.config.config.run_name);
-  Progress progress(LogFile(path, "coordinator").string(),
-                    [&desk](const std::string& line) { desk.AddEvent(line); });
+  OperatorDesk desk(*bus, run.config.config.run_name, [&](const RunViewMessage& view) {
+    if (prometheus) prometheus->Update(view);
+  });
+  Progress progress(
+      LogFile(path, "coordinator").string(),
+      [&desk](const std::string& line) { desk.AddEvent(line); },
+      /*plain=*/detachment != nullptr);
   const auto say = [&](const std::string& line) { progress.Say(line); };
   PushToHosts(path, run.config.config, address.tag, &run.hosts, say, StopRequested);
   PrintStart(run, address);
+  if (prometheus) fmt::print("  metrics for Prometheus at {}\n", prometheus->Url());
+  std::fflush(stdout);
   RunResult result;
   {
     Coordinator coordinator(path, run.config, *bus, run.meta, run.hosts.hosts, desk, progress);
-    result = coordinator.Run();
+    result = coordinator.Run([&] {
+      if (detachment == nullptr) return;
+      PrintDetached(run);
+      detachment->Started(LogFile(path, "train"));
+    });
   }
   const int stops = StopRequests();
   FetchFromHosts(path, run.config.config, run.hosts, say,
@@ -156,10 +198,7 @@ int Start(PreparedRun run, std::unique_ptr<dds::Bus> bus, const ClusterAddress& 
   return exit_code;
 }
 
-}  // namespace
-
-int RunTraining(const TrainOptions& options) {
-  InstallStopSignals();
+int Train(const TrainOptions& options, Detachment* detachment) {
   ClusterAddress address;
   if (!options.resume.empty()) {
     PreparedRun run = PrepareResumed(options);
@@ -172,7 +211,7 @@ int RunTraining(const TrainOptions& options) {
     address.secure = options.secure.empty() ? ReadClusterAddress(run.folder.path()).secure
                                             : SecureFolder(options);
     auto bus = dds::ClaimDomain(run.config.config.transport, &address);
-    return Start(std::move(run), std::move(bus), address);
+    return Start(std::move(run), options, std::move(bus), address, detachment);
   }
   RunConfig config{ResolveConfig(options, UsableCores()), {}};
   Hosts hosts;
@@ -189,13 +228,24 @@ int RunTraining(const TrainOptions& options) {
   CheckHosts(hosts, StopRequested);
   address.host = ServersHost(hosts);
   address.secure = SecureFolder(options);
+  if (!options.prometheus.empty()) PrometheusEndpoint::Check(options.prometheus);
   // Claimed before the folder is made, so that a failure leaves nothing half-written.
   auto bus = dds::ClaimDomain(config.config.transport, &address);
   if (options.dry_run) {
     fmt::print("configuration is good; actors observe: {}\n", config.spec.Summary());
     return 0;
   }
-  return Start(PrepareFresh(options, std::move(config), std::move(hosts)), std::move(bus), address);
+  return Start(PrepareFresh(options, std::move(config), std::move(hosts)), options, std::move(bus),
+               address, detachment);
+}
+
+}  // namespace
+
+int RunTraining(const TrainOptions& options) {
+  InstallStopSignals();
+  if (!options.detach) return Train(options, nullptr);
+  Detachment detachment;  // before there are threads
+  return detachment.IsChild() ? Train(options, &detachment) : detachment.exit_code();
 }
 
 }  // namespace shoal::launch

@@ -10,7 +10,7 @@
 namespace shoal {
 
 MetricsReport::MetricsReport(const std::string& role, uint32_t id)
-    : last_due_(Now()), last_begin_(last_due_) {
+    : start_(Now()), last_due_(start_), last_begin_(start_) {
   char host[256] = "unknown";
   gethostname(host, sizeof host - 1);
   message_.role = role;
@@ -59,6 +59,7 @@ void MetricsReport::AddSeconds(const std::string& stage, double total) {
 }
 
 void MetricsReport::AddResources() {
+  Add("uptime_seconds", SecondsSince(start_));
   Add("rss_mb", ResidentMegabytes());
   Add("open_files", OpenFiles());
   Add("cpu_seconds", CpuSeconds());

@@ -34,7 +34,8 @@ class MetricsReport {
   // Time spent in a stage, of seconds since the start: seconds_STAGE and share_STAGE, the share of
   // the interval that ended.
   void AddSeconds(const std::string& stage, double total);
-  // What the process takes of its host: rss_mb, open_files, cpu_seconds, cpu_share.
+  // How long the process reports and what it takes of its host: uptime_seconds, rss_mb, open_files,
+  // cpu_seconds, cpu_share.
   void AddResources();
 
   const MetricsMessage& message() const { return message_; }
@@ -43,6 +44,7 @@ class MetricsReport {
   static constexpr double kShortest = 0.1;  // seconds; shares of less say nothing
 
   MetricsMessage message_;
+  const SteadyTime start_;
   SteadyTime last_due_, last_begin_;
   double interval_seconds_ = 0;
   std::map<std::string, double> totals_;  // of AddRate, at the last Begin

@@ -6,6 +6,7 @@
 
 #include "common/base/error.h"
 #include "common/base/stop.h"
+#include "common/wire/metric_names.h"
 #include "launch/commands/commands.h"
 #include "launch/commands/target_options.h"
 #include "launch/live_terminal.h"
@@ -20,7 +21,7 @@ using std::chrono::seconds;
 
 struct TopOptions {
   TargetOptions target;
-  bool once = false, json = false;
+  bool once = false, json = false, describe = false;
 };
 
 constexpr milliseconds kKeys{100};   // between looks at the keyboard
@@ -82,6 +83,10 @@ void ShowLines(RunClient& client, RunViewMessage view) {
 }
 
 int Top(const TopOptions& options) {
+  if (options.describe) {
+    Print({DescribeMetrics()});
+    return 0;
+  }
   if (options.json && !options.once) throw UsageError("--json goes with --once");
   InstallStopSignals();
   RunClient client(ResolveTarget(options.target));
@@ -107,6 +112,7 @@ void AddTopCommand(CLI::App& app, Action* chosen) {
   AddTargetOptions(*command, &options->target);
   command->add_flag("--once", options->once, "Show one table and exit");
   command->add_flag("--json", options->json, "With --once: JSON (schema shoal-top-1)");
+  command->add_flag("--describe", options->describe, "Print a table of all metrics and exit");
   command->callback([=] { *chosen = [=] { return Top(*options); }; });
 }
 

@@ -35,6 +35,10 @@ void AddTrainCommand(CLI::App& app, Action* chosen) {
   command->add_option("--secure", options->secure,
                       "Folder of credentials (shoal secure init): authenticated and encrypted");
   command->add_option("--resume", options->resume, "Go on with a stopped run: its name or folder");
+  command->add_flag("--detach", options->detach,
+                    "Return once the run has started; watch it with shoal attach or shoal top");
+  command->add_option("--prometheus", options->prometheus,
+                      "PORT (on 127.0.0.1) or ADDRESS:PORT to serve metrics at, for Prometheus");
   command->add_flag("--print-config", options->print_config, "Print every key and exit");
   command->add_flag("--dry-run", options->dry_run, "Check everything, start nothing");
   command->add_flag("--describe-keys", *describe_keys, "Print a table of all keys and exit");

@@ -2,9 +2,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <fmt/core.h>
+
 #include <csignal>
+#include <cstdlib>
+#include <fstream>
 #include <set>
 
+#include "common/wire/metric_names.h"
 #include "tests/support/run_views.h"
 #include "tests/support/running_training.h"
 
@@ -65,6 +70,137 @@ TEST(Operate, TopShowsEveryProcessUntilTheRunEnds) {
   const ProgramResult over = RunShoal(run, {"top", "--run", "run"});
   EXPECT_EQ(ExitCode(over), 1);
   EXPECT_THAT(over.err, HasSubstr("is not running"));
+}
+
+// Runs the client that knows only docs/monitoring.md for the address that the run showed.
+ProgramResult RunStockClient(const std::string& output) {
+  const size_t at = output.find("--peer 127.0.0.1:");
+  EXPECT_NE(at, std::string::npos) << output;
+  const int port = std::stoi(output.substr(output.find(':', at) + 1));
+  EXPECT_EQ((port - 7410) % 250, 0) << port;
+  const std::string uri = fmt::format(
+      "<General><Interfaces><NetworkInterface name=\"lo\" multicast=\"false\"/></Interfaces>"
+      "<AllowMulticast>false</AllowMulticast><MaxMessageSize>65500B</MaxMessageSize></General>"
+      "<Discovery><ParticipantIndex>none</ParticipantIndex><Peers><Peer "
+      "Address=\"127.0.0.1:{}\"/></Peers></Discovery>",
+      port);
+  setenv("CYCLONEDDS_URI", uri.c_str(), 1);
+  const ProgramResult result =
+      RunProgram({"stock_client", std::to_string((port - 7410) / 250), "20"}, seconds(60));
+  unsetenv("CYCLONEDDS_URI");
+  return result;
+}
+
+TEST(Operate, AStockDdsClientReadsWhatTheDocumentationDescribes) {
+  const TrainingRun run;
+  RunningTraining training(run, run.Command(kLong));
+  ASSERT_TRUE(WaitForView(run, Learns).is_object());
+  const ProgramResult client = RunStockClient(training.Output());
+  EXPECT_EQ(ExitCode(client), 0) << client.err;
+  EXPECT_THAT(client.out, HasSubstr("view shoal-top-1 run run state running env_steps "));
+  for (const char* text : {"process actor 0 host ", "process learner 0 host ", " rss_mb=",
+                           " policy_lag_p90=", " critic_loss="}) {
+    EXPECT_THAT(client.out, HasSubstr(text));
+  }
+  kill(training.pid(), SIGINT);
+  EXPECT_EQ(training.End(seconds(120)), 0) << training.Output();
+}
+
+TEST(Operate, ARunIsSteeredWhileItGoesOnAndItsRecordSaysSo) {
+  const TrainingRun run;
+  RunningTraining training(run, run.Command(kLong));
+  ASSERT_TRUE(WaitForView(run, Learns).is_object());
+
+  const ProgramResult set = RunShoal(run, {"set", "replay.samples_per_insert=16"});
+  EXPECT_EQ(ExitCode(set), 0) << set.err;
+  EXPECT_THAT(set.out, HasSubstr("replay.samples_per_insert: 32 -> 16"));
+  EXPECT_THAT(set.out, HasSubstr("in force: replay-0 16, learner-0 16"));
+  EXPECT_EQ(ExitCode(RunShoal(run, {"set", "eval.interval=700"})), 0);
+  const ProgramResult fixed = RunShoal(run, {"set", "learner.batch=7"});
+  EXPECT_EQ(ExitCode(fixed), 1);
+  EXPECT_THAT(fixed.err, HasSubstr("learner.batch is fixed for the run"));
+
+  const ProgramResult more = RunShoal(run, {"scale", "--actors", "3"});
+  EXPECT_EQ(ExitCode(more), 0) << more.out << more.err << training.Output();
+  const json view = WaitForView(run, [](const json& v) {
+    return ProcessOf(v, "actor", 2).is_object() &&
+           ProcessOf(v, "actor", 2).value("env_steps", 0.0) > 100;
+  });
+  ASSERT_TRUE(view.is_object());
+  const ProgramResult fewer = RunShoal(run, {"scale", "--actors", "1"});
+  EXPECT_EQ(ExitCode(fewer), 0) << fewer.out << fewer.err << training.Output();
+  EXPECT_NE(kill(ProcessOf(view, "actor", 2).at("pid").get<int>(), 0), 0) << "it has left";
+
+  const ProgramResult stop = RunShoal(run, {"stop"}, seconds(180));
+  EXPECT_EQ(ExitCode(stop), 0) << stop.out << stop.err;
+  EXPECT_THAT(stop.out, HasSubstr("ended (interrupted)"));
+  EXPECT_EQ(training.End(seconds(30)), 0) << training.Output();
+
+  const json meta = run.Json("meta.json");
+  ExpectBalanced(meta);
+  EXPECT_EQ(meta.at("accounting").at("lost_with_process"), 0) << "actors flush before they leave";
+  ASSERT_EQ(meta.at("changes").size(), 4u);
+  EXPECT_EQ(meta.at("changes")[0].at("key"), "replay.samples_per_insert");
+  EXPECT_EQ(meta.at("changes")[0].at("to"), 16);
+  EXPECT_GT(meta.at("changes")[0].at("env_steps"), 0);
+  EXPECT_EQ(meta.at("changes")[3].at("key"), "actors");
+  EXPECT_EQ(meta.at("changes")[3].at("to"), 1);
+  EXPECT_EQ(run.Json("bottleneck.json").at("schema"), "shoal-bottleneck-1");
+  EXPECT_THAT(training.Output(),
+              HasSubstr(run.Json("bottleneck.json").at("advice").get<std::string>()));
+}
+
+TEST(Operate, ADetachedRunIsAttachedToAndStopped) {
+  const TrainingRun run;
+  const ProgramResult train = RunProgram(run.Command(kLong, {"--detach"}), seconds(90));
+  ASSERT_EQ(ExitCode(train), 0) << train.out << train.err;
+  EXPECT_THAT(train.out, HasSubstr("shoal attach --run"));
+  const ProgramResult runs = RunShoal(run, {"runs", "--json"});
+  EXPECT_EQ(json::parse(runs.out).at("runs")[0].at("status"), "running");
+
+  // Its Ctrl-C detaches only.
+  launch::ProcessSpec attach;
+  attach.role = "attach";
+  attach.command = {std::string(SHOAL_BIN) + "/shoal", "attach", "--run", run.path().string()};
+  attach.output = run.parent() / "attached";
+  const auto shows = [&] { return ReadFile(attach.output).find("env steps") != std::string::npos; };
+  const auto status = launch::RunToEnd(attach, seconds(60), shows);
+  EXPECT_FALSE(status.has_value()) << "stopped by us, not by itself";
+  EXPECT_THAT(ReadFile(attach.output), HasSubstr("detached; the run goes on"));
+  ASSERT_TRUE(WaitForView(run, Learns).is_object()) << "the run goes on";
+
+  const ProgramResult stop = RunShoal(run, {"stop", "--run", "run"}, seconds(180));
+  EXPECT_EQ(ExitCode(stop), 0) << stop.out << stop.err;
+  EXPECT_THAT(ReadFile(run.path() / "logs" / "train.log"), HasSubstr("ended (interrupted)"));
+  const ProgramResult over = RunShoal(run, {"runs", "--json"});
+  EXPECT_EQ(json::parse(over.out).at("runs")[0].at("status"), "interrupted");
+  ExpectBalanced(run.Json("meta.json"));
+}
+
+TEST(Operate, EveryMetricIsInTheTableOfMetrics) {
+  const TrainingRun run;
+  ASSERT_EQ(ExitCode(run.Train()), 0);
+  std::ifstream in(run.path() / "metrics.jsonl");
+  std::set<std::string> seen;
+  for (std::string line; std::getline(in, line);) {
+    const json report = json::parse(line);
+    const std::string role = report.at("role");
+    for (const auto& [name, value] : report.items()) {
+      if (std::set<std::string>{"t", "role", "id", "host", "pid", "state"}.contains(name)) continue;
+      seen.insert(role + " " + name);
+      EXPECT_NE(FindMetric(role, name), nullptr) << role << ' ' << name;
+    }
+  }
+  // And the table names nothing that no process reports.
+  for (const Metric& metric : Metrics()) {
+    const std::string name(metric.name);
+    const std::string reported = metric.kind == MetricKind::kStage       ? "share_" + name
+                                 : metric.kind == MetricKind::kQuantiles ? name + "_p99"
+                                                                         : name;
+    if (name == "exit_code") continue;  // in the last view only
+    const std::string role = metric.role == "all" ? "replay" : std::string(metric.role);
+    EXPECT_TRUE(seen.contains(role + " " + reported)) << role << ' ' << reported;
+  }
 }
 
 }  // namespace

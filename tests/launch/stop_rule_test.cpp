@@ -45,6 +45,23 @@ TEST(StopRule, AboveOneNeverStopsButMeasuresTheUsualTarget) {
   EXPECT_EQ(rule.first_success()->env_steps, 100u);
 }
 
+TEST(StopRule, AChangeJudgesFormerEvaluationsAnew) {
+  StopRule rule(Rule(0.9, 2));
+  Feed(rule, {0.5, 0.8, 0.85});
+  EXPECT_FALSE(rule.TargetReached());
+  Config config = Rule(0.8, 2);
+  config.env_steps = 500;
+  rule.Change(config);
+  EXPECT_TRUE(rule.TargetReached());
+  EXPECT_EQ(rule.target(), 0.8);
+  ASSERT_TRUE(rule.first_success().has_value());
+  EXPECT_EQ(rule.first_success()->env_steps, 200u);
+  EXPECT_TRUE(rule.BudgetSpent(500));
+  rule.Change(Rule(0.8, 3));
+  EXPECT_FALSE(rule.TargetReached());
+  EXPECT_FALSE(rule.first_success().has_value());
+}
+
 TEST(StopRule, BudgetIsSpentAtTheLastStep) {
   const StopRule rule(Rule(0.9, 2));
   EXPECT_FALSE(rule.BudgetSpent(999));

@@ -93,6 +93,51 @@ TEST_F(SupervisorTest, RestartsAProcessThatLeavesWithoutBeingAsked) {
   EXPECT_TRUE(PollUntil([&] { return Starts("replay-0") == 2; }));
 }
 
+TEST_F(SupervisorTest, ARetiredProcessLeavesForGood) {
+  supervisor_.Start(Fake("actor", 0, "sleep 60"));
+  supervisor_.Start(
+      Fake("actor", 1, "trap 'echo flushed; exit 0' TERM; while :; do sleep 0.01; done"));
+  ASSERT_TRUE(WaitUntil([&] { return Starts("actor-1") == 1; }));
+  supervisor_.Retire("actor", 1, Now());
+  EXPECT_TRUE(PollUntil([&] { return supervisor_.Running("actor") == 1; }));
+  EXPECT_EQ(supervisor_.Pid("actor", 1), 0);
+  EXPECT_NE(supervisor_.Pid("actor", 0), 0);
+  EXPECT_EQ(LastLine(folder_.path() / "actor-1.log"), "flushed");
+  EXPECT_EQ(supervisor_.Poll(Now() + std::chrono::hours(1)), std::nullopt);
+  EXPECT_EQ(Starts("actor-1"), 1);
+  EXPECT_THAT(supervisor_.unclean_exits(), IsEmpty());
+}
+
+TEST_F(SupervisorTest, ASuccessorWaitsUntilTheRetiredOneHasLeft) {
+  const auto gate = folder_.path() / "gate";
+  supervisor_.Start(
+      Fake("actor", 0,
+           "trap '' TERM; while [ ! -e " + gate.string() + " ]; do sleep 0.01; done; echo left"));
+  ASSERT_TRUE(WaitUntil([&] { return Starts("actor-0") == 1; }));
+  const pid_t first = supervisor_.Pid("actor", 0);
+  supervisor_.Retire("actor", 0, Now());
+  supervisor_.Start(Fake("actor", 0, "sleep 60"));
+  EXPECT_EQ(supervisor_.Poll(Now()), std::nullopt);
+  EXPECT_EQ(supervisor_.Pid("actor", 0), first) << "two sessions would make the same episodes";
+  WriteFileAtomically(gate, "");
+  EXPECT_TRUE(PollUntil([&] { return Starts("actor-0") == 2; }));
+  EXPECT_EQ(supervisor_.Running("actor"), 1);
+  EXPECT_EQ(supervisor_.restarts(), 0);
+}
+
+TEST_F(SupervisorTest, ARetiredProcessThatStaysIsKilled) {
+  supervisor_.Start(Fake("actor", 0, "trap '' TERM; while :; do sleep 0.01; done"));
+  ASSERT_TRUE(WaitUntil([&] { return Starts("actor-0") == 1; }));
+  const SteadyTime start = Now();
+  supervisor_.Retire("actor", 0, start);
+  EXPECT_EQ(supervisor_.Poll(start + Supervisor::kRetire - milliseconds(1)), std::nullopt);
+  EXPECT_THAT(said_, IsEmpty());
+  EXPECT_EQ(supervisor_.Poll(start + Supervisor::kRetire), std::nullopt);
+  EXPECT_THAT(said_, Contains(HasSubstr("did not leave within 40 s")));
+  EXPECT_TRUE(PollUntil([&] { return supervisor_.Running("actor") == 0; }));
+  EXPECT_THAT(supervisor_.unclean_exits(), Contains(HasSubstr("SIGKILL")));
+}
+
 TEST_F(SupervisorTest, FailsTheRunWhenAProcessDiesTooOften) {
   supervisor_.Start(Fake("learner", 0, "echo no luck; exit 1"));
   EXPECT_THAT(WaitForFailure(),

@@ -4,7 +4,7 @@
 //   it; the three in the middle do not use each other.
 // - Inside common, a folder uses those before it in the order of common/CMakeLists.txt.
 // - A third-party library with a home (DDS, oneDNN, MuJoCo, ...) is included there and in that
-//   folder's tests alone.
+//   folder's tests alone; and in tests/stock_client, a program as others would write it.
 // - Headers begin with #pragma once after their comment; no file is called utils, helpers, ...
 #pragma once
 

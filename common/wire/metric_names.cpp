@@ -1,0 +1,183 @@
+#include "common/wire/metric_names.h"
+
+#include <fmt/core.h>
+
+namespace shoal {
+namespace {
+
+using enum MetricKind;
+
+constexpr Metric kMetrics[] = {
+    {"all", "uptime_seconds", kCounter, "s", "since the process's start"},
+    {"all", "rss_mb", kGauge, "MB", "resident memory"},
+    {"all", "open_files", kGauge, "", "open file descriptors"},
+    {"all", "cpu_seconds", kCounter, "s", "processor time of all threads"},
+    {"all", "cpu_share", kGauge, "cores", "processors used on average"},
+
+    {"coordinator", "elapsed_seconds", kGauge, "s", "since the run's start, all its sessions"},
+    {"coordinator", "budget_env_steps", kGauge, "env steps", "the run ends after these"},
+    {"coordinator", "actors", kGauge, "", "actors asked for"},
+    {"coordinator", "stop_success", kGauge, "", "success rate at which the run ends"},
+    {"coordinator", "stop_evaluations", kGauge, "", "evaluations in a row that must reach it"},
+    {"coordinator", "usable_cores", kGauge, "cores", "that the coordinator may use"},
+    {"coordinator", "env_steps_per_second", kGauge, "env steps/s", "of all actors together"},
+    {"coordinator", "updates_per_second", kGauge, "updates/s", "of the learner"},
+    {"coordinator", "rollout_success", kGauge, "", "success rate of the actors' latest episodes"},
+    {"coordinator", "limiter_blocked_insert_share", kGauge, "", "as the replay has it"},
+    {"coordinator", "limiter_blocked_sample_share", kGauge, "", "as the replay has it"},
+    {"coordinator", "last_evaluation_success", kGauge, "", "success rate of the last evaluation"},
+    {"coordinator", "last_evaluation_return", kGauge, "", "its mean return, unscaled"},
+    {"coordinator", "last_evaluation_env_steps", kGauge, "env steps", "when it was made"},
+    {"coordinator", "best_evaluation_success", kGauge, "", "the same of the best evaluation"},
+    {"coordinator", "best_evaluation_return", kGauge, "", ""},
+    {"coordinator", "best_evaluation_env_steps", kGauge, "env steps", ""},
+    {"coordinator", "processes", kGauge, "", "that run or are being restarted"},
+    {"coordinator", "restarts", kCounter, "", "of processes, over the whole run"},
+    {"coordinator", "exit_code", kGauge, "", "of the run; in the last view only"},
+
+    {"actor", "env_steps", kCounter, "env steps", "stepped"},
+    {"actor", "env_steps_per_second", kGauge, "env steps/s", ""},
+    {"actor", "made", kCounter, "records", "made, resets included"},
+    {"actor", "outstanding", kGauge, "records", "made and not yet reported stored"},
+    {"actor", "credit", kGauge, "records", "that may still be made and sent"},
+    {"actor", "queue_age_seconds", kGauge, "s", "age of the oldest record not yet stored"},
+    {"actor", "resends", kCounter, "records", "sent again"},
+    {"actor", "write_timeouts", kCounter, "", "sends that the network did not take in time"},
+    {"actor", "weights_refused", kCounter, "", "weights of another spec or with a wrong checksum"},
+    {"actor", "weights_update", kGauge, "updates", "of the weights that act"},
+    {"actor", "physics", kStage, "s", "stepping environments, resets included"},
+    {"actor", "rendering", kStage, "s", "drawing frames"},
+    {"actor", "inference", kStage, "s", "choosing actions"},
+    {"actor", "publishing", kStage, "s", "handing records to the network"},
+    {"actor", "waiting_credit", kStage, "s", "waiting until the replay lets it go on"},
+    {"actor", "weights", kStage, "s", "taking new weights; in lockstep waiting for them"},
+    {"actor", "episodes", kCounter, "", "ended"},
+    {"actor", "rollout_success", kGauge, "", "success rate of its last 100 episodes"},
+    {"actor", "rollout_return", kGauge, "", "their mean return, unscaled"},
+    {"actor", "rollout_length", kGauge, "env steps", "their mean length"},
+    {"actor", "rollout_final_distance", kGauge, "m", "their mean distance to the goal at the end"},
+
+    {"eval", "evaluations", kCounter, "", "finished"},
+    {"eval", "eval_env_steps", kCounter, "env steps", "stepped in them; not the run's"},
+    {"eval", "weights_refused", kCounter, "", "as the actors'"},
+    {"eval", "evaluating", kStage, "s", "playing episodes"},
+
+    {"replay", "stored_records", kGauge, "records", "stored over the whole run"},
+    {"replay", "stored_steps", kGauge, "env steps", "of these: the run's env steps"},
+    {"replay", "stored_records_per_second", kGauge, "records/s", ""},
+    {"replay", "sampleable", kGauge, "env steps", "that a batch may hold now"},
+    {"replay", "sampled", kCounter, "", "batch elements drawn"},
+    {"replay", "samples_per_second", kGauge, "1/s", "batch elements drawn"},
+    {"replay", "limiter_samples_per_insert", kGauge, "", "replay.samples_per_insert in force"},
+    {"replay", "limiter_cursor", kGauge, "samples", "granted and not drawn; in ± half a band"},
+    {"replay", "limiter_band", kGauge, "samples", ""},
+    {"replay", "limiter_blocked_insert_seconds", kCounter, "s", "actors were held back"},
+    {"replay", "limiter_blocked_insert_share", kGauge, "", "the share of the last interval"},
+    {"replay", "limiter_blocked_sample_seconds", kCounter, "s", "the learner was held back"},
+    {"replay", "limiter_blocked_sample_share", kGauge, "", "the share of the last interval"},
+    {"replay", "actor_sessions", kGauge, "", "actors that ever sent records"},
+    {"replay", "queue_depth", kGauge, "", "chunks and requests that wait to be dealt with"},
+    {"replay", "queue_age_seconds", kGauge, "s", "longest wait of a chunk in the last interval"},
+    {"replay", "requests_waiting", kGauge, "batches", "asked for and not answered"},
+    {"replay", "redraws", kCounter, "", "steps drawn that could not be used"},
+    {"replay", "duplicates", kCounter, "records", "that came again"},
+    {"replay", "rejected", kCounter, "records", "malformed"},
+    {"replay", "after_gap", kCounter, "records", "whose predecessor is not stored"},
+    {"replay", "lost", kCounter, "records", "that never came"},
+    {"replay", "cut_episodes", kCounter, "", "closed because the next record never came"},
+    {"replay", "refused_chunks", kCounter, "", "of another spec, malformed or superseded"},
+    {"replay", "ahead_chunks", kCounter, "", "that came before their predecessor"},
+    {"replay", "refused_requests", kCounter, "", "that do not fit the run"},
+    {"replay", "repeated_batches", kCounter, "", "answered again"},
+    {"replay", "batches_given_up", kCounter, "", "that no learner took"},
+    {"replay", "pool_drops", kCounter, "", "chunks without a free buffer; they come again"},
+    {"replay", "inserting", kStage, "s", "storing records"},
+    {"replay", "sampling", kStage, "s", "drawing batches"},
+    {"replay", "sending", kStage, "s", "sending batches, on a thread of its own"},
+    {"replay", "idle", kStage, "s", "waiting for something to do"},
+    {"replay", "policy_lag", kQuantiles, "updates",
+     "done since the weights that acted, when a record is stored"},
+    {"replay", "store_age_seconds", kQuantiles, "s", "from a record's making to its storing"},
+    {"replay", "data_age_seconds", kQuantiles, "s", "from a step's making to its being drawn"},
+
+    {"learner", "updates", kGauge, "updates", "over the whole run"},
+    {"learner", "env_steps", kGauge, "env steps", "stored when the last batch was drawn"},
+    {"learner", "updates_per_second", kGauge, "updates/s", ""},
+    {"learner", "critic_loss", kGauge, "", "means over the last interval with updates"},
+    {"learner", "actor_loss", kGauge, "", ""},
+    {"learner", "temperature", kGauge, "", ""},
+    {"learner", "temperature_loss", kGauge, "", ""},
+    {"learner", "q_mean", kGauge, "", "predicted scaled return"},
+    {"learner", "target_mean", kGauge, "", "what it is pulled to"},
+    {"learner", "entropy", kGauge, "nats", "of the policy"},
+    {"learner", "action_saturation", kGauge, "", "share of action components beyond 0.99"},
+    {"learner", "critic_grad_norm", kGauge, "", ""},
+    {"learner", "actor_grad_norm", kGauge, "", ""},
+    {"learner", "data_age_updates", kQuantiles, "updates",
+     "done since the weights that chose a batch's actions"},
+    {"learner", "waiting_data", kStage, "s", "waiting for batches"},
+    {"learner", "forward", kStage, "s", "forward passes and losses"},
+    {"learner", "backward", kStage, "s", "gradients"},
+    {"learner", "optimiser", kStage, "s", "steps of the optimiser, targets, averages"},
+    {"learner", "weights", kStage, "s", "publishing weights"},
+    {"learner", "checkpoint", kStage, "s", "writing checkpoints"},
+    {"learner", "requests_outstanding", kGauge, "batches", "asked for and not used"},
+    {"learner", "batches_ready", kGauge, "batches", "of these arrived"},
+    {"learner", "samples_per_insert", kGauge, "", "replay.samples_per_insert in force"},
+    {"learner", "eval_interval", kGauge, "env steps", "eval.interval in force"},
+    {"learner", "weights_period", kGauge, "updates", "learner.weights_period in force"},
+    {"learner", "weights_sent", kCounter, "", "versions published"},
+    {"learner", "weights_unsent", kCounter, "", "that the network did not take"},
+    {"learner", "evaluations_overtaken", kCounter, "", "points replaced before they were sent"},
+    {"learner", "checkpoints", kCounter, "", "written"},
+    {"learner", "eval_updates", kGauge, "updates", "of the last evaluation point"},
+    {"learner", "drained", kGauge, "", "1 once draining is over"},
+    {"learner", "resent_requests", kCounter, "", "asked again"},
+    {"learner", "duplicate_shards", kCounter, "", "parts of batches that came twice"},
+    {"learner", "unknown_shards", kCounter, "", "of requests done with"},
+    {"learner", "malformed_shards", kCounter, "", ""},
+    {"learner", "dropped_answers", kCounter, "", "incomplete, overtaken by another answer"},
+    {"learner", "warnings", kCounter, "", "of training that runs but does not learn"},
+};
+
+bool Matches(const Metric& metric, std::string_view reported) {
+  const std::string name(metric.name);
+  switch (metric.kind) {
+    case kGauge:
+    case kCounter:
+      return reported == name;
+    case kQuantiles:
+      return reported == name + "_p50" || reported == name + "_p90" || reported == name + "_p99";
+    case kStage:
+      return reported == "seconds_" + name || reported == "share_" + name;
+  }
+  return false;
+}
+
+std::string ShownName(const Metric& metric) {
+  if (metric.kind == kStage) return fmt::format("`seconds_{0}`, `share_{0}`", metric.name);
+  if (metric.kind == kQuantiles) return fmt::format("`{}_p50`, `_p90`, `_p99`", metric.name);
+  return fmt::format("`{}`", metric.name);
+}
+
+}  // namespace
+
+std::span<const Metric> Metrics() { return kMetrics; }
+
+const Metric* FindMetric(std::string_view role, std::string_view reported) {
+  for (const Metric& metric : kMetrics) {
+    if ((metric.role == role || metric.role == "all") && Matches(metric, reported)) return &metric;
+  }
+  return nullptr;
+}
+
+std::string DescribeMetrics() {
+  std::string table = "| role | metric | unit | meaning |\n| --- | --- | --- | --- |\n";
+  for (const Metric& metric : kMetrics) {
+    table += fmt::format("| {} | {} | {} | {}{} |\n", metric.role, ShownName(metric), metric.unit,
+                         metric.meaning, metric.kind == kCounter ? " (counter)" : "");
+  }
+  return table;
+}
+
+}  // namespace shoal

@@ -1,0 +1,167 @@
+// shoal set, scale, stop: orders to a running run.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <functional>
+#include <memory>
+#include <thread>
+
+#include "common/base/error.h"
+#include "common/base/stop.h"
+#include "launch/commands/commands.h"
+#include "launch/commands/target_options.h"
+#include "launch/live_settings.h"
+#include "launch/metrics_view.h"
+#include "launch/run_client.h"
+#include "launch/run_folder.h"
+
+namespace shoal::launch {
+namespace {
+
+using std::chrono::seconds;
+
+constexpr seconds kInForce{10};    // for the processes to use a changed value
+constexpr seconds kScaled{60};     // for actors to start, or to flush what they have and leave
+constexpr seconds kSilence{15};    // of a coordinator that was told to stop
+constexpr seconds kLeaves{10};     // for the coordinator to leave, once it has said all
+constexpr seconds kStopped{3600};  // for the last evaluations
+
+// Looks at views until `done` says so; false: not within `most`, or a stop signal.
+bool WatchUntil(RunClient& client, seconds most,
+                const std::function<bool(const RunViewMessage&)>& done) {
+  const SteadyTime deadline = Now() + most;
+  while (!StopRequested() && Now() < deadline) {
+    const auto view = client.WaitForView(std::min(deadline, Now() + kSilence));
+    if (view && done(*view)) return true;
+  }
+  return false;
+}
+
+std::vector<std::string> StatesOfActors(const RunViewMessage& view) {
+  std::vector<std::string> states;
+  for (const MetricsMessage& process : view.processes) {
+    if (process.role == "actor") states.push_back(process.state);
+  }
+  return states;
+}
+
+// "replay-0 32, learner-0 32"; empty while some process still uses another value.
+std::string InForce(const RunViewMessage& message, const LiveKey& live, double value) {
+  MetricsView view;
+  for (const MetricsMessage& process : message.processes) view.OnMessage(process, Now());
+  std::string text;
+  for (const SettingUse& use : live.uses) {
+    const auto used = view.Get(use.role, 0, use.metric);
+    if (used != value) return "";
+    text += fmt::format("{}{}-0 {}", text.empty() ? "" : ", ", use.role, *used);
+  }
+  return text;
+}
+
+// The key of "KEY: FROM -> TO" and its new value: what the coordinator confirmed.
+std::pair<const LiveKey*, double> Confirmed(const std::string& text) {
+  const size_t colon = text.find(": "), arrow = text.rfind("-> ");
+  if (colon == std::string::npos || arrow == std::string::npos) return {nullptr, 0};
+  const auto live = std::ranges::find(LiveKeys(), text.substr(0, colon), &LiveKey::key);
+  if (live == LiveKeys().end()) return {nullptr, 0};
+  return {&*live, std::stod(text.substr(arrow + 3))};
+}
+
+int Set(const TargetOptions& target, const std::string& assignment) {
+  InstallStopSignals();
+  RunClient client(ResolveTarget(target));
+  const std::string done = client.Order("set", {assignment});
+  fmt::print("{}\n", done);
+  const auto [live, value] = Confirmed(done);
+  if (live == nullptr) return 0;
+  std::string where;
+  const bool seen = WatchUntil(client, kInForce, [&](const RunViewMessage& view) {
+    return !(where = InForce(view, *live, value)).empty();
+  });
+  if (!seen) {
+    throw RuntimeError("accepted, but not in force at every process within {} s: see shoal top",
+                       kInForce.count());
+  }
+  fmt::print("in force: {}\n", where);
+  return 0;
+}
+
+int Scale(const TargetOptions& target, int actors) {
+  InstallStopSignals();
+  RunClient client(ResolveTarget(target));
+  fmt::print("{}\n", client.Order("scale", {std::to_string(actors)}));
+  const bool there = WatchUntil(client, kScaled, [&](const RunViewMessage& view) {
+    const auto states = StatesOfActors(view);
+    return static_cast<int>(states.size()) == actors &&
+           std::ranges::none_of(states, [](const std::string& state) {
+             return state == "silent" || state == "stopping" || state == "draining";
+           });
+  });
+  if (!there) {
+    throw RuntimeError("accepted, but {} actors are not there within {} s: see shoal top", actors,
+                       kScaled.count());
+  }
+  fmt::print("{} actor(s) report\n", actors);
+  return 0;
+}
+
+int Stop(const TargetOptions& target) {
+  InstallStopSignals();
+  const RunTarget run = ResolveTarget(target);
+  RunClient client(run);
+  fmt::print("{}\n", client.Order("stop", {}));
+  std::fflush(stdout);
+  uint64_t shown = 0;
+  bool first = true;
+  int exit_code = 1;
+  const bool ended = WatchUntil(client, kStopped, [&](const RunViewMessage& view) {
+    for (const RunEvent& event : view.events) {
+      if (event.number <= shown) continue;
+      if (!first) fmt::print("{}\n", event.text);
+      shown = event.number;
+    }
+    std::fflush(stdout);
+    first = false;
+    exit_code = view.state == "ended" ? ExitCodeOf(view) : 1;
+    return view.state == "ended";
+  });
+  if (!ended) throw RuntimeError("the run was told to stop, its end was not seen");
+  // So that who comes next finds the run free.
+  const SteadyTime deadline = Now() + kLeaves;
+  while (!run.folder.empty() && IsHeld(run.folder) && Now() < deadline) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  return exit_code;
+}
+
+}  // namespace
+
+void AddSteerCommands(CLI::App& app, Action* chosen) {
+  const auto target = std::make_shared<TargetOptions>();
+  const auto assignment = std::make_shared<std::string>();
+  const auto actors = std::make_shared<int>(0);
+
+  CLI::App* set = app.add_subcommand(
+      "set", "Change a key of a running run: " + LiveKeyNames() + ". Recorded in its meta.json.");
+  AddTargetOptions(*set, target.get());
+  set->add_option("assignment", *assignment, "KEY=VALUE")->required();
+  set->callback([=] { *chosen = [=] { return Set(*target, *assignment); }; });
+
+  CLI::App* scale = app.add_subcommand(
+      "scale",
+      "Change the number of actors of a running run. Those that go first flush what they "
+      "have.");
+  AddTargetOptions(*scale, target.get());
+  scale->add_option("--actors", *actors, "How many there shall be")
+      ->required()
+      ->check(CLI::Range(1, 1024));
+  scale->callback([=] { *chosen = [=] { return Scale(*target, *actors); }; });
+
+  CLI::App* stop = app.add_subcommand(
+      "stop",
+      "Stop a running run in order, as Ctrl-C does; returns when it has ended, with its "
+      "exit code. Ctrl-C here leaves it to itself.");
+  AddTargetOptions(*stop, target.get());
+  stop->callback([=] { *chosen = [=] { return Stop(*target); }; });
+}
+
+}  // namespace shoal::launch

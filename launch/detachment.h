@@ -1,0 +1,34 @@
+// A process that goes on by itself after the command that started it has returned.
+#pragma once
+
+#include <filesystem>
+
+namespace shoal::launch {
+
+// Splits this process in two before it has threads: the child goes on in a session of its own, the
+// parent waits until the child says that it has started.
+class Detachment {
+ public:
+  // Returns in the child, and in the parent once the child has started or ended. Until then the
+  // parent hands SIGINT and SIGTERM on to the child. Throws Error.
+  Detachment();
+  ~Detachment();
+  Detachment(const Detachment&) = delete;
+  Detachment& operator=(const Detachment&) = delete;
+
+  bool IsChild() const { return child_ == 0; }
+  // Parent: 0 once the child has started, else its exit code.
+  int exit_code() const { return exit_code_; }
+  // Child: it has started. From now on stdout and stderr go to the end of `log`, stdin is empty,
+  // and the parent returns. Throws Error when the log cannot be opened.
+  void Started(const std::filesystem::path& log);
+
+ private:
+  int WaitForChild(int from_child);
+
+  int child_ = 0;       // process id; 0 in the child
+  int to_parent_ = -1;  // the child's end of the pipe
+  int exit_code_ = 0;
+};
+
+}  // namespace shoal::launch

@@ -1,0 +1,37 @@
+// The run's view as a page that Prometheus scrapes: http://ADDRESS:PORT/metrics.
+//
+//   shoal_NAME{run, role, id, host}    every figure of docs/monitoring.md
+//   shoal_process_up{...}              1; 0 when the process has not been heard for a while
+//   shoal_run_env_steps{run}, shoal_run_updates{run}
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "common/wire/messages.h"
+
+namespace shoal::launch {
+
+// Serves on threads of its own until destruction.
+class PrometheusEndpoint {
+ public:
+  // `where`: "PORT", on 127.0.0.1, or "ADDRESS:PORT". Throws Error: not of that form, or it cannot
+  // be listened on (taken, not an address of this host).
+  explicit PrometheusEndpoint(const std::string& where);
+  ~PrometheusEndpoint();
+  PrometheusEndpoint(const PrometheusEndpoint&) = delete;
+  PrometheusEndpoint& operator=(const PrometheusEndpoint&) = delete;
+
+  // Throws what the constructor would, without listening.
+  static void Check(const std::string& where);
+  // "http://127.0.0.1:9464/metrics"
+  std::string Url() const;
+  // What is shown from now on. Any thread.
+  void Update(const RunViewMessage& view);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace shoal::launch

@@ -1,0 +1,39 @@
+// Every run of a folder with how it stands: what `shoal runs` shows.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace shoal::launch {
+
+enum class RunStatus {
+  kRunning,      // its coordinator holds it
+  kFinished,     // reached its target or spent its budget
+  kInterrupted,  // was stopped; --resume goes on
+  kFailed,
+  kDead,        // its coordinator ended without a word; --resume goes on
+  kUnreadable,  // a broken meta.json or config.json
+};
+const char* ToString(RunStatus status);
+
+struct RunListing {
+  std::string name;
+  RunStatus status = RunStatus::kDead;
+  std::string preset, task, started;
+  std::string problem;  // why it failed, or what cannot be read
+  uint64_t env_steps = 0, updates = 0;
+  double wall_seconds = 0;
+  std::optional<double> best_success, final_success;
+};
+
+// By name. Never throws for what is in the folder: a broken run is listed as such.
+std::vector<RunListing> ListRunStatus(const std::filesystem::path& dir);
+
+// A table with one row per run.
+std::vector<std::string> FormatRunList(const std::vector<RunListing>& runs);
+// shoal-runs-1: {schema, run_dir, runs: [{name, status, ...}]}
+std::string RunListJson(const std::filesystem::path& dir, const std::vector<RunListing>& runs);
+
+}  // namespace shoal::launch

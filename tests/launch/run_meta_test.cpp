@@ -1,0 +1,63 @@
+#include "launch/run_meta.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "tests/support/temporary_folder.h"
+
+namespace shoal::launch {
+namespace {
+
+TEST(RunMeta, AResumedRunFindsItsCountersAndWhatWasChanged) {
+  const TemporaryFolder run;
+  RunMeta meta;
+  meta.started = "2026-01-31T12:00:00Z";
+  meta.env_steps = 7;
+  meta.updates = 8;
+  meta.wall_seconds = 9.5;
+  meta.restarts = 2;
+  meta.changes = {{.time = "2026-01-31T12:05:00Z",
+                   .env_steps = 5,
+                   .updates = 6,
+                   .key = "replay.samples_per_insert",
+                   .from = 64,
+                   .to = 32.5}};
+  WriteRunMeta(run.path(), Config(), meta);
+  const RunMeta back = ReadRunMeta(run.path());
+  EXPECT_EQ(back.started, meta.started);
+  EXPECT_EQ(back.env_steps, 7u);
+  EXPECT_EQ(back.updates, 8u);
+  EXPECT_EQ(back.wall_seconds, 9.5);
+  EXPECT_EQ(back.restarts, 2);
+  ASSERT_EQ(back.changes.size(), 1u);
+  EXPECT_EQ(back.changes[0].time, "2026-01-31T12:05:00Z");
+  EXPECT_EQ(back.changes[0].env_steps, 5u);
+  EXPECT_EQ(back.changes[0].updates, 6u);
+  EXPECT_EQ(back.changes[0].key, "replay.samples_per_insert");
+  EXPECT_EQ(back.changes[0].from, 64);
+  EXPECT_EQ(back.changes[0].to, 32.5);
+}
+
+TEST(RunMeta, AnOlderFileHasNoChanges) {
+  const TemporaryFolder run;
+  WriteRunMeta(run.path(), Config(), RunMeta());
+  auto json = nlohmann::json::parse(ReadFile(run.path() / "meta.json"));
+  json.erase("changes");
+  WriteFileAtomically(run.path() / "meta.json", json.dump());
+  EXPECT_TRUE(ReadRunMeta(run.path()).changes.empty());
+}
+
+TEST(RunMeta, ABrokenChangeIsAnError) {
+  const TemporaryFolder run;
+  WriteRunMeta(run.path(), Config(), RunMeta());
+  auto json = nlohmann::json::parse(ReadFile(run.path() / "meta.json"));
+  json["changes"] = {{{"key", "eval.interval"}}};
+  WriteFileAtomically(run.path() / "meta.json", json.dump());
+  EXPECT_THROW(ReadRunMeta(run.path()), Error);
+}
+
+}  // namespace
+}  // namespace shoal::launch
