@@ -1,8 +1,7 @@
 // A running run as those see it who watch it and steer it.
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-
-#include <fmt/core.h>
 
 #include <csignal>
 #include <cstdlib>
@@ -12,6 +11,7 @@
 #include "common/wire/metric_names.h"
 #include "tests/support/run_views.h"
 #include "tests/support/running_training.h"
+#include "tests/support/terminal_program.h"
 
 namespace shoal {
 namespace {
@@ -72,6 +72,37 @@ TEST(Operate, TopShowsEveryProcessUntilTheRunEnds) {
   EXPECT_THAT(over.err, HasSubstr("is not running"));
 }
 
+TEST(Operate, TopOnATerminalIsALiveTableAndLeavesTheTerminalAsItWas) {
+  const TrainingRun run;
+  RunningTraining training(run, run.Command(kLong));
+  ASSERT_TRUE(WaitForView(run, Learns).is_object());
+  const std::vector<std::string> top{"shoal", "top", "--run", run.path().string()};
+  {
+    TerminalProgram program(top);
+    EXPECT_TRUE(program.WaitFor("(now PROCESS)", seconds(30))) << program.shown();
+    EXPECT_TRUE(program.WaitFor("learner-0", seconds(30))) << program.shown();
+    program.Type("s");
+    EXPECT_TRUE(program.WaitFor("(now HOST)", seconds(30))) << program.shown();
+    program.Type("SS");
+    EXPECT_TRUE(program.WaitFor("(now MOST TIME IN)", seconds(30))) << program.shown();
+    program.Type("r");
+    EXPECT_TRUE(program.WaitFor(", reversed)", seconds(30))) << program.shown();
+    program.Type("q");
+    EXPECT_EQ(program.End(seconds(30)), 0);
+    EXPECT_TRUE(program.LeftAsItWas());
+  }
+  {
+    TerminalProgram program(top);
+    EXPECT_TRUE(program.WaitFor("(now PROCESS)", seconds(30))) << program.shown();
+    EXPECT_FALSE(program.LeftAsItWas()) << "keys come at once while it runs";
+    program.Signal(SIGTERM);
+    EXPECT_EQ(program.End(seconds(30)), 0);
+    EXPECT_TRUE(program.LeftAsItWas());
+  }
+  kill(training.pid(), SIGINT);
+  EXPECT_EQ(training.End(seconds(120)), 0) << training.Output();
+}
+
 // Runs the client that knows only docs/monitoring.md for the address that the run showed.
 ProgramResult RunStockClient(const std::string& output) {
   const size_t at = output.find("--peer 127.0.0.1:");
@@ -98,8 +129,8 @@ TEST(Operate, AStockDdsClientReadsWhatTheDocumentationDescribes) {
   const ProgramResult client = RunStockClient(training.Output());
   EXPECT_EQ(ExitCode(client), 0) << client.err;
   EXPECT_THAT(client.out, HasSubstr("view shoal-top-1 run run state running env_steps "));
-  for (const char* text : {"process actor 0 host ", "process learner 0 host ", " rss_mb=",
-                           " policy_lag_p90=", " critic_loss="}) {
+  for (const char* text : {"process actor 0 host ", "process learner 0 host ",
+                           " rss_mb=", " policy_lag_p90=", " critic_loss="}) {
     EXPECT_THAT(client.out, HasSubstr(text));
   }
   kill(training.pid(), SIGINT);
