@@ -6,6 +6,7 @@
 #include <limits>
 #include <utility>
 
+#include "actor/worlds/custom_cameras.h"
 #include "actor/worlds/world_registry.h"
 #include "common/base/check.h"
 #include "common/base/error.h"
@@ -51,7 +52,7 @@ WorldEnvironment::WorldEnvironment(const tasks::Task& task, std::unique_ptr<Worl
   action_.resize(static_cast<size_t>(task.action_size()));
   if (render_ != nullptr) {
     for (const std::string& name : config.observation.cameras) {
-      cameras_.push_back(FindCamera(*world_, name));
+      cameras_.push_back(ChooseCamera(*world_, config.observation, name));
     }
     render_->Attach(world_.get());
   }
@@ -168,7 +169,9 @@ StepResult WorldEnvironment::Step(std::span<const float> action, ObservationOut 
 
 std::unique_ptr<Environment> MakeEnvironment(const Config& config,
                                              std::shared_ptr<RenderContext> render) {
-  const tasks::Task& task = tasks::FindTask(config.task);
+  const tasks::Task& named = tasks::FindTask(config.task);
+  const tasks::Task task =
+      config.distance_threshold > 0 ? named.WithThreshold(config.distance_threshold) : named;
   CHECK(!config.observation.pixels || render != nullptr) << "pixels without a render context";
   if (!config.observation.pixels) render = nullptr;
   return std::make_unique<WorldEnvironment>(

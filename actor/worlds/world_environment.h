@@ -18,7 +18,7 @@ namespace shoal::worlds {
 
 class WorldEnvironment final : public Environment {
  public:
-  // `task` outlives the environment. `render` null = no pixels, whatever the configuration says of
+  // `render` null = no pixels, whatever the configuration says of
   // cameras. Of `config` it takes observation, randomization and action_repeat. Throws Error
   // (kUsage) on a camera, goal mode or body that does not exist.
   WorldEnvironment(const tasks::Task& task, std::unique_ptr<World> world, const Config& config,
@@ -47,7 +47,7 @@ class WorldEnvironment final : public Environment {
   // NaN without goals.
   double Distance() const;
 
-  const tasks::Task& task_;
+  const tasks::Task task_;
   const int action_repeat_;
   std::unique_ptr<World> world_;
   MassRandomization masses_;

@@ -11,6 +11,17 @@
 
 namespace shoal {
 
+// A camera of the user's: looks at `lookat` from `distance`; azimuth 0 looks along +x, 90 along +y,
+// negative elevation looks down.
+struct CustomCamera {
+  std::array<double, 3> lookat{};  // m
+  double distance = 1;             // m
+  double azimuth = 0;              // degrees
+  double elevation = 0;            // degrees
+
+  bool operator==(const CustomCamera&) const = default;
+};
+
 struct ObservationConfig {
   bool pixels = true;
   std::vector<std::string> cameras{"front", "side"};
@@ -20,6 +31,7 @@ struct ObservationConfig {
   std::string goal_mode = "none";  // none | desired | both: goal vectors among the blocks
   bool proprioception = false;     // the task's `observation` block
   std::string quality = "fast";    // fast | reference
+  std::map<std::string, CustomCamera> custom_cameras;  // by name, beside the task's own
 };
 
 // Physical quantities drawn anew for every episode, uniformly in [low, high].
@@ -89,8 +101,9 @@ struct Config {
   std::string run_name;  // empty = PRESET-sSEED
   std::string run_dir = "runs";
   std::string task = "FetchReachDense";
-  int64_t env_steps = 100'000;  // budget
-  int actors = 0;               // 0 = one per core the learner leaves, at least 1
+  double distance_threshold = 0;  // of success and sparse reward, m; 0 = the task's own
+  int64_t env_steps = 100'000;    // budget
+  int actors = 0;                 // 0 = one per core the learner leaves, at least 1
   int envs_per_actor = 4;
   bool lockstep = false;
   int lockstep_steps = 8;           // vector steps between weights in lockstep

@@ -10,6 +10,7 @@
 #include "common/base/files.h"
 #include "common/base/random.h"
 #include "common/config/config_keys.h"
+#include "common/config/custom_camera_json.h"
 #include "common/config/nearest_key.h"
 
 namespace shoal {
@@ -90,6 +91,8 @@ bool Read(const json& value, const internal::Rule& rule, T* out) {
     }
     *out = std::move(intervals);
     return true;
+  } else if constexpr (std::is_same_v<T, std::map<std::string, CustomCamera>>) {
+    return internal::ReadCustomCameras(value, out);
   } else {
     if (!value.is_array()) return false;
     T list;

@@ -26,6 +26,8 @@ std::vector<Key> RunKeys() {
       SHOAL_SAME(run_name, FileName{true}, "name of the run's folder; empty = PRESET-sSEED"),
       SHOAL_SAME(run_dir, AnyValue{}, "folder that holds the runs"),
       SHOAL_SAME(task, FileName{}, "task to learn"),
+      SHOAL_SAME(distance_threshold, (RealRange{0, 1000}),
+                 "distance in m below which a goal is reached; 0 = the task's own"),
       SHOAL_SAME(env_steps, kSteps, "budget: training stops after this many env steps"),
       SHOAL_SAME(actors, (IntegerRange{0, 1024}),
                  "actor processes; 0 = one per core the learner leaves, at least 1"),
@@ -57,6 +59,9 @@ std::vector<Key> ObservationKeys() {
       SHOAL_SAME(observation.proprioception, AnyValue{}, "the task's state vector"),
       SHOAL_SAME(observation.quality, (Choices{{"fast", "reference"}}),
                  "fast = no shadows, reflections, multisampling; reference = as the originals"),
+      SHOAL_SAME(observation.custom_cameras, AnyValue{},
+                 "cameras of one's own for observation.cameras; in m and degrees, azimuth 0 looks "
+                 "along +x, negative elevation down"),
   };
 }
 
@@ -193,6 +198,9 @@ struct TypeText {
   std::string operator()(const std::vector<std::string>*) const { return "a list of strings"; }
   std::string operator()(const std::map<std::string, std::array<double, 2>>*) const {
     return "an object of intervals {name: [low, high], ...}, low <= high, each";
+  }
+  std::string operator()(const std::map<std::string, CustomCamera>*) const {
+    return "an object {name: {lookat: [x, y, z], distance: > 0, azimuth, elevation: -90..90}, ...}";
   }
 };
 

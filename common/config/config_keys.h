@@ -17,7 +17,8 @@ namespace shoal::internal {
 
 // The member of a Config that a key names. Borrows the Config.
 using Slot = std::variant<bool*, int*, int64_t*, double*, std::string*, std::vector<int>*,
-                          std::vector<std::string>*, std::map<std::string, std::array<double, 2>>*>;
+                          std::vector<std::string>*, std::map<std::string, std::array<double, 2>>*,
+                          std::map<std::string, CustomCamera>*>;
 
 // Bounds of an integer, or of each element of a list of integers; both ends included.
 struct IntegerRange {

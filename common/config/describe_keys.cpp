@@ -4,6 +4,7 @@
 
 #include "common/config/config_io.h"
 #include "common/config/config_keys.h"
+#include "common/config/custom_camera_json.h"
 
 namespace shoal {
 namespace {

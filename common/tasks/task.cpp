@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/base/check.h"
+#include "common/base/error.h"
 
 namespace shoal::tasks {
 
@@ -17,6 +18,15 @@ Task::Task(Description description) : description_(std::move(description)) {
 int Task::EnvStepsPerEpisode(int repeat) const {
   CHECK(repeat > 0) << repeat;
   return (description_.episode_length + repeat - 1) / repeat;
+}
+
+Task Task::WithThreshold(double metres) const {
+  if (goal_size() == 0) {
+    throw UsageError("distance_threshold = {}: task {} has no goals", metres, name());
+  }
+  Task task = *this;
+  task.description_.distance_threshold = metres;
+  return task;
 }
 
 double Task::Distance(std::span<const float> achieved, std::span<const float> desired) const {

@@ -61,6 +61,10 @@ class Task {
 
   explicit Task(Description description);
 
+  // The same task with another distance (m) below which a goal is reached. Throws Error (kUsage)
+  // when the task has no goals.
+  Task WithThreshold(double metres) const;
+
   const std::string& name() const { return description_.name; }
   const std::string& world() const { return description_.world; }
   int episode_length() const { return description_.episode_length; }

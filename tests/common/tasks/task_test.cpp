@@ -6,6 +6,7 @@
 #include <cmath>
 #include <vector>
 
+#include "common/base/error.h"
 #include "common/tasks/task_registry.h"
 
 namespace shoal::tasks {
@@ -35,6 +36,30 @@ TEST(Task, AtTheThresholdThereIsNeitherPenaltyNorSuccess) {
   EXPECT_FALSE(task.Success(0.05));
   EXPECT_TRUE(task.Success(std::nextafter(0.05, 0.0)));
   EXPECT_EQ(task.Reward(std::nextafter(0.05, 1.0)), -1.0f);
+}
+
+TEST(Task, WithAnotherThresholdOnlySuccessAndSparseRewardChange) {
+  const Task& task = FindTask("FetchReach");
+  const Task wide = task.WithThreshold(0.2);
+  EXPECT_EQ(wide.distance_threshold(), 0.2);
+  EXPECT_EQ(task.distance_threshold(), 0.05);
+  EXPECT_TRUE(wide.Success(0.1));
+  EXPECT_EQ(wide.Reward(0.1), 0.0f);
+  EXPECT_EQ(task.Reward(0.1), -1.0f);
+  EXPECT_EQ(wide.name(), task.name());
+}
+
+TEST(Task, ATaskWithoutGoalsTakesNoThreshold) {
+  Task::Description description;
+  description.name = "Run";
+  description.episode_length = 1;
+  try {
+    Task(description).WithThreshold(0.1);
+    FAIL() << "a threshold for nothing";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.exit_code(), 2);
+    EXPECT_NE(std::string(error.what()).find("task Run has no goals"), std::string::npos);
+  }
 }
 
 TEST(Task, ABatchEqualsItsRowsBitForBit) {

@@ -1,0 +1,17 @@
+// Cameras of the user's beside those of a task.
+#pragma once
+
+#include <string>
+
+#include "actor/worlds/camera_view.h"
+#include "actor/worlds/world.h"
+#include "common/config/config.h"
+
+namespace shoal::worlds {
+
+// The camera of that name, the world's own or one of observation.custom_cameras. Throws Error
+// (kUsage) listing those there are, and when a custom camera takes a name of the world's own.
+CameraView ChooseCamera(const World& world, const ObservationConfig& observation,
+                        const std::string& name);
+
+}  // namespace shoal::worlds

@@ -1,0 +1,49 @@
+#include "common/config/custom_camera_json.h"
+
+#include <cmath>
+#include <utility>
+
+namespace shoal::internal {
+namespace {
+
+using nlohmann::json;
+
+bool ReadNumber(const json& value, double* number) {
+  if (!value.is_number()) return false;
+  *number = value.get<double>();
+  return std::isfinite(*number);
+}
+
+bool ReadPoint(const json& value, std::array<double, 3>* point) {
+  if (!value.is_array() || value.size() != point->size()) return false;
+  for (size_t i = 0; i < point->size(); ++i) {
+    if (!ReadNumber(value[i], &(*point)[i])) return false;
+  }
+  return true;
+}
+
+bool ReadCamera(const json& value, CustomCamera* camera) {
+  if (!value.is_object() || value.size() != 4) return false;
+  for (const char* key : {"lookat", "distance", "azimuth", "elevation"}) {
+    if (!value.contains(key)) return false;
+  }
+  return ReadPoint(value["lookat"], &camera->lookat) &&
+         ReadNumber(value["distance"], &camera->distance) &&
+         ReadNumber(value["azimuth"], &camera->azimuth) &&
+         ReadNumber(value["elevation"], &camera->elevation) && camera->distance > 0 &&
+         std::fabs(camera->elevation) <= 90;
+}
+
+}  // namespace
+
+bool ReadCustomCameras(const json& value, std::map<std::string, CustomCamera>* cameras) {
+  if (!value.is_object()) return false;
+  std::map<std::string, CustomCamera> read;
+  for (const auto& [name, camera] : value.items()) {
+    if (name.empty() || !ReadCamera(camera, &read[name])) return false;
+  }
+  *cameras = std::move(read);
+  return true;
+}
+
+}  // namespace shoal::internal
