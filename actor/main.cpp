@@ -9,6 +9,7 @@
 #include "actor/evaluation.h"
 #include "actor/training_actor.h"
 #include "actor/worlds/environment.h"
+#include "actor/worlds/own_tasks.h"
 #include "common/base/build_info.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
@@ -87,6 +88,7 @@ int Run(int argc, char** argv) {
     throw shoal::UsageError("{}", e.what());
   }
 
+  shoal::worlds::RegisterOwnTasks();
   shoal::nn::SetThreads(1);  // one thread per actor: cores are filled with actors
   if (options.describe) {
     if (options.config_json.empty()) throw shoal::UsageError("--describe needs --config-json FILE");

@@ -1,6 +1,7 @@
 // shoal: the command line. See launch/commands.
 #include <CLI/CLI.hpp>
 
+#include "actor/worlds/own_tasks.h"
 #include "common/base/build_info.h"
 #include "common/base/error.h"
 #include "common/base/main_guard.h"
@@ -23,6 +24,7 @@ std::string UnknownCommand(const CLI::App& app, int argc, char** argv) {
 }
 
 int Run(int argc, char** argv) {
+  shoal::worlds::RegisterOwnTasks();
   CLI::App app("Shoal trains robot policies from pixels with SAC and DrQ, on many processes.",
                "shoal");
   app.set_version_flag("--version",

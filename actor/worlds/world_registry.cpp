@@ -1,5 +1,9 @@
 #include "actor/worlds/world_registry.h"
 
+#include <algorithm>
+#include <map>
+#include <utility>
+
 #include "actor/worlds/ball_in_cup_catch.h"
 #include "actor/worlds/cartpole_swingup.h"
 #include "actor/worlds/cheetah_run.h"
@@ -11,6 +15,7 @@
 #include "actor/worlds/walker_walk.h"
 #include "common/base/check.h"
 #include "common/base/error.h"
+#include "common/tasks/task_registry.h"
 
 namespace shoal::worlds {
 namespace {
@@ -44,7 +49,29 @@ constexpr Registration kWorlds[] = {
     {"walker_walk", OfModel<MakeWalkerWalk>},
 };
 
+// Added by RegisterTask.
+std::map<std::string, WorldMaker>& AddedWorlds() {
+  static std::map<std::string, WorldMaker> worlds;
+  return worlds;
+}
+
+bool IsOurs(const std::string& name) {
+  return std::ranges::any_of(kWorlds,
+                             [&](const Registration& world) { return name == world.name; });
+}
+
 }  // namespace
+
+void RegisterTask(tasks::Task goal_half, WorldMaker physics_half) {
+  const std::string world = goal_half.world();
+  const auto added = AddedWorlds().find(world);
+  if (IsOurs(world) || (added != AddedWorlds().end() && added->second != physics_half)) {
+    throw UsageError("task '{}': there is another physics half '{}' already", goal_half.name(),
+                     world);
+  }
+  tasks::AddTask(std::move(goal_half));
+  AddedWorlds()[world] = physics_half;
+}
 
 std::unique_ptr<World> MakeWorld(const std::string& name, const WorldOptions& options) {
   for (const Registration& world : kWorlds) {
@@ -53,6 +80,9 @@ std::unique_ptr<World> MakeWorld(const std::string& name, const WorldOptions& op
       throw UsageError("physics is '{}'; {} has mujoco2 only", options.physics, name);
     }
     return world.make(options);
+  }
+  if (const auto added = AddedWorlds().find(name); added != AddedWorlds().end()) {
+    return added->second(options);
   }
   CHECK(false) << "no physics half named " << name;
   return nullptr;

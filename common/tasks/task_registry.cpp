@@ -2,6 +2,9 @@
 
 #include <fmt/ranges.h>
 
+#include <deque>
+#include <utility>
+
 #include "common/base/error.h"
 #include "common/tasks/control_tasks.h"
 #include "common/tasks/fetch_tasks.h"
@@ -10,9 +13,10 @@
 namespace shoal::tasks {
 namespace {
 
-const std::vector<Task>& AllTasks() {
-  static const std::vector<Task> tasks = [] {
-    std::vector<Task> all;
+// A deque: what is added moves nothing.
+std::deque<Task>& AllTasks() {
+  static std::deque<Task> tasks = [] {
+    std::deque<Task> all;
     for (auto family : {FetchTasks, HopperTasks, ControlTasks}) {
       for (Task& task : family()) all.push_back(std::move(task));
     }
@@ -34,6 +38,13 @@ std::vector<std::string> TaskNames() {
   std::vector<std::string> names;
   for (const Task& task : AllTasks()) names.push_back(task.name());
   return names;
+}
+
+void AddTask(Task task) {
+  for (const std::string& name : TaskNames()) {
+    if (name == task.name()) throw UsageError("there is a task '{}' already", name);
+  }
+  AllTasks().push_back(std::move(task));
 }
 
 }  // namespace shoal::tasks

@@ -15,4 +15,8 @@ const Task& FindTask(const std::string& name);
 // In the order of registration.
 std::vector<std::string> TaskNames();
 
+// Adds a task; tasks found before stay where they are. At the start of a program, before threads.
+// Throws Error (kUsage) when there is one of that name.
+void AddTask(Task task);
+
 }  // namespace shoal::tasks

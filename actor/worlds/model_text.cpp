@@ -1,0 +1,49 @@
+#include "actor/worlds/model_text.h"
+
+#include <mujoco/mujoco.h>
+
+#include <cstring>
+#include <memory>
+
+#include "actor/worlds/engine_messages.h"
+#include "actor/worlds/model_loading.h"
+#include "common/base/check.h"
+#include "common/base/error.h"
+
+namespace shoal::worlds {
+namespace {
+
+constexpr char kName[] = "model.xml";
+constexpr int kErrorBytes = 1000;
+
+// One virtual file; megabytes, so on the heap.
+class VirtualFile {
+ public:
+  explicit VirtualFile(const std::string& text) : vfs_(std::make_unique<mjVFS>()) {
+    mj_defaultVFS(vfs_.get());
+    CHECK(mj_makeEmptyFileVFS(vfs_.get(), kName, static_cast<int>(text.size())) == 0);
+    std::memcpy(vfs_->filedata[0], text.data(), text.size());
+  }
+  ~VirtualFile() { mj_deleteVFS(vfs_.get()); }
+  VirtualFile(const VirtualFile&) = delete;
+  VirtualFile& operator=(const VirtualFile&) = delete;
+
+  const mjVFS* get() const { return vfs_.get(); }
+
+ private:
+  std::unique_ptr<mjVFS> vfs_;
+};
+
+}  // namespace
+
+ModelHandle LoadModelText(const std::string& mjcf, const std::string& user_file) {
+  if (!user_file.empty()) return LoadModel("", user_file);
+  InstallEngineCallbacks();
+  if (mjcf.empty()) throw RuntimeError("a task's model is empty text");
+  char reason[kErrorBytes] = "";
+  ModelHandle model(mj_loadXML(kName, VirtualFile(mjcf).get(), reason, kErrorBytes));
+  if (model == nullptr) throw RuntimeError("a task's model does not load: {}", reason);
+  return model;
+}
+
+}  // namespace shoal::worlds

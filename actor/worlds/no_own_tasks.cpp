@@ -1,0 +1,7 @@
+#include "actor/worlds/own_tasks.h"
+
+namespace shoal::worlds {
+
+void RegisterOwnTasks() {}
+
+}  // namespace shoal::worlds

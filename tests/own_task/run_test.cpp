@@ -1,0 +1,71 @@
+// The programs with the worked example of docs/own_task.md in them.
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/support/program.h"
+
+namespace shoal {
+namespace {
+
+TEST(OwnTaskRun, TheCommandsOfItsPageWork) {
+  const TemporaryFolder folder;
+  const auto run = [](std::vector<std::string> command) {
+    command.insert(command.begin(), "shoal");
+    const ProgramResult result = RunProgram(command, std::chrono::seconds(60));
+    EXPECT_EQ(ExitCode(result), 0) << result.out << result.err;
+    return result.out;
+  };
+  EXPECT_NE(run({"env", "list"}).find("PointReachDense"), std::string::npos);
+  EXPECT_NE(run({"env", "describe", "PointReachDense"}).find("push_x"), std::string::npos);
+  EXPECT_NE(run({"env", "reward-check", "PointReachDense"}).find("passed"), std::string::npos);
+  run({"env", "render", "PointReachDense", "--camera", "top", "--png",
+       (folder.path() / "top.png").string()});
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "top.png"));
+}
+
+TEST(OwnTaskRun, TrainsFromItsOwnCameraWithAThresholdFromJson) {
+  const TemporaryFolder folder;
+  const auto json = folder.path() / "point.json";
+  WriteFileAtomically(json, R"({
+    "task": "PointReachDense",
+    "distance_threshold": 0.1,
+    "env_steps": 600,
+    "actors": 1,
+    "observation": {
+      "cameras": ["above"],
+      "custom_cameras": {
+        "above": {"lookat": [0, 0, 0], "distance": 1.4, "azimuth": 90, "elevation": -89}
+      },
+      "height": 32,
+      "width": 32,
+      "proprioception": true
+    },
+    "network": {"filters": [8, 8], "strides": [2, 1], "hidden": [32, 32]},
+    "replay": {"min_size": 100, "capacity": 2000},
+    "learner": {"batch": 16, "threads": 1},
+    "eval": {"episodes": 4, "final_episodes": 4, "interval": 300},
+    "stop": {"success": 2}
+  })");
+  const ProgramResult result =
+      RunProgram({"shoal", "train", "--config", json.string(), "--run-name", "point", "--set",
+                  "run_dir=" + folder.path().string()},
+                 std::chrono::seconds(200));
+  ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
+  const auto run = folder.path() / "point";
+  const auto meta = nlohmann::json::parse(ReadFile(run / "meta.json"));
+  EXPECT_EQ(meta.at("task"), "PointReachDense");
+  EXPECT_GT(meta.at("updates").get<int64_t>(), 10);
+  const auto config = nlohmann::json::parse(ReadFile(run / "config.json"));
+  EXPECT_EQ(config.at("spec").at("cameras"), std::vector<std::string>{"above"});
+  // An episode is judged by the threshold of the configuration.
+  for (const auto& entry : std::filesystem::directory_iterator(run / "eval")) {
+    for (const auto& episode : nlohmann::json::parse(ReadFile(entry.path())).at("episodes")) {
+      EXPECT_EQ(episode.at("success").get<bool>(),
+                episode.at("final_distance").get<double>() < 0.1);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace shoal
