@@ -55,11 +55,14 @@ ordered_json PlayRandom(const RandomRequest& request, const std::function<bool()
 
 std::string RandomText(const ordered_json& result) {
   const ordered_json& all = result.at("aggregate");
-  std::string text = fmt::format(
-      "{}: {} random episodes, success {:.1f} %, return {:.3f} +- {:.3f}, length {:.1f}\n",
-      result.at("task").get<std::string>(), all.at("episodes").get<int>(),
-      100 * all.at("success_rate").get<double>(), all.at("return_mean").get<double>(),
-      all.at("return_std").get<double>(), all.at("length_mean").get<double>());
+  const ordered_json& rate = all.at("success_rate");  // null for tasks without success
+  const std::string success =
+      rate.is_null() ? "" : fmt::format("success {:.1f} %, ", 100 * rate.get<double>());
+  std::string text =
+      fmt::format("{}: {} random episodes, {}return {:.3f} +- {:.3f}, length {:.1f}\n",
+                  result.at("task").get<std::string>(), all.at("episodes").get<int>(), success,
+                  all.at("return_mean").get<double>(), all.at("return_std").get<double>(),
+                  all.at("length_mean").get<double>());
   const ordered_json& curve = result.at("success_by_threshold");
   if (curve.is_null()) return text;
   text += fmt::format("  final distance {:.4f} m; success by threshold:\n",
