@@ -21,7 +21,9 @@ TEST(Hang, AStoppedProcessOfEachServerIsReplacedWithinTheDocumentedTime) {
   const std::string roles[] = {"learner", "actor"};
   pid_t hung[2];
   for (int i = 0; i < 2; ++i) {
-    hung[i] = training.reports().Last(roles[i]).at("pid").get<pid_t>();
+    const json report = training.reports().WaitFor(roles[i], [](const json&) { return true; });
+    ASSERT_FALSE(report.is_null()) << roles[i] << ": " << training.Output();
+    hung[i] = report.at("pid").get<pid_t>();
     ASSERT_EQ(kill(hung[i], SIGSTOP), 0);
   }
   const SteadyTime start = Now();

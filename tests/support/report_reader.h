@@ -17,6 +17,13 @@ class ReportReader {
  public:
   explicit ReportReader(const std::filesystem::path& run) : file_(run / "metrics.jsonl") {}
 
+  // Leaves out what the file holds now: reports of an earlier session of the run.
+  void SkipOld() {
+    std::error_code none_yet;
+    const auto size = std::filesystem::file_size(file_, none_yet);
+    if (!none_yet) offset_ = static_cast<std::streamoff>(size);
+  }
+
   // The newest report of role's process `id`; null when there is none yet.
   const nlohmann::json& Last(const std::string& role, int id = 0) {
     ReadOn();

@@ -21,7 +21,9 @@ class RunningTraining {
   // Starts `shoal train` with the words of TrainingRun::Command (or of a resume).
   RunningTraining(const TrainingRun& run, std::vector<std::string> command,
                   const Environment& environment = {})
-      : run_(run), reports_(run.path()), child_(Spec(run, std::move(command), environment)) {}
+      : run_(run),
+        reports_(ReportsFromNowOn(run)),
+        child_(Spec(run, std::move(command), environment)) {}
 
   pid_t pid() const { return child_.pid(); }
   ReportReader& reports() { return reports_; }
@@ -53,6 +55,11 @@ class RunningTraining {
   std::string Output() const { return ReadFile(OutputFile(run_)); }
 
  private:
+  static ReportReader ReportsFromNowOn(const TrainingRun& run) {
+    ReportReader reports(run.path());
+    reports.SkipOld();
+    return reports;
+  }
   static std::filesystem::path OutputFile(const TrainingRun& run) {
     return run.parent() / "output";
   }
