@@ -36,18 +36,18 @@ Outcome RunInLockstep(const std::string& seed) {
 }
 
 TEST(Lockstep, AnInterruptedRunGoesOnBitForBit) {
-  const TrainingRun::Keys keys{{"env_steps", "2000"}, {"actors", "1"}, {"eval.interval", "1000"}};
+  const TrainingRun::Keys keys{{"env_steps", "6000"}, {"actors", "1"}, {"eval.interval", "2000"}};
   const TrainingRun whole, interrupted;
   const ProgramResult result = whole.Train(keys, {"--lockstep"});
   ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
   // Twice: where the learner has hardly begun, and later.
   std::vector<std::string> command = interrupted.Command(keys, {"--lockstep"});
-  for (const int64_t steps : {1030, 1450}) {
+  for (const int64_t steps : {1030, 3000}) {
     RunningTraining training(interrupted, command);
     ASSERT_TRUE(training.WaitForSteps(steps)) << training.Output();
     training.Interrupt();
     ASSERT_EQ(training.End(std::chrono::seconds(120)), 0) << training.Output();
-    ASSERT_LT(interrupted.Json("meta.json").at("env_steps").get<int64_t>(), 2000)
+    ASSERT_LT(interrupted.Json("meta.json").at("env_steps").get<int64_t>(), 6000)
         << "ended before it was interrupted";
     command = {"shoal", "train", "--resume", interrupted.path().string()};
   }
