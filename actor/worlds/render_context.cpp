@@ -6,9 +6,11 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
 
 #include "actor/worlds/engine_messages.h"
 #include "actor/worlds/frame_packing.h"
+#include "actor/worlds/low_poly_shapes.h"
 #include "actor/worlds/scene_culling.h"
 #include "common/base/check.h"
 #include "common/base/error.h"
@@ -22,12 +24,13 @@ extern "C" const char* __lsan_default_suppressions() { return "leak:libOSMesa.so
 namespace shoal::worlds {
 namespace {
 
-// Tessellation of quality `fast`. Stacks decide what a goal just above the table shows of itself:
-// with three, a cap of 4 mm is a point that no pixel sees. More of either takes longer and looks
-// the same at 84x84.
+// Tessellation of quality `fast`. Stacks, of spheres, decide what a goal just above the table shows
+// of itself: with three, a cap of 4 mm is a point that no pixel sees. More of either takes longer
+// and looks the same at 84x84.
 constexpr int kFastSlices = 10;
 constexpr int kFastStacks = 4;
 constexpr int kFastQuads = 1;
+constexpr double kFastPlaneLines = 10;  // of a plane's grid, on each side of its centre
 constexpr int kDepthBits = 24, kStencilBits = 8, kAccumulationBits = 8;
 // Room for decoration that a user's model may add to its own geoms and sites.
 constexpr int kSpareGeoms = 100;
@@ -36,6 +39,33 @@ bool AnyLightCastsShadow(const mjModel& model) {
   return std::any_of(model.light_castshadow, model.light_castshadow + model.nlight,
                      [](mjtByte casts) { return casts != 0; });
 }
+
+bool AllLightsAreDirectional(const mjModel& model) {
+  return std::all_of(model.light_directional, model.light_directional + model.nlight,
+                     [](mjtByte directional) { return directional != 0; });
+}
+
+// While it lives, planes have wide grids. A plane's third size is the spacing at which the engine
+// divides it for drawing: Hopper's floor becomes 26,000 quads of 0.25 m, for a light that is the
+// same everywhere on it.
+class WidePlaneGrids {
+ public:
+  explicit WidePlaneGrids(mjModel* model)
+      : model_(model), sizes_(model->geom_size, model->geom_size + 3 * model->ngeom) {
+    for (int i = 0; i < model->ngeom; ++i) {
+      mjtNum* size = model->geom_size + 3 * i;
+      if (model->geom_type[i] != mjGEOM_PLANE) continue;
+      size[2] = std::max(size[2], std::max(size[0], size[1]) / kFastPlaneLines);
+    }
+  }
+  ~WidePlaneGrids() { std::copy(sizes_.begin(), sizes_.end(), model_->geom_size); }
+  WidePlaneGrids(const WidePlaneGrids&) = delete;
+  WidePlaneGrids& operator=(const WidePlaneGrids&) = delete;
+
+ private:
+  mjModel* model_;
+  std::vector<mjtNum> sizes_;
+};
 
 mjvCamera EngineCamera(const CameraView& camera) {
   mjvCamera view;
@@ -83,6 +113,7 @@ struct RenderContext::Engine {
   mjrContext context;
   mjvScene scene;
   mjvOption option;
+  LowPolyShapes shapes{kFastSlices};
 
   Engine() {
     mjr_defaultContext(&context);
@@ -133,6 +164,7 @@ void RenderContext::Attach(World* world) {
     }
     return;
   }
+  CHECK(!world->textures_released()) << "a model without textures";
   mjModel& model = world->model();
   auto& quality = model.vis.quality;
   // A shadow map that nothing uses would take 64 MB.
@@ -141,7 +173,7 @@ void RenderContext::Attach(World* world) {
     quality.offsamples = 0;
     quality.numslices = kFastSlices;
     quality.numstacks = kFastStacks;
-    // Light that falls off over a floor needs the floor's own division.
+    // Light that falls off over a box needs the box's own division.
     if (!AnyLightCastsShadow(model)) quality.numquads = kFastQuads;
   }
   model.vis.global.offwidth = width_;
@@ -149,6 +181,9 @@ void RenderContext::Attach(World* world) {
 
   MakeCurrent();
   mjrContext& context = engine_->context;
+  // Light that falls off over a floor needs the floor's own division.
+  std::optional<WidePlaneGrids> wide;
+  if (fast_ && AllLightsAreDirectional(model)) wide.emplace(&model);
   mjr_makeContext(&model, &context, mjFONTSCALE_50);
   mjr_setBuffer(mjFB_OFFSCREEN, &context);
   if (context.currentBuffer != mjFB_OFFSCREEN) {
@@ -180,6 +215,7 @@ void RenderContext::Draw(World* world, const CameraView& camera) {
   if (light_unclamped_) LimitHeadlight(&engine_->scene);
   if (fast_) {
     RemoveUnseenGeoms(&engine_->scene, static_cast<float>(width_) / static_cast<float>(height_));
+    engine_->shapes.Replace(engine_->context, &engine_->scene);
   }
   const mjrRect viewport{0, 0, width_, height_};
   mjr_render(viewport, &engine_->scene, &engine_->context);

@@ -1,10 +1,13 @@
 #include "actor/worlds/world.h"
 
 #include <mujoco/mujoco.h>
+#include <sys/mman.h>
+#include <unistd.h>
 
 #include <utility>
 
 #include "actor/worlds/model_loading.h"
+#include "common/base/check.h"
 #include "common/base/error.h"
 
 namespace shoal::worlds {
@@ -12,8 +15,20 @@ namespace shoal::worlds {
 World::World(ModelHandle model, const std::string& model_file)
     : model_(std::move(model)),
       source_(model_file.empty() ? "the model" : fmt::format("model file '{}'", model_file)),
-      fingerprint_(ModelFingerprint(*model_)),
-      data_(MakeData(*model_)) {}
+      data_(MakeData(*model_)),
+      fingerprint_(ModelFingerprint(*model_)) {}
+
+void World::ReleaseTextures() {
+  textures_released_ = true;
+  // A model is one allocation, so only whole pages within the textures can go.
+  const auto page = static_cast<uintptr_t>(sysconf(_SC_PAGESIZE));
+  const auto data = reinterpret_cast<uintptr_t>(model_->tex_rgb);
+  const uintptr_t begin = (data + page - 1) / page * page;
+  const uintptr_t end = (data + static_cast<uintptr_t>(model_->ntexdata)) / page * page;
+  if (begin >= end) return;
+  CHECK(madvise(reinterpret_cast<void*>(begin), end - begin, MADV_DONTNEED) == 0)
+      << "giving back " << end - begin << " bytes of textures";
+}
 
 int World::ElementId(int object_type, const char* kind, const std::string& name) const {
   const int id = mj_name2id(model_.get(), object_type, name.c_str());

@@ -48,6 +48,11 @@ class World {
   // Of the model as loaded: see ModelFingerprint.
   const std::string& fingerprint() const { return fingerprint_; }
 
+  // Gives the memory of the model's textures back to the system, 11 MB of sky for each world of the
+  // Control Suite. For worlds that are drawn by a context that has a model already, or never.
+  void ReleaseTextures();
+  bool textures_released() const { return textures_released_; }
+
   // What messages call the model: "the model" or "model file 'mine.xml'".
   const std::string& source() const { return source_; }
 
@@ -70,8 +75,10 @@ class World {
 
   ModelHandle model_;
   std::string source_;
-  std::string fingerprint_;
   DataHandle data_;
+  // Made last: what it takes as much memory as the model for is then free for the next world.
+  std::string fingerprint_;
+  bool textures_released_ = false;
 };
 
 }  // namespace shoal::worlds

@@ -56,6 +56,7 @@ WorldEnvironment::WorldEnvironment(const tasks::Task& task, std::unique_ptr<Worl
     }
     render_->Attach(world_.get());
   }
+  world_->ReleaseTextures();
   BuildSpec(config.observation);
 }
 

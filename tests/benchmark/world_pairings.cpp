@@ -22,18 +22,20 @@ class Stepper {
     environment_ = worlds::MakeEnvironment(config, render);
     frame_.resize(size_t(environment_->spec().FrameBytes()));
     vector_.resize(size_t(environment_->spec().VectorSize()));
+    action_ = {0.3f, -0.2f, 0.1f};
+    action_.resize(size_t(environment_->spec().action_size));
   }
 
   void Step() {
     if (!running_) environment_->Reset(++episode_, {frame_, vector_});
-    const float action[4] = {0.3f, -0.2f, 0.1f, 0};
-    running_ = !environment_->Step(action, {frame_, vector_}).truncated;
+    const worlds::StepResult result = environment_->Step(action_, {frame_, vector_});
+    running_ = !result.truncated && !result.terminated;
   }
 
  private:
   std::unique_ptr<worlds::Environment> environment_;
   std::vector<uint8_t> frame_;
-  std::vector<float> vector_;
+  std::vector<float> vector_, action_;
   uint64_t episode_ = 0;
   bool running_ = false;
 };
@@ -61,6 +63,17 @@ std::vector<Pairing> WorldPairings() {
                         .target = 0.35,
                         .ours = make(task, {"front", "side"}, "fast"),
                         .other = physics});
+  }
+  const std::pair<const char*, const char*> others[] = {
+      {"Hopper-v5", "track"},  {"cartpole_swingup", "fixed"}, {"reacher_easy", "fixed"},
+      {"cheetah_run", "side"}, {"ball_in_cup_catch", "cam0"}, {"finger_spin", "cam0"},
+      {"walker_walk", "side"}};
+  for (const auto& [task, camera] : others) {
+    pairings.push_back({.stage = std::string(task) + " with one 84x84 camera, fast",
+                        .unit = "env steps/s",
+                        .against = "physics alone",
+                        .ours = make(task, {camera}, "fast"),
+                        .other = make(task, {}, "fast")});
   }
   pairings.push_back({.stage = "FetchReach with two 84x84 cameras, fast",
                       .unit = "env steps/s",

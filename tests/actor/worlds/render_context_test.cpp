@@ -103,6 +103,22 @@ TEST(RenderContext, TheTargetIsRedAndWhereItsGoalProjects) {
   }
 }
 
+// Planes are drawn with wider grids than the model asks for; the model itself stays.
+TEST(RenderContext, AttachingChangesNoSizes) {
+  const std::unique_ptr<World> world = MakeWorld("Hopper-v5", {});
+  const mjModel& model = world->model();
+  const std::vector<mjtNum> before(model.geom_size, model.geom_size + 3 * model.ngeom);
+  RenderContext(Observation("fast")).Attach(world.get());
+  EXPECT_EQ(std::vector<mjtNum>(model.geom_size, model.geom_size + 3 * model.ngeom), before);
+}
+
+TEST(RenderContextDeathTest, TexturesThatWereReleasedAreNotUploaded) {
+  const std::unique_ptr<World> world = MakeWorld("Hopper-v5", {});
+  world->ReleaseTextures();
+  RenderContext context(Observation("fast"));
+  EXPECT_DEATH(context.Attach(world.get()), "without textures");
+}
+
 class DefaultCameras : public testing::TestWithParam<const char*> {};
 
 // Behind the gripper or the object for one of them, as in the original, but hardly for both.

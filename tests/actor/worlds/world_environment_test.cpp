@@ -2,10 +2,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <fstream>
 #include <limits>
 
 #include "actor/worlds/model_loading.h"
@@ -75,6 +77,14 @@ std::vector<std::string> BlockNames(const Config& config) {
   const auto environment = Make(config);
   for (const BlockSpec& block : environment->spec().blocks) names.push_back(block.name);
   return names;
+}
+
+long ResidentBytes() {
+  std::ifstream file("/proc/self/statm");
+  long size = 0, resident = 0;
+  file >> size >> resident;
+  EXPECT_GT(resident, 0);
+  return resident * sysconf(_SC_PAGESIZE);
 }
 
 using Names = std::vector<std::string>;
@@ -200,6 +210,20 @@ TEST(WorldEnvironment, DrawingDoesNotChangeAnEpisode) {
   config.observation.proprioception = true;
   Player seeing(Make(config)), blind(Make(StateOnly()));
   EXPECT_EQ(seeing.Play(9, 15).second, blind.Play(9, 15).second);
+}
+
+// The sky of a Control Suite model is 11.5 MB.
+TEST(WorldEnvironment, EnvironmentsDoNotKeepTheirModelsTextures) {
+  Config config = Pixels();
+  config.task = "cartpole_swingup";
+  config.observation.cameras = {"fixed"};
+  const auto render = MakeRenderContext(config.observation);
+  std::vector<std::unique_ptr<Environment>> environments;
+  environments.push_back(MakeEnvironment(config, render));
+  const long before = ResidentBytes();
+  constexpr int kMore = 8;
+  for (int i = 0; i < kMore; ++i) environments.push_back(MakeEnvironment(config, render));
+  EXPECT_LT(ResidentBytes() - before, kMore * 7'000'000L);
 }
 
 TEST(WorldEnvironment, TheFingerprintIsThatOfModelAndPicture) {
