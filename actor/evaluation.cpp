@@ -5,6 +5,7 @@
 
 #include "actor/environments.h"
 #include "actor/frame_stack.h"
+#include "actor/other_task.h"
 #include "common/base/build_info.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
@@ -166,9 +167,10 @@ ordered_json EvaluationJson(const RunConfig& run, const EvaluationLabel& label,
 }
 
 ordered_json EvaluateCheckpoint(const std::filesystem::path& run_folder,
-                                const std::filesystem::path& checkpoint, int episodes,
-                                int64_t seed) {
-  const RunConfig run = ReadRunConfig(run_folder);
+                                const std::filesystem::path& checkpoint, int episodes, int64_t seed,
+                                const std::string& task) {
+  const RunConfig trained = ReadRunConfig(run_folder);
+  const RunConfig run = task.empty() ? trained : WithTask(trained, task);
   const std::filesystem::path policy = checkpoint / "policy.safetensors";
   ReceivedWeights weights;
   weights.payload = ReadFile(policy);
@@ -191,7 +193,9 @@ ordered_json EvaluateCheckpoint(const std::filesystem::path& run_folder,
   const EpisodeStream stream{seed, StreamRole::kFinalEnvironment, 0};
   const std::vector<EpisodeResult> results = evaluator.Play(episodes, stream, StopRequested);
   if (results.empty()) throw RuntimeError("evaluation of '{}' interrupted", checkpoint.string());
-  return EvaluationJson(run, label, stream, results);
+  ordered_json result = EvaluationJson(run, label, stream, results);
+  if (!task.empty()) result["trained_task"] = trained.config.task;
+  return result;
 }
 
 }  // namespace shoal::actor

@@ -71,8 +71,10 @@ nlohmann::ordered_json EvaluationJson(const RunConfig& run, const EvaluationLabe
                                       const std::vector<EpisodeResult>& episodes);
 
 // Plays fresh episodes (final stream of `seed`) with the policy of a checkpoint folder of the run.
+// `task`: another one to play than the run's (see WithTask), named beside the run's own as
+// trained_task; empty = the run's.
 nlohmann::ordered_json EvaluateCheckpoint(const std::filesystem::path& run,
                                           const std::filesystem::path& checkpoint, int episodes,
-                                          int64_t seed);
+                                          int64_t seed, const std::string& task);
 
 }  // namespace shoal::actor

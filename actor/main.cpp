@@ -24,7 +24,7 @@
 namespace {
 
 struct Options {
-  std::string run, role = "train", config_json, checkpoint, json;
+  std::string run, role = "train", config_json, checkpoint, task, json;
   uint32_t id = 0;
   int episodes = 100;
   int64_t seed = 1;
@@ -45,9 +45,10 @@ int Describe(const Options& options) {
 }
 
 int Evaluate(const Options& options) {
-  const std::string result = shoal::actor::EvaluateCheckpoint(options.run, options.checkpoint,
-                                                              options.episodes, options.seed)
-                                 .dump(2);
+  const std::string result =
+      shoal::actor::EvaluateCheckpoint(options.run, options.checkpoint, options.episodes,
+                                       options.seed, options.task)
+          .dump(2);
   if (options.json.empty()) {
     std::cout << result << std::endl;
   } else {
@@ -75,7 +76,10 @@ int Run(int argc, char** argv) {
   auto* describe = app.add_flag("--describe", options.describe, "print the observation spec");
   app.add_option("--config-json", options.config_json, "configuration for --describe")
       ->needs(describe);
-  app.add_option("--evaluate", options.checkpoint, "checkpoint folder to evaluate");
+  auto* evaluate =
+      app.add_option("--evaluate", options.checkpoint, "checkpoint folder to evaluate");
+  app.add_option("--task", options.task, "task of --evaluate instead of the run's")
+      ->needs(evaluate);
   app.add_option("--episodes", options.episodes, "episodes of --evaluate")
       ->check(CLI::PositiveNumber);
   app.add_option("--seed", options.seed, "seed of --evaluate");

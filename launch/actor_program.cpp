@@ -60,6 +60,7 @@ std::optional<EvaluationPoint> EvaluateByActor(const EvaluationOrder& order,
                                   order.run.string(), "--episodes", std::to_string(order.episodes),
                                   "--seed", std::to_string(order.seed), "--json", json.string()},
                                  1);
+  if (!order.task.empty()) spec.command.insert(spec.command.end(), {"--task", order.task});
   spec.output = scratch.path() / "output";
   const std::chrono::seconds deadline = kStartDeadline + order.episodes * kEpisodeDeadline;
   const auto status = RunToEnd(spec, deadline, stop);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <string>
 
 #include "common/config/config.h"
 #include "common/spec/observation_spec.h"
@@ -19,6 +20,7 @@ struct EvaluationOrder {
   std::filesystem::path run, checkpoint;
   int episodes = 0;
   int64_t seed = 0;
+  std::string task = {};       // to play instead of the run's; empty = the run's
   std::filesystem::path json;  // where the result goes; empty = nowhere
 };
 

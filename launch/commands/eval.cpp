@@ -15,7 +15,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct EvalOptions {
-  std::string checkpoint, json;
+  std::string checkpoint, task, json;
   int episodes = 100;
   int64_t seed = 1;
 };
@@ -33,6 +33,7 @@ int Evaluate(const EvalOptions& options) {
                                       .checkpoint = folder,
                                       .episodes = options.episodes,
                                       .seed = options.seed,
+                                      .task = options.task,
                                       .json = options.json},
                                      StopRequested);
   if (!point) throw RuntimeError("evaluation of '{}' interrupted", options.checkpoint);
@@ -56,6 +57,9 @@ void AddEvalCommand(CLI::App& app, Action* chosen) {
   command->add_option("--seed", options->seed, "Names the episodes: equal seeds, equal episodes")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
+  command->add_option("--task", options->task,
+                      "Another task than the run's, whose observations and actions have the same "
+                      "sizes; without the run's randomization and model file");
   command->add_option("--json", options->json, "File for every episode (schema shoal-eval-1)");
   command->callback([=] { *chosen = [=] { return Evaluate(*options); }; });
 }
