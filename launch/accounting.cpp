@@ -16,10 +16,12 @@ using Session = std::pair<uint32_t, uint64_t>;  // actor, session
 
 constexpr char kSchema[] = "shoal-accounting-1";
 
-void AddSession(const Session& name, uint64_t made, const SeenRecords& seen, Accounting* sums) {
+void AddSession(const Session& name, uint64_t made, const SeenRecords& seen, bool outlives_replay,
+                Accounting* sums) {
   sums->made += made;
   sums->stored += seen.stored;
   sums->lost_with_process += seen.lost;
+  sums->lost_with_replay += seen.lost;
   sums->rejected += seen.rejected;
   sums->after_gap += seen.after_gap;
   sums->duplicates += seen.duplicates;
@@ -30,6 +32,10 @@ void AddSession(const Session& name, uint64_t made, const SeenRecords& seen, Acc
     fault(fmt::format("the replay saw sequence {}, but {} were made", seen.highest, made));
   } else {
     sums->lost_with_process += made - seen.highest;
+  }
+  if (outlives_replay && seen.lost > 0) {
+    fault(fmt::format("{} records were reported stored in the replay file, but are not there",
+                      seen.lost));
   }
   const uint64_t dealt = seen.stored + seen.rejected + seen.after_gap + seen.lost;
   if (dealt != seen.highest) {
@@ -42,8 +48,8 @@ void AddSession(const Session& name, uint64_t made, const SeenRecords& seen, Acc
 
 }  // namespace
 
-Accounting Account(std::span<const MadeRecords> made, std::span<const SeenRecords> seen,
-                   uint64_t resends, uint32_t own_actors) {
+Accounting Account(std::span<const MadeRecords> made, const SeenByReplay& seen,
+                   const AccountTerms& terms) {
   struct Counts {
     std::optional<uint64_t> made;
     SeenRecords seen;
@@ -54,7 +60,7 @@ Accounting Account(std::span<const MadeRecords> made, std::span<const SeenRecord
     count = count.value_or(0) + m.made;
   }
   Accounting sums;
-  for (const SeenRecords& s : seen) {
+  for (const SeenRecords& s : seen.sessions) {
     SeenRecords& entry = sessions[{s.actor, s.session}].seen;
     if (entry.session != 0) {
       sums.faults.push_back(
@@ -63,11 +69,17 @@ Accounting Account(std::span<const MadeRecords> made, std::span<const SeenRecord
     entry = s;
   }
   for (const auto& [name, counts] : sessions) {
-    const bool unknown = !counts.made && name.first >= own_actors;
+    const bool unknown = !counts.made && name.first >= terms.own_actors;
     if (unknown) ++sums.sessions_without_page;
-    AddSession(name, unknown ? counts.seen.highest : counts.made.value_or(0), counts.seen, &sums);
+    AddSession(name, unknown ? counts.seen.highest : counts.made.value_or(0), counts.seen,
+               terms.outlives_replay, &sums);
   }
-  sums.resends = resends;
+  if (sums.stored != seen.stored_records) {
+    sums.faults.push_back(
+        fmt::format("the sessions stored {} records, but {} were put into the ring", sums.stored,
+                    seen.stored_records));
+  }
+  sums.resends = terms.resends;
   return sums;
 }
 
@@ -77,21 +89,24 @@ std::string Accounting::Line() const {
           ? ""
           : fmt::format("; {} session(s) without a counter page: made as far as the replay saw",
                         sessions_without_page);
+  const std::string of_the_replay =
+      lost_with_replay == 0 ? "" : fmt::format(" ({} of the replay's memory)", lost_with_replay);
   return fmt::format(
-      "records: made {} {} stored {} + lost with a process {} + rejected {} + after a gap {}; "
+      "records: made {} {} stored {} + lost with a process {}{} + rejected {} + after a gap {}; "
       "duplicates {}, resends {}{}",
-      made, Balances() ? '=' : '?', stored, lost_with_process, rejected, after_gap, duplicates,
-      resends, unknown);
+      made, Balances() ? '=' : '?', stored, lost_with_process, of_the_replay, rejected, after_gap,
+      duplicates, resends, unknown);
 }
 
-std::vector<SeenRecords> ReadSeenRecords(const std::filesystem::path& run) {
+SeenByReplay ReadSeenByReplay(const std::filesystem::path& run) {
   const std::filesystem::path path = run / "accounting.json";
   const nlohmann::json object = ParseStrictJson(ReadFile(path), path);
-  std::vector<SeenRecords> seen;
+  SeenByReplay seen;
   try {
     if (object.at("schema") != kSchema) {
       throw RuntimeError("{}: expected schema '{}'", path.string(), kSchema);
     }
+    object.at("stored_records").get_to(seen.stored_records);
     for (const auto& session : object.at("sessions")) {
       SeenRecords s;
       session.at("actor").get_to(s.actor);
@@ -102,7 +117,7 @@ std::vector<SeenRecords> ReadSeenRecords(const std::filesystem::path& run) {
       session.at("after_gap").get_to(s.after_gap);
       session.at("lost").get_to(s.lost);
       session.at("duplicates").get_to(s.duplicates);
-      seen.push_back(s);
+      seen.sessions.push_back(s);
     }
   } catch (const nlohmann::json::exception& e) {
     throw RuntimeError("{}: {}", path.string(), e.what());
@@ -114,6 +129,7 @@ nlohmann::ordered_json ToJson(const Accounting& a) {
   return {{"made", a.made},
           {"stored", a.stored},
           {"lost_with_process", a.lost_with_process},
+          {"lost_with_replay", a.lost_with_replay},
           {"rejected", a.rejected},
           {"after_gap", a.after_gap},
           {"duplicates", a.duplicates},

@@ -2,8 +2,10 @@
 //
 //   made = stored + lost_with_process + rejected + after_gap, exactly; duplicates and resends are
 //   apart. Sequences of a session run 1 .. made; the replay dealt with 1 .. highest of them.
-//   lost_with_process is what an actor's death kept from the replay, made - highest, and what the
-//   replay counts as lost, such as the memory of one that was killed.
+//   lost_with_process is what an actor's death kept from the replay, made - highest, and what was
+//   told to be stored and is gone, lost_with_replay: the memory of a replay server that died. With
+//   storage in a file there is none such: it is a fault.
+//   What the sessions say is stored is held against the ring's own count.
 #pragma once
 
 #include <cstdint>
@@ -30,25 +32,36 @@ struct SeenRecords {
   uint64_t stored = 0, rejected = 0, after_gap = 0, lost = 0, duplicates = 0;
 };
 
+struct SeenByReplay {
+  uint64_t stored_records = 0;  // the ring's count of what was ever put in
+  std::vector<SeenRecords> sessions;
+};
+
 struct Accounting {
   uint64_t made = 0, stored = 0, lost_with_process = 0, rejected = 0, after_gap = 0;
+  uint64_t lost_with_replay = 0;  // part of lost_with_process
   uint64_t duplicates = 0, resends = 0;
   // Of actors started by hand, or on a host that cannot be reached any more: what the replay saw
   // counts as made, what they made beyond it is unknown.
   uint64_t sessions_without_page = 0;
-  std::vector<std::string> faults;  // one line per session that does not balance
+  std::vector<std::string> faults;  // one line for each thing that does not balance
 
   bool Balances() const { return faults.empty(); }
   // "made 120 = stored 118 + lost with a process 2 + rejected 0 + after a gap 0; ..."
   std::string Line() const;
 };
 
-// Sessions of actors below `own_actors` must have a page; without one they are a fault.
-Accounting Account(std::span<const MadeRecords> made, std::span<const SeenRecords> seen,
-                   uint64_t resends, uint32_t own_actors);
+struct AccountTerms {
+  uint64_t resends = 0;
+  uint32_t own_actors = 0;      // sessions of actors below must have a page
+  bool outlives_replay = true;  // what is stored is in a file
+};
+
+Accounting Account(std::span<const MadeRecords> made, const SeenByReplay& seen,
+                   const AccountTerms& terms);
 
 // accounting.json of a run (shoal-accounting-1), written by the replay. Throws Error.
-std::vector<SeenRecords> ReadSeenRecords(const std::filesystem::path& run);
+SeenByReplay ReadSeenByReplay(const std::filesystem::path& run);
 
 nlohmann::ordered_json ToJson(const Accounting& accounting);
 

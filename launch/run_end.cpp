@@ -24,8 +24,10 @@ std::optional<Accounting> AccountRun(const fs::path& run, const Config& config, 
     made.push_back({page.actor, page.session, page.made});
   }
   if (made.empty() && !fs::exists(run / "accounting.json")) return std::nullopt;
-  return Account(made, ReadSeenRecords(run), resends,
-                 static_cast<uint32_t>(ActorsHere(run, config)));
+  return Account(made, ReadSeenByReplay(run),
+                 {.resends = resends,
+                  .own_actors = static_cast<uint32_t>(ActorsHere(run, config)),
+                  .outlives_replay = config.replay.storage == "file"});
 }
 
 // The checkpoint a run is judged by: the best evaluated one, else the newest.

@@ -15,7 +15,8 @@ constexpr char kSchema[] = "shoal-accounting-1";
 
 }  // namespace
 
-std::string AccountingJson(const SessionTable& sessions, uint64_t stored_steps) {
+std::string AccountingJson(const SessionTable& sessions, uint64_t stored_steps,
+                           uint64_t stored_records) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (int i = 0; i < sessions.size(); ++i) {
     const SessionCounters& counters = sessions.at(i);
@@ -28,8 +29,10 @@ std::string AccountingJson(const SessionTable& sessions, uint64_t stored_steps) 
                     {"lost", counters.lost},
                     {"duplicates", counters.duplicates}});
   }
-  const nlohmann::ordered_json object = {
-      {"schema", kSchema}, {"stored_steps", stored_steps}, {"sessions", list}};
+  const nlohmann::ordered_json object = {{"schema", kSchema},
+                                         {"stored_steps", stored_steps},
+                                         {"stored_records", stored_records},
+                                         {"sessions", list}};
   return object.dump(1) + "\n";
 }
 

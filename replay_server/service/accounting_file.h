@@ -11,9 +11,11 @@ namespace shoal::replay {
 
 inline constexpr char kAccountingFile[] = "accounting.json";
 
-// {schema, stored_steps, sessions: [{actor, session, highest, stored, rejected, after_gap, lost,
-// duplicates}]} with highest = stored + rejected + after_gap + lost.
-std::string AccountingJson(const SessionTable& sessions, uint64_t stored_steps);
+// {schema, stored_steps, stored_records, sessions: [{actor, session, highest, stored, rejected,
+// after_gap, lost, duplicates}]} with highest = stored + rejected + after_gap + lost.
+// `stored_records` is the ring's own count of what was ever put in, so a check on the sessions'.
+std::string AccountingJson(const SessionTable& sessions, uint64_t stored_steps,
+                           uint64_t stored_records);
 
 // The stored_steps that an earlier server of the run left; 0 when there was none. Throws Error.
 uint64_t StoredStepsBefore(const std::filesystem::path& run);

@@ -211,12 +211,15 @@ class ReplayService {
     metrics_publisher_.Write(report_.Make(state, seconds_, &ages_));
     problems_.Report(Now(), core_.counters(), inbox_.DroppedChunks());
     try {
-      ReplaceFile(folder_ / kAccountingFile,
-                  AccountingJson(core_.sessions(), core_.ring().stored_steps()));
+      ReplaceFile(folder_ / kAccountingFile, AccountNow());
     } catch (const Error& e) {
       // The run goes on; the next second tries again, and Finish() insists.
       log::Warning("{}", e.what());
     }
+  }
+
+  std::string AccountNow() const {
+    return AccountingJson(core_.sessions(), core_.ring().stored_steps(), core_.ring().last_id());
   }
 
   // The actors notice the coordinator's end too, and send what they have: it is stored.
@@ -233,8 +236,7 @@ class ReplayService {
     Take(inbox_.Wait(Now()));
     Publish(core_.TakeCredits(/*changed_only=*/false));
     metrics_publisher_.Write(report_.Make("stopping", seconds_, &ages_));
-    WriteFileAtomically(folder_ / kAccountingFile,
-                        AccountingJson(core_.sessions(), core_.ring().stored_steps()));
+    WriteFileAtomically(folder_ / kAccountingFile, AccountNow());
     metrics_publisher_.WaitForAcks(milliseconds(500));
     credit_publisher_.WaitForAcks(milliseconds(500));
     log::Info("stopped: {} records of the run stored, {} batches drawn", core_.ring().last_id(),

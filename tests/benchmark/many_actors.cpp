@@ -176,8 +176,8 @@ void TakeAccount(const fs::path& run, ManyActorsFigures* figures) {
   for (const actor::MadeCount& page : actor::ReadMadePages(run)) {
     made.push_back({page.actor, page.session, page.made});
   }
-  const launch::Accounting account = launch::Account(made, launch::ReadSeenRecords(run), 0,
-                                                     static_cast<uint32_t>(figures->actors));
+  const launch::Accounting account = launch::Account(
+      made, launch::ReadSeenByReplay(run), {.own_actors = static_cast<uint32_t>(figures->actors)});
   if (!account.Balances()) throw RuntimeError("{}: {}", account.faults[0], account.Line());
   figures->made = account.made;
   figures->stored = account.stored;

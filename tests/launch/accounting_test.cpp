@@ -18,18 +18,25 @@ using ::testing::HasSubstr;
 
 constexpr uint64_t kFirst = 1'700'000'000'000'000'001, kSecond = kFirst + 1;
 
+// As a ring that agrees with its sessions would say.
+SeenByReplay Seen(std::vector<SeenRecords> sessions) {
+  SeenByReplay seen{.sessions = std::move(sessions)};
+  for (const SeenRecords& session : seen.sessions) seen.stored_records += session.stored;
+  return seen;
+}
+
 TEST(Account, SumsSessionsAndCountsWhatWasLostWithAProcess) {
   const MadeRecords made[] = {{0, kFirst, 100}, {0, kSecond, 50}, {1, kFirst, 7}};
-  const SeenRecords seen[] = {
-      {.actor = 0,
-       .session = kFirst,
-       .highest = 90,
-       .stored = 80,
-       .rejected = 4,
-       .after_gap = 6,
-       .duplicates = 5},
-      {.actor = 0, .session = kSecond, .highest = 50, .stored = 50, .duplicates = 1}};
-  const Accounting a = Account(made, seen, 9, 2);
+  const SeenByReplay seen =
+      Seen({{.actor = 0,
+             .session = kFirst,
+             .highest = 90,
+             .stored = 80,
+             .rejected = 4,
+             .after_gap = 6,
+             .duplicates = 5},
+            {.actor = 0, .session = kSecond, .highest = 50, .stored = 50, .duplicates = 1}});
+  const Accounting a = Account(made, seen, {.resends = 9, .own_actors = 2});
   EXPECT_TRUE(a.Balances());
   EXPECT_EQ(a.made, 157u);
   EXPECT_EQ(a.stored, 130u);
@@ -42,20 +49,38 @@ TEST(Account, SumsSessionsAndCountsWhatWasLostWithAProcess) {
   EXPECT_THAT(a.Line(), HasSubstr("made 157 = stored 130 + lost with a process 17"));
 }
 
-TEST(Account, CountsWhatAKilledReplayHeldAsLost) {
+TEST(Account, CountsWhatTheMemoryOfAKilledReplayHeldAsLost) {
   const MadeRecords made[] = {{0, kFirst, 12}};
-  const SeenRecords seen[] = {
-      {.actor = 0, .session = kFirst, .highest = 10, .stored = 6, .lost = 4}};
-  const Accounting a = Account(made, seen, 0, 4);
+  const SeenByReplay seen =
+      Seen({{.actor = 0, .session = kFirst, .highest = 10, .stored = 6, .lost = 4}});
+  const Accounting a = Account(made, seen, {.own_actors = 4, .outlives_replay = false});
   EXPECT_TRUE(a.Balances());
   EXPECT_EQ(a.lost_with_process, 2u + 4u);
+  EXPECT_EQ(a.lost_with_replay, 4u);
   EXPECT_EQ(a.made, a.stored + a.lost_with_process + a.rejected + a.after_gap);
+  EXPECT_THAT(a.Line(), HasSubstr("lost with a process 6 (4 of the replay's memory)"));
+}
+
+TEST(Account, WhatTheReplayFileLostIsAFault) {
+  const MadeRecords made[] = {{0, kFirst, 10}};
+  const SeenByReplay seen =
+      Seen({{.actor = 0, .session = kFirst, .highest = 10, .stored = 6, .lost = 4}});
+  EXPECT_THAT(Account(made, seen, {.own_actors = 4}).faults,
+              ElementsAre(HasSubstr("4 records were reported stored in the replay file")));
+}
+
+TEST(Account, HoldsTheSessionsAgainstTheRing) {
+  const MadeRecords made[] = {{0, kFirst, 10}};
+  SeenByReplay seen = Seen({{.actor = 0, .session = kFirst, .highest = 10, .stored = 10}});
+  seen.stored_records = 9;
+  EXPECT_THAT(Account(made, seen, {.own_actors = 4}).faults,
+              ElementsAre(HasSubstr("stored 10 records, but 9 were put into the ring")));
 }
 
 TEST(Account, SaysWhichSessionTheReplayCannotExplain) {
   const MadeRecords made[] = {{3, kFirst, 100}};
-  const SeenRecords seen[] = {{.actor = 3, .session = kFirst, .highest = 100, .stored = 99}};
-  const Accounting a = Account(made, seen, 0, 4);
+  const SeenByReplay seen = Seen({{.actor = 3, .session = kFirst, .highest = 100, .stored = 99}});
+  const Accounting a = Account(made, seen, {.own_actors = 4});
   EXPECT_THAT(a.faults,
               ElementsAre(AllOf(HasSubstr("actor 3"), HasSubstr("= 99"), HasSubstr("up to 100"))));
   EXPECT_THAT(a.Line(), HasSubstr("made 100 ? stored 99"));
@@ -63,62 +88,66 @@ TEST(Account, SaysWhichSessionTheReplayCannotExplain) {
 
 TEST(Account, DoesNotLetAnExcessHideALoss) {
   const MadeRecords made[] = {{0, kFirst, 10}, {1, kFirst, 10}};
-  const SeenRecords seen[] = {{.actor = 0, .session = kFirst, .highest = 10, .stored = 11},
-                              {.actor = 1, .session = kFirst, .highest = 10, .stored = 9}};
-  EXPECT_EQ(Account(made, seen, 0, 4).faults.size(), 2u);
+  const SeenByReplay seen = Seen({{.actor = 0, .session = kFirst, .highest = 10, .stored = 11},
+                                  {.actor = 1, .session = kFirst, .highest = 10, .stored = 9}});
+  EXPECT_EQ(Account(made, seen, {.own_actors = 4}).faults.size(), 2u);
 }
 
 TEST(Account, RefusesRecordsThatNobodyMade) {
-  const SeenRecords seen[] = {{.actor = 0, .session = kFirst, .highest = 5, .stored = 5}};
-  EXPECT_THAT(Account({}, seen, 0, 4).faults, ElementsAre(HasSubstr("but 0 were made")));
+  const SeenByReplay seen = Seen({{.actor = 0, .session = kFirst, .highest = 5, .stored = 5}});
+  EXPECT_THAT(Account({}, seen, {.own_actors = 4}).faults,
+              ElementsAre(HasSubstr("but 0 were made")));
 }
 
 TEST(Account, CountsASessionElsewhereWithoutItsPageAsFarAsTheReplaySaw) {
   const MadeRecords made[] = {{0, kFirst, 10}};
-  const SeenRecords seen[] = {
-      {.actor = 0, .session = kFirst, .highest = 10, .stored = 10},
-      {.actor = 1, .session = kFirst, .highest = 5, .stored = 4, .lost = 1}};
-  const Accounting a = Account(made, seen, 0, 1);
+  const SeenByReplay seen =
+      Seen({{.actor = 0, .session = kFirst, .highest = 10, .stored = 10},
+            {.actor = 1, .session = kFirst, .highest = 5, .stored = 4, .rejected = 1}});
+  const Accounting a = Account(made, seen, {.own_actors = 1});
   EXPECT_TRUE(a.Balances());
   EXPECT_EQ(a.sessions_without_page, 1u);
   EXPECT_EQ(a.made, 15u);
   EXPECT_THAT(a.Line(), HasSubstr("1 session(s) without a counter page"));
-  EXPECT_FALSE(Account(made, seen, 0, 2).Balances()) << "actor 1 is one of our own";
+  EXPECT_FALSE(Account(made, seen, {.own_actors = 2}).Balances()) << "actor 1 is one of our own";
 }
 
 TEST(Account, RefusesASessionListedTwice) {
   const MadeRecords made[] = {{0, kFirst, 5}};
-  const SeenRecords seen[] = {{.actor = 0, .session = kFirst, .highest = 5, .stored = 5},
-                              {.actor = 0, .session = kFirst, .highest = 5, .stored = 5}};
-  EXPECT_FALSE(Account(made, seen, 0, 4).Balances());
+  const SeenByReplay seen = Seen({{.actor = 0, .session = kFirst, .highest = 5, .stored = 5},
+                                  {.actor = 0, .session = kFirst, .highest = 5, .stored = 5}});
+  EXPECT_FALSE(Account(made, seen, {.own_actors = 4}).Balances());
 }
 
-TEST(ReadSeenRecords, ReadsTheFileOfTheReplay) {
+TEST(ReadSeenByReplay, ReadsTheFileOfTheReplay) {
   const TemporaryFolder run;
   WriteFileAtomically(run.path() / "accounting.json",
-                      R"({"schema": "shoal-accounting-1", "sessions": [
+                      R"({"schema": "shoal-accounting-1", "stored_records": 5, "sessions": [
     {"actor": 2, "session": 1700000000000000001, "highest": 9, "stored": 5, "rejected": 1,
      "after_gap": 2, "lost": 1, "duplicates": 4}]})");
-  const auto seen = ReadSeenRecords(run.path());
-  ASSERT_EQ(seen.size(), 1u);
-  EXPECT_EQ(seen[0].actor, 2u);
-  EXPECT_EQ(seen[0].session, kFirst) << "64 bits survive JSON";
-  EXPECT_EQ(seen[0].highest, 9u);
-  EXPECT_EQ(seen[0].stored, 5u);
-  EXPECT_EQ(seen[0].rejected, 1u);
-  EXPECT_EQ(seen[0].after_gap, 2u);
-  EXPECT_EQ(seen[0].lost, 1u);
-  EXPECT_EQ(seen[0].duplicates, 4u);
+  const auto seen = ReadSeenByReplay(run.path());
+  EXPECT_EQ(seen.stored_records, 5u);
+  ASSERT_EQ(seen.sessions.size(), 1u);
+  EXPECT_EQ(seen.sessions[0].actor, 2u);
+  EXPECT_EQ(seen.sessions[0].session, kFirst) << "64 bits survive JSON";
+  EXPECT_EQ(seen.sessions[0].highest, 9u);
+  EXPECT_EQ(seen.sessions[0].stored, 5u);
+  EXPECT_EQ(seen.sessions[0].rejected, 1u);
+  EXPECT_EQ(seen.sessions[0].after_gap, 2u);
+  EXPECT_EQ(seen.sessions[0].lost, 1u);
+  EXPECT_EQ(seen.sessions[0].duplicates, 4u);
 }
 
-TEST(ReadSeenRecords, RefusesABrokenFileByName) {
+TEST(ReadSeenByReplay, RefusesABrokenFileByName) {
   const TemporaryFolder run;
-  EXPECT_THROW(ReadSeenRecords(run.path()), Error);
+  EXPECT_THROW(ReadSeenByReplay(run.path()), Error);
   for (const char* text : {"{", "{}", R"({"schema": "other", "sessions": []})",
-                           R"({"schema": "shoal-accounting-1", "sessions": [{"actor": 1}]})"}) {
+                           R"({"schema": "shoal-accounting-1", "sessions": []})",
+                           R"({"schema": "shoal-accounting-1", "stored_records": 0,
+                               "sessions": [{"actor": 1}]})"}) {
     WriteFileAtomically(run.path() / "accounting.json", text);
     try {
-      ReadSeenRecords(run.path());
+      ReadSeenByReplay(run.path());
       ADD_FAILURE() << text;
     } catch (const Error& e) {
       EXPECT_THAT(e.what(), HasSubstr("accounting.json"));

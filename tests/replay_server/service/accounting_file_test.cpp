@@ -24,9 +24,10 @@ TEST(AccountingFile, ListsEverySessionWithItsCounters) {
                    .lost = 3,
                    .duplicates = 4});
   table.Add(2, 5);
-  EXPECT_EQ(nlohmann::json::parse(AccountingJson(table, 12)), nlohmann::json::parse(R"({
+  EXPECT_EQ(nlohmann::json::parse(AccountingJson(table, 12, 14)), nlohmann::json::parse(R"({
     "schema": "shoal-accounting-1",
     "stored_steps": 12,
+    "stored_records": 14,
     "sessions": [
       {"actor": 1, "session": 1700000000000000001, "highest": 20, "stored": 14, "rejected": 1,
        "after_gap": 2, "lost": 3, "duplicates": 4},
@@ -38,7 +39,7 @@ TEST(AccountingFile, TellsALaterServerHowManyStepsWereStored) {
   const TemporaryFolder folder;
   std::vector<StoredSession> storage(4);
   EXPECT_EQ(StoredStepsBefore(folder.path()), 0u);
-  ReplaceFile(folder.path() / kAccountingFile, AccountingJson(SessionTable(storage), 1234));
+  ReplaceFile(folder.path() / kAccountingFile, AccountingJson(SessionTable(storage), 1234, 1250));
   EXPECT_EQ(StoredStepsBefore(folder.path()), 1234u);
   for (const char* damaged :
        {"", "{", "{}", R"({"schema": "shoal-accounting-2"})", R"({"schema": "shoal-accounting-1"})",
