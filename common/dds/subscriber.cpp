@@ -81,6 +81,7 @@ struct Subscriber<M>::Impl {
     const TopicSettings& settings = Topic<M>::kSettings;
     const ListenerHandle listener = MakeListener<M>(this);
     dds_lset_data_available(listener.get(), &Impl::OnData);
+    callbacks.store(0, std::memory_order_release);
     reader = Entity(dds_create_reader(bus.impl().Participant(settings.plane), topic.get(),
                                       MakeQos(settings).get(), listener.get()),
                     std::string("reader of topic ") + settings.name);
@@ -96,6 +97,7 @@ struct Subscriber<M>::Impl {
   // An exception from the callback would unwind through C: noexcept makes it end the process.
   static void OnData(dds_entity_t handle, void* argument) noexcept {
     auto* self = static_cast<Impl*>(argument);
+    (void)self->callbacks.load(std::memory_order_acquire);
     const auto deliver = [self](bool well_formed, const M& message) {
       self->Deliver(well_formed, message);
     };
@@ -119,8 +121,8 @@ struct Subscriber<M>::Impl {
 
   std::function<void(const M&)> on_message;
   std::atomic<uint64_t> malformed{0};
-  // That they have run. Cyclone orders them before the destructor by a lock of its own, which the
-  // thread sanitizer cannot see.
+  // How often OnData has run. Orders it after the constructor and before the destructor: Cyclone
+  // does so by locks of its own, which the thread sanitizer cannot see.
   std::atomic<uint64_t> callbacks{0};
   Entity topic;
   Entity reader;
