@@ -42,7 +42,10 @@ void ReadMeta(const std::filesystem::path& run, RunListing* listing) {
   meta.at("updates").get_to(listing->updates);
   meta.at("wall_seconds").get_to(listing->wall_seconds);
   if (const json& best = meta.at("best"); best.is_object()) {
-    listing->best_success = best.at("success_rate").get<double>();
+    // Null for a task that knows no success.
+    if (const json& rate = best.at("success_rate"); !rate.is_null()) {
+      listing->best_success = rate.get<double>();
+    }
   }
   if (const json& last = meta.at("final_success_rate"); last.is_number()) {
     listing->final_success = last.get<double>();

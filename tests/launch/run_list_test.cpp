@@ -62,6 +62,16 @@ TEST_F(RunListTest, StatusIsOfTheLockFirstAndOfTheRecordedEndThen) {
   }
 }
 
+TEST_F(RunListTest, ARunOfATaskWithoutSuccessIsListed) {
+  RunMeta meta;
+  meta.exit = "budget";
+  meta.best = EvaluationPoint{.success = std::nullopt, .mean_return = 400};
+  WriteRunMeta(Begin("hopper", "").path(), Config{}, meta);
+  const RunListing run = Only("hopper");
+  EXPECT_EQ(run.status, RunStatus::kFinished) << run.problem;
+  EXPECT_EQ(run.best_success, std::nullopt);
+}
+
 TEST_F(RunListTest, ABrokenRunIsListedAndHidesNoOther) {
   Begin("a", "target");
   Begin("b", "budget");
