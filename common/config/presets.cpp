@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -27,6 +28,18 @@ std::vector<fs::path> PresetFolders() {
   return folders;
 }
 
+// Says of each folder why nothing was found there.
+[[noreturn]] void FailWithoutPresets() {
+  std::string reasons;
+  for (const fs::path& folder : PresetFolders()) {
+    std::error_code error;
+    const fs::directory_iterator contents(folder, error);
+    fmt::format_to(std::back_inserter(reasons), "{}{} ({})", reasons.empty() ? "" : ", ",
+                   folder.string(), error ? error.message() : "holds none");
+  }
+  throw RuntimeError("found no presets; looked in {}", reasons);
+}
+
 }  // namespace
 
 std::vector<std::string> ListPresets() {
@@ -42,6 +55,7 @@ std::vector<std::string> ListPresets() {
 
 std::string FindPreset(const std::string& name) {
   const std::vector<std::string> known = ListPresets();
+  if (known.empty()) FailWithoutPresets();
   // Only listed names: a name with '/' must not reach outside the folders.
   if (std::ranges::find(known, name) != known.end()) {
     for (const fs::path& folder : PresetFolders()) {

@@ -79,34 +79,42 @@ TEST(Surroundings, ADiskThatFillsUpEndsTheRunAndLeavesWhatIsThereUsable) {
   EXPECT_GE(meta.at("env_steps").get<int64_t>(), 6000);
 }
 
+// `shoal` as a user whom permissions hold back: root, who may do anything, runs it as nobody. From
+// a copy of the program and the presets, for nobody may not look into root's checkout.
+ProgramResult RunAsCommonUser(const fs::path& folder, std::vector<std::string> words) {
+  fs::permissions(folder, fs::perms::all);
+  fs::create_directory(folder / "bin");
+  for (const char* program : {"shoal", "shoal-actor", "shoal-replay", "shoal-learner"}) {
+    fs::copy_file(fs::path(SHOAL_BIN) / program, folder / "bin" / program);
+  }
+  fs::copy(SHOAL_PRESETS, folder / "bin" / "presets");
+  words.insert(words.begin(), (folder / "bin" / "shoal").string());
+  if (geteuid() == 0) {
+    words.insert(words.begin(),
+                 {"/usr/bin/setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"});
+  }
+  return RunCommand(std::move(words), seconds(60), {{"TMPDIR", folder.string()}});
+}
+
 TEST(Surroundings, AFolderThatMayNotBeWrittenIsNamed) {
   const TemporaryFolder folder;
   const fs::path locked = folder.path() / "locked";
   fs::create_directory(locked);
-  fs::permissions(folder.path(), fs::perms::all);
   fs::permissions(locked, fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read |
                               fs::perms::others_exec);
-  launch::ProcessSpec spec;
-  spec.role = "test";
-  spec.output = folder.path() / "out";
-  spec.errors = folder.path() / "err";
-  spec.environment = {{"TMPDIR", folder.path().string()}};
-  // Root may write anywhere: the program then runs as nobody.
-  if (geteuid() == 0) {
-    spec.command = {"/usr/bin/setpriv", "--reuid=65534", "--regid=65534", "--clear-groups"};
-  }
-  for (const std::string& word :
-       {std::string(SHOAL_BIN) + "/shoal", std::string("train"), std::string("--preset"),
-        std::string("fetch-reach-state"), std::string("--set"), "run_dir=" + locked.string()}) {
-    spec.command.push_back(word);
-  }
-  const auto status = launch::RunToEnd(spec, seconds(60), [] { return false; });
-  ASSERT_TRUE(status);
-  EXPECT_EQ(status->code, 1);
-  const std::string error = ReadFile(spec.errors);
-  EXPECT_THAT(error, AllOf(HasSubstr("cannot create folder"), HasSubstr(locked.string()),
+  ExpectOneErrorLine(RunAsCommonUser(folder.path(), {"train", "--preset", "fetch-reach-state",
+                                                     "--set", "run_dir=" + locked.string()}),
+                     AllOf(HasSubstr("cannot create folder"), HasSubstr(locked.string()),
                            HasSubstr("Permission denied")));
-  EXPECT_EQ(std::count(error.begin(), error.end(), '\n'), 1) << error;
+}
+
+TEST(Surroundings, WithoutAnyPresetTheFoldersAreNamed) {
+  SHOAL_NEEDS(OwnMounts());
+  const SmallDisk disk(SHOAL_PRESETS, "1m");
+  SHOAL_NEEDS(disk.why_not());
+  ExpectOneErrorLine(RunProgram({"shoal", "train", "--preset", "fetch-reach-state"}, seconds(60)),
+                     AllOf(HasSubstr("found no presets"), HasSubstr("bin/presets (No such file"),
+                           HasSubstr(std::string(SHOAL_PRESETS) + " (holds none)")));
 }
 
 TEST(Surroundings, AReadOnlyDiskIsNamed) {

@@ -4,6 +4,7 @@
 #include <chrono>
 #include <filesystem>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/base/files.h"
@@ -18,13 +19,14 @@ struct ProgramResult {
   std::string out, err;
 };
 
-// command[0] is a program's name in the build's bin folder.
-inline ProgramResult RunProgram(std::vector<std::string> command, std::chrono::seconds deadline) {
+// command[0] is a path; `environment` is set besides the test's own.
+inline ProgramResult RunCommand(std::vector<std::string> command, std::chrono::seconds deadline,
+                                std::vector<std::pair<std::string, std::string>> environment = {}) {
   const TemporaryFolder folder;
   launch::ProcessSpec spec;
   spec.role = "test";
-  command[0] = std::string(SHOAL_BIN) + "/" + command[0];
   spec.command = std::move(command);
+  spec.environment = std::move(environment);
   spec.output = folder.path() / "out";
   spec.errors = folder.path() / "err";
   const auto status = launch::RunToEnd(spec, deadline, [] { return false; });
@@ -34,6 +36,12 @@ inline ProgramResult RunProgram(std::vector<std::string> command, std::chrono::s
   result.out = ReadFile(spec.output);
   result.err = ReadFile(spec.errors);
   return result;
+}
+
+// command[0] is a program's name in the build's bin folder.
+inline ProgramResult RunProgram(std::vector<std::string> command, std::chrono::seconds deadline) {
+  command[0] = std::string(SHOAL_BIN) + "/" + command[0];
+  return RunCommand(std::move(command), deadline);
 }
 
 // Exit code, or -1 when it was killed or did not end.
