@@ -212,7 +212,7 @@ std::span<const Key> Keys() {
 }
 
 std::string Expected(const Key& key) {
-  const std::string rule = std::visit(RuleText{}, key.rule);
+  std::string rule = std::visit(RuleText{}, key.rule);
   if (std::holds_alternative<Choices>(key.rule)) return rule;
   Config scratch;
   const std::string type =

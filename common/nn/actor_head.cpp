@@ -31,7 +31,7 @@ void ActorHead::Forward(const float* vector) {
   for (int b = 0; b < batch_; ++b) {
     const float* output = mlp_.output() + int64_t(b) * 2 * action_size_;
     for (int j = 0; j < action_size_; ++j) {
-      const size_t at = size_t(b * action_size_ + j);
+      const size_t at = size_t(b) * size_t(action_size_) + size_t(j);
       mean_[at] = output[j];
       log_std_[at] = kLogStdLow + kLogStdHalfRange * (std::tanh(output[action_size_ + j]) + 1);
     }
@@ -43,7 +43,7 @@ void ActorHead::Backward(const float* mean_gradient, const float* log_std_gradie
   for (int b = 0; b < batch_; ++b) {
     float* gradient = output_gradient_.data() + int64_t(b) * 2 * action_size_;
     for (int j = 0; j < action_size_; ++j) {
-      const size_t at = size_t(b * action_size_ + j);
+      const size_t at = size_t(b) * size_t(action_size_) + size_t(j);
       const float t = (log_std_[at] - kLogStdLow) / kLogStdHalfRange - 1;
       gradient[j] = mean_gradient[at];
       gradient[action_size_ + j] = log_std_gradient[at] * kLogStdHalfRange * (1 - t * t);
