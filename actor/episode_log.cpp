@@ -1,5 +1,7 @@
 #include "actor/episode_log.h"
 
+#include <cmath>
+
 namespace shoal::actor {
 
 void EpisodeLog::Add(const EpisodeFigures& figures) {
@@ -23,7 +25,7 @@ EpisodeFigures EpisodeLog::Mean() const {
       mean.drawn_masses[i].mass_kg += figures.drawn_masses[i].mass_kg / n;
     }
   }
-  mean.length = static_cast<int>(length + 0.5);
+  mean.length = static_cast<int>(std::lround(length));
   return mean;
 }
 

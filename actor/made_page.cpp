@@ -47,6 +47,7 @@ std::vector<PageContent> ReadPages(const std::filesystem::path& run) {
   }
   std::sort(paths.begin(), paths.end());
   std::vector<PageContent> pages;
+  pages.reserve(paths.size());
   for (const auto& path : paths) pages.push_back(ReadPage(path));
   return pages;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "actor/evaluation.h"
 #include "common/base/error.h"
@@ -18,11 +19,8 @@ constexpr double kThresholds[] = {0.01, 0.02, 0.03, 0.05, 0.075, 0.1, 0.15, 0.2,
 ordered_json SuccessByThreshold(const tasks::Task& task,
                                 const std::vector<EpisodeResult>& episodes) {
   if (task.goal_size() == 0) return nullptr;
-  std::vector<double> thresholds(std::begin(kThresholds), std::end(kThresholds));
-  thresholds.push_back(task.distance_threshold());
-  std::ranges::sort(thresholds);
-  const auto repeats = std::ranges::unique(thresholds);
-  thresholds.erase(repeats.begin(), repeats.end());
+  std::set<double> thresholds(std::begin(kThresholds), std::end(kThresholds));
+  thresholds.insert(task.distance_threshold());
   ordered_json curve = ordered_json::array();
   for (const double threshold : thresholds) {
     const auto successes = std::ranges::count_if(

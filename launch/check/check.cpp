@@ -30,7 +30,6 @@ Needs NeedsOf(const Config& config) {
   const replay::RingGeometry geometry(spec, static_cast<uint64_t>(config.replay.capacity));
   needs.ring_bytes = geometry.total_bytes();
   needs.batch_bytes = BatchLayout(spec, config.learner.batch).total_bytes();
-  needs.flight_bytes = needs.batch_bytes * static_cast<uint64_t>(config.learner.request_credits);
   // Actors, evaluation actor, learner, replay, coordinator.
   needs.process_bytes = kBytesPerProcess * static_cast<uint64_t>(UsableCores() + 4);
   return needs;
@@ -74,7 +73,7 @@ std::vector<CheckLine> CheckMachine(const CheckRequest& request,
     const replay::MemoryRoom room = replay::AvailableMemory();
     return JudgeMemory(room.bytes, room.source, needs);
   });
-  look("shared memory", "", [&] { return LookAtSharedMemory("/dev/shm", needs); });
+  look("shared memory", "", [&] { return LookAtSharedMemory("/dev/shm"); });
   look("training", "run the tests (./run test) to see which part fails", [&] {
     const ScratchFolder folder(ExistingFolder(request.run_dir));
     return JudgeTraining(ProbeTraining(config, folder.path(), kUpdates));

@@ -1,6 +1,5 @@
 #include "launch/check/machine_lines.h"
 
-#include <fcntl.h>
 #include <sys/statvfs.h>
 #include <unistd.h>
 
@@ -99,28 +98,12 @@ CheckLine JudgeMemory(uint64_t available, const std::string& source, const Needs
   return line;
 }
 
-CheckLine LookAtSharedMemory(const fs::path& folder, const Needs& needs) {
-  CheckLine line{"shared memory", Verdict::kOk, "", ""};
-  std::string name = (folder / "shoal-check-XXXXXX").string();
-  const int file = mkostemp(name.data(), O_CLOEXEC);
-  // A reservation that goes at once.
-  const int error =
-      file < 0 ? errno : posix_fallocate(file, 0, static_cast<off_t>(needs.flight_bytes));
-  if (file >= 0) {
-    close(file);
-    unlink(name.c_str());
-  }
-  if (error == 0) {
-    line.finding =
-        fmt::format("{:.0f} MB free in '{}', all batches in flight would take {:.0f} MB",
-                    Megabytes(FreeBytes(folder)), folder.string(), Megabytes(needs.flight_bytes));
-    return line;
-  }
-  line.verdict = Verdict::kWarn;
-  line.finding = fmt::format("no {:.0f} MB to be had in '{}': {}", Megabytes(needs.flight_bytes),
-                             folder.string(), std::strerror(error));
-  line.advice = "mount a larger one (a container's --shm-size=256m)";
-  return line;
+CheckLine LookAtSharedMemory(const fs::path& folder) {
+  const std::string room =
+      fs::is_directory(folder)
+          ? fmt::format("{:.0f} MB free in '{}'", Megabytes(FreeBytes(folder)), folder.string())
+          : fmt::format("no '{}'", folder.string());
+  return {"shared memory", Verdict::kOk, room + "; none is needed, batches come over loopback", ""};
 }
 
 }  // namespace shoal::launch

@@ -19,7 +19,6 @@ CheckLine JudgeCores(const CoreLimits& limits);
 struct Needs {
   uint64_t ring_bytes = 0;     // of the replay, a file in the run folder
   uint64_t batch_bytes = 0;    // of one batch
-  uint64_t flight_bytes = 0;   // of all batches asked for ahead
   uint64_t process_bytes = 0;  // of memory for all processes, without the ring
 };
 
@@ -32,7 +31,7 @@ std::filesystem::path ExistingFolder(const std::filesystem::path& path);
 // `available`: bytes, limited by `source`. The ring's pages want to stay in memory.
 CheckLine JudgeMemory(uint64_t available, const std::string& source, const Needs& needs);
 
-// Shared memory: `folder` ("/dev/shm") takes a mapped file of all batches in flight.
-CheckLine LookAtSharedMemory(const std::filesystem::path& folder, const Needs& needs);
+// Room in `folder` ("/dev/shm"), told because people look for it: no process needs any.
+CheckLine LookAtSharedMemory(const std::filesystem::path& folder);
 
 }  // namespace shoal::launch

@@ -38,7 +38,8 @@ CheckLine JudgePicture(const std::string& camera, double share) {
 
 CheckLine LookAtPictures(const Config& config) {
   const ObservationConfig& observation = config.observation;
-  const auto world = worlds::MakeWorld(tasks::FindTask(config.task).world(), {config.model, config.physics});
+  const auto world =
+      worlds::MakeWorld(tasks::FindTask(config.task).world(), {config.model, config.physics});
   std::string shares;
   for (const std::string& camera : observation.cameras) {
     const CheckLine line =

@@ -40,7 +40,8 @@ void BatchGather::GatherStack(uint64_t id, Shift shift, uint8_t* out) const {
 void BatchGather::Gather(const BatchPlan& plan, const BatchView& out) const {
   const RecordLayout& layout = ring_.layout();
   const size_t batch = plan.elements.size();
-  const size_t stack_bytes = static_cast<size_t>(layout.frame_bytes() * stack_);
+  const size_t stack_bytes =
+      static_cast<size_t>(layout.frame_bytes()) * static_cast<size_t>(stack_);
   const size_t vector_size = static_cast<size_t>(layout.vector_size());
   const size_t action_size = static_cast<size_t>(layout.action_size());
   CHECK(out.reward.size() == batch && out.obs_frames.size() == batch * stack_bytes &&

@@ -1,5 +1,7 @@
 #include "actor/worlds/tools/cross_version_file.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <optional>
 
@@ -108,7 +110,7 @@ CrossVersionFile ReadCrossVersions(const std::filesystem::path& path, const std:
       if (FindActions(path, &sequence)) {
         file.sequences.push_back(std::move(sequence));
       } else {
-        file.left_out.push_back(task + " " + name);
+        file.left_out.push_back(fmt::format("{} {}", task, name));
       }
     }
   }

@@ -46,6 +46,7 @@ JointOrder FindJoints(const World& world, const std::vector<std::string>& names)
 
 std::vector<double> Pick(const double* values, const std::vector<size_t>& order) {
   std::vector<double> picked;
+  picked.reserve(order.size());
   for (const size_t index : order) picked.push_back(values[index]);
   return picked;
 }

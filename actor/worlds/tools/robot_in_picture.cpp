@@ -59,6 +59,7 @@ double RobotShare(World* world, const std::string& prefix, const std::string& ca
   };
   const Picture with = draw();
   std::vector<float> alpha;
+  alpha.reserve(geoms.size());
   for (const int geom : geoms) alpha.push_back(std::exchange(model.geom_rgba[4 * geom + 3], 0.0f));
   const Picture without = draw();
   for (size_t i = 0; i < geoms.size(); ++i) model.geom_rgba[4 * geoms[i] + 3] = alpha[i];
