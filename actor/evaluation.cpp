@@ -2,14 +2,15 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "actor/environments.h"
 #include "actor/frame_stack.h"
 #include "actor/other_task.h"
 #include "common/base/build_info.h"
 #include "common/base/error.h"
-#include "common/base/files.h"
 #include "common/base/stop.h"
+#include "common/checkpoint/checkpoint_files.h"
 #include "common/tasks/task_registry.h"
 
 namespace shoal::actor {
@@ -171,25 +172,16 @@ ordered_json EvaluateCheckpoint(const std::filesystem::path& run_folder,
                                 const std::string& task) {
   const RunConfig trained = ReadRunConfig(run_folder);
   const RunConfig run = task.empty() ? trained : WithTask(trained, task);
-  const std::filesystem::path policy = checkpoint / "policy.safetensors";
-  ReceivedWeights weights;
-  weights.payload = ReadFile(policy);
-  EvaluationLabel label{.policy = "checkpoint",
-                        .checkpoint = checkpoint.filename().string(),
-                        .version = {},
-                        .env_steps = 0};
-  try {
-    const auto state = nlohmann::json::parse(ReadFile(checkpoint / "state.json"));
-    label.version = {state.at("session").get<uint64_t>(), state.at("updates").get<uint64_t>()};
-    label.env_steps = state.at("env_steps").get<uint64_t>();
-  } catch (const nlohmann::json::exception& e) {
-    throw RuntimeError("'{}': {}", (checkpoint / "state.json").string(), e.what());
-  }
-  weights.version = label.version;
-  weights.checkpoint = label.checkpoint;
-
+  CheckpointFiles files = ReadCheckpointFiles(checkpoint, trained.spec.Hash());
+  const EvaluationLabel label{.policy = "checkpoint",
+                              .checkpoint = checkpoint.filename().string(),
+                              .version = {files.state.learner_session, files.state.updates},
+                              .env_steps = files.state.env_steps};
   Evaluator evaluator(run);
-  evaluator.selector().Load(weights);
+  evaluator.selector().Load({.version = label.version,
+                             .env_steps = label.env_steps,
+                             .checkpoint = label.checkpoint,
+                             .payload = std::move(files.policy)});
   const EpisodeStream stream{seed, StreamRole::kFinalEnvironment, 0};
   const std::vector<EpisodeResult> results = evaluator.Play(episodes, stream, StopRequested);
   if (results.empty()) throw RuntimeError("evaluation of '{}' interrupted", checkpoint.string());

@@ -11,6 +11,7 @@
 
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/checkpoint/checkpoint_files.h"
 
 namespace shoal::launch {
 namespace {
@@ -92,6 +93,7 @@ void KeepAsBest(const fs::path& run, const std::string& name) {
   if (!fs::is_directory(source)) {
     throw RuntimeError("checkpoint '{}' is gone: it cannot be kept as the best", source.string());
   }
+  ReadCheckpointFiles(source);  // refuses what is not whole
   MakeFolders(fresh);
   for (const auto& entry : fs::directory_iterator(source)) {
     WriteFileAtomically(fresh / entry.path().filename(), ReadFile(entry.path()));

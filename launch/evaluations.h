@@ -22,7 +22,8 @@ EvaluationPoint StoreEvaluation(const std::filesystem::path& run, const EvalMess
 std::vector<EvaluationPoint> ReadEvaluations(const std::filesystem::path& run);
 
 // Makes checkpoints/best a copy of checkpoints/NAME; a reader finds the old one or the new one,
-// whole. Throws Error when NAME is gone or the disk is full; the old best is then still there.
+// whole. Throws Error when NAME is gone, cut short or altered, or the
+// disk is full; the old best is then still there.
 void KeepAsBest(const std::filesystem::path& run, const std::string& name);
 
 }  // namespace shoal::launch

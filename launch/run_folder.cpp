@@ -4,12 +4,13 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <charconv>
 #include <cstring>
+#include <optional>
 #include <utility>
 
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/checkpoint/checkpoint_files.h"
 
 namespace shoal::launch {
 namespace {
@@ -34,16 +35,6 @@ void Remove(const fs::path& path) {
   }
   fs::remove_all(path, error);
   if (error) throw RuntimeError("cannot remove '{}': {}", path.string(), error.message());
-}
-
-// The N of "step_N"; -1 when the name is another.
-int64_t StepOf(const std::string& name) {
-  constexpr std::string_view kPrefix = "step_";
-  int64_t step = -1;
-  if (!name.starts_with(kPrefix)) return -1;
-  const char* end = name.data() + name.size();
-  const auto [stop, error] = std::from_chars(name.data() + kPrefix.size(), end, step);
-  return error == std::errc() && stop == end ? step : -1;
 }
 
 struct flock WholeFile(short type) {
@@ -122,13 +113,13 @@ fs::path LogFile(const fs::path& run, const std::string& process) {
 
 fs::path NewestCheckpoint(const fs::path& run) {
   fs::path newest;
-  int64_t newest_step = -1;
+  std::optional<uint64_t> newest_updates;
   std::error_code error;
   for (fs::directory_iterator it(run / "checkpoints", error), end; !error && it != end;
        it.increment(error)) {
-    const int64_t step = StepOf(it->path().filename());
-    if (step > newest_step) {
-      newest_step = step;
+    const std::optional<uint64_t> updates = CheckpointUpdates(it->path().filename());
+    if (updates > newest_updates) {
+      newest_updates = updates;
       newest = it->path();
     }
   }

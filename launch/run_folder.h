@@ -40,7 +40,7 @@ bool IsHeld(const std::filesystem::path& run);
 
 // logs/PROCESS.log of a run.
 std::filesystem::path LogFile(const std::filesystem::path& run, const std::string& process);
-// The newest checkpoints/step_N; empty path when there is none.
+// The newest of checkpoints/ by its name; empty path when there is none.
 std::filesystem::path NewestCheckpoint(const std::filesystem::path& run);
 
 }  // namespace shoal::launch

@@ -1,193 +1,28 @@
 #include "learner/checkpoint.h"
 
-#include <fcntl.h>
-#include <fmt/core.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <cerrno>
-#include <charconv>
-#include <cstdio>
-#include <cstring>
+#include <map>
 #include <nlohmann/json.hpp>
-
-#include "common/base/crc32.h"
-#include "common/base/error.h"
-#include "common/base/files.h"
+#include <string>
 
 namespace shoal::learner {
-namespace {
 
-namespace fs = std::filesystem;
-using nlohmann::ordered_json;
-
-constexpr char kSchema[] = "shoal-checkpoint-1";
-constexpr char kPrefix[] = "step_";
-constexpr char kLearnerFile[] = "learner.safetensors";
-constexpr char kPolicyFile[] = "policy.safetensors";
-constexpr char kStateFile[] = "state.json";
-
-uint32_t Crc(std::string_view bytes) {
-  return Crc32({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
-}
-
-// Hashes are hexadecimal strings: many JSON readers take numbers as doubles.
-std::string Hex64(uint64_t word) { return fmt::format("{:016x}", word); }
-
-uint64_t ParseHex64(const ordered_json& value) {
-  const auto& text = value.get_ref<const std::string&>();
-  uint64_t word = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), word, 16);
-  if (error != std::errc() || end != text.data() + text.size()) {
-    throw RuntimeError("'{}' is not a hexadecimal number", text);
-  }
-  return word;
-}
-
-ordered_json FileEntry(const std::string& bytes) {
-  return {{"bytes", bytes.size()}, {"crc32", Crc(bytes)}};
-}
-
-ordered_json ToJson(const CheckpointState& state) {
-  return {{"schema", kSchema},
-          {"updates", state.updates},
-          {"env_steps", state.env_steps},
-          {"request", state.request},
-          {"session", state.learner_session},
-          {"config_hash", Hex64(state.config_hash)},
-          {"spec_hash", Hex64(state.spec_hash)},
-          {"precision", state.precision}};
-}
-
-CheckpointState StateFromJson(const ordered_json& json) {
-  CheckpointState state;
-  json.at("updates").get_to(state.updates);
-  json.at("env_steps").get_to(state.env_steps);
-  json.at("request").get_to(state.request);
-  json.at("session").get_to(state.learner_session);
-  state.config_hash = ParseHex64(json.at("config_hash"));
-  state.spec_hash = ParseHex64(json.at("spec_hash"));
-  json.at("precision").get_to(state.precision);
-  return state;
-}
-
-// The object of state.json with schema and own checksum verified.
-ordered_json ReadStateObject(const fs::path& path) {
-  const std::string file = path.string();
-  ordered_json json = ordered_json::parse(ReadFile(path), nullptr, /*allow_exceptions=*/false);
-  if (!json.is_object()) throw RuntimeError("'{}': not a JSON object (truncated?)", file);
-  const auto schema = json.find("schema");
-  if (schema == json.end() || *schema != kSchema) {
-    throw RuntimeError("'{}': schema {}, expected \"{}\"", file,
-                       schema == json.end() ? "missing" : schema->dump(), kSchema);
-  }
-  const auto stored = json.find("crc32");
-  if (stored == json.end() || !stored->is_number_unsigned()) {
-    throw RuntimeError("'{}': key 'crc32' missing", file);
-  }
-  const auto expected = stored->get<uint64_t>();
-  json.erase("crc32");
-  const uint32_t found = Crc(json.dump());
-  if (found != expected) {
-    throw RuntimeError("'{}': CRC-32 {:08x}, expected {:08x}: the file was altered", file, found,
-                       expected);
-  }
-  return json;
-}
-
-// The bytes of FOLDER/NAME, of the size and checksum that state.json gives.
-std::string ReadVerified(const fs::path& folder, const char* name, const ordered_json& entry) {
-  const std::string file = (folder / name).string();
-  std::string bytes = ReadFile(file);
-  if (bytes.size() != entry.at("bytes").get<uint64_t>()) {
-    throw RuntimeError("'{}': {} bytes, expected {}: truncated or replaced", file, bytes.size(),
-                       entry.at("bytes").get<uint64_t>());
-  }
-  const uint32_t found = Crc(bytes), expected = entry.at("crc32").get<uint32_t>();
-  if (found != expected) {
-    throw RuntimeError("'{}': CRC-32 {:08x}, expected {:08x}: the file was altered", file, found,
-                       expected);
-  }
-  return bytes;
-}
-
-// Moves `from` to `to`; what was there before is then at `from`.
-void MoveOver(const fs::path& from, const fs::path& to) {
-  if (rename(from.c_str(), to.c_str()) == 0) return;
-  if ((errno == ENOTEMPTY || errno == EEXIST) &&
-      renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_EXCHANGE) == 0) {
-    return;
-  }
-  throw RuntimeError("cannot rename '{}' to '{}': {}", from.string(), to.string(),
-                     std::strerror(errno));
-}
-
-}  // namespace
-
-std::string CheckpointName(uint64_t updates) { return fmt::format("{}{:09}", kPrefix, updates); }
-
-std::optional<uint64_t> CheckpointUpdates(const std::string& name) {
-  if (!name.starts_with(kPrefix)) return std::nullopt;
-  const char* begin = name.data() + sizeof kPrefix - 1;
-  const char* end = name.data() + name.size();
-  uint64_t updates = 0;
-  const auto [parsed, error] = std::from_chars(begin, end, updates);
-  if (error != std::errc() || parsed != end || CheckpointName(updates) != name) {
-    return std::nullopt;
-  }
-  return updates;
-}
-
-void WriteCheckpoint(const fs::path& parent, const CheckpointState& state,
+void WriteCheckpoint(const std::filesystem::path& parent, const CheckpointState& state,
                      const nn::TensorMap& learner, const nn::TensorMap& policy,
-                     const ordered_json& meta) {
-  const std::string name = CheckpointName(state.updates);
-  const fs::path fresh = parent / fmt::format(".{}.tmp-{}", name, getpid());
+                     const nlohmann::ordered_json& meta) {
   const std::map<std::string, std::string> metadata{{"format", "shoal"},
                                                     {"updates", std::to_string(state.updates)}};
-  const std::string learner_bytes = nn::WriteSafetensors(learner, metadata);
-  const std::string policy_bytes = nn::WriteSafetensors(policy, metadata);
-  ordered_json json = ToJson(state);
-  json["files"] = {{kLearnerFile, FileEntry(learner_bytes)},
-                   {kPolicyFile, FileEntry(policy_bytes)}};
-  json["crc32"] = Crc(json.dump());
-  std::error_code ignored;
-  fs::remove_all(fresh, ignored);
-  try {
-    MakeFolders(fresh);
-    WriteFileAtomically(fresh / kLearnerFile, learner_bytes);
-    WriteFileAtomically(fresh / kPolicyFile, policy_bytes);
-    WriteFileAtomically(fresh / kStateFile, json.dump(2) + "\n");
-    WriteFileAtomically(fresh / ".meta.json", meta.dump(2) + "\n");
-    MoveOver(fresh, parent / name);
-    SyncFolder(parent);
-  } catch (...) {
-    fs::remove_all(fresh, ignored);
-    throw;
-  }
-  fs::remove_all(fresh, ignored);  // a former checkpoint of the name, if there was one
+  WriteCheckpointFiles(parent,
+                       {.state = state,
+                        .learner = nn::WriteSafetensors(learner, metadata),
+                        .policy = nn::WriteSafetensors(policy, metadata)},
+                       meta);
 }
 
-Checkpoint ReadCheckpoint(const fs::path& folder, uint64_t spec_hash) {
-  const fs::path state_file = folder / kStateFile;
-  const ordered_json json = ReadStateObject(state_file);
-  Checkpoint checkpoint;
-  checkpoint.folder = folder;
-  std::string learner_bytes;
-  try {
-    checkpoint.state = StateFromJson(json);
-    const ordered_json& files = json.at("files");
-    learner_bytes = ReadVerified(folder, kLearnerFile, files.at(kLearnerFile));
-    ReadVerified(folder, kPolicyFile, files.at(kPolicyFile));
-  } catch (const ordered_json::exception& e) {
-    throw RuntimeError("'{}': {}", state_file.string(), e.what());
-  }
-  if (checkpoint.state.spec_hash != spec_hash) {
-    throw RuntimeError("'{}': observation spec {:016x}, expected this run's {:016x}",
-                       state_file.string(), checkpoint.state.spec_hash, spec_hash);
-  }
-  checkpoint.tensors = nn::ReadSafetensors(learner_bytes, (folder / kLearnerFile).string());
-  return checkpoint;
+Checkpoint ReadCheckpoint(const std::filesystem::path& folder, uint64_t spec_hash) {
+  const CheckpointFiles files = ReadCheckpointFiles(folder, spec_hash);
+  return {.state = files.state,
+          .tensors = nn::ReadSafetensors(files.learner, (folder / "learner.safetensors").string()),
+          .folder = folder};
 }
 
 }  // namespace shoal::learner

@@ -1,36 +1,14 @@
-// One checkpoint: a folder step_UPDATES (nine digits) with
-//
-//   learner.safetensors  everything an exact resume needs
-//   policy.safetensors   what an actor needs, F32
-//   state.json           schema shoal-checkpoint-1: counters, session, hashes, precision, size and
-//                        CRC-32 of both files, and a CRC-32 of itself
-//   .meta.json           schema shoal-checkpoint-meta-1: where it comes from, for people and tools
-//
-// It appears whole or not at all: written as a folder of another name, every file synced, renamed,
-// the parent folder synced.
+// A checkpoint as the learner sees it: its files (common/checkpoint) with the tensors in them.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
-#include <string>
 
+#include "common/checkpoint/checkpoint_files.h"
 #include "common/nn/safetensors.h"
 
 namespace shoal::learner {
-
-struct CheckpointState {
-  uint64_t updates = 0;
-  uint64_t env_steps = 0;        // stored in the replay when the last batch was drawn
-  uint64_t request = 0;          // of that batch
-  uint64_t learner_session = 0;  // that wrote it
-  uint64_t config_hash = 0;      // of the run's resolved configuration
-  uint64_t spec_hash = 0;        // of the observation spec
-  std::string precision;         // "f32" | "bf16": of the products; parameters are F32 either way
-
-  bool operator==(const CheckpointState&) const = default;
-};
 
 struct Checkpoint {
   CheckpointState state;
@@ -38,20 +16,12 @@ struct Checkpoint {
   std::filesystem::path folder;
 };
 
-// "step_000002000"
-std::string CheckpointName(uint64_t updates);
-// The number of updates in such a name; none for any other name.
-std::optional<uint64_t> CheckpointUpdates(const std::string& name);
-
-// Writes PARENT/step_UPDATES, in place of one of that name. `meta` becomes .meta.json. Throws Error
-// naming the file (disk full, not writable); then nothing is left behind and a former checkpoint of
-// the name is untouched.
+// As WriteCheckpointFiles.
 void WriteCheckpoint(const std::filesystem::path& parent, const CheckpointState& state,
                      const nn::TensorMap& learner, const nn::TensorMap& policy,
                      const nlohmann::ordered_json& meta);
 
-// Reads and checks a checkpoint. Throws Error naming the file and what was expected: missing,
-// truncated or altered files, another schema, another observation spec.
+// As ReadCheckpointFiles.
 Checkpoint ReadCheckpoint(const std::filesystem::path& folder, uint64_t spec_hash);
 
 }  // namespace shoal::learner

@@ -51,7 +51,7 @@ uint64_t BytesBelow(const fs::path& folder) {
 // Writes the agent, restores another one from it and lets both do the same update.
 void CompareRestored(const RunConfig& run, nn::Precision precision, const BatchView& batch,
                      const fs::path& folder, learner::SacAgent* agent, TrainingProbe* probe) {
-  learner::CheckpointState state;
+  CheckpointState state;
   state.updates = agent->updates();
   state.env_steps = probe->env_steps;
   state.learner_session = 1;
@@ -62,7 +62,7 @@ void CompareRestored(const RunConfig& run, nn::Precision precision, const BatchV
                            nlohmann::ordered_json::object());
   probe->checkpoint_bytes = BytesBelow(folder);
   const learner::Checkpoint checkpoint =
-      learner::ReadCheckpoint(folder / learner::CheckpointName(state.updates), state.spec_hash);
+      learner::ReadCheckpoint(folder / CheckpointName(state.updates), state.spec_hash);
   Config other = run.config;
   other.seed += 1;  // so that what is equal afterwards came from the checkpoint
   learner::SacAgent restored(other, run.spec, precision);

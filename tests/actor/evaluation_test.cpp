@@ -1,13 +1,22 @@
 #include "actor/evaluation.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/checkpoint/checkpoint_files.h"
+#include "tests/support/temporary_folder.h"
+
 namespace shoal::actor {
 namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
 
 RunConfig RunOf(const std::string& task) {
   RunConfig run;
@@ -73,6 +82,69 @@ TEST(EvaluationJson, HoldsTheMassesDrawnForEachEpisode) {
   }
   EXPECT_NE(thighs[0], thighs[1]);
   EXPECT_NE(thighs[1], thighs[2]);
+}
+
+// A checkpoint whose policy nobody could load: it must be refused before that is tried.
+class EvaluateCheckpointTest : public testing::Test {
+ protected:
+  EvaluateCheckpointTest() {
+    RunConfig run = RunOf("Hopper-v5");
+    run.config.observation.pixels = false;
+    run.config.observation.proprioception = true;
+    run.spec = worlds::MakeEnvironment(run.config, nullptr)->spec();
+    WriteRunConfig(run_.path(), run);
+    Write(run.spec.Hash());
+  }
+
+  void Write(uint64_t spec_hash) const {
+    CheckpointFiles files;
+    files.state.updates = 7;
+    files.state.spec_hash = spec_hash;
+    files.policy = "not safetensors";
+    WriteCheckpointFiles(run_.path(), files, {});
+  }
+
+  std::string Refusal() const {
+    try {
+      EvaluateCheckpoint(run_.path(), folder_, 1, 1, /*task=*/"");
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "";
+  }
+
+  void Replace(const std::string& file, const std::string& from, const std::string& to) const {
+    std::string bytes = ReadFile(folder_ / file);
+    bytes.replace(bytes.find(from), from.size(), to);
+    WriteFileAtomically(folder_ / file, bytes);
+  }
+
+  const TemporaryFolder run_;
+  const std::filesystem::path folder_ = run_.path() / CheckpointName(7);
+};
+
+TEST_F(EvaluateCheckpointTest, AnAlteredPolicyIsRefusedByChecksum) {
+  Replace("policy.safetensors", "not", "nou");
+  EXPECT_THAT(Refusal(), AllOf(HasSubstr("policy.safetensors"), HasSubstr("CRC-32")));
+}
+
+TEST_F(EvaluateCheckpointTest, ATruncatedPolicyIsRefused) {
+  Replace("policy.safetensors", "tensors", "");
+  EXPECT_THAT(Refusal(), AllOf(HasSubstr("policy.safetensors"), HasSubstr("8 bytes, expected 15")));
+}
+
+TEST_F(EvaluateCheckpointTest, AnotherVersionIsRefusedNamingBoth) {
+  Replace("state.json", "shoal-checkpoint-1", "shoal-checkpoint-2");
+  EXPECT_THAT(Refusal(), AllOf(HasSubstr("shoal-checkpoint-1"), HasSubstr("shoal-checkpoint-2")));
+}
+
+TEST_F(EvaluateCheckpointTest, ACheckpointOfAnotherObservationIsRefused) {
+  Write(0x1234);
+  EXPECT_THAT(Refusal(), HasSubstr("observation spec 0000000000001234"));
+}
+
+TEST_F(EvaluateCheckpointTest, AWholeCheckpointIsTaken) {
+  EXPECT_THAT(Refusal(), HasSubstr("weights of update 7")) << "refused only when it is loaded";
 }
 
 }  // namespace

@@ -108,10 +108,11 @@ TEST(RunFolderTest, ReopensByNameAndByPath) {
 TEST(NewestCheckpointTest, ComparesNumbersAndIgnoresOtherNames) {
   const TemporaryFolder run;
   EXPECT_EQ(NewestCheckpoint(run.path()), "");
-  for (const char* name : {"step_900", "step_2000", "best", "step_9999.tmp-1", "step_"}) {
+  for (const char* name :
+       {"step_000000900", "step_000002000", "best", "step_000009999.tmp-1", "step_", "step_3000"}) {
     MakeFolders(run.path() / "checkpoints" / name);
   }
-  EXPECT_EQ(NewestCheckpoint(run.path()).filename(), "step_2000");
+  EXPECT_EQ(NewestCheckpoint(run.path()).filename(), "step_000002000");
 }
 
 }  // namespace
