@@ -6,6 +6,8 @@
 #include <limits>
 #include <utility>
 
+#include "common/base/error.h"
+
 namespace shoal::launch {
 namespace {
 
@@ -24,10 +26,9 @@ bool Is(std::string_view role, const ProcessSpec& spec) {
 }
 
 // What starting again cannot cure: a refused configuration, numbers that are not finite any more.
-bool Hopeless(const ExitStatus& status, const std::string& last_line) {
-  if (status.by_signal) return false;
-  return status.code == 2 || last_line.find("non-finite") != std::string::npos ||
-         last_line.find("not finite") != std::string::npos;
+bool Hopeless(const ExitStatus& status) {
+  return !status.by_signal && (status.code == static_cast<int>(ErrorKind::kUsage) ||
+                               status.code == static_cast<int>(ErrorKind::kNonFinite));
 }
 
 std::string Describe(const ProcessSpec& spec, const ExitStatus& status,
@@ -146,7 +147,7 @@ std::optional<std::string> Supervisor::OnExit(Child& child, const ExitStatus& st
   }
   const std::string last_line = LastLine(child.spec.output);
   const std::string death = Describe(child.spec, status, last_line);
-  if (Hopeless(status, last_line)) return death;
+  if (Hopeless(status)) return death;
   const bool disconnected =
       child.spec.elsewhere && !status.by_signal && status.code == kDisconnected;
   const auto delay = (disconnected ? child.connection : child.policy).OnDeath(now);

@@ -41,8 +41,8 @@ class Supervisor {
   void Heard(std::string_view role, int id, pid_t pid, SteadyTime now);
 
   // Kills the hung, reaps the dead and starts what is due again. When the run cannot go on - a
-  // process died too often, refused its configuration (exit 2) or met a non-finite number - one
-  // line saying which and why.
+  // process died too often, refused its configuration (exit 2) or met a non-finite number (exit 3)
+  // - one line saying which and why.
   std::optional<std::string> Poll(SteadyTime now);
 
   // From now on processes of the role ("" = all) may exit and are not restarted.

@@ -67,9 +67,9 @@ bool TrainingLoop::TryTrain() {
   if (!batch) return false;
   const UpdateStats stats = parts_.agent.Update(batch->view);
   if (!stats.finite) {
-    throw RuntimeError("{}; last good checkpoint: {}",
-                       DescribeNonFinite(stats, parts_.agent.updates()),
-                       saved_updates_ ? CheckpointName(*saved_updates_) : "none");
+    throw NonFiniteError("{}; last good checkpoint: {}",
+                         DescribeNonFinite(stats, parts_.agent.updates()),
+                         saved_updates_ ? CheckpointName(*saved_updates_) : "none");
   }
   AfterUpdate(*batch, stats);
   waiting_since_ = Now();

@@ -31,8 +31,8 @@
 namespace shoal::learner {
 
 // Borrows what Parts refers to. One thread.
-// Errors: Error when an update is not finite, a file cannot be written, or batches are of another
-// spec; the checkpoints written before stay as they are.
+// Errors: Error (kNonFinite) when an update is not finite; Error when a file cannot be written, or
+// batches are of another spec; the checkpoints written before stay as they are.
 class TrainingLoop {
  public:
   struct Parts {

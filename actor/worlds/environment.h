@@ -37,6 +37,9 @@ class Environment {
  public:
   virtual ~Environment() = default;
   virtual const ObservationSpec& spec() const = 0;
+  // Reset and Step throw Error (kNonFinite) when an action, the simulation's state, a number of an
+  // observation or a reward is not finite: nothing of that step is to be used.
+  //
   // Starts the episode named by the stream key: equal keys give bit-identical episodes for equal
   // actions, whatever happened before. Returns the distance at the start.
   virtual float Reset(uint64_t stream_key, ObservationOut out) = 0;

@@ -53,7 +53,8 @@ void World::CheckState() const {
   for (const int kind : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC}) {
     const mjWarningStat& warning = data_->warning[kind];
     if (warning.number > 0) {
-      throw RuntimeError("the simulation diverged: {}", mju_warningText(kind, warning.lastinfo));
+      throw NonFiniteError("{}: the simulation diverged: {}", source_,
+                           mju_warningText(kind, warning.lastinfo));
     }
   }
 }

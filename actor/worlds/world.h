@@ -66,8 +66,8 @@ class World {
  protected:
   // `count` engine steps, then CheckState.
   void Advance(int count);
-  // Throws Error when the state became non-finite or too large: the engine then resets itself
-  // silently, so nothing after that can be trusted.
+  // Throws Error (kNonFinite) when the state became non-finite or too large: the engine then resets
+  // itself silently, so nothing after that can be trusted.
   void CheckState() const;
 
  private:

@@ -95,9 +95,19 @@ void WorldEnvironment::Publish(Part* part, const tasks::Block& block) {
 // Fetches the state's numbers, rounded once to what records carry.
 void WorldEnvironment::ReadWorld() {
   world_->Observe(observation_.exact, achieved_goal_.exact, desired_goal_.exact);
-  for (Part* part : {&observation_, &achieved_goal_, &desired_goal_}) {
-    std::transform(part->exact.begin(), part->exact.end(), part->numbers.begin(),
-                   [](double number) { return static_cast<float>(number); });
+  RoundBlock(task_.observation(), &observation_);
+  RoundBlock(task_.achieved_goal(), &achieved_goal_);
+  RoundBlock(task_.desired_goal(), &desired_goal_);
+}
+
+void WorldEnvironment::RoundBlock(const tasks::Block& block, Part* part) const {
+  for (size_t i = 0; i < part->exact.size(); ++i) {
+    part->numbers[i] = static_cast<float>(part->exact[i]);
+    if (std::isfinite(part->numbers[i])) continue;
+    throw NonFiniteError(
+        "task {}: {} of block '{}' is {} after {} control steps: not a finite "
+        "float32",
+        task_.name(), block.components[i].name, block.name, part->exact[i], control_step_);
   }
 }
 
@@ -131,7 +141,12 @@ float WorldEnvironment::Reset(uint64_t stream_key, ObservationOut out) {
 void WorldEnvironment::CheckAction(std::span<const float> action) {
   CHECK(action.size() == action_.size()) << action.size();
   for (size_t i = 0; i < action.size(); ++i) {
-    if (!(std::fabs(action[i]) <= 1)) {
+    if (!std::isfinite(action[i])) {
+      throw NonFiniteError(
+          "action component {} ({}) is {}: not finite; the policy's weights are bad", i,
+          task_.action()[i].name, action[i]);
+    }
+    if (std::fabs(action[i]) > 1) {
       throw RuntimeError("action component {} ({}) is {}; expected a number in [-1, 1]", i,
                          task_.action()[i].name, action[i]);
     }
@@ -153,6 +168,10 @@ void WorldEnvironment::StepWorld(StepResult* result) {
   } else {
     result->reward += task_.Reward(distance);
     result->success = task_.Success(distance);
+  }
+  if (!std::isfinite(result->reward)) {
+    throw NonFiniteError("task {}: the reward is {} after {} control steps: not a finite float32",
+                         task_.name(), result->reward, control_step_);
   }
 }
 

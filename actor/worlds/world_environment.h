@@ -43,6 +43,7 @@ class WorldEnvironment final : public Environment {
   void StepWorld(StepResult* result);
   void Publish(Part* part, const tasks::Block& block);
   void ReadWorld();
+  void RoundBlock(const tasks::Block& block, Part* part) const;
   void Observe(ObservationOut out);
   // NaN without goals.
   double Distance() const;

@@ -14,8 +14,10 @@
 
 namespace shoal {
 
-// Exit codes of every program: 0 clean, 1 run-time failure, 2 bad usage (arguments, configuration).
-enum class ErrorKind { kRuntime = 1, kUsage = 2 };
+// Exit codes of every program: 0 clean, 1 run-time failure, 2 bad usage (arguments, configuration),
+// 3 a number that is not finite (simulation, weights, losses). After 2 and 3 the same start would
+// fail again.
+enum class ErrorKind { kRuntime = 1, kUsage = 2, kNonFinite = 3 };
 
 class Error : public std::runtime_error {
  public:
@@ -34,6 +36,10 @@ Error RuntimeError(fmt::format_string<Args...> format, Args&&... args) {
 template <class... Args>
 Error UsageError(fmt::format_string<Args...> format, Args&&... args) {
   return Error(ErrorKind::kUsage, fmt::format(format, std::forward<Args>(args)...));
+}
+template <class... Args>
+Error NonFiniteError(fmt::format_string<Args...> format, Args&&... args) {
+  return Error(ErrorKind::kNonFinite, fmt::format(format, std::forward<Args>(args)...));
 }
 
 }  // namespace shoal

@@ -162,9 +162,9 @@ TEST_F(SupervisorTest, DoesNotRestartARefusedConfiguration) {
 }
 
 TEST_F(SupervisorTest, DoesNotRestartAfterANonFiniteNumber) {
-  supervisor_.Start(Fake("learner", 0, "echo 'learner: critic loss is not finite'; exit 1"));
-  EXPECT_THAT(WaitForFailure(), HasSubstr("not finite"));
-  EXPECT_EQ(Starts("learner-0"), 1);
+  supervisor_.Start(Fake("actor", 0, "echo the simulation diverged; exit 3"));
+  EXPECT_THAT(WaitForFailure(), HasSubstr("actor-0: exit code 3: the simulation diverged"));
+  EXPECT_EQ(Starts("actor-0"), 1);
 }
 
 // Looks twice a second of the supervisor's time until something is said; the time it took.

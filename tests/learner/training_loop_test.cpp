@@ -236,7 +236,7 @@ TEST_F(TrainingLoopTest, ANonFiniteUpdateEndsTheRunAndKeepsTheLastGoodCheckpoint
     Train(100, [](PlayedBatches& batches) { batches.poisoned_request = 7; });
     FAIL() << "trained on not-a-number";
   } catch (const Error& e) {
-    EXPECT_EQ(e.exit_code(), 1);
+    EXPECT_EQ(e.exit_code(), static_cast<int>(ErrorKind::kNonFinite));
     EXPECT_THAT(e.what(), testing::HasSubstr("update 7 is not finite"));
     EXPECT_THAT(e.what(), testing::HasSubstr("step_000000004"));
   }

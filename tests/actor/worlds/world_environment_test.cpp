@@ -276,6 +276,8 @@ TEST(WorldEnvironment, AnActionOutsideItsBoundsOrNotANumberIsAnErrorNamingIt) {
       FAIL() << "took " << bad;
     } catch (const Error& error) {
       EXPECT_THAT(error.what(), testing::HasSubstr("2 (dz)"));
+      EXPECT_EQ(error.exit_code(),
+                static_cast<int>(std::isnan(bad) ? ErrorKind::kNonFinite : ErrorKind::kRuntime));
     }
   }
 }
@@ -291,15 +293,17 @@ TEST(WorldEnvironmentDeathTest, AStepNeedsAnEpisode) {
 // A task without goals: its reward and its end come from the physics half.
 class Countdown final : public World {
  public:
-  Countdown() : World(Load()) {}
+  // `reward_factor` and `observation_factor` spoil what is seen of it.
+  explicit Countdown(double reward_factor = 1, double observation_factor = 1)
+      : World(Load()), reward_factor_(reward_factor), observation_factor_(observation_factor) {}
 
   void Reset(Random*) override { left_ = 7; }
   Outcome Step(std::span<const double> action) override {
     --left_;
-    return {.reward = action[0], .terminated = left_ == 0};
+    return {.reward = reward_factor_ * action[0], .terminated = left_ == 0};
   }
   void Observe(std::span<double> observation, std::span<double>, std::span<double>) const override {
-    observation[0] = left_;
+    observation[0] = observation_factor_ * left_;
   }
   std::span<const CameraView> cameras() const override { return {}; }
 
@@ -310,6 +314,7 @@ class Countdown final : public World {
     return LoadModel("", (folder.path() / "nothing.xml").string());
   }
 
+  const double reward_factor_, observation_factor_;
   int left_ = 0;
 };
 
@@ -339,6 +344,31 @@ TEST(WorldEnvironment, TasksWithoutGoalsTakeRewardAndEndFromThePhysics) {
     EXPECT_TRUE(std::isnan(result.distance));
   }
   EXPECT_EQ(left[0], 0.0f);
+}
+
+TEST(WorldEnvironment, ANumberThatIsNotFiniteIsAnErrorOfItsOwnExitCode) {
+  const auto failure = [](double reward_factor, double observation_factor) -> std::string {
+    WorldEnvironment environment(CountdownTask(10),
+                                 std::make_unique<Countdown>(reward_factor, observation_factor),
+                                 Config(), nullptr);
+    std::array<float, 1> left{};
+    const std::array<float, 1> action{0.25f};
+    try {
+      environment.Reset(1, {{}, left});
+      environment.Step(action, {{}, left});
+    } catch (const Error& error) {
+      EXPECT_EQ(error.exit_code(), static_cast<int>(ErrorKind::kNonFinite));
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_EQ(failure(1, 1), "");
+  EXPECT_THAT(failure(std::nan(""), 1),
+              testing::HasSubstr("Countdown: the reward is nan after 1 "));
+  EXPECT_THAT(failure(1, HUGE_VAL),
+              testing::HasSubstr("left of block 'observation' is inf after 0 control steps"));
+  EXPECT_NE(failure(1e300, 1), "") << "finite as a double, infinite as a record's float32";
+  EXPECT_NE(failure(1, 1e300), "");
 }
 
 TEST(WorldEnvironment, ATaskWithoutGoalsHasNoGoalBlocks) {
