@@ -14,6 +14,8 @@
 #include "common/config/run_files.h"
 #include "common/dds/bus.h"
 #include "launch/actor_program.h"
+#include "common/dds/publisher.h"
+#include "common/nn/policy_size.h"
 #include "launch/coordinator.h"
 #include "launch/detachment.h"
 #include "launch/live_settings.h"
@@ -102,6 +104,11 @@ PreparedRun PrepareResumed(const TrainOptions& options) {
 
 // Asked before anything is made or started. A run that exists has its ring.
 void CheckReplayRoom(const RunConfig& run, bool exists) {
+// Weights and parameters to be evaluated travel as one message each.
+void CheckNetwork(const RunConfig& run) {
+  nn::CheckPolicySize(run.config.network, run.spec, int64_t{dds::kMaxPayloadBytes});
+}
+
   const Config& config = run.config;
   const replay::RingGeometry geometry(run.spec, static_cast<uint64_t>(config.replay.capacity));
   if (config.replay.storage == "memory") {
@@ -207,6 +214,7 @@ int Train(const TrainOptions& options, Detachment* detachment) {
     CheckReplayRoom(run.config, /*exists=*/true);
     CheckHosts(run.hosts, StopRequested);
     if (options.dry_run) return 0;
+    CheckNetwork(run.config);
     address.host = ServersHost(run.hosts);
     address.secure = options.secure.empty() ? ReadClusterAddress(run.folder.path()).secure
                                             : SecureFolder(options);
@@ -227,6 +235,7 @@ int Train(const TrainOptions& options, Detachment* detachment) {
   CheckReplayRoom(config, /*exists=*/false);
   CheckHosts(hosts, StopRequested);
   address.host = ServersHost(hosts);
+  CheckNetwork(config);
   address.secure = SecureFolder(options);
   if (!options.prometheus.empty()) PrometheusEndpoint::Check(options.prometheus);
   // Claimed before the folder is made, so that a failure leaves nothing half-written.
