@@ -1,7 +1,5 @@
 #include "actor/training_actor.h"
 
-#include <algorithm>
-
 #include "actor/actor_lock.h"
 #include "actor/credit_inbox.h"
 #include "actor/rollout.h"
@@ -10,6 +8,7 @@
 #include "common/base/stop.h"
 #include "common/config/lockstep.h"
 #include "common/config/run_membership.h"
+#include "common/config/sending_window.h"
 #include "common/config/session_number.h"
 #include "common/dds/publisher.h"
 #include "common/dds/subscriber.h"
@@ -35,19 +34,20 @@ constexpr seconds kLockstepDeadline{120};
 ChunkWindow::Options WindowOptions(const RunConfig& run, uint32_t id, uint64_t session,
                                    uint64_t records_before) {
   const Config& config = run.config;
-  const int window_chunks = std::max(2, config.replay.window_chunks);
-  if (2 * config.envs_per_actor > window_chunks * config.transport.chunk_records) {
+  const int record_bytes = RecordLayout(run.spec).record_bytes();
+  const SendingWindow window = SendingWindowOf(config, record_bytes);
+  if (2 * config.envs_per_actor > window.records()) {
     throw UsageError(
         "envs_per_actor {} does not fit the window of {} chunks of {} records: raise "
         "replay.window_chunks or transport.chunk_records",
-        config.envs_per_actor, window_chunks, config.transport.chunk_records);
+        config.envs_per_actor, window.chunks, window.chunk_records);
   }
   return {.spec_hash = run.spec.Hash(),
           .actor = id,
           .session = session,
-          .record_bytes = RecordLayout(run.spec).record_bytes(),
-          .chunk_records = config.transport.chunk_records,
-          .chunks = window_chunks + 1,
+          .record_bytes = record_bytes,
+          .chunk_records = window.chunk_records,
+          .chunks = window.chunks + 1,
           .records_before = records_before};
 }
 

@@ -91,7 +91,7 @@ struct StopConfig {
 struct TransportConfig {
   std::string interface = "lo";  // name or address; auto = the one towards the servers
   int fragment_bytes = 65'000;   // 8000 where peers are behind MTU 1500
-  int chunk_records = 24;        // records per chunk at most (chunks stay below 1 MB)
+  int chunk_records = 24;        // records per chunk at most; fewer where they exceed 1 MiB
   int flush_ms = 100;            // a partial chunk is sent after this long
 };
 

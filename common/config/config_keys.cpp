@@ -151,7 +151,8 @@ std::vector<Key> TransportKeys() {
                  "network interface, by name or address; auto = the one that leads to the servers"),
       SHOAL_SAME(transport.fragment_bytes, (IntegerRange{1024, 65'000}),
                  "bytes per datagram; 8000 where peers are behind MTU 1500"),
-      SHOAL_SAME(transport.chunk_records, (IntegerRange{1, 4096}), "records per chunk at most"),
+      SHOAL_SAME(transport.chunk_records, (IntegerRange{1, 4096}),
+                 "records per chunk at most; fewer where they exceed 1 MiB"),
       SHOAL_SAME(transport.flush_ms, (IntegerRange{1, 60'000}),
                  "milliseconds after which a partial chunk is sent"),
   };

@@ -2,6 +2,7 @@
 
 #include "actor/environments.h"
 #include "common/base/error.h"
+#include "common/config/sending_window.h"
 
 namespace shoal::launch {
 namespace {
@@ -9,12 +10,14 @@ namespace {
 constexpr uint64_t kSession = 1;  // of actor, replay and learner alike: each lives once
 
 actor::ChunkWindow::Options WindowOptions(const RunConfig& run) {
+  const int record_bytes = RecordLayout(run.spec).record_bytes();
+  const SendingWindow window = SendingWindowOf(run.config, record_bytes);
   return {.spec_hash = run.spec.Hash(),
           .actor = 0,
           .session = kSession,
-          .record_bytes = RecordLayout(run.spec).record_bytes(),
-          .chunk_records = run.config.transport.chunk_records,
-          .chunks = run.config.replay.window_chunks + 1};
+          .record_bytes = record_bytes,
+          .chunk_records = window.chunk_records,
+          .chunks = window.chunks + 1};
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 
 #include "common/base/error.h"
 #include "common/base/random.h"
+#include "common/config/sending_window.h"
 
 namespace shoal::replay {
 namespace {
@@ -19,18 +20,19 @@ RingOptions OptionsOfRing(const Config& config, const std::filesystem::path& fol
   return options;
 }
 
-uint64_t WindowRecords(const Config& config) {
-  return static_cast<uint64_t>(std::max(2, config.replay.window_chunks)) *
-         static_cast<uint64_t>(config.transport.chunk_records);
+uint64_t WindowRecords(const RunConfig& run) {
+  const int record_bytes = RecordLayout(run.spec).record_bytes();
+  return static_cast<uint64_t>(SendingWindowOf(run.config, record_bytes).records());
 }
 
-LimiterOptions OptionsOfLimiter(const Config& config) {
+LimiterOptions OptionsOfLimiter(const RunConfig& run) {
+  const Config& config = run.config;
   LimiterOptions options;
   options.samples_per_insert = config.replay.samples_per_insert;
   options.min_size = static_cast<uint64_t>(config.replay.min_size);
   options.batch = config.learner.batch;
   options.credits = config.learner.request_credits;
-  options.window_records = WindowRecords(config);
+  options.window_records = WindowRecords(run);
   options.band = config.replay.band;
   options.lockstep = config.lockstep;
   const double least = RateLimiter::LeastBand(options, std::max(1, config.actors));
@@ -57,14 +59,14 @@ ReplayCore::ReplayCore(const RunConfig& run, const std::filesystem::path& folder
       intake_(spec_hash_, &ring_, &sessions_, &index_),
       sampler_(ring_, index_),
       gather_(ring_, run.spec),
-      limiter_(OptionsOfLimiter(run.config)),
-      credits_(sessions_, spec_hash_, replay_session, WindowRecords(run.config)),
+      limiter_(OptionsOfLimiter(run)),
+      credits_(sessions_, spec_hash_, replay_session, WindowRecords(run)),
       requests_(spec_hash_, static_cast<uint32_t>(run.config.learner.batch),
                 run.config.learner.request_credits) {
   limiter_.SetSessions(static_cast<int>(sessions_.newest().size()));
 }
 
-uint64_t ReplayCore::window_records() const { return WindowRecords(run_.config); }
+uint64_t ReplayCore::window_records() const { return WindowRecords(run_); }
 
 ChunkResult ReplayCore::TakeChunk(const TransitionChunk& chunk) {
   const uint64_t became_before = index_.became_sampleable();

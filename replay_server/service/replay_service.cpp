@@ -12,6 +12,7 @@
 #include "common/base/stop.h"
 #include "common/config/run_files.h"
 #include "common/config/run_membership.h"
+#include "common/config/sending_window.h"
 #include "common/config/session_number.h"
 #include "common/dds/bus.h"
 #include "common/dds/publisher.h"
@@ -115,8 +116,11 @@ class ReplayService {
  private:
   const Config& Settings() const { return core_.run().config; }
   uint64_t SpecHash() const { return core_.run().spec.Hash(); }
+  SendingWindow Window() const {
+    return SendingWindowOf(Settings(), core_.ring().layout().record_bytes());
+  }
   uint64_t ChunkBytes() const {
-    return static_cast<uint64_t>(Settings().transport.chunk_records) *
+    return static_cast<uint64_t>(Window().chunk_records) *
            static_cast<uint64_t>(core_.ring().layout().record_bytes());
   }
   // Every actor session may have its window under way, in full chunks and one part of one, twice
@@ -125,8 +129,7 @@ class ReplayService {
     const size_t known = core_.sessions().newest().size();
     const double actors = control_.SettingOr("actors", Settings().actors);
     const size_t sessions = std::max(known, static_cast<size_t>(std::max(1.0, actors)));
-    const int window_chunks = std::max(2, Settings().replay.window_chunks);
-    return (sessions + 1) * 2 * static_cast<size_t>(window_chunks + 1);
+    return (sessions + 1) * 2 * static_cast<size_t>(Window().chunks + 1);
   }
 
   // One turn of the service: takes what came, answers one request, tells what has changed.

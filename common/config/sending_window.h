@@ -1,0 +1,27 @@
+// How many records an actor may have unacknowledged, and in chunks of which size: arithmetic that
+// actors and replay must agree on.
+//
+//   per chunk  transport.chunk_records, fewer (but one) where they exceed kChunkBytes together
+//   chunks     as many of these as replay.window_chunks chunks of transport.chunk_records hold
+#pragma once
+
+#include <cstdint>
+
+#include "common/config/config.h"
+
+namespace shoal {
+
+// The transport is fastest with samples from 64 kB to 2 MB; much larger ones stall it.
+inline constexpr int64_t kChunkBytes = 1 << 20;
+
+struct SendingWindow {
+  int chunk_records = 0;  // >= 1
+  int chunks = 0;         // >= 2
+
+  int64_t records() const { return int64_t{chunk_records} * chunks; }
+};
+
+// `record_bytes` > 0: RecordLayout::record_bytes().
+SendingWindow SendingWindowOf(const Config& config, int record_bytes);
+
+}  // namespace shoal
