@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <set>
 
 #include "common/base/error.h"
@@ -70,9 +71,12 @@ void Validate(const Config& config) {
     throw UsageError("replay.min_size = {}: expected at most half of replay.capacity = {}",
                      config.replay.min_size, config.replay.capacity);
   }
-  if (config.observation.pixels && config.replay.shift_pad * 2 >= config.observation.height) {
-    throw UsageError("replay.shift_pad = {}: expected less than half of the image height {}",
-                     config.replay.shift_pad, config.observation.height);
+  const ObservationConfig& images = config.observation;
+  if (images.pixels && config.replay.shift_pad * 2 >= std::min(images.height, images.width)) {
+    throw UsageError(
+        "replay.shift_pad = {}: expected less than half of the images' shorter side, "
+        "observation.height = {}, observation.width = {}",
+        config.replay.shift_pad, images.height, images.width);
   }
   if (config.lockstep && config.actors > 1) {
     throw UsageError("actors = {}: lockstep takes one actor", config.actors);

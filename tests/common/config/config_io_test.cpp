@@ -209,6 +209,8 @@ TEST(Validate, RefusesCombinationsThatCannotWork) {
       {{"run_dir="}, "run_dir"},
       {{"transport.interface="}, "transport.interface"},
       {{"replay.shift_pad=32", "observation.height=64"}, "replay.shift_pad = 32"},
+      {{"replay.shift_pad=20", "observation.width=16", "network.pool=1", "network.strides=[1,1,1]"},
+       "observation.height = 84, observation.width = 16"},
   };
   for (const auto& [assignments, message] : cases) {
     Config config;
