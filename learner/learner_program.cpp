@@ -1,9 +1,11 @@
 #include "learner/learner_program.h"
 
+#include <algorithm>
 #include <optional>
 
 #include "common/base/error.h"
 #include "common/base/log.h"
+#include "common/base/usable_cores.h"
 #include "common/config/run_files.h"
 #include "common/config/run_membership.h"
 #include "common/config/session_number.h"
@@ -110,7 +112,7 @@ class Learner {
 int RunLearner(const std::filesystem::path& folder, const dds::Reach& reach, char** argv) {
   const RunConfig run = ReadRunConfig(folder);
   const int asked = run.config.learner.threads;
-  const int threads = asked > 0 ? asked : AvailableCores();
+  const int threads = asked > 0 ? asked : std::max(1, UsableCores() / 2);
   EnsurePassiveOpenMp(threads, argv);
   nn::SetThreads(threads);
   return Learner(folder, run, reach, threads).Run();

@@ -1,9 +1,7 @@
 #include "learner/openmp_environment.h"
 
-#include <sched.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
@@ -18,12 +16,6 @@ namespace {
 constexpr char kGuard[] = "SHOAL_OPENMP_SET";
 
 }  // namespace
-
-int AvailableCores() {
-  cpu_set_t set;
-  if (sched_getaffinity(0, sizeof set, &set) != 0) return 1;
-  return std::max(1, CPU_COUNT(&set));
-}
 
 void EnsurePassiveOpenMp(int threads, char** argv) {
   if (std::getenv("OMP_WAIT_POLICY") != nullptr || std::getenv(kGuard) != nullptr) return;

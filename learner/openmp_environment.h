@@ -3,9 +3,6 @@
 
 namespace shoal::learner {
 
-// Cores that this process may use: its affinity.
-int AvailableCores();
-
 // Starts the program anew, once, with OMP_WAIT_POLICY=passive and OMP_NUM_THREADS=`threads` when
 // OMP_WAIT_POLICY is not set (the launcher sets both): spinning OpenMP threads would take the cores
 // from actors. Returns when there is nothing to do. Call before any thread is made. Throws Error

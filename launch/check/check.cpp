@@ -2,6 +2,7 @@
 
 #include "actor/worlds/environment.h"
 #include "common/base/error.h"
+#include "common/base/usable_cores.h"
 #include "common/config/config_io.h"
 #include "common/nn/precision.h"
 #include "common/wire/batch_layout.h"
@@ -9,7 +10,6 @@
 #include "launch/check/machine_lines.h"
 #include "launch/check/training_probe.h"
 #include "launch/check/world_lines.h"
-#include "launch/machine.h"
 #include "launch/scratch_folder.h"
 #include "replay_server/core/ring_format.h"
 #include "replay_server/core/storage_limits.h"

@@ -41,8 +41,7 @@ CheckLine JudgeCpu(const std::string& isa, const std::string& precision) {
 }
 
 CheckLine JudgeCores(const CoreLimits& limits) {
-  const int usable =
-      std::max(1, static_cast<int>(std::min<double>(limits.affinity, std::ceil(limits.quota))));
+  const int usable = UsableCores(limits);
   const std::string quota = std::isinf(limits.quota)
                                 ? "no cgroup quota"
                                 : fmt::format("cgroup quota {:.2g}", limits.quota);

@@ -5,8 +5,8 @@
 #include <filesystem>
 #include <string>
 
+#include "common/base/usable_cores.h"
 #include "launch/check/check_line.h"
-#include "launch/machine.h"
 
 namespace shoal::launch {
 

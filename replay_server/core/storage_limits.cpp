@@ -13,6 +13,7 @@
 #include <optional>
 #include <sstream>
 
+#include "common/base/cgroup.h"
 #include "common/base/error.h"
 
 namespace shoal::replay {
@@ -42,31 +43,24 @@ std::optional<uint64_t> ReadKey(const fs::path& path, const std::string& key) {
 }
 
 struct CgroupFiles {
-  const char* mount;  // below root
   const char* limit;
   const char* usage;
   const char* cache;  // key in memory.stat
 };
-constexpr CgroupFiles kCgroupV2 = {"sys/fs/cgroup", "memory.max", "memory.current",
-                                   "inactive_file"};
-constexpr CgroupFiles kCgroupV1 = {"sys/fs/cgroup/memory", "memory.limit_in_bytes",
-                                   "memory.usage_in_bytes", "total_inactive_file"};
+constexpr CgroupFiles kCgroupV2 = {"memory.max", "memory.current", "inactive_file"};
+constexpr CgroupFiles kCgroupV1 = {"memory.limit_in_bytes", "memory.usage_in_bytes",
+                                   "total_inactive_file"};
 
-// Lowers `room` by the cgroup at `group` and those around it.
-void ApplyCgroups(const fs::path& root, const CgroupFiles& files, fs::path group,
-                  MemoryRoom* room) {
-  for (;; group = group.parent_path()) {
-    const fs::path folder = root / files.mount / group.relative_path();
-    const std::optional<uint64_t> limit = ReadNumber(folder / files.limit);
-    if (limit) {
-      const uint64_t usage = ReadNumber(folder / files.usage).value_or(0);
-      const uint64_t cache = ReadKey(folder / "memory.stat", files.cache).value_or(0);
-      const uint64_t used = usage - std::min(usage, cache);
-      const uint64_t left = *limit - std::min(*limit, used);
-      if (left < room->bytes) *room = {left, (folder / files.limit).string()};
-    }
-    if (!group.has_relative_path()) return;
-  }
+// Lowers `room` by what the group leaves.
+void ApplyCgroup(const CgroupFolder& group, MemoryRoom* room) {
+  const CgroupFiles& files = group.version == 1 ? kCgroupV1 : kCgroupV2;
+  const std::optional<uint64_t> limit = ReadNumber(group.path / files.limit);
+  if (!limit) return;
+  const uint64_t usage = ReadNumber(group.path / files.usage).value_or(0);
+  const uint64_t cache = ReadKey(group.path / "memory.stat", files.cache).value_or(0);
+  const uint64_t used = usage - std::min(usage, cache);
+  const uint64_t left = *limit - std::min(*limit, used);
+  if (left < room->bytes) *room = {left, (group.path / files.limit).string()};
 }
 
 constexpr double kMegabyte = 1e6;
@@ -78,19 +72,7 @@ MemoryRoom AvailableMemory(const fs::path& root) {
   if (const auto kilobytes = ReadKey(root / "proc/meminfo", "MemAvailable:")) {
     room = {*kilobytes * 1024, "MemAvailable"};
   }
-  std::ifstream groups(root / "proc/self/cgroup");
-  std::string line;  // "HIERARCHY:CONTROLLERS:PATH"; version 2 has no controllers
-  while (std::getline(groups, line)) {
-    const size_t first = line.find(':');
-    const size_t second = line.find(':', first + 1);
-    if (first == std::string::npos || second == std::string::npos) continue;
-    const std::string controllers = fmt::format(",{},", line.substr(first + 1, second - first - 1));
-    const std::string group = line.substr(second + 1);
-    if (controllers == ",,") ApplyCgroups(root, kCgroupV2, group, &room);
-    if (controllers.find(",memory,") != std::string::npos) {
-      ApplyCgroups(root, kCgroupV1, group, &room);
-    }
-  }
+  for (const CgroupFolder& group : CgroupFolders("memory", root)) ApplyCgroup(group, &room);
   return room;
 }
 

@@ -44,10 +44,5 @@ TEST(EnsurePassiveOpenMp, LeavesTheUsersChoiceAlone) {
   unsetenv("OMP_WAIT_POLICY");
 }
 
-TEST(AvailableCores, IsAtMostWhatTheMachineHas) {
-  EXPECT_GE(AvailableCores(), 1);
-  EXPECT_LE(AvailableCores(), sysconf(_SC_NPROCESSORS_ONLN));
-}
-
 }  // namespace
 }  // namespace shoal::learner
