@@ -1,9 +1,11 @@
 #include "actor/eval_actor.h"
 
 #include <nlohmann/json.hpp>
+#include <thread>
 #include <utility>
 
 #include "actor/evaluation.h"
+#include "common/base/error.h"
 #include "common/base/log.h"
 #include "common/base/stop.h"
 #include "common/config/run_membership.h"
@@ -18,6 +20,8 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kPoll{100};
+constexpr std::chrono::seconds kReportDeadline{10};  // for the transport to take an evaluation
+constexpr milliseconds kRetry{20};
 
 // Members are in construction order: receive threads end before what they write to.
 class EvalActor {
@@ -43,6 +47,7 @@ class EvalActor {
         return 1;
       }
       if (const auto weights = weights_.Take(Now() + kPoll)) Evaluate(*weights);
+      WarnOfOvertaken();
       Report("idle");
     }
     eval_publisher_.WaitForAcks(milliseconds(1000));
@@ -74,7 +79,7 @@ class EvalActor {
     message.checkpoint = weights.checkpoint;
     const auto json = EvaluationJson(run_, label, stream, episodes);
     message.json = json.dump();
-    if (!eval_publisher_.Write(message)) log::Failure("evaluation could not be reported");
+    Send(message);
     ++evaluations_;
     for (const EpisodeResult& episode : episodes)
       env_steps_ += static_cast<uint64_t>(episode.length);
@@ -82,11 +87,36 @@ class EvalActor {
               weights.version.update, json.at("aggregate").dump(), SecondsSince(start));
   }
 
+  // Throws Error at the deadline. The learner's parameters stay on offer: whoever starts next plays
+  // the evaluation again.
+  void Send(const EvalMessage& message) {
+    const SteadyTime deadline = Now() + kReportDeadline;
+    while (!eval_publisher_.Write(message)) {
+      if (Now() > deadline) {
+        throw RuntimeError("evaluation at {} env steps could not be reported within {} s",
+                           message.env_steps, kReportDeadline.count());
+      }
+      Report("blocked");
+      std::this_thread::sleep_for(kRetry);
+    }
+  }
+
+  void WarnOfOvertaken() {
+    const uint64_t overtaken = weights_.overtaken();
+    if (overtaken == overtaken_said_) return;
+    log::Warning(
+        "{} evaluation(s) left out, {} in all: newer parameters came first; an evaluation takes "
+        "longer than eval.interval",
+        overtaken - overtaken_said_, overtaken);
+    overtaken_said_ = overtaken;
+  }
+
   void Report(const char* state) {
     if (!report_.Due(Now())) return;
     report_.Begin(state);
     report_.Add("evaluations", static_cast<double>(evaluations_));
     report_.Add("eval_env_steps", static_cast<double>(env_steps_));
+    report_.Add("evaluations_overtaken", static_cast<double>(weights_.overtaken()));
     report_.Add("weights_refused", static_cast<double>(weights_.refused()));
     report_.AddSeconds("evaluating", evaluating_seconds_);
     report_.AddResources();
@@ -104,7 +134,7 @@ class EvalActor {
   dds::Publisher<MetricsMessage> metrics_publisher_;
   dds::Subscriber<EvalWeightsMessage> weights_subscriber_;
   dds::Subscriber<ControlMessage> control_subscriber_;
-  uint64_t evaluations_ = 0, env_steps_ = 0;
+  uint64_t evaluations_ = 0, env_steps_ = 0, overtaken_said_ = 0;
   double evaluating_seconds_ = 0;
 };
 

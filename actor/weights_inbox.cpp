@@ -14,6 +14,7 @@ void WeightsInbox::OnMessage(const WeightsMessage& message) {
   }
   const WeightsVersion& known = newest_ ? newest_->version : taken_;
   if (!message.version.NewerThan(known)) return;
+  if (newest_) ++overtaken_;
   newest_ = ReceivedWeights{
       message.version, message.env_steps, message.checkpoint,
       std::string(reinterpret_cast<const char*>(message.payload.data()), message.payload.size())};
@@ -35,6 +36,11 @@ std::optional<ReceivedWeights> WeightsInbox::Take(SteadyTime deadline) {
   while (!newest_ && arrived_.WaitUntil(mutex_, deadline)) {
   }
   return TakeNewest();
+}
+
+uint64_t WeightsInbox::overtaken() const {
+  const MutexLock lock(mutex_);
+  return overtaken_;
 }
 
 uint64_t WeightsInbox::refused() const {

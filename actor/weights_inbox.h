@@ -32,6 +32,8 @@ class WeightsInbox {
   std::optional<ReceivedWeights> Take(SteadyTime deadline);
 
   uint64_t refused() const;
+  // Versions that a newer one replaced before they were taken.
+  uint64_t overtaken() const;
 
  private:
   std::optional<ReceivedWeights> TakeNewest() SHOAL_REQUIRES(mutex_);
@@ -41,7 +43,7 @@ class WeightsInbox {
   ConditionVariable arrived_;
   std::optional<ReceivedWeights> newest_ SHOAL_GUARDED_BY(mutex_);
   WeightsVersion taken_ SHOAL_GUARDED_BY(mutex_);
-  uint64_t refused_ SHOAL_GUARDED_BY(mutex_) = 0;
+  uint64_t refused_ SHOAL_GUARDED_BY(mutex_) = 0, overtaken_ SHOAL_GUARDED_BY(mutex_) = 0;
 };
 
 }  // namespace shoal::actor

@@ -61,6 +61,7 @@ constexpr Metric kMetrics[] = {
     {"eval", "eval_env_steps", kCounter, "env steps", "stepped in them; not the run's"},
     {"eval", "weights_refused", kCounter, "", "as the actors'"},
     {"eval", "evaluating", kStage, "s", "playing episodes"},
+    {"eval", "evaluations_overtaken", kCounter, "", "points replaced before they were played"},
 
     {"replay", "stored_records", kGauge, "records", "stored over the whole run"},
     {"replay", "stored_steps", kGauge, "env steps", "of these: the run's env steps"},

@@ -53,6 +53,18 @@ TEST(WeightsInbox, RefusesForeignAndDamagedWeights) {
   EXPECT_EQ(inbox.refused(), 2u);
 }
 
+TEST(WeightsInbox, CountsWhatWasOvertakenBeforeItWasTaken) {
+  WeightsInbox inbox(kSpec);
+  Deliver(inbox, 1, 10, "a");
+  ASSERT_TRUE(inbox.TryTake());
+  Deliver(inbox, 1, 20, "b");
+  EXPECT_EQ(inbox.overtaken(), 0u);
+  Deliver(inbox, 1, 30, "c");
+  Deliver(inbox, 1, 30, "c");
+  Deliver(inbox, 1, 40, "d");
+  EXPECT_EQ(inbox.overtaken(), 2u) << "20 and 30; a repetition counts for nothing";
+}
+
 TEST(WeightsInbox, TakeWaitsForTheReceiveThread) {
   WeightsInbox inbox(kSpec);
   std::thread receive([&] { Deliver(inbox, 1, 1, "x"); });
