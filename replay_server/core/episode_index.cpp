@@ -4,11 +4,12 @@
 
 namespace shoal::replay {
 
-EpisodeIndex::EpisodeIndex(const Ring& ring, int stack)
+EpisodeIndex::EpisodeIndex(const Ring& ring, int stack, const Alive& alive)
     : ring_(ring), stack_(stack), oldest_needed_(ring.capacity()), needed_by_(ring.capacity()) {
   CHECK(stack >= 1);
   for (uint64_t id = ring.oldest_id(); id <= ring.last_id(); ++id) {
     if (ring.Slot(id).id == id) Added(id);
+    if (alive) alive();
   }
   became_sampleable_ = cut_episodes_ = 0;
 }

@@ -23,8 +23,9 @@ namespace shoal::replay {
 
 class EpisodeIndex {
  public:
-  // Borrows the ring and reads what is in it; records of a snapshot that vanished are skipped.
-  EpisodeIndex(const Ring& ring, int stack);
+  // Borrows the ring and reads what is in it, calling `alive` for each record, if there is one;
+  // records of a snapshot that vanished are skipped.
+  EpisodeIndex(const Ring& ring, int stack, const Alive& alive = {});
 
   // What a record of this actor session may be stored as the successor of: 0 for a reset, the id of
   // the environment's last stored record if the step continues that very episode, nothing else.

@@ -11,8 +11,9 @@ namespace shoal::replay {
 namespace {
 
 RingOptions OptionsOfRing(const Config& config, const std::filesystem::path& folder,
-                          uint64_t steps_before) {
+                          uint64_t steps_before, const Alive& alive) {
   RingOptions options;
+  options.alive = alive;
   if (config.replay.storage == "file") options.file = folder / kRingFile;
   options.capacity = static_cast<uint64_t>(config.replay.capacity);
   options.run = config.run_name;
@@ -48,14 +49,14 @@ LimiterOptions OptionsOfLimiter(const RunConfig& run) {
 }  // namespace
 
 ReplayCore::ReplayCore(const RunConfig& run, const std::filesystem::path& folder,
-                       uint64_t replay_session, uint64_t steps_before)
+                       uint64_t replay_session, uint64_t steps_before, const Alive& alive)
     : run_(run),
       spec_hash_(run.spec.Hash()),
       replay_session_(replay_session),
       batch_layout_(run.spec, run.config.learner.batch),
-      ring_(run.spec, OptionsOfRing(run.config, folder, steps_before)),
+      ring_(run.spec, OptionsOfRing(run.config, folder, steps_before, alive)),
       sessions_(ring_.sessions()),
-      index_(ring_, run.spec.stack),
+      index_(ring_, run.spec.stack, alive),
       intake_(spec_hash_, &ring_, &sessions_, &index_),
       sampler_(ring_, index_),
       gather_(ring_, run.spec),

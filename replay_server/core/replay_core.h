@@ -51,10 +51,11 @@ struct CoreCounters {
 class ReplayCore {
  public:
   // Opens or makes the ring in `folder` (or in memory, as configured). `replay_session` must grow
-  // from start to start. `steps_before`: as RingOptions, for storage in memory. Throws Error: no
-  // room, a ring that does not fit, a band that is too small.
+  // from start to start. `steps_before`: as RingOptions, for storage in memory. `alive` is
+  // called often while a ring that is there is read. Throws Error: no room, a ring that does not
+  // fit, a band that is too small.
   ReplayCore(const RunConfig& run, const std::filesystem::path& folder, uint64_t replay_session,
-             uint64_t steps_before = 0);
+             uint64_t steps_before = 0, const Alive& alive = {});
   // The parts refer to each other: neither copied nor moved.
   ReplayCore(const ReplayCore&) = delete;
   ReplayCore& operator=(const ReplayCore&) = delete;

@@ -68,7 +68,7 @@ Ring::Ring(const ObservationSpec& spec, const RingOptions& options)
     throw RuntimeError("replay file '{}' has room for {} records, replay.capacity is {}", name,
                        capacity, options.capacity);
   }
-  const RingExtent extent = ScanRing(mapping_, geometry_, name);
+  const RingExtent extent = ScanRing(mapping_, geometry_, name, options.alive);
   oldest_id_ = extent.oldest_id;
   last_id_ = extent.last_id;
   stored_steps_ = extent.stored_steps;

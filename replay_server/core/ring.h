@@ -10,6 +10,7 @@
 #include <string>
 
 #include "common/spec/observation_spec.h"
+#include "replay_server/core/alive.h"
 #include "replay_server/core/mapping.h"
 #include "replay_server/core/ring_format.h"
 
@@ -22,6 +23,7 @@ struct RingOptions {
   // Step records that earlier servers of the run stored, in memory that is gone; not for a file,
   // which tells.
   uint64_t steps_before = 0;
+  Alive alive = {};  // called while a file that is there is read; may be empty
 };
 
 class Ring {

@@ -22,11 +22,12 @@ Error Damaged(const std::string& name, uint64_t slot, const std::string& what) {
                       name, slot, what);
 }
 
-uint64_t NewestId(const Mapping& mapping, const RingGeometry& geometry) {
+uint64_t NewestId(const Mapping& mapping, const RingGeometry& geometry, const Alive& alive = {}) {
   uint64_t newest = 0;
   for (uint64_t slot = 0; slot < geometry.capacity; ++slot) {
     const SlotHeader& header = SlotAt(mapping, geometry, slot);
     if (header.commit != 0) newest = std::max(newest, header.id);
+    if (alive) alive();
   }
   return newest;
 }
@@ -75,13 +76,15 @@ bool SlotIntact(const Mapping& mapping, const RingGeometry& geometry, uint64_t s
          header.frame_check == FrameCheck(FrameOf(geometry, record));
 }
 
-RingExtent ScanRing(const Mapping& mapping, const RingGeometry& geometry, const std::string& name) {
+RingExtent ScanRing(const Mapping& mapping, const RingGeometry& geometry, const std::string& name,
+                    const Alive& alive) {
   const uint64_t capacity = geometry.capacity;
-  const uint64_t last = NewestId(mapping, geometry);
+  const uint64_t last = NewestId(mapping, geometry, alive);
   RingExtent extent;
   extent.last_id = last;
   extent.oldest_id = last > capacity ? last - capacity + 1 : 1;
   for (uint64_t slot = 0; slot < capacity; ++slot) {
+    if (alive) alive();
     const SlotHeader& header = SlotAt(mapping, geometry, slot);
     // The one id this slot may hold: the newest not above `last`.
     const uint64_t behind = (last % capacity + capacity - slot) % capacity;

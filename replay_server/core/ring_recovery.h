@@ -5,6 +5,7 @@
 #include <string>
 
 #include "common/spec/observation_spec.h"
+#include "replay_server/core/alive.h"
 #include "replay_server/core/mapping.h"
 #include "replay_server/core/ring_format.h"
 
@@ -23,7 +24,8 @@ struct RingExtent {
 // Finds the records. Every slot must hold what a writer that died at some instant leaves: the
 // newest records without holes, and at most one slot half-written. Throws Error naming the slot
 // otherwise.
-RingExtent ScanRing(const Mapping& mapping, const RingGeometry& geometry, const std::string& name);
+RingExtent ScanRing(const Mapping& mapping, const RingGeometry& geometry, const std::string& name,
+                    const Alive& alive = {});
 
 // The same while another process writes: takes what is there, never throws.
 RingExtent ScanLiveRing(const Mapping& mapping, const RingGeometry& geometry);

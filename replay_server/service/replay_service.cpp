@@ -54,8 +54,7 @@ class DdsShardWriter : public ShardWriter {
 };
 
 // Steps that earlier servers of the run kept in memory; a file of the ring tells by itself.
-uint64_t StepsInMemoryThatIsGone(const std::filesystem::path& folder) {
-  const Config config = ReadRunConfig(folder).config;
+uint64_t StepsInMemoryThatIsGone(const Config& config, const std::filesystem::path& folder) {
   if (config.replay.storage != "memory") return 0;
   const uint64_t steps = StoredStepsBefore(folder);
   if (steps > 0) {
@@ -74,15 +73,16 @@ class ReplayService {
   ReplayService(const std::filesystem::path& folder, const dds::Reach& reach)
       : folder_(folder),
         member_(folder),
-        core_(ReadRunConfig(folder), folder, NextSession(folder, "replay-0", WallTimeNs()),
-              StepsInMemoryThatIsGone(folder)),
+        run_(ReadRunConfig(folder)),
+        bus_(dds::FindPlace(folder, run_.config.transport, reach), dds::Role::kReplay),
+        metrics_publisher_(bus_),
+        core_(run_, folder, NextSession(folder, "replay-0", WallTimeNs()),
+              StepsInMemoryThatIsGone(run_.config, folder), [this] { ReportStarting(); }),
         control_(Now()),
         inbox_(SpecHash(), ChunkBytes(), MaxChunks()),
         problems_(SpecHash()),
         ages_(core_.ring().layout(), Settings().learner.request_credits),
-        bus_(dds::FindPlace(folder, Settings().transport, reach), dds::Role::kReplay),
         credit_publisher_(bus_),
-        metrics_publisher_(bus_),
         shard_writer_(bus_),
         sender_(SpecHash(), core_.batch_layout().total_bytes(), kBatchBuffers, &shard_writer_,
                 [this] { inbox_.Wake(); }),
@@ -114,8 +114,8 @@ class ReplayService {
   }
 
  private:
-  const Config& Settings() const { return core_.run().config; }
-  uint64_t SpecHash() const { return core_.run().spec.Hash(); }
+  const Config& Settings() const { return run_.config; }
+  uint64_t SpecHash() const { return run_.spec.Hash(); }
   SendingWindow Window() const {
     return SendingWindowOf(Settings(), core_.ring().layout().record_bytes());
   }
@@ -130,6 +130,15 @@ class ReplayService {
     const double actors = control_.SettingOr("actors", Settings().actors);
     const size_t sessions = std::max(known, static_cast<size_t>(std::max(1.0, actors)));
     return (sessions + 1) * 2 * static_cast<size_t>(Window().chunks + 1);
+  }
+
+  // Reading a cold ring takes minutes, in which a process that says nothing would be taken for
+  // hung.
+  void ReportStarting() {
+    if (!starting_report_.Due(Now())) return;
+    starting_report_.Begin("starting");
+    starting_report_.AddResources();
+    metrics_publisher_.Write(starting_report_.message());
   }
 
   // One turn of the service: takes what came, answers one request, tells what has changed.
@@ -248,14 +257,16 @@ class ReplayService {
 
   const std::filesystem::path folder_;
   const RunMembership member_;
+  const RunConfig run_;
+  dds::Bus bus_;
+  dds::Publisher<MetricsMessage> metrics_publisher_;
+  MetricsReport starting_report_{"replay", 0};
   ReplayCore core_;
   ControlState control_;
   ServiceInbox inbox_;
   ProblemLog problems_;
   FlowAges ages_;
-  dds::Bus bus_;
   dds::Publisher<CreditsMessage> credit_publisher_;
-  dds::Publisher<MetricsMessage> metrics_publisher_;
   DdsShardWriter shard_writer_;
   BatchSender sender_;
   ServiceReport report_;

@@ -61,12 +61,28 @@ class RingTest : public testing::Test {
     file.put(static_cast<char>(byte ^ 4));
   }
 
+  // Signs of life while the ring and its index are opened.
+  int SignsOfLife() {
+    int signs = 0;
+    RingOptions options = Options();
+    options.alive = [&signs] { ++signs; };
+    const Ring ring(spec_, options);
+    const EpisodeIndex index(ring, 1, options.alive);
+    return signs;
+  }
+
   const ObservationSpec spec_ = TinySpec(1);
   const RingGeometry geometry_{spec_, kCapacity};
   TemporaryFolder folder_;
   const fs::path file_ = folder_.path() / "replay.ring";
   RecordScript script_{spec_, 0, 10};
 };
+
+TEST_F(RingTest, SaysThatItIsAliveForEachRecordThatIsReadAtStart) {
+  EXPECT_EQ(SignsOfLife(), 0) << "a new ring";
+  const auto records = static_cast<int>(WriteRing(8));
+  EXPECT_EQ(SignsOfLife(), 2 * static_cast<int>(kCapacity) + records);
+}
 
 TEST_F(RingTest, TheFileIsTheOwnersAloneAndFullyReserved) {
   Ring ring(spec_, Options());
