@@ -48,6 +48,10 @@ Config ResolveConfig(const TrainOptions& options, int cores) {
   return config;
 }
 
+bool SetsPrecision(const std::string& assignment) {
+  return assignment.starts_with("learner.precision=");
+}
+
 void ApplyResumeOptions(const TrainOptions& options, Config* config) {
   const std::pair<bool, const char*> refused[] = {{!options.preset.empty(), "--preset"},
                                                   {!options.config_file.empty(), "--config"},
@@ -58,8 +62,10 @@ void ApplyResumeOptions(const TrainOptions& options, Config* config) {
     if (given) throw UsageError("--resume goes on with the run's own configuration: no {}", name);
   }
   for (const std::string& assignment : options.set) {
-    if (!assignment.starts_with("env_steps=") && !assignment.starts_with("stop.")) {
-      throw UsageError("--set {}: a resumed run takes env_steps and stop.* only", assignment);
+    if (!assignment.starts_with("env_steps=") && !assignment.starts_with("stop.") &&
+        !SetsPrecision(assignment)) {
+      throw UsageError("--set {}: a resumed run takes env_steps, stop.* and learner.precision only",
+                       assignment);
     }
   }
   ApplyAssignments(options.set, config);

@@ -25,8 +25,10 @@ struct TrainOptions {
 // for `cores`. Validated. Throws Error (usage).
 Config ResolveConfig(const TrainOptions& options, int cores);
 
-// A resumed run keeps its configuration; only env_steps and stop.* may be set. Throws Error (usage)
-// for other keys or options.
+// A resumed run keeps its configuration; only env_steps, stop.* and, for another machine,
+// learner.precision may be set. Throws Error (usage) for other keys or options.
 void ApplyResumeOptions(const TrainOptions& options, Config* config);
+// Whether KEY=VALUE is about learner.precision.
+bool SetsPrecision(const std::string& assignment);
 
 }  // namespace shoal::launch

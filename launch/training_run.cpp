@@ -72,6 +72,7 @@ void NoteResumeOptions(const TrainOptions& options, const Config& before, RunMet
   settings.Restore(meta->changes);
   for (const std::string& assignment : options.set) {
     SettingChange change = settings.Assign(assignment);
+    if (SetsPrecision(assignment)) continue;  // no setting of a running run; config.json has it
     change.time = UtcTimestamp();
     change.env_steps = meta->env_steps;
     change.updates = meta->updates;

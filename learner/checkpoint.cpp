@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "common/base/error.h"
+
 namespace shoal::learner {
 
 void WriteCheckpoint(const std::filesystem::path& parent, const CheckpointState& state,
@@ -23,6 +25,26 @@ Checkpoint ReadCheckpoint(const std::filesystem::path& folder, uint64_t spec_has
   return {.state = files.state,
           .tensors = nn::ReadSafetensors(files.learner, (folder / "learner.safetensors").string()),
           .folder = folder};
+}
+
+std::string CheckPrecision(const Checkpoint& checkpoint, const std::string& asked,
+                           nn::Precision chosen) {
+  const std::string name = checkpoint.folder.filename().string();
+  const std::string& before = checkpoint.state.precision;
+  const char* now = nn::ToString(chosen);
+  if (before == now) return "";
+  if (asked == "auto") {
+    throw UsageError(
+        "{} was computed in {}, this CPU ({}) computes in {} (learner.precision = auto): go on "
+        "with "
+        "--set learner.precision={} for the same arithmetic where the CPU has it, or accept the "
+        "other with --set learner.precision={}",
+        name, before, nn::CpuIsa(), now, before, now);
+  }
+  return fmt::format(
+      "{} was computed in {}, from here on it is {} (learner.precision = {}): the run "
+      "does not go on exactly as it was",
+      name, before, now, asked);
 }
 
 }  // namespace shoal::learner

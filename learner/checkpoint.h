@@ -4,8 +4,10 @@
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <string>
 
 #include "common/checkpoint/checkpoint_files.h"
+#include "common/nn/precision.h"
 #include "common/nn/safetensors.h"
 
 namespace shoal::learner {
@@ -23,5 +25,11 @@ void WriteCheckpoint(const std::filesystem::path& parent, const CheckpointState&
 
 // As ReadCheckpointFiles.
 Checkpoint ReadCheckpoint(const std::filesystem::path& folder, uint64_t spec_hash);
+
+// A run goes on exactly only in the precision it was computed in. `asked` is learner.precision,
+// `chosen` what became of it on this machine. Where they differ: throws Error (kUsage) saying what
+// to do if nobody asked for it (auto), else returns a warning; empty where they agree.
+std::string CheckPrecision(const Checkpoint& checkpoint, const std::string& asked,
+                           nn::Precision chosen);
 
 }  // namespace shoal::learner

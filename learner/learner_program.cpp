@@ -78,6 +78,9 @@ class Learner {
   std::optional<CheckpointState> Restore() {
     const std::optional<Checkpoint> checkpoint = checkpoints_.RestoreNewest();
     if (!checkpoint) return std::nullopt;
+    const std::string warning =
+        CheckPrecision(*checkpoint, run_.config.learner.precision, precision_);
+    if (!warning.empty()) log::Warning("{}", warning);
     agent_.Restore(checkpoint->tensors, (checkpoint->folder / "learner.safetensors").string());
     if (agent_.updates() != checkpoint->state.updates) {
       throw RuntimeError("'{}': parameters of update {}, but state.json says {}",

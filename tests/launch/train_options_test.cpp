@@ -84,6 +84,9 @@ TEST(ApplyResumeOptions, TakesOnlyHowLongToGoOn) {
   ApplyResumeOptions(options, &config);
   EXPECT_EQ(config.env_steps, 7);
   EXPECT_EQ(config.stop.success, 2);
+  options.set = {"learner.precision=f32"};  // for a machine that lacks the other
+  ApplyResumeOptions(options, &config);
+  EXPECT_EQ(config.learner.precision, "f32");
   options.set = {"learner.batch=7"};
   EXPECT_THAT(UsageMessage([&] { ApplyResumeOptions(options, &config); }),
               HasSubstr("learner.batch=7"));

@@ -178,6 +178,27 @@ TEST_F(CheckpointTest, AFullDiskLeavesNothingHalfWritten) {
   EXPECT_EQ(ReadCheckpoint(folder_, kSpec).tensors.at("critic").data[0], 1) << "the former one";
 }
 
+TEST(CheckPrecision, AnotherOneIsRefusedUnlessAskedFor) {
+  Checkpoint checkpoint;
+  checkpoint.folder = "checkpoints/step_000002000";
+  checkpoint.state.precision = "bf16";
+  EXPECT_EQ(CheckPrecision(checkpoint, "auto", nn::Precision::kBf16), "");
+  EXPECT_EQ(CheckPrecision(checkpoint, "bf16", nn::Precision::kBf16), "");
+  const std::string warning = CheckPrecision(checkpoint, "f32", nn::Precision::kF32);
+  EXPECT_NE(warning.find("step_000002000 was computed in bf16, from here on it is f32"),
+            std::string::npos)
+      << warning;
+  try {
+    CheckPrecision(checkpoint, "auto", nn::Precision::kF32);
+    FAIL() << "went on in another precision without a word";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.exit_code(), 2);
+    const std::string message = e.what();
+    EXPECT_NE(message.find("was computed in bf16"), std::string::npos) << message;
+    EXPECT_NE(message.find("--set learner.precision=f32"), std::string::npos) << message;
+  }
+}
+
 TEST(CheckpointName, IsPaddedAndParsedStrictly) {
   EXPECT_EQ(CheckpointName(2000), "step_000002000");
   EXPECT_EQ(CheckpointName(12'345'678'901), "step_12345678901");
