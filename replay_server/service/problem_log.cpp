@@ -33,10 +33,6 @@ void ProblemLog::Report(SteadyTime now, const CoreCounters& counters, uint64_t d
   if (const uint64_t n = counters.malformed_chunks - before.malformed_chunks) {
     log::Warning("{} chunks refused: their length or sequences make no sense", n);
   }
-  if (const uint64_t n = counters.table_full_chunks - before.table_full_chunks) {
-    log::Warning("{} chunks refused: {} actor sessions are known, no room for more", n,
-                 kMaxSessions);
-  }
   if (const uint64_t n = counters.refused_requests - before.refused_requests) {
     log::Warning(
         "{} batch requests refused; the last one: batch {}, spec {:016x} (the run's {:016x})", n,

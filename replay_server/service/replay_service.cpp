@@ -108,8 +108,10 @@ class ReplayService {
       }
       core_.SetDraining(control_.state() == RunState::kDraining);
       Turn();
+      if (core_.counters().table_full_chunks > 0) break;
     }
     Finish();
+    if (core_.counters().table_full_chunks > 0) RefuseMoreSessions();
     return exit_code;
   }
 
@@ -130,6 +132,14 @@ class ReplayService {
     const double actors = control_.SettingOr("actors", Settings().actors);
     const size_t sessions = std::max(known, static_cast<size_t>(std::max(1.0, actors)));
     return (sessions + 1) * 2 * static_cast<size_t>(Window().chunks + 1);
+  }
+
+  // A restart would find the same full table.
+  [[noreturn]] static void RefuseMoreSessions() {
+    throw UsageError(
+        "the replay keeps the accounts of {} actor sessions over a run and there were as many: no "
+        "actor can join or be restarted any more; start a new run, with fewer actors",
+        kMaxSessions);
   }
 
   // Reading a cold ring takes minutes, in which a process that says nothing would be taken for

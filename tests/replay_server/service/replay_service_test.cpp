@@ -85,6 +85,18 @@ class ReplayServiceTest : public testing::Test {
   RecordScript a_{TinySpec(2, 60, 70), 0, 10}, b_{TinySpec(2, 60, 70), 1, 11};
 };
 
+TEST_F(ReplayServiceTest, LeavesForGoodWithOneLineWhenNoSessionFitsTheTableAnyMore) {
+  {
+    Ring ring(run_.spec, {.file = folder_.path() / kRingFile, .capacity = 4000, .run = "tiny"});
+    SessionTable sessions(ring.sessions());
+    for (uint32_t actor = 1; actor <= kMaxSessions; ++actor) sessions.Add(actor, 1);
+  }
+  StartAll();
+  ASSERT_TRUE(peers_->Write(a_.Chunk(1, 1)));
+  EXPECT_EQ(replay_->ExitCode(seconds(20)), 2) << replay_->Errors();
+  EXPECT_THAT(replay_->Errors(), HasSubstr("accounts of 4096 actor sessions"));
+}
+
 TEST_F(ReplayServiceTest, StoresAcknowledgesAnswersAndAccounts) {
   StartAll();
   ASSERT_TRUE(peers_->Deliver(&a_, 400)) << replay_->Errors();
