@@ -20,6 +20,10 @@ namespace {
 
 using std::chrono::milliseconds;
 
+constexpr milliseconds kTerminate{5000};  // between SIGTERM and SIGKILL
+// After SIGKILL: longer only in uninterruptible I/O; whom it leaves behind init reaps.
+constexpr milliseconds kReap{5000};
+
 Descriptor Open(const std::filesystem::path& path, int flags) {
   const int fd = open(path.c_str(), flags | O_CLOEXEC, 0644);
   if (fd >= 0) return Descriptor(fd);
@@ -160,15 +164,14 @@ void ChildProcess::Signal(int signal) {
 void ChildProcess::KillAndReap() {
   if (pid_ < 0 || ended_) return;
   kill(pid_, SIGKILL);
-  int status = 0;
-  while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
-  }
-  ended_ = ExitStatus{true, SIGKILL};
+  const SteadyTime deadline = Now() + kReap;
+  while (!Poll() && Now() < deadline) std::this_thread::sleep_for(milliseconds(1));
+  if (!ended_) ended_ = ExitStatus{true, SIGKILL};
 }
 
 std::optional<ExitStatus> RunToEnd(const ProcessSpec& spec, std::chrono::seconds deadline,
                                    const std::function<bool()>& stop) {
-  constexpr milliseconds kPoll{100}, kTerminate{5000};
+  constexpr milliseconds kPoll{100};
   ChildProcess child(spec);
   const SteadyTime start = Now();
   std::optional<SteadyTime> terminated;
@@ -180,7 +183,7 @@ std::optional<ExitStatus> RunToEnd(const ProcessSpec& spec, std::chrono::seconds
       child.Signal(SIGTERM);
       terminated = Now();
     }
-    if (terminated && Now() - *terminated > kTerminate) child.Signal(SIGKILL);
+    if (terminated && Now() - *terminated > kTerminate) return std::nullopt;  // and is killed
     std::this_thread::sleep_for(kPoll);
   }
 }

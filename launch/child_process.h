@@ -39,7 +39,8 @@ struct ExitStatus {
   std::string Describe() const;
 };
 
-// Owns the child: one that still runs at destruction is killed and reaped. Children get SIGHUP
+// Owns the child: one that still runs at destruction is killed and reaped, which
+// is waited for five seconds at most. Children get SIGHUP
 // when this process dies, have a process group of their own (Ctrl-C on the terminal does not reach
 // them) and read from /dev/null unless told otherwise. Create and use on one thread that lives as
 // long as the child: the kernel ties the death signal to it.

@@ -9,7 +9,9 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
+#include <thread>
 
+#include "common/base/clock.h"
 #include "common/base/error.h"
 #include "common/base/stop.h"
 
@@ -17,6 +19,7 @@ namespace shoal::launch {
 namespace {
 
 constexpr int kPollMs = 100;
+constexpr std::chrono::seconds kReap{30};  // of a child that has closed its end, which exit does
 
 int Redirect(const char* file, int flags, int to) {
   const int fd = open(file, flags | O_CLOEXEC, 0600);
@@ -28,7 +31,7 @@ int Redirect(const char* file, int flags, int to) {
 
 }  // namespace
 
-Detachment::Detachment() {
+Detachment::Detachment(std::chrono::seconds deadline) : deadline_(deadline) {
   int ends[2];
   if (pipe2(ends, O_CLOEXEC) != 0) throw RuntimeError("pipe: {}", std::strerror(errno));
   std::fflush(nullptr);  // or both would write it
@@ -50,18 +53,30 @@ Detachment::~Detachment() {
 }
 
 int Detachment::WaitForChild(int from_child) {
+  const SteadyTime deadline = Now() + deadline_;
   int handed_on = 0;
-  while (true) {
+  while (Now() < deadline) {
     for (; handed_on < StopRequests(); ++handed_on) kill(child_, SIGTERM);
     pollfd end{.fd = from_child, .events = POLLIN, .revents = 0};
     if (poll(&end, 1, kPollMs) <= 0) continue;
     char word = 0;
     if (read(from_child, &word, 1) == 1) return 0;  // it has started
-    int status = 0;                                 // it has closed its end: it has ended
-    while (waitpid(child_, &status, 0) < 0 && errno == EINTR) {
-    }
-    return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+    return Reap();                                  // it has closed its end: it has ended
   }
+  std::fprintf(
+      stderr, "shoal: the run has not started within %d s; process %d goes on trying: shoal runs\n",
+      static_cast<int>(deadline_.count()), child_);
+  return 1;
+}
+
+int Detachment::Reap() const {
+  const SteadyTime deadline = Now() + kReap;
+  int status = 0;
+  while (waitpid(child_, &status, WNOHANG) != child_) {
+    if (Now() > deadline) return 1;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
 }
 
 void Detachment::Started(const std::filesystem::path& log) {

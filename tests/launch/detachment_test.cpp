@@ -59,6 +59,21 @@ TEST(Detachment, AChildThatDoesNotStartGivesItsExitCode) {
             1);
 }
 
+TEST(Detachment, AChildThatNeverStartsIsNotWaitedForBeyondTheDeadline) {
+  const TemporaryFolder folder;
+  const auto gone = folder.path() / "gone";
+  const pid_t parent = fork();
+  if (parent == 0) {
+    InstallStopSignals();
+    Detachment detachment(std::chrono::seconds(0));
+    if (!detachment.IsChild()) _exit(detachment.exit_code());
+    WriteFileAtomically(gone, "");
+    _exit(0);
+  }
+  EXPECT_EQ(ExitCodeOfProcess(parent), 1);
+  EXPECT_TRUE(WaitUntil([&] { return std::filesystem::exists(gone); })) << "it was left alone";
+}
+
 TEST(Detachment, UntilItHasStartedTheParentHandsStopSignalsOn) {
   const TemporaryFolder folder;
   const auto waits = folder.path() / "waits";
