@@ -1,6 +1,7 @@
 #include "launch/coordinator.h"
 
 #include <thread>
+#include <utility>
 
 #include "common/base/error.h"
 #include "common/base/stop.h"
@@ -136,7 +137,8 @@ struct Coordinator::Impl {
   bool stop_asked = false;  // by a command
   bool meta_due = false;    // something happened that it records
   const int usable_cores = UsableCores();
-  int stops_before_end = 0;  // Ctrl-C's that had been answered when the ordered stop began
+  uint64_t dropped_said = 0;  // messages dropped by the inboxes
+  int stops_before_end = 0;   // Ctrl-C's that had been answered when the ordered stop began
 };
 
 Coordinator::Coordinator(const std::filesystem::path& run, const RunConfig& config, dds::Bus& bus,
@@ -296,6 +298,12 @@ void Coordinator::Impl::ShowView(const ProgressFigures& figures, SteadyTime now)
   RunViewMessage shown;
   shown.state = figures.state;
   shown.env_steps = figures.env_steps;
+  const uint64_t dropped = metrics.dropped() + evals.dropped();
+  own_report.Add("messages_dropped", static_cast<double>(dropped));
+  if (dropped > dropped_said) {
+    progress.Say(fmt::format("{} report(s) dropped: they came faster than they were read",
+                             dropped - std::exchange(dropped_said, dropped)));
+  }
   shown.updates = meta.updates;
   shown.processes = view.Reports(now);
   desk.Show(std::move(shown), now);

@@ -33,6 +33,8 @@ constexpr Metric kMetrics[] = {
     {"coordinator", "best_evaluation_env_steps", kGauge, "env steps", ""},
     {"coordinator", "processes", kGauge, "", "that run or are being restarted"},
     {"coordinator", "restarts", kCounter, "", "of processes, over the whole run"},
+    {"coordinator", "messages_dropped", kCounter, "",
+     "reports that came faster than they were read"},
     {"coordinator", "exit_code", kGauge, "", "of the run; in the last view only"},
 
     {"actor", "env_steps", kCounter, "env steps", "stepped"},
@@ -59,9 +61,9 @@ constexpr Metric kMetrics[] = {
 
     {"eval", "evaluations", kCounter, "", "finished"},
     {"eval", "eval_env_steps", kCounter, "env steps", "stepped in them; not the run's"},
+    {"eval", "evaluations_overtaken", kCounter, "", "points replaced before they were played"},
     {"eval", "weights_refused", kCounter, "", "as the actors'"},
     {"eval", "evaluating", kStage, "s", "playing episodes"},
-    {"eval", "evaluations_overtaken", kCounter, "", "points replaced before they were played"},
 
     {"replay", "stored_records", kGauge, "records", "stored over the whole run"},
     {"replay", "stored_steps", kGauge, "env steps", "of these: the run's env steps"},
