@@ -14,9 +14,9 @@
 #include "common/config/config_io.h"
 #include "common/config/run_files.h"
 #include "common/dds/bus.h"
-#include "launch/actor_program.h"
 #include "common/dds/publisher.h"
 #include "common/nn/policy_size.h"
+#include "launch/actor_program.h"
 #include "launch/coordinator.h"
 #include "launch/detachment.h"
 #include "launch/live_settings.h"
@@ -26,6 +26,7 @@
 #include "launch/run_folder.h"
 #include "launch/run_hosts.h"
 #include "launch/run_leftovers.h"
+#include "replay_server/core/episode_index.h"
 #include "replay_server/core/ring_format.h"
 #include "replay_server/core/storage_limits.h"
 
@@ -71,8 +72,8 @@ void NoteResumeOptions(const TrainOptions& options, const Config& before, RunMet
   LiveSettings settings(before);
   settings.Restore(meta->changes);
   for (const std::string& assignment : options.set) {
-    SettingChange change = settings.Assign(assignment);
     if (SetsPrecision(assignment)) continue;  // no setting of a running run; config.json has it
+    SettingChange change = settings.Assign(assignment);
     change.time = UtcTimestamp();
     change.env_steps = meta->env_steps;
     change.updates = meta->updates;
@@ -103,18 +104,19 @@ PreparedRun PrepareResumed(const TrainOptions& options) {
   return {std::move(folder), std::move(config), meta, std::move(hosts)};
 }
 
-// Asked before anything is made or started. A run that exists has its ring.
-void CheckReplayRoom(const RunConfig& run, bool exists) {
 // Weights and parameters to be evaluated travel as one message each.
 void CheckNetwork(const RunConfig& run) {
   nn::CheckPolicySize(run.config.network, run.spec, int64_t{dds::kMaxPayloadBytes});
 }
 
+// Asked before anything is made or started. A run that exists has its ring.
+void CheckReplayRoom(const RunConfig& run, bool exists) {
   const Config& config = run.config;
   const replay::RingGeometry geometry(run.spec, static_cast<uint64_t>(config.replay.capacity));
-  if (config.replay.storage == "memory") {
-    replay::CheckMemoryRoom(geometry.total_bytes());
-  } else if (!exists) {
+  const uint64_t index_bytes = replay::EpisodeIndex::Bytes(geometry.capacity);
+  const bool in_memory = config.replay.storage == "memory";
+  replay::CheckMemoryRoom(index_bytes + (in_memory ? geometry.total_bytes() : 0));
+  if (!in_memory && !exists) {
     std::error_code error;
     std::filesystem::path folder = std::filesystem::absolute(config.run_dir);
     while (!std::filesystem::exists(folder, error) && folder.has_relative_path()) {
@@ -212,10 +214,10 @@ int Train(const TrainOptions& options, Detachment* detachment) {
     PreparedRun run = PrepareResumed(options);
     if (options.print_config) fmt::print("{}\n", ToJson(run.config.config).dump(2));
     if (options.print_config) return 0;
+    CheckNetwork(run.config);
     CheckReplayRoom(run.config, /*exists=*/true);
     CheckHosts(run.hosts, StopRequested);
     if (options.dry_run) return 0;
-    CheckNetwork(run.config);
     address.host = ServersHost(run.hosts);
     address.secure = options.secure.empty() ? ReadClusterAddress(run.folder.path()).secure
                                             : SecureFolder(options);
@@ -233,10 +235,10 @@ int Train(const TrainOptions& options, Detachment* detachment) {
     return 0;
   }
   config.spec = DescribeObservations(config.config);
+  CheckNetwork(config);
   CheckReplayRoom(config, /*exists=*/false);
   CheckHosts(hosts, StopRequested);
   address.host = ServersHost(hosts);
-  CheckNetwork(config);
   address.secure = SecureFolder(options);
   if (!options.prometheus.empty()) PrometheusEndpoint::Check(options.prometheus);
   // Claimed before the folder is made, so that a failure leaves nothing half-written.

@@ -27,6 +27,11 @@ class EpisodeIndex {
   // records of a snapshot that vanished are skipped.
   EpisodeIndex(const Ring& ring, int stack, const Alive& alive = {});
 
+  // Memory it takes for a ring of that many records.
+  static constexpr uint64_t Bytes(uint64_t capacity) {
+    return capacity * (sizeof(uint64_t) + sizeof(uint32_t));
+  }
+
   // What a record of this actor session may be stored as the successor of: 0 for a reset, the id of
   // the environment's last stored record if the step continues that very episode, nothing else.
   std::optional<uint64_t> Predecessor(uint32_t actor, uint64_t session,
