@@ -88,6 +88,9 @@ struct Coordinator::Impl {
   }
 
   RunResult Run(const std::function<void()>& on_started);
+  // Since this coordinator's start.
+  uint64_t Resends() const { return static_cast<uint64_t>(view.Total("actor", "resends")); }
+
   std::string WaitForEnd(const std::function<void()>& on_started);
   // Every process of the run has reported.
   bool Started() const;
@@ -165,7 +168,7 @@ RunResult Coordinator::Impl::Run(const std::function<void()>& on_started) {
   meta.restarts += supervisor.restarts();
   if (!meta.error.empty()) meta.exit = "failed";
   return {.meta = meta,
-          .resends = static_cast<uint64_t>(view.Total("actor", "resends")),
+  meta.resends += Resends();
           .clean = supervisor.unclean_exits().empty(),
           .bottleneck = FindBottleneck(view, usable_cores, settings.config().actors)};
 }
@@ -368,6 +371,7 @@ void Coordinator::Impl::StoreMeta() {
 }
 
 bool Coordinator::Impl::Settled() const {
+  now.resends += Resends();
   if (meta.exit != "budget" && !(config.lockstep && meta.exit == "target")) return true;
   if (view.Get("learner", 0, "drained").value_or(0) == 0) return false;
   const double evaluated = last_evaluation ? static_cast<double>(last_evaluation->updates) : 0;

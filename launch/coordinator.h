@@ -20,8 +20,7 @@ namespace shoal::launch {
 
 struct RunResult {
   RunMeta meta;
-  uint64_t resends = 0;  // records actors sent again
-  bool clean = true;     // every process left by itself with code 0
+  bool clean = true;  // every process left by itself with code 0
   Bottleneck bottleneck;
 };
 

@@ -94,7 +94,7 @@ int EndRun(const fs::path& run, const Config& config, RunResult result, Operator
     progress.Say("error: " + why);
   };
   try {
-    meta.accounting = AccountRun(run, config, result.resends);
+    meta.accounting = AccountRun(run, config, meta.resends);
     if (meta.accounting) {
       for (const std::string& fault : meta.accounting->faults) {
         fail("records do not balance: " + fault);

@@ -93,6 +93,7 @@ void WriteRunMeta(const std::filesystem::path& run, const Config& config, const 
       {"accounting", meta.accounting ? ToJson(*meta.accounting) : ordered_json(nullptr)},
       {"changes", Changes(meta)},
       {"restarts", meta.restarts},
+      {"resends", meta.resends},
       {"exit", meta.exit},
       {"error", meta.error.empty() ? ordered_json(nullptr) : ordered_json(meta.error)}};
   WriteFileAtomically(run / "meta.json", object.dump(2) + "\n");
@@ -109,6 +110,7 @@ RunMeta ReadRunMeta(const std::filesystem::path& run) {
     object.at("env_steps").get_to(meta.env_steps);
     object.at("updates").get_to(meta.updates);
     object.at("restarts").get_to(meta.restarts);
+    meta.resends = object.value("resends", uint64_t{0});
     for (const auto& change : object.value("changes", nlohmann::json::array())) {
       meta.changes.push_back(ReadChange(change));
     }

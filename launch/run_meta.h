@@ -25,6 +25,7 @@ struct RunMeta {
   std::optional<Accounting> accounting;
   std::vector<SettingChange> changes;  // of keys, while the run went on
   int restarts = 0;
+  uint64_t resends = 0;          // records that actors sent again
   std::string exit = "running";  // then "target", "budget", "interrupted" or "failed"
   std::string error;             // why, where failed
 };

@@ -19,6 +19,7 @@ TEST(RunMeta, AResumedRunFindsItsCountersAndWhatWasChanged) {
   meta.updates = 8;
   meta.wall_seconds = 9.5;
   meta.restarts = 2;
+  meta.resends = 30;
   meta.changes = {{.time = "2026-01-31T12:05:00Z",
                    .env_steps = 5,
                    .updates = 6,
@@ -32,6 +33,7 @@ TEST(RunMeta, AResumedRunFindsItsCountersAndWhatWasChanged) {
   EXPECT_EQ(back.updates, 8u);
   EXPECT_EQ(back.wall_seconds, 9.5);
   EXPECT_EQ(back.restarts, 2);
+  EXPECT_EQ(back.resends, 30u);
   ASSERT_EQ(back.changes.size(), 1u);
   EXPECT_EQ(back.changes[0].time, "2026-01-31T12:05:00Z");
   EXPECT_EQ(back.changes[0].env_steps, 5u);
@@ -46,8 +48,10 @@ TEST(RunMeta, AnOlderFileHasNoChanges) {
   WriteRunMeta(run.path(), Config(), RunMeta());
   auto json = nlohmann::json::parse(ReadFile(run.path() / "meta.json"));
   json.erase("changes");
+  json.erase("resends");
   WriteFileAtomically(run.path() / "meta.json", json.dump());
   EXPECT_TRUE(ReadRunMeta(run.path()).changes.empty());
+  EXPECT_EQ(ReadRunMeta(run.path()).resends, 0u);
 }
 
 TEST(RunMeta, ABrokenChangeIsAnError) {
