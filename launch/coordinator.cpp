@@ -5,12 +5,13 @@
 
 #include "common/base/error.h"
 #include "common/base/stop.h"
-#include "common/dds/publisher.h"
 #include "common/base/usable_cores.h"
+#include "common/dds/publisher.h"
 #include "common/dds/subscriber.h"
 #include "common/wire/metrics_report.h"
 #include "launch/command_handler.h"
 #include "launch/evaluations.h"
+#include "launch/flat_score.h"
 #include "launch/live_settings.h"
 #include "launch/message_inbox.h"
 #include "launch/metrics_log.h"
@@ -87,10 +88,10 @@ struct Coordinator::Impl {
                     static_cast<uint64_t>(view.Get("replay", 0, "stored_steps").value_or(0)));
   }
 
-  RunResult Run(const std::function<void()>& on_started);
   // Since this coordinator's start.
   uint64_t Resends() const { return static_cast<uint64_t>(view.Total("actor", "resends")); }
 
+  RunResult Run(const std::function<void()>& on_started);
   std::string WaitForEnd(const std::function<void()>& on_started);
   // Every process of the run has reported.
   bool Started() const;
@@ -105,7 +106,8 @@ struct Coordinator::Impl {
   void Heartbeat(SteadyTime now);
   void TakeMessages(SteadyTime now);
   void OnEvaluation(const EvalMessage& message);
-  void Count(const EvaluationPoint& point);
+  // Returns a warning where the run gets no better.
+  std::optional<std::string> Count(const EvaluationPoint& point);
   void Fail(const std::string& why);
   void StoreMeta();
   // Whether the learner may be told to stop: where the budget ended the run (and in lockstep, which
@@ -122,6 +124,7 @@ struct Coordinator::Impl {
   Progress& progress;
   RunMeta meta;  // wall_seconds: of the sessions before this one, until the end
   StopRule rule;
+  FlatScore flat;
   std::optional<EvaluationPoint> last_evaluation;
   MetricsView view;
   MetricsLog log;
@@ -166,9 +169,9 @@ RunResult Coordinator::Impl::Run(const std::function<void()>& on_started) {
   meta.env_steps = EnvSteps();
   meta.wall_seconds = Elapsed();
   meta.restarts += supervisor.restarts();
+  meta.resends += Resends();
   if (!meta.error.empty()) meta.exit = "failed";
   return {.meta = meta,
-  meta.resends += Resends();
           .clean = supervisor.unclean_exits().empty(),
           .bottleneck = FindBottleneck(view, usable_cores, settings.config().actors)};
 }
@@ -295,18 +298,18 @@ void Coordinator::Impl::ShowView(const ProgressFigures& figures, SteadyTime now)
   own_report.Begin(figures.state);
   AddRunFigures(figures, &own_report);
   AddOrders(settings.config(), usable_cores, &own_report);
-  const MetricsMessage& own = own_report.message();
-  view.OnMessage(own, now);
-  log.Write(own);
-  RunViewMessage shown;
-  shown.state = figures.state;
-  shown.env_steps = figures.env_steps;
   const uint64_t dropped = metrics.dropped() + evals.dropped();
   own_report.Add("messages_dropped", static_cast<double>(dropped));
   if (dropped > dropped_said) {
     progress.Say(fmt::format("{} report(s) dropped: they came faster than they were read",
                              dropped - std::exchange(dropped_said, dropped)));
   }
+  const MetricsMessage& own = own_report.message();
+  view.OnMessage(own, now);
+  log.Write(own);
+  RunViewMessage shown;
+  shown.state = figures.state;
+  shown.env_steps = figures.env_steps;
   shown.updates = meta.updates;
   shown.processes = view.Reports(now);
   desk.Show(std::move(shown), now);
@@ -337,7 +340,7 @@ void Coordinator::Impl::OnEvaluation(const EvalMessage& message) {
   progress.Say(fmt::format("evaluation at {} env steps, {} updates: {}{}", point.env_steps,
                            point.updates, FormatScore(point), best ? " (best)" : ""));
   scalars.WriteEvaluation(point);
-  Count(point);
+  if (const auto warning = Count(point)) progress.Say(*warning);
   StoreMeta();
   if (!best || point.checkpoint.empty()) return;
   try {
@@ -347,11 +350,12 @@ void Coordinator::Impl::OnEvaluation(const EvalMessage& message) {
   }
 }
 
-void Coordinator::Impl::Count(const EvaluationPoint& point) {
+std::optional<std::string> Coordinator::Impl::Count(const EvaluationPoint& point) {
   rule.OnEvaluation(point);
   meta.first_success = rule.first_success();
   last_evaluation = point;
   if (!meta.best || Better(point, *meta.best)) meta.best = point;
+  return flat.OnEvaluation(point, rule.target());
 }
 
 void Coordinator::Impl::Fail(const std::string& why) {
@@ -367,11 +371,11 @@ void Coordinator::Impl::StoreMeta() {
   now.env_steps = EnvSteps();
   now.wall_seconds = Elapsed();
   now.restarts += supervisor.restarts();
+  now.resends += Resends();
   WriteRunMeta(run, config, now);
 }
 
 bool Coordinator::Impl::Settled() const {
-  now.resends += Resends();
   if (meta.exit != "budget" && !(config.lockstep && meta.exit == "target")) return true;
   if (view.Get("learner", 0, "drained").value_or(0) == 0) return false;
   const double evaluated = last_evaluation ? static_cast<double>(last_evaluation->updates) : 0;
