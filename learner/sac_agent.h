@@ -22,9 +22,10 @@ struct UpdateStats {
   float entropy = 0;            // -mean log pi
   float action_saturation = 0;  // share of sampled action components with |a| > 0.99
   float critic_grad_norm = 0, actor_grad_norm = 0;
-  float frame_spread =
-      0;               // standard deviation of a frame's pixels, grey levels; mean over 32 frames
-  bool finite = true;  // false: a loss or weight is not finite; the update was not applied
+  // Standard deviation of a frame's pixels, grey levels; mean over 32 frames.
+  float frame_spread = 0;
+  float frozen_cameras = 0;  // that show one picture throughout: agent/frozen_cameras.h
+  bool finite = true;        // false: a loss or weight is not finite; the update was not applied
 };
 
 // Where the seconds of all updates went.

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "learner/agent/frozen_cameras.h"
+
 namespace shoal::learner {
 
 TrainingGuard::TrainingGuard(const Config& config, bool has_pixels)
@@ -25,6 +27,13 @@ std::vector<std::string> TrainingGuard::Check(const UpdateStats& mean, int updat
          fmt::format("frames are all of one colour: pixels deviate by {:.3f} grey levels within a "
                      "frame (expected above {}); is a camera looking at anything?",
                      mean.frame_spread, kMinSpread));
+  }
+  if (has_pixels_ && mean.frozen_cameras >= kFrozen) {
+    warn(kCameras,
+         fmt::format(
+             "{:.1f} camera(s) show one picture in all {} frames compared of each batch; does "
+             "the view follow the simulation?",
+             mean.frozen_cameras, kComparedStacks));
   }
   if (mean.action_saturation > kMaxSaturation) {
     warn(kSaturation, fmt::format("actions are saturated: {:.1f} % of their components lie beyond "

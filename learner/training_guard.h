@@ -2,13 +2,15 @@
 // Pure: the caller gives the figures and the time, and logs what comes back.
 //
 //   all-equal frames      mean pixel deviation within a frame below kMinSpread grey levels
+//   frozen cameras        the frames compared in every batch show one picture
 //   saturated actions     more than kMaxSaturation of the action components beyond |a| = 0.99
 //   collapsed temperature below kMinTemperatureShare of the initial one
 //   rising critic loss    the mean over kLossUpdates updates has risen kRises times in a row, to
 //   more
 //                         than kRiseFactor times the smallest such mean
 //
-// Each kind is repeated at most once per kRepeat. Flat success is the coordinator's to see.
+// Each kind is repeated at most once per kRepeat. Flat success is the coordinator's to see
+// (launch/flat_score.h).
 #pragma once
 
 #include <array>
@@ -25,7 +27,7 @@ namespace shoal::learner {
 
 class TrainingGuard {
  public:
-  // `has_pixels`: whether frame_spread means anything.
+  // `has_pixels`: whether frame_spread and frozen_cameras mean anything.
   TrainingGuard(const Config& config, bool has_pixels);
 
   // Means over `updates` > 0 updates since the last call. Returns the warnings that are due.
@@ -34,6 +36,7 @@ class TrainingGuard {
   uint64_t warnings() const { return warnings_; }
 
   static constexpr float kMinSpread = 1;
+  static constexpr float kFrozen = 0.99f;  // cameras, mean over all batches
   static constexpr float kMaxSaturation = 0.95f;
   static constexpr float kMinTemperatureShare = 1e-4f;
   static constexpr int kLossUpdates = 1'000;
@@ -42,7 +45,7 @@ class TrainingGuard {
   static constexpr std::chrono::seconds kRepeat{60};
 
  private:
-  enum Kind { kFrames, kSaturation, kTemperature, kCriticLoss, kKinds };
+  enum Kind { kFrames, kCameras, kSaturation, kTemperature, kCriticLoss, kKinds };
 
   // Adds the updates to the running mean of the critic loss.
   void FollowLoss(const UpdateStats& mean, int updates);

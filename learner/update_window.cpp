@@ -11,7 +11,7 @@ constexpr float UpdateStats::*kFigures[] = {
     &UpdateStats::q_mean,           &UpdateStats::target_mean,
     &UpdateStats::entropy,          &UpdateStats::action_saturation,
     &UpdateStats::critic_grad_norm, &UpdateStats::actor_grad_norm,
-    &UpdateStats::frame_spread};
+    &UpdateStats::frame_spread,     &UpdateStats::frozen_cameras};
 
 }  // namespace
 

@@ -27,6 +27,7 @@
 #include "common/nn/parallel.h"
 #include "common/nn/tensor_counter.h"
 #include "learner/agent/batch_faults.h"
+#include "learner/agent/frozen_cameras.h"
 #include "learner/agent/losses.h"
 #include "learner/agent/squashed_gaussian.h"
 
@@ -174,6 +175,8 @@ UpdateStats SacAgent::Update(const BatchView& batch) {
   agent.counted_until = Now();
   UpdateStats stats = agent.last;
   stats.frame_spread = agent.FrameSpread(batch);
+  stats.frozen_cameras =
+      float(FrozenCameras(batch.obs_frames, agent.spec, agent.config.replay.shift_pad));
   stats.temperature = agent.networks.Temperature();
   stats.finite = AllFinite(batch);
   if (!stats.finite) return stats;

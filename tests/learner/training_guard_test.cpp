@@ -52,6 +52,14 @@ TEST_F(TrainingGuardTest, NamesFramesOfOneColour) {
   EXPECT_THAT(without_pixels.Check(stats, 10, now_), IsEmpty());
 }
 
+TEST_F(TrainingGuardTest, NamesFrozenCameras) {
+  UpdateStats stats = Healthy();
+  stats.frozen_cameras = 0.5f;  // in every second batch: a coincidence
+  EXPECT_THAT(guard_.Check(stats, 10, now_), IsEmpty());
+  stats.frozen_cameras = 1;
+  EXPECT_THAT(guard_.Check(stats, 10, now_), ElementsAre(HasSubstr("1.0 camera(s)")));
+}
+
 TEST_F(TrainingGuardTest, NamesSaturatedActions) {
   UpdateStats stats = Healthy();
   stats.action_saturation = 0.97f;
