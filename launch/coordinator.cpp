@@ -329,8 +329,9 @@ void Coordinator::Impl::TakeMessages(SteadyTime now) {
       progress.Say("metrics.jsonl cannot be written any more (disk full or size limit)");
     }
   }
-  meta.updates =
-      std::max(meta.updates, static_cast<uint64_t>(view.Get("learner", 0, "updates").value_or(0)));
+  if (const auto updates = view.Get("learner", 0, "updates")) {
+    meta.OnUpdates(static_cast<uint64_t>(*updates));
+  }
   for (const EvalMessage& message : evals.TakeAll()) OnEvaluation(message);
 }
 

@@ -74,6 +74,9 @@ void PrintSummary(const fs::path& run, const RunResult& result,
     progress.Say(fmt::format("  success >= {:.0f} % was not reached", 100 * meta.target));
   }
   if (meta.accounting) progress.Say("  " + meta.accounting->Line());
+  if (meta.updates_lost > 0) {
+    progress.Say(fmt::format("  updates lost with a learner: {}", meta.updates_lost));
+  }
   for (const std::string& line : FormatBottleneck(result.bottleneck)) progress.Say("  " + line);
   for (const char* name :
        {"meta.json", "bottleneck.json", "metrics.jsonl", "eval", "checkpoints", "tensorboard"}) {

@@ -70,6 +70,11 @@ ordered_json Versions() {
 
 }  // namespace
 
+void RunMeta::OnUpdates(uint64_t reported) {
+  if (reported < updates) updates_lost += updates - reported;
+  updates = reported;
+}
+
 void WriteRunMeta(const std::filesystem::path& run, const Config& config, const RunMeta& meta) {
   const ordered_json object{
       {"schema", "shoal-run-1"},
@@ -85,6 +90,7 @@ void WriteRunMeta(const std::filesystem::path& run, const Config& config, const 
       {"finished", meta.finished.empty() ? ordered_json(nullptr) : ordered_json(meta.finished)},
       {"env_steps", meta.env_steps},
       {"updates", meta.updates},
+      {"updates_lost", meta.updates_lost},
       {"wall_seconds", meta.wall_seconds},
       {"first_success", FirstSuccess(meta)},
       {"best", Best(meta)},
@@ -111,6 +117,7 @@ RunMeta ReadRunMeta(const std::filesystem::path& run) {
     object.at("updates").get_to(meta.updates);
     object.at("restarts").get_to(meta.restarts);
     meta.resends = object.value("resends", uint64_t{0});
+    meta.updates_lost = object.value("updates_lost", uint64_t{0});
     for (const auto& change : object.value("changes", nlohmann::json::array())) {
       meta.changes.push_back(ReadChange(change));
     }

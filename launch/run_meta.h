@@ -16,6 +16,7 @@ namespace shoal::launch {
 struct RunMeta {
   std::string started, finished;  // UTC; finished is empty while running
   uint64_t env_steps = 0, updates = 0;
+  uint64_t updates_lost = 0;  // with learners that died, since their newest checkpoints
   double wall_seconds = 0;  // over all sessions of a resumed run
   double target = 0;
   std::optional<EvaluationPoint> first_success;
@@ -28,6 +29,10 @@ struct RunMeta {
   uint64_t resends = 0;          // records that actors sent again
   std::string exit = "running";  // then "target", "budget", "interrupted" or "failed"
   std::string error;             // why, where failed
+
+  // The learner's count as it was reported last. Fewer than before: it died, and its successor goes
+  // on from a checkpoint. What it did after its last report, a second ago at most, is unknown.
+  void OnUpdates(uint64_t reported);
 };
 
 // Throws Error.

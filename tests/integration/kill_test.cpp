@@ -35,6 +35,7 @@ TEST(Kill, TrainingSurvivesTheDeathOfEachRole) {
   const json meta = run.Json("meta.json");
   ExpectBalanced(meta);
   EXPECT_EQ(meta.at("accounting").at("rejected"), 0);
+  EXPECT_GT(meta.at("updates_lost").get<int64_t>(), 0) << "those since the learner's checkpoint";
   // Only an actor's death loses records, and only those not yet acknowledged: its window.
   EXPECT_LE(meta.at("accounting").at("lost_with_process").get<int64_t>(), 5 * 24);
 }

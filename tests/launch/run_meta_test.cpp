@@ -20,6 +20,7 @@ TEST(RunMeta, AResumedRunFindsItsCountersAndWhatWasChanged) {
   meta.wall_seconds = 9.5;
   meta.restarts = 2;
   meta.resends = 30;
+  meta.updates_lost = 3;
   meta.changes = {{.time = "2026-01-31T12:05:00Z",
                    .env_steps = 5,
                    .updates = 6,
@@ -34,6 +35,7 @@ TEST(RunMeta, AResumedRunFindsItsCountersAndWhatWasChanged) {
   EXPECT_EQ(back.wall_seconds, 9.5);
   EXPECT_EQ(back.restarts, 2);
   EXPECT_EQ(back.resends, 30u);
+  EXPECT_EQ(back.updates_lost, 3u);
   ASSERT_EQ(back.changes.size(), 1u);
   EXPECT_EQ(back.changes[0].time, "2026-01-31T12:05:00Z");
   EXPECT_EQ(back.changes[0].env_steps, 5u);
@@ -41,6 +43,13 @@ TEST(RunMeta, AResumedRunFindsItsCountersAndWhatWasChanged) {
   EXPECT_EQ(back.changes[0].key, "replay.samples_per_insert");
   EXPECT_EQ(back.changes[0].from, 64);
   EXPECT_EQ(back.changes[0].to, 32.5);
+}
+
+TEST(RunMeta, UpdatesAfterACheckpointAreLostWithTheLearner) {
+  RunMeta meta;
+  for (const uint64_t reported : {100, 200, 150, 180, 180, 300}) meta.OnUpdates(reported);
+  EXPECT_EQ(meta.updates, 300u);
+  EXPECT_EQ(meta.updates_lost, 50u);
 }
 
 TEST(RunMeta, AnOlderFileHasNoChanges) {
