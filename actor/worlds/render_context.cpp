@@ -29,6 +29,7 @@ namespace {
 // and looks the same at 84x84.
 constexpr int kFastSlices = 10;
 constexpr int kFastStacks = 4;
+constexpr int kFastLinkSlices = 8;  // of cylinders and capsules
 constexpr int kFastQuads = 1;
 constexpr double kFastPlaneLines = 10;  // of a plane's grid, on each side of its centre
 constexpr int kDepthBits = 24, kStencilBits = 8, kAccumulationBits = 8;
@@ -113,7 +114,7 @@ struct RenderContext::Engine {
   mjrContext context;
   mjvScene scene;
   mjvOption option;
-  LowPolyShapes shapes{kFastSlices};
+  LowPolyShapes shapes{kFastLinkSlices};
 
   Engine() {
     mjr_defaultContext(&context);

@@ -2,6 +2,7 @@
 
 #include <mujoco/mujoco.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <optional>
@@ -86,6 +87,23 @@ class Frustum {
   std::array<Plane, 5> planes_;
 };
 
+// Whether the geom lies within the box, wherever the camera is.
+bool Holds(const mjvGeom& box, const mjvGeom& geom) {
+  const Vector offset = Sum(1, From(geom.pos), -1, From(box.pos));
+  for (int i = 0; i < 3; ++i) {
+    const Vector axis{box.mat[i], box.mat[3 + i], box.mat[6 + i]};
+    const std::optional<float> reach = Reach(geom, axis);
+    if (!reach || std::fabs(Dot(offset, axis)) + *reach >= box.size[i]) return false;
+  }
+  return true;
+}
+
+bool IsInsideABox(const mjvScene& scene, const mjvGeom& geom) {
+  return std::any_of(scene.geoms, scene.geoms + scene.ngeom, [&geom](const mjvGeom& other) {
+    return other.type == mjGEOM_BOX && other.rgba[3] >= 1 && Holds(other, geom);
+  });
+}
+
 }  // namespace
 
 void RemoveUnseenGeoms(mjvScene* scene, float aspect) {
@@ -94,6 +112,8 @@ void RemoveUnseenGeoms(mjvScene* scene, float aspect) {
   for (int i = 0; i < scene->ngeom; ++i) {
     const mjvGeom& geom = scene->geoms[i];
     if (geom.rgba[3] <= 0 || !frustum.MaySee(geom)) continue;
+    // Sites mark places within bodies, such as the block's centre.
+    if (geom.objtype == mjOBJ_SITE && IsInsideABox(*scene, geom)) continue;
     if (kept != i) scene->geoms[kept] = geom;
     ++kept;
   }

@@ -28,14 +28,14 @@ nlohmann::json TrainWith(const std::string& preset) {
   return aggregate;
 }
 
-// From the few points that random actions earn to at least 300 of 1000.
+// From the 128 points that random actions earn to at least 300 of 1000.
 TEST(ControlLearning, CartpoleSwingsUpFromState) {
   const nlohmann::json aggregate = TrainWith("cartpole-swingup-state");
   EXPECT_EQ(aggregate.at("length_mean"), 125);
   EXPECT_GE(aggregate.at("return_mean").get<double>(), 300) << aggregate.dump();
 }
 
-// From the 16 points that random actions earn before it falls to at least 200.
+// From the 20 points that random actions earn to at least 200.
 TEST(ControlLearning, HopperStaysUpFromState) {
   const nlohmann::json aggregate = TrainWith("hopper-state");
   EXPECT_GE(aggregate.at("return_mean").get<double>(), 200) << aggregate.dump();

@@ -186,6 +186,20 @@ TEST(SceneCulling, LeavesOutWhatIsBehindBesideOrInvisible) {
   EXPECT_EQ(scene.Seen(), std::vector<int>{4});
 }
 
+TEST(SceneCulling, LeavesOutSitesWithinOpaqueBoxesAlone) {
+  for (const bool opaque : {true, false}) {
+    SphereScene scene;
+    mjvGeom& box = scene.Add(4, 0, 0, 1.8f);
+    box.type = mjGEOM_BOX;
+    box.size[0] = box.size[1] = box.size[2] = 1;
+    if (!opaque) box.rgba[3] = 0.9f;
+    scene.Add(4, 0, 0, 0.9f).objtype = mjOBJ_SITE;
+    scene.Add(4, 0, 0.3f, 0.8f).objtype = mjOBJ_SITE;  // through the top
+    scene.Add(4, 0, 0, 0.5f);                          // no site
+    EXPECT_EQ(scene.Seen(), opaque ? (std::vector<int>{0, 2, 3}) : (std::vector<int>{0, 1, 2, 3}));
+  }
+}
+
 TEST(SceneCulling, KeepsPlanesAndWhatHasNoBound) {
   SphereScene scene;
   scene.Add(-3, 0, 0, 1).type = mjGEOM_PLANE;

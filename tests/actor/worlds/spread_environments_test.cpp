@@ -26,8 +26,15 @@ Config ConfigOf(const std::string& task) {
   Config config;
   config.task = task;
   config.observation.height = config.observation.width = 32;
-  config.observation.goal_mode = "both";
   config.observation.proprioception = true;
+  if (task == "CustomHopper-source") {
+    config.observation.cameras = {"track", "free"};
+    config.randomization.body_mass = {{"thigh", {3.43, 4.43}}, {"leg", {2.21, 3.21}}};
+  } else if (task == "walker_walk") {
+    config.observation.cameras = {"side"};
+  } else {
+    config.observation.goal_mode = "both";
+  }
   return config;
 }
 
@@ -128,9 +135,10 @@ TEST_P(SpreadEnvironments, EpisodesDoNotDependOnActorsOrProcesses) {
   EXPECT_EQ(different.size(), elsewhere.size());
 }
 
-INSTANTIATE_TEST_SUITE_P(Fetch, SpreadEnvironments,
+INSTANTIATE_TEST_SUITE_P(Tasks, SpreadEnvironments,
                          testing::Values("FetchReach", "FetchPush", "FetchSlide",
-                                         "FetchPickAndPlace"));
+                                         "FetchPickAndPlace", "CustomHopper-source",
+                                         "walker_walk"));
 
 }  // namespace
 }  // namespace shoal::worlds

@@ -1,0 +1,66 @@
+// Short trainings of the real programs on every kind of observation with pictures: goal modes,
+// proprioception, colours, stacks, numbers of cameras and sizes, each value with others at least
+// once.
+#include <gtest/gtest.h>
+
+#include "tests/support/training_run.h"
+
+namespace shoal {
+namespace {
+
+struct Kind {
+  const char* name;
+  const char* goal_mode;
+  bool proprioception, grey;
+  int stack;
+  const char* cameras;
+  int channels, height, width;
+};
+
+const Kind kKinds[] = {
+    {"rgb", "none", false, false, 1, R"(["front"])", 3, 84, 84},
+    {"grey_stack_of_four", "desired", true, true, 4, R"(["front","side"])", 2, 64, 64},
+    {"three_cameras", "both", false, false, 2, R"(["front","side","close"])", 9, 100, 100},
+    {"wide", "both", true, true, 3, R"(["gymnasium"])", 1, 64, 100},
+};
+
+class PicturesTraining : public testing::TestWithParam<Kind> {};
+
+TEST_P(PicturesTraining, UpdatesAndEvaluates) {
+  const Kind& kind = GetParam();
+  const auto text = [](bool value) { return std::string(value ? "true" : "false"); };
+  const TrainingRun run;
+  const ProgramResult result = run.Train({{"observation.pixels", "true"},
+                                          {"observation.goal_mode", kind.goal_mode},
+                                          {"observation.proprioception", text(kind.proprioception)},
+                                          {"observation.grey", text(kind.grey)},
+                                          {"observation.stack", std::to_string(kind.stack)},
+                                          {"observation.cameras", kind.cameras},
+                                          {"observation.height", std::to_string(kind.height)},
+                                          {"observation.width", std::to_string(kind.width)},
+                                          {"env_steps", "400"},
+                                          {"eval.episodes", "2"},
+                                          {"eval.final_episodes", "2"},
+                                          {"eval.interval", "200"},
+                                          {"learner.batch", "16"},
+                                          {"replay.capacity", "2000"},
+                                          {"replay.min_size", "100"},
+                                          {"replay.samples_per_insert", "4"},
+                                          {"replay.shift_pad", "4"}});
+  ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
+  const auto meta = run.Json("meta.json");
+  ExpectBalanced(meta);
+  EXPECT_GT(meta.at("updates").get<int64_t>(), 20);
+  const auto spec = run.Json("config.json").at("spec");
+  EXPECT_EQ(spec.at("channels"), kind.channels);
+  EXPECT_EQ(spec.at("height"), kind.height);
+  EXPECT_EQ(spec.at("width"), kind.width);
+  EXPECT_EQ(spec.at("stack"), kind.stack);
+  EXPECT_EQ(run.Json("eval/final.json").at("aggregate").at("episodes"), 2);
+}
+
+INSTANTIATE_TEST_SUITE_P(Kinds, PicturesTraining, testing::ValuesIn(kKinds),
+                         [](const auto& kind) { return std::string(kind.param.name); });
+
+}  // namespace
+}  // namespace shoal
