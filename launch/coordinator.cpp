@@ -328,6 +328,7 @@ void Coordinator::Impl::TakeMessages(SteadyTime now) {
     if (!log.Write(message)) {
       progress.Say("metrics.jsonl cannot be written any more (disk full or size limit)");
     }
+    scalars.WriteTraining(message, now);
   }
   if (const auto updates = view.Get("learner", 0, "updates")) {
     meta.OnUpdates(static_cast<uint64_t>(*updates));

@@ -1,6 +1,9 @@
-// TensorBoard scalars of evaluations and rollouts, x = env steps.
+// The run's TensorBoard scalars, x = env steps: training, rollouts and evaluations. The coordinator
+// is the only process that writes them, so that TensorBoard has one file to follow per start of the
+// run; what the learner has to say comes with its reports.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 
@@ -11,19 +14,32 @@
 
 namespace shoal::launch {
 
-// Writes to RUN/tensorboard, beside the learner's file. One thread. Errors: Error on a full disk.
+// Writes to a new file in RUN/tensorboard. One thread. Errors: Error on a full disk.
 class ScalarLog {
  public:
   explicit ScalarLog(const std::filesystem::path& run);  // throws Error
 
   // eval/mean_reward, eval/success_rate.
   void WriteEvaluation(const EvaluationPoint& point);
-  // rollout/ep_rew_mean, rollout/success_rate, rollout/ep_len_mean; every 5 s.
+  // rollout/ep_rew_mean, rollout/success_rate, rollout/ep_len_mean; every 5 s, from
+  // the first finished episode on.
   void WriteRollouts(const MetricsView& view, const ProgressFigures& figures, SteadyTime now);
+  // train/critic_loss, train/actor_loss, train/ent_coef, train/ent_coef_loss, train/n_updates and
+  // time/fps, the mean since this session's first update; of each report of the learner that has
+  // made updates since the one before. Reports of others are ignored.
+  void WriteTraining(const MetricsMessage& report, SteadyTime now);
 
  private:
+  // Since when and from how many env steps time/fps counts.
+  struct Start {
+    SteadyTime time;
+    double env_steps = 0;
+  };
+
   tensorboard::EventWriter writer_;
-  std::optional<SteadyTime> written_;
+  std::optional<SteadyTime> rollouts_written_;
+  double updates_written_ = 0;
+  std::optional<Start> training_start_;
 };
 
 }  // namespace shoal::launch

@@ -11,7 +11,6 @@
 #include "common/config/session_number.h"
 #include "common/dds/publisher.h"
 #include "common/dds/subscriber.h"
-#include "common/tensorboard/event_writer.h"
 #include "learner/batch_source.h"
 #include "learner/checkpoint_store.h"
 #include "learner/dds_outlet.h"
@@ -34,7 +33,6 @@ class Learner {
         agent_(run.config, run.spec, precision_),
         checkpoints_(folder, run),
         restored_(Restore()),
-        events_(folder / "tensorboard"),
         control_(Now()),
         bus_(dds::FindPlace(folder, run.config.transport, reach), dds::Role::kLearner),
         outlet_(bus_),
@@ -61,8 +59,7 @@ class Learner {
                        .outlet = outlet_,
                        .checkpoints = checkpoints_,
                        .pending_evaluations = pending_evaluations_,
-                       .control = control_,
-                       .events = events_},
+                       .control = control_},
                       restored_);
     if (loop.Run() == TrainingLoop::End::kStopped) return 0;
     log::Failure("the coordinator is gone: no heartbeat; a checkpoint was written; leaving");
@@ -98,7 +95,6 @@ class Learner {
   SacAgent agent_;
   CheckpointStore checkpoints_;
   const std::optional<CheckpointState> restored_;
-  tensorboard::EventWriter events_;
   PendingEvaluations pending_evaluations_;
   ControlState control_;
   dds::Bus bus_;

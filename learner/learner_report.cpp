@@ -4,15 +4,11 @@
 
 namespace shoal::learner {
 
-LearnerReport::LearnerReport(const RunConfig& run, tensorboard::EventWriter& events)
-    : events_(events), guard_(run.config, run.spec.HasPixels()), report_("learner", 0) {}
+LearnerReport::LearnerReport(const RunConfig& run)
+    : guard_(run.config, run.spec.HasPixels()), report_("learner", 0) {}
 
 void LearnerReport::OnUpdate(const UpdateStats& stats, const Batch& batch, uint64_t updates) {
-  if (!any_updates_) {
-    any_updates_ = true;
-    first_update_ = Now();
-    first_env_steps_ = batch.stored_steps;
-  }
+  any_updates_ = true;
   window_.Add(stats);
   AddDataAges(batch.view.weights_update, updates, &data_ages_);
 }
@@ -24,7 +20,6 @@ const MetricsMessage& LearnerReport::Make(const LearnerFigures& figures) {
     for (const std::string& warning : guard_.Check(mean_, updates, Now())) {
       log::Warning("{}", warning);
     }
-    WriteScalars(figures);
   }
   window_.Clear();
   const auto add = [&](const char* name, auto value) {
@@ -80,21 +75,6 @@ void LearnerReport::AddTimes(const LearnerSeconds& seconds) {
   report_.AddSeconds("optimiser", seconds.update.optimiser);
   report_.AddSeconds("weights", seconds.weights);
   report_.AddSeconds("checkpoint", seconds.checkpoint);
-}
-
-void LearnerReport::WriteScalars(const LearnerFigures& figures) {
-  const auto x = static_cast<int64_t>(figures.env_steps);
-  events_.Scalar("train/critic_loss", x, mean_.critic_loss);
-  events_.Scalar("train/actor_loss", x, mean_.actor_loss);
-  events_.Scalar("train/ent_coef", x, mean_.temperature);
-  events_.Scalar("train/ent_coef_loss", x, mean_.temperature_loss);
-  events_.Scalar("train/n_updates", x, static_cast<double>(figures.updates));
-  const double seconds = SecondsSince(first_update_);
-  if (seconds > 0 && figures.env_steps > first_env_steps_) {
-    events_.Scalar("time/fps", x,
-                   static_cast<double>(figures.env_steps - first_env_steps_) / seconds);
-  }
-  events_.Flush();
 }
 
 }  // namespace shoal::learner

@@ -1,4 +1,4 @@
-// What the learner tells about itself once a second: metrics, TensorBoard scalars, warnings.
+// What the learner tells about itself once a second: metrics and warnings.
 //
 // Metrics (role "learner", id 0), means over the last interval with updates in it unless said
 // otherwise:
@@ -16,7 +16,6 @@
 #include <string>
 
 #include "common/config/run_files.h"
-#include "common/tensorboard/event_writer.h"
 #include "common/wire/metrics_report.h"
 #include "learner/batch_stream.h"
 #include "learner/training_guard.h"
@@ -44,24 +43,21 @@ struct LearnerFigures {
   BatchCounters batches;
 };
 
-// Borrows the event writer. One thread.
+// One thread.
 class LearnerReport {
  public:
-  LearnerReport(const RunConfig& run, tensorboard::EventWriter& events);
+  explicit LearnerReport(const RunConfig& run);
 
   void OnUpdate(const UpdateStats& stats, const Batch& batch, uint64_t updates);
   // Once a second.
   bool Due() { return report_.Due(Now()); }
-  // Ends the interval: logs warnings, writes scalars, and returns the metrics, valid until the next
-  // call. Throws Error when the event file cannot be written.
+  // Ends the interval: logs warnings and returns the metrics, valid until the next call.
   const MetricsMessage& Make(const LearnerFigures& figures);
 
  private:
   void AddUpdateFigures();
   void AddTimes(const LearnerSeconds& seconds);
-  void WriteScalars(const LearnerFigures& figures);
 
-  tensorboard::EventWriter& events_;
   TrainingGuard guard_;
   MetricsReport report_;
   UpdateWindow window_;
@@ -70,8 +66,6 @@ class LearnerReport {
   uint64_t updates_made_ = 0;  // by this process
   QuantileWindow data_ages_;
   Quantiles data_age_;  // of the last interval with updates
-  SteadyTime first_update_{};
-  uint64_t first_env_steps_ = 0;  // stored then
 };
 
 }  // namespace shoal::learner

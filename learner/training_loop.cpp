@@ -26,7 +26,7 @@ TrainingLoop::TrainingLoop(const Parts& parts, const std::optional<CheckpointSta
       weights_(parts.run, parts.precision, parts.session, parts.agent, parts.outlet),
       evaluations_(parts.run, parts.session, restored ? restored->env_steps : 0, parts.agent,
                    parts.outlet),
-      report_(parts.run, parts.events),
+      report_(parts.run),
       samples_per_insert_(config_.replay.samples_per_insert),
       granted_from_steps_(static_cast<uint64_t>(config_.replay.min_size)),
       waiting_since_(Now()) {

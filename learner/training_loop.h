@@ -17,7 +17,6 @@
 
 #include "common/base/clock.h"
 #include "common/config/run_files.h"
-#include "common/tensorboard/event_writer.h"
 #include "common/wire/control_state.h"
 #include "learner/batch_stream.h"
 #include "learner/checkpoint_store.h"
@@ -45,7 +44,6 @@ class TrainingLoop {
     CheckpointStore& checkpoints;
     PendingEvaluations& pending_evaluations;
     ControlState& control;
-    tensorboard::EventWriter& events;
     std::chrono::milliseconds drain_idle = kDrainIdle;
   };
 

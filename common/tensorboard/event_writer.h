@@ -1,8 +1,8 @@
 // Scalars as a TensorBoard event file.
 //
 // The file is FOLDER/events.out.tfevents.SECONDS.HOST.PID.NUMBER, a sequence of TFRecords of Event
-// messages. Several processes may write files into one folder; TensorBoard shows them as one run
-// (start it with --reload_multifile=true to follow all of them while they grow).
+// messages. TensorBoard follows the newest file of a folder only, so one process at a time writes
+// there.
 //
 // Scalars are kept in memory until Flush, at least every 64 kB. A file always ends at a record's
 // end, unless the process dies within a write; readers ignore such a tail. Threads: one at a time.

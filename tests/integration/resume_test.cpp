@@ -1,6 +1,7 @@
 // --resume: goes on where the run was, and says what it could not keep.
 #include <gtest/gtest.h>
 
+#include "tests/support/event_files.h"
 #include "tests/support/training_run.h"
 
 namespace shoal {
@@ -12,13 +13,30 @@ ProgramResult Resume(const TrainingRun& run, const std::string& env_steps) {
       std::chrono::seconds(180));
 }
 
+// One file per start of the run, each with every tag.
+void ExpectScalars(const std::filesystem::path& run, size_t starts) {
+  const auto files = EventFiles(run / "tensorboard");
+  ASSERT_EQ(files.size(), starts);
+  for (const auto& file : files) {
+    const Scalars scalars = ReadScalars(file);
+    for (const char* tag :
+         {"rollout/ep_rew_mean", "rollout/success_rate", "rollout/ep_len_mean", "eval/mean_reward",
+          "eval/success_rate", "train/critic_loss", "train/actor_loss", "train/ent_coef",
+          "train/ent_coef_loss", "train/n_updates"}) {
+      EXPECT_TRUE(scalars.contains(tag)) << file << ": " << tag;
+    }
+  }
+}
+
 TEST(Resume, WithAFileTheReplayGoesOnWithItsContent) {
   const TrainingRun run;
   const ProgramResult first = run.Train({{"env_steps", "2500"}, {"eval.final_episodes", "0"}});
   ASSERT_EQ(ExitCode(first), 0) << first.out << first.err;
+  ExpectScalars(run.path(), 1);
   const auto before = run.Json("meta.json");
   const ProgramResult resumed = Resume(run, "4000");
   ASSERT_EQ(ExitCode(resumed), 0) << resumed.out << resumed.err;
+  ExpectScalars(run.path(), 2);
   const auto meta = run.Json("meta.json");
   ExpectBalanced(meta);
   EXPECT_EQ(meta.at("accounting").at("lost_with_process"), 0);

@@ -37,7 +37,6 @@ class TrainingLoopTest : public testing::Test {
       agent.Restore(checkpoint->tensors, "test");
       restored = checkpoint->state;
     }
-    tensorboard::EventWriter events(folder_.path() / "tensorboard");
     PlayedBatches batches(run_, agent.updates() + 1);
     batches.last_request = stop_after;
     batches.before = [&](uint64_t request) {
@@ -53,7 +52,6 @@ class TrainingLoopTest : public testing::Test {
                        .checkpoints = checkpoints,
                        .pending_evaluations = pending_,
                        .control = control_,
-                       .events = events,
                        .drain_idle = std::chrono::milliseconds(20)},
                       restored);
     const TrainingLoop::End end = loop.Run();
