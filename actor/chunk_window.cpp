@@ -11,11 +11,11 @@ namespace shoal::actor {
 ChunkWindow::ChunkWindow(const Options& options)
     : options_(options),
       stored_(options.records_before),
-      // Before the replay's first word the whole window may be sent: it learns of us by that.
-      allowed_(options.records_before +
-               static_cast<uint64_t>(options.chunks - 1) * options.chunk_records),
+      // The replay learns of us by what we send before its first word.
+      allowed_(options.records_before + options.first_records),
       last_sequence_(options.records_before) {
   CHECK(options.chunks >= 3 && options.chunk_records >= 1 && options.record_bytes > 0);
+  CHECK(options.first_records > 0);
   for (int i = 0; i < options.chunks; ++i) {
     Chunk chunk;
     chunk.bytes.resize(static_cast<size_t>(options.chunk_records) * options.record_bytes);
@@ -26,7 +26,8 @@ ChunkWindow::ChunkWindow(const Options& options)
 size_t ChunkWindow::Room() const {
   const size_t per_chunk = static_cast<size_t>(options_.chunk_records);
   const bool open = !kept_.empty() && !kept_.back().closed;
-  return free_.size() * per_chunk + (open ? per_chunk - kept_.back().count : 0);
+  const size_t memory = free_.size() * per_chunk + (open ? per_chunk - kept_.back().count : 0);
+  return std::min<size_t>(memory, CreditLeft());
 }
 
 uint8_t* ChunkWindow::BeginRecord() {
@@ -85,9 +86,8 @@ void ChunkWindow::OnCredit(const Credit& credit) {
     const bool restarted = replay_session_ != 0;
     replay_session_ = credit.replay_session;
     if (restarted) Rewind();
-    allowed_ = credit.allowed;
   }
-  allowed_ = std::max(allowed_, credit.allowed);
+  allowed_ = credit.allowed;
   stored_ = std::max(stored_, std::min(credit.stored, last_sequence_));
   while (!kept_.empty() && kept_.front().closed &&
          kept_.front().first_sequence + kept_.front().count - 1 <= stored_) {

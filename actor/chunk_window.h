@@ -25,11 +25,12 @@ class ChunkWindow {
     int record_bytes = 0;
     int chunk_records = 0;        // records per chunk at most
     int chunks = 0;               // >= 3: the replay's window and the open one
+    uint64_t first_records = 0;   // what may be made before the replay's first word
     uint64_t records_before = 0;  // of a session that goes on; all of them stored
   };
   explicit ChunkWindow(const Options& options);
 
-  // How many records can be begun now.
+  // How many records can be begun now: there is memory for them, and the replay allows them.
   size_t Room() const;
   // Memory for the next record, zeroed. Room() must not be 0.
   uint8_t* BeginRecord();
@@ -43,7 +44,8 @@ class ChunkWindow {
   std::optional<TransitionChunk> NextToSend() const;
   void MarkSent();
 
-  // The replay's newest word. Words about other actors and sessions are ignored.
+  // The replay's newest word; what it allows may be less than before. Words about other actors and
+  // sessions are ignored.
   void OnCredit(const Credit& credit);
   // Sends everything not stored again (nothing was heard for too long).
   void Rewind();
@@ -72,7 +74,7 @@ class ChunkWindow {
   std::vector<Chunk> free_;
   size_t unsent_from_ = 0;  // kept_[i], i < unsent_from_, was sent in this replay session
   uint64_t stored_;
-  uint64_t allowed_;  // highest sequence that may be sent
+  uint64_t allowed_;  // highest sequence that may be made and sent
   uint64_t last_sequence_;
   uint64_t replay_session_ = 0;
   uint64_t resent_records_ = 0;

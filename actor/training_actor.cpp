@@ -48,6 +48,7 @@ ChunkWindow::Options WindowOptions(const RunConfig& run, uint32_t id, uint64_t s
           .record_bytes = record_bytes,
           .chunk_records = window.chunk_records,
           .chunks = window.chunks + 1,
+          .first_records = static_cast<uint64_t>(window.least_records),
           .records_before = records_before};
 }
 

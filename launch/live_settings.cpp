@@ -10,7 +10,8 @@ namespace shoal::launch {
 namespace {
 
 constexpr SettingUse kActors[] = {{"coordinator", "actors"}};
-constexpr SettingUse kBudget[] = {{"coordinator", "budget_env_steps"}};
+constexpr SettingUse kBudget[] = {{"coordinator", "budget_env_steps"},
+                                  {"replay", "budget_env_steps"}};
 constexpr SettingUse kInterval[] = {{"learner", "eval_interval"}};
 constexpr SettingUse kPeriod[] = {{"learner", "weights_period"}};
 constexpr SettingUse kRatio[] = {{"replay", "limiter_samples_per_insert"},

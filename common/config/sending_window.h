@@ -3,6 +3,8 @@
 //
 //   per chunk  transport.chunk_records, fewer (but one) where they exceed kChunkBytes together
 //   chunks     as many of these as replay.window_chunks chunks of transport.chunk_records hold
+//   least      what an actor must be allowed to go on: its oldest chunk, and a reset and a step of
+//              each of its environments
 #pragma once
 
 #include <cstdint>
@@ -17,6 +19,7 @@ inline constexpr int64_t kChunkBytes = 1 << 20;
 struct SendingWindow {
   int chunk_records = 0;  // >= 1
   int chunks = 0;         // >= 2
+  int least_records = 0;
 
   int64_t records() const { return int64_t{chunk_records} * chunks; }
 };

@@ -78,6 +78,7 @@ constexpr Metric kMetrics[] = {
     {"replay", "limiter_blocked_insert_share", kGauge, "", "the share of the last interval"},
     {"replay", "limiter_blocked_sample_seconds", kCounter, "s", "the learner was held back"},
     {"replay", "limiter_blocked_sample_share", kGauge, "", "the share of the last interval"},
+    {"replay", "budget_env_steps", kGauge, "env steps", "with these stored no credit is given"},
     {"replay", "actor_sessions", kGauge, "", "actors that ever sent records"},
     {"replay", "queue_depth", kGauge, "", "chunks and requests that wait to be dealt with"},
     {"replay", "queue_age_seconds", kGauge, "s", "longest wait of a chunk in the last interval"},

@@ -17,7 +17,8 @@ actor::ChunkWindow::Options WindowOptions(const RunConfig& run) {
           .session = kSession,
           .record_bytes = record_bytes,
           .chunk_records = window.chunk_records,
-          .chunks = window.chunks + 1};
+          .chunks = window.chunks + 1,
+          .first_records = static_cast<uint64_t>(window.records())};
 }
 
 }  // namespace

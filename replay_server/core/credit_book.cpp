@@ -5,22 +5,32 @@
 namespace shoal::replay {
 
 CreditBook::CreditBook(const SessionTable& sessions, uint64_t spec_hash, uint64_t replay_session,
-                       uint64_t window_records)
+                       uint64_t window_records, uint64_t least_records)
     : sessions_(sessions),
       spec_hash_(spec_hash),
       replay_session_(replay_session),
-      window_records_(window_records) {}
+      window_records_(window_records),
+      least_records_(std::min(least_records, window_records)) {}
 
-void CreditBook::Refresh(bool may_insert) {
+uint64_t CreditBook::Share(std::optional<uint64_t> steps_left) const {
+  if (!steps_left) return window_records_;
+  if (*steps_left == 0) return 0;
+  const uint64_t sessions = std::max<uint64_t>(1, sessions_.newest().size());
+  return std::clamp((*steps_left + sessions - 1) / sessions, least_records_, window_records_);
+}
+
+void CreditBook::Refresh(bool may_insert, std::optional<uint64_t> steps_left) {
+  const uint64_t share = Share(steps_left);
   for (const auto& [actor, i] : sessions_.newest()) {
     const SessionCounters& counters = sessions_.at(i);
     Account& account = accounts_[actor];
     if (account.session != counters.session) account = {.session = counters.session};
     uint64_t allowed = std::max(account.allowed, counters.highest);
     if (may_insert) allowed = counters.highest + window_records_;
+    allowed = std::min(allowed, counters.highest + share);
     if (allowed == account.allowed && counters.highest == account.stored) continue;
     account.stored = counters.highest;
-    account.allowed = std::max(account.allowed, allowed);
+    account.allowed = allowed;
     account.changed = true;
   }
 }

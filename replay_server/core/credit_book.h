@@ -1,13 +1,20 @@
 // What each actor may send: the newest session of every actor, its window, and what was last said
 // about it.
 //
-//   allowed = stored + window, raised while inserts may go on, never lowered
+//   allowed = stored + window, raised while inserts may go on, never lowered by the limiter
+//   allowed <= stored + share of the budget, and lowered for it
+//
+// The budget is one of env steps, a credit one of records, resets among them: a share of so many
+// records cannot overspend it. Each session has an equal share, but not less than it needs to make
+// one more step and to send its oldest chunk, so that the others end a run without those who hang;
+// hence a budget is overspent by less than `least_records` per session.
 //
 // Threads: none inside; one owner.
 #pragma once
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <vector>
 
 #include "common/wire/messages.h"
@@ -19,10 +26,11 @@ class CreditBook {
  public:
   // Borrows the table.
   CreditBook(const SessionTable& sessions, uint64_t spec_hash, uint64_t replay_session,
-             uint64_t window_records);
+             uint64_t window_records, uint64_t least_records);
 
   // Takes over new sessions and newly dealt-with records; raises windows if `may_insert`.
-  void Refresh(bool may_insert);
+  // `steps_left`: of the budget; empty where there is none.
+  void Refresh(bool may_insert, std::optional<uint64_t> steps_left);
   // Credits of newest sessions; `changed_only`: those that differ from what was taken last.
   std::vector<Credit> Take(bool changed_only);
 
@@ -43,8 +51,11 @@ class CreditBook {
     bool changed = true, told = false;
   };
 
+  // Records that a session may have allowed and not stored, for the budget's sake.
+  uint64_t Share(std::optional<uint64_t> steps_left) const;
+
   const SessionTable& sessions_;
-  const uint64_t spec_hash_, replay_session_, window_records_;
+  const uint64_t spec_hash_, replay_session_, window_records_, least_records_;
   std::map<uint32_t, Account> accounts_;  // by actor
 };
 

@@ -26,6 +26,11 @@ uint64_t WindowRecords(const RunConfig& run) {
   return static_cast<uint64_t>(SendingWindowOf(run.config, record_bytes).records());
 }
 
+uint64_t LeastRecords(const RunConfig& run) {
+  const int record_bytes = RecordLayout(run.spec).record_bytes();
+  return static_cast<uint64_t>(SendingWindowOf(run.config, record_bytes).least_records);
+}
+
 LimiterOptions OptionsOfLimiter(const RunConfig& run) {
   const Config& config = run.config;
   LimiterOptions options;
@@ -61,13 +66,24 @@ ReplayCore::ReplayCore(const RunConfig& run, const std::filesystem::path& folder
       sampler_(ring_, index_),
       gather_(ring_, run.spec),
       limiter_(OptionsOfLimiter(run)),
-      credits_(sessions_, spec_hash_, replay_session, WindowRecords(run)),
+      credits_(sessions_, spec_hash_, replay_session, WindowRecords(run), LeastRecords(run)),
       requests_(spec_hash_, static_cast<uint32_t>(run.config.learner.batch),
-                run.config.learner.request_credits) {
+                run.config.learner.request_credits),
+      budget_(static_cast<uint64_t>(run.config.env_steps)) {
   limiter_.SetSessions(static_cast<int>(sessions_.newest().size()));
 }
 
 uint64_t ReplayCore::window_records() const { return WindowRecords(run_); }
+
+void ReplayCore::SetDraining(bool draining) {
+  draining_ = draining;
+  limiter_.SetDraining(draining);
+}
+
+std::optional<uint64_t> ReplayCore::StepsLeft() const {
+  if (draining_ || run_.config.lockstep) return std::nullopt;
+  return budget_ - std::min(budget_, ring_.stored_steps());
+}
 
 ChunkResult ReplayCore::TakeChunk(const TransitionChunk& chunk) {
   const uint64_t became_before = index_.became_sampleable();
@@ -133,12 +149,12 @@ std::optional<DrawnBatch> ReplayCore::TryAnswer(uint8_t* data) {
 }
 
 std::vector<Credit> ReplayCore::TakeCredits(bool changed_only) {
-  credits_.Refresh(limiter_.MayInsert(index_.sampleable()));
+  credits_.Refresh(limiter_.MayInsert(index_.sampleable()), StepsLeft());
   return credits_.Take(changed_only);
 }
 
 bool ReplayCore::CreditsUrgent() {
-  credits_.Refresh(limiter_.MayInsert(index_.sampleable()));
+  credits_.Refresh(limiter_.MayInsert(index_.sampleable()), StepsLeft());
   return credits_.Urgent();
 }
 

@@ -76,7 +76,10 @@ class ReplayCore {
   // For an actor of another spec: our hash, no credit.
   Credit Refusal(const TransitionChunk& chunk) const;
 
-  void SetDraining(bool draining) { limiter_.SetDraining(draining); }
+  void SetDraining(bool draining);
+  // The run's env steps from now on (before: the configured ones): with them stored no actor gets
+  // credit any more. Draining and lockstep, which ends by its own rule, know no budget.
+  void SetBudget(uint64_t env_steps) { budget_ = env_steps; }
   void SetSamplesPerInsert(double value) { limiter_.SetSamplesPerInsert(value); }
 
   // Who waits for whom, now.
@@ -93,8 +96,12 @@ class ReplayCore {
   const RequestQueue& requests() const { return requests_; }
   const Sampler& sampler() const { return sampler_; }
   const CoreCounters& counters() const { return counters_; }
+  uint64_t budget() const { return budget_; }
 
  private:
+  // Of the budget; empty where it does not count.
+  std::optional<uint64_t> StepsLeft() const;
+
   const RunConfig run_;
   const uint64_t spec_hash_;
   const uint64_t replay_session_;
@@ -110,6 +117,8 @@ class ReplayCore {
   RequestQueue requests_;
   CoreCounters counters_;
   BatchPlan last_plan_;
+  uint64_t budget_;  // env steps
+  bool draining_ = false;
 };
 
 }  // namespace shoal::replay

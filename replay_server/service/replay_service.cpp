@@ -179,6 +179,10 @@ class ReplayService {
   }
 
   void ApplySettings() {
+    const auto budget = static_cast<uint64_t>(
+        control_.SettingOr("env_steps", static_cast<double>(Settings().env_steps)));
+    if (budget != core_.budget()) log::Info("env_steps is now {}", budget);
+    core_.SetBudget(budget);
     const double ratio =
         control_.SettingOr("replay.samples_per_insert", Settings().replay.samples_per_insert);
     if (ratio == core_.limiter().samples_per_insert()) return;

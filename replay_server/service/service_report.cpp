@@ -18,6 +18,7 @@ const MetricsMessage& ServiceReport::Make(const std::string& state, const Servic
   report_.Add("limiter_samples_per_insert", core_.limiter().samples_per_insert());
   report_.Add("limiter_cursor", core_.limiter().cursor());
   report_.Add("limiter_band", core_.limiter().band());
+  Add("budget_env_steps", core_.budget());
   Add("actor_sessions", core_.sessions().newest().size());
   Add("queue_depth", inbox_.Depth());
   report_.Add("queue_age_seconds", std::exchange(queue_age_seconds_, 0));

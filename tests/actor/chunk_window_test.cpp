@@ -20,7 +20,8 @@ ChunkWindow MakeWindow(int chunk_records = 4, int chunks = 3) {
                       .session = kSession,
                       .record_bytes = kRecordBytes,
                       .chunk_records = chunk_records,
-                      .chunks = chunks});
+                      .chunks = chunks,
+                      .first_records = static_cast<uint64_t>(chunks - 1) * chunk_records});
 }
 
 Credit MakeCredit(uint64_t replay, uint64_t stored, uint64_t allowed) {
@@ -81,11 +82,33 @@ TEST(ChunkWindow, StoredChunksMakeRoom) {
   Fill(window, 1, 12);
   EXPECT_EQ(window.Outstanding(), 12u);
   window.MarkSent();
-  window.OnCredit(MakeCredit(1, 3, 12));
+  window.OnCredit(MakeCredit(1, 3, 20));
   EXPECT_EQ(window.Room(), 0u) << "a chunk is kept until all of it is stored";
-  window.OnCredit(MakeCredit(1, 4, 12));
+  window.OnCredit(MakeCredit(1, 4, 20));
   EXPECT_EQ(window.Room(), 4u);
   EXPECT_EQ(window.Outstanding(), 8u);
+}
+
+TEST(ChunkWindow, NothingIsMadeThatIsNotAllowed) {
+  ChunkWindow window = MakeWindow(4, 5);
+  window.OnCredit(MakeCredit(1, 0, 6));
+  EXPECT_EQ(window.Room(), 6u);
+  Fill(window, 1, 4);
+  EXPECT_EQ(window.Room(), 2u);
+  window.OnCredit(MakeCredit(1, 0, 3));
+  EXPECT_EQ(window.Room(), 0u) << "a later word may allow less";
+  EXPECT_FALSE(window.NextToSend()) << "the chunk ends at 4";
+  window.OnCredit(MakeCredit(1, 0, 4));
+  EXPECT_TRUE(window.NextToSend());
+}
+
+TEST(ChunkWindow, BeginsWithWhatTheReplayLearnsOfItBy) {
+  const ChunkWindow window({.record_bytes = kRecordBytes,
+                            .chunk_records = 4,
+                            .chunks = 5,
+                            .first_records = 6,
+                            .records_before = 100});
+  EXPECT_EQ(window.Room(), 6u);
 }
 
 TEST(ChunkWindow, IgnoresOthersAndThePast) {

@@ -13,7 +13,11 @@ TEST(TrainingRun, LeavesABalancedAccountAndEveryFile) {
 
   const auto meta = run.Json("meta.json");
   EXPECT_EQ(meta.at("schema"), "shoal-run-1");
+  const auto config = run.Json("config.json");
+  const int64_t actors = config.at("actors");
+  const int64_t chunk = config.at("transport").at("chunk_records");
   EXPECT_GE(meta.at("env_steps").get<int64_t>(), 4000);
+  EXPECT_LE(meta.at("env_steps").get<int64_t>(), 4000 + actors * chunk);
   EXPECT_GT(meta.at("updates").get<int64_t>(), 100);
   ExpectBalanced(meta);
   for (const char* nothing : {"lost_with_process", "rejected", "after_gap"}) {

@@ -25,6 +25,15 @@ TEST(SendingWindow, LargeRecordsTravelInMoreChunksOfAtMostAMebibyte) {
   EXPECT_EQ(window.records(), 95);
 }
 
+TEST(SendingWindow, AnActorNeedsItsOldestChunkAndAStepOfAllItsEnvironmentsToGoOn) {
+  Config config = Asked(24, 4);
+  config.envs_per_actor = 4;
+  EXPECT_EQ(SendingWindowOf(config, 42'440).least_records, 24);
+  EXPECT_EQ(SendingWindowOf(config, 200'000).least_records, 8);
+  config.envs_per_actor = 16;
+  EXPECT_EQ(SendingWindowOf(config, 42'440).least_records, 32);
+}
+
 TEST(SendingWindow, NeverLetsAChunkExceedItsBoundUnlessOneRecordDoes) {
   for (const int bytes : {8, 1000, 42'440, 300'000, 524'288, 524'296, 1'000'100}) {
     for (const int records : {1, 24, 4096}) {

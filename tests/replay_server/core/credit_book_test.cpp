@@ -13,13 +13,15 @@ class CreditBookTest : public testing::Test {
     table_.Update(session, counters);
   }
   std::vector<Credit> Changed(bool may_insert) {
-    book_.Refresh(may_insert);
+    book_.Refresh(may_insert, steps_left_);
     return book_.Take(/*changed_only=*/true);
   }
 
   std::vector<StoredSession> storage_ = std::vector<StoredSession>(8);
   SessionTable table_{storage_};
-  CreditBook book_{table_, /*spec_hash=*/5, /*replay_session=*/77, /*window_records=*/10};
+  std::optional<uint64_t> steps_left_;
+  CreditBook book_{table_, /*spec_hash=*/5, /*replay_session=*/77, /*window_records=*/10,
+                   /*least_records=*/3};
 };
 
 TEST_F(CreditBookTest, ANewSessionGetsItsWindow) {
@@ -53,18 +55,50 @@ TEST_F(CreditBookTest, WithheldCreditReportsWhatIsStoredAndAllowsNoMore) {
 TEST_F(CreditBookTest, WordsAreUrgentToNewSessionsAndWhenHalfAWindowIsUsed) {
   EXPECT_FALSE(book_.Urgent());
   table_.Add(3, 30);
-  book_.Refresh(true);
+  book_.Refresh(true, steps_left_);
   EXPECT_TRUE(book_.Urgent()) << "it has heard nothing yet";
   book_.Take(true);
   EXPECT_FALSE(book_.Urgent());
   DealtWith(0, 4);
-  book_.Refresh(true);
+  book_.Refresh(true, steps_left_);
   EXPECT_FALSE(book_.Urgent()) << "six of ten are left";
   DealtWith(0, 5);
-  book_.Refresh(true);
+  book_.Refresh(true, steps_left_);
   EXPECT_TRUE(book_.Urgent());
   book_.Take(true);
   EXPECT_FALSE(book_.Urgent());
+}
+
+TEST_F(CreditBookTest, TheRestOfTheBudgetIsSharedEquallyAndLowersWhatWasAllowed) {
+  table_.Add(3, 30);
+  table_.Add(4, 40);
+  steps_left_ = 21;
+  for (const Credit& credit : Changed(true)) EXPECT_EQ(credit.allowed, 10u) << "a whole window";
+  DealtWith(0, 9);
+  steps_left_ = 12;
+  const auto credits = Changed(true);
+  ASSERT_EQ(credits.size(), 2u);
+  EXPECT_EQ(credits[0].allowed, 15u);
+  EXPECT_EQ(credits[1].allowed, 6u) << "the other one has used up some of it";
+  DealtWith(0, 15);
+  steps_left_ = 7;
+  const auto withheld = Changed(false);
+  ASSERT_EQ(withheld.size(), 2u);
+  EXPECT_EQ(withheld[0].allowed, 15u) << "the limiter raises nothing";
+  EXPECT_EQ(withheld[1].allowed, 4u);
+}
+
+TEST_F(CreditBookTest, AShareOfTheBudgetIsEnoughToGoOnUntilItIsSpent) {
+  table_.Add(3, 30);
+  table_.Add(4, 40);
+  steps_left_ = 1;
+  for (const Credit& credit : Changed(true)) EXPECT_EQ(credit.allowed, 3u);
+  DealtWith(0, 3);
+  steps_left_ = 0;
+  const auto credits = Changed(true);
+  ASSERT_EQ(credits.size(), 2u);
+  EXPECT_EQ(credits[0].allowed, 3u);
+  EXPECT_EQ(credits[1].allowed, 0u);
 }
 
 TEST_F(CreditBookTest, AllowedIsNeverLowerThanStored) {

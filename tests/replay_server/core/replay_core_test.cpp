@@ -124,6 +124,38 @@ TEST_F(ReplayCoreTest, TheLimiterWithholdsCreditAndBatchesAndOneOfThemAlwaysMove
   EXPECT_FALSE(Answer().empty()) << "the request that waited";
 }
 
+// Two actors of which one is four times as fast send whatever they are allowed to.
+TEST_F(ReplayCoreTest, TheBudgetIsReachedAndOverspentByLessThanOneChunkPerActor) {
+  run_.config.env_steps = 300;
+  run_.config.replay.capacity = 1000;
+  run_.config.envs_per_actor = 1;
+  Start();
+  RecordScript slow(run_.spec, 1, 11);
+  RecordScript* const scripts[] = {&actor_, &slow};
+  uint64_t made[] = {0, 0}, allowed[] = {1, 1};
+  const auto turn = [&](size_t i) {
+    if (made[i] >= allowed[i]) return;
+    ++made[i];
+    ASSERT_EQ(Store(scripts[i], made[i], 1).stored, 1u);
+    for (const Credit& credit : core_->TakeCredits(true)) allowed[credit.actor] = credit.allowed;
+  };
+  for (int turns = 0; turns < 2000; ++turns) turn(turns % 5 == 0 ? 1 : 0);
+  const auto chunk = static_cast<uint64_t>(run_.config.transport.chunk_records);
+  EXPECT_GE(core_->ring().stored_steps(), 300u);
+  EXPECT_LE(core_->ring().stored_steps(), 300u + 2 * chunk);
+  EXPECT_FALSE(core_->InsertsBlocked()) << "the limiter has no part in it";
+
+  const uint64_t before = made[0];
+  core_->SetBudget(400);
+  for (const Credit& credit : core_->TakeCredits(true)) allowed[credit.actor] = credit.allowed;
+  for (int turns = 0; turns < 500; ++turns) turn(0);
+  EXPECT_GT(made[0], before) << "a raised budget lets them go on";
+  EXPECT_GE(core_->ring().stored_steps(), 400u);
+
+  core_->SetDraining(true);
+  EXPECT_GT(core_->TakeCredits(true).at(0).allowed, made[0]) << "what was made may be sent";
+}
+
 TEST_F(ReplayCoreTest, AResentRequestIsNotChargedToTheLimiter) {
   run_.config.replay.samples_per_insert = 2;
   Start();
