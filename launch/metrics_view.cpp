@@ -1,7 +1,11 @@
 #include "launch/metrics_view.h"
 
+#include <algorithm>
+
 namespace shoal::launch {
 namespace {
+
+constexpr std::string_view kUptime = "uptime_seconds";
 
 template <class Values>
 std::optional<double> Find(const Values& values, std::string_view name) {
@@ -11,12 +15,21 @@ std::optional<double> Find(const Values& values, std::string_view name) {
 
 }  // namespace
 
+// Whether the report is of another process than those before: on several hosts, or in containers, a
+// successor may well have the number of its predecessor, but it began later.
+bool MetricsView::IsSuccessor(const MetricsMessage& message, const Process& before) {
+  if (message.pid != before.newest.pid || message.host != before.newest.host) return true;
+  const auto uptime = std::ranges::find(message.names, kUptime);
+  const auto i = static_cast<size_t>(uptime - message.names.begin());
+  const auto uptime_before = Find(before.values, kUptime);
+  return i < message.values.size() && uptime_before && message.values[i] < *uptime_before;
+}
+
 void MetricsView::OnMessage(const MetricsMessage& message, SteadyTime now) {
   Process& process = processes_[{message.role, message.id}];
-  if (process.pid != message.pid) {
+  if (IsSuccessor(message, process)) {
     for (const auto& [name, value] : process.values) process.ended[name] += value;
     process.values.clear();
-    process.pid = message.pid;
     process.time = 0;
   }
   process.previous = std::move(process.values);

@@ -17,8 +17,9 @@ namespace shoal::launch {
 // One thread. Holds two reports per process id and one final value per counter of dead ones.
 class MetricsView {
  public:
-  // Reports of one process (by its pid) come in the order they were made; their wall-clock times
-  // say nothing about it, because that clock may be set back.
+  // Reports of one process come in the order they were made; their wall-clock times say nothing
+  // about it, because that clock may be set back. A report with another host or process number, or
+  // with a shorter uptime, is of a successor.
   void OnMessage(const MetricsMessage& message, SteadyTime now);
 
   // The figure in the newest report of the role's process `id`; empty when it has none.
@@ -50,13 +51,14 @@ class MetricsView {
  private:
   using Values = std::map<std::string, double, std::less<>>;
   struct Process {
-    int32_t pid = 0;
     double time = 0, previous_time = 0;
     SteadyTime heard;
     MetricsMessage newest;
     Values values, previous;
     Values ended;  // sums of the last values of former processes of this id
   };
+
+  static bool IsSuccessor(const MetricsMessage& message, const Process& before);
 
   // Calls visit(process) for the role's processes, newest reports only.
   template <class Visit>

@@ -71,6 +71,18 @@ TEST(MetricsView, TotalsSurviveRestarts) {
   EXPECT_EQ(view.Total("actor", "resends"), 17);
 }
 
+TEST(MetricsView, ASuccessorMayHaveTheProcessNumberOfItsPredecessor) {
+  MetricsView view;
+  view.OnMessage(Report("actor", 0, 1, 1, {{"uptime_seconds", 50}, {"resends", 5}}), kNow);
+  view.OnMessage(Report("actor", 0, 1, 2, {{"uptime_seconds", 2}, {"resends", 1}}), kNow);
+  EXPECT_EQ(view.Total("actor", "resends"), 6) << "as in a container, where everybody is 1";
+  EXPECT_FALSE(view.Rate("actor", "resends"));
+  MetricsMessage elsewhere = Report("actor", 0, 1, 3, {{"uptime_seconds", 9}, {"resends", 1}});
+  elsewhere.host = "another";
+  view.OnMessage(elsewhere, kNow);
+  EXPECT_EQ(view.Total("actor", "resends"), 7);
+}
+
 TEST(MetricsView, ReportsSayWhoIsSilentAndForgetWhoIsGone) {
   MetricsView view;
   view.OnMessage(Report("replay", 0, 3, 1, {{"stored", 1}}), kNow);

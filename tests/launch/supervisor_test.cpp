@@ -200,6 +200,32 @@ TEST_F(SupervisorTest, GivesAProcessLongerForItsFirstReport) {
   EXPECT_THAT(said_, ElementsAre(HasSubstr("no report for 120 s")));
 }
 
+// Process numbers of two hosts have nothing to do with each other: here those of the actor over
+// there, whose child on this side is the remote shell, are those of the actor here.
+TEST_F(SupervisorTest, HearsAProcessElsewhereWhateverItsPid) {
+  ProcessSpec there = Fake("actor", 1, "exec sleep 60");
+  there.elsewhere = true;
+  supervisor_.Start(Fake("actor", 0, "exec sleep 60"));
+  supervisor_.Start(there);
+  const pid_t pid = supervisor_.Pid("actor", 0);
+  ASSERT_NE(pid, supervisor_.Pid("actor", 1));
+  const SteadyTime start = Now();
+  supervisor_.Heard("actor", 0, pid, start);
+  SteadyTime now = start;
+  while (said_.empty() && now < start + HangLimits().start) {
+    supervisor_.Heard("actor", 1, pid, now);
+    now += milliseconds(500);
+    EXPECT_EQ(supervisor_.Poll(now), std::nullopt);
+  }
+  EXPECT_THAT(said_, ElementsAre(AllOf(HasSubstr("actor-0"), HasSubstr("no report for 30 s"))))
+      << "its reports are not those of the actor here";
+  said_.clear();
+  supervisor_.Heard("actor", 0, pid, now);
+  SilenceUntilSaid(&supervisor_, said_, now);
+  EXPECT_THAT(said_, Contains(AllOf(HasSubstr("actor-1"), HasSubstr("no report for 30 s"))))
+      << "it had been heard";
+}
+
 TEST_F(SupervisorTest, DoesNotTakeItsOwnAbsenceForAHang) {
   supervisor_.Start(Fake("actor", 0, "exec sleep 60"));
   const SteadyTime start = Now();
