@@ -20,7 +20,11 @@ std::string Figure(double value) {
 }
 
 std::string Line(const MetricsMessage& message) {
-  const auto quoted = [](const std::string& text) { return nlohmann::json(text).dump(); };
+  // Names come over the network: what is not UTF-8 in them is replaced.
+  const auto quoted = [](const std::string& text) {
+    return nlohmann::json(text).dump(-1, ' ', /*ensure_ascii=*/false,
+                                     nlohmann::json::error_handler_t::replace);
+  };
   std::string line = fmt::format(R"({{"t":{:.3f},"role":{},"id":{},"host":{},"pid":{},"state":{})",
                                  message.time, quoted(message.role), message.id,
                                  quoted(message.host), message.pid, quoted(message.state));

@@ -102,7 +102,10 @@ void WriteRunMeta(const std::filesystem::path& run, const Config& config, const 
       {"resends", meta.resends},
       {"exit", meta.exit},
       {"error", meta.error.empty() ? ordered_json(nullptr) : ordered_json(meta.error)}};
-  WriteFileAtomically(run / "meta.json", object.dump(2) + "\n");
+  // A problem may quote what a process said last, in whatever encoding.
+  const std::string text =
+      object.dump(2, ' ', /*ensure_ascii=*/false, ordered_json::error_handler_t::replace);
+  WriteFileAtomically(run / "meta.json", text + "\n");
 }
 
 RunMeta ReadRunMeta(const std::filesystem::path& run) {

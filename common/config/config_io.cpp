@@ -20,6 +20,21 @@ using internal::Key;
 using nlohmann::json;
 using Intervals = std::map<std::string, std::array<double, 2>>;
 
+// Text as JSON, with a replacement character for what is not UTF-8.
+std::string Quoted(const std::string& text) {
+  return json(text).dump(-1, ' ', /*ensure_ascii=*/false, json::error_handler_t::replace);
+}
+
+// A configuration ends in JSON, which holds nothing else; its files have been checked when parsed.
+bool IsUtf8(const std::string& text) {
+  try {
+    json(text).dump();
+    return true;
+  } catch (const json::type_error&) {
+    return false;
+  }
+}
+
 [[noreturn]] void Refuse(const Key& key, const json& value, const std::string& source) {
   throw UsageError("{}: {} = {}: expected {}", source, key.path, value.dump(),
                    internal::Expected(key));
@@ -198,6 +213,9 @@ void ApplyFile(const std::string& path, Config* config) {
 void ApplyAssignments(const std::vector<std::string>& assignments, Config* config) {
   std::set<std::string> seen;
   for (const std::string& assignment : assignments) {
+    if (!IsUtf8(assignment)) {
+      throw UsageError("--set {}: expected text in UTF-8", Quoted(assignment));
+    }
     const size_t equals = assignment.find('=');
     if (equals == std::string::npos || equals == 0) {
       throw UsageError("--set {}: expected KEY=VALUE", assignment);

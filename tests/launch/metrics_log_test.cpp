@@ -47,6 +47,16 @@ TEST(MetricsLog, WritesOneObjectPerLineAndAppends) {
   EXPECT_TRUE(lines[1]["env_steps"].is_null());
 }
 
+TEST(MetricsLog, ReplacesWhatIsNotUtf8) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "metrics.jsonl";
+  MetricsMessage report = Report(1);
+  report.host = "\xff";
+  report.names = {"\xfe"};
+  EXPECT_TRUE(MetricsLog(file, {}).Write(report));
+  EXPECT_EQ(Lines(file).at(0).at("host"), "\xef\xbf\xbd");
+}
+
 TEST(MetricsLog, KeepsCountsExactAndRoundsOtherFigures) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "metrics.jsonl";

@@ -52,6 +52,18 @@ TEST(RunMeta, UpdatesAfterACheckpointAreLostWithTheLearner) {
   EXPECT_EQ(meta.updates_lost, 50u);
 }
 
+TEST(RunMeta, AProblemInAnyEncodingIsWritten) {
+  const TemporaryFolder run;
+  RunMeta meta;
+  meta.error =
+      "learner-0: exit code 1: fa\xe7"
+      "ade";  // Latin-1
+  WriteRunMeta(run.path(), Config(), meta);
+  EXPECT_EQ(nlohmann::json::parse(ReadFile(run.path() / "meta.json")).at("error"),
+            "learner-0: exit code 1: fa\xef\xbf\xbd"
+            "ade");
+}
+
 TEST(RunMeta, AnOlderFileHasNoChanges) {
   const TemporaryFolder run;
   WriteRunMeta(run.path(), Config(), RunMeta());

@@ -154,6 +154,7 @@ TEST(ApplyAssignments, RefusesMistakesByName) {
   EXPECT_THAT(SetMistake({"seed=1", "seed=1"}), HasSubstr("'seed' given twice"));
   EXPECT_THAT(SetMistake({"seed=many"}), HasSubstr("seed = \"many\": expected an integer"));
   EXPECT_THAT(SetMistake({"seed="}), HasSubstr("seed = \"\""));
+  EXPECT_THAT(SetMistake({"model=\xb4.xml"}), HasSubstr(".xml\": expected text in UTF-8"));
 }
 
 TEST(ToJson, RoundTripsEveryKey) {
