@@ -15,6 +15,10 @@ namespace {
 constexpr std::chrono::milliseconds kPoll{100};  // between looks at stop signals
 constexpr std::chrono::milliseconds kResend{500};
 
+void ThrowIfInterrupted() {
+  if (StopRequested()) throw RuntimeError("interrupted before the run's coordinator answered");
+}
+
 }  // namespace
 
 RunClient::RunClient(const RunTarget& target)
@@ -46,6 +50,7 @@ std::optional<RunViewMessage> RunClient::WaitForView(SteadyTime deadline) {
 
 RunViewMessage RunClient::FirstView() {
   if (auto view = WaitForView(Now() + kAnswer)) return *std::move(view);
+  ThrowIfInterrupted();
   throw RuntimeError("run '{}': its coordinator at {}:{} did not answer within {} s", target_.name,
                      target_.address.host, dds::OperatePort(target_.address), kAnswer.count());
 }
@@ -70,6 +75,7 @@ std::string RunClient::Order(const std::string& verb, const std::vector<std::str
   const auto reply =
       Ask({.client = client_, .request = ++requests_, .verb = verb, .arguments = arguments});
   if (!reply) {
+    ThrowIfInterrupted();
     throw RuntimeError("run '{}': its coordinator at {}:{} did not answer the command within {} s",
                        target_.name, target_.address.host, dds::OperatePort(target_.address),
                        kAnswer.count());

@@ -30,6 +30,10 @@ std::string TextOrEmpty(const json& object, const char* key) {
   return it != object.end() && it->is_string() ? it->get<std::string>() : "";
 }
 
+std::optional<double> NumberOrNothing(const json& value) {
+  return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
+}
+
 void ReadMeta(const std::filesystem::path& run, RunListing* listing) {
   const std::filesystem::path path = run / "meta.json";
   if (!std::filesystem::exists(path)) return;  // it ended, or has not come, before the first one
@@ -42,14 +46,11 @@ void ReadMeta(const std::filesystem::path& run, RunListing* listing) {
   meta.at("updates").get_to(listing->updates);
   meta.at("wall_seconds").get_to(listing->wall_seconds);
   if (const json& best = meta.at("best"); best.is_object()) {
-    // Null for a task that knows no success.
-    if (const json& rate = best.at("success_rate"); !rate.is_null()) {
-      listing->best_success = rate.get<double>();
-    }
+    listing->best = {NumberOrNothing(best.at("success_rate")),
+                     NumberOrNothing(best.at("return_mean"))};
   }
-  if (const json& last = meta.at("final_success_rate"); last.is_number()) {
-    listing->final_success = last.get<double>();
-  }
+  listing->final = {NumberOrNothing(meta.at("final_success_rate")),
+                    NumberOrNothing(meta.value("final_return_mean", json()))};
   listing->status = StatusOfExit(meta.at("exit").get<std::string>());
 }
 
@@ -69,11 +70,29 @@ RunListing List(const std::filesystem::path& run) {
   return listing;
 }
 
-std::string Percent(const std::optional<double>& share) {
-  return share ? fmt::format("{:.0f} %", 100 * *share) : "-";
+std::string Format(const RunScore& score) {
+  if (score.success) return fmt::format("{:.0f} %", 100 * *score.success);
+  return score.mean_return ? fmt::format("return {:.1f}", *score.mean_return) : "-";
 }
 
-using Row = std::array<std::string, 9>;
+// "2026-11-21 10:26" of "2026-11-21T10:26:48Z".
+std::string ToTheMinute(std::string time) {
+  if (time.empty()) return "-";
+  std::ranges::replace(time, 'T', ' ');
+  return time.substr(0, 16);
+}
+
+using Row = std::array<std::string, 8>;
+
+std::string Rendered(const Row& row, const std::array<size_t, 8>& widths) {
+  std::string line;
+  for (size_t i = 0; i < row.size(); ++i) {
+    const bool number = i >= 2 && i <= 6;
+    line += number ? fmt::format("{:>{}}  ", row[i], widths[i])
+                   : fmt::format("{:<{}}  ", row[i], widths[i]);
+  }
+  return line.substr(0, line.find_last_not_of(' ') + 1);
+}
 
 }  // namespace
 
@@ -103,28 +122,20 @@ std::vector<RunListing> ListRunStatus(const std::filesystem::path& dir) {
 
 std::vector<std::string> FormatRunList(const std::vector<RunListing>& runs) {
   std::vector<Row> rows{
-      {"RUN", "STATUS", "ENV STEPS", "UPDATES", "BEST", "FINAL", "WALL", "STARTED", "PROBLEM"}};
+      {"RUN", "STATUS", "ENV STEPS", "UPDATES", "BEST", "FINAL", "WALL", "STARTED (UTC)"}};
   for (const RunListing& run : runs) {
     rows.push_back({run.name, ToString(run.status), std::to_string(run.env_steps),
-                    std::to_string(run.updates), Percent(run.best_success),
-                    Percent(run.final_success), FormatDuration(run.wall_seconds),
-                    run.started.empty() ? "-" : run.started, run.problem});
+                    std::to_string(run.updates), Format(run.best), Format(run.final),
+                    FormatDuration(run.wall_seconds), ToTheMinute(run.started)});
   }
-  std::array<size_t, 9> widths{};
+  std::array<size_t, 8> widths{};
   for (const Row& row : rows) {
     for (size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
   }
-  std::vector<std::string> lines;
-  for (const Row& row : rows) {
-    std::string line;
-    for (size_t i = 0; i + 1 < row.size(); ++i) {
-      const bool number = i >= 2 && i <= 6;
-      line += number ? fmt::format("{:>{}}  ", row[i], widths[i])
-                     : fmt::format("{:<{}}  ", row[i], widths[i]);
-    }
-    line += row.back();
-    line.erase(line.find_last_not_of(' ') + 1);
-    lines.push_back(std::move(line));
+  std::vector<std::string> lines{Rendered(rows[0], widths)};
+  for (size_t i = 0; i < runs.size(); ++i) {
+    lines.push_back(Rendered(rows[i + 1], widths));
+    if (!runs[i].problem.empty()) lines.push_back("  " + runs[i].problem);
   }
   return lines;
 }
@@ -144,8 +155,10 @@ std::string RunListJson(const std::filesystem::path& dir, const std::vector<RunL
                     {"task", text_or_null(run.task)},
                     {"env_steps", run.env_steps},
                     {"updates", run.updates},
-                    {"best_success_rate", or_null(run.best_success)},
-                    {"final_success_rate", or_null(run.final_success)},
+                    {"best_success_rate", or_null(run.best.success)},
+                    {"best_return_mean", or_null(run.best.mean_return)},
+                    {"final_success_rate", or_null(run.final.success)},
+                    {"final_return_mean", or_null(run.final.mean_return)},
                     {"wall_seconds", run.wall_seconds},
                     {"started", text_or_null(run.started)},
                     {"problem", text_or_null(run.problem)}});

@@ -18,6 +18,11 @@ enum class RunStatus {
 };
 const char* ToString(RunStatus status);
 
+// Of an evaluation: tasks without success have a return only.
+struct RunScore {
+  std::optional<double> success, mean_return;
+};
+
 struct RunListing {
   std::string name;
   RunStatus status = RunStatus::kDead;
@@ -25,13 +30,13 @@ struct RunListing {
   std::string problem;  // why it failed, or what cannot be read
   uint64_t env_steps = 0, updates = 0;
   double wall_seconds = 0;
-  std::optional<double> best_success, final_success;
+  RunScore best, final;
 };
 
 // By name. Never throws for what is in the folder: a broken run is listed as such.
 std::vector<RunListing> ListRunStatus(const std::filesystem::path& dir);
 
-// A table with one row per run.
+// A table with one row per run; a problem is on a line of its own below its run.
 std::vector<std::string> FormatRunList(const std::vector<RunListing>& runs);
 // shoal-runs-1: {schema, run_dir, runs: [{name, status, ...}]}
 std::string RunListJson(const std::filesystem::path& dir, const std::vector<RunListing>& runs);

@@ -170,11 +170,13 @@ std::vector<Row> SortedRows(const RunViewMessage& view, const TopOrder& order) {
   return rows;
 }
 
+// A width of 0 leaves the column out.
 std::string Rendered(const Row& row, const std::vector<size_t>& widths) {
   std::string line;
   for (size_t i = 0; i < row.size(); ++i) {
     // Text to the left, numbers to the right, the last column as it is.
     const bool number = row[i].number && i + 1 < row.size();
+    if (widths[i] == 0) continue;
     if (i + 1 == row.size()) {
       line += row[i].text;
     } else if (number) {
@@ -184,6 +186,38 @@ std::string Rendered(const Row& row, const std::vector<size_t>& widths) {
     }
   }
   return line;
+}
+
+// Sets the widths of columns to 0 until a row fits; the first to go are what `--json` is for.
+void LeaveOutColumns(size_t most, std::vector<size_t>* widths) {
+  constexpr std::string_view kFirstToGo[] = {
+      "FILES", "DATA s 50/90/99", "PID", "HOST",        "DATA AGE 50/90/99",
+      "AGE",   "CREDIT",          "MB",  "LAG 50/90/99"};
+  const auto needed = [&] {
+    size_t sum = widths->back();
+    for (size_t i = 0; i + 1 < widths->size(); ++i) {
+      if ((*widths)[i] > 0) sum += (*widths)[i] + 2;
+    }
+    return sum;
+  };
+  for (const std::string_view name : kFirstToGo) {
+    if (needed() <= most) return;
+    const auto column = std::ranges::find(kColumns, name, &Column::name);
+    widths->at(static_cast<size_t>(column - std::begin(kColumns))) = 0;
+  }
+}
+
+// The text in lines of at most `width` characters, broken at spaces where there are any.
+std::vector<std::string> Wrapped(std::string text, size_t width) {
+  std::vector<std::string> lines;
+  while (text.size() > width) {
+    const size_t space = text.rfind(' ', width);
+    const size_t end = space == std::string::npos || space == 0 ? width : space;
+    lines.push_back(text.substr(0, end));
+    text.erase(0, end == space ? end + 1 : end);
+  }
+  lines.push_back(std::move(text));
+  return lines;
 }
 
 // What to do about where the time has gone since the processes' start.
@@ -201,7 +235,9 @@ int TopColumns() { return static_cast<int>(std::size(kColumns)); }
 std::string TopColumnName(int column) { return kColumns[column].name; }
 
 std::vector<std::string> FormatTop(const RunViewMessage& view, const TopOrder& order, int width) {
-  std::vector<std::string> lines = {FormatTopLine(view), AdviceFor(view)};
+  const size_t most = width > 0 ? static_cast<size_t>(width) : std::string::npos;
+  std::vector<std::string> lines = Wrapped(FormatTopLine(view), most);
+  for (std::string& line : Wrapped(AdviceFor(view), most)) lines.push_back(std::move(line));
   Row heading;
   for (const Column& column : kColumns) heading.push_back({column.name});
   const std::vector<Row> rows = SortedRows(view, order);
@@ -210,13 +246,9 @@ std::vector<std::string> FormatTop(const RunViewMessage& view, const TopOrder& o
   for (const Row& row : rows) {
     for (size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].text.size());
   }
-  lines.push_back(Rendered(heading, widths));
-  for (const Row& row : rows) lines.push_back(Rendered(row, widths));
-  for (std::string& line : lines) {
-    if (width > 0 && line.size() > static_cast<size_t>(width)) {
-      line.resize(static_cast<size_t>(width));
-    }
-  }
+  LeaveOutColumns(most, &widths);
+  lines.push_back(Rendered(heading, widths).substr(0, most));
+  for (const Row& row : rows) lines.push_back(Rendered(row, widths).substr(0, most));
   return lines;
 }
 
@@ -239,7 +271,9 @@ std::string TopJson(const RunViewMessage& view) {
                                       {"time", view.time},           {"state", view.state},
                                       {"env_steps", view.env_steps}, {"updates", view.updates},
                                       {"processes", processes}};
-  return object.dump(2);
+  // Names come over the network: what is not UTF-8 in them is replaced.
+  return object.dump(2, ' ', /*ensure_ascii=*/false,
+                     nlohmann::ordered_json::error_handler_t::replace);
 }
 
 }  // namespace shoal::launch

@@ -19,7 +19,7 @@ int TopColumns();
 std::string TopColumnName(int column);
 
 // The run as one line, advice, a heading, then one row per process; each at most `width` characters
-// (0 = no limit).
+// (0 = no limit): text goes on in further lines, the least important columns are left out.
 std::vector<std::string> FormatTop(const RunViewMessage& view, const TopOrder& order, int width);
 // The whole run as one plain line.
 std::string FormatTopLine(const RunViewMessage& view);

@@ -66,6 +66,12 @@ std::pair<const LiveKey*, double> Confirmed(const std::string& text) {
   return {&*live, std::stod(text.substr(arrow + 3))};
 }
 
+// After Ctrl-C: the order was accepted and is carried out whoever waits.
+int NotWaitedFor() {
+  fmt::print("accepted; not waited for\n");
+  return 0;
+}
+
 int Set(const TargetOptions& target, const std::string& assignment) {
   InstallStopSignals();
   RunClient client(ResolveTarget(target));
@@ -77,6 +83,7 @@ int Set(const TargetOptions& target, const std::string& assignment) {
   const bool seen = WatchUntil(client, kInForce, [&](const RunViewMessage& view) {
     return !(where = InForce(view, *live, value)).empty();
   });
+  if (!seen && StopRequested()) return NotWaitedFor();
   if (!seen) {
     throw RuntimeError("accepted, but not in force at every process within {} s: see shoal top",
                        kInForce.count());
@@ -96,6 +103,7 @@ int Scale(const TargetOptions& target, int actors) {
              return state == "silent" || state == "stopping" || state == "draining";
            });
   });
+  if (!there && StopRequested()) return NotWaitedFor();
   if (!there) {
     throw RuntimeError("accepted, but {} actors are not there within {} s: see shoal top", actors,
                        kScaled.count());
@@ -108,22 +116,23 @@ int Stop(const TargetOptions& target) {
   InstallStopSignals();
   const RunTarget run = ResolveTarget(target);
   RunClient client(run);
+  // Events of before the order are not its doing.
+  const std::vector<RunEvent> before = client.FirstView().events;
+  uint64_t shown = before.empty() ? 0 : before.back().number;
   fmt::print("{}\n", client.Order("stop", {}));
   std::fflush(stdout);
-  uint64_t shown = 0;
-  bool first = true;
   int exit_code = 1;
   const bool ended = WatchUntil(client, kStopped, [&](const RunViewMessage& view) {
     for (const RunEvent& event : view.events) {
       if (event.number <= shown) continue;
-      if (!first) fmt::print("{}\n", event.text);
+      fmt::print("{}\n", event.text);
       shown = event.number;
     }
     std::fflush(stdout);
-    first = false;
     exit_code = view.state == "ended" ? ExitCodeOf(view) : 1;
     return view.state == "ended";
   });
+  if (!ended && StopRequested()) return NotWaitedFor();
   if (!ended) throw RuntimeError("the run was told to stop, its end was not seen");
   // So that who comes next finds the run free.
   const SteadyTime deadline = Now() + kLeaves;

@@ -45,7 +45,7 @@ bool OnKey(char key, TopOrder* order) {
 
 std::vector<std::string> Screen(const RunViewMessage& view, const TopOrder& order) {
   std::vector<std::string> lines = FormatTop(view, order, SizeOfTerminal().columns - 1);
-  lines.insert(lines.begin() + 1,
+  lines.insert(lines.begin(),
                fmt::format("s, S: sort by another column (now {}{}); r: reverse; q: quit",
                            TopColumnName(order.column), order.reversed ? ", reversed" : ""));
   return lines;
@@ -94,7 +94,8 @@ int Top(const TopOptions& options) {
   if (options.json) {
     Print({TopJson(view)});
   } else if (options.once) {
-    Print(FormatTop(view, TopOrder(), 0));
+    const int width = isatty(STDOUT_FILENO) == 1 ? SizeOfTerminal().columns : 0;
+    Print(FormatTop(view, TopOrder(), width));
   } else if (isatty(STDOUT_FILENO) == 1) {
     ShowLive(client, view);
   } else {

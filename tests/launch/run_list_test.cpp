@@ -62,14 +62,19 @@ TEST_F(RunListTest, StatusIsOfTheLockFirstAndOfTheRecordedEndThen) {
   }
 }
 
-TEST_F(RunListTest, ARunOfATaskWithoutSuccessIsListed) {
+TEST_F(RunListTest, ARunOfATaskWithoutSuccessIsListedByItsReturn) {
   RunMeta meta;
   meta.exit = "budget";
-  meta.best = EvaluationPoint{.success = std::nullopt, .mean_return = 400};
+  meta.best = EvaluationPoint{.success = std::nullopt, .mean_return = 861.25};
+  meta.final_return = 863.9;
   WriteRunMeta(Begin("hopper", "").path(), Config{}, meta);
   const RunListing run = Only("hopper");
   EXPECT_EQ(run.status, RunStatus::kFinished) << run.problem;
-  EXPECT_EQ(run.best_success, std::nullopt);
+  EXPECT_EQ(run.best.success, std::nullopt);
+  EXPECT_THAT(FormatRunList({run})[1], HasSubstr("return 861.2  return 863.9"));
+  const auto json = nlohmann::json::parse(RunListJson(dir_.path(), {run})).at("runs").at(0);
+  EXPECT_TRUE(json.at("best_success_rate").is_null());
+  EXPECT_EQ(json.at("best_return_mean"), 861.25);
 }
 
 TEST_F(RunListTest, ABrokenRunIsListedAndHidesNoOther) {
@@ -90,10 +95,11 @@ TEST_F(RunListTest, TableAndJsonSayTheSame) {
   Begin("slow", "failed");
   const auto runs = ListRunStatus(dir_.path());
   const auto lines = FormatRunList(runs);
-  ASSERT_EQ(lines.size(), 2u);
-  for (const char* word : {"slow", "failed", "1234", "99", "50 %", "01:01", "the disk is full"}) {
+  ASSERT_EQ(lines.size(), 3u);
+  for (const char* word : {"slow", "failed", "1234", "99", "50 %", "01:01", "2026-01-31 12:00"}) {
     EXPECT_THAT(lines[1], HasSubstr(word));
   }
+  EXPECT_EQ(lines[2], "  the disk is full");
   const auto json = nlohmann::json::parse(RunListJson(dir_.path(), runs));
   EXPECT_EQ(json.at("schema"), "shoal-runs-1");
   const auto& run = json.at("runs").at(0);

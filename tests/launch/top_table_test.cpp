@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
 namespace shoal::launch {
@@ -94,6 +95,31 @@ TEST(TopTable, ShowsEachRolesOwnFigures) {
 
 TEST(TopTable, LinesAreCutToTheWidth) {
   for (const std::string& line : FormatTop(View(), {}, 30)) EXPECT_LE(line.size(), 30u) << line;
+}
+
+TEST(TopTable, ANarrowTerminalShowsAllWordsAndFewerColumns) {
+  const std::vector<std::string> wide = FormatTop(View(), {}, 0),
+                                 narrow = FormatTop(View(), {}, 80);
+  const auto heading = std::ranges::find_if(
+      narrow, [](const std::string& line) { return line.starts_with("PROCESS"); });
+  ASSERT_EQ(narrow.end() - heading, 6) << "heading and five processes";
+  std::string words;
+  for (auto line = narrow.begin(); line != heading; ++line) {
+    EXPECT_LE(line->size(), 80u);
+    words += (words.empty() ? "" : " ") + *line;
+  }
+  EXPECT_EQ(words, wide[0] + " " + wide[1]);
+  for (const char* column : {"STATE", "RATE", "QUEUE", "BLOCKED", "MOST TIME IN"}) {
+    EXPECT_THAT(*heading, HasSubstr(column));
+  }
+  EXPECT_THAT(*heading, Not(HasSubstr("FILES")));
+  EXPECT_TRUE(heading[2].ends_with("backward 50 %")) << heading[2];
+}
+
+TEST(TopTable, TheJsonReplacesWhatIsNotUtf8) {
+  RunViewMessage view = View();
+  view.processes[0].host = "\xff";
+  EXPECT_EQ(nlohmann::json::parse(TopJson(view)).at("processes")[0].at("host"), "\xef\xbf\xbd");
 }
 
 TEST(TopTable, TheJsonHasTheSchemaAndEveryFigureByItsName) {
