@@ -25,19 +25,21 @@ void KillAndWaitForSuccessor(RunningTraining* training, const std::string& role)
 TEST(Kill, TrainingSurvivesTheDeathOfEachRole) {
   const TrainingRun run;
   RunningTraining training(
-      run, run.Command({{"env_steps", "30000"}, {"actors", "2"}, {"eval.interval", "10000"}}));
+      run, run.Command({{"env_steps", "10000000"}, {"actors", "2"}, {"eval.interval", "10000"}}));
   ASSERT_TRUE(training.WaitForMoreSteps(1500)) << training.Output();
   for (const char* role : {"actor", "replay", "learner", "eval"}) {
     KillAndWaitForSuccessor(&training, role);
     ASSERT_TRUE(training.WaitForMoreSteps(500)) << role << ": " << training.Output();
   }
-  ASSERT_EQ(training.End(seconds(240)), 0) << training.Output();
+  // Not by its budget, which a fast machine would reach before the last kill.
+  training.Interrupt();
+  ASSERT_EQ(training.End(seconds(120)), 0) << training.Output();
   const json meta = run.Json("meta.json");
   ExpectBalanced(meta);
   EXPECT_EQ(meta.at("accounting").at("rejected"), 0);
   EXPECT_GT(meta.at("updates_lost").get<int64_t>(), 0) << "those since the learner's checkpoint";
   // Only an actor's death loses records, and only those not yet acknowledged: its window.
-  EXPECT_LE(meta.at("accounting").at("lost_with_process").get<int64_t>(), 5 * 24);
+  EXPECT_LE(meta.at("accounting").at("lost_with_process").get<int64_t>(), 4 * 24);
 }
 
 }  // namespace
