@@ -28,10 +28,11 @@ PageContent ReadPage(const std::filesystem::path& path) {
   PageContent page{};
   const bool has_header = bytes.size() >= sizeof page.header;
   if (has_header) std::memcpy(&page.header, bytes.data(), sizeof page.header);
-  if (!has_header || std::memcmp(page.header.magic, kMagic, 8) != 0 ||
+  if (!has_header || std::memcmp(page.header.magic, kMagic, 8) != 0 || page.header.env_count == 0 ||
       bytes.size() != sizeof page.header + 4 * size_t{page.header.env_count}) {
-    throw RuntimeError("'{}' is not a counter page of an actor (expected {} and one u32 per env)",
-                       path.string(), kMagic);
+    throw RuntimeError(
+        "'{}' is not a counter page of an actor (expected {}, one env or more and a u32 for each)",
+        path.string(), kMagic);
   }
   page.next_episode.resize(page.header.env_count);
   std::memcpy(page.next_episode.data(), bytes.data() + sizeof page.header,
