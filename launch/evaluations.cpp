@@ -23,7 +23,7 @@ constexpr char kPrefix[] = "steps_";  // of the files StoreEvaluation writes
 
 ordered_json ParseObject(const std::string& text, const std::string& source) {
   ordered_json object = ordered_json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (!object.is_object() || object.value("schema", "") != "shoal-eval-1") {
+  if (!object.is_object() || !object.contains("schema") || object["schema"] != "shoal-eval-1") {
     throw RuntimeError("{}: expected an object of schema 'shoal-eval-1'", source);
   }
   return object;

@@ -66,7 +66,7 @@ TEST_F(EvaluationsTest, StoreThenReadGivesThePointsInOrder) {
 }
 
 TEST_F(EvaluationsTest, RefusesWhatIsNotAnEvaluation) {
-  for (const char* json : {"", "[]", "{}", R"({"schema": "shoal-eval-1"})"}) {
+  for (const char* json : {"", "[]", "{}", R"({"schema": "shoal-eval-1"})", R"({"schema": 1})"}) {
     EvalMessage message = Message(1, 1, 1);
     message.json = json;
     EXPECT_THROW(StoreEvaluation(run_.path(), message, 0), Error) << json;

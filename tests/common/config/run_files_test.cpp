@@ -72,6 +72,13 @@ TEST_F(RunFiles, RunConfigServesAsAConfigurationFile) {
   EXPECT_EQ(config.learner.batch, 17);
 }
 
+TEST_F(RunFiles, AConfigurationFileWhoseSchemaIsNoTextIsRefusedByThatKey) {
+  const std::filesystem::path file = run_ / "mine.json";
+  WriteFileAtomically(file, R"({"schema": 5})");
+  Config config;
+  EXPECT_THAT(Mistake([&] { ApplyFile(file, &config); }), HasSubstr("unknown key 'schema'"));
+}
+
 TEST_F(RunFiles, RunConfigRefusesASpecThatIsNotTheHashedOne) {
   WriteRunConfig(run_, Sample());
   Edit("config.json", "\"action_size\": 4", "\"action_size\": 5");
