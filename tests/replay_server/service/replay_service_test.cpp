@@ -93,7 +93,8 @@ TEST_F(ReplayServiceTest, LeavesForGoodWithOneLineWhenNoSessionFitsTheTableAnyMo
   }
   StartAll();
   ASSERT_TRUE(peers_->Write(a_.Chunk(1, 1)));
-  EXPECT_EQ(replay_->ExitCode(seconds(20)), 2) << replay_->Errors();
+  // Long before it would miss the heartbeat.
+  EXPECT_EQ(replay_->ExitCode(seconds(8)), 2) << replay_->Errors();
   EXPECT_THAT(replay_->Errors(), HasSubstr("accounts of 4096 actor sessions"));
 }
 
