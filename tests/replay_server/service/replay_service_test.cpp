@@ -169,7 +169,7 @@ TEST_F(ReplayServiceTest, ASecondServerIsRefused) {
   StartAll();
   ReplayProcess second({"--run", folder_.path()}, folder_.path() / "err2");
   EXPECT_EQ(second.ExitCode(seconds(20)), 1);
-  EXPECT_THAT(second.Errors(), HasSubstr("in use by another replay server"));
+  EXPECT_THAT(second.Errors(), HasSubstr("is taken: another process is the replay of DDS domain"));
 }
 
 TEST_F(ReplayServiceTest, BadUsageAndBadFilesAreOneLine) {
