@@ -35,13 +35,16 @@ Fault FaultPlan::Next(SteadyTime now) {
   Fault fault;
   fault.delay = milliseconds(random_.Below(kLongestDelayMs));
   fault.kind = random_.Below(2) == 0 ? FaultKind::kKill : FaultKind::kStop;
+  if (random_.Below(processes_.size() + 1) == 0) {
+    fault.process = "coordinator";
+    return fault;
+  }
   if (fault.kind == FaultKind::kKill) {
     fault.process = Victim(now);
     return fault;
   }
-  const uint64_t stopped = random_.Below(processes_.size() + 1);
-  fault.process = stopped < processes_.size() ? processes_[stopped] : "coordinator";
-  if (fault.process != "coordinator" && random_.Uniform() < kKilledMeanwhile) {
+  fault.process = processes_[random_.Below(processes_.size())];
+  if (random_.Uniform() < kKilledMeanwhile) {
     const std::string other = Victim(now);
     if (other != fault.process) fault.killed_meanwhile = other;
   }

@@ -21,8 +21,8 @@ struct Fault {
   std::string killed_meanwhile;       // another process, killed while this one is stopped; or none
 };
 
-// Draws faults. A process is not killed more often than a run's restart limit allows, and the
-// coordinator is only stopped (its death ends a run: tests/integration/coordinator_kill_test.cpp).
+// Draws faults. A process is not killed more often than a run's restart limit allows. The death of
+// the coordinator ends a run: it is resumed.
 class FaultPlan {
  public:
   // `processes` without the coordinator.
@@ -31,7 +31,7 @@ class FaultPlan {
   Fault Next(SteadyTime now);
 
  private:
-  std::string Victim(SteadyTime now);  // of a kill
+  std::string Victim(SteadyTime now);  // of a kill; not the coordinator
 
   const std::vector<std::string> processes_;
   Random random_;

@@ -22,6 +22,9 @@ using std::chrono::seconds;
 constexpr seconds kStopped{10};
 constexpr seconds kRecovery{60};
 constexpr seconds kRestart{30};  // for a process that is being restarted to be there
+// For processes without a coordinator to leave: the lease, the replay's farewell to actors that
+// still send, a checkpoint, and a moment for a loaded machine.
+constexpr seconds kLeave{60};
 constexpr seconds kEnd{180};
 constexpr milliseconds kPoll{50};
 
@@ -84,7 +87,11 @@ double Strike(RunUnderTest* run, const Fault& fault) {
   Pause(run, fault.delay);
   RunUnderTest::Progress before = run->TakeProgress();
   pid_t killed = 0;
-  if (fault.kind == FaultKind::kKill) {
+  if (fault.kind == FaultKind::kKill && fault.process == "coordinator") {
+    run->KillCoordinator(kLeave);
+    before = run->TakeProgress();
+    run->Resume();
+  } else if (fault.kind == FaultKind::kKill) {
     killed = Send(run, fault.process, SIGKILL);
   } else {
     Stop(run, fault);
@@ -119,7 +126,7 @@ nlohmann::ordered_json SoakFaults(const SoakOptions& options, int faults) {
       const double recovery = Strike(&run, fault);
       fmt::print("went on within {:.1f} s\n", recovery);
       std::fflush(stdout);
-      const std::string role = fault.process.substr(0, fault.process.rfind('-'));
+      const std::string role = fault.process.substr(0, fault.process.find('-'));
       tallies[role + (fault.kind == FaultKind::kKill ? " SIGKILL" : " SIGSTOP")].Add(recovery);
       if (!fault.killed_meanwhile.empty()) tallies["killed meanwhile"].Add(recovery);
     }

@@ -1,6 +1,8 @@
 #include "tests/soak/run_under_test.h"
 
 #include <fmt/core.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <set>
@@ -47,7 +49,7 @@ double Figure(const json& report, const char* name) {
 RunUnderTest::RunUnderTest(const RunOptions& options)
     : options_(options),
       path_(options.folder / "run"),
-      coordinator_(Spec()),
+      coordinator_(Spec(FirstArguments())),
       reports_(options.folder / "run") {
   const SteadyTime start = Now();
   while (TakeProgress().updates < kMoreUpdates) {
@@ -57,16 +59,8 @@ RunUnderTest::RunUnderTest(const RunOptions& options)
   }
 }
 
-launch::ProcessSpec RunUnderTest::Spec() const {
-  MakeFolders(temporary_files());
-  launch::ProcessSpec spec;
-  spec.role = "train";
-  spec.command = {(options_.programs / "shoal").string(),
-                  "train",
-                  "--preset",
-                  "fetch-reach-state",
-                  "--run-name",
-                  "run"};
+std::vector<std::string> RunUnderTest::FirstArguments() const {
+  std::vector<std::string> arguments{"train", "--preset", "fetch-reach-state", "--run-name", "run"};
   std::vector<std::string> keys{fmt::format("run_dir={}", options_.folder.string()),
                                 fmt::format("actors={}", options_.actors),
                                 fmt::format("seed={}", options_.seed),
@@ -81,12 +75,47 @@ launch::ProcessSpec RunUnderTest::Spec() const {
                                 "replay.samples_per_insert=32"};
   keys.insert(keys.end(), options_.keys.begin(), options_.keys.end());
   for (const std::string& key : keys) {
-    spec.command.push_back("--set");
-    spec.command.push_back(key);
+    arguments.push_back("--set");
+    arguments.push_back(key);
   }
+  return arguments;
+}
+
+launch::ProcessSpec RunUnderTest::Spec(const std::vector<std::string>& arguments) const {
+  MakeFolders(temporary_files());
+  launch::ProcessSpec spec;
+  spec.role = "train";
+  spec.command = {(options_.programs / "shoal").string()};
+  spec.command.insert(spec.command.end(), arguments.begin(), arguments.end());
   spec.environment = {{"TMPDIR", temporary_files().string()}};
   spec.output = options_.folder / "output";
   return spec;
+}
+
+void RunUnderTest::KillCoordinator(seconds deadline) {
+  CheckAlive();
+  coordinator_.Signal(SIGKILL);
+  const SteadyTime end = Now() + deadline;
+  while (!coordinator_.Poll()) {
+    if (Now() > end) throw Broken("the coordinator outlived SIGKILL");
+    std::this_thread::sleep_for(kPoll);
+  }
+  // This process adopts orphans (main.cpp).
+  for (const pid_t pid : ChildrenOf(getpid())) {
+    const std::string name = NameOf(CommandLine(pid));
+    int status = 0;
+    while (waitpid(pid, &status, WNOHANG) == 0) {
+      if (Now() > end) throw Broken(name + " did not leave after its coordinator's death");
+      std::this_thread::sleep_for(kPoll);
+    }
+    if (WIFSIGNALED(status)) {
+      throw Broken(fmt::format("{}, left alone, ended by signal {}", name, WTERMSIG(status)));
+    }
+  }
+}
+
+void RunUnderTest::Resume() {
+  coordinator_ = launch::ChildProcess(Spec({"train", "--resume", path_.string()}));
 }
 
 std::vector<std::string> RunUnderTest::ProcessNames() const {
@@ -111,7 +140,7 @@ const json& RunUnderTest::Report(const std::string& process) {
 RunUnderTest::Progress RunUnderTest::TakeProgress() {
   Progress progress;
   const json& replay = Report("replay-0");
-  if (replay.is_object()) {
+  if (replay.contains("stored_records")) {  // it has not while it reads its ring
     const double stored = Figure(replay, "stored_records");
     if (stored < most_stored_) {
       throw Broken(fmt::format("the replay reports {} stored records, it had {} before", stored,

@@ -50,6 +50,12 @@ class RunUnderTest {
   void AwaitRecovery(const std::string& process, pid_t former, const Progress& before,
                      std::chrono::seconds deadline);
 
+  // SIGKILLs the coordinator and waits until the others have left by themselves. Throws Broken when
+  // one has not by `deadline`, or went otherwise.
+  void KillCoordinator(std::chrono::seconds deadline);
+  // Starts it anew with --resume; it must have ended.
+  void Resume();
+
   // What waits where, by the newest reports: figure -> how much.
   std::map<std::string, double> QueueDepths();
 
@@ -61,7 +67,8 @@ class RunUnderTest {
   std::string Output() const;
 
  private:
-  launch::ProcessSpec Spec() const;
+  launch::ProcessSpec Spec(const std::vector<std::string>& arguments) const;
+  std::vector<std::string> FirstArguments() const;
   void CheckAcknowledged(const nlohmann::json& accounting);
   const nlohmann::json& Report(const std::string& process);
 
