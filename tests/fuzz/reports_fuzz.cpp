@@ -1,0 +1,137 @@
+// The small messages: Cyclone's decoder takes any bytes apart or refuses them, ours makes sense of
+// the rest or refuses it, and those who get the message bear with what it says. First byte: which
+// message; the rest is serialised CDR.
+#include <nlohmann/json.hpp>
+
+#include "actor/chunk_window.h"
+#include "actor/credit_inbox.h"
+#include "common/base/check.h"
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/wire/control_state.h"
+#include "launch/bottleneck.h"
+#include "launch/command_handler.h"
+#include "launch/evaluations.h"
+#include "launch/metrics_log.h"
+#include "launch/prometheus_families.h"
+#include "launch/run_figures.h"
+#include "launch/top_table.h"
+#include "replay_server/core/replay_core.h"
+#include "tests/common/dds/decode_cdr.h"
+#include "tests/fuzz/fuzz_target.h"
+#include "tests/replay_server/record_script.h"
+
+namespace shoal {
+namespace {
+
+// What is addressed to somebody is heard by one of that address.
+void Use(const CreditsMessage& message) {
+  for (const Credit& credit : message.credits) {
+    actor::CreditInbox inbox(credit.actor, credit.session);
+    inbox.OnMessage(message);
+    const auto newest = inbox.Take(Now());
+    CHECK(newest.has_value());
+    actor::ChunkWindow window({.spec_hash = credit.spec_hash,
+                               .actor = credit.actor,
+                               .session = credit.session,
+                               .record_bytes = 8,
+                               .chunk_records = 4,
+                               .chunks = 3,
+                               .first_records = 2});
+    for (uint64_t sequence = 1; sequence <= 2; ++sequence) {
+      window.BeginRecord();
+      window.EndRecord(sequence);
+    }
+    window.Flush();
+    for (const Credit& word : message.credits) window.OnCredit(word);
+    while (window.NextToSend()) window.MarkSent();
+    CHECK(window.stored() <= 2);
+    window.Rewind();
+  }
+}
+
+void Use(const SampleRequest& message) {
+  const RunConfig run = replay::TinyRun(1, 64);
+  replay::ReplayCore core(run, "", 1);
+  core.TakeRequest(message);
+  SampleRequest ours = message;
+  ours.spec_hash = run.spec.Hash();
+  core.TakeRequest(ours);
+}
+
+void Use(const MetricsMessage& message) {
+  launch::MetricsView view;
+  const SteadyTime now = Now();
+  view.OnMessage(message, now);
+  MetricsMessage next = message;
+  for (double& value : next.values) value += 1;
+  view.OnMessage(next, now);
+  launch::CollectFigures(view, now);
+  launch::FormatBottleneck(launch::FindBottleneck(view, 2, 2));
+  CHECK(view.Reports(now).size() == 1);
+  const std::filesystem::path file = fuzz::Scratch() / "metrics.jsonl";
+  fuzz::WriteScratch(file, "");
+  CHECK(launch::MetricsLog(file, {}).Write(message));
+  const std::string line = ReadFile(file);
+  CHECK(line.ends_with('\n'));
+  CHECK(nlohmann::json::parse(line).at("role").is_string());
+}
+
+void Use(const ControlMessage& message) {
+  ControlState state{Now()};
+  state.OnMessage(message, Now());
+  for (const launch::LiveKey& key : launch::LiveKeys()) state.SettingOr(key.key, 0);
+}
+
+void Use(const EvalMessage& message) {
+  try {
+    launch::ParseEvaluation(message.json, "evaluation");
+  } catch (const Error& e) {
+    fuzz::CheckOneLine(e.what());
+  }
+}
+
+void Use(const RunViewMessage& message) {
+  for (const int width : {0, 20, 80}) {
+    for (int column = 0; column < launch::TopColumns(); ++column) {
+      for (const std::string& line : launch::FormatTop(message, {.column = column}, width)) {
+        fuzz::CheckOneLine(line + ".");
+      }
+    }
+  }
+  fuzz::CheckOneLine(launch::FormatTopLine(message));
+  CHECK(nlohmann::json::parse(launch::TopJson(message)).is_object());
+  launch::PrometheusFamilies(message);
+  launch::FiguresOfView(message, Now());
+}
+
+void Use(const CommandMessage& message) {
+  launch::LiveSettings settings{Config()};
+  launch::CommandHandler handler(settings, {.running = [] { return true; },
+                                            .stop = [] {},
+                                            .scale = [](int, int) {},
+                                            .note = [](const launch::SettingChange&) {}});
+  const ReplyMessage reply = handler.Handle(message);
+  CHECK(reply.client == message.client && reply.request == message.request);
+  fuzz::CheckOneLine(reply.text);
+}
+
+void Use(const ReplyMessage&) {}
+
+template <class M>
+void Run(const std::string& bytes) {
+  if (const auto message = dds::DecodeCdr<M>(bytes)) Use(*message);
+}
+
+constexpr void (*kMessages[])(const std::string&) = {
+    Run<CreditsMessage>, Run<SampleRequest>,  Run<MetricsMessage>, Run<ControlMessage>,
+    Run<EvalMessage>,    Run<RunViewMessage>, Run<CommandMessage>, Run<ReplyMessage>};
+
+}  // namespace
+}  // namespace shoal
+
+extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
+  if (size == 0) return 0;
+  shoal::kMessages[data[0] % std::size(shoal::kMessages)](shoal::fuzz::Text(data + 1, size - 1));
+  return 0;
+}
