@@ -29,7 +29,7 @@ using std::chrono::seconds;
 
 constexpr milliseconds kPoll{50};
 constexpr milliseconds kHeartbeat{300};
-constexpr seconds kMetaPeriod{30};
+constexpr seconds kMetaPeriod{5};
 constexpr size_t kInboxMessages = 10'000;
 
 const char* ToString(RunState state) {

@@ -88,7 +88,8 @@ std::vector<std::string> FormatProgressBlock(const ProgressFigures& f, int width
   const double share =
       f.budget > 0 ? static_cast<double>(f.env_steps) / static_cast<double>(f.budget) : 0;
   std::vector<std::string> lines{
-      fmt::format("{}  {}  {} elapsed, {} left, {} processes, {} restarts", f.run, f.state,
+      fmt::format("{}  {}", f.run, f.state),
+      fmt::format("  time       {} elapsed, {} left; {} processes, {} restarts",
                   FormatDuration(f.elapsed_seconds), FormatDuration(SecondsLeft(f)), f.processes,
                   f.restarts),
       fmt::format("  env steps  {} of {}  {:.0f} %  [{}]  {}/s", f.env_steps, f.budget, 100 * share,
@@ -96,13 +97,14 @@ std::vector<std::string> FormatProgressBlock(const ProgressFigures& f, int width
       fmt::format("  updates    {}  {}/s", Number(f.updates),
                   Number(f.updates_per_second, "{:.1f}")),
       fmt::format("  last eval  {}", Evaluation(f.last_evaluation)),
-      fmt::format("  best       {}   (actors' episodes: {})", Evaluation(f.best),
-                  Percent(f.rollout_success)),
+      fmt::format("  best       {}", Evaluation(f.best)),
+      fmt::format("  actors     success {} in their last episodes", Percent(f.rollout_success)),
       fmt::format("  losses     critic {}  actor {}  temperature {}",
                   Number(f.critic_loss, "{:.4g}"), Number(f.actor_loss, "{:.4g}"),
                   Number(f.temperature, "{:.3g}")),
-      fmt::format("  flow       policy lag {} updates, data {} updates old, {}",
-                  Number(f.policy_lag), Number(f.data_age), LimiterState(f)),
+      fmt::format("  age        policy lag {} updates, data {} updates old", Number(f.policy_lag),
+                  Number(f.data_age)),
+      fmt::format("  flow       {}", LimiterState(f)),
   };
   for (std::string& line : lines) {
     if (line.size() > static_cast<size_t>(width)) line.resize(static_cast<size_t>(width));

@@ -125,8 +125,9 @@ int Stop(const TargetOptions& target) {
   const bool ended = WatchUntil(client, kStopped, [&](const RunViewMessage& view) {
     for (const RunEvent& event : view.events) {
       if (event.number <= shown) continue;
-      fmt::print("{}\n", event.text);
       shown = event.number;
+      if (event.text.starts_with("command: stop: ")) continue;  // the answer that was printed
+      fmt::print("{}\n", event.text);
     }
     std::fflush(stdout);
     exit_code = view.state == "ended" ? ExitCodeOf(view) : 1;

@@ -54,7 +54,7 @@ TEST(FormatProgressLine, ShowsTheReturnWhereThereIsNoSuccess) {
   f.last_evaluation->success.reset();
   f.last_evaluation->mean_return = 312.5;
   EXPECT_THAT(FormatProgressLine(f), HasSubstr("eval return 312.50"));
-  EXPECT_THAT(FormatProgressBlock(f, 100)[3], HasSubstr("last eval  return 312.500 at 2500"));
+  EXPECT_THAT(FormatProgressBlock(f, 100)[4], HasSubstr("last eval  return 312.500 at 2500"));
 }
 
 TEST(FormatProgressLine, SaysWhoWaitsForWhom) {
