@@ -114,21 +114,23 @@ void CheckReplayRoom(const RunConfig& run, bool exists) {
   const Config& config = run.config;
   const replay::RingGeometry geometry(run.spec, static_cast<uint64_t>(config.replay.capacity));
   const uint64_t index_bytes = replay::EpisodeIndex::Bytes(geometry.capacity);
-  const bool in_memory = config.replay.storage == "memory";
-  replay::CheckMemoryRoom(index_bytes + (in_memory ? geometry.total_bytes() : 0));
-  if (!in_memory && !exists) {
-    std::error_code error;
-    std::filesystem::path folder = std::filesystem::absolute(config.run_dir);
-    while (!std::filesystem::exists(folder, error) && folder.has_relative_path()) {
-      folder = folder.parent_path();
-    }
-    if (access(folder.c_str(), W_OK) != 0) {
-      throw RuntimeError("cannot create folder '{}': {}",
-                         (std::filesystem::path(config.run_dir) / config.run_name).string(),
-                         std::strerror(errno));
-    }
-    replay::CheckDiskRoom(folder, geometry.total_bytes());
+  if (config.replay.storage == "memory") {
+    replay::CheckMemoryRoom(index_bytes + geometry.total_bytes());
+    return;
   }
+  replay::CheckMemoryRoom(index_bytes, "stop other programs");  // the index is never in the file
+  if (exists) return;
+  std::error_code error;
+  std::filesystem::path folder = std::filesystem::absolute(config.run_dir);
+  while (!std::filesystem::exists(folder, error) && folder.has_relative_path()) {
+    folder = folder.parent_path();
+  }
+  if (access(folder.c_str(), W_OK) != 0) {
+    throw RuntimeError("cannot create folder '{}': {}",
+                       (std::filesystem::path(config.run_dir) / config.run_name).string(),
+                       std::strerror(errno));
+  }
+  replay::CheckDiskRoom(folder, geometry.total_bytes());
 }
 
 void PrintStart(const PreparedRun& run, const ClusterAddress& address) {

@@ -76,14 +76,13 @@ MemoryRoom AvailableMemory(const fs::path& root) {
   return room;
 }
 
-void CheckMemoryRoom(uint64_t bytes) {
+void CheckMemoryRoom(uint64_t bytes, std::string_view remedy) {
   const MemoryRoom room = AvailableMemory();
   if (bytes <= room.bytes) return;
   throw RuntimeError(
       "the replay needs {:.0f} MB of memory and {:.0f} MB are available ({}): lower "
-      "replay.capacity "
-      "or the frame size, or set replay.storage=file",
-      double(bytes) / kMegabyte, double(room.bytes) / kMegabyte, room.source);
+      "replay.capacity or the frame size, or {}",
+      double(bytes) / kMegabyte, double(room.bytes) / kMegabyte, room.source, remedy);
 }
 
 void CheckDiskRoom(const fs::path& folder, uint64_t bytes) {
@@ -92,8 +91,7 @@ void CheckDiskRoom(const fs::path& folder, uint64_t bytes) {
       limit.rlim_cur < bytes) {
     throw RuntimeError(
         "the replay file needs {:.0f} MB and files may have {:.0f} MB (ulimit -f): raise the "
-        "limit, "
-        "lower replay.capacity or set replay.storage=memory",
+        "limit, lower replay.capacity or set replay.storage=memory",
         double(bytes) / kMegabyte, double(limit.rlim_cur) / kMegabyte);
   }
   struct statvfs disk {};
@@ -109,7 +107,9 @@ void CheckDiskRoom(const fs::path& folder, uint64_t bytes) {
         "replay.capacity, move run_dir or set replay.storage=memory",
         double(bytes) / kMegabyte, double(free_bytes) / kMegabyte, folder.string());
   }
-  if (kind.f_type == TMPFS_MAGIC || kind.f_type == RAMFS_MAGIC) CheckMemoryRoom(bytes);
+  if (kind.f_type == TMPFS_MAGIC || kind.f_type == RAMFS_MAGIC) {
+    CheckMemoryRoom(bytes, "move run_dir to a disk");
+  }
 }
 
 }  // namespace shoal::replay

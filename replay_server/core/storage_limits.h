@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <string_view>
 
 namespace shoal::replay {
 
@@ -17,8 +18,9 @@ struct MemoryRoom {
 // leaves; reclaimable file cache counts as free. Reads below `root` ("/" but for tests).
 MemoryRoom AvailableMemory(const std::filesystem::path& root = "/");
 
-// Throw Error naming the bytes needed and there, and what to change.
-void CheckMemoryRoom(uint64_t bytes);
+// Throw Error naming the bytes needed and there, and what to change; `remedy` is one that the
+// caller knows beside a smaller ring.
+void CheckMemoryRoom(uint64_t bytes, std::string_view remedy = "set replay.storage=file");
 // `folder` will hold a file of `bytes`. Checks the file size limit, the file system's free space,
 // and memory where the file system lives in memory.
 void CheckDiskRoom(const std::filesystem::path& folder, uint64_t bytes);

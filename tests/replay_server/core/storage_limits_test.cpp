@@ -1,7 +1,9 @@
 #include "replay_server/core/storage_limits.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/base/error.h"
 #include "common/base/files.h"
 #include "tests/support/temporary_folder.h"
 
@@ -53,6 +55,15 @@ TEST_F(StorageLimitsTest, ThisMachineHasSomeRoom) {
   EXPECT_GT(AvailableMemory().bytes, 1'000'000u);
   CheckMemoryRoom(1000);
   CheckDiskRoom(folder_.path(), 1000);
+}
+
+TEST_F(StorageLimitsTest, ARefusalOffersWhatTheCallerCanDo) {
+  try {
+    CheckMemoryRoom(uint64_t{1} << 60, "move run_dir to a disk");
+    FAIL() << "room for an exabyte";
+  } catch (const Error& error) {
+    EXPECT_THAT(error.what(), testing::EndsWith("or move run_dir to a disk"));
+  }
 }
 
 }  // namespace
