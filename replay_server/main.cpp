@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <string>
 
+#include "common/base/build_info.h"
 #include "common/base/error.h"
 #include "common/base/log.h"
 #include "common/base/main_guard.h"
@@ -15,6 +16,7 @@ int Run(int argc, char** argv) {
   std::string folder;
   shoal::dds::Reach reach;
   CLI::App app("Stores transitions and hands out batches for one run.", "shoal-replay");
+  app.set_version_flag("--version", shoal::BuildVersion());
   app.add_option("--run", folder, "folder of the run")->required();
   app.add_option("--peer", reach.peer, "HOST[:PORT] of the servers instead of cluster.json's");
   app.add_option("--interface", reach.interface,
