@@ -31,6 +31,7 @@ TEST(RandomBaseline, FetchReachDenseEarnsWhatRandomActionsEarn) {
   const double error = all.at("return_std").get<double>() / std::sqrt(kEpisodes);
   EXPECT_NEAR(all.at("return_mean").get<double>(), -9.79, 5 * error);
   EXPECT_GT(error, 0.1) << "episodes are not all the same";
+  EXPECT_LE(all.at("success_rate").get<double>(), 0.1);
 }
 
 TEST(RandomBaseline, SuccessGrowsWithTheThresholdAndAgreesAtTheTasksOwn) {
