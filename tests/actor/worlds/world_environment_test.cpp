@@ -17,7 +17,8 @@
 #include "tests/support/temporary_folder.h"
 
 #ifdef __SANITIZE_ADDRESS__
-#include <sanitizer/allocator_interface.h>
+// Of the sanitizer's runtime; g++ has no header for it.
+extern "C" size_t __sanitizer_get_current_allocated_bytes();
 #endif
 
 namespace shoal::worlds {
