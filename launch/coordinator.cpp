@@ -9,6 +9,7 @@
 #include "common/dds/publisher.h"
 #include "common/dds/subscriber.h"
 #include "common/wire/metrics_report.h"
+#include "launch/best_evaluation.h"
 #include "launch/command_handler.h"
 #include "launch/evaluations.h"
 #include "launch/flat_score.h"
@@ -124,6 +125,7 @@ struct Coordinator::Impl {
   Progress& progress;
   RunMeta meta;  // wall_seconds: of the sessions before this one, until the end
   StopRule rule;
+  BestEvaluation bests;
   FlatScore flat;
   std::optional<EvaluationPoint> last_evaluation;
   MetricsView view;
@@ -338,11 +340,12 @@ void Coordinator::Impl::TakeMessages(SteadyTime now) {
 
 void Coordinator::Impl::OnEvaluation(const EvalMessage& message) {
   const EvaluationPoint point = StoreEvaluation(run, message, Elapsed());
-  const bool best = !meta.best || Better(point, *meta.best);
+  const auto warning = Count(point);
+  const bool best = bests.newest_is_best();
   progress.Say(fmt::format("evaluation at {} env steps, {} updates: {}{}", point.env_steps,
                            point.updates, FormatScore(point), best ? " (best)" : ""));
   scalars.WriteEvaluation(point);
-  if (const auto warning = Count(point)) progress.Say(*warning);
+  if (warning) progress.Say(*warning);
   StoreMeta();
   if (!best || point.checkpoint.empty()) return;
   try {
@@ -356,7 +359,8 @@ std::optional<std::string> Coordinator::Impl::Count(const EvaluationPoint& point
   rule.OnEvaluation(point);
   meta.first_success = rule.first_success();
   last_evaluation = point;
-  if (!meta.best || Better(point, *meta.best)) meta.best = point;
+  bests.OnEvaluation(point);
+  meta.best = bests.best();
   return flat.OnEvaluation(point, rule.target());
 }
 

@@ -40,6 +40,7 @@ EvaluationPoint PointOf(const ordered_json& object, const std::string& source) {
     if (const ordered_json& success = aggregate.at("success_rate"); !success.is_null()) {
       point.success = success.get<double>();
     }
+    point.episodes = object.at("episodes").size();
     point.wall_seconds = object.value("wall_seconds", 0.0);
   } catch (const nlohmann::json::exception& e) {
     throw RuntimeError("{}: {}", source, e.what());

@@ -17,7 +17,7 @@ struct RunMeta {
   std::string started, finished;  // UTC; finished is empty while running
   uint64_t env_steps = 0, updates = 0;
   uint64_t updates_lost = 0;  // with learners that died, since their newest checkpoints
-  double wall_seconds = 0;  // over all sessions of a resumed run
+  double wall_seconds = 0;    // over all sessions of a resumed run
   double target = 0;
   std::optional<EvaluationPoint> first_success;
   std::optional<EvaluationPoint> best;  // of the evaluations while training

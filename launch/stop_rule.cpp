@@ -51,9 +51,4 @@ std::string FormatScore(const EvaluationPoint& point) {
   return point.success ? fmt::format("success {:.1f} %, {}", 100 * *point.success, score) : score;
 }
 
-bool Better(const EvaluationPoint& a, const EvaluationPoint& b) {
-  if (a.success != b.success) return a.success > b.success;
-  return a.mean_return > b.mean_return;
-}
-
 }  // namespace shoal::launch

@@ -17,6 +17,7 @@ struct EvaluationPoint {
   std::optional<double> success;  // rate, 0..1; empty where the task has no success of its own
   double mean_return = 0;         // unscaled
   std::string checkpoint{};       // folder name under checkpoints/
+  size_t episodes = 0;            // played
 };
 
 class StopRule {
@@ -52,8 +53,5 @@ class StopRule {
 
 // "success 98.0 %, return -0.970", or the return alone where there is no success.
 std::string FormatScore(const EvaluationPoint& point);
-
-// Is `a` better than `b`: by success where the task has one, then by return?
-bool Better(const EvaluationPoint& a, const EvaluationPoint& b);
 
 }  // namespace shoal::launch

@@ -24,6 +24,7 @@ EvalMessage Message(uint64_t env_steps, uint64_t updates, double success) {
           {"env_steps", env_steps},
           {"checkpoint", "step_" + std::to_string(updates)},
           {"weights_version", {{"session", 1}, {"update", updates}}},
+          {"episodes", std::vector<nlohmann::json>(2, nlohmann::json::object())},
           {"aggregate", {{"success_rate", success}, {"return_mean", -2.5}}},
       }
           .dump();
@@ -55,6 +56,7 @@ TEST_F(EvaluationsTest, StoreThenReadGivesThePointsInOrder) {
   EXPECT_EQ(stored.env_steps, 2'500u);
   EXPECT_EQ(stored.updates, 100u);
   EXPECT_EQ(stored.checkpoint, "step_100");
+  EXPECT_EQ(stored.episodes, 2u);
   WriteFileAtomically(run_.path() / "eval" / "final.json", "not one of them");
   const auto points = ReadEvaluations(run_.path());
   ASSERT_EQ(points.size(), 2u);

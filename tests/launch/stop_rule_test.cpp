@@ -83,22 +83,5 @@ TEST(FormatScore, LeavesOutASuccessThatIsNotThere) {
   EXPECT_EQ(FormatScore({.success = std::nullopt, .mean_return = 312.5}), "return 312.500");
 }
 
-TEST(Better, GoesByReturnWhereThereIsNoSuccess) {
-  const EvaluationPoint low{.success = std::nullopt, .mean_return = 10};
-  const EvaluationPoint high{.success = std::nullopt, .mean_return = 300};
-  EXPECT_TRUE(Better(high, low));
-  EXPECT_FALSE(Better(low, high));
-}
-
-TEST(Better, GoesBySuccessThenReturn) {
-  const EvaluationPoint low{.success = 0.8, .mean_return = -1};
-  const EvaluationPoint high{.success = 0.9, .mean_return = -5};
-  const EvaluationPoint higher{.success = 0.9, .mean_return = -4};
-  EXPECT_TRUE(Better(high, low));
-  EXPECT_FALSE(Better(low, high));
-  EXPECT_TRUE(Better(higher, high));
-  EXPECT_FALSE(Better(high, high));
-}
-
 }  // namespace
 }  // namespace shoal::launch
