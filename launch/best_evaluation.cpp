@@ -6,8 +6,9 @@
 namespace shoal::launch {
 namespace {
 
-// One standard error of the difference between two evaluations of a policy that has the success of
-// this one. One success and one failure are added, so that 50 of 50 is not taken for certain.
+// Eq. 13: one standard error of the difference between two evaluations of a policy that has the
+// success of this one. One success and one failure are added, so that 50 of 50 is not taken for
+// certain.
 double ChanceDifference(const EvaluationPoint& point) {
   const auto episodes = static_cast<double>(point.episodes);
   if (episodes == 0) return 0;

@@ -8,9 +8,9 @@
 namespace shoal::launch {
 
 // The highest return among the evaluations whose success is the highest, or less by no more than
-// chance: success over fifty episodes moves by 2 % of itself, and an early policy that once reached
-// 100 % by luck must not stay the best before later ones that come nearer to every goal. Where the
-// task has no success of its own, the highest return.
+// chance (docs/algorithm.md, Eq. 13): an early policy that once reached 50 of 50 goals by luck must
+// not stay the best before later ones that come nearer to every goal. Where the task has no success
+// of its own, the highest return.
 class BestEvaluation {
  public:
   // In the order of evaluation.
