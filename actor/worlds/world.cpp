@@ -21,13 +21,13 @@ World::World(ModelHandle model, const std::string& model_file)
 void World::ReleaseTextures() {
   textures_released_ = true;
   // A model is one allocation, so only whole pages within the textures can go.
-  const auto page = static_cast<uintptr_t>(sysconf(_SC_PAGESIZE));
-  const auto data = reinterpret_cast<uintptr_t>(model_->tex_rgb);
-  const uintptr_t begin = (data + page - 1) / page * page;
-  const uintptr_t end = (data + static_cast<uintptr_t>(model_->ntexdata)) / page * page;
-  if (begin >= end) return;
-  CHECK(madvise(reinterpret_cast<void*>(begin), end - begin, MADV_DONTNEED) == 0)
-      << "giving back " << end - begin << " bytes of textures";
+  const auto page = static_cast<size_t>(sysconf(_SC_PAGESIZE));
+  const auto size = static_cast<size_t>(model_->ntexdata);
+  const size_t before = (page - reinterpret_cast<uintptr_t>(model_->tex_rgb) % page) % page;
+  if (size < before + page) return;
+  const size_t whole_pages = (size - before) / page * page;
+  CHECK(madvise(model_->tex_rgb + before, whole_pages, MADV_DONTNEED) == 0)
+      << "giving back " << whole_pages << " bytes of textures";
 }
 
 int World::ElementId(int object_type, const char* kind, const std::string& name) const {

@@ -82,12 +82,11 @@ std::vector<std::string> BlockNames(const Config& config) {
 }
 
 // How many bytes of the pages that lie within `size` bytes from `start` are in memory.
-size_t ResidentBytes(const void* start, size_t size) {
-  const auto page = static_cast<uintptr_t>(sysconf(_SC_PAGESIZE));
-  const auto address = reinterpret_cast<uintptr_t>(start);
-  const uintptr_t begin = (address + page - 1) / page * page, end = (address + size) / page * page;
-  std::vector<unsigned char> pages((end - begin) / page);
-  EXPECT_EQ(mincore(reinterpret_cast<void*>(begin), end - begin, pages.data()), 0);
+size_t ResidentBytes(mjtByte* start, size_t size) {
+  const auto page = static_cast<size_t>(sysconf(_SC_PAGESIZE));
+  const size_t before = (page - reinterpret_cast<uintptr_t>(start) % page) % page;
+  std::vector<unsigned char> pages((size - before) / page);
+  EXPECT_EQ(mincore(start + before, page * pages.size(), pages.data()), 0);
   return page * static_cast<size_t>(std::ranges::count_if(pages, [](int p) { return p & 1; }));
 }
 
