@@ -6,6 +6,7 @@
 
 #include "common/base/check.h"
 #include "common/dds/bulk_cdr.h"
+#include "common/dds/message_cdr.h"
 // clang-format off
 #include "common/dds/endpoint.h"
 #include "dds/ddsi/ddsi_serdata.h"
@@ -55,22 +56,6 @@ bool TakeCdr(dds_entity_t reader, const Deliver& deliver) {
   return taken > 0;
 }
 
-// The same for types that Cyclone deserialises.
-template <class M, class Deliver>
-bool TakeValues(dds_entity_t reader, const Deliver& deliver) {
-  void* samples[kTakeAtOnce] = {};
-  dds_sample_info_t infos[kTakeAtOnce];
-  const dds_return_t taken = dds_take(reader, samples, infos, kTakeAtOnce, kTakeAtOnce);
-  for (dds_return_t i = 0; i < taken; ++i) {
-    if (!infos[i].valid_data) continue;
-    M message;
-    const auto& wire = *static_cast<const typename Topic<M>::Wire*>(samples[i]);
-    deliver(FromWire(wire, &message), message);
-  }
-  if (taken > 0) dds_return_loan(reader, samples, taken);
-  return taken > 0;
-}
-
 }  // namespace
 
 template <class M>
@@ -101,12 +86,7 @@ struct Subscriber<M>::Impl {
     const auto deliver = [self](bool well_formed, const M& message) {
       self->Deliver(well_formed, message);
     };
-    if constexpr (Topic<M>::kSettings.bulk) {
-      while (TakeCdr<M>(handle, deliver)) {
-      }
-    } else {
-      while (TakeValues<M>(handle, deliver)) {
-      }
+    while (TakeCdr<M>(handle, deliver)) {
     }
     self->callbacks.fetch_add(1, std::memory_order_release);
   }

@@ -1,8 +1,5 @@
 #include "common/dds/wire_types.h"
 
-#include <cmath>
-#include <cstring>
-
 #include "common/base/check.h"
 #include "common/dds/bulk_cdr.h"
 
@@ -40,19 +37,6 @@ shoal_idl_Metrics MetricsToWire(const MetricsMessage& message, std::vector<char*
           message.time,
           Borrow(message.names, pointers),
           Borrow(message.values)};
-}
-
-// A string that an old sender left out reads as a null pointer.
-std::string Text(const char* text) { return text == nullptr ? std::string() : std::string(text); }
-
-std::vector<std::string> Texts(const shoal_idl_Strings& wire) {
-  std::vector<std::string> texts;
-  for (uint32_t i = 0; i < wire._length; ++i) texts.push_back(Text(wire._buffer[i]));
-  return texts;
-}
-
-std::vector<double> Numbers(const shoal_idl_Doubles& wire) {
-  return {wire._buffer, wire._buffer + wire._length};
 }
 
 }  // namespace
@@ -141,100 +125,6 @@ shoal_idl_Command ToWire(const CommandMessage& message, WireBuffers* buffers) {
 
 shoal_idl_Reply ToWire(const ReplyMessage& message, WireBuffers*) {
   return {message.client, message.request, message.accepted, Borrow(message.text)};
-}
-
-bool FromWire(const shoal_idl_Credits& wire, CreditsMessage* message) {
-  message->credits.clear();
-  bool good = true;
-  for (uint32_t i = 0; i < wire.changed._length; ++i) {
-    const shoal_idl_Credit& credit = wire.changed._buffer[i];
-    good = good && credit.replay_session > 0 && credit.session > 0;
-    message->credits.push_back({.replay_session = credit.replay_session,
-                                .actor = credit.actor,
-                                .session = credit.session,
-                                .stored = credit.stored,
-                                .allowed = credit.allowed,
-                                .spec_hash = credit.spec_hash});
-  }
-  return good;
-}
-
-bool FromWire(const shoal_idl_SampleRequest& wire, SampleRequest* message) {
-  *message = {.spec_hash = wire.spec_hash,
-              .learner_session = wire.learner_session,
-              .request = wire.request,
-              .batch = wire.batch,
-              .after_steps = wire.after_steps};
-  return wire.learner_session > 0 && wire.request > 0 && wire.batch > 0;
-}
-
-bool FromWire(const shoal_idl_Metrics& wire, MetricsMessage* message) {
-  message->role = Text(wire.role);
-  message->id = wire.id;
-  message->host = Text(wire.host);
-  message->pid = wire.pid;
-  message->state = Text(wire.state);
-  message->time = wire.time;
-  message->names = Texts(wire.names);
-  message->values = Numbers(wire.values);
-  return !message->role.empty() && message->names.size() == message->values.size() &&
-         std::isfinite(wire.time);
-}
-
-bool FromWire(const shoal_idl_Control& wire, ControlMessage* message) {
-  message->epoch = wire.epoch;
-  message->state = static_cast<RunState>(wire.state);
-  message->time = wire.time;
-  message->setting_names = Texts(wire.setting_names);
-  message->setting_values = Numbers(wire.setting_values);
-  const bool known = message->state == RunState::kRunning ||
-                     message->state == RunState::kDraining || message->state == RunState::kStopping;
-  return known && std::isfinite(wire.time) &&
-         message->setting_names.size() == message->setting_values.size();
-}
-
-bool FromWire(const shoal_idl_Eval& wire, EvalMessage* message) {
-  message->env_steps = wire.env_steps;
-  message->version = {wire.weights_session, wire.weights_update};
-  message->checkpoint = Text(wire.checkpoint);
-  message->json = Text(wire.json);
-  return !message->json.empty();
-}
-
-bool FromWire(const shoal_idl_RunView& wire, RunViewMessage* message) {
-  message->schema = Text(wire.schema);
-  message->run = Text(wire.run);
-  message->time = wire.time;
-  message->state = Text(wire.state);
-  message->env_steps = wire.env_steps;
-  message->updates = wire.updates;
-  message->processes.resize(wire.processes._length);
-  bool good = !message->schema.empty() && std::isfinite(wire.time);
-  for (uint32_t i = 0; i < wire.processes._length; ++i) {
-    good = FromWire(wire.processes._buffer[i], &message->processes[i]) && good;
-  }
-  message->events.clear();
-  for (uint32_t i = 0; i < wire.events._length; ++i) {
-    const shoal_idl_RunEvent& event = wire.events._buffer[i];
-    message->events.push_back({event.number, event.time, Text(event.text)});
-  }
-  return good;
-}
-
-bool FromWire(const shoal_idl_Command& wire, CommandMessage* message) {
-  message->client = wire.client;
-  message->request = wire.request;
-  message->verb = Text(wire.verb);
-  message->arguments = Texts(wire.arguments);
-  return wire.client > 0 && wire.request > 0 && !message->verb.empty();
-}
-
-bool FromWire(const shoal_idl_Reply& wire, ReplyMessage* message) {
-  message->client = wire.client;
-  message->request = wire.request;
-  message->accepted = wire.accepted;
-  message->text = Text(wire.text);
-  return wire.client > 0 && wire.request > 0;
 }
 
 }  // namespace shoal::dds

@@ -1,8 +1,8 @@
-// Between the plain structs of common/wire and the C structs that idlc generates. Internal.
+// From the plain structs of common/wire to the C structs that idlc generates; the way back is
+// bulk_cdr.h and message_cdr.h. Internal.
 //
 // ToWire borrows: strings and payloads of the result point into the message, so it lives no longer
-// than that. FromWire copies, and is false when a message from outside makes no sense; the bulk
-// types come in through bulk_cdr.h instead.
+// than that.
 #pragma once
 
 #include <vector>
@@ -34,14 +34,5 @@ shoal_idl_Eval ToWire(const EvalMessage& message, WireBuffers* buffers);
 shoal_idl_RunView ToWire(const RunViewMessage& message, WireBuffers* buffers);
 shoal_idl_Command ToWire(const CommandMessage& message, WireBuffers* buffers);
 shoal_idl_Reply ToWire(const ReplyMessage& message, WireBuffers* buffers);
-
-bool FromWire(const shoal_idl_Credits& wire, CreditsMessage* message);
-bool FromWire(const shoal_idl_SampleRequest& wire, SampleRequest* message);
-bool FromWire(const shoal_idl_Metrics& wire, MetricsMessage* message);
-bool FromWire(const shoal_idl_Control& wire, ControlMessage* message);
-bool FromWire(const shoal_idl_Eval& wire, EvalMessage* message);
-bool FromWire(const shoal_idl_RunView& wire, RunViewMessage* message);
-bool FromWire(const shoal_idl_Command& wire, CommandMessage* message);
-bool FromWire(const shoal_idl_Reply& wire, ReplyMessage* message);
 
 }  // namespace shoal::dds

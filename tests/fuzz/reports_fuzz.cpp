@@ -1,6 +1,6 @@
-// The small messages: Cyclone's decoder takes any bytes apart or refuses them, ours makes sense of
-// the rest or refuses it, and those who get the message bear with what it says. First byte: which
-// message; the rest is serialised CDR.
+// The messages that are not bulk: any bytes are refused or taken apart within their bounds, and
+// those who get the message bear with what it says. First byte: which message; the rest is
+// serialised CDR.
 #include <nlohmann/json.hpp>
 
 #include "actor/chunk_window.h"
@@ -8,6 +8,7 @@
 #include "common/base/check.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/dds/message_cdr.h"
 #include "common/wire/control_state.h"
 #include "launch/bottleneck.h"
 #include "launch/command_handler.h"
@@ -17,7 +18,6 @@
 #include "launch/run_figures.h"
 #include "launch/top_table.h"
 #include "replay_server/core/replay_core.h"
-#include "tests/common/dds/decode_cdr.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/replay_server/record_script.h"
 
@@ -119,8 +119,11 @@ void Use(const CommandMessage& message) {
 void Use(const ReplyMessage&) {}
 
 template <class M>
-void Run(const std::string& bytes) {
-  if (const auto message = dds::DecodeCdr<M>(bytes)) Use(*message);
+void Run(const std::string& body) {
+  std::vector<uint8_t> cdr{0, 9, 0, 0};
+  cdr.insert(cdr.end(), body.begin(), body.end());
+  M message;
+  if (dds::ParseCdr(cdr, &message)) Use(message);
 }
 
 constexpr void (*kMessages[])(const std::string&) = {

@@ -1,0 +1,131 @@
+// Takes serialised CDR apart, every step bounds-checked: the bytes come from the network. Internal.
+#pragma once
+
+#include <algorithm>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace shoal::dds {
+
+static_assert(std::endian::native == std::endian::little);
+
+// How a type's body is serialised (the second byte of the header of four; the first is 0).
+enum class CdrEncoding : uint8_t {
+  kPlain1 = 1,      // @final: fields aligned to their size
+  kDelimited2 = 9,  // @appendable: aligned to 4 at most, structs and collections with their size
+};
+
+// Reads fields in order. After the first one that does not fit, everything reads as zero and
+// Finished() is false.
+class CdrReader {
+ public:
+  CdrReader(std::span<const uint8_t> cdr, CdrEncoding encoding)
+      : alignment_(encoding == CdrEncoding::kPlain1 ? 8 : 4) {
+    ok_ = cdr.size() >= kHeaderBytes && cdr[0] == 0 && cdr[1] == static_cast<uint8_t>(encoding);
+    if (ok_) body_ = cdr.subspan(kHeaderBytes);
+  }
+
+  template <class T>
+  T Read() {
+    T value{};
+    if (Absent()) return value;
+    const std::span<const uint8_t> bytes = Take(sizeof(T), sizeof(T));
+    if (ok_) std::memcpy(&value, bytes.data(), sizeof(T));
+    return value;
+  }
+
+  std::span<const uint8_t> ReadBytes() {
+    const auto size = Read<uint32_t>();
+    return Take(size, 1);
+  }
+
+  // Without what follows a NUL; the bytes end with one.
+  std::string_view ReadString() {
+    if (Absent()) return {};
+    const std::span<const uint8_t> bytes = ReadBytes();
+    ok_ = ok_ && !bytes.empty() && bytes.back() == 0;
+    if (!ok_) return {};
+    const std::string_view text(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    return text.substr(0, text.find('\0'));
+  }
+
+  std::vector<std::string> ReadStrings() {
+    std::vector<std::string> strings;
+    ReadCollection([&] { strings.emplace_back(ReadString()); });
+    return strings;
+  }
+
+  std::vector<double> ReadDoubles() {
+    const auto count = Read<uint32_t>();
+    const std::span<const uint8_t> bytes = Take(size_t{count} * sizeof(double), sizeof(double));
+    std::vector<double> values(bytes.size() / sizeof(double));
+    if (!bytes.empty()) std::memcpy(values.data(), bytes.data(), bytes.size());
+    return values;
+  }
+
+  // A struct to which fields may be added: those that an older sender left out read as zero, those
+  // that a newer one added are skipped.
+  template <class ReadFields>
+  void ReadAppendable(ReadFields read_fields) {
+    ReadScope(/*may_lack=*/true, read_fields);
+  }
+
+  // A sequence of strings or structs.
+  template <class ReadElement>
+  void ReadCollection(ReadElement read_element) {
+    if (Absent()) return;
+    ReadScope(/*may_lack=*/false, [&] {
+      const auto count = Read<uint32_t>();
+      for (uint32_t i = 0; i < count && ok_; ++i) read_element();
+    });
+  }
+
+  bool Finished() const { return ok_ && body_.size() - position_ <= kMaxPadding; }
+
+ private:
+  static constexpr size_t kHeaderBytes = 4;
+  static constexpr size_t kMaxPadding = 3;
+
+  // What is read by `read` lies within a size that comes first; the position afterwards is its end.
+  template <class ReadPart>
+  void ReadScope(bool may_lack, ReadPart read) {
+    const std::span<const uint8_t> part = Take(Read<uint32_t>(), 1);
+    if (!ok_) return;
+    const size_t end_before = end_, end = position_;
+    const bool may_lack_before = may_lack_;
+    position_ -= part.size();
+    end_ = end;
+    may_lack_ = may_lack;
+    read();
+    position_ = end;
+    end_ = end_before;
+    may_lack_ = may_lack_before;
+  }
+
+  bool Absent() const { return may_lack_ && position_ == end_; }
+
+  std::span<const uint8_t> Take(size_t size, size_t alignment) {
+    alignment = std::min(alignment, alignment_);
+    const size_t begin = (position_ + alignment - 1) / alignment * alignment;
+    const size_t end = std::min(end_, body_.size());
+    ok_ = ok_ && begin <= end && size <= end - begin;
+    if (!ok_) return {};
+    position_ = begin + size;
+    return body_.subspan(begin, size);
+  }
+
+  const size_t alignment_;  // at most
+  std::span<const uint8_t> body_;
+  size_t position_ = 0;
+  size_t end_ = std::numeric_limits<size_t>::max();  // of the innermost scope
+  bool may_lack_ = false;                            // fields at the end of that scope
+  bool ok_ = false;
+};
+
+}  // namespace shoal::dds
