@@ -6,6 +6,7 @@
 #include <exception>
 
 #include "common/base/error.h"
+#include "common/base/one_line.h"
 
 namespace shoal {
 
@@ -14,10 +15,10 @@ int GuardMain(const char* program, const std::function<int()>& body) {
   try {
     return body();
   } catch (const Error& e) {
-    std::fprintf(stderr, "%s: error: %s\n", program, e.what());
+    std::fprintf(stderr, "%s: error: %s\n", program, OneLine(e.what()).c_str());
     return e.exit_code();
   } catch (const std::exception& e) {
-    std::fprintf(stderr, "%s: error: %s\n", program, e.what());
+    std::fprintf(stderr, "%s: error: %s\n", program, OneLine(e.what()).c_str());
     return 1;
   }
 }

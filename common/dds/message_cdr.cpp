@@ -3,12 +3,22 @@
 #include <cmath>
 #include <utility>
 
+#include "common/base/one_line.h"
 #include "common/dds/cdr_reader.h"
 
 namespace shoal::dds {
 namespace {
 
 CdrReader Reader(std::span<const uint8_t> cdr) { return {cdr, CdrEncoding::kDelimited2}; }
+
+// What people may get to see.
+std::string Text(CdrReader* reader) { return OneLine(reader->ReadString()); }
+
+std::vector<std::string> Texts(CdrReader* reader) {
+  std::vector<std::string> texts = reader->ReadStrings();
+  for (std::string& text : texts) text = OneLine(text);
+  return texts;
+}
 
 Credit ReadCredit(CdrReader* reader) {
   Credit credit;
@@ -26,13 +36,13 @@ Credit ReadCredit(CdrReader* reader) {
 MetricsMessage ReadMetrics(CdrReader* reader) {
   MetricsMessage message;
   reader->ReadAppendable([&] {
-    message.role = reader->ReadString();
+    message.role = Text(reader);
     message.id = reader->Read<uint32_t>();
-    message.host = reader->ReadString();
+    message.host = Text(reader);
     message.pid = reader->Read<int32_t>();
-    message.state = reader->ReadString();
+    message.state = Text(reader);
     message.time = reader->Read<double>();
-    message.names = reader->ReadStrings();
+    message.names = Texts(reader);
     message.values = reader->ReadDoubles();
   });
   return message;
@@ -48,7 +58,7 @@ RunEvent ReadEvent(CdrReader* reader) {
   reader->ReadAppendable([&] {
     event.number = reader->Read<uint64_t>();
     event.time = reader->Read<double>();
-    event.text = reader->ReadString();
+    event.text = Text(reader);
   });
   return event;
 }
@@ -94,7 +104,7 @@ bool ParseCdr(std::span<const uint8_t> cdr, ControlMessage* message) {
     message->epoch = reader.Read<uint64_t>();
     message->state = static_cast<RunState>(reader.Read<uint32_t>());
     message->time = reader.Read<double>();
-    message->setting_names = reader.ReadStrings();
+    message->setting_names = Texts(&reader);
     message->setting_values = reader.ReadDoubles();
   });
   const bool known = message->state == RunState::kRunning ||
@@ -109,7 +119,7 @@ bool ParseCdr(std::span<const uint8_t> cdr, EvalMessage* message) {
     message->env_steps = reader.Read<uint64_t>();
     message->version.session = reader.Read<uint64_t>();
     message->version.update = reader.Read<uint64_t>();
-    message->checkpoint = reader.ReadString();
+    message->checkpoint = Text(&reader);
     message->json = reader.ReadString();
   });
   return reader.Finished() && !message->json.empty();
@@ -121,10 +131,10 @@ bool ParseCdr(std::span<const uint8_t> cdr, RunViewMessage* message) {
   message->processes.clear();
   message->events.clear();
   reader.ReadAppendable([&] {
-    message->schema = reader.ReadString();
-    message->run = reader.ReadString();
+    message->schema = Text(&reader);
+    message->run = Text(&reader);
     message->time = reader.Read<double>();
-    message->state = reader.ReadString();
+    message->state = Text(&reader);
     message->env_steps = reader.Read<uint64_t>();
     message->updates = reader.Read<uint64_t>();
     reader.ReadCollection([&] {
@@ -141,8 +151,8 @@ bool ParseCdr(std::span<const uint8_t> cdr, CommandMessage* message) {
   reader.ReadAppendable([&] {
     message->client = reader.Read<uint64_t>();
     message->request = reader.Read<uint64_t>();
-    message->verb = reader.ReadString();
-    message->arguments = reader.ReadStrings();
+    message->verb = Text(&reader);
+    message->arguments = Texts(&reader);
   });
   return reader.Finished() && message->client > 0 && message->request > 0 && !message->verb.empty();
 }
@@ -153,7 +163,7 @@ bool ParseCdr(std::span<const uint8_t> cdr, ReplyMessage* message) {
     message->client = reader.Read<uint64_t>();
     message->request = reader.Read<uint64_t>();
     message->accepted = reader.Read<uint8_t>() != 0;
-    message->text = reader.ReadString();
+    message->text = Text(&reader);
   });
   return reader.Finished() && message->client > 0 && message->request > 0;
 }

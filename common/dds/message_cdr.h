@@ -13,7 +13,8 @@
 namespace shoal::dds {
 
 // False when the bytes are truncated or make no sense; `message` is then unspecified. A field that
-// an older sender left out at the end of a struct is zero or empty.
+// an older sender left out at the end of a struct is zero or empty. Texts but an evaluation's JSON
+// hold no control characters (OneLine).
 bool ParseCdr(std::span<const uint8_t> cdr, CreditsMessage* message);
 bool ParseCdr(std::span<const uint8_t> cdr, SampleRequest* message);
 bool ParseCdr(std::span<const uint8_t> cdr, MetricsMessage* message);

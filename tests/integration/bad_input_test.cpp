@@ -34,6 +34,7 @@ INSTANTIATE_TEST_SUITE_P(
     All, BadInput,
     testing::Values(
         Mistake{"UnknownKey", TrainWith("learner.bach=3"), 2, {"learner.bach", "learner.batch"}},
+        Mistake{"KeyOfTwoLines", TrainWith("learner.\nbatch=3"), 2, {"learner. batch"}},
         Mistake{"IllTyped", TrainWith("learner.batch=many"), 2, {"learner.batch", "many"}},
         Mistake{"OutOfRange", TrainWith("learner.batch=-1"), 2, {"learner.batch", "-1"}},
         Mistake{"UnknownTask", TrainWith("task=FetchFly"), 2, {"FetchFly", "FetchReachDense"}},

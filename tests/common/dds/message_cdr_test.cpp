@@ -113,6 +113,15 @@ TEST(MessageCdr, WhatAnOlderSenderLeftOutAtTheEndIsEmpty) {
   EXPECT_TRUE(back.accepted);
 }
 
+TEST(MessageCdr, TextsHoldNothingThatATerminalWouldObey) {
+  ReplyMessage reply;
+  Fill(1, &reply);
+  reply.text = "two\nlines\x1b[2J";
+  ReplyMessage back;
+  ASSERT_TRUE(ParseCdr(EncodeCdr(reply), &back));
+  EXPECT_EQ(back.text, "two lines?[2J");
+}
+
 // What Cyclone 0.10.2 takes: it asks for four bytes per number where eight are read.
 TEST(MessageCdr, NumbersOfWhichOnlyHalfIsThereAreRefused) {
   Bytes cdr = EncodeCdr(ValidMetrics());
