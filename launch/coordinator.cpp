@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "common/base/error.h"
+#include "common/base/saturating_cast.h"
 #include "common/base/stop.h"
 #include "common/base/usable_cores.h"
 #include "common/dds/publisher.h"
@@ -86,11 +87,11 @@ struct Coordinator::Impl {
   double Elapsed() const { return meta.wall_seconds + SecondsSince(start); }
   uint64_t EnvSteps() const {
     return std::max(meta.env_steps,
-                    static_cast<uint64_t>(view.Get("replay", 0, "stored_steps").value_or(0)));
+                    SaturatingCast<uint64_t>(view.Get("replay", 0, "stored_steps").value_or(0)));
   }
 
   // Since this coordinator's start.
-  uint64_t Resends() const { return static_cast<uint64_t>(view.Total("actor", "resends")); }
+  uint64_t Resends() const { return SaturatingCast<uint64_t>(view.Total("actor", "resends")); }
 
   RunResult Run(const std::function<void()>& on_started);
   std::string WaitForEnd(const std::function<void()>& on_started);
@@ -333,7 +334,7 @@ void Coordinator::Impl::TakeMessages(SteadyTime now) {
     scalars.WriteTraining(message, now);
   }
   if (const auto updates = view.Get("learner", 0, "updates")) {
-    meta.OnUpdates(static_cast<uint64_t>(*updates));
+    meta.OnUpdates(SaturatingCast<uint64_t>(*updates));
   }
   for (const EvalMessage& message : evals.TakeAll()) OnEvaluation(message);
 }

@@ -7,6 +7,7 @@
 
 #include "common/base/error.h"
 #include "common/base/random.h"
+#include "common/base/saturating_cast.h"
 #include "common/base/stop.h"
 
 namespace shoal::launch {
@@ -88,7 +89,7 @@ int ExitCodeOf(const RunViewMessage& view) {
   for (const MetricsMessage& process : view.processes) {
     for (size_t i = 0; i < process.names.size() && i < process.values.size(); ++i) {
       if (process.role == "coordinator" && process.names[i] == "exit_code") {
-        return static_cast<int>(process.values[i]);
+        return SaturatingCast<int>(process.values[i]);
       }
     }
   }

@@ -1,5 +1,7 @@
 #include "launch/run_figures.h"
 
+#include "common/base/saturating_cast.h"
+
 namespace shoal::launch {
 
 ProgressFigures CollectFigures(const MetricsView& view, SteadyTime now) {
@@ -35,7 +37,7 @@ std::optional<EvaluationPoint> FindEvaluation(const MetricsView& view, const std
   EvaluationPoint point;
   point.success = get("_success");
   point.mean_return = *get("_return");
-  point.env_steps = static_cast<uint64_t>(get("_env_steps").value_or(0));
+  point.env_steps = SaturatingCast<uint64_t>(get("_env_steps").value_or(0));
   return point;
 }
 
@@ -75,7 +77,7 @@ ProgressFigures FiguresOfView(const RunViewMessage& message, SteadyTime now) {
   figures.state = message.state;
   figures.elapsed_seconds = own("elapsed_seconds").value_or(0);
   figures.env_steps = message.env_steps;
-  figures.budget = static_cast<uint64_t>(own("budget_env_steps").value_or(0));
+  figures.budget = SaturatingCast<uint64_t>(own("budget_env_steps").value_or(0));
   figures.env_steps_per_second = own("env_steps_per_second");
   figures.updates_per_second = own("updates_per_second");
   figures.rollout_success = own("rollout_success");
@@ -83,8 +85,8 @@ ProgressFigures FiguresOfView(const RunViewMessage& message, SteadyTime now) {
   figures.learner_waits = own("limiter_blocked_sample_share");
   figures.last_evaluation = FindEvaluation(view, "last_evaluation");
   figures.best = FindEvaluation(view, "best_evaluation");
-  figures.processes = static_cast<int>(own("processes").value_or(0));
-  figures.restarts = static_cast<int>(own("restarts").value_or(0));
+  figures.processes = SaturatingCast<int>(own("processes").value_or(0));
+  figures.restarts = SaturatingCast<int>(own("restarts").value_or(0));
   return figures;
 }
 

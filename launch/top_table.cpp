@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "common/base/saturating_cast.h"
 #include "launch/bottleneck.h"
 #include "launch/run_figures.h"
 
@@ -225,7 +226,7 @@ std::string AdviceFor(const RunViewMessage& message) {
   MetricsView view;
   for (const Process& process : message.processes) view.OnMessage(process, Now());
   const auto asked = [&](const char* name) { return view.Get("coordinator", 0, name).value_or(0); };
-  return FindBottleneck(view, asked("usable_cores"), static_cast<int>(asked("actors"))).advice;
+  return FindBottleneck(view, asked("usable_cores"), SaturatingCast<int>(asked("actors"))).advice;
 }
 
 }  // namespace

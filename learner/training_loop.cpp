@@ -6,6 +6,7 @@
 
 #include "common/base/error.h"
 #include "common/base/log.h"
+#include "common/base/saturating_cast.h"
 #include "common/base/stop.h"
 #include "common/config/lockstep.h"
 #include "common/wire/scoped_seconds.h"
@@ -155,9 +156,9 @@ bool TrainingLoop::RatioReached() const {
 
 void TrainingLoop::ApplySettings() {
   const ControlState& control = parts_.control;
-  weights_.SetPeriod(static_cast<uint64_t>(
+  weights_.SetPeriod(SaturatingCast<uint64_t>(
       control.SettingOr("learner.weights_period", config_.learner.weights_period)));
-  evaluations_.SetInterval(static_cast<uint64_t>(control.SettingOr(
+  evaluations_.SetInterval(SaturatingCast<uint64_t>(control.SettingOr(
                                "eval.interval", static_cast<double>(config_.eval.interval))),
                            env_steps_);
   const double ratio =

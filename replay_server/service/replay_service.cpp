@@ -9,6 +9,7 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/log.h"
+#include "common/base/saturating_cast.h"
 #include "common/base/stop.h"
 #include "common/config/run_files.h"
 #include "common/config/run_membership.h"
@@ -130,7 +131,7 @@ class ReplayService {
   size_t MaxChunks() const {
     const size_t known = core_.sessions().newest().size();
     const double actors = control_.SettingOr("actors", Settings().actors);
-    const size_t sessions = std::max(known, static_cast<size_t>(std::max(1.0, actors)));
+    const size_t sessions = std::max(known, SaturatingCast<size_t>(std::clamp(actors, 1.0, 1e6)));
     return (sessions + 1) * 2 * static_cast<size_t>(Window().chunks + 1);
   }
 
@@ -179,7 +180,7 @@ class ReplayService {
   }
 
   void ApplySettings() {
-    const auto budget = static_cast<uint64_t>(
+    const auto budget = SaturatingCast<uint64_t>(
         control_.SettingOr("env_steps", static_cast<double>(Settings().env_steps)));
     if (budget != core_.budget()) log::Info("env_steps is now {}", budget);
     core_.SetBudget(budget);
