@@ -60,7 +60,9 @@ std::vector<std::string> Environment(
   for (char** entry = environ; *entry != nullptr; ++entry) {
     const std::string_view text = *entry;
     bool replaced = false;
-    for (const auto& [name, value] : additions) replaced |= text.starts_with(name + "=");
+    for (const auto& [name, value] : additions) {
+      replaced |= text.starts_with(name) && text.substr(name.size()).starts_with('=');
+    }
     if (!replaced) all.emplace_back(text);
   }
   for (const auto& [name, value] : additions) all.push_back(name + "=" + value);
@@ -69,6 +71,7 @@ std::vector<std::string> Environment(
 
 std::vector<char*> Pointers(std::vector<std::string>& strings) {
   std::vector<char*> pointers;
+  pointers.reserve(strings.size() + 1);
   for (std::string& s : strings) pointers.push_back(s.data());
   pointers.push_back(nullptr);
   return pointers;

@@ -67,7 +67,7 @@ EvaluationPoint StoreEvaluation(const fs::path& run, const EvalMessage& message,
   const std::string source = fmt::format("evaluation at {} env steps", message.env_steps);
   ordered_json object = ParseObject(message.json, source);
   object["wall_seconds"] = wall_seconds;
-  const EvaluationPoint point = PointOf(object, source);
+  EvaluationPoint point = PointOf(object, source);
   const std::string name =
       fmt::format("{}{:010}_updates_{:010}.json", kPrefix, point.env_steps, point.updates);
   WriteFileAtomically(run / "eval" / name, object.dump(2) + "\n");
@@ -82,6 +82,7 @@ std::vector<EvaluationPoint> ReadEvaluations(const fs::path& run) {
   }
   std::ranges::sort(files);  // the names are padded: by env steps, then updates
   std::vector<EvaluationPoint> points;
+  points.reserve(files.size());
   for (const fs::path& file : files) points.push_back(ParseEvaluation(ReadFile(file), file));
   return points;
 }

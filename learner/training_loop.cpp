@@ -111,9 +111,9 @@ std::string TrainingLoop::WriteCheckpoint() {
                               .config_hash = parts_.checkpoints.config_hash(),
                               .spec_hash = parts_.run.spec.Hash(),
                               .precision = nn::ToString(parts_.precision)};
-  const std::string name = parts_.checkpoints.Write(state, parts_.agent.AllTensors(),
-                                                    parts_.agent.AveragedPolicyTensors(),
-                                                    parts_.pending_evaluations.Names());
+  std::string name = parts_.checkpoints.Write(state, parts_.agent.AllTensors(),
+                                              parts_.agent.AveragedPolicyTensors(),
+                                              parts_.pending_evaluations.Names());
   saved_updates_ = updates;
   ++checkpoints_written_;
   return name;

@@ -31,7 +31,7 @@ void SquashedGaussian::Transform(const float* mean, const float* log_std, const 
   for (int b = 0; b < batch_; ++b) {
     double log_prob = 0;
     for (int j = 0; j < action_size_; ++j) {
-      const size_t at = size_t(b * action_size_ + j);
+      const size_t at = size_t(b) * size_t(action_size_) + size_t(j);
       const double eps = noise[at];
       const double scaled = std::exp(double(log_std[at])) * eps;
       const double u = mean[at] + scaled;
