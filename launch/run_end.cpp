@@ -43,15 +43,15 @@ std::optional<EvaluationPoint> EvaluateAtEnd(const fs::path& run, const Config& 
   const int stops = StopRequests();
   progress.Say(fmt::format("evaluating {} on {} fresh episodes; Ctrl-C to leave it out",
                            checkpoint.string(), config.eval.final_episodes));
-  const auto point = EvaluateByActor({.run = run,
-                                      .checkpoint = checkpoint,
-                                      .episodes = config.eval.final_episodes,
-                                      .seed = config.seed,
-                                      .json = run / "eval" / "final.json"},
-                                     [stops, &desk] {
-                                       desk.ShowAgain("evaluating", Now());
-                                       return StopRequests() > stops;
-                                     });
+  auto point = EvaluateByActor({.run = run,
+                                .checkpoint = checkpoint,
+                                .episodes = config.eval.final_episodes,
+                                .seed = config.seed,
+                                .json = run / "eval" / "final.json"},
+                               [stops, &desk] {
+                                 desk.ShowAgain("evaluating", Now());
+                                 return StopRequests() > stops;
+                               });
   if (!point) progress.Say("the evaluation was left out");
   return point;
 }

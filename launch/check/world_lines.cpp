@@ -42,7 +42,7 @@ CheckLine LookAtPictures(const Config& config) {
       worlds::MakeWorld(tasks::FindTask(config.task).world(), {config.model, config.physics});
   std::string shares;
   for (const std::string& camera : observation.cameras) {
-    const CheckLine line =
+    CheckLine line =
         JudgePicture(camera, worlds::RobotShare(world.get(), kRobot, camera, observation));
     if (line.verdict != Verdict::kOk) return line;
     shares += (shares.empty() ? "" : ", ") + line.finding;

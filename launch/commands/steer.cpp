@@ -77,7 +77,9 @@ int Set(const TargetOptions& target, const std::string& assignment) {
   RunClient client(ResolveTarget(target));
   const std::string done = client.Order("set", {assignment});
   fmt::print("{}\n", done);
-  const auto [live, value] = Confirmed(done);
+  const LiveKey* live = nullptr;
+  double value = 0;
+  std::tie(live, value) = Confirmed(done);
   if (live == nullptr) return 0;
   std::string where;
   const bool seen = WatchUntil(client, kInForce, [&](const RunViewMessage& view) {
