@@ -65,7 +65,7 @@ std::vector<std::string> Environment(
     }
     if (!replaced) all.emplace_back(text);
   }
-  for (const auto& [name, value] : additions) all.push_back(name + "=" + value);
+  for (const auto& [name, value] : additions) all.push_back(fmt::format("{}={}", name, value));
   return all;
 }
 
