@@ -20,7 +20,7 @@ struct TopicSettings {
   // n: the last n per key are kept, older ones are overwritten, and Write never blocks.
   int32_t keep_last;
   bool late_joiners;  // get the last keep_last samples (transient-local)
-  bool bulk;          // plain CDR, parsed by hand
+  bool bulk;          // a @final type in plain CDR; else @appendable
   std::chrono::milliseconds max_blocking;
 };
 
