@@ -120,8 +120,8 @@ class Eavesdropper {
     while (poll(&ready, 1, 0) > 0) {
       const ssize_t size = recv(fd_, packet.data(), packet.size(), 0);
       if (size <= 0) return false;
-      const std::span<const uint8_t> bytes(packet.data(), static_cast<size_t>(size));
-      if (!std::ranges::search(bytes, wanted).empty()) return true;
+      const auto end = packet.begin() + size;
+      if (std::search(packet.begin(), end, wanted.begin(), wanted.end()) != end) return true;
     }
     return false;
   }

@@ -226,7 +226,7 @@ TEST(SacAgent, TheAveragedPolicyFollowsByTheRate) {
   ASSERT_EQ(moved.size(), policy.size());
   bool differs = false;
   for (const auto& [name, tensor] : moved) {
-    const auto number = [&name](const TensorMap& tensors, size_t i) {
+    const auto number = [&name = name](const TensorMap& tensors, size_t i) {
       float value = 0;
       std::memcpy(&value, tensors.at(name).data.data() + 4 * i, 4);
       return value;
