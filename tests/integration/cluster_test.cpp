@@ -90,7 +90,7 @@ class Cluster : public testing::Test {
   }
 
   const JoinedNamespaces net_;
-  const TrainingRun run_;
+  const TrainingRun run_{};
 };
 
 TEST_F(Cluster, AnActorOnAnotherHostTrains) {
