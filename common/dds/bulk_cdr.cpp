@@ -1,5 +1,6 @@
 #include "common/dds/bulk_cdr.h"
 
+#include "common/base/one_line.h"
 #include "common/dds/cdr_reader.h"
 
 namespace shoal::dds {
@@ -50,7 +51,7 @@ bool ParseCdr(std::span<const uint8_t> cdr, WeightsMessage* message) {
   message->env_steps = reader.Read<uint64_t>();
   message->crc = reader.Read<uint32_t>();
   message->payload = reader.ReadBytes();
-  message->checkpoint = reader.ReadString();
+  message->checkpoint = OneLine(reader.ReadString());
   return reader.Finished() && version == kBulkVersion && message->version.session > 0 &&
          !message->payload.empty();
 }

@@ -227,5 +227,12 @@ TEST(BulkCdr, SurvivesEveryFlippedBit) {
   }
 }
 
+TEST(BulkCdr, ACheckpointsNameHoldsNothingThatATerminalWouldObey) {
+  const std::vector<uint8_t> cdr = Weights(22, "payload", "step\n\x1b[2J");
+  WeightsMessage message;
+  ASSERT_TRUE(ParseCdr(std::span<const uint8_t>(cdr), &message));
+  EXPECT_EQ(message.checkpoint, "step ?[2J");
+}
+
 }  // namespace
 }  // namespace shoal::dds
