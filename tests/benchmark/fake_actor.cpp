@@ -72,6 +72,7 @@ int Run(int argc, char** argv) {
   shoal::log::Start(fmt::format("actor-{}", id), "");
   const auto make = [&](const shoal::RunConfig& config, int count) {
     std::vector<std::unique_ptr<shoal::worlds::Environment>> environments;
+    environments.reserve(count);
     for (int i = 0; i < count; ++i) {
       environments.push_back(std::make_unique<FakeEnvironment>(
           config.spec, std::chrono::microseconds(step_microseconds)));

@@ -32,12 +32,12 @@ void PadAndCrop(const uint8_t* in, replay::Shift shift, std::vector<uint8_t>& pa
     for (int i = 0; i < kWide; ++i) {
       for (int j = 0; j < kWide; ++j) {
         const int y = std::clamp(i - kPad, 0, kSize - 1), x = std::clamp(j - kPad, 0, kSize - 1);
-        padded[size_t((p * kWide + i) * kWide + j)] = in[(p * kSize + y) * kSize + x];
+        padded[size_t(p * kWide + i) * kWide + j] = in[(p * kSize + y) * kSize + x];
       }
     }
     for (int i = 0; i < kSize; ++i) {
       std::memcpy(out + (p * kSize + i) * kSize,
-                  &padded[size_t((p * kWide + i + kPad + shift.dy) * kWide + kPad + shift.dx)],
+                  &padded[size_t(p * kWide + i + kPad + shift.dy) * kWide + (kPad + shift.dx)],
                   kSize);
     }
   }

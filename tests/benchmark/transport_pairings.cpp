@@ -49,7 +49,7 @@ class Transport {
 const std::string& Credentials() {
   static const launch::ScratchFolder scratch;
   static const std::string folder = [] {
-    const std::string made = scratch.path() / "secure";
+    std::string made = scratch.path() / "secure";
     CreateCredentials(made, dds::AllRoleRights(), ValidForDays(1));
     return made;
   }();

@@ -18,7 +18,7 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 #define SHOAL_NEEDS(expression) \
-  if (const std::string no = (expression); !no.empty()) GTEST_SKIP() << no
+  if (const std::string& no = (expression); !no.empty()) GTEST_SKIP() << no
 
 // The only line on stderr.
 void ExpectOneErrorLine(const ProgramResult& result, const auto& matcher) {

@@ -75,6 +75,7 @@ class KeptMessages final : public Outlet {
 
   std::vector<uint64_t> Updates(const std::vector<Sent>& sent) const {
     std::vector<uint64_t> updates;
+    updates.reserve(sent.size());
     for (const Sent& s : sent) updates.push_back(s.update);
     return updates;
   }

@@ -56,7 +56,7 @@ TEST(ContactSheet, HoldsThePicturesUnderTheirLabels) {
   int ink = 0;
   for (int y = 4; y < top; ++y) {
     for (int x = 4; x < 60; ++x) {
-      const uint8_t value = sheet.pixels[static_cast<size_t>(3 * (y * sheet.width + x))];
+      const uint8_t value = sheet.pixels[3 * (static_cast<size_t>(y) * sheet.width + x)];
       EXPECT_TRUE(value == 0 || value == 255);
       ink += value == 0;
     }

@@ -100,6 +100,7 @@ class DrawnScene {
 
 std::vector<int> Types(const mjvScene& scene) {
   std::vector<int> types;
+  types.reserve(scene.ngeom);
   for (int i = 0; i < scene.ngeom; ++i) types.push_back(scene.geoms[i].type);
   return types;
 }

@@ -76,8 +76,9 @@ std::optional<Pixel> RedCentre(const Frame& frame, int* count) {
   for (size_t i = 0; i < kPlane; ++i) {
     const int red = frame[i], green = frame[kPlane + i], blue = frame[2 * kPlane + i];
     if (red < 90 || red < 2 * green || red < 2 * blue) continue;
-    sum.x += static_cast<double>(i % kSide) + 0.5;
-    sum.y += static_cast<double>(i / kSide) + 0.5;
+    const size_t row = i / kSide, column = i % kSide;
+    sum.x += static_cast<double>(column) + 0.5;
+    sum.y += static_cast<double>(row) + 0.5;
     ++*count;
   }
   if (*count == 0) return std::nullopt;
@@ -153,7 +154,7 @@ TEST(RenderContext, TheSkyIsGreenTheTableWhiteAndTheTopRowIsTheTop) {
   RenderContext context(Observation("fast"));
   const Frame frame = Render(&context, &world, "gymnasium");
   const auto colour = [&](int row, int column) {
-    const size_t at = static_cast<size_t>(row * kSide + column);
+    const size_t at = static_cast<size_t>(row) * kSide + column;
     return std::array<int, 3>{frame[at], frame[kPlane + at], frame[2 * kPlane + at]};
   };
   for (const int column : {0, 83}) {

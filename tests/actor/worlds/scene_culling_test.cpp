@@ -54,6 +54,7 @@ class SphereScene {
     scene_.ngeom = static_cast<int>(geoms.size());
     RemoveUnseenGeoms(&scene_, kAspect);
     std::vector<int> ids;
+    ids.reserve(scene_.ngeom);
     for (int i = 0; i < scene_.ngeom; ++i) ids.push_back(scene_.geoms[i].objid);
     return ids;
   }

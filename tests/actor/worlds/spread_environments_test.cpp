@@ -81,6 +81,7 @@ void PlayActor(const std::string& task, const std::vector<int>& numbers, Hashes*
   const Config config = ConfigOf(task);
   const std::shared_ptr<RenderContext> render = MakeRenderContext(config.observation);
   std::vector<Player> players;
+  players.reserve(numbers.size());
   for (const int number : numbers) players.emplace_back(config, render, number);
   for (int episode = 0; episode < kEpisodes; ++episode) {
     for (Player& player : players) player.Begin(episode);

@@ -66,7 +66,7 @@ TEST_F(TwoProcessesTest, ALateActorGetsTheNewestWeightsCreditAndControl) {
   PeerProcess actor("actor", address_);
   const auto newest = [&](const std::string& name) {
     EXPECT_EQ(actor.Ask("show " + name), "ok");
-    const std::string got = actor.NextGot();
+    std::string got = actor.NextGot();
     EXPECT_THAT(actor.Ask("received " + name + " 1 5000"), StartsWith("received 1 "));
     return got;
   };

@@ -13,7 +13,7 @@ class ConvTest : public LayerTest {
  protected:
   // Forward and backward of one layer, against the reference.
   void Compare(const ConvShape& shape) {
-    const size_t weights = size_t(shape.filters * shape.channels * 9);
+    const size_t weights = size_t(shape.filters) * shape.channels * 9;
     ParameterSet parameters(
         {{"conv.weight", {shape.filters, shape.channels, 3, 3}}, {"conv.bias", {shape.filters}}},
         ParameterSet::Use::kTraining);
@@ -23,7 +23,7 @@ class ConvTest : public LayerTest {
     const Values weight = ToDoubles({weight_values, weights});
     const Values bias = ToDoubles({bias_values, size_t(shape.filters)});
     const Values x =
-        RandomValues(size_t(shape.batch * shape.channels * shape.height * shape.width), 2);
+        RandomValues(size_t(shape.batch) * shape.channels * shape.height * shape.width, 2);
 
     const dnnl::memory source =
         MakeMemory(dnnl::memory::desc({shape.batch, shape.channels, shape.height, shape.width},

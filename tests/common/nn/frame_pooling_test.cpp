@@ -31,7 +31,7 @@ reference::Values NaivePooling(const std::vector<uint8_t>& in, const FrameShape&
         double sum = 0;
         for (int u = 0; u < pool; ++u) {
           for (int v = 0; v < pool; ++v) {
-            sum += in[size_t((p * s.height + i + u) * s.width + j + v)];
+            sum += in[size_t(p * s.height + i + u) * s.width + j + v];
           }
         }
         out.push_back(sum / (pool * pool) / 255 - 0.5);
@@ -45,7 +45,7 @@ class FramePoolingTest : public testing::TestWithParam<Case> {};
 
 TEST_P(FramePoolingTest, AgreesWithTheNaiveMeanInBothTypes) {
   const auto& [shape, pool] = GetParam();
-  const std::vector<uint8_t> in = RandomFrames(size_t(shape.planes * shape.height * shape.width));
+  const std::vector<uint8_t> in = RandomFrames(size_t(shape.planes) * shape.height * shape.width);
   const reference::Values exact = NaivePooling(in, shape, pool);
   std::vector<float> out(exact.size());
   PoolFrames(in.data(), shape, pool, out.data());

@@ -17,7 +17,7 @@ class NetworksTest : public NetworkTest {
     actor.Refresh();
     actor.Forward(ToFloats(vector_).data());
     const auto exact = reference_->Actor(kBatch, features_, vector_);
-    const size_t n = size_t(kBatch * spec_.action_size);
+    const size_t n = size_t(kBatch) * spec_.action_size;
     EXPECT_LT(RelativeError({actor.mean(), n}, exact.mean), Tolerance(GetParam()));
     EXPECT_LT(RelativeError({actor.log_std(), n}, exact.log_std), Tolerance(GetParam()));
 

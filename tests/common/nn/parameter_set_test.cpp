@@ -134,7 +134,7 @@ TEST(Orthogonal, FirstEntryIsPositiveAsOftenAsNegative) {
     FillOrthogonal(2, 2, 1.0, &random, w);
     positive += w[0] > 0;
   }
-  EXPECT_NEAR(positive, kDraws / 2, 5 * std::sqrt(kDraws * 0.25));
+  EXPECT_NEAR(positive, 0.5 * kDraws, 5 * std::sqrt(kDraws * 0.25));
 }
 
 }  // namespace

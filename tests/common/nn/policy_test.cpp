@@ -23,7 +23,7 @@ class PolicyTest : public NetworkTest {
 
   Output Run(Policy* policy, int batch) const {
     Output output;
-    output.mean.resize(size_t(batch * spec_.action_size));
+    output.mean.resize(size_t(batch) * spec_.action_size);
     output.log_std = output.mean;
     policy->Forward(batch, frames_.data(), ToFloats(vector_).data(), output.mean.data(),
                     output.log_std.data());

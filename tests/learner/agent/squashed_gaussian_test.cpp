@@ -20,7 +20,7 @@ constexpr size_t kSize = kBatch * kActions;
 double LogProb(const Values& mean, const Values& log_std, const Values& noise, int b) {
   double sum = 0;
   for (int j = 0; j < kActions; ++j) {
-    const size_t i = size_t(b * kActions + j);
+    const size_t i = size_t(b) * kActions + j;
     const double sigma = std::exp(log_std[i]), u = mean[i] + sigma * noise[i];
     const double z = (u - mean[i]) / sigma;
     sum += -0.5 * z * z - std::log(sigma * std::sqrt(2 * std::numbers::pi));

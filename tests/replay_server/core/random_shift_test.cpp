@@ -48,7 +48,7 @@ TEST(RandomShift, IsPaddingByReplicationAndACropAtEveryOffset) {
   };
   for (const Size& s : {Size{1, 1, 1, 0}, Size{2, 5, 7, 4}, Size{3, 9, 5, 4}, Size{1, 84, 84, 4},
                         Size{6, 17, 33, 2}, Size{2, 3, 64, 2}}) {
-    const auto in = Noise(static_cast<size_t>(s.planes * s.height * s.width), 3);
+    const auto in = Noise(static_cast<size_t>(s.planes) * s.height * s.width, 3);
     for (int dy = -s.pad; dy <= s.pad; ++dy) {
       for (int dx = -s.pad; dx <= s.pad; ++dx) {
         // A guard byte on either side: nothing is written outside.
@@ -82,7 +82,7 @@ TEST(RandomShift, DrawsEveryOffsetEquallyOften) {
     const Shift shift = DrawShift(kPad, &random);
     ASSERT_LE(std::abs(shift.dx), kPad);
     ASSERT_LE(std::abs(shift.dy), kPad);
-    ++counts[static_cast<size_t>((shift.dy + kPad) * 5 + shift.dx + kPad)];
+    ++counts[static_cast<size_t>(shift.dy + kPad) * 5 + (shift.dx + kPad)];
   }
   const double p = 1.0 / kCells, sigma = std::sqrt(kDraws * p * (1 - p));
   for (const int count : counts) EXPECT_NEAR(count, kDraws * p, 5 * sigma);

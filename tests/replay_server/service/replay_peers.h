@@ -141,8 +141,8 @@ class ReplayPeers {
     return credit.session == script.session() ? credit.allowed : 0;
   }
   uint64_t Window() const {
-    return static_cast<uint64_t>(run_.config.replay.window_chunks *
-                                 run_.config.transport.chunk_records);
+    return static_cast<uint64_t>(run_.config.replay.window_chunks) *
+           run_.config.transport.chunk_records;
   }
 
   void OnCredit(const Credit& credit) {

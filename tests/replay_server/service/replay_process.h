@@ -25,6 +25,7 @@ class ReplayProcess {
       : errors_(errors) {
     arguments.insert(arguments.begin(), std::string(SHOAL_BIN) + "/shoal-replay");
     std::vector<char*> argv;
+    argv.reserve(arguments.size() + 1);
     for (std::string& argument : arguments) argv.push_back(argument.data());
     argv.push_back(nullptr);
     pid_ = fork();
