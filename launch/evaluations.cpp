@@ -29,6 +29,11 @@ ordered_json ParseObject(const std::string& text, const std::string& source) {
   return object;
 }
 
+// It becomes a path below "checkpoints"; the text came over the network.
+bool IsPlainName(const std::string& name) {
+  return name != "." && name != ".." && name.find('/') == std::string::npos;
+}
+
 EvaluationPoint PointOf(const ordered_json& object, const std::string& source) {
   EvaluationPoint point;
   try {
@@ -44,6 +49,10 @@ EvaluationPoint PointOf(const ordered_json& object, const std::string& source) {
     point.wall_seconds = object.value("wall_seconds", 0.0);
   } catch (const nlohmann::json::exception& e) {
     throw RuntimeError("{}: {}", source, e.what());
+  }
+  if (!IsPlainName(point.checkpoint)) {
+    throw RuntimeError("{}: checkpoint '{}': expected a folder's name without a path", source,
+                       point.checkpoint);
   }
   return point;
 }

@@ -140,8 +140,10 @@ bool IsSection(std::string_view path) {
 }
 
 [[noreturn]] void RefuseUnknown(const std::string& path, const std::string& source) {
-  throw UsageError("{}: unknown key '{}', nearest is '{}'", source, path,
-                   internal::NearestKey(path));
+  const std::string nearest = internal::NearestKey(path);
+  throw UsageError("{}: unknown key '{}', {}", source, path,
+                   nearest.empty() ? "nothing known is near it (--print-config lists all)"
+                                   : "nearest is '" + nearest + "'");
 }
 
 void ApplySection(const json& object, const std::string& prefix, const std::string& source,

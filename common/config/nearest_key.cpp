@@ -1,7 +1,6 @@
 #include "common/config/nearest_key.h"
 
 #include <algorithm>
-#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -27,7 +26,7 @@ int EditDistance(std::string_view a, std::string_view b) {
 
 std::string NearestKey(std::string_view path) {
   std::string_view best;
-  int best_distance = std::numeric_limits<int>::max();
+  int best_distance = static_cast<int>(path.size() / 2) + 1;
   const auto offer = [&](std::string_view spelled, std::string_view name) {
     const int distance = EditDistance(path, spelled);
     if (distance < best_distance) {

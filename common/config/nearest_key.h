@@ -10,7 +10,8 @@ namespace shoal::internal {
 int EditDistance(std::string_view a, std::string_view b);
 
 // The known key or section nearest to `path`: by its whole path, or by its last word when `path`
-// has no section ("batch" -> "learner.batch").
+// has no section ("batch" -> "learner.batch"). Empty where more than half of `path` would have to
+// change: that is another word, not a misspelt one.
 std::string NearestKey(std::string_view path);
 
 }  // namespace shoal::internal

@@ -1,6 +1,7 @@
 // shoal set, scale, stop: orders to a running run.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <charconv>
 #include <functional>
 #include <memory>
 #include <thread>
@@ -63,8 +64,10 @@ std::pair<const LiveKey*, double> Confirmed(const std::string& text) {
   const size_t colon = text.find(": "), arrow = text.rfind("-> ");
   if (colon == std::string::npos || arrow == std::string::npos) return {nullptr, 0};
   const auto live = std::ranges::find(LiveKeys(), text.substr(0, colon), &LiveKey::key);
-  if (live == LiveKeys().end()) return {nullptr, 0};
-  return {&*live, std::stod(text.substr(arrow + 3))};
+  double value = 0;
+  const auto parsed = std::from_chars(text.data() + arrow + 3, text.data() + text.size(), value);
+  if (live == LiveKeys().end() || parsed.ec != std::errc()) return {nullptr, 0};
+  return {&*live, value};
 }
 
 // After Ctrl-C: the order was accepted and is carried out whoever waits.

@@ -76,6 +76,17 @@ TEST_F(EvaluationsTest, RefusesWhatIsNotAnEvaluation) {
   EXPECT_TRUE(std::filesystem::is_empty(run_.path() / "eval"));
 }
 
+TEST_F(EvaluationsTest, RefusesACheckpointOutsideOfTheRun) {
+  for (const char* name : {"..", "../../elsewhere", "/etc"}) {
+    EvalMessage message = Message(1, 1, 1);
+    auto object = nlohmann::json::parse(message.json);
+    object["checkpoint"] = name;
+    message.json = object.dump();
+    EXPECT_THROW(StoreEvaluation(run_.path(), message, 0), Error) << name;
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(run_.path() / "eval"));
+}
+
 TEST_F(EvaluationsTest, ATaskWithoutSuccessHasNoneAndStillAReturn) {
   EvalMessage message = Message(1, 1, 1);
   auto object = nlohmann::json::parse(message.json);

@@ -28,6 +28,15 @@ std::filesystem::path FreshFolder() {
   return name;
 }
 
+// A steady soak lists what grows instead of stopping at the first figure.
+void CheckNothingIsBroken(const nlohmann::ordered_json& result) {
+  std::string lines;
+  for (const auto& line : result.value("broken", nlohmann::ordered_json::array())) {
+    lines += (lines.empty() ? "" : "; ") + line.get<std::string>();
+  }
+  if (!lines.empty()) throw shoal::soak::Broken(lines);
+}
+
 int Run(int argc, char** argv) {
   Options options;
   CLI::App app("Strikes a training run's processes at random moments, or watches it for leaks.",
@@ -59,6 +68,7 @@ int Run(int argc, char** argv) {
                             : shoal::soak::SoakFaults(options.soak, options.faults);
     fmt::print("{}\n", result.dump(2));
     if (!options.json.empty()) shoal::WriteFileAtomically(options.json, result.dump(2) + "\n");
+    CheckNothingIsBroken(result);
   } catch (const shoal::soak::Broken& e) {
     throw shoal::RuntimeError("{} (seed {}; files kept in '{}')", e.what(), options.soak.seed,
                               options.soak.folder.string());

@@ -224,7 +224,7 @@ json RunUnderTest::End(seconds deadline) {
     std::this_thread::sleep_for(kPoll);
   }
   TakeProgress();
-  const json meta = json::parse(ReadFile(path_ / "meta.json"));
+  json meta = json::parse(ReadFile(path_ / "meta.json"));
   const json& accounting = meta.at("accounting");
   const int64_t made = accounting.at("made"), stored = accounting.at("stored"),
                 lost = accounting.at("lost_with_process"), rejected = accounting.at("rejected"),

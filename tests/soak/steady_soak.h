@@ -9,9 +9,9 @@
 namespace shoal::soak {
 
 // Trains for `minutes` after a warm-up of a quarter of it (at least two minutes), looks every five
-// seconds. Throws Broken (run_under_test.h) when a figure grows by more than 1 % in ten minutes
-// beyond three standard errors, or logs and metrics by more than 5 MB an hour. The result lists
-// every figure.
+// seconds. The result lists every figure, and under "broken", a line each, those that grow by more
+// than 1 % in ten minutes beyond three standard errors, and logs and metrics above 5 MB an hour.
+// Throws Broken (run_under_test.h) when the run itself does not work.
 nlohmann::ordered_json SoakSteadily(const SoakOptions& options, double minutes);
 
 }  // namespace shoal::soak

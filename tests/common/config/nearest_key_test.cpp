@@ -22,5 +22,11 @@ TEST(NearestKey, FindsTheSectionOfABareName) {
   EXPECT_EQ(NearestKey("chunk_record"), "transport.chunk_records");
 }
 
+TEST(NearestKey, AnotherWordHasNone) {
+  EXPECT_EQ(NearestKey("warp_drive"), "");
+  EXPECT_EQ(NearestKey("q"), "");
+  EXPECT_EQ(NearestKey(""), "");
+}
+
 }  // namespace
 }  // namespace shoal::internal
