@@ -16,7 +16,9 @@ namespace {
 
 // 65 kB fragments and the retransmission values are what carries megabyte samples at gigabytes per
 // second; with Cyclone's defaults a 10 MB sample takes seconds. MaxSampleSize bounds what one stray
-// datagram can make a receiver allocate.
+// datagram can make a receiver allocate. A receive buffer is filled from end to end before the
+// next: with the megabyte of Cyclone's default, a thread that gets a kilobyte a second touches new
+// memory for a quarter of an hour.
 constexpr std::string_view kTemplate =
     R"(<CycloneDDS xmlns="https://cdds.io/config"><Domain id="any">
  <General>
@@ -33,6 +35,7 @@ constexpr std::string_view kTemplate =
   <SPDPInterval>1 s</SPDPInterval>
   @PEERS@
  </Discovery>
+ <Sizing><ReceiveBufferSize>256KiB</ReceiveBufferSize></Sizing>
  <Internal>
   <SocketReceiveBufferSize max="16MB"/>
   <NackDelay>5ms</NackDelay>
