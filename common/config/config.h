@@ -46,6 +46,8 @@ struct ReplayConfig {
   double band = 0;                 // width of the limiter's band in samples; 0 = computed
   std::string storage = "file";    // file | memory
   int shift_pad = 4;               // DrQ shift in pixels, 0 = none
+  int copies = 1;                  // batch elements per drawn transition, each shifted anew
+  int n_step = 1;                  // steps whose rewards are summed before the next value
   int window_chunks = 4;           // chunks an actor may have unacknowledged
 };
 

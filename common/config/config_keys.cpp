@@ -84,6 +84,11 @@ std::vector<Key> ReplayKeys() {
       SHOAL_SAME(replay.storage, (Choices{{"file", "memory"}}),
                  "file = ring in the run folder, survives the process; memory = anonymous"),
       SHOAL_SAME(replay.shift_pad, (IntegerRange{0, 32}), "DrQ random shift in pixels; 0 = none"),
+      SHOAL_SAME(
+          replay.copies, (IntegerRange{1, 16}),
+          "batch elements per drawn transition, each shifted anew, one target for all; DrQ: 2"),
+      SHOAL_SAME(replay.n_step, (IntegerRange{1, 20}),
+                 "steps whose rewards are summed before the next value; all within an episode"),
       SHOAL_SAME(replay.window_chunks, (IntegerRange{2, 1024}),
                  "chunks an actor may have unacknowledged"),
   };

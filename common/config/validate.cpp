@@ -78,6 +78,10 @@ void Validate(const Config& config) {
         "observation.height = {}, observation.width = {}",
         config.replay.shift_pad, images.height, images.width);
   }
+  if (config.learner.batch % config.replay.copies != 0) {
+    throw UsageError("replay.copies = {}: expected a divisor of learner.batch = {}",
+                     config.replay.copies, config.learner.batch);
+  }
   if (config.lockstep && config.actors > 1) {
     throw UsageError("actors = {}: lockstep takes one actor", config.actors);
   }

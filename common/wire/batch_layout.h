@@ -6,8 +6,9 @@
 //   obs_vector       (B, V) f32
 //   next_obs_vector  (B, V) f32
 //   action           (B, A) f32
-//   reward           (B) f32
-//   bootstrap        (B) f32             1 - terminated: 1 where the next value counts
+//   reward           (B) f32             discounted sum over the sample's n steps
+//   bootstrap        (B) f32             factor of the next value besides the discount: 0 where the
+//                                        task ended, else discount^(n-1)
 //   weights_update   (B) u64             of the policy that chose the action; for policy lag
 //
 // K*C channels: stack K, frame channels C. Arrays of a spec without pixels have size 0.

@@ -1,6 +1,7 @@
 #include "learner/agent/losses.h"
 
 #include <algorithm>
+#include <numeric>
 
 namespace shoal::learner {
 
@@ -9,6 +10,14 @@ void TdTargets(int batch, const TargetInputs& inputs, const TargetRates& rates, 
     const float value = std::min(inputs.next_q[0][b], inputs.next_q[1][b]) -
                         rates.temperature * inputs.next_log_prob[b];
     y[b] = rates.reward_scale * inputs.reward[b] + inputs.bootstrap[b] * rates.discount * value;
+  }
+}
+
+void AverageCopies(int batch, int copies, float* y) {
+  if (copies == 1) return;
+  for (int first = 0; first < batch; first += copies) {
+    const double sum = std::accumulate(y + first, y + first + copies, 0.0);
+    std::fill_n(y + first, copies, float(sum / copies));
   }
 }
 

@@ -8,7 +8,7 @@ namespace shoal::learner {
 // What the targets of one batch are made of.
 struct TargetInputs {
   const float* reward;
-  const float* bootstrap;      // 1 - terminated
+  const float* bootstrap;      // discount^(n-1) (1 - terminated)
   const float* next_q[2];      // target heads at (s', a')
   const float* next_log_prob;  // log pi(a' | s')
 };
@@ -19,6 +19,9 @@ struct TargetRates {
 
 // Eq. 5:  y = reward_scale r + bootstrap discount (min_i q'_i - temperature log pi')
 void TdTargets(int batch, const TargetInputs& inputs, const TargetRates& rates, float* y);
+
+// Eq. 15:  each `copies` targets in a row become their mean. `copies` divides `batch`.
+void AverageCopies(int batch, int copies, float* y);
 
 // Eq. 6:  L = sum_i mean_b (q_i - y)^2;   dL/dq_i = 2 (q_i - y) / B
 struct CriticLoss {

@@ -1,6 +1,6 @@
 // One update, in order (equations of docs/algorithm.md):
 //
-//   1. targets     next_obs -> encoder -> actor, target heads -> y                     (Eq. 5)
+//   1. targets     next_obs -> encoder -> actor, target heads -> y                 (Eq. 5, 15)
 //   2. critic      obs -> encoder -> critic heads -> loss -> encoder and critic step   (Eq. 6)
 //   3. actor       the features of 2, detached -> actor -> critic heads -> actor step  (Eq. 7)
 //   4. temperature from the log-probabilities of 3                                     (Eq. 8)
@@ -110,6 +110,7 @@ void SacAgent::Impl::ComputeTargets(const BatchView& batch, float temperature, R
   const TargetRates rates{float(config.learner.reward_scale), float(config.learner.discount),
                           temperature};
   TdTargets(batch_size, inputs, rates, targets.data());
+  AverageCopies(batch_size, config.replay.copies, targets.data());
   Spent(&seconds.forward);
 }
 

@@ -4,9 +4,13 @@
 
 namespace shoal::replay {
 
-EpisodeIndex::EpisodeIndex(const Ring& ring, int stack, const Alive& alive)
-    : ring_(ring), stack_(stack), oldest_needed_(ring.capacity()), needed_by_(ring.capacity()) {
-  CHECK(stack >= 1);
+EpisodeIndex::EpisodeIndex(const Ring& ring, int stack, int n_step, const Alive& alive)
+    : ring_(ring),
+      stack_(stack),
+      n_step_(n_step),
+      oldest_needed_(ring.capacity()),
+      needed_by_(ring.capacity()) {
+  CHECK(stack >= 1 && n_step >= 1);
   for (uint64_t id = ring.oldest_id(); id <= ring.last_id(); ++id) {
     if (ring.Slot(id).id == id) Added(id);
     if (alive) alive();
@@ -61,9 +65,10 @@ void EpisodeIndex::Close(uint32_t actor, uint64_t session, uint32_t env) {
 uint64_t EpisodeIndex::OldestNeeded(uint64_t id) const {
   if (ring_.Header(id).kind != RecordKind::kStep) return 0;
   uint64_t oldest = id;
-  for (int k = 0; k < stack_; ++k) {
+  for (int k = 0; k < n_step_ + stack_ - 1; ++k) {
     const uint64_t prev = ring_.Slot(oldest).prev;
-    if (prev == 0) break;  // `oldest` is the reset
+    if (prev == 0 && k < n_step_) return 0;  // fewer than n steps lead here
+    if (prev == 0) break;                    // `oldest` is the reset, which the stack repeats
     if (!ring_.Holds(prev)) return 0;
     oldest = prev;
   }

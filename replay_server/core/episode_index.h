@@ -1,7 +1,8 @@
 // Which record follows which, and which steps can be sampled.
 //
-//   A step s with predecessors p1 = prev(s), p2 = prev(p1), ... can be sampled iff p1..pK, or p1
-//   back to the episode's reset if that comes sooner, are in the ring. K = spec.stack.
+//   A step s with predecessors p1 = prev(s), p2 = prev(p1), ... is the last of n = n_step steps
+//   that begin at the observation pn, a stack of K frames. It can be sampled iff p1..pn exist and
+//   they and p(n+1)..p(n+K-1), or what the episode has of them, are in the ring.
 //
 // The ring drops its oldest record first and predecessors are older than s, so s can be sampled
 // from the moment it is stored until the oldest of these is overwritten. Each slot counts the steps
@@ -24,8 +25,8 @@ namespace shoal::replay {
 class EpisodeIndex {
  public:
   // Borrows the ring and reads what is in it, calling `alive` for each record, if there is one;
-  // records of a snapshot that vanished are skipped.
-  EpisodeIndex(const Ring& ring, int stack, const Alive& alive = {});
+  // records of a snapshot that vanished are skipped. stack, n_step >= 1.
+  EpisodeIndex(const Ring& ring, int stack, int n_step = 1, const Alive& alive = {});
 
   // Memory it takes for a ring of that many records.
   static constexpr uint64_t Bytes(uint64_t capacity) {
@@ -61,11 +62,11 @@ class EpisodeIndex {
   };
 
   void Follow(uint64_t id);
-  // The oldest record that step `id` needs, 0 when it is gone.
+  // The oldest record that a sample ending at `id` needs; 0 when it is gone or never was.
   uint64_t OldestNeeded(uint64_t id) const;
 
   const Ring& ring_;
-  const int stack_;
+  const int stack_, n_step_;
   std::unordered_map<uint32_t, Track> tracks_;  // by env
   std::vector<uint64_t> oldest_needed_;         // by slot; 0 = not a step, or never sampleable
   std::vector<uint32_t> needed_by_;             // by slot: sampleable steps whose oldest it is

@@ -45,11 +45,12 @@ BatchPlan WithoutShift(BatchPlan plan) {
   return plan;
 }
 
-// The server has not overwritten any record that the plan's elements are made of.
-bool StillThere(const Ring& ring, const BatchPlan& plan, int stack) {
+// The server has not overwritten any record that the plan's elements are made of: the last step and
+// the `reach` before it.
+bool StillThere(const Ring& ring, const BatchPlan& plan, int reach) {
   for (const BatchPlan::Element& element : plan.elements) {
     uint64_t id = element.id;
-    for (int k = 0; k <= stack && id != 0; ++k) {
+    for (int k = 0; k <= reach && id != 0; ++k) {
       if (!ring.Holds(id) || !ring.Intact(id)) return false;
       id = ring.Slot(id).prev;
     }
@@ -116,14 +117,16 @@ class Painter {
 std::optional<Peek> TryPeek(const RunConfig& run, const std::filesystem::path& file, int batch,
                             Random* random) {
   const Ring ring = Ring::OpenSnapshot(run.spec, file);
-  const EpisodeIndex index(ring, run.spec.stack);
+  const EpisodeIndex index(ring, run.spec.stack, run.config.replay.n_step);
   if (index.sampleable() == 0) {
     throw RuntimeError("replay file '{}' holds no step that can be sampled", file.string());
   }
   UniformSampler sampler(ring, index);
-  const auto plan = DrawPlan(batch, run.config.replay.shift_pad, &sampler, random);
-  if (!plan || !StillThere(ring, *plan, run.spec.stack)) return std::nullopt;
-  const BatchGather gather(ring, run.spec);
+  const PlanOptions options{.batch = batch, .shift_pad = run.config.replay.shift_pad};
+  const auto plan = DrawPlan(options, &sampler, random);
+  const int reach = run.config.replay.n_step + run.spec.stack - 1;
+  if (!plan || !StillThere(ring, *plan, reach)) return std::nullopt;
+  const BatchGather gather(ring, run.spec, NStepOf(run.config));
   const Batch plain(run.spec, batch), shifted(run.spec, batch);
   gather.Gather(WithoutShift(*plan), plain.View());
   gather.Gather(*plan, shifted.View());
@@ -139,7 +142,7 @@ std::optional<Peek> TryPeek(const RunConfig& run, const std::filesystem::path& f
     painter.PaintRow(plain.View().next_obs_frames, 2);
     painter.PaintRow(shifted.View().next_obs_frames, 3);
   }
-  if (!StillThere(ring, *plan, run.spec.stack)) return std::nullopt;
+  if (!StillThere(ring, *plan, reach)) return std::nullopt;
   return peek;
 }
 

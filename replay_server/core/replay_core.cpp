@@ -51,7 +51,17 @@ LimiterOptions OptionsOfLimiter(const RunConfig& run) {
   return options;
 }
 
+PlanOptions PlanOptionsOf(const Config& config) {
+  return {.batch = config.learner.batch,
+          .copies = config.replay.copies,
+          .shift_pad = config.replay.shift_pad};
+}
+
 }  // namespace
+
+NStep NStepOf(const Config& config) {
+  return {.steps = config.replay.n_step, .discount = config.learner.discount};
+}
 
 ReplayCore::ReplayCore(const RunConfig& run, const std::filesystem::path& folder,
                        uint64_t replay_session, uint64_t steps_before, const Alive& alive)
@@ -61,10 +71,10 @@ ReplayCore::ReplayCore(const RunConfig& run, const std::filesystem::path& folder
       batch_layout_(run.spec, run.config.learner.batch),
       ring_(run.spec, OptionsOfRing(run.config, folder, steps_before, alive)),
       sessions_(ring_.sessions()),
-      index_(ring_, run.spec.stack, alive),
+      index_(ring_, run.spec.stack, run.config.replay.n_step, alive),
       intake_(spec_hash_, &ring_, &sessions_, &index_),
       sampler_(ring_, index_),
-      gather_(ring_, run.spec),
+      gather_(ring_, run.spec, NStepOf(run.config)),
       limiter_(OptionsOfLimiter(run)),
       credits_(sessions_, spec_hash_, replay_session, WindowRecords(run), LeastRecords(run)),
       requests_(spec_hash_, static_cast<uint32_t>(run.config.learner.batch),
@@ -133,8 +143,7 @@ std::optional<DrawnBatch> ReplayCore::TryAnswer(uint8_t* data) {
   if (!repeated && !limiter_.MaySample(index_.sampleable())) return std::nullopt;
   Random random(StreamKey(static_cast<uint64_t>(run_.config.seed), StreamRole::kReplaySampler,
                           request->request));
-  std::optional<BatchPlan> plan =
-      DrawPlan(run_.config.learner.batch, run_.config.replay.shift_pad, &sampler_, &random);
+  std::optional<BatchPlan> plan = DrawPlan(PlanOptionsOf(run_.config), &sampler_, &random);
   if (!plan) return std::nullopt;
   gather_.Gather(*plan, batch_layout_.View(data));
   last_plan_ = *std::move(plan);

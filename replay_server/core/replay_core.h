@@ -1,10 +1,14 @@
 // The replay server without threads, clocks and network: chunks in, credits out; requests in,
 // batches out. Everything below belongs to one owner.
 //
-//   ring            what is stored             episode index   what follows what, what is
-//   sampleable intake          chunks -> ring             session table   accounting sampler,
-//   gather ring -> batch              rate limiter    who must wait credit book     what actors are
-//   told       request queue   what the learner asked for
+//   ring             what is stored
+//   episode index    what follows what, what is sampleable
+//   intake           chunks -> ring
+//   session table    accounting
+//   sampler, gather  ring -> batch
+//   rate limiter     who must wait
+//   credit book      what actors are told
+//   request queue    what the learner asked for
 #pragma once
 
 #include <cstdint>
@@ -31,6 +35,9 @@ namespace shoal::replay {
 
 // Name of the ring in a run folder.
 inline constexpr char kRingFile[] = "replay.ring";
+
+// How far apart the two observations of a sample are, by the configuration.
+NStep NStepOf(const Config& config);
 
 // The answer to one request, without its bytes.
 struct DrawnBatch {

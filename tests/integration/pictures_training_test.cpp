@@ -1,6 +1,6 @@
 // Short trainings of the real programs on every kind of observation with pictures: goal modes,
-// proprioception, colours, stacks, numbers of cameras and sizes, each value with others at least
-// once.
+// proprioception, colours, stacks, numbers of cameras and sizes, copies and n-step returns, each
+// value with others at least once.
 #include <gtest/gtest.h>
 
 #include "tests/support/training_run.h"
@@ -15,13 +15,14 @@ struct Kind {
   int stack;
   const char* cameras;
   int channels, height, width;
+  int copies, n_step;
 };
 
 const Kind kKinds[] = {
-    {"rgb", "none", false, false, 1, R"(["front"])", 3, 84, 84},
-    {"grey_stack_of_four", "desired", true, true, 4, R"(["front","side"])", 2, 64, 64},
-    {"three_cameras", "both", false, false, 2, R"(["front","side","close"])", 9, 100, 100},
-    {"wide", "both", true, true, 3, R"(["gymnasium"])", 1, 64, 100},
+    {"rgb", "none", false, false, 1, R"(["front"])", 3, 84, 84, 1, 1},
+    {"grey_stack_of_four", "desired", true, true, 4, R"(["front","side"])", 2, 64, 64, 2, 1},
+    {"three_cameras", "both", false, false, 2, R"(["front","side","close"])", 9, 100, 100, 1, 3},
+    {"wide", "both", true, true, 3, R"(["gymnasium"])", 1, 64, 100, 2, 5},
 };
 
 class PicturesTraining : public testing::TestWithParam<Kind> {};
@@ -46,7 +47,9 @@ TEST_P(PicturesTraining, UpdatesAndEvaluates) {
                                           {"replay.capacity", "2000"},
                                           {"replay.min_size", "100"},
                                           {"replay.samples_per_insert", "4"},
-                                          {"replay.shift_pad", "4"}});
+                                          {"replay.shift_pad", "4"},
+                                          {"replay.copies", std::to_string(kind.copies)},
+                                          {"replay.n_step", std::to_string(kind.n_step)}});
   ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
   const auto meta = run.Json("meta.json");
   ExpectBalanced(meta);

@@ -51,12 +51,24 @@ struct Oracle {
     }
     return ids;
   }
+  // The `n_step` steps in a row that end at `id`, newest first; nothing when the episode has fewer
+  // or one is gone.
+  std::optional<std::vector<uint64_t>> Steps(uint64_t id) const {
+    std::vector<uint64_t> ids;
+    for (int k = 0; k < n_step; ++k) {
+      if (!Holds(id) || all[id - 1].prev == 0) return std::nullopt;
+      ids.push_back(id);
+      id = all[id - 1].prev;
+    }
+    return ids;
+  }
   bool Sampleable(uint64_t id) const {
-    return Holds(id) && all[id - 1].prev != 0 && Stack(all[id - 1].prev).has_value();
+    const auto steps = Steps(id);
+    return steps && Stack(all[steps->back() - 1].prev).has_value();
   }
 
   uint64_t capacity;
-  int stack;
+  int stack, n_step;
   std::vector<Stored> all{};  // id = position + 1
 };
 

@@ -207,6 +207,7 @@ TEST(Validate, RefusesCombinationsThatCannotWork) {
       {{"observation.height=8", "observation.width=8"}, "before convolution 2"},
       {{"replay.min_size=60000"}, "replay.min_size = 60000"},
       {{"lockstep=true", "actors=2"}, "lockstep takes one actor"},
+      {{"replay.copies=3"}, "replay.copies = 3: expected a divisor of learner.batch = 128"},
       {{"run_dir="}, "run_dir"},
       {{"transport.interface="}, "transport.interface"},
       {{"replay.shift_pad=32", "observation.height=64"}, "replay.shift_pad = 32"},

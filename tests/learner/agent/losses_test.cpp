@@ -1,5 +1,7 @@
 #include "learner/agent/losses.h"
 
+#include <gmock/gmock.h>
+
 #include "tests/common/nn/gradient_check.h"
 
 namespace shoal::learner {
@@ -21,6 +23,15 @@ TEST(TdTargets, TakeTheSmallerHeadLessTheEntropyTermAndNothingAfterATerminal) {
   TdTargets(2, {reward, bootstrap, {q2, q1}, log_prob},
             {.reward_scale = 10, .discount = 0.5f, .temperature = 0.25f}, y);
   EXPECT_FLOAT_EQ(y[0], 6.25f);
+}
+
+TEST(AverageCopies, GivesEveryCopyTheMeanOfItsTransition) {
+  float y[6] = {1, 2, 6, -1, -3, 1};
+  AverageCopies(6, 3, y);
+  EXPECT_THAT(y, ::testing::ElementsAre(3, 3, 3, -1, -1, -1));
+  float alone[3] = {1, 2, 3};
+  AverageCopies(3, 1, alone);
+  EXPECT_THAT(alone, ::testing::ElementsAre(1, 2, 3));
 }
 
 TEST(CriticLoss, IsTheSumOverHeadsOfTheMeanSquare) {

@@ -76,6 +76,17 @@ TEST(SacAgent, ActorAndTemperatureMoveEveryPeriodAndTheirStatisticsStayBetween) 
   }
 }
 
+TEST(SacAgent, CopiesOfATransitionShareTheMeanOfTheirTargets) {
+  Config config = SmallConfig();
+  const RandomBatch batch(SmallSpec(), config.learner.batch, 1);
+  const UpdateStats alone = SmallAgent(config).Update(batch.View());
+  config.replay.copies = 2;
+  const UpdateStats copies = SmallAgent(config).Update(batch.View());
+  EXPECT_FLOAT_EQ(copies.target_mean, alone.target_mean);
+  EXPECT_EQ(copies.q_mean, alone.q_mean);
+  EXPECT_NE(copies.critic_loss, alone.critic_loss);
+}
+
 TEST(SacAgent, TargetsStartAtTheCriticAndMoveByTauEveryPeriod) {
   Config config = SmallConfig();
   config.learner.tau = 0.25;

@@ -41,11 +41,11 @@ class BatchGatherTest : public testing::Test {
     ring_->Append(0, 1, 0, MakeRecord(spec_, 0, 0, 1, 0, 6).data());
   }
 
-  BatchView Gather(const BatchPlan& plan) {
+  BatchView Gather(const BatchPlan& plan, const NStep& n_step = {}) {
     const BatchLayout layout(spec_, static_cast<int>(plan.elements.size()));
     memory_.reset(static_cast<uint8_t*>(std::aligned_alloc(64, layout.total_bytes())));
     const BatchView view = layout.View(memory_.get());
-    BatchGather(*ring_, spec_).Gather(plan, view);
+    BatchGather(*ring_, spec_, n_step).Gather(plan, view);
     return view;
   }
 
@@ -108,6 +108,25 @@ TEST_F(BatchGatherTest, ATimeLimitBootstrapsATerminationDoesNot) {
   }
 }
 
+TEST_F(BatchGatherTest, NStepsSumTheRewardsFromTheFirstActionOn) {
+  Fill(TinySpec(2), 0);
+  const BatchView view =
+      Gather({.elements = {{.id = 5, .obs = {}, .next_obs = {}}}}, {.steps = 3, .discount = 0.5});
+  const auto reward = [&](size_t i) { return RecordLayout::Header(records_[i].data()).reward; };
+  EXPECT_FLOAT_EQ(view.reward[0], reward(2) + 0.5f * reward(3) + 0.25f * reward(4));
+  EXPECT_FLOAT_EQ(view.bootstrap[0], 0.25f);
+  EXPECT_EQ(Bytes(view.obs_frames), Stack({0, 1}, {}));
+  EXPECT_EQ(Bytes(view.next_obs_frames), Stack({3, 4}, {}));
+  EXPECT_TRUE(std::ranges::equal(view.action, ring_->layout().Action(records_[2].data())));
+}
+
+TEST_F(BatchGatherTest, NStepsThatEndInATerminationDoNotBootstrap) {
+  Fill(TinySpec(1), kTerminated);
+  const BatchView view =
+      Gather({.elements = {{.id = 5, .obs = {}, .next_obs = {}}}}, {.steps = 2, .discount = 0.5});
+  EXPECT_EQ(view.bootstrap[0], 0.0f);
+}
+
 TEST_F(BatchGatherTest, WorksWithoutPixels) {
   ObservationSpec spec = TinySpec(1);
   spec.cameras.clear();
@@ -124,7 +143,7 @@ TEST_F(BatchGatherTest, PlansShiftObservationAndNextIndependently) {
   Fill(TinySpec(1), 0);
   ListedSampler sampler(std::deque<uint64_t>(200, 2));
   Random random(3);
-  const auto plan = DrawPlan(200, 4, &sampler, &random);
+  const auto plan = DrawPlan({.batch = 200, .shift_pad = 4}, &sampler, &random);
   ASSERT_TRUE(plan);
   int same = 0;
   for (const BatchPlan::Element& element : plan->elements) {
@@ -133,11 +152,28 @@ TEST_F(BatchGatherTest, PlansShiftObservationAndNextIndependently) {
   EXPECT_LT(same, 20) << "one of 81 pairs of offsets is equal by chance";
 }
 
+TEST_F(BatchGatherTest, CopiesOfAStepStandTogetherEachWithItsShifts) {
+  Fill(TinySpec(1), 0);
+  std::deque<uint64_t> ids;
+  for (uint64_t i = 0; i < 50; ++i) ids.push_back(2 + i % 4);
+  ListedSampler sampler(ids);
+  Random random(3);
+  const auto plan = DrawPlan({.batch = 200, .copies = 4, .shift_pad = 4}, &sampler, &random);
+  ASSERT_TRUE(plan);
+  int same = 0;
+  for (size_t b = 0; b < 200; ++b) {
+    EXPECT_EQ(plan->elements[b].id, ids[b / 4]);
+    same += b % 4 != 0 && plan->elements[b].obs == plan->elements[b - 1].obs ? 1 : 0;
+  }
+  EXPECT_LT(same, 20) << "one of 81 pairs of offsets is equal by chance";
+  EXPECT_FALSE(sampler.Draw(&random)) << "one draw for four elements";
+}
+
 TEST_F(BatchGatherTest, APlanIsWholeOrNothing) {
   Fill(TinySpec(1), 0);
   ListedSampler sampler({2, 3});
   Random random(3);
-  EXPECT_FALSE(DrawPlan(3, 4, &sampler, &random));
+  EXPECT_FALSE(DrawPlan({.batch = 3, .shift_pad = 4}, &sampler, &random));
 }
 
 TEST_F(BatchGatherTest, ChecksTheShapeOfTheOutput) {

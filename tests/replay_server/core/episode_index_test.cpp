@@ -10,10 +10,10 @@ namespace {
 // One environment; stores records by index, as a good actor would.
 class EpisodeIndexTest : public testing::Test {
  protected:
-  void Open(int stack, uint64_t capacity) {
+  void Open(int stack, uint64_t capacity, int n_step = 1) {
     spec_ = TinySpec(stack);
     ring_.emplace(spec_, RingOptions{.file = {}, .capacity = capacity, .run = ""});
-    index_.emplace(*ring_, stack);
+    index_.emplace(*ring_, stack, n_step);
   }
   uint64_t Store(uint32_t env, uint32_t episode, uint32_t index, uint8_t flags = 0) {
     const auto record = MakeRecord(spec_, 0, env, episode, index, 1, flags);
@@ -61,6 +61,20 @@ TEST_F(EpisodeIndexTest, AStepWhosePredecessorIsOverwrittenIsNotSampleable) {
   EXPECT_FALSE(index_->Sampleable(late));
   const uint64_t next = Store(0, 0, 3);
   EXPECT_TRUE(index_->Sampleable(next));
+}
+
+TEST_F(EpisodeIndexTest, NStepsNeedAsManyOfOneEpisode) {
+  Open(/*stack=*/2, 8, /*n_step=*/3);
+  for (uint32_t i = 0; i < 6; ++i) Store(0, 0, i);  // ids 1..6, index = id - 1
+  EXPECT_FALSE(index_->Sampleable(3)) << "only two steps lead here";
+  EXPECT_TRUE(index_->Sampleable(4)) << "from the reset on";
+  EXPECT_EQ(index_->sampleable(), 3u);
+  for (uint32_t i = 6; i < 9; ++i) Store(0, 0, i);
+  // Record 9 overwrote the reset: it was the oldest frame of the samples that end at 4 and 5.
+  EXPECT_FALSE(index_->Sampleable(4));
+  EXPECT_FALSE(index_->Sampleable(5));
+  EXPECT_TRUE(index_->Sampleable(6));
+  EXPECT_EQ(index_->sampleable(), 4u);
 }
 
 TEST_F(EpisodeIndexTest, OnlyTheNextIndexOfTheOpenEpisodeFollows) {

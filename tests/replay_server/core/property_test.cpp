@@ -1,6 +1,7 @@
 // Random histories of several actors against an oracle that keeps everything.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdlib>
 #include <map>
 #include <memory>
@@ -12,17 +13,19 @@
 namespace shoal::replay {
 namespace {
 
+constexpr double kDiscount = 0.9;
+
 // Drives a ring, its index and intake with what actors do and what goes wrong on the way.
 class History {
  public:
-  History(int stack, uint64_t capacity, uint64_t seed)
+  History(int stack, int n_step, uint64_t capacity, uint64_t seed)
       : spec_(TinySpec(stack)),
         layout_(spec_),
         ring_(spec_, {.file = {}, .capacity = capacity, .run = "history"}),
         sessions_(ring_.sessions()),
-        index_(ring_, stack),
+        index_(ring_, stack, n_step),
         intake_(spec_.Hash(), &ring_, &sessions_, &index_),
-        oracle_{.capacity = capacity, .stack = stack},
+        oracle_{.capacity = capacity, .stack = stack, .n_step = n_step},
         random_(seed) {
     for (uint32_t actor = 0; actor < 3; ++actor) StartSession(actor);
   }
@@ -55,13 +58,13 @@ class History {
     if (index_.sampleable() == 0) return;
     constexpr int kBatch = 16;
     UniformSampler sampler(ring_, index_);
-    const auto plan = DrawPlan(kBatch, /*shift_pad=*/0, &sampler, &random_);
+    const auto plan = DrawPlan({.batch = kBatch}, &sampler, &random_);
     ASSERT_TRUE(plan.has_value());
     const BatchLayout batch_layout(spec_, kBatch);
     const std::unique_ptr<void, decltype(&std::free)> memory(
         std::aligned_alloc(64, batch_layout.total_bytes()), &std::free);
     const BatchView view = batch_layout.View(static_cast<uint8_t*>(memory.get()));
-    BatchGather(ring_, spec_).Gather(*plan, view);
+    BatchGather(ring_, spec_, {.steps = oracle_.n_step, .discount = kDiscount}).Gather(*plan, view);
     for (size_t b = 0; b < kBatch; ++b) CheckElement(plan->elements[b].id, b, view);
   }
 
@@ -120,21 +123,32 @@ class History {
 
   void CheckElement(uint64_t id, size_t b, const BatchView& view) {
     ASSERT_TRUE(oracle_.Sampleable(id)) << "record " << id;
-    const Oracle::Stored& step = oracle_.all[id - 1];
-    const Oracle::Stored& before = oracle_.all[step.prev - 1];
-    // Never across an episode's end: the predecessor is of the same episode and did not end it.
-    ASSERT_EQ(before.header().env, step.header().env);
-    ASSERT_EQ(before.header().episode, step.header().episode);
-    ASSERT_EQ(before.header().flags & (kTerminated | kTruncated), 0);
-    CheckStack(*oracle_.Stack(step.prev), view.obs_frames, b);
+    const std::vector<uint64_t> steps = *oracle_.Steps(id);
+    const Oracle::Stored &last = oracle_.all[id - 1], &first = oracle_.all[steps.back() - 1];
+    const Oracle::Stored& before = oracle_.all[first.prev - 1];
+    double reward = 0;
+    for (const uint64_t step : steps) {  // newest first
+      reward = oracle_.all[step - 1].header().reward + kDiscount * reward;
+      CheckContinues(oracle_.all[oracle_.all[step - 1].prev - 1], last);
+    }
+    CheckStack(*oracle_.Stack(first.prev), view.obs_frames, b);
     CheckStack(*oracle_.Stack(id), view.next_obs_frames, b);
     if (before.header().index == 0) ++first_frame_repeats_;
-    ASSERT_EQ(view.reward[b], step.header().reward);
-    ASSERT_EQ(view.weights_update[b], step.header().weights_update);
-    ASSERT_EQ(view.bootstrap[b], (step.header().flags & kTerminated) != 0 ? 0.0f : 1.0f);
-    ExpectFloats(layout_.Action(step.bytes.data()), view.action, b);
+    ASSERT_FLOAT_EQ(view.reward[b], static_cast<float>(reward));
+    ASSERT_EQ(view.weights_update[b], first.header().weights_update);
+    const bool terminated = (last.header().flags & kTerminated) != 0;
+    const double bootstrap = terminated ? 0 : std::pow(kDiscount, oracle_.n_step - 1);
+    ASSERT_FLOAT_EQ(view.bootstrap[b], static_cast<float>(bootstrap));
+    ExpectFloats(layout_.Action(first.bytes.data()), view.action, b);
     ExpectFloats(layout_.Vector(before.bytes.data()), view.obs_vector, b);
-    ExpectFloats(layout_.Vector(step.bytes.data()), view.next_obs_vector, b);
+    ExpectFloats(layout_.Vector(last.bytes.data()), view.next_obs_vector, b);
+  }
+
+  // Never across an episode's end: `before` is of the same episode and did not end it.
+  void CheckContinues(const Oracle::Stored& before, const Oracle::Stored& last) {
+    ASSERT_EQ(before.header().env, last.header().env);
+    ASSERT_EQ(before.header().episode, last.header().episode);
+    ASSERT_EQ(before.header().flags & (kTerminated | kTruncated), 0);
   }
 
   // `newest_first` ids against element b of `frames`, which has the oldest frame first.
@@ -167,11 +181,15 @@ class History {
   uint64_t first_frame_repeats_ = 0;
 };
 
-class ReplayProperty : public testing::TestWithParam<int> {};
+struct Case {
+  int stack, n_step;
+};
+
+class ReplayProperty : public testing::TestWithParam<Case> {};
 
 TEST_P(ReplayProperty, AgreesWithAnOracleThatKeepsEverything) {
   for (const uint64_t seed : {1, 2, 3, 4}) {
-    History history(GetParam(), /*capacity=*/20 + 17 * seed, seed);
+    History history(GetParam().stack, GetParam().n_step, /*capacity=*/20 + 17 * seed, seed);
     for (int i = 0; i < 150; ++i) {
       history.Event();
       history.Check();
@@ -183,7 +201,13 @@ TEST_P(ReplayProperty, AgreesWithAnOracleThatKeepsEverything) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Stacks, ReplayProperty, testing::Values(1, 2, 3));
+INSTANTIATE_TEST_SUITE_P(StacksAndSteps, ReplayProperty,
+                         testing::Values(Case{1, 1}, Case{2, 1}, Case{3, 1}, Case{1, 3},
+                                         Case{3, 2}),
+                         [](const auto& kind) {
+                           return "Stack" + std::to_string(kind.param.stack) + "NStep" +
+                                  std::to_string(kind.param.n_step);
+                         });
 
 }  // namespace
 }  // namespace shoal::replay

@@ -67,7 +67,7 @@ class RingTest : public testing::Test {
     RingOptions options = Options();
     options.alive = [&signs] { ++signs; };
     const Ring ring(spec_, options);
-    const EpisodeIndex index(ring, 1, options.alive);
+    const EpisodeIndex index(ring, 1, 1, options.alive);
     return signs;
   }
 
