@@ -68,7 +68,8 @@ struct Oracle {
   }
 
   uint64_t capacity;
-  int stack, n_step;
+  int stack;
+  int n_step = 1;
   std::vector<Stored> all{};  // id = position + 1
 };
 
