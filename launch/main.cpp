@@ -1,7 +1,6 @@
 // shoal: the command line. See launch/commands.
 #include <CLI/CLI.hpp>
 
-#include "actor/worlds/own_tasks.h"
 #include "common/base/build_info.h"
 #include "common/base/error.h"
 #include "common/base/main_guard.h"
@@ -24,7 +23,6 @@ std::string UnknownCommand(const CLI::App& app, int argc, char** argv) {
 }
 
 int Run(int argc, char** argv) {
-  shoal::worlds::RegisterOwnTasks();
   CLI::App app("Shoal trains robot policies from pixels with SAC and DrQ, on many processes.",
                "shoal");
   app.set_version_flag("--version",
@@ -33,6 +31,11 @@ int Run(int argc, char** argv) {
   shoal::launch::Action chosen;
   shoal::launch::AddTrainCommand(app, &chosen);
   shoal::launch::AddEvalCommand(app, &chosen);
+  shoal::launch::AddExperimentCommand(app, &chosen);
+  shoal::launch::AddCompareCommand(app, &chosen);
+  shoal::launch::AddPlotCommand(app, &chosen);
+  shoal::launch::AddReportCommand(app, &chosen);
+  shoal::launch::AddCardCommand(app, &chosen);
   shoal::launch::AddTopCommand(app, &chosen);
   shoal::launch::AddRunsCommand(app, &chosen);
   shoal::launch::AddSteerCommands(app, &chosen);

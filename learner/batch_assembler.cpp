@@ -8,8 +8,8 @@
 namespace shoal::learner {
 namespace {
 
-// Bounds the memory that a malformed shard count can claim; batches have tens of shards.
-constexpr uint32_t kMaxShards = 65'536;
+// Bounds the memory that a malformed part count can claim; batches have tens of parts.
+constexpr uint32_t kMaxParts = 65'536;
 
 }  // namespace
 
@@ -37,28 +37,28 @@ bool BatchAssembler::Expect(uint64_t request) {
   return true;
 }
 
-BatchAssembler::Verdict BatchAssembler::Add(const BatchShard& shard) {
-  if (shard.spec_hash != spec_hash_) return Verdict::kWrongSpec;
-  if (shard.learner_session != learner_session_) return Verdict::kStaleSession;
-  Slot* slot = shard.request == 0 ? nullptr : Find(shard.request);
+BatchAssembler::Verdict BatchAssembler::Add(const BatchPart& part) {
+  if (part.spec_hash != spec_hash_) return Verdict::kWrongSpec;
+  if (part.learner_session != learner_session_) return Verdict::kStaleSession;
+  Slot* slot = part.request == 0 ? nullptr : Find(part.request);
   if (slot == nullptr) return Verdict::kUnknownRequest;
-  if (!WellFormed(shard)) return Verdict::kMalformed;
+  if (!WellFormed(part)) return Verdict::kMalformed;
   if (slot->whole) return Verdict::kDuplicate;
 
   const bool empty = slot->pieces.empty();
-  const bool same_answer = !empty && slot->pieces.size() == shard.shards &&
-                           slot->stored_records == shard.stored_records &&
-                           slot->stored_steps == shard.stored_steps;
+  const bool same_answer = !empty && slot->pieces.size() == part.parts &&
+                           slot->stored_records == part.stored_records &&
+                           slot->stored_steps == part.stored_steps;
   if (!same_answer) {
-    slot->stored_records = shard.stored_records;
-    slot->stored_steps = shard.stored_steps;
-    slot->pieces.assign(shard.shards, Piece());
-    slot->missing = shard.shards;
+    slot->stored_records = part.stored_records;
+    slot->stored_steps = part.stored_steps;
+    slot->pieces.assign(part.parts, Piece());
+    slot->missing = part.parts;
   }
-  Piece& piece = slot->pieces[shard.shard];
+  Piece& piece = slot->pieces[part.part];
   if (piece.bytes > 0) return Verdict::kDuplicate;
-  std::memcpy(slot->data.get() + shard.offset, shard.payload.data(), shard.payload.size());
-  piece = {shard.offset, shard.payload.size()};
+  std::memcpy(slot->data.get() + part.offset, part.payload.data(), part.payload.size());
+  piece = {part.offset, part.payload.size()};
   if (--slot->missing == 0) {
     slot->whole = Tiled(*slot);
     if (slot->whole) return Verdict::kCompleted;
@@ -86,11 +86,11 @@ BatchAssembler::Slot* BatchAssembler::Find(uint64_t request) {
   return slot == slots_.end() ? nullptr : &*slot;
 }
 
-bool BatchAssembler::WellFormed(const BatchShard& shard) const {
-  const uint64_t bytes = shard.payload.size();
-  return shard.total_bytes == batch_bytes_ && shard.shards > 0 && shard.shards <= kMaxShards &&
-         shard.shard < shard.shards && bytes > 0 && shard.offset <= batch_bytes_ &&
-         bytes <= batch_bytes_ - shard.offset;
+bool BatchAssembler::WellFormed(const BatchPart& part) const {
+  const uint64_t bytes = part.payload.size();
+  return part.total_bytes == batch_bytes_ && part.parts > 0 && part.parts <= kMaxParts &&
+         part.part < part.parts && bytes > 0 && part.offset <= batch_bytes_ &&
+         bytes <= batch_bytes_ - part.offset;
 }
 
 bool BatchAssembler::Tiled(const Slot& slot) const {

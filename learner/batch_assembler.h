@@ -1,12 +1,12 @@
-// Puts the shards of batches together in buffers of its own. Pure: no DDS, threads or clocks.
+// Puts the parts of batches together in buffers of its own. Pure: no DDS, threads or clocks.
 //
-// A batch is asked for with a request id; the answer is a set of shards that tile its bytes
-// (common/wire/batch_layout.h). Shards may come in any order, several batches at once, some twice.
+// A batch is asked for with a request id; the answer is a set of parts that tile its bytes
+// (common/wire/batch_schema.h). Parts may come in any order, several batches at once, some twice.
 // When a request is answered anew (it was sent again, the replay has restarted), the answer may
-// hold other transitions: shards of two answers are never mixed, the newer one starts over. Answers
+// hold other transitions: parts of two answers are never mixed, the newer one starts over. Answers
 // are told apart by what the replay held when they were drawn.
 //
-// Bound: `buffers` batches; a shard that belongs to none of them is counted by the caller and
+// Bound: `buffers` batches; a part that belongs to none of them is counted by the caller and
 // dropped.
 #pragma once
 
@@ -24,7 +24,7 @@ class BatchAssembler {
  public:
   enum class Verdict {
     kTaken,           // copied into its batch
-    kStartedOver,     // taken, as the first shard of another answer; the former one was dropped
+    kStartedOver,     // taken, as the first part of another answer; the former one was dropped
     kCompleted,       // taken, and its batch is whole now
     kDuplicate,       // had been taken before
     kUnknownRequest,  // never expected, or done with
@@ -43,7 +43,7 @@ class BatchAssembler {
 
   // Takes a free buffer for `request`, which must not be in use. False when there is none.
   bool Expect(uint64_t request);
-  Verdict Add(const BatchShard& shard);
+  Verdict Add(const BatchPart& part);
   // The batch of `request` once it is whole.
   std::optional<Assembled> TryGet(uint64_t request);
   // Frees the buffer of `request`.
@@ -61,12 +61,12 @@ class BatchAssembler {
     std::unique_ptr<uint8_t, Free> data;
     bool whole = false;
     uint64_t stored_records = 0, stored_steps = 0;  // tell answers apart
-    std::vector<Piece> pieces;                      // per shard
-    uint32_t missing = 0;                           // shards; 0 and no pieces: none here yet
+    std::vector<Piece> pieces;                      // per part
+    uint32_t missing = 0;                           // parts; 0 and no pieces: none here yet
   };
 
   Slot* Find(uint64_t request);
-  bool WellFormed(const BatchShard& shard) const;
+  bool WellFormed(const BatchPart& part) const;
   // Whether the slot's pieces, all here, tile the batch without holes or overlaps.
   bool Tiled(const Slot& slot) const;
 

@@ -27,19 +27,19 @@ BatchSource::BatchSource(const RunConfig& run, uint64_t learner_session, uint64_
       spec_hash_(run.spec.Hash()),
       learner_session_(learner_session),
       last_request_(LastRequest(run.config)),
-      layout_(run.spec, run.config.learner.batch),
+      schema_(BatchSchemaOf(run)),
       send_(std::move(send)),
       resend_after_(resend_after),
-      assembler_(spec_hash_, learner_session, layout_.total_bytes(),
+      assembler_(spec_hash_, learner_session, schema_.total_bytes(),
                  run.config.learner.request_credits + 1),
       next_request_(first_request) {
   CHECK(first_request > 0);
 }
 
-void BatchSource::OnShard(const BatchShard& shard) {
+void BatchSource::OnPart(const BatchPart& part) {
   using Verdict = BatchAssembler::Verdict;
   const MutexLock lock(mutex_);
-  const Verdict verdict = assembler_.Add(shard);
+  const Verdict verdict = assembler_.Add(part);
   switch (verdict) {
     case Verdict::kStartedOver:
       ++counters_.dropped_answers;
@@ -48,21 +48,21 @@ void BatchSource::OnShard(const BatchShard& shard) {
     case Verdict::kCompleted:
       break;
     case Verdict::kDuplicate:
-      ++counters_.duplicate_shards;
+      ++counters_.duplicate_parts;
       return;
     case Verdict::kUnknownRequest:
     case Verdict::kStaleSession:
-      ++counters_.unknown_shards;
+      ++counters_.unknown_parts;
       return;
     case Verdict::kMalformed:
-      ++counters_.malformed_shards;
+      ++counters_.malformed_parts;
       return;
     case Verdict::kWrongSpec:
-      other_spec_hash_ = shard.spec_hash;
+      other_spec_hash_ = part.spec_hash;
       arrived_.NotifyOne();
       return;
   }
-  const auto outstanding = std::ranges::find(outstanding_, shard.request, &Outstanding::request);
+  const auto outstanding = std::ranges::find(outstanding_, part.request, &Outstanding::request);
   if (outstanding != outstanding_.end()) {
     outstanding->next_send =
         verdict == Verdict::kCompleted ? SteadyTime::max() : Now() + resend_after_;
@@ -104,7 +104,8 @@ SampleRequest BatchSource::MakeRequest(uint64_t request) const {
           .learner_session = learner_session_,
           .request = request,
           .batch = static_cast<uint32_t>(config.learner.batch),
-          .after_steps = config.lockstep ? LockstepStepsBeforeUpdate(config, request) : 0};
+          .after_steps = config.lockstep ? LockstepStepsBeforeUpdate(config, request) : 0,
+          .schema_hash = schema_.Hash()};
 }
 
 void BatchSource::Extend() {
@@ -164,7 +165,7 @@ std::optional<Batch> BatchSource::TakeFirst() {
   if (!assembled) return std::nullopt;
   outstanding_.pop_front();
   handed_out_ = request;
-  return Batch{.view = layout_.View(assembled->data),
+  return Batch{.view = schema_.View(assembled->data),
                .request = request,
                .stored_records = assembled->stored_records,
                .stored_steps = assembled->stored_steps};

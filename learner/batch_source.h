@@ -1,9 +1,9 @@
 // Batches pulled from the replay: keeps learner.request_credits requests outstanding and sends one
 // again when nothing of its answer has arrived for a while (the replay has restarted, or its
 // limiter holds it back: sending it again is harmless). Knows nothing of DDS: requests go out
-// through `send`, shards come in through OnShard.
+// through `send`, parts come in through OnPart.
 //
-// Threads: OnShard from one receive thread; everything else from one other. `send` is called
+// Threads: OnPart from one receive thread; everything else from one other. `send` is called
 // without a lock held. Memory: request_credits + 1 batches.
 #pragma once
 
@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "common/base/mutex.h"
-#include "common/config/run_files.h"
+#include "common/config/batch_options.h"
 #include "learner/batch_assembler.h"
 #include "learner/batch_stream.h"
 
@@ -30,7 +30,7 @@ class BatchSource final : public BatchStream {
   BatchSource(const RunConfig& run, uint64_t learner_session, uint64_t first_request, Send send,
               std::chrono::milliseconds resend_after = kResendAfter);
 
-  void OnShard(const BatchShard& shard);
+  void OnPart(const BatchPart& part);
 
   std::optional<Batch> Next(SteadyTime deadline) override;
   BatchCounters counters() const override;
@@ -59,7 +59,7 @@ class BatchSource final : public BatchStream {
   const uint64_t spec_hash_;
   const uint64_t learner_session_;
   const uint64_t last_request_;
-  const BatchLayout layout_;
+  const BatchSchema schema_;
   const Send send_;
   const std::chrono::milliseconds resend_after_;
 
@@ -70,7 +70,7 @@ class BatchSource final : public BatchStream {
   uint64_t next_request_ SHOAL_GUARDED_BY(mutex_);
   // Request whose batch the caller holds; 0 = none.
   uint64_t handed_out_ SHOAL_GUARDED_BY(mutex_) = 0;
-  uint64_t other_spec_hash_ SHOAL_GUARDED_BY(mutex_) = 0;  // of a refused shard; 0 = none
+  uint64_t other_spec_hash_ SHOAL_GUARDED_BY(mutex_) = 0;  // of a refused part; 0 = none
   BatchCounters counters_ SHOAL_GUARDED_BY(mutex_);
 };
 

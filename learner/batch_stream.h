@@ -5,7 +5,7 @@
 #include <optional>
 
 #include "common/base/clock.h"
-#include "common/wire/batch_layout.h"
+#include "common/wire/batch_schema.h"
 
 namespace shoal::learner {
 
@@ -20,10 +20,10 @@ struct BatchCounters {
   uint64_t requests_outstanding = 0;  // batches asked for and not handed out, now
   uint64_t ready = 0;                 // of these whole, waiting to be used
   uint64_t resent_requests = 0;
-  uint64_t duplicate_shards = 0;
-  uint64_t unknown_shards = 0;    // of requests done with, or of a former learner session
-  uint64_t malformed_shards = 0;  // sizes or offsets no batch has
-  uint64_t dropped_answers = 0;   // incomplete ones overtaken by another answer
+  uint64_t duplicate_parts = 0;
+  uint64_t unknown_parts = 0;    // of requests done with, or of a former learner session
+  uint64_t malformed_parts = 0;  // sizes or offsets no batch has
+  uint64_t dropped_answers = 0;  // incomplete ones overtaken by another answer
 };
 
 class BatchStream {

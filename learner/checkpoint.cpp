@@ -27,6 +27,15 @@ Checkpoint ReadCheckpoint(const std::filesystem::path& folder, uint64_t spec_has
           .folder = folder};
 }
 
+void CheckAlgorithm(const Checkpoint& checkpoint, const std::string& asked) {
+  const std::string& wrote = checkpoint.state.algorithm;
+  if (wrote == asked) return;
+  throw UsageError(
+      "{} was written by the algorithm \"{}\", learner.algorithm = \"{}\": go on with --set "
+      "learner.algorithm={}, or begin a new run",
+      checkpoint.folder.filename().string(), wrote, asked, wrote);
+}
+
 std::string CheckPrecision(const Checkpoint& checkpoint, const std::string& asked,
                            nn::Precision chosen) {
   const std::string name = checkpoint.folder.filename().string();
@@ -35,11 +44,10 @@ std::string CheckPrecision(const Checkpoint& checkpoint, const std::string& aske
   if (before == now) return "";
   if (asked == "auto") {
     throw UsageError(
-        "{} was computed in {}, this CPU ({}) computes in {} (learner.precision = auto): go on "
-        "with "
+        "{} was computed in {}, here it is {} (learner.precision = auto, CPU {}): go on with "
         "--set learner.precision={} for the same arithmetic where the CPU has it, or accept the "
         "other with --set learner.precision={}",
-        name, before, nn::CpuIsa(), now, before, now);
+        name, before, now, nn::CpuIsa(), before, now);
   }
   return fmt::format(
       "{} was computed in {}, from here on it is {} (learner.precision = {}): the run "

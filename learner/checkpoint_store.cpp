@@ -96,6 +96,7 @@ nlohmann::ordered_json CheckpointStore::Meta(const CheckpointState& state) const
           {"seed", run_.config.seed},
           {"updates", state.updates},
           {"env_steps", state.env_steps},
+          {"algorithm", state.algorithm},
           {"precision", state.precision},
           {"observation", run_.spec.Summary()},
           {"version", BuildVersion()},

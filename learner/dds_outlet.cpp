@@ -2,19 +2,41 @@
 
 #include <chrono>
 
+#include "common/wire/weights_parts.h"
+
 namespace shoal::learner {
+namespace {
 
-DdsOutlet::DdsOutlet(dds::Bus& bus) : weights_(bus), evaluation_weights_(bus), metrics_(bus) {}
+// Each part has a place of its own in what the transport keeps for late joiners: the newest version
+// takes the places of the one before. False: some part was not taken; a reader then lacks it and
+// waits for the next version.
+template <class Part>
+bool SendParts(const WeightsMessage& weights, dds::Publisher<Part>& publisher) {
+  bool sent = true;
+  const auto parts = static_cast<uint32_t>(WeightsParts(weights.payload.size()));
+  for (uint32_t part = 0; part < parts && sent; ++part) {
+    sent = publisher.Write(PartOf<Part>(weights, part));
+  }
+  return sent;
+}
 
-bool DdsOutlet::Publish(const WeightsMessage& weights) { return weights_.Write(weights); }
+}  // namespace
+
+DdsOutlet::DdsOutlet(dds::Bus& bus)
+    : weights_(bus), evaluation_weights_(bus), metrics_(bus), progress_(bus) {}
+
+bool DdsOutlet::Publish(const WeightsMessage& weights) { return SendParts(weights, weights_); }
 
 bool DdsOutlet::WeightsArrived() { return weights_.WaitForAcks(std::chrono::milliseconds(0)); }
 
 bool DdsOutlet::Publish(const EvalWeightsMessage& weights) {
-  return evaluation_weights_.Write(weights);
+  return SendParts(weights, evaluation_weights_);
 }
 
 // A report that cannot be sent is no loss: the next one holds the same totals.
 void DdsOutlet::Publish(const MetricsMessage& report) { metrics_.Write(report); }
+
+// The last one is kept for whoever needs it.
+void DdsOutlet::Publish(const LearnerProgress& progress) { progress_.Write(progress); }
 
 }  // namespace shoal::learner

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "common/dds/bus.h"
+#include "common/dds/metrics_publisher.h"
 #include "common/dds/publisher.h"
 #include "learner/outlet.h"
 
@@ -15,11 +16,13 @@ class DdsOutlet final : public Outlet {
   bool WeightsArrived() override;
   bool Publish(const EvalWeightsMessage& weights) override;
   void Publish(const MetricsMessage& report) override;
+  void Publish(const LearnerProgress& progress) override;
 
  private:
-  dds::Publisher<WeightsMessage> weights_;
-  dds::Publisher<EvalWeightsMessage> evaluation_weights_;
-  dds::Publisher<MetricsMessage> metrics_;
+  dds::Publisher<WeightsPart> weights_;
+  dds::Publisher<EvalWeightsPart> evaluation_weights_;
+  dds::MetricsPublisher<LearnerMetrics> metrics_;
+  dds::Publisher<LearnerProgress> progress_;
 };
 
 }  // namespace shoal::learner

@@ -1,13 +1,12 @@
 #include "learner/evaluation_points.h"
 
-#include "common/base/crc32.h"
 #include "common/base/log.h"
 #include "common/nn/safetensors.h"
 
 namespace shoal::learner {
 
 EvaluationPoints::EvaluationPoints(const RunConfig& run, uint64_t session, uint64_t env_steps,
-                                   const SacAgent& agent, Outlet& outlet)
+                                   const Agent& agent, Outlet& outlet)
     : spec_hash_(run.spec.Hash()),
       session_(session),
       interval_(static_cast<uint64_t>(run.config.eval.interval)),
@@ -41,7 +40,6 @@ void EvaluationPoints::Send(const std::string& checkpoint, uint64_t env_steps) {
   point.message.checkpoint = checkpoint;
   point.message.payload = {reinterpret_cast<const uint8_t*>(point.bytes.data()),
                            point.bytes.size()};
-  point.message.crc = Crc32(point.message.payload);
   last_updates_ = agent_.updates();
   Retry();
 }

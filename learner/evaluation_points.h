@@ -8,8 +8,8 @@
 
 #include "common/config/run_files.h"
 #include "common/wire/messages.h"
+#include "learner/agent/agent.h"
 #include "learner/outlet.h"
-#include "learner/sac_agent.h"
 
 namespace shoal::learner {
 
@@ -17,8 +17,8 @@ namespace shoal::learner {
 class EvaluationPoints {
  public:
   // `env_steps`: stored when a former learner of the run stopped; points up to there are behind.
-  EvaluationPoints(const RunConfig& run, uint64_t session, uint64_t env_steps,
-                   const SacAgent& agent, Outlet& outlet);
+  EvaluationPoints(const RunConfig& run, uint64_t session, uint64_t env_steps, const Agent& agent,
+                   Outlet& outlet);
 
   // True once per multiple of the interval that `env_steps` has come to or passed since the last
   // call; several passed at once are one point.
@@ -41,7 +41,7 @@ class EvaluationPoints {
  private:
   const uint64_t spec_hash_, session_;
   uint64_t interval_;  // env steps
-  const SacAgent& agent_;
+  const Agent& agent_;
   Outlet& outlet_;
   uint64_t next_;  // env steps
   struct Unsent {

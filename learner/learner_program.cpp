@@ -1,6 +1,7 @@
 #include "learner/learner_program.h"
 
 #include <algorithm>
+#include <memory>
 #include <optional>
 
 #include "common/base/error.h"
@@ -11,11 +12,11 @@
 #include "common/config/session_number.h"
 #include "common/dds/publisher.h"
 #include "common/dds/subscriber.h"
+#include "learner/agent/algorithms.h"
 #include "learner/batch_source.h"
 #include "learner/checkpoint_store.h"
 #include "learner/dds_outlet.h"
 #include "learner/openmp_environment.h"
-#include "learner/sac_agent.h"
 #include "learner/training_loop.h"
 
 namespace shoal::learner {
@@ -29,32 +30,32 @@ class Learner {
       : member_(folder),
         run_(run),
         session_(NextSession(folder, "learner-0", WallTimeNs())),
-        precision_(nn::ChoosePrecision(run.config.learner.precision)),
-        agent_(run.config, run.spec, precision_),
+        precision_(nn::ChoosePrecision(run.config.learner.precision, run.spec.HasPixels())),
+        agent_(MakeAgent(run.config, run.spec, precision_)),
         checkpoints_(folder, run),
         restored_(Restore()),
         control_(Now()),
         bus_(dds::FindPlace(folder, run.config.transport, reach), dds::Role::kLearner),
         outlet_(bus_),
         requests_(bus_),
-        batches_(run, session_, agent_.updates() + 1,
+        batches_(run, session_, agent_->updates() + 1,
                  [this](const SampleRequest& request) { return Ask(request); }),
-        shard_subscriber_(bus_, [this](const BatchShard& shard) { batches_.OnShard(shard); }),
+        part_subscriber_(bus_, [this](const BatchPart& part) { batches_.OnPart(part); }),
         evaluation_subscriber_(
             bus_,
             [this](const EvalMessage& m) { pending_evaluations_.OnEvaluated(m.version.update); }),
         control_subscriber_(bus_,
                             [this](const ControlMessage& m) { control_.OnMessage(m, Now()); }) {
-    log::Info("session {}: {} ({}), {} thread(s), batches of {}, {}", session_,
-              nn::ToString(precision_), nn::CpuIsa(), threads, run.config.learner.batch,
-              run.spec.Summary());
+    log::Info("session {}: {}, {} ({}), {} thread(s), batches of {}, {}", session_,
+              run.config.learner.algorithm, nn::ToString(precision_), nn::CpuIsa(), threads,
+              run.config.learner.batch, run.spec.Summary());
   }
 
   int Run() {
     TrainingLoop loop({.run = run_,
                        .precision = precision_,
                        .session = session_,
-                       .agent = agent_,
+                       .agent = *agent_,
                        .batches = batches_,
                        .outlet = outlet_,
                        .checkpoints = checkpoints_,
@@ -75,13 +76,14 @@ class Learner {
   std::optional<CheckpointState> Restore() {
     const std::optional<Checkpoint> checkpoint = checkpoints_.RestoreNewest();
     if (!checkpoint) return std::nullopt;
+    CheckAlgorithm(*checkpoint, run_.config.learner.algorithm);
     const std::string warning =
         CheckPrecision(*checkpoint, run_.config.learner.precision, precision_);
     if (!warning.empty()) log::Warning("{}", warning);
-    agent_.Restore(checkpoint->tensors, (checkpoint->folder / "learner.safetensors").string());
-    if (agent_.updates() != checkpoint->state.updates) {
+    agent_->Restore(checkpoint->tensors, (checkpoint->folder / "learner.safetensors").string());
+    if (agent_->updates() != checkpoint->state.updates) {
       throw RuntimeError("'{}': parameters of update {}, but state.json says {}",
-                         checkpoint->folder.string(), agent_.updates(), checkpoint->state.updates);
+                         checkpoint->folder.string(), agent_->updates(), checkpoint->state.updates);
     }
     log::Info("restored {}: {} updates, {} env steps", checkpoint->folder.filename().string(),
               checkpoint->state.updates, checkpoint->state.env_steps);
@@ -92,7 +94,7 @@ class Learner {
   const RunConfig run_;
   const uint64_t session_;
   const nn::Precision precision_;
-  SacAgent agent_;
+  const std::unique_ptr<Agent> agent_;
   CheckpointStore checkpoints_;
   const std::optional<CheckpointState> restored_;
   PendingEvaluations pending_evaluations_;
@@ -101,7 +103,7 @@ class Learner {
   DdsOutlet outlet_;
   dds::Publisher<SampleRequest> requests_;
   BatchSource batches_;
-  dds::Subscriber<BatchShard> shard_subscriber_;
+  dds::Subscriber<BatchPart> part_subscriber_;
   dds::Subscriber<EvalMessage> evaluation_subscriber_;
   dds::Subscriber<ControlMessage> control_subscriber_;
 };

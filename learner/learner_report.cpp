@@ -1,28 +1,35 @@
 #include "learner/learner_report.h"
 
 #include "common/base/log.h"
+#include "learner/agent/frame_figures.h"
 
 namespace shoal::learner {
 
 LearnerReport::LearnerReport(const RunConfig& run)
-    : guard_(run.config, run.spec.HasPixels()), report_("learner", 0) {}
+    : spec_(run.spec),
+      shift_pad_(run.config.replay.shift_pad),
+      guard_(run.config),
+      report_("learner", 0) {}
 
-void LearnerReport::OnUpdate(const UpdateStats& stats, const Batch& batch, uint64_t updates) {
-  any_updates_ = true;
-  window_.Add(stats);
+void LearnerReport::OnUpdate(const UpdateFigures& figures, const Batch& batch, uint64_t updates) {
+  UpdateFigures all = figures;
+  AddFrameFigures(batch.view, spec_, shift_pad_, &all);
+  window_.Add(all);
   AddDataAges(batch.view.weights_update, updates, &data_ages_);
 }
 
 const MetricsMessage& LearnerReport::Make(const LearnerFigures& figures) {
   const int updates = window_.updates();
   if (updates > 0) {
-    mean_ = window_.Mean();
-    for (const std::string& warning : guard_.Check(mean_, updates, Now())) {
+    const UpdateFigures mean = window_.Mean();
+    for (const auto& [figure, value] : mean.entries()) latest_.Replace(*figure, value);
+    if (const auto ages = data_ages_.Take()) data_age_ = *ages;
+    for (const std::string& warning : guard_.Check(mean, updates, Now())) {
       log::Warning("{}", warning);
     }
   }
   window_.Clear();
-  const auto add = [&](const char* name, auto value) {
+  const auto add = [&](const std::string& name, auto value) {
     report_.Add(name, static_cast<double>(value));
   };
   report_.Begin(figures.state);
@@ -30,7 +37,10 @@ const MetricsMessage& LearnerReport::Make(const LearnerFigures& figures) {
   add("env_steps", figures.env_steps);
   updates_made_ += static_cast<uint64_t>(updates);
   report_.AddRate("updates_per_second", static_cast<double>(updates_made_));
-  if (any_updates_) AddUpdateFigures();
+  if (!latest_.empty()) {
+    for (const auto& [figure, value] : latest_.entries()) add(std::string(figure->name), value);
+    report_.AddQuantiles("data_age_updates", data_age_);
+  }
   AddTimes(figures.seconds);
   add("requests_outstanding", figures.batches.requests_outstanding);
   add("batches_ready", figures.batches.ready);
@@ -44,35 +54,21 @@ const MetricsMessage& LearnerReport::Make(const LearnerFigures& figures) {
   add("eval_updates", figures.eval_updates);
   add("drained", figures.drained);
   add("resent_requests", figures.batches.resent_requests);
-  add("duplicate_shards", figures.batches.duplicate_shards);
-  add("unknown_shards", figures.batches.unknown_shards);
-  add("malformed_shards", figures.batches.malformed_shards);
+  add("duplicate_parts", figures.batches.duplicate_parts);
+  add("unknown_parts", figures.batches.unknown_parts);
+  add("malformed_parts", figures.batches.malformed_parts);
   add("dropped_answers", figures.batches.dropped_answers);
   add("warnings", guard_.warnings());
   report_.AddResources();
   return report_.message();
 }
 
-void LearnerReport::AddUpdateFigures() {
-  report_.Add("critic_loss", mean_.critic_loss);
-  report_.Add("actor_loss", mean_.actor_loss);
-  report_.Add("temperature", mean_.temperature);
-  report_.Add("temperature_loss", mean_.temperature_loss);
-  report_.Add("q_mean", mean_.q_mean);
-  report_.Add("target_mean", mean_.target_mean);
-  report_.Add("entropy", mean_.entropy);
-  report_.Add("action_saturation", mean_.action_saturation);
-  report_.Add("critic_grad_norm", mean_.critic_grad_norm);
-  report_.Add("actor_grad_norm", mean_.actor_grad_norm);
-  if (const auto ages = data_ages_.Take()) data_age_ = *ages;
-  report_.AddQuantiles("data_age_updates", data_age_);
-}
-
 void LearnerReport::AddTimes(const LearnerSeconds& seconds) {
   report_.AddSeconds("waiting_data", seconds.waiting);
-  report_.AddSeconds("forward", seconds.update.forward);
-  report_.AddSeconds("backward", seconds.update.backward);
-  report_.AddSeconds("optimiser", seconds.update.optimiser);
+  const auto stage = [&](UpdateStage s) { return seconds.update[static_cast<size_t>(s)]; };
+  report_.AddSeconds("forward", stage(UpdateStage::kForward));
+  report_.AddSeconds("backward", stage(UpdateStage::kBackward));
+  report_.AddSeconds("optimiser", stage(UpdateStage::kOptimiser));
   report_.AddSeconds("weights", seconds.weights);
   report_.AddSeconds("checkpoint", seconds.checkpoint);
 }

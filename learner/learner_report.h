@@ -3,8 +3,8 @@
 // Metrics (role "learner", id 0), means over the last interval with updates in it unless said
 // otherwise:
 //   updates, env_steps, warnings, and counters of weights, checkpoints, batches: totals
-//   updates_per_second, critic_loss, actor_loss, temperature, temperature_loss, q_mean,
-//   target_mean, entropy, action_saturation, critic_grad_norm, actor_grad_norm
+//   updates_per_second
+//   the figures of the updates         as the algorithm names them (agent/update_figures.h)
 //   data_age_updates_p50, _p90, _p99  updates since the weights that chose the actions
 //   seconds_STAGE, share_STAGE        where the learner's time went
 //   samples_per_insert, eval_interval, weights_period   in force
@@ -12,11 +12,13 @@
 //   drained                           1 once draining is over
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <string>
 
 #include "common/config/run_files.h"
 #include "common/wire/metrics_report.h"
+#include "learner/agent/agent.h"
 #include "learner/batch_stream.h"
 #include "learner/training_guard.h"
 #include "learner/update_window.h"
@@ -25,10 +27,10 @@ namespace shoal::learner {
 
 // Where the learner's seconds went since its start.
 struct LearnerSeconds {
-  double waiting = 0;     // for batches
-  UpdateSeconds update;   // networks and optimiser
-  double weights = 0;     // publishing them
-  double checkpoint = 0;  // writing and syncing
+  double waiting = 0;              // for batches
+  std::array<double, 3> update{};  // by UpdateStage
+  double weights = 0;              // publishing them
+  double checkpoint = 0;           // writing and syncing
 };
 
 struct LearnerFigures {
@@ -48,21 +50,21 @@ class LearnerReport {
  public:
   explicit LearnerReport(const RunConfig& run);
 
-  void OnUpdate(const UpdateStats& stats, const Batch& batch, uint64_t updates);
+  void OnUpdate(const UpdateFigures& figures, const Batch& batch, uint64_t updates);
   // Once a second.
   bool Due() { return report_.Due(Now()); }
   // Ends the interval: logs warnings and returns the metrics, valid until the next call.
   const MetricsMessage& Make(const LearnerFigures& figures);
 
  private:
-  void AddUpdateFigures();
   void AddTimes(const LearnerSeconds& seconds);
 
+  const ObservationSpec spec_;
+  const int shift_pad_;
   TrainingGuard guard_;
   MetricsReport report_;
   UpdateWindow window_;
-  UpdateStats mean_;  // of the last interval with updates
-  bool any_updates_ = false;
+  UpdateFigures latest_;       // of each figure the mean of the last interval that had it
   uint64_t updates_made_ = 0;  // by this process
   QuantileWindow data_ages_;
   Quantiles data_age_;  // of the last interval with updates

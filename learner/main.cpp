@@ -7,7 +7,9 @@
 #include "common/base/log.h"
 #include "common/base/main_guard.h"
 #include "common/base/stop.h"
+#include "common/config/run_files.h"
 #include "common/dds/bus.h"
+#include "common/tasks/task_library.h"
 #include "learner/learner_program.h"
 
 namespace {
@@ -32,6 +34,7 @@ int Run(int argc, char** argv) {
   }
   shoal::log::Start("learner-0", "");
   shoal::InstallStopSignals();
+  shoal::tasks::LoadTaskLibrary(shoal::ReadRunConfig(run).config.task_library);
   return shoal::learner::RunLearner(run, reach, argv);
 }
 

@@ -18,6 +18,7 @@ class Outlet {
   // Weights for an evaluation. False: not sent; send them again.
   virtual bool Publish(const EvalWeightsMessage& weights) = 0;
   virtual void Publish(const MetricsMessage& report) = 0;
+  virtual void Publish(const LearnerProgress& progress) = 0;
 };
 
 }  // namespace shoal::learner

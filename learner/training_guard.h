@@ -21,17 +21,17 @@
 
 #include "common/base/clock.h"
 #include "common/config/config.h"
-#include "learner/sac_agent.h"
+#include "learner/agent/update_figures.h"
 
 namespace shoal::learner {
 
 class TrainingGuard {
  public:
-  // `has_pixels`: whether frame_spread and frozen_cameras mean anything.
-  TrainingGuard(const Config& config, bool has_pixels);
+  explicit TrainingGuard(const Config& config);
 
-  // Means over `updates` > 0 updates since the last call. Returns the warnings that are due.
-  std::vector<std::string> Check(const UpdateStats& mean, int updates, SteadyTime now);
+  // Means over `updates` > 0 updates since the last call; what rests on a figure that is absent is
+  // not looked at. Returns the warnings that are due.
+  std::vector<std::string> Check(const UpdateFigures& mean, int updates, SteadyTime now);
 
   uint64_t warnings() const { return warnings_; }
 
@@ -45,13 +45,12 @@ class TrainingGuard {
   static constexpr std::chrono::seconds kRepeat{60};
 
  private:
-  enum Kind { kFrames, kCameras, kSaturation, kTemperature, kCriticLoss, kKinds };
+  enum Kind { kFrames, kCameras, kSaturation, kTemperatureFall, kLossRise, kKinds };
 
   // Adds the updates to the running mean of the critic loss.
-  void FollowLoss(const UpdateStats& mean, int updates);
+  void FollowLoss(double critic_loss, int updates);
 
   const double initial_temperature_;
-  const bool has_pixels_;
   std::array<std::optional<SteadyTime>, kKinds> said_;
   uint64_t warnings_ = 0;
 
@@ -62,6 +61,6 @@ class TrainingGuard {
 };
 
 // The line that ends a run whose update was not finite.
-std::string DescribeNonFinite(const UpdateStats& stats, uint64_t updates);
+std::string DescribeNonFinite(const UpdateFigures& figures, uint64_t updates);
 
 }  // namespace shoal::learner

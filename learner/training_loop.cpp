@@ -66,22 +66,31 @@ bool TrainingLoop::TryTrain() {
     batch = parts_.batches.Next(Now() + kPoll);
   }
   if (!batch) return false;
-  const UpdateStats stats = parts_.agent.Update(batch->view);
-  if (!stats.finite) {
+  const UpdateOutcome outcome = Update(batch->view);
+  if (!outcome.finite) {
     throw NonFiniteError("{}; last good checkpoint: {}",
-                         DescribeNonFinite(stats, parts_.agent.updates()),
+                         DescribeNonFinite(outcome.figures, parts_.agent.updates()),
                          saved_updates_ ? CheckpointName(*saved_updates_) : "none");
   }
-  AfterUpdate(*batch, stats);
+  AfterUpdate(*batch, outcome.figures);
   waiting_since_ = Now();
   return true;
 }
 
-void TrainingLoop::AfterUpdate(const Batch& batch, const UpdateStats& stats) {
+UpdateOutcome TrainingLoop::Update(const BatchView& batch) {
+  SteadyTime since = Now();
+  return parts_.agent.Update(batch, [&](UpdateStage stage) {
+    const SteadyTime now = Now();
+    seconds_.update[static_cast<size_t>(stage)] +=
+        std::chrono::duration<double>(now - std::exchange(since, now)).count();
+  });
+}
+
+void TrainingLoop::AfterUpdate(const Batch& batch, const UpdateFigures& figures) {
   const uint64_t updates = parts_.agent.updates();
   env_steps_ = batch.stored_steps;
   request_ = batch.request;
-  report_.OnUpdate(stats, batch, updates);
+  report_.OnUpdate(figures, batch, updates);
   {
     const ScopedSeconds timed(seconds_.weights);
     weights_.AfterUpdate(env_steps_);
@@ -98,6 +107,20 @@ void TrainingLoop::MakeEvaluationPoint() {
   parts_.pending_evaluations.Add(parts_.agent.updates(), name);
   const ScopedSeconds timed(seconds_.weights);
   evaluations_.Send(name, env_steps_);
+  evaluations_asked_.push_back(
+      {.update = parts_.agent.updates(), .env_steps = env_steps_, .checkpoint = name});
+  if (evaluations_asked_.size() > LearnerProgress::kMostEvaluations) {
+    evaluations_asked_.erase(evaluations_asked_.begin());
+  }
+  TellProgress();
+}
+
+void TrainingLoop::TellProgress() {
+  parts_.outlet.Publish(LearnerProgress{.session = parts_.session,
+                                        .updates = parts_.agent.updates(),
+                                        .env_steps = env_steps_,
+                                        .drained = drained_,
+                                        .evaluations = evaluations_asked_});
 }
 
 std::string TrainingLoop::WriteCheckpoint() {
@@ -110,7 +133,8 @@ std::string TrainingLoop::WriteCheckpoint() {
                               .learner_session = parts_.session,
                               .config_hash = parts_.checkpoints.config_hash(),
                               .spec_hash = parts_.run.spec.Hash(),
-                              .precision = nn::ToString(parts_.precision)};
+                              .precision = nn::ToString(parts_.precision),
+                              .algorithm = config_.learner.algorithm};
   std::string name = parts_.checkpoints.Write(state, parts_.agent.AllTensors(),
                                               parts_.agent.AveragedPolicyTensors(),
                                               parts_.pending_evaluations.Names());
@@ -134,6 +158,7 @@ void TrainingLoop::Drain() {
   if (parts_.agent.updates() > 0 && evaluations_.last_updates() != parts_.agent.updates()) {
     MakeEvaluationPoint();
   }
+  TellProgress();
   log::Info("drained after {} updates, {} env steps", parts_.agent.updates(), env_steps_);
 }
 
@@ -171,7 +196,6 @@ void TrainingLoop::ApplySettings() {
 
 void TrainingLoop::Report(bool now) {
   if (!report_.Due() && !now) return;
-  seconds_.update = parts_.agent.seconds();
   const LearnerFigures figures{.state = State(),
                                .updates = parts_.agent.updates(),
                                .env_steps = env_steps_,
@@ -186,6 +210,7 @@ void TrainingLoop::Report(bool now) {
                                .weights_period = static_cast<double>(weights_.period()),
                                .seconds = seconds_,
                                .batches = parts_.batches.counters()};
+  TellProgress();
   parts_.outlet.Publish(report_.Make(figures));
 }
 

@@ -14,17 +14,18 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/base/clock.h"
 #include "common/config/run_files.h"
 #include "common/wire/control_state.h"
+#include "learner/agent/agent.h"
 #include "learner/batch_stream.h"
 #include "learner/checkpoint_store.h"
 #include "learner/evaluation_points.h"
 #include "learner/learner_report.h"
 #include "learner/outlet.h"
 #include "learner/pending_evaluations.h"
-#include "learner/sac_agent.h"
 #include "learner/weights_sender.h"
 
 namespace shoal::learner {
@@ -38,7 +39,7 @@ class TrainingLoop {
     RunConfig run;
     nn::Precision precision = nn::Precision::kF32;
     uint64_t session = 0;  // this learner's: wall-clock ns at its start
-    SacAgent& agent;       // fresh, or as in `restored`
+    Agent& agent;          // fresh, or as in `restored`
     BatchStream& batches;
     Outlet& outlet;
     CheckpointStore& checkpoints;
@@ -61,7 +62,9 @@ class TrainingLoop {
  private:
   // Waits a moment for a batch and uses it. False: none came.
   bool TryTrain();
-  void AfterUpdate(const Batch& batch, const UpdateStats& stats);
+  // The agent's update, its stages timed.
+  UpdateOutcome Update(const BatchView& batch);
+  void AfterUpdate(const Batch& batch, const UpdateFigures& figures);
   void MakeEvaluationPoint();
   // Writes a checkpoint of the agent as it is, unless the newest one is that. Returns its name.
   std::string WriteCheckpoint();
@@ -75,12 +78,15 @@ class TrainingLoop {
   bool RatioReached() const;
   // Takes over what was changed while the run goes on.
   void ApplySettings();
+  // To the coordinator: what the run is decided by.
+  void TellProgress();
   void Report(bool now = false);
   const char* State() const;
 
   const Parts parts_;
   const Config& config_;
   WeightsSender weights_;
+  std::vector<EvaluationRequest> evaluations_asked_;  // of this session, the last ones
   EvaluationPoints evaluations_;
   LearnerReport report_;
   LearnerSeconds seconds_;

@@ -3,27 +3,23 @@
 #include <algorithm>
 
 namespace shoal::learner {
-namespace {
-
-constexpr float UpdateStats::*kFigures[] = {
-    &UpdateStats::critic_loss,      &UpdateStats::actor_loss,
-    &UpdateStats::temperature,      &UpdateStats::temperature_loss,
-    &UpdateStats::q_mean,           &UpdateStats::target_mean,
-    &UpdateStats::entropy,          &UpdateStats::action_saturation,
-    &UpdateStats::critic_grad_norm, &UpdateStats::actor_grad_norm,
-    &UpdateStats::frame_spread,     &UpdateStats::frozen_cameras};
-
-}  // namespace
-
-void UpdateWindow::Add(const UpdateStats& stats) {
+void UpdateWindow::Add(const UpdateFigures& figures) {
   ++updates_;
-  for (const auto figure : kFigures) sum_.*figure += stats.*figure;
+  for (const auto& [figure, value] : figures.entries()) {
+    const auto at =
+        std::ranges::find(sums_, figure->name, [](const Sum& sum) { return sum.figure->name; });
+    if (at == sums_.end()) {
+      sums_.push_back({figure, value, 1});
+    } else {
+      at->sum += value;
+      ++at->count;
+    }
+  }
 }
 
-UpdateStats UpdateWindow::Mean() const {
-  UpdateStats mean = sum_;
-  if (updates_ == 0) return mean;
-  for (const auto figure : kFigures) mean.*figure /= static_cast<float>(updates_);
+UpdateFigures UpdateWindow::Mean() const {
+  UpdateFigures mean;
+  for (const Sum& sum : sums_) mean.Set(*sum.figure, sum.sum / sum.count);
   return mean;
 }
 

@@ -3,25 +3,33 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "common/wire/quantile_window.h"
-#include "learner/sac_agent.h"
+#include "learner/agent/update_figures.h"
 
 namespace shoal::learner {
 
 class UpdateWindow {
  public:
-  void Add(const UpdateStats& stats);
+  void Add(const UpdateFigures& figures);
   // Empties the window; the next interval begins.
   void Clear() { *this = UpdateWindow(); }
 
   int updates() const { return updates_; }
-  // Mean over the window's updates; all zero when it is empty.
-  UpdateStats Mean() const;
+  // Of each figure the mean over those of the window's updates that had it, in the order of first
+  // sight; what no update had is absent.
+  UpdateFigures Mean() const;
 
  private:
+  struct Sum {
+    const Figure* figure;
+    double sum;
+    int count;
+  };
+
   int updates_ = 0;
-  UpdateStats sum_;
+  std::vector<Sum> sums_;
 };
 
 // Adds the age of a batch's data: how many updates ago the weights that chose each action were

@@ -1,13 +1,12 @@
 #include "learner/weights_sender.h"
 
-#include "common/base/crc32.h"
 #include "common/config/lockstep.h"
 #include "common/nn/safetensors.h"
 
 namespace shoal::learner {
 
 WeightsSender::WeightsSender(const RunConfig& run, nn::Precision precision, uint64_t session,
-                             const SacAgent& agent, Outlet& outlet)
+                             const Agent& agent, Outlet& outlet)
     : config_(run.config),
       spec_hash_(run.spec.Hash()),
       session_(session),
@@ -32,7 +31,6 @@ void WeightsSender::Send(uint64_t env_steps) {
   message.version = {session_, agent_.updates()};
   message.env_steps = env_steps;
   message.payload = {reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()};
-  message.crc = Crc32(message.payload);
   due_ = !outlet_.Publish(message);
   ++(due_ ? unsent_ : sent_);
   last_sent_ = Now();

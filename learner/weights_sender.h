@@ -11,16 +11,17 @@
 
 #include "common/base/clock.h"
 #include "common/config/run_files.h"
+#include "common/nn/precision.h"
+#include "learner/agent/agent.h"
 #include "learner/outlet.h"
-#include "learner/sac_agent.h"
 
 namespace shoal::learner {
 
 // Borrows agent and outlet. One thread.
 class WeightsSender {
  public:
-  WeightsSender(const RunConfig& run, nn::Precision precision, uint64_t session,
-                const SacAgent& agent, Outlet& outlet);
+  WeightsSender(const RunConfig& run, nn::Precision precision, uint64_t session, const Agent& agent,
+                Outlet& outlet);
 
   // Call after each update: sends when it is time.
   void AfterUpdate(uint64_t env_steps);
@@ -43,7 +44,7 @@ class WeightsSender {
   const Config config_;
   const uint64_t spec_hash_, session_;
   const nn::Precision precision_;
-  const SacAgent& agent_;
+  const Agent& agent_;
   Outlet& outlet_;
   uint64_t period_;
   bool due_ = false;

@@ -7,7 +7,9 @@
 #include "common/base/log.h"
 #include "common/base/main_guard.h"
 #include "common/base/stop.h"
+#include "common/config/run_files.h"
 #include "common/dds/bus.h"
+#include "common/tasks/task_library.h"
 #include "replay_server/service/replay_service.h"
 
 namespace {
@@ -32,6 +34,7 @@ int Run(int argc, char** argv) {
   }
   shoal::InstallStopSignals();
   shoal::log::Start("replay-0", "");
+  shoal::tasks::LoadTaskLibrary(shoal::ReadRunConfig(folder).config.task_library);
   return shoal::replay::RunReplayService(folder, reach);
 }
 

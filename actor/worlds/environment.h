@@ -13,7 +13,7 @@
 namespace shoal::worlds {
 
 // Where an observation is written: frame (C, H, W) u8, row 0 = top, empty without pixels; vector
-// (V) f32, blocks in spec order. The caller owns the memory.
+// (R) f32, every block in spec order, observed or not. The caller owns the memory.
 struct ObservationOut {
   std::span<uint8_t> frame;
   std::span<float> vector;

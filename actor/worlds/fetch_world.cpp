@@ -22,10 +22,13 @@ void FetchWorld::ResetTo(const std::array<double, 3>& goal,
   PlaceObject(object_xy);
   // The target's marker sits on a body that neither moves nor turns.
   const double* body = model().body_pos + 3 * model().site_bodyid[target_site_];
-  for (int i = 0; i < 3; ++i) {
-    model().site_pos[3 * target_site_ + i] = goal[static_cast<size_t>(i)] - body[i];
-  }
+  PlaceSite(target_site_, std::array{goal[0] - body[0], goal[1] - body[1], goal[2] - body[2]});
   mj_forward(&model(), &data());
+}
+
+bool FetchWorld::HideGoal() {
+  model().site_rgba[4 * target_site_ + 3] = 0;
+  return true;
 }
 
 World::Outcome FetchWorld::Step(std::span<const double> action) {

@@ -24,6 +24,7 @@ class FetchWorld : public World {
   void ResetTo(const std::array<double, 3>& goal, const std::array<double, 2>& object_xy = {});
 
   Outcome Step(std::span<const double> action) final;
+  bool HideGoal() final;
   std::span<const CameraView> cameras() const final { return cameras_; }
 
   const FetchArm& arm() const { return arm_; }

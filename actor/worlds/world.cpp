@@ -4,6 +4,7 @@
 #include <sys/mman.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <utility>
 
 #include "actor/worlds/model_loading.h"
@@ -42,6 +43,13 @@ int World::JointId(const std::string& name) const { return ElementId(mjOBJ_JOINT
 int World::GeomId(const std::string& name) const { return ElementId(mjOBJ_GEOM, "geom", name); }
 int World::SensorId(const std::string& name) const {
   return ElementId(mjOBJ_SENSOR, "sensor", name);
+}
+
+void World::PlaceSite(int site, std::span<const double> position) {
+  CHECK(position.size() == 3) << position.size();
+  std::copy(position.begin(), position.end(), model_->site_pos + 3 * site);
+  model_->site_sameframe[site] =
+      0;  // 1: same frame as the body, decided when the model was compiled
 }
 
 void World::Advance(int count) {

@@ -38,6 +38,8 @@ class World {
   // The task's blocks; goals are empty for tasks without goals.
   virtual void Observe(std::span<double> observation, std::span<double> achieved_goal,
                        std::span<double> desired_goal) const = 0;
+  // From now on nothing that is drawn shows the goal. False: it is shown, and cannot be hidden.
+  virtual bool HideGoal() { return false; }
   // The first is the one to look at by default. Lives as long as the world.
   virtual std::span<const CameraView> cameras() const = 0;
 
@@ -62,6 +64,12 @@ class World {
   int JointId(const std::string& name) const;
   int GeomId(const std::string& name) const;
   int SensorId(const std::string& name) const;
+
+  // Puts a site, such as a target's marker, at `position` (x, y, z in m, in the frame of the body
+  // that carries it). The next forward call moves it. Writing site_pos alone is not enough: of a
+  // site that the model puts at its body's origin the engine copies the body's place and never
+  // looks at site_pos.
+  void PlaceSite(int site, std::span<const double> position);
 
  protected:
   // `count` engine steps, then CheckState.

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cmath>
 #include <limits>
+#include <set>
 #include <utility>
 
 #include "actor/worlds/custom_cameras.h"
@@ -19,7 +20,7 @@ namespace {
 
 // What makes frames comparable besides the model: quality and the views themselves.
 std::string RenderFingerprint(const std::string& model, const std::string& quality,
-                              const std::vector<CameraView>& cameras) {
+                              const std::vector<CameraView>& cameras, bool goal_hidden) {
   uint64_t hash =
       HashWords({HashBytes(model.data(), model.size()), HashBytes(quality.data(), quality.size())});
   for (const CameraView& camera : cameras) {
@@ -29,6 +30,7 @@ std::string RenderFingerprint(const std::string& model, const std::string& quali
       hash = HashWords({hash, std::bit_cast<uint64_t>(number)});
     }
   }
+  if (goal_hidden) hash = HashWords({hash, 1});
   return fmt::format("{:016x}", hash);
 }
 
@@ -54,10 +56,22 @@ WorldEnvironment::WorldEnvironment(const tasks::Task& task, std::unique_ptr<Worl
     for (const std::string& name : config.observation.cameras) {
       cameras_.push_back(ChooseCamera(*world_, config.observation, name));
     }
+    if (config.replay.hindsight != "none") HideGoal();
     render_->Attach(world_.get());
   }
   world_->ReleaseTextures();
   BuildSpec(config.observation);
+}
+
+void WorldEnvironment::HideGoal() {
+  if (task_.goal_size() > 0 && !world_->HideGoal()) {
+    throw UsageError(
+        "replay.hindsight from pixels: the pictures of task {} show the goal that was meant, and "
+        "it "
+        "cannot be hidden",
+        task_.name());
+  }
+  goal_hidden_ = true;
 }
 
 void WorldEnvironment::BuildSpec(const ObservationConfig& observation) {
@@ -79,17 +93,31 @@ void WorldEnvironment::BuildSpec(const ObservationConfig& observation) {
     spec_.height = render_->height();
     spec_.width = render_->width();
     spec_.model_fingerprint =
-        RenderFingerprint(world_->fingerprint(), observation.quality, cameras_);
+        RenderFingerprint(world_->fingerprint(), observation.quality, cameras_, goal_hidden_);
   }
-  if (observation.proprioception || render_ == nullptr) Publish(&observation_, task_.observation());
-  if (mode == "both") Publish(&achieved_goal_, task_.achieved_goal());
-  if (mode != "none") Publish(&desired_goal_, task_.desired_goal());
+  // Everything is recorded: it is little beside a frame, and without pixels it is what is seen.
+  AddStateBlocks(observation);
+  AddGoal(task_.achieved_goal(), mode == "both");
+  AddGoal(task_.desired_goal(), mode != "none");
 }
 
-void WorldEnvironment::Publish(Part* part, const tasks::Block& block) {
-  if (block.size() == 0) return;
-  part->published = true;
-  spec_.blocks.push_back({block.name, block.size()});
+void WorldEnvironment::AddStateBlocks(const ObservationConfig& observation) {
+  const StateBlocks& seen = observation.proprioception;
+  // Without pixels the policy sees the state, whatever else it is given.
+  const bool all = seen.all || (!seen && render_ == nullptr);
+  std::set<std::string> names(seen.names.begin(), seen.names.end());
+  std::string known;
+  for (const tasks::Block& block : task_.state_blocks()) {
+    spec_.blocks.push_back({block.name, block.size(), all || names.erase(block.name) > 0});
+    known += (known.empty() ? "" : ", ") + block.name;
+  }
+  if (names.empty()) return;
+  throw UsageError("observation.proprioception names a block '{}'; the state blocks of {} are: {}",
+                   *names.begin(), task_.name(), known);
+}
+
+void WorldEnvironment::AddGoal(const tasks::Block& block, bool observed) {
+  if (block.size() > 0) spec_.blocks.push_back({block.name, block.size(), observed});
 }
 
 // Fetches the state's numbers, rounded once to what records carry.
@@ -112,11 +140,11 @@ void WorldEnvironment::RoundBlock(const tasks::Block& block, Part* part) const {
 }
 
 void WorldEnvironment::Observe(ObservationOut out) {
-  CHECK(out.vector.size() == static_cast<size_t>(spec_.VectorSize())) << out.vector.size();
+  CHECK(out.vector.size() == static_cast<size_t>(spec_.RecordedVectorSize())) << out.vector.size();
   CHECK(out.frame.size() == static_cast<size_t>(spec_.FrameBytes())) << out.frame.size();
   auto to = out.vector.begin();
   for (const Part* part : {&observation_, &achieved_goal_, &desired_goal_}) {
-    if (part->published) to = std::copy(part->numbers.begin(), part->numbers.end(), to);
+    to = std::copy(part->numbers.begin(), part->numbers.end(), to);
   }
   if (render_ == nullptr) return;
   const ScopedSeconds timed(render_seconds_);

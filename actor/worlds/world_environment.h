@@ -19,8 +19,8 @@ namespace shoal::worlds {
 class WorldEnvironment final : public Environment {
  public:
   // `render` null = no pixels, whatever the configuration says of
-  // cameras. Of `config` it takes observation, randomization and action_repeat. Throws Error
-  // (kUsage) on a camera, goal mode or body that does not exist.
+  // cameras. Of `config` it takes observation, randomization, action_repeat and whether
+  // there is hindsight. Throws Error (kUsage) on a camera, goal mode or body that does not exist.
   WorldEnvironment(const tasks::Task& task, std::unique_ptr<World> world, const Config& config,
                    std::shared_ptr<RenderContext> render);
 
@@ -31,17 +31,19 @@ class WorldEnvironment final : public Environment {
   std::span<const DrawnMass> drawn_masses() const override { return masses_.drawn(); }
 
  private:
-  // A block of the task: its numbers as records carry them, and whether observations do.
+  // The state vector or a goal: the world's numbers, and these as records carry them.
   struct Part {
     std::vector<double> exact;
     std::vector<float> numbers;
-    bool published = false;
   };
 
+  // Where samples get goals of hindsight, pictures must not show the one that was meant.
+  void HideGoal();
   void BuildSpec(const ObservationConfig& observation);
+  void AddStateBlocks(const ObservationConfig& observation);
+  void AddGoal(const tasks::Block& block, bool observed);
   void CheckAction(std::span<const float> action);
   void StepWorld(StepResult* result);
-  void Publish(Part* part, const tasks::Block& block);
   void ReadWorld();
   void RoundBlock(const tasks::Block& block, Part* part) const;
   void Observe(ObservationOut out);
@@ -54,6 +56,7 @@ class WorldEnvironment final : public Environment {
   MassRandomization masses_;
   std::shared_ptr<RenderContext> render_;
   std::vector<CameraView> cameras_;
+  bool goal_hidden_ = false;
   ObservationSpec spec_;
   Part observation_, achieved_goal_, desired_goal_;
   std::vector<double> action_;

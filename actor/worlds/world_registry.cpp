@@ -13,9 +13,7 @@
 #include "actor/worlds/hopper.h"
 #include "actor/worlds/reacher_easy.h"
 #include "actor/worlds/walker_walk.h"
-#include "common/base/check.h"
 #include "common/base/error.h"
-#include "common/tasks/task_registry.h"
 
 namespace shoal::worlds {
 namespace {
@@ -49,7 +47,7 @@ constexpr Registration kWorlds[] = {
     {"walker_walk", OfModel<MakeWalkerWalk>},
 };
 
-// Added by RegisterTask.
+// Added by AddWorld.
 std::map<std::string, WorldMaker>& AddedWorlds() {
   static std::map<std::string, WorldMaker> worlds;
   return worlds;
@@ -62,15 +60,10 @@ bool IsOurs(const std::string& name) {
 
 }  // namespace
 
-void RegisterTask(tasks::Task goal_half, WorldMaker physics_half) {
-  const std::string world = goal_half.world();
-  const auto added = AddedWorlds().find(world);
-  if (IsOurs(world) || (added != AddedWorlds().end() && added->second != physics_half)) {
-    throw UsageError("task '{}': there is another physics half '{}' already", goal_half.name(),
-                     world);
+void AddWorld(const std::string& name, WorldMaker physics_half) {
+  if (IsOurs(name) || !AddedWorlds().emplace(name, physics_half).second) {
+    throw UsageError("there is a physics half '{}' already", name);
   }
-  tasks::AddTask(std::move(goal_half));
-  AddedWorlds()[world] = physics_half;
 }
 
 std::unique_ptr<World> MakeWorld(const std::string& name, const WorldOptions& options) {
@@ -84,8 +77,8 @@ std::unique_ptr<World> MakeWorld(const std::string& name, const WorldOptions& op
   if (const auto added = AddedWorlds().find(name); added != AddedWorlds().end()) {
     return added->second(options);
   }
-  CHECK(false) << "no physics half named " << name;
-  return nullptr;
+  throw UsageError("there is no physics half '{}': its goal half is registered, but no world",
+                   name);
 }
 
 const CameraView& FindCamera(const World& world, const std::string& name) {

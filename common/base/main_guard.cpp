@@ -10,15 +10,27 @@
 
 namespace shoal {
 
+namespace {
+
+// A reason may quote what came from outside: one line of a length that people read.
+constexpr size_t kReasonBytes = 1000;
+
+void PrintError(const char* program, const char* reason) {
+  std::fprintf(stderr, "%s: error: %s\n", program,
+               Shortened(OneLine(reason), kReasonBytes).c_str());
+}
+
+}  // namespace
+
 int GuardMain(const char* program, const std::function<int()>& body) {
   umask(0077);  // what a program writes is its user's own
   try {
     return body();
   } catch (const Error& e) {
-    std::fprintf(stderr, "%s: error: %s\n", program, OneLine(e.what()).c_str());
+    PrintError(program, e.what());
     return e.exit_code();
   } catch (const std::exception& e) {
-    std::fprintf(stderr, "%s: error: %s\n", program, OneLine(e.what()).c_str());
+    PrintError(program, e.what());
     return 1;
   }
 }

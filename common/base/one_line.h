@@ -16,4 +16,12 @@ inline std::string OneLine(std::string_view text) {
   return line;
 }
 
+// The first `most` bytes, without a character cut in two, and how much was left out.
+inline std::string Shortened(std::string_view text, size_t most) {
+  if (text.size() <= most) return std::string(text);
+  while (most > 0 && (static_cast<unsigned char>(text[most]) & 0xc0) == 0x80) --most;
+  return std::string(text.substr(0, most)) + "... (" + std::to_string(text.size() - most) +
+         " more bytes)";
+}
+
 }  // namespace shoal

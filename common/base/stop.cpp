@@ -31,9 +31,7 @@ void InstallStopSignals() {
 }
 
 void RequestStop() { requests.fetch_add(1, std::memory_order_relaxed); }
-bool StopRequested() {
-  return StopRequests() > 0 || hung_up.load(std::memory_order_relaxed);
-}
+bool StopRequested() { return StopRequests() > 0 || hung_up.load(std::memory_order_relaxed); }
 int StopRequests() { return requests.load(std::memory_order_relaxed); }
 
 }  // namespace shoal

@@ -11,6 +11,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "common/base/bounded_json.h"
 #include "common/base/crc32.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
@@ -56,7 +57,8 @@ ordered_json ToJson(const CheckpointState& state) {
           {"session", state.learner_session},
           {"config_hash", Hex64(state.config_hash)},
           {"spec_hash", Hex64(state.spec_hash)},
-          {"precision", state.precision}};
+          {"precision", state.precision},
+          {"algorithm", state.algorithm}};
 }
 
 CheckpointState StateFromJson(const ordered_json& json) {
@@ -68,14 +70,17 @@ CheckpointState StateFromJson(const ordered_json& json) {
   state.config_hash = ParseHex64(json.at("config_hash"));
   state.spec_hash = ParseHex64(json.at("spec_hash"));
   json.at("precision").get_to(state.precision);
+  // Those written before there was a choice do not say it.
+  if (json.contains("algorithm")) json.at("algorithm").get_to(state.algorithm);
   return state;
 }
 
 // The object of state.json with schema and own checksum verified.
 ordered_json ReadStateObject(const fs::path& path) {
   const std::string file = path.string();
-  ordered_json json = ordered_json::parse(ReadFile(path), nullptr, /*allow_exceptions=*/false);
-  if (!json.is_object()) throw RuntimeError("'{}': not a JSON object (truncated?)", file);
+  ordered_json json = ParseBoundedJson<ordered_json>(ReadFile(path));
+  if (!json.is_object())
+    throw RuntimeError("'{}': not a JSON object (truncated?), or nested too deep", file);
   const auto schema = json.find("schema");
   if (schema == json.end() || *schema != kSchema) {
     throw RuntimeError("'{}': schema {}, expected \"{}\"", file,

@@ -2,8 +2,8 @@
 //
 //   learner.safetensors  everything an exact resume needs
 //   policy.safetensors   what an actor needs, F32
-//   state.json           schema shoal-checkpoint-1: counters, session, hashes, precision, size and
-//                        CRC-32 of both files, and a CRC-32 of itself
+//   state.json           schema shoal-checkpoint-1: counters, session, hashes, precision,
+//                        algorithm, size and CRC-32 of both files, and a CRC-32 of itself
 //   .meta.json           schema shoal-checkpoint-meta-1: where it comes from, for people and tools
 //
 // It appears whole or not at all: written as a folder of another name, every file synced, renamed,
@@ -20,12 +20,13 @@ namespace shoal {
 
 struct CheckpointState {
   uint64_t updates = 0;
-  uint64_t env_steps = 0;        // stored in the replay when the last batch was drawn
-  uint64_t request = 0;          // of that batch
-  uint64_t learner_session = 0;  // that wrote it
-  uint64_t config_hash = 0;      // of the run's resolved configuration
-  uint64_t spec_hash = 0;        // of the observation spec
-  std::string precision;         // "f32" | "bf16": of the products; parameters are F32 either way
+  uint64_t env_steps = 0;         // stored in the replay when the last batch was drawn
+  uint64_t request = 0;           // of that batch
+  uint64_t learner_session = 0;   // that wrote it
+  uint64_t config_hash = 0;       // of the run's resolved configuration
+  uint64_t spec_hash = 0;         // of the observation spec
+  std::string precision;          // "f32" | "bf16": of the products; parameters are F32 either way
+  std::string algorithm = "sac";  // learner.algorithm
 
   bool operator==(const CheckpointState&) const = default;
 };

@@ -20,3 +20,14 @@ function(shoal_program name)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   shoal_warnings(${name})
 endfunction()
+
+# shoal_exports(PROGRAM LIBRARIES...): the program has all of these libraries, whether or not it uses
+# it itself, for the shared objects that it loads (docs/own_task.md).
+function(shoal_exports program)
+  target_link_libraries(${program} PRIVATE ${ARGN})
+  foreach(library ${ARGN})
+    target_link_options(${program} PRIVATE
+      LINKER:--whole-archive $<TARGET_FILE:${library}> LINKER:--no-whole-archive)
+  endforeach()
+  set_target_properties(${program} PROPERTIES ENABLE_EXPORTS ON)
+endfunction()

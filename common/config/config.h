@@ -7,7 +7,10 @@
 #include <cstdint>
 #include <map>
 #include <string>
+#include <utility>
 #include <vector>
+
+#include "common/config/schedule.h"
 
 namespace shoal {
 
@@ -22,6 +25,17 @@ struct CustomCamera {
   bool operator==(const CustomCamera&) const = default;
 };
 
+// Which of a task's state blocks a policy sees: all, none, or those named.
+struct StateBlocks {
+  bool all = false;
+  std::vector<std::string> names{};  // unless all
+
+  StateBlocks(bool every) : all(every) {}  // NOLINT(google-explicit-constructor): true | false
+  explicit StateBlocks(std::vector<std::string> some) : names(std::move(some)) {}
+  // Any.
+  explicit operator bool() const { return all || !names.empty(); }
+};
+
 struct ObservationConfig {
   bool pixels = true;
   std::vector<std::string> cameras{"front", "side"};
@@ -29,8 +43,8 @@ struct ObservationConfig {
   int height = 84, width = 84;
   int stack = 1;
   std::string goal_mode = "none";  // none | desired | both: goal vectors among the blocks
-  bool proprioception = false;     // the task's `observation` block
-  std::string quality = "fast";    // fast | reference
+  StateBlocks proprioception = false;
+  std::string quality = "fast";                        // fast | reference
   std::map<std::string, CustomCamera> custom_cameras;  // by name, beside the task's own
 };
 
@@ -48,10 +62,13 @@ struct ReplayConfig {
   int shift_pad = 4;               // DrQ shift in pixels, 0 = none
   int copies = 1;                  // batch elements per drawn transition, each shifted anew
   int n_step = 1;                  // steps whose rewards are summed before the next value
+  std::string hindsight = "none";  // none | future | final | episode: goals of an episode's own
+  int hindsight_goals = 4;         // N: a share N / (N + 1) of the samples is relabelled
   int window_chunks = 4;           // chunks an actor may have unacknowledged
 };
 
 struct LearnerConfig {
+  std::string algorithm = "sac";  // learner/agent/algorithms.h
   int batch = 128;
   std::string precision = "auto";  // auto | f32 | bf16
   int threads = 0;                 // 0 = half the cores this process may use, at least 1
@@ -69,13 +86,26 @@ struct LearnerConfig {
   int checkpoint_period = 2'000;  // updates between checkpoints
 };
 
+// What training actors play beyond what their policy says (actor/acting/exploration.h).
+struct ExplorationConfig {
+  std::string kind = "auto";                 // auto | squashed_gaussian | gaussian | ou
+  Schedule sigma = Schedule::Constant(0.1);  // deviation of gaussian and ou noise
+  double theta = 0.15;                       // ou: pull towards zero, per unit of time
+  double dt = 0.01;                          // ou: units of time per env step
+  int64_t random_steps = 0;                  // env steps of the run by uniform random actions
+  double spread = 1;  // actors' own factors of the noise: 1 / spread .. spread
+};
+
 struct NetworkConfig {
-  int pool = 2;                          // average pooling of the input, 1 = none
-  std::vector<int> filters{32, 32, 32};  // 3x3 convolutions
-  std::vector<int> strides{2, 1, 2};
-  int features = 50;                  // trunk: linear, LayerNorm, tanh
-  std::vector<int> hidden{256, 256};  // MLPs of actor and critics
-  bool layer_norm = true;             // after each hidden layer of the MLPs
+  std::string encoder = "compact";  // of pixels: compact | drq | mrq | nature
+  // Of the compact encoder alone; 0 and [] = its own values.
+  int pool = 0;  // average pooling of the input, 1 = none
+  std::vector<int> filters, strides;
+  std::string trunk = "auto";                 // auto = the encoder's own | tanh | relu
+  int features = 0;                           // outputs of the trunk; 0 = the encoder's own
+  std::vector<int> hidden{256, 256};          // MLPs of actor and critics
+  bool layer_norm = true;                     // after each hidden layer of the MLPs
+  std::string initialisation = "orthogonal";  // orthogonal | pytorch
 };
 
 struct EvalConfig {
@@ -103,6 +133,7 @@ struct Config {
   std::string run_name;  // empty = PRESET-sSEED
   std::string run_dir = "runs";
   std::string task = "FetchReachDense";
+  std::string task_library;       // shared object with tasks of one's own; empty = none
   double distance_threshold = 0;  // of success and sparse reward, m; 0 = the task's own
   int64_t env_steps = 100'000;    // budget
   int actors = 0;                 // 0 = one per core the learner leaves, at least 1
@@ -116,6 +147,7 @@ struct Config {
   RandomizationConfig randomization;
   ReplayConfig replay;
   LearnerConfig learner;
+  ExplorationConfig exploration;
   NetworkConfig network;
   EvalConfig eval;
   StopConfig stop;

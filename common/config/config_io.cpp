@@ -6,12 +6,14 @@
 #include <set>
 #include <type_traits>
 
+#include "common/base/bounded_json.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/base/one_line.h"
 #include "common/base/random.h"
 #include "common/config/config_keys.h"
-#include "common/config/custom_camera_json.h"
 #include "common/config/nearest_key.h"
+#include "common/config/value_json.h"
 
 namespace shoal {
 namespace {
@@ -35,8 +37,11 @@ bool IsUtf8(const std::string& text) {
   }
 }
 
+// What a refusal quotes of a value.
+std::string Shown(const json& value) { return Shortened(value.dump(), 200); }
+
 [[noreturn]] void Refuse(const Key& key, const json& value, const std::string& source) {
-  throw UsageError("{}: {} = {}: expected {}", source, key.path, value.dump(),
+  throw UsageError("{}: {} = {}: expected {}", source, key.path, Shown(value),
                    internal::Expected(key));
 }
 
@@ -95,6 +100,19 @@ bool Read(const json& value, const internal::Rule& rule, T* out) {
   } else if constexpr (std::is_same_v<T, std::string>) {
     if (!value.is_string() || !allows(value.get_ref<const std::string&>())) return false;
     *out = value.get<std::string>();
+    return true;
+  } else if constexpr (std::is_same_v<T, StateBlocks>) {
+    return internal::ReadStateBlocks(value, out);
+  } else if constexpr (std::is_same_v<T, Schedule>) {
+    double constant = 0;
+    if (Read(value, rule, &constant)) {
+      *out = Schedule::Constant(constant);
+      return true;
+    }
+    if (!value.is_string()) return false;
+    const auto schedule = ParseSchedule(value.get_ref<const std::string&>());
+    if (!schedule || !allows(schedule->start) || !allows(schedule->end)) return false;
+    *out = *schedule;
     return true;
   } else if constexpr (std::is_same_v<T, Intervals>) {
     if (!value.is_object()) return false;
@@ -159,7 +177,7 @@ void ApplySection(const json& object, const std::string& prefix, const std::stri
     } else if (!IsSection(path)) {
       RefuseUnknown(path, source);
     } else if (!value.is_object()) {
-      throw UsageError("{}: {} = {}: expected an object of keys", source, path, value.dump());
+      throw UsageError("{}: {} = {}: expected an object of keys", source, path, Shown(value));
     } else {
       ApplySection(value, path + ".", source, config);
     }
@@ -172,7 +190,7 @@ json AssignedValue(const Key& key, const std::string& text) {
   Config scratch;
   if (std::holds_alternative<std::string*>(key.slot(scratch)) && !text.starts_with('"'))
     return text;
-  json value = json::parse(text, nullptr, /*allow_exceptions=*/false);
+  json value = ParseBoundedJson<json>(text);
   return value.is_discarded() ? json(text) : value;
 }
 
@@ -220,7 +238,7 @@ void ApplyAssignments(const std::vector<std::string>& assignments, Config* confi
     }
     const size_t equals = assignment.find('=');
     if (equals == std::string::npos || equals == 0) {
-      throw UsageError("--set {}: expected KEY=VALUE", assignment);
+      throw UsageError("--set {}: expected KEY=VALUE", Shortened(assignment, 200));
     }
     const std::string path = assignment.substr(0, equals);
     const Key* key = FindKey(path);

@@ -14,7 +14,8 @@
 
 namespace shoal {
 
-// Parses strict JSON text: duplicate keys are refused. `source` names the text in errors.
+// Parses strict JSON text: duplicate keys and a nesting beyond kMaxJsonDepth are
+// refused. `source` names the text in errors.
 nlohmann::json ParseStrictJson(std::string_view text, const std::string& source);
 
 // Applies a (nested) JSON object of keys over `config`. `source` names it in errors.
@@ -31,8 +32,8 @@ void ApplyFile(const std::string& path, Config* config);
 // `assignments` is refused.
 void ApplyAssignments(const std::vector<std::string>& assignments, Config* config);
 
-// Checks that depend on several keys (chunk size, strides against filters, ...), after everything
-// is applied. Throws Error (kUsage).
+// Checks that depend on several keys, after everything is applied. Throws Error (kUsage). Whether
+// the networks fit what is observed is nn::CheckNetwork's to say.
 void Validate(const Config& config);
 
 // Every key, nested, in declaration order.

@@ -26,6 +26,8 @@ std::vector<Key> RunKeys() {
       SHOAL_SAME(run_name, FileName{true}, "name of the run's folder; empty = PRESET-sSEED"),
       SHOAL_SAME(run_dir, AnyValue{}, "folder that holds the runs"),
       SHOAL_SAME(task, FileName{}, "task to learn"),
+      SHOAL_SAME(task_library, AnyValue{},
+                 "path of a shared object with tasks of one's own; empty = none"),
       SHOAL_SAME(distance_threshold, (RealRange{0, 1000}),
                  "distance in m below which a goal is reached; 0 = the task's own"),
       SHOAL_SAME(env_steps, kSteps, "budget: training stops after this many env steps"),
@@ -56,7 +58,9 @@ std::vector<Key> ObservationKeys() {
       SHOAL_SAME(observation.stack, (IntegerRange{1, 16}), "frames per observation"),
       SHOAL_SAME(observation.goal_mode, (Choices{{"none", "desired", "both"}}),
                  "goal vectors among the observations (both = desired and achieved)"),
-      SHOAL_SAME(observation.proprioception, AnyValue{}, "the task's state vector"),
+      SHOAL_SAME(observation.proprioception, AnyValue{},
+                 "the task's state vector: all of it, nothing, or the blocks named (shoal env "
+                 "describe lists them)"),
       SHOAL_SAME(observation.quality, (Choices{{"fast", "reference"}}),
                  "fast = no shadows, reflections, multisampling; reference = as the originals"),
       SHOAL_SAME(observation.custom_cameras, AnyValue{},
@@ -89,6 +93,12 @@ std::vector<Key> ReplayKeys() {
           "batch elements per drawn transition, each shifted anew, one target for all; DrQ: 2"),
       SHOAL_SAME(replay.n_step, (IntegerRange{1, 20}),
                  "steps whose rewards are summed before the next value; all within an episode"),
+      SHOAL_SAME(
+          replay.hindsight, (Choices{{"none", "future", "final", "episode"}}),
+          "goals that samples are given besides their own: achieved by the same episode after "
+          "the step, at its end, or anywhere; for tasks with goals"),
+      SHOAL_SAME(replay.hindsight_goals, (IntegerRange{0, 1000}),
+                 "N: a share N / (N + 1) of the samples gets another goal"),
       SHOAL_SAME(replay.window_chunks, (IntegerRange{2, 1024}),
                  "chunks an actor may have unacknowledged"),
   };
@@ -97,9 +107,12 @@ std::vector<Key> ReplayKeys() {
 std::vector<Key> LearnerKeys() {
   const RealRange positive{0, 1, true};
   return {
+      SHOAL_SAME(learner.algorithm, (Choices{{"sac", "td3", "ddpg"}}),
+                 "what learns: docs/algorithm.md"),
       SHOAL_SAME(learner.batch, (IntegerRange{1, 65'536}), "transitions per update"),
       SHOAL_SAME(learner.precision, (Choices{{"auto", "f32", "bf16"}}),
-                 "arithmetic of the large products; auto = bf16 where the CPU has it natively"),
+                 "arithmetic of the large products; auto = bf16 with pixels "
+                 "where the CPU has it natively, else f32"),
       SHOAL_SAME(learner.threads, (IntegerRange{0, 1024}),
                  "threads of the learner; 0 = half the cores this process may use, at least 1"),
       SHOAL_SAME(learner.learning_rate, positive, "Adam step of actor, critic and temperature"),
@@ -124,14 +137,43 @@ std::vector<Key> LearnerKeys() {
   };
 }
 
+std::vector<Key> ExplorationKeys() {
+  return {
+      SHOAL_SAME(exploration.kind, (Choices{{"auto", "squashed_gaussian", "gaussian", "ou"}}),
+                 "noise of the training actors; auto = what the algorithm wants"),
+      SHOAL_SAME(exploration.sigma, (RealRange{0, 10}),
+                 "deviation of gaussian and ou noise, over the run's env steps"),
+      SHOAL_SAME(exploration.theta, (RealRange{0, 1000}), "ou: pull towards zero per unit of time"),
+      SHOAL_SAME(exploration.dt, (RealRange{0, 1, true}), "ou: units of time per env step"),
+      SHOAL_SAME(exploration.random_steps, (IntegerRange{0, 1'000'000'000'000}),
+                 "env steps of the run, shared by the actors, that are played by uniform random "
+                 "actions; until the first weights all are"),
+      SHOAL_SAME(exploration.spread, (RealRange{1, 100}),
+                 "noise of N actors is multiplied by factors from 1/spread to spread, "
+                 "geometrically even; 1 = all alike"),
+  };
+}
+
 std::vector<Key> NetworkKeys() {
   return {
-      SHOAL_SAME(network.pool, (IntegerRange{1, 16}), "average pooling of the images; 1 = none"),
-      SHOAL_SAME(network.filters, (IntegerRange{1, 4096}), "channels of each 3x3 convolution"),
-      SHOAL_SAME(network.strides, (IntegerRange{1, 8}), "stride of each convolution"),
-      SHOAL_SAME(network.features, (IntegerRange{1, 65'536}), "outputs of the trunk"),
+      SHOAL_SAME(network.encoder, (Choices{{"compact", "drq", "mrq", "nature"}}),
+                 "from pixels to a feature map"),
+      SHOAL_SAME(network.pool, (IntegerRange{0, 16}),
+                 "compact: average pooling of the images; 0 = 2, 1 = none"),
+      SHOAL_SAME(network.filters, (IntegerRange{1, 4096}),
+                 "compact: channels of each 3x3 convolution; [] = [32,32,32]"),
+      SHOAL_SAME(network.strides, (IntegerRange{1, 8}),
+                 "compact: stride of each convolution; [] = [2,1,2]"),
+      SHOAL_SAME(
+          network.trunk, (Choices{{"auto", "tanh", "relu"}}),
+          "over the feature map: tanh = linear, LayerNorm, tanh; relu = linear, ReLU; auto = "
+          "the encoder's own: relu of nature, else tanh"),
+      SHOAL_SAME(network.features, (IntegerRange{0, 65'536}),
+                 "outputs of the trunk; 0 = the encoder's own: 512 of nature, else 50"),
       SHOAL_SAME(network.hidden, (IntegerRange{1, 65'536}), "hidden layers of actor and critics"),
       SHOAL_SAME(network.layer_norm, AnyValue{}, "LayerNorm after each hidden layer"),
+      SHOAL_SAME(network.initialisation, (Choices{{"orthogonal", "pytorch"}}),
+                 "how weights start: orthogonal, biases 0; or uniform as PyTorch's layers do"),
   };
 }
 
@@ -168,8 +210,9 @@ std::vector<Key> TransportKeys() {
 
 std::vector<Key> AllKeys() {
   std::vector<Key> all;
-  for (const auto& section : {RunKeys(), ObservationKeys(), RandomizationKeys(), ReplayKeys(),
-                              LearnerKeys(), NetworkKeys(), EvalKeys(), TransportKeys()}) {
+  for (const auto& section :
+       {RunKeys(), ObservationKeys(), RandomizationKeys(), ReplayKeys(), LearnerKeys(),
+        ExplorationKeys(), NetworkKeys(), EvalKeys(), TransportKeys()}) {
     all.insert(all.end(), section.begin(), section.end());
   }
   return all;
@@ -200,10 +243,16 @@ struct TypeText {
   std::string operator()(const int64_t*) const { return "an integer"; }
   std::string operator()(const double*) const { return "a number"; }
   std::string operator()(const std::string*) const { return "a string"; }
+  std::string operator()(const StateBlocks*) const {
+    return "true, false or a list of block names";
+  }
   std::string operator()(const std::vector<int>*) const { return "a list of integers"; }
   std::string operator()(const std::vector<std::string>*) const { return "a list of strings"; }
   std::string operator()(const std::map<std::string, std::array<double, 2>>*) const {
     return "an object of intervals {name: [low, high], ...}, low <= high, each";
+  }
+  std::string operator()(const Schedule*) const {
+    return "a number, or \"linear(START,END,ENV_STEPS)\", each end";
   }
   std::string operator()(const std::map<std::string, CustomCamera>*) const {
     return "an object {name: {lookat: [x, y, z], distance: > 0, azimuth, elevation: -90..90}, ...}";

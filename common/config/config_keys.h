@@ -16,16 +16,17 @@
 namespace shoal::internal {
 
 // The member of a Config that a key names. Borrows the Config.
-using Slot = std::variant<bool*, int*, int64_t*, double*, std::string*, std::vector<int>*,
-                          std::vector<std::string>*, std::map<std::string, std::array<double, 2>>*,
-                          std::map<std::string, CustomCamera>*>;
+using Slot =
+    std::variant<bool*, int*, int64_t*, double*, std::string*, StateBlocks*, std::vector<int>*,
+                 std::vector<std::string>*, std::map<std::string, std::array<double, 2>>*,
+                 std::map<std::string, CustomCamera>*, Schedule*>;
 
 // Bounds of an integer, or of each element of a list of integers; both ends included.
 struct IntegerRange {
   int64_t low, high;
 };
-// Bounds of a real number, or of both ends of each interval of a map; `high` is included, `low`
-// unless open.
+// Bounds of a real number, of both ends of a schedule or of each interval of a map; `high` is
+// included, `low` unless open.
 struct RealRange {
   double low, high;
   bool low_open = false, high_open = false;

@@ -4,7 +4,7 @@
 
 #include "common/config/config_io.h"
 #include "common/config/config_keys.h"
-#include "common/config/custom_camera_json.h"
+#include "common/config/value_json.h"
 
 namespace shoal {
 namespace {

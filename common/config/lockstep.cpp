@@ -16,6 +16,14 @@ double UpdatesPerPhase(const Config& config) {
   return ratio * config.lockstep_steps * config.envs_per_actor / config.learner.batch;
 }
 
+int64_t LastPhase(const Config& config) {
+  const int64_t envs = config.envs_per_actor;
+  const int64_t vector_steps = (config.env_steps + envs - 1) / envs;
+  const int64_t beyond = vector_steps - LockstepVectorStepsAtPhaseEnd(config, 0);
+  const int64_t period = config.lockstep_steps;
+  return beyond <= 0 ? 0 : (beyond + period - 1) / period;
+}
+
 }  // namespace
 
 int64_t LockstepVectorStepsAtPhaseEnd(const Config& config, int64_t phase) {
@@ -42,12 +50,13 @@ uint64_t LockstepStepsBeforeUpdate(const Config& config, uint64_t update) {
                                config.envs_per_actor);
 }
 
+uint64_t LockstepEnvSteps(const Config& config) {
+  const int64_t vector_steps = LockstepVectorStepsAtPhaseEnd(config, LastPhase(config));
+  return static_cast<uint64_t>(vector_steps * config.envs_per_actor);
+}
+
 uint64_t LockstepLastUpdate(const Config& config) {
-  const int64_t envs = config.envs_per_actor;
-  const int64_t vector_steps = (config.env_steps + envs - 1) / envs;
-  const int64_t beyond = vector_steps - LockstepVectorStepsAtPhaseEnd(config, 0);
-  const int64_t period = config.lockstep_steps;
-  return LockstepUpdatesAtPhaseEnd(config, beyond <= 0 ? 0 : (beyond + period - 1) / period);
+  return LockstepUpdatesAtPhaseEnd(config, LastPhase(config));
 }
 
 }  // namespace shoal

@@ -33,8 +33,10 @@ uint64_t LockstepUpdatesAtPhaseEnd(const Config& config, int64_t phase);
 // Step records that must be stored before the batch of update `update` >= 1 is drawn.
 uint64_t LockstepStepsBeforeUpdate(const Config& config, uint64_t update);
 
-// The run's last update: that of the first phase at whose end config.env_steps steps are stored.
-// The learner asks for no batch beyond it, so that where a run ends does not depend on timing.
+// Where a run ends: with the first phase at whose end config.env_steps steps are stored. Its steps
+// and its last update: none is told to drain before those, nor asks for a batch beyond, so that where
+// a run ends does not depend on timing.
+uint64_t LockstepEnvSteps(const Config& config);
 uint64_t LockstepLastUpdate(const Config& config);
 
 }  // namespace shoal

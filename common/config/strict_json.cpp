@@ -1,7 +1,9 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "common/base/bounded_json.h"
 #include "common/base/error.h"
+#include "common/base/one_line.h"
 #include "common/config/config_io.h"
 
 namespace shoal {
@@ -41,14 +43,17 @@ class DuplicateGuard {
 
 // "[json.exception.parse_error.101] parse error at line 1, ..." without the bracketed name.
 std::string Reason(const json::exception& error) {
-  const std::string text = error.what();
+  const std::string_view text = error.what();
   const size_t end = text.find("] ");
-  return end == std::string::npos ? text : text.substr(end + 2);
+  return Shortened(end == text.npos ? text : text.substr(end + 2), 300);
 }
 
 }  // namespace
 
 json ParseStrictJson(std::string_view text, const std::string& source) {
+  if (JsonTooDeep(text)) {
+    throw UsageError("{}: nested more than {} deep", source, kMaxJsonDepth);
+  }
   DuplicateGuard guard(source);
   const auto callback = [&](int, json::parse_event_t event, json& parsed) {
     guard.OnEvent(event, parsed);

@@ -3,6 +3,7 @@
 
 #include "common/base/error.h"
 #include "common/config/config_io.h"
+#include "common/config/exploration_kind.h"
 
 namespace shoal {
 namespace {
@@ -10,8 +11,7 @@ namespace {
 constexpr int64_t kMaxFrameBytes = 1'000'000;  // a record must fit one DDS sample
 
 void ValidateObservation(const ObservationConfig& observation) {
-  const bool vectors = observation.goal_mode != "none" || observation.proprioception;
-  if (!observation.pixels && !vectors) {
+  if (!observation.pixels && observation.goal_mode == "none" && !observation.proprioception) {
     throw UsageError(
         "observation.pixels = false, goal_mode = none, proprioception = false: nothing to observe");
   }
@@ -36,25 +36,19 @@ void ValidateObservation(const ObservationConfig& observation) {
   }
 }
 
-// 3x3 convolutions without padding must leave at least one pixel.
-void ValidateEncoder(const NetworkConfig& network, const ObservationConfig& observation) {
-  if (network.filters.empty() || network.filters.size() != network.strides.size()) {
+void ValidateExploration(const Config& config) {
+  const ExplorationConfig& exploration = config.exploration;
+  if (exploration.kind == "squashed_gaussian" && !LearnsDeviation(config)) {
     throw UsageError(
-        "network.filters has {} entries and network.strides {}: expected as many, >= 1",
-        network.filters.size(), network.strides.size());
+        "exploration.kind = squashed_gaussian: the policy of learner.algorithm = {} has no "
+        "deviation of its own; expected auto | gaussian | ou",
+        config.learner.algorithm);
   }
-  if (observation.height % network.pool != 0 || observation.width % network.pool != 0) {
-    throw UsageError("network.pool = {}: expected a divisor of the image size {}x{}", network.pool,
-                     observation.height, observation.width);
-  }
-  int height = observation.height / network.pool, width = observation.width / network.pool;
-  for (size_t i = 0; i < network.strides.size(); ++i) {
-    if (height < 3 || width < 3) {
-      throw UsageError("network.strides: images of {}x{} shrink to {}x{} before convolution {}",
-                       observation.height, observation.width, height, width, i + 1);
-    }
-    height = (height - 3) / network.strides[i] + 1;
-    width = (width - 3) / network.strides[i] + 1;
+  if (exploration.theta * exploration.dt > 1) {
+    throw UsageError(
+        "exploration.theta = {}, exploration.dt = {}: expected a product of at most 1, else the "
+        "noise overshoots zero in each step",
+        exploration.theta, exploration.dt);
   }
 }
 
@@ -62,7 +56,7 @@ void ValidateEncoder(const NetworkConfig& network, const ObservationConfig& obse
 
 void Validate(const Config& config) {
   ValidateObservation(config.observation);
-  if (config.observation.pixels) ValidateEncoder(config.network, config.observation);
+  ValidateExploration(config);
   if (config.run_dir.empty()) throw UsageError("run_dir = \"\": expected a folder");
   if (config.transport.interface.empty()) {
     throw UsageError("transport.interface = \"\": expected a network interface");

@@ -19,15 +19,17 @@ bool ParseCdr(std::span<const uint8_t> cdr, TransitionChunk* message) {
   message->first_sequence = reader.Read<uint64_t>();
   message->count = reader.Read<uint32_t>();
   message->payload = reader.ReadBytes();
-  return reader.Finished() && version == kBulkVersion && message->count > 0 &&
-         message->first_sequence > 0 && message->first_sequence <= UINT64_MAX - message->count &&
-         !message->payload.empty() && message->payload.size() % message->count == 0;
+  const bool sized = message->count == 0 ? message->payload.empty()
+                                         : !message->payload.empty() &&
+                                               message->payload.size() % message->count == 0;
+  return reader.Finished() && version == kBulkVersion && sized && message->first_sequence > 0 &&
+         message->first_sequence <= UINT64_MAX - message->count;
 }
 
-bool ParseCdr(std::span<const uint8_t> cdr, BatchShard* message) {
+bool ParseCdr(std::span<const uint8_t> cdr, BatchPart* message) {
   CdrReader reader = Reader(cdr);
   const auto version = reader.Read<uint8_t>();
-  message->shard = reader.Read<uint32_t>();
+  message->part = reader.Read<uint32_t>();
   message->spec_hash = reader.Read<uint64_t>();
   message->learner_session = reader.Read<uint64_t>();
   message->request = reader.Read<uint64_t>();
@@ -35,25 +37,27 @@ bool ParseCdr(std::span<const uint8_t> cdr, BatchShard* message) {
   message->total_bytes = reader.Read<uint64_t>();
   message->stored_records = reader.Read<uint64_t>();
   message->stored_steps = reader.Read<uint64_t>();
-  message->shards = reader.Read<uint32_t>();
+  message->parts = reader.Read<uint32_t>();
   message->payload = reader.ReadBytes();
-  return reader.Finished() && version == kBulkVersion && message->shard < message->shards &&
+  return reader.Finished() && version == kBulkVersion && message->part < message->parts &&
          !message->payload.empty() && message->offset <= message->total_bytes &&
          message->payload.size() <= message->total_bytes - message->offset;
 }
 
-bool ParseCdr(std::span<const uint8_t> cdr, WeightsMessage* message) {
+bool ParseCdr(std::span<const uint8_t> cdr, WeightsPart* message) {
   CdrReader reader = Reader(cdr);
   const auto version = reader.Read<uint8_t>();
+  message->part = reader.Read<uint32_t>();
   message->spec_hash = reader.Read<uint64_t>();
   message->version.session = reader.Read<uint64_t>();
   message->version.update = reader.Read<uint64_t>();
   message->env_steps = reader.Read<uint64_t>();
+  message->total_bytes = reader.Read<uint64_t>();
   message->crc = reader.Read<uint32_t>();
   message->payload = reader.ReadBytes();
   message->checkpoint = OneLine(reader.ReadString());
-  return reader.Finished() && version == kBulkVersion && message->version.session > 0 &&
-         !message->payload.empty();
+  return reader.Finished() && version == kWeightsVersion && message->version.session > 0 &&
+         !message->payload.empty() && message->payload.size() <= message->total_bytes;
 }
 
 }  // namespace shoal::dds

@@ -16,12 +16,13 @@ namespace shoal::dds {
 
 // First byte of every bulk message; others are refused.
 inline constexpr uint8_t kBulkVersion = 1;
+inline constexpr uint8_t kWeightsVersion = 2;  // of weights, which 1 sent whole
 
 // False when the bytes are truncated, of another version or inconsistent; `message` is then
 // unspecified. The message's payload borrows `cdr`; where `cdr` starts 4 bytes before a multiple of
 // 8, as Cyclone's buffers do, payloads are aligned to 8.
 bool ParseCdr(std::span<const uint8_t> cdr, TransitionChunk* message);
-bool ParseCdr(std::span<const uint8_t> cdr, BatchShard* message);
-bool ParseCdr(std::span<const uint8_t> cdr, WeightsMessage* message);
+bool ParseCdr(std::span<const uint8_t> cdr, BatchPart* message);
+bool ParseCdr(std::span<const uint8_t> cdr, WeightsPart* message);
 
 }  // namespace shoal::dds

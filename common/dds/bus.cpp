@@ -108,6 +108,13 @@ void Bus::SetDeafMute(bool deaf, bool mute, std::chrono::milliseconds reset_afte
   }
 }
 
+std::map<std::string, uint64_t> Bus::Malformed() const {
+  const MutexLock lock(impl_->mutex);
+  std::map<std::string, uint64_t> counts;
+  for (const auto& [topic, counter] : impl_->malformed) counts[topic] = *counter;
+  return counts;
+}
+
 int OperatePort(const ClusterAddress& address) {
   return DiscoveryPort(PlaneDomain(address, Plane::kOperate), ParticipantIndex(Role::kCoordinator));
 }

@@ -9,6 +9,8 @@
 #pragma once
 
 #include <chrono>
+#include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -18,8 +20,9 @@
 
 namespace shoal::dds {
 
-// kClient: a program that watches or steers a run from outside.
-enum class Role { kCoordinator, kLearner, kReplay, kActor, kClient };
+// kActor: a training actor. kEval: the evaluation actor. kClient: a program that watches or steers
+// a run from outside.
+enum class Role { kCoordinator, kLearner, kReplay, kActor, kEval, kClient };
 
 // kMain: domain D. kBatch: domain D+1. kOperate: domain D+1 without a tag.
 enum class Plane { kMain, kBatch, kOperate };
@@ -47,6 +50,10 @@ class Bus {
   // For tests of faults: drops everything that arrives (deaf) and that is sent (mute), in both
   // domains, and ends both after `reset_after`.
   void SetDeafMute(bool deaf, bool mute, std::chrono::milliseconds reset_after);
+
+  // Messages that could not be read, by topic, since the bus was made; every topic that a
+  // subscriber read at some time. Any thread.
+  std::map<std::string, uint64_t> Malformed() const;
 
   // Implementation access for publisher.h / subscriber.h. Internal.
   struct Impl;

@@ -1,7 +1,13 @@
 // What a Bus owns. Internal to common/dds.
 #pragma once
 
+#include <atomic>
+#include <map>
+#include <memory>
+#include <string>
+
 #include "common/base/error.h"
+#include "common/base/mutex.h"
 #include "common/dds/bus.h"
 #include "common/dds/entity.h"
 
@@ -18,6 +24,17 @@ struct Bus::Impl {
   Entity main_domain, main_participant;        // all but clients
   Entity batch_domain, batch_participant;      // learner and replay
   Entity operate_domain, operate_participant;  // coordinator and clients
+
+  // The counter of a topic's malformed messages: its readers' and the bus's.
+  std::shared_ptr<std::atomic<uint64_t>> MalformedCounter(const std::string& topic) {
+    const MutexLock lock(mutex);
+    auto& counter = malformed[topic];
+    if (!counter) counter = std::make_shared<std::atomic<uint64_t>>(0);
+    return counter;
+  }
+
+  mutable Mutex mutex;
+  std::map<std::string, std::shared_ptr<std::atomic<uint64_t>>> malformed SHOAL_GUARDED_BY(mutex);
 
   dds_entity_t Participant(Plane plane) const {
     switch (plane) {

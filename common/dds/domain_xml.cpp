@@ -6,8 +6,8 @@
 
 #include "common/base/check.h"
 #include "common/base/error.h"
+#include "common/base/escape_markup.h"
 #include "common/base/files.h"
-#include "common/dds/escape_xml.h"
 #include "common/dds/host_network.h"
 #include "common/dds/security_xml.h"
 
@@ -66,7 +66,7 @@ std::string PeersElement(const ClusterAddress& address, Role role, Plane plane) 
   std::string element = "<Peers>";
   for (const Role peer : Peers(role, plane)) {
     if (peer == role) continue;
-    element += fmt::format("<Peer Address=\"{}:{}\"/>", EscapeXml(address.host),
+    element += fmt::format("<Peer Address=\"{}:{}\"/>", EscapeMarkup(address.host),
                            DiscoveryPort(PlaneDomain(address, plane), ParticipantIndex(peer)));
   }
   return element + "</Peers>";
@@ -119,6 +119,7 @@ int ParticipantIndex(Role role) {
     case Role::kReplay:
       return 2;
     case Role::kActor:
+    case Role::kEval:
     case Role::kClient:
       return -1;
   }
@@ -136,6 +137,8 @@ const char* RoleName(Role role) {
       return "replay";
     case Role::kActor:
       return "actor";
+    case Role::kEval:
+      return "eval";
     case Role::kClient:
       return "client";
   }
@@ -164,9 +167,9 @@ std::string RenderDomainXml(std::string_view xml_template, const ClusterAddress&
   const char* attribute = IsAddress(transport.interface) ? "address" : "name";
   return Substitute(
       xml_template,
-      {{"INTERFACE", fmt::format("{}=\"{}\"", attribute, EscapeXml(transport.interface))},
+      {{"INTERFACE", fmt::format("{}=\"{}\"", attribute, EscapeMarkup(transport.interface))},
        {"FRAGMENT_BYTES", std::to_string(transport.fragment_bytes)},
-       {"TAG", plane == Plane::kOperate ? "" : EscapeXml(address.tag)},
+       {"TAG", plane == Plane::kOperate ? "" : EscapeMarkup(address.tag)},
        {"INDEX", index < 0 ? "none" : std::to_string(index)},
        {"PEERS", PeersElement(address, role, plane)},
        {"WATERMARKS", WatermarksElement(role)},

@@ -1,5 +1,6 @@
 #include "common/dds/message_cdr.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -29,6 +30,7 @@ Credit ReadCredit(CdrReader* reader) {
     credit.stored = reader->Read<uint64_t>();
     credit.allowed = reader->Read<uint64_t>();
     credit.spec_hash = reader->Read<uint64_t>();
+    credit.superseded_by = reader->Read<uint64_t>();
   });
   return credit;
 }
@@ -48,9 +50,27 @@ MetricsMessage ReadMetrics(CdrReader* reader) {
   return message;
 }
 
+// No report of ours has a tenth of it; a reader keeps the newest of each process.
+constexpr size_t kMostFigures = 1000;
+constexpr size_t kMostNameBytes = 200;
+
+bool IsShort(const std::string& name) { return name.size() <= kMostNameBytes; }
+
 bool MakesSense(const MetricsMessage& message) {
   return !message.role.empty() && message.names.size() == message.values.size() &&
-         std::isfinite(message.time);
+         message.names.size() <= kMostFigures && std::isfinite(message.time) &&
+         IsShort(message.role) && IsShort(message.host) && IsShort(message.state) &&
+         std::ranges::all_of(message.names, IsShort);
+}
+
+EvaluationRequest ReadEvaluation(CdrReader* reader) {
+  EvaluationRequest evaluation;
+  reader->ReadAppendable([&] {
+    evaluation.update = reader->Read<uint64_t>();
+    evaluation.env_steps = reader->Read<uint64_t>();
+    evaluation.checkpoint = Text(reader);
+  });
+  return evaluation;
 }
 
 RunEvent ReadEvent(CdrReader* reader) {
@@ -87,6 +107,7 @@ bool ParseCdr(std::span<const uint8_t> cdr, SampleRequest* message) {
     message->request = reader.Read<uint64_t>();
     message->after_steps = reader.Read<uint64_t>();
     message->batch = reader.Read<uint32_t>();
+    message->schema_hash = reader.Read<uint64_t>();
   });
   return reader.Finished() && message->learner_session > 0 && message->request > 0 &&
          message->batch > 0;
@@ -96,6 +117,34 @@ bool ParseCdr(std::span<const uint8_t> cdr, MetricsMessage* message) {
   CdrReader reader = Reader(cdr);
   *message = ReadMetrics(&reader);
   return reader.Finished() && MakesSense(*message);
+}
+
+bool ParseCdr(std::span<const uint8_t> cdr, ReplayProgress* message) {
+  CdrReader reader = Reader(cdr);
+  reader.ReadAppendable([&] {
+    message->replay = reader.Read<uint32_t>();
+    message->session = reader.Read<uint64_t>();
+    message->stored_steps = reader.Read<uint64_t>();
+    message->stored_records = reader.Read<uint64_t>();
+  });
+  return reader.Finished() && message->session > 0;
+}
+
+bool ParseCdr(std::span<const uint8_t> cdr, LearnerProgress* message) {
+  CdrReader reader = Reader(cdr);
+  message->evaluations.clear();
+  reader.ReadAppendable([&] {
+    message->session = reader.Read<uint64_t>();
+    message->updates = reader.Read<uint64_t>();
+    message->env_steps = reader.Read<uint64_t>();
+    message->drained = reader.Read<uint8_t>() != 0;
+    reader.ReadCollection([&] { message->evaluations.push_back(ReadEvaluation(&reader)); });
+  });
+  return reader.Finished() && message->session > 0 &&
+         message->evaluations.size() <= LearnerProgress::kMostEvaluations &&
+         std::ranges::all_of(message->evaluations, [&](const EvaluationRequest& evaluation) {
+           return evaluation.update <= message->updates;
+         });
 }
 
 bool ParseCdr(std::span<const uint8_t> cdr, ControlMessage* message) {
@@ -109,7 +158,9 @@ bool ParseCdr(std::span<const uint8_t> cdr, ControlMessage* message) {
   });
   const bool known = message->state == RunState::kRunning ||
                      message->state == RunState::kDraining || message->state == RunState::kStopping;
+  const auto finite = [](double value) { return std::isfinite(value); };
   return reader.Finished() && known && std::isfinite(message->time) &&
+         std::ranges::all_of(message->setting_values, finite) &&
          message->setting_names.size() == message->setting_values.size();
 }
 
@@ -164,6 +215,9 @@ bool ParseCdr(std::span<const uint8_t> cdr, ReplyMessage* message) {
     message->request = reader.Read<uint64_t>();
     message->accepted = reader.Read<uint8_t>() != 0;
     message->text = Text(&reader);
+    message->key = Text(&reader);
+    message->from = reader.Read<double>();
+    message->to = reader.Read<double>();
   });
   return reader.Finished() && message->client > 0 && message->request > 0;
 }

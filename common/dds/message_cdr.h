@@ -18,6 +18,8 @@ namespace shoal::dds {
 bool ParseCdr(std::span<const uint8_t> cdr, CreditsMessage* message);
 bool ParseCdr(std::span<const uint8_t> cdr, SampleRequest* message);
 bool ParseCdr(std::span<const uint8_t> cdr, MetricsMessage* message);
+bool ParseCdr(std::span<const uint8_t> cdr, ReplayProgress* message);
+bool ParseCdr(std::span<const uint8_t> cdr, LearnerProgress* message);
 bool ParseCdr(std::span<const uint8_t> cdr, ControlMessage* message);
 bool ParseCdr(std::span<const uint8_t> cdr, EvalMessage* message);
 bool ParseCdr(std::span<const uint8_t> cdr, RunViewMessage* message);

@@ -69,17 +69,8 @@ bool Publisher<M>::WaitForAcks(std::chrono::milliseconds deadline) {
   return dds_wait_for_acks(impl_->writer.get(), DDS_MSECS(deadline.count())) == DDS_RETCODE_OK;
 }
 
-template class Publisher<TransitionChunk>;
-template class Publisher<CreditsMessage>;
-template class Publisher<SampleRequest>;
-template class Publisher<BatchShard>;
-template class Publisher<WeightsMessage>;
-template class Publisher<EvalWeightsMessage>;
-template class Publisher<MetricsMessage>;
-template class Publisher<ControlMessage>;
-template class Publisher<EvalMessage>;
-template class Publisher<RunViewMessage>;
-template class Publisher<CommandMessage>;
-template class Publisher<ReplyMessage>;
+#define SHOAL_INSTANTIATE(message, ...) template class Publisher<message>;
+SHOAL_MESSAGES(SHOAL_INSTANTIATE)
+#undef SHOAL_INSTANTIATE
 
 }  // namespace shoal::dds

@@ -7,11 +7,12 @@
 #include <memory>
 
 #include "common/dds/bus.h"
+#include "common/dds/message_list.h"
 #include "common/wire/messages.h"
 
 namespace shoal::dds {
 
-// Upper bound of a payload in bytes; receivers drop larger samples. Speed wants chunks and shards
+// Upper bound of a payload in bytes; receivers drop larger samples. Speed wants chunks and parts
 // of at most 1 MB.
 inline constexpr uint64_t kMaxPayloadBytes = 63'000'000;
 
@@ -39,17 +40,8 @@ class Publisher {
   std::unique_ptr<Impl> impl_;
 };
 
-extern template class Publisher<TransitionChunk>;
-extern template class Publisher<CreditsMessage>;
-extern template class Publisher<SampleRequest>;
-extern template class Publisher<BatchShard>;
-extern template class Publisher<WeightsMessage>;
-extern template class Publisher<EvalWeightsMessage>;
-extern template class Publisher<MetricsMessage>;
-extern template class Publisher<ControlMessage>;
-extern template class Publisher<EvalMessage>;
-extern template class Publisher<RunViewMessage>;
-extern template class Publisher<CommandMessage>;
-extern template class Publisher<ReplyMessage>;
+#define SHOAL_EXTERN(message, ...) extern template class Publisher<message>;
+SHOAL_MESSAGES(SHOAL_EXTERN)
+#undef SHOAL_EXTERN
 
 }  // namespace shoal::dds

@@ -6,9 +6,9 @@
 #include <ctime>
 
 #include "common/base/error.h"
+#include "common/base/escape_markup.h"
 #include "common/credentials/credentials.h"
 #include "common/dds/domain_xml.h"
-#include "common/dds/escape_xml.h"
 // clang-format off
 #include "dds/dds.h"
 // clang-format on
@@ -34,11 +34,11 @@ fs::path PluginPath(const std::string& plugin) {
 std::string Library(const std::string& plugin, const std::string& functions) {
   return fmt::format(
       "<Library path=\"{}\" initFunction=\"init_{}\" finalizeFunction=\"finalize_{}\"/>",
-      EscapeXml(PluginPath(plugin).string()), functions, functions);
+      EscapeMarkup(PluginPath(plugin).string()), functions, functions);
 }
 
 std::string File(const char* element, const fs::path& file) {
-  return fmt::format("<{0}>file:{1}</{0}>", element, EscapeXml(file.string()));
+  return fmt::format("<{0}>file:{1}</{0}>", element, EscapeMarkup(file.string()));
 }
 
 }  // namespace

@@ -1,10 +1,13 @@
 #include "common/dds/subscriber.h"
 
 #include <atomic>
+#include <chrono>
 #include <span>
 #include <utility>
 
 #include "common/base/check.h"
+#include "common/base/clock.h"
+#include "common/base/log.h"
 #include "common/dds/bulk_cdr.h"
 #include "common/dds/message_cdr.h"
 // clang-format off
@@ -17,6 +20,7 @@ namespace {
 
 // Samples taken from the reader's cache at a time.
 constexpr uint32_t kTakeAtOnce = 16;
+constexpr std::chrono::seconds kMalformedLogInterval{10};
 
 // A view of a taken sample's CDR bytes; gives the sample back when it goes out of scope.
 class TakenCdr {
@@ -61,7 +65,9 @@ bool TakeCdr(dds_entity_t reader, const Deliver& deliver) {
 template <class M>
 struct Subscriber<M>::Impl {
   Impl(Bus& bus, std::function<void(const M&)> callback)
-      : on_message(std::move(callback)), topic(CreateTopic<M>(bus)) {
+      : on_message(std::move(callback)),
+        malformed(bus.impl().MalformedCounter(Topic<M>::kSettings.name)),
+        topic(CreateTopic<M>(bus)) {
     // The listener is set as the reader is created: no sample can arrive unnoticed before it.
     const TopicSettings& settings = Topic<M>::kSettings;
     const ListenerHandle listener = MakeListener<M>(this);
@@ -95,12 +101,23 @@ struct Subscriber<M>::Impl {
     if (well_formed) {
       on_message(message);
     } else {
-      malformed.fetch_add(1, std::memory_order_relaxed);
+      OnMalformed(malformed->fetch_add(1, std::memory_order_relaxed) + 1);
     }
   }
 
+  // At most one line per interval and topic, whatever comes.
+  void OnMalformed(uint64_t count) {
+    if (Now() - last_said < kMalformedLogInterval) return;
+    last_said = Now();
+    log::Warning("dds: topic {}: {} message(s) that make no sense were dropped, {} in all",
+                 Topic<M>::kSettings.name, count - said, count);
+    said = count;
+  }
+
   std::function<void(const M&)> on_message;
-  std::atomic<uint64_t> malformed{0};
+  std::shared_ptr<std::atomic<uint64_t>> malformed;  // the bus counts with it, too
+  SteadyTime last_said{};                            // receive thread, as `said`
+  uint64_t said = 0;
   // How often OnData has run. Orders it after the constructor and before the destructor: Cyclone
   // does so by locks of its own, which the thread sanitizer cannot see.
   std::atomic<uint64_t> callbacks{0};
@@ -126,20 +143,11 @@ int Subscriber<M>::Matched() const {
 
 template <class M>
 uint64_t Subscriber<M>::Malformed() const {
-  return impl_->malformed.load(std::memory_order_relaxed);
+  return impl_->malformed->load(std::memory_order_relaxed);
 }
 
-template class Subscriber<TransitionChunk>;
-template class Subscriber<CreditsMessage>;
-template class Subscriber<SampleRequest>;
-template class Subscriber<BatchShard>;
-template class Subscriber<WeightsMessage>;
-template class Subscriber<EvalWeightsMessage>;
-template class Subscriber<MetricsMessage>;
-template class Subscriber<ControlMessage>;
-template class Subscriber<EvalMessage>;
-template class Subscriber<RunViewMessage>;
-template class Subscriber<CommandMessage>;
-template class Subscriber<ReplyMessage>;
+#define SHOAL_INSTANTIATE(message, ...) template class Subscriber<message>;
+SHOAL_MESSAGES(SHOAL_INSTANTIATE)
+#undef SHOAL_INSTANTIATE
 
 }  // namespace shoal::dds

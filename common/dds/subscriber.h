@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "common/dds/bus.h"
+#include "common/dds/message_list.h"
 #include "common/wire/messages.h"
 
 namespace shoal::dds {
@@ -15,8 +16,8 @@ class Subscriber {
  public:
   // `on_message` runs on a receive thread of the bus (or on the writing thread when the writer is
   // in this process), one call at a time, and may run before the constructor returns. It must not
-  // block, throw or create entities; it copies what it keeps. Malformed samples are counted, not
-  // delivered. Borrows the bus. Throws Error when DDS refuses.
+  // block, throw or create entities; it copies what it keeps. Malformed samples are counted, said
+  // in the log once per interval and not delivered. Borrows the bus. Throws Error when DDS refuses.
   Subscriber(Bus& bus, std::function<void(const M&)> on_message);
   // After return no callback runs. Not to be called from the callback.
   ~Subscriber();
@@ -32,17 +33,8 @@ class Subscriber {
   std::unique_ptr<Impl> impl_;
 };
 
-extern template class Subscriber<TransitionChunk>;
-extern template class Subscriber<CreditsMessage>;
-extern template class Subscriber<SampleRequest>;
-extern template class Subscriber<BatchShard>;
-extern template class Subscriber<WeightsMessage>;
-extern template class Subscriber<EvalWeightsMessage>;
-extern template class Subscriber<MetricsMessage>;
-extern template class Subscriber<ControlMessage>;
-extern template class Subscriber<EvalMessage>;
-extern template class Subscriber<RunViewMessage>;
-extern template class Subscriber<CommandMessage>;
-extern template class Subscriber<ReplyMessage>;
+#define SHOAL_EXTERN(message, ...) extern template class Subscriber<message>;
+SHOAL_MESSAGES(SHOAL_EXTERN)
+#undef SHOAL_EXTERN
 
 }  // namespace shoal::dds

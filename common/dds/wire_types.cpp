@@ -46,37 +46,57 @@ shoal_idl_TransitionChunk ToWire(const TransitionChunk& message, WireBuffers*) {
           message.first_sequence, message.count, Borrow(message.payload)};
 }
 
-shoal_idl_BatchShard ToWire(const BatchShard& message, WireBuffers*) {
-  return {kBulkVersion,         message.shard,  message.spec_hash,      message.learner_session,
+shoal_idl_BatchPart ToWire(const BatchPart& message, WireBuffers*) {
+  return {kBulkVersion,         message.part,   message.spec_hash,      message.learner_session,
           message.request,      message.offset, message.total_bytes,    message.stored_records,
-          message.stored_steps, message.shards, Borrow(message.payload)};
+          message.stored_steps, message.parts,  Borrow(message.payload)};
 }
 
-shoal_idl_Weights ToWire(const WeightsMessage& message, WireBuffers*) {
-  return {
-      kBulkVersion,      message.spec_hash, message.version.session, message.version.update,
-      message.env_steps, message.crc,       Borrow(message.payload), Borrow(message.checkpoint)};
+shoal_idl_WeightsPart ToWire(const WeightsPart& message, WireBuffers*) {
+  return {kWeightsVersion,         message.part,
+          message.spec_hash,       message.version.session,
+          message.version.update,  message.env_steps,
+          message.total_bytes,     message.crc,
+          Borrow(message.payload), Borrow(message.checkpoint)};
 }
 
 shoal_idl_Credits ToWire(const CreditsMessage& message, WireBuffers* buffers) {
   buffers->credits.clear();
   for (const Credit& credit : message.credits) {
     buffers->credits.push_back({credit.actor, credit.session, credit.replay_session, credit.stored,
-                                credit.allowed, credit.spec_hash});
+                                credit.allowed, credit.spec_hash, credit.superseded_by});
   }
   const auto size = static_cast<uint32_t>(buffers->credits.size());
   return {{size, size, buffers->credits.data(), false}};
 }
 
 shoal_idl_SampleRequest ToWire(const SampleRequest& message, WireBuffers*) {
-  return {message.spec_hash, message.learner_session, message.request, message.after_steps,
-          message.batch};
+  return {message.spec_hash,   message.learner_session, message.request,
+          message.after_steps, message.batch,           message.schema_hash};
 }
 
 shoal_idl_Metrics ToWire(const MetricsMessage& message, WireBuffers* buffers) {
   buffers->strings.clear();
   buffers->strings.reserve(message.names.size());
   return MetricsToWire(message, &buffers->strings);
+}
+
+shoal_idl_ReplayProgress ToWire(const ReplayProgress& message, WireBuffers*) {
+  return {message.replay, message.session, message.stored_steps, message.stored_records};
+}
+
+shoal_idl_LearnerProgress ToWire(const LearnerProgress& message, WireBuffers* buffers) {
+  buffers->evaluations.clear();
+  for (const EvaluationRequest& evaluation : message.evaluations) {
+    buffers->evaluations.push_back(
+        {evaluation.update, evaluation.env_steps, Borrow(evaluation.checkpoint)});
+  }
+  const auto size = static_cast<uint32_t>(buffers->evaluations.size());
+  return {message.session,
+          message.updates,
+          message.env_steps,
+          message.drained,
+          {size, size, buffers->evaluations.data(), false}};
 }
 
 shoal_idl_Control ToWire(const ControlMessage& message, WireBuffers* buffers) {
@@ -124,7 +144,8 @@ shoal_idl_Command ToWire(const CommandMessage& message, WireBuffers* buffers) {
 }
 
 shoal_idl_Reply ToWire(const ReplyMessage& message, WireBuffers*) {
-  return {message.client, message.request, message.accepted, Borrow(message.text)};
+  return {message.client,      message.request, message.accepted, Borrow(message.text),
+          Borrow(message.key), message.from,    message.to};
 }
 
 }  // namespace shoal::dds

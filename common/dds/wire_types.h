@@ -21,14 +21,17 @@ struct WireBuffers {
   std::vector<shoal_idl_Credit> credits;
   std::vector<shoal_idl_Metrics> processes;
   std::vector<shoal_idl_RunEvent> events;
+  std::vector<shoal_idl_EvaluationRequest> evaluations;
 };
 
 shoal_idl_TransitionChunk ToWire(const TransitionChunk& message, WireBuffers* buffers);
-shoal_idl_BatchShard ToWire(const BatchShard& message, WireBuffers* buffers);
-shoal_idl_Weights ToWire(const WeightsMessage& message, WireBuffers* buffers);
+shoal_idl_BatchPart ToWire(const BatchPart& message, WireBuffers* buffers);
+shoal_idl_WeightsPart ToWire(const WeightsPart& message, WireBuffers* buffers);
 shoal_idl_Credits ToWire(const CreditsMessage& message, WireBuffers* buffers);
 shoal_idl_SampleRequest ToWire(const SampleRequest& message, WireBuffers* buffers);
 shoal_idl_Metrics ToWire(const MetricsMessage& message, WireBuffers* buffers);
+shoal_idl_ReplayProgress ToWire(const ReplayProgress& message, WireBuffers* buffers);
+shoal_idl_LearnerProgress ToWire(const LearnerProgress& message, WireBuffers* buffers);
 shoal_idl_Control ToWire(const ControlMessage& message, WireBuffers* buffers);
 shoal_idl_Eval ToWire(const EvalMessage& message, WireBuffers* buffers);
 shoal_idl_RunView ToWire(const RunViewMessage& message, WireBuffers* buffers);

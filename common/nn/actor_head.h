@@ -1,8 +1,10 @@
-// The policy above the encoder: trunk and MLP to a Gaussian over actions before tanh (Eq. 4 of
-// docs/algorithm.md).
+// The policy above the encoder: trunk and MLP to a Gaussian over actions before tanh, or to the
+// action itself (Eq. 4 of docs/algorithm.md).
 //
-//   (mean, r) = MLP(trunk(features), vector)
-//   log_std = -5 + 3.5 (tanh(r) + 1)      in [-5, 2]
+//   Gaussian        (mean, r) = MLP(trunk(features), vector)
+//                   log_std = -5 + 3.5 (tanh(r) + 1), in [-5, 2]     LogStd::kSmooth
+//                   log_std = r clamped to [-20, 2]                  LogStd::kClamped
+//   deterministic   mean = MLP(trunk(features), vector),   action = tanh(mean)
 //
 // Dimensions: B batch, A actions, V vector size.
 #pragma once
@@ -16,25 +18,38 @@ namespace shoal::nn {
 
 class ActorHead {
  public:
-  // Parameters actor.*. The features get no gradient: the encoder is the critic's.
-  ActorHead(const LayerContext& context, const NetworkConfig& network, const ObservationSpec& spec,
-            const dnnl::memory& features);
+  // features_gradient: the encoder's, or empty: then the encoder is another loss's to train.
+  ActorHead(const LayerContext& context, const ActorPlan& plan, const dnnl::memory& features,
+            const dnnl::memory& features_gradient);
 
-  const float* mean() const { return mean_.data(); }        // (B, A)
-  const float* log_std() const { return log_std_.data(); }  // (B, A)
+  const float* mean() const { return mean_.data(); }  // (B, A), before tanh
+  // (B, A); null: Gaussian.
+  const float* action() const { return action_.empty() ? nullptr : action_.data(); }
+  // (B, A); null: deterministic.
+  const float* log_std() const { return log_std_.empty() ? nullptr : log_std_.data(); }
 
   void Refresh();
   // vector (B, V).
   void Forward(const float* vector);
-  // dL/dmean, dL/dlog_std (B, A).
+  // Of a Gaussian, from dL/dmean, dL/dlog_std (B, A).
   void Backward(const float* mean_gradient, const float* log_std_gradient);
+  // Of a deterministic one, from dL/daction (B, A).
+  void Backward(const float* action_gradient);
 
  private:
+  void ForwardLogStd();
+  // From output_gradient_.
+  void BackwardMlp();
+
   ObservationTrunk trunk_;
   Mlp mlp_;
+  const bool gaussian_;
+  const LogStd log_std_kind_;
   int batch_, action_size_;
-  std::vector<float> mean_, log_std_;   // (B, A)
-  std::vector<float> output_gradient_;  // (B, 2A)
+  std::vector<float> mean_;             // (B, A)
+  std::vector<float> log_std_;          // (B, A); empty: deterministic
+  std::vector<float> action_;           // (B, A); empty: Gaussian
+  std::vector<float> output_gradient_;  // (B, 2A), or (B, A)
 };
 
 }  // namespace shoal::nn

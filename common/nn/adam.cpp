@@ -11,7 +11,7 @@
 namespace shoal::nn {
 namespace {
 
-constexpr double kBeta1 = 0.9, kBeta2 = 0.999, kEpsilon = 1e-8;
+constexpr double kBeta1 = 0.9, kBeta2 = 0.999;
 constexpr int kBlock = 4096;  // floats per unit of parallel work
 
 // Arrays of one step, each of the set's size.
@@ -21,10 +21,15 @@ struct AdamArrays {
 };
 
 // rate: rate / (1 - b1^t). root_scale: 1 / sqrt(1 - b2^t).
-SHOAL_CPU_CLONES void AdamRange(const AdamArrays& arrays, int64_t begin, int64_t end, float rate,
-                                float root_scale) {
+struct StepSize {
+  float rate, root_scale, epsilon;
+};
+
+SHOAL_CPU_CLONES void AdamRange(const AdamArrays& arrays, int64_t begin, int64_t end,
+                                const StepSize& size) {
   constexpr float b1 = float(kBeta1), c1 = float(1 - kBeta1);
-  constexpr float b2 = float(kBeta2), c2 = float(1 - kBeta2), epsilon = float(kEpsilon);
+  constexpr float b2 = float(kBeta2), c2 = float(1 - kBeta2);
+  const float rate = size.rate, root_scale = size.root_scale, epsilon = size.epsilon;
   const float* g = arrays.gradient;
   const float* m = arrays.m;
   const float* v = arrays.v;
@@ -52,56 +57,88 @@ SHOAL_CPU_CLONES double SquaresOf(const float* values, int64_t n) {
   return sum;
 }
 
+SHOAL_CPU_CLONES void ScaleRange(float factor, int64_t n, float* values) {
+  for (int64_t i = 0; i < n; ++i) values[i] *= factor;
+}
+
 int Blocks(int64_t n) { return int((n + kBlock - 1) / kBlock); }
 
 }  // namespace
 
-Adam::Adam(ParameterSet* parameters, double rate)
-    : parameters_(parameters),
-      rate_(rate),
-      m_(size_t(parameters->size()), 0.f),
-      v_(m_),
-      next_m_(m_),
-      next_v_(m_) {}
+Adam::Adam(std::vector<ParameterSet*> sets, const Options& options)
+    : rate_(options.rate), epsilon_(options.epsilon) {
+  for (ParameterSet* set : sets) {
+    const std::vector<float> zeros(size_t(set->size()), 0.f);
+    moments_.push_back({set, zeros, zeros, zeros, zeros});
+  }
+}
+
+void Adam::Moments::Exchange() {
+  set->Exchange();
+  m.swap(next_m);
+  v.swap(next_v);
+}
+
+double Adam::GradientSquares() const {
+  double squares = 0;
+  for (const Moments& moments : moments_) {
+    const ParameterSet& set = *moments.set;
+    squares += SumOfSquares(set.gradients(), set.size());
+  }
+  return squares;
+}
+
+void Adam::ClipGradients(double most) {
+  const double factor = most / (std::sqrt(GradientSquares()) + 1e-6);
+  if (factor >= 1) return;
+  for (const Moments& moments : moments_) {
+    ScaleRange(float(factor), moments.set->size(), moments.set->gradients());
+  }
+}
 
 void Adam::Step() {
   ++steps_;
   const double t = double(steps_);
-  const float rate = float(rate_ / (1 - std::pow(kBeta1, t)));
-  const float root_scale = float(1 / std::sqrt(1 - std::pow(kBeta2, t)));
-  const AdamArrays arrays{parameters_->gradients(),  m_.data(),      v_.data(),
-                          parameters_->values(),     next_m_.data(), next_v_.data(),
-                          parameters_->next_values()};
-  const int64_t size = parameters_->size();
-  ParallelFor(Blocks(size), [&](int begin, int end) {
-    AdamRange(arrays, int64_t(begin) * kBlock, std::min(size, int64_t(end) * kBlock), rate,
-              root_scale);
-  });
-  parameters_->Exchange();
-  m_.swap(next_m_);
-  v_.swap(next_v_);
+  const StepSize step{float(rate_ / (1 - std::pow(kBeta1, t))),
+                      float(1 / std::sqrt(1 - std::pow(kBeta2, t))), float(epsilon_)};
+  for (Moments& moments : moments_) {
+    ParameterSet& set = *moments.set;
+    const AdamArrays arrays{set.gradients(),  moments.m.data(),      moments.v.data(),
+                            set.values(),     moments.next_m.data(), moments.next_v.data(),
+                            set.next_values()};
+    const int64_t size = set.size();
+    ParallelFor(Blocks(size), [&](int begin, int end) {
+      AdamRange(arrays, int64_t(begin) * kBlock, std::min(size, int64_t(end) * kBlock), step);
+    });
+    moments.Exchange();
+  }
 }
 
 void Adam::Undo() {
   CHECK(steps_ > 0);
   --steps_;
-  parameters_->Exchange();
-  m_.swap(next_m_);
-  v_.swap(next_v_);
+  for (Moments& moments : moments_) moments.Exchange();
 }
 
 void Adam::Export(const std::string& group, TensorMap* tensors) const {
-  parameters_->Export(m_.data(), "adam.m.", tensors);
-  parameters_->Export(v_.data(), "adam.v.", tensors);
+  for (const Moments& moments : moments_) {
+    moments.set->Export(moments.m.data(), "adam.m.", tensors);
+    moments.set->Export(moments.v.data(), "adam.v.", tensors);
+  }
   ExportCounter("adam.steps." + group, steps_, tensors);
 }
 
+// Into the arrays that the next step would write, so that a refusal leaves the others as they are.
 void Adam::Import(const TensorMap& tensors, const std::string& group, const std::string& source) {
   const uint64_t steps = ImportCounter(tensors, "adam.steps." + group, source);
-  parameters_->Import(tensors, "adam.m.", source, next_m_.data());
-  parameters_->Import(tensors, "adam.v.", source, next_v_.data());
-  m_ = next_m_;
-  v_ = next_v_;
+  for (Moments& moments : moments_) {
+    moments.set->Import(tensors, "adam.m.", source, moments.next_m.data());
+    moments.set->Import(tensors, "adam.v.", source, moments.next_v.data());
+  }
+  for (Moments& moments : moments_) {
+    moments.m = moments.next_m;
+    moments.v = moments.next_v;
+  }
   steps_ = steps;
 }
 

@@ -1,11 +1,12 @@
-// Adam and the moving average of target networks, each one pass over a whole parameter set (Eq. 10
+// Adam and the moving average of target networks, each one pass over whole parameter sets (Eq. 10
 // and 9 of docs/algorithm.md).
 //
-//   m' = b1 m + (1 - b1) g            b1 = 0.9, b2 = 0.999, eps = 1e-8
+//   m' = b1 m + (1 - b1) g            b1 = 0.9, b2 = 0.999
 //   v' = b2 v + (1 - b2) g^2
 //   w' = w - rate * (m' / (1 - b1^t)) / (sqrt(v' / (1 - b2^t)) + eps)
 //
 // Source: Kingma and Ba 2014, arXiv:1412.6980, algorithm 1.
+// Threads: each pass is split over the current ThreadScope; results do not depend on its size.
 #pragma once
 
 #include <cstdint>
@@ -16,12 +17,25 @@
 
 namespace shoal::nn {
 
-// Optimiser of one parameter set, which it borrows.
+// Optimiser of parameter sets that are trained by one loss. Borrows them.
 class Adam {
  public:
-  Adam(ParameterSet* parameters, double rate);
+  struct Options {
+    double rate = 0;
+    double epsilon = 1e-8;
+  };
 
-  // Applies the set's gradients.
+  Adam(std::vector<ParameterSet*> sets, const Options& options);
+
+  // For the steps from now on.
+  void set_rate(double rate) { rate_ = rate; }
+
+  // Sum of the squares of all gradients.
+  double GradientSquares() const;
+  // Scales all gradients by most / (norm + 1e-6) where that is below 1, norm their Euclidean norm.
+  void ClipGradients(double most);
+
+  // Applies the sets' gradients.
   void Step();
   // Takes the last Step back exactly; at most once after each.
   void Undo();
@@ -33,11 +47,18 @@ class Adam {
   void Import(const TensorMap& tensors, const std::string& group, const std::string& source);
 
  private:
-  ParameterSet* parameters_;
-  double rate_;
+  // Of one set, in its layout.
+  struct Moments {
+    ParameterSet* set;
+    std::vector<float> m, v;
+    std::vector<float> next_m, next_v;  // where a step writes, then exchanged
+
+    void Exchange();
+  };
+
+  std::vector<Moments> moments_;
+  double rate_, epsilon_;
   uint64_t steps_ = 0;
-  std::vector<float> m_, v_;            // moments in the set's layout
-  std::vector<float> next_m_, next_v_;  // where a step writes, then exchanged
 };
 
 // target += tau * (online - target), n floats.

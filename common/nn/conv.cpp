@@ -12,36 +12,37 @@ constexpr auto kAlgorithm = dnnl::algorithm::convolution_auto;
 
 }  // namespace
 
-Conv::Conv(const LayerContext& context, const std::string& name, int stride, const memory& source,
+Conv::Conv(const LayerContext& context, const LayerPlan& plan, const memory& source,
            const memory& source_gradient)
-    : strides_{stride, stride},
-      weight_(context.parameters->Find(name + ".weight")),
-      bias_(context.parameters->Find(name + ".bias")) {
+    : strides_{plan.stride, plan.stride},
+      padding_{plan.padding, plan.padding},
+      relu_(plan.activation == Activation::kRelu),
+      weight_(context.parameters->Find(plan.name + ".weight")),
+      bias_(context.parameters->Find(plan.name + ".bias")) {
+  CHECK(relu_ || plan.activation == Activation::kNone) << plan.name;
   const memory::desc source_desc = source.get_desc();
   const memory::dims dims = source_desc.dims();
   const memory::data_type type = source_desc.data_type();
   const memory::dims weight_dims = weight_.shape();
-  CHECK(dims[1] == weight_dims[1]) << name << ": source has " << dims[1] << " channels";
-  const memory::dims output_dims = {dims[0], weight_dims[0],
-                                    (dims[2] - weight_dims[2]) / stride + 1,
-                                    (dims[3] - weight_dims[3]) / stride + 1};
+  const MapShape& from = plan.input;
+  CHECK(dims == memory::dims({context.batch, from.channels, from.height, from.width}))
+      << plan.name << ": another source than planned";
+  const memory::dims output_dims = {context.batch, plan.output.channels, plan.output.height,
+                                    plan.output.width};
   weight_values_ = memory(PlainF32(weight_dims), CpuEngine(), nullptr);
   bias_values_ = memory(PlainF32({weight_dims[0]}), CpuEngine(), nullptr);
 
-  dnnl::post_ops relu;
-  relu.append_eltwise(1.f, dnnl::algorithm::eltwise_relu, 0.f, 0.f);
   dnnl::primitive_attr attributes = Attributes();
-  attributes.set_post_ops(relu);
-  const dnnl::convolution_forward::primitive_desc forward({dnnl::prop_kind::forward_training,
-                                                           kAlgorithm,
-                                                           AnyLayout(dims, type),
-                                                           AnyLayout(weight_dims, type),
-                                                           bias_values_.get_desc(),
-                                                           AnyLayout(output_dims, type),
-                                                           strides_,
-                                                           {0, 0},
-                                                           {0, 0}},
-                                                          attributes, CpuEngine());
+  if (relu_) {
+    dnnl::post_ops relu;
+    relu.append_eltwise(1.f, dnnl::algorithm::eltwise_relu, 0.f, 0.f);
+    attributes.set_post_ops(relu);
+  }
+  const dnnl::convolution_forward::primitive_desc forward(
+      {dnnl::prop_kind::forward_training, kAlgorithm, AnyLayout(dims, type),
+       AnyLayout(weight_dims, type), bias_values_.get_desc(), AnyLayout(output_dims, type),
+       strides_, padding_, padding_},
+      attributes, CpuEngine());
   output_ = MakeMemory(forward.dst_desc());
   forward_source_ = Relayout::Before(source, forward.src_desc(), context.scratchpad);
   forward_weight_ = Relayout::Before(weight_values_, forward.weights_desc(), context.scratchpad);
@@ -62,14 +63,9 @@ void Conv::BuildBackwardWeights(const LayerContext& context, const memory& sourc
   const memory::desc source_desc = source.get_desc(), output_desc = output_.get_desc();
   const memory::dims weight_dims = weight_.shape();
   const dnnl::convolution_backward_weights::primitive_desc backward(
-      {kAlgorithm,
-       AnyLayout(source_desc.dims(), source_desc.data_type()),
-       AnyLayout(weight_dims, memory::data_type::f32),
-       bias_values_.get_desc(),
-       AnyLayout(output_desc.dims(), output_desc.data_type()),
-       strides_,
-       {0, 0},
-       {0, 0}},
+      {kAlgorithm, AnyLayout(source_desc.dims(), source_desc.data_type()),
+       AnyLayout(weight_dims, memory::data_type::f32), bias_values_.get_desc(),
+       AnyLayout(output_desc.dims(), output_desc.data_type()), strides_, padding_, padding_},
       Attributes(), CpuEngine(), forward);
   const memory weight_target(PlainF32(weight_dims), CpuEngine(), weight_.gradient());
   const memory bias_target(bias_values_.get_desc(), CpuEngine(), bias_.gradient());
@@ -91,13 +87,9 @@ void Conv::BuildBackwardData(const LayerContext& context, const memory& source_g
   has_source_gradient_ = true;
   const memory::desc target = source_gradient.get_desc(), output_desc = output_.get_desc();
   const dnnl::convolution_backward_data::primitive_desc backward(
-      {kAlgorithm,
-       AnyLayout(target.dims(), target.data_type()),
+      {kAlgorithm, AnyLayout(target.dims(), target.data_type()),
        AnyLayout(weight_.shape(), target.data_type()),
-       AnyLayout(output_desc.dims(), output_desc.data_type()),
-       strides_,
-       {0, 0},
-       {0, 0}},
+       AnyLayout(output_desc.dims(), output_desc.data_type()), strides_, padding_, padding_},
       Attributes(), CpuEngine(), forward);
   data_output_gradient_ =
       Relayout::Before(output_gradient_, backward.diff_dst_desc(), context.scratchpad);
@@ -111,8 +103,8 @@ void Conv::BuildBackwardData(const LayerContext& context, const memory& source_g
 }
 
 void Conv::Refresh() {
-  weight_values_.set_data_handle(const_cast<float*>(weight_.value()));
-  bias_values_.set_data_handle(const_cast<float*>(bias_.value()));
+  weight_values_.set_data_handle(weight_.value());
+  bias_values_.set_data_handle(bias_.value());
   forward_weight_.Run();
   if (has_source_gradient_) data_weight_.Run();
 }
@@ -136,7 +128,7 @@ void Conv::MaskOutputGradient() {
 }
 
 void Conv::Backward() {
-  MaskOutputGradient();
+  if (relu_) MaskOutputGradient();
   weights_source_.Run();
   weights_output_gradient_.Run();
   backward_weights_.Run();

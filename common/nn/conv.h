@@ -1,13 +1,13 @@
-// 3x3 convolution without padding, then ReLU.
+// Convolution, then ReLU where the plan has it.
 //
-//   y[b, n, i, j] = max(0, bias[n] + sum_{c,u,v} weight[n, c, u, v] x[b, c, i*stride+u,
-//   j*stride+v])
+//   y[b, n, i, j] = max(0, bias[n] + sum_{c,u,v} weight[n, c, u, v] x[b, c, i*s+u-p, j*s+v-p])
 //
-// Dimensions: B batch, C channels in, N filters, (H, W) in, (h, w) out = (H-3)/stride+1, ...
+// with x = 0 outside of its map.
+//
+// Dimensions: B batch, C channels in, N filters, (H, W) in, (h, w) out, s stride, p padding; all
+// but B are the plan's.
 // oneDNN chooses the layouts in memory; neighbouring layers share them where it can.
 #pragma once
-
-#include <string>
 
 #include "common/nn/layer_context.h"
 
@@ -15,9 +15,9 @@ namespace shoal::nn {
 
 class Conv {
  public:
-  // Parameters `name`.weight (N, C, 3, 3) and `name`.bias (N). source (B, C, H, W) in the compute
-  // type. `source_gradient` has the source's description; empty: never asked for.
-  Conv(const LayerContext& context, const std::string& name, int stride, const dnnl::memory& source,
+  // source (B, C, H, W) in the compute type. `source_gradient` has the source's description; empty:
+  // never asked for.
+  Conv(const LayerContext& context, const LayerPlan& plan, const dnnl::memory& source,
        const dnnl::memory& source_gradient);
 
   // (B, N, h, w) in the compute type.
@@ -39,7 +39,8 @@ class Conv {
   // dL/dy = 0 where y = 0.
   void MaskOutputGradient();
 
-  dnnl::memory::dims strides_;
+  dnnl::memory::dims strides_, padding_;
+  bool relu_;
   Parameter weight_, bias_;
   dnnl::memory weight_values_, bias_values_;  // the parameters' arrays, row-major f32
   dnnl::memory output_, output_gradient_;

@@ -2,16 +2,19 @@
 
 #include <algorithm>
 
+#include "common/base/check.h"
+
 namespace shoal::nn {
 
-CriticHeads::CriticHeads(const LayerContext& context, const std::string& head,
-                         const NetworkConfig& network, const ObservationSpec& spec,
+CriticHeads::CriticHeads(const LayerContext& context, const HeadPlan& plan,
                          const dnnl::memory& features, const dnnl::memory& features_gradient)
-    : trunk_(context, head, spec, spec.action_size, features, features_gradient),
-      mlps_{Mlp(context, head + ".q1", int(network.hidden.size()), trunk_.input()),
-            Mlp(context, head + ".q2", int(network.hidden.size()), trunk_.input())},
-      action_size_(spec.action_size),
-      input_gradient_(size_t(trunk_.input().size())) {}
+    : trunk_(context, plan, features, features_gradient),
+      action_size_(plan.extra_columns),
+      zeros_(size_t(context.batch)),
+      input_gradient_(size_t(trunk_.input().size())) {
+  mlps_.reserve(plan.mlps.size());
+  for (const NetworkPlan& mlp : plan.mlps) mlps_.emplace_back(context, mlp, trunk_.input());
+}
 
 void CriticHeads::Refresh() {
   trunk_.Refresh();
@@ -22,30 +25,40 @@ void CriticHeads::ForwardObservation(const float* vector) { trunk_.Forward(vecto
 
 void CriticHeads::ForwardAction(const float* action) {
   trunk_.input().SetColumns(trunk_.extra_column(), action_size_, action);
-  trunk_.input().Commit();
   for (Mlp& mlp : mlps_) mlp.Forward();
 }
 
-void CriticHeads::Backward(const float* q0_gradient, const float* q1_gradient) {
-  mlps_[0].Backward(q0_gradient, {.parameters = true, .source = true});
-  mlps_[1].Backward(q1_gradient, {.parameters = true, .source = true});
-  for (size_t i = 0; i < input_gradient_.size(); ++i) {
-    input_gradient_[i] = mlps_[0].input_gradient()[i] + mlps_[1].input_gradient()[i];
+void CriticHeads::BackwardMlps(QGradients q_gradients, bool parameters) {
+  CHECK(q_gradients.size() == mlps_.size()) << q_gradients.size() << " gradients";
+  bool first = true;
+  for (size_t i = 0; i < mlps_.size(); ++i) {
+    const bool absent = q_gradients[i].empty();
+    // Gradients of parameters are overwritten, so one that is no part of the loss passes zeros.
+    if (absent && !parameters) continue;
+    mlps_[i].Backward(absent ? zeros_.data() : q_gradients[i].data(),
+                      {.parameters = parameters, .source = true});
+    const float* gradient = mlps_[i].input_gradient();
+    if (first) {
+      std::copy_n(gradient, input_gradient_.size(), input_gradient_.data());
+    } else {
+      for (size_t k = 0; k < input_gradient_.size(); ++k) input_gradient_[k] += gradient[k];
+    }
+    first = false;
   }
+  CHECK(!first) << "no Q function is part of the loss";
+}
+
+void CriticHeads::Backward(QGradients q_gradients) {
+  BackwardMlps(q_gradients, /*parameters=*/true);
   trunk_.Backward(input_gradient_.data());
 }
 
-void CriticHeads::BackwardAction(const float* q0_gradient, const float* q1_gradient,
-                                 float* action_gradient) {
-  mlps_[0].Backward(q0_gradient, {.parameters = false, .source = true});
-  mlps_[1].Backward(q1_gradient, {.parameters = false, .source = true});
+void CriticHeads::BackwardAction(QGradients q_gradients, float* action_gradient) {
+  BackwardMlps(q_gradients, /*parameters=*/false);
   const int columns = trunk_.input().columns();
   for (int b = 0; b < trunk_.input().batch(); ++b) {
-    const int64_t first = int64_t(b) * columns + trunk_.extra_column();
-    for (int j = 0; j < action_size_; ++j) {
-      action_gradient[b * action_size_ + j] =
-          mlps_[0].input_gradient()[first + j] + mlps_[1].input_gradient()[first + j];
-    }
+    std::copy_n(input_gradient_.data() + int64_t{b} * columns + trunk_.extra_column(), action_size_,
+                action_gradient + int64_t{b} * action_size_);
   }
 }
 

@@ -1,12 +1,11 @@
-// The critic above the encoder: one trunk, two Q functions.
+// The critic above the encoder: one trunk, one or more Q functions.
 //
-//   q_i(s, a) = MLP_i([ trunk(features) | vector | a ]),  i = 1, 2
+//   q_i(s, a) = MLP_i([ trunk(features) | vector | a ]),  i = 1, 2, ...
 //
 // Dimensions: B batch, A actions, V vector size.
 #pragma once
 
-#include <array>
-#include <string>
+#include <span>
 #include <vector>
 
 #include "common/nn/mlp.h"
@@ -16,28 +15,35 @@ namespace shoal::nn {
 
 class CriticHeads {
  public:
-  // Parameters `head`.* with head "critic" or "target". features_gradient: the encoder's, or empty.
-  CriticHeads(const LayerContext& context, const std::string& head, const NetworkConfig& network,
-              const ObservationSpec& spec, const dnnl::memory& features,
+  // features_gradient: the encoder's, or empty.
+  CriticHeads(const LayerContext& context, const HeadPlan& plan, const dnnl::memory& features,
               const dnnl::memory& features_gradient);
 
-  const float* q(int i) const { return mlps_[size_t(i)].output(); }  // (B), i in {0, 1}
+  int count() const { return int(mlps_.size()); }
+  const float* q(int i) const { return mlps_[size_t(i)].output(); }  // (B)
 
   void Refresh();
   // The observation's part; vector (B, V).
   void ForwardObservation(const float* vector);
   // The rest, for the latest observation; action (B, A). May be called again with other actions.
   void ForwardAction(const float* action);
-  // From dL/dq_i (B): gradients of all parameters and of the features.
-  void Backward(const float* q0_gradient, const float* q1_gradient);
-  // From dL/dq_i (B): the gradient of the action (B, A) alone.
-  void BackwardAction(const float* q0_gradient, const float* q1_gradient, float* action_gradient);
+
+  // dL/dq_i (B), one for each Q function; an empty one counts as zeros.
+  using QGradients = std::span<const std::vector<float>>;
+  // Gradients of all parameters and of the features.
+  void Backward(QGradients q_gradients);
+  // The gradient of the action (B, A) alone.
+  void BackwardAction(QGradients q_gradients, float* action_gradient);
 
  private:
+  // Sums dL/dinput over the Q functions into input_gradient_.
+  void BackwardMlps(QGradients q_gradients, bool parameters);
+
   ObservationTrunk trunk_;
-  std::array<Mlp, 2> mlps_;
+  std::vector<Mlp> mlps_;
   int action_size_;
-  std::vector<float> input_gradient_;  // (B, F + V + A), sum over the two
+  std::vector<float> zeros_;           // (B)
+  std::vector<float> input_gradient_;  // (B, F + V + A)
 };
 
 }  // namespace shoal::nn

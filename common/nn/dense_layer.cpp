@@ -1,19 +1,21 @@
 #include "common/nn/dense_layer.h"
 
+#include "common/base/check.h"
 #include "common/nn/layer_norm.h"
 
 namespace shoal::nn {
 
-DenseLayer::DenseLayer(const LayerContext& context, const std::string& name, Activation activation,
+DenseLayer::DenseLayer(const LayerContext& context, const LayerPlan& plan,
                        const dnnl::memory& source, const dnnl::memory& source_gradient,
                        Precision output_precision)
-    : linear_(context, name, source, source_gradient),
-      activation_(activation),
-      has_norm_(context.parameters->Has(name + ".norm.weight")),
+    : linear_(context, plan.name, source, source_gradient),
+      activation_(plan.activation),
+      has_norm_(plan.layer_norm),
       output_(context.batch, linear_.outputs(), output_precision) {
+  CHECK(activation_ != Activation::kNone) << plan.name << ": a linear layer alone is a Linear";
   if (!has_norm_) return;
-  norm_weight_ = context.parameters->Find(name + ".norm.weight");
-  norm_bias_ = context.parameters->Find(name + ".norm.bias");
+  norm_weight_ = context.parameters->Find(plan.name + ".norm.weight");
+  norm_bias_ = context.parameters->Find(plan.name + ".norm.bias");
   normalised_.resize(size_t(output_.size()));
   scales_.resize(size_t(context.batch));
 }

@@ -3,7 +3,6 @@
 //   y = act(LN(weight x + bias))
 #pragma once
 
-#include <string>
 #include <vector>
 
 #include "common/nn/layer_context.h"
@@ -12,15 +11,12 @@
 
 namespace shoal::nn {
 
-enum class Activation { kRelu, kTanh };
-
 class DenseLayer {
  public:
-  // Parameters as Linear, and `name`.norm.{weight, bias} (O) where the set has them.
-  // `output_precision` is the type in which the next layer reads output().
-  DenseLayer(const LayerContext& context, const std::string& name, Activation activation,
-             const dnnl::memory& source, const dnnl::memory& source_gradient,
-             Precision output_precision);
+  // A linear layer of a plan. source and source_gradient as Linear's. `output_precision` is the
+  // type in which the next layer reads output().
+  DenseLayer(const LayerContext& context, const LayerPlan& plan, const dnnl::memory& source,
+             const dnnl::memory& source_gradient, Precision output_precision);
 
   const Rows& output() const { return output_; }
 

@@ -2,25 +2,24 @@
 
 #include "common/base/check.h"
 #include "common/nn/frame_pooling.h"
-#include "common/nn/network_parameters.h"
 
 namespace shoal::nn {
 
-Encoder::Encoder(const LayerContext& context, const NetworkConfig& network,
-                 const ObservationSpec& spec)
-    : planes_(context.batch * spec.stack * spec.channels),
-      height_(spec.height),
-      width_(spec.width),
-      pool_(network.pool) {
-  CHECK(spec.HasPixels() && !network.filters.empty());
-  const MapSize pooled = PooledSize(network, spec);
+Encoder::Encoder(const LayerContext& context, const NetworkPlan& plan)
+    : planes_(context.batch * plan.input().channels),
+      height_(plan.input().height),
+      width_(plan.input().width) {
+  const std::vector<LayerPlan>& layers = plan.layers();
+  CHECK(layers.size() > 1 && layers[0].kind == LayerPlan::Kind::kPixels);
+  pool_ = layers[0].kernel;
+  const MapShape& pixels = layers[0].output;
   input_ = MakeMemory(
-      dnnl::memory::desc({context.batch, spec.stack * spec.channels, pooled.height, pooled.width},
+      dnnl::memory::desc({context.batch, pixels.channels, pixels.height, pixels.width},
                          ComputeType(context.precision), dnnl::memory::format_tag::nchw));
   dnnl::memory source = input_, source_gradient;
-  for (size_t i = 0; i < network.filters.size(); ++i) {
-    convs_.push_back(std::make_unique<Conv>(context, "encoder.conv" + std::to_string(i),
-                                            network.strides[i], source, source_gradient));
+  for (size_t i = 1; i < layers.size(); ++i) {
+    CHECK(layers[i].kind == LayerPlan::Kind::kConvolution) << layers[i].name;
+    convs_.push_back(std::make_unique<Conv>(context, layers[i], source, source_gradient));
     source = convs_.back()->output();
     source_gradient = convs_.back()->output_gradient();
   }

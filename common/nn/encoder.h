@@ -1,22 +1,20 @@
-// Frames to feature map: average pooling, scaling and 3x3 convolutions with ReLU (Eq. 2 of
-// docs/algorithm.md).
+// Frames to feature map: the layers of an encoder's plan (Eq. 2 of docs/algorithm.md).
 #pragma once
 
 #include <cstdint>
 #include <memory>
 #include <vector>
 
-#include "common/config/config.h"
 #include "common/nn/conv.h"
 #include "common/nn/layer_context.h"
-#include "common/spec/observation_spec.h"
+#include "common/nn/network_plan.h"
 
 namespace shoal::nn {
 
 class Encoder {
  public:
-  // Parameters encoder.conv{i}.*. The spec has pixels.
-  Encoder(const LayerContext& context, const NetworkConfig& network, const ObservationSpec& spec);
+  // The plan begins with its pixels; convolutions follow.
+  Encoder(const LayerContext& context, const NetworkPlan& plan);
 
   // (B, N*h*w) row-major in the compute type; overwritten by every Forward.
   const dnnl::memory& features() const { return features_; }
@@ -32,7 +30,7 @@ class Encoder {
   void BuildFeatures(const LayerContext& context);
 
   int planes_, height_, width_, pool_;
-  dnnl::memory input_;  // (B, K*C, H/pool, W/pool) row-major in the compute type
+  dnnl::memory input_;  // output of the pixels' layer, row-major in the compute type
   std::vector<std::unique_ptr<Conv>> convs_;
   Relayout flatten_;  // of the last convolution's output
   dnnl::memory features_, features_gradient_;

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <vector>
 
+#include "common/base/check.h"
 #include "common/base/cpu_clones.h"
 #include "common/nn/parallel.h"
 
@@ -13,6 +14,7 @@ namespace shoal::nn {
 namespace {
 
 constexpr int kLanes = 16;
+constexpr int kMaxPool = 257;  // 257 * 255 is the largest sum that 16 bits hold
 
 float Rounded(float x, float) { return x; }
 
@@ -66,18 +68,75 @@ SHOAL_CPU_CLONES void PoolByTwo(const uint8_t* in, int width, int rows, int colu
   PoolPlaneByTwo(in, width, rows, columns, scale, out);
 }
 
+// One plane with pool = 1: scaling alone.
+template <class Out>
+[[gnu::always_inline]] inline void ScalePixels(const uint8_t* in, int64_t n, float scale,
+                                               Out* out) {
+  for (int64_t i = 0; i < n; ++i) out[i] = Rounded(float(in[i]) * scale - 0.5f, Out());
+}
+
+SHOAL_CPU_CLONES void Scale(const uint8_t* __restrict in, int64_t n, float scale,
+                            float* __restrict out) {
+  ScalePixels(in, n, scale, out);
+}
+
+SHOAL_CPU_CLONES void Scale(const uint8_t* __restrict in, int64_t n, float scale,
+                            uint16_t* __restrict out) {
+  ScalePixels(in, n, scale, out);
+}
+
+// sums[j] = sum of column j over `rows` rows of `width` bytes; a pixel is at most 255 and there are
+// at most kMaxPool rows, so 16 bits hold it. All pixels pass here, in a loop without strides.
+SHOAL_CPU_CLONES void SumRows(const uint8_t* __restrict in, int rows, int width,
+                              uint16_t* __restrict sums) {
+  for (int j = 0; j < width; ++j) sums[j] = in[j];
+  for (int y = 1; y < rows; ++y) {
+    const uint8_t* row = in + int64_t(y) * width;
+    for (int j = 0; j < width; ++j) sums[j] = uint16_t(sums[j] + row[j]);
+  }
+}
+
+template <class Out>
+[[gnu::always_inline]] inline void PoolColumns(const uint16_t* sums, int columns, int pool,
+                                               float scale, Out* out) {
+  for (int j = 0; j < columns; ++j) {
+    int sum = 0;
+    for (int x = 0; x < pool; ++x) sum += sums[j * pool + x];
+    out[j] = Rounded(float(sum) * scale - 0.5f, Out());
+  }
+}
+
+// One row of windows from its columns' sums. Where the compiler knows the pool it reads the sums in
+// vectors.
+template <class Out>
+[[gnu::always_inline]] inline void PoolRow(const uint16_t* sums, int columns, int pool, float scale,
+                                           Out* out) {
+  switch (pool) {
+    case 3:
+      return PoolColumns(sums, columns, 3, scale, out);
+    case 4:
+      return PoolColumns(sums, columns, 4, scale, out);
+    default:
+      return PoolColumns(sums, columns, pool, scale, out);
+  }
+}
+
+SHOAL_CPU_CLONES void PoolSums(const uint16_t* __restrict sums, int columns, int pool, float scale,
+                               float* __restrict out) {
+  PoolRow(sums, columns, pool, scale, out);
+}
+
+SHOAL_CPU_CLONES void PoolSums(const uint16_t* __restrict sums, int columns, int pool, float scale,
+                               uint16_t* __restrict out) {
+  PoolRow(sums, columns, pool, scale, out);
+}
+
 template <class Out>
 void PoolByAny(const uint8_t* in, int width, int rows, int columns, int pool, float scale,
-               Out* out) {
+               uint16_t* sums, Out* out) {
   for (int i = 0; i < rows; ++i) {
-    for (int j = 0; j < columns; ++j) {
-      const uint8_t* window = in + (int64_t(i) * width + j) * pool;
-      int sum = 0;
-      for (int y = 0; y < pool; ++y) {
-        for (int x = 0; x < pool; ++x) sum += window[y * width + x];
-      }
-      out[int64_t(i) * columns + j] = Rounded(float(sum) * scale - 0.5f, Out());
-    }
+    SumRows(in + int64_t(i) * pool * width, pool, width, sums);
+    PoolSums(sums, columns, pool, scale, out + int64_t(i) * columns);
   }
 }
 
@@ -85,14 +144,18 @@ template <class Out>
 void PoolPlanes(const uint8_t* in, const FrameShape& shape, int pool, Out* out) {
   const int rows = shape.height / pool, columns = shape.width / pool;
   const float scale = float(1.0 / (255.0 * pool * pool));
+  CHECK(pool >= 1 && pool <= kMaxPool) << "pool of " << pool;
   ParallelFor(shape.planes, [&](int begin, int end) {
+    std::vector<uint16_t> sums(pool > 2 ? size_t(shape.width) : 0);
     for (int p = begin; p < end; ++p) {
       const uint8_t* plane = in + int64_t(p) * shape.height * shape.width;
       Out* pooled = out + int64_t(p) * rows * columns;
-      if (pool == 2) {
+      if (pool == 1) {
+        Scale(plane, int64_t(rows) * columns, scale, pooled);
+      } else if (pool == 2) {
         PoolByTwo(plane, shape.width, rows, columns, scale, pooled);
       } else {
-        PoolByAny(plane, shape.width, rows, columns, pool, scale, pooled);
+        PoolByAny(plane, shape.width, rows, columns, pool, scale, sums.data(), pooled);
       }
     }
   });

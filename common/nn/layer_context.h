@@ -15,7 +15,7 @@ namespace shoal::nn {
 // output. Backward() refers to the latest Forward(). A layer is used by one thread at a time, under
 // a ThreadScope of the size it was built in.
 struct LayerContext {
-  const ParameterSet* parameters;  // borrowed; outlives the layers
+  ParameterSet* parameters;  // borrowed; outlives the layers
   Precision precision;
   int batch;
   bool training;  // false: Forward only

@@ -84,8 +84,8 @@ void Linear::BuildBackward(const LayerContext& context, const memory& source,
 }
 
 void Linear::Refresh() {
-  weight_values_.set_data_handle(const_cast<float*>(weight_.value()));
-  bias_values_.set_data_handle(const_cast<float*>(bias_.value()));
+  weight_values_.set_data_handle(weight_.value());
+  bias_values_.set_data_handle(bias_.value());
   forward_weight_.Run();
   if (has_source_gradient_) backward_weight_.Run();
 }

@@ -4,22 +4,23 @@
 
 namespace shoal::nn {
 
-Mlp::Mlp(const LayerContext& context, const std::string& name, int hidden_layers, const Rows& input)
+Mlp::Mlp(const LayerContext& context, const NetworkPlan& plan, const Rows& input)
     : input_gradient_(context.batch, input.columns(), Precision::kF32) {
   const Rows* source = &input;
   const Rows* source_gradient = &input_gradient_;
-  for (int i = 0; i < hidden_layers; ++i) {
+  const size_t hidden_layers = plan.layers().size() - 1;
+  for (size_t i = 0; i < hidden_layers; ++i) {
     const bool last = i + 1 == hidden_layers;
-    hidden_.push_back(std::make_unique<DenseLayer>(
-        context, name + ".layer" + std::to_string(i), Activation::kRelu, source->compute(),
-        source_gradient->f32(), last ? Precision::kF32 : context.precision));
+    hidden_.push_back(std::make_unique<DenseLayer>(context, plan.layers()[i], source->compute(),
+                                                   source_gradient->f32(),
+                                                   last ? Precision::kF32 : context.precision));
     source = &hidden_.back()->output();
     hidden_gradients_.push_back(
         std::make_unique<Rows>(context.batch, source->columns(), Precision::kF32));
     source_gradient = hidden_gradients_.back().get();
   }
-  output_ =
-      std::make_unique<Linear>(context, name + ".output", source->f32(), source_gradient->f32());
+  output_ = std::make_unique<Linear>(context, plan.layers().back().name, source->f32(),
+                                     source_gradient->f32());
 }
 
 void Mlp::Refresh() {

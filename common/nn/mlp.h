@@ -1,9 +1,9 @@
 // Multi-layer perceptron: hidden layers (linear, LayerNorm where configured, ReLU), linear output.
-// The output layer is computed in f32.
+// The first layer is computed in the type of its input, the inner ones in the network's precision,
+// the output layer in f32.
 #pragma once
 
 #include <memory>
-#include <string>
 #include <vector>
 
 #include "common/nn/dense_layer.h"
@@ -15,9 +15,9 @@ namespace shoal::nn {
 
 class Mlp {
  public:
-  // Parameters `name`.layer{i}.* for i < hidden_layers and `name`.output.*. Reads `input`, which it
-  // borrows and whose owner commits it.
-  Mlp(const LayerContext& context, const std::string& name, int hidden_layers, const Rows& input);
+  // The plan's last layer is the output. Reads `input`, which it borrows and whose owner commits
+  // it.
+  Mlp(const LayerContext& context, const NetworkPlan& plan, const Rows& input);
 
   int outputs() const { return output_->outputs(); }
   const float* output() const { return output_->output(); }  // (B, outputs)

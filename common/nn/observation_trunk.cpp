@@ -2,27 +2,19 @@
 
 #include <algorithm>
 
+#include "common/base/check.h"
+
 namespace shoal::nn {
-namespace {
-
-int TrunkFeatures(const LayerContext& context, const std::string& head,
-                  const ObservationSpec& spec) {
-  return spec.HasPixels() ? int(context.parameters->Find(head + ".trunk.bias").shape()[0]) : 0;
-}
-
-}  // namespace
-
-ObservationTrunk::ObservationTrunk(const LayerContext& context, const std::string& head,
-                                   const ObservationSpec& spec, int extra_columns,
+ObservationTrunk::ObservationTrunk(const LayerContext& context, const HeadPlan& plan,
                                    const dnnl::memory& features,
                                    const dnnl::memory& features_gradient)
-    : features_(TrunkFeatures(context, head, spec)),
-      vector_size_(spec.VectorSize()),
+    : features_(plan.trunk_columns()),
+      vector_size_(plan.vector_columns),
       extra_column_(features_ + vector_size_),
-      input_(context.batch, extra_column_ + extra_columns, context.precision) {
-  if (!spec.HasPixels()) return;
-  dense_.emplace(context, head + ".trunk", Activation::kTanh, features, features_gradient,
-                 Precision::kF32);
+      input_(context.batch, extra_column_ + plan.extra_columns, Precision::kF32) {
+  if (features_ == 0) return;
+  CHECK(plan.trunk.layers().size() == 1);
+  dense_.emplace(context, plan.trunk.layers()[0], features, features_gradient, Precision::kF32);
   dense_gradient_.resize(size_t(context.batch) * size_t(features_));
 }
 

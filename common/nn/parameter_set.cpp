@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstring>
 
 #include "common/base/check.h"
@@ -17,7 +16,7 @@ namespace {
 
 constexpr int64_t kAlignment = 16;  // floats
 
-int64_t Count(const ParameterShape& parameter) {
+int64_t Count(const ParameterSpec& parameter) {
   int64_t count = 1;
   for (const int64_t size : parameter.shape) count *= size;
   return count;
@@ -27,33 +26,41 @@ std::string Shape(const std::vector<int64_t>& shape) {
   return shape.empty() ? "scalar" : fmt::format("{}", fmt::join(shape, "x"));
 }
 
-void InitialiseOne(const ParameterShape& parameter, uint64_t seed, float* values) {
+void InitialiseOne(const ParameterSpec& parameter, uint64_t seed, float* values) {
   const int64_t count = Count(parameter);
-  if (parameter.name.ends_with(".norm.weight")) {
-    std::fill_n(values, count, 1.f);
-  } else if (parameter.shape.size() < 2) {
-    std::fill_n(values, count, 0.f);
-  } else {
-    const bool convolution = parameter.shape.size() == 4;
-    const int64_t rows = parameter.shape[0];
-    Random random(StreamKey(seed, StreamRole::kNetworkInit,
-                            HashBytes(parameter.name.data(), parameter.name.size())));
-    FillOrthogonal(rows, count / rows, convolution ? std::sqrt(2.0) : 1.0, &random, values);
+  const double scale = parameter.start.scale;
+  Random random(StreamKey(seed, StreamRole::kNetworkInit,
+                          HashBytes(parameter.name.data(), parameter.name.size())));
+  switch (parameter.start.kind) {
+    case Start::Kind::kZeros:
+      std::fill_n(values, count, 0.f);
+      return;
+    case Start::Kind::kOnes:
+      std::fill_n(values, count, 1.f);
+      return;
+    case Start::Kind::kOrthogonal: {
+      // Each output's weights are one row.
+      const int64_t rows = parameter.shape[0];
+      FillOrthogonal(rows, count / rows, scale, &random, values);
+      return;
+    }
+    case Start::Kind::kUniform:
+      std::generate_n(values, count, [&] { return float(random.Uniform(-scale, scale)); });
+      return;
   }
 }
 
 }  // namespace
 
-const float* Parameter::value() const { return set_->values() + offset_; }
+float* Parameter::value() const { return set_->values() + offset_; }
 
 float* Parameter::gradient() const {
   return set_->gradients_.empty() ? nullptr : set_->gradients_.data() + offset_;
 }
 
-ParameterSet::ParameterSet(std::vector<ParameterShape> shapes, Use use)
-    : shapes_(std::move(shapes)) {
+ParameterSet::ParameterSet(std::vector<ParameterSpec> specs, Use use) : specs_(std::move(specs)) {
   int64_t size = 0;
-  for (const ParameterShape& parameter : shapes_) {
+  for (const ParameterSpec& parameter : specs_) {
     offsets_.push_back(size);
     size += (Count(parameter) + kAlignment - 1) / kAlignment * kAlignment;
   }
@@ -65,52 +72,52 @@ ParameterSet::ParameterSet(std::vector<ParameterShape> shapes, Use use)
 }
 
 void ParameterSet::Initialise(uint64_t seed) {
-  for (size_t i = 0; i < shapes_.size(); ++i) {
-    InitialiseOne(shapes_[i], seed, values_.data() + offsets_[i]);
+  for (size_t i = 0; i < specs_.size(); ++i) {
+    InitialiseOne(specs_[i], seed, values_.data() + offsets_[i]);
   }
 }
 
 bool ParameterSet::Has(std::string_view name) const {
-  return std::any_of(shapes_.begin(), shapes_.end(),
-                     [&](const ParameterShape& parameter) { return parameter.name == name; });
+  return std::any_of(specs_.begin(), specs_.end(),
+                     [&](const ParameterSpec& parameter) { return parameter.name == name; });
 }
 
-Parameter ParameterSet::Find(std::string_view name) const {
-  for (size_t i = 0; i < shapes_.size(); ++i) {
-    if (shapes_[i].name == name) return Parameter(this, offsets_[i], &shapes_[i]);
+Parameter ParameterSet::Find(std::string_view name) {
+  for (size_t i = 0; i < specs_.size(); ++i) {
+    if (specs_[i].name == name) return Parameter(this, offsets_[i], &specs_[i]);
   }
   CHECK(false) << "no parameter " << name;
   return {};
 }
 
 int64_t ParameterSet::OffsetOf(std::string_view prefix) const {
-  for (size_t i = 0; i < shapes_.size(); ++i) {
-    if (shapes_[i].name.starts_with(prefix)) return offsets_[i];
+  for (size_t i = 0; i < specs_.size(); ++i) {
+    if (specs_[i].name.starts_with(prefix)) return offsets_[i];
   }
   return size();
 }
 
 void ParameterSet::Export(const float* array, const std::string& prefix, TensorMap* tensors) const {
-  for (size_t i = 0; i < shapes_.size(); ++i) {
-    NamedTensor tensor{"F32", shapes_[i].shape, {}};
-    tensor.data.resize(size_t(Count(shapes_[i])) * sizeof(float));
+  for (size_t i = 0; i < specs_.size(); ++i) {
+    NamedTensor tensor{"F32", specs_[i].shape, {}};
+    tensor.data.resize(size_t(Count(specs_[i])) * sizeof(float));
     std::memcpy(tensor.data.data(), array + offsets_[i], tensor.data.size());
-    (*tensors)[prefix + shapes_[i].name] = std::move(tensor);
+    (*tensors)[prefix + specs_[i].name] = std::move(tensor);
   }
 }
 
 void ParameterSet::Import(const TensorMap& tensors, const std::string& prefix,
                           const std::string& source, float* array) const {
-  for (size_t i = 0; i < shapes_.size(); ++i) {
-    const std::string name = prefix + shapes_[i].name;
+  for (size_t i = 0; i < specs_.size(); ++i) {
+    const std::string name = prefix + specs_[i].name;
     const auto found = tensors.find(name);
     if (found == tensors.end()) throw RuntimeError("{}: tensor {} is missing", source, name);
     const NamedTensor& tensor = found->second;
-    if (tensor.shape != shapes_[i].shape) {
+    if (tensor.shape != specs_[i].shape) {
       throw RuntimeError("{}: tensor {} has shape {}, expected {}", source, name,
-                         Shape(tensor.shape), Shape(shapes_[i].shape));
+                         Shape(tensor.shape), Shape(specs_[i].shape));
     }
-    const int64_t count = Count(shapes_[i]);
+    const int64_t count = Count(specs_[i]);
     const size_t element = tensor.dtype == "BF16" ? sizeof(uint16_t) : sizeof(float);
     if (tensor.dtype != "F32" && tensor.dtype != "BF16") {
       throw RuntimeError("{}: tensor {} is {}, expected F32 or BF16", source, name, tensor.dtype);

@@ -6,30 +6,30 @@
 #include <string_view>
 #include <vector>
 
-#include "common/nn/network_parameters.h"
+#include "common/nn/network_plan.h"
 #include "common/nn/safetensors.h"
 
 namespace shoal::nn {
 
 class ParameterSet;
 
-// One parameter of a set: row-major f32. Borrows the set.
+// One parameter of a set: row-major f32. Borrows the set; copies refer to the same parameter.
 class Parameter {
  public:
   Parameter() = default;
-  Parameter(const ParameterSet* set, int64_t offset, const ParameterShape* shape)
-      : set_(set), offset_(offset), shape_(shape) {}
+  Parameter(ParameterSet* set, int64_t offset, const ParameterSpec* spec)
+      : set_(set), offset_(offset), spec_(spec) {}
 
-  const std::vector<int64_t>& shape() const { return shape_->shape; }
+  const std::vector<int64_t>& shape() const { return spec_->shape; }
   // Moves with every optimiser step: fetch it when it is needed.
-  const float* value() const;
+  float* value() const;
   // Stays. Null in a set without gradients.
   float* gradient() const;
 
  private:
-  const ParameterSet* set_ = nullptr;
+  ParameterSet* set_ = nullptr;
   int64_t offset_ = 0;
-  const ParameterShape* shape_ = nullptr;
+  const ParameterSpec* spec_ = nullptr;
 };
 
 // Owns values, gradients and a second array of values, into which an optimiser writes: exchanging
@@ -40,17 +40,16 @@ class ParameterSet {
  public:
   enum class Use { kTraining, kInference };  // kInference: no gradients, no second array
 
-  ParameterSet(std::vector<ParameterShape> shapes, Use use);
+  ParameterSet(std::vector<ParameterSpec> specs, Use use);
   ParameterSet(const ParameterSet&) = delete;
   ParameterSet& operator=(const ParameterSet&) = delete;
 
-  // Orthogonal weights (gain sqrt 2 for convolutions, 1 for linears), zero biases, unit norms; the
-  // stream of a parameter is keyed by seed and name.
+  // As each parameter's Start says; its random stream is keyed by seed and name.
   void Initialise(uint64_t seed);
 
   bool Has(std::string_view name) const;
   // CHECKs that there is one.
-  Parameter Find(std::string_view name) const;
+  Parameter Find(std::string_view name);
   // Where the first parameter whose name starts with `prefix` begins; size() if there is none.
   int64_t OffsetOf(std::string_view prefix) const;
 
@@ -59,11 +58,14 @@ class ParameterSet {
   float* values() { return values_.data(); }
   float* next_values() { return next_values_.data(); }
   const float* gradients() const { return gradients_.data(); }
+  float* gradients() { return gradients_.data(); }
   void Exchange() { values_.swap(next_values_); }
 
   // The arrays of this set's layout (values, Adam moments) to named tensors and back. `prefix` goes
   // before each name.
   void Export(const float* array, const std::string& prefix, TensorMap* tensors) const;
+  // The values under their own names.
+  void Export(TensorMap* tensors) const { Export(values(), "", tensors); }
   // Takes F32 and BF16. Throws Error naming a missing tensor or a wrong type or shape; `array` may
   // then be partly written.
   void Import(const TensorMap& tensors, const std::string& prefix, const std::string& source,
@@ -72,10 +74,9 @@ class ParameterSet {
  private:
   friend class Parameter;
 
-  std::vector<ParameterShape> shapes_;
+  std::vector<ParameterSpec> specs_;
   std::vector<int64_t> offsets_;
-  std::vector<float> values_, next_values_;
-  mutable std::vector<float> gradients_;
+  std::vector<float> values_, next_values_, gradients_;
 };
 
 }  // namespace shoal::nn

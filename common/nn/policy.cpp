@@ -1,11 +1,12 @@
 #include "common/nn/policy.h"
 
 #include <algorithm>
-#include <cstring>
 #include <map>
 #include <optional>
+#include <vector>
 
 #include "common/base/check.h"
+#include "common/nn/actor_critic_plan.h"
 #include "common/nn/actor_head.h"
 #include "common/nn/encoder.h"
 #include "common/nn/parallel.h"
@@ -14,19 +15,13 @@
 namespace shoal::nn {
 namespace {
 
-std::vector<ParameterShape> PolicyParameters(const NetworkConfig& network,
-                                             const ObservationSpec& spec) {
-  std::vector<ParameterShape> shapes = EncoderParameters(network, spec);
-  for (ParameterShape& shape : ActorParameters(network, spec)) shapes.push_back(std::move(shape));
-  return shapes;
-}
-
 // Encoder and actor built for one batch size.
 struct SizedNetwork {
-  SizedNetwork(const LayerContext& context, const NetworkConfig& network,
-               const ObservationSpec& spec) {
-    if (spec.HasPixels()) encoder.emplace(context, network, spec);
-    actor.emplace(context, network, spec, encoder ? encoder->features() : dnnl::memory());
+  SizedNetwork(const LayerContext& context, const NetworkPlan& encoder_plan,
+               const ActorPlan& actor_plan) {
+    if (!encoder_plan.layers().empty()) encoder.emplace(context, encoder_plan);
+    actor.emplace(context, actor_plan, encoder ? encoder->features() : dnnl::memory(),
+                  dnnl::memory());
     Refresh();
   }
 
@@ -39,65 +34,95 @@ struct SizedNetwork {
   std::optional<ActorHead> actor;
 };
 
-}  // namespace
-
-struct Policy::Impl {
-  Impl(const NetworkConfig& network_config, const ObservationSpec& observation_spec,
-       Precision compute_precision, int largest_batch)
-      : network(network_config),
-        spec(observation_spec),
+// One kind of policy: its parameters, and what is built on them.
+struct Built {
+  Built(const NetworkConfig& network, const ObservationSpec& spec, Precision compute_precision,
+        ActorOutput output)
+      : encoder(PlanEncoder(network, spec)),
+        actor(PlanActor(network, spec, output)),
         precision(compute_precision),
-        max_batch(largest_batch),
-        threads(Threads()),
-        parameters(PolicyParameters(network, spec), ParameterSet::Use::kInference),
+        parameters(Parameters(), ParameterSet::Use::kInference),
         scratchpad(std::make_shared<Scratchpad>()) {}
+
+  std::vector<ParameterSpec> Parameters() const {
+    std::vector<ParameterSpec> specs = encoder.Parameters();
+    Append(actor.Parameters(), &specs);
+    return specs;
+  }
 
   // Built when a batch size is first seen, kept for good: an actor uses one or two.
   SizedNetwork& ForBatch(int batch) {
     const auto found = networks.find(batch);
     if (found != networks.end()) return found->second;
     const LayerContext context{&parameters, precision, batch, /*training=*/false, scratchpad};
-    return networks.try_emplace(batch, context, network, spec).first->second;
+    return networks.try_emplace(batch, context, encoder, actor).first->second;
+  }
+
+  const NetworkPlan encoder;
+  const ActorPlan actor;
+  const Precision precision;
+  ParameterSet parameters;
+  std::shared_ptr<Scratchpad> scratchpad;
+  std::map<int, SizedNetwork> networks;
+};
+
+// What the last layer's bias says; a missing or misshaped one is refused when it is taken over.
+ActorOutput OutputOf(const TensorMap& tensors, int action_size) {
+  const auto bias = tensors.find("actor.mlp.output.bias");
+  const bool deterministic =
+      bias != tensors.end() && bias->second.shape == std::vector<int64_t>{action_size};
+  return deterministic ? ActorOutput::kDeterministic : ActorOutput::kGaussian;
+}
+
+}  // namespace
+
+struct Policy::Impl {
+  std::unique_ptr<Built> Build(ActorOutput output) const {
+    auto result = std::make_unique<Built>(network, spec, precision, output);
+    result->ForBatch(max_batch);
+    return result;
   }
 
   const NetworkConfig network;
   const ObservationSpec spec;
   const Precision precision;
   const int max_batch;
-  const int threads;
-  ParameterSet parameters;
-  std::shared_ptr<Scratchpad> scratchpad;
-  std::map<int, SizedNetwork> networks;
+  const int threads = Threads();
+  std::unique_ptr<Built> built = nullptr;
 };
 
 Policy::Policy(const NetworkConfig& network, const ObservationSpec& spec, Precision precision,
                int max_batch)
-    : impl_(std::make_unique<Impl>(network, spec, precision, max_batch)) {
+    : impl_(std::make_unique<Impl>(Impl{network, spec, precision, max_batch})) {
   const ThreadScope scope(impl_->threads);
-  impl_->ForBatch(max_batch);
+  impl_->built = impl_->Build(ActorOutput::kGaussian);
 }
 
 Policy::~Policy() = default;
 
 void Policy::Load(const TensorMap& tensors, const std::string& source) {
   const ThreadScope scope(impl_->threads);
-  ParameterSet& parameters = impl_->parameters;
-  std::vector<float> values(size_t(parameters.size()), 0.f);
-  parameters.Import(tensors, "", source, values.data());
-  std::copy(values.begin(), values.end(), parameters.values());
-  for (auto& [batch, network] : impl_->networks) network.Refresh();
+  const ActorOutput output = OutputOf(tensors, impl_->spec.action_size);
+  std::unique_ptr<Built> other;
+  if (output != impl_->built->actor.output) other = impl_->Build(output);
+  Built& built = other ? *other : *impl_->built;
+  std::vector<float> values(static_cast<size_t>(built.parameters.size()), 0.f);
+  built.parameters.Import(tensors, "", source, values.data());
+  std::copy(values.begin(), values.end(), built.parameters.values());
+  for (auto& [batch, network] : built.networks) network.Refresh();
+  if (other) impl_->built = std::move(other);
 }
 
-void Policy::Forward(int batch, const uint8_t* frames, const float* vector, float* mean,
-                     float* log_std) {
+PolicyOutput Policy::Forward(int batch, const uint8_t* frames, const float* vector) {
   CHECK(batch > 0 && batch <= impl_->max_batch) << batch << " of at most " << impl_->max_batch;
   const ThreadScope scope(impl_->threads);
-  SizedNetwork& network = impl_->ForBatch(batch);
+  SizedNetwork& network = impl_->built->ForBatch(batch);
   if (network.encoder) network.encoder->Forward(frames);
   network.actor->Forward(vector);
-  const size_t bytes = size_t(batch) * size_t(impl_->spec.action_size) * sizeof(float);
-  std::memcpy(mean, network.actor->mean(), bytes);
-  std::memcpy(log_std, network.actor->log_std(), bytes);
+  const size_t count = static_cast<size_t>(batch) * static_cast<size_t>(impl_->spec.action_size);
+  PolicyOutput result{.mean = {network.actor->mean(), count}, .log_std = {}};
+  if (network.actor->log_std() != nullptr) result.log_std = {network.actor->log_std(), count};
+  return result;
 }
 
 }  // namespace shoal::nn

@@ -1,8 +1,10 @@
-// The policy as an actor uses it: encoder, trunk and actor MLP, forward only.
+// The policy as an actor uses it: encoder, trunk and actor MLP, forward only. What an actor makes
+// of the output, with or without exploration, is the actor's.
 #pragma once
 
 #include <cstdint>
 #include <memory>
+#include <span>
 
 #include "common/config/config.h"
 #include "common/nn/precision.h"
@@ -11,19 +13,26 @@
 
 namespace shoal::nn {
 
+// Of a batch of B observations with A actions each, (B, A).
+struct PolicyOutput {
+  std::span<const float> mean;     // before tanh
+  std::span<const float> log_std;  // of the Gaussian around it; empty of a deterministic policy
+};
+
 class Policy {
  public:
   Policy(const NetworkConfig& network, const ObservationSpec& spec, Precision precision,
          int max_batch);
   ~Policy();
 
-  // Takes F32 or BF16 tensors by name; throws Error naming a missing tensor or a wrong shape, and
-  // then keeps its former weights.
+  // Takes F32 or BF16 tensors by name. They say what kind of policy they are: one whose last layer
+  // has A outputs is deterministic. Throws Error naming a missing tensor or a wrong shape, and then
+  // keeps its former weights.
   void Load(const TensorMap& tensors, const std::string& source);
 
   // frames (B, K*C, H, W) u8 (unread without pixels), vector (B, V) f32 (unread when V = 0).
-  // mean, log_std (B, A): of the Gaussian before tanh. 0 < B <= max_batch.
-  void Forward(int batch, const uint8_t* frames, const float* vector, float* mean, float* log_std);
+  // 0 < B <= max_batch. The result is valid until the next call.
+  PolicyOutput Forward(int batch, const uint8_t* frames, const float* vector);
 
  private:
   struct Impl;

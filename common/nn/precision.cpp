@@ -20,9 +20,9 @@ bool HasNativeBf16() {
 
 }  // namespace
 
-Precision ChoosePrecision(const std::string& asked) {
+Precision ChoosePrecision(const std::string& asked, bool pixels) {
   if (asked == "f32") return Precision::kF32;
-  if (asked == "auto") return HasNativeBf16() ? Precision::kBf16 : Precision::kF32;
+  if (asked == "auto") return pixels && HasNativeBf16() ? Precision::kBf16 : Precision::kF32;
   if (asked != "bf16") throw UsageError("precision '{}': expected auto, f32 or bf16", asked);
   if (!HasNativeBf16()) {
     throw UsageError("precision bf16: this CPU ({}) has no bf16 arithmetic; use auto or f32",

@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "common/base/bounded_json.h"
 #include "common/base/check.h"
 #include "common/base/error.h"
 #include "common/nn/bf16.h"
@@ -42,6 +43,9 @@ json ParseHeader(std::string_view text, const std::string& source) {
     }
     return true;
   };
+  if (JsonTooDeep(text)) {
+    throw RuntimeError("{}: the safetensors header is nested too deep", source);
+  }
   json header = json::parse(text.begin(), text.end(), watch, /*allow_exceptions=*/false);
   if (header.is_discarded() || !header.is_object()) {
     throw RuntimeError("{}: the safetensors header is not a JSON object", source);

@@ -1,7 +1,9 @@
 #include "common/spec/observation_spec.h"
 
+#include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "common/base/check.h"
 #include "common/base/error.h"
 #include "common/base/random.h"
 
@@ -9,10 +11,40 @@ namespace shoal {
 
 using nlohmann::json;
 
+namespace {
+
+// Where `name` lies among the blocks that count.
+std::optional<ObservationSpec::Range> Find(const std::vector<BlockSpec>& blocks,
+                                           std::string_view name, bool observed_only) {
+  int first = 0;
+  for (const BlockSpec& block : blocks) {
+    if (observed_only && !block.observed) continue;
+    if (block.name == name) return ObservationSpec::Range{first, block.size};
+    first += block.size;
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
 int ObservationSpec::VectorSize() const {
+  int size = 0;
+  for (const BlockSpec& block : blocks) size += block.observed ? block.size : 0;
+  return size;
+}
+
+int ObservationSpec::RecordedVectorSize() const {
   int size = 0;
   for (const BlockSpec& block : blocks) size += block.size;
   return size;
+}
+
+std::optional<ObservationSpec::Range> ObservationSpec::Recorded(std::string_view block) const {
+  return Find(blocks, block, /*observed_only=*/false);
+}
+
+std::optional<ObservationSpec::Range> ObservationSpec::Observed(std::string_view block) const {
+  return Find(blocks, block, /*observed_only=*/true);
 }
 
 uint64_t ObservationSpec::Hash() const {
@@ -23,15 +55,19 @@ uint64_t ObservationSpec::Hash() const {
 std::string ObservationSpec::Summary() const {
   std::string names;
   for (const std::string& camera : cameras) names += (names.empty() ? "" : ",") + camera;
-  return fmt::format("{} pixels {}x{}x{} [{}] stack {}, vector {}, action {}, model {}", task,
-                     channels, height, width, names, stack, VectorSize(), action_size,
+  std::string seen;
+  for (const BlockSpec& block : blocks) {
+    if (block.observed) seen += (seen.empty() ? "" : ",") + block.name;
+  }
+  return fmt::format("{} pixels {}x{}x{} [{}] stack {}, vector {} [{}], action {}, model {}", task,
+                     channels, height, width, names, stack, VectorSize(), seen, action_size,
                      model_fingerprint);
 }
 
 json ToJson(const ObservationSpec& spec) {
   json blocks = json::array();
   for (const BlockSpec& block : spec.blocks) {
-    blocks.push_back({{"name", block.name}, {"size", block.size}});
+    blocks.push_back({{"name", block.name}, {"size", block.size}, {"observed", block.observed}});
   }
   return {{"task", spec.task},
           {"cameras", spec.cameras},
@@ -41,6 +77,7 @@ json ToJson(const ObservationSpec& spec) {
           {"stack", spec.stack},
           {"blocks", blocks},
           {"action_size", spec.action_size},
+          {"drawn_actions", spec.drawn_actions},
           {"model_fingerprint", spec.model_fingerprint}};
 }
 
@@ -54,14 +91,38 @@ ObservationSpec ObservationSpecFromJson(const json& object) {
     object.at("width").get_to(spec.width);
     object.at("stack").get_to(spec.stack);
     for (const auto& block : object.at("blocks")) {
-      spec.blocks.push_back({block.at("name").get<std::string>(), block.at("size").get<int>()});
+      spec.blocks.push_back({block.at("name").get<std::string>(), block.at("size").get<int>(),
+                             block.at("observed").get<bool>()});
     }
     object.at("action_size").get_to(spec.action_size);
+    object.at("drawn_actions").get_to(spec.drawn_actions);
     object.at("model_fingerprint").get_to(spec.model_fingerprint);
   } catch (const nlohmann::json::exception& e) {
     throw RuntimeError("observation spec: {}", e.what());
   }
   return spec;
+}
+
+ObservedBlocks::ObservedBlocks(const ObservationSpec& spec)
+    : recorded_size_(spec.RecordedVectorSize()), size_(spec.VectorSize()) {
+  int first = 0;
+  for (const BlockSpec& block : spec.blocks) {
+    if (block.observed && !ranges_.empty() && ranges_.back().first + ranges_.back().size == first) {
+      ranges_.back().size += block.size;
+    } else if (block.observed) {
+      ranges_.push_back({first, block.size});
+    }
+    first += block.size;
+  }
+}
+
+void ObservedBlocks::Copy(std::span<const float> recorded, std::span<float> observed) const {
+  CHECK(recorded.size() == size_t(recorded_size_) && observed.size() == size_t(size_))
+      << recorded.size() << " to " << observed.size();
+  auto to = observed.begin();
+  for (const auto& [first, size] : ranges_) {
+    to = std::ranges::copy(recorded.subspan(size_t(first), size_t(size)), to).out;
+  }
 }
 
 }  // namespace shoal

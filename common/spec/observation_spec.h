@@ -1,18 +1,26 @@
-// What an actor publishes and a network sees: computed once by `shoal-actor --describe`, stored in
+// What an actor publishes and a policy sees: computed once by `shoal-actor --describe`, stored in
 // config.json, compared by hash by every process and carried by every message.
+//
+// A record holds every block of the task; the policy's vector consists of those that are observed,
+// in the same order. The others are there for what is not acting: goals of hindsight, a critic or a
+// loss that sees more.
 #pragma once
 
 #include <cstdint>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace shoal {
 
-// One named float32 vector of an observation.
+// One named float32 vector of a record.
 struct BlockSpec {
-  std::string name;  // "observation", "achieved_goal", "desired_goal"
+  std::string name;  // "grip", "observation", "achieved_goal", "desired_goal"
   int size = 0;
+  bool observed = true;  // part of the policy's observation
 
   bool operator==(const BlockSpec&) const = default;
 };
@@ -23,15 +31,31 @@ struct ObservationSpec {
   int channels = 0;               // C of one frame: 3 per RGB camera, 1 per grey one; 0 = no pixels
   int height = 0, width = 0;      // H, W in pixels
   int stack = 1;                  // K frames per observation, composed when sampling
-  std::vector<BlockSpec> blocks;  // vector part of an observation, in record order
+  std::vector<BlockSpec> blocks;  // in record order
   int action_size = 0;            // A, each in [-1, 1]
+  // Records carry the action as it was drawn, before it was clipped to [-1, 1], too, and their
+  // header its log-probability: what on-policy learning needs.
+  bool drawn_actions = false;
   std::string model_fingerprint;  // hash of the compiled physics model and render settings, hex
 
   bool HasPixels() const { return channels > 0; }
   // One frame (C, H, W) uint8.
   int FrameBytes() const { return channels * height * width; }
-  // V: floats of all blocks together.
+  // V: floats of the observed blocks together, the policy's vector.
   int VectorSize() const;
+  // R >= V: floats of all blocks together, a record's vector.
+  int RecordedVectorSize() const;
+
+  // Floats first .. first + size - 1 of a vector.
+  struct Range {
+    int first = 0, size = 0;
+    bool operator==(const Range&) const = default;
+  };
+  // Where a block lies in a record's vector; nothing for a block that there is not.
+  std::optional<Range> Recorded(std::string_view block) const;
+  // Where it lies in the policy's; nothing, too, for one that is not observed.
+  std::optional<Range> Observed(std::string_view block) const;
+
   // Of the canonical JSON: equal specs and only they are compatible.
   uint64_t Hash() const;
   // "FetchReachDense 2x84x84 RGB [front,side] stack 1, vector 0, action 4, model 1a2b" for
@@ -44,5 +68,19 @@ struct ObservationSpec {
 nlohmann::json ToJson(const ObservationSpec& spec);
 // Throws Error naming the missing or ill-typed key.
 ObservationSpec ObservationSpecFromJson(const nlohmann::json& object);
+
+// Picks the policy's vector (V) out of a record's (R). A value type.
+class ObservedBlocks {
+ public:
+  explicit ObservedBlocks(const ObservationSpec& spec);
+
+  int size() const { return size_; }  // V
+  // CHECK on other sizes than those of the spec. May not overlap.
+  void Copy(std::span<const float> recorded, std::span<float> observed) const;
+
+ private:
+  std::vector<ObservationSpec::Range> ranges_;  // of the record's vector; neighbours are one
+  int recorded_size_, size_;
+};
 
 }  // namespace shoal

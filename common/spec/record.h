@@ -1,10 +1,13 @@
 // A record: what an actor publishes about one environment at one instant. The same bytes travel in
 // chunks over DDS and lie in the replay's ring.
 //
-//   RecordHeader (80 bytes) | action (A) f32 | vector (V) f32 | frame (C, H, W) u8 | pad to 8
+//   RecordHeader (80 bytes) | action (A) f32 | drawn action (A or 0) f32 | vector (R) f32
+//   | frame (C, H, W) u8 | pad to 8
 //
 // A *reset* record holds the first observation of an episode (action and reward are zero). A *step*
-// record holds the action taken, what it earned, and the observation it led to. All little-endian.
+// record holds the action taken, what it earned, and the observation it led to. The vector has
+// every block of the spec, observed or not. The action as drawn is there if the spec says so. All
+// little-endian.
 // docs/wire_format.md describes the layout byte by byte.
 #pragma once
 
@@ -15,7 +18,7 @@
 
 namespace shoal {
 
-inline constexpr uint8_t kRecordVersion = 1;
+inline constexpr uint8_t kRecordVersion = 2;
 
 enum class RecordKind : uint8_t { kReset = 1, kStep = 2 };
 
@@ -38,8 +41,9 @@ struct RecordHeader {
   RecordKind kind;
   uint8_t flags;  // RecordFlags
   uint8_t version;
-  uint8_t reserved[5];
-  uint64_t reserved_words[2];
+  uint8_t reserved;
+  float log_prob;  // of the drawn action under the policy that chose it; 0 without drawn actions
+  uint32_t reserved_words[5];
 };
 static_assert(sizeof(RecordHeader) == 80);
 
@@ -49,8 +53,10 @@ class RecordLayout {
   explicit RecordLayout(const ObservationSpec& spec);
 
   int action_size() const { return action_size_; }
-  int vector_size() const { return vector_size_; }
+  int vector_size() const { return vector_size_; }  // R
   int frame_bytes() const { return frame_bytes_; }
+  // Everything before the frame.
+  int prefix_bytes() const { return frame_offset_; }
   // Size of one record, a multiple of 8.
   int record_bytes() const { return record_bytes_; }
 
@@ -64,6 +70,13 @@ class RecordLayout {
   }
   std::span<const float> Action(const uint8_t* record) const {
     return {reinterpret_cast<const float*>(record + sizeof(RecordHeader)), size_t(action_size_)};
+  }
+  // As drawn, before it was clipped; empty where the spec has no drawn actions.
+  std::span<float> DrawnAction(uint8_t* record) const {
+    return {reinterpret_cast<float*>(record + drawn_offset_), size_t(drawn_size_)};
+  }
+  std::span<const float> DrawnAction(const uint8_t* record) const {
+    return {reinterpret_cast<const float*>(record + drawn_offset_), size_t(drawn_size_)};
   }
   std::span<float> Vector(uint8_t* record) const {
     return {reinterpret_cast<float*>(record + vector_offset_), size_t(vector_size_)};
@@ -79,12 +92,13 @@ class RecordLayout {
   }
 
  private:
-  int action_size_, vector_size_, frame_bytes_;
-  int vector_offset_, frame_offset_, record_bytes_;
+  int action_size_, drawn_size_, vector_size_, frame_bytes_;
+  int drawn_offset_, vector_offset_, frame_offset_, record_bytes_;
 };
 
 // What is wrong with a record from outside, or nullptr: version, kind, index/kind agreement,
-// unknown flags, non-finite reward, action outside [-1, 1], non-finite vector.
+// unknown flags, non-finite reward or log-probability, action outside [-1, 1], non-finite drawn
+// action or vector.
 const char* RecordFault(const RecordLayout& layout, const uint8_t* record);
 
 }  // namespace shoal

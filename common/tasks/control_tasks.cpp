@@ -15,7 +15,7 @@ Task ControlTask(const std::string& name, int action_repeat, const std::string& 
   description.episode_length = kEpisodeLength;
   description.action_repeat = action_repeat;
   description.action = std::move(action);
-  description.observation = {"observation", std::move(observation)};
+  description.observation = {{"observation", std::move(observation)}};
   description.physics_reward = reward;
   return Task(std::move(description));
 }

@@ -17,6 +17,11 @@ Components Vector(const std::string& prefix, const std::string& unit, const std:
           {prefix + "z", unit, what + ", z in the world (up)"}};
 }
 
+// The same as a block whose components begin with its name.
+Block VectorBlock(const std::string& name, const std::string& unit, const std::string& what) {
+  return {name, Vector(name + "_", unit, what)};
+}
+
 Components Fingers(bool held_shut) {
   const std::string note = held_shut ? "; held shut" : "";
   return {{"right_finger", "m", "opening of the right finger" + note},
@@ -28,34 +33,28 @@ Components FingerVelocities() {
           {"left_finger_velocity", "m/step", "velocity of the left finger"}};
 }
 
-Block Join(const std::vector<Components>& parts) {
-  Block block{"observation", {}};
-  for (const Components& part : parts) {
-    block.components.insert(block.components.end(), part.begin(), part.end());
-  }
-  return block;
-}
-
 constexpr const char* kGrip = "point between the fingers";
 
 // Velocities are those of one env step: what a thing moves or turns in the 0.04 s of a step at its
 // present speed.
-Block ReachObservation() {
-  return Join({Vector("grip_", "m", kGrip), Fingers(/*held_shut=*/true),
-               Vector("grip_velocity_", "m/step", "velocity of the point between the fingers"),
-               FingerVelocities()});
+std::vector<Block> ReachObservation() {
+  return {VectorBlock("grip", "m", kGrip),
+          {"fingers", Fingers(/*held_shut=*/true)},
+          VectorBlock("grip_velocity", "m/step", "velocity of the point between the fingers"),
+          {"finger_velocities", FingerVelocities()}};
 }
 
-Block ObjectObservation(bool fingers_held_shut) {
-  return Join({Vector("grip_", "m", kGrip), Vector("object_", "m", "object's centre"),
-               Vector("object_from_grip_", "m", "object's centre seen from between the fingers"),
-               Fingers(fingers_held_shut),
-               Vector("object_angle_", "rad", "object's Euler angle, jumping at +-pi"),
-               Vector("object_velocity_from_grip_", "m/step",
+std::vector<Block> ObjectObservation(bool fingers_held_shut) {
+  return {VectorBlock("grip", "m", kGrip),
+          VectorBlock("object", "m", "object's centre"),
+          VectorBlock("object_from_grip", "m", "object's centre seen from between the fingers"),
+          {"fingers", Fingers(fingers_held_shut)},
+          VectorBlock("object_angle", "rad", "object's Euler angle, jumping at +-pi"),
+          VectorBlock("object_velocity_from_grip", "m/step",
                       "velocity of the object less that of the point between the fingers"),
-               Vector("object_angular_velocity_", "rad/step", "angular velocity of the object"),
-               Vector("grip_velocity_", "m/step", "velocity of the point between the fingers"),
-               FingerVelocities()});
+          VectorBlock("object_angular_velocity", "rad/step", "angular velocity of the object"),
+          VectorBlock("grip_velocity", "m/step", "velocity of the point between the fingers"),
+          {"finger_velocities", FingerVelocities()}};
 }
 
 // Each in [-1, 1]: the gripper is pulled towards 5 cm times the number, and lags behind.

@@ -30,7 +30,7 @@ Task HopperTask(const std::string& name, int episode_length, const std::string& 
   description.name = description.world = name;
   description.episode_length = episode_length;
   description.action = {Torque("thigh"), Torque("leg"), Torque("foot")};
-  description.observation = Observation();
+  description.observation = {Observation()};
   description.physics_reward = "forward velocity in m/s + " + bonus +
                                " - 0.001 |action|^2; ends below 0.7 m or leaning by 0.2 rad";
   return Task(std::move(description));

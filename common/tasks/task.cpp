@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstddef>
+#include <set>
 #include <utility>
 
 #include "common/base/check.h"
@@ -13,6 +14,13 @@ Task::Task(Description description) : description_(std::move(description)) {
   CHECK(description_.achieved_goal.size() == description_.desired_goal.size())
       << description_.name << ": goals of different size";
   CHECK(description_.episode_length > 0 && description_.action_repeat > 0) << description_.name;
+  observation_.name = "observation";
+  std::set<std::string> names{description_.achieved_goal.name, description_.desired_goal.name};
+  for (const Block& block : description_.observation) {
+    CHECK(names.insert(block.name).second) << description_.name << ": two blocks " << block.name;
+    observation_.components.insert(observation_.components.end(), block.components.begin(),
+                                   block.components.end());
+  }
 }
 
 int Task::EnvStepsPerEpisode(int repeat) const {

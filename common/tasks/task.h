@@ -32,7 +32,7 @@ struct Component {
 
 // One named vector of an observation.
 struct Block {
-  std::string name;  // "observation", "achieved_goal", "desired_goal"
+  std::string name;  // "grip", "observation", "achieved_goal", "desired_goal"
   std::vector<Component> components;
 
   int size() const { return static_cast<int>(components.size()); }
@@ -46,14 +46,14 @@ enum class RewardKind {
 class Task {
  public:
   struct Description {
-    std::string name;               // "FetchReachDense"
-    std::string world;              // name of the physics half: "FetchReach"
-    int episode_length = 0;         // control steps after which an episode is truncated
-    int action_repeat = 1;          // control steps of an env step, unless configured otherwise
-    std::vector<Component> action;  // each in [-1, 1]
-    Block observation;              // the state vector
-    Block achieved_goal;            // G components in units of length
-    Block desired_goal;             // the same G components
+    std::string name;                // "FetchReachDense"
+    std::string world;               // name of the physics half: "FetchReach"
+    int episode_length = 0;          // control steps after which an episode is truncated
+    int action_repeat = 1;           // control steps of an env step, unless configured otherwise
+    std::vector<Component> action;   // each in [-1, 1]
+    std::vector<Block> observation;  // the state vector, block by block, in the published order
+    Block achieved_goal;             // G components in units of length
+    Block desired_goal;              // the same G components
     RewardKind reward = RewardKind::kSparse;
     double distance_threshold = 0;  // m
     std::string physics_reward;     // without goals: what the physics half pays for, for people
@@ -74,7 +74,10 @@ class Task {
   int EnvStepsPerEpisode(int repeat) const;
   const std::vector<Component>& action() const { return description_.action; }
   int action_size() const { return static_cast<int>(description_.action.size()); }
-  const Block& observation() const { return description_.observation; }
+  // The state vector in one piece, as published, under the name "observation".
+  const Block& observation() const { return observation_; }
+  // The same, block by block: what records name and a policy may see one by one.
+  const std::vector<Block>& state_blocks() const { return description_.observation; }
   const Block& achieved_goal() const { return description_.achieved_goal; }
   const Block& desired_goal() const { return description_.desired_goal; }
   int goal_size() const { return description_.desired_goal.size(); }
@@ -102,6 +105,7 @@ class Task {
 
  private:
   Description description_;
+  Block observation_;
 };
 
 }  // namespace shoal::tasks

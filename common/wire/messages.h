@@ -23,7 +23,8 @@ struct WeightsVersion {
 };
 
 // actor -> replay. `count` records of equal size, sequences first_sequence ..
-// first_sequence+count-1.
+// first_sequence+count-1. Without records it says that the actor keeps nothing before
+// first_sequence any more.
 struct TransitionChunk {
   uint64_t spec_hash = 0;
   uint32_t actor = 0;
@@ -38,9 +39,10 @@ struct Credit {
   uint64_t replay_session = 0;  // changes when the replay restarts: resend what is not stored
   uint32_t actor = 0;
   uint64_t session = 0;
-  uint64_t stored = 0;     // highest sequence up to which every record was dealt with
-  uint64_t allowed = 0;    // highest sequence that may be sent
-  uint64_t spec_hash = 0;  // the replay's: an actor with another one stops, naming both
+  uint64_t stored = 0;         // highest sequence up to which every record was dealt with
+  uint64_t allowed = 0;        // highest sequence that may be sent
+  uint64_t spec_hash = 0;      // the replay's: an actor with another one stops, naming both
+  uint64_t superseded_by = 0;  // the actor's newer session, where there is one: this one ends
 };
 
 // replay -> all actors: what has changed, in one message, since each message goes to every actor.
@@ -55,35 +57,48 @@ struct SampleRequest {
   uint64_t learner_session = 0;
   uint64_t request = 0;  // from 1; keys the sampler's random stream
   uint32_t batch = 0;    // B
-  uint64_t after_steps =
-      0;  // served only when this many step records are stored (lockstep); 0 = at once
+  // Served only when this many step records are stored (lockstep); 0 = at once.
+  uint64_t after_steps = 0;
+  uint64_t schema_hash = 0;  // of the batch: common/wire/batch_schema.h
 };
 
-// replay -> learner: part of one batch in the layout of common/wire/batch_layout.h.
-struct BatchShard {
+// replay -> learner: part of one batch as common/wire/batch_schema.h lays it out.
+struct BatchPart {
   uint64_t spec_hash = 0;
   uint64_t learner_session = 0;
   uint64_t request = 0;
-  uint32_t shard = 0, shards = 0;
+  uint32_t part = 0, parts = 0;
   uint64_t offset = 0, total_bytes = 0;
   uint64_t stored_records = 0;  // in the replay when the batch was drawn, over the whole run
   uint64_t stored_steps = 0;    // of these the step records: the run's env steps
   std::span<const uint8_t> payload;
 };
 
-// learner -> actors. The payload is a safetensors file of the policy's parameters.
+// One version of a policy: the payload is a safetensors file of its parameters.
 struct WeightsMessage {
   uint64_t spec_hash = 0;
   WeightsVersion version;
   uint64_t env_steps = 0;  // stored when the version was made
-  uint32_t crc = 0;        // CRC-32 of the payload
   std::string checkpoint;  // name of the checkpoint folder with the same parameters; may be empty
   std::span<const uint8_t> payload;
 };
-
-// learner -> evaluation actor: the F32 parameters of a checkpoint to evaluate. A type of its own so
-// that the stream of training weights cannot overwrite it.
+// The F32 parameters of a checkpoint to evaluate.
 struct EvalWeightsMessage : WeightsMessage {};
+
+// learner -> actors: a piece of a version, as it travels (common/wire/weights_parts.h).
+struct WeightsPart {
+  uint32_t part = 0;  // from 0
+  uint64_t spec_hash = 0;
+  WeightsVersion version;
+  uint64_t env_steps = 0;
+  uint64_t total_bytes = 0;  // of all parts
+  uint32_t crc = 0;          // CRC-32 of the payload
+  std::string checkpoint;
+  std::span<const uint8_t> payload;
+};
+// learner -> evaluation actor. A type of its own so that the stream of training weights cannot
+// overwrite it.
+struct EvalWeightsPart : WeightsPart {};
 
 // every process -> coordinator, 1 Hz. Names are those of metrics.jsonl.
 struct MetricsMessage {
@@ -95,6 +110,39 @@ struct MetricsMessage {
   double time = 0;    // seconds since 1970
   std::vector<std::string> names;
   std::vector<double> values;
+};
+
+// The same by who sends them: a topic each, so that in a secured run no other role can.
+struct ActorMetrics : MetricsMessage {};
+struct EvalMetrics : MetricsMessage {};
+struct ReplayMetrics : MetricsMessage {};
+struct LearnerMetrics : MetricsMessage {};
+
+// What decides about a run, as opposed to what is shown of it. The newest one of the newest session
+// holds.
+//
+// replay -> coordinator, when something was stored.
+struct ReplayProgress {
+  uint32_t replay = 0;   // number of the replay server
+  uint64_t session = 0;  // its start
+  // Over the whole run; the steps are its env steps.
+  uint64_t stored_steps = 0, stored_records = 0;
+};
+
+// Parameters that were handed to the evaluation actor.
+struct EvaluationRequest {
+  uint64_t update = 0, env_steps = 0;
+  std::string checkpoint;  // name of its folder
+};
+
+// learner -> coordinator.
+struct LearnerProgress {
+  static constexpr size_t kMostEvaluations = 32;
+
+  uint64_t session = 0;
+  uint64_t updates = 0, env_steps = 0;
+  bool drained = false;                          // it has done what the stored steps allow
+  std::vector<EvaluationRequest> evaluations{};  // of this session, the last ones, oldest first
 };
 
 // coordinator -> all. The newest one holds; `epoch` grows.
@@ -151,7 +199,10 @@ struct CommandMessage {
 struct ReplyMessage {
   uint64_t client = 0, request = 0;
   bool accepted = false;
-  std::string text;  // one line: what was done, or why not
+  std::string text{};  // one line: what was done, or why not
+  // Where a configuration key was changed: which, and its former and new value.
+  std::string key{};
+  double from = 0, to = 0;
 };
 
 }  // namespace shoal

@@ -13,6 +13,7 @@ constexpr Metric kMetrics[] = {
     {"all", "open_files", kGauge, "", "open file descriptors"},
     {"all", "cpu_seconds", kCounter, "s", "processor time of all threads"},
     {"all", "cpu_share", kGauge, "cores", "processors used on average"},
+    {"all", "malformed", kPerTopic, "", "messages of a topic that make no sense, dropped"},
 
     {"coordinator", "elapsed_seconds", kGauge, "s", "since the run's start, all its sessions"},
     {"coordinator", "budget_env_steps", kGauge, "env steps", "the run ends after these"},
@@ -35,6 +36,11 @@ constexpr Metric kMetrics[] = {
     {"coordinator", "restarts", kCounter, "", "of processes, over the whole run"},
     {"coordinator", "messages_dropped", kCounter, "",
      "reports that came faster than they were read"},
+    {"coordinator", "evaluations_repeated", kCounter, "",
+     "that had been counted, or were overtaken"},
+    {"coordinator", "evaluations_refused", kCounter, "", "that cannot be, or cannot be read"},
+    {"coordinator", "reports_refused", kCounter, "",
+     "in the name of another role than the sender's"},
     {"coordinator", "exit_code", kGauge, "", "of the run; in the last view only"},
 
     {"actor", "env_steps", kCounter, "env steps", "stepped"},
@@ -71,6 +77,8 @@ constexpr Metric kMetrics[] = {
     {"replay", "sampleable", kGauge, "env steps", "that a batch may hold now"},
     {"replay", "sampled", kCounter, "", "batch elements drawn"},
     {"replay", "samples_per_second", kGauge, "1/s", "batch elements drawn"},
+    {"replay", "relabelled", kCounter, "samples", "of these given a goal of hindsight"},
+    {"replay", "zero_rewards", kCounter, "samples", "of reward 0: a sparse task's goal is reached"},
     {"replay", "limiter_samples_per_insert", kGauge, "", "replay.samples_per_insert in force"},
     {"replay", "limiter_cursor", kGauge, "samples", "granted and not drawn; in ± half a band"},
     {"replay", "limiter_band", kGauge, "samples", ""},
@@ -87,9 +95,10 @@ constexpr Metric kMetrics[] = {
     {"replay", "duplicates", kCounter, "records", "that came again"},
     {"replay", "rejected", kCounter, "records", "malformed"},
     {"replay", "after_gap", kCounter, "records", "whose predecessor is not stored"},
-    {"replay", "lost", kCounter, "records", "that never came"},
+    {"replay", "lost", kCounter, "records", "that an earlier server had in its memory"},
     {"replay", "cut_episodes", kCounter, "", "closed because the next record never came"},
-    {"replay", "refused_chunks", kCounter, "", "of another spec, malformed or superseded"},
+    {"replay", "refused_chunks", kCounter, "",
+     "of another spec, malformed, superseded or from the future"},
     {"replay", "ahead_chunks", kCounter, "", "that came before their predecessor"},
     {"replay", "refused_requests", kCounter, "", "that do not fit the run"},
     {"replay", "repeated_batches", kCounter, "", "answered again"},
@@ -107,16 +116,6 @@ constexpr Metric kMetrics[] = {
     {"learner", "updates", kGauge, "updates", "over the whole run"},
     {"learner", "env_steps", kGauge, "env steps", "stored when the last batch was drawn"},
     {"learner", "updates_per_second", kGauge, "updates/s", ""},
-    {"learner", "critic_loss", kGauge, "", "means over the last interval with updates"},
-    {"learner", "actor_loss", kGauge, "", ""},
-    {"learner", "temperature", kGauge, "", ""},
-    {"learner", "temperature_loss", kGauge, "", ""},
-    {"learner", "q_mean", kGauge, "", "predicted scaled return"},
-    {"learner", "target_mean", kGauge, "", "what it is pulled to"},
-    {"learner", "entropy", kGauge, "nats", "of the policy"},
-    {"learner", "action_saturation", kGauge, "", "share of action components beyond 0.99"},
-    {"learner", "critic_grad_norm", kGauge, "", ""},
-    {"learner", "actor_grad_norm", kGauge, "", ""},
     {"learner", "data_age_updates", kQuantiles, "updates",
      "done since the weights that chose a batch's actions"},
     {"learner", "waiting_data", kStage, "s", "waiting for batches"},
@@ -137,9 +136,9 @@ constexpr Metric kMetrics[] = {
     {"learner", "eval_updates", kGauge, "updates", "of the last evaluation point"},
     {"learner", "drained", kGauge, "", "1 once draining is over"},
     {"learner", "resent_requests", kCounter, "", "asked again"},
-    {"learner", "duplicate_shards", kCounter, "", "parts of batches that came twice"},
-    {"learner", "unknown_shards", kCounter, "", "of requests done with"},
-    {"learner", "malformed_shards", kCounter, "", ""},
+    {"learner", "duplicate_parts", kCounter, "", "parts of batches that came twice"},
+    {"learner", "unknown_parts", kCounter, "", "of requests done with"},
+    {"learner", "malformed_parts", kCounter, "", "of sizes or offsets no batch has"},
     {"learner", "dropped_answers", kCounter, "", "incomplete, overtaken by another answer"},
     {"learner", "warnings", kCounter, "", "of training that runs but does not learn"},
 };
@@ -152,6 +151,8 @@ bool Matches(const Metric& metric, std::string_view reported) {
       return reported == name;
     case kQuantiles:
       return reported == name + "_p50" || reported == name + "_p90" || reported == name + "_p99";
+    case kPerTopic:
+      return reported.starts_with(name + "_");
     case kStage:
       return reported == "seconds_" + name || reported == "share_" + name;
   }
@@ -160,26 +161,29 @@ bool Matches(const Metric& metric, std::string_view reported) {
 
 std::string ShownName(const Metric& metric) {
   if (metric.kind == kStage) return fmt::format("`seconds_{0}`, `share_{0}`", metric.name);
+  if (metric.kind == kPerTopic) return fmt::format("`{}_TOPIC`", metric.name);
   if (metric.kind == kQuantiles) return fmt::format("`{}_p50`, `_p90`, `_p99`", metric.name);
   return fmt::format("`{}`", metric.name);
 }
 
 }  // namespace
 
-std::span<const Metric> Metrics() { return kMetrics; }
+std::span<const Metric> ProcessMetrics() { return kMetrics; }
 
-const Metric* FindMetric(std::string_view role, std::string_view reported) {
-  for (const Metric& metric : kMetrics) {
+const Metric* FindMetric(std::span<const Metric> metrics, std::string_view role,
+                         std::string_view reported) {
+  for (const Metric& metric : metrics) {
     if ((metric.role == role || metric.role == "all") && Matches(metric, reported)) return &metric;
   }
   return nullptr;
 }
 
-std::string DescribeMetrics() {
+std::string DescribeMetrics(std::span<const Metric> metrics) {
   std::string table = "| role | metric | unit | meaning |\n| --- | --- | --- | --- |\n";
-  for (const Metric& metric : kMetrics) {
+  for (const Metric& metric : metrics) {
     table += fmt::format("| {} | {} | {} | {}{} |\n", metric.role, ShownName(metric), metric.unit,
-                         metric.meaning, metric.kind == kCounter ? " (counter)" : "");
+                         metric.meaning,
+                         metric.kind == kCounter || metric.kind == kPerTopic ? " (counter)" : "");
   }
   return table;
 }

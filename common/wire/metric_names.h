@@ -1,5 +1,5 @@
 // The one table of metrics: what each is called, who reports it, in what unit and what it means.
-// docs/monitoring.md and the help texts of the Prometheus endpoint are made from it.
+// The figures of updates are their algorithm's to name; launch/watch/run_metrics.h has both.
 #pragma once
 
 #include <span>
@@ -12,6 +12,7 @@ enum class MetricKind {
   kGauge,      // a value now, or over the last interval
   kCounter,    // grows from 0 at the process's start
   kQuantiles,  // NAME_p50, NAME_p90 and NAME_p99 over the last interval
+  kPerTopic,   // NAME_TOPIC for each topic that the process reads, a counter
   kStage,      // seconds_NAME, a counter, and share_NAME, the share of the last interval
 };
 
@@ -23,14 +24,15 @@ struct Metric {
   std::string_view meaning;
 };
 
-// By role, then as reported.
-std::span<const Metric> Metrics();
+// All but the figures of updates, by role, then as reported.
+std::span<const Metric> ProcessMetrics();
 
-// The metric that a reported name ("share_physics", "policy_lag_p90") belongs to; nullptr: none of
-// this role has the name.
-const Metric* FindMetric(std::string_view role, std::string_view reported);
+// The one of `metrics` that a reported name ("share_physics", "policy_lag_p90") belongs to;
+// nullptr: none of this role has the name.
+const Metric* FindMetric(std::span<const Metric> metrics, std::string_view role,
+                         std::string_view reported);
 
-// Markdown table of all.
-std::string DescribeMetrics();
+// Markdown table of `metrics`.
+std::string DescribeMetrics(std::span<const Metric> metrics);
 
 }  // namespace shoal

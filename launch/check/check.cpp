@@ -5,14 +5,13 @@
 #include "common/base/usable_cores.h"
 #include "common/config/config_io.h"
 #include "common/nn/precision.h"
-#include "common/wire/batch_layout.h"
 #include "launch/check/loopback.h"
 #include "launch/check/machine_lines.h"
 #include "launch/check/training_probe.h"
 #include "launch/check/world_lines.h"
-#include "launch/scratch_folder.h"
-#include "replay_server/core/ring_format.h"
+#include "launch/processes/scratch_folder.h"
 #include "replay_server/core/storage_limits.h"
+#include "replay_server/core/storage_needs.h"
 
 namespace shoal::launch {
 namespace {
@@ -26,10 +25,10 @@ constexpr uint64_t kBytesPerProcess = 150'000'000;  // of a run from pixels, as 
 Needs NeedsOf(const Config& config) {
   const ObservationSpec spec =
       worlds::MakeEnvironment(config, worlds::MakeRenderContext(config.observation))->spec();
+  const replay::StorageNeeds replay = replay::StorageNeedsOf({config, spec});
   Needs needs;
-  const replay::RingGeometry geometry(spec, static_cast<uint64_t>(config.replay.capacity));
-  needs.ring_bytes = geometry.total_bytes();
-  needs.batch_bytes = BatchLayout(spec, config.learner.batch).total_bytes();
+  needs.ring_bytes = replay.ring_bytes;
+  needs.batch_bytes = replay.batch_bytes;
   // Actors, evaluation actor, learner, replay, coordinator.
   needs.process_bytes = kBytesPerProcess * static_cast<uint64_t>(UsableCores() + 4);
   return needs;
@@ -47,8 +46,9 @@ std::vector<CheckLine> CheckMachine(const CheckRequest& request,
     return lines.back().verdict != Verdict::kFail;
   };
   nn::SetThreads(1);
-  look("cpu", "use an x86-64 CPU that oneDNN supports",
-       [] { return JudgeCpu(nn::CpuIsa(), nn::ToString(nn::ChoosePrecision("auto"))); });
+  look("cpu", "use an x86-64 CPU that oneDNN supports", [] {
+    return JudgeCpu(nn::CpuIsa(), nn::ToString(nn::ChoosePrecision("auto", /*pixels=*/true)));
+  });
   look("cores", "", [] { return JudgeCores(ReadCoreLimits()); });
 
   Config config;

@@ -1,6 +1,6 @@
 #include "launch/check/local_collection.h"
 
-#include "actor/environments.h"
+#include "actor/acting/environments.h"
 #include "common/base/error.h"
 #include "common/config/sending_window.h"
 
@@ -30,10 +30,10 @@ LocalCollection::LocalCollection(const RunConfig& run, const std::filesystem::pa
             static_cast<uint32_t>(run_.config.envs_per_actor)),
       window_(WindowOptions(run_)),
       selector_(run_.config, run_.spec, run_.config.envs_per_actor),
-      rollout_(run_.config, run_.spec, actor::MakeEnvironments(run_, run_.config.envs_per_actor),
-               /*first_env=*/0, made_, window_, selector_),
-      batch_(static_cast<uint8_t*>(
-                 std::aligned_alloc(64, (core_.batch_layout().total_bytes() + 63) / 64 * 64)),
+      rollout_({.seed = run_.config.seed}, run_.spec,
+               actor::MakeEnvironments(run_, run_.config.envs_per_actor), made_, window_,
+               selector_),
+      batch_(static_cast<uint8_t*>(std::aligned_alloc(64, core_.batch_schema().total_bytes())),
              &std::free) {
   if (batch_ == nullptr) throw RuntimeError("no memory for a batch");
 }
@@ -69,11 +69,12 @@ BatchView LocalCollection::Draw() {
                      .learner_session = kSession,
                      .request = ++requests_,
                      .batch = static_cast<uint32_t>(run_.config.learner.batch),
-                     .after_steps = 0});
+                     .after_steps = 0,
+                     .schema_hash = core_.batch_schema().Hash()});
   if (!core_.TryAnswer(batch_.get())) {
     throw RuntimeError("the replay gives no batch with {} records", core_.counters().records);
   }
-  return core_.batch_layout().View(batch_.get());
+  return core_.batch_schema().View(batch_.get());
 }
 
 }  // namespace shoal::launch

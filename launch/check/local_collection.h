@@ -8,12 +8,12 @@
 #include <filesystem>
 #include <memory>
 
-#include "actor/action_selector.h"
-#include "actor/chunk_window.h"
-#include "actor/made_page.h"
-#include "actor/rollout.h"
+#include "actor/acting/action_selector.h"
+#include "actor/loop/rollout.h"
+#include "actor/sending/chunk_window.h"
+#include "actor/sending/made_page.h"
 #include "common/config/run_files.h"
-#include "common/wire/batch_layout.h"
+#include "common/wire/batch_schema.h"
 #include "replay_server/core/replay_core.h"
 
 namespace shoal::launch {

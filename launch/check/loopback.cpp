@@ -12,9 +12,9 @@
 #include "common/dds/bus.h"
 #include "common/dds/publisher.h"
 #include "common/dds/subscriber.h"
-#include "launch/child_process.h"
-#include "launch/process_plan.h"
-#include "launch/scratch_folder.h"
+#include "launch/processes/child_process.h"
+#include "launch/processes/process_plan.h"
+#include "launch/processes/scratch_folder.h"
 
 namespace shoal::launch {
 namespace {

@@ -8,8 +8,8 @@
 #include "common/base/error.h"
 #include "common/nn/precision.h"
 #include "launch/check/local_collection.h"
+#include "learner/agent/algorithms.h"
 #include "learner/checkpoint.h"
-#include "learner/sac_agent.h"
 
 namespace shoal::launch {
 namespace {
@@ -50,13 +50,14 @@ uint64_t BytesBelow(const fs::path& folder) {
 
 // Writes the agent, restores another one from it and lets both do the same update.
 void CompareRestored(const RunConfig& run, nn::Precision precision, const BatchView& batch,
-                     const fs::path& folder, learner::SacAgent* agent, TrainingProbe* probe) {
+                     const fs::path& folder, learner::Agent* agent, TrainingProbe* probe) {
   CheckpointState state;
   state.updates = agent->updates();
   state.env_steps = probe->env_steps;
   state.learner_session = 1;
   state.spec_hash = run.spec.Hash();
   state.precision = nn::ToString(precision);
+  state.algorithm = run.config.learner.algorithm;
   fs::create_directories(folder);
   learner::WriteCheckpoint(folder, state, agent->AllTensors(), agent->AveragedPolicyTensors(),
                            nlohmann::ordered_json::object());
@@ -65,15 +66,15 @@ void CompareRestored(const RunConfig& run, nn::Precision precision, const BatchV
       learner::ReadCheckpoint(folder / CheckpointName(state.updates), state.spec_hash);
   Config other = run.config;
   other.seed += 1;  // so that what is equal afterwards came from the checkpoint
-  learner::SacAgent restored(other, run.spec, precision);
-  restored.Restore(checkpoint.tensors, checkpoint.folder.string());
-  probe->restored = checkpoint.state == state && Same(restored.AllTensors(), agent->AllTensors());
+  const auto restored = learner::MakeAgent(other, run.spec, precision);
+  restored->Restore(checkpoint.tensors, checkpoint.folder.string());
+  probe->restored = checkpoint.state == state && Same(restored->AllTensors(), agent->AllTensors());
 
-  learner::SacAgent again(run.config, run.spec, precision);
-  again.Restore(checkpoint.tensors, checkpoint.folder.string());
-  again.Update(batch);
+  const auto again = learner::MakeAgent(run.config, run.spec, precision);
+  again->Restore(checkpoint.tensors, checkpoint.folder.string());
+  again->Update(batch);
   agent->Update(batch);
-  probe->continued = Same(again.AllTensors(), agent->AllTensors());
+  probe->continued = Same(again->AllTensors(), agent->AllTensors());
 }
 
 }  // namespace
@@ -87,20 +88,19 @@ TrainingProbe ProbeTraining(const Config& config, const fs::path& folder, int up
   probe.env_steps = collection.rollout().env_steps();
   probe.env_steps_per_second = static_cast<double>(probe.env_steps) / SecondsSince(start);
 
-  const nn::Precision precision = nn::ChoosePrecision(run.config.learner.precision);
-  learner::SacAgent agent(run.config, run.spec, precision);
-  const nn::TensorMap fresh = agent.PolicyTensors();
+  const nn::Precision precision =
+      nn::ChoosePrecision(run.config.learner.precision, run.spec.HasPixels());
+  const auto agent = learner::MakeAgent(run.config, run.spec, precision);
+  const nn::TensorMap fresh = agent->PolicyTensors();
   probe.finite = true;
   start = Now();
   for (int i = 0; i < updates; ++i) {
-    const learner::UpdateStats stats = agent.Update(collection.Draw());
-    probe.finite = probe.finite && stats.finite;
-    probe.critic_loss = stats.critic_loss;
+    probe.finite = agent->Update(collection.Draw()).finite && probe.finite;
   }
-  probe.updates = agent.updates();
+  probe.updates = agent->updates();
   probe.updates_per_second = static_cast<double>(updates) / SecondsSince(start);
-  probe.moved = !Same(fresh, agent.PolicyTensors());
-  CompareRestored(run, precision, collection.Draw(), folder / "checkpoints", &agent, &probe);
+  probe.moved = !Same(fresh, agent->PolicyTensors());
+  CompareRestored(run, precision, collection.Draw(), folder / "checkpoints", agent.get(), &probe);
   return probe;
 }
 

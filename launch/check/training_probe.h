@@ -14,7 +14,6 @@ struct TrainingProbe {
   uint64_t env_steps = 0, updates = 0;
   double env_steps_per_second = 0;  // of one thread, with rendering and storing
   double updates_per_second = 0;    // of one thread
-  float critic_loss = 0;            // of the last update
   bool finite = false;              // every update was
   bool moved = false;               // the policy's parameters are not those of the start
   uint64_t checkpoint_bytes = 0;

@@ -10,7 +10,7 @@
 #include "common/base/files.h"
 #include "common/tasks/task_registry.h"
 #include "launch/check/parity_reference.h"
-#include "launch/scratch_folder.h"
+#include "launch/processes/scratch_folder.h"
 
 namespace shoal::launch {
 namespace {

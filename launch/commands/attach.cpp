@@ -5,9 +5,9 @@
 #include "common/base/stop.h"
 #include "launch/commands/commands.h"
 #include "launch/commands/target_options.h"
-#include "launch/progress.h"
-#include "launch/run_client.h"
-#include "launch/run_figures.h"
+#include "launch/watch/progress.h"
+#include "launch/watch/run_client.h"
+#include "launch/watch/run_figures.h"
 
 namespace shoal::launch {
 namespace {

@@ -12,7 +12,7 @@
 #include "common/config/config_io.h"
 #include "launch/check/loopback.h"
 #include "launch/commands/commands.h"
-#include "launch/machine.h"
+#include "launch/record/machine.h"
 
 namespace shoal::launch {
 namespace {

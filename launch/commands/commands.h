@@ -14,6 +14,11 @@ using Action = std::function<int()>;
 
 void AddTrainCommand(CLI::App& app, Action* chosen);
 void AddEvalCommand(CLI::App& app, Action* chosen);
+void AddExperimentCommand(CLI::App& app, Action* chosen);  // experiment run, status, summary
+void AddCompareCommand(CLI::App& app, Action* chosen);
+void AddPlotCommand(CLI::App& app, Action* chosen);
+void AddReportCommand(CLI::App& app, Action* chosen);
+void AddCardCommand(CLI::App& app, Action* chosen);
 void AddEnvCommand(CLI::App& app, Action* chosen);  // see env.cpp and env_tasks.cpp
 void AddTopCommand(CLI::App& app, Action* chosen);
 void AddCheckCommand(CLI::App& app, Action* chosen);

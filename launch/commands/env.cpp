@@ -3,6 +3,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "actor/worlds/physics_library.h"
 #include "actor/worlds/tools/contact_sheet.h"
 #include "actor/worlds/tools/render_task.h"
 #include "actor/worlds/tools/replay_file.h"
@@ -112,6 +113,11 @@ void AddReplay(CLI::App& env, Action* chosen) {
 void AddEnvCommand(CLI::App& app, Action* chosen) {
   CLI::App* env = app.add_subcommand("env", "Look at environments.");
   env->require_subcommand(1);
+  env->fallthrough();  // --task-library may stand behind the sub-command's own arguments
+  env->add_option_function<std::string>(
+         "--task-library", [](const std::string& path) { worlds::LoadTasks(path); },
+         "Shared object with tasks of one's own (docs/own_task.md)")
+      ->trigger_on_parse();
   AddEnvTaskCommands(*env, chosen);
   AddRender(*env, chosen);
   AddReplay(*env, chosen);

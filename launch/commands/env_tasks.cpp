@@ -5,7 +5,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "actor/random_baseline.h"
+#include "actor/evaluation/random_baseline.h"
 #include "actor/worlds/tools/reward_check.h"
 #include "actor/worlds/tools/task_description.h"
 #include "actor/worlds/tools/task_table.h"
@@ -105,11 +105,14 @@ void AddRewardCheck(CLI::App& env, Action* chosen) {
 
 void AddRandom(CLI::App& env, Action* chosen) {
   CLI::App* command = env.add_subcommand(
-      "random", "What uniform random actions earn, and how that depends on the threshold.");
+      "random",
+      "What uniform random actions earn, or doing nothing, and how that depends on the threshold.");
   const auto request = std::make_shared<actor::RandomRequest>();
   const auto json = std::make_shared<std::string>();
   AddTask(command, &request->task, &request->model);
   AddJson(command, "shoal-eval-1", json.get());
+  command->add_option("--policy", request->policy, "random | noop (every action is zero)")
+      ->capture_default_str();
   command->add_option("--episodes", request->episodes, "Episodes to play")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();

@@ -2,12 +2,16 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <nlohmann/json.hpp>
 
+#include "common/base/bounded_json.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/stop.h"
-#include "launch/actor_program.h"
+#include "common/config/run_files.h"
 #include "launch/commands/commands.h"
+#include "launch/experiment/baselines.h"
+#include "launch/processes/actor_program.h"
 
 namespace shoal::launch {
 namespace {
@@ -19,6 +23,12 @@ struct EvalOptions {
   int episodes = 100;
   int64_t seed = 1;
 };
+
+void AddBaselines(const fs::path& file, const Baselines& baselines) {
+  auto object = ParseBoundedJson<nlohmann::ordered_json>(ReadFile(file));
+  object["baselines"] = ToJson(std::optional(baselines));
+  WriteFileAtomically(file, object.dump(2) + "\n");
+}
 
 int Evaluate(const EvalOptions& options) {
   const fs::path checkpoint = fs::absolute(options.checkpoint).lexically_normal();
@@ -39,6 +49,15 @@ int Evaluate(const EvalOptions& options) {
   if (!point) throw RuntimeError("evaluation of '{}' interrupted", options.checkpoint);
   fmt::print("{} episodes of {}: {} ({} env steps, {} updates)\n", options.episodes,
              options.checkpoint, FormatScore(*point), point->env_steps, point->updates);
+  Config played = ReadRunConfig(run).config;
+  if (!options.task.empty()) {  // played without the run's model file
+    played.task = options.task;
+    played.model.clear();
+  }
+  const Baselines baselines = BaselineCache().Measure(
+      played, StopRequested, [](const std::string& line) { fmt::print(stderr, "{}\n", line); });
+  fmt::print("{} {}\n", played.task, FormatBaselines(baselines));
+  if (!options.json.empty()) AddBaselines(options.json, baselines);
   return 0;
 }
 

@@ -3,7 +3,7 @@
 #include <memory>
 
 #include "launch/commands/commands.h"
-#include "launch/run_list.h"
+#include "launch/watch/run_list.h"
 
 namespace shoal::launch {
 namespace {

@@ -1,39 +1,47 @@
 // shoal set, scale, stop: orders to a running run.
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <charconv>
 #include <functional>
 #include <memory>
 #include <thread>
-#include <tuple>
 
 #include "common/base/error.h"
+#include "common/base/silence.h"
 #include "common/base/stop.h"
 #include "launch/commands/commands.h"
 #include "launch/commands/target_options.h"
-#include "launch/live_settings.h"
-#include "launch/metrics_view.h"
-#include "launch/run_client.h"
-#include "launch/run_folder.h"
+#include "launch/record/run_folder.h"
+#include "launch/run/live_settings.h"
+#include "launch/watch/metrics_view.h"
+#include "launch/watch/run_client.h"
 
 namespace shoal::launch {
 namespace {
 
 using std::chrono::seconds;
 
-constexpr seconds kInForce{10};    // for the processes to use a changed value
-constexpr seconds kScaled{60};     // for actors to start, or to flush what they have and leave
-constexpr seconds kSilence{15};    // of a coordinator that was told to stop
+constexpr seconds kInForce{10};  // for the processes to use a changed value
+constexpr seconds kScaled{60};   // for actors to start, or to flush what they have and leave
+constexpr seconds kSilence{15};  // of a coordinator: as long as its processes wait for it
+constexpr std::chrono::milliseconds kLook{500};  // at the silence
 constexpr seconds kLeaves{10};     // for the coordinator to leave, once it has said all
 constexpr seconds kStopped{3600};  // for the last evaluations
 
-// Looks at views until `done` says so; false: not within `most`, or a stop signal.
+// Looks at views until `done` says so; false: not within `most`, or a stop signal. Throws Error
+// when the coordinator has been silent for kSilence: it died, and no view will ever come.
 bool WatchUntil(RunClient& client, seconds most,
                 const std::function<bool(const RunViewMessage&)>& done) {
   const SteadyTime deadline = Now() + most;
+  Silence silence(Now());
   while (!StopRequested() && Now() < deadline) {
-    const auto view = client.WaitForView(std::min(deadline, Now() + kSilence));
+    const auto view = client.WaitForView(std::min(deadline, Now() + kLook));
+    if (view) silence.Heard(Now());
     if (view && done(*view)) return true;
+    if (silence.Look(Now()) > kSilence) {
+      throw RuntimeError(
+          "accepted, but the run's coordinator has been silent for {} s: see shoal runs",
+          kSilence.count());
+    }
   }
   return false;
 }
@@ -52,22 +60,17 @@ std::string InForce(const RunViewMessage& message, const LiveKey& live, double v
   for (const MetricsMessage& process : message.processes) view.OnMessage(process, Now());
   std::string text;
   for (const SettingUse& use : live.uses) {
-    const auto used = view.Get(use.role, 0, use.metric);
-    if (used != value) return "";
-    text += fmt::format("{}{}-0 {}", text.empty() ? "" : ", ", use.role, *used);
+    bool any = false;
+    for (const MetricsMessage& process : message.processes) {
+      if (process.role != use.role) continue;
+      any = true;
+      const auto used = view.Get(use.role, process.id, use.metric);
+      if (used != value) return "";
+      text += fmt::format("{}{}-{} {}", text.empty() ? "" : ", ", use.role, process.id, *used);
+    }
+    if (!any) return "";
   }
   return text;
-}
-
-// The key of "KEY: FROM -> TO" and its new value: what the coordinator confirmed.
-std::pair<const LiveKey*, double> Confirmed(const std::string& text) {
-  const size_t colon = text.find(": "), arrow = text.rfind("-> ");
-  if (colon == std::string::npos || arrow == std::string::npos) return {nullptr, 0};
-  const auto live = std::ranges::find(LiveKeys(), text.substr(0, colon), &LiveKey::key);
-  double value = 0;
-  const auto parsed = std::from_chars(text.data() + arrow + 3, text.data() + text.size(), value);
-  if (live == LiveKeys().end() || parsed.ec != std::errc()) return {nullptr, 0};
-  return {&*live, value};
 }
 
 // After Ctrl-C: the order was accepted and is carried out whoever waits.
@@ -79,15 +82,13 @@ int NotWaitedFor() {
 int Set(const TargetOptions& target, const std::string& assignment) {
   InstallStopSignals();
   RunClient client(ResolveTarget(target));
-  const std::string done = client.Order("set", {assignment});
-  fmt::print("{}\n", done);
-  const LiveKey* live = nullptr;
-  double value = 0;
-  std::tie(live, value) = Confirmed(done);
-  if (live == nullptr) return 0;
+  const ReplyMessage done = client.Order("set", {assignment});
+  fmt::print("{}\n", done.text);
+  const auto live = std::ranges::find(LiveKeys(), done.key, &LiveKey::key);
+  if (live == LiveKeys().end()) return 0;
   std::string where;
   const bool seen = WatchUntil(client, kInForce, [&](const RunViewMessage& view) {
-    return !(where = InForce(view, *live, value)).empty();
+    return !(where = InForce(view, *live, done.to)).empty();
   });
   if (!seen && StopRequested()) return NotWaitedFor();
   if (!seen) {
@@ -101,7 +102,7 @@ int Set(const TargetOptions& target, const std::string& assignment) {
 int Scale(const TargetOptions& target, int actors) {
   InstallStopSignals();
   RunClient client(ResolveTarget(target));
-  fmt::print("{}\n", client.Order("scale", {std::to_string(actors)}));
+  fmt::print("{}\n", client.Order("scale", {std::to_string(actors)}).text);
   const bool there = WatchUntil(client, kScaled, [&](const RunViewMessage& view) {
     const auto states = StatesOfActors(view);
     return static_cast<int>(states.size()) == actors &&
@@ -125,7 +126,7 @@ int Stop(const TargetOptions& target) {
   // Events of before the order are not its doing.
   const std::vector<RunEvent> before = client.FirstView().events;
   uint64_t shown = before.empty() ? 0 : before.back().number;
-  fmt::print("{}\n", client.Order("stop", {}));
+  fmt::print("{}\n", client.Order("stop", {}).text);
   std::fflush(stdout);
   int exit_code = 1;
   const bool ended = WatchUntil(client, kStopped, [&](const RunViewMessage& view) {

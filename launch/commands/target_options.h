@@ -1,7 +1,7 @@
 // The options that say which run a command is about.
 #pragma once
 
-#include "launch/run_target.h"
+#include "launch/watch/run_target.h"
 
 namespace CLI {
 class App;

@@ -6,12 +6,12 @@
 
 #include "common/base/error.h"
 #include "common/base/stop.h"
-#include "common/wire/metric_names.h"
 #include "launch/commands/commands.h"
 #include "launch/commands/target_options.h"
-#include "launch/live_terminal.h"
-#include "launch/run_client.h"
-#include "launch/top_table.h"
+#include "launch/watch/live_terminal.h"
+#include "launch/watch/run_client.h"
+#include "launch/watch/run_metrics.h"
+#include "launch/watch/top_table.h"
 
 namespace shoal::launch {
 namespace {
@@ -84,7 +84,7 @@ void ShowLines(RunClient& client, RunViewMessage view) {
 
 int Top(const TopOptions& options) {
   if (options.describe) {
-    Print({DescribeMetrics()});
+    Print({DescribeMetrics(RunMetrics())});
     return 0;
   }
   if (options.json && !options.once) throw UsageError("--json goes with --once");

@@ -3,7 +3,7 @@
 
 #include "common/config/config_io.h"
 #include "launch/commands/commands.h"
-#include "launch/training_run.h"
+#include "launch/run/training_run.h"
 
 namespace shoal::launch {
 namespace {

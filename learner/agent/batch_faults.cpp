@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace shoal::learner {
 namespace {
@@ -18,6 +19,10 @@ bool AllFinite(const BatchView& batch) {
          AllFinite(std::span<const float>(batch.action)) &&
          AllFinite(std::span<const float>(batch.reward)) &&
          AllFinite(std::span<const float>(batch.bootstrap));
+}
+
+bool Usable(float loss, double gradient_squares) {
+  return std::isfinite(loss) && gradient_squares < std::numeric_limits<float>::max();
 }
 
 }  // namespace shoal::learner

@@ -13,6 +13,16 @@ void TdTargets(int batch, const TargetInputs& inputs, const TargetRates& rates, 
   }
 }
 
+void MinTargets(int batch, const float* reward, const float* bootstrap,
+                std::span<const float* const> next_q, float reward_scale, float discount,
+                float* y) {
+  for (int b = 0; b < batch; ++b) {
+    float smallest = next_q[0][b];
+    for (const float* q : next_q.subspan(1)) smallest = std::min(smallest, q[b]);
+    y[b] = reward_scale * reward[b] + bootstrap[b] * discount * smallest;
+  }
+}
+
 void AverageCopies(int batch, int copies, float* y) {
   if (copies == 1) return;
   for (int first = 0; first < batch; first += copies) {
@@ -21,15 +31,25 @@ void AverageCopies(int batch, int copies, float* y) {
   }
 }
 
-CriticLoss CriticLossForward(int batch, const float* q0, const float* q1, const float* y) {
+CriticLoss CriticLossForward(int batch, std::span<const float* const> q, const float* y) {
   double loss = 0, q_sum = 0, y_sum = 0;
   for (int b = 0; b < batch; ++b) {
-    const double e0 = double(q0[b]) - y[b], e1 = double(q1[b]) - y[b];
-    loss += e0 * e0 + e1 * e1;
-    q_sum += double(q0[b]) + q1[b];
+    double squares = 0, values = 0;
+    for (const float* values_of_one : q) {
+      const double error = double(values_of_one[b]) - y[b];
+      squares += error * error;
+      values += values_of_one[b];
+    }
+    loss += squares;
+    q_sum += values;
     y_sum += y[b];
   }
-  return {float(loss / batch), float(q_sum / (2 * batch)), float(y_sum / batch)};
+  return {float(loss / batch), float(q_sum / (double(q.size()) * batch)), float(y_sum / batch)};
+}
+
+CriticLoss CriticLossForward(int batch, const float* q0, const float* q1, const float* y) {
+  const float* const q[] = {q0, q1};
+  return CriticLossForward(batch, q, y);
 }
 
 void CriticLossBackward(int batch, const float* q, const float* y, float* q_gradient) {
@@ -52,6 +72,10 @@ void ActorLossBackward(int batch, const float* q0, const float* q1, float* q0_gr
     q0_gradient[b] = first ? -1.f / float(batch) : 0.f;
     q1_gradient[b] = first ? 0.f : -1.f / float(batch);
   }
+}
+
+float DeterministicActorLoss(int batch, const float* q) {
+  return float(-std::accumulate(q, q + batch, 0.0) / batch);
 }
 
 float TemperatureLoss(float temperature, float entropy, float target_entropy) {

@@ -1,7 +1,10 @@
-// The three losses of SAC and their gradients with respect to the networks' outputs.
+// Losses that algorithms share, and those of SAC, with their gradients with respect to the
+// networks' outputs.
 // Equations are those of docs/algorithm.md. Dimensions: B batch; all arrays (B) f32.
-// Source: Haarnoja et al. 2018, arXiv:1812.05905.
+// Sources: Haarnoja et al. 2018, arXiv:1812.05905; Fujimoto et al. 2018, arXiv:1802.09477.
 #pragma once
+
+#include <span>
 
 namespace shoal::learner {
 
@@ -20,13 +23,18 @@ struct TargetRates {
 // Eq. 5:  y = reward_scale r + bootstrap discount (min_i q'_i - temperature log pi')
 void TdTargets(int batch, const TargetInputs& inputs, const TargetRates& rates, float* y);
 
+// Eq. 18:  y = reward_scale r + bootstrap discount min_i q'_i, over one or more target critics
+void MinTargets(int batch, const float* reward, const float* bootstrap,
+                std::span<const float* const> next_q, float reward_scale, float discount, float* y);
+
 // Eq. 15:  each `copies` targets in a row become their mean. `copies` divides `batch`.
 void AverageCopies(int batch, int copies, float* y);
 
 // Eq. 6:  L = sum_i mean_b (q_i - y)^2;   dL/dq_i = 2 (q_i - y) / B
 struct CriticLoss {
-  float loss, q_mean, target_mean;  // q_mean over both heads
+  float loss, q_mean, target_mean;  // q_mean over all critics
 };
+CriticLoss CriticLossForward(int batch, std::span<const float* const> q, const float* y);
 CriticLoss CriticLossForward(int batch, const float* q0, const float* q1, const float* y);
 void CriticLossBackward(int batch, const float* q, const float* y, float* q_gradient);
 
@@ -37,6 +45,9 @@ float ActorLossForward(int batch, const float* log_prob, const float* q0, const 
                        float temperature);
 void ActorLossBackward(int batch, const float* q0, const float* q1, float* q0_gradient,
                        float* q1_gradient);
+
+// Eq. 19:  L = -mean_b q;   dL/dq = -1 / B
+float DeterministicActorLoss(int batch, const float* q);
 
 // Eq. 8:  L = temperature (entropy - target_entropy) with entropy = -mean_b log pi held fixed;
 //   dL/dlog temperature = L

@@ -1,35 +1,45 @@
-// From chosen steps to a batch in the layout of common/wire/batch_layout.h: stacks and next
+// From chosen steps to a batch of the schema of common/wire/batch_schema.h: stacks and next
 // observations are put together here, out of frames that are stored once.
 //
-// A sample is n steps in a row, t .. t+n-1, known by the last one (Eq. 14 of docs/algorithm.md):
+// A sample is m steps in a row, t .. t+m-1, known by the first one (Eq. 14 of docs/algorithm.md);
+// m = n, or less where step t+m-1 terminated the episode:
 //
 //   obs       = the K frames ending at the predecessor of step t
 //   action    = that of step t
-//   reward    = r_t + discount r_(t+1) + ... + discount^(n-1) r_(t+n-1)
-//   next_obs  = the K frames ending at step t+n-1
-//   bootstrap = discount^(n-1) (1 - terminated): a time limit's end counts the next value
+//   reward    = r_t + discount r_(t+1) + ... + discount^(m-1) r_(t+m-1)
+//   next_obs  = the K frames ending at step t+m-1
+//   bootstrap = discount^(m-1) (1 - terminated): a time limit's end counts the next value
 //   a stack that would reach before the episode's reset repeats the reset's frame
+//
+// Under another goal (goal_change.h) rewards and the desired goal of both observations are those of
+// that goal.
 //
 // K stack, C channels of a frame, H W pixels, B batch.
 #pragma once
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "common/base/random.h"
 #include "common/spec/observation_spec.h"
-#include "common/wire/batch_layout.h"
+#include "common/wire/batch_schema.h"
+#include "replay_server/core/episode_index.h"
+#include "replay_server/core/goal_change.h"
 #include "replay_server/core/random_shift.h"
+#include "replay_server/core/relabeller.h"
 #include "replay_server/core/ring.h"
-#include "replay_server/core/sampler.h"
+#include "replay_server/core/selector.h"
 
 namespace shoal::replay {
 
 // What a batch will hold, drawn before anything is copied.
 struct BatchPlan {
   struct Element {
-    uint64_t id = 0;  // of the last step
+    uint64_t id = 0;         // of the first step
+    double probability = 0;  // with which it was drawn
+    uint64_t goal = 0;       // the record whose achieved goal is its goal; 0 = its own
     Shift obs, next_obs;
   };
   std::vector<Element> elements;  // B
@@ -41,9 +51,10 @@ struct PlanOptions {
   int shift_pad = 0;  // pixels
 };
 
-// For every `copies` elements a step's id; for each element the shift of obs and that of next_obs.
-// Nothing when the sampler finds no step.
-std::optional<BatchPlan> DrawPlan(const PlanOptions& options, Sampler* sampler, Random* random);
+// For every `copies` elements a step's id and, with a relabeller, its goal; for each element the
+// shift of obs and that of next_obs. Nothing when the selector finds no step.
+std::optional<BatchPlan> DrawPlan(const PlanOptions& options, Selector* selector,
+                                  Relabeller* relabeller, Random* random);
 
 struct NStep {
   int steps = 1;  // n
@@ -52,27 +63,32 @@ struct NStep {
 
 class BatchGather {
  public:
-  // Borrows the ring.
-  BatchGather(const Ring& ring, const ObservationSpec& spec, const NStep& n_step = {});
+  // Borrows ring, index and, where plans have goals, how these change a transition.
+  BatchGather(const Ring& ring, const EpisodeIndex& index, const ObservationSpec& spec,
+              const NStep& n_step = {}, const GoalChange* goals = nullptr);
 
   // Writes every byte of the arrays in `out`, whose batch is plan.elements.size() (CHECKed). The
   // steps must be sampleable for this stack and n.
   void Gather(const BatchPlan& plan, const BatchView& out) const;
 
  private:
-  // The first step of the sample that ends at `last`, and the reward from there on.
+  // The goal of an element that has another than its own, else nothing.
+  std::span<const float> GoalOf(const BatchPlan::Element& element) const;
+  // Where the sample that begins with some step ends, and what it earns on the way.
   struct Returns {
-    uint64_t first;
-    float reward;
+    uint64_t last;
+    float reward, bootstrap;
   };
-  Returns SumRewards(uint64_t last) const;
+  Returns SumRewards(uint64_t first, std::span<const float> goal) const;
   // Writes the stack of K frames that ends at record `id` to `out` (K*C, H, W).
   void GatherStack(uint64_t id, Shift shift, uint8_t* out) const;
 
   const Ring& ring_;
+  const EpisodeIndex& index_;
+  const ObservedBlocks observed_;
   const int stack_, channels_, height_, width_;
   const NStep n_step_;
-  const float last_discount_;  // discount^(n-1)
+  const GoalChange* const goals_;
 };
 
 }  // namespace shoal::replay

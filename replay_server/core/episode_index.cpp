@@ -4,18 +4,26 @@
 
 namespace shoal::replay {
 
-EpisodeIndex::EpisodeIndex(const Ring& ring, int stack, int n_step, const Alive& alive)
+EpisodeIndex::EpisodeIndex(const Ring& ring, const IndexOptions& options, const Alive& alive)
     : ring_(ring),
-      stack_(stack),
-      n_step_(n_step),
+      options_(options),
+      next_(ring.capacity()),
       oldest_needed_(ring.capacity()),
       needed_by_(ring.capacity()) {
-  CHECK(stack >= 1 && n_step >= 1);
+  CHECK(options.stack >= 1 && options.n_step >= 1);
   for (uint64_t id = ring.oldest_id(); id <= ring.last_id(); ++id) {
     if (ring.Slot(id).id == id) Added(id);
     if (alive) alive();
   }
   became_sampleable_ = cut_episodes_ = 0;
+}
+
+void EpisodeIndex::SetSelector(Selector* selector) {
+  selector_ = selector;
+  if (selector == nullptr) return;
+  for (uint64_t id = ring_.oldest_id(); id <= ring_.last_id(); ++id) {
+    if (Sampleable(id)) selector->Added(id);
+  }
 }
 
 std::optional<uint64_t> EpisodeIndex::Predecessor(uint32_t actor, uint64_t session,
@@ -29,23 +37,78 @@ std::optional<uint64_t> EpisodeIndex::Predecessor(uint32_t actor, uint64_t sessi
   return continues ? std::optional(track.last_id) : std::nullopt;
 }
 
+uint64_t EpisodeIndex::Previous(uint64_t id) const {
+  // A record's predecessor is older; only a damaged file says otherwise.
+  const uint64_t prev = ring_.Slot(id).prev;
+  return prev < id && ring_.Holds(prev) ? prev : 0;
+}
+
+EpisodeState EpisodeIndex::StateOf(uint64_t last) const {
+  const RecordHeader& header = ring_.Header(last);
+  if ((header.flags & (kTerminated | kTruncated)) != 0) return EpisodeState::kFinished;
+  const auto it = tracks_.find(header.env);
+  const bool open = it != tracks_.end() && it->second.last_id == last && it->second.open;
+  return open ? EpisodeState::kOpen : EpisodeState::kCut;
+}
+
 void EpisodeIndex::Added(uint64_t id) {
-  const uint64_t slot = id % ring_.capacity();
+  if (id > ring_.capacity()) Forget(id - ring_.capacity());
+  const size_t slot = Slot(id);
+  oldest_needed_[slot] = next_[slot] = 0;
+  if (const uint64_t prev = Previous(id); prev != 0) next_[Slot(prev)] = id;
+  const bool ended = (ring_.Header(id).flags & (kTerminated | kTruncated)) != 0;
+  if (!options_.whole_episodes) Complete(id);
+  if (options_.whole_episodes && ended) CompleteEpisode(id);
+  Follow(id);
+}
+
+void EpisodeIndex::Forget(uint64_t gone) {
+  const size_t slot = Slot(gone);
+  if (selector_ != nullptr && needed_by_[slot] > 0) {
+    // The samples that reached back to it begin with one of the steps after it.
+    uint64_t id = gone;
+    for (int k = 0; k < options_.stack && next_[Slot(id)] != 0; ++k) {
+      id = next_[Slot(id)];
+      if (oldest_needed_[Slot(id)] == gone) selector_->Removed(id);
+    }
+  }
   sampleable_ -= needed_by_[slot];
   needed_by_[slot] = 0;
-  oldest_needed_[slot] = OldestNeeded(id);
-  if (oldest_needed_[slot] != 0) {
-    ++needed_by_[oldest_needed_[slot] % ring_.capacity()];
-    ++sampleable_;
-    ++became_sampleable_;
+}
+
+void EpisodeIndex::Complete(uint64_t id) {
+  const bool terminated = (ring_.Header(id).flags & kTerminated) != 0;
+  uint64_t first = id;
+  for (int steps = 1; steps <= options_.n_step && first != 0; ++steps) {
+    if (ring_.Header(first).kind != RecordKind::kStep) return;  // the episode has fewer
+    if (steps == options_.n_step || terminated) MakeSampleable(first);
+    first = Previous(first);
   }
-  Follow(id);
+}
+
+void EpisodeIndex::CompleteEpisode(uint64_t last) {
+  const bool terminated = (ring_.Header(last).flags & kTerminated) != 0;
+  int steps = 0;
+  for (uint64_t first = last; first != 0; first = Previous(first)) {
+    if (ring_.Header(first).kind != RecordKind::kStep) return;
+    if (++steps >= options_.n_step || terminated) MakeSampleable(first);
+  }
+}
+
+void EpisodeIndex::MakeSampleable(uint64_t first) {
+  const uint64_t oldest = OldestNeeded(first);
+  if (oldest == 0 || oldest_needed_[Slot(first)] != 0) return;
+  oldest_needed_[Slot(first)] = oldest;
+  ++needed_by_[Slot(oldest)];
+  ++sampleable_;
+  ++became_sampleable_;
+  if (selector_ != nullptr) selector_->Added(first);
 }
 
 void EpisodeIndex::Follow(uint64_t id) {
   const RecordHeader& header = ring_.Header(id);
   Track& track = tracks_[header.env];
-  if (track.open && header.kind == RecordKind::kReset) ++cut_episodes_;
+  if (track.open && header.kind == RecordKind::kReset) Cut(&track);
   track = {.session = ring_.Slot(id).session,
            .last_id = id,
            .actor = ring_.Slot(id).actor,
@@ -58,18 +121,21 @@ void EpisodeIndex::Close(uint32_t actor, uint64_t session, uint32_t env) {
   const auto it = tracks_.find(env);
   if (it == tracks_.end() || !it->second.open) return;
   if (it->second.actor != actor || it->second.session != session) return;
-  it->second.open = false;
-  ++cut_episodes_;
+  Cut(&it->second);
 }
 
-uint64_t EpisodeIndex::OldestNeeded(uint64_t id) const {
-  if (ring_.Header(id).kind != RecordKind::kStep) return 0;
-  uint64_t oldest = id;
-  for (int k = 0; k < n_step_ + stack_ - 1; ++k) {
+void EpisodeIndex::Cut(Track* track) {
+  track->open = false;
+  ++cut_episodes_;
+  if (options_.whole_episodes && ring_.Holds(track->last_id)) CompleteEpisode(track->last_id);
+}
+
+uint64_t EpisodeIndex::OldestNeeded(uint64_t first) const {
+  uint64_t oldest = first;
+  for (int k = 0; k < options_.stack; ++k) {
     const uint64_t prev = ring_.Slot(oldest).prev;
-    if (prev == 0 && k < n_step_) return 0;  // fewer than n steps lead here
-    if (prev == 0) break;                    // `oldest` is the reset, which the stack repeats
-    if (!ring_.Holds(prev)) return 0;
+    if (prev == 0 && k > 0) break;  // `oldest` is the reset, which the stack repeats
+    if (prev >= oldest || !ring_.Holds(prev)) return 0;
     oldest = prev;
   }
   return oldest;
@@ -77,7 +143,7 @@ uint64_t EpisodeIndex::OldestNeeded(uint64_t id) const {
 
 bool EpisodeIndex::Sampleable(uint64_t id) const {
   if (!ring_.Holds(id)) return false;
-  const uint64_t oldest = oldest_needed_[id % ring_.capacity()];
+  const uint64_t oldest = oldest_needed_[Slot(id)];
   return oldest != 0 && oldest >= ring_.oldest_id();
 }
 

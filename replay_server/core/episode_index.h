@@ -1,15 +1,19 @@
 // Which record follows which, and which steps can be sampled.
 //
-//   A step s with predecessors p1 = prev(s), p2 = prev(p1), ... is the last of n = n_step steps
-//   that begin at the observation pn, a stack of K frames. It can be sampled iff p1..pn exist and
-//   they and p(n+1)..p(n+K-1), or what the episode has of them, are in the ring.
+//   A sample is known by its first step s: it begins at the observation before s, a stack of the K
+//   frames that end at prev(s), and goes on over s, next(s), ..., n = n_step steps in all, or fewer
+//   where one of them terminated the episode. It can be drawn iff the last of these is stored, the
+//   episode has ended (with `whole_episodes`), and prev(s) and its K - 1 predecessors, or what the
+//   episode has of them, are in the ring.
 //
-// The ring drops its oldest record first and predecessors are older than s, so s can be sampled
-// from the moment it is stored until the oldest of these is overwritten. Each slot counts the steps
-// that need its record as their oldest one; overwriting it takes that many away at once. The number
-// of sampleable steps is therefore exact after every record, at no search.
+// An episode ends terminated, truncated, or cut: closed because its next record never came.
 //
-// Threads: none inside; one owner. Memory: 12 bytes per slot.
+// The ring drops its oldest record first, so s can be sampled from the moment its last step is
+// stored until the oldest frame of its stack is overwritten. Each slot counts the steps that need
+// its record as their oldest one; overwriting it takes that many away at once. The number of
+// sampleable steps is therefore exact after every record, at no search.
+//
+// Threads: none inside; one owner. Memory: 20 bytes per slot.
 #pragma once
 
 #include <cstdint>
@@ -19,18 +23,31 @@
 
 #include "common/spec/record.h"
 #include "replay_server/core/ring.h"
+#include "replay_server/core/selector.h"
 
 namespace shoal::replay {
+
+struct IndexOptions {
+  int stack = 1;                // K
+  int n_step = 1;               // n
+  bool whole_episodes = false;  // sample nothing of episodes that go on
+};
+
+enum class EpisodeState { kOpen, kFinished, kCut };
 
 class EpisodeIndex {
  public:
   // Borrows the ring and reads what is in it, calling `alive` for each record, if there is one;
-  // records of a snapshot that vanished are skipped. stack, n_step >= 1.
-  EpisodeIndex(const Ring& ring, int stack, int n_step = 1, const Alive& alive = {});
+  // records of a snapshot that vanished are skipped.
+  EpisodeIndex(const Ring& ring, const IndexOptions& options, const Alive& alive = {});
+
+  // Told from now on of samples that come and go, and at once of those there are; borrowed until
+  // another, or nullptr, takes its place.
+  void SetSelector(Selector* selector);
 
   // Memory it takes for a ring of that many records.
   static constexpr uint64_t Bytes(uint64_t capacity) {
-    return capacity * (sizeof(uint64_t) + sizeof(uint32_t));
+    return capacity * (2 * sizeof(uint64_t) + sizeof(uint32_t));
   }
 
   // What a record of this actor session may be stored as the successor of: 0 for a reset, the id of
@@ -42,7 +59,14 @@ class EpisodeIndex {
   // A record of `env` is missing: its open episode ends at the last stored one.
   void Close(uint32_t actor, uint64_t session, uint32_t env);
 
+  // `id`: of the sample's first step.
   bool Sampleable(uint64_t id) const;
+  // The record that follows or precedes `id`, which the ring holds, in its episode; 0 when none
+  // does (yet), or no longer.
+  uint64_t Next(uint64_t id) const { return next_[Slot(id)]; }
+  uint64_t Previous(uint64_t id) const;
+  // Of the episode whose newest record `last` is.
+  EpisodeState StateOf(uint64_t last) const;
   uint64_t sampleable() const { return sampleable_; }
   // How often a step became sampleable since construction.
   uint64_t became_sampleable() const { return became_sampleable_; }
@@ -61,14 +85,27 @@ class EpisodeIndex {
     bool open = false;  // a next step may follow
   };
 
+  size_t Slot(uint64_t id) const { return static_cast<size_t>(id % ring_.capacity()); }
+  // Makes the samples sampleable whose last step `id` is: that of n steps and, when it terminated
+  // the episode, the shorter ones.
+  void Complete(uint64_t id);
+  // The same for every step of the episode that has ended with `last`, for whole_episodes.
+  void CompleteEpisode(uint64_t last);
+  void MakeSampleable(uint64_t first);
+  // Record `gone` has been overwritten.
+  void Forget(uint64_t gone);
   void Follow(uint64_t id);
-  // The oldest record that a sample ending at `id` needs; 0 when it is gone or never was.
-  uint64_t OldestNeeded(uint64_t id) const;
+  // The episode that was open ends at the track's last record.
+  void Cut(Track* track);
+  // The oldest record that the sample beginning with step `first` needs; 0 when it is gone.
+  uint64_t OldestNeeded(uint64_t first) const;
 
   const Ring& ring_;
-  const int stack_, n_step_;
+  const IndexOptions options_;
+  Selector* selector_ = nullptr;
   std::unordered_map<uint32_t, Track> tracks_;  // by env
-  std::vector<uint64_t> oldest_needed_;         // by slot; 0 = not a step, or never sampleable
+  std::vector<uint64_t> next_;                  // by slot; 0 = nothing follows (yet)
+  std::vector<uint64_t> oldest_needed_;         // by slot; 0 = not a sample's first step (yet)
   std::vector<uint32_t> needed_by_;             // by slot: sampleable steps whose oldest it is
   uint64_t sampleable_ = 0, became_sampleable_ = 0, cut_episodes_ = 0;
 };

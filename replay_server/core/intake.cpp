@@ -24,53 +24,67 @@ Intake::Intake(uint64_t spec_hash, Ring* ring, SessionTable* sessions, EpisodeIn
     throw RuntimeError("the replay file is damaged: its sessions stored {} records, its ring {}",
                        sessions_.TotalStored(), ring_.last_id());
   }
+  for (int i = 0; i < sessions_.size(); ++i) unheard_.insert(i);
 }
 
 bool Intake::WellFormed(const TransitionChunk& chunk) const {
   const uint64_t record_bytes = static_cast<uint64_t>(ring_.layout().record_bytes());
-  return chunk.count > 0 && chunk.first_sequence > 0 &&
+  return chunk.first_sequence > 0 &&
          chunk.first_sequence <= std::numeric_limits<uint64_t>::max() - chunk.count &&
          chunk.payload.size() == chunk.count * record_bytes;
 }
 
-bool Intake::Reaches(const TransitionChunk& chunk, SessionCounters* counters, uint64_t* lost) {
-  const int i = *sessions_.Find(chunk.actor, chunk.session);
-  if (chunk.first_sequence <= counters->highest + 1) {
-    ahead_.erase(i);
-    return true;
+std::optional<int> Intake::FindSession(const TransitionChunk& chunk, uint64_t latest_session,
+                                       ChunkFate* fate) {
+  const std::optional<int> newest = sessions_.Newest(chunk.actor);
+  const uint64_t known = newest ? sessions_.at(*newest).session : 0;
+  if (known > chunk.session) {
+    *fate = ChunkFate::kSuperseded;
+    return std::nullopt;
   }
-  Ahead& ahead = ahead_[i];
-  if (ahead.offers == 0 || chunk.first_sequence < ahead.first_sequence) {
-    ahead = {.first_sequence = chunk.first_sequence, .offers = 1};
-  } else if (chunk.first_sequence == ahead.first_sequence) {
-    ++ahead.offers;
+  std::optional<int> i = sessions_.Find(chunk.actor, chunk.session);
+  if (i) return i;
+  // chunk.session > known: the difference cannot wrap.
+  const bool follows = newest && chunk.session - known <= kSessionStep;
+  if (chunk.session > latest_session && !follows) {
+    *fate = ChunkFate::kFuture;
+    return std::nullopt;
   }
-  if (chunk.first_sequence != ahead.first_sequence || ahead.offers < kAheadOffers) return false;
-  ahead_.erase(i);
-  *lost = chunk.first_sequence - counters->highest - 1;
-  counters->lost += *lost;
-  counters->highest += *lost;
-  return true;
+  i = sessions_.Add(chunk.actor, chunk.session);
+  if (i) {
+    unheard_.insert(*i);
+  } else {
+    *fate = ChunkFate::kTableFull;
+  }
+  return i;
 }
 
-ChunkResult Intake::Take(const TransitionChunk& chunk) {
+ChunkResult Intake::TakePosition(const TransitionChunk& chunk, int i) {
+  SessionCounters counters = sessions_.at(i);
+  ChunkResult result;
+  if (chunk.first_sequence <= counters.highest + 1) return result;
+  if (unheard_.erase(i) == 0) return {.fate = ChunkFate::kAhead};  // it cannot be
+  result.lost = chunk.first_sequence - 1 - counters.highest;
+  counters.lost += result.lost;
+  counters.highest += result.lost;
+  sessions_.Update(i, counters);
+  return result;
+}
+
+ChunkResult Intake::Take(const TransitionChunk& chunk, uint64_t latest_session) {
   if (chunk.spec_hash != spec_hash_) return {.fate = ChunkFate::kWrongSpec};
   if (!WellFormed(chunk)) return {.fate = ChunkFate::kMalformed};
   CHECK(reinterpret_cast<uintptr_t>(chunk.payload.data()) % 8 == 0);
-  const std::optional<int> newest = sessions_.Newest(chunk.actor);
-  if (newest && sessions_.at(*newest).session > chunk.session) {
-    return {.fate = ChunkFate::kSuperseded};
-  }
-  std::optional<int> i = sessions_.Find(chunk.actor, chunk.session);
-  if (!i) i = sessions_.Add(chunk.actor, chunk.session);
-  if (!i) return {.fate = ChunkFate::kTableFull};
+  ChunkResult result;
+  const std::optional<int> i = FindSession(chunk, latest_session, &result.fate);
+  if (!i) return result;
+  if (chunk.count == 0) return TakePosition(chunk, *i);
 
   SessionCounters counters = sessions_.at(*i);
-  ChunkResult result;
-  if (!Reaches(chunk, &counters, &result.lost)) return {.fate = ChunkFate::kAhead};
+  if (chunk.first_sequence > counters.highest + 1) return {.fate = ChunkFate::kAhead};
+  unheard_.erase(*i);
   // The counters are written after each record: whenever this process is killed, at most one stored
   // record is not counted yet, and the constructor finds it by its sequence.
-  if (result.lost > 0) sessions_.Update(*i, counters);
   const size_t record_bytes = static_cast<size_t>(ring_.layout().record_bytes());
   for (uint32_t k = 0; k < chunk.count; ++k) {
     const uint64_t sequence = chunk.first_sequence + k;

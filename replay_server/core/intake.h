@@ -2,15 +2,24 @@
 // here. Per (actor, session) every sequence up to the highest is dealt with exactly once.
 //
 // Resending. An actor keeps what is not reported stored and resends it oldest first, so a chunk
-// ahead of the next expected sequence is not a loss yet: it is set aside and will come again. Only
-// when the actor offers the same chunk as its oldest kAheadOffers times is the part before it taken
-// as lost (the ring that had it was in the memory of a server that died).
+// ahead of the next expected sequence is not a loss yet: it is set aside and will come again.
+//
+// Taking over. What an earlier server reported stored the actor keeps no more; where that server's
+// memory is gone, nobody has it. So whenever the actor sends again what it keeps, it says first
+// where its keeping begins: a chunk without records, whose first_sequence that is. The first time
+// that this server hears of a session, what lies between what it knows and that sequence is counted
+// as lost. Afterwards it cannot be news: nobody else has reported anything stored.
+//
+// Sessions from the future. A session is the actor's clock at its start, and the newest supersedes
+// the others: a number far beyond the present would shut the true actor out for good.
 //
 // Threads: none inside; one owner.
 #pragma once
 
 #include <cstdint>
-#include <map>
+#include <limits>
+#include <optional>
+#include <set>
 
 #include "common/wire/messages.h"
 #include "replay_server/core/episode_index.h"
@@ -23,6 +32,7 @@ enum class ChunkFate {
   kDealtWith,   // every record in it is stored or counted
   kAhead,       // set aside: what lies before it did not come yet
   kSuperseded,  // of a session whose actor has a newer one: its process is gone
+  kFuture,      // of a session that cannot have begun yet
   kWrongSpec,   // another observation spec
   kMalformed,   // its length or sequences make no sense
   kTableFull,   // kMaxSessions actor sessions are known
@@ -37,24 +47,25 @@ struct ChunkResult {
 
 class Intake {
  public:
-  static constexpr int kAheadOffers = 3;
+  // How far an actor's new session may lie beyond its former one, whatever the clock says: its
+  // clock may have been set back since (common/config/session_number.h).
+  static constexpr uint64_t kSessionStep = 1'000'000'000;
 
   // Borrows all three. Accounts for records that were stored after their session's counters were
   // last written (the writer died between the two). Throws Error when ring and sessions disagree.
   Intake(uint64_t spec_hash, Ring* ring, SessionTable* sessions, EpisodeIndex* index);
 
-  // `chunk.payload` must be aligned to 8.
-  ChunkResult Take(const TransitionChunk& chunk);
+  // `chunk.payload` must be aligned to 8. `latest_session`: none begun by now has a higher number.
+  ChunkResult Take(const TransitionChunk& chunk,
+                   uint64_t latest_session = std::numeric_limits<uint64_t>::max());
 
  private:
-  struct Ahead {
-    uint64_t first_sequence = 0;
-    int offers = 0;
-  };
-
   bool WellFormed(const TransitionChunk& chunk) const;
-  // True when the chunk may be taken now; `counters` then has the lost ones.
-  bool Reaches(const TransitionChunk& chunk, SessionCounters* counters, uint64_t* lost);
+  // The session's index, added where it is new; or why the chunk is not taken.
+  std::optional<int> FindSession(const TransitionChunk& chunk, uint64_t latest_session,
+                                 ChunkFate* fate);
+  // Of a chunk without records.
+  ChunkResult TakePosition(const TransitionChunk& chunk, int i);
   void TakeRecord(const uint8_t* record, uint64_t sequence, SessionCounters* counters,
                   ChunkResult* result);
 
@@ -62,7 +73,7 @@ class Intake {
   Ring& ring_;
   SessionTable& sessions_;
   EpisodeIndex& index_;
-  std::map<int, Ahead> ahead_;  // by session index
+  std::set<int> unheard_;  // sessions, by index, of which this process has not heard anything
 };
 
 }  // namespace shoal::replay

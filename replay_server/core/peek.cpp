@@ -10,12 +10,12 @@
 #include "common/base/error.h"
 #include "common/base/random.h"
 #include "common/config/run_files.h"
-#include "common/wire/batch_layout.h"
+#include "common/wire/batch_schema.h"
 #include "replay_server/core/batch_gather.h"
 #include "replay_server/core/episode_index.h"
 #include "replay_server/core/replay_core.h"
+#include "replay_server/core/replay_policies.h"
 #include "replay_server/core/ring.h"
-#include "replay_server/core/uniform_sampler.h"
 
 namespace shoal::replay {
 namespace {
@@ -30,13 +30,13 @@ struct FreeBatch {
 // A batch of its own memory.
 struct Batch {
   Batch(const ObservationSpec& spec, int size)
-      : layout(spec, size),
-        data(static_cast<uint8_t*>(std::aligned_alloc(64, layout.total_bytes()))) {
+      : schema(spec, {.batch = size}),
+        data(static_cast<uint8_t*>(std::aligned_alloc(64, schema.total_bytes()))) {
     if (!data) throw std::bad_alloc();
   }
-  BatchView View() const { return layout.View(data.get()); }
+  BatchView View() const { return schema.View(data.get()); }
 
-  BatchLayout layout;
+  BatchSchema schema;
   std::unique_ptr<uint8_t[], FreeBatch> data;
 };
 
@@ -45,12 +45,16 @@ BatchPlan WithoutShift(BatchPlan plan) {
   return plan;
 }
 
-// The server has not overwritten any record that the plan's elements are made of: the last step and
-// the `reach` before it.
-bool StillThere(const Ring& ring, const BatchPlan& plan, int reach) {
+// The server has not overwritten any record that the plan's elements are made of: the stack before
+// the first step, that step and those after it. The oldest of these goes first, but any may be
+// torn.
+bool StillThere(const Ring& ring, const EpisodeIndex& index, const BatchPlan& plan,
+                const RunConfig& run) {
   for (const BatchPlan::Element& element : plan.elements) {
     uint64_t id = element.id;
-    for (int k = 0; k <= reach && id != 0; ++k) {
+    for (int k = 1; k < run.config.replay.n_step && index.Next(id) != 0; ++k) id = index.Next(id);
+    const int records = run.config.replay.n_step + run.spec.stack;
+    for (int k = 0; k < records && id != 0; ++k) {
       if (!ring.Holds(id) || !ring.Intact(id)) return false;
       id = ring.Slot(id).prev;
     }
@@ -117,16 +121,15 @@ class Painter {
 std::optional<Peek> TryPeek(const RunConfig& run, const std::filesystem::path& file, int batch,
                             Random* random) {
   const Ring ring = Ring::OpenSnapshot(run.spec, file);
-  const EpisodeIndex index(ring, run.spec.stack, run.config.replay.n_step);
+  const EpisodeIndex index(ring, IndexOptionsOf(run));
   if (index.sampleable() == 0) {
     throw RuntimeError("replay file '{}' holds no step that can be sampled", file.string());
   }
-  UniformSampler sampler(ring, index);
+  const ReplayPolicies policies = MakePolicies(run, ring, index);
   const PlanOptions options{.batch = batch, .shift_pad = run.config.replay.shift_pad};
-  const auto plan = DrawPlan(options, &sampler, random);
-  const int reach = run.config.replay.n_step + run.spec.stack - 1;
-  if (!plan || !StillThere(ring, *plan, reach)) return std::nullopt;
-  const BatchGather gather(ring, run.spec, NStepOf(run.config));
+  const auto plan = DrawPlan(options, policies.selector.get(), policies.relabeller.get(), random);
+  if (!plan || !StillThere(ring, index, *plan, run)) return std::nullopt;
+  const BatchGather gather(ring, index, run.spec, NStepOf(run.config), policies.goals.get());
   const Batch plain(run.spec, batch), shifted(run.spec, batch);
   gather.Gather(WithoutShift(*plan), plain.View());
   gather.Gather(*plan, shifted.View());
@@ -142,7 +145,7 @@ std::optional<Peek> TryPeek(const RunConfig& run, const std::filesystem::path& f
     painter.PaintRow(plain.View().next_obs_frames, 2);
     painter.PaintRow(shifted.View().next_obs_frames, 3);
   }
-  if (!StillThere(ring, *plan, reach)) return std::nullopt;
+  if (!StillThere(ring, index, *plan, run)) return std::nullopt;
   return peek;
 }
 

@@ -12,8 +12,7 @@ RateLimiter::RateLimiter(const LimiterOptions& options) : options_(options) {
 }
 
 double RateLimiter::LeastBand(const LimiterOptions& options, int sessions) {
-  const double window = static_cast<double>(options.window_records) * sessions;
-  return 2 * (options.samples_per_insert * window +
+  return 2 * (options.samples_per_insert * Unasked(options) * sessions +
               static_cast<double>(options.credits) * options.batch);
 }
 
@@ -48,8 +47,7 @@ void RateLimiter::Sampled() {
 
 bool RateLimiter::MayInsert(uint64_t sampleable) const {
   if (!Limits() || draining_ || sampleable < options_.min_size) return true;
-  const double window = static_cast<double>(options_.window_records) * sessions_;
-  return cursor_ <= band_ / 2 - options_.samples_per_insert * window;
+  return cursor_ <= band_ / 2 - options_.samples_per_insert * Unasked(options_) * sessions_;
 }
 
 bool RateLimiter::MaySample(uint64_t sampleable) const {

@@ -2,15 +2,16 @@
 //
 //   cursor = SPI * (steps that became sampleable) - (batch elements sampled),  0 when min_size is
 //            first reached; kept in [-band/2, +band/2]
-//   band   = 2 * (SPI * W + credits * B) at least,  W = records that the windows of all actor
-//            sessions let through unasked, B = batch
+//   band   = 2 * (SPI * W + credits * B) at least,  W = steps that may become sampleable unasked:
+//            the records of the windows of all actor sessions, and stored steps that become so
+//            with a later record; B = batch
 //
 //   sample iff  cursor - B >= -band/2             and min_size steps are sampleable
 //   insert iff  cursor     <= band/2 - SPI * W    or  min_size steps are not
 //
 // Why one side can always move: a batch is held back only while cursor < B - band/2 <= -SPI * W,
 // and credit only while cursor > band/2 - SPI * W >= credits * B; never both. Credit once given
-// cannot be taken back, so up to W more records come after "no": SPI * W above the threshold, still
+// cannot be taken back, so up to W more steps count after "no": SPI * W above the threshold, still
 // within the band. Inserts that do not become sampleable do not move the cursor and are not held
 // back for it.
 //
@@ -28,6 +29,7 @@ struct LimiterOptions {
   int batch = 1;                  // B
   int credits = 1;                // batches the learner asks for ahead
   uint64_t window_records = 0;    // per actor session
+  uint64_t waiting_steps = 0;     // per actor session: stored, sampleable with a later record
   double band = 0;                // 0 = computed; a smaller one than computed counts as computed
   bool lockstep = false;          // actor and learner take turns by themselves: no limit at all
 };
@@ -58,6 +60,10 @@ class RateLimiter {
   double samples_per_insert() const { return options_.samples_per_insert; }
 
  private:
+  // W for one actor session.
+  static double Unasked(const LimiterOptions& options) {
+    return static_cast<double>(options.window_records + options.waiting_steps);
+  }
   bool Limits() const { return options_.samples_per_insert > 0 && !options_.lockstep; }
   void Rebuild();
 

@@ -5,6 +5,7 @@
 
 #include "common/base/error.h"
 #include "common/base/random.h"
+#include "common/config/batch_options.h"
 #include "common/config/sending_window.h"
 
 namespace shoal::replay {
@@ -17,7 +18,7 @@ RingOptions OptionsOfRing(const Config& config, const std::filesystem::path& fol
   if (config.replay.storage == "file") options.file = folder / kRingFile;
   options.capacity = static_cast<uint64_t>(config.replay.capacity);
   options.run = config.run_name;
-  options.steps_before = steps_before;
+  if (config.replay.storage == "memory") options.steps_before = steps_before;
   return options;
 }
 
@@ -39,6 +40,7 @@ LimiterOptions OptionsOfLimiter(const RunConfig& run) {
   options.batch = config.learner.batch;
   options.credits = config.learner.request_credits;
   options.window_records = WindowRecords(run);
+  options.waiting_steps = WaitingSteps(run);
   options.band = config.replay.band;
   options.lockstep = config.lockstep;
   const double least = RateLimiter::LeastBand(options, std::max(1, config.actors));
@@ -49,6 +51,13 @@ LimiterOptions OptionsOfLimiter(const RunConfig& run) {
         options.band, std::max(1, config.actors), least);
   }
   return options;
+}
+
+// A ring without a session is new.
+SessionTable SessionsOf(Ring& ring, const FormerServer& former) {
+  SessionTable sessions(ring.sessions());
+  if (sessions.size() == 0) sessions.Inherit(former);
+  return sessions;
 }
 
 PlanOptions PlanOptionsOf(const Config& config) {
@@ -64,23 +73,26 @@ NStep NStepOf(const Config& config) {
 }
 
 ReplayCore::ReplayCore(const RunConfig& run, const std::filesystem::path& folder,
-                       uint64_t replay_session, uint64_t steps_before, const Alive& alive)
+                       uint64_t replay_session, const FormerServer& former, const Alive& alive)
     : run_(run),
       spec_hash_(run.spec.Hash()),
       replay_session_(replay_session),
-      batch_layout_(run.spec, run.config.learner.batch),
-      ring_(run.spec, OptionsOfRing(run.config, folder, steps_before, alive)),
-      sessions_(ring_.sessions()),
-      index_(ring_, run.spec.stack, run.config.replay.n_step, alive),
+      batch_schema_(BatchSchemaOf(run)),
+      ring_(run.spec, OptionsOfRing(run.config, folder, former.stored_steps, alive)),
+      sessions_(SessionsOf(ring_, former)),
+      index_(ring_, IndexOptionsOf(run), alive),
       intake_(spec_hash_, &ring_, &sessions_, &index_),
-      sampler_(ring_, index_),
-      gather_(ring_, run.spec, NStepOf(run.config)),
+      policies_(MakePolicies(run, ring_, index_)),
+      gather_(ring_, index_, run.spec, NStepOf(run.config), policies_.goals.get()),
       limiter_(OptionsOfLimiter(run)),
       credits_(sessions_, spec_hash_, replay_session, WindowRecords(run), LeastRecords(run)),
-      requests_(spec_hash_, static_cast<uint32_t>(run.config.learner.batch),
-                run.config.learner.request_credits),
+      requests_(spec_hash_, batch_schema_.Hash(), run.config.learner.request_credits),
       budget_(static_cast<uint64_t>(run.config.env_steps)) {
+  index_.SetSelector(policies_.selector.get());
   limiter_.SetSessions(static_cast<int>(sessions_.newest().size()));
+  const bool stored_before = std::ranges::any_of(
+      former.sessions, [](const SessionCounters& counters) { return counters.stored() > 0; });
+  ring_replaced_ = stored_before && ring_.last_id() == 0;
 }
 
 uint64_t ReplayCore::window_records() const { return WindowRecords(run_); }
@@ -95,9 +107,9 @@ std::optional<uint64_t> ReplayCore::StepsLeft() const {
   return budget_ - std::min(budget_, ring_.stored_steps());
 }
 
-ChunkResult ReplayCore::TakeChunk(const TransitionChunk& chunk) {
+ChunkResult ReplayCore::TakeChunk(const TransitionChunk& chunk, uint64_t latest_session) {
   const uint64_t became_before = index_.became_sampleable();
-  const ChunkResult result = intake_.Take(chunk);
+  const ChunkResult result = intake_.Take(chunk, latest_session);
   switch (result.fate) {
     case ChunkFate::kDealtWith:
       break;
@@ -106,6 +118,9 @@ ChunkResult ReplayCore::TakeChunk(const TransitionChunk& chunk) {
       break;
     case ChunkFate::kSuperseded:
       ++counters_.superseded_chunks;
+      break;
+    case ChunkFate::kFuture:
+      ++counters_.future_chunks;
       break;
     case ChunkFate::kWrongSpec:
       ++counters_.wrong_spec_chunks;
@@ -129,7 +144,7 @@ ChunkResult ReplayCore::TakeChunk(const TransitionChunk& chunk) {
 
 RequestFate ReplayCore::TakeRequest(const SampleRequest& request) {
   const RequestFate fate = requests_.Offer(request);
-  if (fate == RequestFate::kWrongSpec || fate == RequestFate::kWrongBatch ||
+  if (fate == RequestFate::kWrongSpec || fate == RequestFate::kWrongSchema ||
       fate == RequestFate::kFull) {
     ++counters_.refused_requests;
   }
@@ -143,15 +158,20 @@ std::optional<DrawnBatch> ReplayCore::TryAnswer(uint8_t* data) {
   if (!repeated && !limiter_.MaySample(index_.sampleable())) return std::nullopt;
   Random random(StreamKey(static_cast<uint64_t>(run_.config.seed), StreamRole::kReplaySampler,
                           request->request));
-  std::optional<BatchPlan> plan = DrawPlan(PlanOptionsOf(run_.config), &sampler_, &random);
+  std::optional<BatchPlan> plan = DrawPlan(PlanOptionsOf(run_.config), policies_.selector.get(),
+                                           policies_.relabeller.get(), &random);
   if (!plan) return std::nullopt;
-  gather_.Gather(*plan, batch_layout_.View(data));
+  const BatchView view = batch_schema_.View(data);
+  gather_.Gather(*plan, view);
   last_plan_ = *std::move(plan);
   requests_.Pop();
   if (repeated) {
     ++counters_.repeated_batches;
   } else {
     ++counters_.batches;
+    counters_.relabelled += static_cast<uint64_t>(
+        std::ranges::count_if(last_plan_.elements, [](const auto& e) { return e.goal != 0; }));
+    counters_.zero_rewards += static_cast<uint64_t>(std::ranges::count(view.reward, 0.0f));
     limiter_.Sampled();
   }
   return DrawnBatch{*request, ring_.last_id(), ring_.stored_steps()};
@@ -168,12 +188,15 @@ bool ReplayCore::CreditsUrgent() {
 }
 
 Credit ReplayCore::Refusal(const TransitionChunk& chunk) const {
+  const std::optional<int> newest = sessions_.Newest(chunk.actor);
+  const uint64_t session = newest ? sessions_.at(*newest).session : 0;
   return {.replay_session = replay_session_,
           .actor = chunk.actor,
           .session = chunk.session,
           .stored = 0,
           .allowed = 0,
-          .spec_hash = spec_hash_};
+          .spec_hash = spec_hash_,
+          .superseded_by = session > chunk.session ? session : 0};
 }
 
 bool ReplayCore::InsertsBlocked() const {

@@ -5,7 +5,8 @@
 //   episode index    what follows what, what is sampleable
 //   intake           chunks -> ring
 //   session table    accounting
-//   sampler, gather  ring -> batch
+//   policies         which samples, with which goals
+//   gather           ring -> batch
 //   rate limiter     who must wait
 //   credit book      what actors are told
 //   request queue    what the learner asked for
@@ -13,23 +14,24 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "common/config/run_files.h"
-#include "common/wire/batch_layout.h"
+#include "common/wire/batch_schema.h"
 #include "common/wire/messages.h"
 #include "replay_server/core/batch_gather.h"
 #include "replay_server/core/credit_book.h"
 #include "replay_server/core/episode_index.h"
 #include "replay_server/core/intake.h"
 #include "replay_server/core/rate_limiter.h"
+#include "replay_server/core/replay_policies.h"
 #include "replay_server/core/request_queue.h"
 #include "replay_server/core/ring.h"
 #include "replay_server/core/session_table.h"
-#include "replay_server/core/uniform_sampler.h"
 
 namespace shoal::replay {
 
@@ -50,27 +52,31 @@ struct CoreCounters {
   uint64_t records = 0;  // stored
   uint64_t rejected = 0, after_gap = 0, duplicates = 0, lost = 0;
   uint64_t ahead_chunks = 0, superseded_chunks = 0, wrong_spec_chunks = 0, malformed_chunks = 0;
-  uint64_t table_full_chunks = 0;
+  uint64_t table_full_chunks = 0, future_chunks = 0;
   uint64_t batches = 0, repeated_batches = 0;
-  uint64_t refused_requests = 0;  // wrong spec, wrong batch or too many
+  uint64_t relabelled = 0;        // batch elements with another goal than their own
+  uint64_t zero_rewards = 0;      // batch elements of reward 0
+  uint64_t refused_requests = 0;  // wrong spec, wrong schema or too many
 };
 
 class ReplayCore {
  public:
   // Opens or makes the ring in `folder` (or in memory, as configured). `replay_session` must grow
-  // from start to start. `steps_before`: as RingOptions, for storage in memory. `alive` is
-  // called often while a ring that is there is read. Throws Error: no room, a ring that does not
-  // fit, a band that is too small.
+  // from start to start. `former`: what the server before left; counts only where the ring is new.
+  // `alive` is called often while a ring that is there is read. Throws Error: no room, a ring that
+  // does not fit, a band that is too small.
   ReplayCore(const RunConfig& run, const std::filesystem::path& folder, uint64_t replay_session,
-             uint64_t steps_before = 0, const Alive& alive = {});
+             const FormerServer& former = {}, const Alive& alive = {});
   // The parts refer to each other: neither copied nor moved.
   ReplayCore(const ReplayCore&) = delete;
   ReplayCore& operator=(const ReplayCore&) = delete;
 
-  ChunkResult TakeChunk(const TransitionChunk& chunk);
+  // `latest_session`: as Intake::Take.
+  ChunkResult TakeChunk(const TransitionChunk& chunk,
+                        uint64_t latest_session = std::numeric_limits<uint64_t>::max());
   RequestFate TakeRequest(const SampleRequest& request);
 
-  // Draws and writes the next batch that is due into `data` (batch_layout().total_bytes(), aligned
+  // Draws and writes the next batch that is due into `data` (batch_schema().total_bytes(), aligned
   // to 64); nothing when no request waits or it must wait on.
   std::optional<DrawnBatch> TryAnswer(uint8_t* data);
   // The elements of the batch drawn last.
@@ -80,7 +86,8 @@ class ReplayCore {
   std::vector<Credit> TakeCredits(bool changed_only);
   // CreditBook::Urgent, after taking over what has come.
   bool CreditsUrgent();
-  // For an actor of another spec: our hash, no credit.
+  // For an actor of another spec, or one that a newer session has superseded: our hash, that
+  // session, no credit.
   Credit Refusal(const TransitionChunk& chunk) const;
 
   void SetDraining(bool draining);
@@ -94,14 +101,17 @@ class ReplayCore {
   bool SamplesBlocked() const;  // a request waits for the limiter, min size or after_steps
 
   const RunConfig& run() const { return run_; }
-  const BatchLayout& batch_layout() const { return batch_layout_; }
+  const BatchSchema& batch_schema() const { return batch_schema_; }
   uint64_t window_records() const;
+  uint64_t replay_session() const { return replay_session_; }
   const Ring& ring() const { return ring_; }
   const EpisodeIndex& index() const { return index_; }
   const SessionTable& sessions() const { return sessions_; }
+  // The ring was new although an earlier server had stored something: that is lost.
+  bool ring_replaced() const { return ring_replaced_; }
   const RateLimiter& limiter() const { return limiter_; }
   const RequestQueue& requests() const { return requests_; }
-  const Sampler& sampler() const { return sampler_; }
+  const Selector& selector() const { return *policies_.selector; }
   const CoreCounters& counters() const { return counters_; }
   uint64_t budget() const { return budget_; }
 
@@ -112,12 +122,12 @@ class ReplayCore {
   const RunConfig run_;
   const uint64_t spec_hash_;
   const uint64_t replay_session_;
-  const BatchLayout batch_layout_;
+  const BatchSchema batch_schema_;
   Ring ring_;
   SessionTable sessions_;
   EpisodeIndex index_;
   Intake intake_;
-  UniformSampler sampler_;
+  ReplayPolicies policies_;
   BatchGather gather_;
   RateLimiter limiter_;
   CreditBook credits_;
@@ -125,6 +135,7 @@ class ReplayCore {
   CoreCounters counters_;
   BatchPlan last_plan_;
   uint64_t budget_;  // env steps
+  bool ring_replaced_ = false;
   bool draining_ = false;
 };
 

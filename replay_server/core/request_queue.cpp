@@ -8,7 +8,7 @@ namespace shoal::replay {
 
 RequestFate RequestQueue::Offer(const SampleRequest& request) {
   if (request.spec_hash != spec_hash_) return RequestFate::kWrongSpec;
-  if (request.batch != batch_) return RequestFate::kWrongBatch;
+  if (request.schema_hash != schema_hash_) return RequestFate::kWrongSchema;
   if (request.learner_session < learner_session_) return RequestFate::kStale;
   if (request.learner_session > learner_session_) {
     learner_session_ = request.learner_session;

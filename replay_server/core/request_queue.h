@@ -18,16 +18,16 @@ namespace shoal::replay {
 enum class RequestFate {
   kQueued,
   kAlreadyQueued,
-  kStale,       // of a learner session that has been replaced
-  kWrongSpec,   // another observation spec
-  kWrongBatch,  // not the configured batch size
-  kFull,        // more than the credits allow; the learner asks again
+  kStale,        // of a learner session that has been replaced
+  kWrongSpec,    // another observation spec
+  kWrongSchema,  // other arrays, or filled in another way
+  kFull,         // more than the credits allow; the learner asks again
 };
 
 class RequestQueue {
  public:
-  RequestQueue(uint64_t spec_hash, uint32_t batch, int credits)
-      : spec_hash_(spec_hash), batch_(batch), credits_(static_cast<size_t>(credits)) {}
+  RequestQueue(uint64_t spec_hash, uint64_t schema_hash, int credits)
+      : spec_hash_(spec_hash), schema_hash_(schema_hash), credits_(static_cast<size_t>(credits)) {}
 
   RequestFate Offer(const SampleRequest& request);
 
@@ -42,8 +42,7 @@ class RequestQueue {
   uint64_t learner_session() const { return learner_session_; }
 
  private:
-  const uint64_t spec_hash_;
-  const uint32_t batch_;
+  const uint64_t spec_hash_, schema_hash_;
   const size_t credits_;
   uint64_t learner_session_ = 0;
   uint64_t answered_ = 0;                      // highest request answered in this session

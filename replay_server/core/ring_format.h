@@ -1,4 +1,4 @@
-// The ring file, version 2. All little-endian.
+// The ring file, version 3. All little-endian.
 //
 //   RingHeader, padded to 4096 bytes
 //   StoredSession[kMaxSessions]          accounting per (actor, session); two copies each
@@ -20,7 +20,7 @@
 namespace shoal::replay {
 
 inline constexpr char kRingMagic[8] = {'S', 'H', 'O', 'A', 'L', 'R', 'N', 'G'};
-inline constexpr uint32_t kRingVersion = 2;
+inline constexpr uint32_t kRingVersion = 3;
 inline constexpr uint32_t kMaxSessions = 4096;
 inline constexpr uint64_t kRingHeaderBytes = 4096;
 
@@ -78,8 +78,7 @@ struct RingGeometry {
   RingGeometry() = default;
   RingGeometry(const ObservationSpec& spec, uint64_t slots)
       : record_bytes(static_cast<uint64_t>(RecordLayout(spec).record_bytes())),
-        prefix_bytes(sizeof(RecordHeader) +
-                     4 * static_cast<uint64_t>(spec.action_size + spec.VectorSize())),
+        prefix_bytes(static_cast<uint64_t>(RecordLayout(spec).prefix_bytes())),
         capacity(slots) {}
 
   uint64_t slot_bytes() const { return (sizeof(SlotHeader) + record_bytes + 63) / 64 * 64; }

@@ -104,6 +104,16 @@ void SessionTable::Update(int i, const SessionCounters& counters) {
   sessions_[index] = counters;
 }
 
+void SessionTable::Inherit(const FormerServer& former) {
+  CHECK(sessions_.empty());
+  for (SessionCounters counters : former.sessions) {
+    const std::optional<int> i = Add(counters.actor, counters.session);
+    if (!i) return;  // a table as full as the former one's was: the next chunk will say so
+    counters.lost += counters.stored();
+    Update(*i, counters);
+  }
+}
+
 uint64_t SessionTable::TotalStored() const {
   uint64_t total = 0;
   for (const SessionCounters& counters : sessions_) total += counters.stored();

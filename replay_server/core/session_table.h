@@ -20,11 +20,17 @@ struct SessionCounters {
   uint64_t highest = 0;
   uint64_t rejected = 0;    // malformed
   uint64_t after_gap = 0;   // its predecessor in the episode is not stored
-  uint64_t lost = 0;        // never came: stored by a server whose memory is gone, or dropped
+  uint64_t lost = 0;        // stored by an earlier server whose memory is gone
   uint64_t duplicates = 0;  // came again; not part of the sum
 
   uint64_t stored() const { return highest - rejected - after_gap - lost; }
   bool operator==(const SessionCounters&) const = default;
+};
+
+// What an earlier server of the run left when its ring is gone.
+struct FormerServer {
+  uint64_t stored_steps = 0;
+  std::vector<SessionCounters> sessions;
 };
 
 class SessionTable {
@@ -44,6 +50,9 @@ class SessionTable {
   std::optional<int> Add(uint32_t actor, uint64_t session);
   // Replaces a session's counters, in one step as seen by recovery.
   void Update(int i, const SessionCounters& counters);
+
+  // Into an empty table: the sessions of a server whose ring is gone. What it had stored is lost.
+  void Inherit(const FormerServer& former);
 
   uint64_t TotalStored() const;
 

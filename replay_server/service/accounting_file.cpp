@@ -5,6 +5,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "common/base/bounded_json.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
 
@@ -13,10 +14,16 @@ namespace {
 
 constexpr char kSchema[] = "shoal-accounting-1";
 
+uint64_t Count(const nlohmann::json& object, const char* key) {
+  const nlohmann::json& value = object.at(key);
+  if (!value.is_number_unsigned())
+    throw RuntimeError("'{}': '{}' is no count", kAccountingFile, key);
+  return value.get<uint64_t>();
+}
+
 }  // namespace
 
-std::string AccountingJson(const SessionTable& sessions, uint64_t stored_steps,
-                           uint64_t stored_records) {
+std::string AccountingJson(const SessionTable& sessions, const AccountTotals& totals) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (int i = 0; i < sessions.size(); ++i) {
     const SessionCounters& counters = sessions.at(i);
@@ -30,25 +37,43 @@ std::string AccountingJson(const SessionTable& sessions, uint64_t stored_steps,
                     {"duplicates", counters.duplicates}});
   }
   const nlohmann::ordered_json object = {{"schema", kSchema},
-                                         {"stored_steps", stored_steps},
-                                         {"stored_records", stored_records},
+                                         {"stored_steps", totals.stored_steps},
+                                         {"stored_records", totals.stored_records},
+                                         {"ring_replaced", totals.ring_replaced},
                                          {"sessions", list}};
   return object.dump(1) + "\n";
 }
 
-uint64_t StoredStepsBefore(const std::filesystem::path& run) {
+AccountBefore ReadAccountBefore(const std::filesystem::path& run) {
   const std::filesystem::path path = run / kAccountingFile;
+  AccountBefore before;
   std::error_code error;
-  if (!std::filesystem::exists(path, error)) return 0;
-  const auto object = nlohmann::json::parse(ReadFile(path), nullptr, /*allow_exceptions=*/false);
+  if (!std::filesystem::exists(path, error)) return before;
+  const auto object = ParseBoundedJson<nlohmann::json>(ReadFile(path));
   if (!object.is_object() || !object.contains("schema") || object["schema"] != kSchema) {
     throw RuntimeError("'{}': expected an object of schema '{}'", path.string(), kSchema);
   }
-  const auto steps = object.find("stored_steps");
-  if (steps == object.end() || !steps->is_number_unsigned()) {
-    throw RuntimeError("'{}': 'stored_steps' is missing or not a count", path.string());
+  try {
+    before.server.stored_steps = Count(object, "stored_steps");
+    before.ring_replaced = object.value("ring_replaced", false);
+    for (const auto& session : object.at("sessions")) {
+      const SessionCounters counters{.actor = session.at("actor").get<uint32_t>(),
+                                     .session = Count(session, "session"),
+                                     .highest = Count(session, "highest"),
+                                     .rejected = Count(session, "rejected"),
+                                     .after_gap = Count(session, "after_gap"),
+                                     .lost = Count(session, "lost"),
+                                     .duplicates = Count(session, "duplicates")};
+      if (counters.stored() != Count(session, "stored")) {
+        throw RuntimeError("'{}': the counts of actor {} do not add up", path.string(),
+                           counters.actor);
+      }
+      before.server.sessions.push_back(counters);
+    }
+  } catch (const nlohmann::json::exception& e) {
+    throw RuntimeError("'{}': {}", path.string(), e.what());
   }
-  return steps->get<uint64_t>();
+  return before;
 }
 
 void ReplaceFile(const std::filesystem::path& path, const std::string& content) {

@@ -11,14 +11,25 @@ namespace shoal::replay {
 
 inline constexpr char kAccountingFile[] = "accounting.json";
 
-// {schema, stored_steps, stored_records, sessions: [{actor, session, highest, stored, rejected,
-// after_gap, lost, duplicates}]} with highest = stored + rejected + after_gap + lost.
-// `stored_records` is the ring's own count of what was ever put in, so a check on the sessions'.
-std::string AccountingJson(const SessionTable& sessions, uint64_t stored_steps,
-                           uint64_t stored_records);
+struct AccountTotals {
+  uint64_t stored_steps = 0;
+  uint64_t stored_records = 0;  // the ring's own count of what was ever put in
+  // At some time in the run a ring was gone with what it held, and another one begun.
+  bool ring_replaced = false;
+};
 
-// The stored_steps that an earlier server of the run left; 0 when there was none. Throws Error.
-uint64_t StoredStepsBefore(const std::filesystem::path& run);
+// {schema, stored_steps, stored_records, ring_replaced, sessions: [{actor, session, highest,
+// stored, rejected, after_gap, lost, duplicates}]} with highest = stored + rejected + after_gap +
+// lost.
+std::string AccountingJson(const SessionTable& sessions, const AccountTotals& totals);
+
+struct AccountBefore {
+  FormerServer server;
+  bool ring_replaced = false;
+};
+
+// What an earlier server of the run left; zeros when there was none. Throws Error.
+AccountBefore ReadAccountBefore(const std::filesystem::path& run);
 
 // Replaces the file: readers see the old one or the new one. Not synced, so that a busy disk does
 // not hold up the caller; WriteFileAtomically (common/base/files.h) is for the last one. Throws

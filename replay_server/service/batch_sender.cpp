@@ -17,7 +17,7 @@ constexpr std::chrono::seconds kIdleWait{60};   // for a batch; then it looks ag
 
 }  // namespace
 
-BatchSender::BatchSender(uint64_t spec_hash, uint64_t batch_bytes, int buffers, ShardWriter* writer,
+BatchSender::BatchSender(uint64_t spec_hash, uint64_t batch_bytes, int buffers, PartWriter* writer,
                          std::function<void()> on_free)
     : spec_hash_(spec_hash),
       batch_bytes_(batch_bytes),
@@ -77,7 +77,7 @@ void BatchSender::Run() {
   try {
     while (const auto outgoing = TakeNext()) {
       const SteadyTime start = Now();
-      ++(SendShards(*outgoing) ? sent_ : given_up_);
+      ++(SendParts(*outgoing) ? sent_ : given_up_);
       sending_seconds_ = sending_seconds_ + SecondsSince(start);  // this thread alone writes it
       {
         const MutexLock lock(mutex_);
@@ -102,33 +102,33 @@ bool BatchSender::WaitForReader(const DrawnBatch& batch) {
   return true;
 }
 
-bool BatchSender::SendShards(const Outgoing& outgoing) {
+bool BatchSender::SendParts(const Outgoing& outgoing) {
   if (!WaitForReader(outgoing.batch)) return false;
   const SampleRequest& request = outgoing.batch.request;
-  BatchShard shard;
-  shard.spec_hash = spec_hash_;
-  shard.learner_session = request.learner_session;
-  shard.request = request.request;
-  shard.shards = static_cast<uint32_t>((batch_bytes_ + kShardBytes - 1) / kShardBytes);
-  shard.total_bytes = batch_bytes_;
-  shard.stored_records = outgoing.batch.stored_records;
-  shard.stored_steps = outgoing.batch.stored_steps;
-  for (shard.shard = 0; shard.shard < shard.shards; ++shard.shard) {
-    shard.offset = shard.shard * kShardBytes;
-    shard.payload = {outgoing.buffer + shard.offset,
-                     std::min(kShardBytes, batch_bytes_ - shard.offset)};
-    if (!SendShard(shard)) return false;
+  BatchPart part;
+  part.spec_hash = spec_hash_;
+  part.learner_session = request.learner_session;
+  part.request = request.request;
+  part.parts = static_cast<uint32_t>((batch_bytes_ + kPartBytes - 1) / kPartBytes);
+  part.total_bytes = batch_bytes_;
+  part.stored_records = outgoing.batch.stored_records;
+  part.stored_steps = outgoing.batch.stored_steps;
+  for (part.part = 0; part.part < part.parts; ++part.part) {
+    part.offset = part.part * kPartBytes;
+    part.payload = {outgoing.buffer + part.offset,
+                    std::min(kPartBytes, batch_bytes_ - part.offset)};
+    if (!SendPart(part)) return false;
   }
   return true;
 }
 
-bool BatchSender::SendShard(const BatchShard& shard) {
-  const SteadyTime deadline = Now() + kShardDeadline;
-  while (Wanted(shard.learner_session)) {
-    if (writer_.Write(shard)) return true;
+bool BatchSender::SendPart(const BatchPart& part) {
+  const SteadyTime deadline = Now() + kPartDeadline;
+  while (Wanted(part.learner_session)) {
+    if (writer_.Write(part)) return true;
     if (Now() > deadline) {
-      log::Warning("batch of request {} given up: shard {} of {} was not taken within {} s",
-                   shard.request, shard.shard, shard.shards, kShardDeadline.count());
+      log::Warning("batch of request {} given up: part {} of {} was not taken within {} s",
+                   part.request, part.part, part.parts, kPartDeadline.count());
       return false;
     }
     Pause();  // a writer that fails at once must not make this a busy loop

@@ -2,8 +2,8 @@
 // intake.
 //
 // Owns a few batch buffers. The service thread fills one and hands it over; it comes back when all
-// its shards are written or given up. A batch is given up when its learner session is replaced,
-// when no learner is there, or when a shard could not be written for kShardDeadline: the learner
+// its parts are written or given up. A batch is given up when its learner session is replaced,
+// when no learner is there, or when a part could not be written for kPartDeadline: the learner
 // asks again.
 #pragma once
 
@@ -24,15 +24,15 @@
 
 namespace shoal::replay {
 
-// Bytes of a batch in one shard: below 1 MB with its header.
-inline constexpr uint64_t kShardBytes = 960 * 1024;
+// Bytes of a batch in one part: below 1 MB with its header.
+inline constexpr uint64_t kPartBytes = 960 * 1024;
 
 // What the sender writes to: DDS, or a fake.
-class ShardWriter {
+class PartWriter {
  public:
-  virtual ~ShardWriter() = default;
+  virtual ~PartWriter() = default;
   // False when it was not sent within the writer's own deadline.
-  virtual bool Write(const BatchShard& shard) = 0;
+  virtual bool Write(const BatchPart& part) = 0;
   // A learner is there to read.
   virtual bool HasReader() = 0;
 };
@@ -40,10 +40,10 @@ class ShardWriter {
 class BatchSender {
  public:
   static constexpr std::chrono::seconds kReaderDeadline{2};
-  static constexpr std::chrono::seconds kShardDeadline{6};
+  static constexpr std::chrono::seconds kPartDeadline{6};
 
   // Borrows the writer. `on_free` is called on the sender's thread whenever a buffer is free again.
-  BatchSender(uint64_t spec_hash, uint64_t batch_bytes, int buffers, ShardWriter* writer,
+  BatchSender(uint64_t spec_hash, uint64_t batch_bytes, int buffers, PartWriter* writer,
               std::function<void()> on_free);
   // Gives up what is not sent.
   ~BatchSender();
@@ -77,13 +77,13 @@ class BatchSender {
   std::optional<Outgoing> TakeNext();
   // Between tries; ends early when stopping.
   void Pause();
-  bool SendShards(const Outgoing& outgoing);
-  bool SendShard(const BatchShard& shard);
+  bool SendParts(const Outgoing& outgoing);
+  bool SendPart(const BatchPart& part);
   bool WaitForReader(const DrawnBatch& batch);
   bool Wanted(uint64_t session) const { return !stopping_ && session == learner_session_; }
 
   const uint64_t spec_hash_, batch_bytes_;
-  ShardWriter& writer_;
+  PartWriter& writer_;
   const std::function<void()> on_free_;
   std::vector<std::unique_ptr<uint8_t[], FreeBytes>> memory_;
   Mutex mutex_;

@@ -14,7 +14,9 @@ class ProblemLog {
  public:
   static constexpr std::chrono::seconds kInterval{10};
 
-  explicit ProblemLog(uint64_t spec_hash) : spec_hash_(spec_hash) {}
+  // Borrows the schema.
+  ProblemLog(uint64_t spec_hash, const BatchSchema& schema)
+      : spec_hash_(spec_hash), schema_(schema) {}
 
   // Remembers the example that the next line will name.
   void Note(const TransitionChunk& chunk, const ChunkResult& result);
@@ -24,11 +26,14 @@ class ProblemLog {
 
  private:
   const uint64_t spec_hash_;
+  const BatchSchema& schema_;
   SteadyTime last_{};
   CoreCounters reported_;
   uint64_t reported_drops_ = 0;
   uint64_t other_spec_ = 0;
   uint32_t other_spec_actor_ = 0;
+  uint32_t future_actor_ = 0;
+  uint64_t future_session_ = 0;
   const char* fault_ = "";
   uint32_t fault_actor_ = 0;
   SampleRequest refused_request_;

@@ -16,6 +16,7 @@
 #include "common/config/sending_window.h"
 #include "common/config/session_number.h"
 #include "common/dds/bus.h"
+#include "common/dds/metrics_publisher.h"
 #include "common/dds/publisher.h"
 #include "common/dds/subscriber.h"
 #include "common/wire/control_state.h"
@@ -35,36 +36,33 @@ namespace {
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
+constexpr uint32_t kReplayNumber = 0;
 constexpr milliseconds kPoll{100};  // between looks at control and stop requests
 constexpr int kBatchBuffers = 2;    // one being filled, one being sent
 // Each word about credit goes to every actor, so that with many of them words are collected for a
 // moment: then what a transition costs does not grow with their number.
 constexpr milliseconds kCreditSpacing{20};
+constexpr milliseconds kProgressSpacing{200};
 constexpr seconds kCreditInterval{1};  // between repetitions of every credit
 constexpr seconds kFarewell{2};        // without a chunk, after the coordinator is gone
 constexpr seconds kFarewellLimit{20};
 
-class DdsShardWriter : public ShardWriter {
+class DdsPartWriter : public PartWriter {
  public:
-  explicit DdsShardWriter(dds::Bus& bus) : publisher_(bus) {}
-  bool Write(const BatchShard& shard) override { return publisher_.Write(shard); }
+  explicit DdsPartWriter(dds::Bus& bus) : publisher_(bus) {}
+  bool Write(const BatchPart& part) override { return publisher_.Write(part); }
   bool HasReader() override { return publisher_.Matched() > 0; }
 
  private:
-  dds::Publisher<BatchShard> publisher_;
+  dds::Publisher<BatchPart> publisher_;
 };
 
-// Steps that earlier servers of the run kept in memory; a file of the ring tells by itself.
-uint64_t StepsInMemoryThatIsGone(const Config& config, const std::filesystem::path& folder) {
-  if (config.replay.storage != "memory") return 0;
-  const uint64_t steps = StoredStepsBefore(folder);
-  if (steps > 0) {
-    log::Warning(
-        "replay.storage=memory: the {} env steps stored by earlier servers are gone; refilling to "
-        "{} sampleable transitions (replay.min_size) before training goes on",
-        steps, config.replay.min_size);
-  }
-  return steps;
+// How far beyond this host's clock that of an actor may be.
+constexpr std::chrono::minutes kClockMargin{10};
+
+uint64_t LatestSession() {
+  return static_cast<uint64_t>(
+      std::max<int64_t>(0, WallTimeNs() + std::chrono::nanoseconds(kClockMargin).count()));
 }
 
 // Members are in construction order; destruction, the reverse, ends the receive threads' callbacks
@@ -77,15 +75,17 @@ class ReplayService {
         run_(ReadRunConfig(folder)),
         bus_(dds::FindPlace(folder, run_.config.transport, reach), dds::Role::kReplay),
         metrics_publisher_(bus_),
-        core_(run_, folder, NextSession(folder, "replay-0", WallTimeNs()),
-              StepsInMemoryThatIsGone(run_.config, folder), [this] { ReportStarting(); }),
+        before_(ReadAccountBefore(folder)),
+        core_(run_, folder, NextSession(folder, "replay-0", WallTimeNs()), before_.server,
+              [this] { ReportStarting(); }),
         control_(Now()),
         inbox_(SpecHash(), ChunkBytes(), MaxChunks()),
-        problems_(SpecHash()),
+        problems_(SpecHash(), core_.batch_schema()),
         ages_(core_.ring().layout(), Settings().learner.request_credits),
         credit_publisher_(bus_),
-        shard_writer_(bus_),
-        sender_(SpecHash(), core_.batch_layout().total_bytes(), kBatchBuffers, &shard_writer_,
+        progress_publisher_(bus_),
+        part_writer_(bus_),
+        sender_(SpecHash(), core_.batch_schema().total_bytes(), kBatchBuffers, &part_writer_,
                 [this] { inbox_.Wake(); }),
         report_(core_, inbox_, sender_),
         control_subscriber_(bus_,
@@ -98,6 +98,14 @@ class ReplayService {
     log::Info("ring of {} records, {:.0f} MB, {}; {} records of the run stored, {} sampleable",
               ring.capacity(), static_cast<double>(ring.bytes()) / 1e6, Settings().replay.storage,
               ring.last_id(), core_.index().sampleable());
+    if (core_.ring_replaced()) {
+      log::Warning(
+          "the {} env steps stored by earlier servers are gone ({}); refilling to {} sampleable "
+          "transitions (replay.min_size) before training goes on",
+          before_.server.stored_steps,
+          Settings().replay.storage == "memory" ? "replay.storage=memory" : "the file is new",
+          Settings().replay.min_size);
+    }
     last_turn_ = Now();
     int exit_code = 0;
     while (!StopRequested() && control_.state() != RunState::kStopping) {
@@ -168,6 +176,7 @@ class ReplayService {
       Publish(core_.TakeCredits(/*changed_only=*/false));
       inbox_.SetMaxChunks(MaxChunks());
     }
+    TellProgress(now);
     ApplySettings();
     if (report_.Due(now)) Report(control_.state() == RunState::kDraining ? "draining" : "running");
   }
@@ -177,6 +186,19 @@ class ReplayService {
     if (credits_wait_) return;
     last_told_ = now;
     Publish(core_.TakeCredits(/*changed_only=*/true));
+  }
+
+  // What the coordinator counts the run's env steps by.
+  void TellProgress(SteadyTime now, bool at_once = false) {
+    const ReplayProgress progress{.replay = kReplayNumber,
+                                  .session = core_.replay_session(),
+                                  .stored_steps = core_.ring().stored_steps(),
+                                  .stored_records = core_.ring().last_id()};
+    if (progress_told_ && progress.stored_records == told_records_ && !at_once) return;
+    if (progress_told_ && now - *progress_told_ < kProgressSpacing && !at_once) return;
+    if (!progress_publisher_.Write(progress)) return;
+    progress_told_ = now;
+    told_records_ = progress.stored_records;
   }
 
   void ApplySettings() {
@@ -199,13 +221,15 @@ class ReplayService {
   void Take(ServiceInbox::Arrivals arrivals) {
     const ScopedSeconds timed(seconds_.inserting);
     for (std::unique_ptr<PooledChunk>& pooled : arrivals.chunks) {
-      const ChunkResult result = core_.TakeChunk(pooled->chunk);
+      const ChunkResult result = core_.TakeChunk(pooled->chunk, LatestSession());
       problems_.Note(pooled->chunk, result);
       report_.NoteQueueAge(SecondsSince(pooled->arrived));
       if (result.fate == ChunkFate::kDealtWith) ages_.OnChunk(pooled->chunk, WallTimeNs());
-      if (result.fate == ChunkFate::kWrongSpec) Publish({core_.Refusal(pooled->chunk)});
+      if (result.fate == ChunkFate::kWrongSpec || result.fate == ChunkFate::kSuperseded) {
+        Publish({core_.Refusal(pooled->chunk)});
+      }
+      if (pooled->chunk.count > 0) last_chunk_ = Now();
       inbox_.Release(std::move(pooled));
-      last_chunk_ = Now();
     }
     for (const SampleRequest& request : arrivals.requests) {
       const RequestFate fate = core_.TakeRequest(request);
@@ -246,7 +270,10 @@ class ReplayService {
   }
 
   std::string AccountNow() const {
-    return AccountingJson(core_.sessions(), core_.ring().stored_steps(), core_.ring().last_id());
+    return AccountingJson(core_.sessions(),
+                          {.stored_steps = core_.ring().stored_steps(),
+                           .stored_records = core_.ring().last_id(),
+                           .ring_replaced = before_.ring_replaced || core_.ring_replaced()});
   }
 
   // The actors notice the coordinator's end too, and send what they have: it is stored.
@@ -262,6 +289,7 @@ class ReplayService {
   void Finish() {
     Take(inbox_.Wait(Now()));
     Publish(core_.TakeCredits(/*changed_only=*/false));
+    TellProgress(Now(), /*at_once=*/true);
     metrics_publisher_.Write(report_.Make("stopping", seconds_, &ages_));
     WriteFileAtomically(folder_ / kAccountingFile, AccountNow());
     metrics_publisher_.WaitForAcks(milliseconds(500));
@@ -274,15 +302,17 @@ class ReplayService {
   const RunMembership member_;
   const RunConfig run_;
   dds::Bus bus_;
-  dds::Publisher<MetricsMessage> metrics_publisher_;
+  dds::MetricsPublisher<ReplayMetrics> metrics_publisher_;
   MetricsReport starting_report_{"replay", 0};
+  const AccountBefore before_;
   ReplayCore core_;
   ControlState control_;
   ServiceInbox inbox_;
   ProblemLog problems_;
   FlowAges ages_;
   dds::Publisher<CreditsMessage> credit_publisher_;
-  DdsShardWriter shard_writer_;
+  dds::Publisher<ReplayProgress> progress_publisher_;
+  DdsPartWriter part_writer_;
   BatchSender sender_;
   ServiceReport report_;
   dds::Subscriber<ControlMessage> control_subscriber_;
@@ -292,6 +322,8 @@ class ReplayService {
   ServiceSeconds seconds_;
   SteadyTime last_turn_{}, last_credits_{}, last_chunk_{};
   SteadyTime last_told_{};
+  std::optional<SteadyTime> progress_told_;
+  uint64_t told_records_ = 0;
   bool credits_wait_ = false;  // words about credit are being collected
   bool answered_ = false;      // a batch in the last turn: there may be another one to draw
 };

@@ -7,13 +7,15 @@ namespace shoal::replay {
 const MetricsMessage& ServiceReport::Make(const std::string& state, const ServiceSeconds& seconds,
                                           FlowAges* ages) {
   const CoreCounters& counters = core_.counters();
-  const uint64_t batch = static_cast<uint64_t>(core_.batch_layout().batch());
+  const uint64_t batch = static_cast<uint64_t>(core_.batch_schema().batch());
   report_.Begin(state);
   Add("stored_records", core_.ring().last_id());
   Add("stored_steps", core_.ring().stored_steps());
   report_.AddRate("stored_records_per_second", static_cast<double>(counters.records));
   Add("sampleable", core_.index().sampleable());
   Add("sampled", counters.batches * batch);
+  Add("relabelled", counters.relabelled);
+  Add("zero_rewards", counters.zero_rewards);
   report_.AddRate("samples_per_second", static_cast<double>(counters.batches * batch));
   report_.Add("limiter_samples_per_insert", core_.limiter().samples_per_insert());
   report_.Add("limiter_cursor", core_.limiter().cursor());
@@ -32,14 +34,15 @@ const MetricsMessage& ServiceReport::Make(const std::string& state, const Servic
 
 void ServiceReport::AddTroubles() {
   const CoreCounters& counters = core_.counters();
-  Add("redraws", core_.sampler().redraws());
+  Add("redraws", core_.selector().redraws());
   Add("duplicates", counters.duplicates);
   Add("rejected", counters.rejected);
   Add("after_gap", counters.after_gap);
   Add("lost", counters.lost);
   Add("cut_episodes", core_.index().cut_episodes());
   Add("refused_chunks", counters.wrong_spec_chunks + counters.malformed_chunks +
-                            counters.superseded_chunks + counters.table_full_chunks);
+                            counters.superseded_chunks + counters.table_full_chunks +
+                            counters.future_chunks);
   Add("ahead_chunks", counters.ahead_chunks);
   Add("refused_requests", counters.refused_requests + inbox_.DroppedRequests());
   Add("repeated_batches", counters.repeated_batches);

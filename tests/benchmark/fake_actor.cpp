@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <thread>
 
-#include "actor/training_actor.h"
+#include "actor/loop/training_actor.h"
 #include "common/base/clock.h"
 #include "common/base/error.h"
 #include "common/base/log.h"

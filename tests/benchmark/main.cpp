@@ -7,7 +7,8 @@
 #include "common/base/error.h"
 #include "common/base/main_guard.h"
 #include "common/nn/precision.h"
-#include "launch/machine.h"
+#include "launch/record/machine.h"
+#include "learner/openmp_environment.h"
 #include "tests/benchmark/paired_timing.h"
 
 namespace {
@@ -23,6 +24,8 @@ int Run(int argc, char** argv) {
   app.add_option("--only", only, "rows whose stage contains this text");
   CLI11_PARSE(app, argc, argv);
   shoal::nn::SetThreads(threads);
+
+  shoal::learner::EnsurePassiveOpenMp(threads, argv);  // as shoal-learner does: no spinning threads
 
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (const auto& pairings : {shoal::bench::ReplayPairings(), shoal::bench::NetworkPairings(),

@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "actor/made_page.h"
+#include "actor/sending/made_page.h"
 #include "common/base/clock.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
@@ -19,8 +19,8 @@
 #include "common/dds/bus.h"
 #include "common/dds/publisher.h"
 #include "common/dds/subscriber.h"
-#include "launch/accounting.h"
-#include "launch/child_process.h"
+#include "launch/processes/child_process.h"
+#include "launch/record/accounting.h"
 
 namespace shoal::bench {
 namespace {
@@ -76,7 +76,7 @@ class Bystander {
       : bus_(std::move(bus)),
         control_(*bus_),
         credits_(*bus_, [this](const CreditsMessage& message) { OnCredits(message); }),
-        metrics_(*bus_, [this](const MetricsMessage& message) { OnMetrics(message); }) {}
+        metrics_(*bus_, [this](const ReplayMetrics& message) { OnMetrics(message); }) {}
 
   // Looks and sends heartbeats until `done`. False at the deadline.
   template <class Done>
@@ -117,8 +117,7 @@ class Bystander {
       if (credit.stored > 0) answered_.insert(credit.actor);
     }
   }
-  void OnMetrics(const MetricsMessage& message) {
-    if (message.role != "replay") return;
+  void OnMetrics(const ReplayMetrics& message) {
     const std::lock_guard lock(mutex_);
     for (size_t i = 0; i < message.names.size(); ++i) {
       if (message.names[i] == "stored_records") stored_ = message.values[i];
@@ -133,7 +132,7 @@ class Bystander {
   std::unique_ptr<dds::Bus> bus_;
   dds::Publisher<ControlMessage> control_;
   dds::Subscriber<CreditsMessage> credits_;
-  dds::Subscriber<MetricsMessage> metrics_;
+  dds::Subscriber<ReplayMetrics> metrics_;
 };
 
 launch::ProcessSpec Spec(const ManyActorsOptions& options, const std::string& program,

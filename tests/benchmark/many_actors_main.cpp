@@ -7,8 +7,8 @@
 #include "common/base/build_info.h"
 #include "common/base/error.h"
 #include "common/base/main_guard.h"
-#include "launch/machine.h"
-#include "launch/process_plan.h"
+#include "launch/processes/process_plan.h"
+#include "launch/record/machine.h"
 #include "tests/benchmark/many_actors.h"
 
 namespace {

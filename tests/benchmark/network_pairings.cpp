@@ -4,7 +4,7 @@
 
 #include "common/base/random.h"
 #include "common/nn/policy.h"
-#include "learner/sac_agent.h"
+#include "learner/agent/algorithms.h"
 #include "tests/benchmark/paired_timing.h"
 
 namespace shoal::bench {
@@ -30,12 +30,13 @@ struct Learners {
 
   Config config;
   ObservationSpec spec = PixelSpec();
-  BatchLayout layout{spec, config.learner.batch};
+  BatchSchema schema{spec, {.batch = config.learner.batch}};
   std::unique_ptr<uint8_t, Free> memory{
-      static_cast<uint8_t*>(std::aligned_alloc(64, layout.total_bytes()))};
-  BatchView batch = layout.View(memory.get());
-  learner::SacAgent automatic{config, spec, nn::ChoosePrecision("auto")};
-  learner::SacAgent f32{config, spec, nn::Precision::kF32};
+      static_cast<uint8_t*>(std::aligned_alloc(64, schema.total_bytes()))};
+  BatchView batch = schema.View(memory.get());
+  std::unique_ptr<learner::Agent> automatic =
+      learner::MakeAgent(config, spec, nn::ChoosePrecision("auto", /*pixels=*/true));
+  std::unique_ptr<learner::Agent> f32 = learner::MakeAgent(config, spec, nn::Precision::kF32);
 
   Learners() {
     Random random(1);
@@ -55,10 +56,9 @@ struct Learners {
 
 struct Policies {
   ObservationSpec spec = PixelSpec();
-  nn::Policy together{NetworkConfig(), spec, nn::ChoosePrecision("auto"), kActors};
-  nn::Policy alone{NetworkConfig(), spec, nn::ChoosePrecision("auto"), 1};
+  nn::Policy together{NetworkConfig(), spec, nn::ChoosePrecision("auto", /*pixels=*/true), kActors};
+  nn::Policy alone{NetworkConfig(), spec, nn::ChoosePrecision("auto", /*pixels=*/true), 1};
   std::vector<uint8_t> frames = std::vector<uint8_t>(size_t(kActors) * spec.FrameBytes(), 100);
-  std::vector<float> mean = std::vector<float>(size_t(kActors) * spec.action_size), log_std = mean;
 };
 
 }  // namespace
@@ -66,28 +66,25 @@ struct Policies {
 std::vector<Pairing> NetworkPairings() {
   const auto learners = std::make_shared<Learners>();
   const auto policies = std::make_shared<Policies>();
-  return {{.stage = "SAC update, batch 128 of (6, 84, 84), precision auto",
-           .unit = "updates/s",
-           .against = "precision f32",
-           .ours = [learners] { learners->automatic.Update(learners->batch); },
-           .other = [learners] { learners->f32.Update(learners->batch); }},
-          {.stage = "policy for 4 environments at once",
-           .unit = "actions/s",
-           .against = "one by one",
-           .units_per_call = kActors,
-           .ours =
-               [policies] {
-                 policies->together.Forward(kActors, policies->frames.data(), nullptr,
-                                            policies->mean.data(), policies->log_std.data());
-               },
-           .other =
-               [policies] {
-                 for (int e = 0; e < kActors; ++e) {
-                   policies->alone.Forward(
-                       1, policies->frames.data() + size_t(e) * policies->spec.FrameBytes(),
-                       nullptr, policies->mean.data(), policies->log_std.data());
-                 }
-               }}};
+  return {
+      {.stage = "SAC update, batch 128 of (6, 84, 84), precision auto",
+       .unit = "updates/s",
+       .against = "precision f32",
+       .ours = [learners] { learners->automatic->Update(learners->batch); },
+       .other = [learners] { learners->f32->Update(learners->batch); }},
+      {.stage = "policy for 4 environments at once",
+       .unit = "actions/s",
+       .against = "one by one",
+       .units_per_call = kActors,
+       .ours =
+           [policies] { policies->together.Forward(kActors, policies->frames.data(), nullptr); },
+       .other =
+           [policies] {
+             for (int e = 0; e < kActors; ++e) {
+               policies->alone.Forward(
+                   1, policies->frames.data() + size_t(e) * policies->spec.FrameBytes(), nullptr);
+             }
+           }}};
 }
 
 }  // namespace shoal::bench

@@ -7,7 +7,7 @@
 #include "common/base/check.h"
 #include "common/credentials/credentials.h"
 #include "common/dds/role_rights.h"
-#include "launch/scratch_folder.h"
+#include "launch/processes/scratch_folder.h"
 #include "tests/benchmark/paired_timing.h"
 #include "tests/common/dds/peer_process.h"
 

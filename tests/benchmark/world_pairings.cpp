@@ -21,7 +21,7 @@ class Stepper {
     if (pixels) render = worlds::MakeRenderContext(config.observation);
     environment_ = worlds::MakeEnvironment(config, render);
     frame_.resize(size_t(environment_->spec().FrameBytes()));
-    vector_.resize(size_t(environment_->spec().VectorSize()));
+    vector_.resize(size_t(environment_->spec().RecordedVectorSize()));
     action_ = {0.3f, -0.2f, 0.1f};
     action_.resize(size_t(environment_->spec().action_size));
   }

@@ -2,7 +2,7 @@
 // sorted out by those who get it. First byte: which message; the rest is serialised CDR.
 #include <cstring>
 
-#include "actor/weights_inbox.h"
+#include "actor/acting/weights_inbox.h"
 #include "common/base/check.h"
 #include "common/dds/bulk_cdr.h"
 #include "learner/batch_assembler.h"
@@ -52,17 +52,17 @@ void TakeChunk(std::span<const uint8_t> cdr) {
   CHECK(counters.records == core.ring().last_id());
 }
 
-void TakeShard(std::span<const uint8_t> cdr) {
-  BatchShard shard;
-  if (!dds::ParseCdr(cdr, &shard)) return;
-  CheckPayloadInside(cdr, shard);
-  learner::BatchAssembler assembler(shard.spec_hash, shard.learner_session, 64, 2);
-  CHECK(assembler.Expect(shard.request == 0 ? 1 : shard.request));
-  for (int i = 0; i < 2; ++i) assembler.Add(shard);
+void TakePart(std::span<const uint8_t> cdr) {
+  BatchPart part;
+  if (!dds::ParseCdr(cdr, &part)) return;
+  CheckPayloadInside(cdr, part);
+  learner::BatchAssembler assembler(part.spec_hash, part.learner_session, 64, 2);
+  CHECK(assembler.Expect(part.request == 0 ? 1 : part.request));
+  for (int i = 0; i < 2; ++i) assembler.Add(part);
 }
 
 void TakeWeights(std::span<const uint8_t> cdr) {
-  WeightsMessage weights;
+  WeightsPart weights;
   if (!dds::ParseCdr(cdr, &weights)) return;
   CheckPayloadInside(cdr, weights);
   actor::WeightsInbox inbox(weights.spec_hash);
@@ -77,7 +77,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (size == 0) return 0;
   shoal::ReceiveBuffer buffer(shoal::fuzz::Text(data + 1, size - 1));
   if (data[0] % 3 == 0) shoal::TakeChunk(buffer.bytes());
-  if (data[0] % 3 == 1) shoal::TakeShard(buffer.bytes());
+  if (data[0] % 3 == 1) shoal::TakePart(buffer.bytes());
   if (data[0] % 3 == 2) shoal::TakeWeights(buffer.bytes());
   return 0;
 }

@@ -3,20 +3,21 @@
 // serialised CDR.
 #include <nlohmann/json.hpp>
 
-#include "actor/chunk_window.h"
-#include "actor/credit_inbox.h"
+#include "actor/sending/chunk_window.h"
+#include "actor/sending/credit_inbox.h"
 #include "common/base/check.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/dds/message_cdr.h"
 #include "common/wire/control_state.h"
-#include "launch/bottleneck.h"
-#include "launch/command_handler.h"
-#include "launch/evaluations.h"
-#include "launch/metrics_log.h"
-#include "launch/prometheus_families.h"
-#include "launch/run_figures.h"
-#include "launch/top_table.h"
+#include "launch/record/evaluations.h"
+#include "launch/record/metrics_log.h"
+#include "launch/run/command_handler.h"
+#include "launch/run/run_progress.h"
+#include "launch/watch/bottleneck.h"
+#include "launch/watch/prometheus_families.h"
+#include "launch/watch/run_figures.h"
+#include "launch/watch/top_table.h"
 #include "replay_server/core/replay_core.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/replay_server/record_script.h"
@@ -56,6 +57,7 @@ void Use(const SampleRequest& message) {
   core.TakeRequest(message);
   SampleRequest ours = message;
   ours.spec_hash = run.spec.Hash();
+  ours.schema_hash = core.batch_schema().Hash();
   core.TakeRequest(ours);
 }
 
@@ -75,6 +77,18 @@ void Use(const MetricsMessage& message) {
   const std::string line = ReadFile(file);
   CHECK(line.ends_with('\n'));
   CHECK(nlohmann::json::parse(line).at("role").is_string());
+}
+
+void Use(const ReplayProgress& message) {
+  launch::RunProgress progress;
+  progress.OnReplay(message);
+  CHECK(progress.stored_steps() == message.stored_steps);
+}
+
+void Use(const LearnerProgress& message) {
+  launch::RunProgress progress;
+  progress.OnLearner(message);
+  CHECK(progress.updates() == message.updates);
 }
 
 void Use(const ControlMessage& message) {
@@ -128,7 +142,8 @@ void Run(const std::string& body) {
 
 constexpr void (*kMessages[])(const std::string&) = {
     Run<CreditsMessage>, Run<SampleRequest>,  Run<MetricsMessage>, Run<ControlMessage>,
-    Run<EvalMessage>,    Run<RunViewMessage>, Run<CommandMessage>, Run<ReplyMessage>};
+    Run<EvalMessage>,    Run<RunViewMessage>, Run<CommandMessage>, Run<ReplyMessage>,
+    Run<ReplayProgress>, Run<LearnerProgress>};
 
 }  // namespace
 }  // namespace shoal

@@ -62,13 +62,14 @@ std::string FileWithFittingChecks(const std::string& bytes, const RunConfig& run
 void Use(const RunConfig& run) {
   ReplayCore core(run, fuzz::Scratch(), 9);
   const uint64_t before = core.ring().last_id();
-  std::vector<uint64_t> batch(core.batch_layout().total_bytes() / 8 + 16);
+  std::vector<uint64_t> batch(core.batch_schema().total_bytes() / 8 + 16);
   uint8_t* aligned = reinterpret_cast<uint8_t*>(batch.data());
   aligned += (64 - reinterpret_cast<uintptr_t>(aligned) % 64) % 64;
   core.TakeRequest({.spec_hash = run.spec.Hash(),
                     .learner_session = 1,
                     .request = 1,
-                    .batch = static_cast<uint32_t>(run.config.learner.batch)});
+                    .batch = static_cast<uint32_t>(run.config.learner.batch),
+                    .schema_hash = core.batch_schema().Hash()});
   core.TryAnswer(aligned);
   RecordScript script(run.spec, 7, 3);
   for (uint32_t i = 0; i < 80; i += 4) core.TakeChunk(script.Chunk(i + 1, 4));

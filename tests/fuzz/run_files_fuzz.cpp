@@ -2,13 +2,13 @@
 // byte: which one.
 #include <nlohmann/json.hpp>
 
-#include "actor/made_page.h"
+#include "actor/sending/made_page.h"
 #include "common/base/check.h"
 #include "common/base/error.h"
 #include "common/config/run_files.h"
 #include "common/config/session_number.h"
-#include "launch/accounting.h"
-#include "launch/evaluations.h"
+#include "launch/record/accounting.h"
+#include "launch/record/evaluations.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace shoal {

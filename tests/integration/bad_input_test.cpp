@@ -43,6 +43,25 @@ INSTANTIATE_TEST_SUITE_P(
                  "observation.cameras=[\"moon\"]"},
                 2,
                 {"moon", "front"}},
+        Mistake{"EncoderThatDoesNotExist",
+                TrainWith("network.encoder=resnet"),
+                2,
+                {"network.encoder", "resnet", "compact | drq | mrq | nature"}},
+        Mistake{"EncoderThatDoesNotFitTheImages",
+                {"shoal", "train", "--preset", "fetch-reach-drq", "--dry-run", "--set",
+                 "network.encoder=nature", "--set", "observation.height=32"},
+                2,
+                {"network.encoder = nature", "32x84", "36x36"}},
+        Mistake{"KeyOfAnotherEncoder",
+                {"shoal", "train", "--preset", "fetch-reach-drq", "--dry-run", "--set",
+                 "network.encoder=drq", "--set", "network.pool=2"},
+                2,
+                {"network.pool", "compact", "drq"}},
+        Mistake{"LayersTooLargeToBeCounted",
+                {"shoal", "train", "--preset", "fetch-reach-state", "--dry-run", "--set",
+                 "network.hidden=[65536]", "--set", "learner.batch=65536"},
+                2,
+                {"network.hidden", "learner.batch = 65536", "2147483647"}},
         Mistake{"UnknownPreset",
                 {"shoal", "train", "--preset", "nope", "--dry-run"},
                 2,
@@ -132,6 +151,20 @@ INSTANTIATE_TEST_SUITE_P(
                 {"127.0.0.1:32160", "did not answer"}},
         Mistake{"NoInterface", TrainWith("transport.interface=\"eth77\""), 1, {"eth77"}}),
     [](const auto& test) { return test.param.name; });
+
+// As folders are that were made before the evaluation actor had a key of its own.
+TEST(BadCredentials, AMissingKeyOfAnyProcessIsNamedBeforeOneIsStarted) {
+  const TrainingRun run;
+  const std::string secure = (run.parent() / "secure").string();
+  const auto deadline = std::chrono::seconds(30);
+  ASSERT_EQ(ExitCode(RunProgram({"shoal", "secure", "init", secure}, deadline)), 0);
+  std::filesystem::remove(secure + "/eval.key");
+  const ProgramResult result = run.Train({}, {"--secure", secure}, deadline);
+  EXPECT_EQ(ExitCode(result), 1) << result.out << result.err;
+  EXPECT_EQ(std::count(result.err.begin(), result.err.end(), '\n'), 1) << result.err;
+  EXPECT_NE(result.err.find("eval.key"), std::string::npos) << result.err;
+  EXPECT_FALSE(std::filesystem::exists(run.path()));
+}
 
 }  // namespace
 }  // namespace shoal

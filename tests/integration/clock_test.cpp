@@ -25,7 +25,8 @@ TEST(Clock, ARunGoesOnWhileItIsSetBackAndForth) {
   set_clock(0);
   RunningTraining training(
       run, run.Command({{"env_steps", "1000000"}, {"actors", "1"}, {"eval.final_episodes", "0"}}),
-      {{"LD_PRELOAD", SHOAL_SKEWED_CLOCK}, {"SHOAL_CLOCK_SKEW", skew.string()}});
+      {{"LD_PRELOAD", ProgramPath("libshoal_skewed_clock.so")},
+       {"SHOAL_CLOCK_SKEW", skew.string()}});
   ASSERT_TRUE(training.WaitForSteps(1500)) << training.Output();
   const double before = training.reports().Last("replay").at("t");
   for (const int offset : {-3600, 7200}) {

@@ -67,6 +67,61 @@ TEST(CoordinatorKill, ProcessesLeaveInOrderAndResumeGoesOn) {
             std::string::npos);
 }
 
+TEST(CoordinatorKill, AStopThatWaitsSaysSo) {
+  const TrainingRun run;
+  RunningTraining training(run, run.Command({{"env_steps", "1000000"}, {"actors", "1"}}));
+  // The run cannot end meanwhile: its learner does not leave.
+  const pid_t learner = training.reports().Last("learner").at("pid").get<pid_t>();
+  ASSERT_EQ(kill(learner, SIGSTOP), 0);
+  launch::ProcessSpec spec;
+  spec.command = {ProgramPath("shoal"), "stop", "--run", run.path().string()};
+  spec.output = run.parent() / "stop";
+  launch::ChildProcess stop(spec);
+  const SteadyTime start = Now();
+  while (ReadFile(spec.output).find("stopping") == std::string::npos) {
+    ASSERT_LT(SecondsSince(start), 30);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  ASSERT_EQ(kill(training.pid(), SIGKILL), 0);
+  EXPECT_EQ(training.End(seconds(5)), -1);
+  std::optional<launch::ExitStatus> status;
+  while (!(status = stop.Poll()) && SecondsSince(start) < 60) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  kill(learner, SIGCONT);
+  ASSERT_TRUE(status.has_value()) << "still waiting";
+  EXPECT_EQ(status->code, 1);
+  EXPECT_NE(ReadFile(spec.output).find("silent for 15 s"), std::string::npos);
+}
+
+TEST(CoordinatorKill, AnOverwriteAtOnceWaitsForTheFormerProcesses) {
+  const TrainingRun run;
+  {
+    RunningTraining training(run, run.Command({{"env_steps", "1000000"}, {"actors", "1"}}));
+    ASSERT_TRUE(training.WaitForSteps(2000)) << training.Output();
+    ASSERT_EQ(kill(training.pid(), SIGKILL), 0);
+    EXPECT_EQ(training.End(seconds(5)), -1);
+  }
+  const ProgramResult fresh =
+      run.Train({{"env_steps", "1100"}, {"eval.final_episodes", "0"}}, {"--overwrite"});
+  ASSERT_EQ(ExitCode(fresh), 0) << fresh.out << fresh.err;
+  EXPECT_NE(fresh.out.find("waiting up to 60 s"), std::string::npos) << fresh.out;
+  EXPECT_LT(run.Json("meta.json").at("accounting").at("stored").get<int64_t>(), 2000)
+      << "of the new run, not of the old one";
+}
+
+TEST(CoordinatorKill, ARunThatIsInterruptedInsteadIsNotEvaluated) {
+  const TrainingRun run;
+  RunningTraining training(run, run.Command({{"env_steps", "1000000"}, {"actors", "1"}}));
+  ASSERT_TRUE(training.WaitForSteps(2000)) << training.Output();
+  training.Interrupt();
+  ASSERT_EQ(training.End(seconds(60)), 0) << training.Output();
+  EXPECT_FALSE(std::filesystem::exists(run.path() / "eval/final.json"));
+  EXPECT_NE(training.Output().find("go on with shoal train --resume"), std::string::npos)
+      << training.Output();
+  EXPECT_EQ(run.Json("meta.json").at("exit"), "interrupted");
+}
+
 TEST(CoordinatorKill, AResumeAtOnceWaitsForTheFormerProcesses) {
   const TrainingRun run;
   {

@@ -36,9 +36,11 @@ TEST(Describe, SaysWhatEachKindOfObservationConsistsOf) {
         EXPECT_EQ(spec.at("stack"), 1 + number % 4);
         EXPECT_EQ(spec.at("cameras"), (std::vector<std::string>{"close", "top"}));
         std::vector<std::string> blocks;
-        for (const auto& block : spec.at("blocks")) blocks.push_back(block.at("name"));
+        for (const auto& block : spec.at("blocks")) {
+          if (block.at("observed")) blocks.push_back(block.at("name"));
+        }
         std::vector<std::string> expected;
-        if (state) expected.push_back("observation");
+        if (state) expected = {"grip", "fingers", "grip_velocity", "finger_velocities"};
         if (std::string(mode) == "both") expected.push_back("achieved_goal");
         if (std::string(mode) != "none") expected.push_back("desired_goal");
         EXPECT_EQ(blocks, expected);

@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 
-#include "launch/supervisor.h"
+#include "launch/processes/supervisor.h"
 #include "tests/support/running_training.h"
 
 namespace shoal {

@@ -8,7 +8,9 @@
 #include <fstream>
 #include <set>
 
-#include "common/wire/metric_names.h"
+#include "launch/watch/run_metrics.h"
+#include "learner/agent/frame_figures.h"
+#include "tests/support/paths.h"
 #include "tests/support/run_views.h"
 #include "tests/support/running_training.h"
 #include "tests/support/terminal_program.h"
@@ -192,7 +194,7 @@ TEST(Operate, ADetachedRunIsAttachedToAndStopped) {
   // Its Ctrl-C detaches only.
   launch::ProcessSpec attach;
   attach.role = "attach";
-  attach.command = {std::string(SHOAL_BIN) + "/shoal", "attach", "--run", run.path().string()};
+  attach.command = {ProgramPath("shoal"), "attach", "--run", run.path().string()};
   attach.output = run.parent() / "attached";
   const auto shows = [&] { return ReadFile(attach.output).find("env steps") != std::string::npos; };
   const auto status = launch::RunToEnd(attach, seconds(60), shows);
@@ -219,16 +221,18 @@ TEST(Operate, EveryMetricIsInTheTableOfMetrics) {
     for (const auto& [name, value] : report.items()) {
       if (std::set<std::string>{"t", "role", "id", "host", "pid", "state"}.contains(name)) continue;
       seen.emplace(role, name);
-      EXPECT_NE(FindMetric(role, name), nullptr) << role << ' ' << name;
+      EXPECT_NE(FindMetric(launch::RunMetrics(), role, name), nullptr) << role << ' ' << name;
     }
   }
   // And the table names nothing that no process reports.
-  for (const Metric& metric : Metrics()) {
+  for (const Metric& metric : launch::RunMetrics()) {
     const std::string name(metric.name);
     const std::string reported = metric.kind == MetricKind::kStage       ? "share_" + name
                                  : metric.kind == MetricKind::kQuantiles ? name + "_p99"
+                                 : metric.kind == MetricKind::kPerTopic  ? name + "_control"
                                                                          : name;
     if (name == "exit_code") continue;  // in the last view only
+    if (name == learner::kFrameSpread.name || name == learner::kFrozenCameras.name) continue;
     const std::string role = metric.role == "all" ? "replay" : std::string(metric.role);
     EXPECT_TRUE(seen.contains({role, reported})) << role << ' ' << reported;
   }

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "common/base/clock.h"
+#include "tests/support/paths.h"
 #include "tests/support/training_run.h"
 
 namespace shoal {
@@ -109,8 +110,8 @@ TEST_F(SlurmTest, TheBatchScriptTrainsWithActorsThatSrunStarts) {
                                    "--output=" + output.string(),
                                    "--export=ALL,SHOAL_ADDRESS=127.0.0.1,SHOAL_RUNS_SHARED=false,"
                                    "SHOAL_ACTORS_PER_NODE=2,SHOAL_BIN=" +
-                                       std::string(SHOAL_BIN),
-                                   std::string(SHOAL_SOURCE) + "/launch/slurm/train.sbatch"};
+                                       ProgramPath(""),
+                                   SourcePath("launch/slurm/train.sbatch")};
   command.insert(command.end(), train.begin() + 2, train.end());  // without "shoal train"
   ASSERT_TRUE(Run(command, seconds(150))) << Said() << Log("job") << Log("slurmd.log");
 

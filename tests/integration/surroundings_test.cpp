@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "tests/support/isolation.h"
+#include "tests/support/paths.h"
 #include "tests/support/running_training.h"
 
 namespace shoal {
@@ -16,6 +17,8 @@ namespace fs = std::filesystem;
 using std::chrono::seconds;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+
+const std::string kPresets = SourcePath("launch/presets");
 
 #define SHOAL_NEEDS(expression) \
   if (const std::string& no = (expression); !no.empty()) GTEST_SKIP() << no
@@ -85,9 +88,9 @@ ProgramResult RunAsCommonUser(const fs::path& folder, std::vector<std::string> w
   fs::permissions(folder, fs::perms::all);
   fs::create_directory(folder / "bin");
   for (const char* program : {"shoal", "shoal-actor", "shoal-replay", "shoal-learner"}) {
-    fs::copy_file(fs::path(SHOAL_BIN) / program, folder / "bin" / program);
+    fs::copy_file(ProgramPath(program), folder / "bin" / program);
   }
-  fs::copy(SHOAL_PRESETS, folder / "bin" / "presets");
+  fs::copy(kPresets, folder / "bin" / "presets");
   words.insert(words.begin(), (folder / "bin" / "shoal").string());
   if (geteuid() == 0) {
     words.insert(words.begin(),
@@ -110,11 +113,11 @@ TEST(Surroundings, AFolderThatMayNotBeWrittenIsNamed) {
 
 TEST(Surroundings, WithoutAnyPresetTheFoldersAreNamed) {
   SHOAL_NEEDS(OwnMounts());
-  const SmallDisk disk(SHOAL_PRESETS, "1m");
+  const SmallDisk disk(kPresets, "1m");
   SHOAL_NEEDS(disk.why_not());
   ExpectOneErrorLine(RunProgram({"shoal", "train", "--preset", "fetch-reach-state"}, seconds(60)),
                      AllOf(HasSubstr("found no presets"), HasSubstr("bin/presets (No such file"),
-                           HasSubstr(std::string(SHOAL_PRESETS) + " (holds none)")));
+                           HasSubstr(kPresets + " (holds none)")));
 }
 
 TEST(Surroundings, AReadOnlyDiskIsNamed) {

@@ -29,6 +29,35 @@ const std::string kStranger = "tests/stock_client";
 const std::set<std::string> kEmptyNames = {"utils", "util",    "helpers", "helper",
                                            "misc",  "manager", "common"};
 
+// Rooms inside a top folder in their order: each may use those before it.
+const std::map<std::string, std::vector<std::string>> kRooms = {
+    {"actor", {"worlds", "acting", "sending", "loop", "evaluation"}},
+    {"launch",
+     {"record", "processes", "watch", "run", "experiment", "report", "check", "commands"}},
+};
+
+// What a room may not include: a folder, or one header.
+struct Ban {
+  std::string room, start, why;
+};
+
+const std::vector<Ban> kBans = [] {
+  std::vector<Ban> bans = {
+      {"replay_server/core", "replay_server/service/", "the core knows nothing of its service"}};
+  // Plain classes of one thread, whose results depend on their arguments alone.
+  for (const std::string room : {"replay_server/core"}) {
+    bans.push_back({room, "common/dds/", "no transport here"});
+    for (const char* clock : {"common/base/clock.h", "chrono", "ctime", "sys/time.h", "time.h"}) {
+      bans.push_back({room, clock, "no clock here"});
+    }
+    for (const char* lock : {"common/base/mutex.h", "common/base/watchdog.h", "condition_variable",
+                             "mutex", "pthread.h", "shared_mutex", "thread"}) {
+      bans.push_back({room, lock, "no threads here"});
+    }
+  }
+  return bans;
+}();
+
 std::vector<fs::path> Sources(const fs::path& root) {
   static const std::set<std::string> kExtensions = {".h", ".cpp", ".cc", ".c"};
   std::vector<fs::path> sources;
@@ -81,6 +110,18 @@ std::vector<std::string> CommonOrder(const fs::path& root) {
   return order;
 }
 
+// Whether a file of a room may use one of another room of the same top folder. Files that lie in
+// the top folder itself put its rooms together.
+bool MayUseRoom(const std::string& top, const std::string& from, const std::string& to) {
+  const auto rooms = kRooms.find(top);
+  if (rooms == kRooms.end() || from == to || from == top) return true;
+  const auto place = [&](const std::string& room) {
+    return std::ranges::find(rooms->second, fs::path(room).filename().string());
+  };
+  // A room that is not in the list may not be used before it is given its place there.
+  return place(to) < place(from) && place(from) != rooms->second.end();
+}
+
 bool MayUseFolder(const fs::path& file, const fs::path& included,
                   const std::vector<std::string>& common_order) {
   static const std::map<std::string, int> kRank = {{"common", 0},        {"actor", 1},
@@ -88,7 +129,8 @@ bool MayUseFolder(const fs::path& file, const fs::path& included,
                                                    {"launch", 2},        {"tests", 3}};
   const std::string from = Top(file), to = Top(included);
   if (from != to) return kRank.at(from) > kRank.at(to);
-  if (from != "common" || Room(file) == Room(included)) return true;
+  if (from != "common") return MayUseRoom(from, Room(file), Room(included));
+  if (Room(file) == Room(included)) return true;
   const auto from_place = std::ranges::find(common_order, Room(file));
   const auto to_place = std::ranges::find(common_order, Room(included));
   return from_place != common_order.end() && to_place < from_place;
@@ -97,6 +139,10 @@ bool MayUseFolder(const fs::path& file, const fs::path& included,
 // What is wrong with including `included` in `file`, or nothing.
 std::string IncludeFault(const fs::path& file, const std::string& included,
                          const std::vector<std::string>& common_order) {
+  for (const auto& [room, start, why] : kBans) {
+    const bool hit = start.ends_with('/') ? included.starts_with(start) : included == start;
+    if (hit && Room(file) == room) return fmt::format("{} may not use {}: {}", room, included, why);
+  }
   if (std::ranges::find(kTopFolders, Top(included)) != kTopFolders.end()) {
     if (MayUseFolder(file, included, common_order)) return "";
     return fmt::format("{} may not use {}", Room(file), included);

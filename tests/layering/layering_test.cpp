@@ -4,6 +4,7 @@
 #include <fstream>
 
 #include "tests/layering/include_rules.h"
+#include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
 
 namespace shoal {
@@ -12,7 +13,7 @@ namespace {
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
 
-const std::filesystem::path kSourceTree = std::filesystem::path(SHOAL_TEST_DATA) / "../..";
+const std::filesystem::path kSourceTree = SourcePath("");
 
 // A source tree with base before wire in common.
 class PlantedTree {
@@ -63,6 +64,66 @@ TEST(Layering, RoomsDoNotUseEachOtherNorWhatComesAfterThem) {
   EXPECT_THAT(tree.Breaches(), ElementsAre("actor/a.cpp:1: actor may not use learner/x.h",
                                            "launch/a.cpp:1: launch may not use tests/support/x.h",
                                            "learner/a.cpp:1: learner may not use launch/x.h"));
+}
+
+TEST(Layering, TheRoomsOfLaunchPointOneWay) {
+  const PlantedTree tree;
+  tree.Write("launch/check/a.cpp", "#include \"launch/commands/x.h\"\n");
+  tree.Write("launch/commands/a.cpp", "#include \"launch/check/x.h\"\n");
+  tree.Write("launch/main.cpp", "#include \"launch/commands/x.h\"\n");
+  tree.Write("launch/processes/a.cpp", "#include \"launch/watch/x.h\"\n");
+  tree.Write("launch/record/a.cpp",
+             "#include \"launch/record/x.h\"\n#include \"launch/processes/x.h\"\n");
+  tree.Write("launch/run/a.cpp", "#include \"launch/new_room/x.h\"\n");
+  tree.Write("launch/watch/a.cpp",
+             "#include \"launch/record/x.h\"\n#include \"launch/main_parts.h\"\n");
+  EXPECT_THAT(tree.Breaches(),
+              ElementsAre("launch/check/a.cpp:1: launch/check may not use launch/commands/x.h",
+                          "launch/processes/a.cpp:1: launch/processes may not use launch/watch/x.h",
+                          "launch/record/a.cpp:2: launch/record may not use launch/processes/x.h",
+                          "launch/run/a.cpp:1: launch/run may not use launch/new_room/x.h",
+                          "launch/watch/a.cpp:2: launch/watch may not use launch/main_parts.h"));
+}
+
+TEST(Layering, TheReplayCoreKnowsNoServiceTransportClockOrThread) {
+  const PlantedTree tree;
+  tree.Write("replay_server/core/a.cpp",
+             "#include <atomic>\n"
+             "#include <chrono>\n"
+             "#include <mutex>\n"
+             "#include \"common/base/clock.h\"\n"
+             "#include \"common/base/mutex.h\"\n"
+             "#include \"common/dds/bus.h\"\n"
+             "#include \"replay_server/core/x.h\"\n"
+             "#include \"replay_server/service/x.h\"\n");
+  tree.Write("replay_server/service/a.cpp",
+             "#include \"common/base/clock.h\"\n"
+             "#include \"common/dds/bus.h\"\n"
+             "#include \"replay_server/core/x.h\"\n");
+  const std::string start = "replay_server/core/a.cpp:", core = ": replay_server/core may not use ";
+  EXPECT_THAT(tree.Breaches(),
+              ElementsAre(start + "2" + core + "chrono: no clock here",
+                          start + "3" + core + "mutex: no threads here",
+                          start + "4" + core + "common/base/clock.h: no clock here",
+                          start + "5" + core + "common/base/mutex.h: no threads here",
+                          start + "6" + core + "common/dds/bus.h: no transport here",
+                          start + "8" + core +
+                              "replay_server/service/x.h: the core knows nothing of its service"));
+}
+
+TEST(Layering, TheRoomsOfTheActorPointOneWayAndWorldsUseNone) {
+  const PlantedTree tree;
+  tree.Write("actor/acting/a.cpp",
+             "#include \"actor/worlds/x.h\"\n#include \"actor/sending/x.h\"\n");
+  tree.Write("actor/main.cpp", "#include \"actor/loop/x.h\"\n");
+  tree.Write("actor/sending/a.cpp", "#include \"actor/loop/x.h\"\n");
+  tree.Write("actor/worlds/a.cpp", "#include \"actor/worlds/x.h\"\n#include \"actor/rollout.h\"\n");
+  tree.Write("actor/worlds/tools/a.cpp", "#include \"actor/acting/x.h\"\n");
+  EXPECT_THAT(tree.Breaches(),
+              ElementsAre("actor/acting/a.cpp:2: actor/acting may not use actor/sending/x.h",
+                          "actor/sending/a.cpp:1: actor/sending may not use actor/loop/x.h",
+                          "actor/worlds/a.cpp:2: actor/worlds may not use actor/rollout.h",
+                          "actor/worlds/tools/a.cpp:1: actor/worlds may not use actor/acting/x.h"));
 }
 
 TEST(Layering, LibrariesStayAtHome) {

@@ -35,22 +35,22 @@ class BatchSourceTest : public testing::Test {
     return *source_;
   }
 
-  // Answers a request in one shard; its rewards are the request's number.
+  // Answers a request in one part; its rewards are the request's number.
   void Answer(uint64_t request, uint64_t stored_steps = 100) {
-    const BatchLayout layout(run_.spec, run_.config.learner.batch);
-    std::vector<uint8_t> space(layout.total_bytes() + 64);
+    const BatchSchema schema = BatchSchemaOf(run_);
+    std::vector<uint8_t> space(schema.total_bytes() + 64);
     uint8_t* data = space.data() + (64 - reinterpret_cast<uintptr_t>(space.data()) % 64) % 64;
-    for (float& reward : layout.View(data).reward) reward = static_cast<float>(request);
-    BatchShard shard;
-    shard.spec_hash = spec_hash_;
-    shard.learner_session = kSession;
-    shard.request = request;
-    shard.shards = 1;
-    shard.total_bytes = layout.total_bytes();
-    shard.stored_records = stored_steps + 2;
-    shard.stored_steps = stored_steps;
-    shard.payload = {data, layout.total_bytes()};
-    source_->OnShard(shard);
+    for (float& reward : schema.View(data).reward) reward = static_cast<float>(request);
+    BatchPart part;
+    part.spec_hash = spec_hash_;
+    part.learner_session = kSession;
+    part.request = request;
+    part.parts = 1;
+    part.total_bytes = schema.total_bytes();
+    part.stored_records = stored_steps + 2;
+    part.stored_steps = stored_steps;
+    part.payload = {data, schema.total_bytes()};
+    source_->OnPart(part);
   }
 
   std::vector<uint64_t> Asked() const {
@@ -106,7 +106,7 @@ TEST_F(BatchSourceTest, ABatchStaysWholeUntilTheNextIsAskedFor) {
   Answer(3);
   Answer(4);  // not asked for yet: no buffer
   EXPECT_EQ(batch->view.reward[0], 1.0f);
-  EXPECT_EQ(source.counters().unknown_shards, 1u);
+  EXPECT_EQ(source.counters().unknown_parts, 1u);
 }
 
 TEST_F(BatchSourceTest, GoesOnWhereAFormerLearnerStopped) {
@@ -129,7 +129,7 @@ TEST_F(BatchSourceTest, SendsTheSameRequestAgainWhenNothingComes) {
   Answer(1);
   Answer(1);
   EXPECT_TRUE(source.Next(Now()));
-  EXPECT_EQ(source.counters().duplicate_shards, 1u);
+  EXPECT_EQ(source.counters().duplicate_parts, 1u);
 }
 
 TEST_F(BatchSourceTest, DoesNotSendAgainWhatHasArrived) {
@@ -186,7 +186,7 @@ TEST_F(BatchSourceTest, InLockstepWaitsForPhasesAndEndsWithTheRun) {
   EXPECT_EQ(requests_[2].after_steps, 20u);
 }
 
-// The receive thread answers while batches are read, each request with shards in turn.
+// The receive thread answers while batches are read, each request with parts in turn.
 TEST_F(BatchSourceTest, ReadsBatchesWhileAReceiveThreadFillsOthers) {
   constexpr uint64_t kBatches = 300;
   std::mutex mutex;

@@ -71,7 +71,8 @@ class CheckpointTest : public testing::Test {
                                .learner_session = 1'700'000'000'123'456'789,
                                .config_hash = 0xffffffffffffffff,
                                .spec_hash = kSpec,
-                               .precision = "bf16"};
+                               .precision = "bf16",
+                               .algorithm = "td3"};
   const fs::path folder_ = parent_.path() / "step_000002000";
 };
 
@@ -196,6 +197,24 @@ TEST(CheckPrecision, AnotherOneIsRefusedUnlessAskedFor) {
     const std::string message = e.what();
     EXPECT_NE(message.find("was computed in bf16"), std::string::npos) << message;
     EXPECT_NE(message.find("--set learner.precision=f32"), std::string::npos) << message;
+  }
+}
+
+TEST(CheckAlgorithm, AnotherOneIsRefusedNamingBoth) {
+  Checkpoint checkpoint;
+  checkpoint.folder = "checkpoints/step_000002000";
+  checkpoint.state.algorithm = "td3";
+  CheckAlgorithm(checkpoint, "td3");
+  try {
+    CheckAlgorithm(checkpoint, "sac");
+    FAIL() << "went on with another algorithm without a word";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.exit_code(), 2);
+    const std::string message = e.what();
+    EXPECT_NE(message.find("step_000002000 was written by the algorithm \"td3\""),
+              std::string::npos)
+        << message;
+    EXPECT_NE(message.find("\"sac\""), std::string::npos) << message;
   }
 }
 

@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "common/base/crc32.h"
 #include "common/base/random.h"
+#include "common/config/batch_options.h"
 #include "common/config/run_files.h"
 #include "learner/batch_stream.h"
 #include "learner/outlet.h"
@@ -22,15 +22,13 @@ namespace shoal::learner {
 class PlayedBatches final : public BatchStream {
  public:
   PlayedBatches(const RunConfig& run, uint64_t first_request)
-      : layout_(run.spec, run.config.learner.batch),
-        space_(layout_.total_bytes() + 64),
-        next_(first_request) {}
+      : schema_(BatchSchemaOf(run)), space_(schema_.total_bytes() + 64), next_(first_request) {}
 
   std::optional<Batch> Next(SteadyTime) override {
     if (before) before(next_);
     if (next_ > last_request) return std::nullopt;
     uint8_t* data = space_.data() + (64 - reinterpret_cast<uintptr_t>(space_.data()) % 64) % 64;
-    const BatchView view = layout_.View(data);
+    const BatchView view = schema_.View(data);
     Random random(HashWords({next_}));
     for (const auto& values : {view.obs_vector, view.next_obs_vector, view.action, view.reward}) {
       for (float& value : values) value = static_cast<float>(random.Uniform(-1, 1));
@@ -51,7 +49,7 @@ class PlayedBatches final : public BatchStream {
   std::function<uint64_t(uint64_t request)> stored_steps = [](uint64_t r) { return 10 * r; };
 
  private:
-  const BatchLayout layout_;
+  const BatchSchema schema_;
   std::vector<uint8_t> space_;
   uint64_t next_;
 };
@@ -72,6 +70,7 @@ class KeptMessages final : public Outlet {
     return accept;
   }
   void Publish(const MetricsMessage& m) override { reports.push_back(m); }
+  void Publish(const LearnerProgress& m) override { progress.push_back(m); }
 
   std::vector<uint64_t> Updates(const std::vector<Sent>& sent) const {
     std::vector<uint64_t> updates;
@@ -82,6 +81,7 @@ class KeptMessages final : public Outlet {
 
   std::vector<Sent> weights, evaluations;
   std::vector<MetricsMessage> reports;
+  std::vector<LearnerProgress> progress;
   bool accept_weights = true, readers_keep_up = true;
   int reject_evaluations = 0;
   std::function<void()> on_evaluation;
@@ -92,7 +92,6 @@ class KeptMessages final : public Outlet {
     if (!accept) return false;
     EXPECT_EQ(m.spec_hash, spec_hash);
     EXPECT_EQ(m.version.session, session);
-    EXPECT_EQ(m.crc, Crc32(m.payload));
     sent->push_back({m.version.update, m.env_steps, m.checkpoint,
                      std::string(m.payload.begin(), m.payload.end())});
     return true;

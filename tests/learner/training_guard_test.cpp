@@ -5,6 +5,8 @@
 
 #include <limits>
 
+#include "learner/agent/frame_figures.h"
+
 namespace shoal::learner {
 namespace {
 
@@ -16,26 +18,27 @@ using testing::IsEmpty;
 constexpr SteadyTime kStart{seconds(1000)};
 
 // What a run that learns shows.
-UpdateStats Healthy() {
-  UpdateStats stats;
-  stats.critic_loss = 0.5f;
-  stats.temperature = 0.05f;
-  stats.action_saturation = 0.3f;
-  stats.frame_spread = 40;
-  return stats;
+UpdateFigures Healthy() {
+  UpdateFigures figures;
+  figures.Set(kCriticLoss, 0.5);
+  figures.Set(kTemperature, 0.05);
+  figures.Set(kActionSaturation, 0.3);
+  figures.Set(kFrameSpread, 40);
+  figures.Set(kFrozenCameras, 0);
+  return figures;
 }
 
 class TrainingGuardTest : public testing::Test {
  protected:
   // Warnings after one report with `critic_loss` over a whole window of updates.
   std::vector<std::string> AfterLoss(float critic_loss) {
-    UpdateStats stats = Healthy();
-    stats.critic_loss = critic_loss;
+    UpdateFigures figures = Healthy();
+    figures.Replace(kCriticLoss, critic_loss);
     now_ += seconds(1);
-    return guard_.Check(stats, TrainingGuard::kLossUpdates, now_);
+    return guard_.Check(figures, TrainingGuard::kLossUpdates, now_);
   }
 
-  TrainingGuard guard_{Config(), /*has_pixels=*/true};
+  TrainingGuard guard_{Config()};
   SteadyTime now_ = kStart;
 };
 
@@ -45,40 +48,45 @@ TEST_F(TrainingGuardTest, IsSilentAboutAHealthyRun) {
 }
 
 TEST_F(TrainingGuardTest, NamesFramesOfOneColour) {
-  UpdateStats stats = Healthy();
-  stats.frame_spread = 0.25f;
-  EXPECT_THAT(guard_.Check(stats, 10, now_), ElementsAre(HasSubstr("0.250 grey levels")));
-  TrainingGuard without_pixels(Config(), /*has_pixels=*/false);
-  EXPECT_THAT(without_pixels.Check(stats, 10, now_), IsEmpty());
+  UpdateFigures figures = Healthy();
+  figures.Replace(kFrameSpread, 0.25f);
+  EXPECT_THAT(guard_.Check(figures, 10, now_), ElementsAre(HasSubstr("0.250 grey levels")));
+}
+
+TEST_F(TrainingGuardTest, IsSilentAboutWhatIsNotReported) {
+  EXPECT_THAT(guard_.Check(UpdateFigures(), 10'000, now_), IsEmpty());
+  UpdateFigures figures;
+  figures.Set(kTemperature, 0);
+  EXPECT_THAT(guard_.Check(figures, 10, now_), ElementsAre(HasSubstr("entropy unknown")));
 }
 
 TEST_F(TrainingGuardTest, NamesFrozenCameras) {
-  UpdateStats stats = Healthy();
-  stats.frozen_cameras = 0.5f;  // in every second batch: a coincidence
-  EXPECT_THAT(guard_.Check(stats, 10, now_), IsEmpty());
-  stats.frozen_cameras = 1;
-  EXPECT_THAT(guard_.Check(stats, 10, now_), ElementsAre(HasSubstr("1.0 camera(s)")));
+  UpdateFigures figures = Healthy();
+  figures.Replace(kFrozenCameras, 0.5f);  // in every second batch: a coincidence
+  EXPECT_THAT(guard_.Check(figures, 10, now_), IsEmpty());
+  figures.Replace(kFrozenCameras, 1);
+  EXPECT_THAT(guard_.Check(figures, 10, now_), ElementsAre(HasSubstr("1.0 camera(s)")));
 }
 
 TEST_F(TrainingGuardTest, NamesSaturatedActions) {
-  UpdateStats stats = Healthy();
-  stats.action_saturation = 0.97f;
-  EXPECT_THAT(guard_.Check(stats, 10, now_), ElementsAre(HasSubstr("97.0 %")));
+  UpdateFigures figures = Healthy();
+  figures.Replace(kActionSaturation, 0.97f);
+  EXPECT_THAT(guard_.Check(figures, 10, now_), ElementsAre(HasSubstr("97.0 %")));
 }
 
 TEST_F(TrainingGuardTest, NamesACollapsedTemperature) {
-  UpdateStats stats = Healthy();
-  stats.temperature = 5e-6f;  // began at 0.1
-  EXPECT_THAT(guard_.Check(stats, 10, now_),
+  UpdateFigures figures = Healthy();
+  figures.Replace(kTemperature, 5e-6f);  // began at 0.1
+  EXPECT_THAT(guard_.Check(figures, 10, now_),
               ElementsAre(testing::AllOf(HasSubstr("5e-06"), HasSubstr("0.1"))));
 }
 
 TEST_F(TrainingGuardTest, RepeatsAWarningOnceAMinuteAndCountsIt) {
-  UpdateStats stats = Healthy();
-  stats.action_saturation = 1;
+  UpdateFigures figures = Healthy();
+  figures.Replace(kActionSaturation, 1);
   int warnings = 0;
   for (int second = 0; second < 150; ++second) {
-    warnings += static_cast<int>(guard_.Check(stats, 10, kStart + seconds(second)).size());
+    warnings += static_cast<int>(guard_.Check(figures, 10, kStart + seconds(second)).size());
   }
   EXPECT_EQ(warnings, 3);
   EXPECT_EQ(guard_.warnings(), 3u);
@@ -109,13 +117,14 @@ TEST_F(TrainingGuardTest, AFallEndsARise) {
 }
 
 TEST(DescribeNonFinite, NamesTheUpdateAndItsNumbers) {
-  UpdateStats stats = Healthy();
-  stats.critic_loss = std::numeric_limits<float>::quiet_NaN();
-  stats.finite = false;
-  const std::string line = DescribeNonFinite(stats, 41);
+  UpdateFigures figures = Healthy();
+  figures.Replace(kCriticLoss, std::numeric_limits<float>::quiet_NaN());
+
+  const std::string line = DescribeNonFinite(figures, 41);
   EXPECT_THAT(line, HasSubstr("update 42"));
-  EXPECT_THAT(line, HasSubstr("critic loss nan"));
+  EXPECT_THAT(line, HasSubstr("critic_loss nan"));
   EXPECT_EQ(line.find('\n'), std::string::npos);
+  EXPECT_THAT(DescribeNonFinite(UpdateFigures(), 41), HasSubstr("its batch"));
 }
 
 }  // namespace

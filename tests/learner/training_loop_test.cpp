@@ -9,6 +9,7 @@
 
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "learner/agent/algorithms.h"
 #include "tests/learner/played_parts.h"
 #include "tests/learner/training_fixture.h"
 #include "tests/support/temporary_folder.h"
@@ -30,14 +31,14 @@ class TrainingLoopTest : public testing::Test {
                           const std::function<void(PlayedBatches&)>& script = {}) {
     outlet_.spec_hash = run_.spec.Hash();
     outlet_.session = kSession;
-    SacAgent agent(run_.config, run_.spec, precision_);
+    const auto agent = MakeAgent(run_.config, run_.spec, precision_);
     CheckpointStore checkpoints(folder_.path(), run_);
     std::optional<CheckpointState> restored;
     if (const auto checkpoint = checkpoints.RestoreNewest()) {
-      agent.Restore(checkpoint->tensors, "test");
+      agent->Restore(checkpoint->tensors, "test");
       restored = checkpoint->state;
     }
-    PlayedBatches batches(run_, agent.updates() + 1);
+    PlayedBatches batches(run_, agent->updates() + 1);
     batches.last_request = stop_after;
     batches.before = [&](uint64_t request) {
       if (request > stop_after) Say(RunState::kStopping);
@@ -46,7 +47,7 @@ class TrainingLoopTest : public testing::Test {
     TrainingLoop loop({.run = run_,
                        .precision = precision_,
                        .session = kSession,
-                       .agent = agent,
+                       .agent = *agent,
                        .batches = batches,
                        .outlet = outlet_,
                        .checkpoints = checkpoints,
@@ -56,7 +57,7 @@ class TrainingLoopTest : public testing::Test {
                       restored);
     const TrainingLoop::End end = loop.Run();
     given_ = batches.given();
-    updates_ = agent.updates();
+    updates_ = agent->updates();
     return end;
   }
 
@@ -105,10 +106,10 @@ TEST_F(TrainingLoopTest, SendsWeightsAtTheFirstUpdateAndEveryPeriod) {
 
 TEST_F(TrainingLoopTest, SendsBf16WeightsWhenThatIsThePrecision) {
   // The products' precision does not matter to the loop; ask the agent for what any CPU has.
-  SacAgent agent(run_.config, run_.spec, nn::Precision::kF32);
+  const auto agent = MakeAgent(run_.config, run_.spec, nn::Precision::kF32);
   outlet_.spec_hash = run_.spec.Hash();
   outlet_.session = kSession;
-  WeightsSender(run_, nn::Precision::kBf16, kSession, agent, outlet_).Send(0);
+  WeightsSender(run_, nn::Precision::kBf16, kSession, *agent, outlet_).Send(0);
   ASSERT_EQ(outlet_.weights.size(), 1u);
   for (const auto& [name, t] : nn::ReadSafetensors(outlet_.weights[0].payload, "weights")) {
     EXPECT_EQ(t.dtype, "BF16") << name;
@@ -302,6 +303,23 @@ TEST_F(TrainingLoopTest, InLockstepSendsWeightsAtTheEndsOfPhasesOnly) {
   outlet_.readers_keep_up = false;
   Train(10);
   EXPECT_THAT(outlet_.Updates(outlet_.weights), ElementsAre(3, 6, 9));
+}
+
+TEST_F(TrainingLoopTest, TellsItsProgressWithTheEvaluationsItAskedFor) {
+  run_.config.eval.interval = 20;
+  Train(5);
+  ASSERT_FALSE(outlet_.progress.empty());
+  const LearnerProgress& last = outlet_.progress.back();
+  EXPECT_EQ(last.session, kSession);
+  EXPECT_EQ(last.updates, 5u);
+  EXPECT_EQ(last.env_steps, 50u);
+  EXPECT_FALSE(last.drained);
+  ASSERT_EQ(last.evaluations.size(), outlet_.evaluations.size());
+  for (size_t i = 0; i < last.evaluations.size(); ++i) {
+    EXPECT_EQ(last.evaluations[i].update, outlet_.evaluations[i].update);
+    EXPECT_EQ(last.evaluations[i].env_steps, outlet_.evaluations[i].env_steps);
+    EXPECT_EQ(last.evaluations[i].checkpoint, outlet_.evaluations[i].checkpoint);
+  }
 }
 
 TEST_F(TrainingLoopTest, ReportsWhatItDid) {

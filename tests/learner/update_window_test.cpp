@@ -2,33 +2,42 @@
 
 #include <gtest/gtest.h>
 
+#include <initializer_list>
+#include <utility>
 #include <vector>
 
 namespace shoal::learner {
 namespace {
 
-TEST(UpdateWindow, MeansAreOverItsUpdatesOnly) {
-  UpdateWindow window;
-  window.Add({.critic_loss = 100});
-  window.Clear();
-  UpdateStats stats;
-  stats.critic_loss = 1;
-  stats.temperature_loss = -2;
-  stats.actor_grad_norm = 4;
-  stats.frame_spread = 10;
-  window.Add(stats);
-  stats.critic_loss = 2;
-  stats.actor_grad_norm = 8;
-  window.Add(stats);
-  EXPECT_EQ(window.updates(), 2);
-  EXPECT_FLOAT_EQ(window.Mean().critic_loss, 1.5f);
-  EXPECT_FLOAT_EQ(window.Mean().temperature_loss, -2.0f);
-  EXPECT_FLOAT_EQ(window.Mean().actor_grad_norm, 6.0f);
-  EXPECT_FLOAT_EQ(window.Mean().frame_spread, 10.0f);
+UpdateFigures Figures(std::initializer_list<std::pair<const Figure*, double>> list) {
+  UpdateFigures figures;
+  for (const auto& [figure, value] : list) figures.Set(*figure, value);
+  return figures;
 }
 
-TEST(UpdateWindow, IsZeroWhenEmpty) {
-  EXPECT_EQ(UpdateWindow().Mean().critic_loss, 0.0f);
+TEST(UpdateWindow, MeansAreOverItsUpdatesOnly) {
+  UpdateWindow window;
+  window.Add(Figures({{&kCriticLoss, 100}}));
+  window.Clear();
+  window.Add(Figures({{&kCriticLoss, 1}, {&kActorGradNorm, 4}}));
+  window.Add(Figures({{&kCriticLoss, 2}, {&kActorGradNorm, 8}}));
+  EXPECT_EQ(window.updates(), 2);
+  EXPECT_EQ(window.Mean().Get(kCriticLoss), 1.5);
+  EXPECT_EQ(window.Mean().Get(kActorGradNorm), 6.0);
+}
+
+TEST(UpdateWindow, AFigureOfSomeUpdatesIsTheMeanOfThese) {
+  UpdateWindow window;
+  window.Add(Figures({{&kCriticLoss, 1}, {&kActorLoss, 4}}));
+  window.Add(Figures({{&kCriticLoss, 3}}));
+  window.Add(Figures({{&kCriticLoss, 5}, {&kActorLoss, 6}}));
+  EXPECT_EQ(window.Mean().Get(kCriticLoss), 3.0);
+  EXPECT_EQ(window.Mean().Get(kActorLoss), 5.0);
+  EXPECT_FALSE(window.Mean().Get(kEntropy));
+}
+
+TEST(UpdateWindow, HasNoMeansWhenEmpty) {
+  EXPECT_TRUE(UpdateWindow().Mean().empty());
   EXPECT_EQ(UpdateWindow().updates(), 0);
 }
 

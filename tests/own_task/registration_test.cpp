@@ -2,30 +2,38 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
+#include <span>
 
-#include "actor/random_baseline.h"
+#include "actor/evaluation/random_baseline.h"
 #include "actor/worlds/environment.h"
-#include "actor/worlds/own_tasks.h"
+#include "actor/worlds/physics_library.h"
 #include "actor/worlds/world_registry.h"
 #include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/tasks/task_library.h"
 #include "common/tasks/task_registry.h"
+#include "tests/support/paths.h"
+#include "tests/support/temporary_folder.h"
 
 namespace shoal::worlds {
 namespace {
 
 using testing::HasSubstr;
 
-// Once in this process, as programs do.
+std::string Library() { return ProgramPath("point_reach.so"); }
+
+// As often as one likes: a library is loaded once.
 const tasks::Task& Example() {
-  static const bool registered = (RegisterOwnTasks(), true);
-  EXPECT_TRUE(registered);
+  LoadTasks(Library());
   return tasks::FindTask("PointReachDense");
 }
 
-std::string Complaint(tasks::Task task, WorldMaker maker) {
+std::string Complaint(const std::function<void()>& what) {
   try {
-    RegisterTask(std::move(task), maker);
+    what();
   } catch (const Error& error) {
     EXPECT_EQ(error.exit_code(), 2);
     return error.what();
@@ -52,12 +60,12 @@ TEST(OwnTask, IsSteppedRenderedAndJudged) {
   config.observation.goal_mode = "desired";
   const auto environment = MakeEnvironment(config, MakeRenderContext(config.observation));
   std::vector<uint8_t> frame(static_cast<size_t>(environment->spec().FrameBytes()));
-  std::vector<float> numbers(static_cast<size_t>(environment->spec().VectorSize()));
-  ASSERT_EQ(numbers.size(), 6u);
+  std::vector<float> numbers(static_cast<size_t>(environment->spec().RecordedVectorSize()));
+  ASSERT_EQ(numbers.size(), 8u);  // position, velocity, achieved goal, desired goal
   environment->Reset(1, {frame, numbers});
   const std::vector<uint8_t> before = frame;
   // Towards the goal along x at full force: it comes nearer, and the picture shows it.
-  const float goal = numbers[4], start = numbers[0];
+  const float goal = numbers[6], start = numbers[0];
   StepResult result;
   for (int i = 0; i < 5; ++i) {
     result = environment->Step(std::vector<float>{goal > 0 ? 1.f : -1.f, 0}, {frame, numbers});
@@ -65,6 +73,35 @@ TEST(OwnTask, IsSteppedRenderedAndJudged) {
   EXPECT_GT((numbers[0] - start) * goal, 0);
   EXPECT_FLOAT_EQ(result.reward, -result.distance);
   EXPECT_NE(frame, before);
+}
+
+// The point starts in the middle of every episode, so the target alone tells the pictures apart.
+TEST(OwnTask, TheTargetIsDrawnWhereTheGoalIs) {
+  Config config;
+  config.task = Example().name();
+  config.observation.cameras = {"top"};
+  config.observation.goal_mode = "desired";
+  const auto environment = MakeEnvironment(config, MakeRenderContext(config.observation));
+  const int height = config.observation.height, width = config.observation.width;
+  std::vector<uint8_t> frame(static_cast<size_t>(environment->spec().FrameBytes()));
+  std::vector<float> recorded(static_cast<size_t>(environment->spec().RecordedVectorSize()));
+  ASSERT_EQ(environment->spec().blocks.back().name, "desired_goal");
+  const std::span<const float> goal = std::span(recorded).last(2);
+  for (const uint64_t key : {1, 2, 3}) {
+    environment->Reset(key, {frame, recorded});
+    // Mean column and row of what is red: +x is to the right in the picture, +y up.
+    double red = 0, column = 0, row = 0;
+    const auto plane = static_cast<size_t>(height) * static_cast<size_t>(width);
+    for (size_t i = 0; i < plane; ++i) {
+      if (frame[i] < 100 || frame[plane + i] > 60 || frame[2 * plane + i] > 60) continue;
+      ++red;
+      column += static_cast<double>(i % static_cast<size_t>(width));
+      row += static_cast<double>(i / static_cast<size_t>(width));
+    }
+    ASSERT_GT(red, 0) << "episode " << key;
+    EXPECT_GT((column / red - width / 2.0) * double{goal[0]}, 0) << "episode " << key;
+    EXPECT_LT((row / red - height / 2.0) * double{goal[1]}, 0) << "episode " << key;
+  }
 }
 
 TEST(OwnTask, WorksInTheTools) {
@@ -75,11 +112,36 @@ TEST(OwnTask, WorksInTheTools) {
 
 TEST(OwnTask, TakesNoNameThatIsTaken) {
   const tasks::Task& example = Example();
-  EXPECT_THAT(Complaint(example, NoWorld), HasSubstr("PointReach"));
-  EXPECT_THAT(Complaint(tasks::FindTask("FetchReach"), NoWorld), HasSubstr("FetchReach"));
+  EXPECT_THAT(Complaint([] { AddWorld("PointReach", NoWorld); }), HasSubstr("'PointReach'"));
+  EXPECT_THAT(Complaint([] { AddWorld("FetchReach", NoWorld); }), HasSubstr("'FetchReach'"));
   const size_t before = tasks::TaskNames().size();
   EXPECT_THROW(tasks::AddTask(example), Error);
   EXPECT_EQ(tasks::TaskNames().size(), before);
+}
+
+TEST(OwnTask, ALibraryThatIsNoneIsRefusedInOneLine) {
+  const TemporaryFolder folder;
+  const std::string missing = (folder.path() / "missing.so").string();
+  EXPECT_THAT(Complaint([&] { LoadTasks(missing); }), HasSubstr("cannot load " + missing));
+  const std::string text = (folder.path() / "text.so").string();
+  WriteFileAtomically(text, "not a library");
+  EXPECT_THAT(Complaint([&] { LoadTasks(text); }), HasSubstr("cannot load " + text));
+  // The physics half has no goals.
+  const std::string physics = ProgramPath("point_reach_physics.so");
+  const std::string lonely = (folder.path() / "lonely.so").string();
+  std::filesystem::copy_file(physics, lonely);
+  EXPECT_THAT(Complaint([&] { LoadTasks(lonely); }),
+              HasSubstr("'" + lonely + "' has no entry point ShoalRegisterGoals"));
+  EXPECT_EQ(Complaint([&] { LoadTasks(""); }), "");
+}
+
+TEST(OwnTask, AnotherLibraryMayNotTakeItsNameNorATaskNameAWorldThatIsNotThere) {
+  const TemporaryFolder folder;
+  const std::string lonely = (folder.path() / "lonely.so").string();
+  std::filesystem::copy_file(Library(), lonely);
+  Example();
+  EXPECT_THAT(Complaint([&] { LoadTasks(lonely); }), HasSubstr("a task 'PointReachDense' already"));
+  EXPECT_THAT(Complaint([] { MakeWorld("Nowhere", {}); }), HasSubstr("no physics half 'Nowhere'"));
 }
 
 }  // namespace

@@ -1,17 +1,33 @@
-// The programs with the worked example of docs/own_task.md in them.
+// The programs with the worked example of docs/own_task.md, as its page has it.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
+#include "tests/support/paths.h"
 #include "tests/support/program.h"
 
 namespace shoal {
 namespace {
 
+std::string Library() { return ProgramPath("point_reach.so"); }
+
+TEST(OwnTaskRun, ALibraryThatDoesNotLoadEndsARunBeforeItBegins) {
+  const TemporaryFolder folder;
+  const ProgramResult result =
+      RunProgram({"shoal", "train", "--set", "task_library=/nowhere/tasks.so", "--set",
+                  "run_dir=" + folder.path().string()},
+                 std::chrono::seconds(60));
+  EXPECT_EQ(ExitCode(result), 2);
+  EXPECT_NE(result.err.find("task_library: cannot load /nowhere/tasks.so"), std::string::npos)
+      << result.err;
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
 TEST(OwnTaskRun, TheCommandsOfItsPageWork) {
   const TemporaryFolder folder;
   const auto run = [](std::vector<std::string> command) {
     command.insert(command.begin(), "shoal");
+    command.insert(command.end(), {"--task-library", Library()});
     const ProgramResult result = RunProgram(command, std::chrono::seconds(60));
     EXPECT_EQ(ExitCode(result), 0) << result.out << result.err;
     return result.out;
@@ -28,6 +44,8 @@ TEST(OwnTaskRun, TrainsFromItsOwnCameraWithAThresholdFromJson) {
   const TemporaryFolder folder;
   const auto json = folder.path() / "point.json";
   WriteFileAtomically(json, R"({
+    "task_library": ")" + Library() +
+                                R"(",
     "task": "PointReachDense",
     "distance_threshold": 0.1,
     "env_steps": 600,

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
+#include <set>
 #include <utility>
 #include <vector>
 
@@ -24,8 +26,11 @@ struct Oracle {
   // Deals with a record that was not dealt with before.
   void Take(const RecordLayout& layout, uint32_t actor, uint64_t session,
             const std::vector<uint8_t>& bytes, Counts* counts) {
-    if (RecordFault(layout, bytes.data()) != nullptr) return void(++counts->rejected);
     const RecordHeader& h = RecordLayout::Header(bytes.data());
+    if (RecordFault(layout, bytes.data()) != nullptr) {
+      Cut(actor, session, h.env);
+      return void(++counts->rejected);
+    }
     uint64_t prev = 0;
     for (uint64_t id = all.size(); id > 0 && prev == 0 && h.index > 0; --id) {
       const Stored& s = all[id - 1];
@@ -33,9 +38,31 @@ struct Oracle {
                         s.header().episode == h.episode && s.header().index + 1 == h.index;
       if (same) prev = id;
     }
-    if (h.index > 0 && prev == 0) return void(++counts->after_gap);
+    if (h.index > 0 && prev == 0) {
+      Cut(actor, session, h.env);
+      return void(++counts->after_gap);
+    }
+    if (h.index == 0 && newest.contains(h.env)) ended.insert(newest[h.env]);
     all.push_back({actor, session, prev, bytes});
+    newest[h.env] = all.size();
+    if ((h.flags & (kTerminated | kTruncated)) != 0) ended.insert(all.size());
     ++counts->stored;
+  }
+
+  // The environment's episode, if it is of this session, ends with its newest record.
+  void Cut(uint32_t actor, uint64_t session, uint32_t env) {
+    const uint64_t id = newest.contains(env) ? newest[env] : 0;
+    if (id != 0 && all[id - 1].actor == actor && all[id - 1].session == session) ended.insert(id);
+  }
+
+  // Records of the episode of `id`, oldest first, whether or not the ring holds them.
+  std::vector<uint64_t> Episode(uint64_t id) const {
+    while (all[id - 1].prev != 0) id = all[id - 1].prev;
+    std::vector<uint64_t> ids{id};
+    for (uint64_t later = id + 1; later <= all.size(); ++later) {
+      if (all[later - 1].prev == ids.back()) ids.push_back(later);
+    }
+    return ids;
   }
 
   bool Holds(uint64_t id) const { return id > 0 && id <= all.size() && id + capacity > all.size(); }
@@ -51,26 +78,33 @@ struct Oracle {
     }
     return ids;
   }
-  // The `n_step` steps in a row that end at `id`, newest first; nothing when the episode has fewer
-  // or one is gone.
+  // The steps of the sample that begins with `id`, oldest first: n_step of them, or those up to a
+  // termination; nothing when `id` is gone or no step, or when the episode has fewer (yet).
   std::optional<std::vector<uint64_t>> Steps(uint64_t id) const {
-    std::vector<uint64_t> ids;
-    for (int k = 0; k < n_step; ++k) {
-      if (!Holds(id) || all[id - 1].prev == 0) return std::nullopt;
-      ids.push_back(id);
-      id = all[id - 1].prev;
+    if (!Holds(id) || all[id - 1].prev == 0) return std::nullopt;
+    std::vector<uint64_t> ids{id};
+    for (uint64_t later = id + 1; later <= all.size() && !Whole(ids); ++later) {
+      if (all[later - 1].prev == ids.back()) ids.push_back(later);
     }
-    return ids;
+    return Whole(ids) ? std::optional(ids) : std::nullopt;
+  }
+  bool Whole(const std::vector<uint64_t>& ids) const {
+    return ids.size() == static_cast<size_t>(n_step) ||
+           (all[ids.back() - 1].header().flags & kTerminated) != 0;
   }
   bool Sampleable(uint64_t id) const {
-    const auto steps = Steps(id);
-    return steps && Stack(all[steps->back() - 1].prev).has_value();
+    if (!Holds(id)) return false;
+    if (whole_episodes && !ended.contains(Episode(id).back())) return false;
+    return Steps(id) && Stack(all[id - 1].prev).has_value();
   }
 
   uint64_t capacity;
   int stack;
   int n_step = 1;
-  std::vector<Stored> all{};  // id = position + 1
+  bool whole_episodes = false;
+  std::vector<Stored> all{};              // id = position + 1
+  std::map<uint32_t, uint64_t> newest{};  // by env
+  std::set<uint64_t> ended{};             // newest records of episodes that have ended
 };
 
 }  // namespace shoal::replay

@@ -24,7 +24,7 @@ inline ObservationSpec TinySpec(int stack, int height = 3, int width = 5) {
   spec.height = height;
   spec.width = width;
   spec.stack = stack;
-  spec.blocks = {{"observation", 3}};
+  spec.blocks = {{"grip", 2}, {"achieved_goal", 2, /*observed=*/false}, {"desired_goal", 2}};
   spec.action_size = 2;
   spec.model_fingerprint = "fingerprint";
   return spec;

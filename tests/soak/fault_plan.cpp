@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "launch/restart_policy.h"
+#include "launch/processes/restart_policy.h"
 
 namespace shoal::soak {
 namespace {

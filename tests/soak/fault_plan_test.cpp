@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "launch/restart_policy.h"
+#include "launch/processes/restart_policy.h"
 
 namespace shoal::soak {
 namespace {

@@ -8,7 +8,7 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/main_guard.h"
-#include "launch/process_plan.h"
+#include "launch/processes/process_plan.h"
 #include "tests/soak/fault_soak.h"
 #include "tests/soak/run_under_test.h"
 #include "tests/soak/steady_soak.h"

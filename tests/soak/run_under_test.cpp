@@ -227,8 +227,9 @@ json RunUnderTest::End(seconds deadline) {
   json meta = json::parse(ReadFile(path_ / "meta.json"));
   const json& accounting = meta.at("accounting");
   const int64_t made = accounting.at("made"), stored = accounting.at("stored"),
-                lost = accounting.at("lost_with_process"), rejected = accounting.at("rejected"),
-                after_gap = accounting.at("after_gap");
+                lost = accounting.at("lost_with_process").get<int64_t>() +
+                       accounting.at("lost_with_replay").get<int64_t>(),
+                rejected = accounting.at("rejected"), after_gap = accounting.at("after_gap");
   if (made != stored + lost + rejected + after_gap) {
     throw Broken("the account does not balance: " + accounting.dump());
   }

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "launch/child_process.h"
+#include "launch/processes/child_process.h"
 #include "tests/support/report_reader.h"
 
 namespace shoal::soak {

@@ -1,5 +1,5 @@
-// A client that knows nothing of Shoal but docs/monitoring.md: prints the next view of a run, one line
-// per process with its metrics, and leaves. The network is configured by CYCLONEDDS_URI.
+// A client that knows nothing of Shoal but docs/monitoring.md: prints the next view of a run, one
+// line per process with its metrics, and leaves. The network is configured by CYCLONEDDS_URI.
 //
 //   stock_client DOMAIN SECONDS    exit code 0: a view came; 1: none within SECONDS; 2: bad usage
 #include <stdio.h>
@@ -8,12 +8,12 @@
 #include "dds/dds.h"
 #include "run_view.h"
 
-static void print_view(const shoal_idl_RunView *view) {
+static void print_view(const shoal_idl_RunView* view) {
   printf("view %s run %s state %s env_steps %llu updates %llu events %u\n", view->schema, view->run,
          view->state, (unsigned long long)view->env_steps, (unsigned long long)view->updates,
          view->events._length);
   for (uint32_t p = 0; p < view->processes._length; ++p) {
-    const shoal_idl_Metrics *process = &view->processes._buffer[p];
+    const shoal_idl_Metrics* process = &view->processes._buffer[p];
     printf("process %s %u host %s pid %d state %s", process->role, process->id, process->host,
            (int)process->pid, process->state);
     for (uint32_t i = 0; i < process->names._length && i < process->values._length; ++i) {
@@ -26,7 +26,7 @@ static void print_view(const shoal_idl_RunView *view) {
 static dds_entity_t create_reader(dds_entity_t participant) {
   const dds_entity_t topic =
       dds_create_topic(participant, &shoal_idl_RunView_desc, "run_view", NULL, NULL);
-  dds_qos_t *qos = dds_create_qos();
+  dds_qos_t* qos = dds_create_qos();
   dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_SECS(1));
   dds_qset_durability(qos, DDS_DURABILITY_TRANSIENT_LOCAL);
   dds_qset_history(qos, DDS_HISTORY_KEEP_LAST, 1);
@@ -42,7 +42,7 @@ static int wait_for_view(dds_entity_t participant, dds_entity_t reader, dds_dura
   dds_waitset_attach(waitset, reader, 0);
   const dds_time_t deadline = dds_time() + most;
   for (;;) {
-    void *samples[1] = {NULL};
+    void* samples[1] = {NULL};
     dds_sample_info_t info[1];
     const dds_return_t taken = dds_take(reader, samples, info, 1, 1);
     if (taken > 0) {
@@ -56,7 +56,7 @@ static int wait_for_view(dds_entity_t participant, dds_entity_t reader, dds_dura
   }
 }
 
-int main(int argc, char **argv) {
+int main(int argc, char** argv) {
   if (argc != 3) {
     fprintf(stderr, "usage: stock_client DOMAIN SECONDS\n");
     return 2;

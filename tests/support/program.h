@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "common/base/files.h"
-#include "launch/child_process.h"
+#include "launch/processes/child_process.h"
+#include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
 
 namespace shoal {
@@ -40,7 +41,7 @@ inline ProgramResult RunCommand(std::vector<std::string> command, std::chrono::s
 
 // command[0] is a program's name in the build's bin folder.
 inline ProgramResult RunProgram(std::vector<std::string> command, std::chrono::seconds deadline) {
-  command[0] = std::string(SHOAL_BIN) + "/" + command[0];
+  command[0] = ProgramPath(command[0]);
   return RunCommand(std::move(command), deadline);
 }
 

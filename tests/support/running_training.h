@@ -8,7 +8,8 @@
 #include <vector>
 
 #include "common/base/clock.h"
-#include "launch/child_process.h"
+#include "launch/processes/child_process.h"
+#include "tests/support/paths.h"
 #include "tests/support/report_reader.h"
 #include "tests/support/training_run.h"
 
@@ -30,8 +31,8 @@ class RunningTraining {
 
   // Waits until the replay has stored `steps` more steps. False when it did not in time.
   bool WaitForMoreSteps(int64_t steps) {
-    const auto any = reports_.WaitFor("replay", [](const auto&) { return true; });
-    return !any.is_null() && WaitForSteps(Stored(any) + steps);
+    const nlohmann::json newest = reports_.Last("replay");
+    return !newest.is_null() && WaitForSteps(Stored(newest) + steps);
   }
   bool WaitForSteps(int64_t steps, std::chrono::seconds deadline = std::chrono::seconds(60)) {
     return !reports_
@@ -68,7 +69,7 @@ class RunningTraining {
     launch::ProcessSpec spec;
     spec.role = "train";
     spec.command = std::move(command);
-    spec.command[0] = std::string(SHOAL_BIN) + "/shoal";
+    spec.command[0] = ProgramPath("shoal");
     spec.output = OutputFile(run);
     spec.environment = environment;
     return spec;

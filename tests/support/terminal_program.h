@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "common/base/clock.h"
+#include "tests/support/paths.h"
 
 namespace shoal {
 
@@ -25,7 +26,7 @@ class TerminalProgram {
     winsize size{.ws_row = 24, .ws_col = 100, .ws_xpixel = 0, .ws_ypixel = 0};
     EXPECT_EQ(openpty(&own_end_, &its_end_, nullptr, nullptr, &size), 0);
     tcgetattr(its_end_, &before_);
-    command[0] = std::string(SHOAL_BIN) + "/" + command[0];
+    command[0] = ProgramPath(command[0]);
     std::vector<char*> words;
     for (std::string& word : command) words.push_back(word.data());
     words.push_back(nullptr);

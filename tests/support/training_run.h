@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -17,8 +18,8 @@ class TrainingRun {
  public:
   using Keys = std::map<std::string, std::string>;
 
-  // Command line of `shoal train` for a short run from state; `keys` go over the defaults here,
-  // `flags` are appended.
+  // Command line of `shoal train` for a short run, from state unless `flags`, which are appended,
+  // name another preset; `keys` go over the defaults here.
   std::vector<std::string> Command(const Keys& keys = {},
                                    const std::vector<std::string>& flags = {}) const {
     Keys all{{"env_steps", "4000"},        {"eval.episodes", "8"},
@@ -26,8 +27,10 @@ class TrainingRun {
              {"learner.threads", "1"},     {"replay.samples_per_insert", "32"},
              {"stop.success", "2"},        {"run_dir", folder_.path().string()}};
     for (const auto& [key, value] : keys) all[key] = value;
-    std::vector<std::string> command{"shoal",      "train", "--preset", "fetch-reach-state",
-                                     "--run-name", "run"};
+    std::vector<std::string> command{"shoal", "train", "--run-name", "run"};
+    if (std::ranges::find(flags, "--preset") == flags.end()) {
+      command.insert(command.end(), {"--preset", "fetch-reach-state"});
+    }
     for (const auto& [key, value] : all) {
       command.push_back("--set");
       command.push_back(key + "=" + value);
@@ -51,13 +54,14 @@ class TrainingRun {
   TemporaryFolder folder_;
 };
 
-// made = stored + lost with a killed process + rejected + after gap, exactly.
+// made = stored + lost with a killed actor + lost with a replay + rejected + after gap, exactly.
 inline void ExpectBalanced(const nlohmann::json& meta) {
   const auto& a = meta.at("accounting");
   EXPECT_GT(a.at("made").get<int64_t>(), 0);
   EXPECT_EQ(a.at("made").get<int64_t>(),
             a.at("stored").get<int64_t>() + a.at("lost_with_process").get<int64_t>() +
-                a.at("rejected").get<int64_t>() + a.at("after_gap").get<int64_t>())
+                a.at("lost_with_replay").get<int64_t>() + a.at("rejected").get<int64_t>() +
+                a.at("after_gap").get<int64_t>())
       << a.dump();
 }
 

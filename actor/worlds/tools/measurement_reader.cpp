@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "common/base/bounded_json.h"
 #include "common/base/files.h"
 
 namespace shoal::worlds {
@@ -17,11 +18,12 @@ bool IsFiniteNumber(const json& value) {
 }  // namespace
 
 json ReadJson(const std::filesystem::path& path) {
-  try {
-    return json::parse(ReadFile(path));
-  } catch (const json::exception& problem) {
-    throw RuntimeError("file '{}' is not JSON: {}", path.string(), problem.what());
+  json document = ParseBoundedJson<json>(ReadFile(path));
+  if (document.is_discarded()) {
+    throw RuntimeError("file '{}' is not JSON, or nested more than {} deep", path.string(),
+                       kMaxJsonDepth);
   }
+  return document;
 }
 
 MeasurementReader::MeasurementReader(const std::filesystem::path& file, const json& object,

@@ -12,7 +12,7 @@ OpenEnvironment::OpenEnvironment(const tasks::Task& task, const std::string& mod
   config.observation.proprioception = true;
   config.observation.goal_mode = task.goal_size() > 0 ? "both" : "none";
   environment_ = MakeEnvironment(config, nullptr);
-  numbers_.resize(static_cast<size_t>(environment_->spec().VectorSize()));
+  numbers_.resize(static_cast<size_t>(environment_->spec().RecordedVectorSize()));
 }
 
 void OpenEnvironment::Reset(uint64_t stream_key) {

@@ -41,13 +41,14 @@ Picture RenderTask(const RenderRequest& request) {
 
   const size_t plane = static_cast<size_t>(request.width) * static_cast<size_t>(request.height);
   std::vector<uint8_t> frame(3 * plane);
+  std::vector<float> unread(static_cast<size_t>(environment->spec().RecordedVectorSize()));
   const auto seed = static_cast<uint64_t>(request.seed);
-  environment->Reset(StreamKey(seed, StreamRole::kEvalEnvironment), {frame, {}});
+  environment->Reset(StreamKey(seed, StreamRole::kEvalEnvironment), {frame, unread});
   Random actions(StreamKey(seed, StreamRole::kEvalPolicy));
   std::vector<float> action(static_cast<size_t>(task.action_size()));
   for (int step = 0; step < request.env_steps; ++step) {
     for (float& component : action) component = static_cast<float>(actions.Uniform(-1, 1));
-    const StepResult result = environment->Step(action, {frame, {}});
+    const StepResult result = environment->Step(action, {frame, unread});
     if (result.terminated && step + 1 < request.env_steps) {
       throw RuntimeError("the episode of seed {} terminates at env step {}; asked for {}",
                          request.seed, step + 1, request.env_steps);

@@ -5,6 +5,7 @@
 #include "actor/worlds/fetch_world.h"
 #include "actor/worlds/tools/cross_version_file.h"
 #include "actor/worlds/tools/measurement_reader.h"
+#include "actor/worlds/tools/reference_file.h"
 #include "actor/worlds/tools/replay_states.h"
 #include "actor/worlds/tools/state_reference.h"
 #include "actor/worlds/world_registry.h"
@@ -15,6 +16,8 @@ namespace shoal::worlds {
 namespace {
 
 constexpr const char* kVersion = "3.3.8";
+// Pictures of the originals, which lie beside the trajectories (frame_parity_test reads them).
+constexpr const char* kPicturesFormat = "vrl-frames-1";
 constexpr double kTolerance = 1e-3, kDriftTolerance = 3e-3, kFoldingTolerance = 1.5e-2;
 
 ReplayReport ReplaySequence(const std::filesystem::path& path, const CrossVersionSequence& sequence,
@@ -52,7 +55,16 @@ std::vector<ReplayReport> ReplayFile(const std::filesystem::path& path,
                                      const ReplayOptions& options) {
   const nlohmann::json document = ReadJson(path);
   const MeasurementReader root(path, document, "");
-  if (root.Text("format") != kCrossVersionFormat) {
+  const std::string format = root.Text("format");
+  if (format == kPicturesFormat) {
+    log::Warning("{}: skipped: it holds pictures ({}), no trajectory", path.string(), format);
+    return {};
+  }
+  if (format != kCrossVersionFormat) {
+    if (format != kReferenceFormat) {
+      throw root.Fault("key 'format'", fmt::format("is '{}'; expected '{}' or '{}'", format,
+                                                   kReferenceFormat, kCrossVersionFormat));
+    }
     const bool goals = !IsStateEnvironment(root.Text("env"));
     return {goals ? ReplayReference(path, options) : ReplayStates(path, options)};
   }
@@ -63,7 +75,7 @@ std::vector<ReplayReport> ReplayFile(const std::filesystem::path& path,
   const std::string physics = options.physics.empty() ? "mujoco3" : options.physics;
   const CrossVersionFile file = ReadCrossVersions(path, kVersion);
   for (const std::string& name : file.left_out) {
-    log::Warning("{}: {} left out: no trajectory beside the file tells its actions", path.string(),
+    log::Warning("{}: {} skipped: no trajectory beside the file tells its actions", path.string(),
                  name);
   }
   std::vector<ReplayReport> reports;

@@ -14,6 +14,8 @@ namespace shoal::worlds {
 // known (the others are logged), see CrossVersionTolerance. The latter are replayed with physics
 // mujoco3 unless the options say otherwise, and in our own models only.
 //
+// A file of pictures (vrl-frames-1), which lies beside them, is logged and gives no report.
+//
 // Throws Error on a file that cannot be read or replayed and on physics or a model that do not
 // exist.
 std::vector<ReplayReport> ReplayFile(const std::filesystem::path& path,

@@ -95,6 +95,18 @@ std::string BlockText(const Block& block, const std::vector<MeasuredRange>& rang
   return text;
 }
 
+// What observation.proprioception may name: "grip 0-2, fingers 3-4".
+std::string StateBlocksText(const Task& task) {
+  std::string text;
+  int first = 0;
+  for (const Block& block : task.state_blocks()) {
+    const int last = first + block.size() - 1;
+    text += fmt::format("{}{} {}-{}", text.empty() ? "" : ", ", block.name, first, last);
+    first = last + 1;
+  }
+  return fmt::format("    by name: {}\n", text);
+}
+
 // "grip_x +0.1523 m, grip_velocity_x +0.0311 m/step"
 std::string LargestChanges(const AxisProbe& probe, const Block& block) {
   std::vector<size_t> order(probe.change.size());
@@ -143,6 +155,10 @@ ordered_json ToJson(const TaskDescription& description) {
     blocks.push_back(ToJson(task.desired_goal(), description.desired_goal));
   }
   for (const CameraView& camera : description.cameras) cameras.push_back(ToJson(camera));
+  ordered_json state_blocks = ordered_json::array();
+  for (const Block& block : task.state_blocks()) {
+    state_blocks.push_back({{"name", block.name}, {"size", block.size()}});
+  }
   const bool goals = task.goal_size() > 0;
   return {
       {"schema", "shoal-env-1"},
@@ -158,6 +174,7 @@ ordered_json ToJson(const TaskDescription& description) {
         {"threshold", goals ? ordered_json(task.distance_threshold()) : ordered_json(nullptr)}}},
       {"action", action},
       {"blocks", blocks},
+      {"state_blocks", state_blocks},
       {"measured_over_env_steps", description.random_env_steps},
       {"probes", probes},
       {"cameras", cameras},
@@ -179,6 +196,7 @@ std::string ToText(const TaskDescription& description) {
   text += fmt::format("  blocks: index, name, unit, bounds, range over {} random env steps\n",
                       description.random_env_steps);
   text += BlockText(task.observation(), description.observation);
+  text += StateBlocksText(task);
   text += BlockText(task.achieved_goal(), description.achieved_goal);
   text += BlockText(task.desired_goal(), description.desired_goal);
   text += "  cameras\n";

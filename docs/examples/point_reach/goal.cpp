@@ -1,7 +1,7 @@
 // Goal half: what is observed, what is a goal, what earns reward. No physics.
-#include "point_reach.h"
+#include "common/tasks/task_registry.h"
 
-namespace point_reach {
+namespace {
 
 shoal::tasks::Task GoalHalf() {
   shoal::tasks::Task::Description task;
@@ -10,11 +10,11 @@ shoal::tasks::Task GoalHalf() {
   task.episode_length = 40;
   task.action = {{"push_x", "", "force along x, 1 = 1 N", -1, 1},
                  {"push_y", "", "force along y, 1 = 1 N", -1, 1}};
-  task.observation = {"observation",
-                      {{"x", "m", "position of the point"},
-                       {"y", "m", "position of the point"},
-                       {"velocity_x", "m/s", "velocity of the point"},
-                       {"velocity_y", "m/s", "velocity of the point"}}};
+  task.observation = {
+      {"position", {{"x", "m", "position of the point"}, {"y", "m", "position of the point"}}},
+      {"velocity",
+       {{"velocity_x", "m/s", "velocity of the point"},
+        {"velocity_y", "m/s", "velocity of the point"}}}};
   task.achieved_goal = {"achieved_goal",
                         {{"x", "m", "position of the point"}, {"y", "m", "position of the point"}}};
   task.desired_goal = {"desired_goal",
@@ -24,4 +24,6 @@ shoal::tasks::Task GoalHalf() {
   return shoal::tasks::Task(task);
 }
 
-}  // namespace point_reach
+}  // namespace
+
+extern "C" void ShoalRegisterGoals() { shoal::tasks::AddTask(GoalHalf()); }

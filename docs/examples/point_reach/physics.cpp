@@ -5,10 +5,10 @@
 #include <array>
 
 #include "actor/worlds/model_text.h"
+#include "actor/worlds/world.h"
+#include "actor/worlds/world_registry.h"
 #include "common/base/random.h"
-#include "point_reach.h"
 
-namespace point_reach {
 namespace {
 
 using shoal::worlds::CameraView;
@@ -19,7 +19,8 @@ constexpr char kModel[] = R"(
   <worldbody>
     <light pos="0 0 2" dir="0 0 -1" directional="true" castshadow="false"/>
     <geom name="floor" type="plane" size="0.6 0.6 1" rgba="0.8 0.8 0.8 1"/>
-    <site name="target" type="sphere" size="0.05" rgba="1 0 0 1"/>
+    <!-- Not at its body's origin: the engine would not look at site_pos (docs/own_task.md). -->
+    <site name="target" pos="0 0 0.001" type="sphere" size="0.05" rgba="1 0 0 1"/>
     <body name="point" pos="0 0 0.04">
       <joint name="x" type="slide" axis="1 0 0" damping="1"/>
       <joint name="y" type="slide" axis="0 1 0" damping="1"/>
@@ -45,7 +46,7 @@ class PointReach final : public shoal::worlds::World {
   void Reset(shoal::Random* random) override {
     mj_resetData(&model(), &data());
     for (double& coordinate : goal_) coordinate = random->Uniform(-kGoalRange, kGoalRange);
-    std::copy(goal_.begin(), goal_.end(), model().site_pos + 3 * target_);
+    PlaceSite(target_, std::array{goal_[0], goal_[1], 0.0});
     mj_forward(&model(), &data());
   }
 
@@ -73,10 +74,10 @@ class PointReach final : public shoal::worlds::World {
   std::array<double, 2> goal_{};
 };
 
-}  // namespace
-
 std::unique_ptr<shoal::worlds::World> MakePhysicsHalf(const shoal::worlds::WorldOptions& options) {
   return std::make_unique<PointReach>(options);
 }
 
-}  // namespace point_reach
+}  // namespace
+
+extern "C" void ShoalRegisterPhysics() { shoal::worlds::AddWorld("PointReach", MakePhysicsHalf); }

@@ -57,7 +57,8 @@ TEST(CustomCameras, DrawWhatTheySeeAndMarkTheSpec) {
     config.observation = observation;
     const auto environment = MakeEnvironment(config, MakeRenderContext(observation));
     frame->resize(static_cast<size_t>(environment->spec().FrameBytes()));
-    environment->Reset(1, {*frame, {}});
+    std::vector<float> unread(static_cast<size_t>(environment->spec().RecordedVectorSize()));
+    environment->Reset(1, {*frame, unread});
     return environment->spec();
   };
   std::vector<uint8_t> above, aside;
@@ -74,7 +75,7 @@ TEST(DistanceThreshold, OfTheConfigurationReplacesTheTasksOwn) {
     config.distance_threshold = threshold;
     config.observation.pixels = false;
     const auto environment = MakeEnvironment(config, nullptr);
-    std::vector<float> numbers(static_cast<size_t>(environment->spec().VectorSize()));
+    std::vector<float> numbers(static_cast<size_t>(environment->spec().RecordedVectorSize()));
     const float distance = environment->Reset(1, {{}, numbers});
     EXPECT_GT(distance, 0.06);
     const StepResult result = environment->Step(std::vector<float>(4), {{}, numbers});

@@ -12,13 +12,14 @@
 #include "actor/worlds/tools/reference_file.h"
 #include "actor/worlds/world_registry.h"
 #include "common/base/files.h"
+#include "tests/support/paths.h"
 
 namespace shoal::worlds {
 namespace {
 
 constexpr int kSide = 84;
 constexpr size_t kPlane = kSide * kSide;
-const std::string kFolder = SHOAL_GOLDEN "/reference/fetch_";
+const std::string kFolder = GoldenPath("reference/fetch_");
 
 using Frame = std::vector<uint8_t>;  // (3, 84, 84)
 

@@ -8,6 +8,7 @@
 
 #include "actor/worlds/world_registry.h"
 #include "common/base/error.h"
+#include "tests/support/paths.h"
 
 namespace shoal::worlds {
 namespace {
@@ -128,7 +129,7 @@ TEST(Hopper, TheFirstCameraFollows) {
 
 TEST(Hopper, RefusesAnotherRobotsModel) {
   try {
-    Hopper hopper(HopperV5(), SHOAL_TEST_DATA "/other_reach.xml");
+    Hopper hopper(HopperV5(), SourcePath("tests/actor/worlds/other_reach.xml"));
     FAIL() << "took a Fetch arm for a hopper";
   } catch (const Error& error) {
     EXPECT_NE(std::string(error.what()).find("expected 6, 6 and 3"), std::string::npos)

@@ -14,12 +14,6 @@
 #include "actor/worlds/model_loading.h"
 #include "tests/support/temporary_folder.h"
 
-#ifdef __SANITIZE_ADDRESS__
-// As in render_context.cpp, which this test does without.
-extern "C" const char* __lsan_default_suppressions();
-extern "C" const char* __lsan_default_suppressions() { return "leak:libOSMesa.so\n"; }
-#endif
-
 namespace shoal::worlds {
 namespace {
 

@@ -11,6 +11,7 @@
 #include "actor/worlds/tools/state_reference.h"
 #include "actor/worlds/world_registry.h"
 #include "tests/common/image/png_file.h"
+#include "tests/support/paths.h"
 
 namespace shoal::worlds {
 namespace {
@@ -38,8 +39,8 @@ class OriginalFrames : public testing::TestWithParam<Original> {
  protected:
   // Mean over pixels and channels of |ours - original|, in grey levels, after `step` control steps.
   double Error(const std::string& quality, int step) const {
-    const StateTrajectory reference = ReadStateReference(std::string(SHOAL_GOLDEN "/reference/") +
-                                                         GetParam().reference + ".json");
+    const StateTrajectory reference =
+        ReadStateReference(GoldenPath("reference/") + GetParam().reference + ".json");
     const auto world = MakeWorld(GetParam().world, {});
     if (reference.target) dynamic_cast<ReacherEasy&>(*world).PlaceTarget(*reference.target);
     const auto& qpos =
@@ -55,9 +56,8 @@ class OriginalFrames : public testing::TestWithParam<Original> {
     std::vector<uint8_t> frame(3 * kPlane);
     context.Render(world.get(), world->cameras().first(1), frame);
 
-    const PngPicture original =
-        ReadRgbPng(std::string(SHOAL_GOLDEN "/frames/") + GetParam().picture +
-                   (step == 0 ? "_00.png" : "_50.png"));
+    const PngPicture original = ReadRgbPng(GoldenPath("frames/") + GetParam().picture +
+                                           (step == 0 ? "_00.png" : "_50.png"));
     EXPECT_EQ(original.pixels.size(), frame.size());
     double sum = 0;
     for (size_t i = 0; i < frame.size(); ++i) {

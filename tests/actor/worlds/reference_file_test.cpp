@@ -9,6 +9,7 @@
 
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
 
 namespace shoal::worlds {
@@ -18,7 +19,7 @@ using nlohmann::json;
 using testing::AllOf;
 using testing::HasSubstr;
 
-const std::string kZero = SHOAL_GOLDEN "/reference/fetch_Reach_zero.json";
+const std::string kZero = GoldenPath("reference/fetch_Reach_zero.json");
 
 json Golden() { return json::parse(ReadFile(kZero)); }
 
@@ -58,7 +59,7 @@ TEST(ReferenceFile, ReadsWhatTheFileHolds) {
 }
 
 TEST(ReferenceFile, ReadsTheObjectOfTasksThatHaveOne) {
-  const std::string path = SHOAL_GOLDEN "/reference/fetch_Push_zero.json";
+  const std::string path = GoldenPath("reference/fetch_Push_zero.json");
   const ReferenceTrajectory trajectory = ReadReference(path);
   const json document = json::parse(ReadFile(path));
   EXPECT_EQ(trajectory.task, "FetchPush");

@@ -14,6 +14,7 @@
 #include "actor/worlds/fetch_reach.h"
 #include "actor/worlds/world_registry.h"
 #include "common/base/error.h"
+#include "tests/support/paths.h"
 
 namespace shoal::worlds {
 namespace {
@@ -241,7 +242,7 @@ TEST(RenderContext, DrawingDoesNotChangeThePhysics) {
 
 TEST(RenderContext, RefusesAWorldWithAnotherModel) {
   FetchReach ours;
-  FetchReach other({.model = SHOAL_TEST_DATA "/other_reach.xml"});
+  FetchReach other({.model = SourcePath("tests/actor/worlds/other_reach.xml")});
   RenderContext context(Observation("fast"));
   context.Attach(&ours);
   EXPECT_THROW(context.Attach(&other), Error);

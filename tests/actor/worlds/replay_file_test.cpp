@@ -10,6 +10,7 @@
 #include "actor/worlds/tools/cross_version_file.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
 
 namespace shoal::worlds {
@@ -17,7 +18,7 @@ namespace {
 
 using testing::HasSubstr;
 
-const std::string kFolder = SHOAL_GOLDEN "/reference/";
+const std::string kFolder = GoldenPath("reference/");
 const std::string kCrossVersion = kFolder + "fetch_crossversion_grip.json";
 
 std::string Complaint(const std::filesystem::path& path, const ReplayOptions& options = {}) {
@@ -79,6 +80,15 @@ TEST(ReplayFile, SequencesWhoseActionsNothingTellsAreLeftOutAndSaid) {
   const CrossVersionFile file = ReadCrossVersions(path, "3.3.8");
   EXPECT_TRUE(file.sequences.empty());
   EXPECT_EQ(file.left_out, std::vector<std::string>{"FetchReach random_hold5"});
+}
+
+// `shoal env replay fetch_Reach_*.json` meets them beside the trajectories.
+TEST(ReplayFile, PicturesAreSkippedAndAnUnknownFormatIsNamed) {
+  EXPECT_TRUE(ReplayFile(kFolder + "fetch_Reach_frames_84.json").empty());
+  const TemporaryFolder folder;
+  WriteFileAtomically(folder.path() / "later.json", R"({"format": "vrl-ref-9"})");
+  EXPECT_THAT(Complaint(folder.path() / "later.json"),
+              testing::AllOf(HasSubstr("vrl-ref-9"), HasSubstr("vrl-ref-1")));
 }
 
 TEST(ReplayFile, NamesWhatIsWrong) {

@@ -7,12 +7,13 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/files.h"
+#include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
 
 namespace shoal::worlds {
 namespace {
 
-const std::string kFolder = SHOAL_GOLDEN "/reference/fetch_";
+const std::string kFolder = GoldenPath("reference/fetch_");
 const std::string kZero = kFolder + "Reach_zero.json";
 
 struct Recorded {

@@ -9,6 +9,7 @@
 #include "actor/worlds/tools/replay_file.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
 
 namespace shoal::worlds {
@@ -17,7 +18,7 @@ namespace {
 using nlohmann::json;
 using testing::HasSubstr;
 
-std::string Golden(const std::string& name) { return SHOAL_GOLDEN "/reference/" + name + ".json"; }
+std::string Golden(const std::string& name) { return GoldenPath("reference/" + name + ".json"); }
 
 class StateParity : public testing::TestWithParam<const char*> {};
 

@@ -44,7 +44,7 @@ class Player {
       : number_(number),
         environment_(MakeEnvironment(config, std::move(render))),
         frame_(static_cast<size_t>(environment_->spec().FrameBytes())),
-        vector_(static_cast<size_t>(environment_->spec().VectorSize())) {}
+        vector_(static_cast<size_t>(environment_->spec().RecordedVectorSize())) {}
 
   void Begin(int episode) {
     const auto env = static_cast<uint64_t>(number_), k = static_cast<uint64_t>(episode);

@@ -3,14 +3,17 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "actor/worlds/fetch_world.h"
+#include "actor/worlds/site_motion.h"
 #include "actor/worlds/world_registry.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
 
 namespace shoal::worlds {
@@ -33,7 +36,7 @@ std::string Replaced(std::string text, const std::string& from, const std::strin
 
 // The least that each task can work with.
 std::string LeastModel(const std::string& task) {
-  std::string text = ReadFile(SHOAL_TEST_DATA "/other_reach.xml");
+  std::string text = ReadFile(SourcePath("tests/actor/worlds/other_reach.xml"));
   if (task == "FetchReach") return text;
   text = Replaced(text, "</worldbody>", std::string(kObject) + "</worldbody>");
   if (task == "FetchPickAndPlace")
@@ -88,6 +91,20 @@ TEST_P(UserModel, MayBeHeldAsInMujoco3) {
   const auto world = MakeWorld(GetParam(), {.model = path.string(), .physics = "mujoco3"});
   const auto literal = MakeWorld(GetParam(), {.model = path.string(), .physics = "mujoco2"});
   EXPECT_NE(world->fingerprint(), literal->fingerprint());
+}
+
+// The engine takes the place of a site at its body's origin from the body alone, whatever site_pos
+// says; pictures would show the target in one place for every goal.
+TEST_P(UserModel, ATargetAtItsBodysOriginGoesWhereTheGoalIs) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "mine.xml";
+  WriteFileAtomically(path, LeastModel(GetParam()));
+  const auto world = MakeWorld(GetParam(), {.model = path.string()});
+  auto& fetch = dynamic_cast<FetchWorld&>(*world);
+  for (const std::array<double, 3>& goal : {std::array{1.3, 0.7, 0.5}, std::array{1.4, 0.6, 0.9}}) {
+    fetch.ResetTo(goal, {1.3, 0.7});
+    EXPECT_EQ(PositionOfSite(fetch, fetch.SiteId("target0")), goal);
+  }
 }
 
 TEST(UserModelFile, TheObjectsJointMustBeFree) {

@@ -16,6 +16,7 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/tasks/task_registry.h"
+#include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
 
 namespace shoal::worlds {
@@ -45,7 +46,7 @@ struct Player {
   explicit Player(std::unique_ptr<Environment> made)
       : environment(std::move(made)),
         frame(static_cast<size_t>(environment->spec().FrameBytes())),
-        vector(static_cast<size_t>(environment->spec().VectorSize())) {}
+        vector(static_cast<size_t>(environment->spec().RecordedVectorSize())) {}
 
   float Reset(uint64_t key) {
     actions = Random(key + 1);
@@ -74,10 +75,13 @@ struct Player {
   Random actions{0};
 };
 
+// Of the observed blocks.
 std::vector<std::string> BlockNames(const Config& config) {
   std::vector<std::string> names;
   const auto environment = Make(config);
-  for (const BlockSpec& block : environment->spec().blocks) names.push_back(block.name);
+  for (const BlockSpec& block : environment->spec().blocks) {
+    if (block.observed) names.push_back(block.name);
+  }
   return names;
 }
 
@@ -92,10 +96,14 @@ size_t ResidentBytes(mjtByte* start, size_t size) {
 
 using Names = std::vector<std::string>;
 
-TEST(WorldEnvironment, PixelsAloneCarryNoBlocks) {
+TEST(WorldEnvironment, FromPixelsAloneBlocksAreRecordedAndNotSeen) {
   const auto environment = Make(Pixels());
   const ObservationSpec& spec = environment->spec();
-  EXPECT_TRUE(spec.blocks.empty());
+  EXPECT_EQ(spec.VectorSize(), 0);
+  EXPECT_EQ(spec.RecordedVectorSize(), 10 + 3 + 3);
+  EXPECT_EQ(spec.Recorded("grip_velocity"), (ObservationSpec::Range{5, 3}));
+  EXPECT_EQ(spec.Recorded("achieved_goal"), (ObservationSpec::Range{10, 3}));
+  EXPECT_EQ(spec.Recorded("desired_goal"), (ObservationSpec::Range{13, 3}));
   EXPECT_EQ(spec.cameras, (Names{"front", "side"}));
   EXPECT_EQ(spec.channels, 6);
   EXPECT_EQ(spec.height, 84);
@@ -111,16 +119,51 @@ TEST(WorldEnvironment, TheGoalModeDecidesTheGoalBlocks) {
   config.observation.goal_mode = "both";
   EXPECT_EQ(BlockNames(config), (Names{"achieved_goal", "desired_goal"}));
   config.observation.proprioception = true;
-  EXPECT_EQ(BlockNames(config), (Names{"observation", "achieved_goal", "desired_goal"}));
+  EXPECT_EQ(BlockNames(config), (Names{"grip", "fingers", "grip_velocity", "finger_velocities",
+                                       "achieved_goal", "desired_goal"}));
   config.observation.goal_mode = "none";
-  EXPECT_EQ(BlockNames(config), Names{"observation"});
+  EXPECT_EQ(BlockNames(config), (Names{"grip", "fingers", "grip_velocity", "finger_velocities"}));
 }
 
-TEST(WorldEnvironment, WithoutPixelsTheObservationBlockIsAlwaysThere) {
+TEST(WorldEnvironment, StateBlocksAreSeenByNameInThePublishedOrder) {
+  Config config = Pixels();
+  config.task = "FetchPush";
+  config.observation.goal_mode = "desired";
+  config.observation.proprioception = StateBlocks({"grip_velocity", "grip", "fingers"});
+  EXPECT_EQ(BlockNames(config), (Names{"grip", "fingers", "grip_velocity", "desired_goal"}));
+  config.observation.proprioception = StateBlocks({"grip", "objekt"});
+  try {
+    Make(config);
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.exit_code(), 2);
+    EXPECT_THAT(error.what(), testing::HasSubstr("block 'objekt'; the state blocks of FetchPush "
+                                                 "are: grip, object, object_from_grip, fingers"));
+  }
+}
+
+TEST(WorldEnvironment, WithHindsightPicturesDoNotShowTheGoal) {
+  Config config = Pixels();
+  config.observation.goal_mode = "desired";
+  Player shown(Make(config));
+  config.replay.hindsight = "future";
+  Player hidden(Make(config));
+  EXPECT_NE(hidden.environment->spec().Hash(), shown.environment->spec().Hash());
+  // The arm starts every episode in the same place: two first frames differ by their goals alone.
+  const auto first_frame = [](Player* player, uint64_t key) {
+    player->Reset(key);
+    return player->frame;
+  };
+  EXPECT_NE(first_frame(&shown, 1), first_frame(&shown, 2));
+  EXPECT_EQ(first_frame(&hidden, 1), first_frame(&hidden, 2));
+}
+
+TEST(WorldEnvironment, WithoutPixelsTheStateIsAlwaysSeen) {
   Config config = StateOnly();
-  EXPECT_EQ(BlockNames(config), (Names{"observation", "achieved_goal", "desired_goal"}));
+  EXPECT_EQ(BlockNames(config), (Names{"grip", "fingers", "grip_velocity", "finger_velocities",
+                                       "achieved_goal", "desired_goal"}));
   config.observation.goal_mode = "none";
-  EXPECT_EQ(BlockNames(config), Names{"observation"});
+  EXPECT_EQ(BlockNames(config), (Names{"grip", "fingers", "grip_velocity", "finger_velocities"}));
   const auto environment = Make(config);
   EXPECT_FALSE(environment->spec().HasPixels());
   EXPECT_EQ(environment->spec().FrameBytes(), 0);
@@ -247,7 +290,7 @@ TEST(WorldEnvironment, TheFingerprintIsThatOfModelAndPicture) {
   EXPECT_NE(fingerprint(config), fingerprint(cameras));
   EXPECT_NE(fingerprint(config), fingerprint(StateOnly()));
   Config model = StateOnly();
-  model.model = SHOAL_TEST_DATA "/other_reach.xml";
+  model.model = SourcePath("tests/actor/worlds/other_reach.xml");
   EXPECT_NE(fingerprint(model), fingerprint(StateOnly()));
 }
 
@@ -331,7 +374,7 @@ tasks::Task CountdownTask(int episode_length) {
   description.name = "Countdown";
   description.episode_length = episode_length;
   description.action = {{"push", ""}};
-  description.observation = {"observation", {{"left", ""}}};
+  description.observation = {{"observation", {{"left", ""}}}};
   return tasks::Task(description);
 }
 
@@ -352,6 +395,27 @@ TEST(WorldEnvironment, TasksWithoutGoalsTakeRewardAndEndFromThePhysics) {
     EXPECT_TRUE(std::isnan(result.distance));
   }
   EXPECT_EQ(left[0], 0.0f);
+}
+
+TEST(WorldEnvironment, WithHindsightAGoalThatCannotBeHiddenIsRefused) {
+  tasks::Task::Description description;
+  description.name = "Countdown";
+  description.episode_length = 10;
+  description.action = {{"push", ""}};
+  description.achieved_goal = {"achieved_goal", {{"x", "m"}}};
+  description.desired_goal = {"desired_goal", {{"x", "m"}}};
+  Config config;
+  config.observation.cameras = {};
+  config.replay.hindsight = "final";
+  config.observation.goal_mode = "desired";
+  try {
+    const WorldEnvironment environment(tasks::Task(description), std::make_unique<Countdown>(),
+                                       config, MakeRenderContext(config.observation));
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.exit_code(), 2);
+    EXPECT_THAT(error.what(), testing::HasSubstr("pictures of task Countdown show the goal"));
+  }
 }
 
 TEST(WorldEnvironment, ANumberThatIsNotFiniteIsAnErrorOfItsOwnExitCode) {

@@ -44,8 +44,14 @@ TEST(WorldRegistry, FindsCamerasByNameAndListsThemOtherwise) {
   }
 }
 
-TEST(WorldRegistryDeathTest, AGoalHalfWithoutPhysicsIsABug) {
-  EXPECT_DEATH(MakeWorld("Juggling", {}), "Juggling");
+TEST(WorldRegistry, AGoalHalfWithoutPhysicsIsAUsageError) {
+  try {
+    MakeWorld("Juggling", {});
+    FAIL() << "found a world that is not there";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.exit_code(), 2);
+    EXPECT_THAT(error.what(), HasSubstr("no physics half 'Juggling'"));
+  }
 }
 
 }  // namespace

@@ -67,12 +67,13 @@ TEST(Lockstep, AnUpdateWaitsForExactlyTheStepsOfItsPhase) {
   }
 }
 
-TEST(Lockstep, TheLastUpdateIsThatOfTheFirstPhaseThatSpendsTheBudget) {
+TEST(Lockstep, ARunEndsWithTheFirstPhaseThatSpendsTheBudget) {
   Config config = Lockstep(1000, 4, 8, 64, 128);  // phase p ends after 4 * (256 + 8 p) env steps
   for (const auto& [budget, phase] :
        {std::pair{500, 0}, {1024, 0}, {1025, 1}, {1056, 1}, {1057, 2}, {1200, 6}}) {
     config.env_steps = budget;
     EXPECT_EQ(LockstepLastUpdate(config), 16u * phase) << budget;
+    EXPECT_EQ(LockstepEnvSteps(config), 1024u + 32u * phase) << budget;
   }
 }
 

@@ -14,7 +14,7 @@ using ::testing::IsSupersetOf;
 
 TEST(Presets, AllLoadAndAreValid) {
   const std::vector<std::string> names = ListPresets();
-  EXPECT_THAT(names, IsSupersetOf({"fetch-reach-drq", "fetch-reach-state"}));
+  EXPECT_THAT(names, IsSupersetOf({"fetch-reach-drq", "fetch-reach-state", "fetch-reach-her"}));
   for (const std::string& name : names) {
     const Config config = LoadPreset(name);
     EXPECT_EQ(config.preset, name);
@@ -34,6 +34,13 @@ TEST(Presets, StateRendersNothing) {
   const Config config = LoadPreset("fetch-reach-state");
   EXPECT_FALSE(config.observation.pixels);
   EXPECT_TRUE(config.observation.proprioception);
+}
+
+TEST(Presets, HerLearnsFromSparseRewardsAndGoalsOfHindsight) {
+  const Config config = LoadPreset("fetch-reach-her");
+  EXPECT_EQ(config.task, "FetchReach");
+  EXPECT_EQ(config.replay.hindsight, "future");
+  EXPECT_EQ(config.observation.goal_mode, "desired");
 }
 
 TEST(Presets, RefuseAnUnknownNameListingTheKnown) {

@@ -44,5 +44,14 @@ TEST(ParseStrictJson, SaysWhereTheTextIsBroken) {
   EXPECT_THAT(Mistake("{\"a\": 1e999}"), HasSubstr("not valid JSON"));
 }
 
+TEST(ParseStrictJson, RefusesADeepNestingInOneShortLine) {
+  const std::string deep = R"({"seed": )" + std::string(300'000, '[') + std::string(300'000, ']');
+  EXPECT_EQ(Mistake(deep + "}"), "x.json: nested more than 64 deep");
+}
+
+TEST(ParseStrictJson, QuotesLittleOfALongToken) {
+  EXPECT_LT(Mistake("{\"a\": \"" + std::string(100'000, 'x')).size(), 500u);
+}
+
 }  // namespace
 }  // namespace shoal

@@ -52,16 +52,16 @@ std::vector<uint8_t> Chunk(const ChunkFields& fields) {
       .bytes();
 }
 
-struct ShardFields {
-  uint32_t shard = 1, shards = 3;
+struct PartFields {
+  uint32_t part = 1, parts = 3;
   uint64_t offset = 8, total_bytes = 20;
   std::string payload = "abcdefgh";
 };
 
-std::vector<uint8_t> Shard(const ShardFields& fields) {
+std::vector<uint8_t> Part(const PartFields& fields) {
   return CdrWriter()
       .Put<uint8_t>(1)
-      .Put<uint32_t>(fields.shard)
+      .Put<uint32_t>(fields.part)
       .Put<uint64_t>(11)
       .Put<uint64_t>(12)
       .Put<uint64_t>(13)
@@ -69,7 +69,7 @@ std::vector<uint8_t> Shard(const ShardFields& fields) {
       .Put<uint64_t>(fields.total_bytes)
       .Put<uint64_t>(16)
       .Put<uint64_t>(17)
-      .Put<uint32_t>(fields.shards)
+      .Put<uint32_t>(fields.parts)
       .PutBytes(fields.payload)
       .bytes();
 }
@@ -77,11 +77,13 @@ std::vector<uint8_t> Shard(const ShardFields& fields) {
 std::vector<uint8_t> Weights(uint64_t session, const std::string& payload,
                              const std::string& checkpoint) {
   return CdrWriter()
-      .Put<uint8_t>(1)
+      .Put<uint8_t>(2)
+      .Put<uint32_t>(20)
       .Put<uint64_t>(21)
       .Put<uint64_t>(session)
       .Put<uint64_t>(23)
       .Put<uint64_t>(24)
+      .Put<uint64_t>(26)
       .Put<uint32_t>(25)
       .PutBytes(payload)
       .PutString(checkpoint)
@@ -127,29 +129,31 @@ TEST(BulkCdr, ReadsTheDocumentedBytesOfAChunk) {
   EXPECT_EQ(Text(chunk.payload), "abcdefgh");
 }
 
-TEST(BulkCdr, ReadsEveryFieldOfAShard) {
-  const std::vector<uint8_t> cdr = Shard({});
-  BatchShard shard;
-  ASSERT_TRUE(ParseCdr(std::span<const uint8_t>(cdr), &shard));
-  EXPECT_EQ(shard.shard, 1u);
-  EXPECT_EQ(shard.shards, 3u);
-  EXPECT_EQ(shard.spec_hash, 11u);
-  EXPECT_EQ(shard.learner_session, 12u);
-  EXPECT_EQ(shard.request, 13u);
-  EXPECT_EQ(shard.offset, 8u);
-  EXPECT_EQ(shard.total_bytes, 20u);
-  EXPECT_EQ(shard.stored_records, 16u);
-  EXPECT_EQ(shard.stored_steps, 17u);
-  EXPECT_EQ(Text(shard.payload), "abcdefgh");
+TEST(BulkCdr, ReadsEveryFieldOfAPart) {
+  const std::vector<uint8_t> cdr = Part({});
+  BatchPart part;
+  ASSERT_TRUE(ParseCdr(std::span<const uint8_t>(cdr), &part));
+  EXPECT_EQ(part.part, 1u);
+  EXPECT_EQ(part.parts, 3u);
+  EXPECT_EQ(part.spec_hash, 11u);
+  EXPECT_EQ(part.learner_session, 12u);
+  EXPECT_EQ(part.request, 13u);
+  EXPECT_EQ(part.offset, 8u);
+  EXPECT_EQ(part.total_bytes, 20u);
+  EXPECT_EQ(part.stored_records, 16u);
+  EXPECT_EQ(part.stored_steps, 17u);
+  EXPECT_EQ(Text(part.payload), "abcdefgh");
 }
 
 TEST(BulkCdr, ReadsEveryFieldOfWeights) {
   const std::vector<uint8_t> cdr = Weights(22, "tensors", "step_5");
-  WeightsMessage weights;
+  WeightsPart weights;
   ASSERT_TRUE(ParseCdr(std::span<const uint8_t>(cdr), &weights));
   EXPECT_EQ(weights.spec_hash, 21u);
   EXPECT_EQ(weights.version, (WeightsVersion{22, 23}));
+  EXPECT_EQ(weights.part, 20u);
   EXPECT_EQ(weights.env_steps, 24u);
+  EXPECT_EQ(weights.total_bytes, 26u);
   EXPECT_EQ(weights.crc, 25u);
   EXPECT_EQ(weights.checkpoint, "step_5");
   EXPECT_EQ(Text(weights.payload), "tensors");
@@ -161,14 +165,14 @@ TEST(BulkCdr, PayloadIsBorrowedAndStartsAtAMultipleOfEight) {
     return message.payload.data() - (cdr.data() + 4);
   };
   EXPECT_EQ(offset(Chunk({}), TransitionChunk{}) % 8, 0);
-  EXPECT_EQ(offset(Shard({}), BatchShard{}) % 8, 0);
-  EXPECT_EQ(offset(Weights(22, "tensors", "step_5"), WeightsMessage{}) % 8, 0);
+  EXPECT_EQ(offset(Part({}), BatchPart{}) % 8, 0);
+  EXPECT_EQ(offset(Weights(22, "tensors", "step_5"), WeightsPart{}) % 8, 0);
 }
 
 TEST(BulkCdr, RefusesEveryTruncation) {
   ExpectEveryTruncationRefused<TransitionChunk>(Chunk({}));
-  ExpectEveryTruncationRefused<BatchShard>(Shard({}));
-  ExpectEveryTruncationRefused<WeightsMessage>(Weights(22, "tensors", "step_5"));
+  ExpectEveryTruncationRefused<BatchPart>(Part({}));
+  ExpectEveryTruncationRefused<WeightsPart>(Weights(22, "tensors", "step_5"));
 }
 
 TEST(BulkCdr, AllowsPaddingButNoFurtherFields) {
@@ -192,28 +196,30 @@ TEST(BulkCdr, RefusesOtherVersionsAndEncodings) {
 
 TEST(BulkCdr, RefusesChunksThatContradictThemselves) {
   EXPECT_FALSE(Accepts<TransitionChunk>(Chunk({.count = 0})));
+  EXPECT_TRUE(Accepts<TransitionChunk>(Chunk({.count = 0, .payload = ""})));
   EXPECT_FALSE(Accepts<TransitionChunk>(Chunk({.count = 3})));  // 8 bytes are not 3 equal records
   EXPECT_FALSE(Accepts<TransitionChunk>(Chunk({.payload = ""})));
   EXPECT_FALSE(Accepts<TransitionChunk>(Chunk({.first_sequence = 0})));
   EXPECT_FALSE(Accepts<TransitionChunk>(Chunk({.first_sequence = UINT64_MAX})));
 }
 
-TEST(BulkCdr, RefusesShardsOutsideTheirBatch) {
-  EXPECT_FALSE(Accepts<BatchShard>(Shard({.shard = 3})));
-  EXPECT_TRUE(Accepts<BatchShard>(Shard({.offset = 12})));
-  EXPECT_FALSE(Accepts<BatchShard>(Shard({.offset = 13})));
-  EXPECT_FALSE(Accepts<BatchShard>(Shard({.offset = 21})));
-  EXPECT_FALSE(Accepts<BatchShard>(Shard({.offset = UINT64_MAX - 3, .total_bytes = UINT64_MAX})));
-  EXPECT_FALSE(Accepts<BatchShard>(Shard({.payload = ""})));
+TEST(BulkCdr, RefusesPartsOutsideTheirBatch) {
+  EXPECT_FALSE(Accepts<BatchPart>(Part({.part = 3})));
+  EXPECT_TRUE(Accepts<BatchPart>(Part({.offset = 12})));
+  EXPECT_FALSE(Accepts<BatchPart>(Part({.offset = 13})));
+  EXPECT_FALSE(Accepts<BatchPart>(Part({.offset = 21})));
+  EXPECT_FALSE(Accepts<BatchPart>(Part({.offset = UINT64_MAX - 3, .total_bytes = UINT64_MAX})));
+  EXPECT_FALSE(Accepts<BatchPart>(Part({.payload = ""})));
 }
 
 TEST(BulkCdr, RefusesWeightsWithoutSessionPayloadOrTerminatedName) {
-  EXPECT_TRUE(Accepts<WeightsMessage>(Weights(22, "tensors", "")));
-  EXPECT_FALSE(Accepts<WeightsMessage>(Weights(0, "tensors", "")));
-  EXPECT_FALSE(Accepts<WeightsMessage>(Weights(22, "", "")));
+  EXPECT_TRUE(Accepts<WeightsPart>(Weights(22, "tensors", "")));
+  EXPECT_FALSE(Accepts<WeightsPart>(Weights(0, "tensors", "")));
+  EXPECT_FALSE(Accepts<WeightsPart>(Weights(22, "", "")));
+  EXPECT_FALSE(Accepts<WeightsPart>(Weights(22, std::string(27, 'x'), ""))) << "of 26 in all";
   std::vector<uint8_t> cdr = Weights(22, "tensors", "step_5");
   cdr.back() = 'x';
-  EXPECT_FALSE(Accepts<WeightsMessage>(cdr));
+  EXPECT_FALSE(Accepts<WeightsPart>(cdr));
 }
 
 TEST(BulkCdr, SurvivesEveryFlippedBit) {
@@ -221,7 +227,7 @@ TEST(BulkCdr, SurvivesEveryFlippedBit) {
   for (size_t bit = 0; bit < valid.size() * 8; ++bit) {
     std::vector<uint8_t> cdr = valid;
     cdr[bit / 8] = static_cast<uint8_t>(cdr[bit / 8] ^ (1u << (bit % 8)));
-    WeightsMessage weights;
+    WeightsPart weights;
     if (!ParseCdr(std::span<const uint8_t>(cdr), &weights)) continue;
     EXPECT_LE(weights.payload.data() + weights.payload.size(), cdr.data() + cdr.size()) << bit;
   }
@@ -229,7 +235,7 @@ TEST(BulkCdr, SurvivesEveryFlippedBit) {
 
 TEST(BulkCdr, ACheckpointsNameHoldsNothingThatATerminalWouldObey) {
   const std::vector<uint8_t> cdr = Weights(22, "payload", "step\n\x1b[2J");
-  WeightsMessage message;
+  WeightsPart message;
   ASSERT_TRUE(ParseCdr(std::span<const uint8_t>(cdr), &message));
   EXPECT_EQ(message.checkpoint, "step ?[2J");
 }

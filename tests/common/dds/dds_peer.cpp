@@ -37,6 +37,7 @@
 #include "common/base/clock.h"
 #include "common/base/error.h"
 #include "common/base/main_guard.h"
+#include "common/dds/message_list.h"
 #include "common/dds/publisher.h"
 #include "common/dds/subscriber.h"
 #include "tests/common/dds/example_messages.h"
@@ -212,18 +213,9 @@ void Add(Endpoints* endpoints, const std::string& name) {
 
 Endpoints AllEndpoints() {
   Endpoints endpoints;
-  Add<TransitionChunk>(&endpoints, "TransitionChunk");
-  Add<CreditsMessage>(&endpoints, "CreditsMessage");
-  Add<SampleRequest>(&endpoints, "SampleRequest");
-  Add<BatchShard>(&endpoints, "BatchShard");
-  Add<WeightsMessage>(&endpoints, "WeightsMessage");
-  Add<EvalWeightsMessage>(&endpoints, "EvalWeightsMessage");
-  Add<MetricsMessage>(&endpoints, "MetricsMessage");
-  Add<ControlMessage>(&endpoints, "ControlMessage");
-  Add<EvalMessage>(&endpoints, "EvalMessage");
-  Add<RunViewMessage>(&endpoints, "RunViewMessage");
-  Add<CommandMessage>(&endpoints, "CommandMessage");
-  Add<ReplyMessage>(&endpoints, "ReplyMessage");
+#define SHOAL_ADD(message, ...) Add<message>(&endpoints, #message);
+  SHOAL_MESSAGES(SHOAL_ADD)
+#undef SHOAL_ADD
   return endpoints;
 }
 
@@ -274,6 +266,7 @@ std::unique_ptr<Bus> Join(const std::vector<std::string>& arguments) {
                                                      {"learner", Role::kLearner},
                                                      {"replay", Role::kReplay},
                                                      {"actor", Role::kActor},
+                                                     {"eval", Role::kEval},
                                                      {"client", Role::kClient}};
   ClusterAddress address;
   std::unique_ptr<Bus> bus;

@@ -36,7 +36,8 @@ inline void Fill(uint64_t n, Credit* m) {
         .session = 4,
         .stored = n,
         .allowed = n + 100,
-        .spec_hash = n + 1000};
+        .spec_hash = n + 1000,
+        .superseded_by = n + 18};
 }
 inline void Fill(uint64_t n, CreditsMessage* m) {
   m->credits.resize(2);
@@ -48,23 +49,26 @@ inline void Fill(uint64_t n, SampleRequest* m) {
         .learner_session = 6,
         .request = n,
         .batch = 128,
-        .after_steps = n + 7};
+        .after_steps = n + 7,
+        .schema_hash = n + 8};
 }
-inline void Fill(uint64_t n, BatchShard* m) {
+inline void Fill(uint64_t n, BatchPart* m) {
   *m = {.spec_hash = n + 1000,
         .learner_session = 6,
         .request = n,
-        .shard = 2,
-        .shards = 9,
+        .part = 2,
+        .parts = 9,
         .offset = n * 64,
         .total_bytes = n * 64 + m->payload.size() + 1,
         .stored_records = n + 8,
         .stored_steps = n + 9,
         .payload = m->payload};
 }
-inline void Fill(uint64_t n, WeightsMessage* m) {
+inline void Fill(uint64_t n, WeightsPart* m) {
+  m->part = 4;
   m->spec_hash = n + 1000;
   m->version = {6, n};
+  m->total_bytes = m->payload.size() + n;
   m->env_steps = n + 10;
   m->crc = static_cast<uint32_t>(n + 11);
   m->checkpoint = fmt::format("step_{}", n);
@@ -78,6 +82,17 @@ inline void Fill(uint64_t n, MetricsMessage* m) {
         .time = static_cast<double>(n),
         .names = {"a/b", "", "c"},
         .values = {0.1, -1e300, static_cast<double>(n)}};
+}
+inline void Fill(uint64_t n, ReplayProgress* m) {
+  *m = {.replay = 2, .session = 5, .stored_steps = n, .stored_records = n + 14};
+}
+inline void Fill(uint64_t n, LearnerProgress* m) {
+  *m = {.session = 6,
+        .updates = n,
+        .env_steps = n + 15,
+        .drained = true,
+        .evaluations = {{.update = n - 1, .env_steps = n + 16, .checkpoint = "step-ü"},
+                        {.update = n, .env_steps = n + 17, .checkpoint = ""}}};
 }
 inline void Fill(uint64_t n, ControlMessage* m) {
   *m = {.epoch = n,
@@ -110,16 +125,24 @@ inline void Fill(uint64_t n, CommandMessage* m) {
   *m = {.client = 7, .request = n, .verb = "set", .arguments = {"eval.interval=5", ""}};
 }
 inline void Fill(uint64_t n, ReplyMessage* m) {
-  *m = {.client = 7, .request = n, .accepted = true, .text = "done"};
+  *m = {.client = 7,
+        .request = n,
+        .accepted = true,
+        .text = "done",
+        .key = "eval.interval",
+        .from = static_cast<double>(n),
+        .to = -0.5};
 }
 
 // The number n of a message, for counting what is missing.
 inline uint64_t Number(const TransitionChunk& m) { return m.first_sequence; }
 inline uint64_t Number(const CreditsMessage& m) { return m.credits.at(0).stored; }
 inline uint64_t Number(const SampleRequest& m) { return m.request; }
-inline uint64_t Number(const BatchShard& m) { return m.request; }
-inline uint64_t Number(const WeightsMessage& m) { return m.version.update; }
+inline uint64_t Number(const BatchPart& m) { return m.request; }
+inline uint64_t Number(const WeightsPart& m) { return m.version.update; }
 inline uint64_t Number(const MetricsMessage& m) { return static_cast<uint64_t>(m.time); }
+inline uint64_t Number(const ReplayProgress& m) { return m.stored_steps; }
+inline uint64_t Number(const LearnerProgress& m) { return m.updates; }
 inline uint64_t Number(const ControlMessage& m) { return m.epoch; }
 inline uint64_t Number(const EvalMessage& m) { return m.version.update; }
 inline uint64_t Number(const RunViewMessage& m) { return m.updates; }
@@ -135,8 +158,8 @@ inline std::string Describe(const TransitionChunk& m) {
                      m.first_sequence, Bytes(m.payload));
 }
 inline std::string Describe(const Credit& m) {
-  return fmt::format("{} {} {} {} {} {}", m.replay_session, m.actor, m.session, m.stored, m.allowed,
-                     m.spec_hash);
+  return fmt::format("{} {} {} {} {} {} {}", m.replay_session, m.actor, m.session, m.stored,
+                     m.allowed, m.spec_hash, m.superseded_by);
 }
 inline std::string Describe(const CreditsMessage& m) {
   std::string all;
@@ -144,21 +167,32 @@ inline std::string Describe(const CreditsMessage& m) {
   return all;
 }
 inline std::string Describe(const SampleRequest& m) {
-  return fmt::format("{} {} {} {} {}", m.spec_hash, m.learner_session, m.request, m.batch,
-                     m.after_steps);
+  return fmt::format("{} {} {} {} {} {}", m.spec_hash, m.learner_session, m.request, m.batch,
+                     m.after_steps, m.schema_hash);
 }
-inline std::string Describe(const BatchShard& m) {
+inline std::string Describe(const BatchPart& m) {
   return fmt::format("{} {} {} {} {} {} {} {} {} {}", m.spec_hash, m.learner_session, m.request,
-                     m.shard, m.shards, m.offset, m.total_bytes, m.stored_records, m.stored_steps,
+                     m.part, m.parts, m.offset, m.total_bytes, m.stored_records, m.stored_steps,
                      Bytes(m.payload));
 }
-inline std::string Describe(const WeightsMessage& m) {
-  return fmt::format("{} {} {} {} {} {} {}", m.spec_hash, m.version.session, m.version.update,
-                     m.env_steps, m.crc, m.checkpoint, Bytes(m.payload));
+inline std::string Describe(const WeightsPart& m) {
+  return fmt::format("{} {} {} {} {} {} {} {} {}", m.part, m.spec_hash, m.version.session,
+                     m.version.update, m.env_steps, m.total_bytes, m.crc, m.checkpoint,
+                     Bytes(m.payload));
 }
 inline std::string Describe(const MetricsMessage& m) {
   return fmt::format("{} {} {} {} {} {} [{}] [{}]", m.role, m.id, m.host, m.pid, m.state, m.time,
                      fmt::join(m.names, ","), fmt::join(m.values, ","));
+}
+inline std::string Describe(const ReplayProgress& m) {
+  return fmt::format("{} {} {} {}", m.replay, m.session, m.stored_steps, m.stored_records);
+}
+inline std::string Describe(const LearnerProgress& m) {
+  std::string text = fmt::format("{} {} {} {}", m.session, m.updates, m.env_steps, m.drained);
+  for (const EvaluationRequest& e : m.evaluations) {
+    text += fmt::format(" ({} {} {})", e.update, e.env_steps, e.checkpoint);
+  }
+  return text;
 }
 inline std::string Describe(const ControlMessage& m) {
   return fmt::format("{} {} {} [{}] [{}]", m.epoch, static_cast<uint32_t>(m.state), m.time,
@@ -180,7 +214,8 @@ inline std::string Describe(const CommandMessage& m) {
   return fmt::format("{} {} {} [{}]", m.client, m.request, m.verb, fmt::join(m.arguments, ","));
 }
 inline std::string Describe(const ReplyMessage& m) {
-  return fmt::format("{} {} {} {}", m.client, m.request, m.accepted, m.text);
+  return fmt::format("{} {} {} {} {} {} {}", m.client, m.request, m.accepted, m.text, m.key, m.from,
+                     m.to);
 }
 
 // Builds message n and calls use(message) while its payload lives.

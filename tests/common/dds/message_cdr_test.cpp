@@ -19,8 +19,8 @@ bool IsTaken(const M& message) {
   return ParseCdr(EncodeCdr(message), &back);
 }
 
-MetricsMessage ValidMetrics() {
-  MetricsMessage message;
+ActorMetrics ValidMetrics() {
+  ActorMetrics message;
   message.role = "actor";
   message.time = 5;
   message.names = {"a", "b"};
@@ -45,8 +45,9 @@ class EveryMessage : public testing::Test {
   EveryMessage() { Fill(41, &message_); }
   M message_{};
 };
-using Messages = testing::Types<CreditsMessage, SampleRequest, MetricsMessage, ControlMessage,
-                                EvalMessage, RunViewMessage, CommandMessage, ReplyMessage>;
+using Messages =
+    testing::Types<CreditsMessage, SampleRequest, ActorMetrics, ReplayProgress, LearnerProgress,
+                   ControlMessage, EvalMessage, RunViewMessage, CommandMessage, ReplyMessage>;
 TYPED_TEST_SUITE(EveryMessage, Messages);
 
 TYPED_TEST(EveryMessage, IsReadAsCycloneWroteIt) {
@@ -126,13 +127,13 @@ TEST(MessageCdr, TextsHoldNothingThatATerminalWouldObey) {
 TEST(MessageCdr, NumbersOfWhichOnlyHalfIsThereAreRefused) {
   Bytes cdr = EncodeCdr(ValidMetrics());
   Resize(&cdr, cdr.size() - 8 - 8);
-  MetricsMessage back;
+  ActorMetrics back;
   EXPECT_FALSE(ParseCdr(cdr, &back));
 }
 
 TEST(MessageCdr, MetricsNeedARoleATimeAndAValuePerName) {
   EXPECT_TRUE(IsTaken(ValidMetrics()));
-  MetricsMessage message = ValidMetrics();
+  ActorMetrics message = ValidMetrics();
   message.values.pop_back();
   EXPECT_FALSE(IsTaken(message));
   message = ValidMetrics();
@@ -144,6 +145,41 @@ TEST(MessageCdr, MetricsNeedARoleATimeAndAValuePerName) {
   message = ValidMetrics();
   message.values[1] = NAN;  // a figure without meaning yet, such as a mean of nothing
   EXPECT_TRUE(IsTaken(message));
+}
+
+TEST(MessageCdr, ReportsAreOfASizeThatAReportCanHave) {
+  ActorMetrics message = ValidMetrics();
+  message.names.assign(1000, "a");
+  message.values.assign(1000, 1);
+  EXPECT_TRUE(IsTaken(message));
+  message.names.assign(1001, "a");
+  message.values.assign(1001, 1);
+  EXPECT_FALSE(IsTaken(message));
+  message = ValidMetrics();
+  message.names[0] = std::string(201, 'a');
+  EXPECT_FALSE(IsTaken(message));
+  message = ValidMetrics();
+  message.state = std::string(20'000'000, 'a');
+  EXPECT_FALSE(IsTaken(message));
+}
+
+TEST(MessageCdr, ProgressIsOfASessionAndItsEvaluationsAreOfUpdatesThatWereDone) {
+  EXPECT_TRUE(IsTaken(ReplayProgress{.session = 1}));
+  EXPECT_FALSE(IsTaken(ReplayProgress{.session = 0}));
+  LearnerProgress progress{.session = 1, .updates = 5};
+  progress.evaluations = {{.update = 5, .env_steps = 1, .checkpoint = "a"}};
+  EXPECT_TRUE(IsTaken(progress));
+  progress.evaluations[0].update = 6;
+  EXPECT_FALSE(IsTaken(progress));
+  progress.evaluations.assign(LearnerProgress::kMostEvaluations + 1, {});
+  EXPECT_FALSE(IsTaken(progress));
+}
+
+TEST(MessageCdr, ChangedSettingsAreNumbers) {
+  ControlMessage message{.epoch = 1, .state = RunState::kRunning, .time = 1};
+  message.setting_names = {"replay.samples_per_insert"};
+  message.setting_values = {NAN};
+  EXPECT_FALSE(IsTaken(message));
 }
 
 TEST(MessageCdr, ControlStatesAreTheThreeThatExist) {

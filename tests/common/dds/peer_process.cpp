@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "common/base/check.h"
+#include "tests/support/paths.h"
 
 extern char** environ;
 
@@ -54,7 +55,7 @@ void PeerProcess::Spawn(std::vector<std::string> words) {
   posix_spawn_file_actions_init(&actions);
   posix_spawn_file_actions_adddup2(&actions, down[0], STDIN_FILENO);
   posix_spawn_file_actions_adddup2(&actions, up[1], STDOUT_FILENO);
-  words.insert(words.begin(), std::string(SHOAL_BIN) + "/dds_peer");
+  words.insert(words.begin(), ProgramPath("dds_peer"));
   std::vector<char*> arguments;
   arguments.reserve(words.size() + 1);
   for (std::string& word : words) arguments.push_back(word.data());

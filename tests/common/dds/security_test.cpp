@@ -43,15 +43,21 @@ class SecurityTest : public ::testing::Test {
 };
 
 TEST_F(SecurityTest, EachRoleExchangesItsMessages) {
-  PeerProcess replay("replay", address_), learner("learner", address_), actor("actor", address_);
+  PeerProcess replay("replay", address_), learner("learner", address_), actor("actor", address_),
+      eval("eval", address_);
   ExpectSame<TransitionChunk>(actor, replay, "TransitionChunk");
   ExpectSame<CreditsMessage>(replay, actor, "CreditsMessage");
   ExpectSame<SampleRequest>(learner, replay, "SampleRequest");
-  ExpectSame<BatchShard>(replay, learner, "BatchShard");
-  ExpectSame<WeightsMessage>(learner, actor, "WeightsMessage");
-  ExpectSame<EvalWeightsMessage>(learner, actor, "EvalWeightsMessage");
-  ExpectSame<MetricsMessage>(actor, coordinator_, "MetricsMessage");
-  ExpectSame<EvalMessage>(actor, coordinator_, "EvalMessage");
+  ExpectSame<BatchPart>(replay, learner, "BatchPart");
+  ExpectSame<WeightsPart>(learner, actor, "WeightsPart");
+  ExpectSame<EvalWeightsPart>(learner, eval, "EvalWeightsPart");
+  ExpectSame<ActorMetrics>(actor, coordinator_, "ActorMetrics");
+  ExpectSame<EvalMetrics>(eval, coordinator_, "EvalMetrics");
+  ExpectSame<ReplayMetrics>(replay, coordinator_, "ReplayMetrics");
+  ExpectSame<LearnerMetrics>(learner, coordinator_, "LearnerMetrics");
+  ExpectSame<ReplayProgress>(replay, coordinator_, "ReplayProgress");
+  ExpectSame<LearnerProgress>(learner, coordinator_, "LearnerProgress");
+  ExpectSame<EvalMessage>(eval, coordinator_, "EvalMessage");
   ExpectSame<ControlMessage>(coordinator_, actor, "ControlMessage");
   ClusterAddress without_tag = address_;
   without_tag.tag = "-";
@@ -63,17 +69,17 @@ TEST_F(SecurityTest, EachRoleExchangesItsMessages) {
 // The stranger announces itself to the run all the time that the lawful actor needs to be matched,
 // and two more seconds.
 void ExpectKeptOut(PeerProcess& stranger, const ClusterAddress& run) {
-  EXPECT_EQ(stranger.Ask("subscribe WeightsMessage"), "ok");
+  EXPECT_EQ(stranger.Ask("subscribe WeightsPart"), "ok");
   EXPECT_EQ(stranger.Ask("publish TransitionChunk"), "ok");
   PeerProcess learner("learner", run), replay("replay", run), actor("actor", run);
-  EXPECT_EQ(learner.Ask("publish WeightsMessage"), "ok");
+  EXPECT_EQ(learner.Ask("publish WeightsPart"), "ok");
   EXPECT_EQ(replay.Ask("subscribe TransitionChunk"), "ok");
-  ExpectSame<WeightsMessage>(learner, actor, "WeightsMessage");
-  EXPECT_EQ(stranger.Ask("match WeightsMessage 1 2000"), "matched 0");
+  ExpectSame<WeightsPart>(learner, actor, "WeightsPart");
+  EXPECT_EQ(stranger.Ask("match WeightsPart 1 2000"), "matched 0");
   EXPECT_EQ(stranger.Ask("match TransitionChunk 1 100"), "matched 0");
-  EXPECT_EQ(learner.Ask("match WeightsMessage 2 100"), "matched 1") << "the lawful actor alone";
+  EXPECT_EQ(learner.Ask("match WeightsPart 2 100"), "matched 1") << "the lawful actor alone";
   EXPECT_EQ(replay.Ask("match TransitionChunk 1 100"), "matched 0");
-  EXPECT_THAT(stranger.Ask("received WeightsMessage 1 100"), StartsWith("received 0 "));
+  EXPECT_THAT(stranger.Ask("received WeightsPart 1 100"), StartsWith("received 0 "));
 }
 
 TEST_F(SecurityTest, AProcessWithoutCredentialsNeitherJoinsNorReads) {
@@ -93,7 +99,21 @@ TEST_F(SecurityTest, AProcessWithAnotherAuthoritysCredentialsNeitherJoinsNorRead
 TEST_F(SecurityTest, AnActorsCredentialsDoNotLetItSendWeights) {
   PeerProcess actor("actor", address_);
   EXPECT_EQ(actor.Ask("publish TransitionChunk"), "ok");
-  EXPECT_EQ(actor.Ask("publish WeightsMessage"), "") << "it ends with an error";
+  EXPECT_EQ(actor.Ask("publish WeightsPart"), "") << "it ends with an error";
+}
+
+// What decides about a run, and what it shows of the others, is not an actor's to say: not with the
+// key that every host with actors has.
+TEST_F(SecurityTest, AnActorsCredentialsSayNothingInTheNameOfAnotherRole) {
+  for (const char* message : {"EvalMessage", "EvalMetrics", "ReplayMetrics", "LearnerMetrics",
+                              "ReplayProgress", "LearnerProgress", "CreditsMessage"}) {
+    PeerProcess actor("actor", address_);
+    EXPECT_EQ(actor.Ask("publish ActorMetrics"), "ok");
+    EXPECT_EQ(actor.Ask(std::string("publish ") + message), "") << message;
+  }
+  PeerProcess eval("eval", address_);
+  EXPECT_EQ(eval.Ask("publish EvalMessage"), "ok");
+  EXPECT_EQ(eval.Ask("publish TransitionChunk"), "") << "nor is a record the evaluation's";
 }
 
 // Everything that crosses the loopback interface while it lives.
@@ -134,7 +154,7 @@ class Eavesdropper {
 bool WeightsAreReadable(const ClusterAddress& address) {
   const Eavesdropper eavesdropper;
   PeerProcess learner("learner", address), actor("actor", address);
-  ExpectSame<WeightsMessage>(learner, actor, "WeightsMessage");
+  ExpectSame<WeightsPart>(learner, actor, "WeightsPart");
   const std::vector<uint8_t> payload = ExamplePayload(41, 100'000);  // ExpectSame's
   return eavesdropper.Heard(std::span(payload).first(64));
 }

@@ -3,12 +3,15 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cstring>
 #include <memory>
 #include <thread>
 #include <vector>
 
 #include "common/base/error.h"
+#include "common/dds/metrics_publisher.h"
 #include "common/dds/publisher.h"
+#include "common/wire/weights_parts.h"
 // clang-format off
 #include "shoal.h"
 #include "dds/dds.h"
@@ -96,43 +99,73 @@ TEST_F(SubscriberTest, ALateReaderGetsTheLast16WordsAboutCredit) {
 }
 
 TEST_F(SubscriberTest, ALateReaderGetsNoOldMetrics) {
-  Publisher<MetricsMessage> publisher(*bus_);
-  MetricsMessage message;
+  Publisher<ActorMetrics> publisher(*bus_);
+  ActorMetrics message;
   message.role = "actor";
   publisher.Write(message);
   int received = 0;
-  const Subscriber<MetricsMessage> subscriber(*bus_, [&](const MetricsMessage&) { ++received; });
+  const Subscriber<ActorMetrics> subscriber(*bus_, [&](const ActorMetrics&) { ++received; });
   EXPECT_EQ(received, 0);
   publisher.Write(message);
   EXPECT_EQ(received, 1);
 }
 
+// 250 MB: what a convolutional network with fully connected layers has.
+TEST_F(SubscriberTest, ALateReaderGetsTheNewestVersionOfALargePolicyWhole) {
+  Publisher<WeightsPart> publisher(*bus_);
+  std::vector<uint8_t> bytes(250'000'000);
+  WeightsMessage weights;
+  weights.payload = bytes;
+  for (const uint64_t update : {1, 2}) {
+    for (size_t i = 0; i < bytes.size(); i += 4096)
+      bytes[i] = static_cast<uint8_t>(i / 4096 * update);
+    weights.version = {1, update};
+    for (uint32_t part = 0; part < WeightsParts(bytes.size()); ++part) {
+      ASSERT_TRUE(publisher.Write(PartOf<WeightsPart>(weights, part)));
+    }
+  }
+  WeightsAssembler assembler;
+  uint64_t complete = 0, refused = 0;
+  const Subscriber<WeightsPart> subscriber(*bus_, [&](const WeightsPart& part) {
+    const auto verdict = assembler.Add(part);
+    if (verdict == WeightsAssembler::Verdict::kComplete) complete = part.version.update;
+    if (verdict == WeightsAssembler::Verdict::kRefused) ++refused;
+  });
+  EXPECT_EQ(complete, 2u);
+  EXPECT_EQ(refused, 0u);
+  const std::string taken = assembler.Take();
+  ASSERT_EQ(taken.size(), bytes.size());
+  EXPECT_EQ(std::memcmp(taken.data(), bytes.data(), bytes.size()), 0);
+}
+
 TEST_F(SubscriberTest, WeightsAndEvaluationWeightsDoNotMix) {
-  Publisher<EvalWeightsMessage> publisher(*bus_);
+  Publisher<EvalWeightsPart> publisher(*bus_);
   const std::vector<uint8_t> payload(100, 1);
-  EvalWeightsMessage message;
+  EvalWeightsPart message;
   message.version = {1, 1};
+  message.total_bytes = payload.size();
   message.payload = payload;
   publisher.Write(message);
   int training = 0, evaluation = 0;
-  const Subscriber<WeightsMessage> a(*bus_, [&](const WeightsMessage&) { ++training; });
-  const Subscriber<EvalWeightsMessage> b(*bus_, [&](const EvalWeightsMessage&) { ++evaluation; });
+  const Subscriber<WeightsPart> a(*bus_, [&](const WeightsPart&) { ++training; });
+  const Subscriber<EvalWeightsPart> b(*bus_, [&](const EvalWeightsPart&) { ++evaluation; });
   EXPECT_EQ(training, 0);
   EXPECT_EQ(evaluation, 1);
 }
 
 TEST_F(SubscriberTest, BulkMessagesOfAnotherVersionAreCountedNotDelivered) {
   std::atomic<int> delivered{0};
-  const Subscriber<WeightsMessage> subscriber(*bus_, [&](const WeightsMessage&) { ++delivered; });
-  RawWriter writer(address_.domain, &shoal_idl_Weights_desc, "weights_v1",
+  const Subscriber<WeightsPart> subscriber(*bus_, [&](const WeightsPart&) { ++delivered; });
+  RawWriter writer(address_.domain, &shoal_idl_WeightsPart_desc, "weights_v2",
                    DDS_DATA_REPRESENTATION_XCDR1);
   std::vector<uint8_t> payload(10, 1);
   char checkpoint[] = "";
-  shoal_idl_Weights weights{2, 0, 1, 1, 0, 0, {10, 10, payload.data(), false}, checkpoint};
+  shoal_idl_WeightsPart weights{1,         0, 0, 1, 1, 0, 10, 0, {10, 10, payload.data(), false},
+                                checkpoint};
   writer.Write(&weights);
   EXPECT_EQ(delivered, 0);
   EXPECT_EQ(subscriber.Malformed(), 1u);
-  weights.version = 1;
+  weights.version = 2;
   writer.Write(&weights);
   EXPECT_EQ(delivered, 1);
   EXPECT_EQ(subscriber.Malformed(), 1u);
@@ -149,6 +182,26 @@ TEST_F(SubscriberTest, ControlOfAnUnknownStateIsCountedNotDelivered) {
   writer.Write(&control);
   EXPECT_EQ(delivered, 0);
   EXPECT_EQ(subscriber.Malformed(), 1u);
+}
+
+TEST_F(SubscriberTest, ReportsCarryTheMalformedMessagesOfEachTopic) {
+  MetricsMessage report;
+  const Subscriber<ActorMetrics> reports(*bus_, [&](const ActorMetrics& m) { report = m; });
+  const Subscriber<ControlMessage> control_reader(*bus_, [](const ControlMessage&) {});
+  RawWriter writer(address_.domain, &shoal_idl_Control_desc, "control",
+                   DDS_DATA_REPRESENTATION_XCDR2);
+  shoal_idl_Control control{};
+  control.state = 77;
+  writer.Write(&control);
+  MetricsPublisher<ActorMetrics> publisher(*bus_);
+  MetricsMessage message;
+  message.role = "actor";
+  message.names = {"made"};
+  message.values = {3};
+  ASSERT_TRUE(publisher.Write(message));
+  EXPECT_EQ(report.names,
+            (std::vector<std::string>{"made", "malformed_control", "malformed_metrics_actor"}));
+  EXPECT_EQ(report.values, (std::vector<double>{3, 1, 0}));
 }
 
 TEST_F(SubscriberTest, NoCallbackRunsAfterTheDestructor) {
@@ -197,7 +250,7 @@ TEST(SubscriberDeathTest, OnlyLearnerAndReplayReachTheBatchTopics) {
       {
         ClusterAddress address;
         const auto bus = ClaimDomain(TransportConfig{}, &address);
-        const Subscriber<BatchShard> subscriber(*bus, [](const BatchShard&) {});
+        const Subscriber<BatchPart> subscriber(*bus, [](const BatchPart&) {});
       },
       "batch domain");
 }

@@ -30,19 +30,25 @@ TEST_F(TwoProcessesTest, MessagesBetweenActorAndReplayArriveAsSent) {
 TEST_F(TwoProcessesTest, MessagesBetweenLearnerAndReplayArriveAsSent) {
   PeerProcess learner("learner", address_), replay("replay", address_);
   ExpectSame<SampleRequest>(learner, replay, "SampleRequest");
-  ExpectSame<BatchShard>(replay, learner, "BatchShard");
+  ExpectSame<BatchPart>(replay, learner, "BatchPart");
 }
 
 TEST_F(TwoProcessesTest, MessagesFromLearnerToActorArriveAsSent) {
-  PeerProcess learner("learner", address_), actor("actor", address_);
-  ExpectSame<WeightsMessage>(learner, actor, "WeightsMessage");
-  ExpectSame<EvalWeightsMessage>(learner, actor, "EvalWeightsMessage");
+  PeerProcess learner("learner", address_), actor("actor", address_), eval("eval", address_);
+  ExpectSame<WeightsPart>(learner, actor, "WeightsPart");
+  ExpectSame<EvalWeightsPart>(learner, eval, "EvalWeightsPart");
 }
 
-TEST_F(TwoProcessesTest, MessagesBetweenActorAndCoordinatorArriveAsSent) {
-  PeerProcess actor("actor", address_);
-  ExpectSame<MetricsMessage>(actor, coordinator_, "MetricsMessage");
-  ExpectSame<EvalMessage>(actor, coordinator_, "EvalMessage");
+TEST_F(TwoProcessesTest, MessagesBetweenOthersAndCoordinatorArriveAsSent) {
+  PeerProcess actor("actor", address_), eval("eval", address_), learner("learner", address_),
+      replay("replay", address_);
+  ExpectSame<ActorMetrics>(actor, coordinator_, "ActorMetrics");
+  ExpectSame<EvalMetrics>(eval, coordinator_, "EvalMetrics");
+  ExpectSame<LearnerMetrics>(learner, coordinator_, "LearnerMetrics");
+  ExpectSame<ReplayMetrics>(replay, coordinator_, "ReplayMetrics");
+  ExpectSame<LearnerProgress>(learner, coordinator_, "LearnerProgress");
+  ExpectSame<ReplayProgress>(replay, coordinator_, "ReplayProgress");
+  ExpectSame<EvalMessage>(eval, coordinator_, "EvalMessage");
   ExpectSame<ControlMessage>(coordinator_, actor, "ControlMessage");
 }
 
@@ -57,8 +63,8 @@ TEST_F(TwoProcessesTest, MessagesBetweenCoordinatorAndClientArriveAsSent) {
 
 TEST_F(TwoProcessesTest, ALateActorGetsTheNewestWeightsCreditAndControl) {
   PeerProcess learner("learner", address_), replay("replay", address_);
-  learner.Ask("publish WeightsMessage");
-  learner.Ask("write WeightsMessage 1 3 3000000");
+  learner.Ask("publish WeightsPart");
+  learner.Ask("write WeightsPart 1 3 3000000");
   replay.Ask("publish CreditsMessage");
   replay.Ask("write CreditsMessage 3 1 0");
   coordinator_.Ask("publish ControlMessage");
@@ -72,8 +78,8 @@ TEST_F(TwoProcessesTest, ALateActorGetsTheNewestWeightsCreditAndControl) {
   };
   // The payload is that of the first message of the write.
   const std::vector<uint8_t> payload = ExamplePayload(1, 3'000'000);
-  WithExample<WeightsMessage>(3, payload, [&](const WeightsMessage& message) {
-    EXPECT_EQ(newest("WeightsMessage"), "got WeightsMessage " + Describe(message));
+  WithExample<WeightsPart>(3, payload, [&](const WeightsPart& message) {
+    EXPECT_EQ(newest("WeightsPart"), "got WeightsPart " + Describe(message));
   });
   EXPECT_EQ(newest("CreditsMessage"), Expected<CreditsMessage>("CreditsMessage", 3, 0));
   EXPECT_EQ(newest("ControlMessage"), Expected<ControlMessage>("ControlMessage", 3, 0));
@@ -93,18 +99,18 @@ TEST_F(TwoProcessesTest, ProcessesOfAnotherTagAreNotSeen) {
 }
 
 // Speed is recorded, not judged: the machine is shared.
-TEST_F(TwoProcessesTest, MegabyteShardsAtFullSpeedLoseNothing) {
-  constexpr uint64_t kShards = 500;
+TEST_F(TwoProcessesTest, MegabytePartsAtFullSpeedLoseNothing) {
+  constexpr uint64_t kParts = 500;
   constexpr uint64_t kBytes = 1'000'000;
   PeerProcess learner("learner", address_), replay("replay", address_);
-  learner.Ask("subscribe BatchShard");
-  replay.Ask("publish BatchShard");
-  ASSERT_EQ(replay.Ask("match BatchShard 1 10000"), "matched 1");
-  const std::string wrote = replay.Ask(fmt::format("write BatchShard 1 {} {}", kShards, kBytes));
-  EXPECT_THAT(wrote, HasSubstr(fmt::format("wrote {} ", kShards)));
-  EXPECT_EQ(learner.Ask(fmt::format("received BatchShard {} 20000", kShards)),
-            fmt::format("received {} gaps 0 bytes {} malformed 0", kShards, kShards * kBytes));
-  RecordProperty("shards_1MB", wrote);
+  learner.Ask("subscribe BatchPart");
+  replay.Ask("publish BatchPart");
+  ASSERT_EQ(replay.Ask("match BatchPart 1 10000"), "matched 1");
+  const std::string wrote = replay.Ask(fmt::format("write BatchPart 1 {} {}", kParts, kBytes));
+  EXPECT_THAT(wrote, HasSubstr(fmt::format("wrote {} ", kParts)));
+  EXPECT_EQ(learner.Ask(fmt::format("received BatchPart {} 20000", kParts)),
+            fmt::format("received {} gaps 0 bytes {} malformed 0", kParts, kParts * kBytes));
+  RecordProperty("parts_1MB", wrote);
 }
 
 TEST_F(TwoProcessesTest, ChunksFromFourActorsAtOnceLoseNothing) {

@@ -19,20 +19,20 @@ constexpr double kRate = 0.01;
 // More than one unit of parallel work, and a remainder.
 constexpr int64_t kSize = 10'007;
 
-void FillGradient(const ParameterSet& set, uint64_t key) {
+void FillGradient(ParameterSet& set, uint64_t key) {
   Random random(key);
   float* gradient = set.Find("w").gradient();
   for (int64_t i = 0; i < kSize; ++i) gradient[i] = float(random.Normal());
 }
 
-std::vector<float> Values(const ParameterSet& set) {
+std::vector<float> Values(ParameterSet& set) {
   const float* value = set.Find("w").value();
   return {value, value + kSize};
 }
 
 TEST(Adam, FollowsTheFormulaOverSeveralSteps) {
   ParameterSet set({{"w", {kSize}}}, ParameterSet::Use::kTraining);
-  Adam adam(&set, kRate);
+  Adam adam({&set}, {.rate = kRate});
   std::vector<double> m(kSize), v(kSize), w(kSize);
   for (int t = 1; t <= 5; ++t) {
     FillGradient(set, uint64_t(t));
@@ -53,7 +53,7 @@ TEST(Adam, FollowsTheFormulaOverSeveralSteps) {
 
 TEST(Adam, FirstStepMovesEveryValueByTheRateAgainstTheGradient) {
   ParameterSet set({{"w", {2}}}, ParameterSet::Use::kTraining);
-  Adam adam(&set, kRate);
+  Adam adam({&set}, {.rate = kRate});
   set.Find("w").gradient()[0] = 1e-3f;
   set.Find("w").gradient()[1] = -1e3f;
   adam.Step();
@@ -63,7 +63,7 @@ TEST(Adam, FirstStepMovesEveryValueByTheRateAgainstTheGradient) {
 
 TEST(Adam, UndoTakesAStepBackExactly) {
   ParameterSet set({{"w", {kSize}}}, ParameterSet::Use::kTraining);
-  Adam adam(&set, kRate);
+  Adam adam({&set}, {.rate = kRate});
   FillGradient(set, 1);
   adam.Step();
   TensorMap before, after;
@@ -83,7 +83,7 @@ TEST(Adam, StepIsTheSameForAnyNumberOfThreads) {
   for (const int threads : {1, 3}) {
     const ThreadScope scope(threads);
     ParameterSet set({{"w", {kSize}}}, ParameterSet::Use::kTraining);
-    Adam adam(&set, kRate);
+    Adam adam({&set}, {.rate = kRate});
     FillGradient(set, 1);
     adam.Step();
     results.push_back(Values(set));
@@ -94,7 +94,7 @@ TEST(Adam, StepIsTheSameForAnyNumberOfThreads) {
 TEST(Adam, ImportContinuesWhereExportLeftOff) {
   ParameterSet a({{"w", {kSize}}}, ParameterSet::Use::kTraining);
   ParameterSet b({{"w", {kSize}}}, ParameterSet::Use::kTraining);
-  Adam adam_a(&a, kRate), adam_b(&b, kRate);
+  Adam adam_a({&a}, {.rate = kRate}), adam_b({&b}, {.rate = kRate});
   FillGradient(a, 1);
   adam_a.Step();
   TensorMap tensors;
@@ -111,13 +111,61 @@ TEST(Adam, ImportContinuesWhereExportLeftOff) {
 
 TEST(Adam, ImportRefusesAMissingMoment) {
   ParameterSet set({{"w", {kSize}}}, ParameterSet::Use::kTraining);
-  Adam adam(&set, kRate);
+  Adam adam({&set}, {.rate = kRate});
   TensorMap tensors;
   adam.Export("g", &tensors);
   tensors.erase("adam.v.w");
   EXPECT_THAT([&] { adam.Import(tensors, "g", "file.safetensors"); },
               testing::ThrowsMessage<Error>(testing::AllOf(testing::HasSubstr("file.safetensors"),
                                                            testing::HasSubstr("adam.v.w"))));
+}
+
+TEST(Adam, StepsSeveralSetsAsItWouldOne) {
+  ParameterSet one({{"w", {kSize}}}, ParameterSet::Use::kTraining);
+  ParameterSet a({{"w", {kSize}}}, ParameterSet::Use::kTraining);
+  ParameterSet b({{"v", {kSize}}}, ParameterSet::Use::kTraining);
+  Adam alone({&one}, {.rate = kRate}), both({&a, &b}, {.rate = kRate});
+  for (uint64_t t = 1; t <= 2; ++t) {
+    FillGradient(one, t);
+    FillGradient(a, t);
+    std::copy_n(a.gradients(), a.size(), b.gradients());
+    alone.Step();
+    both.Step();
+  }
+  EXPECT_DOUBLE_EQ(both.GradientSquares(), 2 * alone.GradientSquares());
+  EXPECT_EQ(Values(a), Values(one));
+  EXPECT_EQ(std::vector<float>(b.values(), b.values() + kSize), Values(one));
+  both.Undo();
+  EXPECT_EQ(both.steps(), 1u);
+  EXPECT_EQ(std::vector<float>(b.values(), b.values() + kSize), Values(a));
+  EXPECT_NE(Values(a), Values(one));
+}
+
+TEST(Adam, EpsilonAndRateAreThoseAskedFor) {
+  ParameterSet set({{"w", {1}}}, ParameterSet::Use::kTraining);
+  Adam adam({&set}, {.rate = kRate, .epsilon = 0.5});
+  set.gradients()[0] = 0.25f;  // the first step moves by rate g / (|g| + eps)
+  adam.Step();
+  EXPECT_NEAR(set.values()[0], -kRate * 0.25 / 0.75, 1e-7);
+  adam.Undo();
+  adam.set_rate(2 * kRate);
+  adam.Step();
+  EXPECT_NEAR(set.values()[0], -2 * kRate * 0.25 / 0.75, 1e-7);
+}
+
+TEST(Adam, ClipsTheNormOfAllGradientsTogether) {
+  ParameterSet a({{"a", {2}}}, ParameterSet::Use::kTraining);
+  ParameterSet b({{"b", {1}}}, ParameterSet::Use::kTraining);
+  Adam adam({&a, &b}, {.rate = kRate});
+  a.gradients()[0] = 2;
+  a.gradients()[1] = -3;
+  b.gradients()[0] = 6;  // norm 7
+  adam.ClipGradients(8);
+  EXPECT_EQ(b.gradients()[0], 6.f);
+  adam.ClipGradients(3.5);
+  EXPECT_NEAR(a.gradients()[0], 1, 1e-6);
+  EXPECT_NEAR(a.gradients()[1], -1.5, 1e-6);
+  EXPECT_NEAR(b.gradients()[0], 3, 1e-6);
 }
 
 TEST(MoveTowards, CoversTheGivenShareOfTheDistance) {

@@ -13,10 +13,17 @@ class ConvTest : public LayerTest {
  protected:
   // Forward and backward of one layer, against the reference.
   void Compare(const ConvShape& shape) {
-    const size_t weights = size_t(shape.filters) * shape.channels * 9;
-    ParameterSet parameters(
-        {{"conv.weight", {shape.filters, shape.channels, 3, 3}}, {"conv.bias", {shape.filters}}},
-        ParameterSet::Use::kTraining);
+    NetworkPlan plan({shape.channels, shape.height, shape.width});
+    plan.Add(
+        NetworkPlan::Convolution{.name = "conv",
+                                 .key = "network.filters",
+                                 .filters = shape.filters,
+                                 .kernel = shape.kernel,
+                                 .stride = shape.stride,
+                                 .padding = shape.padding,
+                                 .activation = shape.relu ? Activation::kRelu : Activation::kNone});
+    ParameterSet parameters(plan.Parameters(), ParameterSet::Use::kTraining);
+    const size_t weights = Count(parameters.Find("conv.weight"));
     Randomise(&parameters, 1, 0.5);
     const float* weight_values = parameters.Find("conv.weight").value();
     const float* bias_values = parameters.Find("conv.bias").value();
@@ -29,7 +36,7 @@ class ConvTest : public LayerTest {
         MakeMemory(dnnl::memory::desc({shape.batch, shape.channels, shape.height, shape.width},
                                       ComputeType(GetParam()), dnnl::memory::format_tag::nchw));
     const dnnl::memory source_gradient = MakeMemory(source.get_desc());
-    Conv conv(Context(parameters, shape.batch), "conv", shape.stride, source, source_gradient);
+    Conv conv(Context(parameters, shape.batch), plan.layers()[0], source, source_gradient);
     conv.Refresh();
     FillMemory(x, source);
     conv.Forward();
@@ -64,6 +71,54 @@ TEST_P(ConvTest, AgreesWithTheReferenceOnTheDefaultNetworksInnerLayer) {
 
 TEST_P(ConvTest, AgreesWithTheReferenceOnOneGreyChannelAndAOneByOneMap) {
   Compare({.batch = 2, .channels = 1, .height = 3, .width = 3, .filters = 4, .stride = 1});
+}
+
+TEST_P(ConvTest, AgreesWithTheReferenceOnLargeKernelsAndStrides) {
+  Compare({.batch = 2,
+           .channels = 3,
+           .height = 37,
+           .width = 30,
+           .filters = 9,
+           .stride = 4,
+           .kernel = 8});
+  Compare({.batch = 2,
+           .channels = 32,
+           .height = 9,
+           .width = 8,
+           .filters = 17,
+           .stride = 2,
+           .kernel = 4});
+}
+
+TEST_P(ConvTest, AgreesWithTheReferenceWithPadding) {
+  Compare({.batch = 2,
+           .channels = 5,
+           .height = 7,
+           .width = 9,
+           .filters = 6,
+           .stride = 1,
+           .kernel = 3,
+           .padding = 1});
+  Compare({.batch = 2,
+           .channels = 3,
+           .height = 15,
+           .width = 13,
+           .filters = 8,
+           .stride = 2,
+           .kernel = 7,
+           .padding = 3});
+  Compare(
+      {.batch = 2, .channels = 4, .height = 6, .width = 5, .filters = 3, .stride = 2, .kernel = 1});
+}
+
+TEST_P(ConvTest, AgreesWithTheReferenceWithoutRelu) {
+  Compare({.batch = 3,
+           .channels = 5,
+           .height = 11,
+           .width = 9,
+           .filters = 7,
+           .stride = 1,
+           .relu = false});
 }
 
 INSTANTIATE_PRECISIONS(ConvTest);

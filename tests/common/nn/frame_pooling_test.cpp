@@ -60,7 +60,10 @@ TEST_P(FramePoolingTest, AgreesWithTheNaiveMeanInBothTypes) {
 INSTANTIATE_TEST_SUITE_P(Shapes, FramePoolingTest,
                          testing::Values(Case{{3, 84, 84}, 2}, Case{{2, 9, 11}, 2},
                                          Case{{2, 33, 35}, 2}, Case{{1, 2, 2}, 2},
-                                         Case{{3, 7, 5}, 1}, Case{{2, 10, 13}, 3}),
+                                         Case{{3, 7, 5}, 1}, Case{{2, 84, 84}, 1},
+                                         Case{{2, 10, 13}, 3}, Case{{2, 84, 85}, 3},
+                                         Case{{2, 42, 83}, 4}, Case{{2, 35, 64}, 5},
+                                         Case{{1, 33, 50}, 16}),
                          [](const auto& test) {
                            return std::to_string(test.param.shape.height) + "x" +
                                   std::to_string(test.param.shape.width) + "by" +

@@ -37,7 +37,7 @@ inline size_t Count(const Parameter& parameter) {
   return count;
 }
 
-inline std::span<const float> GradientOf(const ParameterSet& set, const std::string& name) {
+inline std::span<const float> GradientOf(ParameterSet& set, const std::string& name) {
   const Parameter parameter = set.Find(name);
   return {parameter.gradient(), Count(parameter)};
 }
@@ -51,12 +51,13 @@ inline void Randomise(ParameterSet* set, uint64_t key, double scale) {
 class LayerTest : public testing::TestWithParam<Precision> {
  protected:
   void SetUp() override {
-    if (GetParam() == Precision::kBf16 && ChoosePrecision("auto") != Precision::kBf16) {
+    if (GetParam() == Precision::kBf16 &&
+        ChoosePrecision("auto", /*pixels=*/true) != Precision::kBf16) {
       GTEST_SKIP() << "this CPU has no bf16 arithmetic";
     }
   }
 
-  LayerContext Context(const ParameterSet& parameters, int batch, bool training = true) const {
+  LayerContext Context(ParameterSet& parameters, int batch, bool training = true) const {
     return {&parameters, GetParam(), batch, training, std::make_shared<Scratchpad>()};
   }
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "common/nn/actor_critic_plan.h"
 #include "common/nn/encoder.h"
-#include "common/nn/network_parameters.h"
 #include "tests/common/nn/layer_fixture.h"
 #include "tests/common/nn/reference_network.h"
 
@@ -21,15 +21,15 @@ inline NetworkConfig OddNetwork() {
   return network;
 }
 
-// Pixels (2*3, 23, 19) and a vector of 5, 3 actions; or the vector alone.
+// Pixels (2*3, 22, 18) and a vector of 5, 3 actions; or the vector alone.
 inline ObservationSpec OddSpec(bool pixels) {
   ObservationSpec spec;
   spec.task = "test";
   if (pixels) {
     spec.cameras = {"front"};
     spec.channels = 3;
-    spec.height = 23;
-    spec.width = 19;
+    spec.height = 22;
+    spec.width = 18;
     spec.stack = 2;
   }
   spec.blocks = {{"goal", 2}, {"joints", 3}};
@@ -44,26 +44,27 @@ inline std::vector<uint8_t> RandomFrames(const ObservationSpec& spec, int batch,
   return frames;
 }
 
-inline std::vector<ParameterShape> AllShapes(const NetworkConfig& network,
-                                             const ObservationSpec& spec) {
-  std::vector<ParameterShape> shapes = EncoderParameters(network, spec);
-  for (const auto& more :
-       {ActorParameters(network, spec), CriticParameters(network, spec, "critic")}) {
-    shapes.insert(shapes.end(), more.begin(), more.end());
-  }
-  return shapes;
+inline std::vector<ParameterSpec> AllParameters(const NetworkConfig& network,
+                                                const ObservationSpec& spec) {
+  std::vector<ParameterSpec> parameters = PolicyParameters(network, spec);
+  Append(PlanCritic(network, spec, "critic").Parameters(), &parameters);
+  return parameters;
 }
 
 class NetworkTest : public LayerTest {
  protected:
   static constexpr int kBatch = 5;
 
-  // Builds the parameters; encoder features are in place afterwards.
   void Build(bool pixels, const NetworkConfig& network = OddNetwork()) {
+    Build(OddSpec(pixels), network);
+  }
+
+  // Builds the parameters; encoder features are in place afterwards.
+  void Build(const ObservationSpec& spec, const NetworkConfig& network) {
     network_ = network;
-    spec_ = OddSpec(pixels);
-    parameters_ =
-        std::make_unique<ParameterSet>(AllShapes(network_, spec_), ParameterSet::Use::kTraining);
+    spec_ = spec;
+    parameters_ = std::make_unique<ParameterSet>(AllParameters(network_, spec_),
+                                                 ParameterSet::Use::kTraining);
     // Initialised, then moved off the special values of biases and norms.
     parameters_->Initialise(1);
     Random random(2);
@@ -75,9 +76,10 @@ class NetworkTest : public LayerTest {
     reference_ = std::make_unique<reference::Network>(tensors, network_, spec_);
     vector_ = RandomValues(kBatch * 5, 3);
     action_ = RandomValues(kBatch * 3, 4);
-    if (!pixels) return;
+    if (!spec.HasPixels()) return;
     frames_ = RandomFrames(spec_, kBatch, 5);
-    encoder_ = std::make_unique<Encoder>(Context(*parameters_, kBatch), network_, spec_);
+    encoder_ =
+        std::make_unique<Encoder>(Context(*parameters_, kBatch), PlanEncoder(network_, spec_));
     encoder_->Refresh();
     encoder_->Forward(frames_.data());
     // The heads are compared on the features they really got, so that each test measures its layer.

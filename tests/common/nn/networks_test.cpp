@@ -1,6 +1,5 @@
 // Encoder, actor and critic against their doubles in double: outputs, and gradients by central
 // differences.
-#include "common/base/error.h"
 #include "common/nn/actor_head.h"
 #include "common/nn/critic_heads.h"
 #include "tests/common/nn/network_fixture.h"
@@ -13,7 +12,7 @@ using reference::Values;
 class NetworksTest : public NetworkTest {
  protected:
   void CompareActor() {
-    ActorHead actor(Context(*parameters_, kBatch), network_, spec_, features());
+    ActorHead actor(Context(*parameters_, kBatch), PlanActor(network_, spec_), features(), {});
     actor.Refresh();
     actor.Forward(ToFloats(vector_).data());
     const auto exact = reference_->Actor(kBatch, features_, vector_);
@@ -30,8 +29,8 @@ class NetworksTest : public NetworkTest {
   }
 
   void CompareCritic() {
-    CriticHeads critic(Context(*parameters_, kBatch), "critic", network_, spec_, features(),
-                       encoder_ ? encoder_->features_gradient() : dnnl::memory());
+    CriticHeads critic(Context(*parameters_, kBatch), PlanCritic(network_, spec_, "critic"),
+                       features(), encoder_ ? encoder_->features_gradient() : dnnl::memory());
     critic.Refresh();
     critic.ForwardObservation(ToFloats(vector_).data());
     critic.ForwardAction(ToFloats(action_).data());
@@ -45,7 +44,8 @@ class NetworksTest : public NetworkTest {
       return Dot(dq1, q.q1) + Dot(dq2, q.q2);
     };
     std::vector<float> daction(action_.size());
-    critic.BackwardAction(ToFloats(dq1).data(), ToFloats(dq2).data(), daction.data());
+    const std::vector<std::vector<float>> gradients{ToFloats(dq1), ToFloats(dq2)};
+    critic.BackwardAction(gradients, daction.data());
     for (const float gradient : GradientOf(*parameters_, "critic.q1.output.weight")) {
       ASSERT_EQ(gradient, 0.f);  // the action's gradient alone was asked for
     }
@@ -55,7 +55,7 @@ class NetworksTest : public NetworkTest {
     }
     EXPECT_LT(RelativeError(daction, exact_daction), GradientTolerance());
 
-    critic.Backward(ToFloats(dq1).data(), ToFloats(dq2).data());
+    critic.Backward(gradients);
     ExpectGradients("critic.", [&] { return loss(features_); });
     if (!encoder_) return;
     encoder_->Backward();
@@ -101,6 +101,13 @@ TEST_P(NetworksF32Test, CriticAgreesWithTheReferenceWithoutLayerNormInTheMlps) {
   CompareCritic();
 }
 
+TEST_P(NetworksTest, CriticAgreesWithTheReferenceOnALinearReluTrunk) {
+  NetworkConfig network = OddNetwork();
+  network.trunk = "relu";
+  Build(/*pixels=*/true, network);
+  CompareCritic();
+}
+
 TEST_P(NetworksTest, CriticAgreesWithTheReferenceWithoutHiddenLayers) {
   NetworkConfig network = OddNetwork();
   network.hidden = {};
@@ -111,34 +118,39 @@ TEST_P(NetworksTest, CriticAgreesWithTheReferenceWithoutHiddenLayers) {
 INSTANTIATE_PRECISIONS(NetworksTest);
 INSTANTIATE_TEST_SUITE_P(Precision, NetworksF32Test, testing::Values(Precision::kF32));
 
-TEST(NetworkParameters, DefaultNetworkIsTheOneOfTheTrial) {
-  ObservationSpec spec;
-  spec.channels = 6;
-  spec.height = spec.width = 84;
-  spec.action_size = 3;
-  const NetworkConfig network;
-  std::vector<std::string> names;
-  for (const ParameterShape& shape : AllShapes(network, spec)) {
-    std::string text = shape.name;
-    for (const int64_t size : shape.shape) text += fmt::format(" {}", size);
-    names.push_back(text);
-  }
-  EXPECT_EQ(names[0], "encoder.conv0.weight 32 6 3 3");
-  EXPECT_EQ(names[4], "encoder.conv2.weight 32 32 3 3");
-  EXPECT_EQ(names[6], "actor.trunk.weight 50 2048");
-  EXPECT_EQ(names[10], "actor.mlp.layer0.weight 256 50");
-  EXPECT_EQ(names[18], "actor.mlp.output.weight 6 256");
-  EXPECT_EQ(names[24], "critic.q1.layer0.weight 256 53");
-  EXPECT_EQ(names.back(), "critic.q2.output.bias 1");
-  EXPECT_EQ(names.size(), 44u);
-}
+// Every kind of encoder on images that leave remainders.
+class EncoderKindTest : public NetworksTest {
+ protected:
+  void CompareKind(const std::string& kind, int height, int width) {
+    NetworkConfig network;
+    network.encoder = kind;
+    network.features = 11;
+    network.hidden = {13, 9};
+    ObservationSpec spec = OddSpec(/*pixels=*/true);
+    spec.height = height;
+    spec.width = width;
+    Build(spec, network);
+    const Values exact = reference_->Features(kBatch, frames_.data());
+    EXPECT_LT(RelativeError(ReadMemory(encoder_->features()), exact), Tolerance(GetParam()));
 
-TEST(NetworkParameters, ImagesTooSmallForTheConvolutionsAreBadUsage) {
-  ObservationSpec spec;
-  spec.channels = 3;
-  spec.height = spec.width = 20;  // pooled 10, then 4, then 2
-  EXPECT_THROW(ConvSizes(NetworkConfig(), spec), Error);
-}
+    // The first layer's gradient has passed all others; each kind of layer has a test of its own in
+    // both precisions.
+    if (GetParam() != Precision::kF32) return;
+    const Values dfeatures = RandomValues(exact.size(), 8);
+    FillMemory(dfeatures, encoder_->features_gradient());
+    encoder_->Backward();
+    ExpectGradients("encoder.conv0.weight",
+                    [&] { return Dot(dfeatures, reference_->Features(kBatch, frames_.data())); });
+  }
+};
+
+TEST_P(EncoderKindTest, DrqAgreesWithTheReference) { CompareKind("drq", 17, 19); }
+
+TEST_P(EncoderKindTest, MrqAgreesWithTheReference) { CompareKind("mrq", 33, 35); }
+
+TEST_P(EncoderKindTest, NatureAgreesWithTheReference) { CompareKind("nature", 46, 37); }
+
+INSTANTIATE_PRECISIONS(EncoderKindTest);
 
 }  // namespace
 }  // namespace shoal::nn

@@ -19,12 +19,14 @@ using testing::HasSubstr;
 using testing::ThrowsMessage;
 
 ParameterSet MakeSet() {
-  return ParameterSet({{"a.weight", {3, 5}}, {"a.norm.weight", {3}}, {"b.bias", {7}}},
+  return ParameterSet({{"a.weight", {3, 5}, {Start::Kind::kOrthogonal, 2}},
+                       {"a.norm.weight", {3}, {Start::Kind::kOnes}},
+                       {"b.bias", {7}}},
                       ParameterSet::Use::kTraining);
 }
 
 TEST(ParameterSet, ParametersAreApartAndAligned) {
-  const ParameterSet set = MakeSet();
+  ParameterSet set = MakeSet();
   const float* base = set.values();
   EXPECT_EQ(set.Find("a.weight").value() - base, 0);
   EXPECT_EQ(set.Find("a.norm.weight").value() - base, 16);
@@ -34,17 +36,37 @@ TEST(ParameterSet, ParametersAreApartAndAligned) {
   EXPECT_EQ(set.OffsetOf("nothing"), set.size());
 }
 
-TEST(ParameterSet, InitialiseGivesUnitNormsZeroBiasesAndWeightsByName) {
+TEST(ParameterSet, InitialisesAsEachStartSaysByNameAndSeed) {
   ParameterSet one = MakeSet(), same = MakeSet(), other = MakeSet();
   one.Initialise(1);
   same.Initialise(1);
   other.Initialise(2);
   for (int i = 0; i < 3; ++i) EXPECT_EQ(one.Find("a.norm.weight").value()[i], 1.f);
   for (int i = 0; i < 7; ++i) EXPECT_EQ(one.Find("b.bias").value()[i], 0.f);
-  EXPECT_NE(one.Find("a.weight").value()[0], 0.f);
+  double squares = 0;
+  for (int j = 0; j < 5; ++j) squares += std::pow(one.Find("a.weight").value()[j], 2);
+  EXPECT_NEAR(squares, 4, 1e-5) << "a row of an orthogonal weight of gain 2";
   const size_t bytes = size_t(one.size()) * sizeof(float);
   EXPECT_EQ(std::memcmp(one.values(), same.values(), bytes), 0);
   EXPECT_NE(std::memcmp(one.values(), other.values(), bytes), 0);
+}
+
+TEST(ParameterSet, AUniformStartFillsItsIntervalAndNoMore) {
+  constexpr int kCount = 10'000;
+  ParameterSet set({{"w", {kCount}, {Start::Kind::kUniform, 0.25}}}, ParameterSet::Use::kInference);
+  set.Initialise(4);
+  const float* w = set.values();
+  const auto [low, high] = std::minmax_element(w, w + kCount);
+  EXPECT_GE(*low, -0.25f);
+  EXPECT_LE(*high, 0.25f);
+  double sum = 0, squares = 0;
+  for (int i = 0; i < kCount; ++i) {
+    sum += w[i];
+    squares += double(w[i]) * w[i];
+  }
+  // Mean 0, variance 0.25^2 / 3; five standard errors.
+  EXPECT_NEAR(sum / kCount, 0, 5 * 0.25 / std::sqrt(3.0 * kCount));
+  EXPECT_NEAR(squares / kCount, 0.0625 / 3, 5 * 0.0625 * std::sqrt(4.0 / 45 / kCount));
 }
 
 TEST(ParameterSet, ExportThenImportGivesTheSameValues) {

@@ -22,19 +22,16 @@ class PolicyTest : public NetworkTest {
   }
 
   Output Run(Policy* policy, int batch) const {
-    Output output;
-    output.mean.resize(size_t(batch) * spec_.action_size);
-    output.log_std = output.mean;
-    policy->Forward(batch, frames_.data(), ToFloats(vector_).data(), output.mean.data(),
-                    output.log_std.data());
-    return output;
+    const PolicyOutput result = policy->Forward(batch, frames_.data(), ToFloats(vector_).data());
+    return {{result.mean.begin(), result.mean.end()},
+            {result.log_std.begin(), result.log_std.end()}};
   }
 };
 
 TEST_P(PolicyTest, ForwardIsTheTrainedActorsForward) {
   for (const bool pixels : {true, false}) {
     Build(pixels);
-    ActorHead actor(Context(*parameters_, kBatch), network_, spec_, features());
+    ActorHead actor(Context(*parameters_, kBatch), PlanActor(network_, spec_), features(), {});
     actor.Refresh();
     actor.Forward(ToFloats(vector_).data());
     Policy policy(network_, spec_, GetParam(), kBatch);
@@ -99,6 +96,64 @@ TEST_P(PolicyTest, KeepsItsWeightsWhenNewOnesAreRefused) {
               testing::ThrowsMessage<Error>(testing::AllOf(
                   testing::HasSubstr("weights 12"), testing::HasSubstr("actor.mlp.output.bias"))));
   EXPECT_EQ(Run(&policy, kBatch).mean, before);
+}
+
+// Two millimetres of a goal at 1.34 m: between 1 and 2 neighbouring bf16 are 7.8 mm apart.
+TEST_P(PolicyTest, TellsGoalsTwoMillimetresApart) {
+  NetworkConfig network = OddNetwork();
+  network.hidden = {256, 256};
+  for (const bool pixels : {true, false}) {
+    Build(pixels, network);
+    Policy policy(network_, spec_, GetParam(), kBatch);
+    policy.Load(Tensors(), "test");
+    std::vector<float> mean;
+    for (int millimetres = 0; millimetres < 16; millimetres += 2) {
+      for (size_t b = 0; b < size_t(kBatch); ++b) vector_[b * 5] = 1.340 + 0.001 * millimetres;
+      const std::vector<float> before = std::exchange(mean, Run(&policy, kBatch).mean);
+      for (size_t i = 0; i < before.size(); ++i) {
+        EXPECT_NE(before[i], mean[i]) << "component " << i << ", goal " << vector_[0] << " m";
+      }
+    }
+  }
+}
+
+// What the vector columns of the first layer see is the vector, to f32's last digits.
+TEST_P(PolicyTest, ComputesAVectorsFirstLayerInF32) {
+  NetworkConfig network = OddNetwork();
+  network.hidden = {};  // the first layer is all there is
+  Build(/*pixels=*/false, network);
+  Policy policy(network_, spec_, GetParam(), kBatch);
+  policy.Load(Tensors(), "test");
+  EXPECT_LT(
+      RelativeError(Run(&policy, kBatch).mean, reference_->Actor(kBatch, features_, vector_).mean),
+      Tolerance(Precision::kF32));
+}
+
+// The weights say which kind they are.
+TEST_P(PolicyTest, ADeterministicPolicyHasNoDeviation) {
+  Build(/*pixels=*/true);
+  const ActorPlan plan = PlanActor(network_, spec_, ActorOutput::kDeterministic);
+  ParameterSet actor_parameters(plan.Parameters(), ParameterSet::Use::kInference);
+  actor_parameters.Initialise(9);
+  TensorMap tensors = Tensors();
+  actor_parameters.Export(&tensors);
+  ActorHead actor(Context(actor_parameters, kBatch, /*training=*/false), plan, features(), {});
+  actor.Refresh();
+  actor.Forward(ToFloats(vector_).data());
+
+  Policy policy(network_, spec_, GetParam(), kBatch);
+  policy.Load(tensors, "test");
+  const Output output = Run(&policy, kBatch);
+  EXPECT_TRUE(output.log_std.empty());
+  EXPECT_EQ(output.mean, std::vector<float>(actor.mean(), actor.mean() + kBatch * 3));
+
+  // A Gaussian one again; then a deterministic one that is incomplete changes nothing.
+  policy.Load(Tensors(), "test");
+  const Output gaussian = Run(&policy, kBatch);
+  EXPECT_EQ(gaussian.log_std.size(), gaussian.mean.size());
+  tensors.erase("actor.trunk.bias");
+  EXPECT_THROW(policy.Load(tensors, "test"), Error);
+  EXPECT_EQ(Run(&policy, kBatch).log_std, gaussian.log_std);
 }
 
 INSTANTIATE_PRECISIONS(PolicyTest);

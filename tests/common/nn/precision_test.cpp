@@ -8,21 +8,26 @@
 namespace shoal::nn {
 namespace {
 
-TEST(Precision, AutoIsBf16ExactlyWhereTheInstructionSetHasIt) {
+TEST(Precision, AutoIsBf16ForPixelsExactlyWhereTheInstructionSetHasIt) {
   const std::string isa = CpuIsa();
   const bool native = isa == "avx512_core_bf16" || isa == "avx512_core_amx";
-  EXPECT_EQ(ChoosePrecision("auto"), native ? Precision::kBf16 : Precision::kF32) << isa;
+  EXPECT_EQ(ChoosePrecision("auto", /*pixels=*/true), native ? Precision::kBf16 : Precision::kF32)
+      << isa;
   if (native) {
-    EXPECT_EQ(ChoosePrecision("bf16"), Precision::kBf16);
+    EXPECT_EQ(ChoosePrecision("bf16", /*pixels=*/false), Precision::kBf16);
   } else {
-    EXPECT_THROW(ChoosePrecision("bf16"), Error);
+    EXPECT_THROW(ChoosePrecision("bf16", /*pixels=*/false), Error);
   }
 }
 
+TEST(Precision, AutoIsF32WithoutPixels) {
+  EXPECT_EQ(ChoosePrecision("auto", /*pixels=*/false), Precision::kF32);
+}
+
 TEST(Precision, F32IsAlwaysToBeHadAndOtherWordsAreBadUsage) {
-  EXPECT_EQ(ChoosePrecision("f32"), Precision::kF32);
+  EXPECT_EQ(ChoosePrecision("f32", /*pixels=*/true), Precision::kF32);
   try {
-    ChoosePrecision("f16");
+    ChoosePrecision("f16", /*pixels=*/true);
     FAIL();
   } catch (const Error& error) {
     EXPECT_EQ(error.exit_code(), 2);

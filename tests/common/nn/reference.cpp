@@ -15,12 +15,14 @@ void ForConvProducts(const ConvShape& s, const Visit& visit) {
       for (int i = 0; i < h; ++i) {
         for (int j = 0; j < w; ++j) {
           for (int c = 0; c < s.channels; ++c) {
-            for (int u = 0; u < 3; ++u) {
-              for (int v = 0; v < 3; ++v) {
-                const int row = i * s.stride + u, column = j * s.stride + v;
+            for (int u = 0; u < s.kernel; ++u) {
+              for (int v = 0; v < s.kernel; ++v) {
+                const int row = i * s.stride + u - s.padding;
+                const int column = j * s.stride + v - s.padding;
+                if (row < 0 || row >= s.height || column < 0 || column >= s.width) continue;
                 visit(((b * s.filters + n) * h + i) * w + j,
                       ((b * s.channels + c) * s.height + row) * s.width + column,
-                      ((n * s.channels + c) * 3 + u) * 3 + v);
+                      ((n * s.channels + c) * s.kernel + u) * s.kernel + v);
               }
             }
           }
@@ -39,7 +41,7 @@ Values ConvForward(const ConvShape& s, const Values& x, const Values& weight, co
   ForConvProducts(s, [&](int at, int from, int with) {
     y[size_t(at)] += x[size_t(from)] * weight[size_t(with)];
   });
-  return Relu(y);
+  return s.relu ? Relu(y) : y;
 }
 
 Gradient ConvBackward(const ConvShape& s, const Values& x, const Values& weight, const Values& y,
@@ -47,7 +49,7 @@ Gradient ConvBackward(const ConvShape& s, const Values& x, const Values& weight,
   const int map = s.out_height() * s.out_width();
   Values masked = dy;
   for (size_t k = 0; k < y.size(); ++k) {
-    if (y[k] <= 0) masked[k] = 0;
+    if (s.relu && y[k] <= 0) masked[k] = 0;
   }
   Gradient gradient{Values(x.size()), Values(weight.size()), Values(size_t(s.filters))};
   for (size_t k = 0; k < y.size(); ++k) {

@@ -8,19 +8,20 @@ namespace shoal::nn::reference {
 
 using Values = std::vector<double>;
 
-// Dimensions: B batch, C channels, (H, W) in, N filters, (h, w) out of a 3x3 convolution without
-// padding.
+// Dimensions: B batch, C channels, (H, W) in, N filters, (h, w) out of a k x k convolution.
 struct ConvShape {
   int batch, channels, height, width, filters, stride;
-  int out_height() const { return (height - 3) / stride + 1; }
-  int out_width() const { return (width - 3) / stride + 1; }
+  int kernel = 3, padding = 0;
+  bool relu = true;
+  int out_height() const { return (height + 2 * padding - kernel) / stride + 1; }
+  int out_width() const { return (width + 2 * padding - kernel) / stride + 1; }
 };
 
 struct Gradient {
   Values source, weight, bias;
 };
 
-// With ReLU. x (B, C, H, W), weight (N, C, 3, 3), bias (N) -> (B, N, h, w).
+// x (B, C, H, W), weight (N, C, k, k), bias (N) -> (B, N, h, w). `y` of Backward is the output.
 Values ConvForward(const ConvShape& shape, const Values& x, const Values& weight,
                    const Values& bias);
 Gradient ConvBackward(const ConvShape& shape, const Values& x, const Values& weight,

@@ -6,7 +6,8 @@
 namespace shoal::nn::reference {
 
 Network::Network(const TensorMap& tensors, const NetworkConfig& config, const ObservationSpec& spec)
-    : config_(config), spec_(spec) {
+    : config_(config), spec_(spec), encoder_(PlanEncoder(config, spec)) {
+  relu_trunk_ = config.trunk == "relu" || (config.trunk == "auto" && config.encoder == "nature");
   for (const auto& [name, tensor] : tensors) {
     if (tensor.dtype != "F32") continue;
     std::vector<float> values(tensor.data.size() / sizeof(float));
@@ -15,8 +16,10 @@ Network::Network(const TensorMap& tensors, const NetworkConfig& config, const Ob
   }
 }
 
+// Sizes are worked out here, layer by layer; the plan gives kernels, strides and padding.
 Values Network::Features(int batch, const uint8_t* frames) const {
-  const int pool = config_.pool;
+  const std::vector<LayerPlan>& layers = encoder_.layers();
+  const int pool = layers[0].kernel;
   ConvShape shape{batch, spec_.stack * spec_.channels, spec_.height / pool, spec_.width / pool, 0,
                   0};
   Values x;
@@ -33,11 +36,15 @@ Values Network::Features(int batch, const uint8_t* frames) const {
       }
     }
   }
-  for (size_t layer = 0; layer < config_.filters.size(); ++layer) {
-    const std::string name = "encoder.conv" + std::to_string(layer);
-    shape.filters = config_.filters[layer];
-    shape.stride = config_.strides[layer];
-    x = ConvForward(shape, x, P(name + ".weight"), P(name + ".bias"));
+  for (size_t layer = 1; layer < layers.size(); ++layer) {
+    const LayerPlan& plan = layers[layer];
+    const Values& bias = P(plan.name + ".bias");
+    shape.filters = int(bias.size());
+    shape.kernel = plan.kernel;
+    shape.stride = plan.stride;
+    shape.padding = plan.padding;
+    shape.relu = plan.activation == Activation::kRelu;
+    x = ConvForward(shape, x, P(plan.name + ".weight"), bias);
     const int height = shape.out_height(), width = shape.out_width();
     shape.channels = shape.filters;
     shape.height = height;
@@ -50,10 +57,10 @@ Values Network::Observation(const std::string& head, int batch, const Values& fe
                             const Values& vector) const {
   if (!spec_.HasPixels()) return vector;
   const std::string name = head + ".trunk";
-  const Values z = LinearForward(batch, features, P(name + ".weight"), P(name + ".bias"));
-  const Values trunk =
-      Tanh(LayerNormForward(batch, z, P(name + ".norm.weight"), P(name + ".norm.bias")));
-  return Beside(batch, trunk, vector);
+  Values z = LinearForward(batch, features, P(name + ".weight"), P(name + ".bias"));
+  if (relu_trunk_) return Beside(batch, Relu(z), vector);
+  z = LayerNormForward(batch, z, P(name + ".norm.weight"), P(name + ".norm.bias"));
+  return Beside(batch, Tanh(z), vector);
 }
 
 Values Network::Mlp(const std::string& name, int batch, const Values& input) const {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/config/config.h"
+#include "common/nn/actor_critic_plan.h"
 #include "common/nn/safetensors.h"
 #include "common/spec/observation_spec.h"
 #include "tests/common/nn/reference.h"
@@ -44,6 +45,8 @@ class Network {
 
   NetworkConfig config_;
   ObservationSpec spec_;
+  NetworkPlan encoder_;
+  bool relu_trunk_;
   std::map<std::string, Values> parameters_;
 };
 

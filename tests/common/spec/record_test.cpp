@@ -18,7 +18,7 @@ ObservationSpec SmallSpec() {
   spec.channels = 3;
   spec.height = 2;
   spec.width = 3;
-  spec.blocks = {{"observation", 2}, {"desired_goal", 1}};
+  spec.blocks = {{"observation", 2}, {"desired_goal", 1, /*observed=*/false}};
   spec.action_size = 4;
   spec.model_fingerprint = "ab";
   return spec;
@@ -50,6 +50,30 @@ TEST(RecordLayout, PartsFollowEachOtherAndTheWholeIsPadded) {
   EXPECT_EQ(layout.record_bytes(), 128);
 }
 
+TEST(RecordLayout, HasTheActionAsDrawnWhereTheSpecSaysSo) {
+  ObservationSpec spec = SmallSpec();
+  EXPECT_TRUE(RecordLayout(spec).DrawnAction(AlignedRecord(RecordLayout(spec)).data()).empty());
+  spec.drawn_actions = true;
+  const RecordLayout layout(spec);
+  AlignedRecord record(layout);
+  EXPECT_EQ(layout.DrawnAction(record.data()).size(), 4u);
+  EXPECT_EQ(reinterpret_cast<uint8_t*>(layout.DrawnAction(record.data()).data()),
+            record.data() + 96);
+  EXPECT_EQ(reinterpret_cast<uint8_t*>(layout.Vector(record.data()).data()), record.data() + 112);
+  EXPECT_EQ(layout.prefix_bytes(), 124);
+}
+
+TEST(RecordFault, ADrawnActionMayBeAnyFiniteNumber) {
+  ObservationSpec spec = SmallSpec();
+  spec.drawn_actions = true;
+  const RecordLayout layout(spec);
+  AlignedRecord record = ValidStep(layout);
+  layout.DrawnAction(record.data())[1] = -7;
+  EXPECT_EQ(RecordFault(layout, record.data()), nullptr);
+  layout.DrawnAction(record.data())[1] = NAN;
+  EXPECT_STREQ(RecordFault(layout, record.data()), "drawn action is not finite");
+}
+
 TEST(RecordFault, AcceptsAValidRecordAndNamesEachFault) {
   const RecordLayout layout(SmallSpec());
   AlignedRecord valid = ValidStep(layout);
@@ -68,6 +92,7 @@ TEST(RecordFault, AcceptsAValidRecordAndNamesEachFault) {
   EXPECT_NE(fault_after([](H& h, uint8_t*) { h.kind = RecordKind::kReset; }), "");
   EXPECT_NE(fault_after([](H& h, uint8_t*) { h.flags = 128; }), "");
   EXPECT_NE(fault_after([](H& h, uint8_t*) { h.reward = NAN; }), "");
+  EXPECT_NE(fault_after([](H& h, uint8_t*) { h.log_prob = -INFINITY; }), "");
   EXPECT_NE(fault_after([&](H&, uint8_t* r) { layout.Action(r)[3] = 1.01f; }), "");
   EXPECT_NE(fault_after([&](H&, uint8_t* r) { layout.Action(r)[0] = NAN; }), "");
   EXPECT_NE(fault_after([&](H&, uint8_t* r) { layout.Vector(r)[2] = INFINITY; }), "");
@@ -91,8 +116,27 @@ TEST(ObservationSpec, EveryFieldChangesTheHashAndJsonKeepsThemAll) {
   EXPECT_NE(hash_after([](S& s) { s.stack = 2; }), spec.Hash());
   EXPECT_NE(hash_after([](S& s) { s.blocks[0].size = 3; }), spec.Hash());
   EXPECT_NE(hash_after([](S& s) { s.blocks[0].name = "x"; }), spec.Hash());
+  EXPECT_NE(hash_after([](S& s) { s.blocks[1].observed = true; }), spec.Hash());
+  EXPECT_NE(hash_after([](S& s) { s.drawn_actions = true; }), spec.Hash());
   EXPECT_NE(hash_after([](S& s) { s.action_size = 5; }), spec.Hash());
   EXPECT_NE(hash_after([](S& s) { s.model_fingerprint = "ac"; }), spec.Hash());
+}
+
+TEST(ObservationSpec, ObservedBlocksArePickedInRecordOrder) {
+  ObservationSpec spec;
+  spec.blocks = {{"a", 2}, {"b", 1}, {"hidden", 2, /*observed=*/false}, {"c", 1}};
+  EXPECT_EQ(spec.VectorSize(), 4);
+  EXPECT_EQ(spec.RecordedVectorSize(), 6);
+  using Range = ObservationSpec::Range;
+  EXPECT_EQ(spec.Recorded("c"), (Range{5, 1}));
+  EXPECT_EQ(spec.Observed("c"), (Range{3, 1}));
+  EXPECT_EQ(spec.Recorded("hidden"), (Range{3, 2}));
+  EXPECT_FALSE(spec.Observed("hidden"));
+  EXPECT_FALSE(spec.Recorded("d"));
+  const std::vector<float> recorded{1, 2, 3, 4, 5, 6};
+  std::vector<float> observed(4);
+  ObservedBlocks(spec).Copy(recorded, observed);
+  EXPECT_EQ(observed, (std::vector<float>{1, 2, 3, 6}));
 }
 
 TEST(ObservationSpec, AMissingKeyIsNamed) {

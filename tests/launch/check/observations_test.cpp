@@ -8,7 +8,7 @@
 #include "actor/worlds/environment.h"
 #include "common/config/config_io.h"
 #include "launch/check/local_collection.h"
-#include "learner/sac_agent.h"
+#include "learner/agent/algorithms.h"
 #include "replay_server/core/peek.h"
 #include "tests/support/temporary_folder.h"
 
@@ -97,8 +97,8 @@ TEST_P(Observations, GoAllTheWayFromConfigurationToUpdate) {
   }
 
   // One update on it.
-  learner::SacAgent agent(run.config, run.spec, nn::Precision::kF32);
-  EXPECT_TRUE(agent.Update(batch).finite);
+  const auto agent = learner::MakeAgent(run.config, run.spec, nn::Precision::kF32);
+  EXPECT_TRUE(agent->Update(batch).finite);
 
   // A look into the ring.
   const replay::Peek peek = replay::PeekBatch(folder.path(), 3, 1);

@@ -13,7 +13,7 @@
 
 #include "common/base/random.h"
 #include "common/nn/precision.h"
-#include "learner/sac_agent.h"
+#include "learner/agent/algorithms.h"
 
 namespace shoal::learner {
 
@@ -21,11 +21,9 @@ namespace shoal::learner {
 class RandomBatch {
  public:
   RandomBatch(const ObservationSpec& spec, int batch, uint64_t key)
-      : layout_(spec, batch),
-        memory_(
-            static_cast<uint8_t*>(std::aligned_alloc(64, (layout_.total_bytes() + 63) / 64 * 64)),
-            &std::free) {
-    std::memset(memory_.get(), 0, layout_.total_bytes());
+      : schema_(spec, {.batch = batch}),
+        memory_(static_cast<uint8_t*>(std::aligned_alloc(64, schema_.total_bytes())), &std::free) {
+    std::memset(memory_.get(), 0, schema_.total_bytes());
     Random random(key);
     const BatchView view = View();
     for (uint8_t& pixel : view.obs_frames) pixel = uint8_t(random.Next());
@@ -37,10 +35,10 @@ class RandomBatch {
     for (float& value : view.bootstrap) value = random.Uniform() < 0.8 ? 1.f : 0.f;
   }
 
-  BatchView View() const { return layout_.View(memory_.get()); }
+  BatchView View() const { return schema_.View(memory_.get()); }
 
  private:
-  BatchLayout layout_;
+  BatchSchema schema_;
   std::unique_ptr<uint8_t, decltype(&std::free)> memory_;
 };
 
@@ -70,11 +68,29 @@ inline Config SmallConfig() {
   return config;
 }
 
+// NaN, which equals nothing, where the update did not compute it.
+inline double Get(const UpdateOutcome& outcome, const Figure& figure) {
+  return outcome.figures.Get(figure).value_or(std::nan(""));
+}
+
 inline std::vector<float> Floats(const nn::TensorMap& tensors, const std::string& name) {
   const nn::NamedTensor& tensor = tensors.at(name);
   std::vector<float> values(tensor.data.size() / sizeof(float));
   std::memcpy(values.data(), tensor.data.data(), tensor.data.size());
   return values;
+}
+
+// With noise on every value of the F32 tensors whose names start with `prefix`: targets as after
+// many updates.
+inline nn::TensorMap Perturbed(nn::TensorMap tensors, const std::string& prefix) {
+  Random random(11);
+  for (auto& [name, tensor] : tensors) {
+    if (!name.starts_with(prefix)) continue;
+    std::vector<float> values = Floats(tensors, name);
+    for (float& value : values) value += 0.2f * float(random.Normal());
+    std::memcpy(tensor.data.data(), values.data(), tensor.data.size());
+  }
+  return tensors;
 }
 
 // Names of the tensors that differ, among those that start with `prefix`.

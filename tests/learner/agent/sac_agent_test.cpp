@@ -1,4 +1,4 @@
-#include "learner/sac_agent.h"
+#include "learner/agent/sac/sac_agent.h"
 
 #include <gmock/gmock.h>
 
@@ -18,11 +18,11 @@ using testing::Not;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-SacAgent SmallAgent(const Config& config, Precision precision = Precision::kF32) {
-  return SacAgent(config, SmallSpec(), precision);
+std::unique_ptr<Agent> SmallAgent(const Config& config, Precision precision = Precision::kF32) {
+  return MakeAgent(config, SmallSpec(), precision);
 }
 
-void UpdateTimes(SacAgent* agent, int updates, uint64_t first_key = 100) {
+void UpdateTimes(Agent* agent, int updates, uint64_t first_key = 100) {
   for (int u = 0; u < updates; ++u) {
     const RandomBatch batch(SmallSpec(), SmallConfig().learner.batch, first_key + uint64_t(u));
     ASSERT_TRUE(agent->Update(batch.View()).finite);
@@ -31,7 +31,8 @@ void UpdateTimes(SacAgent* agent, int updates, uint64_t first_key = 100) {
 
 // Both precisions where the CPU has them.
 std::vector<Precision> Precisions() {
-  if (nn::ChoosePrecision("auto") == Precision::kBf16) return {Precision::kF32, Precision::kBf16};
+  if (nn::ChoosePrecision("auto", /*pixels=*/true) == Precision::kBf16)
+    return {Precision::kF32, Precision::kBf16};
   return {Precision::kF32};
 }
 
@@ -39,12 +40,12 @@ TEST(SacAgent, EncoderAndCriticGetNoGradientFromTheActor) {
   Config with = SmallConfig(), without = SmallConfig();
   with.learner.actor_period = 1;
   without.learner.actor_period = 1'000;
-  SacAgent a = SmallAgent(with), b = SmallAgent(without);
-  UpdateTimes(&a, 1);
-  b.Restore(a.AllTensors(), "a");
-  UpdateTimes(&a, 1, 200);
-  UpdateTimes(&b, 1, 200);
-  const TensorMap after_a = a.AllTensors(), after_b = b.AllTensors();
+  const auto a = SmallAgent(with), b = SmallAgent(without);
+  UpdateTimes(a.get(), 1);
+  b->Restore(a->AllTensors(), "a");
+  UpdateTimes(a.get(), 1, 200);
+  UpdateTimes(b.get(), 1, 200);
+  const TensorMap after_a = a->AllTensors(), after_b = b->AllTensors();
   for (const char* prefix :
        {"encoder.", "critic.", "target.", "adam.m.encoder.", "adam.m.critic."}) {
     EXPECT_THAT(Differences(after_a, after_b, prefix), IsEmpty());
@@ -54,49 +55,46 @@ TEST(SacAgent, EncoderAndCriticGetNoGradientFromTheActor) {
   }
 }
 
-TEST(SacAgent, ActorAndTemperatureMoveEveryPeriodAndTheirStatisticsStayBetween) {
+TEST(SacAgent, ActorAndTemperatureMoveEveryPeriodAndHaveNoFiguresBetween) {
   Config config = SmallConfig();
   config.learner.actor_period = 3;
-  SacAgent agent = SmallAgent(config);
-  UpdateStats last;
+  const auto agent = SmallAgent(config);
   for (int u = 0; u < 7; ++u) {
-    const TensorMap before = agent.AllTensors();
+    const TensorMap before = agent->AllTensors();
     const RandomBatch batch(SmallSpec(), config.learner.batch, uint64_t(u));
-    const UpdateStats stats = agent.Update(batch.View());
-    const TensorMap after = agent.AllTensors();
+    const UpdateOutcome stats = agent->Update(batch.View());
+    const TensorMap after = agent->AllTensors();
     EXPECT_THAT(Differences(before, after, "critic."), Not(IsEmpty()));
     const bool moved = !Differences(before, after, "actor.").empty();
     EXPECT_EQ(moved, u % 3 == 0) << u;
     EXPECT_EQ(!Differences(before, after, "temperature.").empty(), moved) << u;
-    if (!moved) {
-      EXPECT_EQ(stats.actor_loss, last.actor_loss);
-      EXPECT_EQ(stats.temperature, last.temperature);
+    for (const Figure* figure : {&kActorLoss, &kTemperatureLoss, &kEntropy, &kActorGradNorm}) {
+      EXPECT_EQ(stats.figures.Get(*figure).has_value(), moved) << u << ' ' << figure->name;
     }
-    last = stats;
   }
 }
 
 TEST(SacAgent, CopiesOfATransitionShareTheMeanOfTheirTargets) {
   Config config = SmallConfig();
   const RandomBatch batch(SmallSpec(), config.learner.batch, 1);
-  const UpdateStats alone = SmallAgent(config).Update(batch.View());
+  const UpdateOutcome alone = SmallAgent(config)->Update(batch.View());
   config.replay.copies = 2;
-  const UpdateStats copies = SmallAgent(config).Update(batch.View());
-  EXPECT_FLOAT_EQ(copies.target_mean, alone.target_mean);
-  EXPECT_EQ(copies.q_mean, alone.q_mean);
-  EXPECT_NE(copies.critic_loss, alone.critic_loss);
+  const UpdateOutcome copies = SmallAgent(config)->Update(batch.View());
+  EXPECT_NEAR(Get(copies, kTargetMean), Get(alone, kTargetMean), 1e-6);
+  EXPECT_EQ(Get(copies, kQMean), Get(alone, kQMean));
+  EXPECT_NE(Get(copies, kCriticLoss), Get(alone, kCriticLoss));
 }
 
 TEST(SacAgent, TargetsStartAtTheCriticAndMoveByTauEveryPeriod) {
   Config config = SmallConfig();
   config.learner.tau = 0.25;
   config.learner.target_period = 2;
-  SacAgent agent = SmallAgent(config);
-  const TensorMap start = agent.AllTensors();
+  const auto agent = SmallAgent(config);
+  const TensorMap start = agent->AllTensors();
   for (int u = 0; u < 3; ++u) {
-    const TensorMap before = agent.AllTensors();
-    UpdateTimes(&agent, 1, uint64_t(u));
-    const TensorMap after = agent.AllTensors();
+    const TensorMap before = agent->AllTensors();
+    UpdateTimes(agent.get(), 1, uint64_t(u));
+    const TensorMap after = agent->AllTensors();
     int compared = 0;
     for (const auto& [name, tensor] : after) {
       if (!name.starts_with("target.")) continue;
@@ -114,19 +112,19 @@ TEST(SacAgent, TargetsStartAtTheCriticAndMoveByTauEveryPeriod) {
 
 TEST(SacAgent, RestoredAgentGoesOnByteForByteForAHundredUpdates) {
   for (const Precision precision : Precisions()) {
-    SacAgent original = SmallAgent(SmallConfig(), precision);
-    UpdateTimes(&original, 7);
+    const auto original = SmallAgent(SmallConfig(), precision);
+    UpdateTimes(original.get(), 7);
     Config config = SmallConfig();
     config.seed = SmallConfig().seed;
-    SacAgent restored = SmallAgent(config, precision);
+    const auto restored = SmallAgent(config, precision);
     // Through the bytes of a file, as a checkpoint does.
-    restored.Restore(
-        nn::ReadSafetensors(nn::WriteSafetensors(original.AllTensors(), {}), "checkpoint"),
+    restored->Restore(
+        nn::ReadSafetensors(nn::WriteSafetensors(original->AllTensors(), {}), "checkpoint"),
         "checkpoint");
-    EXPECT_EQ(restored.updates(), 7u);
-    UpdateTimes(&original, 100, 500);
-    UpdateTimes(&restored, 100, 500);
-    EXPECT_THAT(Differences(original.AllTensors(), restored.AllTensors()), IsEmpty());
+    EXPECT_EQ(restored->updates(), 7u);
+    UpdateTimes(original.get(), 100, 500);
+    UpdateTimes(restored.get(), 100, 500);
+    EXPECT_THAT(Differences(original->AllTensors(), restored->AllTensors()), IsEmpty());
   }
 }
 
@@ -134,10 +132,10 @@ TEST(SacAgent, RunsRepeatByteForByteWithTheSameNumberOfThreads) {
   for (const Precision precision : Precisions()) {
     for (const int threads : {1, 2}) {
       nn::SetThreads(threads);
-      SacAgent a = SmallAgent(SmallConfig(), precision), b = SmallAgent(SmallConfig(), precision);
-      UpdateTimes(&a, 5);
-      UpdateTimes(&b, 5);
-      EXPECT_THAT(Differences(a.AllTensors(), b.AllTensors()), IsEmpty()) << threads;
+      const auto a = SmallAgent(SmallConfig(), precision), b = SmallAgent(SmallConfig(), precision);
+      UpdateTimes(a.get(), 5);
+      UpdateTimes(b.get(), 5);
+      EXPECT_THAT(Differences(a->AllTensors(), b->AllTensors()), IsEmpty()) << threads;
     }
   }
   nn::SetThreads(1);
@@ -146,21 +144,21 @@ TEST(SacAgent, RunsRepeatByteForByteWithTheSameNumberOfThreads) {
 TEST(SacAgent, SeedsGiveDifferentNetworks) {
   Config other = SmallConfig();
   other.seed = 8;
-  EXPECT_THAT(Differences(SmallAgent(SmallConfig()).AllTensors(), SmallAgent(other).AllTensors(),
+  EXPECT_THAT(Differences(SmallAgent(SmallConfig())->AllTensors(), SmallAgent(other)->AllTensors(),
                           "encoder."),
               Not(IsEmpty()));
 }
 
 TEST(SacAgent, NonFiniteInputIsReportedAndChangesNothing) {
-  SacAgent agent = SmallAgent(SmallConfig());
-  UpdateTimes(&agent, 3);
-  const TensorMap before = agent.AllTensors();
+  const auto agent = SmallAgent(SmallConfig());
+  UpdateTimes(agent.get(), 3);
+  const TensorMap before = agent->AllTensors();
   const auto expect_refused = [&](auto member, float value) {
     const RandomBatch batch(SmallSpec(), SmallConfig().learner.batch, 9);
     BatchView view = batch.View();
     (view.*member)[1] = value;
-    EXPECT_FALSE(agent.Update(view).finite);
-    EXPECT_THAT(Differences(before, agent.AllTensors()), IsEmpty());
+    EXPECT_FALSE(agent->Update(view).finite);
+    EXPECT_THAT(Differences(before, agent->AllTensors()), IsEmpty());
   };
   expect_refused(&BatchView::obs_vector, kNan);
   expect_refused(&BatchView::next_obs_vector, INFINITY);
@@ -168,8 +166,8 @@ TEST(SacAgent, NonFiniteInputIsReportedAndChangesNothing) {
   expect_refused(&BatchView::reward, -INFINITY);
   expect_refused(&BatchView::bootstrap, kNan);
   expect_refused(&BatchView::reward, 1e25f);  // finite, but its squared error is not
-  UpdateTimes(&agent, 1);                     // and it goes on
-  EXPECT_EQ(agent.updates(), 4u);
+  UpdateTimes(agent.get(), 1);                // and it goes on
+  EXPECT_EQ(agent->updates(), 4u);
 }
 
 // A learning rate at which the critic's step is finite and its next output is not: the actor's loss
@@ -177,45 +175,45 @@ TEST(SacAgent, NonFiniteInputIsReportedAndChangesNothing) {
 TEST(SacAgent, NonFiniteActorLossTakesTheCriticsStepBack) {
   Config config = SmallConfig();
   config.learner.learning_rate = 1e37;
-  SacAgent agent = SmallAgent(config);
-  const TensorMap before = agent.AllTensors();
+  const auto agent = SmallAgent(config);
+  const TensorMap before = agent->AllTensors();
   const RandomBatch batch(SmallSpec(), config.learner.batch, 1);
-  const UpdateStats stats = agent.Update(batch.View());
-  EXPECT_TRUE(std::isfinite(stats.critic_loss));
+  const UpdateOutcome stats = agent->Update(batch.View());
+  EXPECT_TRUE(std::isfinite(Get(stats, kCriticLoss)));
   EXPECT_FALSE(stats.finite);
-  EXPECT_THAT(Differences(before, agent.AllTensors()), IsEmpty());
+  EXPECT_THAT(Differences(before, agent->AllTensors()), IsEmpty());
   // The layers have the former weights back as well: the critic's loss is what it was.
-  EXPECT_EQ(agent.Update(batch.View()).critic_loss, stats.critic_loss);
+  EXPECT_EQ(Get(agent->Update(batch.View()), kCriticLoss), Get(stats, kCriticLoss));
 }
 
 TEST(SacAgent, RestoreRefusesWhatDoesNotFitAndChangesNothing) {
-  SacAgent agent = SmallAgent(SmallConfig()), other = SmallAgent(SmallConfig());
-  UpdateTimes(&other, 2);
-  const TensorMap before = agent.AllTensors();
+  const auto agent = SmallAgent(SmallConfig()), other = SmallAgent(SmallConfig());
+  UpdateTimes(other.get(), 2);
+  const TensorMap before = agent->AllTensors();
   for (const char* name : {"encoder.conv1.bias", "actor.mlp.output.weight", "target.q2.output.bias",
                            "adam.v.critic.q1.layer0.weight", "adam.steps.temperature",
                            "temperature.log", "agent.updates"}) {
-    TensorMap tensors = other.AllTensors();
+    TensorMap tensors = other->AllTensors();
     ASSERT_EQ(tensors.count(name), 1u) << name;
     tensors.at(name).shape.push_back(2);
-    EXPECT_THROW(agent.Restore(tensors, "checkpoint"), Error) << name;
+    EXPECT_THROW(agent->Restore(tensors, "checkpoint"), Error) << name;
     tensors.erase(name);
-    EXPECT_THAT([&] { agent.Restore(tensors, "checkpoint 5"); },
+    EXPECT_THAT([&] { agent->Restore(tensors, "checkpoint 5"); },
                 testing::ThrowsMessage<Error>(
                     testing::AllOf(testing::HasSubstr("checkpoint 5"), testing::HasSubstr(name))));
-    EXPECT_THAT(Differences(before, agent.AllTensors()), IsEmpty()) << name;
+    EXPECT_THAT(Differences(before, agent->AllTensors()), IsEmpty()) << name;
   }
   // The layers too: both go on alike.
-  SacAgent untouched = SmallAgent(SmallConfig());
-  UpdateTimes(&agent, 2);
-  UpdateTimes(&untouched, 2);
-  EXPECT_THAT(Differences(agent.AllTensors(), untouched.AllTensors()), IsEmpty());
+  const auto untouched = SmallAgent(SmallConfig());
+  UpdateTimes(agent.get(), 2);
+  UpdateTimes(untouched.get(), 2);
+  EXPECT_THAT(Differences(agent->AllTensors(), untouched->AllTensors()), IsEmpty());
 }
 
 TEST(SacAgent, PolicyTensorsAreTheAgentsOwnAndLoadIntoAPolicy) {
-  SacAgent agent = SmallAgent(SmallConfig());
-  UpdateTimes(&agent, 2);
-  const TensorMap policy = agent.PolicyTensors(), all = agent.AllTensors();
+  const auto agent = SmallAgent(SmallConfig());
+  UpdateTimes(agent.get(), 2);
+  const TensorMap policy = agent->PolicyTensors(), all = agent->AllTensors();
   for (const auto& [name, tensor] : policy) {
     EXPECT_TRUE(name.starts_with("encoder.") || name.starts_with("actor.")) << name;
     EXPECT_EQ(tensor.data, all.at(name).data) << name;
@@ -227,13 +225,13 @@ TEST(SacAgent, PolicyTensorsAreTheAgentsOwnAndLoadIntoAPolicy) {
 TEST(SacAgent, TheAveragedPolicyFollowsByTheRate) {
   Config config = SmallConfig();
   config.learner.average_rate = 0.25;
-  SacAgent agent = SmallAgent(config);
-  TensorMap average = agent.AveragedPolicyTensors();
-  EXPECT_THAT(Differences(average, agent.PolicyTensors()), IsEmpty()) << "it starts as the policy";
-  UpdateTimes(&agent, 3);
-  average = agent.AveragedPolicyTensors();
-  UpdateTimes(&agent, 1);
-  const TensorMap policy = agent.PolicyTensors(), moved = agent.AveragedPolicyTensors();
+  const auto agent = SmallAgent(config);
+  TensorMap average = agent->AveragedPolicyTensors();
+  EXPECT_THAT(Differences(average, agent->PolicyTensors()), IsEmpty()) << "it starts as the policy";
+  UpdateTimes(agent.get(), 3);
+  average = agent->AveragedPolicyTensors();
+  UpdateTimes(agent.get(), 1);
+  const TensorMap policy = agent->PolicyTensors(), moved = agent->AveragedPolicyTensors();
   ASSERT_EQ(moved.size(), policy.size());
   bool differs = false;
   for (const auto& [name, tensor] : moved) {
@@ -254,20 +252,12 @@ TEST(SacAgent, TheAveragedPolicyFollowsByTheRate) {
 TEST(SacAgent, Bf16StartsWithTheLossesOfF32) {
   if (Precisions().size() < 2) GTEST_SKIP() << "this CPU has no bf16 arithmetic";
   const RandomBatch batch(SmallSpec(), SmallConfig().learner.batch, 3);
-  const UpdateStats f32 = SmallAgent(SmallConfig()).Update(batch.View());
-  const UpdateStats bf16 = SmallAgent(SmallConfig(), Precision::kBf16).Update(batch.View());
-  EXPECT_NEAR(bf16.critic_loss, f32.critic_loss, 0.05 * f32.critic_loss);
-  EXPECT_NEAR(bf16.critic_grad_norm, f32.critic_grad_norm, 0.1 * f32.critic_grad_norm);
-  EXPECT_NEAR(bf16.entropy, f32.entropy, 0.05 * std::abs(f32.entropy));
-}
-
-TEST(SacAgent, FrameSpreadIsZeroForEqualPixels) {
-  SacAgent agent = SmallAgent(SmallConfig());
-  const RandomBatch batch(SmallSpec(), SmallConfig().learner.batch, 3);
-  // Bytes uniform on 0..255 have deviation sqrt((256^2 - 1) / 12) = 73.9.
-  EXPECT_NEAR(agent.Update(batch.View()).frame_spread, 73.9, 3);
-  std::ranges::fill(batch.View().obs_frames, uint8_t(90));
-  EXPECT_EQ(agent.Update(batch.View()).frame_spread, 0.f);
+  const UpdateOutcome f32 = SmallAgent(SmallConfig())->Update(batch.View());
+  const UpdateOutcome bf16 = SmallAgent(SmallConfig(), Precision::kBf16)->Update(batch.View());
+  EXPECT_NEAR(Get(bf16, kCriticLoss), Get(f32, kCriticLoss), 0.05 * Get(f32, kCriticLoss));
+  EXPECT_NEAR(Get(bf16, kCriticGradNorm), Get(f32, kCriticGradNorm),
+              0.1 * Get(f32, kCriticGradNorm));
+  EXPECT_NEAR(Get(bf16, kEntropy), Get(f32, kEntropy), 0.05 * std::abs(Get(f32, kEntropy)));
 }
 
 // A bandit: reward -(a - s0 / 2)^2, every step terminal. The best action is s0 / 2; a policy that
@@ -282,7 +272,7 @@ TEST(SacAgent, LearnsABandit) {
   config.learner.learning_rate = 3e-3;
   config.learner.reward_scale = 5;
   config.network.hidden = {32, 32};
-  SacAgent agent(config, spec, Precision::kF32);
+  const auto agent = MakeAgent(config, spec, Precision::kF32);
   Random random(1);
   for (int u = 0; u < 400; ++u) {
     const RandomBatch batch(spec, config.learner.batch, uint64_t(u));
@@ -293,15 +283,14 @@ TEST(SacAgent, LearnsABandit) {
       view.reward[b] = -error * error;
       view.bootstrap[b] = 0;
     }
-    ASSERT_TRUE(agent.Update(view).finite);
+    ASSERT_TRUE(agent->Update(view).finite);
   }
   nn::Policy policy(config.network, spec, Precision::kF32, 1);
-  policy.Load(agent.PolicyTensors(), "agent");
+  policy.Load(agent->PolicyTensors(), "agent");
   double error = 0;
   for (int i = 0; i < 41; ++i) {
     const float state[2] = {float(i - 20) / 20, 0.f};
-    float mean = 0, log_std = 0;
-    policy.Forward(1, nullptr, state, &mean, &log_std);
+    const float mean = policy.Forward(1, nullptr, state).mean[0];
     error += std::abs(std::tanh(mean) - state[0] / 2) / 41;
   }
   EXPECT_LT(error, 0.08);

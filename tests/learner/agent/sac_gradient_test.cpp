@@ -1,6 +1,7 @@
 // One whole update against a double in double: losses, and every gradient by central differences.
 //
-// The gradients of the first update are read off Adam's first moment: m = (1 - 0.9) g.
+// The gradients are read off Adam's first moment, which was 0 before: m = (1 - 0.9) g. Targets and
+// temperature are not those of a fresh agent, so that each is seen where it belongs.
 #include <numbers>
 
 #include "tests/common/nn/gradient_check.h"
@@ -23,7 +24,8 @@ struct Sample {
 
 class SacGradientTest : public testing::Test {
  protected:
-  SacGradientTest() : agent_(config_, spec_, nn::Precision::kF32), data_(spec_, batch_size_, 3) {}
+  SacGradientTest()
+      : agent_(MakeAgent(config_, spec_, nn::Precision::kF32)), data_(spec_, batch_size_, 3) {}
 
   // tanh-Gaussian actions with the noise the agent draws: (B, A) per call.
   Sample Draw(const Network::Gaussian& gaussian, const Values& noise) const {
@@ -53,8 +55,7 @@ class SacGradientTest : public testing::Test {
     const auto q = network.Critic("target", batch_size_, features, vector, next.action);
     Values y;
     for (size_t b = 0; b < size_t(batch_size_); ++b) {
-      const double value =
-          std::min(q.q1[b], q.q2[b]) - config_.learner.initial_temperature * next.log_prob[b];
+      const double value = std::min(q.q1[b], q.q2[b]) - temperature_ * next.log_prob[b];
       y.push_back(config_.learner.reward_scale * view.reward[b] +
                   view.bootstrap[b] * config_.learner.discount * value);
     }
@@ -81,7 +82,7 @@ class SacGradientTest : public testing::Test {
     const auto q = critic.Critic("critic", batch_size_, features, vector, sample.action);
     double loss = 0;
     for (size_t b = 0; b < sample.log_prob.size(); ++b) {
-      loss += config_.learner.initial_temperature * sample.log_prob[b] - std::min(q.q1[b], q.q2[b]);
+      loss += temperature_ * sample.log_prob[b] - std::min(q.q1[b], q.q2[b]);
     }
     return loss / batch_size_;
   }
@@ -104,14 +105,19 @@ class SacGradientTest : public testing::Test {
   const ObservationSpec spec_ = SmallSpec();
   const Config config_ = SmallConfig();
   const int batch_size_ = config_.learner.batch;
-  SacAgent agent_;
+  const double temperature_ = 0.37;
+  const std::unique_ptr<Agent> agent_;
   RandomBatch data_;
 };
 
-TEST_F(SacGradientTest, FirstUpdateFollowsTheEquations) {
-  const nn::TensorMap before = agent_.AllTensors();
-  const UpdateStats stats = agent_.Update(data_.View());
-  const nn::TensorMap after = agent_.AllTensors();
+TEST_F(SacGradientTest, ALaterUpdateFollowsTheEquations) {
+  nn::TensorMap later = Perturbed(agent_->AllTensors(), "target.");
+  const auto log_temperature = float(std::log(temperature_));
+  std::memcpy(later.at("temperature.log").data.data(), &log_temperature, sizeof(float));
+  agent_->Restore(later, "later");
+  const nn::TensorMap before = agent_->AllTensors();
+  const UpdateOutcome stats = agent_->Update(data_.View());
+  const nn::TensorMap after = agent_->AllTensors();
   Network network(before, config_.network, spec_);
   const Network updated(after, config_.network, spec_);
   Random random(StreamKey(uint64_t(config_.seed), StreamRole::kLearnerUpdate, 0));
@@ -119,23 +125,22 @@ TEST_F(SacGradientTest, FirstUpdateFollowsTheEquations) {
 
   const Values y = Targets(network, next_noise);
   const auto critic_loss = [&] { return CriticLoss(network, y); };
-  EXPECT_NEAR(stats.critic_loss, critic_loss(), 1e-4 * critic_loss());
+  EXPECT_NEAR(Get(stats, kCriticLoss), critic_loss(), 1e-4 * critic_loss());
   ExpectMoments(after, "encoder.", &network, critic_loss);
   ExpectMoments(after, "critic.", &network, critic_loss);
 
   // The actor sees the features of before and the critic of after its step.
   const Values features = network.Features(batch_size_, data_.View().obs_frames.data());
   const auto actor_loss = [&] { return ActorLoss(network, updated, features, noise); };
-  EXPECT_NEAR(stats.actor_loss, actor_loss(), 1e-4 * std::abs(actor_loss()));
+  EXPECT_NEAR(Get(stats, kActorLoss), actor_loss(), 1e-4 * std::abs(actor_loss()));
   ExpectMoments(after, "actor.", &network, actor_loss);
 
   const Sample sample =
       Draw(network.Actor(batch_size_, features, ToDoubles(data_.View().obs_vector)), noise);
   double entropy = 0;
   for (const double log_prob : sample.log_prob) entropy -= log_prob / batch_size_;
-  EXPECT_NEAR(stats.entropy, entropy, 1e-4);
-  const double temperature_loss =
-      config_.learner.initial_temperature * (entropy + spec_.action_size);
+  EXPECT_NEAR(Get(stats, kEntropy), entropy, 1e-4);
+  const double temperature_loss = temperature_ * (entropy + spec_.action_size);
   EXPECT_NEAR(Floats(after, "adam.m.temperature.log")[0], kFirstMoment * temperature_loss, 1e-5);
 }
 

@@ -13,14 +13,17 @@ namespace shoal::replay {
 namespace {
 
 // Draws the ids it is told to.
-class ListedSampler : public Sampler {
+class ListedSelector : public Selector {
  public:
-  explicit ListedSampler(std::deque<uint64_t> ids) : ids_(std::move(ids)) {}
-  std::optional<uint64_t> Draw(Random*) override {
+  explicit ListedSelector(std::deque<uint64_t> ids) : ids_(std::move(ids)) {}
+  void Added(uint64_t) override {}
+  void Removed(uint64_t) override {}
+  void UpdatePriority(uint64_t, double) override {}
+  std::optional<Selection> Draw(Random*) override {
     if (ids_.empty()) return std::nullopt;
     const uint64_t id = ids_.front();
     ids_.pop_front();
-    return id;
+    return Selection{id, 0.25};
   }
   uint64_t redraws() const override { return 0; }
 
@@ -42,10 +45,11 @@ class BatchGatherTest : public testing::Test {
   }
 
   BatchView Gather(const BatchPlan& plan, const NStep& n_step = {}) {
-    const BatchLayout layout(spec_, static_cast<int>(plan.elements.size()));
-    memory_.reset(static_cast<uint8_t*>(std::aligned_alloc(64, layout.total_bytes())));
-    const BatchView view = layout.View(memory_.get());
-    BatchGather(*ring_, spec_, n_step).Gather(plan, view);
+    schema_.emplace(spec_, BatchOptions{.batch = static_cast<int>(plan.elements.size())});
+    memory_.reset(static_cast<uint8_t*>(std::aligned_alloc(64, schema_->total_bytes())));
+    const BatchView view = schema_->View(memory_.get());
+    const EpisodeIndex index(*ring_, {.stack = spec_.stack, .n_step = n_step.steps});
+    BatchGather(*ring_, index, spec_, n_step).Gather(plan, view);
     return view;
   }
 
@@ -64,6 +68,11 @@ class BatchGatherTest : public testing::Test {
     }
     return stack;
   }
+  // Of the script's three blocks of 2 numbers the middle one is recorded only.
+  std::vector<float> Observed(size_t index) {
+    const auto all = ring_->layout().Vector(records_[index].data());
+    return {all[0], all[1], all[4], all[5]};
+  }
   static std::vector<uint8_t> Bytes(std::span<const uint8_t> bytes) {
     return {bytes.begin(), bytes.end()};
   }
@@ -74,6 +83,7 @@ class BatchGatherTest : public testing::Test {
   ObservationSpec spec_;
   std::optional<Ring> ring_;
   std::vector<std::vector<uint8_t>> records_;
+  std::optional<BatchSchema> schema_;
   std::unique_ptr<uint8_t[], FreeBytes> memory_;
 };
 
@@ -111,10 +121,11 @@ TEST_F(BatchGatherTest, ATimeLimitBootstrapsATerminationDoesNot) {
 TEST_F(BatchGatherTest, NStepsSumTheRewardsFromTheFirstActionOn) {
   Fill(TinySpec(2), 0);
   const BatchView view =
-      Gather({.elements = {{.id = 5, .obs = {}, .next_obs = {}}}}, {.steps = 3, .discount = 0.5});
+      Gather({.elements = {{.id = 3, .obs = {}, .next_obs = {}}}}, {.steps = 3, .discount = 0.5});
   const auto reward = [&](size_t i) { return RecordLayout::Header(records_[i].data()).reward; };
   EXPECT_FLOAT_EQ(view.reward[0], reward(2) + 0.5f * reward(3) + 0.25f * reward(4));
   EXPECT_FLOAT_EQ(view.bootstrap[0], 0.25f);
+  EXPECT_EQ(view.id[0], 3u);
   EXPECT_EQ(Bytes(view.obs_frames), Stack({0, 1}, {}));
   EXPECT_EQ(Bytes(view.next_obs_frames), Stack({3, 4}, {}));
   EXPECT_TRUE(std::ranges::equal(view.action, ring_->layout().Action(records_[2].data())));
@@ -123,8 +134,23 @@ TEST_F(BatchGatherTest, NStepsSumTheRewardsFromTheFirstActionOn) {
 TEST_F(BatchGatherTest, NStepsThatEndInATerminationDoNotBootstrap) {
   Fill(TinySpec(1), kTerminated);
   const BatchView view =
-      Gather({.elements = {{.id = 5, .obs = {}, .next_obs = {}}}}, {.steps = 2, .discount = 0.5});
+      Gather({.elements = {{.id = 4, .obs = {}, .next_obs = {}}}}, {.steps = 2, .discount = 0.5});
   EXPECT_EQ(view.bootstrap[0], 0.0f);
+}
+
+TEST_F(BatchGatherTest, StepsBeforeATerminationAreFewer) {
+  Fill(TinySpec(2), kTerminated);
+  const BatchView view = Gather(
+      {.elements = {{.id = 4, .obs = {}, .next_obs = {}}, {.id = 5, .obs = {}, .next_obs = {}}}},
+      {.steps = 3, .discount = 0.5});
+  const auto reward = [&](size_t i) { return RecordLayout::Header(records_[i].data()).reward; };
+  EXPECT_FLOAT_EQ(view.reward[0], reward(3) + 0.5f * reward(4));
+  EXPECT_FLOAT_EQ(view.reward[1], reward(4));
+  EXPECT_EQ(view.bootstrap[0], 0.0f);
+  EXPECT_EQ(view.bootstrap[1], 0.0f);
+  const std::vector<uint8_t> next = Stack({3, 4}, {});
+  EXPECT_TRUE(std::ranges::equal(view.next_obs_frames.first(next.size()), next));
+  EXPECT_TRUE(std::ranges::equal(view.next_obs_frames.last(next.size()), next));
 }
 
 TEST_F(BatchGatherTest, WorksWithoutPixels) {
@@ -134,16 +160,16 @@ TEST_F(BatchGatherTest, WorksWithoutPixels) {
   Fill(spec, 0);
   const BatchView view = Gather({.elements = {{.id = 3, .obs = {}, .next_obs = {}}}});
   EXPECT_TRUE(view.obs_frames.empty());
-  EXPECT_TRUE(std::ranges::equal(view.obs_vector, ring_->layout().Vector(records_[1].data())));
-  EXPECT_TRUE(std::ranges::equal(view.next_obs_vector, ring_->layout().Vector(records_[2].data())));
+  EXPECT_TRUE(std::ranges::equal(view.obs_vector, Observed(1)));
+  EXPECT_TRUE(std::ranges::equal(view.next_obs_vector, Observed(2)));
   EXPECT_TRUE(std::ranges::equal(view.action, ring_->layout().Action(records_[2].data())));
 }
 
 TEST_F(BatchGatherTest, PlansShiftObservationAndNextIndependently) {
   Fill(TinySpec(1), 0);
-  ListedSampler sampler(std::deque<uint64_t>(200, 2));
+  ListedSelector selector(std::deque<uint64_t>(200, 2));
   Random random(3);
-  const auto plan = DrawPlan({.batch = 200, .shift_pad = 4}, &sampler, &random);
+  const auto plan = DrawPlan({.batch = 200, .shift_pad = 4}, &selector, nullptr, &random);
   ASSERT_TRUE(plan);
   int same = 0;
   for (const BatchPlan::Element& element : plan->elements) {
@@ -156,9 +182,10 @@ TEST_F(BatchGatherTest, CopiesOfAStepStandTogetherEachWithItsShifts) {
   Fill(TinySpec(1), 0);
   std::deque<uint64_t> ids;
   for (uint64_t i = 0; i < 50; ++i) ids.push_back(2 + i % 4);
-  ListedSampler sampler(ids);
+  ListedSelector selector(ids);
   Random random(3);
-  const auto plan = DrawPlan({.batch = 200, .copies = 4, .shift_pad = 4}, &sampler, &random);
+  const auto plan =
+      DrawPlan({.batch = 200, .copies = 4, .shift_pad = 4}, &selector, nullptr, &random);
   ASSERT_TRUE(plan);
   int same = 0;
   for (size_t b = 0; b < 200; ++b) {
@@ -166,22 +193,23 @@ TEST_F(BatchGatherTest, CopiesOfAStepStandTogetherEachWithItsShifts) {
     same += b % 4 != 0 && plan->elements[b].obs == plan->elements[b - 1].obs ? 1 : 0;
   }
   EXPECT_LT(same, 20) << "one of 81 pairs of offsets is equal by chance";
-  EXPECT_FALSE(sampler.Draw(&random)) << "one draw for four elements";
+  EXPECT_FALSE(selector.Draw(&random)) << "one draw for four elements";
 }
 
 TEST_F(BatchGatherTest, APlanIsWholeOrNothing) {
   Fill(TinySpec(1), 0);
-  ListedSampler sampler({2, 3});
+  ListedSelector selector({2, 3});
   Random random(3);
-  EXPECT_FALSE(DrawPlan({.batch = 3, .shift_pad = 4}, &sampler, &random));
+  EXPECT_FALSE(DrawPlan({.batch = 3, .shift_pad = 4}, &selector, nullptr, &random));
 }
 
 TEST_F(BatchGatherTest, ChecksTheShapeOfTheOutput) {
   Fill(TinySpec(1), 0);
-  const BatchLayout layout(spec_, 2);
-  memory_.reset(static_cast<uint8_t*>(std::aligned_alloc(64, layout.total_bytes())));
+  schema_.emplace(spec_, BatchOptions{.batch = 2});
+  memory_.reset(static_cast<uint8_t*>(std::aligned_alloc(64, schema_->total_bytes())));
   const BatchPlan plan{.elements = {{.id = 4, .obs = {}, .next_obs = {}}}};
-  EXPECT_DEATH(BatchGather(*ring_, spec_).Gather(plan, layout.View(memory_.get())),
+  const EpisodeIndex index(*ring_, {});
+  EXPECT_DEATH(BatchGather(*ring_, index, spec_).Gather(plan, schema_->View(memory_.get())),
                "a batch of 2 for a plan of 1");
 }
 

@@ -34,7 +34,7 @@ class IntakeTest : public testing::Test {
   const ObservationSpec spec_ = TinySpec(1);
   Ring ring_{spec_, {.file = {}, .capacity = 100, .run = "test"}};
   SessionTable sessions_{ring_.sessions()};
-  EpisodeIndex index_{ring_, 1};
+  EpisodeIndex index_{ring_, {}};
   Intake intake_{spec_.Hash(), &ring_, &sessions_, &index_};
   RecordScript a_{spec_, 0, 10}, b_{spec_, 1, 11};
   std::vector<uint8_t> payload_;
@@ -84,31 +84,81 @@ TEST_F(IntakeTest, SetsAsideWhatIsAheadUntilTheMissingOnesCome) {
   EXPECT_EQ(Counters(a_).stored(), 12u);
 }
 
-TEST_F(IntakeTest, TakesTheMissingOnesAsLostWhenTheActorHasNothingOlder) {
-  intake_.Take(a_.Chunk(1, 4));
-  EXPECT_EQ(intake_.Take(a_.Chunk(9, 4)).fate, ChunkFate::kAhead);
-  EXPECT_EQ(intake_.Take(a_.Chunk(13, 4)).fate, ChunkFate::kAhead);
-  EXPECT_EQ(intake_.Take(a_.Chunk(9, 4)).fate, ChunkFate::kAhead);
-  EXPECT_EQ(intake_.Take(a_.Chunk(13, 4)).fate, ChunkFate::kAhead);
-  const ChunkResult result = intake_.Take(a_.Chunk(9, 4));
-  EXPECT_EQ(result.fate, ChunkFate::kDealtWith);
-  EXPECT_EQ(result.lost, 4u);
+// What an actor says before it sends again what it keeps.
+TransitionChunk Position(const RecordScript& script, const ObservationSpec& spec, uint64_t first) {
+  return {.spec_hash = spec.Hash(),
+          .actor = script.actor(),
+          .session = script.session(),
+          .first_sequence = first,
+          .payload = {}};
+}
+
+TEST_F(IntakeTest, ASessionThatBeganWithAnEarlierServerGoesOnWhereTheActorsKeepingBegins) {
+  EXPECT_EQ(intake_.Take(a_.Chunk(9, 4)).fate, ChunkFate::kAhead) << "it was sent before the word";
+  const ChunkResult taken_over = intake_.Take(Position(a_, spec_, 9));
+  EXPECT_EQ(taken_over.fate, ChunkFate::kDealtWith);
+  EXPECT_EQ(taken_over.lost, 8u);
+  EXPECT_EQ(intake_.Take(a_.Chunk(9, 4)).fate, ChunkFate::kDealtWith);
   const SessionCounters& c = Counters(a_);
   EXPECT_EQ(c.highest, 12u);
-  EXPECT_EQ(c.stored() + c.rejected + c.after_gap + c.lost, 12u);
+  EXPECT_EQ(c.lost, 8u);
+  EXPECT_EQ(c.stored() + c.rejected + c.after_gap, 4u);
+}
+
+TEST_F(IntakeTest, WhatOnlyThisServerCanHaveStoredIsNeverTakenAsLost) {
+  intake_.Take(a_.Chunk(1, 4));
+  EXPECT_EQ(intake_.Take(Position(a_, spec_, 9)).fate, ChunkFate::kAhead);
+  EXPECT_EQ(intake_.Take(Position(a_, spec_, 5)).fate, ChunkFate::kDealtWith);
+  EXPECT_EQ(intake_.Take(Position(a_, spec_, 1)).fate, ChunkFate::kDealtWith);
+  EXPECT_EQ(Counters(a_).highest, 4u);
+  EXPECT_EQ(Counters(a_).lost, 0u);
+}
+
+TEST_F(IntakeTest, AnInheritedSessionIsLostAndGoesOn) {
+  SessionTable sessions(ring_.sessions());
+  sessions.Inherit({.sessions = {{.actor = 0, .session = 10, .highest = 6, .rejected = 1},
+                                 {.actor = 1, .session = 11, .highest = 3}}});
+  Intake intake(spec_.Hash(), &ring_, &sessions, &index_);
+  EXPECT_EQ(sessions.at(0).lost, 5u);
+  EXPECT_EQ(sessions.at(0).stored(), 0u);
+  // The former server's account was a second old: it had stored up to 8 by its end.
+  EXPECT_EQ(intake.Take(Position(a_, spec_, 9)).lost, 2u);
+  EXPECT_EQ(intake.Take(a_.Chunk(9, 2)).fate, ChunkFate::kDealtWith);
+  EXPECT_EQ(sessions.at(0).highest, 10u);
+  EXPECT_EQ(sessions.at(0).lost, 7u);
+  EXPECT_EQ(sessions.at(1).lost, 3u) << "its actor is gone";
 }
 
 TEST_F(IntakeTest, AGapClosesTheEpisodeAtTheLastStoredRecord) {
   intake_.Take(Chunk(1, {Record(0, 0, 1), Record(0, 1, 2)}));
-  for (int i = 0; i < Intake::kAheadOffers; ++i) {
-    intake_.Take(Chunk(4, {Record(0, 3, 4), Record(0, 4, 5), Record(1, 0, 6), Record(1, 1, 7)}));
-  }
-  const SessionCounters& c = sessions_.at(0);
+  SessionTable sessions(ring_.sessions());  // a new server on the same ring
+  Intake intake(spec_.Hash(), &ring_, &sessions, &index_);
+  TransitionChunk position = Chunk(4, {});
+  EXPECT_EQ(intake.Take(position).lost, 1u);
+  intake.Take(Chunk(4, {Record(0, 3, 4), Record(0, 4, 5), Record(1, 0, 6), Record(1, 1, 7)}));
+  const SessionCounters& c = sessions.at(0);
   EXPECT_EQ(c.lost, 1u);
   EXPECT_EQ(c.after_gap, 2u);
   EXPECT_EQ(c.stored(), 4u);
   EXPECT_EQ(index_.cut_episodes(), 1u);
   EXPECT_EQ(index_.sampleable(), 2u);
+}
+
+TEST_F(IntakeTest, ASessionFromTheFutureIsRefusedAndDoesNotSupersede) {
+  RecordScript forged(spec_, 0, uint64_t{1} << 63);
+  EXPECT_EQ(intake_.Take(a_.Chunk(1, 2), /*latest_session=*/20).fate, ChunkFate::kDealtWith);
+  EXPECT_EQ(intake_.Take(forged.Chunk(1, 2), 20).fate, ChunkFate::kFuture);
+  EXPECT_EQ(intake_.Take(Position(forged, spec_, 1000), 20).fate, ChunkFate::kFuture);
+  EXPECT_EQ(intake_.Take(a_.Chunk(3, 2), 20).stored, 2u);
+  EXPECT_EQ(sessions_.size(), 1);
+}
+
+TEST_F(IntakeTest, AnActorWhoseClockWasSetBackFollowsItsFormerSession) {
+  intake_.Take(a_.Chunk(1, 2));
+  RecordScript next(spec_, 0, 10 + Intake::kSessionStep), leap(spec_, 1, 12 + Intake::kSessionStep);
+  EXPECT_EQ(intake_.Take(next.Chunk(1, 2), /*latest_session=*/5).fate, ChunkFate::kDealtWith);
+  intake_.Take(b_.Chunk(1, 2));
+  EXPECT_EQ(intake_.Take(leap.Chunk(1, 2), 5).fate, ChunkFate::kFuture);
 }
 
 TEST_F(IntakeTest, AMalformedRecordIsCountedAndClosesItsEpisode) {
@@ -160,7 +210,7 @@ TEST_F(IntakeTest, CountsARecordWhoseWriterDiedBeforeItCouldCountIt) {
       index_.Predecessor(0, 10, RecordLayout::Header(a_.At(4).data()));  // and no more than this:
   ring_.Append(0, 10, *prev, a_.At(4).data());
   SessionTable sessions(ring_.sessions());
-  EpisodeIndex index(ring_, 1);
+  EpisodeIndex index(ring_, {});
   ASSERT_EQ(sessions.at(0).highest, 3u);
   Intake intake(spec_.Hash(), &ring_, &sessions, &index);
   EXPECT_EQ(sessions.at(0).highest, 4u);
@@ -168,6 +218,12 @@ TEST_F(IntakeTest, CountsARecordWhoseWriterDiedBeforeItCouldCountIt) {
   const ChunkResult result = intake.Take(a_.Chunk(4, 2));
   EXPECT_EQ(result.duplicates, 1u);
   EXPECT_EQ(result.stored, 1u);
+}
+
+TEST_F(IntakeTest, AnInheritedTableOutlivesNothingButItself) {
+  SessionTable sessions(ring_.sessions());
+  sessions.Inherit({.sessions = {{.actor = 0, .session = 10, .highest = 6}}});
+  EXPECT_EQ(SessionTable(ring_.sessions()).at(0), sessions.at(0)) << "it is in the ring";
 }
 
 TEST_F(IntakeTest, RefusesChunksOfAnotherSpecAndMalformedOnes) {

@@ -5,8 +5,12 @@
 #include <cstdlib>
 #include <map>
 #include <memory>
+#include <optional>
+#include <set>
 
+#include "replay_server/core/hindsight.h"
 #include "replay_server/core/replay_core.h"
+#include "replay_server/core/uniform_selector.h"
 #include "tests/replay_server/oracle.h"
 #include "tests/replay_server/record_script.h"
 
@@ -14,19 +18,56 @@ namespace shoal::replay {
 namespace {
 
 constexpr double kDiscount = 0.9;
+constexpr double kThreshold = 1;
+
+struct Case {
+  int stack, n_step;
+  std::optional<HindsightGoal> hindsight{};
+};
+
+// Goals are points of the plane; the script's are spread over [-2, 2].
+tasks::Task TinyTask() {
+  tasks::Task::Description description;
+  description.name = description.world = "Tiny";
+  description.episode_length = 10;
+  description.achieved_goal = {"achieved_goal", {{"x"}, {"y"}}};
+  description.desired_goal = {"desired_goal", {{"x"}, {"y"}}};
+  description.reward = tasks::RewardKind::kSparse;
+  description.distance_threshold = kThreshold;
+  return tasks::Task(description);
+}
+
+// Knows what it has been told of.
+class KeptSelector final : public Selector {
+ public:
+  void Added(uint64_t id) override { EXPECT_TRUE(ids.insert(id).second) << id; }
+  void Removed(uint64_t id) override { EXPECT_EQ(ids.erase(id), 1u) << id; }
+  void UpdatePriority(uint64_t, double) override {}
+  std::optional<Selection> Draw(Random*) override { return std::nullopt; }
+  uint64_t redraws() const override { return 0; }
+
+  std::set<uint64_t> ids;
+};
 
 // Drives a ring, its index and intake with what actors do and what goes wrong on the way.
 class History {
  public:
-  History(int stack, int n_step, uint64_t capacity, uint64_t seed)
-      : spec_(TinySpec(stack)),
+  History(const Case& kind, uint64_t capacity, uint64_t seed)
+      : spec_(TinySpec(kind.stack)),
         layout_(spec_),
         ring_(spec_, {.file = {}, .capacity = capacity, .run = "history"}),
         sessions_(ring_.sessions()),
-        index_(ring_, stack, n_step),
-        intake_(spec_.Hash(), &ring_, &sessions_, &index_),
-        oracle_{.capacity = capacity, .stack = stack, .n_step = n_step},
+        index_(ring_, {.stack = kind.stack,
+                       .n_step = kind.n_step,
+                       .whole_episodes = kind.hindsight.has_value()}),
+        intake_(std::in_place, spec_.Hash(), &ring_, &sessions_, &index_),
+        oracle_{.capacity = capacity,
+                .stack = kind.stack,
+                .n_step = kind.n_step,
+                .whole_episodes = kind.hindsight.has_value()},
+        hindsight_(kind.hindsight),
         random_(seed) {
+    index_.SetSelector(&kept_);
     for (uint32_t actor = 0; actor < 3; ++actor) StartSession(actor);
   }
 
@@ -47,6 +88,7 @@ class History {
     for (uint64_t id = 1; id <= oracle_.all.size(); ++id) {
       ASSERT_EQ(index_.Sampleable(id), oracle_.Sampleable(id)) << "record " << id;
       sampleable += oracle_.Sampleable(id) ? 1 : 0;
+      ASSERT_EQ(kept_.ids.contains(id), oracle_.Sampleable(id)) << "told of record " << id;
     }
     ASSERT_EQ(index_.sampleable(), sampleable);
     ASSERT_EQ(ring_.last_id(), oracle_.all.size());
@@ -57,20 +99,29 @@ class History {
   void CheckBatch() {
     if (index_.sampleable() == 0) return;
     constexpr int kBatch = 16;
-    UniformSampler sampler(ring_, index_);
-    const auto plan = DrawPlan({.batch = kBatch}, &sampler, &random_);
+    UniformSelector selector(ring_, index_);
+    std::optional<HindsightRelabeller> relabeller;
+    if (hindsight_) relabeller.emplace(ring_, index_, *hindsight_, /*goals_per_sample=*/4);
+    const auto plan =
+        DrawPlan({.batch = kBatch}, &selector, relabeller ? &*relabeller : nullptr, &random_);
     ASSERT_TRUE(plan.has_value());
-    const BatchLayout batch_layout(spec_, kBatch);
+    const BatchSchema schema(spec_, {.batch = kBatch});
     const std::unique_ptr<void, decltype(&std::free)> memory(
-        std::aligned_alloc(64, batch_layout.total_bytes()), &std::free);
-    const BatchView view = batch_layout.View(static_cast<uint8_t*>(memory.get()));
-    BatchGather(ring_, spec_, {.steps = oracle_.n_step, .discount = kDiscount}).Gather(*plan, view);
-    for (size_t b = 0; b < kBatch; ++b) CheckElement(plan->elements[b].id, b, view);
+        std::aligned_alloc(64, schema.total_bytes()), &std::free);
+    const BatchView view = schema.View(static_cast<uint8_t*>(memory.get()));
+    BatchGather(ring_, index_, spec_, {.steps = oracle_.n_step, .discount = kDiscount}, &goals_)
+        .Gather(*plan, view);
+    for (size_t b = 0; b < kBatch; ++b) CheckElement(plan->elements[b], b, view);
   }
 
   const RecordHeader& HeaderOf(uint64_t id) const { return oracle_.all[id - 1].header(); }
   uint64_t stored() const { return oracle_.all.size(); }
   uint64_t first_frame_repeats() const { return first_frame_repeats_; }
+  // Samples of fewer steps, because the last one terminated the episode.
+  uint64_t short_samples() const { return short_samples_; }
+  // Samples with a goal of hindsight, and with one achieved before the sample began.
+  uint64_t relabelled() const { return relabelled_; }
+  uint64_t goals_before() const { return goals_before_; }
 
  private:
   struct Actor {
@@ -87,7 +138,7 @@ class History {
   }
 
   void Deliver(Actor* actor, uint64_t first, uint32_t count) {
-    const ChunkResult result = intake_.Take(actor->script->Chunk(first, count));
+    const ChunkResult result = intake_->Take(actor->script->Chunk(first, count));
     ASSERT_EQ(result.fate, ChunkFate::kDealtWith);
     ASSERT_EQ(result.duplicates, std::min<uint64_t>(count, actor->next - first));
     for (; actor->next < first + count; ++actor->next) {
@@ -96,12 +147,15 @@ class History {
     }
   }
 
-  // Nothing resends `count` records: the rest is offered until the replay takes them as lost.
+  // Another server takes over, and the actor keeps `count` records no more that it does not know.
   void LoseSome(Actor* actor, uint32_t count) {
     const uint64_t first = actor->next + count;
-    for (int offer = 1; offer < Intake::kAheadOffers; ++offer) {
-      ASSERT_EQ(intake_.Take(actor->script->Chunk(first, 3)).fate, ChunkFate::kAhead);
-    }
+    intake_.emplace(spec_.Hash(), &ring_, &sessions_, &index_);
+    ASSERT_EQ(intake_->Take(actor->script->Chunk(first, 3)).fate, ChunkFate::kAhead);
+    TransitionChunk position = actor->script->Chunk(first, 1);
+    position.count = 0;
+    position.payload = {};
+    ASSERT_EQ(intake_->Take(position).lost, count);
     actor->next = first;
     actor->lost += count;
     Deliver(actor, first, 3);
@@ -121,27 +175,61 @@ class History {
               counters.highest);
   }
 
-  void CheckElement(uint64_t id, size_t b, const BatchView& view) {
+  void CheckElement(const BatchPlan::Element& element, size_t b, const BatchView& view) {
+    const uint64_t id = element.id;
+    if (element.goal != 0) CheckGoal(element);
     ASSERT_TRUE(oracle_.Sampleable(id)) << "record " << id;
     const std::vector<uint64_t> steps = *oracle_.Steps(id);
-    const Oracle::Stored &last = oracle_.all[id - 1], &first = oracle_.all[steps.back() - 1];
+    const Oracle::Stored &first = oracle_.all[id - 1], &last = oracle_.all[steps.back() - 1];
     const Oracle::Stored& before = oracle_.all[first.prev - 1];
     double reward = 0;
-    for (const uint64_t step : steps) {  // newest first
-      reward = oracle_.all[step - 1].header().reward + kDiscount * reward;
-      CheckContinues(oracle_.all[oracle_.all[step - 1].prev - 1], last);
+    for (size_t k = 0; k < steps.size(); ++k) {
+      const Oracle::Stored& step = oracle_.all[steps[k] - 1];
+      reward += std::pow(kDiscount, k) * Earned(step, element.goal);
+      CheckContinues(oracle_.all[step.prev - 1], last);
     }
     CheckStack(*oracle_.Stack(first.prev), view.obs_frames, b);
-    CheckStack(*oracle_.Stack(id), view.next_obs_frames, b);
+    CheckStack(*oracle_.Stack(steps.back()), view.next_obs_frames, b);
+    if (steps.size() < static_cast<size_t>(oracle_.n_step)) ++short_samples_;
     if (before.header().index == 0) ++first_frame_repeats_;
     ASSERT_FLOAT_EQ(view.reward[b], static_cast<float>(reward));
     ASSERT_EQ(view.weights_update[b], first.header().weights_update);
+    ASSERT_EQ(view.id[b], id);
     const bool terminated = (last.header().flags & kTerminated) != 0;
-    const double bootstrap = terminated ? 0 : std::pow(kDiscount, oracle_.n_step - 1);
+    const double bootstrap = terminated ? 0 : std::pow(kDiscount, steps.size() - 1);
     ASSERT_FLOAT_EQ(view.bootstrap[b], static_cast<float>(bootstrap));
     ExpectFloats(layout_.Action(first.bytes.data()), view.action, b);
-    ExpectFloats(layout_.Vector(before.bytes.data()), view.obs_vector, b);
-    ExpectFloats(layout_.Vector(last.bytes.data()), view.next_obs_vector, b);
+    ExpectFloats(Observed(before, element.goal), view.obs_vector, b);
+    ExpectFloats(Observed(last, element.goal), view.next_obs_vector, b);
+  }
+
+  // Of the episode that the sample is of, stored, and where the kind of hindsight says.
+  void CheckGoal(const BatchPlan::Element& element) {
+    ++relabelled_;
+    const std::vector<uint64_t> episode = oracle_.Episode(element.id);
+    ASSERT_TRUE(std::ranges::count(episode, element.goal) == 1 && oracle_.Holds(element.goal));
+    ASSERT_NE(oracle_.all[element.goal - 1].header().index, 0u) << "a reset is nothing achieved";
+    ASSERT_TRUE(*hindsight_ != HindsightGoal::kFuture || element.goal >= element.id);
+    ASSERT_TRUE(*hindsight_ != HindsightGoal::kFinal || element.goal == episode.back());
+    if (element.goal < element.id) ++goals_before_;
+  }
+
+  // Sparse, against the goal of record `goal`, if that is one.
+  float Earned(const Oracle::Stored& step, uint64_t goal) const {
+    if (goal == 0) return step.header().reward;
+    const auto achieved = layout_.Vector(step.bytes.data()).subspan(2, 2);
+    const auto wanted = layout_.Vector(oracle_.all[goal - 1].bytes.data()).subspan(2, 2);
+    const double x = double{achieved[0]} - wanted[0], y = double{achieved[1]} - wanted[1];
+    return std::sqrt(x * x + y * y) > kThreshold ? -1.0f : 0.0f;
+  }
+
+  // Of the script's three blocks of 2 numbers the second, what was achieved, is recorded only.
+  std::vector<float> Observed(const Oracle::Stored& stored, uint64_t goal) const {
+    const auto all = layout_.Vector(stored.bytes.data());
+    const auto of_goal =
+        layout_.Vector(goal == 0 ? stored.bytes.data() : oracle_.all[goal - 1].bytes.data());
+    const auto wanted = of_goal.subspan(goal == 0 ? 4 : 2, 2);
+    return {all[0], all[1], wanted[0], wanted[1]};
   }
 
   // Never across an episode's end: `before` is of the same episode and did not end it.
@@ -173,23 +261,22 @@ class History {
   Ring ring_;
   SessionTable sessions_;
   EpisodeIndex index_;
-  Intake intake_;
+  std::optional<Intake> intake_;
   Oracle oracle_;
+  const GoalChange goals_{spec_, TinyTask()};
+  const std::optional<HindsightGoal> hindsight_;
+  KeptSelector kept_;
   Random random_;
   std::vector<Actor> actors_;  // the newest session of each
   uint64_t last_session_ = 0;
-  uint64_t first_frame_repeats_ = 0;
-};
-
-struct Case {
-  int stack, n_step;
+  uint64_t first_frame_repeats_ = 0, short_samples_ = 0, relabelled_ = 0, goals_before_ = 0;
 };
 
 class ReplayProperty : public testing::TestWithParam<Case> {};
 
 TEST_P(ReplayProperty, AgreesWithAnOracleThatKeepsEverything) {
   for (const uint64_t seed : {1, 2, 3, 4}) {
-    History history(GetParam().stack, GetParam().n_step, /*capacity=*/20 + 17 * seed, seed);
+    History history(GetParam(), /*capacity=*/20 + 17 * seed, seed);
     for (int i = 0; i < 150; ++i) {
       history.Event();
       history.Check();
@@ -198,16 +285,26 @@ TEST_P(ReplayProperty, AgreesWithAnOracleThatKeepsEverything) {
     }
     EXPECT_GT(history.stored(), 300u);
     EXPECT_GT(history.first_frame_repeats(), 0u);
+    EXPECT_EQ(history.short_samples() > 0, GetParam().n_step > 1);
+    EXPECT_EQ(history.relabelled() > 0, GetParam().hindsight.has_value());
+    EXPECT_EQ(history.goals_before() > 0, GetParam().hindsight == HindsightGoal::kEpisode);
   }
 }
 
+std::string CaseName(const testing::TestParamInfo<Case>& info) {
+  static constexpr const char* kNames[] = {"Future", "Final", "Episode"};
+  const auto& [stack, n_step, hindsight] = info.param;
+  return "Stack" + std::to_string(stack) + "NStep" + std::to_string(n_step) +
+         (hindsight ? kNames[static_cast<int>(*hindsight)] : "");
+}
+
 INSTANTIATE_TEST_SUITE_P(StacksAndSteps, ReplayProperty,
-                         testing::Values(Case{1, 1}, Case{2, 1}, Case{3, 1}, Case{1, 3},
-                                         Case{3, 2}),
-                         [](const auto& kind) {
-                           return "Stack" + std::to_string(kind.param.stack) + "NStep" +
-                                  std::to_string(kind.param.n_step);
-                         });
+                         testing::Values(Case{1, 1}, Case{2, 1}, Case{3, 1}, Case{1, 3}, Case{3, 2},
+                                         Case{1, 1, HindsightGoal::kFuture},
+                                         Case{2, 3, HindsightGoal::kFuture},
+                                         Case{1, 1, HindsightGoal::kFinal},
+                                         Case{3, 1, HindsightGoal::kEpisode}),
+                         CaseName);
 
 }  // namespace
 }  // namespace shoal::replay

@@ -16,6 +16,7 @@ LimiterOptions Options() {
           .batch = 8,
           .credits = 2,
           .window_records = 6,
+          .waiting_steps = 0,
           .band = 0,
           .lockstep = false};
 }
@@ -94,6 +95,14 @@ TEST(RateLimiter, AWiderBandIsTakenANarrowerOneIsNot) {
   EXPECT_EQ(narrow.band(), 56);
 }
 
+TEST(RateLimiter, TheBandHasRoomForStepsThatWaitForALaterRecord) {
+  LimiterOptions options = Options();
+  options.waiting_steps = 3;
+  RateLimiter limiter(options);
+  limiter.SetSessions(2);
+  EXPECT_EQ(limiter.band(), 2 * (2 * 2 * (6 + 3) + 16));
+}
+
 TEST(RateLimiter, NoLimitMeansMinSizeOnly) {
   LimiterOptions options = Options();
   options.samples_per_insert = 0;
@@ -161,7 +170,8 @@ class World {
 
  private:
   struct Actor {
-    uint64_t credit = 0;  // records it may send
+    uint64_t credit = 0;   // records it may send
+    uint64_t waiting = 0;  // stored steps that are not sampleable yet
   };
 
   void Refresh() {
@@ -174,7 +184,11 @@ class World {
     Actor& actor = actors_[random_.Below(actors_.size())];
     if (actor.credit == 0) return;
     const uint64_t records = 1 + random_.Below(actor.credit);
-    const uint64_t useful = random_.Below(records + 1);
+    actor.waiting += random_.Below(records + 1);
+    // Some wait for a later record, at most waiting_steps of them; an episode's end frees them all.
+    const uint64_t wait = random_.Below(std::min(actor.waiting, options_.waiting_steps) + 1);
+    const uint64_t useful = actor.waiting - wait;
+    actor.waiting = wait;
     actor.credit -= records;
     records_ += records;
     sampleable_ = std::min<uint64_t>(sampleable_ + useful, 5000);
@@ -220,6 +234,7 @@ TEST(RateLimiterProperty, OneSideCanAlwaysMove) {
     options.batch = 1 + static_cast<int>(random.Below(512));
     options.credits = 1 + static_cast<int>(random.Below(4));
     options.window_records = 2 + random.Below(100);
+    options.waiting_steps = random.Below(3) * 50;
     World world(options, seed);
     for (int i = 0; i < 3000; ++i) {
       world.Event();

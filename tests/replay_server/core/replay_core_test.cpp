@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "common/base/error.h"
+#include "common/config/batch_options.h"
 #include "tests/replay_server/record_script.h"
 #include "tests/support/temporary_folder.h"
 
@@ -27,11 +28,12 @@ class ReplayCoreTest : public testing::Test {
                                .learner_session = session,
                                .request = request,
                                .batch = static_cast<uint32_t>(run_.config.learner.batch),
-                               .after_steps = after_steps});
+                               .after_steps = after_steps,
+                               .schema_hash = BatchSchemaOf(run_).Hash()});
   }
   // The next batch's bytes; empty when nothing is answered.
   std::vector<uint8_t> Answer() {
-    const uint64_t bytes = core_->batch_layout().total_bytes();
+    const uint64_t bytes = core_->batch_schema().total_bytes();
     const std::unique_ptr<void, decltype(&std::free)> data(std::aligned_alloc(64, bytes),
                                                            &std::free);
     std::memset(data.get(), 0, bytes);
@@ -219,6 +221,31 @@ TEST_F(ReplayCoreTest, AnActorOfAnotherSpecIsToldOurs) {
   EXPECT_EQ(refusal.session, 10u);
   EXPECT_EQ(refusal.allowed, 0u);
   EXPECT_EQ(core_->counters().wrong_spec_chunks, 1u);
+}
+
+TEST_F(ReplayCoreTest, AProcessWhoseNumberHasANewerSessionIsToldOfIt) {
+  Start();
+  RecordScript newer(TinySpec(2), 0, 12);
+  Store(&newer, 1, 2);
+  const TransitionChunk late = actor_.Chunk(1, 2);
+  EXPECT_EQ(core_->TakeChunk(late).fate, ChunkFate::kSuperseded);
+  EXPECT_EQ(core_->Refusal(late).superseded_by, 12u);
+  EXPECT_EQ(core_->Refusal(newer.Chunk(3, 1)).superseded_by, 0u);
+}
+
+TEST_F(ReplayCoreTest, AServerWithoutItsPredecessorsRingTakesItsActorsOver) {
+  const FormerServer former{
+      .stored_steps = 40, .sessions = {{.actor = 0, .session = 10, .highest = 44, .rejected = 1}}};
+  core_.emplace(run_, folder_.path(), 2, former);
+  EXPECT_TRUE(core_->ring_replaced());
+  EXPECT_EQ(core_->ring().stored_steps(), 40u) << "env steps go on counting";
+  EXPECT_EQ(core_->sessions().at(0).lost, 43u);
+  const auto credits = core_->TakeCredits(true);
+  ASSERT_EQ(credits.size(), 1u) << "the actor, which has spent its credit, may go on at once";
+  EXPECT_EQ(credits[0].stored, 44u);
+  EXPECT_GT(credits[0].allowed, 44u);
+  core_.emplace(run_, folder_.path(), 3, FormerServer{});
+  EXPECT_FALSE(core_->ring_replaced()) << "nobody was there before";
 }
 
 TEST_F(ReplayCoreTest, RefusesABandInWhichBothCouldWait) {

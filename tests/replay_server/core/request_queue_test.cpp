@@ -11,8 +11,8 @@ class RequestQueueTest : public testing::Test {
     return queue_.Offer({.spec_hash = 5,
                          .learner_session = session,
                          .request = request,
-                         .batch = 64,
-                         .after_steps = after_steps});
+                         .after_steps = after_steps,
+                         .schema_hash = 64});
   }
   uint64_t NextId() {
     const auto next = queue_.Next(/*stored_steps=*/100);
@@ -66,13 +66,13 @@ TEST_F(RequestQueueTest, WaitsForTheStepsARequestNames) {
   EXPECT_EQ(queue_.Next(50)->request, 1u);
 }
 
-TEST_F(RequestQueueTest, RefusesAnotherSpecOrBatch) {
+TEST_F(RequestQueueTest, RefusesAnotherSpecOrSchema) {
   SampleRequest request{
-      .spec_hash = 6, .learner_session = 1, .request = 1, .batch = 64, .after_steps = 0};
+      .spec_hash = 6, .learner_session = 1, .request = 1, .after_steps = 0, .schema_hash = 64};
   EXPECT_EQ(queue_.Offer(request), RequestFate::kWrongSpec);
   request.spec_hash = 5;
-  request.batch = 63;
-  EXPECT_EQ(queue_.Offer(request), RequestFate::kWrongBatch);
+  request.schema_hash = 63;
+  EXPECT_EQ(queue_.Offer(request), RequestFate::kWrongSchema);
   EXPECT_EQ(queue_.learner_session(), 0u) << "it did not replace the learner";
 }
 

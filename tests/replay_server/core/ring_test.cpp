@@ -32,7 +32,7 @@ class RingTest : public testing::Test {
   uint64_t WriteRing(uint32_t records) {
     Ring ring(spec_, Options());
     SessionTable sessions(ring.sessions());
-    EpisodeIndex index(ring, 1);
+    EpisodeIndex index(ring, {});
     Intake intake(spec_.Hash(), &ring, &sessions, &index);
     intake.Take(script_.Chunk(1, records));
     return ring.last_id();
@@ -44,7 +44,7 @@ class RingTest : public testing::Test {
     try {
       Ring ring(spec, options);
       SessionTable sessions(ring.sessions());
-      EpisodeIndex index(ring, 1);
+      EpisodeIndex index(ring, {});
       Intake intake(spec.Hash(), &ring, &sessions, &index);
     } catch (const Error& e) {
       return e.what();
@@ -67,7 +67,7 @@ class RingTest : public testing::Test {
     RingOptions options = Options();
     options.alive = [&signs] { ++signs; };
     const Ring ring(spec_, options);
-    const EpisodeIndex index(ring, 1, 1, options.alive);
+    const EpisodeIndex index(ring, {}, options.alive);
     return signs;
   }
 
@@ -156,7 +156,7 @@ TEST_F(RingTest, RefusesAFileOfAnotherSpecCapacityOrVersion) {
   larger.capacity = 17;
   EXPECT_THAT(Refusal(spec_, larger), HasSubstr("room for 16 records, replay.capacity is 17"));
   FlipBit(offsetof(RingHeader, version));
-  EXPECT_THAT(Refusal(), HasSubstr("version 6, this program reads version 2"));
+  EXPECT_THAT(Refusal(), HasSubstr("version 7, this program reads version 3"));
 }
 
 TEST_F(RingTest, RefusesTruncatedFilesAndGarbage) {

@@ -24,10 +24,13 @@ TEST(AccountingFile, ListsEverySessionWithItsCounters) {
                    .lost = 3,
                    .duplicates = 4});
   table.Add(2, 5);
-  EXPECT_EQ(nlohmann::json::parse(AccountingJson(table, 12, 14)), nlohmann::json::parse(R"({
+  EXPECT_EQ(
+      nlohmann::json::parse(AccountingJson(table, {.stored_steps = 12, .stored_records = 14})),
+      nlohmann::json::parse(R"({
     "schema": "shoal-accounting-1",
     "stored_steps": 12,
     "stored_records": 14,
+    "ring_replaced": false,
     "sessions": [
       {"actor": 1, "session": 1700000000000000001, "highest": 20, "stored": 14, "rejected": 1,
        "after_gap": 2, "lost": 3, "duplicates": 4},
@@ -35,17 +38,35 @@ TEST(AccountingFile, ListsEverySessionWithItsCounters) {
        "lost": 0, "duplicates": 0}]})"));
 }
 
-TEST(AccountingFile, TellsALaterServerHowManyStepsWereStored) {
+TEST(AccountingFile, TellsALaterServerWhatWasStored) {
   const TemporaryFolder folder;
   std::vector<StoredSession> storage(4);
-  EXPECT_EQ(StoredStepsBefore(folder.path()), 0u);
-  ReplaceFile(folder.path() / kAccountingFile, AccountingJson(SessionTable(storage), 1234, 1250));
-  EXPECT_EQ(StoredStepsBefore(folder.path()), 1234u);
+  EXPECT_EQ(ReadAccountBefore(folder.path()).server.stored_steps, 0u);
+  SessionTable table(storage);
+  table.Add(1, 1'700'000'000'000'000'001);
+  table.Update(0, {.actor = 1,
+                   .session = 1'700'000'000'000'000'001,
+                   .highest = 20,
+                   .rejected = 1,
+                   .after_gap = 2,
+                   .lost = 3,
+                   .duplicates = 4});
+  ReplaceFile(folder.path() / kAccountingFile,
+              AccountingJson(table, {.stored_steps = 1234, .stored_records = 1250}));
+  const AccountBefore before = ReadAccountBefore(folder.path());
+  EXPECT_EQ(before.server.stored_steps, 1234u);
+  ASSERT_EQ(before.server.sessions.size(), 1u);
+  EXPECT_EQ(before.server.sessions[0], table.at(0));
+  EXPECT_FALSE(before.ring_replaced);
   for (const char* damaged :
        {"", "{", "{}", R"({"schema": "shoal-accounting-2"})", R"({"schema": "shoal-accounting-1"})",
-        R"({"schema": "shoal-accounting-1", "stored_steps": -1})"}) {
+        R"({"schema": "shoal-accounting-1", "stored_steps": -1})",
+        R"({"schema": "shoal-accounting-1", "stored_steps": 1, "sessions": [{"actor": 1}]})",
+        R"({"schema": "shoal-accounting-1", "stored_steps": 1, "sessions": [{"actor": 1,
+            "session": 1, "highest": 9, "stored": 8, "rejected": 0, "after_gap": 0, "lost": 0,
+            "duplicates": 0}]})"}) {
     ReplaceFile(folder.path() / kAccountingFile, damaged);
-    EXPECT_THROW(StoredStepsBefore(folder.path()), Error) << damaged;
+    EXPECT_THROW(ReadAccountBefore(folder.path()), Error) << damaged;
   }
 }
 

@@ -13,17 +13,17 @@ namespace {
 using std::chrono::seconds;
 
 // Keeps what is written; refuses as often as told.
-class FakeWriter : public ShardWriter {
+class FakeWriter : public PartWriter {
  public:
-  bool Write(const BatchShard& shard) override {
+  bool Write(const BatchPart& part) override {
     const std::lock_guard lock(mutex_);
     ++writes_;
     if (refusals_ != 0) {
       if (refusals_ > 0) --refusals_;
       return false;
     }
-    shards_.push_back(shard);
-    bytes_.emplace_back(shard.payload.begin(), shard.payload.end());
+    parts_.push_back(part);
+    bytes_.emplace_back(part.payload.begin(), part.payload.end());
     return true;
   }
   bool HasReader() override {
@@ -40,13 +40,13 @@ class FakeWriter : public ShardWriter {
   int refusals_ = 0;
   std::atomic<int> writes_{0}, looks_{0};
   std::atomic<bool> has_reader_{true};
-  std::vector<BatchShard> shards_;
+  std::vector<BatchPart> parts_;
   std::vector<std::vector<uint8_t>> bytes_;
 };
 
 class BatchSenderTest : public testing::Test {
  protected:
-  static constexpr uint64_t kBatchBytes = 2 * kShardBytes + 640;
+  static constexpr uint64_t kBatchBytes = 2 * kPartBytes + 640;
 
   BatchSenderTest() { sender_.SetLearnerSession(7); }
 
@@ -80,22 +80,22 @@ class BatchSenderTest : public testing::Test {
                       }};
 };
 
-TEST_F(BatchSenderTest, CutsABatchIntoShardsThatCoverIt) {
+TEST_F(BatchSenderTest, CutsABatchIntoPartsThatCoverIt) {
   Send(3, 0x5a);
   ASSERT_TRUE(WaitForEnds(1));
-  ASSERT_EQ(writer_.shards_.size(), 3u);
+  ASSERT_EQ(writer_.parts_.size(), 3u);
   uint64_t offset = 0;
   for (uint32_t i = 0; i < 3; ++i) {
-    const BatchShard& shard = writer_.shards_[i];
-    EXPECT_EQ(shard.spec_hash, 5u);
-    EXPECT_EQ(shard.learner_session, 7u);
-    EXPECT_EQ(shard.request, 3u);
-    EXPECT_EQ(shard.shard, i);
-    EXPECT_EQ(shard.shards, 3u);
-    EXPECT_EQ(shard.offset, offset);
-    EXPECT_EQ(shard.total_bytes, kBatchBytes);
-    EXPECT_EQ(shard.stored_records, 100u);
-    EXPECT_EQ(shard.stored_steps, 90u);
+    const BatchPart& part = writer_.parts_[i];
+    EXPECT_EQ(part.spec_hash, 5u);
+    EXPECT_EQ(part.learner_session, 7u);
+    EXPECT_EQ(part.request, 3u);
+    EXPECT_EQ(part.part, i);
+    EXPECT_EQ(part.parts, 3u);
+    EXPECT_EQ(part.offset, offset);
+    EXPECT_EQ(part.total_bytes, kBatchBytes);
+    EXPECT_EQ(part.stored_records, 100u);
+    EXPECT_EQ(part.stored_steps, 90u);
     EXPECT_LT(writer_.bytes_[i].size(), 1'000'000u);
     EXPECT_EQ(writer_.bytes_[i], std::vector<uint8_t>(writer_.bytes_[i].size(), 0x5a));
     offset += writer_.bytes_[i].size();
@@ -104,11 +104,11 @@ TEST_F(BatchSenderTest, CutsABatchIntoShardsThatCoverIt) {
   EXPECT_EQ(sender_.sent(), 1u);
 }
 
-TEST_F(BatchSenderTest, TriesAShardAgainThatWasNotTaken) {
+TEST_F(BatchSenderTest, TriesAPartAgainThatWasNotTaken) {
   writer_.Refuse(4);
   Send(1, 1);
   ASSERT_TRUE(WaitForEnds(1));
-  EXPECT_EQ(writer_.shards_.size(), 3u);
+  EXPECT_EQ(writer_.parts_.size(), 3u);
   EXPECT_EQ(writer_.writes_, 7);
 }
 
@@ -120,9 +120,9 @@ TEST_F(BatchSenderTest, HasAsManyBatchesUnderWayAsBuffers) {
   writer_.Refuse(0);
   ASSERT_TRUE(WaitForEnds(2));
   EXPECT_NE(sender_.FreeBuffer(), nullptr);
-  ASSERT_EQ(writer_.shards_.size(), 6u);
-  EXPECT_EQ(writer_.shards_[2].request, 1u);
-  EXPECT_EQ(writer_.shards_[3].request, 2u);
+  ASSERT_EQ(writer_.parts_.size(), 6u);
+  EXPECT_EQ(writer_.parts_[2].request, 1u);
+  EXPECT_EQ(writer_.parts_[3].request, 2u);
 }
 
 TEST_F(BatchSenderTest, GivesUpTheBatchesOfAReplacedLearnerSession) {
@@ -132,12 +132,12 @@ TEST_F(BatchSenderTest, GivesUpTheBatchesOfAReplacedLearnerSession) {
   const SteadyTime start = Now();
   sender_.SetLearnerSession(8);
   ASSERT_TRUE(WaitForEnds(2));
-  EXPECT_LT(Now() - start, BatchSender::kShardDeadline) << "at once, not for want of progress";
-  EXPECT_TRUE(writer_.shards_.empty());
+  EXPECT_LT(Now() - start, BatchSender::kPartDeadline) << "at once, not for want of progress";
+  EXPECT_TRUE(writer_.parts_.empty());
   EXPECT_EQ(sender_.given_up(), 2u);
 }
 
-TEST_F(BatchSenderTest, WaitsForTheLearnersReaderBeforeTheFirstShard) {
+TEST_F(BatchSenderTest, WaitsForTheLearnersReaderBeforeTheFirstPart) {
   writer_.has_reader_ = false;
   Send(1, 1);
   const SteadyTime deadline = Now() + seconds(20);
@@ -145,7 +145,7 @@ TEST_F(BatchSenderTest, WaitsForTheLearnersReaderBeforeTheFirstShard) {
   EXPECT_EQ(writer_.writes_, 0);
   writer_.has_reader_ = true;
   ASSERT_TRUE(WaitForEnds(1));
-  EXPECT_EQ(writer_.shards_.size(), 3u);
+  EXPECT_EQ(writer_.parts_.size(), 3u);
 }
 
 TEST_F(BatchSenderTest, EndsInTheMiddleOfABatch) {

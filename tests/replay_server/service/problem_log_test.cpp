@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/base/error.h"
 #include "common/base/log.h"
 
 namespace shoal::replay {
@@ -10,6 +11,12 @@ namespace {
 
 using testing::HasSubstr;
 using testing::IsEmpty;
+
+ObservationSpec ActionSpec() {
+  ObservationSpec spec;
+  spec.action_size = 2;
+  return spec;
+}
 
 class ProblemLogTest : public testing::Test {
  protected:
@@ -22,7 +29,8 @@ class ProblemLogTest : public testing::Test {
 
   const SteadyTime start_ = Now();
   CoreCounters counters_;
-  ProblemLog log_{0xabc};
+  const BatchSchema schema_{ActionSpec(), {.batch = 8}};
+  ProblemLog log_{0xabc, schema_};
 };
 
 TEST_F(ProblemLogTest, IsSilentWithoutProblems) {
@@ -53,12 +61,24 @@ TEST_F(ProblemLogTest, NamesTheFaultOfRejectedRecords) {
                                         "not finite"));
 }
 
+TEST_F(ProblemLogTest, NamesBothSchemasOfARefusedRequest) {
+  SampleRequest request;
+  request.spec_hash = 0xabc;
+  request.schema_hash = 0x123;
+  log_.NoteRefused(request);
+  counters_.refused_requests = 1;
+  EXPECT_THAT(Report(start_), HasSubstr(fmt::format("schema 0000000000000123 (the run's {:016x}: "
+                                                    "batch 8, copies 1, n_step 1, discount 1: "
+                                                    "action f32 2, reward f32",
+                                                    schema_.Hash())));
+}
+
 TEST_F(ProblemLogTest, TellsOfDropsGapsAndLosses) {
   counters_.after_gap = 3;
   counters_.lost = 4;
   const std::string lines = Report(start_, /*dropped_chunks=*/5);
   EXPECT_THAT(lines, HasSubstr("3 records not used"));
-  EXPECT_THAT(lines, HasSubstr("4 records never came"));
+  EXPECT_THAT(lines, HasSubstr("4 records are lost"));
   EXPECT_THAT(lines, HasSubstr("5 chunks dropped"));
 }
 

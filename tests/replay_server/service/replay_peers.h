@@ -13,11 +13,11 @@
 #include <vector>
 
 #include "common/base/clock.h"
+#include "common/config/batch_options.h"
 #include "common/config/run_files.h"
 #include "common/dds/bus.h"
 #include "common/dds/publisher.h"
 #include "common/dds/subscriber.h"
-#include "common/wire/batch_layout.h"
 #include "tests/replay_server/record_script.h"
 
 namespace shoal::replay {
@@ -36,8 +36,8 @@ class ReplayPeers {
                  [this](const CreditsMessage& m) {
                    for (const Credit& credit : m.credits) OnCredit(credit);
                  }),
-        shards_(bus_, [this](const BatchShard& s) { OnShard(s); }),
-        metrics_(bus_, [this](const MetricsMessage& m) { OnMetrics(m); }) {}
+        parts_(bus_, [this](const BatchPart& part) { OnPart(part); }),
+        metrics_(bus_, [this](const ReplayMetrics& m) { OnMetrics(m); }) {}
 
   // A heartbeat. Every wait below sends them too, unless `silent`.
   void Beat() {
@@ -101,8 +101,8 @@ class ReplayPeers {
   std::vector<uint8_t> Batch(uint64_t request) {
     {
       const std::lock_guard lock(mutex_);
-      batch_.assign(BatchLayout(run_.spec, run_.config.learner.batch).total_bytes(), 0);
-      missing_shards_.reset();
+      batch_.assign(BatchSchemaOf(run_).total_bytes(), 0);
+      missing_parts_.reset();
       wanted_ = request;
     }
     for (int attempt = 0; attempt < 4; ++attempt) {
@@ -110,8 +110,9 @@ class ReplayPeers {
                        .learner_session = 5,
                        .request = request,
                        .batch = static_cast<uint32_t>(run_.config.learner.batch),
-                       .after_steps = 0});
-      if (WaitFor([this] { return missing_shards_ && missing_shards_->empty(); },
+                       .after_steps = 0,
+                       .schema_hash = BatchSchemaOf(run_).Hash()});
+      if (WaitFor([this] { return missing_parts_ && missing_parts_->empty(); },
                   std::chrono::seconds(5))) {
         const std::lock_guard lock(mutex_);
         return batch_;
@@ -151,18 +152,18 @@ class ReplayPeers {
     credit_[credit.actor] = credit;
     changed_.notify_all();
   }
-  void OnShard(const BatchShard& shard) {
+  void OnPart(const BatchPart& part) {
     const std::lock_guard lock(mutex_);
-    if (shard.request != wanted_ || shard.offset + shard.payload.size() > batch_.size()) return;
-    std::ranges::copy(shard.payload, batch_.begin() + static_cast<std::ptrdiff_t>(shard.offset));
-    if (!missing_shards_) {
-      missing_shards_.emplace();
-      for (uint32_t i = 0; i < shard.shards; ++i) missing_shards_->insert(i);
+    if (part.request != wanted_ || part.offset + part.payload.size() > batch_.size()) return;
+    std::ranges::copy(part.payload, batch_.begin() + static_cast<std::ptrdiff_t>(part.offset));
+    if (!missing_parts_) {
+      missing_parts_.emplace();
+      for (uint32_t i = 0; i < part.parts; ++i) missing_parts_->insert(i);
     }
-    missing_shards_->erase(shard.shard);
+    missing_parts_->erase(part.part);
     changed_.notify_all();
   }
-  void OnMetrics(const MetricsMessage& message) {
+  void OnMetrics(const ReplayMetrics& message) {
     const std::lock_guard lock(mutex_);
     if (message.role != "replay") return;
     for (size_t i = 0; i < message.names.size(); ++i) {
@@ -177,7 +178,7 @@ class ReplayPeers {
   std::map<uint32_t, Credit> credit_;
   std::vector<uint8_t> batch_;
   uint64_t wanted_ = 0;
-  std::optional<std::set<uint32_t>> missing_shards_;
+  std::optional<std::set<uint32_t>> missing_parts_;
   std::map<std::string, double> newest_metrics_;
   SteadyTime last_beat_{};
 
@@ -186,8 +187,8 @@ class ReplayPeers {
   dds::Publisher<TransitionChunk> chunks_;
   dds::Publisher<SampleRequest> requests_;
   dds::Subscriber<CreditsMessage> credits_;
-  dds::Subscriber<BatchShard> shards_;
-  dds::Subscriber<MetricsMessage> metrics_;
+  dds::Subscriber<BatchPart> parts_;
+  dds::Subscriber<ReplayMetrics> metrics_;
 };
 
 }  // namespace shoal::replay

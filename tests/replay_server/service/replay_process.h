@@ -16,6 +16,7 @@
 
 #include "common/base/clock.h"
 #include "common/base/files.h"
+#include "tests/support/paths.h"
 
 namespace shoal::replay {
 
@@ -23,7 +24,7 @@ class ReplayProcess {
  public:
   ReplayProcess(std::vector<std::string> arguments, const std::filesystem::path& errors)
       : errors_(errors) {
-    arguments.insert(arguments.begin(), std::string(SHOAL_BIN) + "/shoal-replay");
+    arguments.insert(arguments.begin(), ProgramPath("shoal-replay"));
     std::vector<char*> argv;
     argv.reserve(arguments.size() + 1);
     for (std::string& argument : arguments) argv.push_back(argument.data());

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "common/config/batch_options.h"
 #include "replay_server/core/replay_core.h"
 #include "tests/replay_server/service/replay_peers.h"
 #include "tests/replay_server/service/replay_process.h"
@@ -24,7 +25,7 @@ class ReplayServiceTest : public testing::Test {
   ReplayServiceTest() : run_(TinyRun(2, 4000)) {
     run_.spec = TinySpec(2, 60, 70);
     run_.config.replay.storage = "file";
-    run_.config.learner.batch = 128;  // 8 MB: several shards
+    run_.config.learner.batch = 128;  // 8 MB: several parts
     run_.config.actors = 2;
     dds::ClaimDomain(run_.config.transport, &address_);
     WriteRunConfig(folder_.path(), run_);
@@ -62,12 +63,12 @@ class ReplayServiceTest : public testing::Test {
       const auto frame = layout.Frame(script->At(sequence).data());
       frames.insert(HashBytes(frame.data(), frame.size()));
     }
-    const BatchLayout batch_layout(run_.spec, run_.config.learner.batch);
-    ASSERT_EQ(batch.size(), batch_layout.total_bytes());
+    const BatchSchema schema = BatchSchemaOf(run_);
+    ASSERT_EQ(batch.size(), schema.total_bytes());
     const std::unique_ptr<void, decltype(&std::free)> memory(std::aligned_alloc(64, batch.size()),
                                                              &std::free);
     std::memcpy(memory.get(), batch.data(), batch.size());
-    const BatchView view = batch_layout.View(static_cast<uint8_t*>(memory.get()));
+    const BatchView view = schema.View(static_cast<uint8_t*>(memory.get()));
     const size_t frame_bytes = static_cast<size_t>(layout.frame_bytes());
     for (const auto& stacks : {view.obs_frames, view.next_obs_frames}) {
       for (size_t offset = 0; offset < stacks.size(); offset += frame_bytes) {

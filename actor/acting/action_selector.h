@@ -1,0 +1,71 @@
+// Chooses the actions of E environments at once: uniform random until the first weights, then what
+// the policy says, with or without exploration.
+//
+// One thread.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "actor/acting/exploration.h"
+#include "actor/acting/weights_inbox.h"
+#include "common/base/random.h"
+#include "common/config/config.h"
+#include "common/nn/policy.h"
+#include "common/spec/observation_spec.h"
+
+namespace shoal::actor {
+
+// Whatever is asked for, actions are uniform random before the first weights.
+enum class Acting {
+  kUniform,  // each component ~ U(-1, 1)
+  kExplore,  // actor/acting/exploration.h
+  kMean,     // tanh(mean): evaluation
+};
+
+class ActionSelector {
+ public:
+  // `actor`: its number within the run, for its factor of the noise.
+  ActionSelector(const Config& config, const ObservationSpec& spec, int envs, uint32_t actor = 0);
+
+  // Throws Error when the weights do not fit the network; the former ones then stay.
+  void Load(const ReceivedWeights& weights);
+  WeightsVersion version() const { return version_; }
+  // Of the whole run when those weights were made; 0 before any.
+  uint64_t run_env_steps() const { return run_env_steps_; }
+
+  // Starts the exploration stream of an episode of local environment `e`.
+  void BeginEpisode(int e, uint64_t stream_key);
+
+  // Where that stream is, and what the noise carries over from step to step, to go on with both in
+  // another process. SetNoise throws Error when the state is another kind of exploration's.
+  struct Noise {
+    Random::State stream{};
+    std::vector<double> carried{};
+    bool operator==(const Noise&) const = default;
+  };
+  Noise NoiseOf(int e) const;
+  void SetNoise(int e, const Noise& noise);
+
+  // Where the loop writes the observations: (E, K*C, H, W) u8 and (E, V) f32.
+  std::span<uint8_t> FrameStackOf(int e);
+  std::span<float> VectorOf(int e);
+
+  // actions (E, A) in [-1, 1], valid until the next call.
+  void Select(Acting acting);
+  std::span<const float> ActionOf(int e) const;
+
+ private:
+  int envs_, action_size_, vector_size_, stack_bytes_;
+  nn::Policy policy_;
+  std::unique_ptr<Exploration> exploration_;
+  WeightsVersion version_;
+  uint64_t run_env_steps_ = 0;
+  std::vector<Random> streams_;
+  std::vector<uint8_t> frames_;
+  std::vector<float> vectors_, actions_;
+};
+
+}  // namespace shoal::actor

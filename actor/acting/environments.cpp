@@ -1,0 +1,25 @@
+#include "actor/acting/environments.h"
+
+#include "common/base/error.h"
+
+namespace shoal::actor {
+
+std::vector<std::unique_ptr<worlds::Environment>> MakeEnvironments(const RunConfig& run,
+                                                                   int count) {
+  std::shared_ptr<worlds::RenderContext> render;
+  if (run.config.observation.pixels) {
+    render = worlds::MakeRenderContext(run.config.observation);
+  }
+  std::vector<std::unique_ptr<worlds::Environment>> environments;
+  for (int i = 0; i < count; ++i) {
+    environments.push_back(worlds::MakeEnvironment(run.config, render));
+    const ObservationSpec& spec = environments.back()->spec();
+    if (spec.Hash() != run.spec.Hash()) {
+      throw RuntimeError("this actor observes [{}], the run's config.json says [{}]",
+                         spec.Summary(), run.spec.Summary());
+    }
+  }
+  return environments;
+}
+
+}  // namespace shoal::actor

@@ -1,0 +1,39 @@
+// Figures of one episode, and of the episodes that ended lately, for metrics.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <vector>
+
+#include "actor/worlds/environment.h"
+
+namespace shoal::actor {
+
+struct EpisodeFigures {
+  double episode_return = 0;     // unscaled
+  int length = 0;                // env steps
+  bool success = false;          // at the end; false where the task has none
+  double final_distance = 0;     // m; NaN where the task has none
+  double action_smoothness = 0;  // mean over steps of |a_t - a_{t-1}|_2; smaller is smoother
+  std::vector<worlds::DrawnMass> drawn_masses{};  // empty unless randomized
+};
+
+// Means over the last kWindow episodes. One thread.
+class EpisodeLog {
+ public:
+  static constexpr size_t kWindow = 100;
+
+  void Add(const EpisodeFigures& figures);
+  uint64_t count() const { return count_; }
+  // All zero before the first episode; `success` is not averaged (SuccessRate). Episodes of one run
+  // draw the same bodies' masses.
+  EpisodeFigures Mean() const;
+  double SuccessRate() const;
+
+ private:
+  std::deque<EpisodeFigures> recent_;
+  uint64_t count_ = 0;
+};
+
+}  // namespace shoal::actor

@@ -1,0 +1,69 @@
+#include "actor/acting/seat.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "common/base/check.h"
+
+namespace shoal::actor {
+
+Seat::Seat(std::unique_ptr<worlds::Environment> environment, PolicyInput input)
+    : environment_(std::move(environment)),
+      input_(input),
+      observed_(environment_->spec()),
+      stack_(input.stack, environment_->spec().FrameBytes()) {
+  const ObservationSpec& spec = environment_->spec();
+  CHECK(input.stack.size() == size_t(spec.FrameBytes()) * spec.stack) << input.stack.size();
+  CHECK(input.vector.size() == size_t(spec.VectorSize())) << input.vector.size();
+}
+
+float Seat::Begin(uint64_t stream_key, worlds::ObservationOut out) {
+  figures_ = {};
+  last_action_.clear();
+  const float distance = environment_->Reset(stream_key, out);
+  const auto masses = environment_->drawn_masses();
+  figures_.drawn_masses.assign(masses.begin(), masses.end());
+  stack_.Reset(out.frame);
+  observed_.Copy(out.vector, input_.vector);
+  running_ = true;
+  if (listener_ != nullptr) listener_->OnBegin(stream_key, input_.stack);
+  return distance;
+}
+
+worlds::StepResult Seat::Step(std::span<const float> action, worlds::ObservationOut out) {
+  CHECK(running_) << "a step without an episode";
+  const worlds::StepResult result = environment_->Step(action, out);
+  stack_.Push(out.frame);
+  observed_.Copy(out.vector, input_.vector);
+  running_ = !result.terminated && !result.truncated;
+  AddToFigures(action, result);
+  if (listener_ != nullptr) {
+    listener_->OnStep({.stack = input_.stack,
+                       .action = action,
+                       .reward = result.reward,
+                       .success = result.success,
+                       .ended = !running_});
+  }
+  return result;
+}
+
+void Seat::AddToFigures(std::span<const float> action, const worlds::StepResult& result) {
+  if (!last_action_.empty()) {
+    double squared = 0;
+    for (size_t a = 0; a < action.size(); ++a) {
+      squared += std::pow(double{action[a]} - double{last_action_[a]}, 2);
+    }
+    figures_.action_smoothness += std::sqrt(squared);
+  }
+  last_action_.assign(action.begin(), action.end());
+  ++figures_.length;
+  figures_.episode_return += result.reward;
+  if (running_) return;
+  // A sum until here. An episode of one step has no pair of actions to compare.
+  if (figures_.length > 1) figures_.action_smoothness /= figures_.length - 1;
+  figures_.success = result.success;
+  figures_.final_distance = result.distance;
+}
+
+}  // namespace shoal::actor

@@ -1,0 +1,78 @@
+// One environment and what belongs to the episode it plays: the frame stack and the vector that the
+// policy reads next, the episode's figures, whether it still runs. Rollouts and evaluations are
+// made of seats.
+//
+//   Begin: reset -> stack, vector -> figures        Step: step -> stack, vector -> figures
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "actor/acting/episode_log.h"
+#include "actor/acting/frame_stack.h"
+#include "actor/worlds/environment.h"
+
+namespace shoal::actor {
+
+// What a seat's policy sees and does, for films and the like. Spans are valid during the call.
+class SeatListener {
+ public:
+  struct SeenStep {
+    std::span<const uint8_t> stack;  // (K*C, H, W): the policy's next input, after the step
+    std::span<const float> action;   // (A)
+    float reward = 0;                // unscaled
+    bool success = false;            // false where the task has none
+    bool ended = false;              // the step was the episode's last
+  };
+
+  virtual ~SeatListener() = default;
+  // The episode's stream key; stack (K*C, H, W): the policy's first input of the episode.
+  virtual void OnBegin(uint64_t stream_key, std::span<const uint8_t> stack) = 0;
+  virtual void OnStep(const SeenStep& step) = 0;
+};
+
+// Owns the environment, borrows the policy's input. One thread.
+class Seat {
+ public:
+  // Where the policy reads its observation: (K*C, H, W) u8, empty without pixels; (V) f32.
+  struct PolicyInput {
+    std::span<uint8_t> stack;
+    std::span<float> vector;
+  };
+
+  // CHECK on an input of other sizes than the environment's spec says.
+  Seat(std::unique_ptr<worlds::Environment> environment, PolicyInput input);
+
+  // Starts the episode of a stream key; the observation is written to `out`, with every block, and
+  // what the policy sees of it into the policy's input. Returns the distance at the start. Errors:
+  // as of Environment.
+  float Begin(uint64_t stream_key, worlds::ObservationOut out);
+  // One env step of the running episode, which it may end.
+  worlds::StepResult Step(std::span<const float> action, worlds::ObservationOut out);
+  // Forgets a running episode.
+  void Abandon() { running_ = false; }
+
+  bool running() const { return running_; }
+  // Of the running episode, or of the last one; complete once that has ended.
+  const EpisodeFigures& figures() const { return figures_; }
+  const worlds::Environment& environment() const { return *environment_; }
+
+  // Told of every Begin and Step from now on; borrowed until another, or nullptr, takes its place.
+  void set_listener(SeatListener* listener) { listener_ = listener; }
+
+ private:
+  void AddToFigures(std::span<const float> action, const worlds::StepResult& result);
+
+  std::unique_ptr<worlds::Environment> environment_;
+  PolicyInput input_;
+  ObservedBlocks observed_;
+  FrameStack stack_;
+  EpisodeFigures figures_;
+  std::vector<float> last_action_;  // empty before the episode's first
+  bool running_ = false;
+  SeatListener* listener_ = nullptr;
+};
+
+}  // namespace shoal::actor

@@ -1,0 +1,57 @@
+// The newest weights received, handed from the DDS receive thread to the acting loop.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "common/base/clock.h"
+#include "common/base/mutex.h"
+#include "common/wire/messages.h"
+#include "common/wire/weights_parts.h"
+
+namespace shoal::actor {
+
+struct ReceivedWeights {
+  WeightsVersion version;
+  uint64_t env_steps = 0;
+  std::string checkpoint;
+  std::string payload;  // safetensors bytes
+};
+
+// Where an acting loop gets its weights from.
+class WeightsSource {
+ public:
+  virtual ~WeightsSource() = default;
+  // Weights newer than any taken before, if there are any. Does not wait.
+  virtual std::optional<ReceivedWeights> TryTake() = 0;
+};
+
+class WeightsInbox final : public WeightsSource {
+ public:
+  explicit WeightsInbox(uint64_t spec_hash) : spec_hash_(spec_hash) {}
+
+  // Receive thread. Keeps the newest version of which all parts have come; parts of another spec or
+  // with a wrong CRC are counted and dropped.
+  void OnMessage(const WeightsPart& part);
+
+  std::optional<ReceivedWeights> TryTake() override;
+  // The same, waiting until `deadline`.
+  std::optional<ReceivedWeights> Take(SteadyTime deadline);
+
+  uint64_t refused() const;
+  // Versions that a newer one replaced before they were taken.
+  uint64_t overtaken() const;
+
+ private:
+  std::optional<ReceivedWeights> TakeNewest() SHOAL_REQUIRES(mutex_);
+
+  const uint64_t spec_hash_;
+  mutable Mutex mutex_;
+  ConditionVariable arrived_;
+  WeightsAssembler assembler_ SHOAL_GUARDED_BY(mutex_);
+  std::optional<ReceivedWeights> newest_ SHOAL_GUARDED_BY(mutex_);
+  uint64_t refused_ SHOAL_GUARDED_BY(mutex_) = 0, overtaken_ SHOAL_GUARDED_BY(mutex_) = 0;
+};
+
+}  // namespace shoal::actor

@@ -1,0 +1,167 @@
+#include "actor/evaluation/evaluation.h"
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "actor/acting/environments.h"
+#include "actor/evaluation/other_task.h"
+#include "common/base/build_info.h"
+#include "common/base/check.h"
+#include "common/base/error.h"
+#include "common/base/stop.h"
+#include "common/checkpoint/checkpoint_files.h"
+#include "common/tasks/task_registry.h"
+
+namespace shoal::actor {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json NumberOrNull(double value) {
+  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
+}
+
+ordered_json EpisodeJson(const EpisodeResult& result, bool has_success) {
+  const EpisodeFigures& episode = result.figures;
+  ordered_json object{{"seed", result.seed},
+                      {"success", has_success ? ordered_json(episode.success) : nullptr},
+                      {"return", episode.episode_return},
+                      {"length", episode.length},
+                      {"final_distance", NumberOrNull(episode.final_distance)},
+                      {"action_smoothness", episode.action_smoothness}};
+  for (const worlds::DrawnMass& drawn : episode.drawn_masses) {
+    object["body_mass"][drawn.body] = drawn.mass_kg;
+  }
+  return object;
+}
+
+ordered_json Aggregate(const std::vector<EpisodeResult>& episodes, bool has_success) {
+  const double n = static_cast<double>(episodes.size());
+  double successes = 0, mean = 0, length = 0, distance = 0, variance = 0;
+  for (const auto& [seed, episode] : episodes) {
+    successes += episode.success;
+    mean += episode.episode_return / n;
+    length += episode.length / n;
+    distance += episode.final_distance / n;
+  }
+  for (const auto& [seed, episode] : episodes) {
+    variance += std::pow(episode.episode_return - mean, 2) / n;
+  }
+  return {{"episodes", episodes.size()},
+          {"success_rate", has_success ? ordered_json(successes / n) : nullptr},
+          {"return_mean", mean},
+          {"return_std", std::sqrt(variance)},
+          {"length_mean", length},
+          {"final_distance_mean", NumberOrNull(distance)}};
+}
+
+}  // namespace
+
+Evaluator::Evaluator(const RunConfig& run, bool noop)
+    : run_(run),
+      noop_(noop ? size_t(run.spec.action_size) : 0),
+      selector_(run.config, run.spec, run.config.eval.envs),
+      frame_(size_t(run.spec.FrameBytes())),
+      vector_(size_t(run.spec.RecordedVectorSize())) {
+  int e = 0;
+  for (auto& environment : MakeEnvironments(run, run.config.eval.envs)) {
+    const Seat::PolicyInput input{selector_.FrameStackOf(e), selector_.VectorOf(e)};
+    players_.push_back({.seat = Seat(std::move(environment), input)});
+    ++e;
+  }
+}
+
+void Evaluator::Listen(SeatListener* listener) {
+  CHECK(players_.size() == 1) << players_.size();
+  players_[0].seat.set_listener(listener);
+}
+
+void Evaluator::Begin(int e, int64_t episode, const EpisodeStream& stream) {
+  Player& player = players_[size_t(e)];
+  player.episode = episode;
+  const uint64_t key = stream.Key(episode);
+  // Only a policy without weights draws: uniform random actions, apart from the environment's
+  // draws.
+  selector_.BeginEpisode(e, HashWords({key, static_cast<uint64_t>(StreamRole::kEvalPolicy)}));
+  player.seat.Begin(key, {frame_, vector_});
+}
+
+std::vector<EpisodeResult> Evaluator::Play(int episodes, const EpisodeStream& stream,
+                                           const std::function<bool()>& stop) {
+  for (Player& player : players_) player.seat.Abandon();  // of a call that was stopped
+  std::vector<EpisodeResult> results(static_cast<size_t>(episodes));
+  const int envs = static_cast<int>(players_.size());
+  int begun = 0, done = 0;
+  while (done < episodes) {
+    if (stop()) return {};
+    for (int e = 0; e < envs && begun < episodes; ++e) {
+      if (!players_[size_t(e)].seat.running()) Begin(e, begun++, stream);
+    }
+    selector_.Select(Acting::kMean);
+    for (int e = 0; e < envs; ++e) {
+      auto& [seat, episode] = players_[size_t(e)];
+      if (!seat.running()) continue;
+      seat.Step(noop_.empty() ? selector_.ActionOf(e) : noop_, {frame_, vector_});
+      if (seat.running()) continue;
+      results[static_cast<size_t>(episode)] = {episode, seat.figures()};
+      ++done;
+    }
+  }
+  return results;
+}
+
+ordered_json EvaluationJson(const RunConfig& run, const EvaluationLabel& label,
+                            const EpisodeStream& stream,
+                            const std::vector<EpisodeResult>& episodes) {
+  const bool has_success = tasks::FindTask(run.config.task).has_success();
+  ordered_json list = ordered_json::array();
+  for (const EpisodeResult& episode : episodes) {
+    list.push_back(EpisodeJson(episode, has_success));
+  }
+  const bool baseline = label.policy != "checkpoint";
+  const ordered_json version{{"session", label.version.session}, {"update", label.version.update}};
+  return {{"schema", "shoal-eval-1"},
+          {"task", run.config.task},
+          {"policy", label.policy},
+          {"checkpoint", baseline ? ordered_json(nullptr) : ordered_json(label.checkpoint)},
+          {"weights_version", baseline ? ordered_json(nullptr) : version},
+          {"env_steps", label.env_steps},
+          {"deterministic", label.policy != "random"},
+          {"cameras", run.spec.cameras},
+          {"seeds", {stream.seed}},
+          {"stream", {{"role", static_cast<uint64_t>(stream.role)}, {"group", stream.group}}},
+          {"episodes", list},
+          {"aggregate", Aggregate(episodes, has_success)},
+          {"commit", BuildCommit()},
+          {"created", UtcTimestamp()}};
+}
+
+ordered_json EvaluateCheckpoint(const std::filesystem::path& run_folder,
+                                const std::filesystem::path& checkpoint,
+                                const CheckpointEvaluation& evaluation) {
+  const RunConfig trained = ReadRunConfig(run_folder);
+  RunConfig run = evaluation.task.empty() ? trained : WithTask(trained, evaluation.task);
+  if (evaluation.frames) run.config.eval.envs = 1;
+  CheckpointFiles files = ReadCheckpointFiles(checkpoint, trained.spec.Hash());
+  const EvaluationLabel label{.policy = "checkpoint",
+                              .checkpoint = checkpoint.filename().string(),
+                              .version = {files.state.learner_session, files.state.updates},
+                              .env_steps = files.state.env_steps};
+  Evaluator evaluator(run);
+  evaluator.selector().Load({.version = label.version,
+                             .env_steps = label.env_steps,
+                             .checkpoint = label.checkpoint,
+                             .payload = std::move(files.policy)});
+  std::optional<FrameRecorder> recorder;
+  if (evaluation.frames) evaluator.Listen(&recorder.emplace(run, *evaluation.frames));
+  const EpisodeStream stream{evaluation.seed, StreamRole::kFinalEnvironment, 0};
+  const std::vector<EpisodeResult> results =
+      evaluator.Play(evaluation.episodes, stream, StopRequested);
+  if (results.empty()) throw RuntimeError("evaluation of '{}' interrupted", checkpoint.string());
+  ordered_json result = EvaluationJson(run, label, stream, results);
+  if (!evaluation.task.empty()) result["trained_task"] = trained.config.task;
+  return result;
+}
+
+}  // namespace shoal::actor

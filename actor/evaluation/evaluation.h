@@ -1,0 +1,102 @@
+// Deterministic evaluation of a policy over whole episodes.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "actor/acting/action_selector.h"
+#include "actor/acting/seat.h"
+#include "actor/evaluation/frame_recorder.h"
+#include "actor/worlds/environment.h"
+#include "common/config/run_files.h"
+
+namespace shoal::actor {
+
+struct EpisodeResult {
+  int64_t seed = 0;  // number of the episode in its stream
+  EpisodeFigures figures;
+};
+
+// Which episodes are played: episode k starts from StreamKey(seed, role, group, k). Train,
+// evaluation and final streams never meet; `group` makes each evaluation's episodes fresh.
+struct EpisodeStream {
+  int64_t seed = 0;
+  StreamRole role = StreamRole::kEvalEnvironment;
+  uint64_t group = 0;
+  uint64_t Key(int64_t episode) const {
+    return StreamKey(static_cast<uint64_t>(seed), role, group, static_cast<uint64_t>(episode));
+  }
+};
+
+// What eval/*.json says about where the numbers come from.
+struct EvaluationLabel {
+  std::string
+      policy;  // "checkpoint" | "random" | "noop": but the first have no checkpoint, version
+  std::string checkpoint = "";  // folder name
+  WeightsVersion version = {};
+  uint64_t env_steps = 0;
+};
+
+// Environments stepped together and the policy that acts in them. One thread.
+class Evaluator {
+ public:
+  // Throws Error when the environment's spec is not the run's. `noop`: every action is zero,
+  // whatever the policy.
+  explicit Evaluator(const RunConfig& run, bool noop = false);
+
+  ActionSelector& selector() { return selector_; }
+  // Tells the listener, borrowed, of every episode from now on. CHECK that there is one
+  // environment, so that episodes come one after the other.
+  void Listen(SeatListener* listener);
+
+  // Plays `episodes` whole episodes, actions by the mean of the policy (or uniform random before
+  // any weights). Empty when `stop`, asked after each step, said so before they were done.
+  std::vector<EpisodeResult> Play(int episodes, const EpisodeStream& stream,
+                                  const std::function<bool()>& stop);
+
+ private:
+  struct Player {
+    Seat seat;
+    int64_t episode = 0;
+  };
+
+  void Begin(int e, int64_t episode, const EpisodeStream& stream);
+
+  const RunConfig run_;
+  const std::vector<float> noop_;  // the action of every step; empty = the policy's
+  ActionSelector selector_;
+  std::vector<Player> players_;
+  // What an environment observed last: it is in the policy's input by then.
+  std::vector<uint8_t> frame_;
+  std::vector<float> vector_;
+};
+
+// The object of eval/*.json, schema shoal-eval-1. success, success_rate, final_distance and its
+// mean are null where the task has no such thing; body_mass (body -> kg) is there for randomized
+// episodes.
+nlohmann::ordered_json EvaluationJson(const RunConfig& run, const EvaluationLabel& label,
+                                      const EpisodeStream& stream,
+                                      const std::vector<EpisodeResult>& episodes);
+
+struct CheckpointEvaluation {
+  int episodes = 100;
+  int64_t seed = 1;
+  // Another task to play than the run's (see WithTask), named beside the run's own as trained_task;
+  // empty = the run's.
+  std::string task = "";
+  // Where frames go, if anywhere; the episodes are then played one after the other.
+  std::optional<FrameRecorder::Options> frames = {};
+};
+// Plays fresh episodes (final stream of the seed) with the policy of a checkpoint folder of the
+// run.
+nlohmann::ordered_json EvaluateCheckpoint(const std::filesystem::path& run,
+                                          const std::filesystem::path& checkpoint,
+                                          const CheckpointEvaluation& evaluation);
+
+}  // namespace shoal::actor

@@ -1,0 +1,88 @@
+#include "actor/evaluation/frame_recorder.h"
+
+#include "actor/worlds/world_registry.h"
+#include "common/base/check.h"
+#include "common/tasks/task_registry.h"
+
+namespace shoal::actor {
+namespace {
+
+Config ViewConfig(const RunConfig& run, const FrameRecorder::Options& options) {
+  Config config = run.config;
+  ObservationConfig& observation = config.observation;
+  std::string camera = options.camera;
+  if (camera.empty() && observation.pixels) camera = observation.cameras.front();
+  if (camera.empty()) {
+    const tasks::Task& task = tasks::FindTask(config.task);
+    camera = worlds::MakeWorld(task.world(), {config.model, config.physics})->cameras()[0].name;
+  }
+  observation.pixels = true;
+  observation.cameras = {camera};
+  observation.grey = false;
+  observation.height = options.height;
+  observation.width = options.width;
+  observation.stack = 1;
+  observation.quality = options.quality;
+  return config;
+}
+
+std::unique_ptr<worlds::Environment> MakeView(const Config& config) {
+  return worlds::MakeEnvironment(config, worlds::MakeRenderContext(config.observation));
+}
+
+image::FrameStreamHeader HeaderOf(const ObservationSpec& seen, const ObservationSpec& view) {
+  return {.magic = {},
+          .channels = static_cast<uint32_t>(seen.channels * seen.stack),
+          .height = static_cast<uint32_t>(seen.height),
+          .width = static_cast<uint32_t>(seen.width),
+          .frame_channels = static_cast<uint32_t>(seen.channels),
+          .view_height = static_cast<uint32_t>(view.height),
+          .view_width = static_cast<uint32_t>(view.width),
+          .action_size = static_cast<uint32_t>(seen.action_size),
+          .reserved = 0};
+}
+
+// (3, H, W) to (H, W, 3).
+void Interleave(std::span<const uint8_t> planes, std::span<uint8_t> pixels) {
+  const size_t plane = planes.size() / 3;
+  for (size_t i = 0; i < plane; ++i) {
+    for (size_t channel = 0; channel < 3; ++channel) {
+      pixels[3 * i + channel] = planes[channel * plane + i];
+    }
+  }
+}
+
+}  // namespace
+
+FrameRecorder::FrameRecorder(const RunConfig& run, const Options& options)
+    : view_(MakeView(ViewConfig(run, options))),
+      writer_(options.file, HeaderOf(run.spec, view_->spec())),
+      planes_(static_cast<size_t>(view_->spec().FrameBytes())),
+      interleaved_(planes_.size()),
+      vector_(static_cast<size_t>(view_->spec().RecordedVectorSize())),
+      no_action_(static_cast<size_t>(run.spec.action_size), 0.0F) {}
+
+void FrameRecorder::OnBegin(uint64_t stream_key, std::span<const uint8_t> stack) {
+  view_->Reset(stream_key, {planes_, vector_});
+  step_ = 0;
+  Write({.episode = episode_, .step = step_, .reward = 0, .flags = 0}, no_action_, stack);
+}
+
+void FrameRecorder::OnStep(const SeenStep& step) {
+  const worlds::StepResult result = view_->Step(step.action, {planes_, vector_});
+  CHECK(result.reward == step.reward) << "the view's environment went another way";
+  ++step_;
+  const uint32_t flags =
+      (step.success ? image::kShownSuccess : 0U) | (step.ended ? image::kShownEnd : 0U);
+  Write({.episode = episode_, .step = step_, .reward = step.reward, .flags = flags}, step.action,
+        step.stack);
+  if (step.ended) ++episode_;
+}
+
+void FrameRecorder::Write(const image::FrameRecordHeader& record, std::span<const float> action,
+                          std::span<const uint8_t> stack) {
+  Interleave(planes_, interleaved_);
+  writer_.Write(record, action, stack, interleaved_);
+}
+
+}  // namespace shoal::actor

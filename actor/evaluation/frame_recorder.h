@@ -1,0 +1,47 @@
+// Records what one seat's policy sees and does, and a larger view of it, into a stream of frames
+// (common/image/frame_stream.h): for films.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "actor/acting/seat.h"
+#include "common/config/run_files.h"
+#include "common/image/frame_stream.h"
+
+namespace shoal::actor {
+
+// The view is drawn by an environment of its own, which plays the same episodes by the same
+// actions: equal stream keys and actions give equal physics, so the seat's environment needs to
+// know nothing of it. Owns that environment. One thread.
+class FrameRecorder final : public SeatListener {
+ public:
+  struct Options {
+    std::filesystem::path file;
+    std::string camera = "";            // of the view; empty = the run's first, or the task's
+    int height = 480, width = 480;      // of the view
+    std::string quality = "reference";  // of the view: fast | reference
+  };
+  // Throws Error: a camera that the task does not have, a file that cannot be written.
+  FrameRecorder(const RunConfig& run, const Options& options);
+
+  void OnBegin(uint64_t stream_key, std::span<const uint8_t> stack) override;
+  // CHECK that both environments earn the same.
+  void OnStep(const SeenStep& step) override;
+
+ private:
+  void Write(const image::FrameRecordHeader& record, std::span<const float> action,
+             std::span<const uint8_t> stack);
+
+  std::unique_ptr<worlds::Environment> view_;
+  image::FrameStreamWriter writer_;
+  std::vector<uint8_t> planes_, interleaved_;  // the view as it is drawn: (3, H, W); as written
+  std::vector<float> vector_;
+  std::vector<float> no_action_;
+  uint32_t episode_ = 0, step_ = 0;
+};
+
+}  // namespace shoal::actor

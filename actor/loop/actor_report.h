@@ -1,0 +1,40 @@
+// A training actor's 1 Hz report (docs/monitoring.md): what it did and what it waited for.
+#pragma once
+
+#include <cstdint>
+
+#include "actor/acting/weights_inbox.h"
+#include "actor/loop/actor_loop.h"
+#include "actor/loop/rollout.h"
+#include "common/tasks/task.h"
+#include "common/wire/metrics_report.h"
+
+namespace shoal::actor {
+
+// Borrows what it reports of. One thread.
+class ActorReport {
+ public:
+  struct Parts {
+    const Rollout& rollout;
+    const ActionSelector& selector;
+    const ChunkSender& sender;
+    const WeightsInbox& weights;
+    const ActorLoop& loop;
+    tasks::Task task;
+  };
+  ActorReport(uint32_t id, const Parts& parts) : parts_(parts), report_("actor", id) {}
+
+  bool Due(SteadyTime now) { return report_.Due(now); }
+  // Valid until the next call.
+  const MetricsMessage& Make(const char* state);
+
+ private:
+  void AddSending();
+  void AddStages();
+  void AddEpisodes();
+
+  const Parts parts_;
+  MetricsReport report_;
+};
+
+}  // namespace shoal::actor

@@ -1,0 +1,55 @@
+#include "actor/loop/pace.h"
+
+#include <fmt/core.h>
+
+#include "common/base/check.h"
+#include "common/config/lockstep.h"
+
+namespace shoal::actor {
+
+LockstepPace::LockstepPace(const Config& config, int64_t vector_steps) : config_(config) {
+  while (LockstepVectorStepsAtPhaseEnd(config_, phase_) < vector_steps) ++phase_;
+  if (phase_ > 0) update_ = LockstepUpdatesAtPhaseEnd(config_, phase_ - 1);
+}
+
+Pace::Turn LockstepPace::Next(int64_t vector_steps, const WeightsVersion& version) {
+  if (vector_steps >= LockstepVectorStepsAtPhaseEnd(config_, phase_)) {
+    update_ = LockstepUpdatesAtPhaseEnd(config_, phase_);
+    if (version.update < update_) return Turn::kAwaitWeights;
+    ++phase_;
+  } else if (version.update < update_) {
+    return Turn::kAwaitWeights;
+  }
+  // Between two phases only: a budget reached within one is played to that phase's end.
+  const bool at_phase_start =
+      phase_ > 0 && vector_steps == LockstepVectorStepsAtPhaseEnd(config_, phase_ - 1);
+  const bool budget_reached = vector_steps * config_.envs_per_actor >= config_.env_steps;
+  return at_phase_start && budget_reached ? Turn::kRest : Turn::kStep;
+}
+
+std::string LockstepPace::Awaited() const {
+  return fmt::format("lockstep: no weights of update {}", update_);
+}
+
+VersionPace::VersionPace(int64_t vector_steps) : length_(vector_steps) {
+  CHECK(vector_steps > 0) << vector_steps;
+}
+
+Pace::Turn VersionPace::Next(int64_t vector_steps, const WeightsVersion& version) {
+  if (vector_steps < end_) return Turn::kStep;
+  if (!version.NewerThan(played_)) return Turn::kAwaitWeights;
+  played_ = version;
+  end_ = vector_steps + length_;
+  return Turn::kStep;
+}
+
+std::string VersionPace::Awaited() const {
+  return fmt::format("no weights newer than update {}", played_.update);
+}
+
+std::unique_ptr<Pace> MakePace(const Config& config, int64_t vector_steps) {
+  if (config.lockstep) return std::make_unique<LockstepPace>(config, vector_steps);
+  return std::make_unique<FreePace>();
+}
+
+}  // namespace shoal::actor

@@ -1,0 +1,167 @@
+#include "actor/loop/rollout.h"
+
+#include <algorithm>
+
+#include "common/base/check.h"
+#include "common/base/error.h"
+#include "common/base/random.h"
+#include "common/wire/scoped_seconds.h"
+
+namespace shoal::actor {
+
+Rollout::Options Rollout::Options::Of(const Config& config, uint32_t first_env) {
+  return {.seed = config.seed,
+          .first_env = first_env,
+          .own_random_steps = RandomStepsOfActor(config),
+          .run_random_steps = static_cast<uint64_t>(config.exploration.random_steps)};
+}
+
+Rollout::Rollout(const Options& options, const ObservationSpec& spec,
+                 std::vector<std::unique_ptr<worlds::Environment>> environments, MadePage& made,
+                 RecordSink& sink, ActionSelector& selector)
+    : options_(options), layout_(spec), made_(made), sink_(sink), selector_(selector) {
+  CHECK(!environments.empty());
+  for (size_t e = 0; e < environments.size(); ++e) {
+    const Seat::PolicyInput input{selector.FrameStackOf(int(e)), selector.VectorOf(int(e))};
+    slots_.push_back({.seat = Seat(std::move(environments[e]), input), .actions = {}});
+  }
+}
+
+bool Rollout::TryStep() {
+  const int envs = static_cast<int>(slots_.size());
+  if (sink_.Room() < 2 * slots_.size()) return false;
+  {
+    const ScopedSeconds timed(environment_seconds_);
+    for (int e = 0; e < envs; ++e) {
+      if (!slots_[size_t(e)].seat.running()) BeginEpisode(e);
+    }
+  }
+  {
+    const ScopedSeconds timed(inference_seconds_);
+    uniform_ = WarmingUp();
+    selector_.Select(uniform_ ? Acting::kUniform : Acting::kExplore);
+  }
+  {
+    const ScopedSeconds timed(environment_seconds_);
+    for (int e = 0; e < envs; ++e) StepOne(e);
+  }
+  env_steps_ += slots_.size();
+  return true;
+}
+
+bool Rollout::WarmingUp() const {
+  return env_steps_ < options_.own_random_steps &&
+         selector_.run_env_steps() < options_.run_random_steps;
+}
+
+StageSeconds Rollout::seconds() const {
+  StageSeconds seconds;
+  for (const Slot& slot : slots_) {
+    seconds.rendering += slot.seat.environment().render_seconds();
+  }
+  seconds.physics = environment_seconds_ - seconds.rendering;
+  seconds.inference = inference_seconds_;
+  return seconds;
+}
+
+void Rollout::BeginEpisode(int e) {
+  Slot& slot = slots_[size_t(e)];
+  slot.episode = made_.TakeEpisode(static_cast<uint32_t>(e));
+  slot.actions.clear();
+  selector_.BeginEpisode(e, StreamKeyOf(StreamRole::kTrainPolicy, e));
+
+  uint8_t* record = sink_.BeginRecord();
+  RecordHeader& header = RecordLayout::Header(record);
+  header.distance = slot.seat.Begin(StreamKeyOf(StreamRole::kTrainEnvironment, e),
+                                    {layout_.Frame(record), layout_.Vector(record)});
+  FillHeader(e, RecordKind::kReset, &header);
+  Publish(record);
+}
+
+void Rollout::StepOne(int e) {
+  Slot& slot = slots_[size_t(e)];
+  uint8_t* record = sink_.BeginRecord();
+  const std::span<const float> action = selector_.ActionOf(e);
+  std::copy(action.begin(), action.end(), layout_.Action(record).begin());
+  slot.actions.insert(slot.actions.end(), action.begin(), action.end());
+  const worlds::StepResult result =
+      slot.seat.Step(action, {layout_.Frame(record), layout_.Vector(record)});
+
+  RecordHeader& header = RecordLayout::Header(record);
+  FillHeader(e, RecordKind::kStep, &header);
+  header.reward = result.reward;
+  header.distance = result.distance;
+  header.flags =
+      static_cast<uint8_t>((result.terminated ? kTerminated : 0) |
+                           (result.truncated ? kTruncated : 0) | (result.success ? kSuccess : 0));
+  Publish(record);
+  if (!slot.seat.running()) episodes_.Add(slot.seat.figures());
+}
+
+RolloutState Rollout::State() const {
+  RolloutState state;
+  state.env_steps = env_steps_;
+  for (int e = 0; e < static_cast<int>(slots_.size()); ++e) {
+    const Slot& slot = slots_[size_t(e)];
+    state.episodes.push_back(
+        {.episode = slot.episode,
+         .running = slot.seat.running(),
+         .noise = selector_.NoiseOf(e),
+         .actions = slot.seat.running() ? slot.actions : std::vector<float>()});
+  }
+  return state;
+}
+
+void Rollout::Restore(const RolloutState& state) {
+  CHECK(env_steps_ == 0);
+  if (state.episodes.size() != slots_.size()) {
+    throw RuntimeError("the actor's state is of {} environments, it has {}", state.episodes.size(),
+                       slots_.size());
+  }
+  env_steps_ = state.env_steps;
+  for (size_t e = 0; e < slots_.size(); ++e) {
+    if (state.episodes[e].running) PlayAgain(static_cast<int>(e), state.episodes[e]);
+  }
+}
+
+void Rollout::PlayAgain(int e, const EpisodeState& state) {
+  Slot& slot = slots_[size_t(e)];
+  std::vector<uint8_t> memory(static_cast<size_t>(layout_.record_bytes()));
+  const worlds::ObservationOut unread{layout_.Frame(memory.data()), layout_.Vector(memory.data())};
+  slot.episode = state.episode;
+  slot.seat.Begin(StreamKeyOf(StreamRole::kTrainEnvironment, e), unread);
+  const auto action_size = static_cast<size_t>(layout_.action_size());
+  for (size_t at = 0; at + action_size <= state.actions.size(); at += action_size) {
+    slot.seat.Step({state.actions.data() + at, action_size}, unread);
+  }
+  slot.actions = state.actions;
+  selector_.SetNoise(e, state.noise);
+}
+
+uint64_t Rollout::StreamKeyOf(StreamRole role, int e) const {
+  const uint64_t env = options_.first_env + static_cast<uint64_t>(e);
+  return StreamKey(static_cast<uint64_t>(options_.seed), role, env, slots_[size_t(e)].episode);
+}
+
+void Rollout::FillHeader(int e, RecordKind kind, RecordHeader* header) const {
+  const Slot& slot = slots_[size_t(e)];
+  // A step of the warm-up was chosen by no weights.
+  const WeightsVersion version =
+      uniform_ && kind == RecordKind::kStep ? WeightsVersion() : selector_.version();
+  header->weights_session = version.session;
+  header->weights_update = version.update;
+  header->time_ns = WallTimeNs();
+  header->env = options_.first_env + static_cast<uint32_t>(e);
+  header->episode = slot.episode;
+  header->index = static_cast<uint32_t>(slot.seat.figures().length);
+  header->kind = kind;
+  header->version = kRecordVersion;
+}
+
+void Rollout::Publish(uint8_t* record) {
+  const uint64_t sequence = made_.CountRecord();
+  RecordLayout::Header(record).sequence = sequence;
+  sink_.EndRecord(sequence);
+}
+
+}  // namespace shoal::actor

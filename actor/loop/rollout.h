@@ -1,0 +1,90 @@
+// E environments stepped together: reset, act, step, and one record each time.
+//
+// Borrows everything it is built from. One thread.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "actor/acting/action_selector.h"
+#include "actor/acting/episode_log.h"
+#include "actor/acting/seat.h"
+#include "actor/loop/rollout_state.h"
+#include "actor/sending/made_page.h"
+#include "actor/sending/record_sink.h"
+#include "actor/worlds/environment.h"
+#include "common/base/random.h"
+#include "common/spec/record.h"
+
+namespace shoal::actor {
+
+// Seconds spent since the start, by stage.
+struct StageSeconds {
+  double physics = 0;  // and all else that an environment does but rendering
+  double rendering = 0;
+  double inference = 0;
+};
+
+class Rollout {
+ public:
+  struct Options {
+    int64_t seed = 0;        // the run's
+    uint32_t first_env = 0;  // number in the run of the first of the environments
+    // This actor's share of exploration.random_steps, and all of them. Whichever of the two is
+    // reached first, the one by its own env steps or the other by the run's, ends the warm-up: so
+    // an actor that was restarted or joined late does not begin anew.
+    uint64_t own_random_steps = 0, run_random_steps = 0;
+
+    static Options Of(const Config& config, uint32_t first_env);
+  };
+  // The environments observe what `spec` says and are as many as the selector chooses for.
+  Rollout(const Options& options, const ObservationSpec& spec,
+          std::vector<std::unique_ptr<worlds::Environment>> environments, MadePage& made,
+          RecordSink& sink, ActionSelector& selector);
+
+  // One step of every environment, episodes beginning where the last ended. False, and nothing
+  // done, while the sink has no room for its records.
+  bool TryStep();
+
+  // Where it is, without session and count of records, which are others'.
+  RolloutState State() const;
+  // Goes on where another process was, before the first step: plays the running episodes again by
+  // their actions, publishing nothing. Throws Error when the state is of other environments.
+  void Restore(const RolloutState& state);
+
+  // Of this actor, since the run's start where it was restored, else since its own.
+  uint64_t env_steps() const { return env_steps_; }
+  int64_t vector_steps() const { return static_cast<int64_t>(env_steps_ / slots_.size()); }
+  const EpisodeLog& episodes() const { return episodes_; }
+  StageSeconds seconds() const;
+
+ private:
+  struct Slot {
+    Seat seat;
+    uint32_t episode = 0;
+    std::vector<float> actions;  // of the running episode
+  };
+
+  bool WarmingUp() const;
+  void BeginEpisode(int e);
+  void StepOne(int e);
+  void PlayAgain(int e, const EpisodeState& state);
+  // Of the episode that local environment `e` plays.
+  uint64_t StreamKeyOf(StreamRole role, int e) const;
+  void FillHeader(int e, RecordKind kind, RecordHeader* header) const;
+  void Publish(uint8_t* record);
+
+  const Options options_;
+  const RecordLayout layout_;
+  MadePage& made_;
+  RecordSink& sink_;
+  ActionSelector& selector_;
+  std::vector<Slot> slots_;
+  EpisodeLog episodes_;
+  double environment_seconds_ = 0, inference_seconds_ = 0;
+  uint64_t env_steps_ = 0;
+  bool uniform_ = false;  // the warm-up's actions are being played
+};
+
+}  // namespace shoal::actor

@@ -1,0 +1,42 @@
+// Where an actor in lockstep was when its run stopped, so that a resumed run goes on bit for bit:
+// the running episodes are named by their actions, from which they are played again, since physics
+// follows from the episode's stream and the actions alone.
+//
+// File RUN/made/actor-ID.rollout, JSON (schema shoal-rollout-2) with a CRC-32 of itself: written
+// when an actor has left in order, taken away by its successor. A killed actor leaves none.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "actor/acting/action_selector.h"
+
+namespace shoal::actor {
+
+struct EpisodeState {
+  uint32_t episode = 0;
+  bool running = false;
+  ActionSelector::Noise noise{};  // now
+  std::vector<float> actions;     // (length, A) of the running episode
+
+  bool operator==(const EpisodeState&) const = default;
+};
+
+struct RolloutState {
+  uint64_t session = 0;                // goes on: the replay joins records of one session only
+  uint64_t made = 0;                   // records, all of them stored
+  uint64_t env_steps = 0;              // of the actor since the run's start
+  std::vector<EpisodeState> episodes;  // per environment
+
+  bool operator==(const RolloutState&) const = default;
+};
+
+// Throws Error when it cannot be written.
+void WriteRolloutState(const std::filesystem::path& run, uint32_t actor, const RolloutState& state);
+
+// The state a predecessor left, once; none when there is none. Throws Error naming a damaged file.
+std::optional<RolloutState> TakeRolloutState(const std::filesystem::path& run, uint32_t actor);
+
+}  // namespace shoal::actor

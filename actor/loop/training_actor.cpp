@@ -1,0 +1,161 @@
+#include "actor/loop/training_actor.h"
+
+#include <algorithm>
+
+#include "actor/loop/actor_loop.h"
+#include "actor/loop/actor_report.h"
+#include "actor/loop/dds_parts.h"
+#include "actor/sending/actor_lock.h"
+#include "common/base/error.h"
+#include "common/base/log.h"
+#include "common/config/run_membership.h"
+#include "common/config/sending_window.h"
+#include "common/config/session_number.h"
+#include "common/dds/metrics_publisher.h"
+#include "common/tasks/task_registry.h"
+
+namespace shoal::actor {
+namespace {
+
+using std::chrono::milliseconds;
+
+// For a predecessor to drain.
+constexpr std::chrono::seconds kLockDeadline = ActorLoop::kDrainDeadline + std::chrono::seconds(15);
+constexpr milliseconds kLastReportDeadline{500};
+
+ChunkWindow::Options WindowOptions(const RunConfig& run, uint32_t id, uint64_t session,
+                                   uint64_t records_before) {
+  const Config& config = run.config;
+  const int record_bytes = RecordLayout(run.spec).record_bytes();
+  const SendingWindow window = SendingWindowOf(config, record_bytes);
+  if (2 * config.envs_per_actor > window.records()) {
+    throw UsageError(
+        "envs_per_actor {} does not fit the window of {} chunks of {} records: raise "
+        "replay.window_chunks or transport.chunk_records",
+        config.envs_per_actor, window.chunks, window.chunk_records);
+  }
+  return {.spec_hash = run.spec.Hash(),
+          .actor = id,
+          .session = session,
+          .record_bytes = record_bytes,
+          .chunk_records = window.chunk_records,
+          .chunks = window.chunks + 1,
+          .first_records = static_cast<uint64_t>(window.least_records),
+          .records_before = records_before};
+}
+
+// The parts of the loop, put together. Members are in construction order; destruction is the
+// reverse.
+class TrainingActor {
+ public:
+  TrainingActor(const std::filesystem::path& folder, uint32_t id, const dds::Reach& reach,
+                const EnvironmentFactory& make)
+      : member_(folder),
+        run_(ReadRunConfig(folder)),
+        lock_(folder, id, kLockDeadline, StopRequested),
+        folder_(folder),
+        id_(id),
+        resumed_(run_.config.lockstep ? TakeRolloutState(folder, id) : std::nullopt),
+        session_(resumed_ ? resumed_->session
+                          : NextSession(folder, fmt::format("actor-{}", id), WallTimeNs())),
+        first_env_(id * static_cast<uint32_t>(run_.config.envs_per_actor)),
+        made_(folder, id, session_, first_env_, static_cast<uint32_t>(run_.config.envs_per_actor)),
+        window_(WindowOptions(run_, id, session_, resumed_ ? resumed_->made : 0)),
+        selector_(run_.config, run_.spec, run_.config.envs_per_actor, id),
+        rollout_(Rollout::Options::Of(run_.config, first_env_), run_.spec,
+                 make(run_, run_.config.envs_per_actor), made_, window_, selector_),
+        bus_(dds::FindPlace(folder, run_.config.transport, reach), dds::Role::kActor),
+        metrics_(bus_),
+        link_(bus_, id, session_),
+        weights_(bus_, run_.spec.Hash()),
+        control_(bus_),
+        sender_(window_, link_,
+                {.spec_hash = run_.spec.Hash(),
+                 .spec_summary = run_.spec.Summary(),
+                 .flush_after = milliseconds(run_.config.transport.flush_ms)}) {}
+
+  int Run() {
+    log::Info("session {}: environments {}..{}, {}", session_, first_env_,
+              first_env_ + static_cast<uint32_t>(run_.config.envs_per_actor) - 1,
+              run_.spec.Summary());
+    if (resumed_) Restore();
+    const auto pace = MakePace(run_.config, rollout_.vector_steps());
+    ActorLoop loop({.rollout = rollout_,
+                    .selector = selector_,
+                    .sender = sender_,
+                    .weights = weights_.inbox(),
+                    .pace = *pace,
+                    .control = control_});
+    ActorReport report(id_, {.rollout = rollout_,
+                             .selector = selector_,
+                             .sender = sender_,
+                             .weights = weights_.inbox(),
+                             .loop = loop,
+                             .task = tasks::FindTask(run_.config.task)});
+    const ActorLoop::End end = RunLoop(loop, report);
+    metrics_.WaitForAcks(kLastReportDeadline);
+    const bool stored = end == ActorLoop::End::kAllStored;
+    if (stored && run_.config.lockstep) Leave();
+    return stored ? 0 : 1;
+  }
+
+ private:
+  ActorLoop::End RunLoop(ActorLoop& loop, ActorReport& report) {
+    try {
+      return loop.Run([&](const char* state, bool last) {
+        if (report.Due(Now()) || last) metrics_.Write(report.Make(state));
+      });
+    } catch (const SupersededError& e) {
+      // Our successor's session must come after that one.
+      NextSession(folder_, fmt::format("actor-{}", id_),
+                  static_cast<int64_t>(std::min<uint64_t>(e.session(), INT64_MAX)));
+      throw;
+    }
+  }
+
+  // In lockstep: goes on exactly where the former process left.
+  void Restore() {
+    if (made_.made() != resumed_->made) {
+      throw RuntimeError("actor {} made {} records, its state was left at {}", id_, made_.made(),
+                         resumed_->made);
+    }
+    rollout_.Restore(*resumed_);
+    log::Info("lockstep: goes on after {} env steps", rollout_.env_steps());
+  }
+
+  // In lockstep: for the process that goes on.
+  void Leave() {
+    RolloutState state = rollout_.State();
+    state.session = session_;
+    state.made = made_.made();
+    WriteRolloutState(folder_, id_, state);
+  }
+
+  const RunMembership member_;
+  const RunConfig run_;
+  const ActorLock lock_;
+  const std::filesystem::path folder_;
+  const uint32_t id_;
+  const std::optional<RolloutState> resumed_;  // lockstep
+  const uint64_t session_;
+  const uint32_t first_env_;
+  MadePage made_;
+  ChunkWindow window_;
+  ActionSelector selector_;
+  Rollout rollout_;
+  dds::Bus bus_;
+  dds::MetricsPublisher<ActorMetrics> metrics_;
+  DdsChunkLink link_;
+  DdsWeights weights_;
+  DdsRunControl control_;
+  ChunkSender sender_;
+};
+
+}  // namespace
+
+int RunTrainingActor(const std::filesystem::path& run, uint32_t id, const dds::Reach& reach,
+                     const EnvironmentFactory& make) {
+  return TrainingActor(run, id, reach, make).Run();
+}
+
+}  // namespace shoal::actor

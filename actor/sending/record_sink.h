@@ -1,0 +1,20 @@
+// Where a rollout's records go: memory for each, in order, as far as the receiver allows.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+namespace shoal::actor {
+
+class RecordSink {
+ public:
+  virtual ~RecordSink() = default;
+  // How many records can be begun now: there is memory for them, and the receiver allows them.
+  virtual size_t Room() const = 0;
+  // Memory for the next record, zeroed, aligned to 8, valid until EndRecord. Room() must not be 0.
+  virtual uint8_t* BeginRecord() = 0;
+  // Completes the record begun last. `sequence` must follow the former one.
+  virtual void EndRecord(uint64_t sequence) = 0;
+};
+
+}  // namespace shoal::actor

@@ -1,0 +1,18 @@
+#include "common/config/exploration_kind.h"
+
+#include "common/base/check.h"
+
+namespace shoal {
+
+bool LearnsDeviation(const Config& config) { return config.learner.algorithm == "sac"; }
+
+ExplorationKind ExplorationKindOf(const Config& config) {
+  const std::string& kind = config.exploration.kind;
+  if (kind == "gaussian") return ExplorationKind::kGaussian;
+  if (kind == "ou") return ExplorationKind::kOrnsteinUhlenbeck;
+  if (kind == "squashed_gaussian") return ExplorationKind::kSquashedGaussian;
+  CHECK(kind == "auto") << kind;
+  return LearnsDeviation(config) ? ExplorationKind::kSquashedGaussian : ExplorationKind::kGaussian;
+}
+
+}  // namespace shoal

@@ -1,0 +1,37 @@
+// A number that may change while a run goes on: constant, or linear from `start` at 0 env steps of
+// the run to `end` at `env_steps`, and `end` from then on.
+//
+// As a configuration value: a JSON number, or the text "linear(START,END,ENV_STEPS)".
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace shoal {
+
+struct Schedule {
+  double start = 0, end = 0;
+  int64_t env_steps = 0;  // 0 = constant: `start`, and `end` is equal
+
+  static Schedule Constant(double value) { return {value, value, 0}; }
+  bool constant() const { return env_steps == 0; }
+  double At(uint64_t run_env_steps) const;
+
+  bool operator==(const Schedule&) const = default;
+};
+
+// Numbers in JSON's spelling, blanks only behind commas, 1 <= ENV_STEPS <= 10^12; nothing for any
+// other text.
+std::optional<Schedule> ParseSchedule(std::string_view text);
+// ParseSchedule's inverse; CHECK that it is not constant.
+std::string ScheduleText(const Schedule& schedule);
+
+// A constant as a number, else its text; found by nlohmann's library, for json and ordered_json.
+template <class Json>
+void to_json(Json& out, const Schedule& schedule) {
+  out = schedule.constant() ? Json(schedule.start) : Json(ScheduleText(schedule));
+}
+
+}  // namespace shoal

@@ -1,0 +1,42 @@
+// Every message that crosses the network, one line each: from it follow topics, writers, readers
+// and the rights of roles. A new message is its struct (common/wire/messages.h), its type
+// (shoal.idl), the way there (wire_types.h) and back (message_cdr.h or bulk_cdr.h), and a line
+// here. docs/wire_format.md gives the reasons.
+//
+//   message           struct, in namespace shoal
+//   type              generated from shoal.idl
+//   topic             its name; one message, one topic
+//   plane             domain (bus.h)
+//   kept              the last n per key are kept and older ones overwritten, so that a write never
+//                     waits; 0: all are kept until every reader has them, and a write waits
+//   late, now         whether who joins later gets the kept ones
+//   bulk, small       a @final type in plain CDR; else @appendable
+//   ms                a write waits at most
+//   writers, readers  roles
+#pragma once
+
+#define SHOAL_MESSAGES(X)                                                                          \
+  X(TransitionChunk, TransitionChunk, "transitions_v1", Main, 0, now, bulk, 200, (kActor),         \
+    (kReplay))                                                                                     \
+  X(CreditsMessage, Credits, "credits", Main, 16, late, small, 100, (kReplay), (kActor))           \
+  X(SampleRequest, SampleRequest, "sample_request", Batch, 0, now, small, 2000, (kLearner),        \
+    (kReplay))                                                                                     \
+  X(BatchPart, BatchPart, "batch_part_v1", Batch, 0, now, bulk, 2000, (kReplay), (kLearner))       \
+  X(WeightsPart, WeightsPart, "weights_v2", Main, 1, late, bulk, 100, (kLearner), (kActor))        \
+  X(EvalWeightsPart, WeightsPart, "eval_weights_v2", Main, 1, late, bulk, 100, (kLearner),         \
+    (kEval))                                                                                       \
+  X(ActorMetrics, Metrics, "metrics_actor", Main, 8, now, small, 100, (kActor), (kCoordinator))    \
+  X(EvalMetrics, Metrics, "metrics_eval", Main, 8, now, small, 100, (kEval), (kCoordinator))       \
+  X(ReplayMetrics, Metrics, "metrics_replay", Main, 8, now, small, 100, (kReplay), (kCoordinator)) \
+  X(LearnerMetrics, Metrics, "metrics_learner", Main, 8, now, small, 100, (kLearner),              \
+    (kCoordinator))                                                                                \
+  X(ReplayProgress, ReplayProgress, "replay_progress", Main, 1, late, small, 100, (kReplay),       \
+    (kCoordinator))                                                                                \
+  X(LearnerProgress, LearnerProgress, "learner_progress", Main, 1, late, small, 100, (kLearner),   \
+    (kCoordinator))                                                                                \
+  X(ControlMessage, Control, "control", Main, 1, late, small, 100, (kCoordinator),                 \
+    (kLearner, kReplay, kActor, kEval))                                                            \
+  X(EvalMessage, Eval, "eval", Main, 32, late, small, 100, (kEval), (kCoordinator, kLearner))      \
+  X(RunViewMessage, RunView, "run_view", Operate, 1, late, small, 100, (kCoordinator), (kClient))  \
+  X(CommandMessage, Command, "command", Operate, 1, now, small, 100, (kClient), (kCoordinator))    \
+  X(ReplyMessage, Reply, "reply", Operate, 1, now, small, 100, (kCoordinator), (kClient))

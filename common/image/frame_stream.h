@@ -1,0 +1,89 @@
+// Episodes as one process shows them to another, step by step: what a policy saw and did, what it
+// earned, and a larger view of the scene. `shoal-actor --evaluate ... --frames FILE` writes such a
+// stream into a file or a pipe.
+//
+//   FrameStreamHeader (40 bytes) | record | record | ...
+//   record: FrameRecordHeader (16 bytes) | action (A) f32 | input (K*C, H, W) u8
+//           | view (view_height, view_width, 3) u8
+//
+// Records of an episode follow each other, its reset first. Row 0 is the top. All little-endian.
+// Errors: readers and writers throw Error naming the file.
+#pragma once
+
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace shoal::image {
+
+struct FrameStreamHeader {
+  char magic[8];                     // "SHOALFS1"
+  uint32_t channels, height, width;  // of the policy's input: K*C, H, W; 0 where it sees no pixels
+  uint32_t frame_channels;           // C of one of its K frames
+  uint32_t view_height, view_width;  // of the larger view, RGB interleaved; 0 = none
+  uint32_t action_size;              // A
+  uint32_t reserved;
+
+  uint64_t InputBytes() const { return uint64_t{channels} * height * width; }
+  uint64_t ViewBytes() const { return uint64_t{view_height} * view_width * 3; }
+};
+static_assert(sizeof(FrameStreamHeader) == 40);
+
+enum FrameRecordFlags : uint32_t {
+  kShownSuccess = 1,
+  kShownEnd = 2,  // the step was the episode's last
+};
+
+struct FrameRecordHeader {
+  uint32_t episode;  // from 0
+  uint32_t step;   // 0 = reset, which has no action (zeros) and no reward; k = after the k-th step
+  float reward;    // of the step, unscaled
+  uint32_t flags;  // FrameRecordFlags
+};
+static_assert(sizeof(FrameRecordHeader) == 16);
+
+// Owns the file. One thread.
+class FrameStreamWriter {
+ public:
+  // Magic and reserved words of `header` are filled in. Opening a pipe waits for its reader.
+  FrameStreamWriter(const std::filesystem::path& path, FrameStreamHeader header);
+
+  // CHECK on parts of other sizes than the header says. Each record is handed on at once.
+  void Write(const FrameRecordHeader& record, std::span<const float> action,
+             std::span<const uint8_t> input, std::span<const uint8_t> view);
+
+ private:
+  void Put(const void* bytes, size_t size);
+
+  const std::filesystem::path path_;
+  FrameStreamHeader header_;
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
+};
+
+struct ShownFrame {
+  FrameRecordHeader record{};
+  std::vector<float> action;
+  std::vector<uint8_t> input, view;
+};
+
+// Owns the file. One thread.
+class FrameStreamReader {
+ public:
+  // Refuses what is no stream of this version, and sizes that no writer has.
+  explicit FrameStreamReader(const std::filesystem::path& path);
+
+  const FrameStreamHeader& header() const { return header_; }
+  // Nothing at the stream's end; a record that ends half-way is an error.
+  std::optional<ShownFrame> Next();
+
+ private:
+  const std::filesystem::path path_;
+  FrameStreamHeader header_{};
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> file_;
+};
+
+}  // namespace shoal::image

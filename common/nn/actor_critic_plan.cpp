@@ -1,0 +1,132 @@
+#include "common/nn/actor_critic_plan.h"
+
+#include "common/base/error.h"
+#include "common/nn/encoders/encoder_kind.h"
+
+namespace shoal::nn {
+namespace {
+
+constexpr int kMostSide = 1024;  // of an image: the range of observation.height
+
+// Keys that another encoder would ignore.
+void RefuseCompactKeys(const NetworkConfig& network) {
+  const char* key = network.pool != 0          ? "network.pool"
+                    : !network.filters.empty() ? "network.filters"
+                    : !network.strides.empty() ? "network.strides"
+                                               : nullptr;
+  if (key == nullptr) return;
+  throw UsageError("{} belongs to network.encoder = compact: expected not to be set beside {}", key,
+                   network.encoder);
+}
+
+NetworkPlan BuildEncoder(const EncoderKind& kind, const NetworkConfig& network,
+                         const MapShape& images, const std::string& name) {
+  NetworkPlan plan(images);
+  kind.add(network, name, &plan);
+  return plan;
+}
+
+// The smallest square images that the encoder takes; 0 if there are none.
+int LeastSide(const EncoderKind& kind, const NetworkConfig& network, int channels) {
+  for (int side = 1; side <= kMostSide; ++side) {
+    try {
+      BuildEncoder(kind, network, {channels, side, side}, "");
+      return side;
+    } catch (const Error&) {
+      continue;
+    }
+  }
+  return 0;
+}
+
+NetworkPlan PlanTrunk(const NetworkConfig& network, const ObservationSpec& spec,
+                      const std::string& head) {
+  if (!spec.HasPixels()) return {};
+  const EncoderKind& kind = FindEncoderKind(network.encoder);
+  const bool relu = network.trunk == "auto" ? kind.relu_trunk : network.trunk == "relu";
+  NetworkPlan trunk(PlanEncoder(network, spec).output());
+  trunk.Add(NetworkPlan::Linear{.name = head + ".trunk",
+                                .key = "network.features",
+                                .outputs = network.features == 0 ? kind.features : network.features,
+                                .layer_norm = !relu,
+                                .activation = relu ? Activation::kRelu : Activation::kTanh,
+                                .initialisation = InitialisationOf(network)});
+  return trunk;
+}
+
+NetworkPlan PlanMlp(const NetworkConfig& network, const std::string& name, int inputs,
+                    int outputs) {
+  NetworkPlan mlp({inputs});
+  for (size_t i = 0; i < network.hidden.size(); ++i) {
+    mlp.Add(NetworkPlan::Linear{.name = name + ".layer" + std::to_string(i),
+                                .key = "network.hidden",
+                                .outputs = network.hidden[i],
+                                .layer_norm = network.layer_norm,
+                                .activation = Activation::kRelu,
+                                .initialisation = InitialisationOf(network)});
+  }
+  mlp.Add(NetworkPlan::Linear{.name = name + ".output",
+                              .key = "network.hidden",
+                              .outputs = outputs,
+                              .initialisation = InitialisationOf(network)});
+  return mlp;
+}
+
+}  // namespace
+
+NetworkPlan PlanEncoder(const NetworkConfig& network, const ObservationSpec& spec,
+                        const std::string& name) {
+  if (!spec.HasPixels()) return {};
+  const EncoderKind& kind = FindEncoderKind(network.encoder);
+  if (kind.name != "compact") RefuseCompactKeys(network);
+  const MapShape images{spec.stack * spec.channels, spec.height, spec.width};
+  try {
+    return BuildEncoder(kind, network, images, name);
+  } catch (const Error& error) {
+    const int side = LeastSide(kind, network, images.channels);
+    if (side <= std::min(spec.height, spec.width)) throw;  // something else than too small
+    throw UsageError(
+        "network.encoder = {}: images of {}x{} are too small ({}), expected at least "
+        "{}x{}",
+        kind.name, spec.height, spec.width, error.what(), side, side);
+  }
+}
+
+std::vector<ParameterSpec> HeadPlan::Parameters() const {
+  std::vector<ParameterSpec> parameters = trunk.Parameters();
+  for (const NetworkPlan& mlp : mlps) Append(mlp.Parameters(), &parameters);
+  return parameters;
+}
+
+ActorPlan PlanActor(const NetworkConfig& network, const ObservationSpec& spec, ActorOutput output,
+                    const std::string& name) {
+  ActorPlan plan;
+  plan.trunk = PlanTrunk(network, spec, name);
+  plan.vector_columns = spec.VectorSize();
+  plan.output = output;
+  const int outputs = (output == ActorOutput::kGaussian ? 2 : 1) * spec.action_size;
+  plan.mlps.push_back(
+      PlanMlp(network, name + ".mlp", plan.trunk_columns() + plan.vector_columns, outputs));
+  return plan;
+}
+
+HeadPlan PlanCritic(const NetworkConfig& network, const ObservationSpec& spec,
+                    const std::string& name, int count) {
+  HeadPlan plan{.trunk = PlanTrunk(network, spec, name),
+                .vector_columns = spec.VectorSize(),
+                .extra_columns = spec.action_size};
+  const int inputs = plan.trunk_columns() + plan.vector_columns + plan.extra_columns;
+  for (int i = 1; i <= count; ++i) {
+    plan.mlps.push_back(PlanMlp(network, name + ".q" + std::to_string(i), inputs, 1));
+  }
+  return plan;
+}
+
+std::vector<ParameterSpec> PolicyParameters(const NetworkConfig& network,
+                                            const ObservationSpec& spec) {
+  std::vector<ParameterSpec> parameters = PlanEncoder(network, spec).Parameters();
+  Append(PlanActor(network, spec).Parameters(), &parameters);
+  return parameters;
+}
+
+}  // namespace shoal::nn

@@ -1,0 +1,41 @@
+// An actor: features and vector to a Gaussian over actions before tanh, or to one action (Eq. 4 of
+// docs/algorithm.md).
+#pragma once
+
+#include <memory>
+
+#include "common/nn/actor_critic_plan.h"
+#include "common/nn/module.h"
+
+namespace shoal::nn {
+
+class Features;
+
+class ActorModule final : public Module {
+ public:
+  // `features`: borrowed; null without pixels. trains_encoder: Backward leaves the gradient of the
+  // features to their encoder.
+  ActorModule(const ActorPlan& plan, const Features* features, bool trains_encoder, Use use,
+              const ModuleContext& context);
+  ~ActorModule() override;
+
+  // All (B, A). mean: before tanh. log_std: null of a deterministic actor. action: tanh(mean) of a
+  // deterministic actor, null of a Gaussian.
+  struct Output {
+    const float *mean, *log_std, *action;
+  };
+
+  void Refresh() override;
+  // vector (B, V), for the features as they are.
+  Output Forward(const float* vector);
+  // Gradients of the parameters, for the latest Forward: of a Gaussian from dL/dmean and
+  // dL/dlog_std (B, A), of a deterministic actor from dL/daction (B, A).
+  void Backward(const float* mean_gradient, const float* log_std_gradient);
+  void Backward(const float* action_gradient);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace shoal::nn

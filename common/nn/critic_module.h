@@ -1,0 +1,45 @@
+// A critic: one trunk and one or more Q functions of features, vector and action.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "common/nn/actor_critic_plan.h"
+#include "common/nn/module.h"
+
+namespace shoal::nn {
+
+class Features;
+
+class CriticModule final : public Module {
+ public:
+  // `plan` of PlanCritic. `features`: borrowed; null without pixels. trains_encoder: Backward
+  // leaves the gradient of the features to their encoder.
+  CriticModule(const HeadPlan& plan, const Features* features, bool trains_encoder, Use use,
+               const ModuleContext& context);
+  ~CriticModule() override;
+
+  // Q functions.
+  int count() const;
+  const float* q(int i) const;  // (B) of the latest ForwardAction
+
+  void Refresh() override;
+  // The observation's part, for the features as they are; vector (B, V).
+  void ForwardObservation(const float* vector);
+  // The rest, for the latest observation; action (B, A). May be called again with other actions.
+  void ForwardAction(const float* action);
+
+  // dL/dq_i (B), one for each Q function; an empty one is no part of the loss.
+  using Gradients = std::span<const std::vector<float>>;
+  // Gradients of all parameters; those of an empty one become 0.
+  void Backward(Gradients q_gradients);
+  // The gradient of the action (B, A) alone.
+  void BackwardAction(Gradients q_gradients, float* action_gradient);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace shoal::nn

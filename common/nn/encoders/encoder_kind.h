@@ -1,0 +1,55 @@
+// Encoders: networks from pixels to a feature map, one kind a file. `network.encoder` names it.
+//
+// A further kind is a file beside these, a declaration and a line in the list below, and its word
+// in the key's choices (common/config/config_keys.cpp).
+#pragma once
+
+#include <initializer_list>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "common/config/config.h"
+#include "common/nn/network_plan.h"
+
+namespace shoal::nn {
+
+struct EncoderKind {
+  std::string_view name;
+  // Appends the encoder's layers to a plan whose input are stacks of frames, (K*C, H, W). The
+  // parameters of convolution i are `prefix`.conv{i}.*.
+  void (*add)(const NetworkConfig& network, const std::string& prefix, NetworkPlan* plan);
+  // The trunk that belongs to it where the configuration does not say another: its outputs, and
+  // whether they are linear and ReLU instead of linear, LayerNorm and tanh.
+  int features = 50;
+  bool relu_trunk = false;
+};
+
+// Average pooling and 3x3 convolutions of network.pool, network.filters and network.strides; small.
+void AddCompact(const NetworkConfig& network, const std::string& prefix, NetworkPlan* plan);
+// Kostrikov et al. 2020, arXiv:2004.13649; of 84x84 pixels.
+void AddDrq(const NetworkConfig& network, const std::string& prefix, NetworkPlan* plan);
+// The convolutions of MR.Q, Fujimoto et al. 2025, arXiv:2501.16142, with ReLU.
+void AddMrq(const NetworkConfig& network, const std::string& prefix, NetworkPlan* plan);
+// Mnih et al. 2015, doi:10.1038/nature14236.
+void AddNature(const NetworkConfig& network, const std::string& prefix, NetworkPlan* plan);
+
+inline constexpr EncoderKind kEncoderKinds[] = {
+    {.name = "compact", .add = AddCompact},
+    {.name = "drq", .add = AddDrq},
+    {.name = "mrq", .add = AddMrq},
+    {.name = "nature", .add = AddNature, .features = 512, .relu_trunk = true},
+};
+
+// Throws Error (kUsage) naming an unknown kind and those there are.
+const EncoderKind& FindEncoderKind(std::string_view name);
+
+// What drq and mrq consist of: 32 filters of 3x3 without padding for each stride, on images as they
+// are.
+void AddConvolutions(const NetworkConfig& network, const std::string& prefix,
+                     std::initializer_list<int> strides, NetworkPlan* plan);
+
+// How the configuration lets parameters start.
+Initialisation InitialisationOf(const NetworkConfig& network);
+
+}  // namespace shoal::nn

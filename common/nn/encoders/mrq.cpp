@@ -1,0 +1,9 @@
+#include "common/nn/encoders/encoder_kind.h"
+
+namespace shoal::nn {
+
+void AddMrq(const NetworkConfig& network, const std::string& prefix, NetworkPlan* plan) {
+  AddConvolutions(network, prefix, {2, 2, 2, 1}, plan);
+}
+
+}  // namespace shoal::nn

@@ -1,0 +1,41 @@
+// What an encoder hands to the heads above it, in the form its engine computes with. Only
+// common/nn looks inside.
+#pragma once
+
+#include "common/nn/layer_context.h"
+#include "common/nn/module.h"
+
+namespace shoal::nn {
+
+class Features {
+ public:
+  Features(const dnnl::memory& values, const dnnl::memory& gradient)
+      : values_(values), gradient_(gradient) {}
+
+  // (B, N*h*w) row-major in the compute type.
+  const dnnl::memory& values() const { return values_; }
+  // dL/dvalues; empty in inference.
+  const dnnl::memory& gradient() const { return gradient_; }
+
+ private:
+  dnnl::memory values_, gradient_;
+};
+
+// Where a head reads its features and leaves their gradient; empty handles without pixels, and an
+// empty gradient where the head does not train the encoder.
+struct FeatureSource {
+  dnnl::memory values, gradient;
+};
+inline FeatureSource ToFeatureSource(const Features* features, bool trains_encoder) {
+  if (features == nullptr) return {};
+  return {features->values(), trains_encoder ? features->gradient() : dnnl::memory()};
+}
+
+// What the layers of a module are built with.
+inline LayerContext ToLayerContext(ParameterSet* parameters, Module::Use use,
+                                   const ModuleContext& context) {
+  return {parameters, context.precision, context.batch, use == Module::Use::kTraining,
+          context.scratchpad};
+}
+
+}  // namespace shoal::nn

@@ -1,0 +1,43 @@
+#include "common/nn/module.h"
+
+#include <algorithm>
+
+#include "common/base/check.h"
+#include "common/nn/adam.h"
+#include "common/nn/op.h"
+#include "common/nn/parallel.h"
+
+namespace shoal::nn {
+
+ModuleContext::ModuleContext(Precision compute_precision, int batch_size, int thread_count)
+    : precision(compute_precision),
+      batch(batch_size),
+      threads(thread_count),
+      scratchpad(std::make_shared<Scratchpad>()) {
+  CHECK(batch > 0 && threads > 0) << "batch of " << batch << ", " << threads << " threads";
+}
+
+Module::Module(const std::vector<ParameterSpec>& parameters, Use use, const ModuleContext& context)
+    : parameters_(parameters, use), context_(context) {}
+
+void CopyParameters(const ParameterSet& online, ParameterSet* average) {
+  CHECK(online.size() == average->size()) << online.size() << " and " << average->size();
+  std::copy_n(online.values(), online.size(), average->values());
+}
+
+void MoveTowards(float tau, const ParameterSet& online, ParameterSet* average) {
+  CHECK(online.size() == average->size()) << online.size() << " and " << average->size();
+  MoveTowards(tau, online.values(), average->size(), average->values());
+}
+
+void CopyParameters(const Module& online, Module* target) {
+  CopyParameters(online.parameters(), &target->parameters());
+  target->Refresh();
+}
+
+void MoveTowards(float tau, const Module& online, Module* target) {
+  MoveTowards(tau, online.parameters(), &target->parameters());
+  target->Refresh();
+}
+
+}  // namespace shoal::nn

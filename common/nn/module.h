@@ -1,0 +1,60 @@
+// Modules: networks with parameters of their own, behind plain float arrays. What computes them is
+// out of sight; which modules, targets and optimisers make an algorithm is said where the algorithm
+// is (learner/agent).
+//
+// Dimensions: B batch, A actions, V vector size. Arrays are row-major f32; a result is valid until
+// the function that returned it is called again.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "common/nn/network_plan.h"
+#include "common/nn/parameter_set.h"
+#include "common/nn/precision.h"
+
+namespace shoal::nn {
+
+class Scratchpad;
+
+// What modules that work together are built with. Copies share the scratch memory: their modules
+// run one after another, on one thread at a time.
+struct ModuleContext {
+  ModuleContext(Precision precision, int batch, int threads);
+
+  Precision precision;
+  int batch;    // B
+  int threads;  // that each pass of a module uses
+  std::shared_ptr<Scratchpad> scratchpad;
+};
+
+// kTraining: has gradients and can be stepped by an optimiser; kInference: a target, or a policy.
+class Module {
+ public:
+  using Use = ParameterSet::Use;
+
+  Module(const std::vector<ParameterSpec>& parameters, Use use, const ModuleContext& context);
+  virtual ~Module() = default;
+
+  // Owned by the module. Refresh() follows any change of values.
+  ParameterSet& parameters() { return parameters_; }
+  const ParameterSet& parameters() const { return parameters_; }
+  // Takes over the parameters' present values.
+  virtual void Refresh() = 0;
+
+ protected:
+  ParameterSet parameters_;
+  const ModuleContext context_;
+};
+
+// Parameters of `target`, a network of the same plan under another name, become those of `online`,
+// or move by the share `tau` of the way towards them (Eq. 9 of docs/algorithm.md). The target is
+// refreshed.
+void CopyParameters(const Module& online, Module* target);
+void MoveTowards(float tau, const Module& online, Module* target);
+
+// The same for a plain set: a moving average that no module computes.
+void CopyParameters(const ParameterSet& online, ParameterSet* average);
+void MoveTowards(float tau, const ParameterSet& online, ParameterSet* average);
+
+}  // namespace shoal::nn

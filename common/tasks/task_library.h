@@ -1,0 +1,26 @@
+// Tasks that are not part of Shoal come as shared objects: see docs/own_task.md.
+//
+//   NAME.so          goal halves; every program of a run loads it, so the replay can compute
+//   rewards
+//     extern "C" void ShoalRegisterGoals();     calls tasks::AddTask for each task
+//   NAME_physics.so  physics halves, beside it; only programs that step environments load it
+//     extern "C" void ShoalRegisterPhysics();   calls worlds::AddWorld for each world
+//
+// They use Shoal's functions as the program that loads them has them, and must be built from the
+// same sources with the same compiler.
+//
+// At the start of a program, before threads. Errors (kUsage), in one line: a file that cannot be
+// loaded, with the loader's reason; one without its entry point; a name that is taken.
+#pragma once
+
+#include <string>
+
+namespace shoal::tasks {
+
+// Loads the goal halves of NAME.so; an empty path is none. A library is loaded once.
+void LoadTaskLibrary(const std::string& path);
+
+// Loads a shared object and calls its entry point, unless it was called before.
+void CallEntryPoint(const std::string& path, const char* entry_point);
+
+}  // namespace shoal::tasks

@@ -1,0 +1,127 @@
+#include "common/wire/batch_schema.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <type_traits>
+#include <utility>
+
+#include "common/base/check.h"
+#include "common/base/random.h"
+
+namespace shoal {
+namespace {
+
+constexpr uint64_t kAlignment = 64;
+
+uint64_t BytesOf(ArrayType type) {
+  switch (type) {
+    case ArrayType::kU8:
+      return 1;
+    case ArrayType::kF32:
+      return 4;
+    case ArrayType::kU64:
+      return 8;
+  }
+  CHECK(false) << static_cast<int>(type);
+  return 0;
+}
+
+const char* NameOf(ArrayType type) {
+  return type == ArrayType::kU8 ? "u8" : type == ArrayType::kF32 ? "f32" : "u64";
+}
+
+template <class T>
+constexpr ArrayType TypeOf() {
+  if constexpr (std::is_same_v<T, uint8_t>) return ArrayType::kU8;
+  if constexpr (std::is_same_v<T, float>) return ArrayType::kF32;
+  return ArrayType::kU64;
+}
+
+}  // namespace
+
+BatchSchema::BatchSchema(const ObservationSpec& spec, const BatchOptions& options)
+    : options_(options) {
+  CHECK(options.batch > 0) << options.batch;
+  // The order is that of the bytes on the wire; Hash() covers it.
+  if (spec.HasPixels()) {
+    const std::vector<int> stack{spec.stack * spec.channels, spec.height, spec.width};
+    Add("obs_frames", ArrayType::kU8, stack);
+    Add("next_obs_frames", ArrayType::kU8, stack);
+  }
+  if (const int size = spec.VectorSize(); size > 0) {
+    Add("obs_vector", ArrayType::kF32, {size});
+    Add("next_obs_vector", ArrayType::kF32, {size});
+  }
+  Add("action", ArrayType::kF32, {spec.action_size});
+  Add("reward", ArrayType::kF32);
+  Add("bootstrap", ArrayType::kF32);
+  Add("weights_update", ArrayType::kU64);
+  Add("id", ArrayType::kU64);
+}
+
+void BatchSchema::Add(const std::string& name, ArrayType type, std::vector<int> shape) {
+  CHECK(!Has(name)) << name;
+  uint64_t bytes = static_cast<uint64_t>(options_.batch) * BytesOf(type);
+  for (const int size : shape) bytes *= static_cast<uint64_t>(size);
+  arrays_.push_back({name, type, std::move(shape)});
+  offsets_.push_back(total_bytes_);
+  sizes_.push_back(bytes);
+  total_bytes_ += (bytes + kAlignment - 1) / kAlignment * kAlignment;
+}
+
+size_t BatchSchema::Find(std::string_view name) const {
+  size_t i = 0;
+  while (i < arrays_.size() && arrays_[i].name != name) ++i;
+  return i;
+}
+
+uint64_t BatchSchema::Hash() const {
+  const std::string canonical = Summary();
+  return HashBytes(canonical.data(), canonical.size());
+}
+
+std::string BatchSchema::Summary() const {
+  std::string arrays;
+  for (const BatchArray& array : arrays_) {
+    arrays += fmt::format("{}{} {}", arrays.empty() ? "" : ", ", array.name, NameOf(array.type));
+    if (!array.shape.empty()) arrays += fmt::format(" {}", fmt::join(array.shape, "x"));
+  }
+  return fmt::format("batch {}, copies {}, n_step {}, discount {}: {}", options_.batch,
+                     options_.copies, options_.n_step, options_.discount, arrays);
+}
+
+template <class T>
+std::span<T> BatchSchema::Array(std::string_view name, uint8_t* data) const {
+  CHECK(reinterpret_cast<uintptr_t>(data) % kAlignment == 0);
+  const size_t i = Find(name);
+  CHECK(i < arrays_.size()) << "a batch has no array '" << name << "': " << Summary();
+  CHECK(arrays_[i].type == TypeOf<T>()) << "array '" << name << "' is " << NameOf(arrays_[i].type);
+  return {reinterpret_cast<T*>(data + offsets_[i]), static_cast<size_t>(sizes_[i]) / sizeof(T)};
+}
+
+template std::span<uint8_t> BatchSchema::Array(std::string_view, uint8_t*) const;
+template std::span<float> BatchSchema::Array(std::string_view, uint8_t*) const;
+template std::span<uint64_t> BatchSchema::Array(std::string_view, uint8_t*) const;
+
+BatchView BatchSchema::View(uint8_t* data) const {
+  BatchView view;
+  view.schema = this;
+  view.data = data;
+  if (Has("obs_frames")) {
+    view.obs_frames = Array<uint8_t>("obs_frames", data);
+    view.next_obs_frames = Array<uint8_t>("next_obs_frames", data);
+  }
+  if (Has("obs_vector")) {
+    view.obs_vector = Array<float>("obs_vector", data);
+    view.next_obs_vector = Array<float>("next_obs_vector", data);
+  }
+  view.action = Array<float>("action", data);
+  view.reward = Array<float>("reward", data);
+  view.bootstrap = Array<float>("bootstrap", data);
+  view.weights_update = Array<uint64_t>("weights_update", data);
+  view.id = Array<uint64_t>("id", data);
+  return view;
+}
+
+}  // namespace shoal

@@ -1,0 +1,103 @@
+// What a batch consists of: named arrays, each with a type and a shape, one after another, each
+// starting at a multiple of 64 bytes. Learner and replay make the schema from the same observation
+// spec and options; its hash travels with every request, so that neither reads what the other did
+// not write.
+//
+//   obs_frames       (B, K*C, H, W) u8   shifted (DrQ), frames of a stack oldest first
+//   next_obs_frames  (B, K*C, H, W) u8   shifted with offsets of their own
+//   obs_vector       (B, V) f32
+//   next_obs_vector  (B, V) f32
+//   action           (B, A) f32
+//   reward           (B) f32             discounted sum over the sample's n steps
+//   bootstrap        (B) f32             factor of the next value besides the discount: 0 where the
+//                                        task ended, else discount^(m-1) of a sample of m steps
+//   weights_update   (B) u64             of the policy that chose the action; for policy lag
+//   id               (B) u64             of the record the sample begins with
+//
+// K*C channels: stack K, frame channels C. What a spec does not have (pixels, vectors) has no
+// array. An algorithm or a way of sampling that needs more (importance weights, sequences with a
+// length of their own as the first dimension) adds an option and its arrays.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "common/spec/observation_spec.h"
+
+namespace shoal {
+
+enum class ArrayType : uint8_t { kU8, kF32, kU64 };
+
+struct BatchArray {
+  std::string name;
+  ArrayType type = ArrayType::kF32;
+  std::vector<int> shape{};  // of one element; empty = one number
+
+  bool operator==(const BatchArray&) const = default;
+};
+
+// What decides, beside the spec, which arrays there are and what their numbers mean.
+struct BatchOptions {
+  int batch = 1;        // B
+  int copies = 1;       // elements in a row of one transition
+  int n_step = 1;       // n
+  double discount = 1;  // of the steps summed
+};
+
+struct BatchView;
+
+class BatchSchema {
+ public:
+  BatchSchema(const ObservationSpec& spec, const BatchOptions& options);
+
+  int batch() const { return options_.batch; }
+  const BatchOptions& options() const { return options_; }
+  std::span<const BatchArray> arrays() const { return arrays_; }
+  bool Has(std::string_view name) const { return Find(name) < arrays_.size(); }
+  // Of all arrays together, with the padding between them; a multiple of 64.
+  uint64_t total_bytes() const { return total_bytes_; }
+
+  // Equal for equal arrays and options, and for them only.
+  uint64_t Hash() const;
+  // "batch 128, copies 1, n_step 1, discount 0.9: obs_frames u8 6x84x84, ..., id u64", for
+  // messages.
+  std::string Summary() const;
+
+  // An array of the batch at `data`, which holds total_bytes(), aligned to 64, and is borrowed. T
+  // is uint8_t, float or uint64_t. CHECK: there is such an array, and it is of that type.
+  template <class T>
+  std::span<T> Array(std::string_view name, uint8_t* data) const;
+  BatchView View(uint8_t* data) const;
+
+ private:
+  void Add(const std::string& name, ArrayType type, std::vector<int> shape = {});
+  // Its position; arrays_.size() when there is none.
+  size_t Find(std::string_view name) const;
+
+  BatchOptions options_;
+  std::vector<BatchArray> arrays_;
+  std::vector<uint64_t> offsets_, sizes_;  // bytes, by array; sizes without padding
+  uint64_t total_bytes_ = 0;
+};
+
+// The arrays that most algorithms use, by member; empty where the batch has none. Borrows schema
+// and memory.
+struct BatchView {
+  std::span<uint8_t> obs_frames, next_obs_frames;
+  std::span<float> obs_vector, next_obs_vector, action, reward, bootstrap;
+  std::span<uint64_t> weights_update, id;
+
+  // Any array by its name: see BatchSchema::Array.
+  template <class T>
+  std::span<T> Array(std::string_view name) const {
+    return schema->Array<T>(name, data);
+  }
+
+  const BatchSchema* schema = nullptr;
+  uint8_t* data = nullptr;
+};
+
+}  // namespace shoal

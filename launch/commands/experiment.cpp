@@ -1,0 +1,91 @@
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+#include <memory>
+
+#include "common/base/error.h"
+#include "launch/commands/commands.h"
+#include "launch/experiment/run_experiment.h"
+#include "launch/experiment/summary.h"
+
+namespace shoal::launch {
+namespace {
+
+int Status(const std::string& name) {
+  const std::filesystem::path folder = FindExperiment(name);
+  std::cout << StatusText(ReadOutcome(ReadExperiment(folder)));
+  if (!IsExperimentHeld(folder)) std::cout << "nobody runs it at the moment\n";
+  return 0;
+}
+
+int Summary(const std::string& name, bool json) {
+  const ExperimentOutcome outcome = ReadOutcome(ReadExperiment(FindExperiment(name)));
+  std::cout << (json ? ToJson(outcome).dump(2) + "\n" : SummaryText(outcome)) << std::flush;
+  return 0;
+}
+
+void CheckSeeds(const std::vector<int64_t>& seeds) {
+  for (size_t i = 0; i < seeds.size(); ++i) {
+    if (std::count(seeds.begin(), seeds.end(), seeds[i]) > 1) {
+      throw UsageError("--seeds: {} is given twice", seeds[i]);
+    }
+  }
+}
+
+void AddRun(CLI::App& experiment, Action* chosen) {
+  CLI::App* command = experiment.add_subcommand(
+      "run",
+      "Do what is still to be done of an experiment: finished runs are skipped, interrupted ones "
+      "go "
+      "on. Progress on stderr; on stdout one line of JSON per run. Ctrl-C stops in order.");
+  const auto options = std::make_shared<ExperimentOptions>();
+  command
+      ->add_option("experiment", options->definition,
+                   "Definition: a file (*.json), or the name of one that Shoal brings")
+      ->required();
+  command->add_option("--seeds", options->seeds, "Seeds instead of the definition's: 0,1,2")
+      ->delimiter(',')
+      ->check(CLI::NonNegativeNumber);
+  command
+      ->add_option("--jobs", options->jobs,
+                   "Runs side by side, each on cores of its own; their wall times are marked")
+      ->check(CLI::Range(1, 1024))
+      ->capture_default_str();
+  command->add_option("--out", options->out, "Folder; experiments/NAME by default");
+  command->add_flag("--retry-failed", options->retry_failed, "Try failed runs again");
+  command->add_flag("--dry-run", options->dry_run, "Check everything, start nothing");
+  command->callback([=] {
+    CheckSeeds(options->seeds);
+    *chosen = [=] { return RunExperiment(*options); };
+  });
+}
+
+void AddStatus(CLI::App& experiment, Action* chosen) {
+  CLI::App* command = experiment.add_subcommand("status", "How each run of an experiment stands.");
+  const auto name = std::make_shared<std::string>();
+  command->add_option("experiment", *name, "Name within experiments/, or folder")->required();
+  command->callback([=] { *chosen = [=] { return Status(*name); }; });
+}
+
+void AddSummary(CLI::App& experiment, Action* chosen) {
+  CLI::App* command = experiment.add_subcommand(
+      "summary", "What an experiment has shown so far: success, return and ratios with intervals.");
+  const auto name = std::make_shared<std::string>();
+  const auto json = std::make_shared<bool>(false);
+  command->add_option("experiment", *name, "Name within experiments/, or folder")->required();
+  command->add_flag("--json", *json, "Print JSON (schema shoal-experiment-1)");
+  command->callback([=] { *chosen = [=] { return Summary(*name, *json); }; });
+}
+
+}  // namespace
+
+void AddExperimentCommand(CLI::App& app, Action* chosen) {
+  CLI::App* experiment =
+      app.add_subcommand("experiment", "Arms x seeds from one file (docs/experiments.md).");
+  experiment->require_subcommand(1);
+  AddRun(*experiment, chosen);
+  AddStatus(*experiment, chosen);
+  AddSummary(*experiment, chosen);
+}
+
+}  // namespace shoal::launch

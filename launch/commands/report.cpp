@@ -1,0 +1,164 @@
+#include "launch/report/report.h"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/base/stop.h"
+#include "launch/commands/commands.h"
+#include "launch/report/card.h"
+#include "launch/report/compare.h"
+#include "launch/report/plot.h"
+
+namespace shoal::launch {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct CompareOptions {
+  SubjectOptions subjects;
+  double target = 0.9;
+  std::string json;
+};
+
+struct PlotOptions {
+  SubjectOptions subjects;
+  std::string axis = "env-steps";
+  std::vector<std::string> figures;  // empty = all that there are
+  std::vector<std::string> outputs;
+  std::string title;
+};
+
+void AddSubjects(CLI::App* command, SubjectOptions* subjects) {
+  command->add_option("subjects", subjects->names, "Runs and experiments: names or folders")
+      ->required();
+  command->add_option("--run-dir", subjects->run_dir, "Folder that holds the runs")
+      ->capture_default_str();
+}
+
+int Compare(const CompareOptions& options) {
+  if (!options.json.empty()) CheckWritable(options.json);
+  const Comparison comparison = launch::Compare(ReadSubjects(options.subjects), options.target);
+  if (!options.json.empty()) WriteFileAtomically(options.json, ToJson(comparison).dump(2) + "\n");
+  std::cout << ToText(comparison) << std::flush;
+  return 0;
+}
+
+// What the picture is of: the subjects as they were given.
+std::string TitleOf(const PlotOptions& options, const std::vector<RunGroup>& groups) {
+  if (!options.title.empty()) return options.title;
+  std::string title;
+  for (const std::string& name : options.subjects.names) {
+    title += (title.empty() ? "" : ", ") + NamedFolder(name).filename().string();
+  }
+  for (const RunGroup& group : groups) {
+    if (!group.runs.empty()) return title + ": " + group.runs[0].config.task;
+  }
+  return title;
+}
+
+int DrawPlot(const PlotOptions& options) {
+  InstallStopSignals();
+  const std::vector<RunGroup> groups = ReadSubjects(options.subjects);
+  if (options.subjects.names.size() > 1) CheckOneTask(groups);
+  Plot plot{.title = TitleOf(options, groups), .axis = ParsePlotAxis(options.axis), .figures = {}};
+  for (const std::string& word : options.figures) plot.figures.push_back(ParsePlotFigure(word));
+  if (plot.figures.empty()) plot.figures = FiguresThereAre(groups);
+  for (const std::string& output : options.outputs) {
+    Draw(plot, groups, output);
+    std::cout << output << "\n";
+  }
+  return 0;
+}
+
+struct ReportOptions {
+  SubjectOptions subjects;
+  std::string output = "report.html";
+};
+
+int WriteReport(const ReportOptions& options) {
+  InstallStopSignals();
+  CheckWritable(options.output);
+  WriteFileAtomically(options.output, ReportHtml(GatherReport(options.subjects)));
+  std::cout << options.output << "\n";
+  return 0;
+}
+
+struct CardOptions {
+  std::string run, run_dir = "runs", output;
+};
+
+int MakeCard(const CardOptions& options) {
+  const fs::path named = fs::path(options.run_dir) / options.run;
+  const fs::path run = fs::exists(named / "config.json") ? named : fs::path(options.run);
+  if (!fs::exists(run / "config.json")) {
+    throw UsageError("no run '{}': neither '{}' nor '{}' has a config.json", options.run,
+                     named.string(), options.run);
+  }
+  const fs::path output = options.output.empty()
+                              ? fs::path(NamedFolder(run).filename().string() + "-card")
+                              : fs::path(options.output);
+  WriteCard(run, output);
+  std::cout << output.string() << "\n";
+  return 0;
+}
+
+}  // namespace
+
+void AddCardCommand(CLI::App& app, Action* chosen) {
+  CLI::App* command = app.add_subcommand(
+      "card",
+      "A run as a folder that model hubs take: README with metadata, results, config, policy.");
+  const auto options = std::make_shared<CardOptions>();
+  command->add_option("run", options->run, "Run: name or folder")->required();
+  command->add_option("--run-dir", options->run_dir, "Folder that holds the runs")
+      ->capture_default_str();
+  command->add_option("--output", options->output, "Folder to make; RUN-card by default");
+  command->callback([=] { *chosen = [=] { return MakeCard(*options); }; });
+}
+
+void AddReportCommand(CLI::App& app, Action* chosen) {
+  CLI::App* command = app.add_subcommand(
+      "report",
+      "One HTML page of runs and experiments that needs nothing but itself: results with "
+      "intervals, curves, configuration, machine, commands. Needs gnuplot.");
+  const auto options = std::make_shared<ReportOptions>();
+  AddSubjects(command, &options->subjects);
+  command->add_option("--output", options->output, "File to write")->capture_default_str();
+  command->callback([=] { *chosen = [=] { return WriteReport(*options); }; });
+}
+
+void AddCompareCommand(CLI::App& app, Action* chosen) {
+  CLI::App* command = app.add_subcommand(
+      "compare",
+      "Runs and experiments side by side: success, return, cost, with intervals over "
+      "seeds; ratios of env steps; the keys in which they differ.");
+  const auto options = std::make_shared<CompareOptions>();
+  AddSubjects(command, &options->subjects);
+  command->add_option("--target", options->target, "Success rate whose env steps are compared")
+      ->check(CLI::Range(0.0, 1.0))
+      ->capture_default_str();
+  command->add_option("--json", options->json, "File for the same (schema shoal-comparison-1)");
+  command->callback([=] { *chosen = [=] { return Compare(*options); }; });
+}
+
+void AddPlotCommand(CLI::App& app, Action* chosen) {
+  CLI::App* command = app.add_subcommand(
+      "plot", "Learning curves, with bands from the smallest to the largest seed. Needs gnuplot.");
+  const auto options = std::make_shared<PlotOptions>();
+  AddSubjects(command, &options->subjects);
+  command->add_option("--x", options->axis, "env-steps | updates | wall")->capture_default_str();
+  command
+      ->add_option("--y", options->figures,
+                   "success | return | distance; may be repeated; all there are by default")
+      ->allow_extra_args(false);
+  command->add_option("--output", options->outputs, "File to write, .png or .svg; may be repeated")
+      ->allow_extra_args(false)
+      ->required();
+  command->add_option("--title", options->title, "Above the curves");
+  command->callback([=] { *chosen = [=] { return DrawPlot(*options); }; });
+}
+
+}  // namespace shoal::launch

@@ -1,0 +1,213 @@
+#include "launch/experiment/experiment_folder.h"
+
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <charconv>
+#include <cstring>
+#include <utility>
+
+#include "common/base/bounded_json.h"
+#include "common/base/build_info.h"
+#include "common/base/clock.h"
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/config/config_io.h"
+
+namespace shoal::launch {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+constexpr char kSchema[] = "shoal-experiment-folder-1";
+constexpr char kFile[] = "experiment.json";
+
+struct flock WholeFile() {
+  struct flock lock {};
+  lock.l_type = F_WRLCK;
+  lock.l_whence = SEEK_SET;
+  return lock;
+}
+
+// What a command that was killed before it had written experiment.json may have left.
+bool IsLeftover(const fs::path& file) {
+  const std::string name = file.filename();
+  return name == ".lock" || name.starts_with(std::string(kFile) + ".tmp-");
+}
+
+bool HoldsOnlyLeftovers(const fs::path& folder) {
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    if (!IsLeftover(it->path())) return false;
+  }
+  return true;
+}
+
+// In whatever order the keys are written.
+bool SameKeys(const ordered_json& a, const ordered_json& b) {
+  return nlohmann::json(a) == nlohmann::json(b);
+}
+
+// What of an experiment must be as it was: empty, or what is not.
+std::string Difference(const Definition& stored, const Definition& asked) {
+  if (asked.name != stored.name) {
+    return fmt::format("its name is '{}', not '{}'", stored.name, asked.name);
+  }
+  if (asked.base != stored.base) {
+    return fmt::format("its base is '{}', not '{}'", stored.base, asked.base);
+  }
+  if (!SameKeys(asked.set, stored.set)) {
+    return fmt::format("its 'set' is {}, not {}", stored.set.dump(), asked.set.dump());
+  }
+  if (asked.final_episodes != stored.final_episodes) return "its final_episodes differ";
+  for (const Arm& arm : stored.arms) {
+    const auto same = std::ranges::find(asked.arms, arm.name, &Arm::name);
+    if (same == asked.arms.end()) return fmt::format("it has an arm '{}'", arm.name);
+    if (!SameKeys(same->set, arm.set)) {
+      return fmt::format("its arm '{}' sets {}, not {}", arm.name, arm.set.dump(),
+                         same->set.dump());
+    }
+  }
+  return "";
+}
+
+void Write(const StoredExperiment& experiment) {
+  const ordered_json object{{"schema", kSchema},
+                            {"definition", ToJson(experiment.definition)},
+                            {"base", ToJson(experiment.base)},
+                            {"created", experiment.created},
+                            {"commit", BuildCommit()}};
+  WriteFileAtomically(experiment.folder / kFile, object.dump(2) + "\n");
+}
+
+// The seed of a run folder "ARM-sSEED" of the arm.
+std::optional<int64_t> SeedOf(const std::string& name, const std::string& arm) {
+  const std::string start = arm + "-s";
+  if (!name.starts_with(start)) return std::nullopt;
+  int64_t seed = -1;
+  const char* const end = name.data() + name.size();
+  const auto [rest, error] = std::from_chars(name.data() + start.size(), end, seed);
+  if (error != std::errc() || rest != end || seed < 0) return std::nullopt;
+  return seed;
+}
+
+}  // namespace
+
+std::vector<ExperimentRun> StoredExperiment::Runs(const std::vector<int64_t>& seeds) const {
+  std::vector<ExperimentRun> runs;
+  for (const int64_t seed : seeds) {
+    for (size_t arm = 0; arm < definition.arms.size(); ++arm) {
+      const std::string name = fmt::format("{}-s{}", definition.arms[arm].name, seed);
+      runs.push_back({arm, seed, name, folder / "runs" / name});
+    }
+  }
+  return runs;
+}
+
+std::vector<ExperimentRun> StoredExperiment::Runs() const {
+  std::vector<int64_t> seeds = definition.seeds, further;
+  std::error_code error;
+  for (fs::directory_iterator it(folder / "runs", error), end; !error && it != end;
+       it.increment(error)) {
+    for (const Arm& arm : definition.arms) {
+      const auto seed = SeedOf(it->path().filename(), arm.name);
+      if (seed && std::ranges::count(seeds, *seed) + std::ranges::count(further, *seed) == 0) {
+        further.push_back(*seed);
+      }
+    }
+  }
+  std::ranges::sort(further);
+  seeds.insert(seeds.end(), further.begin(), further.end());
+  return Runs(seeds);
+}
+
+fs::path StoredExperiment::LogFile(const ExperimentRun& run) const {
+  return folder / "logs" / (run.name + ".log");
+}
+
+bool IsExperiment(const fs::path& folder) {
+  std::error_code error;
+  return fs::is_regular_file(folder / kFile, error);
+}
+
+StoredExperiment ReadExperiment(const fs::path& folder) {
+  const fs::path path = folder / kFile;
+  if (!IsExperiment(folder)) {
+    throw UsageError("no experiment in '{}': it has no {}", folder.string(), kFile);
+  }
+  const std::string text = ReadFile(path);
+  ParseStrictJson(text, path);  // refuses broken text and duplicate keys
+  const auto object = ParseBoundedJson<ordered_json>(text);
+  if (!object.is_object() || object.value("schema", ordered_json()) != kSchema ||
+      !object.contains("definition") || !object.contains("base")) {
+    throw RuntimeError("{}: expected an object of schema '{}'", path.string(), kSchema);
+  }
+  StoredExperiment experiment{.folder = fs::weakly_canonical(folder)};
+  experiment.definition = ParseDefinition(object["definition"], path, "");
+  ApplyJson(nlohmann::json(object["base"]), path, &experiment.base);
+  if (object.contains("created") && object["created"].is_string()) {
+    experiment.created = object["created"].get<std::string>();
+  }
+  return experiment;
+}
+
+ExperimentFolder::ExperimentFolder(const fs::path& folder, const Definition& definition,
+                                   const std::string& source) {
+  std::error_code error;
+  if (IsExperiment(folder)) {
+    experiment_ = ReadExperiment(folder);
+    const std::string difference = Difference(experiment_.definition, definition);
+    if (!difference.empty()) {
+      throw UsageError("'{}' holds another experiment than {}: {} (another folder: --out)",
+                       folder.string(), source, difference);
+    }
+  } else if (fs::exists(folder, error) && !HoldsOnlyLeftovers(folder)) {
+    throw UsageError("'{}' holds something else than an experiment (no {}): not used",
+                     folder.string(), kFile);
+  } else {
+    experiment_ = {.folder = fs::weakly_canonical(fs::absolute(folder)),
+                   .definition = {},
+                   .base = ResolveBase(definition, source),
+                   .created = UtcTimestamp()};
+  }
+  for (const Arm& arm : definition.arms) ArmConfig(experiment_.base, arm, source);
+  CheckTransfer(definition, source);
+  const bool changed = ToJson(experiment_.definition) != ToJson(definition);
+  experiment_.definition = definition;
+  MakeFolders(experiment_.folder);
+  Lock();
+  try {
+    for (const char* inner : {"configs", "runs", "logs"}) MakeFolders(experiment_.folder / inner);
+    if (changed) Write(experiment_);
+  } catch (...) {
+    close(lock_);
+    throw;
+  }
+}
+
+ExperimentFolder::~ExperimentFolder() { close(lock_); }
+
+void ExperimentFolder::Lock() {
+  const fs::path path = experiment_.folder / ".lock";
+  lock_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
+  if (lock_ < 0) throw RuntimeError("cannot write '{}': {}", path.string(), std::strerror(errno));
+  struct flock whole = WholeFile();
+  if (fcntl(lock_, F_OFD_SETLK, &whole) == 0) return;
+  close(std::exchange(lock_, -1));
+  throw UsageError("experiment '{}' is being run by another process (it holds {})",
+                   experiment_.folder.string(), path.string());
+}
+
+bool IsExperimentHeld(const fs::path& folder) {
+  const int file = open((folder / ".lock").c_str(), O_RDONLY | O_CLOEXEC);
+  if (file < 0) return false;
+  struct flock lock = WholeFile();
+  const bool held = fcntl(file, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
+  close(file);
+  return held;
+}
+
+}  // namespace shoal::launch

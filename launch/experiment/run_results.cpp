@@ -1,0 +1,144 @@
+#include "launch/experiment/run_results.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/config/config_io.h"
+#include "common/config/run_files.h"
+#include "launch/record/run_folder.h"
+
+namespace shoal::launch {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+std::optional<double> NumberOrNothing(const json& value) {
+  return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
+}
+
+std::string TextOrEmpty(const json& object, const char* key) {
+  const auto it = object.find(key);
+  return it != object.end() && it->is_string() ? it->get<std::string>() : "";
+}
+
+EvaluationFigures FiguresOf(const json& object) {
+  EvaluationFigures figures;
+  const json& aggregate = object.at("aggregate");
+  object.at("env_steps").get_to(figures.env_steps);
+  if (const json& version = object.at("weights_version"); version.is_object()) {
+    version.at("update").get_to(figures.updates);
+  }
+  figures.wall_seconds = object.value("wall_seconds", 0.0);
+  figures.task = TextOrEmpty(object, "task");
+  figures.checkpoint = TextOrEmpty(object, "checkpoint");
+  figures.episodes = object.at("episodes").size();
+  figures.success = NumberOrNothing(aggregate.at("success_rate"));
+  aggregate.at("return_mean").get_to(figures.return_mean);
+  aggregate.at("return_std").get_to(figures.return_std);
+  figures.final_distance_mean = NumberOrNothing(aggregate.at("final_distance_mean"));
+  return figures;
+}
+
+void ReadMeta(const json& meta, RunResults* results) {
+  results->exit = TextOrEmpty(meta, "exit");
+  results->error = TextOrEmpty(meta, "error");
+  results->started = TextOrEmpty(meta, "started");
+  results->finished = TextOrEmpty(meta, "finished");
+  results->precision = TextOrEmpty(meta, "precision");
+  meta.at("env_steps").get_to(results->env_steps);
+  meta.at("updates").get_to(results->updates);
+  meta.at("wall_seconds").get_to(results->wall_seconds);
+  if (meta.contains("commits")) {
+    meta.at("commits").get_to(results->commits);
+  } else {
+    results->commits = {TextOrEmpty(meta, "commit")};  // a run of an older build
+  }
+  if (const auto machine = meta.find("machine"); machine != meta.end()) {
+    results->cpu = TextOrEmpty(*machine, "cpu");
+    results->cores = machine->value("cores", 0);
+  }
+}
+
+// eval/ of a run by the starts of its files' names, sorted.
+std::vector<EvaluationFigures> ReadAll(const fs::path& run, const std::string& start) {
+  std::vector<fs::path> files;
+  std::error_code error;
+  for (fs::directory_iterator it(run / "eval", error), end; !error && it != end;
+       it.increment(error)) {
+    const std::string name = it->path().filename();
+    if (name.starts_with(start) && name.ends_with(".json")) files.push_back(it->path());
+  }
+  std::ranges::sort(files);
+  std::vector<EvaluationFigures> all;
+  for (const fs::path& file : files) all.push_back(ReadEvaluationFigures(file));
+  return all;
+}
+
+}  // namespace
+
+uint64_t EvaluationFigures::Successes() const {
+  return static_cast<uint64_t>(std::llround(success.value_or(0) * static_cast<double>(episodes)));
+}
+
+EvaluationFigures ReadEvaluationFigures(const fs::path& file) {
+  const json object = ParseStrictJson(ReadFile(file), file);
+  if (!object.is_object() || object.value("schema", json()) != "shoal-eval-1") {
+    throw RuntimeError("{}: expected an object of schema 'shoal-eval-1'", file.string());
+  }
+  try {
+    return FiguresOf(object);
+  } catch (const json::exception& e) {
+    throw RuntimeError("{}: {}", file.string(), e.what());
+  }
+}
+
+fs::path NamedFolder(const fs::path& folder) {
+  const fs::path canonical = fs::weakly_canonical(folder);
+  return canonical.has_filename() ? canonical : canonical.parent_path();
+}
+
+fs::path JudgedCheckpoint(const fs::path& run) {
+  const fs::path best = run / "checkpoints" / "best";
+  std::error_code error;
+  return fs::is_directory(best, error) ? best : NewestCheckpoint(run);
+}
+
+std::optional<double> RunResults::Objective() const {
+  if (!final) return std::nullopt;
+  return final->success ? *final->success : final->return_mean;
+}
+
+RunResults ReadRunResults(const fs::path& run) {
+  RunResults results{.folder = NamedFolder(run), .config = ReadRunConfig(run).config};
+  results.name = results.folder.filename();
+  const fs::path meta = run / "meta.json";
+  if (fs::exists(meta)) {
+    const json object = ParseStrictJson(ReadFile(meta), meta);
+    try {
+      ReadMeta(object, &results);
+    } catch (const json::exception& e) {
+      throw RuntimeError("{}: {}", meta.string(), e.what());
+    }
+  }
+  results.curve = ReadAll(run, "steps_");  // the names are padded: by env steps
+  results.transfer = ReadAll(run, "on-");
+  if (const fs::path final = run / "eval" / "final.json"; fs::exists(final)) {
+    results.final = ReadEvaluationFigures(final);
+  }
+  return results;
+}
+
+std::optional<uint64_t> StepsToSuccess(const std::vector<EvaluationFigures>& curve,
+                                       double success) {
+  for (size_t i = 0; i + 1 < curve.size(); ++i) {
+    if (curve[i].success.value_or(-1) >= success && curve[i + 1].success.value_or(-1) >= success) {
+      return curve[i].env_steps;
+    }
+  }
+  return std::nullopt;
+}
+
+}  // namespace shoal::launch

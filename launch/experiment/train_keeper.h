@@ -1,0 +1,55 @@
+// Does the runs of an experiment: a process tree of `shoal train` for each, and the evaluations on
+// further tasks after it.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "launch/experiment/run_queue.h"
+#include "launch/processes/child_process.h"
+
+namespace shoal::launch {
+
+// The CPUs this process may run on, as many as the cgroups grant time for, in `jobs` parts of
+// neighbours; the first ones get one more where it does not divide. Throws Error (usage) where
+// there are fewer CPUs than jobs.
+std::vector<std::vector<int>> SplitCores(const std::vector<int>& cores, int jobs);
+std::vector<int> OwnCores();
+
+// Tasks of the definition that a run is not trained on and not yet evaluated on.
+std::vector<std::string> MissingTransfers(const StoredExperiment& experiment,
+                                          const ExperimentRun& run);
+
+// One thread, which must live as long as the children (child_process.h).
+class TrainKeeper : public RunKeeper {
+ public:
+  // Borrows the experiment. More than one job: each slot's runs get the cores of their part alone.
+  TrainKeeper(const StoredExperiment& experiment, int jobs);
+
+  StandingReport Standing(const ExperimentRun& run) override;
+  void Start(const ExperimentRun& run, int slot) override;
+  bool Ended(int slot) override;
+  void Stop() override;
+
+ private:
+  struct Slot {
+    std::vector<int> cores;  // empty = all
+    std::optional<ExperimentRun> run;
+    std::optional<ChildProcess> process;
+  };
+
+  // Ready but for the cores.
+  ProcessSpec Training(const ExperimentRun& run) const;
+  // Evaluation on the next further task; empty when there is none left.
+  std::optional<ProcessSpec> NextTransfer(const ExperimentRun& run) const;
+  void Launch(ProcessSpec spec, Slot& slot);
+  void LogEnding(const ExperimentRun& run, const ExitStatus& status) const;
+  StandingReport TrainingStanding(const ExperimentRun& run) const;
+
+  const StoredExperiment& experiment_;
+  const RunLog log_;
+  std::vector<Slot> slots_;
+  bool stopping_ = false;
+};
+
+}  // namespace shoal::launch

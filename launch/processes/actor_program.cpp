@@ -1,0 +1,76 @@
+#include "launch/processes/actor_program.h"
+
+#include <nlohmann/json.hpp>
+
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/base/stop.h"
+#include "common/config/config_io.h"
+#include "launch/processes/process_plan.h"
+#include "launch/processes/scratch_folder.h"
+#include "launch/record/evaluations.h"
+
+namespace shoal::launch {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kProgram[] = "shoal-actor";
+constexpr std::chrono::seconds kDescribeDeadline{60};
+constexpr std::chrono::seconds kStartDeadline{60}, kEpisodeDeadline{60};
+
+// The program's own error line, without its name, as an Error of the same exit code.
+Error FailureOf(const ExitStatus& status, const fs::path& errors) {
+  std::string line = LastLine(errors);
+  const std::string prefix = std::string(kProgram) + ": error: ";
+  if (line.starts_with(prefix)) line.erase(0, prefix.size());
+  if (line.empty() || status.by_signal) line = fmt::format("{}: {}", status.Describe(), line);
+  const bool usage = !status.by_signal && status.code == 2;
+  return Error(usage ? ErrorKind::kUsage : ErrorKind::kRuntime,
+               fmt::format("{}: {}", kProgram, line));
+}
+
+}  // namespace
+
+ObservationSpec DescribeObservations(const Config& config) {
+  const ScratchFolder scratch;
+  const fs::path input = scratch.path() / "config.json";
+  WriteFileAtomically(input, ToJson(config).dump(2));
+  ProcessSpec spec = ProgramSpec(kProgram, {"--describe", "--config-json", input.string()}, 1);
+  spec.output = scratch.path() / "spec.json";
+  spec.errors = scratch.path() / "errors";
+  const auto status = RunToEnd(spec, kDescribeDeadline, StopRequested);
+  if (!status) {
+    throw RuntimeError("{} --describe {}", kProgram,
+                       StopRequested()
+                           ? "interrupted"
+                           : fmt::format("took more than {} s", kDescribeDeadline.count()));
+  }
+  if (!status->Clean()) throw FailureOf(*status, spec.errors);
+  return ObservationSpecFromJson(
+      ParseStrictJson(ReadFile(spec.output), std::string(kProgram) + " --describe"));
+}
+
+std::optional<EvaluationPoint> EvaluateByActor(const EvaluationOrder& order,
+                                               const std::function<bool()>& stop) {
+  const ScratchFolder scratch;
+  const fs::path json = order.json.empty() ? scratch.path() / "result.json" : order.json;
+  ProcessSpec spec = ProgramSpec(kProgram,
+                                 {"--evaluate", order.checkpoint.string(), "--run",
+                                  order.run.string(), "--episodes", std::to_string(order.episodes),
+                                  "--seed", std::to_string(order.seed), "--json", json.string()},
+                                 1);
+  if (!order.task.empty()) spec.command.insert(spec.command.end(), {"--task", order.task});
+  spec.output = scratch.path() / "output";
+  const std::chrono::seconds deadline = kStartDeadline + order.episodes * kEpisodeDeadline;
+  const auto status = RunToEnd(spec, deadline, stop);
+  if (!status && stop()) return std::nullopt;
+  if (!status) {
+    throw RuntimeError("evaluation of '{}' took more than {} s", order.checkpoint.string(),
+                       deadline.count());
+  }
+  if (!status->Clean()) throw FailureOf(*status, spec.output);
+  return ParseEvaluation(ReadFile(json), json);
+}
+
+}  // namespace shoal::launch

@@ -1,0 +1,32 @@
+// What launch asks of the actor program outside a run's processes.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "common/config/config.h"
+#include "common/spec/observation_spec.h"
+#include "launch/record/evaluation_point.h"
+
+namespace shoal::launch {
+
+// `shoal-actor --describe`: what actors of this configuration observe. Its error becomes ours, with
+// its exit code.
+ObservationSpec DescribeObservations(const Config& config);
+
+struct EvaluationOrder {
+  std::filesystem::path run, checkpoint;
+  int episodes = 0;
+  int64_t seed = 0;
+  std::string task = {};       // to play instead of the run's; empty = the run's
+  std::filesystem::path json;  // where the result goes; empty = nowhere
+};
+
+// `shoal-actor --evaluate`: fresh episodes of the final stream with a checkpoint. Throws Error when
+// it fails; empty when `stop` ended it.
+std::optional<EvaluationPoint> EvaluateByActor(const EvaluationOrder& order,
+                                               const std::function<bool()>& stop);
+
+}  // namespace shoal::launch

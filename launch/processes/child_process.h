@@ -1,0 +1,78 @@
+// One program running as a child of this process.
+#pragma once
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "launch/processes/descriptor.h"
+
+namespace shoal::launch {
+
+struct ProcessSpec {
+  std::string role;                                              // "actor", "replay", ...
+  int id = 0;                                                    // within the role
+  std::vector<std::string> command;                              // [0] is the program's path
+  std::vector<std::pair<std::string, std::string>> environment;  // added to our own
+  std::filesystem::path input;   // stdin is read from it; empty = /dev/null
+  std::filesystem::path output;  // stdout and stderr are appended to it
+  std::filesystem::path errors;  // stderr, where apart; empty = output
+  bool outlives_parent = false;  // gets no SIGHUP when this process dies
+  bool holds_input = false;      // stdin is a pipe that closes when this process lets go of it
+  bool elsewhere = false;        // a remote shell: its exit code 255 is a lost connection
+  std::vector<int> cores = {};   // CPUs it may run on; empty = those that we may
+
+  std::string Name() const { return role + "-" + std::to_string(id); }
+};
+
+struct ExitStatus {
+  bool by_signal = false;
+  int code = 0;  // exit code, or the signal's number
+
+  bool Clean() const { return !by_signal && code == 0; }
+  // "exit code 1", "killed by SIGKILL"
+  std::string Describe() const;
+};
+
+// Owns the child: one that still runs at destruction is killed and reaped, which
+// is waited for five seconds at most. Children get SIGHUP
+// when this process dies, have a process group of their own (Ctrl-C on the terminal does not reach
+// them) and read from /dev/null unless told otherwise. Create and use on one thread that lives as
+// long as the child: the kernel ties the death signal to it.
+class ChildProcess {
+ public:
+  // Throws Error naming the program or the file that could not be opened.
+  explicit ChildProcess(const ProcessSpec& spec);
+  ~ChildProcess();
+  ChildProcess(ChildProcess&& other) noexcept;
+  ChildProcess& operator=(ChildProcess&& other) noexcept;
+
+  pid_t pid() const { return pid_; }
+  // Its end, once it has ended; does not wait.
+  std::optional<ExitStatus> Poll();
+  // Nothing happens once it has ended.
+  void Signal(int signal);
+
+ private:
+  void KillAndReap();
+
+  pid_t pid_ = -1;         // -1: moved from
+  Descriptor held_input_;  // our end of the child's input
+  std::optional<ExitStatus> ended_;
+};
+
+// Runs a program to its end. SIGTERM, then SIGKILL, after `deadline` or when `stop` says so (asked
+// about ten times a second); empty when that happened.
+std::optional<ExitStatus> RunToEnd(const ProcessSpec& spec, std::chrono::seconds deadline,
+                                   const std::function<bool()>& stop);
+
+// The last line of a file that is not blank, for messages; empty when there is none.
+std::string LastLine(const std::filesystem::path& file);
+
+}  // namespace shoal::launch

@@ -1,0 +1,93 @@
+#include "launch/processes/detachment.h"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <csignal>
+#include <cstdio>
+#include <cstring>
+#include <thread>
+
+#include "common/base/clock.h"
+#include "common/base/error.h"
+#include "common/base/stop.h"
+
+namespace shoal::launch {
+namespace {
+
+constexpr int kPollMs = 100;
+constexpr std::chrono::seconds kReap{30};  // of a child that has closed its end, which exit does
+
+int Redirect(const char* file, int flags, int to) {
+  const int fd = open(file, flags | O_CLOEXEC, 0600);
+  if (fd < 0) throw RuntimeError("cannot open '{}': {}", file, std::strerror(errno));
+  const int result = dup2(fd, to);
+  close(fd);
+  return result;
+}
+
+}  // namespace
+
+Detachment::Detachment(std::chrono::seconds deadline) : deadline_(deadline) {
+  int ends[2];
+  if (pipe2(ends, O_CLOEXEC) != 0) throw RuntimeError("pipe: {}", std::strerror(errno));
+  std::fflush(nullptr);  // or both would write it
+  child_ = fork();
+  if (child_ < 0) throw RuntimeError("cannot detach: fork: {}", std::strerror(errno));
+  if (child_ == 0) {
+    close(ends[0]);
+    to_parent_ = ends[1];
+    setsid();  // no terminal: neither its Ctrl-C nor its end reaches this process any more
+    return;
+  }
+  close(ends[1]);
+  exit_code_ = WaitForChild(ends[0]);
+  close(ends[0]);
+}
+
+Detachment::~Detachment() {
+  if (to_parent_ >= 0) close(to_parent_);
+}
+
+int Detachment::WaitForChild(int from_child) {
+  const SteadyTime deadline = Now() + deadline_;
+  int handed_on = 0;
+  while (Now() < deadline) {
+    for (; handed_on < StopRequests(); ++handed_on) kill(child_, SIGTERM);
+    pollfd end{.fd = from_child, .events = POLLIN, .revents = 0};
+    if (poll(&end, 1, kPollMs) <= 0) continue;
+    char word = 0;
+    if (read(from_child, &word, 1) == 1) return 0;  // it has started
+    return Reap();                                  // it has closed its end: it has ended
+  }
+  std::fprintf(
+      stderr, "shoal: the run has not started within %d s; process %d goes on trying: shoal runs\n",
+      static_cast<int>(deadline_.count()), child_);
+  return 1;
+}
+
+int Detachment::Reap() const {
+  const SteadyTime deadline = Now() + kReap;
+  int status = 0;
+  while (waitpid(child_, &status, WNOHANG) != child_) {
+    if (Now() > deadline) return 1;
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+}
+
+void Detachment::Started(const std::filesystem::path& log) {
+  std::fflush(nullptr);
+  Redirect(log.c_str(), O_WRONLY | O_CREAT | O_APPEND, STDOUT_FILENO);
+  Redirect(log.c_str(), O_WRONLY | O_CREAT | O_APPEND, STDERR_FILENO);
+  Redirect("/dev/null", O_RDONLY, STDIN_FILENO);
+  const char word = 1;
+  [[maybe_unused]] const ssize_t written = write(to_parent_, &word, 1);  // or the parent is gone
+  close(to_parent_);
+  to_parent_ = -1;
+}
+
+}  // namespace shoal::launch

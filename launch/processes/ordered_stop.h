@@ -1,0 +1,32 @@
+// The order in which a run ends: actors flush until everything is stored and leave; then learner,
+// replay and evaluation actor finish what they are at, write what they must and leave.
+#pragma once
+
+#include <chrono>
+#include <functional>
+
+#include "common/wire/messages.h"
+#include "launch/processes/supervisor.h"
+
+namespace shoal::launch {
+
+struct StopDeadlines {
+  std::chrono::milliseconds drain{30'000};     // actors, after kDraining
+  std::chrono::milliseconds settle{120'000};   // for `settled`, once the actors have left
+  std::chrono::milliseconds finish{60'000};    // the others, after kStopping
+  std::chrono::milliseconds terminate{5'000};  // after SIGTERM, before SIGKILL
+};
+
+struct StopHooks {
+  std::function<void(RunState)> announce;  // tells the processes
+  std::function<void()> tick;              // called every 50 ms meanwhile (heartbeat)
+  std::function<bool()> at_once;           // true: skip to SIGTERM, short
+  std::function<void(const std::string&)> say;
+  // Once the actors have left, the others go on until this is true (the last evaluation has come).
+  std::function<bool()> settled = [] { return true; };
+};
+
+// Returns when no process is left: after the sum of the deadlines at most.
+void StopInOrder(Supervisor& supervisor, const StopDeadlines& deadlines, const StopHooks& hooks);
+
+}  // namespace shoal::launch

@@ -1,0 +1,73 @@
+#include "launch/processes/process_plan.h"
+
+#include <algorithm>
+
+#include "common/base/error.h"
+#include "launch/record/run_folder.h"
+
+namespace shoal::launch {
+
+std::filesystem::path ProgramFolder() {
+  std::error_code error;
+  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
+  if (error) throw RuntimeError("cannot read /proc/self/exe: {}", error.message());
+  return program.parent_path();
+}
+
+ProcessSpec ProgramSpec(const std::string& program, std::vector<std::string> arguments,
+                        int threads) {
+  ProcessSpec spec;
+  spec.command = {(ProgramFolder() / program).string()};
+  std::ranges::move(arguments, std::back_inserter(spec.command));
+  spec.environment = {{"OMP_NUM_THREADS", std::to_string(threads)},
+                      {"OMP_WAIT_POLICY", "passive"},
+                      {"LP_NUM_THREADS", "0"}};
+  return spec;
+}
+
+namespace {
+
+ProcessSpec PlanProcess(const std::filesystem::path& run, const std::string& role, int id,
+                        const std::string& program, std::vector<std::string> arguments,
+                        int threads) {
+  arguments.insert(arguments.begin(), {"--run", run.string()});
+  ProcessSpec spec = ProgramSpec(program, std::move(arguments), threads);
+  spec.role = role;
+  spec.id = id;
+  spec.output = LogFile(run, spec.Name());
+  return spec;
+}
+
+}  // namespace
+
+ProcessSpec ActorProcess(const std::filesystem::path& run, int id) {
+  return PlanProcess(run, "actor", id, "shoal-actor", {"--id", std::to_string(id)}, 1);
+}
+
+ActorRange ActorsOf(const Config& config, const std::vector<RemoteHost>& hosts, size_t index) {
+  int first = config.actors;
+  for (size_t i = index; i < hosts.size(); ++i) first -= hosts[i].actors;
+  return {.first = first, .count = hosts[index].actors};
+}
+
+std::vector<ProcessSpec> PlanProcesses(const Config& config, const std::filesystem::path& run,
+                                       const std::vector<RemoteHost>& hosts) {
+  std::vector<ProcessSpec> plan;
+  plan.push_back(PlanProcess(run, "replay", 0, "shoal-replay", {}, 1));
+  // When the coordinator is killed, the actors' last records want a replay that stores them: it
+  // leaves by itself when the heartbeat has been missing and nothing comes any more.
+  plan.back().outlives_parent = true;
+  plan.push_back(PlanProcess(run, "learner", 0, "shoal-learner", {}, config.learner.threads));
+  const int actors_here = hosts.empty() ? config.actors : ActorsOf(config, hosts, 0).first;
+  for (int i = 0; i < actors_here; ++i) plan.push_back(ActorProcess(run, i));
+  for (size_t host = 0; host < hosts.size(); ++host) {
+    const ActorRange actors = ActorsOf(config, hosts, host);
+    for (int i = actors.first; i < actors.first + actors.count; ++i) {
+      plan.push_back(RemoteActor(hosts[host], i, run));
+    }
+  }
+  plan.push_back(PlanProcess(run, "eval", 0, "shoal-actor", {"--role", "eval"}, 1));
+  return plan;
+}
+
+}  // namespace shoal::launch

@@ -1,0 +1,186 @@
+#include "launch/processes/remote_host.h"
+
+#include <cstdlib>
+
+#include "common/base/build_info.h"
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/config/run_files.h"
+#include "common/credentials/credentials.h"
+#include "launch/processes/scratch_folder.h"
+#include "launch/record/run_folder.h"
+
+namespace shoal::launch {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::chrono::seconds kDeadline{30};  // for one command there
+constexpr char kDdsOverride[] = "SHOAL_DDS_XML";
+constexpr char kDdsCopy[] = "dds.xml";    // its copy in the run's folder there
+constexpr char kSecureCopy[] = "secure";  // the actors' credentials there
+constexpr char kActorRole[] = "actor";
+
+// Programs are looked up on the path.
+std::vector<std::string> OnPath(std::vector<std::string> command) {
+  command.insert(command.begin(), "/usr/bin/env");
+  return command;
+}
+
+std::vector<std::string> Through(const RemoteHost& host, const std::string& line) {
+  std::vector<std::string> command = OnPath(host.ssh);
+  command.push_back("exec " + ShellLine({"sh", "-c", line}));  // whatever the login shell is
+  return command;
+}
+
+// Runs a command to its end, `input` to `output`; `what` names it in errors.
+void RunOrThrow(const std::string& what, const std::vector<std::string>& command,
+                const fs::path& input, const fs::path& output, const StopQuestion& stop) {
+  const ScratchFolder scratch;
+  ProcessSpec spec;
+  spec.command = command;
+  spec.input = input;
+  spec.output = output.empty() ? scratch.path() / "output" : output;
+  spec.errors = scratch.path() / "errors";
+  const auto status = RunToEnd(spec, kDeadline, stop);
+  if (!status && stop()) throw RuntimeError("{}: interrupted", what);
+  if (!status) throw RuntimeError("{}: took more than {} s", what, kDeadline.count());
+  if (status->Clean()) return;
+  const std::string line = LastLine(spec.errors);
+  throw RuntimeError("{}: {}", what, line.empty() ? status->Describe() : line);
+}
+
+bool IsPageOf(const fs::path& file, const ActorRange& actors) {
+  for (int id = actors.first; id < actors.first + actors.count; ++id) {
+    if (file.extension() == ".page" &&
+        file.filename().string().starts_with(fmt::format("actor-{}-", id))) {
+      return true;
+    }
+  }
+  return false;
+}
+
+std::vector<fs::path> PagesIn(const fs::path& made, const ActorRange& actors) {
+  std::vector<fs::path> pages;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(made, error)) {
+    if (fs::is_regular_file(entry.symlink_status()) && IsPageOf(entry.path(), actors)) {
+      pages.push_back(entry.path());
+    }
+  }
+  return pages;
+}
+
+const char* DdsOverride() {
+  const char* file = std::getenv(kDdsOverride);
+  return file == nullptr || *file == '\0' ? nullptr : file;
+}
+
+}  // namespace
+
+std::string ShellLine(const std::vector<std::string>& words) {
+  std::string line;
+  for (const std::string& word : words) {
+    if (!line.empty()) line += ' ';
+    line += '\'';
+    for (const char c : word) line += c == '\'' ? std::string("'\\''") : std::string(1, c);
+    line += '\'';
+  }
+  return line;
+}
+
+void CheckHost(const RemoteHost& host, const StopQuestion& stop) {
+  const ScratchFolder scratch;
+  const fs::path output = scratch.path() / "version";
+  const std::string program = host.programs / "shoal-actor";
+  RunOrThrow(fmt::format("host {}: {}", host.name, program),
+             Through(host, ShellLine({program, "--version"})), "", output, stop);
+  const std::string version = LastLine(output);
+  if (version != BuildVersion()) {
+    throw RuntimeError("host {}: {} has version '{}', this program has '{}'", host.name, program,
+                       version, BuildVersion());
+  }
+}
+
+void PushRun(const fs::path& run, const ActorRange& actors, RemoteHost* host,
+             const StopQuestion& stop) {
+  if (host->shared) return;
+  const ScratchFolder scratch;
+  const fs::path archive = scratch.path() / "run.tar", answer = scratch.path() / "answer";
+  std::vector<std::string> pack =
+      OnPath({"tar", "-c", "-f", archive, "-C", fs::absolute(run), "config.json", "cluster.json"});
+  for (const fs::path& page : PagesIn(run / "made", actors)) {
+    pack.push_back(fs::path("made") / page.filename());
+  }
+  if (const char* file = DdsOverride()) {
+    WriteFileAtomically(scratch.path() / kDdsCopy, ReadFile(file));
+    pack.insert(pack.end(), {"-C", scratch.path(), kDdsCopy});
+  }
+  if (const std::string secure = ReadClusterAddress(run).secure; !secure.empty()) {
+    MakeFolders(scratch.path() / kSecureCopy);
+    pack.insert(pack.end(), {"-C", scratch.path(), kSecureCopy});
+    for (const fs::path& file : CredentialFiles(secure, kActorRole)) {
+      WriteFileAtomically(scratch.path() / kSecureCopy / file.filename(), ReadFile(file));
+    }
+    host->secure = kSecureCopy;  // in the run's folder there
+  }
+  RunOrThrow("tar of " + run.string(), pack, "", "", stop);
+  const std::string folder = ShellLine({host->run});
+  const std::string unpack = fmt::format(
+      "umask 077 && mkdir -p {0}/made && cd {0} && rm -rf config.json cluster.json {1} {2} && tar "
+      "-x "
+      "--skip-old-files --no-same-owner -f - && pwd",
+      folder, kDdsCopy, kSecureCopy);
+  RunOrThrow(fmt::format("host {}: copying the run to '{}'", host->name, host->run.string()),
+             Through(*host, unpack), archive, answer, stop);
+  host->run = LastLine(answer);
+  if (!host->secure.empty()) host->secure = host->run / kSecureCopy;
+  if (!host->run.is_absolute()) {
+    throw RuntimeError("host {}: expected the path of its run folder, got '{}'", host->name,
+                       host->run.string());
+  }
+}
+
+void FetchMadePages(const RemoteHost& host, const ActorRange& actors, const fs::path& run,
+                    const StopQuestion& stop) {
+  if (host.shared) return;
+  const ScratchFolder scratch;
+  const fs::path archive = scratch.path() / "made.tar";
+  RunOrThrow(fmt::format("host {}: fetching counter pages of '{}'", host.name, host.run.string()),
+             Through(host, "tar -c -f - -C " + ShellLine({host.run}) + " made"), "", archive, stop);
+  RunOrThrow(fmt::format("host {}: unpacking counter pages", host.name),
+             OnPath({"tar", "-x", "--no-same-owner", "-f", archive, "-C", scratch.path()}), "", "",
+             stop);
+  for (const fs::path& page : PagesIn(scratch.path() / "made", actors)) {
+    WriteFileAtomically(run / "made" / page.filename(), ReadFile(page));
+  }
+}
+
+ProcessSpec RemoteActor(const RemoteHost& host, int id, const fs::path& run) {
+  std::vector<std::string> words{"exec", "env", "OMP_NUM_THREADS=1", "OMP_WAIT_POLICY=passive",
+                                 "LP_NUM_THREADS=0"};
+  if (const char* file = DdsOverride()) {
+    const fs::path path = host.shared ? fs::absolute(file) : host.run / kDdsCopy;
+    words.push_back(fmt::format("{}={}", kDdsOverride, path.string()));
+  }
+  const std::vector<std::string> actor{host.programs / "shoal-actor",
+                                       "--run",
+                                       host.run,
+                                       "--id",
+                                       std::to_string(id),
+                                       "--interface",
+                                       host.interface,
+                                       "--stop-with-input"};
+  words.insert(words.end(), actor.begin(), actor.end());
+  if (!host.secure.empty()) words.insert(words.end(), {"--secure", host.secure});
+  ProcessSpec spec;
+  spec.role = "actor";
+  spec.id = id;
+  spec.command = Through(host, ShellLine(words));
+  spec.output = LogFile(run, spec.Name());
+  spec.holds_input = true;
+  spec.elsewhere = true;
+  return spec;
+}
+
+}  // namespace shoal::launch

@@ -1,0 +1,45 @@
+// What is done on another host, all of it through its ssh command: is the program there, bring what
+// an actor needs, run an actor, fetch what it leaves. No shared file system is needed.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "launch/processes/child_process.h"
+#include "launch/processes/hosts_file.h"
+
+namespace shoal::launch {
+
+// Asked about ten times a second: true gives up what is under way.
+using StopQuestion = std::function<bool()>;
+
+// Words as one command line of a POSIX shell.
+std::string ShellLine(const std::vector<std::string>& words);
+
+// Runs shoal-actor --version there. Throws Error naming the host: not reached, not there, or of
+// another version.
+void CheckHost(const RemoteHost& host, const StopQuestion& stop);
+
+// Actors `first` .. `first` + host.actors - 1 of a run.
+struct ActorRange {
+  int first = 0, count = 0;
+  bool Holds(uint32_t id) const { return int(id) >= first && int(id) < first + count; }
+};
+
+// Copies config.json, cluster.json, the DDS configuration of SHOAL_DDS_XML, the credentials of an
+// actor where the run is secured and the counter pages of these actors to host->run, which becomes
+// absolute. A page that is there already stays. Nothing is done for a host that shares our run
+// folder. Throws Error naming the host.
+void PushRun(const std::filesystem::path& run, const ActorRange& actors, RemoteHost* host,
+             const StopQuestion& stop);
+
+// Copies the counter pages of these actors from host.run to RUN/made. Throws Error naming the host.
+void FetchMadePages(const RemoteHost& host, const ActorRange& actors,
+                    const std::filesystem::path& run, const StopQuestion& stop);
+
+// Training actor `id` there, as a child of ours: it stops when its input is closed.
+ProcessSpec RemoteActor(const RemoteHost& host, int id, const std::filesystem::path& run);
+
+}  // namespace shoal::launch

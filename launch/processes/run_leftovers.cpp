@@ -1,0 +1,73 @@
+#include "launch/processes/run_leftovers.h"
+
+#include <fmt/core.h>
+
+#include <thread>
+#include <vector>
+
+#include "common/base/clock.h"
+#include "common/base/error.h"
+#include "common/config/run_membership.h"
+
+namespace shoal::launch {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::chrono::milliseconds kPoll{100};
+
+// The temporary names of files.h, checkpoints, `best`, the ring and the accounting.
+bool IsUnfinished(const std::string& name) {
+  const size_t tmp = name.rfind(".tmp");
+  if (tmp != std::string::npos && tmp > 0) {
+    const std::string rest = name.substr(tmp + 4);
+    return rest.empty() || (rest[0] == '-' && rest.size() > 1 &&
+                            rest.find_first_not_of("0123456789", 1) == std::string::npos);
+  }
+  return name == "replay.ring.new" || name == "accounting.json.new" ||
+         (name.starts_with(".step_") && name.ends_with(".old"));
+}
+
+}  // namespace
+
+void WaitForFormerProcesses(const fs::path& run, std::chrono::seconds deadline,
+                            const std::function<bool()>& stop,
+                            const std::function<void(const std::string&)>& say) {
+  const SteadyTime start = Now();
+  bool said = false;
+  while (const auto pid = AnyMember(run)) {
+    if (stop()) throw RuntimeError("interrupted while process {} still works on the run", *pid);
+    if (Now() - start > deadline) {
+      throw RuntimeError(
+          "process {} of an earlier session still works on the run '{}' after {} s: end it first",
+          *pid, run.string(), deadline.count());
+    }
+    if (!said) {
+      say(
+          fmt::format("processes of an earlier session (such as {}) still store what they have: "
+                      "waiting up to {} s for them",
+                      *pid, deadline.count()));
+      said = true;
+    }
+    std::this_thread::sleep_for(kPoll);
+  }
+}
+
+int RemoveUnfinishedFiles(const fs::path& run) {
+  std::vector<fs::path> unfinished;
+  std::error_code error;
+  for (fs::recursive_directory_iterator it(run, error), end; !error && it != end;
+       it.increment(error)) {
+    if (!IsUnfinished(it->path().filename())) continue;
+    unfinished.push_back(it->path());
+    it.disable_recursion_pending();
+  }
+  int removed = 0;
+  for (const fs::path& path : unfinished) {
+    fs::remove_all(path, error);
+    if (!error) ++removed;
+  }
+  return removed;
+}
+
+}  // namespace shoal::launch

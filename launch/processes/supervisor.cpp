@@ -1,0 +1,207 @@
+#include "launch/processes/supervisor.h"
+
+#include <fmt/core.h>
+
+#include <csignal>
+#include <limits>
+#include <utility>
+
+#include "common/base/error.h"
+
+namespace shoal::launch {
+namespace {
+
+// What ssh leaves with when the connection fails; whose other codes are the program's.
+constexpr int kDisconnected = 255;
+
+// A host that cannot be reached may come back: tried for as long as the run lasts.
+RestartLimits ConnectionLimits(RestartLimits limits) {
+  limits.restarts = std::numeric_limits<int>::max();
+  limits.longest_delay = std::chrono::seconds(10);
+  return limits;
+}
+
+bool Is(std::string_view role, const ProcessSpec& spec) {
+  return role.empty() || role == spec.role;
+}
+
+// What starting again cannot cure: a refused configuration, numbers that are not finite any more.
+bool Hopeless(const ExitStatus& status) {
+  return !status.by_signal && (status.code == static_cast<int>(ErrorKind::kUsage) ||
+                               status.code == static_cast<int>(ErrorKind::kNonFinite));
+}
+
+std::string Describe(const ProcessSpec& spec, const ExitStatus& status,
+                     const std::string& last_line) {
+  return fmt::format("{}: {}{}{}", spec.Name(), status.Describe(), last_line.empty() ? "" : ": ",
+                     last_line);
+}
+
+}  // namespace
+
+Supervisor::Supervisor(const RestartLimits& limits, const HangLimits& hang_limits,
+                       std::function<void(const std::string&)> say)
+    : limits_(limits), hang_limits_(hang_limits), say_(std::move(say)) {}
+
+void Supervisor::Start(const ProcessSpec& spec) {
+  const SteadyTime now = Now();
+  for (Child& child : children_) {
+    if (child.spec.Name() != spec.Name() || !child.exit_expected || !child.process) continue;
+    child.successor = spec;
+    return;
+  }
+  std::erase_if(children_, [&](const Child& child) {  // what is left of a retired one
+    return child.spec.Name() == spec.Name() && child.exit_expected && !child.process;
+  });
+  Child child{.spec = spec,
+              .policy = RestartPolicy(limits_),
+              .connection = RestartPolicy(ConnectionLimits(limits_)),
+              .process = std::nullopt,
+              .silence = Silence(now),
+              .restart_at = std::nullopt,
+              .leave_by = std::nullopt,
+              .successor = std::nullopt};
+  Launch(child, now);
+  children_.push_back(std::move(child));
+}
+
+void Supervisor::Retire(std::string_view role, int id, SteadyTime now) {
+  for (Child& child : children_) {
+    if (child.spec.role != role || child.spec.id != id) continue;
+    child.successor.reset();
+    child.restart_at.reset();
+    if (child.exit_expected) continue;
+    child.exit_expected = true;
+    child.leave_by = now + kRetire;
+    child.signalled = SIGTERM;
+    if (child.process) child.process->Signal(SIGTERM);
+  }
+}
+
+void Supervisor::Launch(Child& child, SteadyTime now) {
+  child.process.emplace(child.spec);
+  child.silence = Silence(now);
+  child.heard = child.hung = false;
+}
+
+void Supervisor::Heard(std::string_view role, int id, pid_t pid, SteadyTime now) {
+  for (Child& child : children_) {
+    if (child.spec.role != role || child.spec.id != id) continue;
+    if (!child.process || (child.process->pid() != pid && !child.spec.elsewhere)) continue;
+    child.silence.Heard(now);
+    child.heard = true;
+  }
+}
+
+std::optional<std::string> Supervisor::Poll(SteadyTime now) {
+  for (Child& child : children_) {
+    if (child.process) {
+      const auto status = child.process->Poll();
+      if (!status) {
+        KillIfHung(child, now);
+        KillIfOverdue(child, now);
+        continue;
+      }
+      child.process.reset();
+      if (auto failure = OnExit(child, *status, now)) return failure;
+    } else if (child.restart_at && now >= *child.restart_at) {
+      child.restart_at.reset();
+      Launch(child, now);
+      ++restarts_;
+    }
+  }
+  return std::nullopt;
+}
+
+void Supervisor::KillIfOverdue(Child& child, SteadyTime now) {
+  if (!child.leave_by || now < *child.leave_by) return;
+  child.leave_by.reset();
+  say_(fmt::format("{} (pid {}) did not leave within {} s: killed", child.spec.Name(),
+                   child.process->pid(), kRetire.count()));
+  child.process->Signal(SIGKILL);
+}
+
+// Processes that were told to leave are the ordered stop's, which has deadlines of its own.
+void Supervisor::KillIfHung(Child& child, SteadyTime now) {
+  if (child.exit_expected || child.hung) return;
+  const std::chrono::seconds limit = child.heard ? hang_limits_.report : hang_limits_.start;
+  if (child.silence.Look(now) <= limit) return;
+  child.hung = true;
+  say_(fmt::format("{} (pid {}) hangs: no report for {} s; killed", child.spec.Name(),
+                   child.process->pid(), limit.count()));
+  child.process->Signal(SIGKILL);  // which a stopped process obeys, too
+}
+
+std::optional<std::string> Supervisor::OnExit(Child& child, const ExitStatus& status,
+                                              SteadyTime now) {
+  if (child.exit_expected) {
+    OnExpectedExit(child, status);
+    child.leave_by.reset();
+    if (child.successor) {
+      child.spec = *std::exchange(child.successor, std::nullopt);
+      child.exit_expected = false;
+      child.signalled = 0;
+      Launch(child, now);
+    }
+    return std::nullopt;
+  }
+  const std::string last_line = LastLine(child.spec.output);
+  const std::string death = Describe(child.spec, status, last_line);
+  if (Hopeless(status)) return death;
+  const bool disconnected =
+      child.spec.elsewhere && !status.by_signal && status.code == kDisconnected;
+  const auto delay = (disconnected ? child.connection : child.policy).OnDeath(now);
+  if (!delay) {
+    return fmt::format("{} (died more than {} times within {} s)", death, limits_.restarts,
+                       limits_.window.count());
+  }
+  say_(fmt::format("{}; restart in {:.1f} s", death, static_cast<double>(delay->count()) / 1000));
+  child.restart_at = now + *delay;
+  return std::nullopt;
+}
+
+void Supervisor::OnExpectedExit(Child& child, const ExitStatus& status) {
+  if (status.Clean()) return;
+  // Having obeyed a signal of ours is as asked; SIGKILL came only after everything else was
+  // ignored.
+  const bool obeyed = status.by_signal && status.code == child.signalled;
+  std::string line = Describe(child.spec, status, obeyed ? "" : LastLine(child.spec.output));
+  line += " while stopping";
+  say_(line);
+  unclean_exits_.push_back(std::move(line));
+}
+
+void Supervisor::ExpectExit(std::string_view role) {
+  for (Child& child : children_) {
+    if (!Is(role, child.spec)) continue;
+    child.exit_expected = true;
+    child.restart_at.reset();
+    child.successor.reset();
+  }
+}
+
+void Supervisor::Signal(std::string_view role, int signal) {
+  for (Child& child : children_) {
+    if (!Is(role, child.spec) || !child.process) continue;
+    child.signalled = signal;
+    child.process->Signal(signal);
+  }
+}
+
+pid_t Supervisor::Pid(std::string_view role, int id) const {
+  for (const Child& child : children_) {
+    if (child.spec.role == role && child.spec.id == id && child.process)
+      return child.process->pid();
+  }
+  return 0;
+}
+
+int Supervisor::Running(std::string_view role) const {
+  int running = 0;
+  for (const Child& child : children_) {
+    if (Is(role, child.spec) && (child.process || child.restart_at)) ++running;
+  }
+  return running;
+}
+
+}  // namespace shoal::launch

@@ -1,0 +1,70 @@
+// Where every record went: what the actors made against what the replay dealt with.
+//
+//   made = stored + lost_with_process + lost_with_replay + rejected + after_gap, exactly;
+//   duplicates and resends are apart. Sequences of a session run 1 .. made; the replay dealt with 1
+//   .. highest of them. lost_with_process is what an actor's death kept from the replay, made -
+//   highest; lost_with_replay was stored and is gone: in the memory of a replay server that died,
+//   or with a replay file that was removed. While the file is there, there is none such: it is a
+//   fault. What the sessions say is stored is held against the ring's own count.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json_fwd.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace shoal::launch {
+
+// One actor session, by its own count (actor/made_page.h).
+struct MadeRecords {
+  uint32_t actor = 0;
+  uint64_t session = 0;
+  uint64_t made = 0;
+};
+
+// The same by the replay's count.
+struct SeenRecords {
+  uint32_t actor = 0;
+  uint64_t session = 0;
+  uint64_t highest = 0;  // sequences 1..highest were dealt with
+  uint64_t stored = 0, rejected = 0, after_gap = 0, lost = 0, duplicates = 0;
+};
+
+struct SeenByReplay {
+  uint64_t stored_records = 0;  // the ring's count of what was ever put in
+  bool ring_replaced = false;   // at some time a ring was gone with what it held
+  std::vector<SeenRecords> sessions;
+};
+
+struct Accounting {
+  uint64_t made = 0, stored = 0, lost_with_process = 0, lost_with_replay = 0;
+  uint64_t rejected = 0, after_gap = 0;
+  uint64_t duplicates = 0, resends = 0;
+  // Of actors started by hand, or on a host that cannot be reached any more: what the replay saw
+  // counts as made, what they made beyond it is unknown.
+  uint64_t sessions_without_page = 0;
+  std::vector<std::string> faults;  // one line for each thing that does not balance
+
+  bool Balances() const { return faults.empty(); }
+  // "made 120 = stored 117 + lost with a process 2 + lost with a replay 1 + rejected 0 + after a
+  // gap 0; ..."
+  std::string Line() const;
+};
+
+struct AccountTerms {
+  uint64_t resends = 0;
+  uint32_t own_actors = 0;      // sessions of actors below must have a page
+  bool outlives_replay = true;  // what is stored is in a file
+};
+
+Accounting Account(std::span<const MadeRecords> made, const SeenByReplay& seen,
+                   const AccountTerms& terms);
+
+// accounting.json of a run (shoal-accounting-1), written by the replay. Throws Error.
+SeenByReplay ReadSeenByReplay(const std::filesystem::path& run);
+
+nlohmann::ordered_json ToJson(const Accounting& accounting);
+
+}  // namespace shoal::launch

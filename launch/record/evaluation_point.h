@@ -1,0 +1,24 @@
+// The figures of one evaluation, as meta.json, the stop rule and the display use them.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+
+namespace shoal::launch {
+
+struct EvaluationPoint {
+  uint64_t env_steps = 0, updates = 0;
+  double wall_seconds = 0;        // since the run's start
+  std::optional<double> success;  // rate, 0..1; empty where the task has no success of its own
+  double mean_return = 0;         // unscaled
+  std::string checkpoint{};       // folder name under checkpoints/
+  size_t episodes = 0;            // played
+  uint64_t learner_session = 0;   // whose parameters were evaluated
+};
+
+// "success 98.0 %, return -0.970", or the return alone where there is no success.
+std::string FormatScore(const EvaluationPoint& point);
+
+}  // namespace shoal::launch

@@ -1,0 +1,150 @@
+#include "launch/record/run_meta.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "common/base/build_info.h"
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/config/config_io.h"
+#include "common/nn/precision.h"
+#include "launch/record/machine.h"
+
+namespace shoal::launch {
+namespace {
+
+using nlohmann::ordered_json;
+
+template <class T>
+ordered_json OrNull(const std::optional<T>& value) {
+  return value ? ordered_json(*value) : ordered_json(nullptr);
+}
+
+ordered_json FirstSuccess(const RunMeta& meta) {
+  if (!meta.first_success) return nullptr;
+  return {{"target", meta.target},
+          {"env_steps", meta.first_success->env_steps},
+          {"updates", meta.first_success->updates},
+          {"wall_seconds", meta.first_success->wall_seconds}};
+}
+
+ordered_json Best(const RunMeta& meta) {
+  if (!meta.best) return nullptr;
+  return {{"checkpoint", meta.best->checkpoint},
+          {"env_steps", meta.best->env_steps},
+          {"updates", meta.best->updates},
+          {"success_rate", OrNull(meta.best->success)},
+          {"return_mean", meta.best->mean_return}};
+}
+
+// With this build's.
+std::vector<std::string> Commits(const RunMeta& meta) {
+  std::vector<std::string> commits = meta.commits;
+  if (std::ranges::find(commits, BuildCommit()) == commits.end()) {
+    commits.emplace_back(BuildCommit());
+  }
+  return commits;
+}
+
+ordered_json Changes(const RunMeta& meta) {
+  ordered_json list = ordered_json::array();
+  for (const SettingChange& change : meta.changes) {
+    list.push_back({{"time", change.time},
+                    {"env_steps", change.env_steps},
+                    {"updates", change.updates},
+                    {"key", change.key},
+                    {"from", change.from},
+                    {"to", change.to}});
+  }
+  return list;
+}
+
+SettingChange ReadChange(const nlohmann::json& object) {
+  SettingChange change;
+  object.at("time").get_to(change.time);
+  object.at("env_steps").get_to(change.env_steps);
+  object.at("updates").get_to(change.updates);
+  object.at("key").get_to(change.key);
+  object.at("from").get_to(change.from);
+  object.at("to").get_to(change.to);
+  return change;
+}
+
+ordered_json Versions() {
+  return {{"shoal", BuildVersion()},
+          {"compiler", __VERSION__},
+          {"mujoco", SHOAL_MUJOCO_VERSION},
+          {"cyclonedds", SHOAL_CYCLONEDDS_VERSION},
+          {"onednn", SHOAL_ONEDNN_VERSION}};
+}
+
+}  // namespace
+
+void RunMeta::OnUpdates(uint64_t reported) {
+  if (reported < updates) updates_lost += updates - reported;
+  updates = reported;
+}
+
+void WriteRunMeta(const std::filesystem::path& run, const Config& config, const RunMeta& meta) {
+  const ordered_json object{
+      {"schema", "shoal-run-1"},
+      {"name", config.run_name},
+      {"task", config.task},
+      {"preset", config.preset},
+      {"seed", config.seed},
+      {"commit", BuildCommit()},
+      {"commits", Commits(meta)},
+      {"versions", Versions()},
+      {"machine", DescribeMachine()},
+      {"precision",
+       nn::ToString(nn::ChoosePrecision(config.learner.precision, config.observation.pixels))},
+      {"started", meta.started},
+      {"finished", meta.finished.empty() ? ordered_json(nullptr) : ordered_json(meta.finished)},
+      {"env_steps", meta.env_steps},
+      {"updates", meta.updates},
+      {"updates_lost", meta.updates_lost},
+      {"wall_seconds", meta.wall_seconds},
+      {"first_success", FirstSuccess(meta)},
+      {"best", Best(meta)},
+      {"final_success_rate", OrNull(meta.final_success)},
+      {"final_return_mean", OrNull(meta.final_return)},
+      {"accounting", meta.accounting ? ToJson(*meta.accounting) : ordered_json(nullptr)},
+      {"changes", Changes(meta)},
+      {"restarts", meta.restarts},
+      {"resends", meta.resends},
+      {"exit", meta.exit},
+      {"error", meta.error.empty() ? ordered_json(nullptr) : ordered_json(meta.error)}};
+  // A problem may quote what a process said last, in whatever encoding.
+  const std::string text =
+      object.dump(2, ' ', /*ensure_ascii=*/false, ordered_json::error_handler_t::replace);
+  WriteFileAtomically(run / "meta.json", text + "\n");
+}
+
+RunMeta ReadRunMeta(const std::filesystem::path& run) {
+  const std::filesystem::path path = run / "meta.json";
+  RunMeta meta;
+  if (!std::filesystem::exists(path)) return meta;
+  const nlohmann::json object = ParseStrictJson(ReadFile(path), path);
+  try {
+    if (object.contains("commits")) {
+      object.at("commits").get_to(meta.commits);
+    } else if (object.contains("commit")) {  // of a build that kept the last one only
+      meta.commits = {object.at("commit").get<std::string>()};
+    }
+    object.at("started").get_to(meta.started);
+    object.at("wall_seconds").get_to(meta.wall_seconds);
+    object.at("env_steps").get_to(meta.env_steps);
+    object.at("updates").get_to(meta.updates);
+    object.at("restarts").get_to(meta.restarts);
+    meta.resends = object.value("resends", uint64_t{0});
+    meta.updates_lost = object.value("updates_lost", uint64_t{0});
+    for (const auto& change : object.value("changes", nlohmann::json::array())) {
+      meta.changes.push_back(ReadChange(change));
+    }
+  } catch (const nlohmann::json::exception& e) {
+    throw RuntimeError("{}: {}", path.string(), e.what());
+  }
+  return meta;
+}
+
+}  // namespace shoal::launch

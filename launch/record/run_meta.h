@@ -1,0 +1,46 @@
+// meta.json of a run (shoal-run-1): what ran where, how far it came, how it ended.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/config/config.h"
+#include "launch/record/accounting.h"
+#include "launch/record/evaluation_point.h"
+#include "launch/record/setting_change.h"
+
+namespace shoal::launch {
+
+struct RunMeta {
+  std::vector<std::string> commits;  // builds that took part before this one, the first one first
+  std::string started, finished;     // UTC; finished is empty while running
+  uint64_t env_steps = 0, updates = 0;
+  uint64_t updates_lost = 0;  // with learners that died, since their newest checkpoints
+  double wall_seconds = 0;    // over all sessions of a resumed run
+  double target = 0;
+  std::optional<EvaluationPoint> first_success;
+  std::optional<EvaluationPoint> best;  // of the evaluations while training
+  std::optional<double> final_success;  // of the evaluation at the end
+  std::optional<double> final_return;   // its mean return
+  std::optional<Accounting> accounting;
+  std::vector<SettingChange> changes;  // of keys, while the run went on
+  int restarts = 0;
+  uint64_t resends = 0;          // records that actors sent again
+  std::string exit = "running";  // then "target", "budget", "interrupted" or "failed"
+  std::string error;             // why, where failed
+
+  // The learner's count as it was reported last. Fewer than before: it died, and its successor goes
+  // on from a checkpoint. What it did after its last report, a second ago at most, is unknown.
+  void OnUpdates(uint64_t reported);
+};
+
+// Throws Error.
+void WriteRunMeta(const std::filesystem::path& run, const Config& config, const RunMeta& meta);
+
+// What a resumed run goes on from: commits, started, wall_seconds, the counters and the changes;
+// defaults where the file is missing. Throws Error on a broken file.
+RunMeta ReadRunMeta(const std::filesystem::path& run);
+
+}  // namespace shoal::launch

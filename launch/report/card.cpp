@@ -1,0 +1,124 @@
+#include "launch/report/card.h"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "common/base/build_info.h"
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "launch/experiment/run_results.h"
+#include "launch/experiment/summary.h"
+
+namespace shoal::launch {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::ordered_json;
+
+constexpr char kPolicy[] = "policy.safetensors";
+
+// The film whose name comes first; empty without any.
+fs::path FilmOf(const fs::path& run) {
+  std::vector<fs::path> films;
+  std::error_code error;
+  for (fs::directory_iterator it(run / "videos", error), end; !error && it != end;
+       it.increment(error)) {
+    if (it->path().extension() == ".mp4") films.push_back(it->path());
+  }
+  return films.empty() ? fs::path() : *std::ranges::min_element(films);
+}
+
+std::string RewardText(const EvaluationFigures& final) {
+  return fmt::format("{:.2f} +/- {:.2f}", final.return_mean, final.return_std);
+}
+
+// The names that leaderboards look for.
+ordered_json ResultsJson(const RunResults& run) {
+  const EvaluationFigures& final = *run.final;
+  ordered_json object{{"env_id", run.config.task},
+                      {"mean_reward", final.return_mean},
+                      {"std_reward", final.return_std},
+                      {"is_deterministic", true},
+                      {"n_eval_episodes", final.episodes},
+                      {"eval_datetime", run.finished},
+                      {"n_training_timesteps", run.env_steps}};
+  object["success_rate"] = final.success ? ordered_json(*final.success) : ordered_json(nullptr);
+  return object;
+}
+
+std::string Metadata(const RunResults& run) {
+  const std::string& task = run.config.task;
+  std::string text = fmt::format(
+      "---\nlibrary_name: shoal\ntags:\n- reinforcement-learning\n- deep-reinforcement-learning\n"
+      "- robotics\n- {0}\nmodel-index:\n- name: {1}\n  results:\n  - task:\n      type: "
+      "reinforcement-learning\n      name: reinforcement-learning\n    dataset:\n      name: {0}\n"
+      "      type: {0}\n    metrics:\n    - type: mean_reward\n      value: {2}\n      name: "
+      "mean_reward\n      verified: false\n",
+      task, run.name, RewardText(*run.final));
+  if (run.final->success) {
+    text += fmt::format(
+        "    - type: success_rate\n      value: {:.4f}\n      name: success_rate\n      verified: "
+        "false\n",
+        *run.final->success);
+  }
+  return text + "---\n";
+}
+
+std::string Readme(const RunResults& run, bool film) {
+  const EvaluationFigures& final = *run.final;
+  std::string text = Metadata(run);
+  text += fmt::format("\n# {} on {}\n\n", run.name, run.config.task);
+  text += fmt::format(
+      "Trained with Shoal (build {}): {} env steps, {} updates, {:.0f} s on {}.\n\n",
+      fmt::join(run.commits, ", "), run.env_steps, run.updates, run.wall_seconds, run.cpu);
+  text += fmt::format(
+      "| episodes | success [95 %] | return | final distance, cm |\n"
+      "| --- | --- | --- | --- |\n| {} | {} | {} | {} |\n\n",
+      final.episodes, final.success ? FormatPooled(final.Successes(), final.episodes) : "-",
+      RewardText(final),
+      final.final_distance_mean ? fmt::format("{:.2f}", 100 * *final.final_distance_mean) : "-");
+  text +=
+      "Deterministic actions, fresh episodes. Files: `results.json` (the figures above), "
+      "`config.json` (every key of the run), `policy.safetensors` (the policy's parameters)";
+  text += film ? ", `replay.mp4`.\n" : ".\n";
+  return text + "\nTo train it again: `shoal train --config config.json --run-name again`.\n";
+}
+
+}  // namespace
+
+void WriteCard(const fs::path& run_folder, const fs::path& folder) {
+  const RunResults run = ReadRunResults(run_folder);
+  if (!run.final) {
+    throw UsageError("run '{}' has no final evaluation (eval/final.json): a card shows it",
+                     run_folder.string());
+  }
+  const fs::path checkpoint = JudgedCheckpoint(run_folder);
+  if (checkpoint.empty() || !fs::exists(checkpoint / kPolicy)) {
+    throw UsageError("run '{}' has no checkpoint with a {}", run_folder.string(), kPolicy);
+  }
+  const fs::path target = NamedFolder(fs::absolute(folder)), fresh = target.string() + ".tmp";
+  if (fs::exists(target)) throw UsageError("'{}' exists: not overwritten", target.string());
+  std::error_code error;
+  fs::remove_all(fresh, error);
+  MakeFolders(fresh);
+  try {
+    const fs::path film = FilmOf(run_folder);
+    WriteFileAtomically(fresh / "README.md", Readme(run, !film.empty()));
+    WriteFileAtomically(fresh / "results.json", ResultsJson(run).dump(2) + "\n");
+    WriteFileAtomically(fresh / "config.json", ReadFile(run_folder / "config.json"));
+    WriteFileAtomically(fresh / kPolicy, ReadFile(checkpoint / kPolicy));
+    if (!film.empty()) WriteFileAtomically(fresh / "replay.mp4", ReadFile(film));
+    fs::rename(fresh, target, error);
+    if (error) throw RuntimeError("cannot write '{}': {}", target.string(), error.message());
+  } catch (...) {
+    std::error_code ignored;
+    fs::remove_all(fresh, ignored);
+    throw;
+  }
+}
+
+}  // namespace shoal::launch

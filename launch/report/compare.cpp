@@ -1,0 +1,289 @@
+#include "launch/report/compare.h"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+
+#include "common/base/bounded_json.h"
+#include "common/base/build_info.h"
+#include "common/config/config_io.h"
+#include "launch/experiment/summary.h"
+
+namespace shoal::launch {
+namespace {
+
+using nlohmann::ordered_json;
+
+constexpr std::array kNamesOfRuns = {"preset", "seed", "run_name", "run_dir"};
+
+void Flatten(const ordered_json& object, const std::string& prefix,
+             std::vector<std::pair<std::string, std::string>>* keys) {
+  for (const auto& [name, value] : object.items()) {
+    const std::string path = prefix.empty() ? name : prefix + "." + name;
+    // Sections are one deep; what is an object below is a value.
+    if (prefix.empty() && value.is_object()) {
+      Flatten(value, path, keys);
+    } else {
+      keys->emplace_back(path, value.dump());
+    }
+  }
+}
+
+std::vector<std::pair<std::string, std::string>> KeysOf(const Config& config) {
+  std::vector<std::pair<std::string, std::string>> keys;
+  Flatten(ToJson(config), "", &keys);
+  return keys;
+}
+
+GroupFigures FiguresOf(const RunGroup& group, double target_success) {
+  GroupFigures figures{.name = group.name};
+  figures.unevaluated = group.unevaluated;
+  for (const RunResults& run : group.runs) {
+    const EvaluationFigures& judged = run.final ? *run.final : run.curve.back();
+    if (!run.final) figures.without_final.push_back(run.name);
+    figures.seeds.push_back(run.config.seed);
+    figures.returns.push_back(judged.return_mean);
+    if (judged.final_distance_mean) figures.distances.push_back(*judged.final_distance_mean);
+    if (judged.success) {
+      figures.successes += judged.Successes();
+      figures.episodes += judged.episodes;
+    }
+    const auto n = StepsToSuccess(run.curve, target_success);
+    figures.n_to_target.push_back(n ? std::optional(static_cast<double>(*n)) : std::nullopt);
+    figures.env_steps.push_back(static_cast<double>(run.env_steps));
+    figures.updates.push_back(static_cast<double>(run.updates));
+    figures.wall_seconds.push_back(run.wall_seconds);
+    figures.core_hours += run.wall_seconds * run.cores / 3600;
+  }
+  return figures;
+}
+
+SampleRatio RatioTo(const GroupFigures& group, const GroupFigures& first) {
+  std::vector<RatioPair> pairs;
+  for (size_t i = 0; i < group.seeds.size(); ++i) {
+    const auto same = std::ranges::find(first.seeds, group.seeds[i]);
+    if (same == first.seeds.end()) continue;
+    pairs.push_back({group.seeds[i], group.n_to_target[i],
+                     first.n_to_target[static_cast<size_t>(same - first.seeds.begin())]});
+  }
+  return RatioOf(std::move(pairs));
+}
+
+ordered_json IntervalJson(const std::optional<Interval>& interval) {
+  return interval ? ordered_json{interval->low, interval->high} : ordered_json(nullptr);
+}
+
+template <class T>
+ordered_json OrNull(const std::optional<T>& value) {
+  return value ? ordered_json(*value) : ordered_json(nullptr);
+}
+
+ordered_json MeanJson(const std::vector<double>& values) {
+  const auto mean = values.empty() ? std::nullopt : std::optional(Mean(values));
+  return {{"mean", OrNull(mean)},
+          {"ci95", IntervalJson(MeanInterval95(values))},
+          {"bootstrap95", IntervalJson(BootstrapInterval95(values))},
+          {"seeds", values.size()}};
+}
+
+ordered_json GroupJson(const GroupFigures& group) {
+  std::optional<double> pooled;
+  std::optional<Interval> wilson;
+  if (group.episodes > 0) {
+    pooled = static_cast<double>(group.successes) / static_cast<double>(group.episodes);
+    wilson = Wilson95(group.successes, group.episodes);
+  }
+  ordered_json n = ordered_json::array();
+  for (const auto& steps : group.n_to_target) n.push_back(OrNull(steps));
+  return {{"name", group.name},
+          {"seeds", group.seeds},
+          {"success",
+           {{"pooled", OrNull(pooled)},
+            {"episodes", group.episodes},
+            {"wilson95", IntervalJson(wilson)}}},
+          {"return", MeanJson(group.returns)},
+          {"final_distance", MeanJson(group.distances)},
+          {"n_to_target", n},
+          {"env_steps", group.env_steps},
+          {"updates", group.updates},
+          {"wall_seconds", group.wall_seconds},
+          {"core_hours", group.core_hours},
+          {"without_final_evaluation", group.without_final},
+          {"without_evaluation", group.unevaluated}};
+}
+
+ordered_json RatioJson(const SampleRatio& ratio, const std::string& name) {
+  ordered_json pairs = ordered_json::array();
+  for (const RatioPair& pair : ratio.pairs) {
+    pairs.push_back({{"seed", pair.seed},
+                     {"n", OrNull(pair.n)},
+                     {"n_reference", OrNull(pair.reference)},
+                     {"ratio", OrNull(pair.Ratio())}});
+  }
+  return {{"name", name},
+          {"pairs", pairs},
+          {"not_reached", ratio.not_reached},
+          {"median", OrNull(ratio.median)}};
+}
+
+std::string FormatSteps(const std::vector<std::optional<double>>& steps) {
+  std::vector<std::string> words;
+  for (const auto& n : steps) words.push_back(n ? fmt::format("{:.0f}", *n) : "not reached");
+  return words.empty() ? "-" : fmt::format("{}", fmt::join(words, ", "));
+}
+
+std::string FormatCounts(const std::vector<double>& values) {
+  return values.empty() ? "-" : fmt::format("{:.0f}", Mean(values));
+}
+
+using Row = std::vector<std::string>;
+
+// Columns as wide as their widest cell; the first one to the left.
+std::string Table(const std::vector<Row>& rows) {
+  std::vector<size_t> widths(rows[0].size());
+  for (const Row& row : rows) {
+    for (size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
+  }
+  std::string text;
+  for (const Row& row : rows) {
+    std::string line;
+    for (size_t i = 0; i < row.size(); ++i) line += fmt::format("{:<{}}  ", row[i], widths[i]);
+    text += line.substr(0, line.find_last_not_of(' ') + 1) + "\n";
+  }
+  return text;
+}
+
+std::string Notes(const Comparison& comparison) {
+  std::string notes;
+  for (const GroupFigures& group : comparison.groups) {
+    if (!group.without_final.empty()) {
+      notes += fmt::format("not yet evaluated at the end, judged by the last evaluation: {}\n",
+                           fmt::join(group.without_final, ", "));
+    }
+    if (!group.unevaluated.empty()) {
+      notes += fmt::format("not in the figures, without any evaluation: {}\n",
+                           fmt::join(group.unevaluated, ", "));
+    }
+  }
+  return notes;
+}
+
+}  // namespace
+
+std::vector<KeyDifference> FindDifferences(const std::vector<RunGroup>& groups) {
+  std::vector<KeyDifference> differences;
+  for (const auto& [key, unused] : KeysOf(Config())) {
+    if (std::ranges::find(kNamesOfRuns, key) == kNamesOfRuns.end())
+      differences.push_back({key, {}});
+  }
+  for (const RunGroup& group : groups) {
+    std::vector<std::pair<std::string, std::string>> keys;
+    if (!group.runs.empty()) keys = KeysOf(group.runs[0].config);
+    for (KeyDifference& difference : differences) {
+      const auto found =
+          std::ranges::find(keys, difference.key, [](const auto& k) { return k.first; });
+      difference.values.push_back(found == keys.end() ? "-" : found->second);
+    }
+  }
+  std::erase_if(differences, [](const KeyDifference& difference) {
+    return std::ranges::all_of(
+        difference.values, [&](const std::string& value) { return value == difference.values[0]; });
+  });
+  return differences;
+}
+
+Comparison Compare(const std::vector<RunGroup>& groups, double target_success) {
+  CheckOneTask(groups);
+  return Gather(groups, target_success);
+}
+
+Comparison Gather(const std::vector<RunGroup>& groups, double target_success) {
+  Comparison comparison{.target_success = target_success};
+  for (const RunGroup& group : groups) {
+    if (comparison.task.empty() && !group.runs.empty()) {
+      comparison.task = group.runs[0].config.task;
+      comparison.baselines = BaselineCache().Find(group.runs[0].config);
+    }
+    comparison.groups.push_back(FiguresOf(group, target_success));
+  }
+  for (size_t i = 1; i < comparison.groups.size(); ++i) {
+    comparison.ratios.push_back(RatioTo(comparison.groups[i], comparison.groups[0]));
+  }
+  comparison.differences = FindDifferences(groups);
+  return comparison;
+}
+
+ordered_json ToJson(const Comparison& comparison) {
+  ordered_json groups = ordered_json::array(), ratios = ordered_json::array();
+  ordered_json differences = ordered_json::array();
+  for (const GroupFigures& group : comparison.groups) groups.push_back(GroupJson(group));
+  for (size_t i = 0; i < comparison.ratios.size(); ++i) {
+    ratios.push_back(RatioJson(comparison.ratios[i],
+                               comparison.groups[i + 1].name + "/" + comparison.groups[0].name));
+  }
+  for (const KeyDifference& difference : comparison.differences) {
+    ordered_json values = ordered_json::array();
+    for (const std::string& value : difference.values) {
+      values.push_back(value == "-" ? ordered_json(nullptr)
+                                    : ParseBoundedJson<ordered_json>(value));
+    }
+    differences.push_back({{"key", difference.key}, {"values", values}});
+  }
+  return {{"schema", "shoal-comparison-1"},
+          {"task", comparison.task},
+          {"target_success", comparison.target_success},
+          {"groups", groups},
+          {"ratios", ratios},
+          {"differences", differences},
+          {"baselines", ToJson(comparison.baselines)},
+          {"commit", BuildCommit()}};
+}
+
+std::string ToText(const Comparison& comparison) {
+  std::vector<Row> rows{{"", "SEEDS", "SUCCESS [95 %]", "RETURN [95 %]", "DISTANCE, cm [95 %]",
+                         "ENV STEPS", "UPDATES", "WALL, s", "CORE-HOURS"}};
+  bool has_success = false;
+  for (const GroupFigures& group : comparison.groups) {
+    has_success |= group.episodes > 0;
+    std::vector<double> centimetres;
+    for (const double metres : group.distances) centimetres.push_back(100 * metres);
+    rows.push_back({group.name, std::to_string(group.seeds.size()),
+                    FormatPooled(group.successes, group.episodes), FormatMean(group.returns, 2),
+                    FormatMean(centimetres, 2), FormatCounts(group.env_steps),
+                    FormatCounts(group.updates), FormatCounts(group.wall_seconds),
+                    fmt::format("{:.2f}", group.core_hours)});
+  }
+  std::string text = comparison.task + "; env steps, updates and wall time are means over seeds\n";
+  text += Table(rows);
+  if (has_success) {
+    text +=
+        fmt::format("\nenv steps to {:.0f} % success, by seed:\n", 100 * comparison.target_success);
+    for (size_t i = 0; i < comparison.groups.size(); ++i) {
+      const GroupFigures& group = comparison.groups[i];
+      text += fmt::format("  {}: {}", group.name, FormatSteps(group.n_to_target));
+      if (i > 0 && !comparison.ratios[i - 1].pairs.empty()) {
+        const SampleRatio& ratio = comparison.ratios[i - 1];
+        text +=
+            fmt::format("; ratio to {}: median {} of {}, {} not reached", comparison.groups[0].name,
+                        ratio.median ? fmt::format("{:.2f}", *ratio.median) : "unknown",
+                        ratio.pairs.size(), ratio.not_reached);
+      }
+      text += "\n";
+    }
+  }
+  if (!comparison.differences.empty()) {
+    rows = {{"DIFFERENT KEYS"}};
+    for (const GroupFigures& group : comparison.groups) rows[0].push_back(group.name);
+    for (const KeyDifference& difference : comparison.differences) {
+      rows.push_back({difference.key});
+      std::ranges::copy(difference.values, std::back_inserter(rows.back()));
+    }
+    text += fmt::format("\n{}", Table(rows));
+  }
+  if (comparison.baselines) text += fmt::format("\n{}\n", FormatBaselines(*comparison.baselines));
+  return text + Notes(comparison);
+}
+
+}  // namespace shoal::launch

@@ -1,0 +1,55 @@
+// `shoal compare`: groups of runs side by side. Seeds are the unit (statistics.h).
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "launch/experiment/baselines.h"
+#include "launch/experiment/statistics.h"
+#include "launch/report/subjects.h"
+
+namespace shoal::launch {
+
+struct GroupFigures {
+  std::string name{};
+  std::vector<int64_t> seeds{};
+  // Of the final evaluation of each run; of its last one while training where it has not ended.
+  std::vector<double> returns{}, distances{};  // means; distances in m, where the task has some
+  uint64_t successes = 0, episodes = 0;        // pooled; no episodes where the task has no success
+  std::vector<std::string> without_final{};    // runs judged by their last evaluation
+  std::vector<std::string> unevaluated{};
+  std::vector<std::optional<double>> n_to_target{};  // env steps, by seed; empty = not reached
+  std::vector<double> env_steps{}, updates{}, wall_seconds{};  // by seed
+  double core_hours = 0;  // of all seeds: wall time x usable cores
+};
+
+struct KeyDifference {
+  std::string key{};
+  std::vector<std::string> values{};  // as JSON, one per group; "-" of a group without runs
+};
+
+struct Comparison {
+  std::string task{};
+  double target_success = 0.9;
+  std::vector<GroupFigures> groups{};
+  std::vector<SampleRatio> ratios{};  // of each group but the first to the first, by seed
+  std::vector<KeyDifference> differences{};
+  std::optional<Baselines> baselines{};  // empty where they have not been measured
+};
+
+// Throws Error (usage) on mixed tasks.
+Comparison Compare(const std::vector<RunGroup>& groups, double target_success);
+// The same where tasks may be mixed, as in an experiment about transfer: `task` and the baselines
+// are then those of the first group.
+Comparison Gather(const std::vector<RunGroup>& groups, double target_success);
+
+// Schema shoal-comparison-1; docs/experiments.md.
+nlohmann::ordered_json ToJson(const Comparison& comparison);
+std::string ToText(const Comparison& comparison);
+
+// Configuration keys in which the groups differ; those that only name a run are left out.
+std::vector<KeyDifference> FindDifferences(const std::vector<RunGroup>& groups);
+
+}  // namespace shoal::launch

@@ -1,0 +1,322 @@
+#include "launch/report/report.h"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cctype>
+#include <string_view>
+
+#include "common/base/build_info.h"
+#include "common/base/clock.h"
+#include "common/base/error.h"
+#include "common/base/escape_markup.h"
+#include "common/base/files.h"
+#include "common/config/config_io.h"
+#include "launch/experiment/experiment_folder.h"
+#include "launch/experiment/summary.h"
+#include "launch/processes/remote_host.h"
+#include "launch/processes/scratch_folder.h"
+#include "launch/report/plot.h"
+
+namespace shoal::launch {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kUsualTarget = 0.9;
+constexpr uintmax_t kLargestFilm = 2'000'000;  // bytes; a page of more is passed around no more
+
+constexpr char kStyle[] = R"(
+body { font: 15px/1.5 system-ui, "DejaVu Sans", sans-serif; color: #222; max-width: 62rem;
+       margin: 2rem auto; padding: 0 1rem; }
+h1 { font-size: 1.7rem; margin-bottom: .2rem; } h2 { font-size: 1.2rem; margin-top: 2rem; }
+.question { font-size: 1.05rem; color: #444; max-width: 48rem; }
+.scroll { overflow-x: auto; }
+table { border-collapse: collapse; font-size: .9rem; }
+th, td { text-align: left; padding: .3rem .8rem .3rem 0; border-bottom: 1px solid #ddd;
+         white-space: nowrap; vertical-align: top; }
+th { color: #555; font-weight: 600; }
+code, pre { font: .85rem/1.45 "DejaVu Sans Mono", monospace; }
+pre { background: #f5f5f5; padding: .8rem; overflow-x: auto; }
+.note { color: #666; font-size: .85rem; } svg { max-width: 100%; height: auto; }
+video { width: 32rem; max-width: 100%; }
+)";
+
+using Row = std::vector<std::string>;
+
+std::string RowHtml(const Row& row, const char* cell) {
+  std::string html = "<tr>";
+  for (const std::string& text : row)
+    html += fmt::format("<{0}>{1}</{0}>", cell, EscapeMarkup(text));
+  return html + "</tr>\n";
+}
+
+std::string TableHtml(const Row& head, const std::vector<Row>& rows) {
+  std::string html = "<div class=\"scroll\"><table>\n" + RowHtml(head, "th");
+  for (const Row& row : rows) html += RowHtml(row, "td");
+  return html + "</table></div>\n";
+}
+
+std::string Section(const std::string& title, const std::string& body) {
+  return body.empty() ? "" : fmt::format("<h2>{}</h2>\n{}", EscapeMarkup(title), body);
+}
+
+std::string Steps(const std::optional<double>& steps) {
+  return steps ? fmt::format("{:.0f}", *steps) : "not reached";
+}
+
+std::string ResultsHtml(const Comparison& comparison) {
+  std::vector<Row> rows;
+  for (size_t i = 0; i < comparison.groups.size(); ++i) {
+    const GroupFigures& group = comparison.groups[i];
+    std::vector<double> centimetres;
+    for (const double metres : group.distances) centimetres.push_back(100 * metres);
+    std::vector<std::string> steps;
+    for (const auto& n : group.n_to_target) steps.push_back(Steps(n));
+    std::string ratio = i == 0 ? "1" : "-";
+    if (i > 0 && !comparison.ratios[i - 1].pairs.empty()) {
+      const SampleRatio& pairs = comparison.ratios[i - 1];
+      ratio = fmt::format("{} ({} pairs, {} not reached)",
+                          pairs.median ? fmt::format("{:.2f}", *pairs.median) : "unknown",
+                          pairs.pairs.size(), pairs.not_reached);
+    }
+    const bool success = group.episodes > 0;
+    rows.push_back({group.name, std::to_string(group.seeds.size()),
+                    FormatPooled(group.successes, group.episodes), FormatMean(group.returns, 2),
+                    FormatMean(centimetres, 2),
+                    success ? fmt::format("{}", fmt::join(steps, ", ")) : "-",
+                    success ? ratio : "-"});
+  }
+  std::string html =
+      TableHtml({"", "seeds", "success [95 %]", "return [95 %]", "distance, cm [95 %]",
+                 fmt::format("env steps to {:.0f} %", 100 * comparison.target_success),
+                 "median ratio to the first"},
+                rows);
+  html +=
+      "<p class=\"note\">Success: episodes of all seeds pooled, Wilson's interval. Return and "
+      "distance: mean over seeds, Student's interval. Env steps: at the first of two evaluations "
+      "in a row at or above the rate; a seed that did not get there is counted, not dropped.</p>\n";
+  if (comparison.baselines) {
+    html += "<p>" + EscapeMarkup(FormatBaselines(*comparison.baselines)) + ".</p>\n";
+  }
+  std::vector<std::string> early, missing;
+  for (const GroupFigures& group : comparison.groups) {
+    early.insert(early.end(), group.without_final.begin(), group.without_final.end());
+    missing.insert(missing.end(), group.unevaluated.begin(), group.unevaluated.end());
+  }
+  if (!early.empty()) {
+    html +=
+        EscapeMarkup(fmt::format("Not yet evaluated at the end, judged by the last evaluation: {}.",
+                                 fmt::join(early, ", ")));
+  }
+  if (!missing.empty()) {
+    html += EscapeMarkup(fmt::format(" Missing: {}.", fmt::join(missing, ", ")));
+  }
+  return html;
+}
+
+// What policies earn on other tasks than their own.
+std::string TransferHtml(const std::vector<RunGroup>& groups) {
+  std::vector<Row> rows;
+  for (const RunGroup& group : groups) {
+    std::vector<std::string> tasks;
+    for (const RunResults& run : group.runs) {
+      for (const EvaluationFigures& figures : run.transfer) {
+        if (std::ranges::count(tasks, figures.task) == 0) tasks.push_back(figures.task);
+      }
+    }
+    for (const std::string& task : tasks) {
+      std::vector<double> returns;
+      uint64_t successes = 0, episodes = 0;
+      for (const RunResults& run : group.runs) {
+        for (const EvaluationFigures& figures : run.transfer) {
+          if (figures.task != task) continue;
+          returns.push_back(figures.return_mean);
+          successes += figures.Successes();
+          episodes += figures.success ? figures.episodes : 0;
+        }
+      }
+      rows.push_back({group.name, group.runs[0].config.task, task, FormatMean(returns, 1),
+                      FormatPooled(successes, episodes)});
+    }
+  }
+  if (rows.empty()) return "";
+  return TableHtml({"", "trained on", "tested on", "return [95 %]", "success [95 %]"}, rows);
+}
+
+std::string RunsHtml(const std::vector<RunGroup>& groups) {
+  std::vector<Row> rows;
+  for (const RunGroup& group : groups) {
+    for (const RunResults& run : group.runs) {
+      rows.push_back({run.name, run.exit.empty() ? "-" : run.exit, std::to_string(run.env_steps),
+                      std::to_string(run.updates), fmt::format("{:.0f}", run.wall_seconds),
+                      fmt::format("{:.2f}", run.wall_seconds * run.cores / 3600),
+                      fmt::format("{} ({} cores)", run.cpu, run.cores), run.precision,
+                      fmt::format("{}", fmt::join(run.commits, ", ")), run.started});
+    }
+  }
+  return TableHtml({"run", "end", "env steps", "updates", "wall, s", "core-hours", "machine",
+                    "precision", "builds", "started (UTC)"},
+                   rows);
+}
+
+std::string ConfigurationHtml(const ReportContent& content) {
+  std::string html;
+  if (!content.comparison.differences.empty()) {
+    Row head{"different keys"};
+    for (const GroupFigures& group : content.comparison.groups) head.push_back(group.name);
+    std::vector<Row> rows;
+    for (const KeyDifference& difference : content.comparison.differences) {
+      rows.push_back({difference.key});
+      std::ranges::copy(difference.values, std::back_inserter(rows.back()));
+    }
+    html += TableHtml(head, rows);
+  }
+  for (const RunGroup& group : content.groups) {
+    if (group.runs.empty()) continue;
+    html += fmt::format("<details><summary>every key of {}</summary><pre>{}</pre></details>\n",
+                        EscapeMarkup(group.runs[0].name),
+                        EscapeMarkup(ToJson(group.runs[0].config).dump(2)));
+  }
+  return html;
+}
+
+std::string Base64(const std::string& bytes) {
+  static constexpr char kDigits[] =
+      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (size_t i = 0; i < bytes.size(); i += 3) {
+    uint32_t group = 0;
+    const size_t taken = std::min<size_t>(3, bytes.size() - i);
+    for (size_t j = 0; j < 3; ++j) {
+      group = group << 8 | (j < taken ? static_cast<unsigned char>(bytes[i + j]) : 0U);
+    }
+    for (size_t j = 0; j < 4; ++j) {
+      text += j <= taken ? kDigits[group >> (18 - 6 * j) & 63] : '=';
+    }
+  }
+  return text;
+}
+
+// The first film of each group.
+std::string FilmsHtml(const std::vector<RunGroup>& groups) {
+  std::string html;
+  for (const RunGroup& group : groups) {
+    if (group.runs.empty()) continue;
+    std::error_code error;
+    std::vector<fs::path> films;
+    for (fs::directory_iterator it(group.runs[0].folder / "videos", error), end;
+         !error && it != end; it.increment(error)) {
+      if (it->path().extension() == ".mp4") films.push_back(it->path());
+    }
+    if (films.empty()) continue;
+    std::ranges::sort(films);
+    html += fmt::format("<p>{}", EscapeMarkup(group.name));
+    html += fs::file_size(films[0]) > kLargestFilm
+                ? fmt::format(": {} is too large to be in this page</p>\n",
+                              EscapeMarkup(films[0].string()))
+                : fmt::format("</p><video controls src=\"data:video/mp4;base64,{}\"></video>\n",
+                              Base64(ReadFile(films[0])));
+  }
+  return html;
+}
+
+std::string CommandsHtml(const std::vector<std::string>& commands) {
+  return fmt::format("<pre>{}</pre>\n", EscapeMarkup(fmt::format("{}", fmt::join(commands, "\n"))));
+}
+
+// A shell command line for people: quotes only where a word needs them (ShellLine quotes each).
+std::string CommandLine(const std::vector<std::string>& words) {
+  std::string line;
+  for (const std::string& word : words) {
+    const bool plain = !word.empty() && std::ranges::all_of(word, [](const char c) {
+      return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
+             std::string_view("-_./=:,").find(c) != std::string_view::npos;
+    });
+    if (!line.empty()) line += ' ';
+    line += plain ? word : ShellLine({word});
+  }
+  return line;
+}
+
+// A run is repeated from its own configuration.
+std::string CommandOf(const RunResults& run) {
+  return CommandLine({"shoal", "train", "--config", (run.folder / "config.json").string(),
+                      "--run-name", run.name + "-again"});
+}
+
+// The document without what only a file of its own may begin with.
+std::string SvgElement(const std::string& document) {
+  const size_t start = document.find("<svg");
+  return start == std::string::npos ? "" : document.substr(start);
+}
+
+std::string DrawCurves(const std::string& title, const std::vector<RunGroup>& groups) {
+  const std::vector<PlotFigure> figures = FiguresThereAre(groups);
+  if (figures.empty()) return "";
+  const ScratchFolder scratch;
+  const fs::path file = scratch.path() / "curves.svg";
+  Draw({.title = title, .figures = figures}, groups, file);
+  return ReadFile(file);
+}
+
+}  // namespace
+
+ReportContent GatherReport(const SubjectOptions& subjects) {
+  ReportContent content;
+  content.groups = ReadSubjects(subjects);
+  double target = kUsualTarget;
+  const bool single = subjects.names.size() == 1;
+  if (!single) CheckOneTask(content.groups);
+  for (const std::string& name : subjects.names) {
+    content.title += (content.title.empty() ? "" : ", ") + NamedFolder(name).filename().string();
+    for (const fs::path& path : {fs::path(subjects.experiment_dir) / name, fs::path(name)}) {
+      if (!IsExperiment(path)) continue;
+      const Definition& definition = ReadExperiment(path).definition;
+      if (single) {
+        content.question = definition.question;
+        target = definition.target_success;
+      }
+      content.commands.push_back(CommandLine({"shoal", "experiment", "run", definition.name}) +
+                                 "    # or the definition's file");
+      break;
+    }
+  }
+  if (content.commands.empty()) {
+    for (const RunGroup& group : content.groups) {
+      for (const RunResults& run : group.runs) content.commands.push_back(CommandOf(run));
+    }
+  }
+  content.comparison = Gather(content.groups, target);
+  content.curves = DrawCurves(content.comparison.task, content.groups);
+  return content;
+}
+
+std::string ReportHtml(const ReportContent& content) {
+  std::string html = fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\"><head><meta charset=\"utf-8\">\n<meta name=\"viewport\" "
+      "content=\"width=device-width, initial-scale=1\">\n<title>{0}</title><style>{1}</style>"
+      "</head><body>\n<h1>{0}</h1>\n<p class=\"note\">{2} &middot; written {3} by shoal {4} ({5})"
+      "</p>\n",
+      EscapeMarkup(content.title), kStyle, EscapeMarkup(content.comparison.task), UtcTimestamp(),
+      BuildVersion(), BuildCommit());
+  if (!content.question.empty()) {
+    html += fmt::format("<p class=\"question\">{}</p>\n", EscapeMarkup(content.question));
+  }
+  html += Section("Results", ResultsHtml(content.comparison));
+  html += Section("On other tasks", TransferHtml(content.groups));
+  if (!content.curves.empty()) {
+    html += Section("Evaluations while training",
+                    SvgElement(content.curves) +
+                        "<p class=\"note\">Mean over seeds; the band reaches from the smallest to "
+                        "the largest seed.</p>\n");
+  }
+  html += Section("Films", FilmsHtml(content.groups));
+  html += Section("Runs", RunsHtml(content.groups));
+  html += Section("Configuration", ConfigurationHtml(content));
+  html += Section("To repeat it", CommandsHtml(content.commands));
+  return html + "</body></html>\n";
+}
+
+}  // namespace shoal::launch

@@ -1,0 +1,37 @@
+// What the commands of people who steer a run do to it, and what they are told. Knows nothing of
+// DDS.
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "common/wire/messages.h"
+#include "launch/run/live_settings.h"
+
+namespace shoal::launch {
+
+// Borrows the settings. One thread.
+class CommandHandler {
+ public:
+  struct Effects {
+    std::function<bool()> running;            // no: it is on its way to the end
+    std::function<void()> stop;               // ends the run in order
+    std::function<void(int, int)> scale;      // actors: from, to; may throw Error
+    std::function<void(SettingChange)> note;  // a change was made: record it, tell the processes
+  };
+
+  CommandHandler(LiveSettings& settings, Effects effects)
+      : settings_(settings), effects_(std::move(effects)) {}
+
+  // "stop", "set KEY=VALUE", "scale N". The reply says what was done, or why not.
+  ReplyMessage Handle(const CommandMessage& command);
+
+ private:
+  // Fills in what was done.
+  void Execute(const CommandMessage& command, ReplyMessage* reply);
+
+  LiveSettings& settings_;
+  const Effects effects_;
+};
+
+}  // namespace shoal::launch

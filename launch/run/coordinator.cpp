@@ -1,0 +1,451 @@
+#include "launch/run/coordinator.h"
+
+#include <algorithm>
+#include <atomic>
+#include <thread>
+#include <utility>
+
+#include "common/base/error.h"
+#include "common/base/saturating_cast.h"
+#include "common/base/stop.h"
+#include "common/base/usable_cores.h"
+#include "common/dds/metrics_publisher.h"
+#include "common/dds/publisher.h"
+#include "common/dds/subscriber.h"
+#include "common/wire/metrics_report.h"
+#include "launch/processes/ordered_stop.h"
+#include "launch/processes/process_plan.h"
+#include "launch/record/evaluations.h"
+#include "launch/record/metrics_log.h"
+#include "launch/run/best_evaluation.h"
+#include "launch/run/command_handler.h"
+#include "launch/run/evaluation_intake.h"
+#include "launch/run/flat_score.h"
+#include "launch/run/live_settings.h"
+#include "launch/run/run_progress.h"
+#include "launch/watch/message_inbox.h"
+#include "launch/watch/metrics_view.h"
+#include "launch/watch/run_figures.h"
+#include "launch/watch/scalar_log.h"
+
+namespace shoal::launch {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr milliseconds kPoll{50};
+constexpr milliseconds kHeartbeat{300};
+constexpr seconds kMetaPeriod{5};
+constexpr size_t kInboxMessages = 10'000;
+constexpr size_t kInboxEvaluations = 64;  // of a megabyte each, where they are nonsense
+
+const char* ToString(RunState state) {
+  switch (state) {
+    case RunState::kRunning:
+      return "running";
+    case RunState::kDraining:
+      return "draining";
+    case RunState::kStopping:
+      return "stopping";
+  }
+  return "?";
+}
+
+}  // namespace
+
+// Members are in construction order: subscribers end before the inboxes they fill.
+struct Coordinator::Impl {
+  Impl(const std::filesystem::path& folder, const RunConfig& run_config, dds::Bus& bus,
+       const RunMeta& before, const std::vector<RemoteHost>& remote_hosts, OperatorDesk& run_desk,
+       Progress& shown)
+      : own_bus(bus),
+        run(folder),
+        config(run_config.config),
+        hosts(remote_hosts),
+        settings(config),
+        handler(settings, Effects()),
+        desk(run_desk),
+        progress(shown),
+        meta(before),
+        rule(config),
+        evaluations(config.eval.episodes, run_progress,
+                    [this](const std::string& line) { progress.Say(line); }),
+        log(run / "metrics.jsonl", MetricsLogLimits()),
+        scalars(run),
+        supervisor(RestartLimits(), HangLimits(),
+                   [this](const std::string& line) { progress.Say(line); }),
+        own_report("coordinator", 0),
+        control(bus),
+        actor_reports(bus, Reports<ActorMetrics>("actor")),
+        eval_reports(bus, Reports<EvalMetrics>("eval")),
+        replay_reports(bus, Reports<ReplayMetrics>("replay")),
+        learner_reports(bus, Reports<LearnerMetrics>("learner")),
+        replay_progress(bus, [this](const ReplayProgress& m) { replay_words.Put(m); }),
+        learner_progress(bus, [this](const LearnerProgress& m) { learner_words.Put(m); }),
+        eval_subscriber(bus, [this](const EvalMessage& m) { evals.Put(m); }) {
+    settings.Restore(meta.changes);
+    settings.AddTo(&order);
+    rule.Change(settings.config());
+    for (const EvaluationPoint& point : ReadEvaluations(run)) {
+      evaluations.Recall(point);
+      Count(point);
+    }
+    meta.target = rule.target();
+  }
+
+  CommandHandler::Effects Effects() {
+    return {.running = [this] { return order.state == RunState::kRunning && !stop_asked; },
+            .stop = [this] { stop_asked = true; },
+            .scale = [this](int from, int to) { Scale(from, to); },
+            .note = [this](const SettingChange& change) { Note(change); }};
+  }
+
+  double Elapsed() const { return meta.wall_seconds + SecondsSince(start); }
+  uint64_t EnvSteps() const { return std::max(meta.env_steps, run_progress.stored_steps()); }
+
+  // Takes the reports of a topic that only this role may write.
+  template <class M>
+  std::function<void(const M&)> Reports(const char* role) {
+    return [this, role](const M& message) {
+      if (message.role == role) {
+        metrics.Put(message);
+      } else {
+        ++reports_refused;
+      }
+    };
+  }
+
+  // Since this coordinator's start.
+  uint64_t Resends() const { return SaturatingCast<uint64_t>(view.Total("actor", "resends")); }
+
+  RunResult Run(const std::function<void()>& on_started);
+  std::string WaitForEnd(const std::function<void()>& on_started);
+  // Every process of the run has reported.
+  bool Started() const;
+  bool HasReplay() const;
+  void TakeCommands();
+  void Scale(int from, int to);
+  void Note(SettingChange change);
+  void Stop();
+  // Heartbeat, messages, display. What fails in it is remembered as the run's failure.
+  void Tick();
+  ProgressFigures Figures(SteadyTime now) const;
+  void ShowView(const ProgressFigures& figures, SteadyTime now);
+  void Heartbeat(SteadyTime now);
+  void TakeMessages(SteadyTime now);
+  void TakeEvaluation(const EvalMessage& message);
+  // Returns a warning where the run gets no better.
+  std::optional<std::string> Count(const EvaluationPoint& point);
+  void Fail(const std::string& why);
+  void StoreMeta();
+  // Whether the learner may be told to stop: where the budget ended the run (and in lockstep, which
+  // must end the same way each time), it finishes what the stored steps allow and its last
+  // evaluation arrives.
+  bool Settled() const;
+
+  const dds::Bus& own_bus;
+  const std::filesystem::path run;
+  const Config config;  // as the run was started
+  const std::vector<RemoteHost> hosts;
+  LiveSettings settings;
+  CommandHandler handler;
+  OperatorDesk& desk;
+  Progress& progress;
+  RunMeta meta;  // wall_seconds: of the sessions before this one, until the end
+  StopRule rule;
+  RunProgress run_progress;
+  EvaluationIntake evaluations;
+  BestEvaluation bests;
+  FlatScore flat;
+  std::optional<EvaluationPoint> last_evaluation;
+  std::vector<ProcessSpec> plan;  // as started; `shoal scale` may have changed the actors since
+  MetricsView view;
+  MetricsLog log;
+  ScalarLog scalars;
+  Supervisor supervisor;
+  MessageInbox<MetricsMessage> metrics{kInboxMessages};
+  MessageInbox<EvalMessage> evals{kInboxEvaluations};
+  MessageInbox<ReplayProgress> replay_words{kInboxMessages};
+  MessageInbox<LearnerProgress> learner_words{kInboxMessages};
+  std::atomic<uint64_t> reports_refused{0};  // in the name of another role than their sender's
+  MetricsReport own_report;
+  dds::Publisher<ControlMessage> control;
+  dds::Subscriber<ActorMetrics> actor_reports;
+  dds::Subscriber<EvalMetrics> eval_reports;
+  dds::Subscriber<ReplayMetrics> replay_reports;
+  dds::Subscriber<LearnerMetrics> learner_reports;
+  dds::Subscriber<ReplayProgress> replay_progress;
+  dds::Subscriber<LearnerProgress> learner_progress;
+  dds::Subscriber<EvalMessage> eval_subscriber;
+
+  ControlMessage order{.epoch = 1};
+  SteadyTime start = Now();
+  std::optional<SteadyTime> heartbeat, meta_stored;
+  bool stop_asked = false;  // by a command
+  bool meta_due = false;    // something happened that it records
+  const int usable_cores = UsableCores();
+  uint64_t dropped_said = 0;  // messages dropped by the inboxes
+  int stops_before_end = 0;   // Ctrl-C's that had been answered when the ordered stop began
+};
+
+Coordinator::Coordinator(const std::filesystem::path& run, const RunConfig& config, dds::Bus& bus,
+                         const RunMeta& meta, const std::vector<RemoteHost>& hosts,
+                         OperatorDesk& desk, Progress& progress)
+    : impl_(std::make_unique<Impl>(run, config, bus, meta, hosts, desk, progress)) {}
+
+Coordinator::~Coordinator() = default;
+
+RunResult Coordinator::Run(const std::function<void()>& on_started) {
+  return impl_->Run(on_started);
+}
+
+RunResult Coordinator::Impl::Run(const std::function<void()>& on_started) {
+  plan = PlanProcesses(settings.config(), run, hosts);
+  for (const ProcessSpec& spec : plan) supervisor.Start(spec);
+  meta.exit = "running";
+  StoreMeta();
+  meta.exit = WaitForEnd(on_started);
+  Stop();
+  meta.env_steps = EnvSteps();
+  meta.wall_seconds = Elapsed();
+  meta.restarts += supervisor.restarts();
+  meta.resends += Resends();
+  if (!meta.error.empty()) meta.exit = "failed";
+  return {.meta = meta,
+          .clean = supervisor.unclean_exits().empty(),
+          .bottleneck = FindBottleneck(view, usable_cores, settings.config().actors)};
+}
+
+std::string Coordinator::Impl::WaitForEnd(const std::function<void()>& on_started) {
+  bool started = on_started == nullptr;
+  while (true) {
+    Tick();
+    if (!started && Started()) {
+      on_started();
+      started = true;
+    }
+    if (const auto failure = supervisor.Poll(Now())) Fail(*failure);
+    if (!meta.error.empty()) return "failed";
+    if (StopRequested() || stop_asked) return "interrupted";
+    if (rule.TargetReached()) return "target";
+    if (rule.BudgetSpent(EnvSteps())) return "budget";
+    std::this_thread::sleep_for(kPoll);
+  }
+}
+
+bool Coordinator::Impl::Started() const {
+  return std::ranges::all_of(plan, [this](const ProcessSpec& spec) {
+    const bool retired = spec.role == "actor" && spec.id >= settings.config().actors;
+    return retired || view.Heard(spec.role, static_cast<uint32_t>(spec.id));
+  });
+}
+
+bool Coordinator::Impl::HasReplay() const {
+  return std::ranges::find(plan, "replay", &ProcessSpec::role) != plan.end();
+}
+
+void Coordinator::Impl::TakeCommands() {
+  for (const CommandMessage& command : desk.TakeCommands()) {
+    const ReplyMessage reply = handler.Handle(command);
+    std::string line = "command: " + command.verb;
+    for (const std::string& argument : command.arguments) line += " " + argument;
+    progress.Say(fmt::format("{}: {}{}", line, reply.accepted ? "" : "refused: ", reply.text));
+    desk.Answer(reply);
+  }
+}
+
+// The actors with the highest numbers go first.
+void Coordinator::Impl::Scale(int from, int to) {
+  if (!hosts.empty()) {
+    throw RuntimeError("a run on several hosts has the actors that its hosts file says");
+  }
+  int id = from;
+  try {
+    for (; id < to; ++id) supervisor.Start(ActorProcess(run, id));
+  } catch (const Error&) {  // refused as a whole: the next order begins at the same number
+    while (--id >= from) supervisor.Retire("actor", id, Now());
+    throw;
+  }
+  for (id = from - 1; id >= to; --id) supervisor.Retire("actor", id, Now());
+}
+
+void Coordinator::Impl::Note(SettingChange change) {
+  change.time = UtcTimestamp();
+  change.env_steps = EnvSteps();
+  change.updates = meta.updates;
+  meta.changes.push_back(std::move(change));
+  rule.Change(settings.config());
+  meta.target = rule.target();
+  meta.first_success = rule.first_success();
+  settings.AddTo(&order);
+  ++order.epoch;
+  heartbeat.reset();  // the next tick tells at once
+  meta_due = true;
+}
+
+void Coordinator::Impl::Stop() {
+  if (stop_asked && meta.exit == "interrupted") {
+    progress.Say("stopping in order, as commanded");
+  } else if (meta.exit == "interrupted") {
+    progress.Say("stopping in order; Ctrl-C again to stop at once");
+  }
+  if (meta.exit == "target") progress.Say("target reached: stopping in order");
+  if (meta.exit == "budget") progress.Say("budget of env steps spent: stopping in order");
+  stops_before_end = StopRequests();
+  StopDeadlines deadlines;
+  // A run with a replay stores nothing without it.
+  if (HasReplay() && supervisor.Running("replay") == 0) deadlines.drain = milliseconds(0);
+  StopInOrder(supervisor, deadlines,
+              {.announce =
+                   [this](RunState state) {
+                     order.state = state;
+                     ++order.epoch;
+                     heartbeat.reset();  // the next tick tells at once
+                     Tick();
+                   },
+               .tick = [this] { Tick(); },
+               .at_once = [this] { return StopRequests() > stops_before_end; },
+               .say = [this](const std::string& line) { progress.Say(line); },
+               .settled = [this] { return Settled(); }});
+  Tick();  // what arrived last
+  evaluations.End(Now());
+}
+
+void Coordinator::Impl::Tick() {
+  const SteadyTime now = Now();
+  Heartbeat(now);
+  try {
+    TakeMessages(now);
+    TakeCommands();
+    if (meta_due || !meta_stored || now - *meta_stored > kMetaPeriod) StoreMeta();
+  } catch (const Error& e) {
+    Fail(e.what());
+  }
+  const ProgressFigures figures = Figures(now);
+  try {
+    scalars.WriteRollouts(view, figures, now);
+  } catch (const Error& e) {
+    Fail(e.what());
+  }
+  ShowView(figures, now);
+  progress.Show(figures, now);
+}
+
+ProgressFigures Coordinator::Impl::Figures(SteadyTime now) const {
+  ProgressFigures figures = CollectFigures(view, now);
+  figures.run = config.run_name;
+  figures.state = ToString(order.state);
+  figures.elapsed_seconds = Elapsed();
+  figures.env_steps = EnvSteps();
+  figures.budget = static_cast<uint64_t>(settings.config().env_steps);
+  figures.last_evaluation = last_evaluation;
+  figures.best = meta.best;
+  figures.processes = supervisor.Running("");
+  figures.restarts = meta.restarts + supervisor.restarts();
+  return figures;
+}
+
+// The coordinator's own report is made here: it watches itself as it does the others.
+void Coordinator::Impl::ShowView(const ProgressFigures& figures, SteadyTime now) {
+  if (!desk.Due(now)) return;
+  own_report.Begin(figures.state);
+  AddRunFigures(figures, &own_report);
+  AddOrders(settings.config(), usable_cores, &own_report);
+  const uint64_t dropped =
+      metrics.dropped() + evals.dropped() + replay_words.dropped() + learner_words.dropped();
+  own_report.Add("messages_dropped", static_cast<double>(dropped));
+  if (dropped > dropped_said) {
+    progress.Say(fmt::format("{} report(s) dropped: they came faster than they were read",
+                             dropped - std::exchange(dropped_said, dropped)));
+  }
+  own_report.Add("evaluations_repeated", static_cast<double>(evaluations.repeated()));
+  own_report.Add("evaluations_refused", static_cast<double>(evaluations.refused()));
+  own_report.Add("reports_refused", static_cast<double>(reports_refused));
+  MetricsMessage own = own_report.message();
+  dds::AddMalformed(own_bus, &own);
+  view.OnMessage(own, now);
+  log.Write(own);
+  RunViewMessage shown;
+  shown.state = figures.state;
+  shown.env_steps = figures.env_steps;
+  shown.updates = meta.updates;
+  shown.processes = view.Reports(now);
+  desk.Show(std::move(shown), now);
+}
+
+void Coordinator::Impl::Heartbeat(SteadyTime now) {
+  if (heartbeat && now - *heartbeat < kHeartbeat) return;
+  order.time = WallTimeSeconds();
+  if (control.Write(order)) heartbeat = now;  // else again at the next tick
+}
+
+void Coordinator::Impl::TakeMessages(SteadyTime now) {
+  for (const MetricsMessage& message : metrics.TakeAll()) {
+    view.OnMessage(message, now);
+    supervisor.Heard(message.role, static_cast<int>(message.id), message.pid, now);
+    if (!log.Write(message)) {
+      progress.Say("metrics.jsonl cannot be written any more (disk full or size limit)");
+    }
+    scalars.WriteTraining(message, now);
+  }
+  for (const ReplayProgress& word : replay_words.TakeAll()) run_progress.OnReplay(word);
+  for (const LearnerProgress& word : learner_words.TakeAll()) {
+    run_progress.OnLearner(word);
+    meta.OnUpdates(*run_progress.updates());
+  }
+  for (const EvalMessage& message : evaluations.Take(evals.TakeAll(), now)) {
+    TakeEvaluation(message);
+  }
+}
+
+void Coordinator::Impl::TakeEvaluation(const EvalMessage& message) {
+  const EvaluationPoint point = StoreEvaluation(run, message, Elapsed());
+  const auto warning = Count(point);
+  const bool best = bests.newest_is_best();
+  progress.Say(fmt::format("evaluation at {} env steps, {} updates: {}{}", point.env_steps,
+                           point.updates, FormatScore(point), best ? " (best)" : ""));
+  scalars.WriteEvaluation(point);
+  if (warning) progress.Say(*warning);
+  StoreMeta();
+  if (!best || point.checkpoint.empty()) return;
+  try {
+    KeepAsBest(run, point.checkpoint);
+  } catch (const Error& e) {
+    progress.Say(e.what());  // the run goes on: the former best is still whole
+  }
+}
+
+std::optional<std::string> Coordinator::Impl::Count(const EvaluationPoint& point) {
+  rule.OnEvaluation(point);
+  meta.first_success = rule.first_success();
+  last_evaluation = point;
+  bests.OnEvaluation(point);
+  meta.best = bests.best();
+  return flat.OnEvaluation(point, rule.target());
+}
+
+void Coordinator::Impl::Fail(const std::string& why) {
+  if (!meta.error.empty()) return;  // the first one is the reason; a full disk would repeat itself
+  meta.error = why;
+  progress.Say("error: " + why);
+}
+
+void Coordinator::Impl::StoreMeta() {
+  meta_stored = Now();
+  meta_due = false;
+  RunMeta now = meta;
+  now.env_steps = EnvSteps();
+  now.wall_seconds = Elapsed();
+  now.restarts += supervisor.restarts();
+  now.resends += Resends();
+  WriteRunMeta(run, config, now);
+}
+
+bool Coordinator::Impl::Settled() const {
+  if (meta.exit != "budget" && !(config.lockstep && meta.exit == "target")) return true;
+  if (!run_progress.drained()) return false;
+  return (last_evaluation ? last_evaluation->updates : 0) >= run_progress.evaluation_due();
+}
+
+}  // namespace shoal::launch

@@ -1,0 +1,64 @@
+// Which of the evaluations that come a run counts: those that can be, of parameters that the
+// learner handed out, each once. The rest is refused or left out, counted and said; nothing that is
+// sent can end the run. Pure.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/base/clock.h"
+#include "common/wire/messages.h"
+#include "launch/record/evaluation_point.h"
+#include "launch/run/evaluation_filter.h"
+#include "launch/run/run_progress.h"
+
+namespace shoal::launch {
+
+class EvaluationIntake {
+ public:
+  // `episodes` of each evaluation. Borrows `progress`. `say` gets a line about refusals, at most
+  // once per kSayPeriod.
+  EvaluationIntake(int episodes, const RunProgress& progress,
+                   std::function<void(const std::string&)> say);
+
+  // One that an earlier session of the run has counted.
+  void Recall(const EvaluationPoint& point) { filter_.Accept(point); }
+
+  // What has come since the last call. Returns what counts, in the order of arrival. An evaluation
+  // may come before the learner's word that it asked for it: it waits for up to kWait.
+  std::vector<EvalMessage> Take(std::vector<EvalMessage> messages, SteadyTime now);
+
+  // The run is over: those that still wait are refused.
+  void End(SteadyTime now);
+
+  uint64_t refused() const { return refused_; }
+  uint64_t repeated() const { return filter_.repeated(); }
+
+  static constexpr std::chrono::seconds kWait{10}, kSayPeriod{10};
+  static constexpr size_t kMostWaiting = 64;
+
+ private:
+  struct Waiting {
+    EvalMessage message;
+    EvaluationPoint point;
+    SteadyTime arrived;
+  };
+
+  // Its figures. Throws Error where they cannot be.
+  EvaluationPoint Figures(const EvalMessage& message) const;
+  void Refuse(const std::string& why, SteadyTime now);
+
+  const size_t episodes_;
+  const RunProgress& progress_;
+  const std::function<void(const std::string&)> say_;
+  EvaluationFilter filter_;
+  std::vector<Waiting> waiting_;
+  uint64_t refused_ = 0;
+  std::optional<SteadyTime> said_;
+};
+
+}  // namespace shoal::launch

@@ -1,0 +1,96 @@
+#include "launch/run/live_settings.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "common/base/error.h"
+#include "common/config/config_io.h"
+
+namespace shoal::launch {
+namespace {
+
+constexpr SettingUse kActors[] = {{"coordinator", "actors"}};
+constexpr SettingUse kBudget[] = {{"coordinator", "budget_env_steps"},
+                                  {"replay", "budget_env_steps"}};
+constexpr SettingUse kInterval[] = {{"learner", "eval_interval"}};
+constexpr SettingUse kPeriod[] = {{"learner", "weights_period"}};
+constexpr SettingUse kRatio[] = {{"replay", "limiter_samples_per_insert"},
+                                 {"learner", "samples_per_insert"}};
+constexpr SettingUse kEvaluations[] = {{"coordinator", "stop_evaluations"}};
+constexpr SettingUse kSuccess[] = {{"coordinator", "stop_success"}};
+
+constexpr std::string_view kActorsKey = "actors";
+constexpr LiveKey kKeys[] = {{kActorsKey, kActors},
+                             {"env_steps", kBudget},
+                             {"eval.interval", kInterval},
+                             {"learner.weights_period", kPeriod},
+                             {"replay.samples_per_insert", kRatio},
+                             {"stop.evaluations", kEvaluations},
+                             {"stop.success", kSuccess}};
+
+bool IsLive(std::string_view key) {
+  return std::ranges::find(kKeys, key, &LiveKey::key) != std::end(kKeys);
+}
+
+double ValueOf(const Config& config, std::string key) {
+  std::ranges::replace(key, '.', '/');
+  return ToJson(config).at(nlohmann::ordered_json::json_pointer("/" + key)).get<double>();
+}
+
+}  // namespace
+
+std::span<const LiveKey> LiveKeys() { return kKeys; }
+
+std::string LiveKeyNames() {
+  std::string names;
+  for (const LiveKey& live : kKeys) {
+    if (live.key == kActorsKey) continue;
+    names += (names.empty() ? "" : ", ") + std::string(live.key);
+  }
+  return names;
+}
+
+SettingChange LiveSettings::Assign(const std::string& assignment) {
+  const std::string key = assignment.substr(0, assignment.find('='));
+  if (key == kActorsKey) throw UsageError("{}: use shoal scale --actors N", assignment);
+  return Apply(key, assignment);
+}
+
+SettingChange LiveSettings::SetActors(const std::string& count) {
+  if (count == "0") throw UsageError("actors=0: a run needs at least one actor");
+  return Apply(std::string(kActorsKey), fmt::format("{}={}", kActorsKey, count));
+}
+
+SettingChange LiveSettings::Apply(const std::string& key, const std::string& assignment) {
+  Config changed = config_;
+  ApplyAssignments({assignment}, &changed);  // refuses keys and values that do not exist
+  if (!IsLive(key)) {
+    throw UsageError("{} is fixed for the run; what can be changed: {}", key, LiveKeyNames());
+  }
+  if (config_.lockstep) {
+    throw UsageError("{}: a lockstep run repeats bit for bit, so nothing of it can be changed",
+                     key);
+  }
+  Validate(changed);
+  SettingChange change;
+  change.key = key;
+  change.from = ValueOf(config_, key);
+  change.to = ValueOf(changed, key);
+  config_ = changed;
+  if (std::ranges::find(changed_, key) == changed_.end()) changed_.push_back(key);
+  return change;
+}
+
+void LiveSettings::Restore(std::span<const SettingChange> changes) {
+  for (const SettingChange& change : changes) {
+    Apply(change.key, fmt::format("{}={}", change.key, change.to));
+  }
+}
+
+void LiveSettings::AddTo(ControlMessage* message) const {
+  message->setting_names = changed_;
+  message->setting_values.clear();
+  for (const std::string& key : changed_) message->setting_values.push_back(ValueOf(config_, key));
+}
+
+}  // namespace shoal::launch

@@ -1,0 +1,139 @@
+#include "launch/run/run_end.h"
+
+#include <fmt/core.h>
+
+#include "actor/sending/made_page.h"
+#include "common/base/clock.h"
+#include "common/base/error.h"
+#include "common/base/stop.h"
+#include "launch/processes/actor_program.h"
+#include "launch/processes/run_hosts.h"
+#include "launch/processes/run_leftovers.h"
+#include "launch/record/accounting.h"
+#include "launch/record/run_folder.h"
+
+namespace shoal::launch {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Empty when no record was ever made.
+std::optional<Accounting> AccountRun(const fs::path& run, const Config& config, uint64_t resends) {
+  std::vector<MadeRecords> made;
+  for (const actor::MadeCount& page : actor::ReadMadePages(run)) {
+    made.push_back({page.actor, page.session, page.made});
+  }
+  if (made.empty() && !fs::exists(run / "accounting.json")) return std::nullopt;
+  return Account(made, ReadSeenByReplay(run),
+                 {.resends = resends,
+                  .own_actors = static_cast<uint32_t>(ActorsHere(run, config)),
+                  .outlives_replay = config.replay.storage == "file"});
+}
+
+// The checkpoint a run is judged by: the best evaluated one, else the newest.
+fs::path JudgedCheckpoint(const fs::path& run) {
+  const fs::path best = run / "checkpoints" / "best";
+  return fs::is_directory(best) ? best : NewestCheckpoint(run);
+}
+
+// Whoever asked for a stop wants the terminal back; a run that has ended by itself is judged.
+bool WantsFinalEvaluation(const RunMeta& meta) {
+  return meta.exit != "interrupted" && !StopRequested();
+}
+
+std::optional<EvaluationPoint> EvaluateAtEnd(const fs::path& run, const Config& config,
+                                             OperatorDesk& desk, Progress& progress) {
+  const fs::path checkpoint = JudgedCheckpoint(run);
+  if (config.eval.final_episodes == 0 || checkpoint.empty()) return std::nullopt;
+  const int stops = StopRequests();
+  progress.Say(fmt::format("evaluating {} on {} fresh episodes; Ctrl-C to leave it out",
+                           checkpoint.string(), config.eval.final_episodes));
+  auto point = EvaluateByActor({.run = run,
+                                .checkpoint = checkpoint,
+                                .episodes = config.eval.final_episodes,
+                                .seed = config.seed,
+                                .json = run / "eval" / "final.json"},
+                               [stops, &desk] {
+                                 desk.ShowAgain("evaluating", Now());
+                                 return StopRequests() > stops;
+                               });
+  if (!point) progress.Say("the evaluation was left out");
+  return point;
+}
+
+void PrintSummary(const fs::path& run, const Config& config, const RunResult& result,
+                  const std::optional<EvaluationPoint>& final_evaluation, Progress& progress) {
+  const RunMeta& meta = result.meta;
+  progress.Say(fmt::format("run {} ended ({}): {} env steps, {} updates, {} ({:.0f} s)",
+                           run.string(), meta.exit, meta.env_steps, meta.updates,
+                           FormatDuration(meta.wall_seconds), meta.wall_seconds));
+  if (final_evaluation) {
+    progress.Say(fmt::format("  final evaluation: {} ({})", FormatScore(*final_evaluation),
+                             (run / "eval/final.json").string()));
+  }
+  if (meta.first_success) {
+    progress.Say(fmt::format("  success >= {:.0f} % from {} env steps, {} updates, {:.0f} s on",
+                             100 * meta.target, meta.first_success->env_steps,
+                             meta.first_success->updates, meta.first_success->wall_seconds));
+  } else if (meta.best && meta.best->success) {
+    progress.Say(
+        fmt::format("  no {} evaluations in a row, while training, had success >= {:.0f} %",
+                    config.stop.evaluations, 100 * meta.target));
+  }
+  if (meta.exit == "interrupted") {
+    progress.Say(
+        fmt::format("  not evaluated: go on with shoal train --resume {0}, or judge it with shoal "
+                    "eval --checkpoint {0}/checkpoints/NAME",
+                    run.string()));
+  }
+  if (meta.accounting) progress.Say("  " + meta.accounting->Line());
+  if (meta.updates_lost > 0) {
+    progress.Say(fmt::format("  updates lost with a learner: {}", meta.updates_lost));
+  }
+  for (const std::string& line : FormatBottleneck(result.bottleneck)) progress.Say("  " + line);
+  for (const char* name :
+       {"meta.json", "bottleneck.json", "metrics.jsonl", "eval", "checkpoints", "tensorboard"}) {
+    if (fs::exists(run / name)) progress.Say(fmt::format("  {}", (run / name).string()));
+  }
+}
+
+}  // namespace
+
+int EndRun(const fs::path& run, const Config& config, RunResult result, OperatorDesk& desk,
+           Progress& progress) {
+  RunMeta& meta = result.meta;
+  bool good = result.clean && meta.exit != "failed";
+  RemoveUnfinishedFiles(run);
+  const auto fail = [&](const std::string& why) {
+    good = false;
+    if (meta.error.empty()) meta.error = why;
+    progress.Say("error: " + why);
+  };
+  try {
+    meta.accounting = AccountRun(run, config, meta.resends);
+    if (meta.accounting) {
+      for (const std::string& fault : meta.accounting->faults) {
+        fail("records do not balance: " + fault);
+      }
+    }
+  } catch (const Error& e) {
+    fail(fmt::format("records cannot be accounted for: {}", e.what()));
+  }
+  std::optional<EvaluationPoint> final_evaluation;
+  try {
+    WriteBottleneck(run, result.bottleneck);
+    if (WantsFinalEvaluation(meta)) final_evaluation = EvaluateAtEnd(run, config, desk, progress);
+    if (final_evaluation) {
+      meta.final_success = final_evaluation->success;
+      meta.final_return = final_evaluation->mean_return;
+    }
+  } catch (const Error& e) {
+    fail(e.what());
+  }
+  meta.finished = UtcTimestamp();
+  WriteRunMeta(run, config, meta);
+  PrintSummary(run, config, result, final_evaluation, progress);
+  return good ? 0 : 1;
+}
+
+}  // namespace shoal::launch

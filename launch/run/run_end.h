@@ -1,0 +1,17 @@
+// What is done once a run's processes have left: the records' accounting, a last evaluation on
+// fresh episodes, meta.json and the summary.
+#pragma once
+
+#include <filesystem>
+
+#include "launch/run/coordinator.h"
+#include "launch/watch/progress.h"
+
+namespace shoal::launch {
+
+// Prints the summary and returns the run's exit code: 1 when it failed, a process left with an
+// error, or the records do not balance.
+int EndRun(const std::filesystem::path& run, const Config& config, RunResult result,
+           OperatorDesk& desk, Progress& progress);
+
+}  // namespace shoal::launch

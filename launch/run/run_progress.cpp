@@ -1,0 +1,39 @@
+#include "launch/run/run_progress.h"
+
+namespace shoal::launch {
+
+void RunProgress::OnReplay(const ReplayProgress& progress) {
+  ReplayProgress& known = replays_[progress.replay];
+  if (progress.session >= known.session) known = progress;
+}
+
+void RunProgress::OnLearner(const LearnerProgress& progress) {
+  if (progress.session < learner_.session) return;
+  learner_ = progress;
+  for (const EvaluationRequest& request : progress.evaluations) {
+    asked_[{progress.session, request.update}] = request;
+  }
+}
+
+uint64_t RunProgress::stored_steps() const {
+  if (replays_.empty()) return learner_.env_steps;
+  uint64_t steps = 0;
+  for (const auto& [replay, progress] : replays_) steps += progress.stored_steps;
+  return steps;
+}
+
+std::optional<uint64_t> RunProgress::updates() const {
+  return learner_.session == 0 ? std::nullopt : std::optional(learner_.updates);
+}
+
+uint64_t RunProgress::evaluation_due() const {
+  return learner_.evaluations.empty() ? 0 : learner_.evaluations.back().update;
+}
+
+bool RunProgress::AskedFor(const EvaluationPoint& point) const {
+  const auto it = asked_.find({point.learner_session, point.updates});
+  return it != asked_.end() && it->second.env_steps == point.env_steps &&
+         it->second.checkpoint == point.checkpoint;
+}
+
+}  // namespace shoal::launch

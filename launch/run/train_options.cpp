@@ -1,0 +1,88 @@
+#include "launch/run/train_options.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/config/config_io.h"
+
+namespace shoal::launch {
+namespace {
+
+// What a configuration file says of the preset it is written for.
+struct FilePreset {
+  std::string name;    // empty when it names none
+  bool whole = false;  // a resolved configuration: nothing of the preset is missing in it
+};
+
+FilePreset PresetOfFile(const std::string& file) {
+  if (file.empty()) return {};
+  const nlohmann::json object = ParseStrictJson(ReadFile(file), file);
+  if (!object.is_object() || !object.contains("preset") || !object["preset"].is_string()) return {};
+  return {.name = object["preset"].get<std::string>(),
+          .whole = object.contains("schema") && object["schema"] == kConfigSchema};
+}
+
+FilePreset ChoosePreset(const TrainOptions& options) {
+  FilePreset of_file = PresetOfFile(options.config_file);
+  if (!options.preset.empty() && !of_file.name.empty() && options.preset != of_file.name) {
+    throw UsageError("--preset {}: {} is written for preset '{}'", options.preset,
+                     options.config_file, of_file.name);
+  }
+  if (!options.preset.empty()) of_file.name = options.preset;
+  return of_file;
+}
+
+}  // namespace
+
+Config ResolveConfig(const TrainOptions& options, int cores) {
+  const auto [preset, whole] = ChoosePreset(options);
+  // A run's config.json holds every key: it stays what it was, whatever becomes of its preset.
+  Config config = preset.empty() || whole ? Config{} : LoadPreset(preset);
+  if (!options.config_file.empty()) ApplyFile(options.config_file, &config);
+  ApplyAssignments(options.set, &config);
+  if (config.preset != preset) {
+    throw UsageError("--set preset={}: a preset is chosen with --preset", config.preset);
+  }
+  if (!options.run_name.empty()) ApplyAssignments({"run_name=" + options.run_name}, &config);
+  if (options.lockstep) config.lockstep = true;
+  // Programs that start later, also of a resumed run, need not stand where this one does.
+  if (!config.task_library.empty()) {
+    config.task_library = std::filesystem::absolute(config.task_library).lexically_normal();
+  }
+  // Threads of one update wait for each other, so a core shared with an actor stalls them all.
+  if (config.learner.threads == 0) config.learner.threads = std::max(1, cores / 2);
+  if (config.actors == 0) {
+    config.actors = config.lockstep ? 1 : std::max(1, cores - config.learner.threads);
+  }
+  Validate(config);
+  return config;
+}
+
+bool SetsPrecision(const std::string& assignment) {
+  return assignment.starts_with("learner.precision=");
+}
+
+void ApplyResumeOptions(const TrainOptions& options, Config* config) {
+  const std::pair<bool, const char*> refused[] = {{!options.preset.empty(), "--preset"},
+                                                  {!options.config_file.empty(), "--config"},
+                                                  {!options.run_name.empty(), "--run-name"},
+                                                  {options.overwrite, "--overwrite"},
+                                                  {options.lockstep, "--lockstep"}};
+  for (const auto& [given, name] : refused) {
+    if (given) throw UsageError("--resume goes on with the run's own configuration: no {}", name);
+  }
+  for (const std::string& assignment : options.set) {
+    if (!assignment.starts_with("env_steps=") && !assignment.starts_with("stop.") &&
+        !SetsPrecision(assignment)) {
+      throw UsageError("--set {}: a resumed run takes env_steps, stop.* and learner.precision only",
+                       assignment);
+    }
+  }
+  ApplyAssignments(options.set, config);
+  Validate(*config);
+}
+
+}  // namespace shoal::launch

@@ -1,0 +1,293 @@
+#include "launch/run/training_run.h"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <ctime>
+#include <nlohmann/json.hpp>
+
+#include "common/base/clock.h"
+#include "common/base/error.h"
+#include "common/base/stop.h"
+#include "common/base/usable_cores.h"
+#include "common/config/config_io.h"
+#include "common/config/run_files.h"
+#include "common/credentials/credentials.h"
+#include "common/dds/bus.h"
+#include "common/dds/publisher.h"
+#include "common/dds/role_rights.h"
+#include "common/nn/network_check.h"
+#include "common/tasks/task_library.h"
+#include "common/wire/weights_parts.h"
+#include "launch/processes/actor_program.h"
+#include "launch/processes/detachment.h"
+#include "launch/processes/run_hosts.h"
+#include "launch/processes/run_leftovers.h"
+#include "launch/record/run_folder.h"
+#include "launch/run/coordinator.h"
+#include "launch/run/live_settings.h"
+#include "launch/run/operator_desk.h"
+#include "launch/run/run_end.h"
+#include "launch/watch/prometheus_endpoint.h"
+#include "replay_server/core/hindsight.h"
+#include "replay_server/core/storage_limits.h"
+#include "replay_server/core/storage_needs.h"
+
+namespace shoal::launch {
+namespace {
+
+// A run ready to start. Members are in construction order.
+struct PreparedRun {
+  RunFolder folder;
+  RunConfig config;
+  RunMeta meta;
+  Hosts hosts;
+};
+
+// The processes of a run whose coordinator was killed write into its folder until they have
+// noticed: with --overwrite they would write into the new run's.
+void WaitUntilNobodyWorksOn(const std::filesystem::path& run) {
+  WaitForFormerProcesses(run, kFormerProcessesDeadline, StopRequested, [](const std::string& line) {
+    fmt::print("{}\n", line);
+    std::fflush(stdout);
+  });
+}
+
+PreparedRun PrepareFresh(const TrainOptions& options, RunConfig config, Hosts hosts) {
+  const Config& keys = config.config;
+  if (options.overwrite && !keys.run_name.empty()) {
+    const std::filesystem::path former = std::filesystem::path(keys.run_dir) / keys.run_name;
+    if (!IsHeld(former)) WaitUntilNobodyWorksOn(former);  // else it is refused below
+  }
+  const std::string base =
+      fmt::format("{}-s{}", keys.preset.empty() ? keys.task : keys.preset, keys.seed);
+  RunFolder folder = keys.run_name.empty()
+                         ? RunFolder::CreateNumbered(keys.run_dir, base)
+                         : RunFolder::Create(keys.run_dir, keys.run_name, options.overwrite);
+  config.config.run_name = folder.name();
+  RunMeta meta;
+  meta.started = UtcTimestamp();
+  return {std::move(folder), std::move(config), meta, std::move(hosts)};
+}
+
+// Those the run had, or others in their place.
+Hosts ResumedHosts(const TrainOptions& options, const std::filesystem::path& run,
+                   const Config& config) {
+  if (!std::filesystem::exists(HostsFile(run))) {
+    if (options.hosts.empty()) return {};
+    throw UsageError("--hosts: run '{}' was started without; it goes on without", run.string());
+  }
+  Hosts hosts = ReadHostsFile(options.hosts.empty() ? HostsFile(run).string() : options.hosts);
+  CheckResumedHosts(hosts, config);
+  return hosts;
+}
+
+// What --set changes of a run that was steered is one change more: the last one holds.
+void NoteResumeOptions(const TrainOptions& options, const Config& before, RunMeta* meta) {
+  if (before.lockstep) return;
+  LiveSettings settings(before);
+  settings.Restore(meta->changes);
+  for (const std::string& assignment : options.set) {
+    if (SetsPrecision(assignment)) continue;  // no setting of a running run; config.json has it
+    SettingChange change = settings.Assign(assignment);
+    change.time = UtcTimestamp();
+    change.env_steps = meta->env_steps;
+    change.updates = meta->updates;
+    meta->changes.push_back(std::move(change));
+  }
+}
+
+PreparedRun PrepareResumed(const TrainOptions& options) {
+  RunFolder folder = RunFolder::Reopen(Config().run_dir, options.resume);
+  RunConfig config = ReadRunConfig(folder.path());
+  const Config before = config.config;
+  ApplyResumeOptions(options, &config.config);
+  tasks::LoadTaskLibrary(config.config.task_library);
+  const ObservationSpec now = DescribeObservations(config.config);
+  if (now != config.spec) {
+    throw RuntimeError("the run observed '{}', this program's actors would observe '{}'",
+                       config.spec.Summary(), now.Summary());
+  }
+  RunMeta meta = ReadRunMeta(folder.path());
+  if (meta.started.empty()) meta.started = UtcTimestamp();
+  NoteResumeOptions(options, before, &meta);
+  if (config.config.replay.storage == "memory" && meta.env_steps > 0) {
+    fmt::print(
+        "replay.storage=memory: what was stored is gone; training goes on once the replay has been "
+        "refilled to {} sampleable transitions (replay.min_size)\n",
+        config.config.replay.min_size);
+  }
+  Hosts hosts = ResumedHosts(options, folder.path(), config.config);
+  return {std::move(folder), std::move(config), meta, std::move(hosts)};
+}
+
+// What a receiver of weights takes.
+void CheckNetwork(const RunConfig& run) {
+  nn::CheckNetwork(run.config.network, run.spec, run.config.learner.batch,
+                   int64_t{kMaxWeightsBytes});
+}
+
+// Asked before anything is made or started. A run that exists has its ring.
+void CheckReplay(const RunConfig& run, bool exists) {
+  const Config& config = run.config;
+  replay::CheckHindsight(run);
+  const replay::StorageNeeds needs = replay::StorageNeedsOf(run);
+  if (config.replay.storage == "memory") {
+    replay::CheckMemoryRoom(needs.memory_bytes + needs.ring_bytes);
+    return;
+  }
+  replay::CheckMemoryRoom(needs.memory_bytes, "stop other programs");  // it is never in the file
+  if (exists) return;
+  std::error_code error;
+  std::filesystem::path folder = std::filesystem::absolute(config.run_dir);
+  while (!std::filesystem::exists(folder, error) && folder.has_relative_path()) {
+    folder = folder.parent_path();
+  }
+  if (access(folder.c_str(), W_OK) != 0) {
+    throw RuntimeError("cannot create folder '{}': {}",
+                       (std::filesystem::path(config.run_dir) / config.run_name).string(),
+                       std::strerror(errno));
+  }
+  replay::CheckDiskRoom(folder, needs.ring_bytes);
+}
+
+void PrintStart(const PreparedRun& run, const ClusterAddress& address) {
+  const Config& config = run.config.config;
+  fmt::print("run {}: {}\n", run.folder.path().string(), run.config.spec.Summary());
+  fmt::print(
+      "  seed {}, {} env steps; 1 replay, 1 learner ({} threads), {} actor(s) of {} environments, "
+      "1 evaluation actor; logs in {}\n",
+      config.seed, config.env_steps, config.learner.threads, config.actors, config.envs_per_actor,
+      (run.folder.path() / "logs").string());
+  for (const RemoteHost& host : run.hosts.hosts) {
+    fmt::print("  {} of the actors on {}, in {}\n", host.actors, host.name, host.run.string());
+  }
+  fmt::print("  watch it with: shoal top --run {}, or --peer {}:{}\n", run.folder.path().string(),
+             address.host, dds::OperatePort(address));
+  std::fflush(stdout);
+}
+
+std::string ServersHost(const Hosts& hosts) {
+  return hosts.address.empty() ? ClusterAddress().host : hosts.address;
+}
+
+// Absolute: every process of the run reads it from cluster.json.
+std::string SecureFolder(const TrainOptions& options) {
+  if (options.secure.empty()) return "";
+  return std::filesystem::absolute(options.secure).lexically_normal();
+}
+
+// Of every process that will be started: asked before any is.
+void CheckRunCredentials(const std::string& secure) {
+  if (secure.empty()) return;
+  for (const RoleRights& rights : dds::AllRoleRights()) {
+    if (rights.role == "client") continue;
+    CheckCredentials(secure, rights.role, std::time(nullptr));
+  }
+}
+
+void PrintDetached(const PreparedRun& run) {
+  const std::string path = run.folder.path().string();
+  fmt::print(
+      "started; it goes on by itself (coordinator pid {}): shoal attach --run {}, shoal stop "
+      "--run {}\n",
+      getpid(), path, path);
+}
+
+// `detachment` is null when the run stays with this terminal.
+int Start(PreparedRun run, const TrainOptions& options, std::unique_ptr<dds::Bus> bus,
+          const ClusterAddress& address, Detachment* detachment) {
+  const std::filesystem::path& path = run.folder.path();
+  WaitUntilNobodyWorksOn(path);
+  RemoveUnfinishedFiles(path);
+  std::optional<PrometheusEndpoint> prometheus;
+  if (!options.prometheus.empty()) prometheus.emplace(options.prometheus);
+  WriteRunConfig(path, run.config);
+  WriteClusterAddress(path, address);
+  OperatorDesk desk(*bus, run.config.config.run_name, [&](const RunViewMessage& view) {
+    if (prometheus) prometheus->Update(view);
+  });
+  Progress progress(
+      LogFile(path, "coordinator").string(),
+      [&desk](const std::string& line) { desk.AddEvent(line); },
+      /*plain=*/detachment != nullptr);
+  const auto say = [&](const std::string& line) { progress.Say(line); };
+  PushToHosts(path, run.config.config, address.tag, &run.hosts, say, StopRequested);
+  PrintStart(run, address);
+  if (prometheus) fmt::print("  metrics for Prometheus at {}\n", prometheus->Url());
+  std::fflush(stdout);
+  RunResult result;
+  {
+    Coordinator coordinator(path, run.config, *bus, run.meta, run.hosts.hosts, desk, progress);
+    result = coordinator.Run([&] {
+      if (detachment == nullptr) return;
+      PrintDetached(run);
+      detachment->Started(LogFile(path, "train"));
+    });
+  }
+  const int stops = StopRequests();
+  FetchFromHosts(path, run.config.config, run.hosts, say,
+                 [stops] { return StopRequests() > stops; });
+  const int exit_code = EndRun(path, run.config.config, std::move(result), desk, progress);
+  desk.ShowEnd(exit_code);
+  return exit_code;
+}
+
+int Train(const TrainOptions& options, Detachment* detachment) {
+  ClusterAddress address;
+  if (!options.resume.empty()) {
+    PreparedRun run = PrepareResumed(options);
+    if (options.print_config) fmt::print("{}\n", ToJson(run.config.config).dump(2));
+    if (options.print_config) return 0;
+    CheckNetwork(run.config);
+    CheckReplay(run.config, /*exists=*/true);
+    CheckHosts(run.hosts, StopRequested);
+    if (options.dry_run) return 0;
+    address.host = ServersHost(run.hosts);
+    address.secure = options.secure.empty() ? ReadClusterAddress(run.folder.path()).secure
+                                            : SecureFolder(options);
+    CheckRunCredentials(address.secure);
+    auto bus = dds::ClaimDomain(run.config.config.transport, &address);
+    return Start(std::move(run), options, std::move(bus), address, detachment);
+  }
+  RunConfig config{ResolveConfig(options, UsableCores()), {}};
+  Hosts hosts;
+  if (!options.hosts.empty()) {
+    hosts = ReadHostsFile(options.hosts);
+    ApplyHosts(hosts, &config.config);
+  }
+  if (options.print_config) {
+    fmt::print("{}\n", ToJson(config.config).dump(2));
+    return 0;
+  }
+  tasks::LoadTaskLibrary(config.config.task_library);
+  config.spec = DescribeObservations(config.config);
+  CheckNetwork(config);
+  CheckReplay(config, /*exists=*/false);
+  CheckHosts(hosts, StopRequested);
+  address.host = ServersHost(hosts);
+  address.secure = SecureFolder(options);
+  CheckRunCredentials(address.secure);
+  if (!options.prometheus.empty()) PrometheusEndpoint::Check(options.prometheus);
+  // Claimed before the folder is made, so that a failure leaves nothing half-written.
+  auto bus = dds::ClaimDomain(config.config.transport, &address);
+  if (options.dry_run) {
+    fmt::print("configuration is good; actors observe: {}\n", config.spec.Summary());
+    return 0;
+  }
+  return Start(PrepareFresh(options, std::move(config), std::move(hosts)), options, std::move(bus),
+               address, detachment);
+}
+
+}  // namespace
+
+int RunTraining(const TrainOptions& options) {
+  InstallStopSignals();
+  if (!options.detach) return Train(options, nullptr);
+  Detachment detachment;  // before there are threads
+  return detachment.IsChild() ? Train(options, &detachment) : detachment.exit_code();
+}
+
+}  // namespace shoal::launch

@@ -1,0 +1,122 @@
+#include "launch/watch/metrics_view.h"
+
+#include <algorithm>
+
+namespace shoal::launch {
+namespace {
+
+constexpr std::string_view kUptime = "uptime_seconds";
+
+template <class Values>
+std::optional<double> Find(const Values& values, std::string_view name) {
+  const auto it = values.find(name);
+  return it == values.end() ? std::nullopt : std::optional(it->second);
+}
+
+}  // namespace
+
+// Whether the report is of another process than those before: on several hosts, or in containers, a
+// successor may well have the number of its predecessor, but it began later.
+bool MetricsView::IsSuccessor(const MetricsMessage& message, const Process& before) {
+  if (message.pid != before.newest.pid || message.host != before.newest.host) return true;
+  const auto uptime = std::ranges::find(message.names, kUptime);
+  const auto i = static_cast<size_t>(uptime - message.names.begin());
+  const auto uptime_before = Find(before.values, kUptime);
+  return i < message.values.size() && uptime_before && message.values[i] < *uptime_before;
+}
+
+void MetricsView::OnMessage(const MetricsMessage& message, SteadyTime now) {
+  Process& process = processes_[{message.role, message.id}];
+  if (IsSuccessor(message, process)) {
+    for (const auto& [name, value] : process.values) process.ended[name] += value;
+    process.values.clear();
+    process.time = 0;
+  }
+  process.previous = std::move(process.values);
+  process.previous_time = process.time;
+  process.values.clear();
+  for (size_t i = 0; i < message.names.size() && i < message.values.size(); ++i) {
+    process.values[message.names[i]] = message.values[i];
+  }
+  process.time = message.time;
+  process.heard = now;
+  process.newest = message;
+}
+
+template <class Visit>
+void MetricsView::ForRole(std::string_view role, Visit visit) const {
+  for (const auto& [key, process] : processes_) {
+    if (key.first == role) visit(process);
+  }
+}
+
+std::optional<double> MetricsView::Get(std::string_view role, uint32_t id,
+                                       std::string_view name) const {
+  const auto it = processes_.find({std::string(role), id});
+  return it == processes_.end() ? std::nullopt : Find(it->second.values, name);
+}
+
+std::optional<double> MetricsView::Sum(std::string_view role, std::string_view name,
+                                       SteadyTime now) const {
+  std::optional<double> sum;
+  ForRole(role, [&](const Process& process) {
+    const auto value = Find(process.values, name);
+    if (value && now - process.heard <= kFresh) sum = sum.value_or(0) + *value;
+  });
+  return sum;
+}
+
+std::optional<double> MetricsView::Mean(std::string_view role, std::string_view name,
+                                        std::string_view weight, SteadyTime now) const {
+  double sum = 0, weights = 0;
+  ForRole(role, [&](const Process& process) {
+    const auto value = Find(process.values, name), w = Find(process.values, weight);
+    if (!value || !w || now - process.heard > kFresh) return;
+    sum += *value * *w;
+    weights += *w;
+  });
+  return weights > 0 ? std::optional(sum / weights) : std::nullopt;
+}
+
+std::optional<double> MetricsView::Rate(std::string_view role, std::string_view name) const {
+  double sum = 0;
+  int processes = 0;
+  ForRole(role, [&](const Process& process) {
+    const auto newest = Find(process.values, name), before = Find(process.previous, name);
+    if (!newest || !before || process.time <= process.previous_time) return;
+    sum += (*newest - *before) / (process.time - process.previous_time);
+    ++processes;
+  });
+  return processes > 0 ? std::optional(sum / processes) : std::nullopt;
+}
+
+double MetricsView::Total(std::string_view role, std::string_view name) const {
+  double total = 0;
+  ForRole(role, [&](const Process& process) {
+    total += Find(process.values, name).value_or(0) + Find(process.ended, name).value_or(0);
+  });
+  return total;
+}
+
+std::vector<MetricsMessage> MetricsView::Reports(SteadyTime now) const {
+  std::vector<MetricsMessage> reports;
+  for (const auto& [key, process] : processes_) {
+    const bool silent = now - process.heard > kFresh;
+    if (now - process.heard > kForget || (silent && process.newest.state == "stopping")) continue;
+    reports.push_back(process.newest);
+    if (silent) reports.back().state = "silent";
+  }
+  return reports;
+}
+
+int MetricsView::Processes(std::string_view role) const {
+  int count = 0;
+  ForRole(role, [&](const Process&) { ++count; });
+  return count;
+}
+
+bool MetricsView::Heard(std::string_view role, uint32_t id) const {
+  return processes_.contains({std::string(role), id});
+}
+
+}  // namespace shoal::launch

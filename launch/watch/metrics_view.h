@@ -1,0 +1,73 @@
+// The newest figures of every process of a run, and how fast their counters grow.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "common/base/clock.h"
+#include "common/wire/messages.h"
+
+namespace shoal::launch {
+
+// One thread. Holds two reports per process id and one final value per counter of dead ones.
+class MetricsView {
+ public:
+  // Reports of one process come in the order they were made; their wall-clock times say nothing
+  // about it, because that clock may be set back. A report with another host or process number, or
+  // with a shorter uptime, is of a successor.
+  void OnMessage(const MetricsMessage& message, SteadyTime now);
+
+  // The figure in the newest report of the role's process `id`; empty when it has none.
+  std::optional<double> Get(std::string_view role, uint32_t id, std::string_view name) const;
+  // Sum over the role's processes that reported within kFresh; empty when none has the figure.
+  std::optional<double> Sum(std::string_view role, std::string_view name, SteadyTime now) const;
+  // Mean over them, weighted by the figure `weight`.
+  std::optional<double> Mean(std::string_view role, std::string_view name, std::string_view weight,
+                             SteadyTime now) const;
+  // Growth per second of a counter between the two newest reports, the mean over the role's
+  // processes.
+  std::optional<double> Rate(std::string_view role, std::string_view name) const;
+  // A counter of the role over the whole run: restarted processes begin again at 0, so the last
+  // values of their predecessors are added.
+  double Total(std::string_view role, std::string_view name) const;
+
+  // The newest report of every process, by role and id. Those not heard for kFresh are "silent",
+  // those not heard for
+  // kForget, or that had said that they stop, are left out.
+  std::vector<MetricsMessage> Reports(SteadyTime now) const;
+
+  // Seconds that the role's processes have run, restarted and ended ones included.
+  double Seconds(std::string_view role) const { return Total(role, "uptime_seconds"); }
+  // Processes of the role that ever reported, by id.
+  int Processes(std::string_view role) const;
+  // The role's process `id` has reported.
+  bool Heard(std::string_view role, uint32_t id) const;
+
+  static constexpr std::chrono::seconds kFresh{5};
+  static constexpr std::chrono::seconds kForget{60};
+
+ private:
+  using Values = std::map<std::string, double, std::less<>>;
+  struct Process {
+    double time = 0, previous_time = 0;
+    SteadyTime heard;
+    MetricsMessage newest;
+    Values values, previous;
+    Values ended;  // sums of the last values of former processes of this id
+  };
+
+  static bool IsSuccessor(const MetricsMessage& message, const Process& before);
+
+  // Calls visit(process) for the role's processes, newest reports only.
+  template <class Visit>
+  void ForRole(std::string_view role, Visit visit) const;
+
+  std::map<std::pair<std::string, uint32_t>, Process> processes_;
+};
+
+}  // namespace shoal::launch

@@ -1,0 +1,69 @@
+// What the user sees of a running run: a live block on a terminal, plain lines elsewhere.
+#pragma once
+
+#include <cstdio>
+#include <fstream>
+#include <functional>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/base/clock.h"
+#include "launch/record/evaluation_point.h"
+
+namespace shoal::launch {
+
+// Figures that may be missing are empty: nobody has reported them yet.
+struct ProgressFigures {
+  std::string run;    // name
+  std::string state;  // "running", "draining", "stopping"
+  double elapsed_seconds = 0;
+  uint64_t env_steps = 0, budget = 0;
+  std::optional<double> env_steps_per_second;
+  std::optional<double> updates, updates_per_second;
+  std::vector<std::pair<std::string, double>> update_figures;  // headlines: name, value
+  std::optional<double> policy_lag;       // of the policies that act, updates, median
+  std::optional<double> data_age;         // of the batches' data, updates, median
+  std::optional<double> rollout_success;  // rate over the last episodes of the actors
+  std::optional<double> actors_wait;      // share of the last second the limiter held actors
+  std::optional<double> learner_waits;    // the same for the learner
+  std::optional<EvaluationPoint> last_evaluation, best;
+  int processes = 0, restarts = 0;
+};
+
+// "12:05" or "1:02:03"; "-" when unknown.
+std::string FormatDuration(std::optional<double> seconds);
+// Time until the budget is spent at the present rate.
+std::optional<double> SecondsLeft(const ProgressFigures& figures);
+// One plain line.
+std::string FormatProgressLine(const ProgressFigures& figures);
+// The live block, each line at most `width` characters.
+std::vector<std::string> FormatProgressBlock(const ProgressFigures& figures, int width);
+
+// Writes to stdout and copies event lines to a log file. One thread.
+class Progress {
+ public:
+  // `on_say` hears every line that is said. `plain`: lines, even on a terminal. Throws Error when
+  // the log cannot be opened; an empty name is no log.
+  explicit Progress(const std::string& log_file,
+                    std::function<void(const std::string&)> on_say = nullptr, bool plain = false);
+  // Leaves the cursor below the last block.
+  ~Progress();
+
+  // Shows the figures: at most twice a second as a block, every 5 s as a line.
+  void Show(const ProgressFigures& figures, SteadyTime now);
+  // One line that stays: above the block on a terminal, with a time in the log.
+  void Say(const std::string& line);
+
+ private:
+  void EraseBlock();
+
+  const bool terminal_;
+  std::ofstream log_;
+  const std::function<void(const std::string&)> on_say_;
+  int block_lines_ = 0;
+  std::optional<SteadyTime> shown_;
+};
+
+}  // namespace shoal::launch

@@ -1,0 +1,99 @@
+#include "launch/watch/run_client.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <utility>
+
+#include "common/base/error.h"
+#include "common/base/random.h"
+#include "common/base/saturating_cast.h"
+#include "common/base/stop.h"
+
+namespace shoal::launch {
+namespace {
+
+constexpr std::chrono::milliseconds kPoll{100};  // between looks at stop signals
+constexpr std::chrono::milliseconds kResend{500};
+
+void ThrowIfInterrupted() {
+  if (StopRequested()) throw RuntimeError("interrupted before the run's coordinator answered");
+}
+
+}  // namespace
+
+RunClient::RunClient(const RunTarget& target)
+    : target_(target),
+      client_(HashWords({static_cast<uint64_t>(WallTimeNs()), static_cast<uint64_t>(getpid())}) |
+              1),
+      bus_(target.address, target.transport, dds::Role::kClient),
+      commands_(bus_),
+      replies_(bus_,
+               [this](const ReplyMessage& reply) {
+                 if (reply.client != client_) return;
+                 const MutexLock lock(mutex_);
+                 reply_ = reply;
+                 arrived_.NotifyAll();
+               }),
+      views_(bus_, [this](const RunViewMessage& view) {
+        const MutexLock lock(mutex_);
+        view_ = view;
+        arrived_.NotifyAll();
+      }) {}
+
+std::optional<RunViewMessage> RunClient::WaitForView(SteadyTime deadline) {
+  const MutexLock lock(mutex_);
+  while (!view_ && Now() < deadline && !StopRequested()) {
+    arrived_.WaitUntil(mutex_, std::min(deadline, Now() + kPoll));
+  }
+  return std::exchange(view_, std::nullopt);
+}
+
+RunViewMessage RunClient::FirstView() {
+  if (auto view = WaitForView(Now() + kAnswer)) return *std::move(view);
+  ThrowIfInterrupted();
+  throw RuntimeError("run '{}': its coordinator at {}:{} did not answer within {} s", target_.name,
+                     target_.address.host, dds::OperatePort(target_.address), kAnswer.count());
+}
+
+std::optional<ReplyMessage> RunClient::Ask(const CommandMessage& command) {
+  const SteadyTime deadline = Now() + kAnswer;
+  SteadyTime next_send{};
+  while (Now() < deadline && !StopRequested()) {
+    // Sent again until answered: the coordinator carries a request out once.
+    if (Now() >= next_send && commands_.Matched() > 0 && replies_.Matched() > 0) {
+      commands_.Write(command);
+      next_send = Now() + kResend;
+    }
+    const MutexLock lock(mutex_);
+    if (reply_ && reply_->request == command.request) return std::exchange(reply_, std::nullopt);
+    arrived_.WaitUntil(mutex_, std::min(deadline, Now() + kPoll));
+  }
+  return std::nullopt;
+}
+
+ReplyMessage RunClient::Order(const std::string& verb, const std::vector<std::string>& arguments) {
+  const auto reply =
+      Ask({.client = client_, .request = ++requests_, .verb = verb, .arguments = arguments});
+  if (!reply) {
+    ThrowIfInterrupted();
+    throw RuntimeError("run '{}': its coordinator at {}:{} did not answer the command within {} s",
+                       target_.name, target_.address.host, dds::OperatePort(target_.address),
+                       kAnswer.count());
+  }
+  if (!reply->accepted) throw RuntimeError("refused: {}", reply->text);
+  return *reply;
+}
+
+int ExitCodeOf(const RunViewMessage& view) {
+  for (const MetricsMessage& process : view.processes) {
+    for (size_t i = 0; i < process.names.size() && i < process.values.size(); ++i) {
+      if (process.role == "coordinator" && process.names[i] == "exit_code") {
+        return SaturatingCast<int>(process.values[i]);
+      }
+    }
+  }
+  return 1;
+}
+
+}  // namespace shoal::launch

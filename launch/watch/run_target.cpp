@@ -1,0 +1,84 @@
+#include "launch/watch/run_target.h"
+
+#include <algorithm>
+
+#include "common/base/error.h"
+#include "common/dds/bus.h"
+#include "launch/record/run_folder.h"
+
+namespace shoal::launch {
+namespace {
+
+namespace fs = std::filesystem;
+
+RunTarget TargetOfFolder(const fs::path& folder) {
+  RunTarget target{.name = folder.filename().string(),
+                   .folder = folder,
+                   .address = ReadClusterAddress(folder),
+                   .transport = ReadRunConfig(folder).config.transport};
+  return target;
+}
+
+RunTarget TargetOfPeer(const std::string& peer) {
+  RunTarget target{.name = peer, .folder = {}, .address = dds::ParsePeer(peer), .transport = {}};
+  target.transport.interface = dds::InterfaceTowards(target.address.host);
+  return target;
+}
+
+fs::path FindRun(const TargetOptions& options) {
+  const fs::path given(options.run), named = fs::path(options.run_dir) / options.run;
+  for (const fs::path& path : {named, given}) {
+    if (fs::exists(path / "config.json")) return fs::weakly_canonical(path);
+  }
+  throw UsageError("no run '{}': neither '{}' nor '{}' has a config.json", options.run,
+                   named.string(), given.string());
+}
+
+fs::path OnlyRunningRun(const std::string& dir) {
+  std::vector<fs::path> running;
+  std::string names;
+  for (const fs::path& run : ListRuns(dir)) {
+    if (!IsHeld(run)) continue;
+    running.push_back(run);
+    names += (names.empty() ? "" : ", ") + run.filename().string();
+  }
+  if (running.empty()) {
+    throw RuntimeError("no run is running in '{}' (another folder: --run-dir; elsewhere: --peer)",
+                       dir);
+  }
+  if (running.size() > 1) {
+    throw UsageError("{} runs are running in '{}': choose one with --run: {}", running.size(), dir,
+                     names);
+  }
+  return running[0];
+}
+
+}  // namespace
+
+std::vector<fs::path> ListRuns(const fs::path& dir) {
+  std::vector<fs::path> runs;
+  std::error_code error;
+  for (fs::directory_iterator it(dir, error), end; !error && it != end; it.increment(error)) {
+    if (fs::exists(it->path() / "config.json", error)) runs.push_back(it->path());
+  }
+  std::ranges::sort(runs);
+  return runs;
+}
+
+RunTarget ResolveTarget(const TargetOptions& options) {
+  if (!options.run.empty() && !options.peer.empty()) {
+    throw UsageError("--run {} and --peer {}: give one of them", options.run, options.peer);
+  }
+  if (!options.peer.empty()) {
+    RunTarget target = TargetOfPeer(options.peer);
+    target.address.secure = options.secure;
+    return target;
+  }
+  const fs::path folder = options.run.empty() ? OnlyRunningRun(options.run_dir) : FindRun(options);
+  if (!IsHeld(folder)) throw RuntimeError("run '{}' is not running", folder.string());
+  RunTarget target = TargetOfFolder(folder);
+  if (!options.secure.empty()) target.address.secure = options.secure;
+  return target;
+}
+
+}  // namespace shoal::launch

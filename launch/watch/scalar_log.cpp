@@ -1,0 +1,71 @@
+#include "launch/watch/scalar_log.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "learner/agent/algorithms.h"
+
+namespace shoal::launch {
+namespace {
+
+constexpr std::chrono::seconds kRolloutPeriod{5};
+
+std::optional<double> Find(const MetricsMessage& report, std::string_view name) {
+  const auto at = std::ranges::find(report.names, name);
+  const auto i = static_cast<size_t>(at - report.names.begin());
+  return i < report.values.size() ? std::optional(report.values[i]) : std::nullopt;
+}
+
+}  // namespace
+
+ScalarLog::ScalarLog(const std::filesystem::path& run) : writer_(run / "tensorboard") {}
+
+void ScalarLog::WriteEvaluation(const EvaluationPoint& point) {
+  const auto step = static_cast<int64_t>(point.env_steps);
+  writer_.Scalar("eval/mean_reward", step, point.mean_return);
+  if (point.success) writer_.Scalar("eval/success_rate", step, *point.success);
+  writer_.Flush();
+}
+
+void ScalarLog::WriteRollouts(const MetricsView& view, const ProgressFigures& figures,
+                              SteadyTime now) {
+  if (rollouts_written_ && now - *rollouts_written_ < kRolloutPeriod) return;
+  const auto write = [&](const char* tag, const std::optional<double>& value) {
+    if (!value) return;
+    writer_.Scalar(tag, static_cast<int64_t>(figures.env_steps), *value);
+    rollouts_written_ = now;
+  };
+  write("rollout/ep_rew_mean", view.Mean("actor", "rollout_return", "episodes", now));
+  write("rollout/success_rate", figures.rollout_success);
+  write("rollout/ep_len_mean", view.Mean("actor", "rollout_length", "episodes", now));
+  writer_.Flush();
+}
+
+void ScalarLog::WriteTraining(const MetricsMessage& report, SteadyTime now) {
+  const auto updates = Find(report, "updates"), env_steps = Find(report, "env_steps");
+  if (report.role != "learner" || !updates || !env_steps) return;
+  const auto x = static_cast<int64_t>(*env_steps);
+  bool any = false;
+  for (size_t i = 0; i < report.names.size() && i < report.values.size(); ++i) {
+    const learner::Figure* figure = learner::FindFigure(report.names[i]);
+    if (figure == nullptr) continue;
+    if (*updates == updates_written_) return;  // the figures are those of the report before
+    writer_.Scalar(fmt::format("train/{}", figure->name), x, report.values[i]);
+    if (!figure->known_as.empty()) {
+      writer_.Scalar(fmt::format("train/{}", figure->known_as), x, report.values[i]);
+    }
+    any = true;
+  }
+  if (!any) return;  // the process has made no update yet
+  updates_written_ = *updates;
+  writer_.Scalar("train/n_updates", x, *updates);
+  if (!training_start_) training_start_ = {now, *env_steps};
+  const double seconds = std::chrono::duration<double>(now - training_start_->time).count();
+  const double steps = *env_steps - training_start_->env_steps;
+  if (seconds > 0 && steps > 0) writer_.Scalar("time/fps", x, steps / seconds);
+  writer_.Flush();
+}
+
+}  // namespace shoal::launch

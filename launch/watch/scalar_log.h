@@ -1,0 +1,46 @@
+// The run's TensorBoard scalars, x = env steps: training, rollouts and evaluations. The coordinator
+// is the only process that writes them, so that TensorBoard has one file to follow per start of the
+// run; what the learner has to say comes with its reports.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+#include "common/tensorboard/event_writer.h"
+#include "launch/record/evaluation_point.h"
+#include "launch/watch/metrics_view.h"
+#include "launch/watch/progress.h"
+
+namespace shoal::launch {
+
+// Writes to a new file in RUN/tensorboard. One thread. Errors: Error on a full disk.
+class ScalarLog {
+ public:
+  explicit ScalarLog(const std::filesystem::path& run);  // throws Error
+
+  // eval/mean_reward, eval/success_rate.
+  void WriteEvaluation(const EvaluationPoint& point);
+  // rollout/ep_rew_mean, rollout/success_rate, rollout/ep_len_mean; every 5 s, from
+  // the first finished episode on.
+  void WriteRollouts(const MetricsView& view, const ProgressFigures& figures, SteadyTime now);
+  // train/NAME of each figure of the updates, and train/OTHER where people know it by another name
+  // (learner/agent/update_figures.h), train/n_updates and time/fps, the mean since this session's
+  // first update; of each report of the learner that has made updates since the one before. Reports
+  // of others are ignored.
+  void WriteTraining(const MetricsMessage& report, SteadyTime now);
+
+ private:
+  // Since when and from how many env steps time/fps counts.
+  struct Start {
+    SteadyTime time;
+    double env_steps = 0;
+  };
+
+  tensorboard::EventWriter writer_;
+  std::optional<SteadyTime> rollouts_written_;
+  double updates_written_ = 0;
+  std::optional<Start> training_start_;
+};
+
+}  // namespace shoal::launch

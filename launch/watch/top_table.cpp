@@ -1,0 +1,280 @@
+#include "launch/watch/top_table.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "common/base/saturating_cast.h"
+#include "launch/watch/bottleneck.h"
+#include "launch/watch/run_figures.h"
+
+namespace shoal::launch {
+namespace {
+
+using Process = MetricsMessage;
+
+// A cell: what is shown and what it is sorted by.
+struct Cell {
+  std::string text = "-";
+  std::optional<double> number{};
+};
+
+std::optional<double> Get(const Process& process, std::string_view name) {
+  for (size_t i = 0; i < process.names.size() && i < process.values.size(); ++i) {
+    if (process.names[i] == name && std::isfinite(process.values[i])) return process.values[i];
+  }
+  return std::nullopt;
+}
+
+Cell Text(const std::string& text) { return {text.empty() ? "-" : text}; }
+
+Cell Number(const std::optional<double>& value, const char* format = "{:.0f}") {
+  if (!value) return {};
+  return {fmt::format(fmt::runtime(format), *value), value};
+}
+
+Cell Share(const std::optional<double>& value, const std::string& after = "") {
+  if (!value) return {};
+  return {fmt::format("{:.0f} %{}", 100 * *value, after), value};
+}
+
+// NAME_p50, _p90 and _p99.
+Cell Quantiles(const Process& process, const std::string& name, const char* format) {
+  const auto p50 = Get(process, name + "_p50"), p90 = Get(process, name + "_p90"),
+             p99 = Get(process, name + "_p99");
+  if (!p50 || !p90 || !p99) return {};
+  const std::string one = format;
+  return {fmt::format(fmt::runtime(one + "/" + one + "/" + one), *p50, *p90, *p99), p50};
+}
+
+Cell Rate(const Process& process) {
+  for (const auto& [name, unit] :
+       {std::pair("env_steps_per_second", "steps"), std::pair("updates_per_second", "updates"),
+        std::pair("stored_records_per_second", "records")}) {
+    if (process.role == "coordinator") break;  // its rates are the sums
+    const auto rate = Get(process, name);
+    if (rate) return {fmt::format("{:.1f} {}/s", *rate, unit), rate};
+  }
+  return {};
+}
+
+// What waits to be worked on: chunks (replay), batches (learner), records not yet stored (actor).
+Cell Queue(const Process& process) {
+  for (const char* name : {"queue_depth", "batches_ready", "outstanding"}) {
+    if (const auto depth = Get(process, name)) return Number(depth);
+  }
+  return {};
+}
+
+Cell QueueAge(const Process& process) {
+  const auto seconds = Get(process, "queue_age_seconds");
+  return seconds ? Number(*seconds * 1000, "{:.0f} ms") : Cell();
+}
+
+// What may still be sent (actor: records), has been asked for (learner: batches) or waits to be
+// answered (replay: batches).
+Cell Credit(const Process& process) {
+  for (const char* name : {"credit", "requests_outstanding", "requests_waiting"}) {
+    if (const auto credit = Get(process, name)) return Number(credit);
+  }
+  return {};
+}
+
+// The share of time in which the limiter held somebody, and whom; for others, waiting for it.
+Cell Blocked(const Process& process) {
+  if (process.role == "replay") {
+    const double in = Get(process, "limiter_blocked_insert_share").value_or(0);
+    const double out = Get(process, "limiter_blocked_sample_share").value_or(0);
+    return in >= out ? Share(in, " in") : Share(out, " out");
+  }
+  if (process.role == "actor") return Share(Get(process, "share_waiting_credit"));
+  if (process.role == "learner") return Share(Get(process, "share_waiting_data"));
+  return {};
+}
+
+// The stage that took most of the last second.
+Cell Busiest(const Process& process) {
+  constexpr std::string_view kPrefix = "share_";
+  Cell busiest;
+  for (size_t i = 0; i < process.names.size() && i < process.values.size(); ++i) {
+    const std::string_view name = process.names[i];
+    if (!name.starts_with(kPrefix) || process.values[i] <= busiest.number.value_or(0)) continue;
+    std::string stage(name.substr(kPrefix.size()));
+    std::ranges::replace(stage, '_', ' ');
+    busiest = {fmt::format("{} {:.0f} %", stage, 100 * process.values[i]), process.values[i]};
+  }
+  return busiest;
+}
+
+int RoleOrder(const std::string& role) {
+  constexpr const char* kRoles[] = {"coordinator", "learner", "replay", "eval", "actor"};
+  return static_cast<int>(std::ranges::find(kRoles, role) - std::begin(kRoles));
+}
+
+struct Column {
+  const char* name;
+  Cell (*cell)(const Process&);
+};
+
+constexpr Column kColumns[] = {
+    {"PROCESS", [](const Process& p) { return Text(fmt::format("{}-{}", p.role, p.id)); }},
+    {"HOST", [](const Process& p) { return Text(p.host); }},
+    {"PID", [](const Process& p) { return Number(p.pid); }},
+    {"STATE", [](const Process& p) { return Text(p.state); }},
+    {"RATE", Rate},
+    {"QUEUE", Queue},
+    {"AGE", QueueAge},
+    {"CREDIT", Credit},
+    {"BLOCKED", Blocked},
+    {"LAG 50/90/99", [](const Process& p) { return Quantiles(p, "policy_lag", "{:.0f}"); }},
+    {"DATA AGE 50/90/99",
+     [](const Process& p) { return Quantiles(p, "data_age_updates", "{:.0f}"); }},
+    {"DATA s 50/90/99",
+     [](const Process& p) { return Quantiles(p, "data_age_seconds", "{:.1f}"); }},
+    {"MB", [](const Process& p) { return Number(Get(p, "rss_mb")); }},
+    {"FILES", [](const Process& p) { return Number(Get(p, "open_files")); }},
+    {"MOST TIME IN", Busiest},
+};
+
+using Row = std::vector<Cell>;
+
+bool Before(const Row& a, const Row& b, size_t column) {
+  const Cell &x = a[column], &y = b[column];
+  if (x.number && y.number) return *x.number > *y.number;
+  if (x.number || y.number) return x.number.has_value();
+  return x.text < y.text;
+}
+
+std::vector<Row> SortedRows(const RunViewMessage& view, const TopOrder& order) {
+  std::vector<const Process*> processes;
+  for (const Process& process : view.processes) processes.push_back(&process);
+  std::ranges::stable_sort(processes, [](const Process* a, const Process* b) {
+    const int x = RoleOrder(a->role), y = RoleOrder(b->role);
+    return x != y ? x < y : a->id < b->id;
+  });
+  std::vector<Row> rows;
+  for (const Process* process : processes) {
+    Row row;
+    for (const Column& column : kColumns) row.push_back(column.cell(*process));
+    rows.push_back(std::move(row));
+  }
+  const auto column = static_cast<size_t>(order.column);
+  if (column > 0) {
+    std::ranges::stable_sort(rows,
+                             [&](const Row& a, const Row& b) { return Before(a, b, column); });
+  }
+  if (order.reversed) std::ranges::reverse(rows);
+  return rows;
+}
+
+// A width of 0 leaves the column out.
+std::string Rendered(const Row& row, const std::vector<size_t>& widths) {
+  std::string line;
+  for (size_t i = 0; i < row.size(); ++i) {
+    // Text to the left, numbers to the right, the last column as it is.
+    const bool number = row[i].number && i + 1 < row.size();
+    if (widths[i] == 0) continue;
+    if (i + 1 == row.size()) {
+      line += row[i].text;
+    } else if (number) {
+      line += fmt::format("{:>{}}  ", row[i].text, widths[i]);
+    } else {
+      line += fmt::format("{:<{}}  ", row[i].text, widths[i]);
+    }
+  }
+  return line;
+}
+
+// Sets the widths of columns to 0 until a row fits; the first to go are what `--json` is for.
+void LeaveOutColumns(size_t most, std::vector<size_t>* widths) {
+  constexpr std::string_view kFirstToGo[] = {
+      "FILES", "DATA s 50/90/99", "PID", "HOST",        "DATA AGE 50/90/99",
+      "AGE",   "CREDIT",          "MB",  "LAG 50/90/99"};
+  const auto needed = [&] {
+    size_t sum = widths->back();
+    for (size_t i = 0; i + 1 < widths->size(); ++i) {
+      if ((*widths)[i] > 0) sum += (*widths)[i] + 2;
+    }
+    return sum;
+  };
+  for (const std::string_view name : kFirstToGo) {
+    if (needed() <= most) return;
+    const auto column = std::ranges::find(kColumns, name, &Column::name);
+    widths->at(static_cast<size_t>(column - std::begin(kColumns))) = 0;
+  }
+}
+
+// The text in lines of at most `width` characters, broken at spaces where there are any.
+std::vector<std::string> Wrapped(std::string text, size_t width) {
+  std::vector<std::string> lines;
+  while (text.size() > width) {
+    const size_t space = text.rfind(' ', width);
+    const size_t end = space == std::string::npos || space == 0 ? width : space;
+    lines.push_back(text.substr(0, end));
+    text.erase(0, end == space ? end + 1 : end);
+  }
+  lines.push_back(std::move(text));
+  return lines;
+}
+
+// What to do about where the time has gone since the processes' start.
+std::string AdviceFor(const RunViewMessage& message) {
+  MetricsView view;
+  for (const Process& process : message.processes) view.OnMessage(process, Now());
+  const auto asked = [&](const char* name) { return view.Get("coordinator", 0, name).value_or(0); };
+  return FindBottleneck(view, asked("usable_cores"), SaturatingCast<int>(asked("actors"))).advice;
+}
+
+}  // namespace
+
+int TopColumns() { return static_cast<int>(std::size(kColumns)); }
+
+std::string TopColumnName(int column) { return kColumns[column].name; }
+
+std::vector<std::string> FormatTop(const RunViewMessage& view, const TopOrder& order, int width) {
+  const size_t most = width > 0 ? static_cast<size_t>(width) : std::string::npos;
+  std::vector<std::string> lines = Wrapped(FormatTopLine(view), most);
+  for (std::string& line : Wrapped(AdviceFor(view), most)) lines.push_back(std::move(line));
+  Row heading;
+  for (const Column& column : kColumns) heading.push_back({column.name});
+  const std::vector<Row> rows = SortedRows(view, order);
+  std::vector<size_t> widths;
+  for (const Cell& cell : heading) widths.push_back(cell.text.size());
+  for (const Row& row : rows) {
+    for (size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].text.size());
+  }
+  LeaveOutColumns(most, &widths);
+  lines.push_back(Rendered(heading, widths).substr(0, most));
+  for (const Row& row : rows) lines.push_back(Rendered(row, widths).substr(0, most));
+  return lines;
+}
+
+std::string FormatTopLine(const RunViewMessage& view) {
+  return fmt::format("{}: {}", view.run, FormatProgressLine(FiguresOfView(view, Now())));
+}
+
+std::string TopJson(const RunViewMessage& view) {
+  nlohmann::ordered_json processes = nlohmann::ordered_json::array();
+  for (const Process& process : view.processes) {
+    nlohmann::ordered_json object{{"role", process.role},   {"id", process.id},
+                                  {"host", process.host},   {"pid", process.pid},
+                                  {"state", process.state}, {"time", process.time}};
+    for (size_t i = 0; i < process.names.size() && i < process.values.size(); ++i) {
+      object[process.names[i]] = process.values[i];  // JSON has null for what is not finite
+    }
+    processes.push_back(std::move(object));
+  }
+  const nlohmann::ordered_json object{{"schema", view.schema},       {"run", view.run},
+                                      {"time", view.time},           {"state", view.state},
+                                      {"env_steps", view.env_steps}, {"updates", view.updates},
+                                      {"processes", processes}};
+  // Names come over the network: what is not UTF-8 in them is replaced.
+  return object.dump(2, ' ', /*ensure_ascii=*/false,
+                     nlohmann::ordered_json::error_handler_t::replace);
+}
+
+}  // namespace shoal::launch

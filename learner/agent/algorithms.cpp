@@ -1,0 +1,61 @@
+#include "learner/agent/algorithms.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "common/base/error.h"
+#include "learner/agent/ddpg/ddpg_agent.h"
+#include "learner/agent/frame_figures.h"
+#include "learner/agent/sac/sac_agent.h"
+#include "learner/agent/td3/td3_agent.h"
+
+namespace shoal::learner {
+namespace {
+
+constexpr Algorithm kAlgorithms[] = {
+    {"sac", kSacFigures, MakeSacAgent},
+    {"td3", kDeterministicFigures, MakeTd3Agent},
+    {"ddpg", kDeterministicFigures, MakeDdpgAgent},
+};
+
+std::vector<const Figure*> CollectFigures() {
+  std::vector<const Figure*> all;
+  const auto add = [&](std::span<const Figure* const> figures) {
+    for (const Figure* figure : figures) {
+      if (std::ranges::find(all, figure->name, &Figure::name) == all.end()) all.push_back(figure);
+    }
+  };
+  for (const Algorithm& algorithm : kAlgorithms) add(algorithm.figures);
+  add(kFrameFigures);
+  return all;
+}
+
+}  // namespace
+
+std::span<const Algorithm> Algorithms() { return kAlgorithms; }
+
+std::unique_ptr<Agent> MakeAgent(const Config& config, const ObservationSpec& spec,
+                                 nn::Precision precision) {
+  const std::string& name = config.learner.algorithm;
+  const auto algorithm = std::ranges::find(kAlgorithms, name, &Algorithm::name);
+  if (algorithm != std::end(kAlgorithms)) return algorithm->make(config, spec, precision);
+  std::vector<std::string_view> names;
+  for (const Algorithm& known : kAlgorithms) names.push_back(known.name);
+  throw UsageError("learner.algorithm = \"{}\": expected {}", name, fmt::join(names, " | "));
+}
+
+std::span<const Figure* const> AllFigures() {
+  static const std::vector<const Figure*> all = CollectFigures();
+  return all;
+}
+
+const Figure* FindFigure(std::string_view name) {
+  const auto all = AllFigures();
+  const auto at = std::ranges::find(all, name, &Figure::name);
+  return at == all.end() ? nullptr : *at;
+}
+
+}  // namespace shoal::learner

@@ -1,0 +1,22 @@
+#include "learner/agent/critic_encoder.h"
+
+#include "common/nn/actor_critic_plan.h"
+
+namespace shoal::learner {
+
+std::unique_ptr<nn::EncoderModule> MakeCriticEncoder(const NetworkConfig& network,
+                                                     const ObservationSpec& spec,
+                                                     const nn::ModuleContext& context) {
+  if (!spec.HasPixels()) return nullptr;
+  return std::make_unique<nn::EncoderModule>(nn::PlanEncoder(network, spec),
+                                             nn::Module::Use::kTraining, context);
+}
+
+std::vector<nn::ParameterSet*> CriticSets(nn::EncoderModule* encoder, nn::CriticModule* critic) {
+  std::vector<nn::ParameterSet*> sets;
+  if (encoder != nullptr) sets.push_back(&encoder->parameters());
+  sets.push_back(&critic->parameters());
+  return sets;
+}
+
+}  // namespace shoal::learner

@@ -1,0 +1,10 @@
+#include "learner/agent/ddpg/ddpg_agent.h"
+
+namespace shoal::learner {
+
+std::unique_ptr<Agent> MakeDdpgAgent(const Config& config, const ObservationSpec& spec,
+                                     nn::Precision precision) {
+  return MakeDeterministicAgent(config, spec, precision, {.critics = 1});
+}
+
+}  // namespace shoal::learner

@@ -1,0 +1,15 @@
+// DDPG: one critic, targets as the target actor gives them (Lillicrap et al. 2015,
+// arXiv:1509.02971). Everything else: deterministic/deterministic_agent.h.
+#pragma once
+
+#include <memory>
+
+#include "learner/agent/deterministic/deterministic_agent.h"
+
+namespace shoal::learner {
+
+// As MakeAgent.
+std::unique_ptr<Agent> MakeDdpgAgent(const Config& config, const ObservationSpec& spec,
+                                     nn::Precision precision);
+
+}  // namespace shoal::learner

@@ -1,0 +1,266 @@
+#include "learner/agent/deterministic/deterministic_agent.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "common/base/check.h"
+#include "common/base/random.h"
+#include "common/nn/actor_critic_plan.h"
+#include "common/nn/actor_module.h"
+#include "common/nn/adam.h"
+#include "common/nn/critic_module.h"
+#include "common/nn/encoder_module.h"
+#include "common/nn/parallel.h"
+#include "learner/agent/agent_state.h"
+#include "learner/agent/batch_faults.h"
+#include "learner/agent/critic_encoder.h"
+#include "learner/agent/losses.h"
+
+namespace shoal::learner {
+namespace {
+
+using Use = nn::Module::Use;
+
+nn::ActorPlan PlanActor(const Config& config, const ObservationSpec& spec, const char* name) {
+  return nn::PlanActor(config.network, spec, nn::ActorOutput::kDeterministic, name);
+}
+
+class DeterministicAgent final : public Agent {
+ public:
+  DeterministicAgent(const Config& config, const ObservationSpec& spec, nn::Precision precision,
+                     const DeterministicOptions& options);
+
+  UpdateOutcome Update(const BatchView& batch, const OnStageEnd& on_stage_end) override;
+  uint64_t updates() const override { return updates_; }
+  nn::TensorMap PolicyTensors() const override;
+  nn::TensorMap AveragedPolicyTensors() const override;
+  nn::TensorMap AllTensors() const override { return state_.Export(); }
+  void Restore(const nn::TensorMap& tensors, const std::string& source) override {
+    state_.Restore(tensors, source);
+  }
+
+ private:
+  void Encode(std::span<const uint8_t> frames) {
+    if (encoder_) encoder_->Forward(frames.data());
+  }
+  void ComputeTargets(const BatchView& batch, Random* random, const OnStageEnd& on_stage_end);
+  bool UpdateCritic(const BatchView& batch, const OnStageEnd& on_stage_end, UpdateFigures* figures);
+  void RefreshCritic();  // and the encoder
+  bool UpdateActor(const BatchView& batch, const OnStageEnd& on_stage_end, UpdateFigures* figures);
+  void MoveTargetsAndAverage();
+  // Whether the coming update is one in which something of this period moves.
+  bool Due(int period) const { return (updates_ + 1) % uint64_t(period) == 0; }
+  std::vector<const float*> Values(const nn::CriticModule& critic) const;
+
+  const Config config_;
+  const DeterministicOptions options_;
+  const int batch_size_, action_size_;  // B, A
+  const nn::ModuleContext context_;
+  const std::unique_ptr<nn::EncoderModule> encoder_;  // null without pixels
+  const nn::Features* const features_;
+  nn::ActorModule actor_, target_actor_;
+  nn::CriticModule critic_, target_critic_;
+  nn::ParameterSet encoder_average_, actor_average_;
+  nn::Adam critic_optimiser_, actor_optimiser_;
+  uint64_t updates_ = 0;
+  AgentState state_;
+
+  std::vector<float> target_action_;             // a' (B, A)
+  std::vector<float> targets_;                   // y (B)
+  std::vector<std::vector<float>> q_gradients_;  // (B) for each critic
+  std::vector<float> action_gradient_;           // (B, A)
+};
+
+DeterministicAgent::DeterministicAgent(const Config& config, const ObservationSpec& spec,
+                                       nn::Precision precision, const DeterministicOptions& options)
+    : config_(config),
+      options_(options),
+      batch_size_(config.learner.batch),
+      action_size_(spec.action_size),
+      context_(precision, batch_size_, nn::Threads()),
+      encoder_(MakeCriticEncoder(config.network, spec, context_)),
+      features_(encoder_ ? &encoder_->features() : nullptr),
+      actor_(PlanActor(config, spec, "actor"), features_, /*trains_encoder=*/false, Use::kTraining,
+             context_),
+      target_actor_(PlanActor(config, spec, "target_actor"), features_, /*trains_encoder=*/false,
+                    Use::kInference, context_),
+      critic_(nn::PlanCritic(config.network, spec, "critic", options.critics), features_,
+              /*trains_encoder=*/true, Use::kTraining, context_),
+      target_critic_(nn::PlanCritic(config.network, spec, "target", options.critics), features_,
+                     /*trains_encoder=*/false, Use::kInference, context_),
+      encoder_average_(nn::PlanEncoder(config.network, spec).Parameters(), Use::kInference),
+      actor_average_(PlanActor(config, spec, "actor").Parameters(), Use::kInference),
+      critic_optimiser_(CriticSets(encoder_.get(), &critic_),
+                        {.rate = config.learner.learning_rate}),
+      actor_optimiser_({&actor_.parameters()}, {.rate = config.learner.learning_rate}),
+      target_action_(size_t(batch_size_) * size_t(action_size_)),
+      targets_(size_t(batch_size_)),
+      q_gradients_(size_t(options.critics), targets_),
+      action_gradient_(target_action_) {
+  const auto seed = uint64_t(config.seed);
+  if (encoder_) {
+    encoder_->parameters().Initialise(seed);
+    nn::CopyParameters(encoder_->parameters(), &encoder_average_);
+    state_.Add(encoder_.get());
+    state_.Add(&encoder_average_, "average");
+  }
+  actor_.parameters().Initialise(seed);
+  critic_.parameters().Initialise(seed);
+  actor_.Refresh();
+  RefreshCritic();
+  nn::CopyParameters(actor_, &target_actor_);
+  nn::CopyParameters(critic_, &target_critic_);
+  nn::CopyParameters(actor_.parameters(), &actor_average_);
+  state_.Add(&actor_);
+  state_.Add(&target_actor_);
+  state_.Add(&critic_);
+  state_.Add(&target_critic_);
+  state_.Add(&actor_average_, "average");
+  state_.Add(&actor_optimiser_, "actor");
+  state_.Add(&critic_optimiser_, "critic");
+  state_.Add(&updates_, "agent.updates");
+}
+
+void DeterministicAgent::RefreshCritic() {
+  if (encoder_) encoder_->Refresh();
+  critic_.Refresh();
+}
+
+std::vector<const float*> DeterministicAgent::Values(const nn::CriticModule& critic) const {
+  std::vector<const float*> q;
+  for (int i = 0; i < critic.count(); ++i) q.push_back(critic.q(i));
+  return q;
+}
+
+void DeterministicAgent::ComputeTargets(const BatchView& batch, Random* random,
+                                        const OnStageEnd& on_stage_end) {
+  const float* vector = batch.next_obs_vector.data();
+  Encode(batch.next_obs_frames);
+  std::copy_n(target_actor_.Forward(vector).action, target_action_.size(), target_action_.begin());
+  if (options_.target_noise > 0) {
+    for (float& action : target_action_) {
+      const double noise = std::clamp(options_.target_noise * random->Normal(),
+                                      -options_.target_noise_clip, options_.target_noise_clip);
+      action = float(std::clamp(action + noise, -1.0, 1.0));
+    }
+  }
+  target_critic_.ForwardObservation(vector);
+  target_critic_.ForwardAction(target_action_.data());
+  MinTargets(batch_size_, batch.reward.data(), batch.bootstrap.data(), Values(target_critic_),
+             float(config_.learner.reward_scale), float(config_.learner.discount), targets_.data());
+  AverageCopies(batch_size_, config_.replay.copies, targets_.data());
+  on_stage_end(UpdateStage::kForward);
+}
+
+// False where the loss or its gradient is not finite; then no parameter has changed.
+bool DeterministicAgent::UpdateCritic(const BatchView& batch, const OnStageEnd& on_stage_end,
+                                      UpdateFigures* figures) {
+  Encode(batch.obs_frames);
+  critic_.ForwardObservation(batch.obs_vector.data());
+  critic_.ForwardAction(batch.action.data());
+  const CriticLoss loss = CriticLossForward(batch_size_, Values(critic_), targets_.data());
+  on_stage_end(UpdateStage::kForward);
+  for (int i = 0; i < options_.critics; ++i) {
+    CriticLossBackward(batch_size_, critic_.q(i), targets_.data(), q_gradients_[size_t(i)].data());
+  }
+  critic_.Backward(q_gradients_);
+  if (encoder_) encoder_->Backward();
+  const double squares = critic_optimiser_.GradientSquares();
+  on_stage_end(UpdateStage::kBackward);
+  figures->Set(kCriticLoss, loss.loss);
+  figures->Set(kQMean, loss.q_mean);
+  figures->Set(kTargetMean, loss.target_mean);
+  figures->Set(kCriticGradNorm, std::sqrt(squares));
+  if (!Usable(loss.loss, squares)) return false;
+  critic_optimiser_.Step();
+  RefreshCritic();
+  on_stage_end(UpdateStage::kOptimiser);
+  return true;
+}
+
+// The features are still those of obs. False where the loss or its gradient is not finite; then the
+// actor has not changed.
+bool DeterministicAgent::UpdateActor(const BatchView& batch, const OnStageEnd& on_stage_end,
+                                     UpdateFigures* figures) {
+  const float* vector = batch.obs_vector.data();
+  const float* action = actor_.Forward(vector).action;
+  critic_.ForwardObservation(vector);
+  critic_.ForwardAction(action);
+  const float loss = DeterministicActorLoss(batch_size_, critic_.q(0));
+  int64_t saturated = 0;
+  for (size_t i = 0; i < action_gradient_.size(); ++i) saturated += std::abs(action[i]) > 0.99f;
+  on_stage_end(UpdateStage::kForward);
+  // The others are no part of the loss.
+  std::vector<std::vector<float>> gradients(size_t(options_.critics));
+  gradients[0].assign(size_t(batch_size_), -1.f / float(batch_size_));
+  critic_.BackwardAction(gradients, action_gradient_.data());
+  actor_.Backward(action_gradient_.data());
+  const double squares = actor_optimiser_.GradientSquares();
+  on_stage_end(UpdateStage::kBackward);
+  figures->Set(kActorLoss, loss);
+  figures->Set(kActorGradNorm, std::sqrt(squares));
+  figures->Set(kActionSaturation, double(saturated) / double(action_gradient_.size()));
+  if (!Usable(loss, squares)) return false;
+  actor_optimiser_.Step();
+  actor_.Refresh();
+  on_stage_end(UpdateStage::kOptimiser);
+  return true;
+}
+
+void DeterministicAgent::MoveTargetsAndAverage() {
+  if (Due(config_.learner.target_period)) {
+    nn::MoveTowards(float(config_.learner.tau), critic_, &target_critic_);
+    nn::MoveTowards(float(config_.learner.tau), actor_, &target_actor_);
+  }
+  const auto rate = float(config_.learner.average_rate);
+  nn::MoveTowards(rate, actor_.parameters(), &actor_average_);
+  if (encoder_) nn::MoveTowards(rate, encoder_->parameters(), &encoder_average_);
+}
+
+UpdateOutcome DeterministicAgent::Update(const BatchView& batch, const OnStageEnd& on_stage_end) {
+  CHECK(int(batch.reward.size()) == batch_size_) << "batch of " << batch.reward.size();
+  const nn::ThreadScope scope(context_.threads);
+  UpdateOutcome outcome{.figures = {}, .finite = AllFinite(batch)};
+  if (!outcome.finite) return outcome;
+  Random random(StreamKey(uint64_t(config_.seed), StreamRole::kLearnerUpdate, updates_));
+  ComputeTargets(batch, &random, on_stage_end);
+  outcome.finite = UpdateCritic(batch, on_stage_end, &outcome.figures);
+  if (!outcome.finite) return outcome;
+  if (Due(config_.learner.actor_period) && !UpdateActor(batch, on_stage_end, &outcome.figures)) {
+    critic_optimiser_.Undo();
+    RefreshCritic();
+    outcome.finite = false;
+    return outcome;
+  }
+  MoveTargetsAndAverage();
+  on_stage_end(UpdateStage::kOptimiser);
+  ++updates_;
+  return outcome;
+}
+
+nn::TensorMap DeterministicAgent::PolicyTensors() const {
+  nn::TensorMap policy;
+  if (encoder_) encoder_->parameters().Export(&policy);
+  actor_.parameters().Export(&policy);
+  return policy;
+}
+
+nn::TensorMap DeterministicAgent::AveragedPolicyTensors() const {
+  nn::TensorMap policy;
+  encoder_average_.Export(&policy);  // nothing without pixels
+  actor_average_.Export(&policy);
+  return policy;
+}
+
+}  // namespace
+
+std::unique_ptr<Agent> MakeDeterministicAgent(const Config& config, const ObservationSpec& spec,
+                                              nn::Precision precision,
+                                              const DeterministicOptions& options) {
+  return std::make_unique<DeterministicAgent>(config, spec, precision, options);
+}
+
+}  // namespace shoal::learner

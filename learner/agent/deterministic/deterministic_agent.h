@@ -1,0 +1,41 @@
+// What TD3 and DDPG share: a deterministic actor that climbs its critic, targets of both, and one
+// update of a batch. Equations are numbered in docs/algorithm.md.
+//
+//   1. targets   next_obs -> encoder -> target actor, target critic -> y           (Eq. 18, 15)
+//   2. critic    obs -> encoder -> critic -> loss -> encoder and critic step            (Eq. 6)
+//   3. actor     the features of 2, detached -> actor -> first critic -> actor step    (Eq. 19)
+//   4. targets of actor and critic follow                                               (Eq. 9)
+//   5. the averaged policy follows encoder and actor                                   (Eq. 12)
+//
+// 3 in every actor_period-th update, 4 in every target_period-th, counted from 1: the critic moves
+// first. As in SAC the encoder is trained by the critic's loss alone and has no target.
+//
+// Sources: Lillicrap et al. 2015, arXiv:1509.02971; Fujimoto et al. 2018, arXiv:1802.09477.
+#pragma once
+
+#include <memory>
+
+#include "common/config/config.h"
+#include "common/nn/precision.h"
+#include "common/spec/observation_spec.h"
+#include "learner/agent/agent.h"
+
+namespace shoal::learner {
+
+struct DeterministicOptions {
+  int critics = 2;  // Q functions; a target is the smallest of them
+  // Standard deviation of the noise on a target's action, and what it is clipped to; 0: none.
+  double target_noise = 0, target_noise_clip = 0;
+};
+
+// In the order of an update; the actor's only where the update moves the actor.
+inline constexpr const Figure* kDeterministicFigures[] = {
+    &kCriticLoss, &kQMean,         &kTargetMean,      &kCriticGradNorm,
+    &kActorLoss,  &kActorGradNorm, &kActionSaturation};
+
+// Takes batch, seed, discount, reward scale, rates and periods from `config`.
+std::unique_ptr<Agent> MakeDeterministicAgent(const Config& config, const ObservationSpec& spec,
+                                              nn::Precision precision,
+                                              const DeterministicOptions& options);
+
+}  // namespace shoal::learner

@@ -1,0 +1,187 @@
+// One update, in order (equations of docs/algorithm.md):
+//
+//   1. targets     next_obs -> encoder -> actor, target heads -> y                 (Eq. 5, 15)
+//   2. critic      obs -> encoder -> critic heads -> loss -> encoder and critic step   (Eq. 6)
+//   3. actor       the features of 2, detached -> actor -> critic heads -> actor step  (Eq. 7)
+//   4. temperature from the log-probabilities of 3                                     (Eq. 8)
+//   5. target heads follow the critic's                                                (Eq. 9)
+//   6. the averaged policy follows encoder and actor                                  (Eq. 12)
+//
+// 3 and 4 every actor_period updates, 5 every target_period, both from the first update on. The
+// encoder keeps one set of activations, so next_obs goes through it first. The temperature in 1 and
+// 3 is the one before this update.
+#include "learner/agent/sac/sac_agent.h"
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "common/base/check.h"
+#include "common/base/random.h"
+#include "common/nn/parallel.h"
+#include "learner/agent/agent_state.h"
+#include "learner/agent/batch_faults.h"
+#include "learner/agent/losses.h"
+#include "learner/agent/sac/sac_networks.h"
+#include "learner/agent/squashed_gaussian.h"
+
+namespace shoal::learner {
+namespace {
+
+class SacAgent final : public Agent {
+ public:
+  SacAgent(const Config& config, const ObservationSpec& spec, nn::Precision precision);
+
+  UpdateOutcome Update(const BatchView& batch, const OnStageEnd& on_stage_end) override;
+  uint64_t updates() const override { return updates_; }
+  nn::TensorMap PolicyTensors() const override { return networks_.PolicyTensors(); }
+  nn::TensorMap AveragedPolicyTensors() const override { return networks_.AveragedPolicyTensors(); }
+  nn::TensorMap AllTensors() const override { return state_.Export(); }
+  void Restore(const nn::TensorMap& tensors, const std::string& source) override;
+
+ private:
+  void ComputeTargets(const BatchView& batch, float temperature, Random* random,
+                      const OnStageEnd& on_stage_end);
+  bool UpdateCritic(const BatchView& batch, const OnStageEnd& on_stage_end, UpdateFigures* figures);
+  bool UpdateActor(const BatchView& batch, float temperature, Random* random,
+                   const OnStageEnd& on_stage_end, UpdateFigures* figures);
+
+  const Config config_;
+  const int batch_size_;  // B
+  const float target_entropy_;
+  const int threads_;
+  SacNetworks networks_;
+  uint64_t updates_ = 0;
+  AgentState state_;
+
+  SquashedGaussian gaussian_;
+  std::vector<float> targets_;                                             // y (B)
+  std::array<std::vector<float>, 2> q_gradients_;                          // (B)
+  std::vector<float> action_gradient_, mean_gradient_, log_std_gradient_;  // (B, A)
+};
+
+SacAgent::SacAgent(const Config& config, const ObservationSpec& spec, nn::Precision precision)
+    : config_(config),
+      batch_size_(config.learner.batch),
+      target_entropy_(float(config.learner.target_entropy == 0 ? -spec.action_size
+                                                               : config.learner.target_entropy)),
+      threads_(nn::Threads()),
+      networks_(config, spec, precision, threads_),
+      gaussian_(batch_size_, spec.action_size),
+      targets_(size_t(batch_size_)),
+      q_gradients_{targets_, targets_},
+      action_gradient_(size_t(batch_size_) * size_t(spec.action_size)),
+      mean_gradient_(action_gradient_),
+      log_std_gradient_(action_gradient_) {
+  networks_.AddTo(&state_);
+  state_.Add(&updates_, "agent.updates");
+}
+
+void SacAgent::ComputeTargets(const BatchView& batch, float temperature, Random* random,
+                              const OnStageEnd& on_stage_end) {
+  const float* vector = batch.next_obs_vector.data();
+  networks_.Encode(batch.next_obs_frames.data());
+  const auto [mean, log_std] = networks_.ForwardActor(vector);
+  gaussian_.Sample(mean, log_std, random);
+  const auto [q0, q1] = networks_.ForwardTarget(vector, gaussian_.action());
+  const TargetInputs inputs{
+      batch.reward.data(), batch.bootstrap.data(), {q0, q1}, gaussian_.log_prob()};
+  const TargetRates rates{float(config_.learner.reward_scale), float(config_.learner.discount),
+                          temperature};
+  TdTargets(batch_size_, inputs, rates, targets_.data());
+  AverageCopies(batch_size_, config_.replay.copies, targets_.data());
+  on_stage_end(UpdateStage::kForward);
+}
+
+// False where the loss or its gradient is not finite; then no parameter has changed.
+bool SacAgent::UpdateCritic(const BatchView& batch, const OnStageEnd& on_stage_end,
+                            UpdateFigures* figures) {
+  networks_.Encode(batch.obs_frames.data());
+  const auto [q0, q1] = networks_.ForwardCritic(batch.obs_vector.data(), batch.action.data());
+  const CriticLoss loss = CriticLossForward(batch_size_, q0, q1, targets_.data());
+  on_stage_end(UpdateStage::kForward);
+  CriticLossBackward(batch_size_, q0, targets_.data(), q_gradients_[0].data());
+  CriticLossBackward(batch_size_, q1, targets_.data(), q_gradients_[1].data());
+  const double squares = networks_.BackwardCritic(q_gradients_);
+  on_stage_end(UpdateStage::kBackward);
+  figures->Set(kCriticLoss, loss.loss);
+  figures->Set(kQMean, loss.q_mean);
+  figures->Set(kTargetMean, loss.target_mean);
+  figures->Set(kCriticGradNorm, std::sqrt(squares));
+  if (!Usable(loss.loss, squares)) return false;
+  networks_.StepCritic();
+  on_stage_end(UpdateStage::kOptimiser);
+  return true;
+}
+
+// The features are still those of obs. False where the loss or its gradient is not finite; then
+// neither actor nor temperature has changed.
+bool SacAgent::UpdateActor(const BatchView& batch, float temperature, Random* random,
+                           const OnStageEnd& on_stage_end, UpdateFigures* figures) {
+  const float* vector = batch.obs_vector.data();
+  const auto [mean, log_std] = networks_.ForwardActor(vector);
+  gaussian_.Sample(mean, log_std, random);
+  const auto [q0, q1] = networks_.ForwardCritic(vector, gaussian_.action());
+  const float loss = ActorLossForward(batch_size_, gaussian_.log_prob(), q0, q1, temperature);
+  on_stage_end(UpdateStage::kForward);
+  ActorLossBackward(batch_size_, q0, q1, q_gradients_[0].data(), q_gradients_[1].data());
+  networks_.BackwardAction(q_gradients_, action_gradient_.data());
+  gaussian_.Backward(action_gradient_.data(), temperature / float(batch_size_),
+                     mean_gradient_.data(), log_std_gradient_.data());
+  const double squares = networks_.BackwardActor(mean_gradient_.data(), log_std_gradient_.data());
+  on_stage_end(UpdateStage::kBackward);
+  const float entropy = gaussian_.Entropy();
+  const float temperature_loss = TemperatureLoss(temperature, entropy, target_entropy_);
+  figures->Set(kActorLoss, loss);
+  figures->Set(kTemperatureLoss, temperature_loss);
+  figures->Set(kEntropy, entropy);
+  figures->Set(kActionSaturation, gaussian_.Saturation());
+  figures->Set(kActorGradNorm, std::sqrt(squares));
+  if (!Usable(loss, squares) || !std::isfinite(temperature_loss)) return false;
+  networks_.StepActor();
+  networks_.StepTemperature(temperature_loss);
+  on_stage_end(UpdateStage::kOptimiser);
+  return true;
+}
+
+UpdateOutcome SacAgent::Update(const BatchView& batch, const OnStageEnd& on_stage_end) {
+  CHECK(int(batch.reward.size()) == batch_size_) << "batch of " << batch.reward.size();
+  const nn::ThreadScope scope(threads_);
+  UpdateOutcome outcome{.figures = {}, .finite = AllFinite(batch)};
+  if (!outcome.finite) return outcome;
+
+  Random random(StreamKey(uint64_t(config_.seed), StreamRole::kLearnerUpdate, updates_));
+  const float temperature = networks_.Temperature();
+  ComputeTargets(batch, temperature, &random, on_stage_end);
+  outcome.finite = UpdateCritic(batch, on_stage_end, &outcome.figures);
+  if (!outcome.finite) return outcome;
+  if (updates_ % uint64_t(config_.learner.actor_period) == 0 &&
+      !UpdateActor(batch, temperature, &random, on_stage_end, &outcome.figures)) {
+    networks_.UndoStepCritic();
+    outcome.finite = false;
+    return outcome;
+  }
+  if (updates_ % uint64_t(config_.learner.target_period) == 0) {
+    networks_.MoveTarget(float(config_.learner.tau));
+  }
+  networks_.MovePolicyAverage(float(config_.learner.average_rate));
+  on_stage_end(UpdateStage::kOptimiser);
+  ++updates_;
+  outcome.figures.Set(kTemperature, networks_.Temperature());
+  return outcome;
+}
+
+void SacAgent::Restore(const nn::TensorMap& tensors, const std::string& source) {
+  const nn::ThreadScope scope(threads_);
+  state_.Restore(tensors, source);
+}
+
+}  // namespace
+
+std::unique_ptr<Agent> MakeSacAgent(const Config& config, const ObservationSpec& spec,
+                                    nn::Precision precision) {
+  const nn::ThreadScope scope(nn::Threads());  // layers are built in the size they run in
+  return std::make_unique<SacAgent>(config, spec, precision);
+}
+
+}  // namespace shoal::learner

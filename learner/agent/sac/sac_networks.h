@@ -1,0 +1,95 @@
+// Which networks SAC trains, and what follows them. Names are those of its tensors:
+//
+//   encoder.*, critic.*    trained by the critic's loss, one optimiser
+//   actor.*                trained by the actor's loss on the same features, detached
+//   target.*               trunk and Q functions that follow critic.*; there is no target encoder
+//   average.*              moving average of encoder.* and actor.*
+//   temperature.log        one number
+//
+// Dimensions: B batch, A actions, V vector size, K*C channels. Arrays are row-major f32; a result
+// is valid until the function that returned it is called again.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/config/config.h"
+#include "common/nn/actor_module.h"
+#include "common/nn/adam.h"
+#include "common/nn/critic_module.h"
+#include "common/nn/encoder_module.h"
+#include "common/nn/safetensors.h"
+#include "common/spec/observation_spec.h"
+#include "learner/agent/agent_state.h"
+
+namespace shoal::learner {
+
+// Not movable. One thread; passes over parameters use the current nn::ThreadScope.
+class SacNetworks {
+ public:
+  // Batch, seed, learning rate and initial temperature of `config`.
+  SacNetworks(const Config& config, const ObservationSpec& spec, nn::Precision precision,
+              int threads);
+  SacNetworks(const SacNetworks&) = delete;
+  SacNetworks& operator=(const SacNetworks&) = delete;
+
+  // frames (B, K*C, H, W) u8. The features stay until the next call and are what every head below
+  // sees. Without pixels it does nothing.
+  void Encode(const uint8_t* frames);
+
+  // vector (B, V) in all of these, action (B, A).
+  struct Gaussian {
+    const float *mean, *log_std;  // (B, A), before tanh
+  };
+  Gaussian ForwardActor(const float* vector);
+  struct TwinQ {
+    const float *q0, *q1;  // (B)
+  };
+  TwinQ ForwardTarget(const float* vector, const float* action);
+  TwinQ ForwardCritic(const float* vector, const float* action);
+
+  using QGradients = std::array<std::vector<float>, 2>;  // dL/dq_i (B)
+  // Gradients of encoder and critic from those of the latest ForwardCritic, which has to be of the
+  // latest Encode. Returns the sum of their squares.
+  double BackwardCritic(const QGradients& q_gradients);
+  // dL/daction (B, A) of the latest ForwardCritic alone.
+  void BackwardAction(const QGradients& q_gradients, float* action_gradient);
+  // Gradients of the actor from dL/dmean, dL/dlog_std (B, A) of the latest ForwardActor. Returns
+  // the sum of their squares.
+  double BackwardActor(const float* mean_gradient, const float* log_std_gradient);
+
+  // One optimiser step with the latest gradients. Features stay those of before.
+  void StepCritic();
+  // Takes the latest StepCritic back exactly.
+  void UndoStepCritic();
+  void StepActor();
+  float Temperature() const;
+  // Gradient of the log temperature.
+  void StepTemperature(float gradient);
+  // target += tau * (critic - target), trunk and Q functions (Eq. 9).
+  void MoveTarget(float tau);
+  // average += rate * (policy - average), encoder and actor (Eq. 12).
+  void MovePolicyAverage(float rate);
+
+  // encoder.* and actor.*, F32: the newest ones, and their moving average.
+  nn::TensorMap PolicyTensors() const;
+  nn::TensorMap AveragedPolicyTensors() const;
+  // Parameters, targets, averages and optimisers; `state` borrows them.
+  void AddTo(AgentState* state);
+
+ private:
+  void RefreshCritic();
+
+  const nn::ModuleContext context_;
+  std::unique_ptr<nn::EncoderModule> encoder_;  // null without pixels
+  nn::CriticModule critic_, target_;
+  nn::ActorModule actor_;
+  nn::ParameterSet temperature_;
+  nn::ParameterSet encoder_average_, actor_average_;
+  nn::Adam critic_optimiser_, actor_optimiser_, temperature_optimiser_;
+};
+
+}  // namespace shoal::learner

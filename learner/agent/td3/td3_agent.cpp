@@ -1,0 +1,12 @@
+#include "learner/agent/td3/td3_agent.h"
+
+namespace shoal::learner {
+
+std::unique_ptr<Agent> MakeTd3Agent(const Config& config, const ObservationSpec& spec,
+                                    nn::Precision precision) {
+  return MakeDeterministicAgent(
+      config, spec, precision,
+      {.critics = 2, .target_noise = kTd3TargetNoise, .target_noise_clip = kTd3TargetNoiseClip});
+}
+
+}  // namespace shoal::learner

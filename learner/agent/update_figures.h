@@ -1,0 +1,71 @@
+// What an update says about itself: an ordered list of named figures.
+//
+// A figure is declared once, with its meaning: by the algorithm that alone computes it, in the
+// algorithm's folder, or here where several do. Metrics, TensorBoard, Prometheus, the progress
+// display and the documentation take name and meaning from there (AllFigures in algorithms.h). A
+// figure that was not computed is absent, never 0.
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace shoal::learner {
+
+struct Figure {
+  std::string_view name;      // in metrics.jsonl; train/NAME, shoal_NAME
+  std::string_view unit;      // empty: a plain number
+  std::string_view meaning;   // one line
+  bool headline = false;      // the progress display shows it
+  std::string_view known_as;  // TensorBoard writes train/KNOWN_AS as well; empty: nothing more
+};
+
+class UpdateFigures {
+ public:
+  struct Entry {
+    const Figure* figure;
+    double value;
+  };
+
+  // Appends the figure, which must live as long as the program does and not be in the list yet.
+  void Set(const Figure& figure, double value);
+  // Replaces or appends.
+  void Replace(const Figure& figure, double value);
+  std::optional<double> Get(const Figure& figure) const;
+
+  const std::vector<Entry>& entries() const { return entries_; }
+  bool empty() const { return entries_.empty(); }
+
+ private:
+  Entry* Find(const Figure& figure);
+
+  std::vector<Entry> entries_;
+};
+
+// Figures of more than one algorithm. All are means over the batch of an update.
+inline constexpr Figure kCriticLoss{.name = "critic_loss",
+                                    .unit = "",
+                                    .meaning = "squared error of all Q, summed over the critics",
+                                    .headline = true,
+                                    .known_as = ""};
+inline constexpr Figure kActorLoss{.name = "actor_loss",
+                                   .unit = "",
+                                   .meaning = "what the policy minimises",
+                                   .headline = true,
+                                   .known_as = ""};
+inline constexpr Figure kQMean{"q_mean", "", "predicted scaled return", false, ""};
+inline constexpr Figure kTargetMean{"target_mean", "", "what Q is pulled to", false, ""};
+inline constexpr Figure kActionSaturation{"action_saturation", "",
+                                          "share of action components beyond 0.99", false, ""};
+inline constexpr Figure kCriticGradNorm{"critic_grad_norm", "", "norm of the critic's gradient",
+                                        false, ""};
+inline constexpr Figure kActorGradNorm{"actor_grad_norm", "", "norm of the actor's gradient", false,
+                                       ""};
+inline constexpr Figure kTemperature{.name = "temperature",
+                                     .unit = "",
+                                     .meaning = "weight of the policy's entropy",
+                                     .headline = true,
+                                     .known_as = "ent_coef"};
+inline constexpr Figure kEntropy{"entropy", "nats", "of the policy", false, ""};
+
+}  // namespace shoal::learner

@@ -1,0 +1,82 @@
+#include "replay_server/core/hindsight.h"
+
+#include <algorithm>
+
+#include "common/base/check.h"
+#include "common/base/error.h"
+#include "common/tasks/task_registry.h"
+
+namespace shoal::replay {
+
+HindsightRelabeller::HindsightRelabeller(const Ring& ring, const EpisodeIndex& index,
+                                         HindsightGoal kind, int goals_per_sample)
+    : ring_(ring),
+      index_(index),
+      kind_(kind),
+      share_(static_cast<double>(goals_per_sample) / (goals_per_sample + 1)) {
+  CHECK(goals_per_sample >= 0) << goals_per_sample;
+}
+
+uint64_t HindsightRelabeller::DrawGoal(uint64_t id, Random* random) {
+  if (random->Uniform() >= share_) return 0;
+  uint64_t first = id;
+  if (kind_ == HindsightGoal::kEpisode) {
+    // Back to the oldest step that is there; the reset, which no action led to, gives no goal.
+    for (uint64_t step = id; step != 0 && ring_.Header(step).kind == RecordKind::kStep;
+         step = index_.Previous(step)) {
+      first = step;
+    }
+  }
+  steps_.clear();
+  for (uint64_t step = first; step != 0; step = index_.Next(step)) steps_.push_back(step);
+  if (kind_ == HindsightGoal::kFinal) return steps_.back();
+  return steps_[random->Below(steps_.size())];
+}
+
+tasks::Task TaskOf(const RunConfig& run) {
+  const tasks::Task& task = tasks::FindTask(run.spec.task);
+  const double threshold = run.config.distance_threshold;
+  return threshold > 0 ? task.WithThreshold(threshold) : task;
+}
+
+void CheckHindsight(const RunConfig& run) {
+  const Config& config = run.config;
+  const std::string& kind = config.replay.hindsight;
+  if (kind == "none") return;
+  const tasks::Task& task = tasks::FindTask(run.spec.task);
+  if (task.goal_size() == 0) {
+    throw UsageError("replay.hindsight = {}: task {} has no goals", kind, task.name());
+  }
+  const int repeat = config.action_repeat > 0 ? config.action_repeat : task.action_repeat();
+  if (repeat > 1) {
+    throw UsageError(
+        "replay.hindsight = {} with action_repeat = {}: a reward summed over control steps cannot "
+        "be computed for another goal; expected action_repeat = 1",
+        kind, repeat);
+  }
+  if (!run.spec.Observed(task.desired_goal().name)) {
+    throw UsageError(
+        "replay.hindsight = {} with observation.goal_mode = {}: the policy would not be told the "
+        "goal; expected desired or both",
+        kind, config.observation.goal_mode);
+  }
+  // Two episodes of every environment: one that ended and can be sampled, one under way.
+  const int64_t envs = int64_t{config.envs_per_actor} * std::max(1, config.actors);
+  const int64_t steps = task.EnvStepsPerEpisode(repeat);
+  const int64_t least = config.replay.min_size + 2 * envs * (steps + 1);
+  if (config.replay.capacity < least) {
+    throw UsageError(
+        "replay.hindsight = {}: replay.capacity = {} does not hold replay.min_size = {} "
+        "transitions of ended episodes beside those under way; with {} environments and episodes "
+        "of {} steps expected at least {}",
+        kind, config.replay.capacity, config.replay.min_size, envs, steps, least);
+  }
+  if (config.lockstep && config.replay.min_size < envs * steps) {
+    throw UsageError(
+        "replay.hindsight = {} in lockstep: after replay.min_size = {} steps no episode has ended, "
+        "so actor and learner would wait for each other; expected at least {}",
+        kind, config.replay.min_size, envs * steps);
+  }
+}
+
+}  // namespace shoal::replay

@@ -1,0 +1,52 @@
+// Hindsight: a sample is given a goal that its own episode achieved, as if it had been meant.
+//
+// With N = replay.hindsight_goals a share N / (N + 1) of the samples is relabelled. The goal of a
+// sample that begins with step t of an episode whose last step is T is what was achieved after
+//
+//   future    a step drawn uniformly from t, ..., T
+//   final     step T
+//   episode   a step drawn uniformly from those of 1, ..., T that the ring holds
+//
+// Source: Andrychowicz et al. 2017, arXiv:1707.01495, sections 3.2 to 4.5. Episodes must have
+// ended: EpisodeIndex with whole_episodes.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/config/run_files.h"
+#include "common/tasks/task.h"
+#include "replay_server/core/episode_index.h"
+#include "replay_server/core/relabeller.h"
+#include "replay_server/core/ring.h"
+
+namespace shoal::replay {
+
+enum class HindsightGoal { kFuture, kFinal, kEpisode };
+
+class HindsightRelabeller final : public Relabeller {
+ public:
+  // Borrows both. goals_per_sample >= 0: N.
+  HindsightRelabeller(const Ring& ring, const EpisodeIndex& index, HindsightGoal kind,
+                      int goals_per_sample);
+
+  uint64_t DrawGoal(uint64_t id, Random* random) override;
+
+ private:
+  const Ring& ring_;
+  const EpisodeIndex& index_;
+  const HindsightGoal kind_;
+  const double share_;
+  std::vector<uint64_t> steps_;  // of the episode at hand, those that may give the goal
+};
+
+// The task of a run with the run's threshold.
+tasks::Task TaskOf(const RunConfig& run);
+
+// Throws Error (kUsage) where replay.hindsight cannot serve the run: a task without goals, actions
+// that are repeated (their rewards are sums, which another goal cannot be told from), a policy that
+// is not told the desired goal, a ring too small for the episodes under way, lockstep that would
+// wait for a sample before there is one. That pictures do not show a goal is the actor's business.
+void CheckHindsight(const RunConfig& run);
+
+}  // namespace shoal::replay

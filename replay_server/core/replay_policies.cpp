@@ -1,0 +1,44 @@
+#include "replay_server/core/replay_policies.h"
+
+#include <algorithm>
+
+#include "replay_server/core/hindsight.h"
+#include "replay_server/core/uniform_selector.h"
+
+namespace shoal::replay {
+namespace {
+
+bool Hindsight(const Config& config) { return config.replay.hindsight != "none"; }
+
+HindsightGoal GoalOf(const std::string& kind) {
+  if (kind == "final") return HindsightGoal::kFinal;
+  return kind == "episode" ? HindsightGoal::kEpisode : HindsightGoal::kFuture;
+}
+
+}  // namespace
+
+ReplayPolicies MakePolicies(const RunConfig& run, const Ring& ring, const EpisodeIndex& index) {
+  CheckHindsight(run);
+  const ReplayConfig& config = run.config.replay;
+  ReplayPolicies policies;
+  policies.selector = std::make_unique<UniformSelector>(ring, index);
+  if (!Hindsight(run.config)) return policies;
+  policies.relabeller = std::make_unique<HindsightRelabeller>(ring, index, GoalOf(config.hindsight),
+                                                              config.hindsight_goals);
+  policies.goals = std::make_unique<GoalChange>(run.spec, TaskOf(run));
+  return policies;
+}
+
+IndexOptions IndexOptionsOf(const RunConfig& run) {
+  return {.stack = run.spec.stack,
+          .n_step = run.config.replay.n_step,
+          .whole_episodes = Hindsight(run.config)};
+}
+
+uint64_t WaitingSteps(const RunConfig& run) {
+  int steps = run.config.replay.n_step - 1;
+  if (Hindsight(run.config)) steps = std::max(steps, TaskOf(run).EnvStepsPerEpisode(1));
+  return static_cast<uint64_t>(steps) * static_cast<uint64_t>(run.config.envs_per_actor);
+}
+
+}  // namespace shoal::replay

@@ -1,0 +1,32 @@
+// Every sample with the same probability.
+#pragma once
+
+#include "replay_server/core/episode_index.h"
+#include "replay_server/core/ring.h"
+#include "replay_server/core/selector.h"
+
+namespace shoal::replay {
+
+// Draws ids of the whole ring until one is sampleable: the index knows which, so there is nothing
+// to keep. Resets and steps whose frames are overwritten are few, so almost every first draw
+// counts. Borrows both; same owner.
+class UniformSelector final : public Selector {
+ public:
+  // With only one step in a thousand sampleable, giving up wrongly has probability e^-100.
+  static constexpr int kMaxDraws = 100'000;
+
+  UniformSelector(const Ring& ring, const EpisodeIndex& index) : ring_(ring), index_(index) {}
+
+  void Added(uint64_t) override {}
+  void Removed(uint64_t) override {}
+  void UpdatePriority(uint64_t, double) override {}
+  std::optional<Selection> Draw(Random* random) override;
+  uint64_t redraws() const override { return redraws_; }
+
+ private:
+  const Ring& ring_;
+  const EpisodeIndex& index_;
+  uint64_t redraws_ = 0;
+};
+
+}  // namespace shoal::replay

@@ -1,0 +1,33 @@
+#include "actor/acting/frame_stack.h"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace shoal::actor {
+namespace {
+
+using Bytes = std::vector<uint8_t>;
+
+TEST(FrameStack, RepeatsTheFirstFrameThenKeepsTheLastOldestFirst) {
+  Bytes memory(6);
+  FrameStack stack(memory, 2);
+  stack.Reset(Bytes{1, 2});
+  EXPECT_EQ(memory, (Bytes{1, 2, 1, 2, 1, 2}));
+  stack.Push(Bytes{3, 4});
+  stack.Push(Bytes{5, 6});
+  EXPECT_EQ(memory, (Bytes{1, 2, 3, 4, 5, 6}));
+  stack.Push(Bytes{7, 8});
+  EXPECT_EQ(memory, (Bytes{3, 4, 5, 6, 7, 8}));
+  stack.Reset(Bytes{9, 9});
+  EXPECT_EQ(memory, (Bytes{9, 9, 9, 9, 9, 9}));
+}
+
+TEST(FrameStack, WithoutPixelsDoesNothing) {
+  FrameStack stack({}, 0);
+  stack.Reset({});
+  stack.Push({});
+}
+
+}  // namespace
+}  // namespace shoal::actor

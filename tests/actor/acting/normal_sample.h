@@ -1,0 +1,39 @@
+// Is a sample from a normal distribution of given mean and deviation? Judged by its mean and its
+// deviation, each within five standard errors.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+namespace shoal::actor {
+
+struct Moments {
+  double mean = 0, deviation = 0;
+};
+
+inline Moments MomentsOf(const std::vector<double>& sample) {
+  Moments moments;
+  const auto n = static_cast<double>(sample.size());
+  for (const double x : sample) moments.mean += x / n;
+  for (const double x : sample) {
+    moments.deviation += (x - moments.mean) * (x - moments.mean) / (n - 1);
+  }
+  moments.deviation = std::sqrt(moments.deviation);
+  return moments;
+}
+
+// The standard errors of n independent normal numbers: sigma / sqrt(n), sigma / sqrt(2 n).
+inline bool LooksNormal(const std::vector<double>& sample, double mean, double sigma) {
+  const Moments seen = MomentsOf(sample);
+  const double root = std::sqrt(static_cast<double>(sample.size()));
+  return std::fabs(seen.mean - mean) < 5 * sigma / root &&
+         std::fabs(seen.deviation - sigma) < 5 * sigma / (std::sqrt(2.0) * root);
+}
+
+// The same numbers with their noise around `mean` multiplied.
+inline std::vector<double> Scaled(std::vector<double> sample, double mean, double factor) {
+  for (double& x : sample) x = mean + factor * (x - mean);
+  return sample;
+}
+
+}  // namespace shoal::actor

@@ -1,0 +1,142 @@
+#include "actor/acting/seat.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/actor/counting_environment.h"
+
+namespace shoal::actor {
+namespace {
+
+using testing::Each;
+using testing::ElementsAre;
+
+class SeatTest : public testing::Test {
+ protected:
+  static constexpr size_t kFrame = 32;
+
+  float Begin(uint64_t key) { return seat_.Begin(key, {frame_, vector_}); }
+  worlds::StepResult Step(float first, float second) {
+    return seat_.Step(std::vector<float>{first, second}, {frame_, vector_});
+  }
+  // The byte that fills the i-th frame of the policy's stack.
+  int StackByte(size_t i) const {
+    EXPECT_THAT(std::span(stack_).subspan(i * kFrame, kFrame), Each(stack_[i * kFrame]));
+    return stack_[i * kFrame];
+  }
+
+  std::vector<uint8_t> stack_ = std::vector<uint8_t>(2 * kFrame),
+                       frame_ = std::vector<uint8_t>(kFrame);
+  std::vector<float> policy_vector_ = std::vector<float>(2), vector_ = std::vector<float>(2);
+  Seat seat_{std::make_unique<CountingEnvironment>(), {stack_, policy_vector_}};
+};
+
+TEST_F(SeatTest, ThePolicyReadsTheStackAndTheNewestVector) {
+  EXPECT_FALSE(seat_.running());
+  EXPECT_EQ(Begin(4), 100);
+  EXPECT_TRUE(seat_.running());
+  EXPECT_EQ(StackByte(0), 40);
+  EXPECT_EQ(StackByte(1), 40) << "the first frame is repeated";
+  EXPECT_THAT(policy_vector_, ElementsAre(4, 0));
+  Step(0, 0);
+  EXPECT_EQ(StackByte(0), 40);
+  EXPECT_EQ(StackByte(1), 41);
+  EXPECT_THAT(policy_vector_, ElementsAre(4, 1));
+  EXPECT_THAT(frame_, Each(41)) << "what is recorded is the newest frame alone";
+  EXPECT_EQ(vector_, policy_vector_);
+}
+
+TEST_F(SeatTest, FiguresAreOfTheWholeEpisodeAndStartAnew) {
+  Begin(4);
+  Step(0, 0);
+  Step(0.25F, 0);
+  EXPECT_EQ(seat_.figures().length, 2);
+  const worlds::StepResult last = Step(0.75F, 0.5F);
+  EXPECT_TRUE(last.terminated);
+  EXPECT_FALSE(seat_.running());
+  const EpisodeFigures& figures = seat_.figures();
+  EXPECT_EQ(figures.length, 3);
+  EXPECT_EQ(figures.episode_return, 1);
+  EXPECT_TRUE(figures.success);
+  EXPECT_EQ(figures.final_distance, 97);
+  EXPECT_NEAR(figures.action_smoothness, (0.25 + std::sqrt(0.5)) / 2, 1e-12)
+      << "a mean over the two changes";
+  ASSERT_EQ(figures.drawn_masses.size(), 1u);
+  EXPECT_EQ(figures.drawn_masses[0].mass_kg, 4);
+
+  Begin(7);
+  EXPECT_EQ(seat_.figures().length, 0);
+  EXPECT_EQ(seat_.figures().episode_return, 0);
+  EXPECT_EQ(seat_.figures().drawn_masses[0].mass_kg, 7);
+  EXPECT_EQ(StackByte(0), 70) << "no frame of the episode before";
+  Step(0.75F, 0);
+  Step(0.75F, 0);
+  EXPECT_FALSE(seat_.figures().success) << "success is that of the end";
+  const worlds::StepResult end = Step(0.5F, 0);
+  EXPECT_TRUE(end.truncated);
+  EXPECT_FALSE(seat_.running());
+  EXPECT_FALSE(seat_.figures().success);
+  EXPECT_NEAR(seat_.figures().action_smoothness, 0.125, 1e-12)
+      << "the change from the episode before is none";
+}
+
+TEST_F(SeatTest, AnAbandonedEpisodeNoLongerRuns) {
+  Begin(4);
+  seat_.Abandon();
+  EXPECT_FALSE(seat_.running());
+  Begin(5);
+  EXPECT_TRUE(seat_.running());
+}
+
+struct Recorder : SeatListener {
+  void OnBegin(uint64_t stream_key, std::span<const uint8_t> stack) override {
+    keys.push_back(stream_key);
+    bytes.push_back(stack.back());
+  }
+  void OnStep(const SeenStep& step) override {
+    bytes.push_back(step.stack.back());
+    oldest.push_back(step.stack.front());
+    first_actions.push_back(step.action[0]);
+    rewards.push_back(step.reward);
+    successes.push_back(step.success);
+    ends.push_back(step.ended);
+  }
+  std::vector<uint64_t> keys;
+  std::vector<int> bytes, oldest;
+  std::vector<float> first_actions, rewards;
+  std::vector<bool> successes, ends;
+};
+
+TEST_F(SeatTest, AListenerSeesWhatThePolicySeesAndDoes) {
+  Begin(1);
+  Recorder recorder;
+  seat_.set_listener(&recorder);
+  Begin(4);
+  Step(0.25F, 0);
+  Step(0.75F, 0);
+  Step(0.5F, 0);
+  seat_.set_listener(nullptr);
+  Begin(5);
+  EXPECT_THAT(recorder.keys, ElementsAre(4));
+  EXPECT_THAT(recorder.bytes, ElementsAre(40, 41, 42, 43)) << "after each step, the newest last";
+  EXPECT_THAT(recorder.oldest, ElementsAre(40, 41, 42));
+  EXPECT_THAT(recorder.first_actions, ElementsAre(0.25F, 0.75F, 0.5F));
+  EXPECT_THAT(recorder.rewards, ElementsAre(0.25F, 0.75F, 0.5F));
+  EXPECT_THAT(recorder.successes, ElementsAre(false, true, false));
+  EXPECT_THAT(recorder.ends, ElementsAre(false, false, true));
+}
+
+using SeatDeathTest = SeatTest;
+
+TEST_F(SeatDeathTest, NoStepWithoutAnEpisode) { EXPECT_DEATH(Step(0, 0), "without an episode"); }
+
+TEST_F(SeatDeathTest, AnInputOfAnotherSizeIsABug) {
+  EXPECT_DEATH(
+      Seat(std::make_unique<CountingEnvironment>(/*length=*/3, /*stack=*/3), {stack_, vector_}),
+      "64");
+}
+
+}  // namespace
+}  // namespace shoal::actor

@@ -1,0 +1,69 @@
+// An environment without physics: every number it observes says which episode and step it is of.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <memory>
+#include <vector>
+
+#include "actor/worlds/environment.h"
+
+namespace shoal::actor {
+
+// Frames (2, 4, 4) of bytes 10 * (key % 10) + step; vectors {key % 1000, step}. A step earns the
+// first component of its action and succeeds where that is above 0.5; the distance is 100 - step.
+// Episodes end after `length` steps: terminated, or truncated at an odd key.
+class CountingEnvironment final : public worlds::Environment {
+ public:
+  static constexpr int kLength = 3;
+
+  explicit CountingEnvironment(int length = kLength, int stack = 2) : length_(length) {
+    spec_.task = "FetchReachDense";
+    spec_.channels = 2;
+    spec_.height = spec_.width = 4;
+    spec_.stack = stack;
+    spec_.blocks = {{"observation", 2}};
+    spec_.action_size = 2;
+  }
+
+  const ObservationSpec& spec() const override { return spec_; }
+
+  float Reset(uint64_t stream_key, worlds::ObservationOut out) override {
+    key_ = stream_key;
+    step_ = 0;
+    masses_ = {{"leg", static_cast<double>(key_ % 1000)}};
+    Observe(out);
+    return 100;
+  }
+
+  worlds::StepResult Step(std::span<const float> action, worlds::ObservationOut out) override {
+    EXPECT_LT(step_, length_) << "stepped beyond the episode's end";
+    ++step_;
+    Observe(out);
+    const bool last = step_ == length_;
+    return {.reward = action[0],
+            .terminated = last && key_ % 2 == 0,
+            .truncated = last && key_ % 2 == 1,
+            .success = action[0] > 0.5F,
+            .distance = static_cast<float>(100 - step_)};
+  }
+
+  double render_seconds() const override { return 0; }
+  std::span<const worlds::DrawnMass> drawn_masses() const override { return masses_; }
+
+ private:
+  void Observe(worlds::ObservationOut out) const {
+    std::ranges::fill(out.frame, static_cast<uint8_t>(10 * (key_ % 10) + uint64_t(step_)));
+    out.vector[0] = static_cast<float>(key_ % 1000);
+    out.vector[1] = static_cast<float>(step_);
+  }
+
+  ObservationSpec spec_;
+  const int length_;
+  uint64_t key_ = 0;
+  int step_ = 0;
+  std::vector<worlds::DrawnMass> masses_;
+};
+
+}  // namespace shoal::actor

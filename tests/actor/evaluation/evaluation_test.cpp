@@ -1,0 +1,148 @@
+#include "actor/evaluation/evaluation.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/checkpoint/checkpoint_files.h"
+#include "tests/support/temporary_folder.h"
+
+namespace shoal::actor {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+RunConfig RunOf(const std::string& task) {
+  RunConfig run;
+  run.config.task = task;
+  return run;
+}
+
+std::vector<EpisodeResult> TwoEpisodes(double final_distance) {
+  return {{.seed = 0,
+           .figures = {.episode_return = 10,
+                       .length = 4,
+                       .success = true,
+                       .final_distance = final_distance}},
+          {.seed = 1,
+           .figures = {.episode_return = 20, .length = 6, .final_distance = final_distance}}};
+}
+
+TEST(EvaluationJson, ATaskWithGoalsHasSuccessAndDistance) {
+  const auto json = EvaluationJson(RunOf("FetchReach"), {}, {}, TwoEpisodes(0.25));
+  EXPECT_EQ(json["episodes"][0]["success"], true);
+  EXPECT_EQ(json["episodes"][1]["final_distance"], 0.25);
+  EXPECT_EQ(json["aggregate"]["success_rate"], 0.5);
+  EXPECT_EQ(json["aggregate"]["final_distance_mean"], 0.25);
+}
+
+TEST(EvaluationJson, WhatATaskDoesNotHaveIsNull) {
+  const auto json = EvaluationJson(RunOf("Hopper-v5"), {}, {},
+                                   TwoEpisodes(std::numeric_limits<double>::quiet_NaN()));
+  for (const auto& episode : json["episodes"]) {
+    EXPECT_TRUE(episode["success"].is_null());
+    EXPECT_TRUE(episode["final_distance"].is_null());
+    EXPECT_FALSE(episode.contains("body_mass"));
+  }
+  EXPECT_TRUE(json["aggregate"]["success_rate"].is_null());
+  EXPECT_TRUE(json["aggregate"]["final_distance_mean"].is_null());
+  EXPECT_EQ(json["aggregate"]["return_mean"], 15);
+  EXPECT_EQ(json["aggregate"]["return_std"], 5);
+  EXPECT_EQ(json["aggregate"]["length_mean"], 5);
+}
+
+// The whole way: configuration, environment, JSON.
+TEST(EvaluationJson, HoldsTheMassesDrawnForEachEpisode) {
+  RunConfig run = RunOf("CustomHopper-source");
+  run.config.observation.pixels = false;
+  run.config.observation.proprioception = true;
+  run.config.randomization.body_mass = {{"thigh", {3.4, 4.4}}, {"leg", {2.2, 3.2}}};
+  run.config.eval.envs = 2;
+  run.config.network.hidden = {8};
+  run.spec = worlds::MakeEnvironment(run.config, nullptr)->spec();
+  Evaluator evaluator(run);
+  const EpisodeStream stream{7, StreamRole::kFinalEnvironment, 0};
+  const auto json =
+      EvaluationJson(run, {}, stream, evaluator.Play(3, stream, [] { return false; }));
+  std::vector<double> thighs;
+  for (const auto& episode : json["episodes"]) {
+    ASSERT_EQ(episode["body_mass"].size(), 2u);
+    EXPECT_GE(episode["body_mass"]["leg"], 2.2);
+    EXPECT_LE(episode["body_mass"]["leg"], 3.2);
+    thighs.push_back(episode["body_mass"]["thigh"]);
+  }
+  EXPECT_NE(thighs[0], thighs[1]);
+  EXPECT_NE(thighs[1], thighs[2]);
+}
+
+// A checkpoint whose policy nobody could load: it must be refused before that is tried.
+class EvaluateCheckpointTest : public testing::Test {
+ protected:
+  EvaluateCheckpointTest() {
+    RunConfig run = RunOf("Hopper-v5");
+    run.config.observation.pixels = false;
+    run.config.observation.proprioception = true;
+    run.spec = worlds::MakeEnvironment(run.config, nullptr)->spec();
+    WriteRunConfig(run_.path(), run);
+    Write(run.spec.Hash());
+  }
+
+  void Write(uint64_t spec_hash) const {
+    CheckpointFiles files;
+    files.state.updates = 7;
+    files.state.spec_hash = spec_hash;
+    files.policy = "not safetensors";
+    WriteCheckpointFiles(run_.path(), files, {});
+  }
+
+  std::string Refusal() const {
+    try {
+      EvaluateCheckpoint(run_.path(), folder_, {.episodes = 1});
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "";
+  }
+
+  void Replace(const std::string& file, const std::string& from, const std::string& to) const {
+    std::string bytes = ReadFile(folder_ / file);
+    bytes.replace(bytes.find(from), from.size(), to);
+    WriteFileAtomically(folder_ / file, bytes);
+  }
+
+  const TemporaryFolder run_;
+  const std::filesystem::path folder_ = run_.path() / CheckpointName(7);
+};
+
+TEST_F(EvaluateCheckpointTest, AnAlteredPolicyIsRefusedByChecksum) {
+  Replace("policy.safetensors", "not", "nou");
+  EXPECT_THAT(Refusal(), AllOf(HasSubstr("policy.safetensors"), HasSubstr("CRC-32")));
+}
+
+TEST_F(EvaluateCheckpointTest, ATruncatedPolicyIsRefused) {
+  Replace("policy.safetensors", "tensors", "");
+  EXPECT_THAT(Refusal(), AllOf(HasSubstr("policy.safetensors"), HasSubstr("8 bytes, expected 15")));
+}
+
+TEST_F(EvaluateCheckpointTest, AnotherVersionIsRefusedNamingBoth) {
+  Replace("state.json", "shoal-checkpoint-1", "shoal-checkpoint-2");
+  EXPECT_THAT(Refusal(), AllOf(HasSubstr("shoal-checkpoint-1"), HasSubstr("shoal-checkpoint-2")));
+}
+
+TEST_F(EvaluateCheckpointTest, ACheckpointOfAnotherObservationIsRefused) {
+  Write(0x1234);
+  EXPECT_THAT(Refusal(), HasSubstr("observation spec 0000000000001234"));
+}
+
+TEST_F(EvaluateCheckpointTest, AWholeCheckpointIsTaken) {
+  EXPECT_THAT(Refusal(), HasSubstr("weights of update 7")) << "refused only when it is loaded";
+}
+
+}  // namespace
+}  // namespace shoal::actor

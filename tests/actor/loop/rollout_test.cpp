@@ -1,0 +1,226 @@
+#include "actor/loop/rollout.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <optional>
+
+#include "common/base/error.h"
+#include "tests/actor/loop/rollout_parts.h"
+
+namespace shoal::actor {
+namespace {
+
+using testing::AllOf;
+using testing::Each;
+using testing::ElementsAre;
+using testing::Ge;
+using testing::HasSubstr;
+using testing::Le;
+
+constexpr uint32_t kFirstEnv = 4;
+
+class RolloutTest : public testing::Test {
+ protected:
+  void Start(int envs) { parts_.emplace(run_.path(), sink_, envs, kFirstEnv); }
+  Rollout& rollout() { return parts_->rollout; }
+  void Step(int vector_steps) {
+    for (int i = 0; i < vector_steps; ++i) ASSERT_TRUE(rollout().TryStep());
+  }
+  // What the environment's key is, as far as its observations say it.
+  float KeyDigits(uint32_t env, uint32_t episode) const {
+    return static_cast<float>(
+        StreamKey(parts_->config.seed, StreamRole::kTrainEnvironment, env, episode) % 1000);
+  }
+
+  const TemporaryFolder run_;
+  FakeSink sink_{CountingEnvironment().spec()};
+  std::optional<RolloutParts> parts_;
+};
+
+TEST_F(RolloutTest, AnEpisodeIsAResetAndItsSteps) {
+  Start(1);
+  Step(CountingEnvironment::kLength + 1);
+  ASSERT_EQ(sink_.records.size(), 6u);
+  EXPECT_THAT(sink_.sequences, ElementsAre(1, 2, 3, 4, 5, 6));
+  EXPECT_EQ(parts_->made.made(), 6u);
+  EXPECT_EQ(rollout().env_steps(), 4u);
+  const std::vector<uint32_t> episodes{0, 0, 0, 0, 1, 1}, indices{0, 1, 2, 3, 0, 1};
+  for (size_t i = 0; i < 6; ++i) {
+    const uint8_t* record = sink_.Bytes(i);
+    const RecordHeader& header = sink_.Header(i);
+    EXPECT_EQ(RecordFault(sink_.layout(), record), nullptr) << i;
+    EXPECT_EQ(header.sequence, i + 1);
+    EXPECT_EQ(header.env, kFirstEnv);
+    EXPECT_EQ(header.episode, episodes[i]);
+    EXPECT_EQ(header.index, indices[i]);
+    EXPECT_EQ(header.kind, indices[i] == 0 ? RecordKind::kReset : RecordKind::kStep);
+    EXPECT_EQ(header.distance, static_cast<float>(100 - static_cast<int>(indices[i])));
+    EXPECT_EQ(header.weights_session, 0u);
+    EXPECT_THAT(sink_.layout().Vector(record),
+                ElementsAre(KeyDigits(kFirstEnv, episodes[i]), static_cast<float>(indices[i])));
+    EXPECT_THAT(sink_.layout().Frame(record), Each(sink_.layout().Frame(record)[0]));
+    EXPECT_EQ(sink_.layout().Frame(record)[0] % 10, indices[i]);
+    const auto action = sink_.layout().Action(record);
+    EXPECT_EQ(header.reward, indices[i] == 0 ? 0 : action[0]) << "of its own action";
+    EXPECT_EQ((header.flags & kSuccess) != 0, action[0] > 0.5F);
+    EXPECT_EQ((header.flags & (kTerminated | kTruncated)) != 0, indices[i] == 3);
+  }
+  EXPECT_NE(sink_.layout().Action(sink_.Bytes(1))[0], sink_.layout().Action(sink_.Bytes(2))[0]);
+}
+
+TEST_F(RolloutTest, TheFiguresOfEndedEpisodesAreLogged) {
+  Start(2);
+  Step(CountingEnvironment::kLength);
+  ASSERT_EQ(rollout().episodes().count(), 2u);
+  double sum = 0;
+  for (size_t i = 0; i < sink_.records.size(); ++i) sum += sink_.Header(i).reward;
+  EXPECT_NEAR(rollout().episodes().Mean().episode_return, sum / 2, 1e-6);
+  EXPECT_EQ(rollout().episodes().Mean().length, CountingEnvironment::kLength);
+}
+
+TEST_F(RolloutTest, StepsNothingWithoutRoomForAResetAndAStepOfEach) {
+  Start(2);
+  sink_.room = 3;
+  EXPECT_FALSE(rollout().TryStep());
+  EXPECT_TRUE(sink_.records.empty());
+  EXPECT_EQ(parts_->made.made(), 0u);
+  sink_.room = 4;
+  EXPECT_TRUE(rollout().TryStep());
+  EXPECT_EQ(sink_.records.size(), 4u);
+  EXPECT_EQ(rollout().vector_steps(), 1);
+  EXPECT_EQ(rollout().env_steps(), 2u);
+}
+
+TEST_F(RolloutTest, ARecordNamesTheWeightsThatChoseItsAction) {
+  Start(1);
+  Step(1);
+  parts_->Load({7, 20});
+  Step(1);
+  EXPECT_EQ(sink_.Header(1).weights_session, 0u);
+  EXPECT_EQ(sink_.Header(2).weights_session, 7u);
+  EXPECT_EQ(sink_.Header(2).weights_update, 20u);
+}
+
+// The exploration of an episode follows from its name alone, whoever plays it and whenever.
+TEST_F(RolloutTest, TheSameEpisodeHasTheSameActionsWhicheverActorPlaysIt) {
+  Start(2);
+  Step(1);
+  const TemporaryFolder other_run;
+  FakeSink other_sink(parts_->spec);
+  RolloutParts other(other_run.path(), other_sink, /*envs=*/1, /*first_env=*/kFirstEnv + 1);
+  ASSERT_TRUE(other.rollout.TryStep());
+  // Resets of both environments, then their steps.
+  EXPECT_EQ(sink_.layout().Action(sink_.Bytes(3))[0],
+            sink_.layout().Action(other_sink.Bytes(1))[0]);
+  EXPECT_NE(sink_.layout().Action(sink_.Bytes(3))[0], sink_.layout().Action(sink_.Bytes(2))[0]);
+}
+
+TEST_F(RolloutTest, GoesOnBitForBitFromItsState) {
+  Start(2);
+  parts_->Load({7, 20});
+  Step(CountingEnvironment::kLength + 2);
+  const RolloutState state = rollout().State();
+  const size_t before = sink_.records.size();
+  Step(5);
+
+  // The successor's page says where the former one was, as the file does after a restart.
+  const TemporaryFolder run;
+  FakeSink sink(parts_->spec);
+  RolloutParts successor(run.path(), sink, /*envs=*/2, kFirstEnv);
+  for (size_t i = 0; i < before; ++i) successor.made.CountRecord();
+  for (const uint32_t e : {0, 1}) {
+    while (successor.made.TakeEpisode(e) < state.episodes[e].episode) {
+    }
+  }
+  successor.rollout.Restore(state);
+  EXPECT_TRUE(sink.records.empty()) << "playing again publishes nothing";
+  EXPECT_EQ(successor.rollout.State(), state);
+  successor.Load({7, 20});
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(successor.rollout.TryStep());
+  EXPECT_EQ(sink.records, decltype(sink.records)(sink_.records.begin() + static_cast<long>(before),
+                                                 sink_.records.end()));
+  EXPECT_EQ(successor.rollout.env_steps(), rollout().env_steps());
+}
+
+// Ornstein-Uhlenbeck noise carries something over from step to step.
+TEST_F(RolloutTest, GoesOnBitForBitWithNoiseThatHasAMemory) {
+  Config config = SmallConfig(1);
+  config.exploration.kind = "ou";
+  parts_.emplace(run_.path(), sink_, config, kFirstEnv);
+  parts_->Load({7, 20});
+  Step(2);
+  const RolloutState state = rollout().State();
+  Step(1);
+  const TemporaryFolder run;
+  FakeSink sink(parts_->spec);
+  RolloutParts successor(run.path(), sink, config, kFirstEnv);
+  successor.Load({7, 20});
+  successor.rollout.Restore(state);
+  ASSERT_TRUE(successor.rollout.TryStep());
+  const auto action = sink_.layout().Action(sink_.Bytes(3));
+  EXPECT_THAT(sink.layout().Action(sink.Bytes(0)), ElementsAre(action[0], action[1]));
+}
+
+// The share of an actor out of four of 10 random steps: three.
+class WarmUpTest : public RolloutTest {
+ protected:
+  WarmUpTest() {
+    config_ = SmallConfig(1);
+    config_.actors = 4;
+    config_.exploration.random_steps = 10;
+    config_.exploration.kind = "gaussian";
+    config_.exploration.sigma = Schedule::Constant(0);  // the policy's own actions are told apart
+    parts_.emplace(run_.path(), sink_, config_, kFirstEnv);
+  }
+  // By uniform random actions, as far as the record's numbers say it.
+  bool Random(size_t record) const {
+    const float action = sink_.layout().Action(sink_.Bytes(record))[0];
+    const bool by_policy = std::abs(action - std::tanh(0.3F)) < 1e-6F;
+    EXPECT_EQ(sink_.Header(record).weights_session, by_policy ? 7u : 0u);
+    EXPECT_EQ(sink_.Header(record).weights_update, by_policy ? 20u : 0u);
+    return !by_policy;
+  }
+
+  Config config_;
+};
+
+TEST_F(WarmUpTest, EndsWithTheActorsShare) {
+  parts_->Load({7, 20}, /*run_env_steps=*/9);
+  Step(5);
+  EXPECT_TRUE(Random(1));
+  EXPECT_TRUE(Random(2));
+  EXPECT_TRUE(Random(3));
+  EXPECT_FALSE(Random(5)) << "record 4 is the second episode's reset";
+  EXPECT_FALSE(Random(6));
+}
+
+TEST_F(WarmUpTest, EndsWhenTheRunHasHadItsRandomSteps) {
+  Step(1);
+  parts_->Load({7, 20}, /*run_env_steps=*/10);
+  Step(1);
+  EXPECT_TRUE(Random(1));
+  EXPECT_FALSE(Random(2)) << "an actor that joins late does not begin anew";
+}
+
+TEST_F(WarmUpTest, BeforeAnyWeightsItGoesOnBeyondTheShare) {
+  Step(5);
+  EXPECT_TRUE(Random(5));
+  EXPECT_TRUE(Random(6));
+}
+
+TEST_F(RolloutTest, AStateOfOtherEnvironmentsIsRefusedNamingBoth) {
+  Start(2);
+  RolloutState state = rollout().State();
+  state.episodes.pop_back();
+  try {
+    rollout().Restore(state);
+    FAIL() << "restored one environment's state into two";
+  } catch (const Error& e) {
+    EXPECT_THAT(e.what(), AllOf(HasSubstr("1 environments"), HasSubstr("has 2")));
+  }
+}
+
+}  // namespace
+}  // namespace shoal::actor

@@ -1,0 +1,72 @@
+#include "actor/sending/made_page.h"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+
+#include "common/base/error.h"
+#include "tests/support/temporary_folder.h"
+
+namespace shoal::actor {
+namespace {
+
+TEST(MadePage, CountsFromOne) {
+  const TemporaryFolder run;
+  MadePage page(run.path(), 2, 10, 8, 4);
+  EXPECT_EQ(page.CountRecord(), 1u);
+  EXPECT_EQ(page.CountRecord(), 2u);
+  const auto counts = ReadMadePages(run.path());
+  ASSERT_EQ(counts.size(), 1u);
+  EXPECT_EQ(counts[0].actor, 2u);
+  EXPECT_EQ(counts[0].session, 10u);
+  EXPECT_EQ(counts[0].made, 2u);
+}
+
+TEST(MadePage, SurvivesSigkill) {
+  const TemporaryFolder run;
+  const pid_t child = fork();
+  if (child == 0) {
+    MadePage page(run.path(), 0, 10, 0, 1);
+    for (int i = 0; i < 1000; ++i) page.CountRecord();
+    page.TakeEpisode(0);
+    kill(getpid(), SIGKILL);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  EXPECT_EQ(ReadMadePages(run.path()).at(0).made, 1000u);
+}
+
+TEST(MadePage, EpisodesGoOnAcrossSessionsAndActors) {
+  const TemporaryFolder run;
+  {
+    MadePage first(run.path(), 0, 10, 0, 2);
+    EXPECT_EQ(first.TakeEpisode(1), 0u);
+    EXPECT_EQ(first.TakeEpisode(1), 1u);
+  }
+  MadePage again(run.path(), 0, 11, 0, 2);
+  EXPECT_EQ(again.TakeEpisode(0), 0u);
+  EXPECT_EQ(again.TakeEpisode(1), 2u);
+  EXPECT_EQ(again.made(), 0u) << "sequences are per session";
+  MadePage other(run.path(), 1, 12, 1, 2);  // hosts environments 1 and 2
+  EXPECT_EQ(other.TakeEpisode(0), 3u);
+  EXPECT_EQ(other.TakeEpisode(1), 0u);
+}
+
+TEST(MadePage, ABrokenPageIsRefusedByName) {
+  const TemporaryFolder run;
+  { MadePage page(run.path(), 0, 10, 0, 2); }
+  std::filesystem::resize_file(run.path() / "made" / "actor-0-10.page", 44);
+  try {
+    ReadMadePages(run.path());
+    FAIL() << "a truncated page was read";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("actor-0-10.page"), std::string::npos) << e.what();
+  }
+}
+
+}  // namespace
+}  // namespace shoal::actor

@@ -1,0 +1,109 @@
+#include "common/config/schedule.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "common/base/error.h"
+#include "common/config/config_io.h"
+
+namespace shoal {
+namespace {
+
+TEST(Schedule, AConstantStaysAndALineEndsAtItsEnd) {
+  const Schedule constant = Schedule::Constant(0.3);
+  EXPECT_EQ(constant.At(0), 0.3);
+  EXPECT_EQ(constant.At(1'000'000), 0.3);
+  const Schedule line{1.0, 0.2, 1000};
+  EXPECT_EQ(line.At(0), 1.0);
+  EXPECT_DOUBLE_EQ(line.At(250), 0.8);
+  EXPECT_DOUBLE_EQ(line.At(999), 0.2008);
+  EXPECT_EQ(line.At(1000), 0.2);
+  EXPECT_EQ(line.At(uint64_t{1} << 63), 0.2);
+}
+
+TEST(Schedule, TextIsReadStrictly) {
+  EXPECT_EQ(ParseSchedule("linear(1,0.1,100000)"), (Schedule{1, 0.1, 100'000}));
+  EXPECT_EQ(ParseSchedule("linear(1.0, 1e-1, 100000)"), (Schedule{1, 0.1, 100'000}));
+  EXPECT_EQ(ParseSchedule("linear(-1,0,1)"), (Schedule{-1, 0, 1}));
+  for (const char* text : {"",
+                           "linear",
+                           "linear()",
+                           "linear(1,2)",
+                           "linear(1,2,3",
+                           "linear(1,2,3))",
+                           "linear(1,2,3) ",
+                           " linear(1,2,3)",
+                           "Linear(1,2,3)",
+                           "linear(1;2;3)",
+                           "linear(1 ,2,3)",
+                           "linear(1,2,3.5)",
+                           "linear(1,2,1e5)",
+                           "linear(1,2,0)",
+                           "linear(1,2,-3)",
+                           "linear(1,2,1000000000001)",
+                           "linear(nan,2,3)",
+                           "linear(1,inf,3)",
+                           "linear(,2,3)",
+                           "linear(1,2,3,4)",
+                           "0.5",
+                           "constant(1)"}) {
+    EXPECT_FALSE(ParseSchedule(text)) << text;
+  }
+}
+
+TEST(Schedule, TextSaysTheNumbersExactly) {
+  const Schedule line{0.1, 1.0 / 3, 12'345};
+  EXPECT_EQ(ParseSchedule(ScheduleText(line)), line);
+  EXPECT_EQ(ScheduleText({1, 0.1, 100'000}), "linear(1,0.1,100000)");
+}
+
+TEST(ScheduleKey, IsANumberOrAText) {
+  Config config;
+  ApplyAssignments({"exploration.sigma=0.25"}, &config);
+  EXPECT_EQ(config.exploration.sigma, Schedule::Constant(0.25));
+  EXPECT_EQ(ToJson(config)["exploration"]["sigma"], 0.25);
+  ApplyAssignments({"exploration.sigma=linear(1,0.1,5000)"}, &config);
+  EXPECT_EQ(config.exploration.sigma, (Schedule{1, 0.1, 5000}));
+  EXPECT_EQ(ToJson(config)["exploration"]["sigma"], "linear(1,0.1,5000)");
+  Config again;
+  ApplyJson(ToJson(config), "its own JSON", &again);
+  EXPECT_EQ(again.exploration.sigma, config.exploration.sigma);
+}
+
+TEST(ScheduleKey, EveryNumberOfItIsHeldToTheRange) {
+  for (const char* value : {"-0.1", "11", "linear(-0.1,0.1,5000)", "linear(1,11,5000)",
+                            "linear(1,0.1)", "true", "[1]", "\"0.5\""}) {
+    Config config;
+    try {
+      ApplyAssignments({std::string("exploration.sigma=") + value}, &config);
+      ADD_FAILURE() << "took " << value;
+    } catch (const Error& e) {
+      EXPECT_EQ(e.exit_code(), 2);
+      EXPECT_NE(std::string(e.what()).find("linear(START,END,ENV_STEPS)"), std::string::npos)
+          << e.what();
+    }
+  }
+}
+
+TEST(ExplorationKeys, AreCheckedTogether) {
+  Config config;
+  config.exploration.theta = 100;
+  config.exploration.dt = 0.01;
+  Validate(config);
+  config.exploration.dt = 0.02;
+  EXPECT_THROW(Validate(config), Error);
+  config = Config();
+  config.exploration.kind = "squashed_gaussian";
+  Validate(config);
+  config.learner.algorithm = "td3";
+  try {
+    Validate(config);
+    FAIL() << "a deterministic policy has no deviation";
+  } catch (const Error& e) {
+    EXPECT_NE(std::string(e.what()).find("gaussian | ou"), std::string::npos) << e.what();
+  }
+}
+
+}  // namespace
+}  // namespace shoal

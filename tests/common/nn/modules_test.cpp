@@ -1,0 +1,212 @@
+// Encoder, actor and critic as algorithms use them: options of the heads, which loss trains an
+// encoder, targets, against the double in double.
+#include <gmock/gmock.h>
+
+#include "common/nn/actor_module.h"
+#include "common/nn/adam.h"
+#include "common/nn/critic_module.h"
+#include "common/nn/encoder_module.h"
+#include "common/nn/features.h"
+#include "tests/common/nn/network_fixture.h"
+
+namespace shoal::nn {
+namespace {
+
+using reference::Values;
+using Use = Module::Use;
+
+constexpr int kBatch = 3;
+
+class ModulesTest : public LayerTest {
+ protected:
+  void SetUp() override {
+    LayerTest::SetUp();
+    frames_ = RandomFrames(spec_, kBatch, 5);
+  }
+
+  // Off the special values that initialisation gives biases and norms.
+  static void Start(Module* module, uint64_t seed) {
+    module->parameters().Initialise(seed);
+    Random random(seed);
+    for (int64_t i = 0; i < module->parameters().size(); ++i) {
+      module->parameters().values()[i] += float(0.1 * random.Normal());
+    }
+    module->Refresh();
+  }
+
+  reference::Network Reference(std::initializer_list<const Module*> modules) const {
+    TensorMap tensors;
+    for (const Module* module : modules) module->parameters().Export(&tensors);
+    return reference::Network(tensors, network_, spec_);
+  }
+
+  // What the actor's MLP gives for its observation.
+  Values Raw(const reference::Network& network) const {
+    const Values features = network.Features(kBatch, frames_.data());
+    return network.Mlp("actor.mlp", kBatch,
+                       network.Observation("actor", kBatch, features, vector_));
+  }
+
+  // Gradients of a few elements of each parameter of `module` against differences of `loss`.
+  void ExpectGradients(Module* module, reference::Network* network,
+                       const std::function<double()>& loss) const {
+    TensorMap tensors;
+    module->parameters().Export(&tensors);
+    for (const auto& [name, tensor] : tensors) {
+      const std::span<const float> gradient = GradientOf(module->parameters(), name);
+      std::vector<float> some;
+      Values exact;
+      for (size_t i = 0; i < gradient.size(); i += 1 + gradient.size() / 8) {
+        some.push_back(gradient[i]);
+        exact.push_back(CentralDifference(&network->at(name, i), loss));
+      }
+      EXPECT_LT(RelativeError(some, exact), GetParam() == Precision::kF32 ? 5e-4 : 0.2) << name;
+    }
+  }
+
+  const NetworkConfig network_ = OddNetwork();
+  const ObservationSpec spec_ = OddSpec(/*pixels=*/true);
+  const ModuleContext context_{GetParam(), kBatch, 1};
+  const Values vector_ = RandomValues(kBatch * 5, 3), action_ = RandomValues(kBatch * 3, 4);
+  std::vector<uint8_t> frames_;
+};
+
+TEST_P(ModulesTest, ADeterministicActorIsTheTanhOfItsMlpAndMayTrainItsOwnEncoder) {
+  EncoderModule encoder(PlanEncoder(network_, spec_), Use::kTraining, context_);
+  ActorModule actor(PlanActor(network_, spec_, ActorOutput::kDeterministic), &encoder.features(),
+                    /*trains_encoder=*/true, Use::kTraining, context_);
+  Start(&encoder, 1);
+  Start(&actor, 2);
+  encoder.Forward(frames_.data());
+  const auto [mean, log_std, action] = actor.Forward(ToFloats(vector_).data());
+  EXPECT_EQ(log_std, nullptr);
+  reference::Network network = Reference({&encoder, &actor});
+  EXPECT_LT(RelativeError({mean, kBatch * 3}, Raw(network)), 2 * Tolerance(GetParam()));
+  EXPECT_LT(RelativeError({action, kBatch * 3}, reference::Tanh(Raw(network))),
+            2 * Tolerance(GetParam()));
+
+  const Values daction = RandomValues(kBatch * 3, 6);
+  actor.Backward(ToFloats(daction).data());
+  encoder.Backward();
+  if (GetParam() != Precision::kF32) return;
+  const auto loss = [&] { return Dot(daction, reference::Tanh(Raw(network))); };
+  ExpectGradients(&actor, &network, loss);
+  ExpectGradients(&encoder, &network, loss);
+}
+
+TEST_P(ModulesTest, AClampedDeviationHasNoGradientBeyondItsRange) {
+  EncoderModule encoder(PlanEncoder(network_, spec_), Use::kInference, context_);
+  ActorPlan plan = PlanActor(network_, spec_);
+  plan.log_std = LogStd::kClamped;
+  ActorModule actor(plan, &encoder.features(), /*trains_encoder=*/false, Use::kTraining, context_);
+  Start(&encoder, 1);
+  Start(&actor, 2);
+  // Raw deviations of the three actions: within, above and below the range.
+  float* bias = actor.parameters().Find("actor.mlp.output.bias").value();
+  bias[3] = -1;
+  bias[4] = 30;
+  bias[5] = -60;
+  actor.Refresh();
+  encoder.Forward(frames_.data());
+  const float* log_std = actor.Forward(ToFloats(vector_).data()).log_std;
+  reference::Network network = Reference({&encoder, &actor});
+  const auto clamped = [&] {
+    Values result;
+    const Values raw = Raw(network);
+    for (size_t b = 0; b < kBatch; ++b) {
+      for (size_t j = 3; j < 6; ++j) result.push_back(std::clamp(raw[b * 6 + j], -20.0, 2.0));
+    }
+    return result;
+  };
+  EXPECT_LT(RelativeError({log_std, kBatch * 3}, clamped()), 2 * Tolerance(GetParam()));
+  EXPECT_EQ(log_std[1], 2.f);
+  EXPECT_EQ(log_std[2], -20.f);
+
+  const Values dmean = RandomValues(kBatch * 3, 6), dlog_std = RandomValues(kBatch * 3, 7);
+  actor.Backward(ToFloats(dmean).data(), ToFloats(dlog_std).data());
+  EXPECT_EQ(GradientOf(actor.parameters(), "actor.mlp.output.bias")[4], 0.f);
+  EXPECT_EQ(GradientOf(actor.parameters(), "actor.mlp.output.bias")[5], 0.f);
+  if (GetParam() != Precision::kF32) return;
+  ExpectGradients(&actor, &network, [&] {
+    Values means;
+    const Values raw = Raw(network);
+    for (size_t b = 0; b < kBatch; ++b) {
+      means.insert(means.end(), raw.begin() + long(b) * 6, raw.begin() + long(b) * 6 + 3);
+    }
+    return Dot(dmean, means) + Dot(dlog_std, clamped());
+  });
+}
+
+TEST_P(ModulesTest, ACriticOfAnyNumberOfFunctionsTrainsTheEncoderByThoseInTheLoss) {
+  for (const int count : {1, 3}) {
+    EncoderModule encoder(PlanEncoder(network_, spec_), Use::kTraining, context_);
+    CriticModule critic(PlanCritic(network_, spec_, "critic", count), &encoder.features(),
+                        /*trains_encoder=*/true, Use::kTraining, context_);
+    Start(&encoder, 1);
+    Start(&critic, 2);
+    ASSERT_EQ(critic.count(), count);
+    encoder.Forward(frames_.data());
+    critic.ForwardObservation(ToFloats(vector_).data());
+    critic.ForwardAction(ToFloats(action_).data());
+    reference::Network network = Reference({&encoder, &critic});
+    const auto q = [&](int i, const Values& action) {
+      const Values features = network.Features(kBatch, frames_.data());
+      const Values observation = network.Observation("critic", kBatch, features, vector_);
+      return network.Mlp("critic.q" + std::to_string(i + 1), kBatch,
+                         reference::Beside(kBatch, observation, action));
+    };
+    for (int i = 0; i < count; ++i) {
+      EXPECT_LT(RelativeError({critic.q(i), kBatch}, q(i, action_)), 2 * Tolerance(GetParam()));
+    }
+
+    // The last function alone is in the loss.
+    const Values dq = RandomValues(kBatch, 6);
+    std::vector<std::vector<float>> gradients(static_cast<size_t>(count));
+    gradients.back() = ToFloats(dq);
+    std::vector<float> daction(kBatch * 3);
+    critic.BackwardAction(gradients, daction.data());
+    critic.Backward(gradients);
+    encoder.Backward();
+    if (GetParam() != Precision::kF32) continue;
+    Values action = action_, exact;
+    for (double& value : action) {
+      exact.push_back(CentralDifference(&value, [&] { return Dot(dq, q(count - 1, action)); }));
+    }
+    EXPECT_LT(RelativeError(daction, exact), 5e-4);
+    const std::function<double()> loss = [&] { return Dot(dq, q(count - 1, action_)); };
+    ExpectGradients(&encoder, &network, loss);
+    if (count == 1) {
+      ExpectGradients(&critic, &network, loss);
+    } else {
+      for (const float value : GradientOf(critic.parameters(), "critic.q1.layer0.weight")) {
+        ASSERT_EQ(value, 0.f);
+      }
+    }
+  }
+}
+
+TEST_P(ModulesTest, ATargetFollowsAnyModuleByTheShareAsked) {
+  EncoderModule online(PlanEncoder(network_, spec_), Use::kTraining, context_);
+  EncoderModule target(PlanEncoder(network_, spec_, "target_encoder"), Use::kInference, context_);
+  Start(&online, 1);
+  CopyParameters(online, &target);
+  const auto features = [&](EncoderModule* encoder) {
+    encoder->Forward(frames_.data());
+    return ReadMemory(encoder->features().values());
+  };
+  EXPECT_EQ(features(&target), features(&online));
+
+  const float before = target.parameters().values()[0];
+  Start(&online, 2);
+  MoveTowards(0.25f, online, &target);
+  EXPECT_FLOAT_EQ(target.parameters().values()[0],
+                  before + 0.25f * (online.parameters().values()[0] - before));
+  EXPECT_NE(features(&target), features(&online));
+  MoveTowards(1.f, online, &target);
+  EXPECT_THAT(features(&target), testing::Pointwise(testing::FloatNear(5e-2f), features(&online)));
+}
+
+INSTANTIATE_PRECISIONS(ModulesTest);
+
+}  // namespace
+}  // namespace shoal::nn

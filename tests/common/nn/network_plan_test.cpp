@@ -1,0 +1,214 @@
+#include "common/nn/network_plan.h"
+
+#include <fmt/format.h>
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+#include "common/base/error.h"
+#include "common/config/config_io.h"
+#include "common/nn/actor_critic_plan.h"
+#include "common/nn/encoders/encoder_kind.h"
+
+namespace shoal::nn {
+namespace {
+
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+ObservationSpec Images(int height, int width) {
+  ObservationSpec spec;
+  spec.cameras = {"front", "side"};
+  spec.channels = 6;
+  spec.height = height;
+  spec.width = width;
+  spec.action_size = 3;
+  return spec;
+}
+
+// "NAME SHAPE" of every parameter.
+std::vector<std::string> Texts(const std::vector<ParameterSpec>& parameters) {
+  std::vector<std::string> texts;
+  for (const ParameterSpec& parameter : parameters) {
+    texts.push_back(fmt::format("{} {}", parameter.name, fmt::join(parameter.shape, " ")));
+  }
+  return texts;
+}
+
+NetworkPlan Encoder(const std::string& kind, int height = 84, int width = 84) {
+  NetworkConfig network;
+  network.encoder = kind;
+  return PlanEncoder(network, Images(height, width));
+}
+
+TEST(NetworkPlan, ConvolutionsShrinkTheirMapByKernelStrideAndPadding) {
+  NetworkPlan plan({5, 23, 18});
+  plan.Add(NetworkPlan::Convolution{
+      .name = "a", .key = "k", .filters = 7, .kernel = 7, .stride = 2, .padding = 3});
+  EXPECT_EQ(plan.output(), (MapShape{7, 12, 9}));
+  plan.Add(
+      NetworkPlan::Convolution{.name = "b", .key = "k", .filters = 4, .kernel = 4, .stride = 3});
+  EXPECT_EQ(plan.output(), (MapShape{4, 3, 2}));
+  plan.Add(NetworkPlan::Linear{.name = "c", .key = "k", .outputs = 9, .layer_norm = true});
+  EXPECT_EQ(plan.output(), (MapShape{9, 1, 1}));
+  EXPECT_THAT(Texts(plan.Parameters()),
+              ElementsAre("a.weight 7 5 7 7", "a.bias 7", "b.weight 4 7 4 4", "b.bias 4",
+                          "c.weight 9 24", "c.bias 9", "c.norm.weight 9", "c.norm.bias 9"));
+}
+
+TEST(NetworkPlan, AMapSmallerThanTheKernelIsBadUsageUnlessPadded) {
+  NetworkPlan plan({1, 5, 9});
+  const NetworkPlan::Convolution large{
+      .name = "conv4", .key = "network.filters", .filters = 1, .kernel = 6, .stride = 1};
+  EXPECT_THAT([&] { plan.Add(large); },
+              ThrowsMessage<Error>(AllOf(HasSubstr("network.filters"), HasSubstr("5x9"),
+                                         HasSubstr("6x6"), HasSubstr("conv4"))));
+  NetworkPlan::Convolution padded = large;
+  padded.padding = 1;
+  plan.Add(padded);
+  EXPECT_EQ(plan.output(), (MapShape{1, 2, 6}));
+}
+
+TEST(NetworkPlan, OrthogonalGainsAreTheRootOfTwoForConvolutionsAndOneForLinears) {
+  const auto parameters = PolicyParameters({}, Images(84, 84));
+  EXPECT_EQ(parameters[0].start.kind, Start::Kind::kOrthogonal);
+  EXPECT_DOUBLE_EQ(parameters[0].start.scale, std::sqrt(2.0));
+  EXPECT_EQ(parameters[1].start.kind, Start::Kind::kZeros);
+  EXPECT_EQ(parameters[6].name, "actor.trunk.weight");
+  EXPECT_DOUBLE_EQ(parameters[6].start.scale, 1.0);
+  EXPECT_EQ(parameters[8].name, "actor.trunk.norm.weight");
+  EXPECT_EQ(parameters[8].start.kind, Start::Kind::kOnes);
+}
+
+TEST(NetworkPlan, PyTorchsBoundsAreOneOverTheRootOfAnOutputsInputs) {
+  NetworkConfig network;
+  network.encoder = "nature";
+  network.initialisation = "pytorch";
+  const auto parameters = PolicyParameters(network, Images(84, 84));
+  for (const size_t i : {size_t{0}, size_t{1}}) {  // weight and bias of 6 channels, 8x8
+    EXPECT_EQ(parameters[i].start.kind, Start::Kind::kUniform) << parameters[i].name;
+    EXPECT_DOUBLE_EQ(parameters[i].start.scale, 1 / std::sqrt(6 * 8 * 8));
+  }
+  EXPECT_EQ(parameters[6].name, "actor.trunk.weight");
+  EXPECT_DOUBLE_EQ(parameters[6].start.scale, 1 / std::sqrt(3136.0));
+  EXPECT_DOUBLE_EQ(parameters[7].start.scale, 1 / std::sqrt(3136.0));
+}
+
+TEST(EncoderKinds, HaveTheMapsOfTheirPapers) {
+  EXPECT_EQ(Encoder("compact").output(), (MapShape{32, 8, 8}));
+  EXPECT_EQ(Encoder("drq").output(), (MapShape{32, 35, 35}));
+  EXPECT_EQ(Encoder("mrq").output(), (MapShape{32, 7, 7}));
+  EXPECT_EQ(Encoder("nature").output(), (MapShape{64, 7, 7}));
+  EXPECT_THAT(Texts(Encoder("nature").Parameters()),
+              ElementsAre("encoder.conv0.weight 32 6 8 8", "encoder.conv0.bias 32",
+                          "encoder.conv1.weight 64 32 4 4", "encoder.conv1.bias 64",
+                          "encoder.conv2.weight 64 64 3 3", "encoder.conv2.bias 64"));
+}
+
+TEST(EncoderKinds, AreTheWordsThatTheKeyTakes) {
+  for (const EncoderKind& kind : kEncoderKinds) {
+    Config config;
+    ApplyAssignments({fmt::format("network.encoder={}", kind.name)}, &config);
+    EXPECT_EQ(FindEncoderKind(config.network.encoder).name, kind.name);
+  }
+  EXPECT_THAT([] { FindEncoderKind("resnet"); },
+              ThrowsMessage<Error>(AllOf(HasSubstr("network.encoder = resnet"),
+                                         HasSubstr("compact | drq | mrq | nature"))));
+}
+
+TEST(EncoderKinds, EachFitsThePresetForPixels) {
+  for (const EncoderKind& kind : kEncoderKinds) {
+    Config config = LoadPreset("fetch-reach-drq");
+    ApplyAssignments({fmt::format("network.encoder={}", kind.name)}, &config);
+    EXPECT_NO_THROW(PlanEncoder(config.network, Images(84, 84))) << kind.name;
+  }
+}
+
+TEST(EncoderKinds, ImagesTooSmallAreRefusedNamingTheSmallestThatFit) {
+  EXPECT_THAT([] { Encoder("nature", 35, 84); },
+              ThrowsMessage<Error>(AllOf(HasSubstr("network.encoder = nature"), HasSubstr("35x84"),
+                                         HasSubstr("at least 36x36"))));
+  EXPECT_NO_THROW(Encoder("nature", 36, 36));
+  EXPECT_THAT([] { Encoder("drq", 14, 14); }, ThrowsMessage<Error>(HasSubstr("at least 15x15")));
+  EXPECT_NO_THROW(Encoder("drq", 15, 15));
+  EXPECT_THAT([] { Encoder("mrq", 30, 84); }, ThrowsMessage<Error>(HasSubstr("at least 31x31")));
+  EXPECT_NO_THROW(Encoder("mrq", 31, 31));
+  EXPECT_THAT([] { Encoder("compact", 20, 20); },
+              ThrowsMessage<Error>(HasSubstr("at least 22x22")));
+  EXPECT_NO_THROW(Encoder("compact", 22, 22));
+}
+
+TEST(EncoderKinds, KeysOfTheCompactEncoderAreRefusedBesideAnother) {
+  for (const char* assignment :
+       {"network.pool=2", "network.filters=[32]", "network.strides=[2,1,2]"}) {
+    Config config;
+    ApplyAssignments({"network.encoder=drq", assignment}, &config);
+    const std::string key(assignment, std::string_view(assignment).find('='));
+    EXPECT_THAT(
+        [&] { PlanEncoder(config.network, Images(84, 84)); },
+        ThrowsMessage<Error>(AllOf(HasSubstr(key), HasSubstr("compact"), HasSubstr("drq"))));
+  }
+}
+
+TEST(EncoderKinds, CompactTakesItsKeysAndChecksThem) {
+  NetworkConfig network;
+  network.filters = {8, 4};
+  network.strides = {1, 3};
+  network.pool = 3;
+  EXPECT_EQ(PlanEncoder(network, Images(84, 81)).output(), (MapShape{4, 8, 8}));
+  network.strides = {};
+  EXPECT_THAT(
+      [&] { PlanEncoder(network, Images(84, 81)); },
+      ThrowsMessage<Error>(HasSubstr("network.filters has 2 entries and network.strides 3")));
+  network = {};
+  network.pool = 5;
+  EXPECT_THAT([&] { PlanEncoder(network, Images(84, 84)); },
+              ThrowsMessage<Error>(AllOf(HasSubstr("network.pool = 5"), HasSubstr("84x84"))));
+}
+
+TEST(ActorCriticPlan, DefaultNetworkHasTheseParameters) {
+  std::vector<ParameterSpec> parameters = PolicyParameters({}, Images(84, 84));
+  Append(PlanCritic({}, Images(84, 84), "critic").Parameters(), &parameters);
+  const std::vector<std::string> texts = Texts(parameters);
+  ASSERT_EQ(texts.size(), 44u);
+  EXPECT_EQ(texts[0], "encoder.conv0.weight 32 6 3 3");
+  EXPECT_EQ(texts[4], "encoder.conv2.weight 32 32 3 3");
+  EXPECT_EQ(texts[6], "actor.trunk.weight 50 2048");
+  EXPECT_EQ(texts[10], "actor.mlp.layer0.weight 256 50");
+  EXPECT_EQ(texts[18], "actor.mlp.output.weight 6 256");
+  EXPECT_EQ(texts[24], "critic.q1.layer0.weight 256 53");
+  EXPECT_EQ(texts.back(), "critic.q2.output.bias 1");
+}
+
+TEST(ActorCriticPlan, NatureHasALinearReluTrunkOf512UnlessToldOtherwise) {
+  NetworkConfig network;
+  network.encoder = "nature";
+  const HeadPlan nature = PlanActor(network, Images(84, 84));
+  EXPECT_THAT(Texts(nature.trunk.Parameters()),
+              ElementsAre("actor.trunk.weight 512 3136", "actor.trunk.bias 512"));
+  EXPECT_EQ(nature.trunk.layers()[0].activation, Activation::kRelu);
+  network.trunk = "tanh";
+  network.features = 256;
+  const HeadPlan other = PlanActor(network, Images(84, 84));
+  EXPECT_EQ(other.trunk.Parameters().size(), 4u);
+  EXPECT_EQ(other.trunk_columns(), 256);
+  EXPECT_EQ(other.trunk.layers()[0].activation, Activation::kTanh);
+}
+
+TEST(ActorCriticPlan, WithoutPixelsTheVectorAloneEnters) {
+  ObservationSpec spec;
+  spec.blocks = {{"goal", 3}, {"joints", 4}};
+  spec.action_size = 2;
+  EXPECT_TRUE(PlanEncoder({}, spec).layers().empty());
+  const HeadPlan critic = PlanCritic({}, spec, "critic", /*count=*/3);
+  EXPECT_EQ(critic.trunk_columns(), 0);
+  ASSERT_EQ(critic.mlps.size(), 3u);
+  EXPECT_EQ(Texts(critic.mlps[2].Parameters())[0], "critic.q3.layer0.weight 256 9");
+  const HeadPlan actor = PlanActor({}, spec, ActorOutput::kDeterministic);
+  EXPECT_EQ(actor.mlps[0].output().channels, 2);
+}
+
+}  // namespace
+}  // namespace shoal::nn

@@ -1,0 +1,164 @@
+"""Records what a few updates of Stable-Baselines3 compute, for a test of ours to be held to.
+
+usage: sb3_updates.py FOLDER
+
+Writes td3.safetensors and ddpg.safetensors to FOLDER: from state, without noise on the target's
+action. Inputs (weights, observations, actions, rewards) are not stored: both sides compute them
+from `uniform` below, so that the files hold results alone. Wants stable-baselines3 and safetensors
+from PyPI; nothing of Shoal needs Python.
+
+In a file, u = 0..3 counts updates; NAME is a tensor's name in Stable-Baselines3 after its model's
+("actor.mu.0.weight", "critic.qf0.0.bias", "critic_target.qf0.0.bias"):
+
+  u.critic_loss, u.actor_loss   as logged; the latter in updates that move the actor
+  u.target                      y of the critic's loss (B)
+  u.gradient.NAME               as the optimiser's step finds it
+  u.after.NAME                  parameters when the update is over, targets too
+"""
+
+import os
+import sys
+
+import gymnasium
+import numpy as np
+import stable_baselines3
+import torch
+from safetensors.numpy import save_file
+from stable_baselines3 import DDPG, TD3
+from stable_baselines3.common.buffers import ReplayBufferSamples
+from stable_baselines3.common.logger import Logger
+from stable_baselines3.td3 import td3
+
+BATCH, ACTIONS, VECTOR, UPDATES = 8, 3, 11, 4
+HIDDEN = [20, 16]
+MASK = (1 << 64) - 1
+
+
+def fnv1a(text):
+    value = 0xCBF29CE484222325
+    for byte in text.encode():
+        value = ((value ^ byte) * 0x100000001B3) & MASK
+    return value
+
+
+def uniform(name, count):
+    """Numbers in [0, 1), exact in double: splitmix64 of fnv1a(name) + index."""
+    with np.errstate(over="ignore"):
+        x = np.uint64(fnv1a(name)) + np.arange(count, dtype=np.uint64)
+        x = x * np.uint64(0x9E3779B97F4A7C15)
+        x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+        x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+        x = x ^ (x >> np.uint64(31))
+    return (x >> np.uint64(11)).astype(np.float64) * 2.0**-53
+
+
+def symmetric(name, shape, scale):
+    """Numbers in [-scale, scale), rounded to f32 once."""
+    numbers = (2 * uniform(name, int(np.prod(shape))) - 1) * scale
+    return torch.from_numpy(numbers.astype(np.float32).reshape(shape))
+
+
+class Spaces(gymnasium.Env):
+    """Nothing but the two spaces that a model asks for."""
+
+    observation_space = gymnasium.spaces.Box(-np.inf, np.inf, (VECTOR,), np.float32)
+    action_space = gymnasium.spaces.Box(-1, 1, (ACTIONS,), np.float32)
+
+
+def set_weights(module, prefix):
+    """Weights U(+-sqrt(6 / fan_in)), so that no layer fades; biases U(+-1 / sqrt(fan_in))."""
+    parameters = dict(module.named_parameters())
+    with torch.no_grad():
+        for name, parameter in parameters.items():
+            fan_in = parameters[name.rsplit(".", 1)[0] + ".weight"].shape[1]
+            numerator = 6 if name.endswith("weight") else 1
+            scale = (numerator / fan_in) ** 0.5
+            parameter.copy_(symmetric(f"{prefix}.{name}", parameter.shape, scale))
+
+
+def batch(update):
+    at = f"update{update}."
+    dones = torch.zeros(BATCH, 1)
+    dones[update % BATCH] = 1
+    dones[(update + 3) % BATCH] = 1
+    return ReplayBufferSamples(
+        observations=symmetric(at + "obs", (BATCH, VECTOR), 1.5),
+        actions=symmetric(at + "action", (BATCH, ACTIONS), 1.0),
+        next_observations=symmetric(at + "next_obs", (BATCH, VECTOR), 1.5),
+        dones=dones,
+        rewards=symmetric(at + "reward", (BATCH, 1), 2.0),
+    )
+
+
+class Recorder:
+    def __init__(self):
+        self.update, self.file = 0, {}
+
+    def keep(self, name, tensor):
+        self.file[f"{self.update}.{name}"] = np.array(tensor.detach().numpy(), np.float32)  # a copy
+
+    def watch_optimiser(self, prefix, module):
+        step = module.optimizer.step
+
+        def recorded(*args, **kwargs):
+            for name, parameter in module.named_parameters():
+                self.keep(f"gradient.{prefix}.{name}", parameter.grad)
+            return step(*args, **kwargs)
+
+        module.optimizer.step = recorded
+
+
+class Scalars(Logger):
+    def __init__(self, recorder):
+        super().__init__(folder=None, output_formats=[])
+        self.recorder = recorder
+
+    def record(self, key, value, exclude=None):
+        if key in ("train/actor_loss", "train/critic_loss"):
+            self.recorder.keep(key[len("train/") :], torch.tensor([float(value)]))
+
+
+def run(kind, folder, **options):
+    model = kind("MlpPolicy", Spaces(), batch_size=BATCH, buffer_size=64, device="cpu",
+                 policy_kwargs={"net_arch": HIDDEN}, **options)
+    modules = {"actor": model.actor, "critic": model.critic, "actor_target": model.actor_target,
+               "critic_target": model.critic_target}
+    recorder = Recorder()
+    model._logger = Scalars(recorder)
+    for prefix, module in modules.items():
+        set_weights(module, prefix)  # targets are far from what they follow
+    for prefix in ("actor", "critic"):
+        recorder.watch_optimiser(prefix, modules[prefix])
+
+    mse = td3.F.mse_loss
+
+    def recorded_mse(q, y):
+        recorder.keep("target", y.reshape(-1))
+        return mse(q, y)
+
+    td3.F.mse_loss = recorded_mse
+    try:
+        for update in range(UPDATES):
+            recorder.update = update
+            model.replay_buffer.sample = lambda *_, **__: batch(recorder.update)
+            model.train(gradient_steps=1, batch_size=BATCH)
+            for prefix, module in modules.items():
+                for name, parameter in module.named_parameters():
+                    recorder.keep(f"after.{prefix}.{name}", parameter)
+    finally:
+        td3.F.mse_loss = mse
+    path = os.path.join(folder, kind.__name__.lower() + ".safetensors")
+    versions = {"stable_baselines3": stable_baselines3.__version__, "torch": torch.__version__}
+    save_file(recorder.file, path, metadata=versions)
+    print(path, os.path.getsize(path), "bytes", len(recorder.file), "arrays")
+
+
+def main():
+    if len(sys.argv) != 2:
+        sys.exit(__doc__)
+    torch.set_num_threads(1)
+    run(TD3, sys.argv[1], target_policy_noise=0.0)
+    run(DDPG, sys.argv[1])
+
+
+main()

@@ -1,0 +1,85 @@
+// The folder of a run as its programs would have left it, without them.
+#pragma once
+
+#include <fmt/core.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "common/base/files.h"
+#include "common/config/config_io.h"
+#include "common/config/run_files.h"
+#include "tests/support/temporary_folder.h"
+
+namespace shoal::launch {
+
+// One evaluation of schema shoal-eval-1 with these means.
+inline nlohmann::ordered_json PlantedEvaluation(uint64_t env_steps, double success, int episodes,
+                                                double return_mean = -1) {
+  return {{"schema", "shoal-eval-1"},
+          {"task", "FetchReachDense"},
+          {"checkpoint", "best"},
+          {"weights_version", {{"session", 1}, {"update", env_steps / 10}}},
+          {"env_steps", env_steps},
+          {"wall_seconds", static_cast<double>(env_steps) / 100},
+          {"episodes", std::vector<int>(static_cast<size_t>(episodes), 0)},
+          {"aggregate",
+           {{"success_rate", success},
+            {"return_mean", return_mean},
+            {"return_std", 0.1},
+            {"final_distance_mean", 0.02}}}};
+}
+
+// Files of a run in `path`, which need not be there.
+class RunPlanter {
+ public:
+  explicit RunPlanter(std::filesystem::path path) : path_(std::move(path)) {}
+
+  const std::filesystem::path& path() const { return path_; }
+
+  void Begin(const std::vector<std::string>& keys = {}) const {
+    MakeFolders(path_ / "eval");
+    RunConfig run;
+    ApplyAssignments(keys, &run.config);
+    WriteRunConfig(path_, run);
+  }
+  void WriteMeta(const std::string& exit, const std::string& error = "") const {
+    nlohmann::ordered_json meta{{"schema", "shoal-run-1"},
+                                {"exit", exit},
+                                {"env_steps", 1000},
+                                {"updates", 100},
+                                {"wall_seconds", 360.0},
+                                {"commits", {"abc", "def"}},
+                                {"machine", {{"cpu", "a fast one"}, {"cores", 2}}}};
+    meta["error"] = error.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(error);
+    WriteFileAtomically(path_ / "meta.json", meta.dump());
+  }
+  void WriteFinal(double success, int episodes, double return_mean = -1) const {
+    WriteFileAtomically(path_ / "eval/final.json",
+                        PlantedEvaluation(1000, success, episodes, return_mean).dump());
+  }
+  void WriteEvaluation(uint64_t env_steps, double success, double return_mean = -1) const {
+    WriteFileAtomically(path_ / fmt::format("eval/steps_{:010}.json", env_steps),
+                        PlantedEvaluation(env_steps, success, 50, return_mean).dump());
+  }
+
+ private:
+  std::filesystem::path path_;
+};
+
+// In a folder of its own.
+class PlantedRun {
+ public:
+  std::filesystem::path path() const { return planter_.path(); }
+  void Begin() const { planter_.Begin(); }
+  void WriteMeta(const std::string& exit, const std::string& error = "") const {
+    planter_.WriteMeta(exit, error);
+  }
+  void WriteFinal(double success, int episodes) const { planter_.WriteFinal(success, episodes); }
+
+ private:
+  TemporaryFolder folder_;
+  RunPlanter planter_{folder_.path() / "run"};
+};
+
+}  // namespace shoal::launch

@@ -1,0 +1,102 @@
+#include "launch/experiment/run_standing.h"
+
+#include <gtest/gtest.h>
+
+#include "common/base/error.h"
+#include "launch/experiment/run_results.h"
+#include "launch/experiment/train_keeper.h"
+#include "launch/record/run_folder.h"
+#include "tests/launch/experiment/planted_run.h"
+
+namespace shoal::launch {
+namespace {
+
+LoggedRun Ended(int code, bool by_signal = false, bool stopped = false) {
+  LoggedRun logged{.starts = 1};
+  logged.ending = RunEnding{
+      .run = "run", .by_signal = by_signal, .code = code, .stopped = stopped, .problem = "why"};
+  return logged;
+}
+
+TEST(RunStanding, WithoutAConfigurationItHasNotBegun) {
+  const PlantedRun run;
+  EXPECT_EQ(StandingOf(run.path(), nullptr).standing, RunStanding::kMissing);
+  const LoggedRun refused = Ended(2), killed = Ended(9, true), stopped = Ended(1, false, true);
+  EXPECT_EQ(StandingOf(run.path(), &refused).standing, RunStanding::kFailed);
+  EXPECT_EQ(StandingOf(run.path(), &refused).problem, "why");
+  EXPECT_EQ(StandingOf(run.path(), &killed).standing, RunStanding::kMissing);
+  EXPECT_EQ(StandingOf(run.path(), &stopped).standing, RunStanding::kMissing);
+}
+
+TEST(RunStanding, FinishedIsTrainedAndEvaluated) {
+  PlantedRun run;
+  run.Begin();
+  EXPECT_EQ(StandingOf(run.path(), nullptr).standing, RunStanding::kInterrupted);
+  run.WriteMeta("budget");
+  EXPECT_EQ(StandingOf(run.path(), nullptr).standing, RunStanding::kInterrupted)
+      << "its last evaluation is still to come";
+  run.WriteFinal(0.9, 10);
+  EXPECT_EQ(StandingOf(run.path(), nullptr).standing, RunStanding::kFinished);
+  run.WriteMeta("target");
+  EXPECT_EQ(StandingOf(run.path(), nullptr).standing, RunStanding::kFinished);
+}
+
+TEST(RunStanding, StoppedOrKilledGoesOn) {
+  PlantedRun run;
+  run.Begin();
+  for (const char* exit : {"running", "interrupted"}) {
+    run.WriteMeta(exit);
+    const LoggedRun killed = Ended(9, true), stopped = Ended(1, false, true), alive{.starts = 1};
+    for (const LoggedRun* logged : {&killed, &stopped, &alive}) {
+      EXPECT_EQ(StandingOf(run.path(), logged).standing, RunStanding::kInterrupted) << exit;
+    }
+    const LoggedRun refused = Ended(1);
+    EXPECT_EQ(StandingOf(run.path(), &refused).standing, RunStanding::kFailed) << exit;
+  }
+}
+
+TEST(RunStanding, FailedSaysWhy) {
+  PlantedRun run;
+  run.Begin();
+  run.WriteMeta("failed", "the disk is full");
+  EXPECT_EQ(StandingOf(run.path(), nullptr).standing, RunStanding::kFailed);
+  EXPECT_EQ(StandingOf(run.path(), nullptr).problem, "the disk is full");
+}
+
+TEST(RunStanding, ABrokenFileIsAFailureThatNamesIt) {
+  PlantedRun run;
+  run.Begin();
+  WriteFileAtomically(run.path() / "meta.json", "{\"exit\":");
+  const StandingReport report = StandingOf(run.path(), nullptr);
+  EXPECT_EQ(report.standing, RunStanding::kFailed);
+  EXPECT_NE(report.problem.find("meta.json"), std::string::npos) << report.problem;
+}
+
+TEST(RunStanding, AHeldRunIsRunning) {
+  const TemporaryFolder folder;
+  const RunFolder held = RunFolder::Create(folder.path(), "run", false);
+  EXPECT_EQ(StandingOf(held.path(), nullptr).standing, RunStanding::kRunning);
+}
+
+TEST(SplitCores, GivesEachRunItsOwn) {
+  using Cores = std::vector<std::vector<int>>;
+  EXPECT_EQ(SplitCores({0, 1, 4, 5, 6}, 2), (Cores{{0, 1, 4}, {5, 6}}));
+  EXPECT_EQ(SplitCores({2, 3}, 2), (Cores{{2}, {3}}));
+  EXPECT_THROW(SplitCores({0, 1}, 3), Error);
+  EXPECT_GE(OwnCores().size(), 1u);
+}
+
+TEST(StepsToSuccess, IsTheFirstOfTwoInARow) {
+  std::vector<EvaluationFigures> curve;
+  for (const double success : {0.5, 0.9, 0.8, 0.9, 1.0, 0.1}) {
+    curve.push_back({.env_steps = 100 * (curve.size() + 1), .success = success});
+  }
+  EXPECT_EQ(StepsToSuccess(curve, 0.9), 400u);
+  EXPECT_EQ(StepsToSuccess(curve, 0.95), std::nullopt) << "only once";
+  EXPECT_EQ(StepsToSuccess({}, 0.9), std::nullopt);
+  curve[3].success.reset();
+  EXPECT_EQ(StepsToSuccess(curve, 0), 100u) << "without a success none is reached";
+}
+
+}  // namespace
+}  // namespace shoal::launch

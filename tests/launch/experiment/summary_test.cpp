@@ -1,0 +1,110 @@
+#include "launch/experiment/summary.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/launch/experiment/planted_run.h"
+
+namespace shoal::launch {
+namespace {
+
+using ::testing::HasSubstr;
+
+// Two arms: both seeds of "state" finished; of "pixels" one finished, one interrupted.
+class SummaryTest : public testing::Test {
+ protected:
+  SummaryTest() {
+    Definition definition{.name = "mine", .base = "fetch-reach-state"};
+    definition.question = "Pixels or state?";
+    definition.arms = {{"state", nlohmann::ordered_json::object()},
+                       {"pixels", {{"learner.batch", 64}}}};
+    definition.seeds = {0, 1};
+    folder_.emplace(temporary_.path() / "mine", definition, "x.json");
+    for (const ExperimentRun& run : folder_->experiment().Runs({0, 1})) {
+      const RunPlanter planter(run.folder);
+      planter.Begin();
+      const bool first = run.arm == 0;
+      planter.WriteEvaluation(100, first ? 0.9 : 0.2, -3);
+      planter.WriteEvaluation(200, 0.95, -2);
+      planter.WriteEvaluation(300, 0.95, -1);
+      planter.WriteMeta(run.name == "pixels-s1" ? "interrupted" : "budget");
+      if (run.name != "pixels-s1") planter.WriteFinal(first ? 1 : 0.5, 20, first ? -1 : -2);
+    }
+  }
+
+  nlohmann::ordered_json Json() const { return ToJson(ReadOutcome(folder_->experiment())); }
+
+  const TemporaryFolder temporary_;
+  std::optional<ExperimentFolder> folder_;
+};
+
+TEST_F(SummaryTest, HasEveryMemberThatOthersRead) {
+  WriteSummary(ReadOutcome(folder_->experiment()));
+  const auto json = nlohmann::json::parse(ReadFile(folder_->experiment().folder / "summary.json"));
+  EXPECT_EQ(json.at("schema"), "shoal-experiment-1");
+  EXPECT_EQ(json.at("name"), "mine");
+  for (const char* name : {"commit", "created", "baselines"}) EXPECT_TRUE(json.contains(name));
+  const auto& arm = json.at("arms").at(0);
+  EXPECT_EQ(arm.at("name"), "state");
+  EXPECT_EQ(json.at("arms").at(1).at("overrides").at("learner.batch"), 64);
+  const auto& run = arm.at("runs").at(1);
+  EXPECT_EQ(run.at("run"), "state-s1");
+  EXPECT_EQ(run.at("seed"), 1);
+  EXPECT_EQ(run.at("status"), "finished");
+  EXPECT_EQ(run.at("env_steps"), 1000);
+  EXPECT_EQ(run.at("updates"), 100);
+  EXPECT_EQ(run.at("wall_seconds"), 360);
+  EXPECT_EQ(run.at("n_to_target"), 100);
+  EXPECT_EQ(run.at("success"), 1.0);
+  EXPECT_EQ(run.at("episodes"), 20);
+  EXPECT_EQ(run.at("return_mean"), -1.0);
+  EXPECT_EQ(run.at("final_distance_mean"), 0.02);
+  EXPECT_EQ(run.at("commits"), (std::vector<std::string>{"abc", "def"}));
+}
+
+TEST_F(SummaryTest, PoolsEpisodesAndTakesSeedsAsTheUnitOfReturns) {
+  const auto json = Json();
+  const auto& state = json.at("arms").at(0);
+  EXPECT_EQ(state.at("success").at("pooled"), 1.0);
+  EXPECT_EQ(state.at("success").at("episodes"), 40);
+  EXPECT_NEAR(state.at("success").at("wilson95").at(0).get<double>(), Wilson95(40, 40).low, 1e-12);
+  EXPECT_EQ(state.at("return").at("mean"), -1.0);
+  EXPECT_EQ(state.at("return").at("seeds"), 2);
+  const auto& pixels = json.at("arms").at(1);
+  EXPECT_EQ(pixels.at("success").at("episodes"), 20) << "of the finished run alone";
+  EXPECT_TRUE(pixels.at("return").at("ci95").is_null()) << "one seed has no spread";
+  EXPECT_EQ(pixels.at("runs").at(1).at("status"), "interrupted");
+  EXPECT_TRUE(pixels.at("runs").at(1).at("success").is_null());
+}
+
+TEST_F(SummaryTest, RatiosAreOfFinishedPairs) {
+  const auto ratios = Json().at("ratios");
+  ASSERT_EQ(ratios.size(), 1u);
+  EXPECT_EQ(ratios[0].at("name"), "pixels/state");
+  ASSERT_EQ(ratios[0].at("pairs").size(), 1u) << "the other one is not finished";
+  EXPECT_EQ(ratios[0].at("pairs").at(0).at("n"), 200);
+  EXPECT_EQ(ratios[0].at("pairs").at(0).at("n_reference"), 100);
+  EXPECT_EQ(ratios[0].at("median"), 2.0);
+  EXPECT_EQ(ratios[0].at("not_reached"), 0);
+}
+
+TEST_F(SummaryTest, TheTextNamesWhatIsMissing) {
+  const std::string text = SummaryText(ReadOutcome(folder_->experiment()));
+  EXPECT_THAT(text, HasSubstr("Pixels or state?"));
+  EXPECT_THAT(text, HasSubstr("100.0 % [91.2, 100.0] (40/40)"));
+  EXPECT_THAT(text, HasSubstr("pixels/state: median 2.00 of 1 seed(s), 0 not reached: 2.00"));
+  EXPECT_THAT(text, HasSubstr("not finished: pixels-s1 (interrupted)"));
+  EXPECT_THAT(StatusText(ReadOutcome(folder_->experiment())), HasSubstr("pixels-s1"));
+}
+
+TEST_F(SummaryTest, ABrokenRunIsAFailedOne) {
+  const auto run = folder_->experiment().folder / "runs/state-s0";
+  WriteFileAtomically(run / "eval/final.json", "{}");
+  const auto json = Json();
+  EXPECT_EQ(json.at("arms").at(0).at("runs").at(0).at("status"), "failed");
+  EXPECT_THAT(json.at("arms").at(0).at("runs").at(0).at("problem").get<std::string>(),
+              HasSubstr("final.json"));
+}
+
+}  // namespace
+}  // namespace shoal::launch

@@ -1,0 +1,105 @@
+#include "launch/processes/run_leftovers.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <set>
+
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/config/run_membership.h"
+#include "tests/support/temporary_folder.h"
+
+namespace shoal::launch {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::seconds;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+// Starts a member of the run; returns when it is one.
+pid_t StartMember(const fs::path& run) {
+  int ready[2];
+  EXPECT_EQ(pipe(ready), 0);
+  const pid_t pid = fork();
+  if (pid == 0) {
+    const RunMembership member(run);
+    [[maybe_unused]] const ssize_t written = write(ready[1], "x", 1);
+    while (true) pause();
+  }
+  char byte = 0;
+  EXPECT_EQ(read(ready[0], &byte, 1), 1);
+  close(ready[0]);
+  close(ready[1]);
+  return pid;
+}
+
+void End(pid_t pid) {
+  kill(pid, SIGKILL);
+  waitpid(pid, nullptr, 0);
+}
+
+TEST(RunLeftovers, WaitsForFormerProcessesAndSaysSoOnce) {
+  const TemporaryFolder run;
+  const pid_t member = StartMember(run.path());
+  std::vector<std::string> said;
+  int looks = 0;
+  const auto stop = [&] {
+    if (++looks == 3) End(member);
+    return false;
+  };
+  WaitForFormerProcesses(run.path(), seconds(60), stop,
+                         [&](const std::string& line) { said.push_back(line); });
+  EXPECT_EQ(looks, 3);
+  EXPECT_THAT(said, ElementsAre(HasSubstr(std::to_string(member))));
+}
+
+TEST(RunLeftovers, AProcessThatStaysIsNamed) {
+  const TemporaryFolder run;
+  const pid_t member = StartMember(run.path());
+  try {
+    WaitForFormerProcesses(
+        run.path(), seconds(0), [] { return false; }, [](const auto&) {});
+    ADD_FAILURE() << "did not mind it";
+  } catch (const Error& e) {
+    EXPECT_THAT(e.what(), AllOf(HasSubstr(std::to_string(member)), HasSubstr(run.path().string())));
+  }
+  End(member);
+}
+
+TEST(RunLeftovers, ARunWithoutProcessesIsNotWaitedFor) {
+  const TemporaryFolder run;
+  WaitForFormerProcesses(
+      run.path(), seconds(0), [] { return true; },
+      [](const std::string& line) { ADD_FAILURE() << line; });
+}
+
+TEST(RunLeftovers, RemovesWhatWasBeingWrittenAndNothingElse) {
+  const TemporaryFolder run;
+  for (const char* folder : {"checkpoints/step_000000020", "checkpoints/.step_000000040.tmp-77",
+                             "checkpoints/.step_000000010.old", "checkpoints/.best.tmp", "made"}) {
+    MakeFolders(run.path() / folder);
+    WriteFileAtomically(run.path() / folder / "content", "x");
+  }
+  for (const char* file :
+       {"meta.json", "meta.json.tmp-12", "made/actor-0-5.page", "made/actor-0-6.page.tmp-9",
+        "replay.ring", "replay.ring.new", "accounting.json.new", "notes.tmp-of-mine", "news.new"}) {
+    WriteFileAtomically(run.path() / file, "x");
+  }
+  EXPECT_EQ(RemoveUnfinishedFiles(run.path()), 7);
+  std::set<std::string> left;
+  for (const auto& entry : fs::recursive_directory_iterator(run.path())) {
+    if (entry.is_regular_file()) left.insert(fs::relative(entry.path(), run.path()));
+  }
+  EXPECT_THAT(
+      left, ElementsAre("checkpoints/step_000000020/content", "made/actor-0-5.page", "made/content",
+                        "meta.json", "news.new", "notes.tmp-of-mine", "replay.ring"));
+}
+
+}  // namespace
+}  // namespace shoal::launch

@@ -1,0 +1,160 @@
+#include "launch/record/evaluations.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/checkpoint/checkpoint_files.h"
+#include "tests/launch/evaluation_message.h"
+#include "tests/support/temporary_folder.h"
+
+namespace shoal::launch {
+namespace {
+
+using ::testing::HasSubstr;
+
+class EvaluationsTest : public ::testing::Test {
+ protected:
+  EvaluationsTest() {
+    MakeFolders(run_.path() / "eval");
+    MakeFolders(run_.path() / "checkpoints");
+  }
+  void MakeCheckpoint(uint64_t updates, const std::string& policy) const {
+    CheckpointFiles files;
+    files.state.updates = updates;
+    files.policy = policy;
+    WriteCheckpointFiles(run_.path() / "checkpoints", files, {});
+  }
+  std::string Best() const {
+    return ReadFile(run_.path() / "checkpoints" / "best" / "policy.safetensors");
+  }
+
+  TemporaryFolder run_;
+};
+
+TEST_F(EvaluationsTest, StoreThenReadGivesThePointsInOrder) {
+  StoreEvaluation(run_.path(), EvaluationMessage(10'000, 900, 0.5), 12.5);
+  const EvaluationPoint stored =
+      StoreEvaluation(run_.path(), EvaluationMessage(2'500, 100, 0.25), 3.5);
+  EXPECT_EQ(stored.env_steps, 2'500u);
+  EXPECT_EQ(stored.updates, 100u);
+  EXPECT_EQ(stored.checkpoint, "step_100");
+  EXPECT_EQ(stored.episodes, 2u);
+  WriteFileAtomically(run_.path() / "eval" / "final.json", "not one of them");
+  const auto points = ReadEvaluations(run_.path());
+  ASSERT_EQ(points.size(), 2u);
+  EXPECT_EQ(points[0].env_steps, 2'500u);
+  EXPECT_EQ(points[0].success, 0.25);
+  EXPECT_EQ(points[0].mean_return, -2.5);
+  EXPECT_EQ(points[0].wall_seconds, 3.5);
+  EXPECT_EQ(points[1].env_steps, 10'000u);
+}
+
+TEST_F(EvaluationsTest, RefusesWhatIsNotAnEvaluation) {
+  for (const char* json : {"", "[]", "{}", R"({"schema": "shoal-eval-1"})", R"({"schema": 1})"}) {
+    EvalMessage message = EvaluationMessage(1, 1, 1);
+    message.json = json;
+    EXPECT_THROW(StoreEvaluation(run_.path(), message, 0), Error) << json;
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(run_.path() / "eval"));
+}
+
+TEST_F(EvaluationsTest, RefusesFiguresThatCannotBe) {
+  const auto refused = [](const char* path, const nlohmann::json& value) {
+    EvalMessage message = EvaluationMessage(1, 1, 1);
+    auto object = nlohmann::json::parse(message.json);
+    object[nlohmann::json::json_pointer(path)] = value;
+    message.json = object.dump();
+    try {
+      ParseEvaluation(message);
+      return false;
+    } catch (const Error&) {
+      return true;
+    }
+  };
+  EXPECT_FALSE(refused("/aggregate/success_rate", 1.0)) << "the message itself is good";
+  EXPECT_TRUE(refused("/aggregate/success_rate", 5.0));
+  EXPECT_TRUE(refused("/aggregate/success_rate", -0.1));
+  EXPECT_TRUE(refused("/aggregate/return_mean", "1e999"));
+  EXPECT_TRUE(refused("/episodes", nlohmann::json::array()));
+  // Another evaluation than the message says.
+  EXPECT_TRUE(refused("/env_steps", 2));
+  EXPECT_TRUE(refused("/weights_version/update", 2));
+  EXPECT_TRUE(refused("/weights_version/session", 2));
+  EXPECT_TRUE(refused("/checkpoint", "step_2"));
+}
+
+TEST_F(EvaluationsTest, RefusesADeepNesting) {
+  EvalMessage message = EvaluationMessage(1, 1, 1);
+  const std::string deep = std::string(1'000'000, '[') + std::string(1'000'000, ']');
+  message.json = R"({"x": )" + deep + "," + message.json.substr(1);
+  EXPECT_THROW(StoreEvaluation(run_.path(), message, 0), Error);
+}
+
+TEST_F(EvaluationsTest, RefusesACheckpointOutsideOfTheRun) {
+  for (const char* name : {"..", "../../elsewhere", "/etc"}) {
+    EvalMessage message = EvaluationMessage(1, 1, 1);
+    auto object = nlohmann::json::parse(message.json);
+    object["checkpoint"] = name;
+    message.json = object.dump();
+    EXPECT_THROW(StoreEvaluation(run_.path(), message, 0), Error) << name;
+  }
+  EXPECT_TRUE(std::filesystem::is_empty(run_.path() / "eval"));
+}
+
+TEST_F(EvaluationsTest, ATaskWithoutSuccessHasNoneAndStillAReturn) {
+  EvalMessage message = EvaluationMessage(1, 1, 1);
+  auto object = nlohmann::json::parse(message.json);
+  object["aggregate"]["success_rate"] = nullptr;
+  const EvaluationPoint point = ParseEvaluation(object.dump(), "x");
+  EXPECT_EQ(point.success, std::nullopt);
+  EXPECT_EQ(point.mean_return, -2.5);
+}
+
+TEST_F(EvaluationsTest, KeepAsBestReplacesTheFormerBest) {
+  MakeCheckpoint(1, "one");
+  MakeCheckpoint(2, "two");
+  KeepAsBest(run_.path(), CheckpointName(1));
+  EXPECT_EQ(Best(), "one");
+  KeepAsBest(run_.path(), CheckpointName(2));
+  EXPECT_EQ(Best(), "two");
+  int entries = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(run_.path() / "checkpoints")) {
+    entries += !entry.path().empty();
+  }
+  EXPECT_EQ(entries, 3) << "two checkpoints and best: nothing is left over";
+}
+
+TEST_F(EvaluationsTest, KeepAsBestLeavesTheFormerBestWhenTheNewOneIsGone) {
+  MakeCheckpoint(1, "one");
+  KeepAsBest(run_.path(), CheckpointName(1));
+  try {
+    KeepAsBest(run_.path(), CheckpointName(9));
+    ADD_FAILURE();
+  } catch (const Error& e) {
+    EXPECT_THAT(e.what(), HasSubstr(CheckpointName(9)));
+  }
+  EXPECT_EQ(Best(), "one");
+}
+
+TEST_F(EvaluationsTest, KeepAsBestRefusesAnAlteredCheckpointAndLeavesTheFormerBest) {
+  MakeCheckpoint(1, "one");
+  MakeCheckpoint(2, "two");
+  KeepAsBest(run_.path(), CheckpointName(1));
+  WriteFileAtomically(run_.path() / "checkpoints" / CheckpointName(2) / "policy.safetensors",
+                      "twp");
+  try {
+    KeepAsBest(run_.path(), CheckpointName(2));
+    ADD_FAILURE();
+  } catch (const Error& e) {
+    EXPECT_THAT(e.what(), HasSubstr("step_000000002/policy.safetensors"));
+    EXPECT_THAT(e.what(), HasSubstr("CRC-32"));
+  }
+  EXPECT_EQ(Best(), "one");
+}
+
+}  // namespace
+}  // namespace shoal::launch

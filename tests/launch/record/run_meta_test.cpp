@@ -1,0 +1,88 @@
+#include "launch/record/run_meta.h"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "tests/support/temporary_folder.h"
+
+namespace shoal::launch {
+namespace {
+
+TEST(RunMeta, AResumedRunFindsItsCountersAndWhatWasChanged) {
+  const TemporaryFolder run;
+  RunMeta meta;
+  meta.started = "2026-01-31T12:00:00Z";
+  meta.env_steps = 7;
+  meta.updates = 8;
+  meta.wall_seconds = 9.5;
+  meta.restarts = 2;
+  meta.resends = 30;
+  meta.updates_lost = 3;
+  meta.changes = {{.time = "2026-01-31T12:05:00Z",
+                   .env_steps = 5,
+                   .updates = 6,
+                   .key = "replay.samples_per_insert",
+                   .from = 64,
+                   .to = 32.5}};
+  WriteRunMeta(run.path(), Config(), meta);
+  const RunMeta back = ReadRunMeta(run.path());
+  EXPECT_EQ(back.started, meta.started);
+  EXPECT_EQ(back.env_steps, 7u);
+  EXPECT_EQ(back.updates, 8u);
+  EXPECT_EQ(back.wall_seconds, 9.5);
+  EXPECT_EQ(back.restarts, 2);
+  EXPECT_EQ(back.resends, 30u);
+  EXPECT_EQ(back.updates_lost, 3u);
+  ASSERT_EQ(back.changes.size(), 1u);
+  EXPECT_EQ(back.changes[0].time, "2026-01-31T12:05:00Z");
+  EXPECT_EQ(back.changes[0].env_steps, 5u);
+  EXPECT_EQ(back.changes[0].updates, 6u);
+  EXPECT_EQ(back.changes[0].key, "replay.samples_per_insert");
+  EXPECT_EQ(back.changes[0].from, 64);
+  EXPECT_EQ(back.changes[0].to, 32.5);
+}
+
+TEST(RunMeta, UpdatesAfterACheckpointAreLostWithTheLearner) {
+  RunMeta meta;
+  for (const uint64_t reported : {100, 200, 150, 180, 180, 300}) meta.OnUpdates(reported);
+  EXPECT_EQ(meta.updates, 300u);
+  EXPECT_EQ(meta.updates_lost, 50u);
+}
+
+TEST(RunMeta, AProblemInAnyEncodingIsWritten) {
+  const TemporaryFolder run;
+  RunMeta meta;
+  meta.error =
+      "learner-0: exit code 1: fa\xe7"
+      "ade";  // Latin-1
+  WriteRunMeta(run.path(), Config(), meta);
+  EXPECT_EQ(nlohmann::json::parse(ReadFile(run.path() / "meta.json")).at("error"),
+            "learner-0: exit code 1: fa\xef\xbf\xbd"
+            "ade");
+}
+
+TEST(RunMeta, AnOlderFileHasNoChanges) {
+  const TemporaryFolder run;
+  WriteRunMeta(run.path(), Config(), RunMeta());
+  auto json = nlohmann::json::parse(ReadFile(run.path() / "meta.json"));
+  json.erase("changes");
+  json.erase("resends");
+  WriteFileAtomically(run.path() / "meta.json", json.dump());
+  EXPECT_TRUE(ReadRunMeta(run.path()).changes.empty());
+  EXPECT_EQ(ReadRunMeta(run.path()).resends, 0u);
+}
+
+TEST(RunMeta, ABrokenChangeIsAnError) {
+  const TemporaryFolder run;
+  WriteRunMeta(run.path(), Config(), RunMeta());
+  auto json = nlohmann::json::parse(ReadFile(run.path() / "meta.json"));
+  json["changes"] = {{{"key", "eval.interval"}}};
+  WriteFileAtomically(run.path() / "meta.json", json.dump());
+  EXPECT_THROW(ReadRunMeta(run.path()), Error);
+}
+
+}  // namespace
+}  // namespace shoal::launch

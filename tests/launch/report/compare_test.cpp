@@ -1,0 +1,127 @@
+#include "launch/report/compare.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "common/base/error.h"
+#include "launch/experiment/experiment_folder.h"
+#include "tests/launch/experiment/planted_run.h"
+
+namespace shoal::launch {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+class CompareTest : public testing::Test {
+ protected:
+  // A finished run RUNS/NAME that reached 90 % at `n` env steps.
+  RunPlanter Plant(const std::string& name, int64_t seed, uint64_t n, double success,
+                   const std::vector<std::string>& keys = {}) const {
+    const RunPlanter planter(runs_ / name);
+    std::vector<std::string> all = keys;
+    all.push_back("seed=" + std::to_string(seed));
+    planter.Begin(all);
+    planter.WriteEvaluation(n / 2, 0.3);
+    planter.WriteEvaluation(n, 0.95);
+    planter.WriteEvaluation(n + 100, 1);
+    planter.WriteFinal(success, 100);
+    planter.WriteMeta("budget");
+    return planter;
+  }
+  std::vector<RunGroup> Read(const std::vector<std::string>& names) const {
+    return ReadSubjects({.names = names,
+                         .run_dir = runs_.string(),
+                         .experiment_dir = (folder_.path() / "experiments").string()});
+  }
+  std::string Refusal(const std::vector<std::string>& names) const {
+    try {
+      Compare(Read(names), 0.9);
+      return "";
+    } catch (const Error& e) {
+      EXPECT_EQ(e.exit_code(), 2) << e.what();
+      return e.what();
+    }
+  }
+
+  const TemporaryFolder folder_;
+  const std::filesystem::path runs_ = folder_.path() / "runs";
+};
+
+TEST_F(CompareTest, RunsAreGroupsOfOneSeed) {
+  Plant("a", 1, 200, 1);
+  Plant("b", 1, 400, 0.5, {"learner.batch=64"});
+  const Comparison comparison = Compare(Read({"a", (runs_ / "b").string() + "/"}), 0.9);
+  ASSERT_EQ(comparison.groups.size(), 2u);
+  EXPECT_EQ(comparison.task, "FetchReachDense");
+  EXPECT_EQ(comparison.groups[1].name, "b");
+  EXPECT_EQ(comparison.groups[1].successes, 50u);
+  EXPECT_EQ(comparison.groups[1].episodes, 100u);
+  EXPECT_THAT(comparison.groups[1].n_to_target, ElementsAre(400.0));
+  EXPECT_EQ(comparison.ratios[0].median, 2);
+  ASSERT_EQ(comparison.differences.size(), 1u) << "not the names of the runs";
+  EXPECT_EQ(comparison.differences[0].key, "learner.batch");
+  EXPECT_THAT(comparison.differences[0].values, ElementsAre("128", "64"));
+  // 360 s on 2 cores.
+  EXPECT_DOUBLE_EQ(comparison.groups[0].core_hours, 0.2);
+}
+
+TEST_F(CompareTest, ARatioPairsEqualSeedsAlone) {
+  Plant("a", 1, 200, 1);
+  Plant("b", 2, 400, 1);
+  const Comparison comparison = Compare(Read({"a", "b"}), 0.9);
+  EXPECT_TRUE(comparison.ratios[0].pairs.empty());
+  EXPECT_EQ(comparison.ratios[0].median, std::nullopt);
+}
+
+TEST_F(CompareTest, AnArmIsAGroupAndWhatIsMissingIsNamed) {
+  Definition definition{.name = "mine", .base = "fetch-reach-state"};
+  definition.arms = {{"x", nlohmann::ordered_json::object()}, {"y", {{"learner.batch", 32}}}};
+  definition.seeds = {0, 1};
+  const ExperimentFolder open(folder_.path() / "experiments/mine", definition, "x.json");
+  for (const ExperimentRun& run : open.experiment().Runs({0, 1})) {
+    if (run.name == "y-s1") continue;
+    const RunPlanter planter(run.folder);
+    planter.Begin({"seed=" + std::to_string(run.seed)});
+    planter.WriteEvaluation(100, 1);
+    planter.WriteEvaluation(200, 1);
+    planter.WriteMeta("budget");
+    if (run.name != "x-s1") planter.WriteFinal(1, 10);
+  }
+  const Comparison comparison = Compare(Read({"mine"}), 0.9);
+  ASSERT_EQ(comparison.groups.size(), 2u);
+  EXPECT_EQ(comparison.groups[0].name, "x");
+  EXPECT_THAT(comparison.groups[0].seeds, ElementsAre(0, 1));
+  EXPECT_THAT(comparison.groups[0].without_final, ElementsAre("x-s1"));
+  EXPECT_THAT(comparison.groups[1].unevaluated, ElementsAre("y-s1"));
+  const std::string text = ToText(comparison);
+  EXPECT_THAT(text, HasSubstr("y-s1"));
+  EXPECT_THAT(text, HasSubstr("x-s1"));
+  Plant("a", 1, 200, 1);
+  EXPECT_EQ(Read({"mine", "a"})[0].name, "mine/x") << "several subjects: in full";
+}
+
+TEST_F(CompareTest, WhatDoesNotCompareIsRefusedByName) {
+  Plant("a", 1, 200, 1);
+  Plant("push", 1, 200, 1, {"task=FetchPush"});
+  EXPECT_THAT(Refusal({"a", "push"}), HasSubstr("FetchPush"));
+  EXPECT_THAT(Refusal({"a", "a"}), HasSubstr("twice"));
+  EXPECT_THAT(Refusal({"nothing"}), HasSubstr("nothing"));
+  RunPlanter(runs_ / "empty").Begin();
+  EXPECT_THAT(Refusal({"empty"}), HasSubstr("no evaluations"));
+}
+
+TEST_F(CompareTest, JsonHasWhatTheTextSays) {
+  Plant("a", 1, 200, 1);
+  Plant("b", 1, 400, 0.5);
+  const auto json = ToJson(Compare(Read({"a", "b"}), 0.9));
+  EXPECT_EQ(json.at("schema"), "shoal-comparison-1");
+  EXPECT_EQ(json.at("groups").at(1).at("success").at("pooled"), 0.5);
+  EXPECT_EQ(json.at("groups").at(1).at("return").at("seeds"), 1);
+  EXPECT_EQ(json.at("ratios").at(0).at("name"), "b/a");
+  EXPECT_EQ(json.at("ratios").at(0).at("pairs").at(0).at("ratio"), 2.0);
+  EXPECT_TRUE(json.at("differences").empty());
+}
+
+}  // namespace
+}  // namespace shoal::launch

@@ -1,0 +1,116 @@
+#include "launch/report/plot.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "tests/support/temporary_folder.h"
+
+namespace shoal::launch {
+namespace {
+
+using ::testing::HasSubstr;
+using ::testing::Not;
+using ::testing::StartsWith;
+
+RunResults RunOf(const std::vector<std::pair<uint64_t, double>>& returns,
+                 std::optional<double> success = std::nullopt) {
+  RunResults run;
+  for (const auto& [env_steps, value] : returns) {
+    run.curve.push_back({.env_steps = env_steps,
+                         .updates = env_steps / 2,
+                         .wall_seconds = static_cast<double>(env_steps) * 60,
+                         .success = success,
+                         .return_mean = value});
+  }
+  return run;
+}
+
+RunGroup TwoSeeds() {
+  return {.name = "a \"b\"", .runs = {RunOf({{100, 0}, {200, 10}}), RunOf({{100, 4}, {300, 8}})}};
+}
+
+TEST(CurveOf, TakesTheSeedsThatReachToThePoint) {
+  const auto curve = CurveOf(TwoSeeds(), PlotAxis::kEnvSteps, PlotFigure::kReturn);
+  ASSERT_EQ(curve.size(), 3u);
+  EXPECT_EQ(curve[0].mean, 2);
+  EXPECT_EQ(curve[0].low, 0);
+  EXPECT_EQ(curve[0].high, 4);
+  // At 200 the second seed is halfway between 4 and 8.
+  EXPECT_EQ(curve[1].x, 200);
+  EXPECT_EQ(curve[1].mean, 8);
+  EXPECT_EQ(curve[1].low, 6);
+  EXPECT_EQ(curve[1].high, 10);
+  EXPECT_EQ(curve[2].seeds, 1u) << "the first seed ended at 200: nothing is made up beyond";
+  EXPECT_EQ(curve[2].mean, 8);
+}
+
+TEST(CurveOf, GoesAlongTheAxisAskedFor) {
+  EXPECT_EQ(CurveOf(TwoSeeds(), PlotAxis::kUpdates, PlotFigure::kReturn)[0].x, 50);
+  EXPECT_EQ(CurveOf(TwoSeeds(), PlotAxis::kWallMinutes, PlotFigure::kReturn)[0].x, 100);
+  EXPECT_TRUE(CurveOf(TwoSeeds(), PlotAxis::kEnvSteps, PlotFigure::kSuccess).empty());
+}
+
+TEST(CurveOf, ThinsButKeepsTheEnd) {
+  std::vector<std::pair<uint64_t, double>> many;
+  for (uint64_t i = 1; i <= 1000; ++i) many.emplace_back(i, 1.0);
+  const auto curve =
+      CurveOf({.name = "a", .runs = {RunOf(many)}}, PlotAxis::kEnvSteps, PlotFigure::kReturn, 100);
+  EXPECT_LE(curve.size(), 101u);
+  EXPECT_EQ(curve.back().x, 1000);
+}
+
+TEST(PlotScript, SaysWhatCannotBeDrawn) {
+  const Plot plot{.title = "t", .figures = {PlotFigure::kSuccess}};
+  EXPECT_THROW(PlotScript(plot, {TwoSeeds()}, "x.png"), Error);
+  EXPECT_THROW(PlotScript({.title = "t", .figures = {PlotFigure::kReturn}}, {TwoSeeds()}, "x.gif"),
+               Error);
+  EXPECT_THROW(ParsePlotAxis("time"), Error);
+  EXPECT_THROW(ParsePlotFigure("loss"), Error);
+}
+
+TEST(PlotScript, NamesCannotEndAString) {
+  const std::string script = PlotScript({.title = "say \"hi\"\n", .figures = {PlotFigure::kReturn}},
+                                        {TwoSeeds()}, "x.png");
+  EXPECT_THAT(script, HasSubstr(R"x(title "a \"b\" (2 seeds)")x"));
+  EXPECT_THAT(script, HasSubstr(R"x(title "say \"hi\" ")x"));
+  EXPECT_THAT(script, HasSubstr("filledcurves"));
+  const RunGroup one{.name = "one", .runs = {RunOf({{100, 0}, {200, 10}})}};
+  EXPECT_THAT(PlotScript({.title = "t", .figures = {PlotFigure::kReturn}}, {one}, "x.svg"),
+              Not(HasSubstr("filledcurves")))
+      << "one seed has no band";
+}
+
+TEST(Draw, MakesPicturesOfBothKinds) {
+  if (std::system("command -v gnuplot >/dev/null") != 0) GTEST_SKIP() << "needs gnuplot";
+  const TemporaryFolder folder;
+  const RunGroup group{
+      .name = "a", .runs = {RunOf({{100, 0}, {200, 10}}, 0.5), RunOf({{100, 4}, {300, 8}}, 0.7)}};
+  const Plot plot{.title = "t", .figures = FiguresThereAre({group})};
+  ASSERT_EQ(plot.figures.size(), 2u);
+  Draw(plot, {group}, folder.path() / "x.png");
+  Draw(plot, {group}, folder.path() / "x.svg");
+  EXPECT_THAT(ReadFile(folder.path() / "x.png"), StartsWith("\x89PNG"));
+  EXPECT_GT(ReadFile(folder.path() / "x.png").size(), 5000u) << "curves, not an empty sheet";
+  EXPECT_THAT(ReadFile(folder.path() / "x.svg"), HasSubstr("<svg"));
+}
+
+TEST(Draw, AMissingGnuplotIsOneLineThatSaysWhatToInstall) {
+  const TemporaryFolder folder;
+  const std::string path = std::getenv("PATH");
+  setenv("PATH", folder.path().c_str(), 1);
+  try {
+    Draw({.title = "t", .figures = {PlotFigure::kReturn}}, {TwoSeeds()}, folder.path() / "x.png");
+    ADD_FAILURE();
+  } catch (const Error& e) {
+    EXPECT_THAT(e.what(), HasSubstr("gnuplot-nox"));
+  }
+  setenv("PATH", path.c_str(), 1);
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "x.png"));
+}
+
+}  // namespace
+}  // namespace shoal::launch

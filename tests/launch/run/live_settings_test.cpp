@@ -1,0 +1,98 @@
+#include "launch/run/live_settings.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "common/base/error.h"
+
+namespace shoal::launch {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+Config Running() {
+  Config config;
+  config.actors = 2;
+  config.learner.threads = 1;
+  return config;
+}
+
+std::string Refusal(LiveSettings& settings, const std::string& assignment) {
+  try {
+    settings.Assign(assignment);
+    return "taken";
+  } catch (const Error& e) {
+    EXPECT_EQ(e.exit_code(), 2) << e.what();
+    return e.what();
+  }
+}
+
+TEST(LiveSettings, AChangeNamesBothValuesAndHolds) {
+  LiveSettings settings(Running());
+  const SettingChange change = settings.Assign("replay.samples_per_insert=32.5");
+  EXPECT_EQ(change.key, "replay.samples_per_insert");
+  EXPECT_EQ(change.from, 64);
+  EXPECT_EQ(change.to, 32.5);
+  EXPECT_EQ(settings.config().replay.samples_per_insert, 32.5);
+}
+
+TEST(LiveSettings, EveryLiveKeyCanBeChanged) {
+  LiveSettings settings(Running());
+  for (const LiveKey& live : LiveKeys()) {
+    EXPECT_FALSE(live.uses.empty()) << live.key;
+    if (live.key == "actors") continue;
+    EXPECT_EQ(settings.Assign(std::string(live.key) + "=1").to, 1) << live.key;
+  }
+  EXPECT_EQ(settings.SetActors("5").from, 2);
+  EXPECT_EQ(settings.config().actors, 5);
+}
+
+TEST(LiveSettings, WhatIsFixedUnknownOrOutOfRangeIsRefusedByName) {
+  LiveSettings settings(Running());
+  EXPECT_THAT(Refusal(settings, "learner.batch=64"), HasSubstr("learner.batch is fixed"));
+  EXPECT_THAT(Refusal(settings, "learner.batch=64"), HasSubstr("eval.interval"));
+  EXPECT_THAT(Refusal(settings, "learner.bach=64"), HasSubstr("learner.batch"));
+  EXPECT_THAT(Refusal(settings, "eval.interval=0"), HasSubstr("eval.interval"));
+  EXPECT_THAT(Refusal(settings, "eval.interval=often"), HasSubstr("often"));
+  EXPECT_THAT(Refusal(settings, "eval.interval"), HasSubstr("eval.interval"));
+  EXPECT_THAT(Refusal(settings, "actors=3"), HasSubstr("shoal scale"));
+  EXPECT_THROW(settings.SetActors("0"), Error);
+  EXPECT_THROW(settings.SetActors("1025"), Error);
+  EXPECT_THROW(settings.SetActors("many"), Error);
+  ControlMessage message;
+  settings.AddTo(&message);
+  EXPECT_TRUE(message.setting_names.empty());
+}
+
+TEST(LiveSettings, InLockstepNothingCanBeChanged) {
+  Config config = Running();
+  config.actors = 1;
+  config.lockstep = true;
+  LiveSettings settings(config);
+  EXPECT_THAT(Refusal(settings, "env_steps=5"), HasSubstr("lockstep"));
+}
+
+TEST(LiveSettings, ProcessesAreToldThePresentValueOfEachChangedKeyOnce) {
+  LiveSettings settings(Running());
+  settings.Assign("eval.interval=100");
+  settings.SetActors("3");
+  settings.Assign("eval.interval=200");
+  ControlMessage message;
+  settings.AddTo(&message);
+  EXPECT_THAT(message.setting_names, ElementsAre("eval.interval", "actors"));
+  EXPECT_THAT(message.setting_values, ElementsAre(200, 3));
+}
+
+TEST(LiveSettings, AResumedRunGoesOnWithWhatWasChanged) {
+  LiveSettings before(Running());
+  std::vector<SettingChange> changes{before.Assign("stop.success=0.5"), before.SetActors("4"),
+                                     before.Assign("stop.success=0.75")};
+  LiveSettings after(Running());
+  after.Restore(changes);
+  EXPECT_EQ(after.config().stop.success, 0.75);
+  EXPECT_EQ(after.config().actors, 4);
+}
+
+}  // namespace
+}  // namespace shoal::launch

@@ -1,0 +1,102 @@
+#include "launch/watch/metrics_view.h"
+
+#include <gtest/gtest.h>
+
+namespace shoal::launch {
+namespace {
+
+using std::chrono::seconds;
+
+MetricsMessage Report(const std::string& role, uint32_t id, int32_t pid, double time,
+                      const std::vector<std::pair<std::string, double>>& figures) {
+  MetricsMessage message;
+  message.role = role;
+  message.id = id;
+  message.pid = pid;
+  message.time = time;
+  for (const auto& [name, value] : figures) {
+    message.names.push_back(name);
+    message.values.push_back(value);
+  }
+  return message;
+}
+
+const SteadyTime kNow = SteadyTime() + seconds(1000);
+
+TEST(MetricsView, MissingFiguresAreEmpty) {
+  MetricsView view;
+  EXPECT_FALSE(view.Get("learner", 0, "updates"));
+  EXPECT_FALSE(view.Sum("actor", "env_steps", kNow));
+  EXPECT_FALSE(view.Mean("actor", "rollout_success", "episodes", kNow));
+  EXPECT_FALSE(view.Rate("replay", "stored_steps"));
+  EXPECT_EQ(view.Total("actor", "resends"), 0);
+}
+
+TEST(MetricsView, KeepsTheLastReportThoughTheClockWasSetBack) {
+  MetricsView view;
+  view.OnMessage(Report("learner", 0, 7, 5000, {{"updates", 10}}), kNow);
+  view.OnMessage(Report("learner", 0, 7, 1401, {{"updates", 20}}), kNow);
+  EXPECT_EQ(view.Get("learner", 0, "updates"), 20);
+  EXPECT_FALSE(view.Rate("learner", "updates")) << "over a span of less than nothing";
+  view.OnMessage(Report("learner", 0, 7, 1402, {{"updates", 30}}), kNow);
+  EXPECT_EQ(view.Rate("learner", "updates"), 10);
+}
+
+TEST(MetricsView, SumsAndWeighsFreshProcessesOnly) {
+  MetricsView view;
+  view.OnMessage(Report("actor", 0, 1, 1, {{"rate", 100}}), kNow - seconds(60));
+  view.OnMessage(Report("actor", 1, 2, 1, {{"rate", 20}, {"success", 1}, {"episodes", 3}}), kNow);
+  view.OnMessage(Report("actor", 2, 3, 1, {{"rate", 30}, {"success", 0}, {"episodes", 1}}), kNow);
+  view.OnMessage(Report("actor", 3, 4, 1, {{"episodes", 0}}), kNow);
+  EXPECT_EQ(view.Sum("actor", "rate", kNow), 50);
+  EXPECT_EQ(view.Mean("actor", "success", "episodes", kNow), 0.75);
+}
+
+TEST(MetricsView, RateIsGrowthPerSecondBetweenTwoReports) {
+  MetricsView view;
+  view.OnMessage(Report("replay", 0, 1, 10, {{"blocked", 1}}), kNow);
+  EXPECT_FALSE(view.Rate("replay", "blocked"));
+  view.OnMessage(Report("replay", 0, 1, 12, {{"blocked", 2}}), kNow);
+  EXPECT_EQ(view.Rate("replay", "blocked"), 0.5);
+  view.OnMessage(Report("replay", 0, 2, 13, {{"blocked", 0}}), kNow);
+  EXPECT_FALSE(view.Rate("replay", "blocked")) << "a restarted process has no former report";
+}
+
+TEST(MetricsView, TotalsSurviveRestarts) {
+  MetricsView view;
+  view.OnMessage(Report("actor", 0, 1, 1, {{"resends", 3}}), kNow);
+  view.OnMessage(Report("actor", 0, 1, 2, {{"resends", 5}}), kNow);
+  view.OnMessage(Report("actor", 0, 9, 1, {{"resends", 2}}), kNow);
+  view.OnMessage(Report("actor", 1, 4, 1, {{"resends", 10}}), kNow);
+  EXPECT_EQ(view.Total("actor", "resends"), 17);
+}
+
+TEST(MetricsView, ASuccessorMayHaveTheProcessNumberOfItsPredecessor) {
+  MetricsView view;
+  view.OnMessage(Report("actor", 0, 1, 1, {{"uptime_seconds", 50}, {"resends", 5}}), kNow);
+  view.OnMessage(Report("actor", 0, 1, 2, {{"uptime_seconds", 2}, {"resends", 1}}), kNow);
+  EXPECT_EQ(view.Total("actor", "resends"), 6) << "as in a container, where everybody is 1";
+  EXPECT_FALSE(view.Rate("actor", "resends"));
+  MetricsMessage elsewhere = Report("actor", 0, 1, 3, {{"uptime_seconds", 9}, {"resends", 1}});
+  elsewhere.host = "another";
+  view.OnMessage(elsewhere, kNow);
+  EXPECT_EQ(view.Total("actor", "resends"), 7);
+}
+
+TEST(MetricsView, ReportsSayWhoIsSilentAndForgetWhoIsGone) {
+  MetricsView view;
+  view.OnMessage(Report("replay", 0, 3, 1, {{"stored", 1}}), kNow);
+  view.OnMessage(Report("actor", 1, 2, 1, {{"made", 2}}), kNow - seconds(6));
+  view.OnMessage(Report("actor", 0, 1, 1, {}), kNow - seconds(61));
+  const std::vector<MetricsMessage> reports = view.Reports(kNow);
+  ASSERT_EQ(reports.size(), 2u);
+  EXPECT_EQ(reports[0].role, "actor");
+  EXPECT_EQ(reports[0].id, 1u);
+  EXPECT_EQ(reports[0].state, "silent");
+  EXPECT_EQ(reports[0].values, std::vector<double>{2});
+  EXPECT_EQ(reports[1].role, "replay");
+  EXPECT_NE(reports[1].state, "silent");
+}
+
+}  // namespace
+}  // namespace shoal::launch

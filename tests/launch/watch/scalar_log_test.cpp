@@ -1,0 +1,86 @@
+#include "launch/watch/scalar_log.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/support/event_files.h"
+#include "tests/support/temporary_folder.h"
+
+namespace shoal::launch {
+namespace {
+
+using std::chrono::seconds;
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+using ::testing::Pair;
+
+MetricsMessage LearnerReport(double updates, double env_steps, double critic_loss) {
+  MetricsMessage report;
+  report.role = "learner";
+  report.names = {"updates",    "env_steps",   "critic_loss",
+                  "actor_loss", "temperature", "temperature_loss"};
+  report.values = {updates, env_steps, critic_loss, -1, 0.25, 2};
+  return report;
+}
+
+class ScalarLogTest : public ::testing::Test {
+ protected:
+  Scalars Read() const {
+    const auto files = EventFiles(folder_.path() / "tensorboard");
+    EXPECT_EQ(files.size(), 1u);
+    return ReadScalars(files.at(0));
+  }
+
+  TemporaryFolder folder_;
+  ScalarLog log_{folder_.path()};
+  const SteadyTime start_ = Now();
+};
+
+TEST_F(ScalarLogTest, OneFileHasTheTagsThatPeopleKnow) {
+  log_.WriteTraining(LearnerReport(10, 1000, 0.5), start_);
+  log_.WriteTraining(LearnerReport(30, 1500, 0.75), start_ + seconds(2));
+  log_.WriteEvaluation({.env_steps = 1400, .success = 0.5, .mean_return = -3});
+  MetricsView view;
+  MetricsMessage actor;
+  actor.role = "actor";
+  actor.names = {"episodes", "rollout_return", "rollout_length"};
+  actor.values = {4, -2, 50};
+  view.OnMessage(actor, start_);
+  ProgressFigures figures;
+  figures.env_steps = 1450;
+  figures.rollout_success = 0.25;
+  log_.WriteRollouts(view, figures, start_);
+  const Scalars scalars = Read();
+  EXPECT_THAT(scalars.at("train/critic_loss"), ElementsAre(Pair(1000, 0.5f), Pair(1500, 0.75f)));
+  EXPECT_THAT(scalars.at("train/actor_loss"), ElementsAre(Pair(1000, -1), Pair(1500, -1)));
+  EXPECT_THAT(scalars.at("train/temperature"), ElementsAre(Pair(1000, 0.25f), Pair(1500, 0.25f)));
+  EXPECT_THAT(scalars.at("train/ent_coef"), ElementsAre(Pair(1000, 0.25f), Pair(1500, 0.25f)));
+  EXPECT_THAT(scalars.at("train/ent_coef_loss"), ElementsAre(Pair(1000, 2), Pair(1500, 2)));
+  EXPECT_THAT(scalars.at("train/n_updates"), ElementsAre(Pair(1000, 10), Pair(1500, 30)));
+  EXPECT_THAT(scalars.at("time/fps"), ElementsAre(Pair(1500, 250)));
+  EXPECT_THAT(scalars.at("eval/mean_reward"), ElementsAre(Pair(1400, -3)));
+  EXPECT_THAT(scalars.at("eval/success_rate"), ElementsAre(Pair(1400, 0.5f)));
+  EXPECT_THAT(scalars.at("rollout/ep_rew_mean"), ElementsAre(Pair(1450, -2)));
+  EXPECT_THAT(scalars.at("rollout/success_rate"), ElementsAre(Pair(1450, 0.25f)));
+  EXPECT_THAT(scalars.at("rollout/ep_len_mean"), ElementsAre(Pair(1450, 50)));
+}
+
+TEST_F(ScalarLogTest, AReportWithoutNewUpdatesAddsNoPoint) {
+  log_.WriteTraining(LearnerReport(10, 1000, 0.5), start_);
+  log_.WriteTraining(LearnerReport(10, 1000, 0.5), start_ + seconds(1));
+  EXPECT_THAT(Read().at("train/critic_loss"), ElementsAre(Pair(1000, 0.5f)));
+}
+
+TEST_F(ScalarLogTest, AReportBeforeTheFirstUpdateAndThoseOfOthersAddNone) {
+  MetricsMessage starting = LearnerReport(500, 1000, 0);
+  starting.names.resize(2);
+  starting.values.resize(2);
+  log_.WriteTraining(starting, start_);
+  MetricsMessage other = LearnerReport(500, 1000, 0);
+  other.role = "actor";
+  log_.WriteTraining(other, start_);
+  EXPECT_THAT(Read(), IsEmpty());
+}
+
+}  // namespace
+}  // namespace shoal::launch

@@ -1,0 +1,101 @@
+// What holds for every algorithm of the list.
+#include "learner/agent/algorithms.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "common/base/error.h"
+#include "common/config/config_io.h"
+#include "tests/learner/agent/agent_fixture.h"
+
+namespace shoal::learner {
+namespace {
+
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+std::vector<std::string> Names() {
+  std::vector<std::string> names;
+  for (const Algorithm& algorithm : Algorithms()) names.emplace_back(algorithm.name);
+  return names;
+}
+
+class EachAlgorithm : public testing::TestWithParam<std::string> {
+ protected:
+  EachAlgorithm() { config_.learner.algorithm = GetParam(); }
+
+  const Algorithm& algorithm() const {
+    return *std::ranges::find(Algorithms(), GetParam(), &Algorithm::name);
+  }
+
+  Config config_ = SmallConfig();
+};
+
+TEST_P(EachAlgorithm, ReportsItsFiguresAndNoOthers) {
+  const auto agent = MakeAgent(config_, SmallSpec(), nn::Precision::kF32);
+  std::set<std::string_view> declared, reported;
+  for (const Figure* figure : algorithm().figures) {
+    EXPECT_TRUE(declared.insert(figure->name).second) << figure->name << " is declared twice";
+    EXPECT_FALSE(figure->meaning.empty()) << figure->name;
+    EXPECT_EQ(FindFigure(figure->name)->name, figure->name);
+  }
+  for (int u = 0; u < 10; ++u) {
+    const RandomBatch batch(SmallSpec(), config_.learner.batch, uint64_t(u));
+    const UpdateOutcome outcome = agent->Update(batch.View());
+    ASSERT_TRUE(outcome.finite);
+    for (const auto& [figure, value] : outcome.figures.entries()) {
+      reported.insert(figure->name);
+      EXPECT_TRUE(std::isfinite(value)) << figure->name;
+    }
+  }
+  EXPECT_EQ(reported, declared);
+}
+
+TEST_P(EachAlgorithm, EndsEveryStageOfAnUpdate) {
+  const auto agent = MakeAgent(config_, SmallSpec(), nn::Precision::kF32);
+  const RandomBatch batch(SmallSpec(), config_.learner.batch, 1);
+  std::map<UpdateStage, int> ends;
+  agent->Update(batch.View(), [&](UpdateStage stage) { ++ends[stage]; });
+  for (const UpdateStage stage :
+       {UpdateStage::kForward, UpdateStage::kBackward, UpdateStage::kOptimiser}) {
+    EXPECT_GT(ends[stage], 0) << int(stage);
+  }
+}
+
+// The key refuses other names before anything starts; the factory, were it asked.
+TEST_P(EachAlgorithm, IsAValueOfTheKey) {
+  Config config;
+  ApplyAssignments({"learner.algorithm=" + GetParam()}, &config);
+  EXPECT_EQ(config.learner.algorithm, GetParam());
+}
+
+TEST(Algorithms, OthersAreRefusedNamingThem) {
+  Config config = SmallConfig();
+  config.learner.algorithm = "alchemy";
+  const auto refused = ThrowsMessage<Error>(testing::AllOf(
+      HasSubstr("learner.algorithm"), HasSubstr("alchemy"), HasSubstr(Names().front())));
+  EXPECT_THAT([&] { MakeAgent(config, SmallSpec(), nn::Precision::kF32); }, refused);
+  EXPECT_THAT([&] { ApplyAssignments({"learner.algorithm=alchemy"}, &config); }, refused);
+}
+
+TEST(UpdateFigures, KeepTheirOrderAndWhatIsMissingIsAbsent) {
+  UpdateFigures figures;
+  figures.Set(kQMean, 2);
+  figures.Set(kCriticLoss, 0);
+  ASSERT_EQ(figures.entries().size(), 2u);
+  EXPECT_EQ(figures.entries()[0].figure->name, "q_mean");
+  EXPECT_EQ(figures.Get(kCriticLoss), 0);
+  EXPECT_FALSE(figures.Get(kEntropy));
+  figures.Replace(kQMean, 3);
+  EXPECT_EQ(figures.Get(kQMean), 3);
+  EXPECT_EQ(figures.entries().size(), 2u);
+}
+
+INSTANTIATE_TEST_SUITE_P(All, EachAlgorithm, testing::ValuesIn(Names()),
+                         [](const auto& each) { return each.param; });
+
+}  // namespace
+}  // namespace shoal::learner

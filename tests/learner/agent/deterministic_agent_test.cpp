@@ -1,0 +1,274 @@
+// What TD3 and DDPG share. One update against a double in double: losses, and every gradient by
+// central differences.
+//
+// The gradients are read off Adam's first moment, which was 0 before: m = (1 - 0.9) g. Targets are
+// far from what they follow, so that each is seen where it belongs.
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <functional>
+#include <numeric>
+
+#include "common/base/error.h"
+#include "common/nn/policy.h"
+#include "learner/agent/td3/td3_agent.h"
+#include "tests/common/nn/gradient_check.h"
+#include "tests/common/nn/reference_network.h"
+#include "tests/learner/agent/agent_fixture.h"
+
+namespace shoal::learner {
+namespace {
+
+using nn::CentralDifference;
+using nn::ToDoubles;
+using nn::reference::Network;
+using nn::reference::Values;
+
+constexpr double kFirstMoment = 0.1;
+
+struct Case {
+  std::string algorithm;
+  std::vector<std::string> critics;  // MLPs of a critic
+  bool smooth = false;               // noise on the target's action
+};
+
+void PrintTo(const Case& each, std::ostream* out) { *out << each.algorithm; }
+
+Config ConfigOf(const Case& each) {
+  Config config = SmallConfig();
+  config.learner.algorithm = each.algorithm;
+  config.learner.actor_period = config.learner.target_period = 1;
+  return config;
+}
+
+class DeterministicAgentTest : public testing::TestWithParam<Case> {
+ protected:
+  Values Action(const Network& network, const std::string& head, const Values& features,
+                const Values& vector) const {
+    Values action = network.Mlp(head + ".mlp", batch_size_,
+                                network.Observation(head, batch_size_, features, vector));
+    for (double& a : action) a = std::tanh(a);
+    return action;
+  }
+
+  // Q (B) of one MLP of `head`.
+  Values Q(const Network& network, const std::string& head, const std::string& mlp,
+           const Values& features, const Values& vector, const Values& action) const {
+    const Values observation = network.Observation(head, batch_size_, features, vector);
+    const size_t columns = observation.size() / size_t(batch_size_);
+    const auto actions = size_t(spec_.action_size);
+    Values input;
+    for (size_t b = 0; b < size_t(batch_size_); ++b) {
+      input.insert(input.end(), observation.begin() + long(b * columns),
+                   observation.begin() + long((b + 1) * columns));
+      input.insert(input.end(), action.begin() + long(b * actions),
+                   action.begin() + long((b + 1) * actions));
+    }
+    return network.Mlp(head + "." + mlp, batch_size_, input);
+  }
+
+  Values Targets(const Network& network, Random* random) const {
+    const BatchView view = data_.View();
+    const Values features = network.Features(batch_size_, view.next_obs_frames.data());
+    const Values vector = ToDoubles(view.next_obs_vector);
+    Values action = Action(network, "target_actor", features, vector);
+    if (GetParam().smooth) {
+      const double sigma = kTd3TargetNoise, most = kTd3TargetNoiseClip;
+      for (double& a : action) {
+        a = std::clamp(a + std::clamp(sigma * random->Normal(), -most, most), -1.0, 1.0);
+      }
+    }
+    Values smallest(size_t(batch_size_), INFINITY);
+    for (const std::string& mlp : GetParam().critics) {
+      const Values q = Q(network, "target", mlp, features, vector, action);
+      for (size_t b = 0; b < q.size(); ++b) smallest[b] = std::min(smallest[b], q[b]);
+    }
+    Values y;
+    for (size_t b = 0; b < smallest.size(); ++b) {
+      y.push_back(config_.learner.reward_scale * view.reward[b] +
+                  view.bootstrap[b] * config_.learner.discount * smallest[b]);
+    }
+    return y;
+  }
+
+  double CriticLoss(const Network& network, const Values& y) const {
+    const BatchView view = data_.View();
+    const Values features = network.Features(batch_size_, view.obs_frames.data());
+    double loss = 0;
+    for (const std::string& mlp : GetParam().critics) {
+      const Values q =
+          Q(network, "critic", mlp, features, ToDoubles(view.obs_vector), ToDoubles(view.action));
+      for (size_t b = 0; b < q.size(); ++b) loss += (q[b] - y[b]) * (q[b] - y[b]);
+    }
+    return loss / batch_size_;
+  }
+
+  // The actor of `network` judged by the first critic of `judge`, on given features.
+  double ActorLoss(const Network& network, const Network& judge, const Values& features) const {
+    const Values vector = ToDoubles(data_.View().obs_vector);
+    const Values q =
+        Q(judge, "critic", "q1", features, vector, Action(network, "actor", features, vector));
+    return -std::accumulate(q.begin(), q.end(), 0.0) / batch_size_;
+  }
+
+  void ExpectMoments(const nn::TensorMap& after, const std::string& prefix, Network* network,
+                     const std::function<double()>& loss) const {
+    int compared = 0;
+    for (const auto& [name, values] : network->parameters()) {
+      if (!name.starts_with(prefix)) continue;
+      const std::vector<float> moment = Floats(after, "adam.m." + name);
+      std::vector<float> some;
+      Values exact;
+      for (size_t i = 0; i < values.size(); i += 1 + values.size() / 8) {
+        some.push_back(moment[i]);
+        exact.push_back(kFirstMoment * CentralDifference(&network->at(name, i), loss));
+      }
+      EXPECT_LT(nn::RelativeError(some, exact), 1e-3) << name;
+      ++compared;
+    }
+    EXPECT_GT(compared, 1) << prefix;
+  }
+
+  const ObservationSpec spec_ = SmallSpec();
+  const Config config_ = ConfigOf(GetParam());
+  const int batch_size_ = config_.learner.batch;
+  const std::unique_ptr<Agent> agent_ = MakeAgent(config_, spec_, nn::Precision::kF32);
+  RandomBatch data_{spec_, batch_size_, 3};
+};
+
+TEST_P(DeterministicAgentTest, ALaterUpdateFollowsTheEquations) {
+  agent_->Restore(Perturbed(agent_->AllTensors(), "target"), "later");
+  const nn::TensorMap before = agent_->AllTensors();
+  const UpdateOutcome outcome = agent_->Update(data_.View());
+  const nn::TensorMap after = agent_->AllTensors();
+  Network network(before, config_.network, spec_);
+  const Network updated(after, config_.network, spec_);
+  Random random(StreamKey(uint64_t(config_.seed), StreamRole::kLearnerUpdate, 0));
+
+  const Values y = Targets(network, &random);
+  const auto critic_loss = [&] { return CriticLoss(network, y); };
+  EXPECT_NEAR(Get(outcome, kCriticLoss), critic_loss(), 1e-4 * critic_loss());
+  ExpectMoments(after, "encoder.", &network, critic_loss);
+  ExpectMoments(after, "critic.", &network, critic_loss);
+
+  // The actor sees the features of before and the critic of after its step.
+  const Values features = network.Features(batch_size_, data_.View().obs_frames.data());
+  const auto actor_loss = [&] { return ActorLoss(network, updated, features); };
+  EXPECT_NEAR(Get(outcome, kActorLoss), actor_loss(), 1e-4 * std::abs(actor_loss()));
+  ExpectMoments(after, "actor.", &network, actor_loss);
+
+  // And both targets follow by tau.
+  for (const auto& [target, online] :
+       {std::pair{"target.", "critic."}, {"target_actor.", "actor."}}) {
+    for (const auto& [name, tensor] : after) {
+      if (!name.starts_with(target)) continue;
+      const auto x = Floats(before, name), moved = Floats(after, name);
+      const auto w = Floats(after, online + name.substr(std::string(target).size()));
+      for (size_t i = 0; i < x.size(); ++i) {
+        ASSERT_NEAR(moved[i], x[i] + config_.learner.tau * (w[i] - x[i]), 1e-6) << name;
+      }
+    }
+  }
+}
+
+TEST_P(DeterministicAgentTest, ActorAndTargetsMoveInEveryPeriodthUpdate) {
+  Config config = config_;
+  config.learner.actor_period = 2;
+  config.learner.target_period = 3;
+  const auto agent = MakeAgent(config, spec_, nn::Precision::kF32);
+  for (int u = 1; u <= 6; ++u) {
+    const nn::TensorMap before = agent->AllTensors();
+    const UpdateOutcome outcome = agent->Update(data_.View());
+    const nn::TensorMap after = agent->AllTensors();
+    EXPECT_FALSE(Differences(before, after, "critic.").empty()) << u;
+    EXPECT_EQ(!Differences(before, after, "actor.").empty(), u % 2 == 0) << u;
+    EXPECT_EQ(outcome.figures.Get(kActorLoss).has_value(), u % 2 == 0) << u;
+    EXPECT_EQ(!Differences(before, after, "target.").empty(), u % 3 == 0) << u;
+    EXPECT_EQ(!Differences(before, after, "target_actor.").empty(), u >= 2 && u % 3 == 0) << u;
+  }
+}
+
+TEST_P(DeterministicAgentTest, GoesOnByteForByteFromWhatItExported) {
+  Config config = config_;
+  config.learner.actor_period = config.learner.target_period = 2;
+  const auto original = MakeAgent(config, spec_, nn::Precision::kF32);
+  for (int u = 0; u < 3; ++u) original->Update(data_.View());
+  const auto restored = MakeAgent(config, spec_, nn::Precision::kF32);
+  restored->Restore(original->AllTensors(), "original");
+  EXPECT_EQ(restored->updates(), 3u);
+  for (uint64_t u = 0; u < 20; ++u) {
+    const RandomBatch batch(spec_, batch_size_, 50 + u);
+    original->Update(batch.View());
+    restored->Update(batch.View());
+  }
+  EXPECT_THAT(Differences(original->AllTensors(), restored->AllTensors()), testing::IsEmpty());
+}
+
+TEST_P(DeterministicAgentTest, RestoreRefusesWhatDoesNotFitAndChangesNothing) {
+  const auto other = MakeAgent(config_, spec_, nn::Precision::kF32);
+  other->Update(data_.View());
+  const nn::TensorMap before = agent_->AllTensors();
+  for (const char* name : {"encoder.conv1.bias", "target_actor.mlp.output.weight",
+                           "average.actor.mlp.output.bias", "adam.steps.actor", "agent.updates"}) {
+    nn::TensorMap tensors = other->AllTensors();
+    ASSERT_EQ(tensors.erase(name), 1u) << name;
+    EXPECT_THAT([&] { agent_->Restore(tensors, "checkpoint 5"); },
+                testing::ThrowsMessage<Error>(testing::HasSubstr(name)));
+    EXPECT_THAT(Differences(before, agent_->AllTensors()), testing::IsEmpty()) << name;
+  }
+}
+
+TEST_P(DeterministicAgentTest, ABatchThatIsNotFiniteChangesNothing) {
+  const nn::TensorMap before = agent_->AllTensors();
+  BatchView view = data_.View();
+  view.reward[1] = std::nanf("");
+  EXPECT_FALSE(agent_->Update(view).finite);
+  view.reward[1] = 1e25f;  // finite, but its squared error is not
+  EXPECT_FALSE(agent_->Update(view).finite);
+  EXPECT_THAT(Differences(before, agent_->AllTensors()), testing::IsEmpty());
+}
+
+// A bandit: reward -(a - s0 / 2)^2, every step terminal. The best action is s0 / 2; a policy that
+// ignores the state is off by 0.25 on average.
+TEST_P(DeterministicAgentTest, LearnsABandit) {
+  ObservationSpec spec;
+  spec.task = "bandit";
+  spec.blocks = {{"state", 2}};
+  spec.action_size = 1;
+  Config config = config_;
+  config.learner.batch = 64;
+  config.learner.learning_rate = 3e-3;
+  config.learner.reward_scale = 5;
+  config.network.hidden = {32, 32};
+  const auto agent = MakeAgent(config, spec, nn::Precision::kF32);
+  Random random(1);
+  for (int u = 0; u < 400; ++u) {
+    const RandomBatch batch(spec, config.learner.batch, uint64_t(u));
+    const BatchView view = batch.View();
+    for (size_t b = 0; b < view.reward.size(); ++b) {
+      view.obs_vector[2 * b] = float(random.Uniform(-1, 1));
+      const float error = view.action[b] - view.obs_vector[2 * b] / 2;
+      view.reward[b] = -error * error;
+      view.bootstrap[b] = 0;
+    }
+    ASSERT_TRUE(agent->Update(view).finite);
+  }
+  nn::Policy policy(config.network, spec, nn::Precision::kF32, 1);
+  policy.Load(agent->PolicyTensors(), "agent");
+  double error = 0;
+  for (int i = 0; i < 41; ++i) {
+    const float state[2] = {float(i - 20) / 20, 0.f};
+    const nn::PolicyOutput output = policy.Forward(1, nullptr, state);
+    EXPECT_TRUE(output.log_std.empty());
+    error += std::abs(std::tanh(output.mean[0]) - state[0] / 2) / 41;
+  }
+  EXPECT_LT(error, 0.08);
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, DeterministicAgentTest,
+                         testing::Values(Case{"td3", {"q1", "q2"}, /*smooth=*/true},
+                                         Case{"ddpg", {"q1"}, /*smooth=*/false}),
+                         [](const auto& each) { return each.param.algorithm; });
+
+}  // namespace
+}  // namespace shoal::learner
