@@ -23,7 +23,7 @@ std::string UnknownCommand(const CLI::App& app, int argc, char** argv) {
 }
 
 int Run(int argc, char** argv) {
-  CLI::App app("Shoal trains robot policies from pixels with SAC and DrQ, on many processes.",
+  CLI::App app("Shoal trains robot policies from pixels and from state, on many processes.",
                "shoal");
   app.set_version_flag("--version",
                        fmt::format("shoal {} ({})", shoal::BuildVersion(), shoal::BuildCommit()));

@@ -105,14 +105,14 @@ void TrainingLoop::AfterUpdate(const Batch& batch, const UpdateFigures& figures)
 void TrainingLoop::MakeEvaluationPoint() {
   const std::string name = WriteCheckpoint();
   parts_.pending_evaluations.Add(parts_.agent.updates(), name);
-  const ScopedSeconds timed(seconds_.weights);
-  evaluations_.Send(name, env_steps_);
   evaluations_asked_.push_back(
       {.update = parts_.agent.updates(), .env_steps = env_steps_, .checkpoint = name});
   if (evaluations_asked_.size() > LearnerProgress::kMostEvaluations) {
     evaluations_asked_.erase(evaluations_asked_.begin());
   }
-  TellProgress();
+  TellProgress();  // before anybody can answer: what was not asked for is refused
+  const ScopedSeconds timed(seconds_.weights);
+  evaluations_.Send(name, env_steps_);
 }
 
 void TrainingLoop::TellProgress() {

@@ -127,6 +127,8 @@ struct TransportConfig {
   int flush_ms = 100;            // a partial chunk is sent after this long
 };
 
+inline constexpr uint32_t kMostActors = 1024;  // of a run, on all its hosts
+
 struct Config {
   std::string preset;
   int64_t seed = 1;

@@ -31,7 +31,7 @@ std::vector<Key> RunKeys() {
       SHOAL_SAME(distance_threshold, (RealRange{0, 1000}),
                  "distance in m below which a goal is reached; 0 = the task's own"),
       SHOAL_SAME(env_steps, kSteps, "budget: training stops after this many env steps"),
-      SHOAL_SAME(actors, (IntegerRange{0, 1024}),
+      SHOAL_SAME(actors, (IntegerRange{0, kMostActors}),
                  "actor processes; 0 = one per core the learner leaves, at least 1"),
       SHOAL_SAME(envs_per_actor, (IntegerRange{1, 256}), "environments stepped by one actor"),
       SHOAL_SAME(lockstep, AnyValue{},

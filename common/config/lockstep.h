@@ -34,8 +34,8 @@ uint64_t LockstepUpdatesAtPhaseEnd(const Config& config, int64_t phase);
 uint64_t LockstepStepsBeforeUpdate(const Config& config, uint64_t update);
 
 // Where a run ends: with the first phase at whose end config.env_steps steps are stored. Its steps
-// and its last update: none is told to drain before those, nor asks for a batch beyond, so that where
-// a run ends does not depend on timing.
+// and its last update: none is told to drain before those, nor asks for a batch beyond, so that
+// where a run ends does not depend on timing.
 uint64_t LockstepEnvSteps(const Config& config);
 uint64_t LockstepLastUpdate(const Config& config);
 

@@ -22,6 +22,9 @@ struct WeightsVersion {
   }
 };
 
+// Bytes of a batch or of weights that travel as one message: below 1 MB with its header.
+inline constexpr uint64_t kBulkPartBytes = 960 * 1024;
+
 // actor -> replay. `count` records of equal size, sequences first_sequence ..
 // first_sequence+count-1. Without records it says that the actor keeps nothing before
 // first_sequence any more.

@@ -10,7 +10,7 @@ namespace shoal {
 namespace {
 
 uint64_t SizeOfPart(uint64_t total_bytes, uint32_t part) {
-  return std::min(kWeightsPartBytes, total_bytes - part * kWeightsPartBytes);
+  return std::min(kBulkPartBytes, total_bytes - part * kBulkPartBytes);
 }
 
 // It says what a sender can say, and its bytes are what was sent.
@@ -34,8 +34,7 @@ Part PartOf(const WeightsMessage& weights, uint32_t part) {
   message.env_steps = weights.env_steps;
   message.total_bytes = total_bytes;
   message.checkpoint = weights.checkpoint;
-  message.payload =
-      weights.payload.subspan(part * kWeightsPartBytes, SizeOfPart(total_bytes, part));
+  message.payload = weights.payload.subspan(part * kBulkPartBytes, SizeOfPart(total_bytes, part));
   message.crc = Crc32(message.payload);
   return message;
 }
@@ -57,8 +56,7 @@ WeightsAssembler::Verdict WeightsAssembler::Add(const WeightsPart& part) {
   if (part.total_bytes != bytes_.size()) return Verdict::kRefused;
   if (there_[part.part]) return Verdict::kKnown;
   there_[part.part] = true;
-  std::memcpy(bytes_.data() + part.part * kWeightsPartBytes, part.payload.data(),
-              part.payload.size());
+  std::memcpy(bytes_.data() + part.part * kBulkPartBytes, part.payload.data(), part.payload.size());
   return --missing_ == 0 ? Verdict::kComplete : Verdict::kTaken;
 }
 

@@ -1,5 +1,5 @@
 // Weights travel in parts, so that no sample is larger than the transport carries well, whatever
-// the size of the policy: part k holds the bytes from k * kWeightsPartBytes on. A version is
+// the size of the policy: part k holds the bytes from k * kBulkPartBytes on. A version is
 // complete when all its parts are there; what is incomplete when a newer one begins is dropped.
 #pragma once
 
@@ -12,13 +12,11 @@
 
 namespace shoal {
 
-// Below 1 MB with its header.
-inline constexpr uint64_t kWeightsPartBytes = 960 * 1024;
 // A receiver reserves as much at the word of one part.
 inline constexpr uint64_t kMaxWeightsBytes = 1'000'000'000;
 
 inline uint64_t WeightsParts(uint64_t total_bytes) {
-  return (total_bytes + kWeightsPartBytes - 1) / kWeightsPartBytes;
+  return (total_bytes + kBulkPartBytes - 1) / kBulkPartBytes;
 }
 
 // Part `part` of the weights, Part being WeightsPart or EvalWeightsPart. Its payload is a piece of

@@ -25,7 +25,7 @@ constexpr seconds kScaled{60};   // for actors to start, or to flush what they h
 constexpr seconds kSilence{15};  // of a coordinator: as long as its processes wait for it
 constexpr std::chrono::milliseconds kLook{500};  // at the silence
 constexpr seconds kLeaves{10};     // for the coordinator to leave, once it has said all
-constexpr seconds kStopped{3600};  // for the last evaluations
+constexpr seconds kStopped{3600};  // for a run that had begun its last evaluation
 
 // Looks at views until `done` says so; false: not within `most`, or a stop signal. Throws Error
 // when the coordinator has been silent for kSilence: it died, and no view will ever come.

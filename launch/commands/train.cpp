@@ -20,7 +20,8 @@ void AddTrainCommand(CLI::App& app, Action* chosen) {
   CLI::App* command = app.add_subcommand(
       "train",
       "Train a policy: starts replay, learner, actors and evaluation, watches them, stops them in "
-      "order and evaluates the best checkpoint. Ctrl-C stops in order, twice at once.");
+      "order and evaluates the best checkpoint. Ctrl-C stops in order, without that evaluation "
+      "(--resume goes on); twice at once.");
   const auto options = std::make_shared<TrainOptions>();
   const auto describe_keys = std::make_shared<bool>(false);
   command->add_option("--preset", options->preset, PresetHelp());

@@ -2,10 +2,12 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <csignal>
 #include <limits>
 #include <utility>
 
+#include "common/base/check.h"
 #include "common/base/error.h"
 
 namespace shoal::launch {
@@ -45,6 +47,9 @@ Supervisor::Supervisor(const RestartLimits& limits, const HangLimits& hang_limit
 
 void Supervisor::Start(const ProcessSpec& spec) {
   const SteadyTime now = Now();
+  CHECK(std::ranges::none_of(children_, [&](const Child& child) {
+    return child.spec.Name() == spec.Name() && !child.exit_expected;
+  })) << spec.Name();
   for (Child& child : children_) {
     if (child.spec.Name() != spec.Name() || !child.exit_expected || !child.process) continue;
     child.successor = spec;

@@ -81,7 +81,10 @@ struct Coordinator::Impl {
         eval_reports(bus, Reports<EvalMetrics>("eval")),
         replay_reports(bus, Reports<ReplayMetrics>("replay")),
         learner_reports(bus, Reports<LearnerMetrics>("learner")),
-        replay_progress(bus, [this](const ReplayProgress& m) { replay_words.Put(m); }),
+        replay_progress(bus,
+                        [this](const ReplayProgress& m) {
+                          if (m.replay == 0) replay_words.Put(m);
+                        }),
         learner_progress(bus, [this](const LearnerProgress& m) { learner_words.Put(m); }),
         eval_subscriber(bus, [this](const EvalMessage& m) { evals.Put(m); }) {
     settings.Restore(meta.changes);
@@ -106,9 +109,10 @@ struct Coordinator::Impl {
 
   // Takes the reports of a topic that only this role may write.
   template <class M>
-  std::function<void(const M&)> Reports(const char* role) {
-    return [this, role](const M& message) {
-      if (message.role == role) {
+  std::function<void(const M&)> Reports(const std::string& role) {
+    const uint32_t ids = role == "actor" ? kMostActors : 1;
+    return [this, role, ids](const M& message) {
+      if (message.role == role && message.id < ids) {
         metrics.Put(message);
       } else {
         ++reports_refused;
@@ -168,7 +172,7 @@ struct Coordinator::Impl {
   MessageInbox<EvalMessage> evals{kInboxEvaluations};
   MessageInbox<ReplayProgress> replay_words{kInboxMessages};
   MessageInbox<LearnerProgress> learner_words{kInboxMessages};
-  std::atomic<uint64_t> reports_refused{0};  // in the name of another role than their sender's
+  std::atomic<uint64_t> reports_refused{0};  // of another role than their sender's, or no process
   MetricsReport own_report;
   dds::Publisher<ControlMessage> control;
   dds::Subscriber<ActorMetrics> actor_reports;
@@ -359,6 +363,7 @@ void Coordinator::Impl::ShowView(const ProgressFigures& figures, SteadyTime now)
     progress.Say(fmt::format("{} report(s) dropped: they came faster than they were read",
                              dropped - std::exchange(dropped_said, dropped)));
   }
+  own_report.Add("metrics_lines_left_out", static_cast<double>(log.lines_left_out()));
   own_report.Add("evaluations_repeated", static_cast<double>(evaluations.repeated()));
   own_report.Add("evaluations_refused", static_cast<double>(evaluations.refused()));
   own_report.Add("reports_refused", static_cast<double>(reports_refused));

@@ -43,14 +43,6 @@ uint64_t EpisodeIndex::Previous(uint64_t id) const {
   return prev < id && ring_.Holds(prev) ? prev : 0;
 }
 
-EpisodeState EpisodeIndex::StateOf(uint64_t last) const {
-  const RecordHeader& header = ring_.Header(last);
-  if ((header.flags & (kTerminated | kTruncated)) != 0) return EpisodeState::kFinished;
-  const auto it = tracks_.find(header.env);
-  const bool open = it != tracks_.end() && it->second.last_id == last && it->second.open;
-  return open ? EpisodeState::kOpen : EpisodeState::kCut;
-}
-
 void EpisodeIndex::Added(uint64_t id) {
   if (id > ring_.capacity()) Forget(id - ring_.capacity());
   const size_t slot = Slot(id);

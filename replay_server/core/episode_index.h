@@ -33,8 +33,6 @@ struct IndexOptions {
   bool whole_episodes = false;  // sample nothing of episodes that go on
 };
 
-enum class EpisodeState { kOpen, kFinished, kCut };
-
 class EpisodeIndex {
  public:
   // Borrows the ring and reads what is in it, calling `alive` for each record, if there is one;
@@ -65,8 +63,6 @@ class EpisodeIndex {
   // does (yet), or no longer.
   uint64_t Next(uint64_t id) const { return next_[Slot(id)]; }
   uint64_t Previous(uint64_t id) const;
-  // Of the episode whose newest record `last` is.
-  EpisodeState StateOf(uint64_t last) const;
   uint64_t sampleable() const { return sampleable_; }
   // How often a step became sampleable since construction.
   uint64_t became_sampleable() const { return became_sampleable_; }

@@ -19,6 +19,11 @@ HindsightRelabeller::HindsightRelabeller(const Ring& ring, const EpisodeIndex& i
 
 uint64_t HindsightRelabeller::DrawGoal(uint64_t id, Random* random) {
   if (random->Uniform() >= share_) return 0;
+  if (kind_ == HindsightGoal::kFinal) {
+    uint64_t last = id;
+    while (const uint64_t next = index_.Next(last)) last = next;
+    return last;
+  }
   uint64_t first = id;
   if (kind_ == HindsightGoal::kEpisode) {
     // Back to the oldest step that is there; the reset, which no action led to, gives no goal.
@@ -29,7 +34,6 @@ uint64_t HindsightRelabeller::DrawGoal(uint64_t id, Random* random) {
   }
   steps_.clear();
   for (uint64_t step = first; step != 0; step = index_.Next(step)) steps_.push_back(step);
-  if (kind_ == HindsightGoal::kFinal) return steps_.back();
   return steps_[random->Below(steps_.size())];
 }
 
@@ -60,10 +64,16 @@ void CheckHindsight(const RunConfig& run) {
         "goal; expected desired or both",
         kind, config.observation.goal_mode);
   }
-  // Two episodes of every environment: one that ended and can be sampled, one under way.
-  const int64_t envs = int64_t{config.envs_per_actor} * std::max(1, config.actors);
   const int64_t steps = task.EnvStepsPerEpisode(repeat);
-  const int64_t least = config.replay.min_size + 2 * envs * (steps + 1);
+  const int64_t usable = steps - (config.replay.n_step - 1);  // first steps of n within an episode
+  if (usable <= 0) {
+    throw UsageError("replay.n_step = {}: an episode of {} has {} steps; expected at most that",
+                     config.replay.n_step, task.name(), steps);
+  }
+  // Ended episodes enough, and two of every environment: one that just ended, one under way.
+  const int64_t envs = int64_t{config.envs_per_actor} * std::max(1, config.actors);
+  const int64_t ended = (config.replay.min_size + usable - 1) / usable;
+  const int64_t least = (ended + 2 * envs) * (steps + 1);
   if (config.replay.capacity < least) {
     throw UsageError(
         "replay.hindsight = {}: replay.capacity = {} does not hold replay.min_size = {} "

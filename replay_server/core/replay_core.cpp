@@ -144,10 +144,10 @@ ChunkResult ReplayCore::TakeChunk(const TransitionChunk& chunk, uint64_t latest_
 
 RequestFate ReplayCore::TakeRequest(const SampleRequest& request) {
   const RequestFate fate = requests_.Offer(request);
-  if (fate == RequestFate::kWrongSpec || fate == RequestFate::kWrongSchema ||
-      fate == RequestFate::kFull) {
+  if (fate == RequestFate::kWrongSpec || fate == RequestFate::kWrongSchema) {
     ++counters_.refused_requests;
   }
+  if (fate == RequestFate::kFull) ++counters_.surplus_requests;
   return fate;
 }
 

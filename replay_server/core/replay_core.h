@@ -56,7 +56,8 @@ struct CoreCounters {
   uint64_t batches = 0, repeated_batches = 0;
   uint64_t relabelled = 0;        // batch elements with another goal than their own
   uint64_t zero_rewards = 0;      // batch elements of reward 0
-  uint64_t refused_requests = 0;  // wrong spec, wrong schema or too many
+  uint64_t refused_requests = 0;  // wrong spec or wrong schema
+  uint64_t surplus_requests = 0;  // more than the learner has credits for
 };
 
 class ReplayCore {

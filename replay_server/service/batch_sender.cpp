@@ -109,14 +109,14 @@ bool BatchSender::SendParts(const Outgoing& outgoing) {
   part.spec_hash = spec_hash_;
   part.learner_session = request.learner_session;
   part.request = request.request;
-  part.parts = static_cast<uint32_t>((batch_bytes_ + kPartBytes - 1) / kPartBytes);
+  part.parts = static_cast<uint32_t>((batch_bytes_ + kBulkPartBytes - 1) / kBulkPartBytes);
   part.total_bytes = batch_bytes_;
   part.stored_records = outgoing.batch.stored_records;
   part.stored_steps = outgoing.batch.stored_steps;
   for (part.part = 0; part.part < part.parts; ++part.part) {
-    part.offset = part.part * kPartBytes;
+    part.offset = part.part * kBulkPartBytes;
     part.payload = {outgoing.buffer + part.offset,
-                    std::min(kPartBytes, batch_bytes_ - part.offset)};
+                    std::min(kBulkPartBytes, batch_bytes_ - part.offset)};
     if (!SendPart(part)) return false;
   }
   return true;

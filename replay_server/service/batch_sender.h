@@ -24,9 +24,6 @@
 
 namespace shoal::replay {
 
-// Bytes of a batch in one part: below 1 MB with its header.
-inline constexpr uint64_t kPartBytes = 960 * 1024;
-
 // What the sender writes to: DDS, or a fake.
 class PartWriter {
  public:

@@ -5,8 +5,9 @@
 namespace shoal::replay {
 namespace {
 
+// `from_ns` is what a message says: any integer.
 double Seconds(int64_t from_ns, int64_t to_ns) {
-  return 1e-9 * static_cast<double>(to_ns - from_ns);
+  return 1e-9 * (static_cast<double>(to_ns) - static_cast<double>(from_ns));
 }
 
 }  // namespace

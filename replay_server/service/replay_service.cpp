@@ -233,9 +233,9 @@ class ReplayService {
     }
     for (const SampleRequest& request : arrivals.requests) {
       const RequestFate fate = core_.TakeRequest(request);
-      if (fate != RequestFate::kQueued && fate != RequestFate::kAlreadyQueued) {
+      if (fate == RequestFate::kWrongSpec || fate == RequestFate::kWrongSchema) {
         problems_.NoteRefused(request);
-      } else {
+      } else if (fate == RequestFate::kQueued || fate == RequestFate::kAlreadyQueued) {
         ages_.OnRequest(request);
       }
     }

@@ -44,7 +44,8 @@ void ServiceReport::AddTroubles() {
                             counters.superseded_chunks + counters.table_full_chunks +
                             counters.future_chunks);
   Add("ahead_chunks", counters.ahead_chunks);
-  Add("refused_requests", counters.refused_requests + inbox_.DroppedRequests());
+  Add("refused_requests", counters.refused_requests);
+  Add("surplus_requests", counters.surplus_requests + inbox_.DroppedRequests());
   Add("repeated_batches", counters.repeated_batches);
   Add("batches_given_up", sender_.given_up());
   Add("pool_drops", inbox_.DroppedChunks());

@@ -11,7 +11,7 @@ using nlohmann::json;
 using std::chrono::seconds;
 
 void KillAndWaitForSuccessor(RunningTraining* training, const std::string& role) {
-  const pid_t victim = training->reports().Last(role).at("pid").get<pid_t>();
+  const pid_t victim = training->reports().Await(role).at("pid").get<pid_t>();
   ASSERT_EQ(kill(victim, SIGKILL), 0) << role;
   const json after =
       training->reports().WaitFor(role, [&](const json& r) { return r.at("pid") != victim; });
@@ -28,7 +28,7 @@ TEST(Clock, ARunGoesOnWhileItIsSetBackAndForth) {
       {{"LD_PRELOAD", ProgramPath("libshoal_skewed_clock.so")},
        {"SHOAL_CLOCK_SKEW", skew.string()}});
   ASSERT_TRUE(training.WaitForSteps(1500)) << training.Output();
-  const double before = training.reports().Last("replay").at("t");
+  const double before = training.reports().Await("replay").at("t");
   for (const int offset : {-3600, 7200}) {
     set_clock(offset);
     ASSERT_TRUE(training.WaitForMoreSteps(500)) << training.Output();
@@ -36,14 +36,14 @@ TEST(Clock, ARunGoesOnWhileItIsSetBackAndForth) {
       KillAndWaitForSuccessor(&training, role);
       ASSERT_TRUE(training.WaitForMoreSteps(500)) << role << ": " << training.Output();
     }
-    const double updates = training.reports().Last("learner").at("updates");
+    const double updates = training.reports().Await("learner").at("updates");
     EXPECT_FALSE(
         training.reports()
             .WaitFor("learner", [&](const json& r) { return r.at("updates") > updates + 10; })
             .is_null())
         << training.Output();
   }
-  const double after = training.reports().Last("replay").at("t");
+  const double after = training.reports().Await("replay").at("t");
   EXPECT_GT(after - before, 7000) << "the clock of the processes was not set";
   training.Interrupt();
   ASSERT_EQ(training.End(seconds(120)), 0) << training.Output();

@@ -143,7 +143,7 @@ TEST_F(Cluster, CatchesUpAfterSevenSecondsWithoutALinkThatLosesDatagrams) {
   std::this_thread::sleep_for(seconds(7));  // what is tested: longer than the transport's lease
   ASSERT_TRUE(net_.Join());
 
-  const json before = training.reports().Last("actor", kFarActor);
+  const json before = training.reports().Await("actor", kFarActor);
   EXPECT_FALSE(WaitForFarRecords(training, before, 500).is_null()) << "the same process goes on\n"
                                                                    << training.Output();
   EXPECT_GT(LongestSilence(), 6) << "the link was not cut";

@@ -41,7 +41,7 @@ TEST(CoordinatorKill, ProcessesLeaveInOrderAndResumeGoesOn) {
     RunningTraining training(run, run.Command(keys));
     ASSERT_TRUE(training.WaitForSteps(4000)) << training.Output();
     updates_before =
-        static_cast<uint64_t>(training.reports().Last("learner").value("updates", 0.0));
+        static_cast<uint64_t>(training.reports().Await("learner").value("updates", 0.0));
     const std::vector<pid_t> orphans = ChildrenOf(training.pid());
     EXPECT_EQ(orphans.size(), 5u) << "replay, learner, two actors, evaluation actor";
     ASSERT_EQ(kill(training.pid(), SIGKILL), 0);
@@ -71,7 +71,7 @@ TEST(CoordinatorKill, AStopThatWaitsSaysSo) {
   const TrainingRun run;
   RunningTraining training(run, run.Command({{"env_steps", "1000000"}, {"actors", "1"}}));
   // The run cannot end meanwhile: its learner does not leave.
-  const pid_t learner = training.reports().Last("learner").at("pid").get<pid_t>();
+  const pid_t learner = training.reports().Await("learner").at("pid").get<pid_t>();
   ASSERT_EQ(kill(learner, SIGSTOP), 0);
   launch::ProcessSpec spec;
   spec.command = {ProgramPath("shoal"), "stop", "--run", run.path().string()};

@@ -30,8 +30,8 @@ int Lines(const std::string& text, const std::string& beginning) {
 }
 
 // The first evaluation is told twice: at stop.success=0 the run would end for it with one
-// evaluation on its disk. The second one is far enough for the evaluation actor to be stopped before
-// it.
+// evaluation on its disk. The second one is far enough for the evaluation actor to be stopped
+// before it.
 TEST(RepeatedMessages, AnEvaluationDeliveredAgainAfterAPauseDoesNotCount) {
   const TrainingRun run;
   RunningTraining training(run, run.Command({{"env_steps", "10000000"},
@@ -43,7 +43,7 @@ TEST(RepeatedMessages, AnEvaluationDeliveredAgainAfterAPauseDoesNotCount) {
                    .WaitFor("eval", [](const json& r) { return Value(r, "evaluations") >= 1; })
                    .is_null())
       << training.Output();
-  const pid_t eval = training.reports().Last("eval").at("pid").get<pid_t>();
+  const pid_t eval = training.reports().Await("eval").at("pid").get<pid_t>();
   ASSERT_EQ(kill(eval, SIGSTOP), 0);
   std::this_thread::sleep_for(kBeyondTheLease);
   const int before = Lines(training.Output(), "evaluation at ");

@@ -44,8 +44,12 @@ struct Ban {
 const std::vector<Ban> kBans = [] {
   std::vector<Ban> bans = {
       {"replay_server/core", "replay_server/service/", "the core knows nothing of its service"}};
+  for (const char* files :
+       {"common/base/files.h", "filesystem", "fstream", "learner/checkpoint.h"}) {
+    bans.push_back({"learner/agent", files, "an agent is in memory: checkpoints are kept for it"});
+  }
   // Plain classes of one thread, whose results depend on their arguments alone.
-  for (const std::string room : {"replay_server/core"}) {
+  for (const std::string room : {"replay_server/core", "learner/agent"}) {
     bans.push_back({room, "common/dds/", "no transport here"});
     for (const char* clock : {"common/base/clock.h", "chrono", "ctime", "sys/time.h", "time.h"}) {
       bans.push_back({room, clock, "no clock here"});

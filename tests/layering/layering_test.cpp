@@ -111,6 +111,27 @@ TEST(Layering, TheReplayCoreKnowsNoServiceTransportClockOrThread) {
                               "replay_server/service/x.h: the core knows nothing of its service"));
 }
 
+TEST(Layering, AnAgentKnowsNoTransportClockFileOrThread) {
+  const PlantedTree tree;
+  tree.Write("learner/agent/sac/a.cpp",
+             "#include <fstream>\n"
+             "#include <thread>\n"
+             "#include \"common/base/clock.h\"\n"
+             "#include \"common/dds/bus.h\"\n"
+             "#include \"common/nn/x.h\"\n"
+             "#include \"learner/checkpoint.h\"\n");
+  tree.Write("learner/a.cpp",
+             "#include \"common/base/clock.h\"\n#include \"learner/checkpoint.h\"\n");
+  const std::string start = "learner/agent/sac/a.cpp:", room = ": learner/agent may not use ";
+  const std::string files = ": an agent is in memory: checkpoints are kept for it";
+  EXPECT_THAT(tree.Breaches(),
+              ElementsAre(start + "1" + room + "fstream" + files,
+                          start + "2" + room + "thread: no threads here",
+                          start + "3" + room + "common/base/clock.h: no clock here",
+                          start + "4" + room + "common/dds/bus.h: no transport here",
+                          start + "6" + room + "learner/checkpoint.h" + files));
+}
+
 TEST(Layering, TheRoomsOfTheActorPointOneWayAndWorldsUseNone) {
   const PlantedTree tree;
   tree.Write("actor/acting/a.cpp",

@@ -24,10 +24,15 @@ class ReportReader {
     if (!none_yet) offset_ = static_cast<std::streamoff>(size);
   }
 
-  // The newest report of role's process `id`, which it waits for when there is none yet; null when
-  // none came in time.
-  nlohmann::json Last(const std::string& role, int id = 0) {
-    return WaitFor(role, [](const auto&) { return true; }, std::chrono::seconds(60), id);
+  // The newest report of role's process `id`; null when there is none yet.
+  const nlohmann::json& Last(const std::string& role, int id = 0) {
+    ReadOn();
+    return last_[{role, id}];
+  }
+  // The same, waited for when there is none yet; null when none came in time.
+  nlohmann::json Await(const std::string& role, int id = 0) {
+    return WaitFor(
+        role, [](const auto&) { return true; }, std::chrono::seconds(60), id);
   }
   // Looks until done(newest report), a report being there; null when `deadline` came first.
   template <class Done>
@@ -35,8 +40,7 @@ class ReportReader {
                          std::chrono::seconds deadline = std::chrono::seconds(60), int id = 0) {
     const SteadyTime end = Now() + deadline;
     do {
-      ReadOn();
-      const nlohmann::json& report = last_[{role, id}];
+      const nlohmann::json& report = Last(role, id);
       if (!report.is_null() && done(report)) return report;
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
     } while (Now() < end);

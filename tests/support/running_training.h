@@ -31,7 +31,7 @@ class RunningTraining {
 
   // Waits until the replay has stored `steps` more steps. False when it did not in time.
   bool WaitForMoreSteps(int64_t steps) {
-    const nlohmann::json newest = reports_.Last("replay");
+    const nlohmann::json newest = reports_.Await("replay");
     return !newest.is_null() && WaitForSteps(Stored(newest) + steps);
   }
   bool WaitForSteps(int64_t steps, std::chrono::seconds deadline = std::chrono::seconds(60)) {

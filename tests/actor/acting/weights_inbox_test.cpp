@@ -67,7 +67,7 @@ TEST(WeightsInbox, CountsWhatWasOvertakenBeforeItWasTaken) {
 }
 
 TEST(WeightsInbox, PutsAVersionOfManyPartsTogether) {
-  std::string large(3 * kWeightsPartBytes + 5, 'x');
+  std::string large(3 * kBulkPartBytes + 5, 'x');
   large.back() = 'y';
   WeightsInbox inbox(kSpec);
   Deliver(inbox, 1, 10, large);

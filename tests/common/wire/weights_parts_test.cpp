@@ -41,8 +41,8 @@ bool Same(const std::string& taken, const std::vector<uint8_t>& bytes) {
 }
 
 TEST(WeightsParts, AVersionComesTogetherInAnyOrder) {
-  for (const uint64_t size : {uint64_t{1}, kWeightsPartBytes - 1, kWeightsPartBytes,
-                              kWeightsPartBytes + 1, 5 * kWeightsPartBytes + 77}) {
+  for (const uint64_t size : {uint64_t{1}, kBulkPartBytes - 1, kBulkPartBytes, kBulkPartBytes + 1,
+                              5 * kBulkPartBytes + 77}) {
     const std::vector<uint8_t> bytes = Bytes(size, size);
     const WeightsMessage weights = Weights(1, 1, bytes);
     std::vector<WeightsPart> parts = Parts(weights);
@@ -58,8 +58,8 @@ TEST(WeightsParts, AVersionComesTogetherInAnyOrder) {
 }
 
 TEST(WeightsParts, NothingOfTwoVersionsIsMixed) {
-  const std::vector<uint8_t> old_bytes = Bytes(3 * kWeightsPartBytes, 1),
-                             new_bytes = Bytes(3 * kWeightsPartBytes, 2);
+  const std::vector<uint8_t> old_bytes = Bytes(3 * kBulkPartBytes, 1),
+                             new_bytes = Bytes(3 * kBulkPartBytes, 2);
   const std::vector<WeightsPart> old_parts = Parts(Weights(1, 10, old_bytes)),
                                  new_parts = Parts(Weights(1, 11, new_bytes));
   WeightsAssembler assembler;
@@ -83,7 +83,7 @@ TEST(WeightsParts, ANewerLearnerSessionWinsWhateverItsUpdate) {
 }
 
 TEST(WeightsParts, WhatCannotBeIsRefused) {
-  const std::vector<uint8_t> bytes = Bytes(2 * kWeightsPartBytes + 9, 1);
+  const std::vector<uint8_t> bytes = Bytes(2 * kBulkPartBytes + 9, 1);
   const std::vector<WeightsPart> parts = Parts(Weights(1, 1, bytes));
   const auto verdict = [&](auto change) {
     WeightsAssembler assembler;

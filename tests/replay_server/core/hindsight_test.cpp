@@ -221,9 +221,16 @@ TEST_F(HindsightTest, WhatItCannotServeIsRefusedByName) {
                 r.spec.blocks[2].observed = false;
               }),
               HasSubstr("observation.goal_mode = none"));
-  EXPECT_THAT(Refusal([](RunConfig& r) { r.config.replay.capacity = 303; }),
-              HasSubstr("expected at least 304"));
-  EXPECT_EQ(Refusal([](RunConfig& r) { r.config.replay.capacity = 304; }), "");
+  EXPECT_THAT(Refusal([](RunConfig& r) { r.config.replay.capacity = 305; }),
+              HasSubstr("expected at least 306"));
+  EXPECT_EQ(Refusal([](RunConfig& r) { r.config.replay.capacity = 306; }), "");
+  EXPECT_THAT(Refusal([](RunConfig& r) {  // 41 first steps an episode: 3 episodes and 4
+                r.config.replay.capacity = 356;
+                r.config.replay.n_step = 10;
+              }),
+              HasSubstr("expected at least 357"));
+  EXPECT_THAT(Refusal([](RunConfig& r) { r.config.replay.n_step = 51; }),
+              HasSubstr("replay.n_step = 51: an episode of FetchPush has 50 steps"));
   EXPECT_THAT(Refusal([](RunConfig& r) {
                 r.config.lockstep = true;
                 r.config.replay.min_size = 99;

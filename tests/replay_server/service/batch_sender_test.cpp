@@ -46,7 +46,7 @@ class FakeWriter : public PartWriter {
 
 class BatchSenderTest : public testing::Test {
  protected:
-  static constexpr uint64_t kBatchBytes = 2 * kPartBytes + 640;
+  static constexpr uint64_t kBatchBytes = 2 * kBulkPartBytes + 640;
 
   BatchSenderTest() { sender_.SetLearnerSession(7); }
 

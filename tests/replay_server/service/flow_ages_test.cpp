@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <map>
 
 #include "tests/replay_server/record_script.h"
@@ -22,12 +23,15 @@ class FlowAgesTest : public ::testing::Test {
   }
   // A chunk of one record, made `age_seconds` ago by the weights of (session, update).
   void Store(uint64_t session, uint64_t update, double age_seconds) {
+    StoreMadeAt(session, update, kNow - static_cast<int64_t>(age_seconds * kSecond));
+  }
+  void StoreMadeAt(uint64_t session, uint64_t update, int64_t time_ns) {
     std::vector<uint64_t> words(static_cast<size_t>(layout_.record_bytes()) / 8);
     auto* bytes = reinterpret_cast<uint8_t*>(words.data());
     RecordHeader& header = RecordLayout::Header(bytes);
     header.weights_session = session;
     header.weights_update = update;
-    header.time_ns = kNow - static_cast<int64_t>(age_seconds * kSecond);
+    header.time_ns = time_ns;
     TransitionChunk chunk;
     chunk.count = 1;
     chunk.payload = {bytes, words.size() * 8};
@@ -86,6 +90,11 @@ TEST_F(FlowAgesTest, StoringTakesFromTheRecordsTimeToNow) {
   Store(0, 0, 0.25);
   EXPECT_NEAR(Report().at("store_age_seconds_p50"), 0.25, 1e-6);
   EXPECT_TRUE(Report().empty()) << "each interval stands for itself";
+}
+
+TEST_F(FlowAgesTest, ARecordThatSaysItWasMadeAtNoTimeThereEverWas) {
+  StoreMadeAt(0, 0, std::numeric_limits<int64_t>::min());
+  EXPECT_GT(Report().at("store_age_seconds_p50"), 9e9);
 }
 
 TEST_F(FlowAgesTest, ABatchIsAsOldAsItsSteps) {
