@@ -72,7 +72,10 @@ struct LearnerConfig {
   int batch = 128;
   std::string precision = "auto";  // auto | f32 | bf16
   int threads = 0;                 // 0 = half the cores this process may use, at least 1
-  double learning_rate = 5e-4;     // actor, critic and temperature
+  double learning_rate = 5e-4;
+  // Of one of them alone; 0 = learning_rate.
+  double actor_learning_rate = 0, critic_learning_rate = 0, temperature_learning_rate = 0;
+  double max_grad_norm = 0;  // of the actor's gradients and of the critic's; 0 = not clipped
   double discount = 0.9;
   double reward_scale = 10;
   double tau = 0.01;            // target heads: target += tau * (online - target)
@@ -80,10 +83,13 @@ struct LearnerConfig {
   int actor_period = 2;         // updates per actor and temperature update
   int target_period = 1;
   double initial_temperature = 0.1;
-  double target_entropy = 0;      // 0 = -(action size)
-  int weights_period = 20;        // updates between weights broadcasts
-  int request_credits = 3;        // batches asked for ahead
-  int checkpoint_period = 2'000;  // updates between checkpoints
+  std::string temperature = "auto";  // auto | fixed
+  double min_temperature = 0;        // of an automatic one
+  double target_entropy = 0;         // 0 = -(action size)
+  bool bounded_targets = false;      // values cut off at what rewards of -1 and 0 allow
+  int weights_period = 20;           // updates between weights broadcasts
+  int request_credits = 3;           // batches asked for ahead
+  int checkpoint_period = 2'000;     // updates between checkpoints
 };
 
 // What training actors play beyond what their policy says (actor/acting/exploration.h).
@@ -105,6 +111,7 @@ struct NetworkConfig {
   int features = 0;                           // outputs of the trunk; 0 = the encoder's own
   std::vector<int> hidden{256, 256};          // MLPs of actor and critics
   bool layer_norm = true;                     // after each hidden layer of the MLPs
+  std::string log_std = "smooth";             // smooth | clamped: how the deviation is bounded
   std::string initialisation = "orthogonal";  // orthogonal | pytorch
 };
 

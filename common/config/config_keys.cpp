@@ -116,6 +116,15 @@ std::vector<Key> LearnerKeys() {
       SHOAL_SAME(learner.threads, (IntegerRange{0, 1024}),
                  "threads of the learner; 0 = half the cores this process may use, at least 1"),
       SHOAL_SAME(learner.learning_rate, positive, "Adam step of actor, critic and temperature"),
+      SHOAL_SAME(learner.actor_learning_rate, (RealRange{0, 1}),
+                 "that of the actor alone; 0 = learner.learning_rate"),
+      SHOAL_SAME(learner.critic_learning_rate, (RealRange{0, 1}),
+                 "that of critic and encoder alone; 0 = learner.learning_rate"),
+      SHOAL_SAME(learner.temperature_learning_rate, (RealRange{0, 1}),
+                 "that of the temperature alone; 0 = learner.learning_rate"),
+      SHOAL_SAME(learner.max_grad_norm, (RealRange{0, 1e6}),
+                 "gradients of the actor, and those of critic and encoder, are scaled down to this "
+                 "Euclidean norm; 0 = never"),
       SHOAL_SAME(learner.discount, (RealRange{0, 1, false, true}), "discount per env step"),
       SHOAL_SAME(learner.reward_scale, (RealRange{0, 1e6, true}), "factor on every reward"),
       SHOAL_SAME(learner.tau, positive, "target heads: target += tau * (online - target)"),
@@ -127,8 +136,14 @@ std::vector<Key> LearnerKeys() {
       SHOAL_SAME(learner.target_period, (IntegerRange{1, 100'000}), "updates per target update"),
       SHOAL_SAME(learner.initial_temperature, (RealRange{0, 100, true}),
                  "entropy temperature at the start"),
+      SHOAL_SAME(
+          learner.temperature, (Choices{{"auto", "fixed"}}),
+          "auto = follows learner.target_entropy; fixed = stays learner.initial_temperature"),
+      SHOAL_SAME(learner.min_temperature, (RealRange{0, 100}), "of an automatic one, at least"),
       SHOAL_SAME(learner.target_entropy, (RealRange{-1000, 1000}),
                  "entropy the temperature aims at, in nats; 0 = -(action size)"),
+      SHOAL_SAME(learner.bounded_targets, AnyValue{},
+                 "cut target values off at what rewards of -1 and 0 allow"),
       SHOAL_SAME(learner.weights_period, (IntegerRange{1, 1'000'000}),
                  "updates between weights broadcasts"),
       SHOAL_SAME(learner.request_credits, (IntegerRange{1, 64}), "batches asked for ahead"),
@@ -172,6 +187,10 @@ std::vector<Key> NetworkKeys() {
                  "outputs of the trunk; 0 = the encoder's own: 512 of nature, else 50"),
       SHOAL_SAME(network.hidden, (IntegerRange{1, 65'536}), "hidden layers of actor and critics"),
       SHOAL_SAME(network.layer_norm, AnyValue{}, "LayerNorm after each hidden layer"),
+      SHOAL_SAME(
+          network.log_std, (Choices{{"smooth", "clamped"}}),
+          "log deviation of a Gaussian policy: smooth = by tanh in [-5, 2]; clamped = cut off "
+          "at -20 and 2"),
       SHOAL_SAME(network.initialisation, (Choices{{"orthogonal", "pytorch"}}),
                  "how weights start: orthogonal, biases 0; or uniform as PyTorch's layers do"),
   };

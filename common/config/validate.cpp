@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "common/base/error.h"
 #include "common/config/config_io.h"
@@ -52,11 +53,42 @@ void ValidateExploration(const Config& config) {
   }
 }
 
+// The keys of a policy with a deviation, and of its entropy.
+void ValidateEntropy(const Config& config) {
+  const Config usual;
+  const LearnerConfig &learner = config.learner, &none = usual.learner;
+  if (learner.temperature == "fixed" && learner.min_temperature > 0) {
+    throw UsageError("learner.min_temperature = {} with learner.temperature = fixed: expected 0",
+                     learner.min_temperature);
+  }
+  if (learner.min_temperature > learner.initial_temperature) {
+    throw UsageError(
+        "learner.min_temperature = {}: expected at most learner.initial_temperature = {}",
+        learner.min_temperature, learner.initial_temperature);
+  }
+  if (LearnsDeviation(config)) return;
+  const std::pair<const char*, bool> keys[] = {
+      {"learner.temperature", learner.temperature != none.temperature},
+      {"learner.initial_temperature", learner.initial_temperature != none.initial_temperature},
+      {"learner.min_temperature", learner.min_temperature != none.min_temperature},
+      {"learner.target_entropy", learner.target_entropy != none.target_entropy},
+      {"learner.temperature_learning_rate",
+       learner.temperature_learning_rate != none.temperature_learning_rate},
+      {"network.log_std", config.network.log_std != usual.network.log_std}};
+  for (const auto& [key, is_set] : keys) {
+    if (is_set) {
+      throw UsageError("{}: the policy of learner.algorithm = {} has no entropy; expected it unset",
+                       key, learner.algorithm);
+    }
+  }
+}
+
 }  // namespace
 
 void Validate(const Config& config) {
   ValidateObservation(config.observation);
   ValidateExploration(config);
+  ValidateEntropy(config);
   if (config.run_dir.empty()) throw UsageError("run_dir = \"\": expected a folder");
   if (config.transport.interface.empty()) {
     throw UsageError("transport.interface = \"\": expected a network interface");

@@ -104,6 +104,7 @@ ActorPlan PlanActor(const NetworkConfig& network, const ObservationSpec& spec, A
   plan.trunk = PlanTrunk(network, spec, name);
   plan.vector_columns = spec.VectorSize();
   plan.output = output;
+  plan.log_std = network.log_std == "clamped" ? LogStd::kClamped : LogStd::kSmooth;
   const int outputs = (output == ActorOutput::kGaussian ? 2 : 1) * spec.action_size;
   plan.mlps.push_back(
       PlanMlp(network, name + ".mlp", plan.trunk_columns() + plan.vector_columns, outputs));

@@ -66,7 +66,7 @@ int Blocks(int64_t n) { return int((n + kBlock - 1) / kBlock); }
 }  // namespace
 
 Adam::Adam(std::vector<ParameterSet*> sets, const Options& options)
-    : rate_(options.rate), epsilon_(options.epsilon) {
+    : rate_(options.rate), epsilon_(options.epsilon), max_norm_(options.max_norm) {
   for (ParameterSet* set : sets) {
     const std::vector<float> zeros(size_t(set->size()), 0.f);
     moments_.push_back({set, zeros, zeros, zeros, zeros});
@@ -88,8 +88,8 @@ double Adam::GradientSquares() const {
   return squares;
 }
 
-void Adam::ClipGradients(double most) {
-  const double factor = most / (std::sqrt(GradientSquares()) + 1e-6);
+void Adam::ClipGradients() {
+  const double factor = max_norm_ / (std::sqrt(GradientSquares()) + 1e-6);
   if (factor >= 1) return;
   for (const Moments& moments : moments_) {
     ScaleRange(float(factor), moments.set->size(), moments.set->gradients());
@@ -97,6 +97,7 @@ void Adam::ClipGradients(double most) {
 }
 
 void Adam::Step() {
+  if (max_norm_ > 0) ClipGradients();
   ++steps_;
   const double t = double(steps_);
   const StepSize step{float(rate_ / (1 - std::pow(kBeta1, t))),

@@ -23,6 +23,7 @@ class Adam {
   struct Options {
     double rate = 0;
     double epsilon = 1e-8;
+    double max_norm = 0;  // a step scales gradients of a larger Euclidean norm down to it; 0: none
   };
 
   Adam(std::vector<ParameterSet*> sets, const Options& options);
@@ -32,10 +33,7 @@ class Adam {
 
   // Sum of the squares of all gradients.
   double GradientSquares() const;
-  // Scales all gradients by most / (norm + 1e-6) where that is below 1, norm their Euclidean norm.
-  void ClipGradients(double most);
-
-  // Applies the sets' gradients.
+  // Applies the sets' gradients, where they are to be clipped by max_norm / (norm + 1e-6).
   void Step();
   // Takes the last Step back exactly; at most once after each.
   void Undo();
@@ -57,7 +55,9 @@ class Adam {
   };
 
   std::vector<Moments> moments_;
-  double rate_, epsilon_;
+  void ClipGradients();
+
+  double rate_, epsilon_, max_norm_;
   uint64_t steps_ = 0;
 };
 

@@ -31,6 +31,7 @@
 #include "launch/run/operator_desk.h"
 #include "launch/run/run_end.h"
 #include "launch/watch/prometheus_endpoint.h"
+#include "learner/agent/value_bounds.h"
 #include "replay_server/core/hindsight.h"
 #include "replay_server/core/storage_limits.h"
 #include "replay_server/core/storage_needs.h"
@@ -133,6 +134,7 @@ void CheckNetwork(const RunConfig& run) {
 void CheckReplay(const RunConfig& run, bool exists) {
   const Config& config = run.config;
   replay::CheckHindsight(run);
+  learner::CheckValueBounds(run);
   const replay::StorageNeeds needs = replay::StorageNeedsOf(run);
   if (config.replay.storage == "memory") {
     replay::CheckMemoryRoom(needs.memory_bytes + needs.ring_bytes);

@@ -7,19 +7,20 @@ namespace shoal::learner {
 
 void TdTargets(int batch, const TargetInputs& inputs, const TargetRates& rates, float* y) {
   for (int b = 0; b < batch; ++b) {
-    const float value = std::min(inputs.next_q[0][b], inputs.next_q[1][b]) -
+    const float smallest = std::min(inputs.next_q[0][b], inputs.next_q[1][b]);
+    const float value = std::clamp(smallest, rates.bounds.low, rates.bounds.high) -
                         rates.temperature * inputs.next_log_prob[b];
     y[b] = rates.reward_scale * inputs.reward[b] + inputs.bootstrap[b] * rates.discount * value;
   }
 }
 
 void MinTargets(int batch, const float* reward, const float* bootstrap,
-                std::span<const float* const> next_q, float reward_scale, float discount,
-                float* y) {
+                std::span<const float* const> next_q, const TargetRates& rates, float* y) {
   for (int b = 0; b < batch; ++b) {
     float smallest = next_q[0][b];
     for (const float* q : next_q.subspan(1)) smallest = std::min(smallest, q[b]);
-    y[b] = reward_scale * reward[b] + bootstrap[b] * discount * smallest;
+    const float value = std::clamp(smallest, rates.bounds.low, rates.bounds.high);
+    y[b] = rates.reward_scale * reward[b] + bootstrap[b] * rates.discount * value;
   }
 }
 

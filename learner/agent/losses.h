@@ -6,6 +6,8 @@
 
 #include <span>
 
+#include "learner/agent/value_bounds.h"
+
 namespace shoal::learner {
 
 // What the targets of one batch are made of.
@@ -18,14 +20,17 @@ struct TargetInputs {
 
 struct TargetRates {
   float reward_scale, discount, temperature;
+  ValueBounds bounds = {};
 };
 
-// Eq. 5:  y = reward_scale r + bootstrap discount (min_i q'_i - temperature log pi')
+// Eq. 5:  y = reward_scale r + bootstrap discount (min_i q'_i - temperature log pi'), the smallest
+// cut off at the bounds (Eq. 20)
 void TdTargets(int batch, const TargetInputs& inputs, const TargetRates& rates, float* y);
 
-// Eq. 18:  y = reward_scale r + bootstrap discount min_i q'_i, over one or more target critics
+// Eq. 18:  y = reward_scale r + bootstrap discount min_i q'_i, over one or more target critics; no
+// temperature
 void MinTargets(int batch, const float* reward, const float* bootstrap,
-                std::span<const float* const> next_q, float reward_scale, float discount, float* y);
+                std::span<const float* const> next_q, const TargetRates& rates, float* y);
 
 // Eq. 15:  each `copies` targets in a row become their mean. `copies` divides `batch`.
 void AverageCopies(int batch, int copies, float* y);

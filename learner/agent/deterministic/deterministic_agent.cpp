@@ -18,6 +18,7 @@
 #include "learner/agent/batch_faults.h"
 #include "learner/agent/critic_encoder.h"
 #include "learner/agent/losses.h"
+#include "learner/agent/step_sizes.h"
 
 namespace shoal::learner {
 namespace {
@@ -93,9 +94,8 @@ DeterministicAgent::DeterministicAgent(const Config& config, const ObservationSp
                      /*trains_encoder=*/false, Use::kInference, context_),
       encoder_average_(nn::PlanEncoder(config.network, spec).Parameters(), Use::kInference),
       actor_average_(PlanActor(config, spec, "actor").Parameters(), Use::kInference),
-      critic_optimiser_(CriticSets(encoder_.get(), &critic_),
-                        {.rate = config.learner.learning_rate}),
-      actor_optimiser_({&actor_.parameters()}, {.rate = config.learner.learning_rate}),
+      critic_optimiser_(CriticSets(encoder_.get(), &critic_), CriticStep(config.learner)),
+      actor_optimiser_({&actor_.parameters()}, ActorStep(config.learner)),
       target_action_(size_t(batch_size_) * size_t(action_size_)),
       targets_(size_t(batch_size_)),
       q_gradients_(size_t(options.critics), targets_),
@@ -149,8 +149,10 @@ void DeterministicAgent::ComputeTargets(const BatchView& batch, Random* random,
   }
   target_critic_.ForwardObservation(vector);
   target_critic_.ForwardAction(target_action_.data());
+  const TargetRates rates{float(config_.learner.reward_scale), float(config_.learner.discount),
+                          /*temperature=*/0, ValueBoundsOf(config_.learner)};
   MinTargets(batch_size_, batch.reward.data(), batch.bootstrap.data(), Values(target_critic_),
-             float(config_.learner.reward_scale), float(config_.learner.discount), targets_.data());
+             rates, targets_.data());
   AverageCopies(batch_size_, config_.replay.copies, targets_.data());
   on_stage_end(UpdateStage::kForward);
 }

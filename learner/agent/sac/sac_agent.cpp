@@ -49,6 +49,7 @@ class SacAgent final : public Agent {
   const Config config_;
   const int batch_size_;  // B
   const float target_entropy_;
+  const ValueBounds bounds_;
   const int threads_;
   SacNetworks networks_;
   uint64_t updates_ = 0;
@@ -65,6 +66,7 @@ SacAgent::SacAgent(const Config& config, const ObservationSpec& spec, nn::Precis
       batch_size_(config.learner.batch),
       target_entropy_(float(config.learner.target_entropy == 0 ? -spec.action_size
                                                                : config.learner.target_entropy)),
+      bounds_(ValueBoundsOf(config.learner)),
       threads_(nn::Threads()),
       networks_(config, spec, precision, threads_),
       gaussian_(batch_size_, spec.action_size),
@@ -87,7 +89,7 @@ void SacAgent::ComputeTargets(const BatchView& batch, float temperature, Random*
   const TargetInputs inputs{
       batch.reward.data(), batch.bootstrap.data(), {q0, q1}, gaussian_.log_prob()};
   const TargetRates rates{float(config_.learner.reward_scale), float(config_.learner.discount),
-                          temperature};
+                          temperature, bounds_};
   TdTargets(batch_size_, inputs, rates, targets_.data());
   AverageCopies(batch_size_, config_.replay.copies, targets_.data());
   on_stage_end(UpdateStage::kForward);
@@ -139,7 +141,9 @@ bool SacAgent::UpdateActor(const BatchView& batch, float temperature, Random* ra
   figures->Set(kActorGradNorm, std::sqrt(squares));
   if (!Usable(loss, squares) || !std::isfinite(temperature_loss)) return false;
   networks_.StepActor();
-  networks_.StepTemperature(temperature_loss);
+  if (config_.learner.temperature == "auto") {
+    networks_.StepTemperature(temperature_loss, config_.learner.min_temperature);
+  }
   on_stage_end(UpdateStage::kOptimiser);
   return true;
 }

@@ -1,10 +1,12 @@
 #include "learner/agent/sac/sac_networks.h"
 
+#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 
 #include "common/nn/actor_critic_plan.h"
 #include "learner/agent/critic_encoder.h"
+#include "learner/agent/step_sizes.h"
 
 namespace shoal::learner {
 namespace {
@@ -35,10 +37,9 @@ SacNetworks::SacNetworks(const Config& config, const ObservationSpec& spec, nn::
                        ParameterSet::Use::kInference),
       actor_average_(nn::PlanActor(config.network, spec).Parameters(),
                      ParameterSet::Use::kInference),
-      critic_optimiser_(CriticSets(encoder_.get(), &critic_),
-                        {.rate = config.learner.learning_rate}),
-      actor_optimiser_({&actor_.parameters()}, {.rate = config.learner.learning_rate}),
-      temperature_optimiser_({&temperature_}, {.rate = config.learner.learning_rate}) {
+      critic_optimiser_(CriticSets(encoder_.get(), &critic_), CriticStep(config.learner)),
+      actor_optimiser_({&actor_.parameters()}, ActorStep(config.learner)),
+      temperature_optimiser_({&temperature_}, {.rate = TemperatureRate(config.learner)}) {
   const auto seed = static_cast<uint64_t>(config.seed);
   if (encoder_) {
     encoder_->parameters().Initialise(seed);
@@ -111,9 +112,11 @@ void SacNetworks::StepActor() {
 
 float SacNetworks::Temperature() const { return std::exp(temperature_.values()[0]); }
 
-void SacNetworks::StepTemperature(float gradient) {
+void SacNetworks::StepTemperature(float gradient, double least) {
   temperature_.gradients()[0] = gradient;
   temperature_optimiser_.Step();
+  float& log_temperature = temperature_.values()[0];
+  log_temperature = std::max(log_temperature, float(std::log(least)));  // of 0: no bound
 }
 
 void SacNetworks::MoveTarget(float tau) { nn::MoveTowards(tau, critic_, &target_); }

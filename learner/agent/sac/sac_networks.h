@@ -30,7 +30,7 @@ namespace shoal::learner {
 // Not movable. One thread; passes over parameters use the current nn::ThreadScope.
 class SacNetworks {
  public:
-  // Batch, seed, learning rate and initial temperature of `config`.
+  // Batch, seed, learning rates, clipping and initial temperature of `config`.
   SacNetworks(const Config& config, const ObservationSpec& spec, nn::Precision precision,
               int threads);
   SacNetworks(const SacNetworks&) = delete;
@@ -67,8 +67,8 @@ class SacNetworks {
   void UndoStepCritic();
   void StepActor();
   float Temperature() const;
-  // Gradient of the log temperature.
-  void StepTemperature(float gradient);
+  // Gradient of the log temperature, which then is at least log `least`.
+  void StepTemperature(float gradient, double least);
   // target += tau * (critic - target), trunk and Q functions (Eq. 9).
   void MoveTarget(float tau);
   // average += rate * (policy - average), encoder and actor (Eq. 12).

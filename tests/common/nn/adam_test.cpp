@@ -156,13 +156,13 @@ TEST(Adam, EpsilonAndRateAreThoseAskedFor) {
 TEST(Adam, ClipsTheNormOfAllGradientsTogether) {
   ParameterSet a({{"a", {2}}}, ParameterSet::Use::kTraining);
   ParameterSet b({{"b", {1}}}, ParameterSet::Use::kTraining);
-  Adam adam({&a, &b}, {.rate = kRate});
   a.gradients()[0] = 2;
   a.gradients()[1] = -3;
   b.gradients()[0] = 6;  // norm 7
-  adam.ClipGradients(8);
+  Adam({&a, &b}, {.rate = kRate}).Step();
+  Adam({&a, &b}, {.rate = kRate, .max_norm = 8}).Step();
   EXPECT_EQ(b.gradients()[0], 6.f);
-  adam.ClipGradients(3.5);
+  Adam({&a, &b}, {.rate = kRate, .max_norm = 3.5}).Step();
   EXPECT_NEAR(a.gradients()[0], 1, 1e-6);
   EXPECT_NEAR(a.gradients()[1], -1.5, 1e-6);
   EXPECT_NEAR(b.gradients()[0], 3, 1e-6);

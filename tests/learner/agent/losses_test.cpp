@@ -25,6 +25,23 @@ TEST(TdTargets, TakeTheSmallerHeadLessTheEntropyTermAndNothingAfterATerminal) {
   EXPECT_FLOAT_EQ(y[0], 6.25f);
 }
 
+TEST(TdTargets, CutTheSmallerHeadOffBeforeTheEntropyTerm) {
+  const float reward[3] = {-1.f, -1.f, 0.f}, bootstrap[3] = {1.f, 1.f, 1.f};
+  const float q1[3] = {-9.f, 2.f, -3.f}, q2[3] = {-8.f, 3.f, -2.f}, log_prob[3] = {2.f, 2.f, 2.f};
+  const TargetRates rates{
+      .reward_scale = 2, .discount = 0.5f, .temperature = 0.25f, .bounds = {.low = -4, .high = 0}};
+  float y[3];
+  TdTargets(3, {reward, bootstrap, {q1, q2}, log_prob}, rates, y);
+  EXPECT_FLOAT_EQ(y[0], -2.f + 0.5f * (-4.f - 0.5f));
+  EXPECT_FLOAT_EQ(y[1], -2.f + 0.5f * (0.f - 0.5f));
+  EXPECT_FLOAT_EQ(y[2], 0.5f * (-3.f - 0.5f));
+  const float* const heads[] = {q1, q2};
+  MinTargets(3, reward, bootstrap, heads, rates, y);
+  EXPECT_FLOAT_EQ(y[0], -2.f + 0.5f * -4.f);
+  EXPECT_FLOAT_EQ(y[1], -2.f);
+  EXPECT_FLOAT_EQ(y[2], 0.5f * -3.f);
+}
+
 TEST(AverageCopies, GivesEveryCopyTheMeanOfItsTransition) {
   float y[6] = {1, 2, 6, -1, -3, 1};
   AverageCopies(6, 3, y);

@@ -3,6 +3,9 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
 
 #include "common/base/error.h"
 #include "common/nn/policy.h"
@@ -258,6 +261,83 @@ TEST(SacAgent, Bf16StartsWithTheLossesOfF32) {
   EXPECT_NEAR(Get(bf16, kCriticGradNorm), Get(f32, kCriticGradNorm),
               0.1 * Get(f32, kCriticGradNorm));
   EXPECT_NEAR(Get(bf16, kEntropy), Get(f32, kEntropy), 0.05 * std::abs(Get(f32, kEntropy)));
+}
+
+double After(const Config& config, int updates, const Figure& figure) {
+  const auto agent = SmallAgent(config);
+  UpdateOutcome outcome;
+  for (int u = 0; u < updates; ++u) {
+    outcome = agent->Update(RandomBatch(SmallSpec(), config.learner.batch, uint64_t(u)).View());
+  }
+  return Get(outcome, figure);
+}
+
+TEST(SacAgent, TheTemperatureFollowsIsFixedOrHasAFloor) {
+  Config config = SmallConfig();
+  config.learner.temperature_learning_rate = 0.1;
+  config.learner.target_entropy = -100;  // the policy has more
+  const double start = config.learner.initial_temperature;
+  const double followed = After(config, 5, kTemperature);
+  EXPECT_LT(followed, 0.9 * start) << "what the others are told from";
+  config.learner.min_temperature = 0.95 * start;
+  EXPECT_NEAR(After(config, 5, kTemperature), 0.95 * start, 1e-6);
+  config.learner.min_temperature = 0;
+  config.learner.temperature = "fixed";
+  EXPECT_NEAR(After(config, 5, kTemperature), start, 1e-7);
+}
+
+TEST(SacAgent, EachPartHasItsLearningRate) {
+  const auto moved = [](const std::function<void(LearnerConfig*)>& set) {
+    Config config = SmallConfig();
+    set(&config.learner);
+    const auto agent = SmallAgent(config);
+    const TensorMap before = agent->AllTensors();
+    UpdateTimes(agent.get(), 1);
+    const TensorMap after = agent->AllTensors();
+    const auto largest = [&](const std::string& name) {
+      const std::vector<float> a = Floats(before, name), b = Floats(after, name);
+      float most = 0;
+      for (size_t i = 0; i < a.size(); ++i) most = std::max(most, std::abs(a[i] - b[i]));
+      return most;
+    };
+    return std::array{largest("actor.mlp.output.bias"), largest("critic.q1.output.bias"),
+                      largest("encoder.conv1.bias"), largest("temperature.log")};
+  };
+  // Adam's first step is the learning rate, whatever the gradient.
+  const auto all = moved([](LearnerConfig* l) { l->learning_rate = 1e-3; });
+  for (const float step : all) EXPECT_NEAR(step, 1e-3, 2e-5);
+  const auto own = moved([](LearnerConfig* l) {
+    l->learning_rate = 1e-3;
+    l->actor_learning_rate = 2e-3;
+    l->critic_learning_rate = 3e-3;
+    l->temperature_learning_rate = 4e-3;
+  });
+  EXPECT_NEAR(own[0], 2e-3, 4e-5);
+  EXPECT_NEAR(own[1], 3e-3, 6e-5);
+  EXPECT_NEAR(own[2], 3e-3, 6e-5) << "the encoder is the critic's";
+  EXPECT_NEAR(own[3], 4e-3, 8e-5);
+}
+
+TEST(SacAgent, ClippingScalesEachOptimisersGradientsDown) {
+  Config config = SmallConfig();
+  const auto first_moments = [&](double max_norm, const std::string& prefix) {
+    config.learner.max_grad_norm = max_norm;
+    const auto agent = SmallAgent(config);
+    UpdateTimes(agent.get(), 1);
+    double squares = 0;
+    const TensorMap tensors = agent->AllTensors();
+    for (const auto& [name, tensor] : tensors) {
+      if (!name.starts_with("adam.m." + prefix)) continue;
+      for (const float m : Floats(tensors, name)) squares += double(m) * m;
+    }
+    return std::sqrt(squares) / 0.1;  // the first step's m is 0.1 g
+  };
+  for (const char* part : {"actor.", "critic."}) {
+    const double norm = first_moments(0, part);
+    EXPECT_GT(norm, 1e-3) << part;
+    EXPECT_LT(first_moments(1e-3, part), 1.001e-3) << part;
+    EXPECT_NEAR(first_moments(100, part), norm, 1e-6 * norm) << part;
+  }
 }
 
 // A bandit: reward -(a - s0 / 2)^2, every step terminal. The best action is s0 / 2; a policy that

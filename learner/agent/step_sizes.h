@@ -1,0 +1,25 @@
+// How far the optimisers of an agent step: learning rates of its parts, clipping of their
+// gradients.
+#pragma once
+
+#include "common/config/config.h"
+#include "common/nn/adam.h"
+
+namespace shoal::learner {
+
+inline double RateOr(double own, const LearnerConfig& learner) {
+  return own > 0 ? own : learner.learning_rate;
+}
+
+inline nn::Adam::Options ActorStep(const LearnerConfig& learner) {
+  return {.rate = RateOr(learner.actor_learning_rate, learner), .max_norm = learner.max_grad_norm};
+}
+// Of the encoder, too.
+inline nn::Adam::Options CriticStep(const LearnerConfig& learner) {
+  return {.rate = RateOr(learner.critic_learning_rate, learner), .max_norm = learner.max_grad_norm};
+}
+inline double TemperatureRate(const LearnerConfig& learner) {
+  return RateOr(learner.temperature_learning_rate, learner);
+}
+
+}  // namespace shoal::learner

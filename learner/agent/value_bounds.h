@@ -1,0 +1,25 @@
+// What a value can be where every reward is -1 or 0 (sparse goals): between -1 / (1 - discount) and
+// 0, times the reward's scale. A target cut off there cannot run away (Eq. 20 of
+// docs/algorithm.md).
+#pragma once
+
+#include <limits>
+
+#include "common/config/config.h"
+#include "common/config/run_files.h"
+
+namespace shoal::learner {
+
+struct ValueBounds {
+  float low = -std::numeric_limits<float>::infinity();
+  float high = std::numeric_limits<float>::infinity();
+};
+
+// Of learner.bounded_targets; without it none.
+ValueBounds ValueBoundsOf(const LearnerConfig& learner);
+
+// Throws Error (usage) where learner.bounded_targets is set and rewards are not -1 and 0, or values
+// have no bound.
+void CheckValueBounds(const RunConfig& run);
+
+}  // namespace shoal::learner

@@ -1,0 +1,61 @@
+// Keys that make no sense beside each other.
+#include <gmock/gmock.h>
+
+#include <functional>
+#include <string>
+
+#include "common/base/error.h"
+#include "common/config/config_io.h"
+
+namespace shoal {
+namespace {
+
+using ::testing::HasSubstr;
+
+std::string Refusal(const std::function<void(Config*)>& change) {
+  Config config;
+  change(&config);
+  try {
+    Validate(config);
+    return "";
+  } catch (const Error& e) {
+    return e.what();
+  }
+}
+
+TEST(Validate, APolicyWithoutEntropyTakesNoKeysOfIt) {
+  for (const char* algorithm : {"td3", "ddpg"}) {
+    const auto refusal = [&](const std::function<void(Config*)>& change) {
+      return Refusal([&](Config* config) {
+        config->learner.algorithm = algorithm;
+        change(config);
+      });
+    };
+    EXPECT_EQ(refusal([](Config*) {}), "");
+    EXPECT_THAT(refusal([](Config* c) { c->learner.initial_temperature = 1; }),
+                HasSubstr("learner.initial_temperature: the policy of learner.algorithm = "));
+    EXPECT_THAT(refusal([](Config* c) { c->learner.target_entropy = -1; }),
+                HasSubstr("learner.target_entropy"));
+    EXPECT_THAT(refusal([](Config* c) { c->learner.temperature = "fixed"; }),
+                HasSubstr("learner.temperature:"));
+    EXPECT_THAT(refusal([](Config* c) { c->learner.temperature_learning_rate = 1e-3; }),
+                HasSubstr("learner.temperature_learning_rate"));
+    EXPECT_THAT(refusal([](Config* c) { c->network.log_std = "clamped"; }),
+                HasSubstr("network.log_std"));
+  }
+  EXPECT_EQ(Refusal([](Config* c) { c->learner.initial_temperature = 1; }), "");
+}
+
+TEST(Validate, ATemperaturesFloorIsBelowItsStartAndOfOneThatMoves) {
+  EXPECT_EQ(Refusal([](Config* c) { c->learner.min_temperature = 0.01; }), "");
+  EXPECT_THAT(Refusal([](Config* c) { c->learner.min_temperature = 0.2; }),
+              HasSubstr("learner.min_temperature = 0.2: expected at most"));
+  EXPECT_THAT(Refusal([](Config* c) {
+                c->learner.min_temperature = 0.01;
+                c->learner.temperature = "fixed";
+              }),
+              HasSubstr("learner.temperature = fixed"));
+}
+
+}  // namespace
+}  // namespace shoal
