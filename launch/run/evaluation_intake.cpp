@@ -19,8 +19,7 @@ EvaluationIntake::EvaluationIntake(int episodes, const RunProgress& progress,
                                    std::function<void(const std::string&)> say)
     : episodes_(static_cast<size_t>(episodes)), progress_(progress), say_(std::move(say)) {}
 
-std::vector<EvalMessage> EvaluationIntake::Take(std::vector<EvalMessage> messages,
-                                                SteadyTime now) {
+std::vector<EvalMessage> EvaluationIntake::Take(std::vector<EvalMessage> messages, SteadyTime now) {
   std::vector<Waiting> all = std::exchange(waiting_, {});
   for (EvalMessage& message : messages) {
     try {

@@ -19,9 +19,7 @@ uint64_t BudgetOf(const Config& config) {
 }  // namespace
 
 StopRule::StopRule(const Config& config)
-    : stop_(config.stop),
-      budget_(BudgetOf(config)),
-      target_(TargetOf(config)) {}
+    : stop_(config.stop), budget_(BudgetOf(config)), target_(TargetOf(config)) {}
 
 void StopRule::OnEvaluation(const EvaluationPoint& point) {
   points_.push_back(point);
