@@ -1,11 +1,13 @@
 #include "common/base/files.h"
 
 #include <fcntl.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
 #include <fstream>
+#include <optional>
 #include <sstream>
 #include <system_error>
 
@@ -13,6 +15,14 @@
 
 namespace shoal {
 namespace {
+
+constexpr mode_t kPrivate = 0077;
+
+// The umask that KeepFilesPrivate found.
+std::optional<mode_t>& FoundMask() {
+  static std::optional<mode_t> mask;
+  return mask;
+}
 
 [[noreturn]] void Fail(const char* what, const std::filesystem::path& path, int error) {
   throw RuntimeError("{} '{}': {}", what, path.string(), std::strerror(error));
@@ -54,6 +64,24 @@ void WriteFileAtomically(const std::filesystem::path& path, std::string_view con
     Fail("cannot write", path, error);
   }
   SyncFolder(path.has_parent_path() ? path.parent_path() : ".");
+}
+
+void WriteFileForOthers(const std::filesystem::path& path, std::string_view content) {
+  WriteFileAtomically(path, content);
+  OpenToOthers(path);
+}
+
+void OpenToOthers(const std::filesystem::path& path) {
+  std::error_code error;
+  const mode_t all = std::filesystem::is_directory(path, error) ? 0777 : 0666;
+  if (chmod(path.c_str(), all & ~FoundMask().value_or(kPrivate)) != 0) {
+    Fail("cannot open to others", path, errno);
+  }
+}
+
+void KeepFilesPrivate() {
+  const mode_t found = umask(kPrivate);
+  if (!FoundMask()) FoundMask() = found;
 }
 
 void CheckWritable(const std::filesystem::path& path) {

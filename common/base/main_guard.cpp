@@ -1,11 +1,10 @@
 #include "common/base/main_guard.h"
 
-#include <sys/stat.h>
-
 #include <cstdio>
 #include <exception>
 
 #include "common/base/error.h"
+#include "common/base/files.h"
 #include "common/base/one_line.h"
 
 namespace shoal {
@@ -23,7 +22,7 @@ void PrintError(const char* program, const char* reason) {
 }  // namespace
 
 int GuardMain(const char* program, const std::function<int()>& body) {
-  umask(0077);  // what a program writes is its user's own
+  KeepFilesPrivate();  // what a program writes is its user's own
   try {
     return body();
   } catch (const Error& e) {

@@ -54,10 +54,11 @@ int Evaluate(const EvalOptions& options) {
     played.task = options.task;
     played.model.clear();
   }
-  const Baselines baselines = BaselineCache().Measure(
+  const auto baselines = BaselineCache().Measure(
       played, StopRequested, [](const std::string& line) { fmt::print(stderr, "{}\n", line); });
-  fmt::print("{} {}\n", played.task, FormatBaselines(baselines));
-  if (!options.json.empty()) AddBaselines(options.json, baselines);
+  if (!baselines) throw RuntimeError("baselines of {} interrupted", played.task);
+  fmt::print("{} {}\n", played.task, FormatBaselines(*baselines));
+  if (!options.json.empty()) AddBaselines(options.json, *baselines);
   return 0;
 }
 

@@ -12,14 +12,14 @@ namespace shoal::launch {
 namespace {
 
 int Status(const std::string& name) {
-  const std::filesystem::path folder = FindExperiment(name);
+  const std::filesystem::path folder = FindNamed(name, ExperimentsIn());
   std::cout << StatusText(ReadOutcome(ReadExperiment(folder)));
   if (!IsExperimentHeld(folder)) std::cout << "nobody runs it at the moment\n";
   return 0;
 }
 
 int Summary(const std::string& name, bool json) {
-  const ExperimentOutcome outcome = ReadOutcome(ReadExperiment(FindExperiment(name)));
+  const ExperimentOutcome outcome = ReadOutcome(ReadExperiment(FindNamed(name, ExperimentsIn())));
   std::cout << (json ? ToJson(outcome).dump(2) + "\n" : SummaryText(outcome)) << std::flush;
   return 0;
 }
@@ -36,8 +36,7 @@ void AddRun(CLI::App& experiment, Action* chosen) {
   CLI::App* command = experiment.add_subcommand(
       "run",
       "Do what is still to be done of an experiment: finished runs are skipped, interrupted ones "
-      "go "
-      "on. Progress on stderr; on stdout one line of JSON per run. Ctrl-C stops in order.");
+      "go on. Progress on stderr; on stdout one line of JSON per run. Ctrl-C stops in order.");
   const auto options = std::make_shared<ExperimentOptions>();
   command
       ->add_option("experiment", options->definition,

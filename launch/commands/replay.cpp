@@ -2,8 +2,10 @@
 #include <iostream>
 #include <memory>
 
+#include "common/config/config.h"
 #include "common/image/png.h"
 #include "launch/commands/commands.h"
+#include "launch/record/run_folder.h"
 #include "replay_server/core/peek.h"
 
 namespace shoal::launch {
@@ -16,7 +18,8 @@ struct PeekOptions {
 };
 
 int Peek(const PeekOptions& options) {
-  const replay::Peek peek = replay::PeekBatch(options.run, options.batch, options.seed);
+  const replay::Peek peek = replay::PeekBatch(FindNamed(options.run, RunsIn(Config().run_dir)),
+                                              options.batch, options.seed);
   std::cout << peek.records << " records in the ring, " << peek.sampleable
             << " steps can be sampled\n";
   for (const std::string& caption : peek.captions) std::cout << "  " << caption << "\n";
@@ -39,7 +42,7 @@ void AddReplayCommand(CLI::App& app, Action* chosen) {
   CLI::App* command =
       replay->add_subcommand("peek", "Draw a batch as the learner would get it and show it.");
   const auto options = std::make_shared<PeekOptions>();
-  command->add_option("--run", options->run, "Run folder")->required();
+  command->add_option("--run", options->run, "Run: name or folder")->required();
   command->add_option("--png", options->png, "File for the batch as a picture");
   command->add_option("--batch", options->batch, "Elements to draw")
       ->check(CLI::Range(1, 64))

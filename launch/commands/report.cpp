@@ -8,6 +8,7 @@
 #include "common/base/files.h"
 #include "common/base/stop.h"
 #include "launch/commands/commands.h"
+#include "launch/record/run_folder.h"
 #include "launch/report/card.h"
 #include "launch/report/compare.h"
 #include "launch/report/plot.h"
@@ -40,20 +41,21 @@ void AddSubjects(CLI::App* command, SubjectOptions* subjects) {
 
 int Compare(const CompareOptions& options) {
   if (!options.json.empty()) CheckWritable(options.json);
-  const Comparison comparison = launch::Compare(ReadSubjects(options.subjects), options.target);
-  if (!options.json.empty()) WriteFileAtomically(options.json, ToJson(comparison).dump(2) + "\n");
+  const Comparison comparison =
+      launch::Compare(ReadSubjects(options.subjects).groups, options.target);
+  if (!options.json.empty()) WriteFileForOthers(options.json, ToJson(comparison).dump(2) + "\n");
   std::cout << ToText(comparison) << std::flush;
   return 0;
 }
 
-// What the picture is of: the subjects as they were given.
-std::string TitleOf(const PlotOptions& options, const std::vector<RunGroup>& groups) {
+// What the picture is of: the subjects by name.
+std::string TitleOf(const PlotOptions& options, const Subjects& subjects) {
   if (!options.title.empty()) return options.title;
   std::string title;
-  for (const std::string& name : options.subjects.names) {
-    title += (title.empty() ? "" : ", ") + NamedFolder(name).filename().string();
+  for (const Subject& subject : subjects.named) {
+    title += (title.empty() ? "" : ", ") + subject.name;
   }
-  for (const RunGroup& group : groups) {
+  for (const RunGroup& group : subjects.groups) {
     if (!group.runs.empty()) return title + ": " + group.runs[0].config.task;
   }
   return title;
@@ -61,13 +63,14 @@ std::string TitleOf(const PlotOptions& options, const std::vector<RunGroup>& gro
 
 int DrawPlot(const PlotOptions& options) {
   InstallStopSignals();
-  const std::vector<RunGroup> groups = ReadSubjects(options.subjects);
-  if (options.subjects.names.size() > 1) CheckOneTask(groups);
-  Plot plot{.title = TitleOf(options, groups), .axis = ParsePlotAxis(options.axis), .figures = {}};
+  const Subjects subjects = ReadSubjects(options.subjects);
+  if (subjects.named.size() > 1) CheckOneTask(subjects.groups);
+  Plot plot{
+      .title = TitleOf(options, subjects), .axis = ParsePlotAxis(options.axis), .figures = {}};
   for (const std::string& word : options.figures) plot.figures.push_back(ParsePlotFigure(word));
-  if (plot.figures.empty()) plot.figures = FiguresThereAre(groups);
+  if (plot.figures.empty()) plot.figures = FiguresThereAre(subjects.groups);
   for (const std::string& output : options.outputs) {
-    Draw(plot, groups, output);
+    Draw(plot, subjects.groups, output);
     std::cout << output << "\n";
   }
   return 0;
@@ -81,7 +84,7 @@ struct ReportOptions {
 int WriteReport(const ReportOptions& options) {
   InstallStopSignals();
   CheckWritable(options.output);
-  WriteFileAtomically(options.output, ReportHtml(GatherReport(options.subjects)));
+  WriteFileForOthers(options.output, ReportHtml(GatherReport(options.subjects)));
   std::cout << options.output << "\n";
   return 0;
 }
@@ -91,12 +94,7 @@ struct CardOptions {
 };
 
 int MakeCard(const CardOptions& options) {
-  const fs::path named = fs::path(options.run_dir) / options.run;
-  const fs::path run = fs::exists(named / "config.json") ? named : fs::path(options.run);
-  if (!fs::exists(run / "config.json")) {
-    throw UsageError("no run '{}': neither '{}' nor '{}' has a config.json", options.run,
-                     named.string(), options.run);
-  }
+  const fs::path run = FindNamed(options.run, RunsIn(options.run_dir));
   const fs::path output = options.output.empty()
                               ? fs::path(NamedFolder(run).filename().string() + "-card")
                               : fs::path(options.output);

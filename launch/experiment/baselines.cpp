@@ -8,6 +8,7 @@
 #include "actor/worlds/physics_library.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/base/or_null.h"
 #include "common/base/random.h"
 
 namespace shoal::launch {
@@ -19,15 +20,12 @@ using nlohmann::ordered_json;
 constexpr const char* kPolicies[] = {"noop", "random"};
 
 ordered_json FiguresJson(const EvaluationFigures& figures) {
-  const auto or_null = [](const std::optional<double>& value) {
-    return value ? ordered_json(*value) : ordered_json(nullptr);
-  };
   return {{"task", figures.task},
-          {"success", or_null(figures.success)},
+          {"success", OrNull(figures.success)},
           {"episodes", figures.episodes},
           {"return_mean", figures.return_mean},
           {"return_std", figures.return_std},
-          {"final_distance_mean", or_null(figures.final_distance_mean)}};
+          {"final_distance_mean", OrNull(figures.final_distance_mean)}};
 }
 
 // A file another build or a full disk has spoilt is measured anew.
@@ -48,6 +46,11 @@ std::string FormatFloor(const EvaluationFigures& figures) {
 
 }  // namespace
 
+bool ShareBaselines(const Config& a, const Config& b) {
+  return a.task == b.task && a.distance_threshold == b.distance_threshold && a.model == b.model &&
+         a.physics == b.physics && a.action_repeat == b.action_repeat;
+}
+
 fs::path BaselineFolder() {
   const char *const cache = std::getenv("XDG_CACHE_HOME"), *const home = std::getenv("HOME");
   if (cache != nullptr && *cache != '\0') return fs::path(cache) / "shoal/baselines";
@@ -65,15 +68,18 @@ fs::path BaselineCache::FileOf(const Config& config, const std::string& policy) 
 }
 
 std::optional<Baselines> BaselineCache::Find(const Config& config) const {
+  std::error_code error;
+  if (!config.model.empty() && !fs::is_regular_file(config.model, error)) return std::nullopt;
   const auto noop = ReadIfGood(FileOf(config, kPolicies[0]));
   const auto random = ReadIfGood(FileOf(config, kPolicies[1]));
   if (!noop || !random) return std::nullopt;
   return Baselines{*noop, *random};
 }
 
-Baselines BaselineCache::Measure(const Config& config, const std::function<bool()>& stop,
-                                 const std::function<void(const std::string&)>& say) const {
-  if (const auto found = Find(config)) return *found;
+std::optional<Baselines> BaselineCache::Measure(
+    const Config& config, const std::function<bool()>& stop,
+    const std::function<void(const std::string&)>& say) const {
+  if (const auto found = Find(config)) return found;
   say(
       fmt::format("measuring what {} earns without a policy: {} episodes each of no-op and random, "
                   "kept in {}",
@@ -83,19 +89,25 @@ Baselines BaselineCache::Measure(const Config& config, const std::function<bool(
   for (const char* policy : kPolicies) {
     const fs::path file = FileOf(config, policy);
     if (ReadIfGood(file)) continue;
-    const ordered_json result = actor::PlayRandom({.task = config.task,
-                                                   .model = config.model,
-                                                   .episodes = episodes_,
-                                                   .policy = policy,
-                                                   .distance_threshold = config.distance_threshold,
-                                                   .action_repeat = config.action_repeat,
-                                                   .physics = config.physics},
-                                                  stop);
-    WriteFileAtomically(file, result.dump() + "\n");
+    try {
+      const ordered_json result =
+          actor::PlayRandom({.task = config.task,
+                             .model = config.model,
+                             .episodes = episodes_,
+                             .policy = policy,
+                             .distance_threshold = config.distance_threshold,
+                             .action_repeat = config.action_repeat,
+                             .physics = config.physics},
+                            stop);
+      WriteFileAtomically(file, result.dump() + "\n");
+    } catch (const Error&) {
+      if (stop()) return std::nullopt;  // PlayRandom throws when it is stopped
+      throw;
+    }
   }
   const auto measured = Find(config);
   if (!measured) throw RuntimeError("baselines in '{}' cannot be read back", folder_.string());
-  return *measured;
+  return measured;
 }
 
 ordered_json ToJson(const std::optional<Baselines>& baselines) {

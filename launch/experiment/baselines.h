@@ -18,6 +18,10 @@ struct Baselines {
   EvaluationFigures noop{}, random{};
 };
 
+// Whether two configurations have the same baselines: equal in task, threshold, model file, physics
+// and action repeat. Everything else that they say is the policy's.
+bool ShareBaselines(const Config& a, const Config& b);
+
 // $XDG_CACHE_HOME/shoal/baselines, or ~/.cache/shoal/baselines; in /tmp where there is no home.
 std::filesystem::path BaselineFolder();
 
@@ -29,12 +33,13 @@ class BaselineCache {
       : folder_(std::move(folder)), episodes_(episodes) {}
 
   // Those of the configuration's task with its threshold, model file (its content), physics and
-  // action repeat, without pictures and randomization; empty where they have not been measured.
+  // action repeat, without pictures and randomization; empty where they have not been measured, or
+  // where the model file is gone since.
   std::optional<Baselines> Find(const Config& config) const;
   // The same, measured where they have not been: whole episodes, some seconds to a minute. `say`
-  // gets a line before. Throws Error, also when `stop` says so.
-  Baselines Measure(const Config& config, const std::function<bool()>& stop,
-                    const std::function<void(const std::string&)>& say) const;
+  // gets a line before. Empty when `stop` said so. Throws Error.
+  std::optional<Baselines> Measure(const Config& config, const std::function<bool()>& stop,
+                                   const std::function<void(const std::string&)>& say) const;
 
  private:
   std::filesystem::path FileOf(const Config& config, const std::string& policy) const;

@@ -7,6 +7,7 @@
 #include <cerrno>
 #include <charconv>
 #include <cstring>
+#include <set>
 #include <utility>
 
 #include "common/base/bounded_json.h"
@@ -63,6 +64,10 @@ std::string Difference(const Definition& stored, const Definition& asked) {
     return fmt::format("its 'set' is {}, not {}", stored.set.dump(), asked.set.dump());
   }
   if (asked.final_episodes != stored.final_episodes) return "its final_episodes differ";
+  if (asked.arms[0].name != stored.arms[0].name) {
+    return fmt::format("its first arm, which ratios are taken to, is '{}', not '{}'",
+                       stored.arms[0].name, asked.arms[0].name);
+  }
   for (const Arm& arm : stored.arms) {
     const auto same = std::ranges::find(asked.arms, arm.name, &Arm::name);
     if (same == asked.arms.end()) return fmt::format("it has an arm '{}'", arm.name);
@@ -108,24 +113,37 @@ std::vector<ExperimentRun> StoredExperiment::Runs(const std::vector<int64_t>& se
 }
 
 std::vector<ExperimentRun> StoredExperiment::Runs() const {
-  std::vector<int64_t> seeds = definition.seeds, further;
+  std::set<std::string> names;
   std::error_code error;
   for (fs::directory_iterator it(folder / "runs", error), end; !error && it != end;
        it.increment(error)) {
+    names.insert(it->path().filename());
+  }
+  for (const auto& [name, run] : Log().Read()) names.insert(name);
+  std::set<int64_t> further;
+  for (const std::string& name : names) {
     for (const Arm& arm : definition.arms) {
-      const auto seed = SeedOf(it->path().filename(), arm.name);
-      if (seed && std::ranges::count(seeds, *seed) + std::ranges::count(further, *seed) == 0) {
-        further.push_back(*seed);
-      }
+      const auto seed = SeedOf(name, arm.name);
+      if (seed && std::ranges::count(definition.seeds, *seed) == 0) further.insert(*seed);
     }
   }
-  std::ranges::sort(further);
+  std::vector<int64_t> seeds = definition.seeds;
   seeds.insert(seeds.end(), further.begin(), further.end());
   return Runs(seeds);
 }
 
+StandingReport StoredExperiment::Standing(const ExperimentRun& run,
+                                          const std::map<std::string, LoggedRun>& log) const {
+  const auto known = log.find(run.name);
+  return StandingOf(run.folder, known == log.end() ? nullptr : &known->second, definition.transfer);
+}
+
 fs::path StoredExperiment::LogFile(const ExperimentRun& run) const {
   return folder / "logs" / (run.name + ".log");
+}
+
+NamedKind ExperimentsIn(const fs::path& dir) {
+  return {.noun = "experiment", .dir = dir, .file = kFile};
 }
 
 bool IsExperiment(const fs::path& folder) {
@@ -154,33 +172,56 @@ StoredExperiment ReadExperiment(const fs::path& folder) {
   return experiment;
 }
 
-ExperimentFolder::ExperimentFolder(const fs::path& folder, const Definition& definition,
-                                   const std::string& source) {
+namespace {
+
+// The experiment as the folder holds it; empty where it is still to be made.
+std::optional<StoredExperiment> ReadIfSame(const fs::path& folder, const Definition& definition,
+                                           const std::string& source) {
+  if (!IsExperiment(folder)) return std::nullopt;
+  StoredExperiment stored = ReadExperiment(folder);
+  const std::string difference = Difference(stored.definition, definition);
+  if (!difference.empty()) {
+    throw UsageError("'{}' holds another experiment than {}: {} (another folder: --out)",
+                     folder.string(), source, difference);
+  }
+  return stored;
+}
+
+}  // namespace
+
+ExperimentPlan PlanExperiment(const fs::path& folder, const Definition& definition,
+                              const std::string& source) {
   std::error_code error;
-  if (IsExperiment(folder)) {
-    experiment_ = ReadExperiment(folder);
-    const std::string difference = Difference(experiment_.definition, definition);
-    if (!difference.empty()) {
-      throw UsageError("'{}' holds another experiment than {}: {} (another folder: --out)",
-                       folder.string(), source, difference);
-    }
+  ExperimentPlan plan{.source = source};
+  if (auto stored = ReadIfSame(folder, definition, source)) {
+    plan.experiment = std::move(*stored);
   } else if (fs::exists(folder, error) && !HoldsOnlyLeftovers(folder)) {
     throw UsageError("'{}' holds something else than an experiment (no {}): not used",
                      folder.string(), kFile);
   } else {
-    experiment_ = {.folder = fs::weakly_canonical(fs::absolute(folder)),
-                   .definition = {},
-                   .base = ResolveBase(definition, source),
-                   .created = UtcTimestamp()};
+    plan.experiment = {.folder = fs::weakly_canonical(fs::absolute(folder)),
+                       .definition = {},
+                       .base = ResolveBase(definition, source),
+                       .created = UtcTimestamp()};
   }
-  for (const Arm& arm : definition.arms) ArmConfig(experiment_.base, arm, source);
+  plan.experiment.definition = definition;
+  for (const Arm& arm : definition.arms) {
+    plan.arms.push_back(ArmConfig(plan.experiment.base, arm, source));
+  }
   CheckTransfer(definition, source);
-  const bool changed = ToJson(experiment_.definition) != ToJson(definition);
-  experiment_.definition = definition;
+  return plan;
+}
+
+ExperimentFolder::ExperimentFolder(const ExperimentPlan& plan) : experiment_(plan.experiment) {
   MakeFolders(experiment_.folder);
   Lock();
   try {
+    // Again: between the plan and the lock another command may have been here.
+    const auto stored = ReadIfSame(experiment_.folder, experiment_.definition, plan.source);
+    if (stored) experiment_.base = stored->base;
+    if (stored) experiment_.created = stored->created;
     for (const char* inner : {"configs", "runs", "logs"}) MakeFolders(experiment_.folder / inner);
+    const bool changed = !stored || ToJson(stored->definition) != ToJson(experiment_.definition);
     if (changed) Write(experiment_);
   } catch (...) {
     close(lock_);

@@ -9,12 +9,15 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "launch/experiment/definition.h"
 #include "launch/experiment/run_log.h"
+#include "launch/experiment/run_standing.h"
+#include "launch/record/run_folder.h"
 
 namespace shoal::launch {
 
@@ -34,8 +37,13 @@ struct StoredExperiment {
 
   // Arms x seeds, seed by seed, so that an experiment cut short has whole comparisons.
   std::vector<ExperimentRun> Runs(const std::vector<int64_t>& seeds) const;
-  // Of every seed that the definition names and every seed there is a run of.
+  // Of every seed that the definition names and every seed there is a run of: in its folder, or, if
+  // it failed before it had one, in the log. Throws Error on a broken log.
   std::vector<ExperimentRun> Runs() const;
+  // How one of them stands, its evaluations on further tasks included; `log` as Log().Read() gives
+  // it.
+  StandingReport Standing(const ExperimentRun& run,
+                          const std::map<std::string, LoggedRun>& log) const;
   std::filesystem::path LogFile(const ExperimentRun& run) const;
   RunLog Log() const { return RunLog(folder / "runs.jsonl"); }
 };
@@ -43,18 +51,31 @@ struct StoredExperiment {
 // Throws Error: no experiment.json, or a broken one.
 StoredExperiment ReadExperiment(const std::filesystem::path& folder);
 
+// Experiments as commands take them: by name within `dir`, or by folder (FindNamed).
+NamedKind ExperimentsIn(const std::filesystem::path& dir = "experiments");
 // Whether the folder holds an experiment.
 bool IsExperiment(const std::filesystem::path& folder);
+
+// An experiment that may be run: every arm has been checked, and so has the folder.
+struct ExperimentPlan {
+  StoredExperiment experiment{};  // with the definition that was asked for
+  std::vector<Config> arms{};     // resolved, in the order of the definition
+  std::string source{};           // of the definition, for errors
+};
+
+// Writes nothing. Throws Error (usage) where an arm or a further task is refused, or the folder
+// holds something else than an experiment or another one: another name, base, `set`,
+// final_episodes or first arm, an arm of that name with other keys, or an arm that is no longer
+// asked for. What else may differ takes the place of what was there.
+ExperimentPlan PlanExperiment(const std::filesystem::path& folder, const Definition& definition,
+                              const std::string& source);
 
 // Holds an experiment against a second command until destruction (or death).
 class ExperimentFolder {
  public:
-  // Makes the folder, or opens the one that is there and may get further arms and seeds. Throws
-  // Error (usage) before anything is written where the folder holds another experiment (another
-  // name, base, `set` or final_episodes, or an arm of that name with other keys) or something else,
-  // or where another process runs it.
-  ExperimentFolder(const std::filesystem::path& folder, const Definition& definition,
-                   const std::string& source);
+  // Makes the folder, or opens the one that is there. Throws Error (usage) before anything else is
+  // written where another process runs it, or has made another experiment of it since the plan.
+  explicit ExperimentFolder(const ExperimentPlan& plan);
   ~ExperimentFolder();
   ExperimentFolder(const ExperimentFolder&) = delete;
   ExperimentFolder& operator=(const ExperimentFolder&) = delete;

@@ -8,6 +8,7 @@
 
 #include "common/base/clock.h"
 #include "common/base/error.h"
+#include "common/base/or_null.h"
 #include "common/base/stop.h"
 #include "launch/experiment/run_queue.h"
 #include "launch/experiment/summary.h"
@@ -22,7 +23,6 @@ using nlohmann::ordered_json;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr char kFolder[] = "experiments";
 constexpr milliseconds kPoll{200};
 constexpr seconds kProgressPeriod{60};
 
@@ -31,28 +31,24 @@ void Say(const std::string& line) {
   std::fflush(stderr);
 }
 
-template <class T>
-ordered_json OrNull(const std::optional<T>& value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
-}
-
-const RunOutcome& OutcomeOf(const ExperimentOutcome& outcome, const ExperimentRun& run) {
+// Null where nothing has come of it yet.
+const RunOutcome* OutcomeOf(const ExperimentOutcome& outcome, const ExperimentRun& run) {
   for (const RunOutcome& other : outcome.arms[run.arm].runs) {
-    if (other.run.name == run.name) return other;
+    if (other.run.name == run.name) return &other;
   }
-  throw RuntimeError("run '{}' is gone", run.folder.string());
+  return nullptr;
 }
 
 // What a tuner reads.
 void PrintJsonLine(const ExperimentOutcome& outcome, const ExperimentRun& run,
                    const StandingReport& report) {
-  const RunOutcome& found = OutcomeOf(outcome, run);
+  const RunOutcome* found = OutcomeOf(outcome, run);
   const ordered_json line{
       {"run", run.name},
       {"arm", outcome.arms[run.arm].name},
       {"seed", run.seed},
       {"status", ToString(report.standing)},
-      {"objective", found.results ? OrNull(found.results->Objective()) : nullptr},
+      {"objective", found && found->results ? OrNull(found->results->Objective()) : nullptr},
       {"path", run.folder.string()}};
   fmt::print("{}\n", line.dump());
   std::fflush(stdout);
@@ -83,23 +79,31 @@ class ProgressLines {
 
 // What actors of each arm would observe: a camera or model file that does not exist is found before
 // the first run, not hours later.
-void CheckArms(const Definition& definition, const Config& base, const std::string& source) {
-  for (const Arm& arm : definition.arms) {
+void CheckObservations(const ExperimentPlan& plan) {
+  for (size_t i = 0; i < plan.arms.size(); ++i) {
     try {
-      DescribeObservations(ArmConfig(base, arm, source));
+      DescribeObservations(plan.arms[i]);
     } catch (const Error& e) {
-      const std::string prefix = fmt::format("{}: arm '{}'", source, arm.name);
-      if (std::string(e.what()).starts_with(prefix)) throw;
-      throw Error(static_cast<ErrorKind>(e.exit_code()), fmt::format("{}: {}", prefix, e.what()));
+      throw Error(static_cast<ErrorKind>(e.exit_code()),
+                  fmt::format("{}: arm '{}': {}", plan.source,
+                              plan.experiment.definition.arms[i].name, e.what()));
     }
   }
-  CheckTransfer(definition, source);
+}
+
+// False when a stop was asked for before the last one.
+bool MeasureBaselines(const StoredExperiment& experiment) {
+  for (const JudgedWorld& world : JudgedWorlds(experiment)) {
+    if (!BaselineCache().Measure(world.config, StopRequested, Say)) return false;
+  }
+  return true;
 }
 
 int ExitCode(const ExperimentOutcome& outcome, const std::vector<ExperimentRun>& runs) {
   if (StopRequests() > 0) return kInterruptedExit;
   for (const ExperimentRun& run : runs) {
-    if (OutcomeOf(outcome, run).report.standing != RunStanding::kFinished) return 1;
+    const RunOutcome* found = OutcomeOf(outcome, run);
+    if (found == nullptr || found->report.standing != RunStanding::kFinished) return 1;
   }
   return 0;
 }
@@ -111,24 +115,25 @@ int RunExperiment(const ExperimentOptions& options) {
   const fs::path source = FindDefinition(options.definition);
   const Definition definition = ReadDefinition(source);
   const fs::path folder =
-      options.out.empty() ? fs::path(kFolder) / definition.name : fs::path(options.out);
+      options.out.empty() ? ExperimentsIn().dir / definition.name : fs::path(options.out);
   if (options.jobs > 1) SplitCores(OwnCores(), options.jobs);  // refuses too many
-  const Config base =
-      IsExperiment(folder) ? ReadExperiment(folder).base : ResolveBase(definition, source);
-  CheckArms(definition, base, source);
+  const ExperimentPlan plan = PlanExperiment(folder, definition, source);
+  CheckObservations(plan);
   if (options.dry_run) {
     Say(fmt::format("{}: {} arm(s) x {} seed(s) are good", definition.name, definition.arms.size(),
                     (options.seeds.empty() ? definition.seeds : options.seeds).size()));
     return 0;
   }
-  const ExperimentFolder held(folder, definition, source);
+  const ExperimentFolder held(plan);
   const StoredExperiment& experiment = held.experiment();
   const std::vector<ExperimentRun> runs =
       experiment.Runs(options.seeds.empty() ? definition.seeds : options.seeds);
   Say(fmt::format("experiment {} in {}: {} runs; what each says: {}/logs", definition.name,
                   experiment.folder.string(), runs.size(), experiment.folder.string()));
-  for (const Config& config : JudgedConfigs(experiment)) {
-    BaselineCache().Measure(config, StopRequested, Say);
+  if (!MeasureBaselines(experiment)) {
+    WriteSummary(ReadOutcome(experiment));
+    Say("stopped before the first run: the same command goes on");
+    return kInterruptedExit;
   }
   TrainKeeper keeper(experiment, options.jobs);
   ProgressLines progress(experiment);
@@ -151,15 +156,6 @@ int RunExperiment(const ExperimentOptions& options) {
   Say(SummaryText(outcome) +
       fmt::format("summary: {}", (experiment.folder / "summary.json").string()));
   return ExitCode(outcome, runs);
-}
-
-fs::path FindExperiment(const std::string& name_or_folder) {
-  const fs::path named = fs::path(kFolder) / name_or_folder;
-  for (const fs::path& path : {fs::path(name_or_folder), named}) {
-    if (IsExperiment(path)) return path;
-  }
-  throw UsageError("no experiment '{}': neither '{}' nor '{}' has an experiment.json",
-                   name_or_folder, name_or_folder, named.string());
 }
 
 }  // namespace shoal::launch

@@ -14,7 +14,7 @@ struct ExperimentOptions {
   int jobs = 1;                // runs side by side, each with cores of its own
   std::string out;             // folder; empty = experiments/NAME
   bool retry_failed = false;
-  bool dry_run = false;  // check everything, start nothing
+  bool dry_run = false;  // check everything, the folder included; start and make nothing
 };
 
 // Exit code of a command that was stopped by Ctrl-C, as shells have it.
@@ -25,9 +25,5 @@ inline constexpr int kInterruptedExit = 130;
 // is finished, 1 when one is not, kInterruptedExit after Ctrl-C. Throws Error before anything is
 // written where the definition, the folder or an arm is refused.
 int RunExperiment(const ExperimentOptions& options);
-
-// The experiment's folder: `name_or_folder` itself, or experiments/NAME. Throws Error (usage)
-// naming both where neither is one.
-std::filesystem::path FindExperiment(const std::string& name_or_folder);
 
 }  // namespace shoal::launch

@@ -1,6 +1,12 @@
-// runs.jsonl of an experiment: a line when the training of a run is started and one when it has
-// ended, so that an end that the run's own folder cannot tell of (it was refused before there was a
-// folder, its process died) is known after any kill.
+// runs.jsonl of an experiment: a line when something is started for a run - its training, going on
+// with it, or the first evaluation on a further task that is still missing - and one when that has
+// ended, with the evaluations that followed. So an end that the run's own folder cannot tell of (it
+// was refused before there was a folder, its process died) is known after any kill.
+//
+//   {"time", "event": "started", "run", "resumed", "jobs", "cores": [...]}
+//   {"time", "event": "ended", "run", "by_signal", "code", "stopped", "problem"}
+//
+// Threads: none of its own; one process writes at a time (ExperimentFolder), others may read.
 #pragma once
 
 #include <filesystem>
@@ -12,8 +18,8 @@
 namespace shoal::launch {
 
 struct RunStart {
-  std::string run{};  // name within the experiment
-  bool resumed = false;
+  std::string run{};         // ARM-sSEED
+  bool resumed = false;      // its folder was there
   int jobs = 1;              // runs side by side that the command allowed
   std::vector<int> cores{};  // it might use; empty = all there are
 };
@@ -22,8 +28,8 @@ struct RunEnding {
   std::string run{};
   bool by_signal = false;
   int code = 0;           // exit code, or the signal's number
-  bool stopped = false;   // the experiment was being stopped
-  std::string problem{};  // what it said last, where it did not end well
+  bool stopped = false;   // the experiment was being stopped: the code is nobody's fault
+  std::string problem{};  // what it said last, or the signal, where it did not end well
 };
 
 // What the log knows of one run.
@@ -38,12 +44,12 @@ class RunLog {
  public:
   explicit RunLog(std::filesystem::path file) : file_(std::move(file)) {}
 
-  // Append a line that survives this process. Throw Error.
+  // Append a line and wait until it is on the disk. Throw Error.
   void Write(const RunStart& start) const;
   void Write(const RunEnding& ending) const;
 
-  // By run. A last line cut short by a kill is left out. Throws Error on a file that holds anything
-  // else.
+  // By run; empty without a file. A line that a kill cut short is left out. Throws Error on JSON
+  // that is none of the two events.
   std::map<std::string, LoggedRun> Read() const;
 
  private:

@@ -100,12 +100,6 @@ fs::path NamedFolder(const fs::path& folder) {
   return canonical.has_filename() ? canonical : canonical.parent_path();
 }
 
-fs::path JudgedCheckpoint(const fs::path& run) {
-  const fs::path best = run / "checkpoints" / "best";
-  std::error_code error;
-  return fs::is_directory(best, error) ? best : NewestCheckpoint(run);
-}
-
 std::optional<double> RunResults::Objective() const {
   if (!final) return std::nullopt;
   return final->success ? *final->success : final->return_mean;

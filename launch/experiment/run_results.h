@@ -34,9 +34,6 @@ EvaluationFigures ReadEvaluationFigures(const std::filesystem::path& file);
 // The folder without a slash at its end, which typing it often leaves: its last part is its name.
 std::filesystem::path NamedFolder(const std::filesystem::path& folder);
 
-// The checkpoint a run is judged by: the best evaluated one, else the newest; empty without any.
-std::filesystem::path JudgedCheckpoint(const std::filesystem::path& run);
-
 struct RunResults {
   std::filesystem::path folder{};
   std::string name{};

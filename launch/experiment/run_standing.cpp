@@ -15,16 +15,36 @@ bool EndedBadly(const LoggedRun* logged) {
          !logged->ending->by_signal && logged->ending->code != 0;
 }
 
-StandingReport StandingOfResults(const RunResults& results, const LoggedRun* logged) {
+std::vector<std::string> MissingTransfers(const RunResults& results,
+                                          const std::vector<std::string>& transfer) {
+  std::vector<std::string> missing;
+  std::error_code error;
+  for (const std::string& task : transfer) {
+    const bool same = task == results.config.task && results.config.randomization.body_mass.empty();
+    if (!same && !std::filesystem::exists(TransferFile(results.folder, task), error)) {
+      missing.push_back(task);
+    }
+  }
+  return missing;
+}
+
+StandingReport StandingOfResults(const RunResults& results, const LoggedRun* logged,
+                                 const std::vector<std::string>& transfer) {
   if (results.exit == "failed" || !results.error.empty()) {
     return {RunStanding::kFailed, results.error};
   }
+  StandingReport report{RunStanding::kInterrupted, ""};
   const bool evaluated = results.final || results.config.eval.final_episodes == 0;
   if ((results.exit == "target" || results.exit == "budget") && evaluated) {
-    return {RunStanding::kFinished, ""};
+    report.missing_transfers = MissingTransfers(results, transfer);
+    if (report.missing_transfers.empty()) return {RunStanding::kFinished, ""};
   }
-  if (EndedBadly(logged)) return {RunStanding::kFailed, logged->ending->problem};
-  return {RunStanding::kInterrupted, ""};
+  // Of the training, or of the evaluation on a further task: whichever came last.
+  if (EndedBadly(logged)) {
+    report.standing = RunStanding::kFailed;
+    report.problem = logged->ending->problem;
+  }
+  return report;
 }
 
 }  // namespace
@@ -45,16 +65,20 @@ const char* ToString(RunStanding standing) {
   return "?";
 }
 
-StandingReport StandingOf(const std::filesystem::path& run, const LoggedRun* logged) {
+std::filesystem::path TransferFile(const std::filesystem::path& run, const std::string& task) {
+  return run / "eval" / ("on-" + task + ".json");
+}
+
+StandingReport StandingOf(const std::filesystem::path& run, const LoggedRun* logged,
+                          const std::vector<std::string>& transfer) {
   if (IsHeld(run)) return {RunStanding::kRunning, ""};
-  std::error_code error;
   // The configuration is written once everything has been checked and the folder is taken.
-  if (!std::filesystem::exists(run / "config.json", error)) {
+  if (!IsRun(run)) {
     if (EndedBadly(logged)) return {RunStanding::kFailed, logged->ending->problem};
     return {RunStanding::kMissing, ""};
   }
   try {
-    return StandingOfResults(ReadRunResults(run), logged);
+    return StandingOfResults(ReadRunResults(run), logged, transfer);
   } catch (const Error& e) {
     return {RunStanding::kFailed, e.what()};
   }

@@ -146,4 +146,15 @@ SampleRatio RatioOf(std::vector<RatioPair> pairs) {
   return result;
 }
 
+SampleRatio RatioOfFinished(std::span<const TargetReached> arm,
+                            std::span<const TargetReached> reference) {
+  std::vector<RatioPair> pairs;
+  for (const TargetReached& run : arm) {
+    const auto same = std::ranges::find(reference, run.seed, &TargetReached::seed);
+    if (same == reference.end() || !run.finished || !same->finished) continue;
+    pairs.push_back({run.seed, run.n, same->n});
+  }
+  return RatioOf(std::move(pairs));
+}
+
 }  // namespace shoal::launch

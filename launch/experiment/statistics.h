@@ -57,4 +57,16 @@ struct SampleRatio {
 
 SampleRatio RatioOf(std::vector<RatioPair> pairs);
 
+// One training as ratios see it.
+struct TargetReached {
+  int64_t seed = 0;
+  bool finished = false;
+  std::optional<double> n{};  // env steps to the target; empty = not reached
+};
+
+// Seeds of which the arm and the reference have a finished run: one that is still to be done has
+// not failed to reach anything.
+SampleRatio RatioOfFinished(std::span<const TargetReached> arm,
+                            std::span<const TargetReached> reference);
+
 }  // namespace shoal::launch

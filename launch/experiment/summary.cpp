@@ -9,29 +9,22 @@
 #include "common/base/clock.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/base/or_null.h"
+#include "launch/experiment/statistics_json.h"
+#include "launch/record/run_folder.h"
 
 namespace shoal::launch {
 namespace {
 
 using nlohmann::ordered_json;
 
-template <class T>
-ordered_json OrNull(const std::optional<T>& value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
-}
-
-ordered_json IntervalJson(const std::optional<Interval>& interval) {
-  return interval ? ordered_json{interval->low, interval->high} : ordered_json(nullptr);
-}
-
 RunOutcome ReadRun(const StoredExperiment& experiment, const ExperimentRun& run,
                    const std::map<std::string, LoggedRun>& log) {
   RunOutcome outcome{.run = run};
   const auto logged = log.find(run.name);
   if (logged != log.end()) outcome.logged = logged->second;
-  outcome.report = StandingOf(run.folder, logged == log.end() ? nullptr : &logged->second);
-  std::error_code error;
-  if (!std::filesystem::exists(run.folder / "config.json", error)) return outcome;
+  outcome.report = experiment.Standing(run, log);
+  if (!IsRun(run.folder)) return outcome;
   try {
     outcome.results = ReadRunResults(run.folder);
     outcome.n_to_target =
@@ -55,22 +48,14 @@ void Pool(ArmOutcome& arm) {
   }
 }
 
-std::optional<double> AsReal(const std::optional<uint64_t>& value) {
-  return value ? std::optional(static_cast<double>(*value)) : std::nullopt;
-}
-
-// Pairs of which both runs are finished: one that is still to be done has not failed to reach
-// anything.
-SampleRatio ArmRatio(const ArmOutcome& arm, const ArmOutcome& first) {
-  std::vector<RatioPair> pairs;
-  for (size_t i = 0; i < arm.runs.size(); ++i) {
-    const RunOutcome &run = arm.runs[i], &reference = first.runs[i];
-    const bool done = run.report.standing == RunStanding::kFinished &&
-                      reference.report.standing == RunStanding::kFinished;
-    if (!done) continue;
-    pairs.push_back({run.run.seed, AsReal(run.n_to_target), AsReal(reference.n_to_target)});
+std::vector<TargetReached> TargetsOf(const ArmOutcome& arm) {
+  std::vector<TargetReached> targets;
+  for (const RunOutcome& run : arm.runs) {
+    const auto n = run.n_to_target;
+    targets.push_back({run.run.seed, run.report.standing == RunStanding::kFinished,
+                       n ? std::optional(static_cast<double>(*n)) : std::nullopt});
   }
-  return RatioOf(std::move(pairs));
+  return targets;
 }
 
 // The words formats.md knows: what is running has not finished.
@@ -142,27 +127,23 @@ ordered_json ArmJson(const ArmOutcome& outcome, const Arm& arm,
   return object;
 }
 
-ordered_json RatioJson(const ExperimentOutcome::NamedRatio& named) {
-  ordered_json pairs = ordered_json::array();
-  for (const RatioPair& pair : named.ratio.pairs) {
-    pairs.push_back({{"seed", pair.seed},
-                     {"n", OrNull(pair.n)},
-                     {"n_reference", OrNull(pair.reference)},
-                     {"ratio", OrNull(pair.Ratio())}});
-  }
-  return {{"name", named.name},
-          {"pairs", pairs},
-          {"not_reached", named.ratio.not_reached},
-          {"median", OrNull(named.ratio.median)}};
-}
-
-// Of the first arm's task; those of other tasks beside it, by name.
+// Of the first arm's world; beside it those of other tasks, and of arms that set up a task of
+// these otherwise.
 ordered_json BaselinesJson(const ExperimentOutcome& outcome) {
-  if (outcome.baselines.empty()) return ordered_json::object();
-  ordered_json object = ToJson(std::optional(outcome.baselines[0].second));
-  for (size_t i = 1; i < outcome.baselines.size(); ++i) {
-    const auto& [task, baselines] = outcome.baselines[i];
-    object["other_tasks"][task] = ToJson(std::optional(baselines));
+  ordered_json object = ordered_json::object();
+  for (const auto& [world, baselines] : outcome.baselines) {
+    const ordered_json figures = ToJson(std::optional(baselines));
+    switch (world.kind) {
+      case JudgedWorld::Kind::kFirst:
+        object.update(figures);
+        break;
+      case JudgedWorld::Kind::kOtherTask:
+        object["other_tasks"][world.name] = figures;
+        break;
+      case JudgedWorld::Kind::kOtherArm:
+        object["other_arms"][world.name] = figures;
+        break;
+    }
   }
   return object;
 }
@@ -192,41 +173,33 @@ std::string Missing(const ExperimentOutcome& outcome) {
 
 }  // namespace
 
-std::string FormatPooled(uint64_t successes, uint64_t episodes) {
-  if (episodes == 0) return "-";
-  const Interval interval = Wilson95(successes, episodes);
-  return fmt::format("{:.1f} % [{:.1f}, {:.1f}] ({}/{})",
-                     100 * static_cast<double>(successes) / static_cast<double>(episodes),
-                     100 * interval.low, 100 * interval.high, successes, episodes);
-}
-
-std::string FormatMean(const std::vector<double>& values, int digits) {
-  if (values.empty()) return "-";
-  const auto interval = MeanInterval95(values);
-  const std::string mean = fmt::format("{:.{}f}", Mean(values), digits);
-  if (!interval) return mean + " (1 seed)";
-  return fmt::format("{} [{:.{}f}, {:.{}f}] ({} seeds)", mean, interval->low, digits,
-                     interval->high, digits, values.size());
-}
-
-std::vector<Config> JudgedConfigs(const StoredExperiment& experiment) {
-  std::vector<Config> configs;
-  const auto add = [&](Config config) {
-    if (std::ranges::count(configs, config.task, &Config::task) == 0) {
-      configs.push_back(std::move(config));
+std::vector<JudgedWorld> JudgedWorlds(const StoredExperiment& experiment) {
+  using Kind = JudgedWorld::Kind;
+  std::vector<JudgedWorld> worlds;
+  const auto add = [&](Config config, const std::string& arm) {
+    bool same = false, same_task = false;
+    for (const JudgedWorld& other : worlds) {
+      same |= ShareBaselines(config, other.config);
+      same_task |= config.task == other.config.task;
     }
+    if (same || (same_task && arm.empty())) return;
+    const Kind kind = worlds.empty() ? Kind::kFirst
+                      : same_task    ? Kind::kOtherArm
+                                     : Kind::kOtherTask;
+    const std::string name = kind == Kind::kOtherArm ? arm : config.task;
+    worlds.push_back({kind, name, std::move(config)});
   };
   for (const Arm& arm : experiment.definition.arms) {
-    add(ArmConfig(experiment.base, arm, experiment.definition.name));
+    add(ArmConfig(experiment.base, arm, experiment.definition.name), arm.name);
   }
   for (const std::string& task : experiment.definition.transfer) {
     // As `shoal eval --task` plays it: without the run's model file.
     Config config = experiment.base;
     config.task = task;
     config.model.clear();
-    add(std::move(config));
+    add(std::move(config), "");
   }
-  return configs;
+  return worlds;
 }
 
 ExperimentOutcome ReadOutcome(const StoredExperiment& experiment) {
@@ -237,8 +210,9 @@ ExperimentOutcome ReadOutcome(const StoredExperiment& experiment) {
     outcome.arms[run.arm].runs.push_back(ReadRun(experiment, run, log));
   }
   const BaselineCache cache;
-  for (const Config& config : JudgedConfigs(experiment)) {
-    if (auto found = cache.Find(config)) outcome.baselines.emplace_back(config.task, *found);
+  for (JudgedWorld& world : JudgedWorlds(experiment)) {
+    const auto found = cache.Find(world.config);
+    if (found) outcome.baselines.push_back({std::move(world), *found});
   }
   bool has_success = false;
   for (ArmOutcome& arm : outcome.arms) {
@@ -246,8 +220,9 @@ ExperimentOutcome ReadOutcome(const StoredExperiment& experiment) {
     has_success |= arm.episodes > 0;
   }
   for (size_t i = 1; has_success && i < outcome.arms.size(); ++i) {
-    outcome.ratios.push_back({outcome.arms[i].name + "/" + outcome.arms[0].name,
-                              ArmRatio(outcome.arms[i], outcome.arms[0])});
+    outcome.ratios.push_back(
+        {outcome.arms[i].name + "/" + outcome.arms[0].name,
+         RatioOfFinished(TargetsOf(outcome.arms[i]), TargetsOf(outcome.arms[0]))});
   }
   return outcome;
 }
@@ -259,7 +234,7 @@ ordered_json ToJson(const ExperimentOutcome& outcome) {
   for (size_t i = 0; i < outcome.arms.size(); ++i) {
     arms.push_back(ArmJson(outcome.arms[i], definition.arms[i], experiment.folder));
   }
-  for (const auto& named : outcome.ratios) ratios.push_back(RatioJson(named));
+  for (const auto& named : outcome.ratios) ratios.push_back(RatioJson(named.name, named.ratio));
   return {{"schema", "shoal-experiment-1"},
           {"name", definition.name},
           {"question", definition.question},
@@ -275,7 +250,7 @@ ordered_json ToJson(const ExperimentOutcome& outcome) {
 void WriteSummary(const ExperimentOutcome& outcome) {
   const std::string text =
       ToJson(outcome).dump(2, ' ', /*ensure_ascii=*/false, ordered_json::error_handler_t::replace);
-  WriteFileAtomically(outcome.experiment.folder / "summary.json", text + "\n");
+  WriteFileForOthers(outcome.experiment.folder / "summary.json", text + "\n");
 }
 
 std::string SummaryText(const ExperimentOutcome& outcome) {
@@ -286,20 +261,20 @@ std::string SummaryText(const ExperimentOutcome& outcome) {
   text += fmt::format("{:<16} {:>8}  {:<30} {:<34} {}\n", "ARM", "FINISHED", "SUCCESS [95 %]",
                       "RETURN [95 %]", "DISTANCE, cm [95 %]");
   for (const ArmOutcome& arm : outcome.arms) {
-    std::vector<double> centimetres;
-    for (const double metres : arm.distances) centimetres.push_back(100 * metres);
     text += fmt::format("{:<16} {:>8}  {:<30} {:<34} {}\n", arm.name,
                         fmt::format("{}/{}", arm.returns.size(), arm.runs.size()),
                         FormatPooled(arm.successes, arm.episodes), FormatMean(arm.returns, 2),
-                        FormatMean(centimetres, 2));
+                        FormatDistances(arm.distances));
   }
   if (!outcome.ratios.empty()) {
     text += fmt::format("env steps to {:.0f} % success, arm / first arm:\n",
                         100 * definition.target_success);
     for (const auto& named : outcome.ratios) text += FormatRatio(named);
   }
-  for (const auto& [task, baselines] : outcome.baselines) {
-    text += fmt::format("{} {}\n", task, FormatBaselines(baselines));
+  for (const auto& [world, baselines] : outcome.baselines) {
+    const bool of_arm = world.kind == JudgedWorld::Kind::kOtherArm;
+    text += fmt::format("{}{} {}\n", world.config.task, of_arm ? " of arm " + world.name : "",
+                        FormatBaselines(baselines));
   }
   return text + Missing(outcome);
 }

@@ -32,6 +32,21 @@ struct ArmOutcome {
   std::vector<double> distances{};       // mean final distance of each run, m
 };
 
+// What baselines are of: a task with its threshold, model file, physics and action repeat.
+struct JudgedWorld {
+  enum class Kind {
+    kFirst,      // of the first arm
+    kOtherTask,  // the first of its task: of a further arm, or that policies are tested on
+    kOtherArm,   // of a task there is already, otherwise set up by an arm
+  };
+  Kind kind = Kind::kFirst;
+  std::string name{};  // of the task; of the arm where it is kOtherArm
+  Config config{};
+};
+
+// One for each, the first arm's first.
+std::vector<JudgedWorld> JudgedWorlds(const StoredExperiment& experiment);
+
 struct ExperimentOutcome {
   StoredExperiment experiment{};
   std::vector<ArmOutcome> arms{};
@@ -42,12 +57,13 @@ struct ExperimentOutcome {
     SampleRatio ratio;
   };
   std::vector<NamedRatio> ratios{};
-  // Of each task that an arm trains on or is tested on, by task; only what has been measured.
-  std::vector<std::pair<std::string, Baselines>> baselines{};
+  // Of each world that an arm trains in or is tested in; only what has been measured.
+  struct NamedBaselines {
+    JudgedWorld world;
+    Baselines baselines;
+  };
+  std::vector<NamedBaselines> baselines{};
 };
-
-// A configuration for each task that an arm trains on or is tested on: what baselines are of.
-std::vector<Config> JudgedConfigs(const StoredExperiment& experiment);
 
 // Reads every run. Throws Error only for a broken experiment.json or log: a broken run is a failed
 // one.
@@ -62,10 +78,5 @@ void WriteSummary(const ExperimentOutcome& outcome);
 std::string SummaryText(const ExperimentOutcome& outcome);
 // A line per run: how it stands and how far it came.
 std::string StatusText(const ExperimentOutcome& outcome);
-
-// "97.3 % [94.1, 98.9] (292/300)"; "-" without episodes.
-std::string FormatPooled(uint64_t successes, uint64_t episodes);
-// "-0.82 [-0.91, -0.73] (3 seeds)"; the mean alone of one seed; "-" without any.
-std::string FormatMean(const std::vector<double>& values, int digits);
 
 }  // namespace shoal::launch

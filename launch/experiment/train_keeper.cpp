@@ -10,8 +10,8 @@
 #include "common/base/files.h"
 #include "common/base/usable_cores.h"
 #include "common/config/config_io.h"
-#include "launch/experiment/run_results.h"
 #include "launch/processes/process_plan.h"
+#include "launch/record/run_folder.h"
 
 namespace shoal::launch {
 namespace {
@@ -28,10 +28,6 @@ void WriteArmConfig(const fs::path& file, const Config& config) {
   WriteFileAtomically(file, object.dump(2) + "\n");
 }
 
-fs::path TransferFile(const ExperimentRun& run, const std::string& task) {
-  return run.folder / "eval" / ("on-" + task + ".json");
-}
-
 // "shoal: error: REASON" -> REASON.
 std::string ReasonIn(const fs::path& log) {
   const std::string line = LastLine(log), prefix = std::string(kProgram) + ": error: ";
@@ -42,7 +38,7 @@ std::string ReasonIn(const fs::path& log) {
 // anybody would miss.
 void RemoveUnbegun(const fs::path& run) {
   std::error_code error;
-  if (!fs::exists(run, error) || fs::exists(run / "config.json", error)) return;
+  if (!fs::exists(run, error) || IsRun(run)) return;
   fs::remove_all(run, error);
   if (error) throw RuntimeError("cannot remove '{}': {}", run.string(), error.message());
 }
@@ -80,18 +76,6 @@ std::vector<std::vector<int>> SplitCores(const std::vector<int>& cores, int jobs
   return split;
 }
 
-std::vector<std::string> MissingTransfers(const StoredExperiment& experiment,
-                                          const ExperimentRun& run) {
-  std::vector<std::string> missing;
-  const Definition& definition = experiment.definition;
-  const Config config = ArmConfig(experiment.base, definition.arms[run.arm], definition.name);
-  for (const std::string& task : definition.transfer) {
-    const bool same = task == config.task && config.randomization.body_mass.empty();
-    if (!same && !fs::exists(TransferFile(run, task))) missing.push_back(task);
-  }
-  return missing;
-}
-
 TrainKeeper::TrainKeeper(const StoredExperiment& experiment, int jobs)
     : experiment_(experiment), log_(experiment.Log()), slots_(static_cast<size_t>(jobs)) {
   if (jobs == 1) return;
@@ -99,26 +83,12 @@ TrainKeeper::TrainKeeper(const StoredExperiment& experiment, int jobs)
   for (size_t i = 0; i < slots_.size(); ++i) slots_[i].cores = parts[i];
 }
 
-StandingReport TrainKeeper::TrainingStanding(const ExperimentRun& run) const {
-  const auto logged = log_.Read();
-  const auto known = logged.find(run.name);
-  return StandingOf(run.folder, known == logged.end() ? nullptr : &known->second);
-}
-
 StandingReport TrainKeeper::Standing(const ExperimentRun& run) {
-  StandingReport report = TrainingStanding(run);
-  if (report.standing == RunStanding::kFinished && !MissingTransfers(experiment_, run).empty()) {
-    const auto ending = log_.Read()[run.name].ending;
-    if (ending && ending->code != 0 && !ending->stopped && !ending->by_signal) {
-      return {RunStanding::kFailed, ending->problem};
-    }
-    return {RunStanding::kInterrupted, ""};
-  }
-  return report;
+  return experiment_.Standing(run, log_.Read());
 }
 
 ProcessSpec TrainKeeper::Training(const ExperimentRun& run) const {
-  if (fs::exists(run.folder / "config.json")) {
+  if (IsRun(run.folder)) {
     return ProgramSpec(kProgram, {"train", "--resume", run.folder.string()}, 1);
   }
   RemoveUnbegun(run.folder);
@@ -132,15 +102,13 @@ ProcessSpec TrainKeeper::Training(const ExperimentRun& run) const {
       1);
 }
 
-std::optional<ProcessSpec> TrainKeeper::NextTransfer(const ExperimentRun& run) const {
-  const std::vector<std::string> missing = MissingTransfers(experiment_, run);
-  if (missing.empty()) return std::nullopt;
+ProcessSpec TrainKeeper::Transfer(const ExperimentRun& run, const std::string& task) const {
   const Config config = ArmConfig(experiment_.base, experiment_.definition.arms[run.arm], run.name);
   return ProgramSpec(
       kProgram,
-      {"eval", "--checkpoint", JudgedCheckpoint(run.folder).string(), "--task", missing[0],
-       "--episodes", std::to_string(std::max(1, config.eval.final_episodes)), "--seed",
-       std::to_string(run.seed), "--json", TransferFile(run, missing[0]).string()},
+      {"eval", "--checkpoint", JudgedCheckpoint(run.folder).string(), "--task", task, "--episodes",
+       std::to_string(std::max(1, config.eval.final_episodes)), "--seed", std::to_string(run.seed),
+       "--json", TransferFile(run.folder, task).string()},
       1);
 }
 
@@ -153,10 +121,10 @@ void TrainKeeper::Launch(ProcessSpec spec, Slot& slot) {
 
 void TrainKeeper::Start(const ExperimentRun& run, int slot_number) {
   Slot& slot = slots_[static_cast<size_t>(slot_number)];
-  const bool trained = TrainingStanding(run).standing == RunStanding::kFinished;
-  ProcessSpec spec = trained ? *NextTransfer(run) : Training(run);
+  const std::vector<std::string> transfers = Standing(run).missing_transfers;
+  ProcessSpec spec = transfers.empty() ? Training(run) : Transfer(run, transfers[0]);
   log_.Write({.run = run.name,
-              .resumed = fs::exists(run.folder / "config.json"),
+              .resumed = IsRun(run.folder),
               .jobs = static_cast<int>(slots_.size()),
               .cores = slot.cores});
   slot.run = run;
@@ -168,10 +136,10 @@ bool TrainKeeper::Ended(int slot_number) {
   const auto status = slot.process->Poll();
   if (!status) return false;
   slot.process.reset();
-  if (status->Clean() && !stopping_ &&
-      TrainingStanding(*slot.run).standing == RunStanding::kFinished) {
-    if (auto next = NextTransfer(*slot.run)) {
-      Launch(std::move(*next), slot);
+  if (status->Clean() && !stopping_) {
+    const std::vector<std::string> transfers = Standing(*slot.run).missing_transfers;
+    if (!transfers.empty()) {
+      Launch(Transfer(*slot.run, transfers[0]), slot);
       return false;
     }
   }

@@ -16,10 +16,6 @@ namespace shoal::launch {
 std::vector<std::vector<int>> SplitCores(const std::vector<int>& cores, int jobs);
 std::vector<int> OwnCores();
 
-// Tasks of the definition that a run is not trained on and not yet evaluated on.
-std::vector<std::string> MissingTransfers(const StoredExperiment& experiment,
-                                          const ExperimentRun& run);
-
 // One thread, which must live as long as the children (child_process.h).
 class TrainKeeper : public RunKeeper {
  public:
@@ -40,11 +36,10 @@ class TrainKeeper : public RunKeeper {
 
   // Ready but for the cores.
   ProcessSpec Training(const ExperimentRun& run) const;
-  // Evaluation on the next further task; empty when there is none left.
-  std::optional<ProcessSpec> NextTransfer(const ExperimentRun& run) const;
+  // Evaluation on a further task.
+  ProcessSpec Transfer(const ExperimentRun& run, const std::string& task) const;
   void Launch(ProcessSpec spec, Slot& slot);
   void LogEnding(const ExperimentRun& run, const ExitStatus& status) const;
-  StandingReport TrainingStanding(const ExperimentRun& run) const;
 
   const StoredExperiment& experiment_;
   const RunLog log_;

@@ -1,8 +1,10 @@
 #include "launch/record/run_folder.h"
 
 #include <fcntl.h>
+#include <fmt/ranges.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <optional>
@@ -18,6 +20,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kMostNumbers = 10'000;
+constexpr char kConfigFile[] = "config.json";
 
 // False when it exists already. Throws Error when it cannot be made.
 bool MakeNewFolder(const fs::path& path) {
@@ -30,7 +33,7 @@ bool MakeNewFolder(const fs::path& path) {
 
 void Remove(const fs::path& path) {
   std::error_code error;
-  if (!fs::exists(path / "config.json") && !fs::is_empty(path, error)) {
+  if (!IsRun(path) && !fs::is_empty(path, error)) {
     throw UsageError("'{}' is not a run (no config.json): not overwritten", path.string());
   }
   fs::remove_all(path, error);
@@ -44,7 +47,33 @@ struct flock WholeFile(short type) {
   return lock;
 }
 
+bool Has(const fs::path& folder, const std::string& file) {
+  std::error_code error;
+  return fs::is_regular_file(folder / file, error);
+}
+
 }  // namespace
+
+NamedKind RunsIn(const fs::path& dir) { return {.noun = "run", .dir = dir, .file = kConfigFile}; }
+
+fs::path FindNamed(const std::string& name_or_folder, std::span<const NamedKind> kinds) {
+  std::vector<std::string> nouns, looked_at, files;
+  for (const NamedKind& kind : kinds) {
+    const fs::path path = kind.dir / name_or_folder;
+    if (Has(path, kind.file)) return path;
+    nouns.push_back(kind.noun);
+    looked_at.push_back(fmt::format("'{}'", path.string()));
+    files.push_back(kind.file);
+  }
+  for (const NamedKind& kind : kinds) {
+    if (Has(name_or_folder, kind.file)) return name_or_folder;
+  }
+  throw UsageError("no {} '{}': neither {} nor '{}' has a {}", fmt::join(nouns, " or "),
+                   name_or_folder, fmt::join(looked_at, ", "), name_or_folder,
+                   fmt::join(files, " or "));
+}
+
+bool IsRun(const fs::path& folder) { return Has(folder, kConfigFile); }
 
 bool IsHeld(const fs::path& run) {
   const int file = open((run / ".lock").c_str(), O_RDONLY | O_CLOEXEC);
@@ -79,11 +108,7 @@ RunFolder RunFolder::CreateNumbered(const fs::path& dir, const std::string& base
 }
 
 RunFolder RunFolder::Reopen(const fs::path& dir, const std::string& run) {
-  for (const fs::path& path : {fs::path(run), dir / run}) {
-    if (fs::exists(path / "config.json")) return RunFolder(fs::weakly_canonical(path));
-  }
-  throw UsageError("no run '{}': neither '{}' nor '{}' has a config.json", run, run,
-                   (dir / run).string());
+  return RunFolder(fs::weakly_canonical(FindNamed(run, RunsIn(dir))));
 }
 
 RunFolder::RunFolder(fs::path path) : path_(std::move(path)) {
@@ -124,6 +149,23 @@ fs::path NewestCheckpoint(const fs::path& run) {
     }
   }
   return newest;
+}
+
+fs::path JudgedCheckpoint(const fs::path& run) {
+  const fs::path best = run / "checkpoints" / "best";
+  std::error_code error;
+  return fs::is_directory(best, error) ? best : NewestCheckpoint(run);
+}
+
+std::vector<fs::path> FilmsOf(const fs::path& run) {
+  std::vector<fs::path> films;
+  std::error_code error;
+  for (fs::directory_iterator it(run / "videos", error), end; !error && it != end;
+       it.increment(error)) {
+    if (it->path().extension() == ".mp4") films.push_back(it->path());
+  }
+  std::ranges::sort(films);
+  return films;
 }
 
 }  // namespace shoal::launch

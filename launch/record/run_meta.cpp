@@ -6,6 +6,7 @@
 #include "common/base/build_info.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/base/or_null.h"
 #include "common/config/config_io.h"
 #include "common/nn/precision.h"
 #include "launch/record/machine.h"
@@ -14,11 +15,6 @@ namespace shoal::launch {
 namespace {
 
 using nlohmann::ordered_json;
-
-template <class T>
-ordered_json OrNull(const std::optional<T>& value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
-}
 
 ordered_json FirstSuccess(const RunMeta& meta) {
   if (!meta.first_success) return nullptr;
@@ -44,6 +40,11 @@ std::vector<std::string> Commits(const RunMeta& meta) {
     commits.emplace_back(BuildCommit());
   }
   return commits;
+}
+
+ordered_json UpdatesPerEnvStep(const RunMeta& meta) {
+  if (meta.env_steps == 0) return nullptr;
+  return static_cast<double>(meta.updates) / static_cast<double>(meta.env_steps);
 }
 
 ordered_json Changes(const RunMeta& meta) {
@@ -80,6 +81,14 @@ ordered_json Versions() {
 
 }  // namespace
 
+PolicyInputs PolicyInputsOf(const ObservationSpec& spec) {
+  PolicyInputs inputs{.cameras = spec.cameras};
+  for (const BlockSpec& block : spec.blocks) {
+    if (block.observed) inputs.blocks.push_back(block.name);
+  }
+  return inputs;
+}
+
 void RunMeta::OnUpdates(uint64_t reported) {
   if (reported < updates) updates_lost += updates - reported;
   updates = reported;
@@ -98,10 +107,13 @@ void WriteRunMeta(const std::filesystem::path& run, const Config& config, const 
       {"machine", DescribeMachine()},
       {"precision",
        nn::ToString(nn::ChoosePrecision(config.learner.precision, config.observation.pixels))},
+      {"policy_inputs",
+       {{"blocks", meta.policy_inputs.blocks}, {"cameras", meta.policy_inputs.cameras}}},
       {"started", meta.started},
       {"finished", meta.finished.empty() ? ordered_json(nullptr) : ordered_json(meta.finished)},
       {"env_steps", meta.env_steps},
       {"updates", meta.updates},
+      {"updates_per_env_step", UpdatesPerEnvStep(meta)},
       {"updates_lost", meta.updates_lost},
       {"wall_seconds", meta.wall_seconds},
       {"first_success", FirstSuccess(meta)},

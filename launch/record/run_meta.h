@@ -7,15 +7,24 @@
 #include <vector>
 
 #include "common/config/config.h"
+#include "common/spec/observation_spec.h"
 #include "launch/record/accounting.h"
 #include "launch/record/evaluation_point.h"
 #include "launch/record/setting_change.h"
 
 namespace shoal::launch {
 
+// What the policy sees.
+struct PolicyInputs {
+  std::vector<std::string> blocks{};   // in the order of its vector
+  std::vector<std::string> cameras{};  // empty: no pixels
+};
+PolicyInputs PolicyInputsOf(const ObservationSpec& spec);
+
 struct RunMeta {
   std::vector<std::string> commits;  // builds that took part before this one, the first one first
-  std::string started, finished;     // UTC; finished is empty while running
+  PolicyInputs policy_inputs;
+  std::string started, finished;  // UTC; finished is empty while running
   uint64_t env_steps = 0, updates = 0;
   uint64_t updates_lost = 0;  // with learners that died, since their newest checkpoints
   double wall_seconds = 0;    // over all sessions of a resumed run
@@ -36,7 +45,8 @@ struct RunMeta {
   void OnUpdates(uint64_t reported);
 };
 
-// Throws Error.
+// With `updates_per_env_step` as it came about so far, null before the first env step. Throws
+// Error.
 void WriteRunMeta(const std::filesystem::path& run, const Config& config, const RunMeta& meta);
 
 // What a resumed run goes on from: commits, started, wall_seconds, the counters and the changes;

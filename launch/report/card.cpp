@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <vector>
 
@@ -11,7 +10,9 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "launch/experiment/run_results.h"
-#include "launch/experiment/summary.h"
+#include "launch/experiment/statistics_json.h"
+#include "launch/record/run_folder.h"
+#include "launch/report/command_line.h"
 
 namespace shoal::launch {
 namespace {
@@ -20,17 +21,6 @@ namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
 constexpr char kPolicy[] = "policy.safetensors";
-
-// The film whose name comes first; empty without any.
-fs::path FilmOf(const fs::path& run) {
-  std::vector<fs::path> films;
-  std::error_code error;
-  for (fs::directory_iterator it(run / "videos", error), end; !error && it != end;
-       it.increment(error)) {
-    if (it->path().extension() == ".mp4") films.push_back(it->path());
-  }
-  return films.empty() ? fs::path() : *std::ranges::min_element(films);
-}
 
 std::string RewardText(const EvaluationFigures& final) {
   return fmt::format("{:.2f} +/- {:.2f}", final.return_mean, final.return_std);
@@ -80,12 +70,13 @@ std::string Readme(const RunResults& run, bool film) {
       "| --- | --- | --- | --- |\n| {} | {} | {} | {} |\n\n",
       final.episodes, final.success ? FormatPooled(final.Successes(), final.episodes) : "-",
       RewardText(final),
-      final.final_distance_mean ? fmt::format("{:.2f}", 100 * *final.final_distance_mean) : "-");
+      final.final_distance_mean ? fmt::format("{:.2f}", Centimetres(*final.final_distance_mean))
+                                : "-");
   text +=
       "Deterministic actions, fresh episodes. Files: `results.json` (the figures above), "
       "`config.json` (every key of the run), `policy.safetensors` (the policy's parameters)";
   text += film ? ", `replay.mp4`.\n" : ".\n";
-  return text + "\nTo train it again: `shoal train --config config.json --run-name again`.\n";
+  return text + fmt::format("\nTo train it again: `{}`.\n", TrainAgain("config.json", run.name));
 }
 
 }  // namespace
@@ -105,13 +96,14 @@ void WriteCard(const fs::path& run_folder, const fs::path& folder) {
   std::error_code error;
   fs::remove_all(fresh, error);
   MakeFolders(fresh);
+  OpenToOthers(fresh);
   try {
-    const fs::path film = FilmOf(run_folder);
-    WriteFileAtomically(fresh / "README.md", Readme(run, !film.empty()));
-    WriteFileAtomically(fresh / "results.json", ResultsJson(run).dump(2) + "\n");
-    WriteFileAtomically(fresh / "config.json", ReadFile(run_folder / "config.json"));
-    WriteFileAtomically(fresh / kPolicy, ReadFile(checkpoint / kPolicy));
-    if (!film.empty()) WriteFileAtomically(fresh / "replay.mp4", ReadFile(film));
+    const std::vector<fs::path> films = FilmsOf(run_folder);  // the first one goes along
+    WriteFileForOthers(fresh / "README.md", Readme(run, !films.empty()));
+    WriteFileForOthers(fresh / "results.json", ResultsJson(run).dump(2) + "\n");
+    WriteFileForOthers(fresh / "config.json", ReadFile(run_folder / "config.json"));
+    WriteFileForOthers(fresh / kPolicy, ReadFile(checkpoint / kPolicy));
+    if (!films.empty()) WriteFileForOthers(fresh / "replay.mp4", ReadFile(films[0]));
     fs::rename(fresh, target, error);
     if (error) throw RuntimeError("cannot write '{}': {}", target.string(), error.message());
   } catch (...) {

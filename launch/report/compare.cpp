@@ -8,8 +8,9 @@
 
 #include "common/base/bounded_json.h"
 #include "common/base/build_info.h"
+#include "common/base/or_null.h"
 #include "common/config/config_io.h"
-#include "launch/experiment/summary.h"
+#include "launch/experiment/statistics_json.h"
 
 namespace shoal::launch {
 namespace {
@@ -44,6 +45,8 @@ GroupFigures FiguresOf(const RunGroup& group, double target_success) {
     const EvaluationFigures& judged = run.final ? *run.final : run.curve.back();
     if (!run.final) figures.without_final.push_back(run.name);
     figures.seeds.push_back(run.config.seed);
+    const bool finished = std::ranges::count(group.unfinished, run.name) == 0;
+    figures.finished.push_back(finished);
     figures.returns.push_back(judged.return_mean);
     if (judged.final_distance_mean) figures.distances.push_back(*judged.final_distance_mean);
     if (judged.success) {
@@ -60,24 +63,12 @@ GroupFigures FiguresOf(const RunGroup& group, double target_success) {
   return figures;
 }
 
-SampleRatio RatioTo(const GroupFigures& group, const GroupFigures& first) {
-  std::vector<RatioPair> pairs;
+std::vector<TargetReached> TargetsOf(const GroupFigures& group) {
+  std::vector<TargetReached> targets;
   for (size_t i = 0; i < group.seeds.size(); ++i) {
-    const auto same = std::ranges::find(first.seeds, group.seeds[i]);
-    if (same == first.seeds.end()) continue;
-    pairs.push_back({group.seeds[i], group.n_to_target[i],
-                     first.n_to_target[static_cast<size_t>(same - first.seeds.begin())]});
+    targets.push_back({group.seeds[i], group.finished[i], group.n_to_target[i]});
   }
-  return RatioOf(std::move(pairs));
-}
-
-ordered_json IntervalJson(const std::optional<Interval>& interval) {
-  return interval ? ordered_json{interval->low, interval->high} : ordered_json(nullptr);
-}
-
-template <class T>
-ordered_json OrNull(const std::optional<T>& value) {
-  return value ? ordered_json(*value) : ordered_json(nullptr);
+  return targets;
 }
 
 ordered_json MeanJson(const std::vector<double>& values) {
@@ -112,26 +103,6 @@ ordered_json GroupJson(const GroupFigures& group) {
           {"core_hours", group.core_hours},
           {"without_final_evaluation", group.without_final},
           {"without_evaluation", group.unevaluated}};
-}
-
-ordered_json RatioJson(const SampleRatio& ratio, const std::string& name) {
-  ordered_json pairs = ordered_json::array();
-  for (const RatioPair& pair : ratio.pairs) {
-    pairs.push_back({{"seed", pair.seed},
-                     {"n", OrNull(pair.n)},
-                     {"n_reference", OrNull(pair.reference)},
-                     {"ratio", OrNull(pair.Ratio())}});
-  }
-  return {{"name", name},
-          {"pairs", pairs},
-          {"not_reached", ratio.not_reached},
-          {"median", OrNull(ratio.median)}};
-}
-
-std::string FormatSteps(const std::vector<std::optional<double>>& steps) {
-  std::vector<std::string> words;
-  for (const auto& n : steps) words.push_back(n ? fmt::format("{:.0f}", *n) : "not reached");
-  return words.empty() ? "-" : fmt::format("{}", fmt::join(words, ", "));
 }
 
 std::string FormatCounts(const std::vector<double>& values) {
@@ -172,6 +143,15 @@ std::string Notes(const Comparison& comparison) {
 
 }  // namespace
 
+std::string FormatSteps(const GroupFigures& group) {
+  std::vector<std::string> words;
+  for (size_t i = 0; i < group.n_to_target.size(); ++i) {
+    const auto& n = group.n_to_target[i];
+    words.push_back(n ? fmt::format("{:.0f}", *n) : group.finished[i] ? "not reached" : "not yet");
+  }
+  return words.empty() ? "-" : fmt::format("{}", fmt::join(words, ", "));
+}
+
 std::vector<KeyDifference> FindDifferences(const std::vector<RunGroup>& groups) {
   std::vector<KeyDifference> differences;
   for (const auto& [key, unused] : KeysOf(Config())) {
@@ -209,7 +189,8 @@ Comparison Gather(const std::vector<RunGroup>& groups, double target_success) {
     comparison.groups.push_back(FiguresOf(group, target_success));
   }
   for (size_t i = 1; i < comparison.groups.size(); ++i) {
-    comparison.ratios.push_back(RatioTo(comparison.groups[i], comparison.groups[0]));
+    comparison.ratios.push_back(
+        RatioOfFinished(TargetsOf(comparison.groups[i]), TargetsOf(comparison.groups[0])));
   }
   comparison.differences = FindDifferences(groups);
   return comparison;
@@ -220,8 +201,8 @@ ordered_json ToJson(const Comparison& comparison) {
   ordered_json differences = ordered_json::array();
   for (const GroupFigures& group : comparison.groups) groups.push_back(GroupJson(group));
   for (size_t i = 0; i < comparison.ratios.size(); ++i) {
-    ratios.push_back(RatioJson(comparison.ratios[i],
-                               comparison.groups[i + 1].name + "/" + comparison.groups[0].name));
+    ratios.push_back(RatioJson(comparison.groups[i + 1].name + "/" + comparison.groups[0].name,
+                               comparison.ratios[i]));
   }
   for (const KeyDifference& difference : comparison.differences) {
     ordered_json values = ordered_json::array();
@@ -247,11 +228,9 @@ std::string ToText(const Comparison& comparison) {
   bool has_success = false;
   for (const GroupFigures& group : comparison.groups) {
     has_success |= group.episodes > 0;
-    std::vector<double> centimetres;
-    for (const double metres : group.distances) centimetres.push_back(100 * metres);
     rows.push_back({group.name, std::to_string(group.seeds.size()),
                     FormatPooled(group.successes, group.episodes), FormatMean(group.returns, 2),
-                    FormatMean(centimetres, 2), FormatCounts(group.env_steps),
+                    FormatDistances(group.distances), FormatCounts(group.env_steps),
                     FormatCounts(group.updates), FormatCounts(group.wall_seconds),
                     fmt::format("{:.2f}", group.core_hours)});
   }
@@ -262,7 +241,7 @@ std::string ToText(const Comparison& comparison) {
         fmt::format("\nenv steps to {:.0f} % success, by seed:\n", 100 * comparison.target_success);
     for (size_t i = 0; i < comparison.groups.size(); ++i) {
       const GroupFigures& group = comparison.groups[i];
-      text += fmt::format("  {}: {}", group.name, FormatSteps(group.n_to_target));
+      text += fmt::format("  {}: {}", group.name, FormatSteps(group));
       if (i > 0 && !comparison.ratios[i - 1].pairs.empty()) {
         const SampleRatio& ratio = comparison.ratios[i - 1];
         text +=

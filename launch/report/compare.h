@@ -15,12 +15,14 @@ namespace shoal::launch {
 struct GroupFigures {
   std::string name{};
   std::vector<int64_t> seeds{};
+  std::vector<bool> finished{};  // by seed
   // Of the final evaluation of each run; of its last one while training where it has not ended.
   std::vector<double> returns{}, distances{};  // means; distances in m, where the task has some
   uint64_t successes = 0, episodes = 0;        // pooled; no episodes where the task has no success
   std::vector<std::string> without_final{};    // runs judged by their last evaluation
   std::vector<std::string> unevaluated{};
-  std::vector<std::optional<double>> n_to_target{};  // env steps, by seed; empty = not reached
+  // Env steps, by seed; empty = not reached, or, where the run is not finished, not yet.
+  std::vector<std::optional<double>> n_to_target{};
   std::vector<double> env_steps{}, updates{}, wall_seconds{};  // by seed
   double core_hours = 0;  // of all seeds: wall time x usable cores
 };
@@ -34,7 +36,8 @@ struct Comparison {
   std::string task{};
   double target_success = 0.9;
   std::vector<GroupFigures> groups{};
-  std::vector<SampleRatio> ratios{};  // of each group but the first to the first, by seed
+  // Of each group but the first to the first, over the seeds that are finished in both.
+  std::vector<SampleRatio> ratios{};
   std::vector<KeyDifference> differences{};
   std::optional<Baselines> baselines{};  // empty where they have not been measured
 };
@@ -48,6 +51,9 @@ Comparison Gather(const std::vector<RunGroup>& groups, double target_success);
 // Schema shoal-comparison-1; docs/experiments.md.
 nlohmann::ordered_json ToJson(const Comparison& comparison);
 std::string ToText(const Comparison& comparison);
+
+// Env steps to the target, by seed: "1200, not reached, not yet"; "-" without runs.
+std::string FormatSteps(const GroupFigures& group);
 
 // Configuration keys in which the groups differ; those that only name a run are left out.
 std::vector<KeyDifference> FindDifferences(const std::vector<RunGroup>& groups);

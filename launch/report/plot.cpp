@@ -12,6 +12,7 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/stop.h"
+#include "launch/experiment/statistics_json.h"
 #include "launch/processes/child_process.h"
 #include "launch/processes/scratch_folder.h"
 
@@ -52,7 +53,7 @@ std::optional<double> Value(PlotFigure figure, const EvaluationFigures& point) {
       return point.return_mean;
     case PlotFigure::kFinalDistance:
       if (!point.final_distance_mean) return std::nullopt;
-      return 100 * *point.final_distance_mean;
+      return Centimetres(*point.final_distance_mean);
   }
   return std::nullopt;
 }
@@ -100,14 +101,16 @@ const char* FigureLabel(PlotFigure figure) {
   return "";
 }
 
-// In gnuplot's double quotes; control characters are for nobody's terminal.
+// In gnuplot's single quotes, in which nothing but '' means anything else than itself: double
+// quotes would run what is in backticks as a shell command. Control characters are for nobody's
+// terminal.
 std::string Quoted(const std::string& text) {
-  std::string quoted = "\"";
+  std::string quoted = "'";
   for (const char c : text) {
-    if (c == '"' || c == '\\') quoted += '\\';
+    if (c == '\'') quoted += '\'';
     quoted += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
   }
-  return quoted + "\"";
+  return quoted + "'";
 }
 
 std::string BlockName(size_t group, size_t figure) {
@@ -285,7 +288,7 @@ void Draw(const Plot& plot, const std::vector<RunGroup>& groups, const fs::path&
     throw RuntimeError("gnuplot: {}: {}", status ? status->Describe() : "did not end",
                        LastLine(spec.output));
   }
-  WriteFileAtomically(output, ReadFile(drawn));
+  WriteFileForOthers(output, ReadFile(drawn));
 }
 
 }  // namespace shoal::launch

@@ -4,19 +4,16 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cctype>
-#include <string_view>
 
 #include "common/base/build_info.h"
 #include "common/base/clock.h"
-#include "common/base/error.h"
 #include "common/base/escape_markup.h"
 #include "common/base/files.h"
 #include "common/config/config_io.h"
-#include "launch/experiment/experiment_folder.h"
-#include "launch/experiment/summary.h"
-#include "launch/processes/remote_host.h"
+#include "launch/experiment/statistics_json.h"
 #include "launch/processes/scratch_folder.h"
+#include "launch/record/run_folder.h"
+#include "launch/report/command_line.h"
 #include "launch/report/plot.h"
 
 namespace shoal::launch {
@@ -62,18 +59,10 @@ std::string Section(const std::string& title, const std::string& body) {
   return body.empty() ? "" : fmt::format("<h2>{}</h2>\n{}", EscapeMarkup(title), body);
 }
 
-std::string Steps(const std::optional<double>& steps) {
-  return steps ? fmt::format("{:.0f}", *steps) : "not reached";
-}
-
 std::string ResultsHtml(const Comparison& comparison) {
   std::vector<Row> rows;
   for (size_t i = 0; i < comparison.groups.size(); ++i) {
     const GroupFigures& group = comparison.groups[i];
-    std::vector<double> centimetres;
-    for (const double metres : group.distances) centimetres.push_back(100 * metres);
-    std::vector<std::string> steps;
-    for (const auto& n : group.n_to_target) steps.push_back(Steps(n));
     std::string ratio = i == 0 ? "1" : "-";
     if (i > 0 && !comparison.ratios[i - 1].pairs.empty()) {
       const SampleRatio& pairs = comparison.ratios[i - 1];
@@ -84,8 +73,7 @@ std::string ResultsHtml(const Comparison& comparison) {
     const bool success = group.episodes > 0;
     rows.push_back({group.name, std::to_string(group.seeds.size()),
                     FormatPooled(group.successes, group.episodes), FormatMean(group.returns, 2),
-                    FormatMean(centimetres, 2),
-                    success ? fmt::format("{}", fmt::join(steps, ", ")) : "-",
+                    FormatDistances(group.distances), success ? FormatSteps(group) : "-",
                     success ? ratio : "-"});
   }
   std::string html =
@@ -96,7 +84,9 @@ std::string ResultsHtml(const Comparison& comparison) {
   html +=
       "<p class=\"note\">Success: episodes of all seeds pooled, Wilson's interval. Return and "
       "distance: mean over seeds, Student's interval. Env steps: at the first of two evaluations "
-      "in a row at or above the rate; a seed that did not get there is counted, not dropped.</p>\n";
+      "in a row at or above the rate; a seed that did not get there is counted, not dropped. "
+      "Ratios: "
+      "over the seeds that are finished in both.</p>\n";
   if (comparison.baselines) {
     html += "<p>" + EscapeMarkup(FormatBaselines(*comparison.baselines)) + ".</p>\n";
   }
@@ -143,6 +133,33 @@ std::string TransferHtml(const std::vector<RunGroup>& groups) {
   }
   if (rows.empty()) return "";
   return TableHtml({"", "trained on", "tested on", "return [95 %]", "success [95 %]"}, rows);
+}
+
+// {"learner.batch": 64} as "learner.batch = 64, ..."; "-" where nothing is set.
+std::string FormatKeys(const nlohmann::ordered_json& set) {
+  std::vector<std::string> keys;
+  for (const auto& [key, value] : set.items()) keys.push_back(key + " = " + value.dump());
+  return keys.empty() ? "-" : fmt::format("{}", fmt::join(keys, ", "));
+}
+
+// What was laid down before the first run.
+std::string DefinitionsHtml(const std::vector<Definition>& definitions) {
+  std::string html;
+  for (const Definition& definition : definitions) {
+    std::vector<Row> rows{
+        {"base", definition.base},
+        {"every arm", FormatKeys(definition.set)},
+        {"seeds", fmt::format("{}", fmt::join(definition.seeds, ", "))},
+        {"final episodes",
+         definition.final_episodes ? std::to_string(*definition.final_episodes) : "the base's"},
+        {"target success", fmt::format("{:.0f} %", 100 * definition.target_success)}};
+    for (const Arm& arm : definition.arms) rows.push_back({"arm " + arm.name, FormatKeys(arm.set)});
+    if (!definition.transfer.empty()) {
+      rows.push_back({"also tested on", fmt::format("{}", fmt::join(definition.transfer, ", "))});
+    }
+    html += TableHtml({"experiment", definition.name}, rows);
+  }
+  return html;
 }
 
 std::string RunsHtml(const std::vector<RunGroup>& groups) {
@@ -204,14 +221,8 @@ std::string FilmsHtml(const std::vector<RunGroup>& groups) {
   std::string html;
   for (const RunGroup& group : groups) {
     if (group.runs.empty()) continue;
-    std::error_code error;
-    std::vector<fs::path> films;
-    for (fs::directory_iterator it(group.runs[0].folder / "videos", error), end;
-         !error && it != end; it.increment(error)) {
-      if (it->path().extension() == ".mp4") films.push_back(it->path());
-    }
+    const std::vector<fs::path> films = FilmsOf(group.runs[0].folder);
     if (films.empty()) continue;
-    std::ranges::sort(films);
     html += fmt::format("<p>{}", EscapeMarkup(group.name));
     html += fs::file_size(films[0]) > kLargestFilm
                 ? fmt::format(": {} is too large to be in this page</p>\n",
@@ -224,26 +235,6 @@ std::string FilmsHtml(const std::vector<RunGroup>& groups) {
 
 std::string CommandsHtml(const std::vector<std::string>& commands) {
   return fmt::format("<pre>{}</pre>\n", EscapeMarkup(fmt::format("{}", fmt::join(commands, "\n"))));
-}
-
-// A shell command line for people: quotes only where a word needs them (ShellLine quotes each).
-std::string CommandLine(const std::vector<std::string>& words) {
-  std::string line;
-  for (const std::string& word : words) {
-    const bool plain = !word.empty() && std::ranges::all_of(word, [](const char c) {
-      return std::isalnum(static_cast<unsigned char>(c)) != 0 ||
-             std::string_view("-_./=:,").find(c) != std::string_view::npos;
-    });
-    if (!line.empty()) line += ' ';
-    line += plain ? word : ShellLine({word});
-  }
-  return line;
-}
-
-// A run is repeated from its own configuration.
-std::string CommandOf(const RunResults& run) {
-  return CommandLine({"shoal", "train", "--config", (run.folder / "config.json").string(),
-                      "--run-name", run.name + "-again"});
 }
 
 // The document without what only a file of its own may begin with.
@@ -263,29 +254,29 @@ std::string DrawCurves(const std::string& title, const std::vector<RunGroup>& gr
 
 }  // namespace
 
-ReportContent GatherReport(const SubjectOptions& subjects) {
-  ReportContent content;
-  content.groups = ReadSubjects(subjects);
+ReportContent GatherReport(const SubjectOptions& options) {
+  const Subjects subjects = ReadSubjects(options);
+  ReportContent content{.groups = subjects.groups};
   double target = kUsualTarget;
-  const bool single = subjects.names.size() == 1;
+  const bool single = subjects.named.size() == 1;
   if (!single) CheckOneTask(content.groups);
-  for (const std::string& name : subjects.names) {
-    content.title += (content.title.empty() ? "" : ", ") + NamedFolder(name).filename().string();
-    for (const fs::path& path : {fs::path(subjects.experiment_dir) / name, fs::path(name)}) {
-      if (!IsExperiment(path)) continue;
-      const Definition& definition = ReadExperiment(path).definition;
-      if (single) {
-        content.question = definition.question;
-        target = definition.target_success;
-      }
-      content.commands.push_back(CommandLine({"shoal", "experiment", "run", definition.name}) +
-                                 "    # or the definition's file");
-      break;
+  for (const Subject& subject : subjects.named) {
+    content.title += (content.title.empty() ? "" : ", ") + subject.name;
+    if (!subject.experiment) continue;
+    const Definition& definition = subject.experiment->definition;
+    content.definitions.push_back(definition);
+    content.commands.push_back(CommandLine({"shoal", "experiment", "run", definition.name}) +
+                               "    # or the definition's file");
+    if (single) {
+      content.question = definition.question;
+      target = definition.target_success;
     }
   }
-  if (content.commands.empty()) {
+  if (content.definitions.empty()) {
     for (const RunGroup& group : content.groups) {
-      for (const RunResults& run : group.runs) content.commands.push_back(CommandOf(run));
+      for (const RunResults& run : group.runs) {
+        content.commands.push_back(TrainAgain(run.folder / "config.json", run.name));
+      }
     }
   }
   content.comparison = Gather(content.groups, target);
@@ -304,6 +295,7 @@ std::string ReportHtml(const ReportContent& content) {
   if (!content.question.empty()) {
     html += fmt::format("<p class=\"question\">{}</p>\n", EscapeMarkup(content.question));
   }
+  html += Section("Definition", DefinitionsHtml(content.definitions));
   html += Section("Results", ResultsHtml(content.comparison));
   html += Section("On other tasks", TransferHtml(content.groups));
   if (!content.curves.empty()) {

@@ -13,13 +13,14 @@ struct ReportContent {
   std::string title{}, question{};
   Comparison comparison{};
   std::vector<RunGroup> groups{};
-  std::vector<std::string> commands{};  // that repeat it
-  std::string curves{};                 // an SVG document; empty = none
+  std::vector<Definition> definitions{};  // of the experiments among the subjects
+  std::vector<std::string> commands{};    // that repeat it
+  std::string curves{};                   // an SVG document; empty = none
 };
 
 // Reads the subjects and has their curves drawn. Throws Error: as ReadSubjects and Draw; mixed
 // tasks unless they are those of one experiment.
-ReportContent GatherReport(const SubjectOptions& subjects);
+ReportContent GatherReport(const SubjectOptions& options);
 
 // Everything from outside is escaped.
 std::string ReportHtml(const ReportContent& content);

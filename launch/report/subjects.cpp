@@ -1,19 +1,15 @@
 #include "launch/report/subjects.h"
 
 #include <algorithm>
+#include <array>
 
 #include "common/base/error.h"
-#include "launch/experiment/experiment_folder.h"
+#include "launch/record/run_folder.h"
 
 namespace shoal::launch {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool IsRun(const fs::path& folder) {
-  std::error_code error;
-  return fs::is_regular_file(folder / "config.json", error);
-}
 
 bool IsEvaluated(const RunResults& run) { return run.final || !run.curve.empty(); }
 
@@ -24,11 +20,14 @@ RunGroup GroupOfRun(const fs::path& folder) {
   if (!IsEvaluated(group.runs[0])) {
     throw UsageError("run '{}' has no evaluations: nothing to compare or draw", folder.string());
   }
+  if (StandingOf(folder, nullptr).standing != RunStanding::kFinished) {
+    group.unfinished.push_back(group.name);
+  }
   return group;
 }
 
-std::vector<RunGroup> GroupsOfExperiment(const fs::path& folder, bool full_names) {
-  const StoredExperiment experiment = ReadExperiment(folder);
+std::vector<RunGroup> GroupsOfExperiment(const StoredExperiment& experiment, bool full_names) {
+  const auto log = experiment.Log().Read();
   std::vector<RunGroup> groups;
   for (const Arm& arm : experiment.definition.arms) {
     groups.push_back({.name = full_names ? experiment.definition.name + "/" + arm.name : arm.name});
@@ -39,6 +38,9 @@ std::vector<RunGroup> GroupsOfExperiment(const fs::path& folder, bool full_names
     if (IsRun(run.folder)) {
       RunResults results = ReadRunResults(run.folder);
       if (IsEvaluated(results)) {
+        if (experiment.Standing(run, log).standing != RunStanding::kFinished) {
+          group.unfinished.push_back(run.name);
+        }
         group.runs.push_back(std::move(results));
         any = true;
         continue;
@@ -48,38 +50,31 @@ std::vector<RunGroup> GroupsOfExperiment(const fs::path& folder, bool full_names
   }
   if (!any) {
     throw UsageError("experiment '{}' has no evaluations: nothing to compare or draw",
-                     folder.string());
+                     experiment.folder.string());
   }
   return groups;
 }
 
 }  // namespace
 
-std::vector<RunGroup> ReadSubjects(const SubjectOptions& options) {
-  std::vector<RunGroup> groups;
-  for (size_t i = 0; i < options.names.size(); ++i) {
-    const std::string& name = options.names[i];
-    if (std::count(options.names.begin(), options.names.begin() + ptrdiff_t(i), name) > 0) {
-      throw UsageError("'{}' is given twice", name);
+Subjects ReadSubjects(const SubjectOptions& options) {
+  const std::array kinds{RunsIn(options.run_dir), ExperimentsIn(options.experiment_dir)};
+  Subjects subjects;
+  for (const std::string& name : options.names) {
+    if (std::ranges::count(options.names, name) > 1) throw UsageError("'{}' is given twice", name);
+    const fs::path folder = FindNamed(name, kinds);
+    Subject subject{.name = NamedFolder(folder).filename()};
+    std::vector<RunGroup> groups;
+    if (IsRun(folder)) {
+      groups = {GroupOfRun(folder)};
+    } else {
+      subject.experiment = ReadExperiment(folder);
+      groups = GroupsOfExperiment(*subject.experiment, options.names.size() > 1);
     }
-    const fs::path run = fs::path(options.run_dir) / name;
-    const fs::path experiment = fs::path(options.experiment_dir) / name;
-    std::vector<RunGroup> found;
-    for (const fs::path& path : {run, experiment, fs::path(name)}) {
-      if (!found.empty()) break;
-      if (IsRun(path)) {
-        found = {GroupOfRun(path)};
-      } else if (IsExperiment(path)) {
-        found = GroupsOfExperiment(path, options.names.size() > 1);
-      }
-    }
-    if (found.empty()) {
-      throw UsageError("no run or experiment '{}': neither '{}', '{}' nor '{}' is one", name,
-                       run.string(), experiment.string(), name);
-    }
-    std::ranges::move(found, std::back_inserter(groups));
+    subjects.named.push_back(std::move(subject));
+    std::ranges::move(groups, std::back_inserter(subjects.groups));
   }
-  return groups;
+  return subjects;
 }
 
 void CheckOneTask(const std::vector<RunGroup>& groups) {

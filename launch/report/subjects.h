@@ -2,9 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "launch/experiment/experiment_folder.h"
 #include "launch/experiment/run_results.h"
 
 namespace shoal::launch {
@@ -14,6 +16,7 @@ struct RunGroup {
   std::string name{};
   std::vector<RunResults> runs{};          // those that were evaluated
   std::vector<std::string> unevaluated{};  // of an arm: runs that have not come so far, by name
+  std::vector<std::string> unfinished{};   // of `runs`: those with something still to be done
 };
 
 struct SubjectOptions {
@@ -22,10 +25,22 @@ struct SubjectOptions {
   std::string experiment_dir = "experiments";
 };
 
-// A group per arm of an experiment (EXPERIMENT/ARM where more than one subject is given) and per
-// run, in the order given. Throws Error (usage) naming a subject that is neither, is given twice or
-// has no evaluation.
-std::vector<RunGroup> ReadSubjects(const SubjectOptions& options);
+// One name on the command line.
+struct Subject {
+  std::string name{};                            // of its folder
+  std::optional<StoredExperiment> experiment{};  // empty: a run
+};
+
+struct Subjects {
+  std::vector<Subject> named{};  // in the order given
+  // Of all of them: one per arm of an experiment (EXPERIMENT/ARM where more than one subject is
+  // given) and one per run.
+  std::vector<RunGroup> groups{};
+};
+
+// Throws Error (usage) naming a subject that is neither run nor experiment, is given twice or has
+// no evaluation.
+Subjects ReadSubjects(const SubjectOptions& options);
 
 // Throws Error (usage) naming two runs of different tasks: their figures do not compare.
 void CheckOneTask(const std::vector<RunGroup>& groups);

@@ -30,12 +30,6 @@ std::optional<Accounting> AccountRun(const fs::path& run, const Config& config, 
                   .outlives_replay = config.replay.storage == "file"});
 }
 
-// The checkpoint a run is judged by: the best evaluated one, else the newest.
-fs::path JudgedCheckpoint(const fs::path& run) {
-  const fs::path best = run / "checkpoints" / "best";
-  return fs::is_directory(best) ? best : NewestCheckpoint(run);
-}
-
 // Whoever asked for a stop wants the terminal back; a run that has ended by itself is judged.
 bool WantsFinalEvaluation(const RunMeta& meta) {
   return meta.exit != "interrupted" && !StopRequested();

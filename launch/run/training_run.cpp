@@ -207,6 +207,7 @@ int Start(PreparedRun run, const TrainOptions& options, std::unique_ptr<dds::Bus
   std::optional<PrometheusEndpoint> prometheus;
   if (!options.prometheus.empty()) prometheus.emplace(options.prometheus);
   WriteRunConfig(path, run.config);
+  run.meta.policy_inputs = PolicyInputsOf(run.config.spec);
   WriteClusterAddress(path, address);
   OperatorDesk desk(*bus, run.config.config.run_name, [&](const RunViewMessage& view) {
     if (prometheus) prometheus->Update(view);

@@ -25,15 +25,6 @@ RunTarget TargetOfPeer(const std::string& peer) {
   return target;
 }
 
-fs::path FindRun(const TargetOptions& options) {
-  const fs::path given(options.run), named = fs::path(options.run_dir) / options.run;
-  for (const fs::path& path : {named, given}) {
-    if (fs::exists(path / "config.json")) return fs::weakly_canonical(path);
-  }
-  throw UsageError("no run '{}': neither '{}' nor '{}' has a config.json", options.run,
-                   named.string(), given.string());
-}
-
 fs::path OnlyRunningRun(const std::string& dir) {
   std::vector<fs::path> running;
   std::string names;
@@ -59,7 +50,7 @@ std::vector<fs::path> ListRuns(const fs::path& dir) {
   std::vector<fs::path> runs;
   std::error_code error;
   for (fs::directory_iterator it(dir, error), end; !error && it != end; it.increment(error)) {
-    if (fs::exists(it->path() / "config.json", error)) runs.push_back(it->path());
+    if (IsRun(it->path())) runs.push_back(it->path());
   }
   std::ranges::sort(runs);
   return runs;
@@ -74,7 +65,9 @@ RunTarget ResolveTarget(const TargetOptions& options) {
     target.address.secure = options.secure;
     return target;
   }
-  const fs::path folder = options.run.empty() ? OnlyRunningRun(options.run_dir) : FindRun(options);
+  const fs::path folder =
+      options.run.empty() ? OnlyRunningRun(options.run_dir)
+                          : fs::weakly_canonical(FindNamed(options.run, RunsIn(options.run_dir)));
   if (!IsHeld(folder)) throw RuntimeError("run '{}' is not running", folder.string());
   RunTarget target = TargetOfFolder(folder);
   if (!options.secure.empty()) target.address.secure = options.secure;

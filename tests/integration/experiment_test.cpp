@@ -172,6 +172,34 @@ TEST_F(ExperimentTest, CtrlCEndsInOrder) {
   EXPECT_THAT(status.out, HasSubstr("nobody runs it"));
 }
 
+TEST_F(ExperimentTest, CtrlCWhileBaselinesAreMeasuredIsAStopLikeAnyOther) {
+  Define();
+  setenv("XDG_CACHE_HOME", (folder_.path() / "cache").c_str(), 1);  // none has been measured
+  launch::ChildProcess child = Start();
+  unsetenv("XDG_CACHE_HOME");
+  const SteadyTime end = Now() + seconds(60);
+  while (ReadFile(folder_.path() / "said").find("measuring") == std::string::npos) {
+    ASSERT_LT(Now(), end) << ReadFile(folder_.path() / "said");
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  child.Signal(SIGINT);
+  ASSERT_TRUE(WaitUntilEnded(child.pid(), seconds(60)));
+  EXPECT_EQ(child.Poll()->Describe(), "exit code 130") << ReadFile(folder_.path() / "said");
+  EXPECT_THAT(Statuses(), ElementsAre("missing", "missing"));
+}
+
+TEST_F(ExperimentTest, ADryRunChecksTheFolderAndMakesNothing) {
+  Define();
+  EXPECT_EQ(ExitCode(Run({"--dry-run"})), 0);
+  EXPECT_FALSE(fs::exists(out_));
+  fs::create_directories(out_);
+  WriteFileAtomically(out_ / "thesis.tex", "years of work");
+  const ProgramResult refused = Run({"--dry-run"});
+  EXPECT_EQ(ExitCode(refused), 2);
+  EXPECT_THAT(refused.err, HasSubstr("something else"));
+  EXPECT_EQ(std::distance(fs::directory_iterator(out_), fs::directory_iterator()), 1);
+}
+
 TEST_F(ExperimentTest, RunsSideBySideHaveTheirOwnCoresAndAreMarked) {
   if (UsableCores() < 2) GTEST_SKIP() << "needs two cores";
   Define();

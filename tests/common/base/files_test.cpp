@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -24,6 +25,33 @@ TEST(Files, WritesAndReplacesWhole) {
   WriteFileAtomically(path, "two!");
   EXPECT_EQ(ReadFile(path), "two!");
   EXPECT_EQ(FilesIn(folder.path()), 1);
+}
+
+TEST(Files, AreTheUsersOwnUnlessTheyAreForOthers) {
+  const TemporaryFolder folder;
+  // KeepFilesPrivate is for a process's whole life.
+  const pid_t child = fork();
+  if (child == 0) {
+    umask(022);
+    KeepFilesPrivate();
+    KeepFilesPrivate();  // the second time it finds its own
+    WriteFileAtomically(folder.path() / "own", "key");
+    WriteFileForOthers(folder.path() / "report", "page");
+    MakeFolders(folder.path() / "card");
+    OpenToOthers(folder.path() / "card");
+    _exit(0);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_EQ(status, 0);
+  const auto mode_of = [&](const char* name) {
+    struct stat found {};
+    EXPECT_EQ(stat((folder.path() / name).c_str(), &found), 0);
+    return found.st_mode & 0777;
+  };
+  EXPECT_EQ(mode_of("own"), 0600u);
+  EXPECT_EQ(mode_of("report"), 0644u);
+  EXPECT_EQ(mode_of("card"), 0755u);
 }
 
 TEST(Files, AFailedWriteLeavesTheOldFileAndNoOther) {

@@ -15,8 +15,10 @@ namespace {
 class BaselinesTest : public testing::Test {
  protected:
   Baselines Measure(const Config& config) {
-    return cache_.Measure(
-        config, [] { return false; }, [this](const std::string&) { ++measured_; });
+    return cache_
+        .Measure(
+            config, [] { return false; }, [this](const std::string&) { ++measured_; })
+        .value();
   }
 
   const TemporaryFolder folder_;
@@ -61,6 +63,38 @@ TEST_F(BaselinesTest, ASpoiltFileIsMeasuredAnew) {
   }
   EXPECT_FALSE(cache_.Find(config));
   EXPECT_EQ(Measure(config).noop.return_mean, before);
+}
+
+TEST_F(BaselinesTest, AModelThatIsGoneHasNone) {
+  Config config;
+  config.model = folder_.path() / "gone.xml";
+  EXPECT_FALSE(cache_.Find(config));
+  EXPECT_THROW(Measure(config), Error);
+}
+
+TEST_F(BaselinesTest, AStopIsNoError) {
+  const Config config;
+  EXPECT_FALSE(cache_.Measure(
+      config, [] { return true; }, [](const std::string&) {}));
+  EXPECT_FALSE(cache_.Find(config)) << "nothing half-measured is kept";
+}
+
+TEST(ShareBaselines, IsAboutTheWorldNotThePolicy) {
+  const Config config;
+  Config other = config;
+  other.learner.batch = 7;
+  other.observation.pixels = !config.observation.pixels;
+  EXPECT_TRUE(ShareBaselines(config, other));
+  const auto differs = [&](auto change) {
+    Config changed = config;
+    change(changed);
+    return !ShareBaselines(config, changed);
+  };
+  EXPECT_TRUE(differs([](Config& c) { c.task = "FetchPush"; }));
+  EXPECT_TRUE(differs([](Config& c) { c.distance_threshold = 0.1; }));
+  EXPECT_TRUE(differs([](Config& c) { c.model = "mine.xml"; }));
+  EXPECT_TRUE(differs([](Config& c) { c.physics = "mujoco3"; }));
+  EXPECT_TRUE(differs([](Config& c) { c.action_repeat = 4; }));
 }
 
 }  // namespace

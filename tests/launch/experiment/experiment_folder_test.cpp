@@ -22,10 +22,13 @@ Definition TwoArms() {
 
 class ExperimentFolderTest : public testing::Test {
  protected:
+  ExperimentPlan Plan(const Definition& definition) const {
+    return PlanExperiment(path_, definition, "x.json");
+  }
   // What opening says; empty when it is accepted.
   std::string Refusal(const Definition& definition) const {
     try {
-      const ExperimentFolder open(path_, definition, "x.json");
+      const ExperimentFolder open(Plan(definition));
       return "";
     } catch (const Error& e) {
       EXPECT_EQ(e.exit_code(), 2) << e.what();
@@ -38,25 +41,25 @@ class ExperimentFolderTest : public testing::Test {
 };
 
 TEST_F(ExperimentFolderTest, RunsAreArmsTimesSeedsSeedBySeed) {
-  const ExperimentFolder open(path_, TwoArms(), "x.json");
+  const ExperimentFolder open(Plan(TwoArms()));
   std::vector<std::string> names;
   for (const auto& run : open.experiment().Runs({3, 1})) names.push_back(run.name);
   EXPECT_THAT(names, testing::ElementsAre("a-s3", "b-s3", "a-s1", "b-s1"));
 }
 
 TEST_F(ExperimentFolderTest, TheBaseOfTheFirstRunHolds) {
-  { const ExperimentFolder first(path_, TwoArms(), "x.json"); }
+  { const ExperimentFolder first(Plan(TwoArms())); }
   // As if the preset had said something else then.
   auto object = nlohmann::ordered_json::parse(ReadFile(path_ / "experiment.json"));
   object["base"]["learner"]["discount"] = 0.123;
   WriteFileAtomically(path_ / "experiment.json", object.dump());
-  const ExperimentFolder second(path_, TwoArms(), "x.json");
+  const ExperimentFolder second(Plan(TwoArms()));
   EXPECT_EQ(second.experiment().base.learner.discount, 0.123);
   EXPECT_EQ(ReadExperiment(path_).base.learner.discount, 0.123);
 }
 
 TEST_F(ExperimentFolderTest, FurtherArmsAndSeedsAreTaken) {
-  { const ExperimentFolder first(path_, TwoArms(), "x.json"); }
+  { const ExperimentFolder first(Plan(TwoArms())); }
   Definition more = TwoArms();
   more.arms.push_back({"c", {{"learner.batch", 32}}});
   more.seeds = {3, 1, 7};
@@ -65,7 +68,7 @@ TEST_F(ExperimentFolderTest, FurtherArmsAndSeedsAreTaken) {
 }
 
 TEST_F(ExperimentFolderTest, AnotherExperimentIsRefusedAndNothingChanges) {
-  { const ExperimentFolder first(path_, TwoArms(), "x.json"); }
+  { const ExperimentFolder first(Plan(TwoArms())); }
   const std::string before = ReadFile(path_ / "experiment.json");
   Definition other = TwoArms();
   other.name = "other";
@@ -80,6 +83,9 @@ TEST_F(ExperimentFolderTest, AnotherExperimentIsRefusedAndNothingChanges) {
   other.arms.pop_back();
   EXPECT_THAT(Refusal(other), HasSubstr("arm 'b'"));
   other = TwoArms();
+  std::swap(other.arms[0], other.arms[1]);
+  EXPECT_THAT(Refusal(other), HasSubstr("first arm, which ratios are taken to, is 'a', not 'b'"));
+  other = TwoArms();
   other.set["env_steps"] = 10;
   EXPECT_THAT(Refusal(other), HasSubstr("env_steps"));
   other = TwoArms();
@@ -93,6 +99,30 @@ TEST_F(ExperimentFolderTest, SomethingElseIsNotUsed) {
   WriteFileAtomically(path_ / "thesis.tex", "years of work");
   EXPECT_THAT(Refusal(TwoArms()), HasSubstr("something else"));
   EXPECT_EQ(std::distance(fs::directory_iterator(path_), fs::directory_iterator()), 1);
+}
+
+TEST_F(ExperimentFolderTest, APlanFindsWhatTheFolderRefusesAndMakesNothing) {
+  Plan(TwoArms());
+  EXPECT_FALSE(fs::exists(path_));
+  {
+    const ExperimentFolder first(Plan(TwoArms()));
+    Plan(TwoArms());  // held or not: nothing is to be written
+  }
+  Definition other = TwoArms();
+  other.name = "other";
+  EXPECT_THROW(Plan(other), Error);
+  fs::remove(path_ / "experiment.json");
+  EXPECT_THROW(Plan(TwoArms()), Error) << "its runs are something else now";
+}
+
+TEST_F(ExperimentFolderTest, WhatCameBetweenPlanAndLockIsSeen) {
+  Definition other = TwoArms();
+  other.arms[0].set["learner.batch"] = 65;
+  const ExperimentPlan late = Plan(other);
+  { const ExperimentFolder first(Plan(TwoArms())); }
+  EXPECT_THROW(ExperimentFolder{late}, Error);
+  EXPECT_FALSE(IsExperimentHeld(path_));
+  EXPECT_EQ(ReadExperiment(path_).definition.arms[0].set.at("learner.batch"), 64);
 }
 
 TEST_F(ExperimentFolderTest, WhatAKilledCommandLeftIsNoObstacle) {
@@ -111,7 +141,7 @@ TEST_F(ExperimentFolderTest, ABadArmIsRefusedBeforeAnythingIsWritten) {
 
 TEST_F(ExperimentFolderTest, OnlyOneProcessRunsIt) {
   {
-    const ExperimentFolder first(path_, TwoArms(), "x.json");
+    const ExperimentFolder first(Plan(TwoArms()));
     EXPECT_TRUE(IsExperimentHeld(path_));
     EXPECT_THAT(Refusal(TwoArms()), HasSubstr("is being run"));
   }
@@ -120,15 +150,17 @@ TEST_F(ExperimentFolderTest, OnlyOneProcessRunsIt) {
 }
 
 TEST_F(ExperimentFolderTest, RunsOfOtherSeedsAreFound) {
-  const ExperimentFolder open(path_, TwoArms(), "x.json");
+  const ExperimentFolder open(Plan(TwoArms()));
   for (const char* name : {"a-s12", "b-s5", "b-s5x", "c-s4", "b-s-2"}) {
     fs::create_directories(path_ / "runs" / name);
   }
+  open.experiment().Log().Write(RunStart{.run = "b-s20"});  // refused before it had a folder
+  open.experiment().Log().Write(RunStart{.run = "a-s3"});
   std::vector<int64_t> seeds;
   for (const auto& run : open.experiment().Runs()) {
     if (run.arm == 0) seeds.push_back(run.seed);
   }
-  EXPECT_THAT(seeds, testing::ElementsAre(3, 1, 5, 12));
+  EXPECT_THAT(seeds, testing::ElementsAre(3, 1, 5, 12, 20));
 }
 
 }  // namespace

@@ -41,6 +41,31 @@ TEST(RunStanding, FinishedIsTrainedAndEvaluated) {
   EXPECT_EQ(StandingOf(run.path(), nullptr).standing, RunStanding::kFinished);
 }
 
+TEST(RunStanding, FinishedIsEvaluatedOnEveryFurtherTask) {
+  PlantedRun run;
+  run.Begin();
+  run.WriteMeta("budget");
+  run.WriteFinal(0.9, 10);
+  const std::vector<std::string> transfer{"FetchReachDense", "FetchReach", "FetchPush"};
+  const auto standing = [&](const LoggedRun* logged) {
+    return StandingOf(run.path(), logged, transfer);
+  };
+  EXPECT_EQ(standing(nullptr).standing, RunStanding::kInterrupted);
+  EXPECT_EQ(standing(nullptr).missing_transfers,
+            (std::vector<std::string>{"FetchReach", "FetchPush"}))
+      << "its own task was evaluated at its end";
+  const auto evaluation = PlantedEvaluation(1000, 0.5, 10).dump();
+  WriteFileAtomically(TransferFile(run.path(), "FetchReach"), evaluation);
+  const LoggedRun failed = Ended(1), stopped = Ended(1, false, true), killed = Ended(9, true);
+  EXPECT_EQ(standing(&failed).standing, RunStanding::kFailed);
+  EXPECT_EQ(standing(&failed).problem, "why");
+  EXPECT_EQ(standing(&failed).missing_transfers, std::vector<std::string>{"FetchPush"});
+  EXPECT_EQ(standing(&stopped).standing, RunStanding::kInterrupted);
+  EXPECT_EQ(standing(&killed).standing, RunStanding::kInterrupted);
+  WriteFileAtomically(TransferFile(run.path(), "FetchPush"), evaluation);
+  EXPECT_EQ(standing(nullptr).standing, RunStanding::kFinished);
+}
+
 TEST(RunStanding, StoppedOrKilledGoesOn) {
   PlantedRun run;
   run.Begin();

@@ -92,5 +92,21 @@ TEST(SampleRatio, WhatWasNotReachedIsCountedNotDropped) {
   EXPECT_EQ(RatioOf({}).median, std::nullopt);
 }
 
+TEST(SampleRatio, WhatIsStillToBeDoneHasNotFailedToReachAnything) {
+  const std::vector<TargetReached> arm{{0, true, 200},
+                                       {1, false, std::nullopt},
+                                       {2, true, 300},
+                                       {3, true, std::nullopt},
+                                       {4, true, 100}};
+  const std::vector<TargetReached> reference{
+      {3, true, 100}, {2, false, 100}, {1, true, 100}, {0, true, 100}};
+  const SampleRatio ratio = RatioOfFinished(arm, reference);
+  ASSERT_EQ(ratio.pairs.size(), 2u);
+  EXPECT_EQ(ratio.pairs[0].seed, 0);
+  EXPECT_EQ(ratio.pairs[0].Ratio(), 2);
+  EXPECT_EQ(ratio.pairs[1].seed, 3);
+  EXPECT_EQ(ratio.not_reached, 1);
+}
+
 }  // namespace
 }  // namespace shoal::launch

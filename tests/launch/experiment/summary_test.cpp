@@ -19,7 +19,7 @@ class SummaryTest : public testing::Test {
     definition.arms = {{"state", nlohmann::ordered_json::object()},
                        {"pixels", {{"learner.batch", 64}}}};
     definition.seeds = {0, 1};
-    folder_.emplace(temporary_.path() / "mine", definition, "x.json");
+    folder_.emplace(PlanExperiment(temporary_.path() / "mine", definition, "x.json"));
     for (const ExperimentRun& run : folder_->experiment().Runs({0, 1})) {
       const RunPlanter planter(run.folder);
       planter.Begin();
@@ -32,6 +32,13 @@ class SummaryTest : public testing::Test {
     }
   }
 
+  // The same experiment with further tasks.
+  void Transfer(const std::vector<std::string>& tasks) {
+    Definition definition = folder_->experiment().definition;
+    definition.transfer = tasks;
+    folder_.reset();
+    folder_.emplace(PlanExperiment(temporary_.path() / "mine", definition, "x.json"));
+  }
   nlohmann::ordered_json Json() const { return ToJson(ReadOutcome(folder_->experiment())); }
 
   const TemporaryFolder temporary_;
@@ -95,6 +102,69 @@ TEST_F(SummaryTest, TheTextNamesWhatIsMissing) {
   EXPECT_THAT(text, HasSubstr("pixels/state: median 2.00 of 1 seed(s), 0 not reached: 2.00"));
   EXPECT_THAT(text, HasSubstr("not finished: pixels-s1 (interrupted)"));
   EXPECT_THAT(StatusText(ReadOutcome(folder_->experiment())), HasSubstr("pixels-s1"));
+}
+
+TEST_F(SummaryTest, ARunWithoutItsTransferEvaluationIsNotFinished) {
+  Transfer({"FetchReach"});
+  const auto folder = folder_->experiment().folder;
+  for (const char* name : {"state-s0", "pixels-s0"}) {
+    WriteFileAtomically(TransferFile(folder / "runs" / name, "FetchReach"),
+                        PlantedEvaluation(1000, 0.5, 10).dump());
+  }
+  folder_->experiment().Log().Write(RunStart{.run = "state-s1"});
+  folder_->experiment().Log().Write(
+      RunEnding{.run = "state-s1", .code = 1, .problem = "no such task"});
+  const auto state = Json().at("arms").at(0);
+  EXPECT_EQ(state.at("runs").at(0).at("status"), "finished");
+  EXPECT_EQ(state.at("runs").at(1).at("status"), "failed");
+  EXPECT_EQ(state.at("runs").at(1).at("problem"), "no such task");
+  EXPECT_EQ(state.at("success").at("episodes"), 20) << "of the finished run alone";
+  const ExperimentOutcome outcome = ReadOutcome(folder_->experiment());
+  EXPECT_THAT(SummaryText(outcome), HasSubstr("state-s1 (failed)"));
+  EXPECT_THAT(StatusText(outcome), HasSubstr("no such task"));
+}
+
+TEST_F(SummaryTest, ARunThatFailedBeforeItHadAFolderIsThere) {
+  folder_->experiment().Log().Write(RunStart{.run = "pixels-s9"});
+  folder_->experiment().Log().Write(RunEnding{.run = "pixels-s9", .code = 2, .problem = "refused"});
+  const auto run = Json().at("arms").at(1).at("runs").at(2);
+  EXPECT_EQ(run.at("run"), "pixels-s9");
+  EXPECT_EQ(run.at("status"), "failed");
+  EXPECT_EQ(run.at("problem"), "refused");
+}
+
+TEST_F(SummaryTest, EveryWorldHasItsBaselines) {
+  Definition definition = folder_->experiment().definition;
+  definition.name = "worlds";
+  definition.arms = {{"usual", nlohmann::ordered_json::object()},
+                     {"batch", {{"learner.batch", 64}}},
+                     {"wide", {{"distance_threshold", 0.2}}},
+                     {"push", {{"task", "FetchPush"}}},
+                     {"close", {{"task", "FetchPush"}, {"distance_threshold", 0.01}}}};
+  definition.transfer = {"FetchReach", "FetchPush"};
+  const ExperimentFolder worlds(PlanExperiment(temporary_.path() / "worlds", definition, "x.json"));
+  std::vector<std::string> names;
+  for (const JudgedWorld& world : JudgedWorlds(worlds.experiment())) names.push_back(world.name);
+  EXPECT_THAT(names,
+              testing::ElementsAre("FetchReachDense", "wide", "FetchPush", "close", "FetchReach"));
+  ExperimentOutcome outcome = ReadOutcome(worlds.experiment());
+  outcome.baselines.clear();
+  for (const JudgedWorld& world : JudgedWorlds(worlds.experiment())) {
+    Baselines baselines;
+    baselines.noop.task = world.config.task;
+    baselines.noop.return_mean = world.config.distance_threshold;
+    outcome.baselines.push_back({world, baselines});
+  }
+  auto json = ToJson(outcome).at("baselines");
+  EXPECT_EQ(json.at("noop").at("task"), "FetchReachDense");
+  EXPECT_EQ(json.at("other_arms").at("wide").at("noop").at("return_mean"), 0.2);
+  EXPECT_EQ(json.at("other_arms").at("close").at("noop").at("return_mean"), 0.01);
+  EXPECT_EQ(json.at("other_tasks").size(), 2u);
+  EXPECT_EQ(json.at("other_tasks").at("FetchPush").at("noop").at("return_mean"), 0.0);
+  EXPECT_THAT(SummaryText(outcome), HasSubstr("FetchReachDense of arm wide without a policy"));
+  outcome.baselines.erase(outcome.baselines.begin());  // the first one has not been measured
+  json = ToJson(outcome).at("baselines");
+  EXPECT_FALSE(json.contains("noop")) << "another world's do not take its place";
 }
 
 TEST_F(SummaryTest, ABrokenRunIsAFailedOne) {

@@ -105,6 +105,41 @@ TEST(RunFolderTest, ReopensByNameAndByPath) {
   EXPECT_THAT(UsageMessage([&] { RunFolder::Reopen(dir.path(), "b"); }), HasSubstr("no run 'b'"));
 }
 
+TEST(FindNamedTest, TheNameComesBeforeTheFolder) {
+  const TemporaryFolder dir;
+  const NamedKind runs = RunsIn(dir.path() / "runs");
+  const NamedKind others{.noun = "other", .dir = dir.path() / "others", .file = "other.json"};
+  const auto plant = [&](const std::filesystem::path& folder, const char* file) {
+    MakeFolders(folder);
+    WriteFileAtomically(folder / file, "{}");
+    return folder;
+  };
+  const auto named = plant(dir.path() / "runs/a", "config.json");
+  const auto other = plant(dir.path() / "others/b", "other.json");
+  const auto path = plant(dir.path() / "c", "config.json");
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(plant(dir.path() / "here/a", "config.json").parent_path());
+  EXPECT_EQ(FindNamed("a", runs), named);
+  std::filesystem::current_path(before);
+  const std::array kinds{runs, others};
+  EXPECT_EQ(FindNamed("b", kinds), other);
+  EXPECT_EQ(FindNamed(path.string(), kinds), path);
+  const std::string refusal = UsageMessage([&] { FindNamed("d", kinds); });
+  for (const std::string& part : {std::string("no run or other 'd'"), (runs.dir / "d").string(),
+                                  (others.dir / "d").string(), std::string("other.json")}) {
+    EXPECT_THAT(refusal, HasSubstr(part));
+  }
+}
+
+TEST(JudgedCheckpointTest, IsTheBestElseTheNewest) {
+  const TemporaryFolder run;
+  EXPECT_EQ(JudgedCheckpoint(run.path()), "");
+  MakeFolders(run.path() / "checkpoints/step_000000900");
+  EXPECT_EQ(JudgedCheckpoint(run.path()).filename(), "step_000000900");
+  MakeFolders(run.path() / "checkpoints/best");
+  EXPECT_EQ(JudgedCheckpoint(run.path()).filename(), "best");
+}
+
 TEST(NewestCheckpointTest, ComparesNumbersAndIgnoresOtherNames) {
   const TemporaryFolder run;
   EXPECT_EQ(NewestCheckpoint(run.path()), "");

@@ -45,6 +45,25 @@ TEST(RunMeta, AResumedRunFindsItsCountersAndWhatWasChanged) {
   EXPECT_EQ(back.changes[0].to, 32.5);
 }
 
+TEST(RunMeta, SaysWhatThePolicySeesAndHowOftenItWasUpdated) {
+  const TemporaryFolder run;
+  ObservationSpec spec;
+  spec.cameras = {"front"};
+  spec.blocks = {{"grip", 4}, {"achieved_goal", 3, false}, {"desired_goal", 3}};
+  RunMeta meta;
+  meta.policy_inputs = PolicyInputsOf(spec);
+  const auto written = [&] {
+    WriteRunMeta(run.path(), Config(), meta);
+    return nlohmann::json::parse(ReadFile(run.path() / "meta.json"));
+  };
+  EXPECT_EQ(written().at("policy_inputs"),
+            nlohmann::json({{"blocks", {"grip", "desired_goal"}}, {"cameras", {"front"}}}));
+  EXPECT_TRUE(written().at("updates_per_env_step").is_null());
+  meta.env_steps = 200;
+  meta.updates = 100;
+  EXPECT_EQ(written().at("updates_per_env_step"), 0.5);
+}
+
 TEST(RunMeta, UpdatesAfterACheckpointAreLostWithTheLearner) {
   RunMeta meta;
   for (const uint64_t reported : {100, 200, 150, 180, 180, 300}) meta.OnUpdates(reported);

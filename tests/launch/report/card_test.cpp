@@ -35,6 +35,8 @@ TEST_F(CardTest, HasWhatHubsReadAndWhatPlays) {
   EXPECT_THAT(readme, HasSubstr("model-index:\n- name: run\n"));
   EXPECT_THAT(readme, HasSubstr("value: -1.00 +/- 0.10"));
   EXPECT_THAT(readme, HasSubstr("95.0 % [88.8, 97.8] (95/100)"));
+  EXPECT_THAT(readme, HasSubstr("`shoal train --config config.json --run-name run-again --set "
+                                "run_dir=runs`"));
   const auto results = nlohmann::json::parse(ReadFile(card_ / "results.json"));
   EXPECT_EQ(results.at("mean_reward"), -1.0);
   EXPECT_EQ(results.at("n_eval_episodes"), 100);

@@ -30,6 +30,9 @@ class CompareTest : public testing::Test {
     return planter;
   }
   std::vector<RunGroup> Read(const std::vector<std::string>& names) const {
+    return SubjectsOf(names).groups;
+  }
+  Subjects SubjectsOf(const std::vector<std::string>& names) const {
     return ReadSubjects({.names = names,
                          .run_dir = runs_.string(),
                          .experiment_dir = (folder_.path() / "experiments").string()});
@@ -74,11 +77,39 @@ TEST_F(CompareTest, ARatioPairsEqualSeedsAlone) {
   EXPECT_EQ(comparison.ratios[0].median, std::nullopt);
 }
 
+TEST_F(CompareTest, ARatioIsOfFinishedRuns) {
+  Plant("a", 1, 200, 1);
+  const RunPlanter planter = Plant("b", 1, 400, 1);
+  planter.WriteMeta("interrupted");
+  std::filesystem::remove(runs_ / "b/eval/steps_0000000400.json");
+  Comparison comparison = Compare(Read({"a", "b"}), 0.9);
+  EXPECT_TRUE(comparison.ratios[0].pairs.empty()) << "it may still get there";
+  EXPECT_EQ(comparison.ratios[0].not_reached, 0);
+  EXPECT_THAT(ToText(comparison), HasSubstr("b: not yet"));
+  planter.WriteMeta("budget");
+  comparison = Compare(Read({"a", "b"}), 0.9);
+  EXPECT_EQ(comparison.ratios[0].not_reached, 1);
+  EXPECT_THAT(ToText(comparison), HasSubstr("b: not reached"));
+}
+
+TEST_F(CompareTest, ARunIsFoundByNameBeforeAFolderOfThatNameHere) {
+  Plant("a", 1, 200, 1);
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder_.path());
+  RunPlanter("a").Begin();  // without an evaluation: it would be refused
+  const Subjects subjects = SubjectsOf({"a"});
+  std::filesystem::current_path(before);
+  EXPECT_EQ(subjects.named[0].name, "a");
+  EXPECT_FALSE(subjects.named[0].experiment);
+  EXPECT_EQ(subjects.groups[0].runs[0].folder, runs_ / "a");
+}
+
 TEST_F(CompareTest, AnArmIsAGroupAndWhatIsMissingIsNamed) {
   Definition definition{.name = "mine", .base = "fetch-reach-state"};
   definition.arms = {{"x", nlohmann::ordered_json::object()}, {"y", {{"learner.batch", 32}}}};
   definition.seeds = {0, 1};
-  const ExperimentFolder open(folder_.path() / "experiments/mine", definition, "x.json");
+  const ExperimentFolder open(
+      PlanExperiment(folder_.path() / "experiments/mine", definition, "x.json"));
   for (const ExperimentRun& run : open.experiment().Runs({0, 1})) {
     if (run.name == "y-s1") continue;
     const RunPlanter planter(run.folder);
@@ -91,6 +122,7 @@ TEST_F(CompareTest, AnArmIsAGroupAndWhatIsMissingIsNamed) {
   const Comparison comparison = Compare(Read({"mine"}), 0.9);
   ASSERT_EQ(comparison.groups.size(), 2u);
   EXPECT_EQ(comparison.groups[0].name, "x");
+  EXPECT_THAT(comparison.groups[0].finished, ElementsAre(true, false));
   EXPECT_THAT(comparison.groups[0].seeds, ElementsAre(0, 1));
   EXPECT_THAT(comparison.groups[0].without_final, ElementsAre("x-s1"));
   EXPECT_THAT(comparison.groups[1].unevaluated, ElementsAre("y-s1"));

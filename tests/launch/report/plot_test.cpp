@@ -73,15 +73,27 @@ TEST(PlotScript, SaysWhatCannotBeDrawn) {
 }
 
 TEST(PlotScript, NamesCannotEndAString) {
-  const std::string script = PlotScript({.title = "say \"hi\"\n", .figures = {PlotFigure::kReturn}},
-                                        {TwoSeeds()}, "x.png");
-  EXPECT_THAT(script, HasSubstr(R"x(title "a \"b\" (2 seeds)")x"));
-  EXPECT_THAT(script, HasSubstr(R"x(title "say \"hi\" ")x"));
+  const std::string script = PlotScript(
+      {.title = "it's \"high\"\n", .figures = {PlotFigure::kReturn}}, {TwoSeeds()}, "x.png");
+  EXPECT_THAT(script, HasSubstr(R"x(title 'a "b" (2 seeds)')x"));
+  EXPECT_THAT(script, HasSubstr(R"x(title 'it''s "high" ')x"));
   EXPECT_THAT(script, HasSubstr("filledcurves"));
   const RunGroup one{.name = "one", .runs = {RunOf({{100, 0}, {200, 10}})}};
   EXPECT_THAT(PlotScript({.title = "t", .figures = {PlotFigure::kReturn}}, {one}, "x.svg"),
               Not(HasSubstr("filledcurves")))
       << "one seed has no band";
+}
+
+TEST(Draw, ANameRunsNoCommand) {
+  if (std::system("command -v gnuplot >/dev/null") != 0) GTEST_SKIP() << "needs gnuplot";
+  const TemporaryFolder folder;
+  const std::string mark = (folder.path() / "mark").string();
+  const std::string name = fmt::format("x`touch {0}`'.system('touch {0}').\"$(touch {0})", mark);
+  RunGroup group = TwoSeeds();
+  group.name = name;
+  Draw({.title = name, .figures = {PlotFigure::kReturn}}, {group}, folder.path() / "x.svg");
+  EXPECT_FALSE(std::filesystem::exists(mark));
+  EXPECT_THAT(ReadFile(folder.path() / "x.svg"), HasSubstr("x`touch"));
 }
 
 TEST(Draw, MakesPicturesOfBothKinds) {

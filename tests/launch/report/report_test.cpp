@@ -35,11 +35,31 @@ TEST(Report, IsOnePageThatNeedsNothingElse) {
       ReportHtml(GatherReport({.names = {"a"}, .run_dir = folder.path().string()}));
   for (const char* part :
        {"100.0 % [96.3, 100.0] (100/100)", "<svg", "&quot;batch&quot;: ", "abc, def",
-        "a fast one (2 cores)", "shoal train --config", "data:video/mp4;base64,TWFu"}) {
+        "a fast one (2 cores)", "/config.json --run-name a-again --set run_dir=runs",
+        "data:video/mp4;base64,TWFu"}) {
     EXPECT_THAT(html, HasSubstr(part));
   }
   for (const char* link : {"<script", "src=\"http", "<link", "url("}) {
     EXPECT_THAT(html, Not(HasSubstr(link)));
+  }
+}
+
+TEST(Report, ShowsTheDefinitionOfAnExperiment) {
+  if (std::system("command -v gnuplot >/dev/null") != 0) GTEST_SKIP() << "needs gnuplot";
+  const TemporaryFolder folder;
+  Definition definition{.name = "mine", .base = "fetch-reach-state", .question = "Why?"};
+  definition.set = {{"env_steps", 1000}};
+  definition.arms = {{"x", nlohmann::ordered_json::object()}, {"y", {{"learner.batch", 32}}}};
+  definition.seeds = {4, 7};
+  definition.final_episodes = 60;
+  const ExperimentFolder open(PlanExperiment(folder.path() / "mine", definition, "x.json"));
+  for (const ExperimentRun& run : open.experiment().Runs()) Plant(run.folder);
+  const std::string html = ReportHtml(
+      GatherReport({.names = {"mine"}, .run_dir = "nowhere", .experiment_dir = folder.path()}));
+  for (const char* part : {"<h1>mine</h1>", "Why?", "<td>arm y</td><td>learner.batch = 32</td>",
+                           "<td>4, 7</td>", "<td>60</td>", "<td>env_steps = 1000</td>",
+                           "fetch-reach-state", "shoal experiment run mine"}) {
+    EXPECT_THAT(html, HasSubstr(part));
   }
 }
 
