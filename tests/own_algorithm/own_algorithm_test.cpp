@@ -1,0 +1,103 @@
+// The worked example of docs/own_algorithm.md does what its page says.
+#include <gmock/gmock.h>
+
+#include "averaged_ddpg.h"
+#include "common/base/error.h"
+#include "common/nn/policy.h"
+#include "strided_encoder.h"
+#include "tests/learner/agent/agent_fixture.h"
+
+namespace shoal::learner {
+namespace {
+
+using nn::Precision;
+
+std::unique_ptr<Agent> SmallAgent() {
+  return MakeAveragedDdpgAgent(SmallConfig(), SmallSpec(), Precision::kF32);
+}
+
+UpdateOutcome UpdateWith(Agent* agent, uint64_t key) {
+  return agent->Update(RandomBatch(SmallSpec(), SmallConfig().learner.batch, key).View());
+}
+
+TEST(OwnAlgorithm, ReportsItsFiguresInTheirOrder) {
+  const UpdateOutcome outcome = UpdateWith(SmallAgent().get(), 1);
+  ASSERT_TRUE(outcome.finite);
+  std::vector<const Figure*> figures;
+  for (const auto& entry : outcome.figures.entries()) figures.push_back(entry.figure);
+  EXPECT_THAT(figures, ::testing::ElementsAreArray(kAveragedDdpgFigures));
+  EXPECT_GT(Get(outcome, kCriticSpread), 0);
+}
+
+TEST(OwnAlgorithm, GoesOnByteForByteFromWhatItLeft) {
+  const auto agent = SmallAgent(), other = SmallAgent();
+  for (uint64_t u = 0; u < 3; ++u) UpdateWith(agent.get(), u);
+  other->Restore(agent->AllTensors(), "test");
+  EXPECT_EQ(other->updates(), 3u);
+  for (uint64_t u = 3; u < 6; ++u) {
+    UpdateWith(agent.get(), u);
+    UpdateWith(other.get(), u);
+  }
+  EXPECT_THAT(Differences(agent->AllTensors(), other->AllTensors()), ::testing::IsEmpty());
+}
+
+TEST(OwnAlgorithm, AnUpdateThatIsNotFiniteChangesNothing) {
+  const auto agent = SmallAgent();
+  UpdateWith(agent.get(), 1);
+  const nn::TensorMap before = agent->AllTensors();
+  const RandomBatch batch(SmallSpec(), SmallConfig().learner.batch, 2);
+  const BatchView view = batch.View();
+  view.reward[1] = 1e25f;  // its squared error is not
+  EXPECT_FALSE(agent->Update(view).finite);
+  EXPECT_THAT(Differences(before, agent->AllTensors()), ::testing::IsEmpty());
+}
+
+// Reward -(a - s0 / 2)^2, every step terminal: the best action is s0 / 2.
+TEST(OwnAlgorithm, LearnsABandit) {
+  ObservationSpec spec;
+  spec.task = "bandit";
+  spec.blocks = {{"state", 2}};
+  spec.action_size = 1;
+  Config config;
+  config.learner.batch = 64;
+  config.learner.learning_rate = 3e-3;
+  config.learner.reward_scale = 5;
+  config.network.hidden = {32, 32};
+  const auto agent = MakeAveragedDdpgAgent(config, spec, Precision::kF32);
+  Random random(1);
+  for (uint64_t u = 0; u < 400; ++u) {
+    const RandomBatch batch(spec, config.learner.batch, u);
+    const BatchView view = batch.View();
+    for (size_t b = 0; b < view.reward.size(); ++b) {
+      view.obs_vector[2 * b] = float(random.Uniform(-1, 1));
+      const float error = view.action[b] - view.obs_vector[2 * b] / 2;
+      view.reward[b] = -error * error;
+      view.bootstrap[b] = 0;
+    }
+    ASSERT_TRUE(agent->Update(view).finite);
+  }
+  nn::Policy policy(config.network, spec, Precision::kF32, 1);
+  policy.Load(agent->PolicyTensors(), "agent");
+  double error = 0;
+  for (int i = 0; i < 41; ++i) {
+    const float state[2] = {float(i - 20) / 20, 0.f};
+    error += std::abs(std::tanh(policy.Forward(1, nullptr, state).mean[0]) - state[0] / 2) / 41;
+  }
+  EXPECT_LT(error, 0.08);
+}
+
+TEST(OwnEncoder, IsAPlanFromWhichShapesAndParametersFollow) {
+  nn::NetworkPlan plan(nn::MapShape{.channels = 9, .height = 84, .width = 84});
+  nn::AddStrided(NetworkConfig(), "encoder", &plan);
+  EXPECT_EQ(plan.output(), (nn::MapShape{.channels = 32, .height = 11, .width = 11}));
+  const auto parameters = plan.Parameters();
+  ASSERT_EQ(parameters.size(), 6u);
+  EXPECT_EQ(parameters[0].name, "encoder.conv0.weight");
+  EXPECT_THAT(parameters[0].shape, ::testing::ElementsAre(32, 9, 5, 5));
+  nn::NetworkPlan small(nn::MapShape{.channels = 3, .height = 1, .width = 1});
+  nn::AddStrided(NetworkConfig(), "encoder", &small);
+  EXPECT_EQ(small.output().height, 1) << "padding keeps what is small";
+}
+
+}  // namespace
+}  // namespace shoal::learner
