@@ -199,10 +199,10 @@ ExperimentPlan PlanExperiment(const fs::path& folder, const Definition& definiti
     throw UsageError("'{}' holds something else than an experiment (no {}): not used",
                      folder.string(), kFile);
   } else {
-    plan.experiment = {.folder = fs::weakly_canonical(fs::absolute(folder)),
-                       .definition = {},
-                       .base = ResolveBase(definition, source),
-                       .created = UtcTimestamp()};
+    // Not as one braced value: g++ 12 destroys members that it has not made when one throws.
+    plan.experiment.folder = fs::weakly_canonical(fs::absolute(folder));
+    plan.experiment.base = ResolveBase(definition, source);
+    plan.experiment.created = UtcTimestamp();
   }
   plan.experiment.definition = definition;
   for (const Arm& arm : definition.arms) {
