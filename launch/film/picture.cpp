@@ -145,7 +145,8 @@ void FilmPicture::DrawWords(const FilmText& text) {
     caption(layout_.cameras[i],
             fmt::format("{}, policy input {}×{}", spec_.cameras[i], spec_.width, spec_.height));
   }
-  caption(layout_.view, "larger view");
+  caption(layout_.view,
+          layout_.cameras.empty() ? "the policy sees numbers, no pictures" : "larger view");
 
   const Box& status = layout_.status;
   const int column = status.width / kStatusColumns;

@@ -30,6 +30,10 @@ inline DecodedFilm DecodeFilm(const std::filesystem::path& path) {
   }
   EXPECT_GE(avformat_find_stream_info(format, nullptr), 0);
   EXPECT_EQ(format->nb_streams, 1u);
+  if (format->nb_streams == 0) {
+    avformat_close_input(&format);
+    return film;
+  }
   const AVStream* const stream = format->streams[0];
   const AVCodec* const decoder = avcodec_find_decoder(stream->codecpar->codec_id);
   AVCodecContext* codec = avcodec_alloc_context3(decoder);
