@@ -23,6 +23,7 @@ struct FilmOptions {
 };
 
 constexpr int kEpisodes = 5, kEpisodesAcross = 2;
+constexpr uintmax_t kLargestInReport = 2'000'000;  // bytes
 
 fs::path FindRun(const FilmOptions& options) {
   const fs::path named = fs::path(options.run_dir) / options.run;
@@ -63,6 +64,9 @@ int Film(const FilmOptions& options) {
   }
   fmt::print("{}: {:.1f} s, {} frames, {:.2f} MB\n", order.output.string(), film->seconds,
              film->frames, 1e-6 * static_cast<double>(film->bytes));
+  if (film->bytes > kLargestInReport) {
+    fmt::print(stderr, "reports leave out films above 2 MB: fewer --episodes make a smaller one\n");
+  }
   return 0;
 }
 
