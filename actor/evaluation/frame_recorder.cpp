@@ -1,5 +1,7 @@
 #include "actor/evaluation/frame_recorder.h"
 
+#include <cmath>
+
 #include "actor/worlds/world_registry.h"
 #include "common/base/check.h"
 #include "common/tasks/task_registry.h"
@@ -30,7 +32,16 @@ std::unique_ptr<worlds::Environment> MakeView(const Config& config) {
   return worlds::MakeEnvironment(config, worlds::MakeRenderContext(config.observation));
 }
 
-image::FrameStreamHeader HeaderOf(const ObservationSpec& seen, const ObservationSpec& view) {
+// What an env step takes in the world; 0 = unknown. Plays one step.
+uint32_t StepMicroseconds(worlds::Environment& environment, worlds::ObservationOut out) {
+  environment.Reset(0, out);
+  const double start = environment.simulated_seconds();
+  environment.Step(std::vector<float>(size_t(environment.spec().action_size), 0.0F), out);
+  return static_cast<uint32_t>(std::lround(1e6 * (environment.simulated_seconds() - start)));
+}
+
+image::FrameStreamHeader HeaderOf(const ObservationSpec& seen, const ObservationSpec& view,
+                                  uint32_t step_microseconds) {
   return {.magic = {},
           .channels = static_cast<uint32_t>(seen.channels * seen.stack),
           .height = static_cast<uint32_t>(seen.height),
@@ -39,7 +50,7 @@ image::FrameStreamHeader HeaderOf(const ObservationSpec& seen, const Observation
           .view_height = static_cast<uint32_t>(view.height),
           .view_width = static_cast<uint32_t>(view.width),
           .action_size = static_cast<uint32_t>(seen.action_size),
-          .reserved = 0};
+          .step_microseconds = step_microseconds};
 }
 
 // (3, H, W) to (H, W, 3).
@@ -56,10 +67,11 @@ void Interleave(std::span<const uint8_t> planes, std::span<uint8_t> pixels) {
 
 FrameRecorder::FrameRecorder(const RunConfig& run, const Options& options)
     : view_(MakeView(ViewConfig(run, options))),
-      writer_(options.file, HeaderOf(run.spec, view_->spec())),
       planes_(static_cast<size_t>(view_->spec().FrameBytes())),
       interleaved_(planes_.size()),
       vector_(static_cast<size_t>(view_->spec().RecordedVectorSize())),
+      writer_(options.file,
+              HeaderOf(run.spec, view_->spec(), StepMicroseconds(*view_, {planes_, vector_}))),
       no_action_(static_cast<size_t>(run.spec.action_size), 0.0F) {}
 
 void FrameRecorder::OnBegin(uint64_t stream_key, std::span<const uint8_t> stack) {

@@ -37,9 +37,9 @@ class FrameRecorder final : public SeatListener {
              std::span<const uint8_t> stack);
 
   std::unique_ptr<worlds::Environment> view_;
-  image::FrameStreamWriter writer_;
   std::vector<uint8_t> planes_, interleaved_;  // the view as it is drawn: (3, H, W); as written
   std::vector<float> vector_;
+  image::FrameStreamWriter writer_;
   std::vector<float> no_action_;
   uint32_t episode_ = 0, step_ = 0;
 };

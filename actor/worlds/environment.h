@@ -46,6 +46,8 @@ class Environment {
   // `action` (A), each in [-1, 1], is repeated for the control steps of an env step, or until the
   // episode ends; the observation is taken once, after the last.
   virtual StepResult Step(std::span<const float> action, ObservationOut out) = 0;
+  // Simulated since some moment before the last reset; 0 throughout where it is not known.
+  virtual double simulated_seconds() const { return 0; }
   // Seconds spent drawing frames since the construction.
   virtual double render_seconds() const = 0;
   // Drawn at the last reset, in the order drawn; empty unless the configuration randomizes.

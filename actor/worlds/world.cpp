@@ -52,6 +52,8 @@ void World::PlaceSite(int site, std::span<const double> position) {
       0;  // 1: same frame as the body, decided when the model was compiled
 }
 
+double World::simulated_seconds() const { return data_->time; }
+
 void World::Advance(int count) {
   for (int i = 0; i < count; ++i) mj_step(model_.get(), data_.get());
   CheckState();

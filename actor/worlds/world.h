@@ -47,6 +47,8 @@ class World {
   const mjModel_& model() const { return *model_; }
   mjData_& data() { return *data_; }
   const mjData_& data() const { return *data_; }
+  // The engine's clock.
+  double simulated_seconds() const;
   // Of the model as loaded: see ModelFingerprint.
   const std::string& fingerprint() const { return fingerprint_; }
 

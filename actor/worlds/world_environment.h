@@ -27,6 +27,7 @@ class WorldEnvironment final : public Environment {
   const ObservationSpec& spec() const override { return spec_; }
   float Reset(uint64_t stream_key, ObservationOut out) override;
   StepResult Step(std::span<const float> action, ObservationOut out) override;
+  double simulated_seconds() const override { return world_->simulated_seconds(); }
   double render_seconds() const override { return render_seconds_; }
   std::span<const DrawnMass> drawn_masses() const override { return masses_.drawn(); }
 

@@ -35,7 +35,6 @@ bool Plausible(const FrameStreamHeader& header) {
 FrameStreamWriter::FrameStreamWriter(const std::filesystem::path& path, FrameStreamHeader header)
     : path_(path), header_(header), file_(Open(path, "wbe", "write")) {
   std::memcpy(header_.magic, kMagic, 8);
-  header_.reserved = 0;
   CHECK(Plausible(header_));
   Put(&header_, sizeof header_);
 }

@@ -26,7 +26,7 @@ struct FrameStreamHeader {
   uint32_t frame_channels;           // C of one of its K frames
   uint32_t view_height, view_width;  // of the larger view, RGB interleaved; 0 = none
   uint32_t action_size;              // A
-  uint32_t reserved;
+  uint32_t step_microseconds;        // simulated per env step; 0 = unknown
 
   uint64_t InputBytes() const { return uint64_t{channels} * height * width; }
   uint64_t ViewBytes() const { return uint64_t{view_height} * view_width * 3; }
@@ -49,7 +49,7 @@ static_assert(sizeof(FrameRecordHeader) == 16);
 // Owns the file. One thread.
 class FrameStreamWriter {
  public:
-  // Magic and reserved words of `header` are filled in. Opening a pipe waits for its reader.
+  // The magic of `header` is filled in. Opening a pipe waits for its reader.
   FrameStreamWriter(const std::filesystem::path& path, FrameStreamHeader header);
 
   // CHECK on parts of other sizes than the header says. Each record is handed on at once.

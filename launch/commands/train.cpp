@@ -40,9 +40,18 @@ void AddTrainCommand(CLI::App& app, Action* chosen) {
                     "Return once the run has started; watch it with shoal attach or shoal top");
   command->add_option("--prometheus", options->prometheus,
                       "PORT (on 127.0.0.1) or ADDRESS:PORT to serve metrics at, for Prometheus");
-  command->add_flag("--print-config", options->print_config, "Print every key and exit");
-  command->add_flag("--dry-run", options->dry_run, "Check everything, start nothing");
-  command->add_flag("--describe-keys", *describe_keys, "Print a table of all keys and exit");
+  auto* print_config =
+      command->add_flag("--print-config", options->print_config, "Print every key and exit");
+  auto* dry_run =
+      command->add_flag("--dry-run", options->dry_run, "Check everything, start nothing");
+  auto* describe =
+      command->add_flag("--describe-keys", *describe_keys, "Print a table of all keys and exit");
+  command
+      ->add_flag("--film", options->film,
+                 "After the final evaluation, film the best checkpoint (shoal film)")
+      ->excludes(print_config)
+      ->excludes(dry_run)
+      ->excludes(describe);
   command->callback([=] {
     *chosen = [=] {
       if (!*describe_keys) return RunTraining(*options);

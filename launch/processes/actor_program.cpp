@@ -18,6 +18,8 @@ namespace fs = std::filesystem;
 constexpr char kProgram[] = "shoal-actor";
 constexpr std::chrono::seconds kDescribeDeadline{60};
 constexpr std::chrono::seconds kStartDeadline{60}, kEpisodeDeadline{60};
+// A thousand larger pictures of the reference quality, drawn without a GPU and encoded.
+constexpr std::chrono::seconds kShownEpisodeDeadline{600};
 
 // The program's own error line, without its name, as an Error of the same exit code.
 Error FailureOf(const ExitStatus& status, const fs::path& errors) {
@@ -61,8 +63,15 @@ std::optional<EvaluationPoint> EvaluateByActor(const EvaluationOrder& order,
                                   "--seed", std::to_string(order.seed), "--json", json.string()},
                                  1);
   if (!order.task.empty()) spec.command.insert(spec.command.end(), {"--task", order.task});
+  const bool shown = !order.frames.stream.empty();
+  if (shown) {
+    const std::string side = std::to_string(order.frames.side);
+    spec.command.insert(spec.command.end(), {"--frames", order.frames.stream.string(),
+                                             "--view-height", side, "--view-width", side});
+  }
   spec.output = scratch.path() / "output";
-  const std::chrono::seconds deadline = kStartDeadline + order.episodes * kEpisodeDeadline;
+  const std::chrono::seconds deadline =
+      kStartDeadline + order.episodes * (shown ? kShownEpisodeDeadline : kEpisodeDeadline);
   const auto status = RunToEnd(spec, deadline, stop);
   if (!status && stop()) return std::nullopt;
   if (!status) {

@@ -16,12 +16,19 @@ namespace shoal::launch {
 // its exit code.
 ObservationSpec DescribeObservations(const Config& config);
 
+// Where an evaluation shows its episodes (common/image/frame_stream.h).
+struct ShownFrames {
+  std::filesystem::path stream = {};  // file or pipe; empty = nowhere
+  int side = 0;                       // height and width of the larger view, pixels
+};
+
 struct EvaluationOrder {
   std::filesystem::path run, checkpoint;
   int episodes = 0;
   int64_t seed = 0;
-  std::string task = {};       // to play instead of the run's; empty = the run's
-  std::filesystem::path json;  // where the result goes; empty = nowhere
+  std::string task = {};            // to play instead of the run's; empty = the run's
+  std::filesystem::path json = {};  // where the result goes; empty = nowhere
+  ShownFrames frames = {};
 };
 
 // `shoal-actor --evaluate`: fresh episodes of the final stream with a checkpoint. Throws Error when

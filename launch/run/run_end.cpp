@@ -6,6 +6,7 @@
 #include "common/base/clock.h"
 #include "common/base/error.h"
 #include "common/base/stop.h"
+#include "launch/film/film.h"
 #include "launch/processes/actor_program.h"
 #include "launch/processes/run_hosts.h"
 #include "launch/processes/run_leftovers.h"
@@ -55,8 +56,34 @@ std::optional<EvaluationPoint> EvaluateAtEnd(const fs::path& run, const Config& 
   return point;
 }
 
+// Of the first of the episodes that judge the run. Empty when it was left out.
+fs::path FilmAtEnd(const fs::path& run, const Config& config, OperatorDesk& desk,
+                   Progress& progress) {
+  constexpr int kEpisodes = 5;
+  const fs::path checkpoint = JudgedCheckpoint(run);
+  if (checkpoint.empty()) throw RuntimeError("run '{}' has no checkpoint", run.string());
+  const fs::path film = FilmPath(run, checkpoint.filename());
+  const int stops = StopRequests();
+  const auto made = MakeFilm(
+      {.run = run,
+       .checkpoints = {checkpoint},
+       .episodes = kEpisodes,
+       .seed = config.seed,
+       .output = film},
+      [stops, &desk] {
+        desk.ShowAgain("evaluating", Now());
+        return StopRequests() > stops;
+      },
+      [&](const std::string& line) { progress.Say(line); });
+  if (made) return film;
+  progress.Say("the film was left out");
+  return {};
+}
+
+// `film` is empty where there is none.
 void PrintSummary(const fs::path& run, const Config& config, const RunResult& result,
-                  const std::optional<EvaluationPoint>& final_evaluation, Progress& progress) {
+                  const std::optional<EvaluationPoint>& final_evaluation, const fs::path& film,
+                  Progress& progress) {
   const RunMeta& meta = result.meta;
   progress.Say(fmt::format("run {} ended ({}): {} env steps, {} updates, {} ({:.0f} s)",
                            run.string(), meta.exit, meta.env_steps, meta.updates,
@@ -89,12 +116,13 @@ void PrintSummary(const fs::path& run, const Config& config, const RunResult& re
        {"meta.json", "bottleneck.json", "metrics.jsonl", "eval", "checkpoints", "tensorboard"}) {
     if (fs::exists(run / name)) progress.Say(fmt::format("  {}", (run / name).string()));
   }
+  if (!film.empty()) progress.Say(fmt::format("  {}", film.string()));
 }
 
 }  // namespace
 
-int EndRun(const fs::path& run, const Config& config, RunResult result, OperatorDesk& desk,
-           Progress& progress) {
+int EndRun(const fs::path& run, const Config& config, RunResult result, bool film,
+           OperatorDesk& desk, Progress& progress) {
   RunMeta& meta = result.meta;
   bool good = result.clean && meta.exit != "failed";
   RemoveUnfinishedFiles(run);
@@ -126,7 +154,14 @@ int EndRun(const fs::path& run, const Config& config, RunResult result, Operator
   }
   meta.finished = UtcTimestamp();
   WriteRunMeta(run, config, meta);
-  PrintSummary(run, config, result, final_evaluation, progress);
+  fs::path filmed;
+  try {
+    if (film && WantsFinalEvaluation(meta)) filmed = FilmAtEnd(run, config, desk, progress);
+  } catch (const Error& e) {
+    good = false;  // what was asked for is not there; the run itself is none the worse
+    progress.Say(fmt::format("error: no film: {}", e.what()));
+  }
+  PrintSummary(run, config, result, final_evaluation, filmed, progress);
   return good ? 0 : 1;
 }
 

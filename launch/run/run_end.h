@@ -9,9 +9,10 @@
 
 namespace shoal::launch {
 
-// Prints the summary and returns the run's exit code: 1 when it failed, a process left with an
-// error, or the records do not balance.
-int EndRun(const std::filesystem::path& run, const Config& config, RunResult result,
+// With `film`, a run that is judged is filmed too. Prints the summary and returns the run's exit
+// code: 1 when it failed, a process left with an error, the records do not balance, or there is no
+// film that was asked for.
+int EndRun(const std::filesystem::path& run, const Config& config, RunResult result, bool film,
            OperatorDesk& desk, Progress& progress);
 
 }  // namespace shoal::launch

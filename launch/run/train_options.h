@@ -17,6 +17,7 @@ struct TrainOptions {
   std::string resume;            // run to go on with: its path or its name
   bool overwrite = false, lockstep = false;
   bool print_config = false, dry_run = false;
+  bool film = false;       // of the judged checkpoint, once the run has been judged
   bool detach = false;     // return once the run has started; it goes on by itself
   std::string prometheus;  // PORT or ADDRESS:PORT to serve metrics at; empty = none
 };

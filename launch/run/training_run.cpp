@@ -233,7 +233,8 @@ int Start(PreparedRun run, const TrainOptions& options, std::unique_ptr<dds::Bus
   const int stops = StopRequests();
   FetchFromHosts(path, run.config.config, run.hosts, say,
                  [stops] { return StopRequests() > stops; });
-  const int exit_code = EndRun(path, run.config.config, std::move(result), desk, progress);
+  const int exit_code =
+      EndRun(path, run.config.config, std::move(result), options.film, desk, progress);
   desk.ShowEnd(exit_code);
   return exit_code;
 }

@@ -21,6 +21,7 @@ const std::map<std::string, std::string> kHomes = {
     {"dds/", "common/dds"},     {"dnnl", "common/nn"},       {"oneapi/", "common/nn"},
     {"Eigen/", "common/nn"},    {"mujoco/", "actor/worlds"}, {"GL/", "actor/worlds"},
     {"spdlog/", "common/base"}, {"png.h", "common/image"},   {"openssl/", "common/credentials"},
+    {"libav", "launch/film"},   {"libsw", "launch/film"},    {"cairo", "launch/film"},
 };
 
 // Stands for a program of others, which knows of Shoal what the documentation says.
@@ -33,7 +34,7 @@ const std::set<std::string> kEmptyNames = {"utils", "util",    "helpers", "helpe
 const std::map<std::string, std::vector<std::string>> kRooms = {
     {"actor", {"worlds", "acting", "sending", "loop", "evaluation"}},
     {"launch",
-     {"record", "processes", "watch", "run", "experiment", "report", "check", "commands"}},
+     {"record", "processes", "film", "watch", "run", "experiment", "report", "check", "commands"}},
 };
 
 // What a room may not include: a folder, or one header.

@@ -3,9 +3,9 @@
 // - common < actor, replay_server, learner < launch < tests: a folder uses itself and those before
 //   it; the three in the middle do not use each other.
 // - Inside common, a folder uses those before it in the order of common/CMakeLists.txt; inside
-// actor,
-//   worlds < acting < sending < loop < evaluation; inside launch, record < processes < watch < run
-//   < experiment < report < check < commands. A new room gets its place in include_rules.cpp.
+//   actor, worlds < acting < sending < loop < evaluation; inside launch, record < processes < film
+//   < watch < run < experiment < report < check < commands. A new room gets its place in
+//   include_rules.cpp.
 // - replay_server/core knows neither its service nor the transport, no clock and no threads.
 // - A third-party library with a home (DDS, oneDNN, MuJoCo, ...) is included there and in that
 //   folder's tests alone; and in tests/stock_client, a program as others would write it.

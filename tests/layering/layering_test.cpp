@@ -151,10 +151,14 @@ TEST(Layering, LibrariesStayAtHome) {
   const PlantedTree tree;
   tree.Write("actor/a.cpp", "#include <mujoco/mujoco.h>\n");
   tree.Write("common/wire/a.cpp", "#include \"dds/dds.h\"\n");
+  tree.Write("launch/film/a.cpp", "#include <cairo.h>\n#include <libavcodec/avcodec.h>\n");
+  tree.Write("launch/run/a.cpp", "#include <cairo.h>\n#include <libavcodec/avcodec.h>\n");
   tree.Write("learner/a.cpp", "#include <dnnl.hpp>\n");
   EXPECT_THAT(tree.Breaches(),
               ElementsAre("actor/a.cpp:1: <mujoco/mujoco.h> belongs to actor/worlds alone",
                           "common/wire/a.cpp:1: <dds/dds.h> belongs to common/dds alone",
+                          "launch/run/a.cpp:1: <cairo.h> belongs to launch/film alone",
+                          "launch/run/a.cpp:2: <libavcodec/avcodec.h> belongs to launch/film alone",
                           "learner/a.cpp:1: <dnnl.hpp> belongs to common/nn alone"));
 }
 

@@ -57,6 +57,7 @@ class FrameRecorderTest : public testing::Test {
     image::FrameStreamReader reader(file_);
     EXPECT_EQ(reader.header().view_height, 40u);
     EXPECT_EQ(reader.header().view_width, 60u);
+    EXPECT_EQ(reader.header().step_microseconds, 40'000u) << "Fetch is controlled at 25 Hz";
     std::vector<image::ShownFrame> frames;
     while (auto frame = reader.Next()) frames.push_back(std::move(*frame));
     return frames;

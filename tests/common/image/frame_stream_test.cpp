@@ -29,7 +29,7 @@ class FrameStreamTest : public testing::Test {
             .view_height = 1,
             .view_width = 1,
             .action_size = 1,
-            .reserved = 7};
+            .step_microseconds = 40'000};
   }
   void WriteTwo() const {
     FrameStreamWriter writer(file_, Header());
@@ -61,7 +61,7 @@ TEST_F(FrameStreamTest, IsReadAsItWasWritten) {
   FrameStreamReader reader(file_);
   EXPECT_EQ(reader.header().channels, 2u);
   EXPECT_EQ(reader.header().frame_channels, 1u);
-  EXPECT_EQ(reader.header().reserved, 0u);
+  EXPECT_EQ(reader.header().step_microseconds, 40'000u);
   auto frame = reader.Next();
   ASSERT_TRUE(frame);
   EXPECT_EQ(frame->record.step, 0u);

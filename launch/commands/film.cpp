@@ -1,0 +1,105 @@
+#include "launch/film/film.h"
+
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+
+#include "common/base/error.h"
+#include "common/base/stop.h"
+#include "launch/commands/commands.h"
+#include "launch/experiment/run_experiment.h"
+#include "launch/film/film_checkpoints.h"
+
+namespace shoal::launch {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct FilmOptions {
+  std::string run, run_dir = "runs", checkpoint, output;
+  bool across = false;
+  int episodes = 0;  // 0: kEpisodes, or kEpisodesAcross of each checkpoint
+  int64_t seed = 1;
+};
+
+constexpr int kEpisodes = 5, kEpisodesAcross = 2;
+constexpr uintmax_t kLargestInReport = 2'000'000;  // bytes
+
+fs::path FindRun(const FilmOptions& options) {
+  const fs::path named = fs::path(options.run_dir) / options.run;
+  const fs::path run = fs::exists(named / "config.json") ? named : fs::path(options.run);
+  if (fs::exists(run / "config.json")) return fs::absolute(run).lexically_normal();
+  throw UsageError("no run '{}': neither '{}' nor '{}' has a config.json", options.run,
+                   named.string(), options.run);
+}
+
+FilmOrder OrderOf(const FilmOptions& options) {
+  FilmOrder order;
+  order.run = FindRun(options);
+  order.seed = options.seed;
+  order.episodes = options.episodes;
+  if (order.episodes == 0) order.episodes = options.across ? kEpisodesAcross : kEpisodes;
+  if (options.across) {
+    order.checkpoints = CheckpointsAcross(order.run);
+  } else {
+    order.checkpoints = {FilmedCheckpoint(order.run, options.checkpoint)};
+  }
+  order.output = options.output;
+  if (options.output.empty()) {
+    order.output =
+        FilmPath(order.run, options.across ? "across" : order.checkpoints[0].filename().string());
+  }
+  CheckFilmOutput(order.run, order.output);
+  return order;
+}
+
+int Film(const FilmOptions& options) {
+  InstallStopSignals();
+  const FilmOrder order = OrderOf(options);
+  const auto film = MakeFilm(order, StopRequested,
+                             [](const std::string& line) { fmt::print(stderr, "{}\n", line); });
+  if (!film) {
+    fmt::print(stderr, "shoal: interrupted: no film was made\n");
+    return kInterruptedExit;
+  }
+  fmt::print("{}: {:.1f} s, {} frames, {:.2f} MB\n", order.output.string(), film->seconds,
+             film->frames, 1e-6 * static_cast<double>(film->bytes));
+  if (film->bytes > kLargestInReport) {
+    fmt::print(stderr, "reports leave out films above 2 MB: fewer --episodes make a smaller one\n");
+  }
+  return 0;
+}
+
+}  // namespace
+
+void AddFilmCommand(CLI::App& app, Action* chosen) {
+  CLI::App* command = app.add_subcommand(
+      "film",
+      "An MP4 film of a run's policy: what it sees, pixel by pixel, beside a larger view, with "
+      "step, reward, return and success. Plays in browsers, as fast as the robot moves.");
+  const auto options = std::make_shared<FilmOptions>();
+  command->add_option("run", options->run, "Run: name or folder")->required();
+  command->add_option("--run-dir", options->run_dir, "Folder that holds the runs")
+      ->capture_default_str();
+  auto* across = command->add_flag(
+      "--across-checkpoints", options->across,
+      "The first checkpoint, two between and the best, one after the other: how it learned");
+  command
+      ->add_option("--checkpoint", options->checkpoint,
+                   "Name in RUN/checkpoints; default: best, else the newest")
+      ->excludes(across);
+  command
+      ->add_option("--episodes", options->episodes,
+                   fmt::format("Episodes to play; default {}, {} of each checkpoint across them",
+                               kEpisodes, kEpisodesAcross))
+      ->check(CLI::Range(1, 1000));
+  command->add_option("--seed", options->seed, "Names the episodes: equal seeds, equal episodes")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->add_option(
+      "--output", options->output,
+      "File to write, .mp4; default: RUN/videos/CHECKPOINT.mp4, across checkpoints across.mp4");
+  command->callback([=] { *chosen = [=] { return Film(*options); }; });
+}
+
+}  // namespace shoal::launch

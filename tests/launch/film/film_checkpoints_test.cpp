@@ -1,0 +1,80 @@
+#include "launch/film/film_checkpoints.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/checkpoint/checkpoint_files.h"
+#include "launch/record/evaluations.h"
+#include "tests/support/temporary_folder.h"
+
+namespace shoal::launch {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+
+class FilmCheckpointsTest : public testing::Test {
+ protected:
+  void Store(uint64_t updates) const {
+    MakeFolders(run_ / "checkpoints");
+    CheckpointFiles files;
+    files.state.updates = updates;
+    files.state.precision = "f32";
+    files.learner = files.policy = "tensors";
+    WriteCheckpointFiles(run_ / "checkpoints", files, nlohmann::ordered_json::object());
+  }
+  std::vector<std::string> Across() const {
+    std::vector<std::string> names;
+    for (const fs::path& path : CheckpointsAcross(run_)) names.push_back(path.filename());
+    return names;
+  }
+  Error Refusal(const std::string& name) const {
+    try {
+      FilmedCheckpoint(run_, name);
+    } catch (const Error& e) {
+      return e;
+    }
+    return Error(ErrorKind::kRuntime, "found");
+  }
+
+  const TemporaryFolder folder_;
+  const fs::path run_ = folder_.path() / "run";
+};
+
+TEST_F(FilmCheckpointsTest, TheBestElseTheNewestUnlessOneIsNamed) {
+  Store(10);
+  Store(20);
+  EXPECT_EQ(FilmedCheckpoint(run_, "").filename(), CheckpointName(20));
+  KeepAsBest(run_, CheckpointName(10));
+  EXPECT_EQ(FilmedCheckpoint(run_, "").filename(), "best");
+  EXPECT_EQ(FilmedCheckpoint(run_, CheckpointName(20)).filename(), CheckpointName(20));
+}
+
+TEST_F(FilmCheckpointsTest, WhatIsNotThereIsNamed) {
+  EXPECT_THAT(Refusal("").what(), AllOf(HasSubstr(run_.string()), HasSubstr("no checkpoint yet")));
+  EXPECT_EQ(Refusal("").exit_code(), 1);
+  Store(10);
+  for (const char* name : {"step_000000011", "../checkpoints/step_000000010", "..", "."}) {
+    EXPECT_THAT(Refusal(name).what(), HasSubstr(name));
+    EXPECT_EQ(Refusal(name).exit_code(), 2) << name;
+  }
+}
+
+TEST_F(FilmCheckpointsTest, AcrossThemAreTheFirstTwoBetweenAndTheBest) {
+  for (uint64_t updates = 1; updates <= 8; ++updates) Store(updates);
+  EXPECT_THAT(Across(), ElementsAre(CheckpointName(1), CheckpointName(3), CheckpointName(5),
+                                    CheckpointName(8)));
+  KeepAsBest(run_, CheckpointName(3));
+  EXPECT_THAT(Across(), ElementsAre(CheckpointName(1), CheckpointName(2), "best"));
+  KeepAsBest(run_, CheckpointName(1));
+  EXPECT_THAT(Across(), ElementsAre("best"));
+}
+
+}  // namespace
+}  // namespace shoal::launch
