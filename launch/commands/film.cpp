@@ -9,6 +9,7 @@
 #include "launch/commands/commands.h"
 #include "launch/experiment/run_experiment.h"
 #include "launch/film/film_checkpoints.h"
+#include "launch/record/run_folder.h"
 
 namespace shoal::launch {
 namespace {
@@ -25,17 +26,9 @@ struct FilmOptions {
 constexpr int kEpisodes = 5, kEpisodesAcross = 2;
 constexpr uintmax_t kLargestInReport = 2'000'000;  // bytes
 
-fs::path FindRun(const FilmOptions& options) {
-  const fs::path named = fs::path(options.run_dir) / options.run;
-  const fs::path run = fs::exists(named / "config.json") ? named : fs::path(options.run);
-  if (fs::exists(run / "config.json")) return fs::absolute(run).lexically_normal();
-  throw UsageError("no run '{}': neither '{}' nor '{}' has a config.json", options.run,
-                   named.string(), options.run);
-}
-
 FilmOrder OrderOf(const FilmOptions& options) {
   FilmOrder order;
-  order.run = FindRun(options);
+  order.run = fs::absolute(FindNamed(options.run, RunsIn(options.run_dir))).lexically_normal();
   order.seed = options.seed;
   order.episodes = options.episodes;
   if (order.episodes == 0) order.episodes = options.across ? kEpisodesAcross : kEpisodes;

@@ -36,8 +36,7 @@ fs::path FilmedCheckpoint(const fs::path& run, const std::string& name) {
     throw UsageError("run '{}' has no checkpoint '{}' (best, or a name in {})", run.string(), name,
                      (run / "checkpoints").string());
   }
-  const fs::path best = run / "checkpoints" / "best";
-  const fs::path checkpoint = fs::is_directory(best) ? best : NewestCheckpoint(run);
+  const fs::path checkpoint = JudgedCheckpoint(run);
   if (checkpoint.empty()) throw RuntimeError("run '{}' has no checkpoint yet", run.string());
   return checkpoint;
 }

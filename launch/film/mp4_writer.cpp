@@ -68,6 +68,7 @@ class UnfinishedFile {
   // As libav takes it: without the protocol it would look for one in the name.
   std::string Url() const { return "file:" + temporary_.string(); }
   void Keep() {
+    OpenToOthers(temporary_);  // a film is made to be passed on
     if (rename(temporary_.c_str(), path_.c_str()) != 0) {
       throw RuntimeError("cannot write '{}': {}", path_.string(), std::strerror(errno));
     }
