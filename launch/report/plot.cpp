@@ -251,7 +251,8 @@ std::string PlotScript(const Plot& plot, const std::vector<RunGroup>& groups,
   }
   script += fmt::format(
       "set border 3 lc rgb '#666666'\nset tics nomirror out textcolor rgb '#333333'\n"
-      "set grid lc rgb '#dddddd' lt 1\nset format x '%.10g'\nset decimalsign '.'\n"
+      "set grid lc rgb '#dddddd' lt 1\nset autoscale xfixmax\nset format x '%.10g'\nset "
+      "decimalsign '.'\n"
       "set lmargin 10\nset rmargin 4\n"
       "set key outside top center horizontal noenhanced samplen 2\n"
       "set multiplot layout {},1 title {} noenhanced font ',13'\n",

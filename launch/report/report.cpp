@@ -25,15 +25,15 @@ constexpr double kUsualTarget = 0.9;
 constexpr uintmax_t kLargestFilm = 2'000'000;  // bytes; a page of more is passed around no more
 
 constexpr char kStyle[] = R"(
-body { font: 15px/1.5 system-ui, "DejaVu Sans", sans-serif; color: #222; max-width: 62rem;
+body { font: 15px/1.5 system-ui, "DejaVu Sans", sans-serif; color: #222; max-width: 76rem;
        margin: 2rem auto; padding: 0 1rem; }
 h1 { font-size: 1.7rem; margin-bottom: .2rem; } h2 { font-size: 1.2rem; margin-top: 2rem; }
 .question { font-size: 1.05rem; color: #444; max-width: 48rem; }
 .scroll { overflow-x: auto; }
 table { border-collapse: collapse; font-size: .9rem; }
 th, td { text-align: left; padding: .3rem .8rem .3rem 0; border-bottom: 1px solid #ddd;
-         white-space: nowrap; vertical-align: top; }
-th { color: #555; font-weight: 600; }
+         vertical-align: top; }
+th { color: #555; font-weight: 600; white-space: nowrap; }
 code, pre { font: .85rem/1.45 "DejaVu Sans Mono", monospace; }
 pre { background: #f5f5f5; padding: .8rem; overflow-x: auto; }
 .note { color: #666; font-size: .85rem; } svg { max-width: 100%; height: auto; }
