@@ -1,7 +1,6 @@
 #include "launch/run/coordinator.h"
 
 #include <algorithm>
-#include <atomic>
 #include <thread>
 #include <utility>
 
@@ -11,7 +10,6 @@
 #include "common/base/usable_cores.h"
 #include "common/dds/metrics_publisher.h"
 #include "common/dds/publisher.h"
-#include "common/dds/subscriber.h"
 #include "common/wire/metrics_report.h"
 #include "launch/processes/ordered_stop.h"
 #include "launch/processes/process_plan.h"
@@ -22,8 +20,8 @@
 #include "launch/run/evaluation_intake.h"
 #include "launch/run/flat_score.h"
 #include "launch/run/live_settings.h"
+#include "launch/run/run_inbox.h"
 #include "launch/run/run_progress.h"
-#include "launch/watch/message_inbox.h"
 #include "launch/watch/metrics_view.h"
 #include "launch/watch/run_figures.h"
 #include "launch/watch/scalar_log.h"
@@ -37,8 +35,6 @@ using std::chrono::seconds;
 constexpr milliseconds kPoll{50};
 constexpr milliseconds kHeartbeat{300};
 constexpr seconds kMetaPeriod{5};
-constexpr size_t kInboxMessages = 10'000;
-constexpr size_t kInboxEvaluations = 64;  // of a megabyte each, where they are nonsense
 
 const char* ToString(RunState state) {
   switch (state) {
@@ -54,7 +50,6 @@ const char* ToString(RunState state) {
 
 }  // namespace
 
-// Members are in construction order: subscribers end before the inboxes they fill.
 struct Coordinator::Impl {
   Impl(const std::filesystem::path& folder, const RunConfig& run_config, dds::Bus& bus,
        const RunMeta& before, const std::vector<RemoteHost>& remote_hosts, OperatorDesk& run_desk,
@@ -77,16 +72,7 @@ struct Coordinator::Impl {
                    [this](const std::string& line) { progress.Say(line); }),
         own_report("coordinator", 0),
         control(bus),
-        actor_reports(bus, Reports<ActorMetrics>("actor")),
-        eval_reports(bus, Reports<EvalMetrics>("eval")),
-        replay_reports(bus, Reports<ReplayMetrics>("replay")),
-        learner_reports(bus, Reports<LearnerMetrics>("learner")),
-        replay_progress(bus,
-                        [this](const ReplayProgress& m) {
-                          if (m.replay == 0) replay_words.Put(m);
-                        }),
-        learner_progress(bus, [this](const LearnerProgress& m) { learner_words.Put(m); }),
-        eval_subscriber(bus, [this](const EvalMessage& m) { evals.Put(m); }) {
+        inbox(bus) {
     settings.Restore(meta.changes);
     settings.AddTo(&order);
     rule.Change(settings.config());
@@ -106,19 +92,6 @@ struct Coordinator::Impl {
 
   double Elapsed() const { return meta.wall_seconds + SecondsSince(start); }
   uint64_t EnvSteps() const { return std::max(meta.env_steps, run_progress.stored_steps()); }
-
-  // Takes the reports of a topic that only this role may write.
-  template <class M>
-  std::function<void(const M&)> Reports(const std::string& role) {
-    const uint32_t ids = role == "actor" ? kMostActors : 1;
-    return [this, role, ids](const M& message) {
-      if (message.role == role && message.id < ids) {
-        metrics.Put(message);
-      } else {
-        ++reports_refused;
-      }
-    };
-  }
 
   // Since this coordinator's start.
   uint64_t Resends() const { return SaturatingCast<uint64_t>(view.Total("actor", "resends")); }
@@ -168,20 +141,9 @@ struct Coordinator::Impl {
   MetricsLog log;
   ScalarLog scalars;
   Supervisor supervisor;
-  MessageInbox<MetricsMessage> metrics{kInboxMessages};
-  MessageInbox<EvalMessage> evals{kInboxEvaluations};
-  MessageInbox<ReplayProgress> replay_words{kInboxMessages};
-  MessageInbox<LearnerProgress> learner_words{kInboxMessages};
-  std::atomic<uint64_t> reports_refused{0};  // of another role than their sender's, or no process
   MetricsReport own_report;
   dds::Publisher<ControlMessage> control;
-  dds::Subscriber<ActorMetrics> actor_reports;
-  dds::Subscriber<EvalMetrics> eval_reports;
-  dds::Subscriber<ReplayMetrics> replay_reports;
-  dds::Subscriber<LearnerMetrics> learner_reports;
-  dds::Subscriber<ReplayProgress> replay_progress;
-  dds::Subscriber<LearnerProgress> learner_progress;
-  dds::Subscriber<EvalMessage> eval_subscriber;
+  RunInbox inbox;
 
   ControlMessage order{.epoch = 1};
   SteadyTime start = Now();
@@ -356,8 +318,7 @@ void Coordinator::Impl::ShowView(const ProgressFigures& figures, SteadyTime now)
   own_report.Begin(figures.state);
   AddRunFigures(figures, &own_report);
   AddOrders(settings.config(), usable_cores, &own_report);
-  const uint64_t dropped =
-      metrics.dropped() + evals.dropped() + replay_words.dropped() + learner_words.dropped();
+  const uint64_t dropped = inbox.dropped();
   own_report.Add("messages_dropped", static_cast<double>(dropped));
   if (dropped > dropped_said) {
     progress.Say(fmt::format("{} report(s) dropped: they came faster than they were read",
@@ -366,7 +327,7 @@ void Coordinator::Impl::ShowView(const ProgressFigures& figures, SteadyTime now)
   own_report.Add("metrics_lines_left_out", static_cast<double>(log.lines_left_out()));
   own_report.Add("evaluations_repeated", static_cast<double>(evaluations.repeated()));
   own_report.Add("evaluations_refused", static_cast<double>(evaluations.refused()));
-  own_report.Add("reports_refused", static_cast<double>(reports_refused));
+  own_report.Add("reports_refused", static_cast<double>(inbox.refused()));
   MetricsMessage own = own_report.message();
   dds::AddMalformed(own_bus, &own);
   view.OnMessage(own, now);
@@ -386,7 +347,7 @@ void Coordinator::Impl::Heartbeat(SteadyTime now) {
 }
 
 void Coordinator::Impl::TakeMessages(SteadyTime now) {
-  for (const MetricsMessage& message : metrics.TakeAll()) {
+  for (const MetricsMessage& message : inbox.TakeReports()) {
     view.OnMessage(message, now);
     supervisor.Heard(message.role, static_cast<int>(message.id), message.pid, now);
     if (!log.Write(message)) {
@@ -394,12 +355,12 @@ void Coordinator::Impl::TakeMessages(SteadyTime now) {
     }
     scalars.WriteTraining(message, now);
   }
-  for (const ReplayProgress& word : replay_words.TakeAll()) run_progress.OnReplay(word);
-  for (const LearnerProgress& word : learner_words.TakeAll()) {
+  for (const ReplayProgress& word : inbox.TakeReplayProgress()) run_progress.OnReplay(word);
+  for (const LearnerProgress& word : inbox.TakeLearnerProgress()) {
     run_progress.OnLearner(word);
     meta.OnUpdates(*run_progress.updates());
   }
-  for (const EvalMessage& message : evaluations.Take(evals.TakeAll(), now)) {
+  for (const EvalMessage& message : evaluations.Take(inbox.TakeEvaluations(), now)) {
     TakeEvaluation(message);
   }
 }

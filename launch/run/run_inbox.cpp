@@ -1,0 +1,50 @@
+#include "launch/run/run_inbox.h"
+
+#include "common/config/config.h"
+
+namespace shoal::launch {
+namespace {
+
+constexpr size_t kMessages = 10'000;
+constexpr size_t kEvaluations = 64;  // of a megabyte each, where they are nonsense
+
+}  // namespace
+
+RunInbox::RunInbox(dds::Bus& bus)
+    : reports_(kMessages),
+      evaluations_(kEvaluations),
+      replay_words_(kMessages),
+      learner_words_(kMessages),
+      actor_reports_(bus, ReportsOf<ActorMetrics>("actor")),
+      eval_reports_(bus, ReportsOf<EvalMetrics>("eval")),
+      replay_reports_(bus, ReportsOf<ReplayMetrics>("replay")),
+      learner_reports_(bus, ReportsOf<LearnerMetrics>("learner")),
+      replay_progress_(bus,
+                       [this](const ReplayProgress& word) {
+                         if (word.replay == 0) {
+                           replay_words_.Put(word);
+                         } else {
+                           ++refused_;
+                         }
+                       }),
+      learner_progress_(bus, [this](const LearnerProgress& word) { learner_words_.Put(word); }),
+      evaluation_subscriber_(bus, [this](const EvalMessage& m) { evaluations_.Put(m); }) {}
+
+template <class M>
+std::function<void(const M&)> RunInbox::ReportsOf(const std::string& role) {
+  const uint32_t ids = role == "actor" ? kMostActors : 1;
+  return [this, role, ids](const M& report) {
+    if (report.role == role && report.id < ids) {
+      reports_.Put(report);
+    } else {
+      ++refused_;
+    }
+  };
+}
+
+uint64_t RunInbox::dropped() const {
+  return reports_.dropped() + evaluations_.dropped() + replay_words_.dropped() +
+         learner_words_.dropped();
+}
+
+}  // namespace shoal::launch
