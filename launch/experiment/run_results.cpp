@@ -7,6 +7,7 @@
 #include "common/base/files.h"
 #include "common/config/config_io.h"
 #include "common/config/run_files.h"
+#include "launch/record/json_fields.h"
 #include "launch/record/run_folder.h"
 
 namespace shoal::launch {
@@ -14,15 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-std::optional<double> NumberOrNothing(const json& value) {
-  return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
-}
-
-std::string TextOrEmpty(const json& object, const char* key) {
-  const auto it = object.find(key);
-  return it != object.end() && it->is_string() ? it->get<std::string>() : "";
-}
 
 EvaluationFigures FiguresOf(const json& object) {
   EvaluationFigures figures;

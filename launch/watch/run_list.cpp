@@ -9,6 +9,7 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/config/config_io.h"
+#include "launch/record/json_fields.h"
 #include "launch/record/run_folder.h"
 #include "launch/watch/progress.h"
 #include "launch/watch/run_target.h"
@@ -23,15 +24,6 @@ RunStatus StatusOfExit(const std::string& exit) {
   if (exit == "target" || exit == "budget") return RunStatus::kFinished;
   if (exit == "interrupted") return RunStatus::kInterrupted;
   return exit == "failed" ? RunStatus::kFailed : RunStatus::kDead;
-}
-
-std::string TextOrEmpty(const json& object, const char* key) {
-  const auto it = object.find(key);
-  return it != object.end() && it->is_string() ? it->get<std::string>() : "";
-}
-
-std::optional<double> NumberOrNothing(const json& value) {
-  return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
 }
 
 void ReadMeta(const std::filesystem::path& run, RunListing* listing) {

@@ -1,0 +1,19 @@
+// Fields of the files of runs that may be absent, null, or of an older build.
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+namespace shoal::launch {
+
+inline std::optional<double> NumberOrNothing(const nlohmann::json& value) {
+  return value.is_number() ? std::optional(value.get<double>()) : std::nullopt;
+}
+
+inline std::string TextOrEmpty(const nlohmann::json& object, const char* key) {
+  const auto it = object.find(key);
+  return it != object.end() && it->is_string() ? it->get<std::string>() : "";
+}
+
+}  // namespace shoal::launch
