@@ -55,7 +55,6 @@ explained() {
     unshare:* | mount* | loopback:*) ! can_unshare --mount --net ;;
     "no writable memory control group"*) ! can_limit_memory ;;
     "needs CAP_NET_RAW") ! has_capability 13 ;;
-    "needs gnuplot"*) ! command -v gnuplot >/dev/null ;;
     "needs two cores") (($(nproc) < 2)) ;;
     "needs root: slurmd"*) ((EUID != 0)) ;;
     "needs "*" (Debian's slurm-wlm and munge)")

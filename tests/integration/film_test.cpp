@@ -20,16 +20,7 @@ class Film : public testing::Test {
  protected:
   static void SetUpTestSuite() {
     run_ = new TrainingRun;
-    trained_ = new ProgramResult(run_->Train({{"observation.pixels", "true"},
-                                              {"env_steps", "400"},
-                                              {"eval.episodes", "2"},
-                                              {"eval.final_episodes", "2"},
-                                              {"eval.interval", "200"},
-                                              {"learner.batch", "16"},
-                                              {"replay.capacity", "2000"},
-                                              {"replay.min_size", "100"},
-                                              {"replay.samples_per_insert", "4"}},
-                                             {"--film"}));
+    trained_ = new ProgramResult(run_->Train(TrainingRun::FromPixels(), {"--film"}));
   }
   static void TearDownTestSuite() {
     delete trained_;

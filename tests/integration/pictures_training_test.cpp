@@ -31,25 +31,17 @@ TEST_P(PicturesTraining, UpdatesAndEvaluates) {
   const Kind& kind = GetParam();
   const auto text = [](bool value) { return std::string(value ? "true" : "false"); };
   const TrainingRun run;
-  const ProgramResult result = run.Train({{"observation.pixels", "true"},
-                                          {"observation.goal_mode", kind.goal_mode},
-                                          {"observation.proprioception", text(kind.proprioception)},
-                                          {"observation.grey", text(kind.grey)},
-                                          {"observation.stack", std::to_string(kind.stack)},
-                                          {"observation.cameras", kind.cameras},
-                                          {"observation.height", std::to_string(kind.height)},
-                                          {"observation.width", std::to_string(kind.width)},
-                                          {"env_steps", "400"},
-                                          {"eval.episodes", "2"},
-                                          {"eval.final_episodes", "2"},
-                                          {"eval.interval", "200"},
-                                          {"learner.batch", "16"},
-                                          {"replay.capacity", "2000"},
-                                          {"replay.min_size", "100"},
-                                          {"replay.samples_per_insert", "4"},
-                                          {"replay.shift_pad", "4"},
-                                          {"replay.copies", std::to_string(kind.copies)},
-                                          {"replay.n_step", std::to_string(kind.n_step)}});
+  const ProgramResult result =
+      run.Train(TrainingRun::FromPixels({{"observation.goal_mode", kind.goal_mode},
+                                         {"observation.proprioception", text(kind.proprioception)},
+                                         {"observation.grey", text(kind.grey)},
+                                         {"observation.stack", std::to_string(kind.stack)},
+                                         {"observation.cameras", kind.cameras},
+                                         {"observation.height", std::to_string(kind.height)},
+                                         {"observation.width", std::to_string(kind.width)},
+                                         {"replay.shift_pad", "4"},
+                                         {"replay.copies", std::to_string(kind.copies)},
+                                         {"replay.n_step", std::to_string(kind.n_step)}}));
   ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
   const auto meta = run.Json("meta.json");
   ExpectBalanced(meta);

@@ -9,6 +9,7 @@
 
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "tests/support/error_message.h"
 #include "tests/support/temporary_folder.h"
 
 namespace shoal::learner {
@@ -48,12 +49,7 @@ class CheckpointTest : public testing::Test {
 
   // The message of the Error with which the checkpoint is refused.
   std::string Refusal(uint64_t spec = kSpec) {
-    try {
-      ReadCheckpoint(folder_, spec);
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "";
+    return ErrorMessage([&] { ReadCheckpoint(folder_, spec); });
   }
 
   void Overwrite(const fs::path& file, const std::string& bytes) {

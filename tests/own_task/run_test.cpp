@@ -40,35 +40,39 @@ TEST(OwnTaskRun, TheCommandsOfItsPageWork) {
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "top.png"));
 }
 
-TEST(OwnTaskRun, TrainsFromItsOwnCameraWithAThresholdFromJson) {
-  const TemporaryFolder folder;
-  const auto json = folder.path() / "point.json";
+// Trains PointReachDense in FOLDER/point by JSON alone, with a camera of its own and a threshold of
+// 0.1 m; `more` has further members.
+ProgramResult TrainPoint(const std::filesystem::path& folder, const std::string& observation,
+                         const std::string& more, std::chrono::seconds deadline) {
+  const std::filesystem::path json = folder / "point.json";
   WriteFileAtomically(json, R"({
     "task_library": ")" + Library() +
                                 R"(",
     "task": "PointReachDense",
     "distance_threshold": 0.1,
-    "env_steps": 600,
     "actors": 1,
     "observation": {
       "cameras": ["above"],
       "custom_cameras": {
         "above": {"lookat": [0, 0, 0], "distance": 1.4, "azimuth": 90, "elevation": -89}
       },
-      "height": 32,
-      "width": 32,
-      "proprioception": true
-    },
+      "height": 32, "width": 32, )" +
+                                observation + "}, " + more + "}");
+  return RunProgram({"shoal", "train", "--config", json.string(), "--run-name", "point", "--set",
+                     "run_dir=" + folder.string()},
+                    deadline);
+}
+
+TEST(OwnTaskRun, TrainsFromItsOwnCameraWithAThresholdFromJson) {
+  const TemporaryFolder folder;
+  const ProgramResult result = TrainPoint(folder.path(), R"("proprioception": true)", R"(
+    "env_steps": 600,
     "network": {"filters": [8, 8], "strides": [2, 1], "hidden": [32, 32]},
     "replay": {"min_size": 100, "capacity": 2000},
     "learner": {"batch": 16, "threads": 1},
     "eval": {"episodes": 4, "final_episodes": 4, "interval": 300},
-    "stop": {"success": 2}
-  })");
-  const ProgramResult result =
-      RunProgram({"shoal", "train", "--config", json.string(), "--run-name", "point", "--set",
-                  "run_dir=" + folder.path().string()},
-                 std::chrono::seconds(200));
+    "stop": {"success": 2})",
+                                          std::chrono::seconds(200));
   ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
   const auto run = folder.path() / "point";
   const auto meta = nlohmann::json::parse(ReadFile(run / "meta.json"));
@@ -90,31 +94,14 @@ TEST(OwnTaskRun, TrainsFromItsOwnCameraWithAThresholdFromJson) {
 // one goal in twelve.
 TEST(OwnTaskRun, LearnsFromPixelsAlone) {
   const TemporaryFolder folder;
-  const auto json = folder.path() / "point.json";
-  WriteFileAtomically(json, R"({
-    "task_library": ")" + Library() +
-                                R"(",
-    "task": "PointReachDense",
-    "distance_threshold": 0.1,
+  const ProgramResult result =
+      TrainPoint(folder.path(), R"("goal_mode": "none", "proprioception": false, "stack": 2)", R"(
     "env_steps": 60000,
-    "actors": 1,
-    "observation": {
-      "cameras": ["above"],
-      "custom_cameras": {
-        "above": {"lookat": [0, 0, 0], "distance": 1.4, "azimuth": 90, "elevation": -89}
-      },
-      "goal_mode": "none", "proprioception": false,
-      "height": 32, "width": 32, "stack": 2
-    },
     "network": {"filters": [16, 16], "strides": [2, 1], "hidden": [64, 64]},
     "replay": {"min_size": 500, "capacity": 60000, "samples_per_insert": 32, "shift_pad": 2},
     "learner": {"batch": 64, "threads": 1, "learning_rate": 1e-3, "discount": 0.8},
     "eval": {"episodes": 20, "final_episodes": 0, "interval": 2500},
-    "stop": {"success": 0.5, "evaluations": 2}
-  })");
-  const ProgramResult result =
-      RunProgram({"shoal", "train", "--config", json.string(), "--run-name", "point", "--set",
-                  "run_dir=" + folder.path().string()},
+    "stop": {"success": 0.5, "evaluations": 2})",
                  std::chrono::seconds(240));
   ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
   const auto meta = nlohmann::json::parse(ReadFile(folder.path() / "point" / "meta.json"));

@@ -18,6 +18,21 @@ class TrainingRun {
  public:
   using Keys = std::map<std::string, std::string>;
 
+  // `keys` over those of a run from pixels that ends within seconds.
+  static Keys FromPixels(const Keys& keys = {}) {
+    Keys all{{"observation.pixels", "true"},
+             {"env_steps", "400"},
+             {"eval.episodes", "2"},
+             {"eval.final_episodes", "2"},
+             {"eval.interval", "200"},
+             {"learner.batch", "16"},
+             {"replay.capacity", "2000"},
+             {"replay.min_size", "100"},
+             {"replay.samples_per_insert", "4"}};
+    for (const auto& [key, value] : keys) all[key] = value;
+    return all;
+  }
+
   // Command line of `shoal train` for a short run, from state unless `flags`, which are appended,
   // name another preset; `keys` go over the defaults here.
   std::vector<std::string> Command(const Keys& keys = {},

@@ -7,9 +7,9 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/checkpoint/checkpoint_files.h"
+#include "tests/support/error_message.h"
 #include "tests/support/temporary_folder.h"
 
 namespace shoal::actor {
@@ -102,12 +102,7 @@ class EvaluateCheckpointTest : public testing::Test {
   }
 
   std::string Refusal() const {
-    try {
-      EvaluateCheckpoint(run_.path(), folder_, {.episodes = 1});
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "";
+    return ErrorMessage([&] { EvaluateCheckpoint(run_.path(), folder_, {.episodes = 1}); });
   }
 
   void Replace(const std::string& file, const std::string& from, const std::string& to) const {

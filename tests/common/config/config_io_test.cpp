@@ -5,8 +5,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "common/base/error.h"
 #include "common/base/files.h"
+#include "tests/support/error_message.h"
 #include "tests/support/paths.h"
 
 namespace shoal {
@@ -15,18 +15,6 @@ namespace {
 using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-
-// The message of the usage error that `act` throws; empty when it throws none.
-template <class Act>
-std::string UsageMessage(Act act) {
-  try {
-    act();
-  } catch (const Error& e) {
-    EXPECT_EQ(e.exit_code(), 2) << e.what();
-    return e.what();
-  }
-  return "";
-}
 
 std::string JsonMistake(const std::string& text) {
   return UsageMessage([&] {

@@ -4,8 +4,8 @@
 #include <functional>
 #include <string>
 
-#include "common/base/error.h"
 #include "common/config/config_io.h"
+#include "tests/support/error_message.h"
 
 namespace shoal {
 namespace {
@@ -15,12 +15,7 @@ using ::testing::HasSubstr;
 std::string Refusal(const std::function<void(Config*)>& change) {
   Config config;
   change(&config);
-  try {
-    Validate(config);
-    return "";
-  } catch (const Error& e) {
-    return e.what();
-  }
+  return UsageMessage([&] { Validate(config); });
 }
 
 TEST(Validate, APolicyWithoutEntropyTakesNoKeysOfIt) {

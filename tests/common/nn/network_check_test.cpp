@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "common/base/error.h"
 #include "common/nn/actor_critic_plan.h"
 #include "common/nn/safetensors.h"
+#include "tests/support/error_message.h"
 
 namespace shoal::nn {
 namespace {
@@ -23,13 +23,7 @@ ObservationSpec Pixels() {
 }
 
 std::string Refusal(const NetworkConfig& network, int batch = 128, int64_t most = kMost) {
-  try {
-    CheckNetwork(network, Pixels(), batch, most);
-  } catch (const Error& e) {
-    EXPECT_EQ(e.exit_code(), 2);
-    return e.what();
-  }
-  return "";
+  return UsageMessage([&] { CheckNetwork(network, Pixels(), batch, most); });
 }
 
 TEST(PolicySize, IsAtLeastThatOfTheFileAndNearIt) {

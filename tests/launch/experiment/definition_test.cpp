@@ -5,6 +5,7 @@
 
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "tests/support/error_message.h"
 #include "tests/support/temporary_folder.h"
 
 namespace shoal::launch {
@@ -25,16 +26,12 @@ ordered_json Valid() {
 
 // What parsing and resolving it says; empty when nothing is wrong with it.
 std::string Refusal(const ordered_json& object) {
-  try {
+  return UsageMessage([&] {
     const Definition definition = ParseDefinition(object, "x.json", "x");
     const Config base = ResolveBase(definition, "x.json");
     for (const Arm& arm : definition.arms) ArmConfig(base, arm, "x.json");
     CheckTransfer(definition, "x.json");
-  } catch (const Error& e) {
-    EXPECT_EQ(e.exit_code(), 2) << e.what();
-    return e.what();
-  }
-  return "";
+  });
 }
 
 TEST(Definition, ArmsAreDifferencesFromTheBase) {

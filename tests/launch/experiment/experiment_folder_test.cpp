@@ -5,6 +5,7 @@
 
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "tests/support/error_message.h"
 #include "tests/support/temporary_folder.h"
 
 namespace shoal::launch {
@@ -27,13 +28,7 @@ class ExperimentFolderTest : public testing::Test {
   }
   // What opening says; empty when it is accepted.
   std::string Refusal(const Definition& definition) const {
-    try {
-      const ExperimentFolder open(Plan(definition));
-      return "";
-    } catch (const Error& e) {
-      EXPECT_EQ(e.exit_code(), 2) << e.what();
-      return e.what();
-    }
+    return UsageMessage([&] { const ExperimentFolder open(Plan(definition)); });
   }
 
   const TemporaryFolder folder_;

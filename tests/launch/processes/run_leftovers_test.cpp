@@ -2,15 +2,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
-#include <csignal>
 #include <set>
 
 #include "common/base/error.h"
 #include "common/base/files.h"
-#include "common/config/run_membership.h"
+#include "tests/support/member_process.h"
 #include "tests/support/temporary_folder.h"
 
 namespace shoal::launch {
@@ -22,54 +19,33 @@ using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 
-// Starts a member of the run; returns when it is one.
-pid_t StartMember(const fs::path& run) {
-  int ready[2];
-  EXPECT_EQ(pipe(ready), 0);
-  const pid_t pid = fork();
-  if (pid == 0) {
-    const RunMembership member(run);
-    [[maybe_unused]] const ssize_t written = write(ready[1], "x", 1);
-    while (true) pause();
-  }
-  char byte = 0;
-  EXPECT_EQ(read(ready[0], &byte, 1), 1);
-  close(ready[0]);
-  close(ready[1]);
-  return pid;
-}
-
-void End(pid_t pid) {
-  kill(pid, SIGKILL);
-  waitpid(pid, nullptr, 0);
-}
-
 TEST(RunLeftovers, WaitsForFormerProcessesAndSaysSoOnce) {
   const TemporaryFolder run;
-  const pid_t member = StartMember(run.path());
+  MemberProcess member(run.path());
+  const pid_t pid = member.pid();
   std::vector<std::string> said;
   int looks = 0;
   const auto stop = [&] {
-    if (++looks == 3) End(member);
+    if (++looks == 3) member.Kill();
     return false;
   };
   WaitForFormerProcesses(run.path(), seconds(60), stop,
                          [&](const std::string& line) { said.push_back(line); });
   EXPECT_EQ(looks, 3);
-  EXPECT_THAT(said, ElementsAre(HasSubstr(std::to_string(member))));
+  EXPECT_THAT(said, ElementsAre(HasSubstr(std::to_string(pid))));
 }
 
 TEST(RunLeftovers, AProcessThatStaysIsNamed) {
   const TemporaryFolder run;
-  const pid_t member = StartMember(run.path());
+  MemberProcess member(run.path());
+  const pid_t pid = member.pid();
   try {
     WaitForFormerProcesses(
         run.path(), seconds(0), [] { return false; }, [](const auto&) {});
     ADD_FAILURE() << "did not mind it";
   } catch (const Error& e) {
-    EXPECT_THAT(e.what(), AllOf(HasSubstr(std::to_string(member)), HasSubstr(run.path().string())));
+    EXPECT_THAT(e.what(), AllOf(HasSubstr(std::to_string(pid)), HasSubstr(run.path().string())));
   }
-  End(member);
 }
 
 TEST(RunLeftovers, ARunWithoutProcessesIsNotWaitedFor) {

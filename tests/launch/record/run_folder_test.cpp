@@ -3,25 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "common/base/error.h"
 #include "common/base/files.h"
+#include "tests/support/error_message.h"
 #include "tests/support/temporary_folder.h"
 
 namespace shoal::launch {
 namespace {
 
 using ::testing::HasSubstr;
-
-template <class Act>
-std::string UsageMessage(Act act) {
-  try {
-    act();
-  } catch (const Error& e) {
-    EXPECT_EQ(e.exit_code(), 2) << e.what();
-    return e.what();
-  }
-  return "";
-}
 
 TEST(RunFolderTest, CreatesTheFolderWithItsSubfolders) {
   const TemporaryFolder dir;

@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "common/base/error.h"
 #include "launch/experiment/experiment_folder.h"
 #include "tests/launch/experiment/planted_run.h"
+#include "tests/support/error_message.h"
 
 namespace shoal::launch {
 namespace {
@@ -38,13 +38,7 @@ class CompareTest : public testing::Test {
                          .experiment_dir = (folder_.path() / "experiments").string()});
   }
   std::string Refusal(const std::vector<std::string>& names) const {
-    try {
-      Compare(Read(names), 0.9);
-      return "";
-    } catch (const Error& e) {
-      EXPECT_EQ(e.exit_code(), 2) << e.what();
-      return e.what();
-    }
+    return UsageMessage([&] { Compare(Read(names), 0.9); });
   }
 
   const TemporaryFolder folder_;

@@ -26,7 +26,6 @@ RunPlanter Plant(const std::filesystem::path& folder) {
 }
 
 TEST(Report, IsOnePageThatNeedsNothingElse) {
-  if (std::system("command -v gnuplot >/dev/null") != 0) GTEST_SKIP() << "needs gnuplot";
   const TemporaryFolder folder;
   Plant(folder.path() / "a");
   MakeFolders(folder.path() / "a/videos");
@@ -45,7 +44,6 @@ TEST(Report, IsOnePageThatNeedsNothingElse) {
 }
 
 TEST(Report, ShowsTheDefinitionOfAnExperiment) {
-  if (std::system("command -v gnuplot >/dev/null") != 0) GTEST_SKIP() << "needs gnuplot";
   const TemporaryFolder folder;
   Definition definition{.name = "mine", .base = "fetch-reach-state", .question = "Why?"};
   definition.set = {{"env_steps", 1000}};

@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/files.h"
+#include "tests/launch/watch/report_message.h"
 #include "tests/support/temporary_folder.h"
 
 namespace shoal::launch {
@@ -100,20 +101,6 @@ TEST(Advice, ABusyReplayIsNamedBeforeAnybodyWhoWaitsForIt) {
 
 TEST(Advice, WithoutFiguresThereIsNone) {
   EXPECT_EQ(Advise(Bottleneck(), 1), "Nothing was measured.");
-}
-
-MetricsMessage Report(const std::string& role, uint32_t id, int32_t pid, double time,
-                      const Shares& figures) {
-  MetricsMessage message;
-  message.role = role;
-  message.id = id;
-  message.pid = pid;
-  message.time = time;
-  for (const auto& [name, value] : figures) {
-    message.names.push_back(name);
-    message.values.push_back(value);
-  }
-  return message;
 }
 
 // Two actors, one of which was restarted; every process has run for 10 s in all.

@@ -2,24 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/launch/watch/report_message.h"
+
 namespace shoal::launch {
 namespace {
 
 using std::chrono::seconds;
-
-MetricsMessage Report(const std::string& role, uint32_t id, int32_t pid, double time,
-                      const std::vector<std::pair<std::string, double>>& figures) {
-  MetricsMessage message;
-  message.role = role;
-  message.id = id;
-  message.pid = pid;
-  message.time = time;
-  for (const auto& [name, value] : figures) {
-    message.names.push_back(name);
-    message.values.push_back(value);
-  }
-  return message;
-}
 
 const SteadyTime kNow = SteadyTime() + seconds(1000);
 

@@ -4,8 +4,8 @@
 // temperature are not those of a fresh agent, so that each is seen where it belongs.
 #include <numbers>
 
-#include "tests/common/nn/gradient_check.h"
 #include "tests/common/nn/reference_network.h"
+#include "tests/learner/agent/adam_moments.h"
 #include "tests/learner/agent/agent_fixture.h"
 
 namespace shoal::learner {
@@ -15,8 +15,6 @@ using nn::CentralDifference;
 using nn::ToDoubles;
 using nn::reference::Network;
 using nn::reference::Values;
-
-constexpr double kFirstMoment = 0.1;
 
 struct Sample {
   Values action, log_prob;
@@ -85,21 +83,6 @@ class SacGradientTest : public testing::Test {
       loss += temperature_ * sample.log_prob[b] - std::min(q.q1[b], q.q2[b]);
     }
     return loss / batch_size_;
-  }
-
-  void ExpectMoments(const nn::TensorMap& after, const std::string& prefix, Network* network,
-                     const std::function<double()>& loss) const {
-    for (const auto& [name, values] : network->parameters()) {
-      if (!name.starts_with(prefix)) continue;
-      const std::vector<float> moment = Floats(after, "adam.m." + name);
-      std::vector<float> some;
-      Values exact;
-      for (size_t i = 0; i < values.size(); i += 1 + values.size() / 8) {
-        some.push_back(moment[i]);
-        exact.push_back(kFirstMoment * CentralDifference(&network->at(name, i), loss));
-      }
-      EXPECT_LT(nn::RelativeError(some, exact), 1e-3) << name;
-    }
   }
 
   const ObservationSpec spec_ = SmallSpec();

@@ -4,7 +4,7 @@
 
 #include <functional>
 
-#include "common/base/error.h"
+#include "tests/support/error_message.h"
 
 namespace shoal::learner {
 namespace {
@@ -17,12 +17,7 @@ std::string Refusal(const std::function<void(RunConfig*)>& change) {
   run.config.learner.bounded_targets = true;
   run.config.learner.discount = 0.95;
   change(&run);
-  try {
-    CheckValueBounds(run);
-    return "";
-  } catch (const Error& e) {
-    return e.what();
-  }
+  return UsageMessage([&] { CheckValueBounds(run); });
 }
 
 TEST(ValueBounds, AreWhatDiscountedSumsOfScaledMinusOnesCanBe) {

@@ -9,10 +9,10 @@
 #include <map>
 #include <memory>
 
-#include "common/base/error.h"
 #include "common/tasks/task_registry.h"
 #include "replay_server/core/replay_core.h"
 #include "tests/replay_server/record_script.h"
+#include "tests/support/error_message.h"
 
 namespace shoal::replay {
 namespace {
@@ -201,13 +201,7 @@ TEST_F(HindsightTest, FutureGoalsAreSpreadOverWhatIsLeftOfTheEpisode) {
 std::string Refusal(const std::function<void(RunConfig&)>& change) {
   RunConfig run = PushRun();
   change(run);
-  try {
-    CheckHindsight(run);
-  } catch (const Error& error) {
-    EXPECT_EQ(error.exit_code(), 2);
-    return error.what();
-  }
-  return "";
+  return UsageMessage([&] { CheckHindsight(run); });
 }
 
 TEST_F(HindsightTest, WhatItCannotServeIsRefusedByName) {

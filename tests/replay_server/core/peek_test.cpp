@@ -3,9 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include "common/base/error.h"
 #include "replay_server/core/replay_core.h"
 #include "tests/replay_server/record_script.h"
+#include "tests/support/error_message.h"
 #include "tests/support/temporary_folder.h"
 
 namespace shoal::replay {
@@ -21,12 +21,7 @@ class PeekTest : public testing::Test {
     WriteRunConfig(folder_.path(), run_);
   }
   std::string Refusal() {
-    try {
-      PeekBatch(folder_.path(), 4, 1);
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "";
+    return ErrorMessage([&] { PeekBatch(folder_.path(), 4, 1); });
   }
 
   RunConfig run_;

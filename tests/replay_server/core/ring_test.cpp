@@ -9,11 +9,11 @@
 #include <fstream>
 #include <optional>
 
-#include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/random.h"
 #include "replay_server/core/intake.h"
 #include "tests/replay_server/record_script.h"
+#include "tests/support/error_message.h"
 #include "tests/support/temporary_folder.h"
 
 namespace shoal::replay {
@@ -41,15 +41,12 @@ class RingTest : public testing::Test {
   // The message with which everything that reads the file at start refuses it; "" when nothing
   // does.
   std::string Refusal(const ObservationSpec& spec, const RingOptions& options) {
-    try {
+    return ErrorMessage([&] {
       Ring ring(spec, options);
       SessionTable sessions(ring.sessions());
       EpisodeIndex index(ring, {});
       Intake intake(spec.Hash(), &ring, &sessions, &index);
-    } catch (const Error& e) {
-      return e.what();
-    }
-    return "";
+    });
   }
   std::string Refusal() { return Refusal(spec_, Options()); }
 

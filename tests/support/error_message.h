@@ -1,0 +1,39 @@
+// What a test is told when something is refused.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "common/base/error.h"
+
+namespace shoal {
+
+// The message of the Error that `act` throws; empty when it throws none.
+template <class Act>
+std::string ErrorMessage(Act act) {
+  try {
+    act();
+  } catch (const Error& e) {
+    return e.what();
+  }
+  return "";
+}
+
+// The same of an error that must have this exit code: 2 where the usage is wrong.
+template <class Act>
+std::string ErrorMessage(int exit_code, Act act) {
+  try {
+    act();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.exit_code(), exit_code) << e.what();
+    return e.what();
+  }
+  return "";
+}
+template <class Act>
+std::string UsageMessage(Act act) {
+  return ErrorMessage(2, act);
+}
+
+}  // namespace shoal
