@@ -47,16 +47,38 @@ void AddRun(CLI::App& experiment, Action* chosen) {
       ->check(CLI::NonNegativeNumber);
   command
       ->add_option("--jobs", options->jobs,
-                   "Runs side by side, each on cores of its own; their wall times are marked")
-      ->check(CLI::Range(1, 1024))
-      ->capture_default_str();
+                   "Runs side by side, each on cores of its own; their wall times are marked (1). "
+                   "With --slurm: tasks at a time (all)")
+      ->check(CLI::Range(1, 1024));
   command->add_option("--out", options->out, "Folder; experiments/NAME by default");
   command->add_flag("--retry-failed", options->retry_failed, "Try failed runs again");
   command->add_flag("--dry-run", options->dry_run, "Check everything, start nothing");
+  CLI::Option* const slurm = command->add_flag(
+      "--slurm", options->slurm, "Submit what is to be done as a Slurm job array, one run a task");
+  command
+      ->add_option("--sbatch", options->sbatch_options,
+                   "Option of sbatch, over those of the script: --sbatch=--partition=short; may be "
+                   "repeated")
+      ->needs(slurm);
   command->callback([=] {
     CheckSeeds(options->seeds);
     *chosen = [=] { return RunExperiment(*options); };
   });
+}
+
+void AddTask(CLI::App& experiment, Action* chosen) {
+  CLI::App* command = experiment.add_subcommand(
+      "task", "Do one run of an experiment: what a task of a job array calls.");
+  const auto task = std::make_shared<ExperimentTask>();
+  command->add_option("experiment", task->folder, "Folder of the experiment")->required();
+  command->add_option("run", task->run, "ARM-sSEED")->required();
+  command
+      ->add_option("--side-by-side", task->side_by_side,
+                   "Tasks that may run at the same time; more than 1 marks their wall times")
+      ->check(CLI::Range(1, 1'000'000))
+      ->capture_default_str();
+  command->add_flag("--retry-failed", task->retry_failed, "Try it again if it has failed");
+  command->callback([=] { *chosen = [=] { return RunExperimentTask(*task); }; });
 }
 
 void AddStatus(CLI::App& experiment, Action* chosen) {
@@ -83,6 +105,7 @@ void AddExperimentCommand(CLI::App& app, Action* chosen) {
       app.add_subcommand("experiment", "Arms x seeds from one file (docs/experiments.md).");
   experiment->require_subcommand(1);
   AddRun(*experiment, chosen);
+  AddTask(*experiment, chosen);
   AddStatus(*experiment, chosen);
   AddSummary(*experiment, chosen);
 }

@@ -1,12 +1,8 @@
 #include "launch/experiment/experiment_folder.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
-#include <cstring>
+#include <chrono>
 #include <set>
 #include <utility>
 
@@ -22,21 +18,18 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
+using std::chrono::milliseconds;
 
 constexpr char kSchema[] = "shoal-experiment-folder-1";
 constexpr char kFile[] = "experiment.json";
-
-struct flock WholeFile() {
-  struct flock lock {};
-  lock.l_type = F_WRLCK;
-  lock.l_whence = SEEK_SET;
-  return lock;
-}
+constexpr char kLockFile[] = ".lock";
+// That a task waits for the command which has submitted it.
+constexpr std::chrono::seconds kSubmission{60};
 
 // What a command that was killed before it had written experiment.json may have left.
 bool IsLeftover(const fs::path& file) {
   const std::string name = file.filename();
-  return name == ".lock" || name.starts_with(std::string(kFile) + ".tmp-");
+  return name == kLockFile || name.starts_with(std::string(kFile) + ".tmp-");
 }
 
 bool HoldsOnlyLeftovers(const fs::path& folder) {
@@ -79,6 +72,13 @@ std::string Difference(const Definition& stored, const Definition& asked) {
   return "";
 }
 
+FileLock LockOrThrow(const fs::path& folder, Holding holding, milliseconds deadline) {
+  auto lock = FileLock::Take(folder / kLockFile, holding, deadline);
+  if (lock) return std::move(*lock);
+  throw UsageError("experiment '{}' is being run by another process (it holds {})", folder.string(),
+                   (folder / kLockFile).string());
+}
+
 void Write(const StoredExperiment& experiment) {
   const ordered_json object{{"schema", kSchema},
                             {"definition", ToJson(experiment.definition)},
@@ -100,6 +100,17 @@ std::optional<int64_t> SeedOf(const std::string& name, const std::string& arm) {
 }
 
 }  // namespace
+
+std::optional<ExperimentRun> StoredExperiment::RunNamed(const std::string& name) const {
+  for (const Arm& arm : definition.arms) {
+    const auto seed = SeedOf(name, arm.name);
+    if (!seed) continue;
+    const std::vector<ExperimentRun> runs = Runs({*seed});
+    const auto run = std::ranges::find(runs, name, &ExperimentRun::name);
+    if (run != runs.end()) return *run;
+  }
+  return std::nullopt;
+}
 
 std::vector<ExperimentRun> StoredExperiment::Runs(const std::vector<int64_t>& seeds) const {
   std::vector<ExperimentRun> runs;
@@ -214,41 +225,20 @@ ExperimentPlan PlanExperiment(const fs::path& folder, const Definition& definiti
 
 ExperimentFolder::ExperimentFolder(const ExperimentPlan& plan) : experiment_(plan.experiment) {
   MakeFolders(experiment_.folder);
-  Lock();
-  try {
-    // Again: between the plan and the lock another command may have been here.
-    const auto stored = ReadIfSame(experiment_.folder, experiment_.definition, plan.source);
-    if (stored) experiment_.base = stored->base;
-    if (stored) experiment_.created = stored->created;
-    for (const char* inner : {"configs", "runs", "logs"}) MakeFolders(experiment_.folder / inner);
-    const bool changed = !stored || ToJson(stored->definition) != ToJson(experiment_.definition);
-    if (changed) Write(experiment_);
-  } catch (...) {
-    close(lock_);
-    throw;
-  }
+  lock_ = LockOrThrow(experiment_.folder, Holding::kAlone, milliseconds(0));
+  // Again: between the plan and the lock another command may have been here.
+  const auto stored = ReadIfSame(experiment_.folder, experiment_.definition, plan.source);
+  if (stored) experiment_.base = stored->base;
+  if (stored) experiment_.created = stored->created;
+  for (const char* inner : {"configs", "runs", "logs"}) MakeFolders(experiment_.folder / inner);
+  const bool changed = !stored || ToJson(stored->definition) != ToJson(experiment_.definition);
+  if (changed) Write(experiment_);
 }
 
-ExperimentFolder::~ExperimentFolder() { close(lock_); }
+ExperimentShare::ExperimentShare(const fs::path& folder)
+    : lock_(LockOrThrow(folder, Holding::kWithOthers, kSubmission)),
+      experiment_(ReadExperiment(folder)) {}
 
-void ExperimentFolder::Lock() {
-  const fs::path path = experiment_.folder / ".lock";
-  lock_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
-  if (lock_ < 0) throw RuntimeError("cannot write '{}': {}", path.string(), std::strerror(errno));
-  struct flock whole = WholeFile();
-  if (fcntl(lock_, F_OFD_SETLK, &whole) == 0) return;
-  close(std::exchange(lock_, -1));
-  throw UsageError("experiment '{}' is being run by another process (it holds {})",
-                   experiment_.folder.string(), path.string());
-}
-
-bool IsExperimentHeld(const fs::path& folder) {
-  const int file = open((folder / ".lock").c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) return false;
-  struct flock lock = WholeFile();
-  const bool held = fcntl(file, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
-  close(file);
-  return held;
-}
+bool IsExperimentHeld(const fs::path& folder) { return IsLocked(folder / kLockFile); }
 
 }  // namespace shoal::launch

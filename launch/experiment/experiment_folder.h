@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "common/base/file_lock.h"
 #include "launch/experiment/definition.h"
 #include "launch/experiment/run_log.h"
 #include "launch/experiment/run_standing.h"
@@ -37,6 +38,8 @@ struct StoredExperiment {
 
   // Arms x seeds, seed by seed, so that an experiment cut short has whole comparisons.
   std::vector<ExperimentRun> Runs(const std::vector<int64_t>& seeds) const;
+  // "ARM-sSEED" of any seed; empty where there is no such arm.
+  std::optional<ExperimentRun> RunNamed(const std::string& name) const;
   // Of every seed that the definition names and every seed there is a run of: in its folder, or, if
   // it failed before it had one, in the log. Throws Error on a broken log.
   std::vector<ExperimentRun> Runs() const;
@@ -76,20 +79,30 @@ class ExperimentFolder {
   // Makes the folder, or opens the one that is there. Throws Error (usage) before anything else is
   // written where another process runs it, or has made another experiment of it since the plan.
   explicit ExperimentFolder(const ExperimentPlan& plan);
-  ~ExperimentFolder();
-  ExperimentFolder(const ExperimentFolder&) = delete;
-  ExperimentFolder& operator=(const ExperimentFolder&) = delete;
 
   const StoredExperiment& experiment() const { return experiment_; }
 
  private:
-  void Lock();
-
   StoredExperiment experiment_;
-  int lock_ = -1;
+  std::optional<FileLock> lock_;
 };
 
-// Whether a process runs the experiment of this folder.
+// Holds an experiment together with others that do single runs of it, on any host, against a
+// command that runs it whole.
+class ExperimentShare {
+ public:
+  // Waits a minute for the command that submits such runs. Throws Error (usage): no experiment
+  // there, or a command runs it whole.
+  explicit ExperimentShare(const std::filesystem::path& folder);
+
+  const StoredExperiment& experiment() const { return experiment_; }
+
+ private:
+  FileLock lock_;
+  StoredExperiment experiment_;
+};
+
+// Whether a process runs the experiment of this folder, or a run of it.
 bool IsExperimentHeld(const std::filesystem::path& folder);
 
 }  // namespace shoal::launch

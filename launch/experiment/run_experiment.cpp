@@ -1,6 +1,7 @@
 #include "launch/experiment/run_experiment.h"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <chrono>
 #include <cstdio>
@@ -8,9 +9,11 @@
 
 #include "common/base/clock.h"
 #include "common/base/error.h"
+#include "common/base/file_lock.h"
 #include "common/base/or_null.h"
 #include "common/base/stop.h"
 #include "launch/experiment/run_queue.h"
+#include "launch/experiment/slurm_array.h"
 #include "launch/experiment/summary.h"
 #include "launch/experiment/train_keeper.h"
 #include "launch/processes/actor_program.h"
@@ -25,6 +28,7 @@ using std::chrono::seconds;
 
 constexpr milliseconds kPoll{200};
 constexpr seconds kProgressPeriod{60};
+constexpr seconds kOthersWrite{60};
 
 void Say(const std::string& line) {
   fmt::print(stderr, "{}\n", line);
@@ -99,12 +103,70 @@ bool MeasureBaselines(const StoredExperiment& experiment) {
   return true;
 }
 
+// What there is now, also in summary.json: read and written under a lock, so that of several
+// processes the last one has seen what the others did.
+ExperimentOutcome Summarize(const StoredExperiment& experiment) {
+  const fs::path file = experiment.folder / ".summary.lock";
+  const auto lock = FileLock::Take(file, Holding::kAlone, kOthersWrite);
+  if (!lock) throw RuntimeError("cannot write the summary: others hold '{}'", file.string());
+  ExperimentOutcome outcome = ReadOutcome(experiment);
+  WriteSummary(outcome);
+  return outcome;
+}
+
+// Throws Error (usage) naming the runs there are.
+ExperimentRun RunNamed(const StoredExperiment& experiment, const std::string& name) {
+  if (const auto run = experiment.RunNamed(name)) return *run;
+  std::vector<std::string> names;
+  for (const Arm& arm : experiment.definition.arms) names.push_back(arm.name + "-sSEED");
+  throw UsageError("experiment '{}' has no run '{}', expected one of {}",
+                   experiment.folder.string(), name, fmt::join(names, ", "));
+}
+
 int ExitCode(const ExperimentOutcome& outcome, const std::vector<ExperimentRun>& runs) {
   if (StopRequests() > 0) return kInterruptedExit;
   for (const ExperimentRun& run : runs) {
     const RunOutcome* found = OutcomeOf(outcome, run);
     if (found == nullptr || found->report.standing != RunStanding::kFinished) return 1;
   }
+  return 0;
+}
+
+// Does the runs on this machine. `side_by_side`: as TrainKeeper takes it.
+ExperimentOutcome DoRunsHere(const StoredExperiment& experiment,
+                             const std::vector<ExperimentRun>& runs, const QueueTerms& terms,
+                             int side_by_side) {
+  TrainKeeper keeper(experiment, terms.jobs, side_by_side);
+  ProgressLines progress(experiment);
+  const auto done = [&](const ExperimentRun& run, const StandingReport& report) {
+    PrintJsonLine(Summarize(experiment), run, report);
+  };
+  DoRuns(runs, terms, keeper,
+         {.stops = [] { return StopRequested() ? std::max(1, StopRequests()) : 0; },
+          .wait =
+              [&] {
+                progress.Tick();
+                std::this_thread::sleep_for(kPoll);
+              },
+          .say = Say,
+          .done = done});
+  return Summarize(experiment);
+}
+
+int Submit(const StoredExperiment& experiment, const std::vector<ExperimentRun>& runs,
+           const ExperimentOptions& options) {
+  const std::vector<ExperimentRun> missing = StillToBeDone(experiment, runs, options.retry_failed);
+  if (missing.empty()) {
+    Say("nothing is to be done that is not under way or has failed (--retry-failed)");
+    return 0;
+  }
+  const SlurmArray array = SubmitArray(
+      experiment, missing, {.at_once = options.jobs, .sbatch_options = options.sbatch_options});
+  Say(
+      fmt::format("submitted job {}: {} run(s), {}; once it has ended, the same command submits "
+                  "what is still to be done",
+                  array.job, missing.size(), array.script.string()));
+  fmt::print("{}\n", ToJson(array).dump());
   return 0;
 }
 
@@ -116,7 +178,8 @@ int RunExperiment(const ExperimentOptions& options) {
   const Definition definition = ReadDefinition(source);
   const fs::path folder =
       options.out.empty() ? ExperimentsIn().dir / definition.name : fs::path(options.out);
-  if (options.jobs > 1) SplitCores(OwnCores(), options.jobs);  // refuses too many
+  const int jobs = options.jobs.value_or(1);
+  if (!options.slurm) SplitCores(OwnCores(), jobs);  // refuses too many
   const ExperimentPlan plan = PlanExperiment(folder, definition, source);
   CheckObservations(plan);
   if (options.dry_run) {
@@ -131,31 +194,28 @@ int RunExperiment(const ExperimentOptions& options) {
   Say(fmt::format("experiment {} in {}: {} runs; what each says: {}/logs", definition.name,
                   experiment.folder.string(), runs.size(), experiment.folder.string()));
   if (!MeasureBaselines(experiment)) {
-    WriteSummary(ReadOutcome(experiment));
+    Summarize(experiment);
     Say("stopped before the first run: the same command goes on");
     return kInterruptedExit;
   }
-  TrainKeeper keeper(experiment, options.jobs);
-  ProgressLines progress(experiment);
-  const auto done = [&](const ExperimentRun& run, const StandingReport& report) {
-    const ExperimentOutcome outcome = ReadOutcome(experiment);
-    WriteSummary(outcome);
-    PrintJsonLine(outcome, run, report);
-  };
-  DoRuns(runs, {.jobs = options.jobs, .retry_failed = options.retry_failed}, keeper,
-         {.stops = [] { return StopRequested() ? std::max(1, StopRequests()) : 0; },
-          .wait =
-              [&] {
-                progress.Tick();
-                std::this_thread::sleep_for(kPoll);
-              },
-          .say = Say,
-          .done = done});
-  const ExperimentOutcome outcome = ReadOutcome(experiment);
-  WriteSummary(outcome);
+  if (options.slurm) {
+    Summarize(experiment);
+    return Submit(experiment, runs, options);
+  }
+  const ExperimentOutcome outcome =
+      DoRunsHere(experiment, runs, {.jobs = jobs, .retry_failed = options.retry_failed}, jobs);
   Say(SummaryText(outcome) +
       fmt::format("summary: {}", (experiment.folder / "summary.json").string()));
   return ExitCode(outcome, runs);
+}
+
+int RunExperimentTask(const ExperimentTask& task) {
+  InstallStopSignals();
+  const ExperimentShare shared(task.folder);
+  const StoredExperiment& experiment = shared.experiment();
+  const std::vector<ExperimentRun> runs{RunNamed(experiment, task.run)};
+  return ExitCode(
+      DoRunsHere(experiment, runs, {.retry_failed = task.retry_failed}, task.side_by_side), runs);
 }
 
 }  // namespace shoal::launch

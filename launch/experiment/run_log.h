@@ -6,7 +6,8 @@
 //   {"time", "event": "started", "run", "resumed", "jobs", "cores": [...]}
 //   {"time", "event": "ended", "run", "by_signal", "code", "stopped", "problem"}
 //
-// Threads: none of its own; one process writes at a time (ExperimentFolder), others may read.
+// Several processes may write, also of several hosts: each line is written under a lock of the
+// file.
 #pragma once
 
 #include <filesystem>
@@ -20,7 +21,7 @@ namespace shoal::launch {
 struct RunStart {
   std::string run{};         // ARM-sSEED
   bool resumed = false;      // its folder was there
-  int jobs = 1;              // runs side by side that the command allowed
+  int jobs = 1;              // runs side by side that the command allowed, or tasks of its array
   std::vector<int> cores{};  // it might use; empty = all there are
 };
 
@@ -44,7 +45,8 @@ class RunLog {
  public:
   explicit RunLog(std::filesystem::path file) : file_(std::move(file)) {}
 
-  // Append a line and wait until it is on the disk. Throw Error.
+  // Append a line and wait until it is on the disk. Throw Error, also where others hold the file
+  // for a minute.
   void Write(const RunStart& start) const;
   void Write(const RunEnding& ending) const;
 

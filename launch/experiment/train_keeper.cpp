@@ -76,8 +76,11 @@ std::vector<std::vector<int>> SplitCores(const std::vector<int>& cores, int jobs
   return split;
 }
 
-TrainKeeper::TrainKeeper(const StoredExperiment& experiment, int jobs)
-    : experiment_(experiment), log_(experiment.Log()), slots_(static_cast<size_t>(jobs)) {
+TrainKeeper::TrainKeeper(const StoredExperiment& experiment, int jobs, int side_by_side)
+    : experiment_(experiment),
+      log_(experiment.Log()),
+      side_by_side_(side_by_side),
+      slots_(static_cast<size_t>(jobs)) {
   if (jobs == 1) return;
   const auto parts = SplitCores(OwnCores(), jobs);
   for (size_t i = 0; i < slots_.size(); ++i) slots_[i].cores = parts[i];
@@ -123,10 +126,8 @@ void TrainKeeper::Start(const ExperimentRun& run, int slot_number) {
   Slot& slot = slots_[static_cast<size_t>(slot_number)];
   const std::vector<std::string> transfers = Standing(run).missing_transfers;
   ProcessSpec spec = transfers.empty() ? Training(run) : Transfer(run, transfers[0]);
-  log_.Write({.run = run.name,
-              .resumed = IsRun(run.folder),
-              .jobs = static_cast<int>(slots_.size()),
-              .cores = slot.cores});
+  log_.Write(
+      {.run = run.name, .resumed = IsRun(run.folder), .jobs = side_by_side_, .cores = slot.cores});
   slot.run = run;
   Launch(std::move(spec), slot);
 }

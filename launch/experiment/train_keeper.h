@@ -20,7 +20,8 @@ std::vector<int> OwnCores();
 class TrainKeeper : public RunKeeper {
  public:
   // Borrows the experiment. More than one job: each slot's runs get the cores of their part alone.
-  TrainKeeper(const StoredExperiment& experiment, int jobs);
+  // `side_by_side`: runs that may be under way at the same time, those of other keepers included.
+  TrainKeeper(const StoredExperiment& experiment, int jobs, int side_by_side);
 
   StandingReport Standing(const ExperimentRun& run) override;
   void Start(const ExperimentRun& run, int slot) override;
@@ -43,6 +44,7 @@ class TrainKeeper : public RunKeeper {
 
   const StoredExperiment& experiment_;
   const RunLog log_;
+  const int side_by_side_;
   std::vector<Slot> slots_;
   bool stopping_ = false;
 };

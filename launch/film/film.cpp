@@ -8,13 +8,13 @@
 #include <cstring>
 #include <future>
 
+#include "common/base/descriptor.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/checkpoint/checkpoint_files.h"
 #include "common/config/run_files.h"
 #include "launch/film/reel.h"
 #include "launch/processes/actor_program.h"
-#include "launch/processes/descriptor.h"
 #include "launch/processes/scratch_folder.h"
 
 namespace shoal::launch {

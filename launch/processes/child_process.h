@@ -11,7 +11,8 @@
 #include <utility>
 #include <vector>
 
-#include "launch/processes/descriptor.h"
+#include "common/base/descriptor.h"
+
 
 namespace shoal::launch {
 

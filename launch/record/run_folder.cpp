@@ -1,12 +1,8 @@
 #include "launch/record/run_folder.h"
 
-#include <fcntl.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <optional>
 #include <utility>
 
@@ -21,6 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr int kMostNumbers = 10'000;
 constexpr char kConfigFile[] = "config.json";
+constexpr char kLockFile[] = ".lock";
 
 // False when it exists already. Throws Error when it cannot be made.
 bool MakeNewFolder(const fs::path& path) {
@@ -38,13 +35,6 @@ void Remove(const fs::path& path) {
   }
   fs::remove_all(path, error);
   if (error) throw RuntimeError("cannot remove '{}': {}", path.string(), error.message());
-}
-
-struct flock WholeFile(short type) {
-  struct flock lock {};
-  lock.l_type = type;
-  lock.l_whence = SEEK_SET;
-  return lock;
 }
 
 bool Has(const fs::path& folder, const std::string& file) {
@@ -75,14 +65,7 @@ fs::path FindNamed(const std::string& name_or_folder, std::span<const NamedKind>
 
 bool IsRun(const fs::path& folder) { return Has(folder, kConfigFile); }
 
-bool IsHeld(const fs::path& run) {
-  const int file = open((run / ".lock").c_str(), O_RDONLY | O_CLOEXEC);
-  if (file < 0) return false;
-  struct flock lock = WholeFile(F_WRLCK);
-  const bool held = fcntl(file, F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;
-  close(file);
-  return held;
-}
+bool IsHeld(const fs::path& run) { return IsLocked(run / kLockFile); }
 
 RunFolder RunFolder::Create(const fs::path& dir, const std::string& name, bool overwrite) {
   const fs::path path = dir / name;
@@ -111,26 +94,14 @@ RunFolder RunFolder::Reopen(const fs::path& dir, const std::string& run) {
   return RunFolder(fs::weakly_canonical(FindNamed(run, RunsIn(dir))));
 }
 
-RunFolder::RunFolder(fs::path path) : path_(std::move(path)) {
-  const fs::path lock = path_ / ".lock";
-  lock_ = open(lock.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
-  if (lock_ < 0) throw RuntimeError("cannot write '{}': {}", lock.string(), std::strerror(errno));
-  // Locks of this kind can be asked for without being taken.
-  struct flock whole = WholeFile(F_WRLCK);
-  if (fcntl(lock_, F_OFD_SETLK, &whole) != 0) {
-    close(std::exchange(lock_, -1));
+RunFolder::RunFolder(fs::path path)
+    : path_(std::move(path)), lock_(FileLock::Take(path_ / kLockFile)) {
+  if (!lock_) {
     throw UsageError("run '{}' is running (its coordinator holds {})", path_.string(),
-                     lock.string());
+                     (path_ / kLockFile).string());
   }
   for (const char* folder : {"logs", "eval", "checkpoints", "made"}) MakeFolders(path_ / folder);
 }
-
-RunFolder::~RunFolder() {
-  if (lock_ >= 0) close(lock_);
-}
-
-RunFolder::RunFolder(RunFolder&& other) noexcept
-    : path_(std::move(other.path_)), lock_(std::exchange(other.lock_, -1)) {}
 
 fs::path LogFile(const fs::path& run, const std::string& process) {
   return run / "logs" / (process + ".log");

@@ -2,9 +2,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
+
+#include "common/base/file_lock.h"
 
 namespace shoal::launch {
 
@@ -43,10 +46,6 @@ class RunFolder {
   // when there is none or when it is running.
   static RunFolder Reopen(const std::filesystem::path& dir, const std::string& run);
 
-  ~RunFolder();
-  RunFolder(RunFolder&& other) noexcept;
-  RunFolder& operator=(RunFolder&&) = delete;
-
   const std::filesystem::path& path() const { return path_; }
   std::string name() const { return path_.filename().string(); }
 
@@ -54,7 +53,7 @@ class RunFolder {
   explicit RunFolder(std::filesystem::path path);  // takes the lock, makes the subfolders
 
   std::filesystem::path path_;
-  int lock_ = -1;
+  std::optional<FileLock> lock_;
 };
 
 // Whether a coordinator holds the run in this folder: asks, without holding it. On another host's

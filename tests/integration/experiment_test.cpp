@@ -14,6 +14,7 @@
 #include "tests/support/paths.h"
 #include "tests/support/processes.h"
 #include "tests/support/program.h"
+#include "tests/support/tiny_experiment.h"
 
 namespace shoal {
 namespace {
@@ -26,22 +27,8 @@ using ::testing::HasSubstr;
 
 class ExperimentTest : public testing::Test {
  protected:
-  // Two arms, one seed; `more` goes over the definition.
   void Define(const json& more = json::object(), int64_t env_steps = 1200) const {
-    json definition{{"schema", "shoal-experiment-definition-1"},
-                    {"base", "fetch-reach-state"},
-                    {"set",
-                     {{"env_steps", env_steps},
-                      {"eval.interval", 600},
-                      {"eval.episodes", 4},
-                      {"learner.threads", 1},
-                      {"replay.samples_per_insert", 16},
-                      {"stop.success", 2}}},
-                    {"arms", {{{"name", "a"}}, {{"name", "b"}, {"set", {{"learner.batch", 64}}}}}},
-                    {"seeds", {0}},
-                    {"final_episodes", 4}};
-    definition.update(more);
-    WriteFileAtomically(file_, definition.dump());
+    WriteFileAtomically(file_, TinyExperiment(more, env_steps).dump());
   }
   std::vector<std::string> Command(const std::vector<std::string>& flags = {}) const {
     std::vector<std::string> command{"shoal", "experiment", "run", file_, "--out", out_};
@@ -50,6 +37,11 @@ class ExperimentTest : public testing::Test {
   }
   ProgramResult Run(const std::vector<std::string>& flags = {}) const {
     return RunProgram(Command(flags), seconds(400));
+  }
+  ProgramResult SubmitWithoutSlurm() const {
+    std::vector<std::string> command = Command({"--slurm"});
+    command[0] = ProgramPath("shoal");
+    return RunCommand(command, seconds(120), {{"PATH", "/nowhere"}});
   }
   launch::ChildProcess Start() const {
     launch::ProcessSpec spec;
@@ -221,6 +213,32 @@ TEST_F(ExperimentTest, RunsSideBySideHaveTheirOwnCoresAndAreMarked) {
   const json summary = Read("summary.json");
   EXPECT_EQ(summary.at("arms").at(0).at("runs").at(0).at("beside_others"), true);
   EXPECT_LT(summary.at("arms").at(0).at("runs").at(0).at("cores").get<int>(), UsableCores());
+}
+
+TEST_F(ExperimentTest, WithoutSlurmAnArrayIsRefused) {
+  Define();
+  const ProgramResult refused = SubmitWithoutSlurm();
+  EXPECT_EQ(ExitCode(refused), 1) << refused.err;
+  EXPECT_THAT(refused.err, HasSubstr("sbatch"));
+  EXPECT_FALSE(fs::exists(out_ / "slurm.json"));
+  EXPECT_THAT(Statuses(), ElementsAre("missing", "missing"));
+}
+
+TEST_F(ExperimentTest, ATaskDoesOneRunBesideOthersAndNoneThatIsNotThere) {
+  Define();
+  SubmitWithoutSlurm();  // makes the folder
+  const auto task = [&](const std::string& run) {
+    return RunProgram({"shoal", "experiment", "task", out_, run, "--side-by-side", "2"},
+                      seconds(200));
+  };
+  const ProgramResult b = task("b-s0");
+  ASSERT_EQ(ExitCode(b), 0) << b.err;
+  EXPECT_EQ(JsonLines(b.out).at(0).at("run"), "b-s0");
+  EXPECT_THAT(Statuses(), ElementsAre("missing", "finished"));
+  EXPECT_EQ(Read("summary.json").at("arms").at(1).at("runs").at(0).at("beside_others"), true);
+  const ProgramResult none = task("c-s0");
+  EXPECT_EQ(ExitCode(none), 2);
+  EXPECT_THAT(none.err, HasSubstr("no run 'c-s0', expected one of a-sSEED, b-sSEED"));
 }
 
 struct Mistake {

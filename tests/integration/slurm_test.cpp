@@ -1,5 +1,5 @@
-// launch/slurm/train.sbatch under a Slurm of the test's own: controller, node and authentication on
-// this machine, in a scratch folder.
+// launch/slurm/train.sbatch and `shoal experiment run --slurm` under a Slurm of the test's own:
+// controller, node and authentication on this machine, in a scratch folder.
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -10,6 +10,8 @@
 
 #include "common/base/clock.h"
 #include "tests/support/paths.h"
+#include "tests/support/program.h"
+#include "tests/support/tiny_experiment.h"
 #include "tests/support/training_run.h"
 
 namespace shoal {
@@ -123,6 +125,37 @@ TEST_F(SlurmTest, TheBatchScriptTrainsWithActorsThatSrunStarts) {
   EXPECT_EQ(hosts.at("hosts").at(0).at("ssh").at(0), "srun");
   EXPECT_EQ(hosts.at("hosts").at(0).at("actors"), 1) << "half of two: this node learns, too";
   EXPECT_EQ(run.Json("config.json").at("actors"), 1) << "no other actor but srun's";
+}
+
+TEST_F(SlurmTest, AnExperimentIsAJobArrayOfItsRuns) {
+  const fs::path definition = folder_.path() / "mine.json", out = folder_.path() / "experiment";
+  WriteFileAtomically(definition, TinyExperiment().dump());
+  const auto submit = [&](const std::vector<std::string>& flags = {}) {
+    std::vector<std::string> command{"shoal", "experiment", "run",    definition,
+                                     "--out", out,          "--slurm"};
+    command.insert(command.end(), flags.begin(), flags.end());
+    return RunProgram(command, seconds(120));
+  };
+  const ProgramResult held = submit({"--sbatch=--hold"});
+  ASSERT_EQ(ExitCode(held), 0) << held.err;
+  const auto job = nlohmann::json::parse(held.out);
+  EXPECT_EQ(job.at("runs"), nlohmann::json({"a-s0", "b-s0"}));
+  const std::string id = job.at("job");
+  const ProgramResult again = submit();
+  EXPECT_EQ(ExitCode(again), 2) << again.out;
+  EXPECT_NE(again.err.find("job " + id + " of experiment"), std::string::npos) << again.err;
+
+  ASSERT_TRUE(Run({"scontrol", "release", id})) << Said();
+  ASSERT_TRUE(Run({"sh", "-c", "while squeue -h -j " + id + " | grep -q .; do sleep 0.2; done"},
+                  seconds(240)))
+      << Log("slurmd.log");
+  const auto summary = nlohmann::json::parse(ReadFile(out / "summary.json"));
+  for (const auto& arm : summary.at("arms")) {
+    EXPECT_EQ(arm.at("runs").at(0).at("status"), "finished") << summary.dump(2);
+  }
+  const ProgramResult nothing = submit();
+  EXPECT_EQ(ExitCode(nothing), 0);
+  EXPECT_NE(nothing.err.find("nothing is to be done"), std::string::npos) << nothing.err;
 }
 
 }  // namespace

@@ -158,5 +158,28 @@ TEST_F(ExperimentFolderTest, RunsOfOtherSeedsAreFound) {
   EXPECT_THAT(seeds, testing::ElementsAre(3, 1, 5, 12, 20));
 }
 
+TEST_F(ExperimentFolderTest, SingleRunsShareItButNotWithACommandThatRunsItWhole) {
+  { const ExperimentFolder made(Plan(TwoArms())); }
+  {
+    const ExperimentShare one(path_), other(path_);
+    EXPECT_EQ(other.experiment().definition.name, "mine");
+    EXPECT_TRUE(IsExperimentHeld(path_));
+    EXPECT_THAT(Refusal(TwoArms()), HasSubstr("is being run by another process"));
+  }
+  EXPECT_FALSE(IsExperimentHeld(path_));
+  EXPECT_EQ(Refusal(TwoArms()), "");
+}
+
+TEST_F(ExperimentFolderTest, RunsAreFoundByTheirNames) {
+  const ExperimentFolder open(Plan(TwoArms()));
+  const auto run = open.experiment().RunNamed("b-s17");
+  ASSERT_TRUE(run);
+  EXPECT_EQ(run->arm, 1u);
+  EXPECT_EQ(run->seed, 17);
+  for (const std::string name : {"c-s1", "b-s", "b-s1x", "b"}) {
+    EXPECT_FALSE(open.experiment().RunNamed(name)) << name;
+  }
+}
+
 }  // namespace
 }  // namespace shoal::launch

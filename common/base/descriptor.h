@@ -5,7 +5,7 @@
 
 #include <utility>
 
-namespace shoal::launch {
+namespace shoal {
 
 class Descriptor {
  public:
@@ -28,4 +28,4 @@ class Descriptor {
   int fd_ = -1;  // -1: none
 };
 
-}  // namespace shoal::launch
+}  // namespace shoal
