@@ -29,8 +29,40 @@ std::string FileName() {
                      getpid(), files++);
 }
 
-void AppendEvent(const proto::Event& event, std::string* out) {
-  AppendTfRecord(event.SerializeAsString(), out);
+proto::Event EventOfNow(int64_t step = 0) {
+  proto::Event event;
+  event.set_wall_time(WallTimeSeconds());
+  if (step != 0) event.set_step(step);
+  return event;
+}
+
+// Of a plugin's value, which has no scalar.
+proto::Summary::Value* AddPluginValue(proto::Event* event, const std::string& tag,
+                                      const std::string& plugin, const std::string& content) {
+  proto::Summary::Value* value = event->mutable_summary()->add_value();
+  value->set_tag(tag);
+  proto::SummaryMetadata::PluginData* data = value->mutable_metadata()->mutable_plugin_data();
+  data->set_plugin_name(plugin);
+  data->set_content(content);
+  return value;
+}
+
+std::string SessionEvent(const std::string& tag, const proto::HParamsPluginData& data) {
+  proto::Event event = EventOfNow();
+  AddPluginValue(&event, "_hparams_/" + tag, "hparams", data.SerializeAsString());
+  return event.SerializeAsString();
+}
+
+proto::HyperParameter ToProto(const HyperParameter& value) {
+  proto::HyperParameter parameter;
+  if (const auto* text = std::get_if<std::string>(&value)) {
+    parameter.set_string_value(*text);
+  } else if (const auto* number = std::get_if<double>(&value)) {
+    parameter.set_number_value(*number);
+  } else {
+    parameter.set_bool_value(std::get<bool>(value));
+  }
+  return parameter;
 }
 
 }  // namespace
@@ -39,10 +71,9 @@ EventWriter::EventWriter(const std::filesystem::path& folder) : path_(folder / F
   MakeFolders(folder);
   fd_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0644);
   if (fd_ < 0) throw RuntimeError("cannot create '{}': {}", path_.string(), std::strerror(errno));
-  proto::Event event;
-  event.set_wall_time(WallTimeSeconds());
+  proto::Event event = EventOfNow();
   event.set_file_version("brain.Event:2");
-  AppendEvent(event, &pending_);
+  Append(event.SerializeAsString());
 }
 
 EventWriter::~EventWriter() {
@@ -55,13 +86,40 @@ EventWriter::~EventWriter() {
 }
 
 void EventWriter::Scalar(const std::string& tag, int64_t step, double value) {
-  proto::Event event;
-  event.set_wall_time(WallTimeSeconds());
-  event.set_step(step);
+  proto::Event event = EventOfNow(step);
   proto::Summary::Value* point = event.mutable_summary()->add_value();
   point->set_tag(tag);
   point->set_simple_value(static_cast<float>(value));
-  AppendEvent(event, &pending_);
+  Append(event.SerializeAsString());
+}
+
+void EventWriter::Text(const std::string& tag, const std::string& markdown) {
+  constexpr int kStrings = 7;
+  proto::Event event = EventOfNow();
+  proto::Tensor* text = AddPluginValue(&event, tag, "text", "")->mutable_tensor();
+  text->set_dtype(kStrings);
+  text->mutable_tensor_shape()->add_dim()->set_size(1);
+  text->add_string_val(markdown);
+  Append(event.SerializeAsString());
+}
+
+void EventWriter::BeginSession(const std::map<std::string, HyperParameter>& settings) {
+  proto::HParamsPluginData data;
+  proto::SessionStartInfo* start = data.mutable_session_start_info();
+  for (const auto& [name, value] : settings) (*start->mutable_hparams())[name] = ToProto(value);
+  start->set_start_time_secs(WallTimeSeconds());
+  Append(SessionEvent("session_start_info", data));
+}
+
+void EventWriter::EndSession(bool success) {
+  proto::HParamsPluginData data;
+  data.mutable_session_end_info()->set_status(success ? 1 : 2);
+  data.mutable_session_end_info()->set_end_time_secs(WallTimeSeconds());
+  Append(SessionEvent("session_end_info", data));
+}
+
+void EventWriter::Append(const std::string& event) {
+  AppendTfRecord(event, &pending_);
   if (pending_.size() >= kPendingBytes) Flush();
 }
 

@@ -1,19 +1,23 @@
-// Scalars as a TensorBoard event file.
+// Scalars, texts and hyper-parameters as a TensorBoard event file.
 //
 // The file is FOLDER/events.out.tfevents.SECONDS.HOST.PID.NUMBER, a sequence of TFRecords of Event
 // messages. TensorBoard follows the newest file of a folder only, so one process at a time writes
 // there.
 //
-// Scalars are kept in memory until Flush, at least every 64 kB. A file always ends at a record's
-// end, unless the process dies within a write; readers ignore such a tail. Threads: one at a time.
-// Errors: Error naming the file when it cannot be made or written.
+// What is written is kept in memory until Flush, at least every 64 kB. A file always ends at a
+// record's end, unless the process dies within a write; readers ignore such a tail. Threads: one at
+// a time. Errors: Error naming the file when it cannot be made or written.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <string>
+#include <variant>
 
 namespace shoal::tensorboard {
+
+using HyperParameter = std::variant<bool, double, std::string>;
 
 class EventWriter {
  public:
@@ -26,11 +30,18 @@ class EventWriter {
 
   // One point: x = `step` (env steps everywhere in Shoal), y = `value` rounded to float.
   void Scalar(const std::string& tag, int64_t step, double value);
+  // A text in markdown, for the text tab.
+  void Text(const std::string& tag, const std::string& markdown);
+  // Begins what the hparams tab shows as one line: the settings by name.
+  void BeginSession(const std::map<std::string, HyperParameter>& settings);
+  void EndSession(bool success);
   void Flush();
 
   const std::filesystem::path& path() const { return path_; }
 
  private:
+  void Append(const std::string& event);
+
   std::filesystem::path path_;
   int fd_;
   std::string pending_;

@@ -13,7 +13,6 @@
 
 #include "common/base/descriptor.h"
 
-
 namespace shoal::launch {
 
 struct ProcessSpec {

@@ -169,6 +169,7 @@ RunResult Coordinator::Run(const std::function<void()>& on_started) {
 RunResult Coordinator::Impl::Run(const std::function<void()>& on_started) {
   plan = PlanProcesses(settings.config(), run, hosts);
   for (const ProcessSpec& spec : plan) supervisor.Start(spec);
+  scalars.WriteConfig(config);
   meta.exit = "running";
   StoreMeta();
   meta.exit = WaitForEnd(on_started);
@@ -178,6 +179,7 @@ RunResult Coordinator::Impl::Run(const std::function<void()>& on_started) {
   meta.restarts += supervisor.restarts();
   meta.resends += Resends();
   if (!meta.error.empty()) meta.exit = "failed";
+  scalars.WriteEnd(meta.exit != "failed");
   return {.meta = meta,
           .clean = supervisor.unclean_exits().empty(),
           .bottleneck = FindBottleneck(view, usable_cores, settings.config().actors)};

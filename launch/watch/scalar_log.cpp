@@ -3,8 +3,10 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "common/config/config_io.h"
 #include "learner/agent/algorithms.h"
 
 namespace shoal::launch {
@@ -18,9 +20,52 @@ std::optional<double> Find(const MetricsMessage& report, std::string_view name) 
   return i < report.values.size() ? std::optional(report.values[i]) : std::nullopt;
 }
 
+// A list or a map of a key is one text.
+tensorboard::HyperParameter ToHyperParameter(const nlohmann::ordered_json& value) {
+  if (value.is_boolean()) return value.get<bool>();
+  if (value.is_number()) return value.get<double>();
+  return value.is_string() ? value.get<std::string>() : value.dump();
+}
+
+using Settings = std::vector<std::pair<std::string, nlohmann::ordered_json>>;
+
+// Every key by its dotted name.
+Settings SettingsOf(const Config& config) {
+  Settings settings;
+  const nlohmann::ordered_json sections = ToJson(config);
+  for (const auto& [name, value] : sections.items()) {
+    if (!value.is_object()) {
+      settings.emplace_back(name, value);
+      continue;
+    }
+    for (const auto& [inner, of_section] : value.items()) {
+      settings.emplace_back(name + "." + inner, of_section);
+    }
+  }
+  return settings;
+}
+
 }  // namespace
 
 ScalarLog::ScalarLog(const std::filesystem::path& run) : writer_(run / "tensorboard") {}
+
+void ScalarLog::WriteConfig(const Config& config) {
+  std::map<std::string, tensorboard::HyperParameter> settings;
+  std::string table = "| key | value |\n| --- | --- |\n";
+  for (const auto& [key, value] : SettingsOf(config)) {
+    settings[key] = ToHyperParameter(value);
+    table += fmt::format("| {} | {} |\n", key,
+                         value.is_string() ? value.get<std::string>() : value.dump());
+  }
+  writer_.Text("configuration", table);
+  writer_.BeginSession(settings);
+  writer_.Flush();
+}
+
+void ScalarLog::WriteEnd(bool success) {
+  writer_.EndSession(success);
+  writer_.Flush();
+}
 
 void ScalarLog::WriteEvaluation(const EvaluationPoint& point) {
   const auto step = static_cast<int64_t>(point.env_steps);

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <optional>
 
+#include "common/config/config.h"
 #include "common/tensorboard/event_writer.h"
 #include "launch/record/evaluation_point.h"
 #include "launch/watch/metrics_view.h"
@@ -18,6 +19,11 @@ namespace shoal::launch {
 class ScalarLog {
  public:
   explicit ScalarLog(const std::filesystem::path& run);  // throws Error
+
+  // What the text tab and the hparams tab show of the run: all keys.
+  void WriteConfig(const Config& config);
+  // How it ended, for the hparams tab.
+  void WriteEnd(bool success);
 
   // eval/mean_reward, eval/success_rate.
   void WriteEvaluation(const EvaluationPoint& point);

@@ -26,12 +26,10 @@ inline std::vector<std::filesystem::path> EventFiles(const std::filesystem::path
   return files;
 }
 
-using Scalars = std::map<std::string, std::vector<std::pair<int64_t, float>>>;  // tag -> (x, y)
-
 // Of one file, whose framing must be whole; the checksums are tf_record_test's matter.
-inline Scalars ReadScalars(const std::filesystem::path& path) {
+inline std::vector<tensorboard::proto::Event> ReadEvents(const std::filesystem::path& path) {
   const std::string file = ReadFile(path);
-  Scalars scalars;
+  std::vector<tensorboard::proto::Event> events;
   for (size_t at = 0; at < file.size();) {
     uint64_t length = 0;
     std::memcpy(&length, file.data() + at, std::min<size_t>(8, file.size() - at));
@@ -40,12 +38,35 @@ inline Scalars ReadScalars(const std::filesystem::path& path) {
       ADD_FAILURE() << path << ": broken at byte " << at;
       break;
     }
-    for (const auto& value : event.summary().value()) {
-      scalars[value.tag()].push_back({event.step(), value.simple_value()});
-    }
+    events.push_back(event);
     at += 16 + length;
   }
+  return events;
+}
+
+using Scalars = std::map<std::string, std::vector<std::pair<int64_t, float>>>;  // tag -> (x, y)
+
+inline Scalars ReadScalars(const std::filesystem::path& path) {
+  Scalars scalars;
+  for (const auto& event : ReadEvents(path)) {
+    for (const auto& value : event.summary().value()) {
+      if (value.has_metadata()) continue;  // a plugin's
+      scalars[value.tag()].push_back({event.step(), value.simple_value()});
+    }
+  }
   return scalars;
+}
+
+// What the plugins are told, by tag.
+inline std::map<std::string, tensorboard::proto::Summary::Value> ReadPluginValues(
+    const std::filesystem::path& path) {
+  std::map<std::string, tensorboard::proto::Summary::Value> values;
+  for (const auto& event : ReadEvents(path)) {
+    for (const auto& value : event.summary().value()) {
+      if (value.has_metadata()) values[value.tag()] = value;
+    }
+  }
+  return values;
 }
 
 }  // namespace shoal

@@ -11,6 +11,7 @@ namespace {
 
 using std::chrono::seconds;
 using ::testing::ElementsAre;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::Pair;
 
@@ -80,6 +81,33 @@ TEST_F(ScalarLogTest, AReportBeforeTheFirstUpdateAndThoseOfOthersAddNone) {
   other.role = "actor";
   log_.WriteTraining(other, start_);
   EXPECT_THAT(Read(), IsEmpty());
+}
+
+TEST_F(ScalarLogTest, TheConfigurationIsATextAndASessionOfHyperParameters) {
+  Config config;
+  config.learner.batch = 77;
+  config.task = "FetchPush";
+  log_.WriteConfig(config);
+  log_.WriteEnd(false);
+  const auto values = ReadPluginValues(EventFiles(folder_.path() / "tensorboard").at(0));
+  const auto& text = values.at("configuration");
+  EXPECT_EQ(text.metadata().plugin_data().plugin_name(), "text");
+  EXPECT_THAT(text.tensor().string_val(0), HasSubstr("| learner.batch | 77 |\n"));
+  EXPECT_THAT(text.tensor().string_val(0), HasSubstr("| task | FetchPush |\n"));
+
+  tensorboard::proto::HParamsPluginData start, end;
+  const auto content = [&](const std::string& tag) {
+    EXPECT_EQ(values.at(tag).metadata().plugin_data().plugin_name(), "hparams");
+    return values.at(tag).metadata().plugin_data().content();
+  };
+  ASSERT_TRUE(start.ParseFromString(content("_hparams_/session_start_info")));
+  const auto& settings = start.session_start_info().hparams();
+  EXPECT_EQ(settings.at("learner.batch").number_value(), 77);
+  EXPECT_EQ(settings.at("task").string_value(), "FetchPush");
+  EXPECT_EQ(settings.at("observation.pixels").bool_value(), config.observation.pixels);
+  EXPECT_EQ(settings.at("network.hidden").string_value(), "[256,256]");
+  ASSERT_TRUE(end.ParseFromString(content("_hparams_/session_end_info")));
+  EXPECT_EQ(end.session_end_info().status(), 2) << "failure";
 }
 
 }  // namespace
