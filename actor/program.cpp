@@ -89,6 +89,23 @@ std::optional<int> Parse(int argc, char** argv, Options* options) {
   return std::nullopt;
 }
 
+// Of one environment's cameras together, over some steps of an episode.
+double FrameMicroseconds(worlds::Environment& environment) {
+  constexpr int kSteps = 10;
+  const ObservationSpec& spec = environment.spec();
+  std::vector<uint8_t> frame(spec.FrameBytes());
+  std::vector<float> vector(static_cast<size_t>(spec.RecordedVectorSize()));
+  const std::vector<float> action(static_cast<size_t>(spec.action_size));
+  const worlds::ObservationOut out{.frame = frame, .vector = vector};
+  environment.Reset(StreamKey(0, StreamRole::kEvalEnvironment, 0),
+                    out);  // the first frame prepares much
+  const double before = environment.render_seconds();
+  for (int i = 0; i < kSteps; ++i) {
+    if (environment.Step(action, out).terminated) break;
+  }
+  return 1e6 * (environment.render_seconds() - before) / kSteps;
+}
+
 int Describe(const Options& options) {
   Config config;
   ApplyJson(ParseStrictJson(ReadFile(options.config_json), options.config_json),
@@ -97,7 +114,9 @@ int Describe(const Options& options) {
   std::shared_ptr<worlds::RenderContext> render;
   if (config.observation.pixels) render = worlds::MakeRenderContext(config.observation);
   const auto environment = worlds::MakeEnvironment(config, render);
-  std::cout << ToJson(environment->spec()).dump(2) << std::endl;
+  nlohmann::ordered_json description = ToJson(environment->spec());
+  description["frame_microseconds"] = FrameMicroseconds(*environment);
+  std::cout << description.dump(2) << std::endl;
   return 0;
 }
 

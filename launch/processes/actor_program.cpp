@@ -34,7 +34,7 @@ Error FailureOf(const ExitStatus& status, const fs::path& errors) {
 
 }  // namespace
 
-ObservationSpec DescribeObservations(const Config& config) {
+ObservedWorld DescribeObservations(const Config& config) {
   const ScratchFolder scratch;
   const fs::path input = scratch.path() / "config.json";
   WriteFileAtomically(input, ToJson(config).dump(2));
@@ -49,8 +49,10 @@ ObservationSpec DescribeObservations(const Config& config) {
                            : fmt::format("took more than {} s", kDescribeDeadline.count()));
   }
   if (!status->Clean()) throw FailureOf(*status, spec.errors);
-  return ObservationSpecFromJson(
-      ParseStrictJson(ReadFile(spec.output), std::string(kProgram) + " --describe"));
+  const nlohmann::json described =
+      ParseStrictJson(ReadFile(spec.output), std::string(kProgram) + " --describe");
+  return {.spec = ObservationSpecFromJson(described),
+          .frame_microseconds = described.value("frame_microseconds", 0.0)};
 }
 
 std::optional<EvaluationPoint> EvaluateByActor(const EvaluationOrder& order,

@@ -12,9 +12,14 @@
 
 namespace shoal::launch {
 
+struct ObservedWorld {
+  ObservationSpec spec;
+  double frame_microseconds = 0;  // that drawing a frame, all cameras, takes on this machine
+};
+
 // `shoal-actor --describe`: what actors of this configuration observe. Its error becomes ours, with
 // its exit code.
-ObservationSpec DescribeObservations(const Config& config);
+ObservedWorld DescribeObservations(const Config& config);
 
 // Where an evaluation shows its episodes (common/image/frame_stream.h).
 struct ShownFrames {

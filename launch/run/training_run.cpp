@@ -29,6 +29,7 @@
 #include "launch/run/coordinator.h"
 #include "launch/run/live_settings.h"
 #include "launch/run/operator_desk.h"
+#include "launch/run/plan_text.h"
 #include "launch/run/run_end.h"
 #include "launch/watch/prometheus_endpoint.h"
 #include "learner/agent/value_bounds.h"
@@ -45,6 +46,7 @@ struct PreparedRun {
   RunConfig config;
   RunMeta meta;
   Hosts hosts;
+  double frame_microseconds = 0;
 };
 
 // The processes of a run whose coordinator was killed write into its folder until they have
@@ -106,10 +108,10 @@ PreparedRun PrepareResumed(const TrainOptions& options) {
   const Config before = config.config;
   ApplyResumeOptions(options, &config.config);
   tasks::LoadTaskLibrary(config.config.task_library);
-  const ObservationSpec now = DescribeObservations(config.config);
-  if (now != config.spec) {
+  const ObservedWorld now = DescribeObservations(config.config);
+  if (now.spec != config.spec) {
     throw RuntimeError("the run observed '{}', this program's actors would observe '{}'",
-                       config.spec.Summary(), now.Summary());
+                       config.spec.Summary(), now.spec.Summary());
   }
   RunMeta meta = ReadRunMeta(folder.path());
   if (meta.started.empty()) meta.started = UtcTimestamp();
@@ -121,7 +123,7 @@ PreparedRun PrepareResumed(const TrainOptions& options) {
         config.config.replay.min_size);
   }
   Hosts hosts = ResumedHosts(options, folder.path(), config.config);
-  return {std::move(folder), std::move(config), meta, std::move(hosts)};
+  return {std::move(folder), std::move(config), meta, std::move(hosts), now.frame_microseconds};
 }
 
 // What a receiver of weights takes.
@@ -163,6 +165,7 @@ void PrintStart(const PreparedRun& run, const ClusterAddress& address) {
       "1 evaluation actor; logs in {}\n",
       config.seed, config.env_steps, config.learner.threads, config.actors, config.envs_per_actor,
       (run.folder.path() / "logs").string());
+  fmt::print("{}", PlanText(run.config, run.frame_microseconds));
   for (const RemoteHost& host : run.hosts.hosts) {
     fmt::print("  {} of the actors on {}, in {}\n", host.actors, host.name, host.run.string());
   }
@@ -267,7 +270,8 @@ int Train(const TrainOptions& options, Detachment* detachment) {
     return 0;
   }
   tasks::LoadTaskLibrary(config.config.task_library);
-  config.spec = DescribeObservations(config.config);
+  const ObservedWorld world = DescribeObservations(config.config);
+  config.spec = world.spec;
   CheckNetwork(config);
   CheckReplay(config, /*exists=*/false);
   CheckHosts(hosts, StopRequested);
@@ -281,8 +285,9 @@ int Train(const TrainOptions& options, Detachment* detachment) {
     fmt::print("configuration is good; actors observe: {}\n", config.spec.Summary());
     return 0;
   }
-  return Start(PrepareFresh(options, std::move(config), std::move(hosts)), options, std::move(bus),
-               address, detachment);
+  PreparedRun run = PrepareFresh(options, std::move(config), std::move(hosts));
+  run.frame_microseconds = world.frame_microseconds;
+  return Start(std::move(run), options, std::move(bus), address, detachment);
 }
 
 }  // namespace

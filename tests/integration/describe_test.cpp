@@ -33,6 +33,7 @@ TEST(Describe, SaysWhatEachKindOfObservationConsistsOf) {
         EXPECT_EQ(spec.at("channels"), grey ? 2 : 6);
         EXPECT_EQ(spec.at("height"), 40 + 4 * number);
         EXPECT_EQ(spec.at("width"), 84);
+        EXPECT_GT(spec.at("frame_microseconds"), 1);
         EXPECT_EQ(spec.at("stack"), 1 + number % 4);
         EXPECT_EQ(spec.at("cameras"), (std::vector<std::string>{"close", "top"}));
         std::vector<std::string> blocks;

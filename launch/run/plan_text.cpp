@@ -1,0 +1,54 @@
+#include "launch/run/plan_text.h"
+
+#include <fmt/core.h>
+
+#include "common/nn/precision.h"
+#include "learner/agent/update_cost.h"
+#include "replay_server/core/storage_needs.h"
+
+namespace shoal::launch {
+namespace {
+
+constexpr double kMega = 1e6, kGiga = 1e9;
+
+std::string PicturesText(const RunConfig& run, double frame_microseconds) {
+  if (!run.config.observation.pixels) return "no pictures";
+  return fmt::format("OSMesa ({}) draws a frame, {} camera(s), in {:.0f} us",
+                     run.config.observation.quality, run.spec.cameras.size(), frame_microseconds);
+}
+
+std::string ReplayText(const RunConfig& run) {
+  const replay::StorageNeeds needs = replay::StorageNeedsOf(run);
+  return fmt::format("replay of {} records: {:.0f} MB in {}, {:.0f} MB of memory beside it",
+                     run.config.replay.capacity, static_cast<double>(needs.ring_bytes) / kMega,
+                     run.config.replay.storage == "memory" ? "memory" : "a file",
+                     static_cast<double>(needs.memory_bytes) / kMega);
+}
+
+std::string PaceText(const Config& config) {
+  if (config.replay.samples_per_insert <= 0) return "updates as fast as the learner can";
+  return fmt::format("{:.3g} updates per env step",
+                     config.replay.samples_per_insert / config.learner.batch);
+}
+
+std::string UpdateText(const RunConfig& run) {
+  const Config& config = run.config;
+  const learner::UpdateCost cost = learner::CostOfUpdate(config, run.spec);
+  const std::string encoder = config.observation.pixels
+                                  ? fmt::format("encoder {} of {} parameters, ",
+                                                config.network.encoder, cost.encoder_parameters)
+                                  : "";
+  return fmt::format(
+      "{} in {}: {}batch {}, {:.3g} GFLOP an update", config.learner.algorithm,
+      nn::ToString(nn::ChoosePrecision(config.learner.precision, config.observation.pixels)),
+      encoder, config.learner.batch, cost.flop / kGiga);
+}
+
+}  // namespace
+
+std::string PlanText(const RunConfig& run, double frame_microseconds) {
+  return fmt::format("  {}; {}\n  {}; {}\n", PicturesText(run, frame_microseconds), ReplayText(run),
+                     PaceText(run.config), UpdateText(run));
+}
+
+}  // namespace shoal::launch

@@ -1,0 +1,15 @@
+// What a run is going to cost, as it is told when it starts.
+#pragma once
+
+#include <string>
+
+#include "common/config/run_files.h"
+
+namespace shoal::launch {
+
+// Lines, each ended: pictures and what drawing them takes, what the replay takes, updates per env
+// step, arithmetic, encoder and work of an update. Throws Error where the CPU lacks the asked
+// precision.
+std::string PlanText(const RunConfig& run, double frame_microseconds);
+
+}  // namespace shoal::launch

@@ -1,0 +1,23 @@
+// What one update computes, counted from the plans of its networks.
+#pragma once
+
+#include <cstdint>
+
+#include "common/config/config.h"
+#include "common/spec/observation_spec.h"
+
+namespace shoal::learner {
+
+struct UpdateCost {
+  int64_t encoder_parameters = 0;  // 0 without pixels
+  // Floating-point operations of the matrix products, 2 a multiply-add, on average over updates
+  // with and without a step of the actor: encoder on observations and next observations, critics on
+  // both (targets on the next), actor likewise; a backward pass is twice a forward pass, the
+  // actor's through the critics once. Activations, norms and optimisers are left out.
+  double flop = 0;
+};
+
+// Of SAC, TD3 and DDPG alike. Throws Error where the networks do not fit.
+UpdateCost CostOfUpdate(const Config& config, const ObservationSpec& spec);
+
+}  // namespace shoal::learner

@@ -1,0 +1,46 @@
+#include "launch/run/plan_text.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+namespace shoal::launch {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+TEST(PlanText, FromStateThereAreNoPicturesAndNoEncoder) {
+  RunConfig run;
+  run.config.observation.pixels = false;
+  run.config.replay.capacity = 2000;
+  run.config.replay.samples_per_insert = 64;
+  run.config.learner.batch = 256;
+  run.spec.blocks = {{"position", 3, true}};
+  run.spec.action_size = 2;
+  EXPECT_THAT(PlanText(run, 0),
+              AllOf(HasSubstr("no pictures; replay of 2000 records: "), HasSubstr("in a file"),
+                    HasSubstr("0.25 updates per env step; sac in f32: batch 256, "),
+                    Not(HasSubstr("encoder"))));
+}
+
+TEST(PlanText, PicturesSayWhatTheyCost) {
+  RunConfig run;
+  run.config.observation.quality = "reference";
+  run.config.replay.samples_per_insert = 0;
+  run.config.replay.storage = "memory";
+  run.config.learner.precision = "f32";
+  run.config.network.encoder = "nature";
+  run.spec.cameras = {"front", "side"};
+  run.spec.channels = 6;
+  run.spec.height = run.spec.width = 84;
+  run.spec.stack = 1;
+  run.spec.action_size = 2;
+  EXPECT_THAT(PlanText(run, 1234.4),
+              AllOf(HasSubstr("OSMesa (reference) draws a frame, 2 camera(s), in 1234 us"),
+                    HasSubstr("in memory"), HasSubstr("updates as fast as the learner can"),
+                    HasSubstr("sac in f32: encoder nature of 82080 parameters, ")));
+}
+
+}  // namespace
+}  // namespace shoal::launch
