@@ -80,6 +80,18 @@ fs::path FilmAtEnd(const fs::path& run, const Config& config, OperatorDesk& desk
   return {};
 }
 
+// A film wants a checkpoint, curves and a page an evaluation.
+void PrintWhatToLookAt(const fs::path& run, bool filmed, Progress& progress) {
+  std::string commands;
+  if (!fs::is_empty(run / "eval")) {
+    commands += fmt::format("; curves: shoal plot {0}; page: shoal report {0}", run.string());
+  }
+  if (!filmed && !NewestCheckpoint(run).empty()) {
+    commands += fmt::format("; film: shoal film {}", run.string());
+  }
+  if (!commands.empty()) progress.Say("  " + commands.substr(2));
+}
+
 // `film` is empty where there is none.
 void PrintSummary(const fs::path& run, const Config& config, const RunResult& result,
                   const std::optional<EvaluationPoint>& final_evaluation, const fs::path& film,
@@ -117,6 +129,7 @@ void PrintSummary(const fs::path& run, const Config& config, const RunResult& re
     if (fs::exists(run / name)) progress.Say(fmt::format("  {}", (run / name).string()));
   }
   if (!film.empty()) progress.Say(fmt::format("  {}", film.string()));
+  PrintWhatToLookAt(run, !film.empty(), progress);
 }
 
 }  // namespace

@@ -37,6 +37,22 @@ TEST(TrainingRun, LeavesABalancedAccountAndEveryFile) {
   EXPECT_GE(evaluations, 3) << "two while training and the final one";
 }
 
+TEST(TrainingRun, ItsLastLinesSayHowToLookAtIt) {
+  const TrainingRun run;
+  const ProgramResult result = run.Train({{"env_steps", "1500"}, {"eval.interval", "500"}});
+  ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
+  const std::string path = run.path();
+  EXPECT_NE(result.out.find("  curves: shoal plot " + path + "; page: shoal report " + path +
+                            "; film: shoal film " + path + "\n"),
+            std::string::npos)
+      << result.out;
+  const std::string page = run.parent() / "page.html";
+  const ProgramResult report =
+      RunProgram({"shoal", "report", path, "--output", page}, std::chrono::seconds(60));
+  EXPECT_EQ(ExitCode(report), 0) << report.err;
+  EXPECT_TRUE(std::filesystem::exists(page));
+}
+
 TEST(TrainingRun, EvaluationOfACheckpointRepeats) {
   const TrainingRun run;
   const ProgramResult result = run.Train({{"env_steps", "1500"}, {"eval.interval", "500"}});
