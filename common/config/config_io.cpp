@@ -1,6 +1,7 @@
 #include "common/config/config_io.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -78,6 +79,15 @@ struct Allows {
   }
 };
 
+// 1e5 is an integer, too; beyond 2^53 a real number does not tell neighbours apart.
+json AsInteger(const json& value) {
+  if (!value.is_number_float()) return value;
+  const double number = value.get<double>();
+  constexpr double kExact = 9007199254740992;
+  if (std::abs(number) > kExact || number != std::trunc(number)) return value;
+  return static_cast<int64_t>(number);
+}
+
 // Reads one JSON value as T; false when it has another type, does not fit T, or breaks the rule.
 template <class T>
 bool Read(const json& value, const internal::Rule& rule, T* out) {
@@ -87,11 +97,12 @@ bool Read(const json& value, const internal::Rule& rule, T* out) {
     *out = value.get<bool>();
     return true;
   } else if constexpr (std::is_integral_v<T>) {
-    if (!value.is_number_integer()) return false;
-    const bool too_large = value.is_number_unsigned() &&
-                           value.get<uint64_t>() > uint64_t(std::numeric_limits<int64_t>::max());
-    if (too_large || !allows(value.get<int64_t>())) return false;
-    *out = static_cast<T>(value.get<int64_t>());
+    const json integer = AsInteger(value);
+    if (!integer.is_number_integer()) return false;
+    const bool too_large = integer.is_number_unsigned() &&
+                           integer.get<uint64_t>() > uint64_t(std::numeric_limits<int64_t>::max());
+    if (too_large || !allows(integer.get<int64_t>())) return false;
+    *out = static_cast<T>(integer.get<int64_t>());
     return true;
   } else if constexpr (std::is_floating_point_v<T>) {
     if (!value.is_number() || !allows(value.get<double>())) return false;

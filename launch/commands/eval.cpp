@@ -12,6 +12,7 @@
 #include "launch/commands/commands.h"
 #include "launch/experiment/baselines.h"
 #include "launch/processes/actor_program.h"
+#include "launch/record/run_folder.h"
 
 namespace shoal::launch {
 namespace {
@@ -21,7 +22,7 @@ namespace fs = std::filesystem;
 struct EvalOptions {
   std::string checkpoint, task, json;
   int episodes = 100;
-  int64_t seed = 1;
+  int64_t seed = 1000;  // not that of a run, whose final evaluation plays the same stream
 };
 
 void AddBaselines(const fs::path& file, const Baselines& baselines) {
@@ -30,15 +31,37 @@ void AddBaselines(const fs::path& file, const Baselines& baselines) {
   WriteFileAtomically(file, object.dump(2) + "\n");
 }
 
-int Evaluate(const EvalOptions& options) {
-  const fs::path checkpoint = fs::absolute(options.checkpoint).lexically_normal();
-  if (!fs::is_directory(checkpoint)) {
-    throw RuntimeError("no checkpoint folder '{}'", options.checkpoint);
+struct RunCheckpoint {
+  fs::path run, checkpoint;
+};
+
+// RUN/checkpoints/NAME, or RUN for the checkpoint that it is judged by.
+RunCheckpoint FindCheckpoint(const std::string& asked) {
+  fs::path path = fs::absolute(asked).lexically_normal();
+  if (!path.has_filename()) path = path.parent_path();  // "best/" -> "best"
+  if (!fs::is_directory(path)) throw UsageError("no checkpoint folder '{}'", asked);
+  if (IsRun(path)) {
+    const fs::path judged = JudgedCheckpoint(path);
+    if (judged.empty()) throw UsageError("run '{}' has no checkpoint yet", asked);
+    return {path, judged};
   }
+  const fs::path run = path.parent_path().parent_path();
+  if (!IsRun(run)) {
+    throw UsageError("'{}' is neither a run nor RUN/checkpoints/NAME: there is no '{}'", asked,
+                     (run / "config.json").string());
+  }
+  return {run, path};
+}
+
+int Interrupted(const std::string& what) {
+  fmt::print(stderr, "shoal: interrupted: {}\n", what);
+  return kInterruptedExit;
+}
+
+int Evaluate(const EvalOptions& options) {
+  const auto [run, folder] = FindCheckpoint(options.checkpoint);
+  if (!options.json.empty()) CheckWritable(options.json);
   InstallStopSignals();
-  const fs::path folder =
-      checkpoint.has_filename() ? checkpoint : checkpoint.parent_path();  // "best/" -> "best"
-  const fs::path run = folder.parent_path().parent_path();                // RUN/checkpoints/step_N
   const auto point = EvaluateByActor({.run = run,
                                       .checkpoint = folder,
                                       .episodes = options.episodes,
@@ -46,9 +69,9 @@ int Evaluate(const EvalOptions& options) {
                                       .task = options.task,
                                       .json = options.json},
                                      StopRequested);
-  if (!point) throw RuntimeError("evaluation of '{}' interrupted", options.checkpoint);
-  fmt::print("{} episodes of {}: {} ({} env steps, {} updates)\n", options.episodes,
-             options.checkpoint, FormatScore(*point), point->env_steps, point->updates);
+  if (!point) return Interrupted("nothing was evaluated");
+  fmt::print("{} episodes (seed {}) of {}: {} ({} env steps, {} updates)\n", options.episodes,
+             options.seed, folder.string(), FormatScore(*point), point->env_steps, point->updates);
   Config played = ReadRunConfig(run).config;
   if (!options.task.empty()) {  // played without the run's model file
     played.task = options.task;
@@ -56,7 +79,7 @@ int Evaluate(const EvalOptions& options) {
   }
   const auto baselines = BaselineCache().Measure(
       played, StopRequested, [](const std::string& line) { fmt::print(stderr, "{}\n", line); });
-  if (!baselines) throw RuntimeError("baselines of {} interrupted", played.task);
+  if (!baselines) return Interrupted("baselines were left out");
   fmt::print("{} {}\n", played.task, FormatBaselines(*baselines));
   if (!options.json.empty()) AddBaselines(options.json, *baselines);
   return 0;
@@ -69,7 +92,8 @@ void AddEvalCommand(CLI::App& app, Action* chosen) {
       "eval", "Evaluate a checkpoint on fresh episodes, with the policy's mean actions.");
   const auto options = std::make_shared<EvalOptions>();
   command
-      ->add_option("--checkpoint", options->checkpoint, "runs/NAME/checkpoints/best or .../step_N")
+      ->add_option("--checkpoint", options->checkpoint,
+                   "runs/NAME/checkpoints/best or .../step_N; runs/NAME for its best")
       ->required();
   command->add_option("--episodes", options->episodes, "Episodes to play")
       ->check(CLI::Range(1, 1'000'000))

@@ -7,7 +7,6 @@
 #include "common/base/error.h"
 #include "common/base/stop.h"
 #include "launch/commands/commands.h"
-#include "launch/experiment/run_experiment.h"
 #include "launch/film/film_checkpoints.h"
 #include "launch/record/run_folder.h"
 

@@ -29,12 +29,9 @@ struct ExperimentTask {
   bool retry_failed = false;
 };
 
-// Exit code of a command that was stopped by Ctrl-C, as shells have it.
-inline constexpr int kInterruptedExit = 130;
-
 // Does what is still to be done of the experiment. Progress goes to stderr; stdout gets one line of
 // JSON for each run that is done with: {run, arm, seed, status, objective, path}. 0 once every run
-// is finished, 1 when one is not, kInterruptedExit after Ctrl-C. Throws Error before anything is
+// is finished, 1 when one is not, kInterruptedExit (stop.h) after Ctrl-C. Throws Error before anything is
 // written where the definition, the folder or an arm is refused.
 //
 // As a job array: submits, and stdout gets one line of JSON, {job, script, runs}; 0 unless Slurm

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include "common/base/error.h"
+#include "common/base/stop.h"
 #include "launch/experiment/run_results.h"
 #include "launch/record/run_folder.h"
 
@@ -12,7 +13,8 @@ namespace {
 // It ended by itself with an error, as opposed to being stopped or killed.
 bool EndedBadly(const LoggedRun* logged) {
   return logged != nullptr && logged->ending && !logged->ending->stopped &&
-         !logged->ending->by_signal && logged->ending->code != 0;
+         !logged->ending->by_signal && logged->ending->code != 0 &&
+         logged->ending->code != kInterruptedExit;
 }
 
 std::vector<std::string> MissingTransfers(const RunResults& results,

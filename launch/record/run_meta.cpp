@@ -150,6 +150,10 @@ RunMeta ReadRunMeta(const std::filesystem::path& run) {
     object.at("restarts").get_to(meta.restarts);
     meta.resends = object.value("resends", uint64_t{0});
     meta.updates_lost = object.value("updates_lost", uint64_t{0});
+    meta.exit = object.value("exit", meta.exit);
+    if (const auto it = object.find("final_return_mean"); it != object.end() && it->is_number()) {
+      meta.final_return = it->get<double>();
+    }
     for (const auto& change : object.value("changes", nlohmann::json::array())) {
       meta.changes.push_back(ReadChange(change));
     }

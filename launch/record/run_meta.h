@@ -49,8 +49,9 @@ struct RunMeta {
 // Error.
 void WriteRunMeta(const std::filesystem::path& run, const Config& config, const RunMeta& meta);
 
-// What a resumed run goes on from: commits, started, wall_seconds, the counters and the changes;
-// defaults where the file is missing. Throws Error on a broken file.
+// What a resumed run goes on from: commits, started, wall_seconds, the counters, the changes, how
+// it ended and the result of its final evaluation; defaults where the file is missing. Throws Error
+// on a broken file.
 RunMeta ReadRunMeta(const std::filesystem::path& run);
 
 }  // namespace shoal::launch

@@ -175,7 +175,8 @@ int EndRun(const fs::path& run, const Config& config, RunResult result, bool fil
     progress.Say(fmt::format("error: no film: {}", e.what()));
   }
   PrintSummary(run, config, result, final_evaluation, filmed, progress);
-  return good ? 0 : 1;
+  if (!good) return 1;
+  return meta.exit == "interrupted" && StopRequested() ? kInterruptedExit : 0;
 }
 
 }  // namespace shoal::launch

@@ -102,10 +102,26 @@ void NoteResumeOptions(const TrainOptions& options, const Config& before, RunMet
   }
 }
 
+// The end of a run that has ended stays as it is unless something is asked of it.
+void RefuseFinished(const std::filesystem::path& run, const RunMeta& meta, const Config& config,
+                    const TrainOptions& options) {
+  const bool ended = meta.exit == "budget" || meta.exit == "target";
+  const bool evaluated = meta.final_return || config.eval.final_episodes == 0;
+  if (!ended || !evaluated || !options.set.empty()) return;
+  throw UsageError(
+      "run '{}' is finished ({} at {} env steps): nothing is left to do; --set env_steps=N, or "
+      "stop.success=2 where it reached its target, goes on",
+      run.string(), meta.exit, meta.env_steps);
+}
+
 PreparedRun PrepareResumed(const TrainOptions& options) {
   RunFolder folder = RunFolder::Reopen(Config().run_dir, options.resume);
   RunConfig config = ReadRunConfig(folder.path());
   const Config before = config.config;
+  RunMeta meta = ReadRunMeta(folder.path());
+  RefuseFinished(folder.path(), meta, before, options);
+  meta.exit = "running";
+  meta.final_return.reset();
   ApplyResumeOptions(options, &config.config);
   tasks::LoadTaskLibrary(config.config.task_library);
   const ObservedWorld now = DescribeObservations(config.config);
@@ -113,7 +129,6 @@ PreparedRun PrepareResumed(const TrainOptions& options) {
     throw RuntimeError("the run observed '{}', this program's actors would observe '{}'",
                        config.spec.Summary(), now.spec.Summary());
   }
-  RunMeta meta = ReadRunMeta(folder.path());
   if (meta.started.empty()) meta.started = UtcTimestamp();
   NoteResumeOptions(options, before, &meta);
   if (config.config.replay.storage == "memory" && meta.env_steps > 0) {
@@ -165,6 +180,11 @@ void PrintStart(const PreparedRun& run, const ClusterAddress& address) {
       "1 evaluation actor; logs in {}\n",
       config.seed, config.env_steps, config.learner.threads, config.actors, config.envs_per_actor,
       (run.folder.path() / "logs").string());
+  if (run.meta.env_steps > 0) {
+    const std::filesystem::path checkpoint = NewestCheckpoint(run.folder.path());
+    fmt::print("  goes on at {} env steps, {}\n", run.meta.env_steps,
+               checkpoint.empty() ? "without a checkpoint" : "from " + checkpoint.string());
+  }
   fmt::print("{}", PlanText(run.config, run.frame_microseconds));
   for (const RemoteHost& host : run.hosts.hosts) {
     fmt::print("  {} of the actors on {}, in {}\n", host.actors, host.name, host.run.string());

@@ -46,7 +46,7 @@ TEST(Clock, ARunGoesOnWhileItIsSetBackAndForth) {
   const double after = training.reports().Await("replay").at("t");
   EXPECT_GT(after - before, 7000) << "the clock of the processes was not set";
   training.Interrupt();
-  ASSERT_EQ(training.End(seconds(120)), 0) << training.Output();
+  ASSERT_EQ(training.End(seconds(120)), kInterruptedExit) << training.Output();
   ExpectBalanced(run.Json("meta.json"));
 }
 

@@ -48,7 +48,7 @@ class Cluster : public testing::Test {
   // Ends a run in order and expects that every record was stored.
   void EndWithNothingLost(RunningTraining& training) const {
     ASSERT_EQ(kill(training.pid(), SIGINT), 0);
-    ASSERT_EQ(training.End(seconds(100)), 0) << training.Output();
+    ASSERT_EQ(training.End(seconds(100)), kInterruptedExit) << training.Output();
     const json meta = run_.Json("meta.json");
     ExpectBalanced(meta);
     for (const char* nothing : {"lost_with_process", "rejected", "after_gap"}) {

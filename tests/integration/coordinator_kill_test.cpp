@@ -115,7 +115,7 @@ TEST(CoordinatorKill, ARunThatIsInterruptedInsteadIsNotEvaluated) {
   RunningTraining training(run, run.Command({{"env_steps", "1000000"}, {"actors", "1"}}));
   ASSERT_TRUE(training.WaitForSteps(2000)) << training.Output();
   training.Interrupt();
-  ASSERT_EQ(training.End(seconds(60)), 0) << training.Output();
+  ASSERT_EQ(training.End(seconds(60)), kInterruptedExit) << training.Output();
   EXPECT_FALSE(std::filesystem::exists(run.path() / "eval/final.json"));
   EXPECT_NE(training.Output().find("go on with shoal train --resume"), std::string::npos)
       << training.Output();

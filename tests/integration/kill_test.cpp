@@ -33,7 +33,7 @@ TEST(Kill, TrainingSurvivesTheDeathOfEachRole) {
   }
   // Not by its budget, which a fast machine would reach before the last kill.
   training.Interrupt();
-  ASSERT_EQ(training.End(seconds(120)), 0) << training.Output();
+  ASSERT_EQ(training.End(seconds(120)), kInterruptedExit) << training.Output();
   const json meta = run.Json("meta.json");
   ExpectBalanced(meta);
   EXPECT_EQ(meta.at("accounting").at("rejected"), 0);
@@ -58,7 +58,7 @@ TEST(Kill, WithTheReplayInMemoryTheRunGoesOnAndTheAccountIsExact) {
   KillAndWaitForSuccessor(&training, "actor");
   ASSERT_TRUE(training.WaitForMoreSteps(1000)) << training.Output();
   training.Interrupt();
-  ASSERT_EQ(training.End(seconds(120)), 0) << training.Output();
+  ASSERT_EQ(training.End(seconds(120)), kInterruptedExit) << training.Output();
   const json meta = run.Json("meta.json");
   ExpectBalanced(meta);
   const json& account = meta.at("accounting");

@@ -46,7 +46,7 @@ TEST(Lockstep, AnInterruptedRunGoesOnBitForBit) {
     RunningTraining training(interrupted, command);
     ASSERT_TRUE(training.WaitForSteps(steps)) << training.Output();
     training.Interrupt();
-    ASSERT_EQ(training.End(std::chrono::seconds(120)), 0) << training.Output();
+    ASSERT_EQ(training.End(std::chrono::seconds(120)), kInterruptedExit) << training.Output();
     ASSERT_LT(interrupted.Json("meta.json").at("env_steps").get<int64_t>(), 6000)
         << "ended before it was interrupted";
     command = {"shoal", "train", "--resume", interrupted.path().string()};

@@ -68,7 +68,7 @@ TEST(Operate, TopShowsEveryProcessUntilTheRunEnds) {
   }
 
   kill(training.pid(), SIGINT);
-  EXPECT_EQ(training.End(seconds(120)), 0) << training.Output();
+  EXPECT_EQ(training.End(seconds(120)), kInterruptedExit) << training.Output();
   const ProgramResult over = RunShoal(run, {"top", "--run", "run"});
   EXPECT_EQ(ExitCode(over), 1);
   EXPECT_THAT(over.err, HasSubstr("is not running"));
@@ -102,7 +102,7 @@ TEST(Operate, TopOnATerminalIsALiveTableAndLeavesTheTerminalAsItWas) {
     EXPECT_TRUE(program.LeftAsItWas());
   }
   kill(training.pid(), SIGINT);
-  EXPECT_EQ(training.End(seconds(120)), 0) << training.Output();
+  EXPECT_EQ(training.End(seconds(120)), kInterruptedExit) << training.Output();
 }
 
 // Runs the client that knows only docs/monitoring.md for the address that the run showed.
@@ -136,7 +136,7 @@ TEST(Operate, AStockDdsClientReadsWhatTheDocumentationDescribes) {
     EXPECT_THAT(client.out, HasSubstr(text));
   }
   kill(training.pid(), SIGINT);
-  EXPECT_EQ(training.End(seconds(120)), 0) << training.Output();
+  EXPECT_EQ(training.End(seconds(120)), kInterruptedExit) << training.Output();
 }
 
 TEST(Operate, ARunIsSteeredWhileItGoesOnAndItsRecordSaysSo) {

@@ -99,7 +99,7 @@ TEST(RepeatedMessages, AnEvaluationThatCannotBeIsSaidAndTheRunGoesOn) {
   EXPECT_FALSE(refused.is_null()) << training.Output();
   EXPECT_TRUE(training.WaitForMoreSteps(200)) << training.Output();
   training.Interrupt();
-  EXPECT_EQ(training.End(seconds(120)), 0) << training.Output();
+  EXPECT_EQ(training.End(seconds(120)), kInterruptedExit) << training.Output();
   EXPECT_THAT(training.Output(),
               HasSubstr("evaluation refused (1 in all): evaluation at 2000 env"));
   for (const auto& entry : std::filesystem::directory_iterator(run.path() / "eval")) {

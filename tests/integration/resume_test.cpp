@@ -63,5 +63,44 @@ TEST(Resume, WithMemoryTheReplayIsRefilledAndSaysSo) {
   EXPECT_GT(meta.at("updates").get<int64_t>(), before.at("updates").get<int64_t>());
 }
 
+TEST(Resume, AFinishedRunStaysAsItIs) {
+  const TrainingRun run;
+  const ProgramResult first = run.Train({{"env_steps", "1500"}, {"eval.interval", "500"}});
+  ASSERT_EQ(ExitCode(first), 0) << first.out << first.err;
+  const std::string meta = ReadFile(run.path() / "meta.json");
+  const ProgramResult again =
+      RunProgram({"shoal", "train", "--resume", run.path()}, std::chrono::seconds(60));
+  EXPECT_EQ(ExitCode(again), 2) << again.out;
+  EXPECT_NE(again.err.find("is finished (budget at "), std::string::npos) << again.err;
+  EXPECT_EQ(ReadFile(run.path() / "meta.json"), meta);
+
+  const ProgramResult further = Resume(run, "1600");
+  EXPECT_EQ(ExitCode(further), 0) << further.out << further.err;
+  EXPECT_NE(further.out.find("  goes on at 15"), std::string::npos) << further.out;
+  EXPECT_NE(further.out.find(", from " + (run.path() / "checkpoints/").string()), std::string::npos)
+      << further.out;
+}
+
+TEST(Evaluation, OfARunIsOfTheCheckpointThatItIsJudgedBy) {
+  const TrainingRun run;
+  const ProgramResult first = run.Train({{"env_steps", "1500"}, {"eval.interval", "500"}});
+  ASSERT_EQ(ExitCode(first), 0) << first.out << first.err;
+  const auto evaluate = [&](const std::string& json) {
+    return RunProgram(
+        {"shoal", "eval", "--checkpoint", run.path(), "--episodes", "2", "--json", json},
+        std::chrono::seconds(60));
+  };
+  const ProgramResult good = evaluate(run.parent() / "x.json");
+  ASSERT_EQ(ExitCode(good), 0) << good.err;
+  EXPECT_NE(
+      good.out.find("2 episodes (seed 1000) of " + (run.path() / "checkpoints/best").string()),
+      std::string::npos)
+      << good.out;
+  const ProgramResult nowhere = evaluate("/absent/x.json");
+  EXPECT_EQ(ExitCode(nowhere), 1);
+  EXPECT_NE(nowhere.err.find("'/absent/x.json'"), std::string::npos) << nowhere.err;
+  EXPECT_EQ(nowhere.out, "") << "found out before anything was played";
+}
+
 }  // namespace
 }  // namespace shoal

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/base/clock.h"
+#include "common/base/stop.h"
 #include "launch/processes/child_process.h"
 #include "tests/support/paths.h"
 #include "tests/support/report_reader.h"
@@ -43,7 +44,7 @@ class RunningTraining {
 
   // Ctrl-C.
   void Interrupt() { child_.Signal(SIGINT); }
-  // Waits for the end; exit code, or -1 when it was killed or did not end.
+  // Waits for the end; exit code (kInterruptedExit after Interrupt), or -1 when it was killed or did not end.
   int End(std::chrono::seconds deadline) {
     const SteadyTime end = Now() + deadline;
     while (Now() < end) {

@@ -135,6 +135,16 @@ TEST(ApplyAssignments, TakesJsonValuesAndBareWords) {
   EXPECT_THAT(config.observation.cameras, ElementsAre("front"));
 }
 
+TEST(ApplyAssignments, IntegersMayHaveAnExponent) {
+  Config config;
+  ApplyAssignments({"env_steps=1e5", "learner.batch=2.56e2"}, &config);
+  EXPECT_EQ(config.env_steps, 100'000);
+  EXPECT_EQ(config.learner.batch, 256);
+  EXPECT_THAT(SetMistake({"env_steps=1e-5"}), HasSubstr("expected an integer"));
+  EXPECT_THAT(SetMistake({"env_steps=1e18"}), HasSubstr("expected an integer"));
+  EXPECT_THAT(SetMistake({"env_steps=1e300"}), HasSubstr("expected an integer"));
+}
+
 TEST(ApplyAssignments, RefusesMistakesByName) {
   EXPECT_THAT(SetMistake({"learner.batch"}), HasSubstr("expected KEY=VALUE"));
   EXPECT_THAT(SetMistake({"=3"}), HasSubstr("expected KEY=VALUE"));

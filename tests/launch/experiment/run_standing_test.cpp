@@ -21,11 +21,13 @@ LoggedRun Ended(int code, bool by_signal = false, bool stopped = false) {
 TEST(RunStanding, WithoutAConfigurationItHasNotBegun) {
   const PlantedRun run;
   EXPECT_EQ(StandingOf(run.path(), nullptr).standing, RunStanding::kMissing);
-  const LoggedRun refused = Ended(2), killed = Ended(9, true), stopped = Ended(1, false, true);
+  const LoggedRun refused = Ended(2), killed = Ended(9, true), stopped = Ended(1, false, true),
+                  interrupted = Ended(130);
   EXPECT_EQ(StandingOf(run.path(), &refused).standing, RunStanding::kFailed);
   EXPECT_EQ(StandingOf(run.path(), &refused).problem, "why");
   EXPECT_EQ(StandingOf(run.path(), &killed).standing, RunStanding::kMissing);
   EXPECT_EQ(StandingOf(run.path(), &stopped).standing, RunStanding::kMissing);
+  EXPECT_EQ(StandingOf(run.path(), &interrupted).standing, RunStanding::kMissing) << "by Ctrl-C";
 }
 
 TEST(RunStanding, FinishedIsTrainedAndEvaluated) {
