@@ -18,6 +18,7 @@
 #include "common/dds/bus.h"
 #include "common/dds/publisher.h"
 #include "common/dds/role_rights.h"
+#include "common/nn/encoder_weights.h"
 #include "common/nn/network_check.h"
 #include "common/tasks/task_library.h"
 #include "common/wire/weights_parts.h"
@@ -269,6 +270,7 @@ int Train(const TrainOptions& options, Detachment* detachment) {
   tasks::LoadTaskLibrary(config.config.task_library);
   config.spec = DescribeObservations(config.config);
   CheckNetwork(config);
+  nn::ReadEncoderWeights(config.config.network, config.spec);  // the learner will; refused here
   CheckReplay(config, /*exists=*/false);
   CheckHosts(hosts, StopRequested);
   address.host = ServersHost(hosts);
