@@ -12,7 +12,9 @@
 #include "common/config/session_number.h"
 #include "common/dds/publisher.h"
 #include "common/dds/subscriber.h"
+#include "common/nn/encoder_weights.h"
 #include "learner/agent/algorithms.h"
+#include "learner/agent/encoder_start.h"
 #include "learner/batch_source.h"
 #include "learner/checkpoint_store.h"
 #include "learner/dds_outlet.h"
@@ -75,7 +77,10 @@ class Learner {
 
   std::optional<CheckpointState> Restore() {
     const std::optional<Checkpoint> checkpoint = checkpoints_.RestoreNewest();
-    if (!checkpoint) return std::nullopt;
+    if (!checkpoint) {
+      StartFresh();
+      return std::nullopt;
+    }
     CheckAlgorithm(*checkpoint, run_.config.learner.algorithm);
     const std::string warning =
         CheckPrecision(*checkpoint, run_.config.learner.precision, precision_);
@@ -88,6 +93,13 @@ class Learner {
     log::Info("restored {}: {} updates, {} env steps", checkpoint->folder.filename().string(),
               checkpoint->state.updates, checkpoint->state.env_steps);
     return checkpoint->state;
+  }
+
+  void StartFresh() {
+    const nn::TensorMap weights = nn::ReadEncoderWeights(run_.config.network, run_.spec);
+    if (weights.empty()) return;
+    StartEncoder(weights, agent_.get());
+    log::Info("the encoder starts from {}", run_.config.network.encoder_weights);
   }
 
   const RunMembership member_;

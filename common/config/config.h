@@ -103,7 +103,8 @@ struct ExplorationConfig {
 };
 
 struct NetworkConfig {
-  std::string encoder = "compact";  // of pixels: compact | drq | mrq | nature
+  std::string encoder = "compact";  // of pixels: the kinds of common/nn/encoders/encoder_kind.h
+  std::string encoder_weights;      // safetensors file that the encoder starts from; empty = none
   // Of the compact encoder alone; 0 and [] = its own values.
   int pool = 0;  // average pooling of the input, 1 = none
   std::vector<int> filters, strides;

@@ -171,8 +171,12 @@ std::vector<Key> ExplorationKeys() {
 
 std::vector<Key> NetworkKeys() {
   return {
-      SHOAL_SAME(network.encoder, (Choices{{"compact", "drq", "mrq", "nature"}}),
+      SHOAL_SAME(network.encoder,
+                 (Choices{{"compact", "drq", "mrq", "nature", "resnet18", "alexnet"}}),
                  "from pixels to a feature map"),
+      SHOAL_SAME(network.encoder_weights, AnyValue{},
+                 "path of a safetensors file that the encoder starts from, with Shoal's or "
+                 "torchvision's names; empty = none"),
       SHOAL_SAME(network.pool, (IntegerRange{0, 16}),
                  "compact: average pooling of the images; 0 = 2, 1 = none"),
       SHOAL_SAME(network.filters, (IntegerRange{1, 4096}),
@@ -192,7 +196,8 @@ std::vector<Key> NetworkKeys() {
           "log deviation of a Gaussian policy: smooth = by tanh in [-5, 2]; clamped = cut off "
           "at -20 and 2"),
       SHOAL_SAME(network.initialisation, (Choices{{"orthogonal", "pytorch"}}),
-                 "how weights start: orthogonal, biases 0; or uniform as PyTorch's layers do"),
+                 "how weights start: orthogonal, biases 0; or as PyTorch's layers do, uniform, and "
+                 "as torchvision's resnet18 does, normal"),
   };
 }
 

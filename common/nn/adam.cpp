@@ -14,7 +14,7 @@ namespace {
 constexpr double kBeta1 = 0.9, kBeta2 = 0.999;
 constexpr int kBlock = 4096;  // floats per unit of parallel work
 
-// Arrays of one step, each of the set's size.
+// Arrays of one step, each of the set's trained size.
 struct AdamArrays {
   const float *gradient, *m, *v, *value;
   float *next_m, *next_v, *next_value;
@@ -68,7 +68,7 @@ int Blocks(int64_t n) { return int((n + kBlock - 1) / kBlock); }
 Adam::Adam(std::vector<ParameterSet*> sets, const Options& options)
     : rate_(options.rate), epsilon_(options.epsilon), max_norm_(options.max_norm) {
   for (ParameterSet* set : sets) {
-    const std::vector<float> zeros(size_t(set->size()), 0.f);
+    const std::vector<float> zeros(size_t(set->trained_size()), 0.f);
     moments_.push_back({set, zeros, zeros, zeros, zeros});
   }
 }
@@ -83,7 +83,7 @@ double Adam::GradientSquares() const {
   double squares = 0;
   for (const Moments& moments : moments_) {
     const ParameterSet& set = *moments.set;
-    squares += SumOfSquares(set.gradients(), set.size());
+    squares += SumOfSquares(set.gradients(), set.trained_size());
   }
   return squares;
 }
@@ -92,7 +92,7 @@ void Adam::ClipGradients() {
   const double factor = max_norm_ / (std::sqrt(GradientSquares()) + 1e-6);
   if (factor >= 1) return;
   for (const Moments& moments : moments_) {
-    ScaleRange(float(factor), moments.set->size(), moments.set->gradients());
+    ScaleRange(float(factor), moments.set->trained_size(), moments.set->gradients());
   }
 }
 
@@ -107,7 +107,7 @@ void Adam::Step() {
     const AdamArrays arrays{set.gradients(),  moments.m.data(),      moments.v.data(),
                             set.values(),     moments.next_m.data(), moments.next_v.data(),
                             set.next_values()};
-    const int64_t size = set.size();
+    const int64_t size = set.trained_size();
     ParallelFor(Blocks(size), [&](int begin, int end) {
       AdamRange(arrays, int64_t(begin) * kBlock, std::min(size, int64_t(end) * kBlock), step);
     });
@@ -123,8 +123,8 @@ void Adam::Undo() {
 
 void Adam::Export(const std::string& group, TensorMap* tensors) const {
   for (const Moments& moments : moments_) {
-    moments.set->Export(moments.m.data(), "adam.m.", tensors);
-    moments.set->Export(moments.v.data(), "adam.v.", tensors);
+    moments.set->ExportTrained(moments.m.data(), "adam.m.", tensors);
+    moments.set->ExportTrained(moments.v.data(), "adam.v.", tensors);
   }
   ExportCounter("adam.steps." + group, steps_, tensors);
 }
@@ -133,8 +133,8 @@ void Adam::Export(const std::string& group, TensorMap* tensors) const {
 void Adam::Import(const TensorMap& tensors, const std::string& group, const std::string& source) {
   const uint64_t steps = ImportCounter(tensors, "adam.steps." + group, source);
   for (Moments& moments : moments_) {
-    moments.set->Import(tensors, "adam.m.", source, moments.next_m.data());
-    moments.set->Import(tensors, "adam.v.", source, moments.next_v.data());
+    moments.set->ImportTrained(tensors, "adam.m.", source, moments.next_m.data());
+    moments.set->ImportTrained(tensors, "adam.v.", source, moments.next_v.data());
   }
   for (Moments& moments : moments_) {
     moments.m = moments.next_m;

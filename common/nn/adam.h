@@ -33,7 +33,8 @@ class Adam {
 
   // Sum of the squares of all gradients.
   double GradientSquares() const;
-  // Applies the sets' gradients, where they are to be clipped by max_norm / (norm + 1e-6).
+  // Applies the sets' gradients, where they are to be clipped by max_norm / (norm + 1e-6), and the
+  // statistics that the forward passes of these gradients measured.
   void Step();
   // Takes the last Step back exactly; at most once after each.
   void Undo();

@@ -1,7 +1,7 @@
 #include "common/nn/conv.h"
 
 #include "common/base/check.h"
-#include "common/nn/relu_mask.h"
+#include "common/nn/map_arithmetic.h"
 
 namespace shoal::nn {
 namespace {
@@ -16,10 +16,10 @@ Conv::Conv(const LayerContext& context, const LayerPlan& plan, const memory& sou
            const memory& source_gradient)
     : strides_{plan.stride, plan.stride},
       padding_{plan.padding, plan.padding},
-      relu_(plan.activation == Activation::kRelu),
-      weight_(context.parameters->Find(plan.name + ".weight")),
-      bias_(context.parameters->Find(plan.name + ".bias")) {
-  CHECK(relu_ || plan.activation == Activation::kNone) << plan.name;
+      relu_(plan.activation == Activation::kRelu && plan.batch_norm.empty()),
+      has_bias_(plan.bias),
+      weight_(context.parameters->Find(plan.name + ".weight")) {
+  CHECK(plan.activation == Activation::kRelu || plan.activation == Activation::kNone) << plan.name;
   const memory::desc source_desc = source.get_desc();
   const memory::dims dims = source_desc.dims();
   const memory::data_type type = source_desc.data_type();
@@ -30,7 +30,12 @@ Conv::Conv(const LayerContext& context, const LayerPlan& plan, const memory& sou
   const memory::dims output_dims = {context.batch, plan.output.channels, plan.output.height,
                                     plan.output.width};
   weight_values_ = memory(PlainF32(weight_dims), CpuEngine(), nullptr);
-  bias_values_ = memory(PlainF32({weight_dims[0]}), CpuEngine(), nullptr);
+  if (has_bias_) {
+    bias_ = context.parameters->Find(plan.name + ".bias");
+    bias_values_ = memory(PlainF32({weight_dims[0]}), CpuEngine(), nullptr);
+  }
+  // Descriptions and arguments of a convolution without a bias are empty.
+  const memory::desc bias_desc = has_bias_ ? bias_values_.get_desc() : memory::desc();
 
   dnnl::primitive_attr attributes = Attributes();
   if (relu_) {
@@ -40,8 +45,8 @@ Conv::Conv(const LayerContext& context, const LayerPlan& plan, const memory& sou
   }
   const dnnl::convolution_forward::primitive_desc forward(
       {dnnl::prop_kind::forward_training, kAlgorithm, AnyLayout(dims, type),
-       AnyLayout(weight_dims, type), bias_values_.get_desc(), AnyLayout(output_dims, type),
-       strides_, padding_, padding_},
+       AnyLayout(weight_dims, type), bias_desc, AnyLayout(output_dims, type), strides_, padding_,
+       padding_},
       attributes, CpuEngine());
   output_ = MakeMemory(forward.dst_desc());
   forward_source_ = Relayout::Before(source, forward.src_desc(), context.scratchpad);
@@ -62,13 +67,15 @@ void Conv::BuildBackwardWeights(const LayerContext& context, const memory& sourc
                                 const dnnl::convolution_forward::primitive_desc& forward) {
   const memory::desc source_desc = source.get_desc(), output_desc = output_.get_desc();
   const memory::dims weight_dims = weight_.shape();
+  const memory::desc bias_desc = has_bias_ ? bias_values_.get_desc() : memory::desc();
   const dnnl::convolution_backward_weights::primitive_desc backward(
       {kAlgorithm, AnyLayout(source_desc.dims(), source_desc.data_type()),
-       AnyLayout(weight_dims, memory::data_type::f32), bias_values_.get_desc(),
+       AnyLayout(weight_dims, memory::data_type::f32), bias_desc,
        AnyLayout(output_desc.dims(), output_desc.data_type()), strides_, padding_, padding_},
       Attributes(), CpuEngine(), forward);
   const memory weight_target(PlainF32(weight_dims), CpuEngine(), weight_.gradient());
-  const memory bias_target(bias_values_.get_desc(), CpuEngine(), bias_.gradient());
+  const memory bias_target =
+      has_bias_ ? memory(bias_desc, CpuEngine(), bias_.gradient()) : memory();
   weights_source_ = Relayout::Before(source, backward.src_desc(), context.scratchpad);
   weights_output_gradient_ =
       Relayout::Before(output_gradient_, backward.diff_dst_desc(), context.scratchpad);
@@ -104,31 +111,18 @@ void Conv::BuildBackwardData(const LayerContext& context, const memory& source_g
 
 void Conv::Refresh() {
   weight_values_.set_data_handle(weight_.value());
-  bias_values_.set_data_handle(bias_.value());
+  if (has_bias_) bias_values_.set_data_handle(bias_.value());
   forward_weight_.Run();
   if (has_source_gradient_) data_weight_.Run();
 }
 
-void Conv::Forward() {
+void Conv::Forward(Statistics) {
   forward_source_.Run();
   forward_.Run();
 }
 
-void Conv::MaskOutputGradient() {
-  const memory::desc desc = output_.get_desc();
-  if (desc.data_type() == memory::data_type::bf16) {
-    MaskWhereZero(static_cast<const uint16_t*>(output_.get_data_handle()),
-                  int64_t(desc.get_size() / sizeof(uint16_t)),
-                  static_cast<uint16_t*>(output_gradient_.get_data_handle()));
-  } else {
-    MaskWhereZero(static_cast<const float*>(output_.get_data_handle()),
-                  int64_t(desc.get_size() / sizeof(float)),
-                  static_cast<float*>(output_gradient_.get_data_handle()));
-  }
-}
-
 void Conv::Backward() {
-  if (relu_) MaskOutputGradient();
+  if (relu_) MaskWhereZero(output_, output_gradient_);
   weights_source_.Run();
   weights_output_gradient_.Run();
   backward_weights_.Run();

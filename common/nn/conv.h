@@ -1,4 +1,4 @@
-// Convolution, then ReLU where the plan has it.
+// Convolution, then ReLU where the plan has it and no batch normalisation comes before it.
 //
 //   y[b, n, i, j] = max(0, bias[n] + sum_{c,u,v} weight[n, c, u, v] x[b, c, i*s+u-p, j*s+v-p])
 //
@@ -9,41 +9,31 @@
 // oneDNN chooses the layouts in memory; neighbouring layers share them where it can.
 #pragma once
 
-#include "common/nn/layer_context.h"
+#include "common/nn/map_layer.h"
 
 namespace shoal::nn {
 
-class Conv {
+class Conv final : public MapLayer {
  public:
   // source (B, C, H, W) in the compute type. `source_gradient` has the source's description; empty:
   // never asked for.
   Conv(const LayerContext& context, const LayerPlan& plan, const dnnl::memory& source,
        const dnnl::memory& source_gradient);
 
-  // (B, N, h, w) in the compute type.
-  const dnnl::memory& output() const { return output_; }
-  // dL/dy with the output's description: filled before Backward, which overwrites it. Empty in
-  // inference.
-  const dnnl::memory& output_gradient() const { return output_gradient_; }
-
-  void Refresh();
-  void Forward();
-  // Gradients of the parameters, and of the source where it was asked for.
-  void Backward();
+  void Refresh() override;
+  void Forward(Statistics statistics) override;
+  void Backward() override;
 
  private:
   void BuildBackwardWeights(const LayerContext& context, const dnnl::memory& source,
                             const dnnl::convolution_forward::primitive_desc& forward);
   void BuildBackwardData(const LayerContext& context, const dnnl::memory& source_gradient,
                          const dnnl::convolution_forward::primitive_desc& forward);
-  // dL/dy = 0 where y = 0.
-  void MaskOutputGradient();
 
   dnnl::memory::dims strides_, padding_;
-  bool relu_;
+  bool relu_, has_bias_;
   Parameter weight_, bias_;
   dnnl::memory weight_values_, bias_values_;  // the parameters' arrays, row-major f32
-  dnnl::memory output_, output_gradient_;
   Relayout forward_source_, forward_weight_;
   Op forward_;
   Relayout weights_source_, weights_output_gradient_, weight_gradient_;

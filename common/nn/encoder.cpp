@@ -1,7 +1,11 @@
 #include "common/nn/encoder.h"
 
 #include "common/base/check.h"
+#include "common/nn/average_pool.h"
+#include "common/nn/conv.h"
 #include "common/nn/frame_pooling.h"
+#include "common/nn/map_arithmetic.h"
+#include "common/nn/max_pool.h"
 
 namespace shoal::nn {
 
@@ -12,24 +16,68 @@ Encoder::Encoder(const LayerContext& context, const NetworkPlan& plan)
   const std::vector<LayerPlan>& layers = plan.layers();
   CHECK(layers.size() > 1 && layers[0].kind == LayerPlan::Kind::kPixels);
   pool_ = layers[0].kernel;
+  shift_ = layers[0].range == PixelRange::kUnit ? 0.f : -0.5f;
   const MapShape& pixels = layers[0].output;
   input_ = MakeMemory(
       dnnl::memory::desc({context.batch, pixels.channels, pixels.height, pixels.width},
                          ComputeType(context.precision), dnnl::memory::format_tag::nchw));
-  dnnl::memory source = input_, source_gradient;
-  for (size_t i = 1; i < layers.size(); ++i) {
-    CHECK(layers[i].kind == LayerPlan::Kind::kConvolution) << layers[i].name;
-    convs_.push_back(std::make_unique<Conv>(context, layers[i], source, source_gradient));
-    source = convs_.back()->output();
-    source_gradient = convs_.back()->output_gradient();
-  }
+  outputs_.push_back({input_, {}});
+  Build(context, plan);
   BuildFeatures(context);
 }
 
-// The heads see rows, whatever layout the last convolution has: one copy here is cheaper than one
+// Backward passes run from the last layer to the first: of several readers of one map the last one
+// overwrites its gradient, the others add to it.
+MapSource Encoder::SourceOf(const NetworkPlan& plan, int reader, int read, MapSource* shared) {
+  MapSource source = outputs_[size_t(read)];
+  if (!source.gradient) return source;
+  const std::vector<LayerPlan>& layers = plan.layers();
+  int last = reader;
+  for (int i = reader; i < int(layers.size()); ++i) {
+    if (layers[size_t(i)].source == read || layers[size_t(i)].skip == read) last = i;
+  }
+  if (last == reader) return source;
+  CHECK(!shared->values) << layers[size_t(reader)].name << " shares two sources";
+  *shared = {MakeMemory(source.gradient.get_desc()), source.gradient};
+  return {source.values, shared->values};
+}
+
+void Encoder::Build(const LayerContext& context, const NetworkPlan& plan) {
+  for (int i = 1; i < int(plan.layers().size()); ++i) {
+    const LayerPlan& layer = plan.layers()[size_t(i)];
+    MapSource shared;
+    const MapSource source = SourceOf(plan, i, layer.source, &shared);
+    std::unique_ptr<MapLayer> built;
+    switch (layer.kind) {
+      case LayerPlan::Kind::kConvolution:
+        built = std::make_unique<Conv>(context, layer, source.values, source.gradient);
+        break;
+      case LayerPlan::Kind::kMaxPool:
+        built = std::make_unique<MaxPool>(context, layer, source.values, source.gradient);
+        break;
+      case LayerPlan::Kind::kAveragePool:
+        built = std::make_unique<AveragePool>(context, layer, source.values, source.gradient);
+        break;
+      default:
+        CHECK(false) << layer.name << " is no layer of maps";
+    }
+    stages_.push_back({std::move(built), shared});
+    MapSource output{stages_.back().layer->output(), stages_.back().layer->output_gradient()};
+    if (!layer.batch_norm.empty()) {
+      MapSource shared_skip;
+      const MapSource skip =
+          layer.skip == kNoLayer ? MapSource() : SourceOf(plan, i, layer.skip, &shared_skip);
+      stages_.push_back({std::make_unique<BatchNorm>(context, layer, output, skip), shared_skip});
+      output = {stages_.back().layer->output(), stages_.back().layer->output_gradient()};
+    }
+    outputs_.push_back(output);
+  }
+}
+
+// The heads see rows, whatever layout the last layer has: one copy here is cheaper than one
 // in each of them.
 void Encoder::BuildFeatures(const LayerContext& context) {
-  const dnnl::memory& map = convs_.back()->output();
+  const dnnl::memory& map = outputs_.back().values;
   const dnnl::memory::dims dims = map.get_desc().dims();
   const dnnl::memory::data_type type = map.get_desc().data_type();
   const dnnl::memory::desc plain(dims, type, dnnl::memory::format_tag::nchw);
@@ -40,28 +88,32 @@ void Encoder::BuildFeatures(const LayerContext& context) {
   if (!context.training) return;
   features_gradient_ = MakeMemory(rows);
   const dnnl::memory gradient_map(plain, CpuEngine(), features_gradient_.get_data_handle());
-  unflatten_gradient_ =
-      Op::Reorder(gradient_map, convs_.back()->output_gradient(), context.scratchpad);
+  unflatten_gradient_ = Op::Reorder(gradient_map, outputs_.back().gradient, context.scratchpad);
 }
 
 void Encoder::Refresh() {
-  for (const auto& conv : convs_) conv->Refresh();
+  for (const Stage& stage : stages_) stage.layer->Refresh();
 }
 
-void Encoder::Forward(const uint8_t* frames) {
+void Encoder::Forward(const uint8_t* frames, Statistics statistics) {
   const FrameShape shape{planes_, height_, width_};
   if (input_.get_desc().data_type() == dnnl::memory::data_type::bf16) {
-    PoolFramesToBf16(frames, shape, pool_, static_cast<uint16_t*>(input_.get_data_handle()));
+    PoolFramesToBf16(frames, shape, pool_, shift_,
+                     static_cast<uint16_t*>(input_.get_data_handle()));
   } else {
-    PoolFrames(frames, shape, pool_, static_cast<float*>(input_.get_data_handle()));
+    PoolFrames(frames, shape, pool_, shift_, static_cast<float*>(input_.get_data_handle()));
   }
-  for (const auto& conv : convs_) conv->Forward();
+  for (const Stage& stage : stages_) stage.layer->Forward(statistics);
   flatten_.Run();
 }
 
 void Encoder::Backward() {
   unflatten_gradient_.Run();
-  for (size_t i = convs_.size(); i-- > 0;) convs_[i]->Backward();
+  for (size_t i = stages_.size(); i-- > 0;) {
+    stages_[i].layer->Backward();
+    const MapSource& shared = stages_[i].shared;
+    if (shared.values) Add(shared.values, shared.gradient);
+  }
 }
 
 }  // namespace shoal::nn

@@ -5,15 +5,15 @@
 #include <memory>
 #include <vector>
 
-#include "common/nn/conv.h"
-#include "common/nn/layer_context.h"
+#include "common/nn/batch_norm.h"
+#include "common/nn/map_layer.h"
 #include "common/nn/network_plan.h"
 
 namespace shoal::nn {
 
 class Encoder {
  public:
-  // The plan begins with its pixels; convolutions follow.
+  // The plan begins with its pixels; convolutions and pools follow.
   Encoder(const LayerContext& context, const NetworkPlan& plan);
 
   // (B, N*h*w) row-major in the compute type; overwritten by every Forward.
@@ -22,17 +22,30 @@ class Encoder {
   const dnnl::memory& features_gradient() const { return features_gradient_; }
 
   void Refresh();
-  // frames (B, K*C, H, W) u8.
-  void Forward(const uint8_t* frames);
+  // frames (B, K*C, H, W) u8. statistics: kRunning in inference.
+  void Forward(const uint8_t* frames, Statistics statistics);
+  // Of the latest Forward, which has to have been of kBatch where the plan has batch normalisation.
   void Backward();
 
  private:
+  // A layer, and what follows its backward pass where its source has other readers: its share of
+  // the source's gradient is added to what they left there.
+  struct Stage {
+    std::unique_ptr<MapLayer> layer;
+    MapSource shared = {};  // values: the share; gradient: what it is added to
+  };
+
+  void Build(const LayerContext& context, const NetworkPlan& plan);
+  // Where layer `reader` finds the output of layer `read`, and where it leaves the gradient.
+  MapSource SourceOf(const NetworkPlan& plan, int reader, int read, MapSource* shared);
   void BuildFeatures(const LayerContext& context);
 
   int planes_, height_, width_, pool_;
+  float shift_;         // of the scaled pixels
   dnnl::memory input_;  // output of the pixels' layer, row-major in the compute type
-  std::vector<std::unique_ptr<Conv>> convs_;
-  Relayout flatten_;  // of the last convolution's output
+  std::vector<Stage> stages_;
+  std::vector<MapSource> outputs_;  // of each layer of the plan
+  Relayout flatten_;                // of the last layer's output
   dnnl::memory features_, features_gradient_;
   Op unflatten_gradient_;
 };

@@ -29,9 +29,9 @@ void EncoderModule::Refresh() {
   impl_->encoder.Refresh();
 }
 
-void EncoderModule::Forward(const uint8_t* frames) {
+void EncoderModule::Forward(const uint8_t* frames, Statistics statistics) {
   const ThreadScope scope(context_.threads);
-  impl_->encoder.Forward(frames);
+  impl_->encoder.Forward(frames, statistics);
 }
 
 void EncoderModule::Backward() {

@@ -18,8 +18,11 @@ class EncoderModule final : public Module {
 
   const Features& features() const;
   void Refresh() override;
-  // frames (B, K*C, H, W) u8. The features stay until the next call.
-  void Forward(const uint8_t* frames);
+  // frames (B, K*C, H, W) u8. The features stay until the next call. `statistics` says by what an
+  // encoder with batch normalisation normalises, others do not mind: kBatch in the pass that
+  // Backward and an optimiser's step follow, which moves the running ones along; kRunning in
+  // targets and in all passes of a module for inference.
+  void Forward(const uint8_t* frames, Statistics statistics);
   // Gradients of the parameters, from the gradient of the features that the latest Backward of a
   // head that trains this encoder left. Refers to the latest Forward.
   void Backward();

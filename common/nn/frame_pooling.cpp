@@ -16,6 +16,10 @@ namespace {
 constexpr int kLanes = 16;
 constexpr int kMaxPool = 257;  // 257 * 255 is the largest sum that 16 bits hold
 
+struct Scaling {
+  float factor, shift;
+};
+
 float Rounded(float x, float) { return x; }
 
 // To the nearest bf16, ties to even. The values are finite, so NaN needs no care.
@@ -28,13 +32,13 @@ uint16_t Rounded(float x, uint16_t) {
 // which keeps the loop free of shuffles.
 template <class Out>
 [[gnu::always_inline]] inline void PoolPairs(const uint8_t* upper, const uint8_t* lower, int n,
-                                             float scale, Out* out) {
+                                             Scaling scale, Out* out) {
   for (int j = 0; j < n; ++j) {
     uint16_t a, b;
     std::memcpy(&a, upper + 2 * j, sizeof(a));
     std::memcpy(&b, lower + 2 * j, sizeof(b));
     const int sum = (a & 0xff) + (a >> 8) + (b & 0xff) + (b >> 8);
-    out[j] = Rounded(float(sum) * scale - 0.5f, Out());
+    out[j] = Rounded(float(sum) * scale.factor + scale.shift, Out());
   }
 }
 
@@ -42,7 +46,7 @@ template <class Out>
 // instead of leaving a remainder.
 template <class Out>
 [[gnu::always_inline]] inline void PoolPlaneByTwo(const uint8_t* in, int width, int rows,
-                                                  int columns, float scale, Out* out) {
+                                                  int columns, Scaling scale, Out* out) {
   for (int i = 0; i < rows; ++i) {
     const uint8_t* upper = in + int64_t(2 * i) * width;
     const uint8_t* lower = upper + width;
@@ -58,29 +62,30 @@ template <class Out>
   }
 }
 
-SHOAL_CPU_CLONES void PoolByTwo(const uint8_t* in, int width, int rows, int columns, float scale,
+SHOAL_CPU_CLONES void PoolByTwo(const uint8_t* in, int width, int rows, int columns, Scaling scale,
                                 float* out) {
   PoolPlaneByTwo(in, width, rows, columns, scale, out);
 }
 
-SHOAL_CPU_CLONES void PoolByTwo(const uint8_t* in, int width, int rows, int columns, float scale,
+SHOAL_CPU_CLONES void PoolByTwo(const uint8_t* in, int width, int rows, int columns, Scaling scale,
                                 uint16_t* out) {
   PoolPlaneByTwo(in, width, rows, columns, scale, out);
 }
 
 // One plane with pool = 1: scaling alone.
 template <class Out>
-[[gnu::always_inline]] inline void ScalePixels(const uint8_t* in, int64_t n, float scale,
+[[gnu::always_inline]] inline void ScalePixels(const uint8_t* in, int64_t n, Scaling scale,
                                                Out* out) {
-  for (int64_t i = 0; i < n; ++i) out[i] = Rounded(float(in[i]) * scale - 0.5f, Out());
+  for (int64_t i = 0; i < n; ++i)
+    out[i] = Rounded(float(in[i]) * scale.factor + scale.shift, Out());
 }
 
-SHOAL_CPU_CLONES void Scale(const uint8_t* __restrict in, int64_t n, float scale,
+SHOAL_CPU_CLONES void Scale(const uint8_t* __restrict in, int64_t n, Scaling scale,
                             float* __restrict out) {
   ScalePixels(in, n, scale, out);
 }
 
-SHOAL_CPU_CLONES void Scale(const uint8_t* __restrict in, int64_t n, float scale,
+SHOAL_CPU_CLONES void Scale(const uint8_t* __restrict in, int64_t n, Scaling scale,
                             uint16_t* __restrict out) {
   ScalePixels(in, n, scale, out);
 }
@@ -98,19 +103,19 @@ SHOAL_CPU_CLONES void SumRows(const uint8_t* __restrict in, int rows, int width,
 
 template <class Out>
 [[gnu::always_inline]] inline void PoolColumns(const uint16_t* sums, int columns, int pool,
-                                               float scale, Out* out) {
+                                               Scaling scale, Out* out) {
   for (int j = 0; j < columns; ++j) {
     int sum = 0;
     for (int x = 0; x < pool; ++x) sum += sums[j * pool + x];
-    out[j] = Rounded(float(sum) * scale - 0.5f, Out());
+    out[j] = Rounded(float(sum) * scale.factor + scale.shift, Out());
   }
 }
 
 // One row of windows from its columns' sums. Where the compiler knows the pool it reads the sums in
 // vectors.
 template <class Out>
-[[gnu::always_inline]] inline void PoolRow(const uint16_t* sums, int columns, int pool, float scale,
-                                           Out* out) {
+[[gnu::always_inline]] inline void PoolRow(const uint16_t* sums, int columns, int pool,
+                                           Scaling scale, Out* out) {
   switch (pool) {
     case 3:
       return PoolColumns(sums, columns, 3, scale, out);
@@ -121,18 +126,18 @@ template <class Out>
   }
 }
 
-SHOAL_CPU_CLONES void PoolSums(const uint16_t* __restrict sums, int columns, int pool, float scale,
-                               float* __restrict out) {
+SHOAL_CPU_CLONES void PoolSums(const uint16_t* __restrict sums, int columns, int pool,
+                               Scaling scale, float* __restrict out) {
   PoolRow(sums, columns, pool, scale, out);
 }
 
-SHOAL_CPU_CLONES void PoolSums(const uint16_t* __restrict sums, int columns, int pool, float scale,
-                               uint16_t* __restrict out) {
+SHOAL_CPU_CLONES void PoolSums(const uint16_t* __restrict sums, int columns, int pool,
+                               Scaling scale, uint16_t* __restrict out) {
   PoolRow(sums, columns, pool, scale, out);
 }
 
 template <class Out>
-void PoolByAny(const uint8_t* in, int width, int rows, int columns, int pool, float scale,
+void PoolByAny(const uint8_t* in, int width, int rows, int columns, int pool, Scaling scale,
                uint16_t* sums, Out* out) {
   for (int i = 0; i < rows; ++i) {
     SumRows(in + int64_t(i) * pool * width, pool, width, sums);
@@ -141,9 +146,9 @@ void PoolByAny(const uint8_t* in, int width, int rows, int columns, int pool, fl
 }
 
 template <class Out>
-void PoolPlanes(const uint8_t* in, const FrameShape& shape, int pool, Out* out) {
+void PoolPlanes(const uint8_t* in, const FrameShape& shape, int pool, float shift, Out* out) {
   const int rows = shape.height / pool, columns = shape.width / pool;
-  const float scale = float(1.0 / (255.0 * pool * pool));
+  const Scaling scale{float(1.0 / (255.0 * pool * pool)), shift};
   CHECK(pool >= 1 && pool <= kMaxPool) << "pool of " << pool;
   ParallelFor(shape.planes, [&](int begin, int end) {
     std::vector<uint16_t> sums(pool > 2 ? size_t(shape.width) : 0);
@@ -192,12 +197,13 @@ double StandardDeviation(const uint8_t* in, int bytes) {
 
 }  // namespace
 
-void PoolFrames(const uint8_t* in, const FrameShape& shape, int pool, float* out) {
-  PoolPlanes(in, shape, pool, out);
+void PoolFrames(const uint8_t* in, const FrameShape& shape, int pool, float shift, float* out) {
+  PoolPlanes(in, shape, pool, shift, out);
 }
 
-void PoolFramesToBf16(const uint8_t* in, const FrameShape& shape, int pool, uint16_t* out) {
-  PoolPlanes(in, shape, pool, out);
+void PoolFramesToBf16(const uint8_t* in, const FrameShape& shape, int pool, float shift,
+                      uint16_t* out) {
+  PoolPlanes(in, shape, pool, shift, out);
 }
 
 double MeanFrameSpread(const uint8_t* in, int images, int bytes) {

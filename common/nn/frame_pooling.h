@@ -1,7 +1,7 @@
-// From uint8 frames to the network's input: average pooling, scaling to zero mean and conversion in
-// one pass.
+// From uint8 frames to the network's input: average pooling, scaling to a range of 1 and conversion
+// in one pass.
 //
-//   x[p, i, j] = mean over the pool x pool window at (i*pool, j*pool) of in[p] / 255 - 0.5
+//   x[p, i, j] = mean over the pool x pool window at (i*pool, j*pool) of in[p] / 255 + shift
 //
 // Pixels that do not fill a window (H mod pool, W mod pool) are left out.
 // Shapes: in (P, H, W) u8, P planes = images times channels; out (P, H/pool, W/pool) f32 or bf16.
@@ -16,8 +16,9 @@ struct FrameShape {
   int planes = 0, height = 0, width = 0;  // P, H, W
 };
 
-void PoolFrames(const uint8_t* in, const FrameShape& shape, int pool, float* out);
-void PoolFramesToBf16(const uint8_t* in, const FrameShape& shape, int pool, uint16_t* out);
+void PoolFrames(const uint8_t* in, const FrameShape& shape, int pool, float shift, float* out);
+void PoolFramesToBf16(const uint8_t* in, const FrameShape& shape, int pool, float shift,
+                      uint16_t* out);
 
 // Mean over images of the standard deviation of all bytes of an image, in grey levels.
 // in (images, bytes) u8.

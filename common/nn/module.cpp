@@ -27,7 +27,9 @@ void CopyParameters(const ParameterSet& online, ParameterSet* average) {
 
 void MoveTowards(float tau, const ParameterSet& online, ParameterSet* average) {
   CHECK(online.size() == average->size()) << online.size() << " and " << average->size();
-  MoveTowards(tau, online.values(), average->size(), average->values());
+  const int64_t trained = online.trained_size();
+  MoveTowards(tau, online.values(), trained, average->values());
+  std::copy_n(online.values() + trained, online.size() - trained, average->values() + trained);
 }
 
 void CopyParameters(const Module& online, Module* target) {

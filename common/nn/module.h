@@ -17,6 +17,10 @@ namespace shoal::nn {
 
 class Scratchpad;
 
+// What batch normalisation normalises by: the statistics of the batch at hand, as in the pass that
+// a backward pass follows, or running averages over former batches, as in acting and in targets.
+enum class Statistics { kBatch, kRunning };
+
 // What modules that work together are built with. Copies share the scratch memory: their modules
 // run one after another, on one thread at a time.
 struct ModuleContext {
@@ -48,8 +52,8 @@ class Module {
 };
 
 // Parameters of `target`, a network of the same plan under another name, become those of `online`,
-// or move by the share `tau` of the way towards them (Eq. 9 of docs/algorithm.md). The target is
-// refreshed.
+// or move by the share `tau` of the way towards them (Eq. 9 of docs/algorithm.md); statistics are
+// copied whole by both. The target is refreshed.
 void CopyParameters(const Module& online, Module* target);
 void MoveTowards(float tau, const Module& online, Module* target);
 

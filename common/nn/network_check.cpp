@@ -48,6 +48,19 @@ void CheckArrays(const NetworkConfig& network, const ObservationSpec& spec, int 
   }
 }
 
+// A batch's variance takes more than one value.
+void CheckStatistics(const NetworkConfig& network, const ObservationSpec& spec, int batch) {
+  const NetworkPlan encoder = PlanEncoder(network, spec);
+  for (const LayerPlan& layer : encoder.layers()) {
+    const int64_t values = int64_t{batch} * layer.output.height * layer.output.width;
+    if (layer.batch_norm.empty() || values > 1) continue;
+    throw UsageError(
+        "learner.batch = {}: {} of network.encoder = {} has 1x1 maps of these images, whose batch "
+        "statistics take at least 2 of them",
+        batch, layer.batch_norm, network.encoder);
+  }
+}
+
 void CheckPolicySize(const NetworkConfig& network, const ObservationSpec& spec,
                      int64_t most_bytes) {
   const int64_t bytes = PolicyBytes(network, spec);
@@ -80,6 +93,7 @@ int64_t PolicyBytes(const NetworkConfig& network, const ObservationSpec& spec) {
 
 void CheckNetwork(const NetworkConfig& network, const ObservationSpec& spec, int batch,
                   int64_t most_bytes) {
+  CheckStatistics(network, spec, batch);
   CheckArrays(network, spec, batch);
   CheckPolicySize(network, spec, most_bytes);
 }

@@ -15,6 +15,7 @@ int64_t PolicyBytes(const NetworkConfig& network, const ObservationSpec& spec);
 
 // Throws Error (kUsage) naming the key at fault where
 //   - the encoder does not exist, does not fit the images or has keys of another beside it,
+//   - batch statistics would be of a single value,
 //   - an array of one layer for a batch has more numbers than 32 bits count,
 //   - the policy's parameters exceed `most_bytes`.
 void CheckNetwork(const NetworkConfig& network, const ObservationSpec& spec, int batch,

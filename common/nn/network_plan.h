@@ -4,24 +4,28 @@
 //
 // Dimensions: C channels, (H, W) of a map, N filters, O outputs, k kernel, s stride, p padding.
 //
-//   pixels        (C, H, W) u8 -> (C, H/k, W/k)           mean over k x k, scaled to [-0.5, 0.5]
+//   pixels        (C, H, W) u8 -> (C, H/k, W/k)           mean over k x k, scaled to a range of 1
 //   convolution   (C, H, W) -> (N, (H + 2p - k)/s + 1, ...)     weight (N, C, k, k), bias (N)
+//   max pool      (C, H, W) -> (C, (H + 2p - k)/s + 1, ...)     largest of k x k
+//   average pool  (C, H, W) -> (C, h, w) whatever H and W are
 //   linear        all numbers of its input in row-major order -> (O)     weight (O, I), bias (O)
 //
-// then LayerNorm over a linear layer's outputs (norm.weight, norm.bias) and the activation, where
-// the layer has them.
+// then LayerNorm over a linear layer's outputs (norm.weight, norm.bias), or batch normalisation of
+// a convolution's channels (weight, bias, running_mean, running_var, all (N)) and the output of an
+// earlier layer added to it; then the activation: where the layer has them.
 #pragma once
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace shoal::nn {
 
-// How a parameter starts: a constant, orthogonal rows or columns of length `scale`, or uniform in
-// [-scale, scale].
+// How a parameter starts: a constant, orthogonal rows or columns of length `scale`, uniform in
+// [-scale, scale], or normal of deviation `scale`.
 struct Start {
-  enum class Kind { kZeros, kOnes, kOrthogonal, kUniform };
+  enum class Kind { kZeros, kOnes, kOrthogonal, kUniform, kNormal };
   Kind kind = Kind::kZeros;
   double scale = 1;
 };
@@ -30,12 +34,18 @@ struct ParameterSpec {
   std::string name;
   std::vector<int64_t> shape;
   Start start = {};
+  // Measured by forward passes, trained by no loss: copied where parameters are averaged.
+  bool statistic = false;
 };
+
+// What the names of batch normalisation's running averages end with, and no other's.
+inline constexpr std::string_view kRunningMean = ".running_mean", kRunningVariance = ".running_var";
 
 // kOrthogonal: weights orthogonal of the layer's gain, biases 0 (Saxe et al. 2013,
 // arXiv:1312.6120). kPyTorch: what PyTorch's layers do by themselves, weights and biases uniform
-// within 1 / sqrt(inputs of one output). Norms start at 1 and 0 in both.
-enum class Initialisation { kOrthogonal, kPyTorch };
+// within 1 / sqrt(inputs of one output). kKaiming: weights normal of variance 2 / (N k^2), biases 0
+// (He et al. 2015, arXiv:1502.01852, of the outputs). Norms start at 1 and 0 in all.
+enum class Initialisation { kOrthogonal, kPyTorch, kKaiming };
 
 enum class Activation { kNone, kRelu, kTanh };
 
@@ -46,16 +56,27 @@ struct MapShape {
   bool operator==(const MapShape&) const = default;
 };
 
+// What pixels / 255 are scaled to: [-0.5, 0.5] or [0, 1].
+enum class PixelRange { kCentred, kUnit };
+
+// In the place of a layer's index: the one before; none.
+inline constexpr int kPreviousLayer = -1, kNoLayer = -1;
+
 struct LayerPlan {
-  enum class Kind { kPixels, kConvolution, kLinear };
+  enum class Kind { kPixels, kConvolution, kMaxPool, kAveragePool, kLinear };
 
   Kind kind = Kind::kLinear;
-  std::string name;      // of its parameters: NAME.weight, NAME.bias, NAME.norm.*
-  std::string key;       // the configuration key that says how large it is
-  MapShape input = {};   // linear: (I, 1, 1)
-  MapShape output = {};  // linear: (O, 1, 1)
+  std::string name;       // of its parameters: NAME.weight, NAME.bias, NAME.norm.*
+  std::string key;        // the configuration key that says how large it is
+  MapShape input = {};    // linear: (I, 1, 1)
+  MapShape output = {};   // linear: (O, 1, 1)
+  int source = kNoLayer;  // the layer that it reads; none: the network's input
   int kernel = 1, stride = 1, padding = 0;
+  PixelRange range = PixelRange::kCentred;  // of pixels
+  bool bias = true;
   bool layer_norm = false;
+  std::string batch_norm = {};  // of its parameters: BATCH_NORM.weight, ...; empty: none
+  int skip = kNoLayer;          // the layer whose output is added behind batch normalisation
   Activation activation = Activation::kNone;
   Initialisation initialisation = Initialisation::kOrthogonal;
   double gain = 1;  // of an orthogonal weight
@@ -68,16 +89,31 @@ class NetworkPlan {
   NetworkPlan() = default;
   explicit NetworkPlan(const MapShape& input) : input_(input) {}
 
-  // Each appends a layer that reads the output of the last one. Throws Error (kUsage) where a map
-  // is too small for it, or its input too large to be counted.
-  void AddPixels(int pool, const std::string& key);
+  // Each appends a layer that reads the output of the last one, or of `source`, and returns its
+  // index. Throws Error (kUsage) where a map is too small for it, or its input too large to be
+  // counted.
+  int AddPixels(int pool, const std::string& key, PixelRange range = PixelRange::kCentred);
   struct Convolution {
     std::string name, key;
     int filters, kernel, stride, padding = 0;
     Activation activation = Activation::kRelu;
     Initialisation initialisation = Initialisation::kOrthogonal;
+    bool bias = true;
+    std::string batch_norm = {};  // as LayerPlan's; without a bias
+    int source = kPreviousLayer;
+    int skip = kNoLayer;  // of the same shape; only with batch normalisation
   };
-  void Add(const Convolution& convolution);
+  int Add(const Convolution& convolution);
+  struct MaxPool {
+    std::string name, key;
+    int kernel, stride, padding = 0;
+  };
+  int Add(const MaxPool& pool);
+  struct AveragePool {
+    std::string name, key;
+    int height, width;  // of its output
+  };
+  int Add(const AveragePool& pool);
   struct Linear {
     std::string name, key;
     int outputs;
@@ -86,7 +122,7 @@ class NetworkPlan {
     Initialisation initialisation = Initialisation::kOrthogonal;
     double gain = 1;
   };
-  void Add(const Linear& linear);
+  int Add(const Linear& linear);
 
   const std::vector<LayerPlan>& layers() const { return layers_; }
   const MapShape& input() const { return input_; }
@@ -95,6 +131,8 @@ class NetworkPlan {
   std::vector<ParameterSpec> Parameters() const;
 
  private:
+  int Append(LayerPlan layer);
+
   MapShape input_;
   std::vector<LayerPlan> layers_;
 };

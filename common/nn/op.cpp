@@ -60,6 +60,7 @@ Op::Op(dnnl::primitive primitive, const dnnl::memory::desc& scratch,
        std::shared_ptr<Scratchpad> scratchpad)
     : primitive_(std::move(primitive)), scratchpad_(std::move(scratchpad)) {
   for (const auto& [index, memory] : arguments) {
+    if (!memory) continue;
     memories_.push_back(memory);
     arguments_.push_back({index, memory.get()});
   }

@@ -44,8 +44,8 @@ class Scratchpad {
   dnnl::memory memory_;
 };
 
-// One primitive with its arguments. Movable; the memories are shared handles. Run() from one thread
-// at a time, under a ThreadScope of the size it was built in.
+// One primitive with its arguments, of which empty ones are left out. Movable; the memories are
+// shared handles. Run() from one thread at a time, under a ThreadScope of the size it was built in.
 class Op {
  public:
   Op() = default;

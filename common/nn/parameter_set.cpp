@@ -47,6 +47,9 @@ void InitialiseOne(const ParameterSpec& parameter, uint64_t seed, float* values)
     case Start::Kind::kUniform:
       std::generate_n(values, count, [&] { return float(random.Uniform(-scale, scale)); });
       return;
+    case Start::Kind::kNormal:
+      std::generate_n(values, count, [&] { return float(scale * random.Normal()); });
+      return;
   }
 }
 
@@ -54,20 +57,29 @@ void InitialiseOne(const ParameterSpec& parameter, uint64_t seed, float* values)
 
 float* Parameter::value() const { return set_->values() + offset_; }
 
+float* Parameter::next_value() const {
+  return set_->next_values_.empty() ? nullptr : set_->next_values_.data() + offset_;
+}
+
 float* Parameter::gradient() const {
-  return set_->gradients_.empty() ? nullptr : set_->gradients_.data() + offset_;
+  if (set_->gradients_.empty() || spec_->statistic) return nullptr;
+  return set_->gradients_.data() + offset_;
 }
 
 ParameterSet::ParameterSet(std::vector<ParameterSpec> specs, Use use) : specs_(std::move(specs)) {
+  const auto statistics = std::stable_partition(
+      specs_.begin(), specs_.end(), [](const ParameterSpec& spec) { return !spec.statistic; });
+  trained_ = size_t(statistics - specs_.begin());
   int64_t size = 0;
   for (const ParameterSpec& parameter : specs_) {
     offsets_.push_back(size);
     size += (Count(parameter) + kAlignment - 1) / kAlignment * kAlignment;
+    if (!parameter.statistic) trained_size_ = size;
   }
   values_.assign(size_t(size), 0.f);
   if (use == Use::kTraining) {
     next_values_.assign(size_t(size), 0.f);
-    gradients_.assign(size_t(size), 0.f);
+    gradients_.assign(size_t(trained_size_), 0.f);
   }
 }
 
@@ -98,7 +110,27 @@ int64_t ParameterSet::OffsetOf(std::string_view prefix) const {
 }
 
 void ParameterSet::Export(const float* array, const std::string& prefix, TensorMap* tensors) const {
-  for (size_t i = 0; i < specs_.size(); ++i) {
+  ExportFirst(specs_.size(), array, prefix, tensors);
+}
+
+void ParameterSet::ExportTrained(const float* array, const std::string& prefix,
+                                 TensorMap* tensors) const {
+  ExportFirst(trained_, array, prefix, tensors);
+}
+
+void ParameterSet::Import(const TensorMap& tensors, const std::string& prefix,
+                          const std::string& source, float* array) const {
+  ImportFirst(specs_.size(), tensors, prefix, source, array);
+}
+
+void ParameterSet::ImportTrained(const TensorMap& tensors, const std::string& prefix,
+                                 const std::string& source, float* array) const {
+  ImportFirst(trained_, tensors, prefix, source, array);
+}
+
+void ParameterSet::ExportFirst(size_t specs, const float* array, const std::string& prefix,
+                               TensorMap* tensors) const {
+  for (size_t i = 0; i < specs; ++i) {
     NamedTensor tensor{"F32", specs_[i].shape, {}};
     tensor.data.resize(size_t(Count(specs_[i])) * sizeof(float));
     std::memcpy(tensor.data.data(), array + offsets_[i], tensor.data.size());
@@ -106,9 +138,9 @@ void ParameterSet::Export(const float* array, const std::string& prefix, TensorM
   }
 }
 
-void ParameterSet::Import(const TensorMap& tensors, const std::string& prefix,
-                          const std::string& source, float* array) const {
-  for (size_t i = 0; i < specs_.size(); ++i) {
+void ParameterSet::ImportFirst(size_t specs, const TensorMap& tensors, const std::string& prefix,
+                               const std::string& source, float* array) const {
+  for (size_t i = 0; i < specs; ++i) {
     const std::string name = prefix + specs_[i].name;
     const auto found = tensors.find(name);
     if (found == tensors.end()) throw RuntimeError("{}: tensor {} is missing", source, name);

@@ -1,4 +1,5 @@
-// Parameters that are trained together, in one array, so that an optimiser step is one pass.
+// Parameters that are trained together, in one array, so that an optimiser step is one pass; behind
+// them the running statistics that belong to them.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +24,10 @@ class Parameter {
   const std::vector<int64_t>& shape() const { return spec_->shape; }
   // Moves with every optimiser step: fetch it when it is needed.
   float* value() const;
-  // Stays. Null in a set without gradients.
+  // Where an optimiser's step writes: a statistic's value after it is written there by the forward
+  // pass that measures it. Moves like value().
+  float* next_value() const;
+  // Stays. Null in a set without gradients, and of a statistic.
   float* gradient() const;
 
  private:
@@ -33,7 +37,9 @@ class Parameter {
 };
 
 // Owns values, gradients and a second array of values, into which an optimiser writes: exchanging
-// the two applies its step, exchanging them again takes it back. Not movable: layers borrow it.
+// the two applies its step, exchanging them again takes it back. Statistics lie behind what is
+// trained: forward passes write them into the second array, so that a step and its undoing take
+// them along. Not movable: layers borrow it.
 //
 // Each parameter starts at a multiple of 16 floats; the gaps hold zeros in all arrays.
 class ParameterSet {
@@ -54,6 +60,8 @@ class ParameterSet {
   int64_t OffsetOf(std::string_view prefix) const;
 
   int64_t size() const { return int64_t(values_.size()); }  // floats, gaps included
+  // Without statistics: what gradients and optimisers have arrays of.
+  int64_t trained_size() const { return trained_size_; }
   const float* values() const { return values_.data(); }
   float* values() { return values_.data(); }
   float* next_values() { return next_values_.data(); }
@@ -61,8 +69,7 @@ class ParameterSet {
   float* gradients() { return gradients_.data(); }
   void Exchange() { values_.swap(next_values_); }
 
-  // The arrays of this set's layout (values, Adam moments) to named tensors and back. `prefix` goes
-  // before each name.
+  // An array of this set's values to named tensors and back. `prefix` goes before each name.
   void Export(const float* array, const std::string& prefix, TensorMap* tensors) const;
   // The values under their own names.
   void Export(TensorMap* tensors) const { Export(values(), "", tensors); }
@@ -70,11 +77,22 @@ class ParameterSet {
   // then be partly written.
   void Import(const TensorMap& tensors, const std::string& prefix, const std::string& source,
               float* array) const;
+  // The same for an array of what is trained alone (Adam's moments).
+  void ExportTrained(const float* array, const std::string& prefix, TensorMap* tensors) const;
+  void ImportTrained(const TensorMap& tensors, const std::string& prefix, const std::string& source,
+                     float* array) const;
 
  private:
   friend class Parameter;
 
-  std::vector<ParameterSpec> specs_;
+  void ExportFirst(size_t specs, const float* array, const std::string& prefix,
+                   TensorMap* tensors) const;
+  void ImportFirst(size_t specs, const TensorMap& tensors, const std::string& prefix,
+                   const std::string& source, float* array) const;
+
+  std::vector<ParameterSpec> specs_;  // statistics last
+  size_t trained_ = 0;                // specs that are no statistics
+  int64_t trained_size_ = 0;
   std::vector<int64_t> offsets_;
   std::vector<float> values_, next_values_, gradients_;
 };

@@ -117,7 +117,7 @@ PolicyOutput Policy::Forward(int batch, const uint8_t* frames, const float* vect
   CHECK(batch > 0 && batch <= impl_->max_batch) << batch << " of at most " << impl_->max_batch;
   const ThreadScope scope(impl_->threads);
   SizedNetwork& network = impl_->built->ForBatch(batch);
-  if (network.encoder) network.encoder->Forward(frames);
+  if (network.encoder) network.encoder->Forward(frames, Statistics::kRunning);
   network.actor->Forward(vector);
   const size_t count = static_cast<size_t>(batch) * static_cast<size_t>(impl_->spec.action_size);
   PolicyOutput result{.mean = {network.actor->mean(), count}, .log_std = {}};

@@ -11,6 +11,7 @@
 #include "common/base/check.h"
 #include "common/base/error.h"
 #include "common/nn/bf16.h"
+#include "common/nn/network_plan.h"
 
 namespace shoal::nn {
 namespace {
@@ -26,7 +27,7 @@ constexpr const char* kMetadata = "__metadata__";
 uint64_t ElementBytes(const std::string& dtype) {
   if (dtype == "F32") return 4;
   if (dtype == "BF16") return 2;
-  if (dtype == "U64") return 8;
+  if (dtype == "U64" || dtype == "I64") return 8;
   return 0;
 }
 
@@ -84,7 +85,7 @@ Entry ParseEntry(const std::string& name, const json& value, const std::string& 
   }
   const json &dtype = value["dtype"], &shape = value["shape"], &offsets = value["data_offsets"];
   if (!dtype.is_string() || ElementBytes(dtype.get<std::string>()) == 0) {
-    throw fault("expected dtype F32, BF16 or U64");
+    throw fault("expected dtype F32, BF16, U64 or I64");
   }
   Entry entry{name, {dtype.get<std::string>(), {}, {}}, 0, 0};
   if (!shape.is_array()) throw fault("shape is not an array");
@@ -193,7 +194,8 @@ TensorMap ReadSafetensors(std::string_view bytes, const std::string& source) {
 TensorMap ToBf16(const TensorMap& tensors) {
   TensorMap result = tensors;
   for (auto& [name, tensor] : result) {
-    if (tensor.dtype != "F32") continue;
+    const bool statistic = name.ends_with(kRunningMean) || name.ends_with(kRunningVariance);
+    if (tensor.dtype != "F32" || statistic) continue;
     const NamedTensor& from = tensors.at(name);
     const size_t count = from.data.size() / sizeof(float);
     tensor.dtype = "BF16";

@@ -11,7 +11,7 @@
 namespace shoal::nn {
 
 struct NamedTensor {
-  std::string dtype;  // "F32", "BF16", "U64"
+  std::string dtype;  // "F32", "BF16", "U64"; "I64" of PyTorch's counters
   std::vector<int64_t> shape;
   std::vector<uint8_t> data;
 };
@@ -25,7 +25,8 @@ std::string WriteSafetensors(const TensorMap& tensors,
 // `source` names the bytes in errors. Throws Error on anything but a well-formed file.
 TensorMap ReadSafetensors(std::string_view bytes, const std::string& source);
 
-// Every F32 tensor rounded to BF16 (nearest even), for the wire; and back.
+// Every F32 tensor rounded to BF16 (nearest even), for the wire, but running statistics: a mean far
+// from zero would lose what the deviation around it is measured in. And back.
 TensorMap ToBf16(const TensorMap& tensors);
 TensorMap ToF32(const TensorMap& tensors);
 

@@ -49,8 +49,8 @@ Config ResolveConfig(const TrainOptions& options, int cores) {
   if (!options.run_name.empty()) ApplyAssignments({"run_name=" + options.run_name}, &config);
   if (options.lockstep) config.lockstep = true;
   // Programs that start later, also of a resumed run, need not stand where this one does.
-  if (!config.task_library.empty()) {
-    config.task_library = std::filesystem::absolute(config.task_library).lexically_normal();
+  for (std::string* path : {&config.task_library, &config.network.encoder_weights}) {
+    if (!path->empty()) *path = std::filesystem::absolute(*path).lexically_normal();
   }
   // Threads of one update wait for each other, so a core shared with an actor stalls them all.
   if (config.learner.threads == 0) config.learner.threads = std::max(1, cores / 2);

@@ -18,6 +18,7 @@
 #include "common/dds/bus.h"
 #include "common/dds/publisher.h"
 #include "common/dds/role_rights.h"
+#include "common/nn/encoder_weights.h"
 #include "common/nn/network_check.h"
 #include "common/tasks/task_library.h"
 #include "common/wire/weights_parts.h"
@@ -293,6 +294,7 @@ int Train(const TrainOptions& options, Detachment* detachment) {
   const ObservedWorld world = DescribeObservations(config.config);
   config.spec = world.spec;
   CheckNetwork(config);
+  nn::ReadEncoderWeights(config.config.network, config.spec);  // the learner will; refused here
   CheckReplay(config, /*exists=*/false);
   CheckHosts(hosts, StopRequested);
   address.host = ServersHost(hosts);

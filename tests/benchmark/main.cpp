@@ -34,7 +34,7 @@ int Run(int argc, char** argv) {
       if (pairing.stage.find(only) == std::string::npos) continue;
       const auto row = shoal::bench::TimePair(pairing, repetitions, seconds);
       rows.push_back(ToJson(row));
-      std::cerr << fmt::format("{}: {:.0f} {}, {:.2f} x {} ({:.0f}), spread {:.2f}\n", row.stage,
+      std::cerr << fmt::format("{}: {:.4g} {}, {:.2f} x {} ({:.4g}), spread {:.2f}\n", row.stage,
                                row.figure, row.unit, row.ratio, row.against, row.against_figure,
                                row.spread);
     }

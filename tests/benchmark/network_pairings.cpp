@@ -1,6 +1,9 @@
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <memory>
+#include <string>
 
 #include "common/base/random.h"
 #include "common/nn/policy.h"
@@ -12,11 +15,11 @@ namespace {
 
 constexpr int kActors = 4;  // environments of one actor
 
-ObservationSpec PixelSpec() {
+ObservationSpec PixelSpec(int channels = 6) {
   ObservationSpec spec;
   spec.task = "bench";
   spec.cameras = {"front", "side"};
-  spec.channels = 6;
+  spec.channels = channels;
   spec.height = spec.width = 84;
   spec.action_size = 4;
   return spec;
@@ -29,7 +32,7 @@ struct Learners {
   };
 
   Config config;
-  ObservationSpec spec = PixelSpec();
+  ObservationSpec spec;
   BatchSchema schema{spec, {.batch = config.learner.batch}};
   std::unique_ptr<uint8_t, Free> memory{
       static_cast<uint8_t*>(std::aligned_alloc(64, schema.total_bytes()))};
@@ -38,7 +41,7 @@ struct Learners {
       learner::MakeAgent(config, spec, nn::ChoosePrecision("auto", /*pixels=*/true));
   std::unique_ptr<learner::Agent> f32 = learner::MakeAgent(config, spec, nn::Precision::kF32);
 
-  Learners() {
+  Learners(const Config& with, const ObservationSpec& seen) : config(with), spec(seen) {
     Random random(1);
     const auto fill = [&](auto& array, double low, double high) {
       for (auto& x : array) {
@@ -54,6 +57,25 @@ struct Learners {
   }
 };
 
+// Large networks one at a time: made when a row asks for them, in the place of the row's before.
+class LargeLearners {
+ public:
+  Learners& Of(const std::string& encoder, int batch, int channels) {
+    if (!learners_ || learners_->config.network.encoder != encoder ||
+        learners_->config.learner.batch != batch) {
+      learners_.reset();
+      Config config;
+      config.network.encoder = encoder;
+      config.learner.batch = batch;
+      learners_ = std::make_unique<Learners>(config, PixelSpec(channels));
+    }
+    return *learners_;
+  }
+
+ private:
+  std::unique_ptr<Learners> learners_;
+};
+
 struct Policies {
   ObservationSpec spec = PixelSpec();
   nn::Policy together{NetworkConfig(), spec, nn::ChoosePrecision("auto", /*pixels=*/true), kActors};
@@ -64,9 +86,9 @@ struct Policies {
 }  // namespace
 
 std::vector<Pairing> NetworkPairings() {
-  const auto learners = std::make_shared<Learners>();
+  const auto learners = std::make_shared<Learners>(Config(), PixelSpec());
   const auto policies = std::make_shared<Policies>();
-  return {
+  std::vector<Pairing> pairings{
       {.stage = "SAC update, batch 128 of (6, 84, 84), precision auto",
        .unit = "updates/s",
        .against = "precision f32",
@@ -85,6 +107,21 @@ std::vector<Pairing> NetworkPairings() {
                    1, policies->frames.data() + size_t(e) * policies->spec.FrameBytes(), nullptr);
              }
            }}};
+  const auto large = std::make_shared<LargeLearners>();
+  constexpr int kChannels = 4;  // grey, a stack of four
+  for (const char* encoder : {"resnet18", "alexnet"}) {
+    for (const int batch : {4, 128}) {
+      const auto get = [=]() -> Learners& { return large->Of(encoder, batch, kChannels); };
+      pairings.push_back(
+          {.stage = fmt::format("SAC update, {}, batch {} of ({}, 84, 84), precision auto", encoder,
+                                batch, kChannels),
+           .unit = "updates/s",
+           .against = "precision f32",
+           .ours = [get] { get().automatic->Update(get().batch); },
+           .other = [get] { get().f32->Update(get().batch); }});
+    }
+  }
+  return pairings;
 }
 
 }  // namespace shoal::bench

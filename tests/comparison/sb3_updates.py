@@ -4,7 +4,7 @@ usage: sb3_updates.py FOLDER
 
 Writes td3.safetensors and ddpg.safetensors to FOLDER: from state, without noise on the target's
 action. Inputs (weights, observations, actions, rewards) are not stored: both sides compute them
-from `uniform` below, so that the files hold results alone. Wants stable-baselines3 and safetensors
+from shared_numbers.py, so that the files hold results alone. Wants stable-baselines3 and safetensors
 from PyPI; nothing of Shoal needs Python.
 
 In a file, u = 0..3 counts updates; NAME is a tensor's name in Stable-Baselines3 after its model's
@@ -29,33 +29,10 @@ from stable_baselines3.common.buffers import ReplayBufferSamples
 from stable_baselines3.common.logger import Logger
 from stable_baselines3.td3 import td3
 
+from shared_numbers import symmetric
+
 BATCH, ACTIONS, VECTOR, UPDATES = 8, 3, 11, 4
 HIDDEN = [20, 16]
-MASK = (1 << 64) - 1
-
-
-def fnv1a(text):
-    value = 0xCBF29CE484222325
-    for byte in text.encode():
-        value = ((value ^ byte) * 0x100000001B3) & MASK
-    return value
-
-
-def uniform(name, count):
-    """Numbers in [0, 1), exact in double: splitmix64 of fnv1a(name) + index."""
-    with np.errstate(over="ignore"):
-        x = np.uint64(fnv1a(name)) + np.arange(count, dtype=np.uint64)
-        x = x * np.uint64(0x9E3779B97F4A7C15)
-        x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
-        x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
-        x = x ^ (x >> np.uint64(31))
-    return (x >> np.uint64(11)).astype(np.float64) * 2.0**-53
-
-
-def symmetric(name, shape, scale):
-    """Numbers in [-scale, scale), rounded to f32 once."""
-    numbers = (2 * uniform(name, int(np.prod(shape))) - 1) * scale
-    return torch.from_numpy(numbers.astype(np.float32).reshape(shape))
 
 
 class Spaces(gymnasium.Env):

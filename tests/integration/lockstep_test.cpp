@@ -61,6 +61,30 @@ TEST(Lockstep, AnInterruptedRunGoesOnBitForBit) {
   EXPECT_TRUE(LearnerOf(whole) == LearnerOf(interrupted)) << "learner.safetensors differs";
 }
 
+TEST(Lockstep, RunningStatisticsRepeatAndGoOnBitForBit) {
+  const TrainingRun::Keys keys = TrainingRun::FromPixels({{"actors", "1"},
+                                                          {"env_steps", "352"},
+                                                          {"learner.batch", "4"},
+                                                          {"network.encoder", "resnet18"},
+                                                          {"observation.cameras", R"(["front"])"},
+                                                          {"observation.height", "24"},
+                                                          {"observation.width", "24"}});
+  const TrainingRun whole, interrupted;
+  const ProgramResult result = whole.Train(keys, {"--lockstep"});
+  ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
+  RunningTraining first(interrupted, interrupted.Command(keys, {"--lockstep"}));
+  ASSERT_TRUE(first.WaitForSteps(130)) << first.Output();
+  first.Interrupt();
+  ASSERT_EQ(first.End(std::chrono::seconds(120)), 0) << first.Output();
+  const auto steps = interrupted.Json("meta.json").at("env_steps").get<int64_t>();
+  ASSERT_LT(steps, 352) << "ended before it was interrupted";
+  RunningTraining rest(interrupted, {"shoal", "train", "--resume", interrupted.path().string()});
+  ASSERT_EQ(rest.End(std::chrono::seconds(180)), 0) << rest.Output();
+  const std::string learner = LearnerOf(whole);
+  EXPECT_NE(learner.find("encoder.bn1.running_mean"), std::string::npos);
+  EXPECT_TRUE(learner == LearnerOf(interrupted)) << "learner.safetensors differs";
+}
+
 TEST(Lockstep, TheSameSeedGivesTheSameBytes) {
   const Outcome first = RunInLockstep("5"), again = RunInLockstep("5"), other = RunInLockstep("6");
   EXPECT_FALSE(first.learner.empty());

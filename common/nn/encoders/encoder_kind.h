@@ -16,8 +16,9 @@ namespace shoal::nn {
 
 struct EncoderKind {
   std::string_view name;
-  // Appends the encoder's layers to a plan whose input are stacks of frames, (K*C, H, W). The
-  // parameters of convolution i are `prefix`.conv{i}.*.
+  // Appends the encoder's layers to a plan whose input are stacks of frames, (K*C, H, W). Names of
+  // parameters begin with `prefix`.: `prefix`.conv{i}.* of convolution i, or `prefix`. and
+  // torchvision's name.
   void (*add)(const NetworkConfig& network, const std::string& prefix, NetworkPlan* plan);
   // The trunk that belongs to it where the configuration does not say another: its outputs, and
   // whether they are linear and ReLU instead of linear, LayerNorm and tanh.
@@ -33,12 +34,18 @@ void AddDrq(const NetworkConfig& network, const std::string& prefix, NetworkPlan
 void AddMrq(const NetworkConfig& network, const std::string& prefix, NetworkPlan* plan);
 // Mnih et al. 2015, doi:10.1038/nature14236.
 void AddNature(const NetworkConfig& network, const std::string& prefix, NetworkPlan* plan);
+// He et al. 2016, arXiv:1512.03385, as torchvision's resnet18 without its last layer.
+void AddResnet18(const NetworkConfig& network, const std::string& prefix, NetworkPlan* plan);
+// Krizhevsky 2014, arXiv:1404.5997, as torchvision's alexnet without its classifier.
+void AddAlexnet(const NetworkConfig& network, const std::string& prefix, NetworkPlan* plan);
 
 inline constexpr EncoderKind kEncoderKinds[] = {
     {.name = "compact", .add = AddCompact},
     {.name = "drq", .add = AddDrq},
     {.name = "mrq", .add = AddMrq},
     {.name = "nature", .add = AddNature, .features = 512, .relu_trunk = true},
+    {.name = "resnet18", .add = AddResnet18},
+    {.name = "alexnet", .add = AddAlexnet},
 };
 
 // Throws Error (kUsage) naming an unknown kind and those there are.

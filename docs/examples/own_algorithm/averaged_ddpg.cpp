@@ -111,7 +111,7 @@ class AveragedDdpgAgent final : public Agent {
   }
 
   void ComputeTargets(const BatchView& batch) {
-    if (encoder_) encoder_->Forward(batch.next_obs_frames.data());
+    if (encoder_) encoder_->Forward(batch.next_obs_frames.data(), nn::Statistics::kRunning);
     const float* vector = batch.next_obs_vector.data();
     target_critic_.ForwardObservation(vector);
     target_critic_.ForwardAction(target_actor_.Forward(vector).action);
@@ -124,7 +124,7 @@ class AveragedDdpgAgent final : public Agent {
   }
 
   bool UpdateCritic(const BatchView& batch, UpdateFigures* figures) {
-    if (encoder_) encoder_->Forward(batch.obs_frames.data());
+    if (encoder_) encoder_->Forward(batch.obs_frames.data(), nn::Statistics::kBatch);
     critic_.ForwardObservation(batch.obs_vector.data());
     critic_.ForwardAction(batch.action.data());
     const float* q[kCritics];

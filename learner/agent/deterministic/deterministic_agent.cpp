@@ -44,8 +44,8 @@ class DeterministicAgent final : public Agent {
   }
 
  private:
-  void Encode(std::span<const uint8_t> frames) {
-    if (encoder_) encoder_->Forward(frames.data());
+  void Encode(std::span<const uint8_t> frames, nn::Statistics statistics) {
+    if (encoder_) encoder_->Forward(frames.data(), statistics);
   }
   void ComputeTargets(const BatchView& batch, Random* random, const OnStageEnd& on_stage_end);
   bool UpdateCritic(const BatchView& batch, const OnStageEnd& on_stage_end, UpdateFigures* figures);
@@ -138,7 +138,7 @@ std::vector<const float*> DeterministicAgent::Values(const nn::CriticModule& cri
 void DeterministicAgent::ComputeTargets(const BatchView& batch, Random* random,
                                         const OnStageEnd& on_stage_end) {
   const float* vector = batch.next_obs_vector.data();
-  Encode(batch.next_obs_frames);
+  Encode(batch.next_obs_frames, nn::Statistics::kRunning);
   std::copy_n(target_actor_.Forward(vector).action, target_action_.size(), target_action_.begin());
   if (options_.target_noise > 0) {
     for (float& action : target_action_) {
@@ -160,7 +160,7 @@ void DeterministicAgent::ComputeTargets(const BatchView& batch, Random* random,
 // False where the loss or its gradient is not finite; then no parameter has changed.
 bool DeterministicAgent::UpdateCritic(const BatchView& batch, const OnStageEnd& on_stage_end,
                                       UpdateFigures* figures) {
-  Encode(batch.obs_frames);
+  Encode(batch.obs_frames, nn::Statistics::kBatch);
   critic_.ForwardObservation(batch.obs_vector.data());
   critic_.ForwardAction(batch.action.data());
   const CriticLoss loss = CriticLossForward(batch_size_, Values(critic_), targets_.data());

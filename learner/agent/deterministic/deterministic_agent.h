@@ -8,7 +8,8 @@
 //   5. the averaged policy follows encoder and actor                                   (Eq. 12)
 //
 // 3 in every actor_period-th update, 4 in every target_period-th, counted from 1: the critic moves
-// first. As in SAC the encoder is trained by the critic's loss alone and has no target.
+// first. As in SAC the encoder is trained by the critic's loss alone and has no target; one with
+// batch normalisation takes running statistics in 1, those of the batch in 2 and 3.
 //
 // Sources: Lillicrap et al. 2015, arXiv:1509.02971; Fujimoto et al. 2018, arXiv:1802.09477.
 #pragma once

@@ -9,7 +9,8 @@
 //
 // 3 and 4 every actor_period updates, 5 every target_period, both from the first update on. The
 // encoder keeps one set of activations, so next_obs goes through it first. The temperature in 1 and
-// 3 is the one before this update.
+// 3 is the one before this update. An encoder with batch normalisation takes running statistics in
+// 1, those of the batch in 2 and 3.
 #include "learner/agent/sac/sac_agent.h"
 
 #include <array>
@@ -82,7 +83,7 @@ SacAgent::SacAgent(const Config& config, const ObservationSpec& spec, nn::Precis
 void SacAgent::ComputeTargets(const BatchView& batch, float temperature, Random* random,
                               const OnStageEnd& on_stage_end) {
   const float* vector = batch.next_obs_vector.data();
-  networks_.Encode(batch.next_obs_frames.data());
+  networks_.Encode(batch.next_obs_frames.data(), nn::Statistics::kRunning);
   const auto [mean, log_std] = networks_.ForwardActor(vector);
   gaussian_.Sample(mean, log_std, random);
   const auto [q0, q1] = networks_.ForwardTarget(vector, gaussian_.action());
@@ -98,7 +99,7 @@ void SacAgent::ComputeTargets(const BatchView& batch, float temperature, Random*
 // False where the loss or its gradient is not finite; then no parameter has changed.
 bool SacAgent::UpdateCritic(const BatchView& batch, const OnStageEnd& on_stage_end,
                             UpdateFigures* figures) {
-  networks_.Encode(batch.obs_frames.data());
+  networks_.Encode(batch.obs_frames.data(), nn::Statistics::kBatch);
   const auto [q0, q1] = networks_.ForwardCritic(batch.obs_vector.data(), batch.action.data());
   const CriticLoss loss = CriticLossForward(batch_size_, q0, q1, targets_.data());
   on_stage_end(UpdateStage::kForward);

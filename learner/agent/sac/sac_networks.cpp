@@ -54,8 +54,8 @@ SacNetworks::SacNetworks(const Config& config, const ObservationSpec& spec, nn::
   nn::CopyParameters(actor_.parameters(), &actor_average_);
 }
 
-void SacNetworks::Encode(const uint8_t* frames) {
-  if (encoder_) encoder_->Forward(frames);
+void SacNetworks::Encode(const uint8_t* frames, nn::Statistics statistics) {
+  if (encoder_) encoder_->Forward(frames, statistics);
 }
 
 SacNetworks::Gaussian SacNetworks::ForwardActor(const float* vector) {

@@ -37,8 +37,8 @@ class SacNetworks {
   SacNetworks& operator=(const SacNetworks&) = delete;
 
   // frames (B, K*C, H, W) u8. The features stay until the next call and are what every head below
-  // sees. Without pixels it does nothing.
-  void Encode(const uint8_t* frames);
+  // sees. `statistics` as EncoderModule's. Without pixels it does nothing.
+  void Encode(const uint8_t* frames, nn::Statistics statistics);
 
   // vector (B, V) in all of these, action (B, A).
   struct Gaussian {
@@ -71,7 +71,8 @@ class SacNetworks {
   void StepTemperature(float gradient, double least);
   // target += tau * (critic - target), trunk and Q functions (Eq. 9).
   void MoveTarget(float tau);
-  // average += rate * (policy - average), encoder and actor (Eq. 12).
+  // average += rate * (policy - average), encoder and actor (Eq. 12); the encoder's running
+  // statistics whole.
   void MovePolicyAverage(float rate);
 
   // encoder.* and actor.*, F32: the newest ones, and their moving average.

@@ -39,7 +39,7 @@ class ConvTest : public LayerTest {
     Conv conv(Context(parameters, shape.batch), plan.layers()[0], source, source_gradient);
     conv.Refresh();
     FillMemory(x, source);
-    conv.Forward();
+    conv.Forward(Statistics::kBatch);
     const Values y = reference::ConvForward(shape, x, weight, bias);
     EXPECT_LT(RelativeError(ReadMemory(conv.output()), y), Tolerance(GetParam()));
 

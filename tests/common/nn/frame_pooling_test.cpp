@@ -48,11 +48,11 @@ TEST_P(FramePoolingTest, AgreesWithTheNaiveMeanInBothTypes) {
   const std::vector<uint8_t> in = RandomFrames(size_t(shape.planes) * shape.height * shape.width);
   const reference::Values exact = NaivePooling(in, shape, pool);
   std::vector<float> out(exact.size());
-  PoolFrames(in.data(), shape, pool, out.data());
+  PoolFrames(in.data(), shape, pool, -0.5f, out.data());
   for (size_t i = 0; i < exact.size(); ++i) ASSERT_NEAR(out[i], exact[i], 1e-6) << i;
 
   std::vector<uint16_t> out16(exact.size()), rounded(exact.size());
-  PoolFramesToBf16(in.data(), shape, pool, out16.data());
+  PoolFramesToBf16(in.data(), shape, pool, -0.5f, out16.data());
   FloatsToBf16(out.data(), int64_t(out.size()), rounded.data());
   EXPECT_EQ(out16, rounded);
 }
@@ -74,9 +74,20 @@ TEST(FramePooling, BlackIsMinusAHalfAndWhiteAHalf) {
   std::vector<uint8_t> in(16, 0);
   std::memset(in.data() + 8, 255, 8);
   std::vector<float> out(4);
-  PoolFrames(in.data(), {1, 4, 4}, 2, out.data());
+  PoolFrames(in.data(), {1, 4, 4}, 2, -0.5f, out.data());
   EXPECT_THAT(out,
               testing::Pointwise(testing::FloatEq(), std::vector<float>{-0.5f, -0.5f, 0.5f, 0.5f}));
+}
+
+TEST(FramePooling, WithoutAShiftBlackIsZeroAndWhiteOne) {
+  for (const int pool : {1, 2, 3}) {
+    const std::vector<uint8_t> in{0,   0,   0,   0,   0,   0,   0,   0,   0,
+                                  255, 255, 255, 255, 255, 255, 255, 255, 255};
+    std::vector<float> out(size_t(2 * (3 / pool) * (3 / pool)));
+    PoolFrames(in.data(), {2, 3, 3}, pool, 0.f, out.data());
+    EXPECT_FLOAT_EQ(out.front(), 0.f) << pool;
+    EXPECT_FLOAT_EQ(out.back(), 1.f) << pool;
+  }
 }
 
 TEST(FramePooling, IsTheSameForAnyNumberOfThreads) {
@@ -84,10 +95,10 @@ TEST(FramePooling, IsTheSameForAnyNumberOfThreads) {
   std::vector<float> one(5 * 42 * 42), three(one.size());
   {
     const ThreadScope scope(1);
-    PoolFrames(in.data(), {5, 84, 84}, 2, one.data());
+    PoolFrames(in.data(), {5, 84, 84}, 2, -0.5f, one.data());
   }
   const ThreadScope scope(3);
-  PoolFrames(in.data(), {5, 84, 84}, 2, three.data());
+  PoolFrames(in.data(), {5, 84, 84}, 2, -0.5f, three.data());
   EXPECT_EQ(one, three);
 }
 

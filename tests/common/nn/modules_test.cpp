@@ -77,7 +77,7 @@ TEST_P(ModulesTest, ADeterministicActorIsTheTanhOfItsMlpAndMayTrainItsOwnEncoder
                     /*trains_encoder=*/true, Use::kTraining, context_);
   Start(&encoder, 1);
   Start(&actor, 2);
-  encoder.Forward(frames_.data());
+  encoder.Forward(frames_.data(), Statistics::kBatch);
   const auto [mean, log_std, action] = actor.Forward(ToFloats(vector_).data());
   EXPECT_EQ(log_std, nullptr);
   reference::Network network = Reference({&encoder, &actor});
@@ -107,7 +107,7 @@ TEST_P(ModulesTest, AClampedDeviationHasNoGradientBeyondItsRange) {
   bias[4] = 30;
   bias[5] = -60;
   actor.Refresh();
-  encoder.Forward(frames_.data());
+  encoder.Forward(frames_.data(), Statistics::kBatch);
   const float* log_std = actor.Forward(ToFloats(vector_).data()).log_std;
   reference::Network network = Reference({&encoder, &actor});
   const auto clamped = [&] {
@@ -145,7 +145,7 @@ TEST_P(ModulesTest, ACriticOfAnyNumberOfFunctionsTrainsTheEncoderByThoseInTheLos
     Start(&encoder, 1);
     Start(&critic, 2);
     ASSERT_EQ(critic.count(), count);
-    encoder.Forward(frames_.data());
+    encoder.Forward(frames_.data(), Statistics::kBatch);
     critic.ForwardObservation(ToFloats(vector_).data());
     critic.ForwardAction(ToFloats(action_).data());
     reference::Network network = Reference({&encoder, &critic});
@@ -191,7 +191,7 @@ TEST_P(ModulesTest, ATargetFollowsAnyModuleByTheShareAsked) {
   Start(&online, 1);
   CopyParameters(online, &target);
   const auto features = [&](EncoderModule* encoder) {
-    encoder->Forward(frames_.data());
+    encoder->Forward(frames_.data(), Statistics::kRunning);
     return ReadMemory(encoder->features().values());
   };
   EXPECT_EQ(features(&target), features(&online));
@@ -204,6 +204,30 @@ TEST_P(ModulesTest, ATargetFollowsAnyModuleByTheShareAsked) {
   EXPECT_NE(features(&target), features(&online));
   MoveTowards(1.f, online, &target);
   EXPECT_THAT(features(&target), testing::Pointwise(testing::FloatNear(5e-2f), features(&online)));
+}
+
+// Not as a moving average of a moving average, which would lag behind the weights it belongs to.
+TEST_P(ModulesTest, ATargetTakesRunningStatisticsWhole) {
+  NetworkConfig network = network_;
+  network.encoder = "resnet18";
+  network.initialisation = "pytorch";  // fast
+  network.filters.clear();
+  network.strides.clear();
+  EncoderModule online(PlanEncoder(network, spec_), Use::kTraining, context_);
+  EncoderModule target(PlanEncoder(network, spec_, "target_encoder"), Use::kInference, context_);
+  Start(&online, 1);
+  Start(&target, 2);
+  const auto number = [](Module* module, const std::string& name) {
+    return module->parameters().Find(name).value()[3];
+  };
+  const float before = number(&target, "target_encoder.bn1.weight");
+  MoveTowards(0.25f, online, &target);
+  for (const char* name : {"bn1.running_mean", "layer4.1.bn2.running_var"}) {
+    EXPECT_EQ(number(&target, std::string("target_encoder.") + name),
+              number(&online, std::string("encoder.") + name));
+  }
+  EXPECT_FLOAT_EQ(number(&target, "target_encoder.bn1.weight"),
+                  before + 0.25f * (number(&online, "encoder.bn1.weight") - before));
 }
 
 INSTANTIATE_PRECISIONS(ModulesTest);

@@ -61,6 +61,18 @@ TEST(NetworkCheck, AnEncoderThatDoesNotFitIsRefused) {
   EXPECT_THAT(Refusal(network), testing::HasSubstr("network.pool belongs to network.encoder"));
 }
 
+TEST(NetworkCheck, StatisticsOfOneValueAreRefusedNamingBatchAndLayer) {
+  NetworkConfig network;
+  network.encoder = "resnet18";
+  ObservationSpec small = Pixels();
+  small.height = small.width = 32;  // 1x1 in the last group of layers
+  EXPECT_EQ(UsageMessage([&] { CheckNetwork(network, small, 1, kMost); }),
+            "learner.batch = 1: encoder.layer4.0.bn1 of network.encoder = resnet18 has 1x1 maps of "
+            "these images, whose batch statistics take at least 2 of them");
+  EXPECT_EQ(UsageMessage([&] { CheckNetwork(network, small, 2, kMost); }), "");
+  EXPECT_EQ(Refusal(network, 1), "");  // 3x3 of 84x84 pixels
+}
+
 TEST(PolicySize, WhatNoMessageHoldsIsRefusedNamingTheKeyAndTheLimit) {
   EXPECT_EQ(Refusal({}), "");
   NetworkConfig network;

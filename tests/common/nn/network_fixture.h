@@ -81,7 +81,7 @@ class NetworkTest : public LayerTest {
     encoder_ =
         std::make_unique<Encoder>(Context(*parameters_, kBatch), PlanEncoder(network_, spec_));
     encoder_->Refresh();
-    encoder_->Forward(frames_.data());
+    encoder_->Forward(frames_.data(), Statistics::kBatch);
     // The heads are compared on the features they really got, so that each test measures its layer.
     features_ = ToDoubles(ReadMemory(encoder_->features()));
   }

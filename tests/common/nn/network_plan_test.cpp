@@ -58,6 +58,51 @@ TEST(NetworkPlan, ConvolutionsShrinkTheirMapByKernelStrideAndPadding) {
                           "c.weight 9 24", "c.bias 9", "c.norm.weight 9", "c.norm.bias 9"));
 }
 
+TEST(NetworkPlan, LayersMayReadAnEarlierOneAndAddAnother) {
+  NetworkPlan plan({3, 9, 8});
+  const NetworkPlan::Convolution layer{.name = "a",
+                                       .key = "k",
+                                       .filters = 4,
+                                       .kernel = 3,
+                                       .stride = 2,
+                                       .padding = 1,
+                                       .bias = false,
+                                       .batch_norm = "a.bn"};
+  EXPECT_EQ(plan.Add(layer), 0);
+  NetworkPlan::Convolution same = layer;
+  same.name = "b";
+  same.stride = 1;
+  same.skip = 0;
+  EXPECT_EQ(plan.Add(same), 1);
+  NetworkPlan::Convolution around = layer;
+  around.name = "c";
+  around.source = 0;
+  EXPECT_EQ(plan.Add(around), 2);
+  EXPECT_EQ(plan.layers()[0].source, kNoLayer);
+  EXPECT_EQ(plan.layers()[1].source, 0);
+  EXPECT_EQ(plan.layers()[1].skip, 0);
+  EXPECT_EQ(plan.layers()[2].source, 0);
+  EXPECT_EQ(plan.layers()[2].input, (MapShape{4, 5, 4}));
+  EXPECT_EQ(plan.output(), (MapShape{4, 3, 2}));
+  EXPECT_THAT(Texts(plan.layers()[0].Parameters()),
+              ElementsAre("a.weight 4 3 3 3", "a.bn.weight 4", "a.bn.bias 4", "a.bn.running_mean 4",
+                          "a.bn.running_var 4"));
+  const std::vector<ParameterSpec> parameters = plan.layers()[0].Parameters();
+  EXPECT_FALSE(parameters[2].statistic);
+  EXPECT_TRUE(parameters[3].statistic && parameters[4].statistic);
+  EXPECT_EQ(parameters[4].start.kind, Start::Kind::kOnes);
+
+  EXPECT_EQ(plan.Add(NetworkPlan::MaxPool{.name = "max", .key = "k", .kernel = 2, .stride = 1}), 3);
+  EXPECT_EQ(plan.output(), (MapShape{4, 2, 1}));
+  plan.Add(NetworkPlan::AveragePool{.name = "mean", .key = "k", .height = 6, .width = 5});
+  EXPECT_EQ(plan.output(), (MapShape{4, 6, 5}));
+  EXPECT_TRUE(plan.layers()[3].Parameters().empty() && plan.layers()[4].Parameters().empty());
+  plan = NetworkPlan({1, 4, 2});
+  EXPECT_THAT(
+      [&] { plan.Add(NetworkPlan::MaxPool{.name = "m", .key = "k", .kernel = 3, .stride = 2}); },
+      ThrowsMessage<Error>(AllOf(HasSubstr("4x2"), HasSubstr("3x3 window of m"))));
+}
+
 TEST(NetworkPlan, AMapSmallerThanTheKernelIsBadUsageUnlessPadded) {
   NetworkPlan plan({1, 5, 9});
   const NetworkPlan::Convolution large{
@@ -107,15 +152,49 @@ TEST(EncoderKinds, HaveTheMapsOfTheirPapers) {
                           "encoder.conv2.weight 64 64 3 3", "encoder.conv2.bias 64"));
 }
 
+TEST(EncoderKinds, TorchvisionsHaveItsSizes) {
+  const auto trained = [](const NetworkPlan& plan) {
+    int64_t sum = 0;
+    for (const ParameterSpec& parameter : plan.Parameters()) {
+      int64_t numbers = 1;
+      for (const int64_t size : parameter.shape) numbers *= size;
+      sum += parameter.statistic ? 0 : numbers;
+    }
+    return sum;
+  };
+  NetworkConfig network;
+  ObservationSpec spec = Images(224, 224);
+  spec.channels = 3;
+  network.encoder = "resnet18";
+  EXPECT_EQ(PlanEncoder(network, spec).output(), (MapShape{512, 1, 1}));
+  EXPECT_EQ(trained(PlanEncoder(network, spec)), 11'689'512 - (512 * 1000 + 1000));  // but fc
+  network.encoder = "alexnet";
+  EXPECT_EQ(PlanEncoder(network, spec).output(), (MapShape{256, 6, 6}));
+  EXPECT_EQ(trained(PlanEncoder(network, spec)), 2'469'696);
+  EXPECT_EQ(Encoder("alexnet", 84, 84).output(), (MapShape{256, 6, 6}));
+}
+
+TEST(EncoderKinds, ResnetStartsAsTorchvisionsWithPyTorchsInitialisation) {
+  NetworkConfig network;
+  network.encoder = "resnet18";
+  EXPECT_EQ(PlanEncoder(network, Images(84, 84)).Parameters()[0].start.kind,
+            Start::Kind::kOrthogonal);
+  network.initialisation = "pytorch";
+  const Start start = PlanEncoder(network, Images(84, 84)).Parameters()[0].start;
+  EXPECT_EQ(start.kind, Start::Kind::kNormal);
+  EXPECT_DOUBLE_EQ(start.scale, std::sqrt(2.0 / (64 * 7 * 7)));  // outputs, fan_out
+}
+
 TEST(EncoderKinds, AreTheWordsThatTheKeyTakes) {
   for (const EncoderKind& kind : kEncoderKinds) {
     Config config;
     ApplyAssignments({fmt::format("network.encoder={}", kind.name)}, &config);
     EXPECT_EQ(FindEncoderKind(config.network.encoder).name, kind.name);
   }
-  EXPECT_THAT([] { FindEncoderKind("resnet"); },
-              ThrowsMessage<Error>(AllOf(HasSubstr("network.encoder = resnet"),
-                                         HasSubstr("compact | drq | mrq | nature"))));
+  EXPECT_THAT(
+      [] { FindEncoderKind("resnet"); },
+      ThrowsMessage<Error>(AllOf(HasSubstr("network.encoder = resnet"),
+                                 HasSubstr("compact | drq | mrq | nature | resnet18 | alexnet"))));
 }
 
 TEST(EncoderKinds, EachFitsThePresetForPixels) {
@@ -138,6 +217,11 @@ TEST(EncoderKinds, ImagesTooSmallAreRefusedNamingTheSmallestThatFit) {
   EXPECT_THAT([] { Encoder("compact", 20, 20); },
               ThrowsMessage<Error>(HasSubstr("at least 22x22")));
   EXPECT_NO_THROW(Encoder("compact", 22, 22));
+  EXPECT_THAT([] { Encoder("alexnet", 62, 84); },
+              ThrowsMessage<Error>(AllOf(HasSubstr("network.encoder = alexnet"), HasSubstr("62x84"),
+                                         HasSubstr("at least 63x63"))));
+  EXPECT_NO_THROW(Encoder("alexnet", 63, 63));
+  EXPECT_NO_THROW(Encoder("resnet18", 8, 8));
 }
 
 TEST(EncoderKinds, KeysOfTheCompactEncoderAreRefusedBesideAnother) {

@@ -69,6 +69,44 @@ TEST(ParameterSet, AUniformStartFillsItsIntervalAndNoMore) {
   EXPECT_NEAR(squares / kCount, 0.0625 / 3, 5 * 0.0625 * std::sqrt(4.0 / 45 / kCount));
 }
 
+TEST(ParameterSet, ANormalStartHasItsDeviation) {
+  constexpr int kCount = 10'000;
+  ParameterSet set({{"w", {kCount}, {Start::Kind::kNormal, 0.25}}}, ParameterSet::Use::kInference);
+  set.Initialise(4);
+  double sum = 0, squares = 0;
+  for (int i = 0; i < kCount; ++i) {
+    sum += set.values()[i];
+    squares += double(set.values()[i]) * set.values()[i];
+  }
+  // Five standard errors; the square of a normal number has variance 2.
+  EXPECT_NEAR(sum / kCount, 0, 5 * 0.25 / std::sqrt(double(kCount)));
+  EXPECT_NEAR(squares / kCount, 0.0625, 5 * 0.0625 * std::sqrt(2.0 / kCount));
+}
+
+TEST(ParameterSet, StatisticsLieBehindWhatIsTrainedAndHaveNoGradient) {
+  ParameterSet set({{"a.weight", {3}},
+                    {"a.running_mean", {3}, {}, /*statistic=*/true},
+                    {"b.weight", {5}, {Start::Kind::kOnes}}},
+                   ParameterSet::Use::kTraining);
+  set.Initialise(1);
+  EXPECT_EQ(set.size(), 48);
+  EXPECT_EQ(set.trained_size(), 32);
+  const float* base = set.values();
+  EXPECT_EQ(set.Find("b.weight").value() - base, 16);
+  EXPECT_EQ(set.Find("a.running_mean").value() - base, 32);
+  EXPECT_EQ(set.Find("a.running_mean").next_value() - set.next_values(), 32);
+  EXPECT_EQ(set.Find("a.running_mean").gradient(), nullptr);
+  EXPECT_NE(set.Find("b.weight").gradient(), nullptr);
+  EXPECT_EQ(set.Find("b.weight").value()[0], 1.f);
+
+  TensorMap all, trained;
+  set.Export(&all);
+  set.ExportTrained(set.gradients(), "g.", &trained);
+  EXPECT_TRUE(all.contains("a.running_mean"));
+  EXPECT_EQ(trained.size(), 2u);
+  EXPECT_FALSE(trained.contains("g.a.running_mean"));
+}
+
 TEST(ParameterSet, ExportThenImportGivesTheSameValues) {
   ParameterSet from = MakeSet(), to = MakeSet();
   from.Initialise(3);

@@ -156,6 +156,20 @@ TEST_P(PolicyTest, ADeterministicPolicyHasNoDeviation) {
   EXPECT_EQ(Run(&policy, kBatch).log_std, gaussian.log_std);
 }
 
+// Acting by statistics of the batch would make an action depend on who acts beside it.
+TEST_P(PolicyTest, WithBatchNormalisationAnActionDoesNotDependOnTheBatch) {
+  NetworkConfig network = OddNetwork();
+  network.encoder = "resnet18";
+  network.initialisation = "pytorch";  // fast
+  network.filters.clear();
+  network.strides.clear();
+  Build(OddSpec(/*pixels=*/true), network);
+  Policy policy(network_, spec_, GetParam(), kBatch);
+  policy.Load(Tensors(), "test");
+  const std::vector<float> all = Run(&policy, kBatch).mean, one = Run(&policy, 1).mean;
+  EXPECT_LT(RelativeError(one, ToDoubles(std::span(all).first(one.size()))), Tolerance(GetParam()));
+}
+
 INSTANTIATE_PRECISIONS(PolicyTest);
 
 }  // namespace

@@ -62,6 +62,118 @@ Gradient ConvBackward(const ConvShape& s, const Values& x, const Values& weight,
   return gradient;
 }
 
+Moments BatchMoments(int batch, const Values& x, int channels) {
+  const size_t c = size_t(channels), n = x.size() / size_t(batch) / c;
+  Moments moments{Values(c), Values(c)};
+  for (size_t k = 0; k < x.size(); ++k) moments.mean[k / n % c] += x[k] / double(batch * int(n));
+  for (size_t k = 0; k < x.size(); ++k) {
+    const double apart = x[k] - moments.mean[k / n % c];
+    moments.variance[k / n % c] += apart * apart / double(batch * int(n));
+  }
+  return moments;
+}
+
+Values BatchNormForward(int batch, const Values& x, const Moments& moments, const Values& weight,
+                        const Values& bias) {
+  const size_t channels = weight.size(), n = x.size() / size_t(batch) / channels;
+  Values y(x.size());
+  for (size_t k = 0; k < x.size(); ++k) {
+    const size_t c = k / n % channels;
+    y[k] = weight[c] * (x[k] - moments.mean[c]) / std::sqrt(moments.variance[c] + 1e-5) + bias[c];
+  }
+  return y;
+}
+
+Gradient BatchNormBackward(int batch, const Values& x, const Values& weight, const Values& dy) {
+  const size_t channels = weight.size(), n = x.size() / size_t(batch) / channels;
+  const double count = double(batch) * double(n);
+  const Moments moments = BatchMoments(batch, x, int(channels));
+  Gradient gradient{Values(x.size()), Values(channels), Values(channels)};
+  const auto normalised = [&](size_t k, size_t c) {
+    return (x[k] - moments.mean[c]) / std::sqrt(moments.variance[c] + 1e-5);
+  };
+  for (size_t k = 0; k < x.size(); ++k) {
+    const size_t c = k / n % channels;
+    gradient.weight[c] += dy[k] * normalised(k, c);
+    gradient.bias[c] += dy[k];
+  }
+  for (size_t k = 0; k < x.size(); ++k) {
+    const size_t c = k / n % channels;
+    gradient.source[k] =
+        weight[c] / std::sqrt(moments.variance[c] + 1e-5) *
+        (dy[k] - gradient.bias[c] / count - normalised(k, c) * gradient.weight[c] / count);
+  }
+  return gradient;
+}
+
+namespace {
+
+// Calls visit(y index, x index of the first largest value of its window).
+template <class Visit>
+void ForMaxima(const PoolShape& s, const Values& x, const Visit& visit) {
+  const int h = s.out_height(), w = s.out_width();
+  for (int at = 0; at < s.planes * h * w; ++at) {
+    const int p = at / (h * w), i = at / w % h, j = at % w;
+    int best = -1;
+    for (int u = 0; u < s.kernel; ++u) {
+      for (int v = 0; v < s.kernel; ++v) {
+        const int row = i * s.stride + u - s.padding, column = j * s.stride + v - s.padding;
+        if (row < 0 || row >= s.height || column < 0 || column >= s.width) continue;
+        const int from = (p * s.height + row) * s.width + column;
+        if (best < 0 || x[size_t(from)] > x[size_t(best)]) best = from;
+      }
+    }
+    visit(size_t(at), size_t(best));
+  }
+}
+
+// Calls visit(y index, x index, numbers in the window).
+template <class Visit>
+void ForWindows(const AveragePoolShape& s, const Visit& visit) {
+  const auto begin = [](int i, int from, int to) { return i * from / to; };
+  const auto end = [](int i, int from, int to) { return ((i + 1) * from + to - 1) / to; };
+  for (int p = 0; p < s.planes; ++p) {
+    for (int i = 0; i < s.out_height; ++i) {
+      for (int j = 0; j < s.out_width; ++j) {
+        const int top = begin(i, s.height, s.out_height), bottom = end(i, s.height, s.out_height);
+        const int left = begin(j, s.width, s.out_width), right = end(j, s.width, s.out_width);
+        for (int u = top; u < bottom; ++u) {
+          for (int v = left; v < right; ++v) {
+            visit(size_t((p * s.out_height + i) * s.out_width + j),
+                  size_t((p * s.height + u) * s.width + v), (bottom - top) * (right - left));
+          }
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
+Values MaxPoolForward(const PoolShape& s, const Values& x) {
+  Values y(size_t(s.planes * s.out_height() * s.out_width()));
+  ForMaxima(s, x, [&](size_t at, size_t from) { y[at] = x[from]; });
+  return y;
+}
+
+Values MaxPoolBackward(const PoolShape& s, const Values& x, const Values& dy) {
+  Values dx(x.size());
+  ForMaxima(s, x, [&](size_t at, size_t from) { dx[from] += dy[at]; });
+  return dx;
+}
+
+Values AveragePoolForward(const AveragePoolShape& s, const Values& x) {
+  Values y(size_t(s.planes * s.out_height * s.out_width));
+  ForWindows(s, [&](size_t at, size_t from, int count) { y[at] += x[from] / count; });
+  return y;
+}
+
+Values AveragePoolBackward(const AveragePoolShape& s, const Values& dy) {
+  Values dx(size_t(s.planes * s.height * s.width));
+  ForWindows(s, [&](size_t at, size_t from, int count) { dx[from] += dy[at] / count; });
+  return dx;
+}
+
 Values LinearForward(int batch, const Values& x, const Values& weight, const Values& bias) {
   const size_t outputs = bias.size(), inputs = weight.size() / outputs;
   Values y(size_t(batch) * outputs);
@@ -135,6 +247,11 @@ Gradient LayerNormBackward(int batch, const Values& x, const Values& weight, con
     }
   }
   return gradient;
+}
+
+Values Plus(Values x, const Values& y) {
+  for (size_t k = 0; k < x.size(); ++k) x[k] += y[k];
+  return x;
 }
 
 Values Relu(Values x) {

@@ -27,6 +27,33 @@ Values ConvForward(const ConvShape& shape, const Values& x, const Values& weight
 Gradient ConvBackward(const ConvShape& shape, const Values& x, const Values& weight,
                       const Values& y, const Values& dy);
 
+// x (B, C, n), n the numbers of a map; weight, bias, mean, variance (C).
+struct Moments {
+  Values mean, variance;  // the latter as it is, not made unbiased
+};
+Moments BatchMoments(int batch, const Values& x, int channels);
+Values BatchNormForward(int batch, const Values& x, const Moments& moments, const Values& weight,
+                        const Values& bias);
+// Of BatchNormForward with BatchMoments(x).
+Gradient BatchNormBackward(int batch, const Values& x, const Values& weight, const Values& dy);
+
+// P planes of (H, W) to P planes of (h, w) of a k x k window.
+struct PoolShape {
+  int planes, height, width, kernel, stride, padding;
+  int out_height() const { return (height + 2 * padding - kernel) / stride + 1; }
+  int out_width() const { return (width + 2 * padding - kernel) / stride + 1; }
+};
+Values MaxPoolForward(const PoolShape& shape, const Values& x);
+// -> dx.
+Values MaxPoolBackward(const PoolShape& shape, const Values& x, const Values& dy);
+
+// P planes of (height, width) to P planes of (out_height, out_width).
+struct AveragePoolShape {
+  int planes, height, width, out_height, out_width;
+};
+Values AveragePoolForward(const AveragePoolShape& shape, const Values& x);
+Values AveragePoolBackward(const AveragePoolShape& shape, const Values& dy);
+
 // x (B, I), weight (O, I), bias (O) -> (B, O).
 Values LinearForward(int batch, const Values& x, const Values& weight, const Values& bias);
 Gradient LinearBackward(int batch, const Values& x, const Values& weight, const Values& dy);
@@ -35,6 +62,7 @@ Gradient LinearBackward(int batch, const Values& x, const Values& weight, const 
 Values LayerNormForward(int batch, const Values& x, const Values& weight, const Values& bias);
 Gradient LayerNormBackward(int batch, const Values& x, const Values& weight, const Values& dy);
 
+Values Plus(Values x, const Values& y);
 Values Relu(Values x);
 Values Tanh(Values x);
 

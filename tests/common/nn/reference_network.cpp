@@ -5,52 +5,126 @@
 
 namespace shoal::nn::reference {
 
-Network::Network(const TensorMap& tensors, const NetworkConfig& config, const ObservationSpec& spec)
-    : config_(config), spec_(spec), encoder_(PlanEncoder(config, spec)) {
-  relu_trunk_ = config.trunk == "relu" || (config.trunk == "auto" && config.encoder == "nature");
+namespace {
+
+Values Pixels(const NetworkPlan& encoder, int batch, const uint8_t* frames) {
+  const MapShape& images = encoder.input();
+  const int pool = encoder.layers()[0].kernel;
+  const double shift = encoder.layers()[0].range == PixelRange::kCentred ? -0.5 : 0;
+  Values x;
+  for (int p = 0; p < batch * images.channels; ++p) {
+    for (int i = 0; i < images.height / pool; ++i) {
+      for (int j = 0; j < images.width / pool; ++j) {
+        double sum = 0;
+        for (int u = 0; u < pool; ++u) {
+          for (int v = 0; v < pool; ++v) {
+            sum += frames[(p * images.height + i * pool + u) * images.width + j * pool + v];
+          }
+        }
+        x.push_back(sum / (255.0 * pool * pool) + shift);
+      }
+    }
+  }
+  return x;
+}
+
+// A map and its sides, worked out here, layer by layer; the plan gives kernels, strides, padding.
+struct Map {
+  Values values;
+  int channels, height, width;
+};
+
+class MapNetwork {
+ public:
+  MapNetwork(const NetworkPlan& plan, const Parameters& parameters, int batch,
+             Statistics statistics)
+      : layers_(plan.layers()), parameters_(parameters), batch_(batch), statistics_(statistics) {}
+
+  Values Run(Map pixels) {
+    maps_.push_back(std::move(pixels));
+    for (size_t i = 1; i < layers_.size(); ++i) maps_.push_back(Layer(layers_[i]));
+    return maps_.back().values;
+  }
+
+ private:
+  const Values& P(const std::string& name) const { return parameters_.at(name); }
+
+  Map Layer(const LayerPlan& plan) const {
+    const Map& x = maps_[size_t(plan.source)];
+    if (plan.kind == LayerPlan::Kind::kMaxPool) {
+      const PoolShape shape{batch_ * x.channels, x.height,    x.width,
+                            plan.kernel,         plan.stride, plan.padding};
+      return {MaxPoolForward(shape, x.values), x.channels, shape.out_height(), shape.out_width()};
+    }
+    if (plan.kind == LayerPlan::Kind::kAveragePool) {
+      const int height = plan.output.height, width = plan.output.width;
+      return {AveragePoolForward({batch_ * x.channels, x.height, x.width, height, width}, x.values),
+              x.channels, height, width};
+    }
+    return Convolution(plan, x);
+  }
+
+  Map Convolution(const LayerPlan& plan, const Map& x) const {
+    const Values& weight = P(plan.name + ".weight");
+    const int filters = int(weight.size()) / (x.channels * plan.kernel * plan.kernel);
+    ConvShape shape{batch_, x.channels, x.height, x.width, filters, plan.stride};
+    shape.kernel = plan.kernel;
+    shape.padding = plan.padding;
+    shape.relu = false;
+    Map y{ConvForward(shape, x.values, weight,
+                      plan.bias ? P(plan.name + ".bias") : Values(size_t(filters))),
+          filters, shape.out_height(), shape.out_width()};
+    if (!plan.batch_norm.empty()) {
+      const Moments moments =
+          statistics_ == Statistics::kBatch
+              ? BatchMoments(batch_, y.values, filters)
+              : Moments{P(plan.batch_norm + ".running_mean"), P(plan.batch_norm + ".running_var")};
+      y.values = BatchNormForward(batch_, y.values, moments, P(plan.batch_norm + ".weight"),
+                                  P(plan.batch_norm + ".bias"));
+    }
+    if (plan.skip != kNoLayer) y.values = Plus(y.values, maps_[size_t(plan.skip)].values);
+    if (plan.activation == Activation::kRelu) y.values = Relu(y.values);
+    return y;
+  }
+
+  const std::vector<LayerPlan>& layers_;
+  const Parameters& parameters_;
+  const int batch_;
+  const Statistics statistics_;
+  std::vector<Map> maps_;
+};
+
+}  // namespace
+
+Parameters ToParameters(const TensorMap& tensors) {
+  Parameters parameters;
   for (const auto& [name, tensor] : tensors) {
     if (tensor.dtype != "F32") continue;
     std::vector<float> values(tensor.data.size() / sizeof(float));
     std::memcpy(values.data(), tensor.data.data(), tensor.data.size());
-    parameters_[name] = Values(values.begin(), values.end());
+    parameters[name] = Values(values.begin(), values.end());
   }
+  return parameters;
 }
 
-// Sizes are worked out here, layer by layer; the plan gives kernels, strides and padding.
+Values Features(const NetworkPlan& encoder, const Parameters& parameters, int batch,
+                const uint8_t* frames, Statistics statistics) {
+  const int pool = encoder.layers()[0].kernel;
+  const MapShape& images = encoder.input();
+  return MapNetwork(encoder, parameters, batch, statistics)
+      .Run({Pixels(encoder, batch, frames), images.channels, images.height / pool,
+            images.width / pool});
+}
+
+Network::Network(const TensorMap& tensors, const NetworkConfig& config, const ObservationSpec& spec)
+    : config_(config),
+      spec_(spec),
+      encoder_(PlanEncoder(config, spec)),
+      relu_trunk_(config.trunk == "relu" || (config.trunk == "auto" && config.encoder == "nature")),
+      parameters_(ToParameters(tensors)) {}
+
 Values Network::Features(int batch, const uint8_t* frames) const {
-  const std::vector<LayerPlan>& layers = encoder_.layers();
-  const int pool = layers[0].kernel;
-  ConvShape shape{batch, spec_.stack * spec_.channels, spec_.height / pool, spec_.width / pool, 0,
-                  0};
-  Values x;
-  for (int p = 0; p < batch * shape.channels; ++p) {
-    for (int i = 0; i < shape.height; ++i) {
-      for (int j = 0; j < shape.width; ++j) {
-        double sum = 0;
-        for (int u = 0; u < pool; ++u) {
-          for (int v = 0; v < pool; ++v) {
-            sum += frames[(p * spec_.height + i * pool + u) * spec_.width + j * pool + v];
-          }
-        }
-        x.push_back(sum / (255.0 * pool * pool) - 0.5);
-      }
-    }
-  }
-  for (size_t layer = 1; layer < layers.size(); ++layer) {
-    const LayerPlan& plan = layers[layer];
-    const Values& bias = P(plan.name + ".bias");
-    shape.filters = int(bias.size());
-    shape.kernel = plan.kernel;
-    shape.stride = plan.stride;
-    shape.padding = plan.padding;
-    shape.relu = plan.activation == Activation::kRelu;
-    x = ConvForward(shape, x, P(plan.name + ".weight"), bias);
-    const int height = shape.out_height(), width = shape.out_width();
-    shape.channels = shape.filters;
-    shape.height = height;
-    shape.width = width;
-  }
-  return x;
+  return reference::Features(encoder_, parameters_, batch, frames);
 }
 
 Values Network::Observation(const std::string& head, int batch, const Values& features,

@@ -7,11 +7,22 @@
 
 #include "common/config/config.h"
 #include "common/nn/actor_critic_plan.h"
+#include "common/nn/module.h"
 #include "common/nn/safetensors.h"
 #include "common/spec/observation_spec.h"
 #include "tests/common/nn/reference.h"
 
 namespace shoal::nn::reference {
+
+using Parameters = std::map<std::string, Values>;
+
+// The F32 tensors.
+Parameters ToParameters(const TensorMap& tensors);
+
+// What an encoder's plan makes of frames (B, K*C, H, W) u8. Batch normalisation normalises by the
+// batch, or by running statistics.
+Values Features(const NetworkPlan& encoder, const Parameters& parameters, int batch,
+                const uint8_t* frames, Statistics statistics = Statistics::kBatch);
 
 class Network {
  public:
@@ -20,7 +31,7 @@ class Network {
 
   // One value of one parameter, to be changed and put back.
   double& at(const std::string& name, size_t index) { return parameters_.at(name).at(index); }
-  const std::map<std::string, Values>& parameters() const { return parameters_; }
+  const Parameters& parameters() const { return parameters_; }
 
   // frames (B, K*C, H, W) u8 -> (B, N*h*w).
   Values Features(int batch, const uint8_t* frames) const;
@@ -47,7 +58,7 @@ class Network {
   ObservationSpec spec_;
   NetworkPlan encoder_;
   bool relu_trunk_;
-  std::map<std::string, Values> parameters_;
+  Parameters parameters_;
 };
 
 }  // namespace shoal::nn::reference

@@ -173,5 +173,15 @@ TEST(Safetensors, Bf16CopyHoldsTheRoundedValuesAndLeavesOtherTypesAlone) {
   EXPECT_EQ(back.at("half").dtype, "F32");
 }
 
+TEST(Safetensors, RunningStatisticsAreNotRounded) {
+  const TensorMap tensors{{"bn1.running_mean", Sample().at("a")},
+                          {"bn1.running_var", Sample().at("a")},
+                          {"bn1.weight", Sample().at("a")}};
+  const TensorMap half = ToBf16(tensors);
+  EXPECT_EQ(half.at("bn1.running_mean").dtype, "F32");
+  EXPECT_EQ(half.at("bn1.running_var").dtype, "F32");
+  EXPECT_EQ(half.at("bn1.weight").dtype, "BF16");
+}
+
 }  // namespace
 }  // namespace shoal::nn

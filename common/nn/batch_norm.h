@@ -1,0 +1,56 @@
+// Batch normalisation of a map's channels, then a skip connection and ReLU where the plan has them.
+//
+//   y[b, c, i, j] = max(0, weight_c (x[b, c, i, j] - mean_c) / sqrt(var_c + 1e-5) + bias_c
+//                          + skip[b, c, i, j])
+//
+//   Statistics::kBatch     mean_c, var_c over the n = B h w values of channel c, and
+//                          running_mean' = 0.9 running_mean + 0.1 mean
+//                          running_var'  = 0.9 running_var  + 0.1 var n / (n - 1)
+//   Statistics::kRunning   mean_c, var_c = running_mean_c, running_var_c
+//
+// The running statistics of the latest kBatch pass count from the optimiser's next step on, as the
+// gradients do: an update that is given up leaves them as they were.
+//
+// Source: Ioffe and Szegedy 2015, arXiv:1502.03167; constants as PyTorch's BatchNorm2d.
+// Shapes: x, skip, y (B, C, h, w) in the compute type; everything per channel f32.
+#pragma once
+
+#include <vector>
+
+#include "common/nn/map_layer.h"
+
+namespace shoal::nn {
+
+// Where a layer reads a map and leaves its gradient. Both may be empty.
+struct MapSource {
+  dnnl::memory values, gradient;
+};
+
+class BatchNorm final : public MapLayer {
+ public:
+  // `plan`: the convolution whose output `source` is. Gradients have their source's description and
+  // are overwritten. skip: empty without one.
+  BatchNorm(const LayerContext& context, const LayerPlan& plan, const MapSource& source,
+            const MapSource& skip);
+
+  void Refresh() override;
+  void Forward(Statistics statistics) override;
+  // Of the latest Forward, which has to have been of kBatch.
+  void Backward() override;
+
+ private:
+  void BuildTraining(const LayerContext& context, const MapSource& source, const MapSource& skip);
+  void MeasureRunning();
+
+  bool relu_, measured_ = false;  // measured: the latest Forward was of kBatch
+  int64_t count_;                 // n
+  Parameter weight_, bias_, running_mean_, running_variance_;
+  dnnl::memory weight_values_, bias_values_, running_mean_values_, running_variance_values_;
+  dnnl::memory mean_, variance_;  // of the batch
+  Relayout skip_;                 // in the output's layout
+  Op by_running_, by_batch_, backward_;
+  Op skip_gradient_;
+  bool has_skip_gradient_ = false;
+};
+
+}  // namespace shoal::nn

@@ -1,0 +1,33 @@
+// One layer of an encoder: maps in, maps out. A layer is built on the memory that it reads and owns
+// what it writes.
+#pragma once
+
+#include "common/nn/layer_context.h"
+#include "common/nn/module.h"
+
+namespace shoal::nn {
+
+class MapLayer {
+ public:
+  virtual ~MapLayer() = default;
+  MapLayer(const MapLayer&) = delete;
+  MapLayer& operator=(const MapLayer&) = delete;
+
+  // (B, C, h, w) in the compute type.
+  const dnnl::memory& output() const { return output_; }
+  // dL/doutput with the output's description: filled before Backward, which may overwrite it. Empty
+  // in inference.
+  const dnnl::memory& output_gradient() const { return output_gradient_; }
+
+  virtual void Refresh() {}
+  virtual void Forward(Statistics statistics) = 0;
+  // Gradients of the parameters, and of the source where it was asked for.
+  virtual void Backward() = 0;
+
+ protected:
+  MapLayer() = default;
+
+  dnnl::memory output_, output_gradient_;
+};
+
+}  // namespace shoal::nn

@@ -1,0 +1,53 @@
+#include "common/nn/max_pool.h"
+
+namespace shoal::nn {
+namespace {
+
+using dnnl::memory;
+
+constexpr auto kAlgorithm = dnnl::algorithm::pooling_max;
+
+}  // namespace
+
+MaxPool::MaxPool(const LayerContext& context, const LayerPlan& plan, const memory& source,
+                 const memory& source_gradient) {
+  const memory::dims kernel{plan.kernel, plan.kernel}, strides{plan.stride, plan.stride},
+      padding{plan.padding, plan.padding};
+  const memory::desc from = source.get_desc();
+  const memory::desc to =
+      AnyLayout({context.batch, plan.output.channels, plan.output.height, plan.output.width},
+                from.data_type());
+  const dnnl::pooling_forward::primitive_desc forward(
+      {context.training ? dnnl::prop_kind::forward_training : dnnl::prop_kind::forward_inference,
+       kAlgorithm, from, to, strides, kernel, padding, padding},
+      Attributes(), CpuEngine());
+  output_ = MakeMemory(forward.dst_desc());
+  if (!context.training) {
+    forward_ = Op(forward, {{DNNL_ARG_SRC, source}, {DNNL_ARG_DST, output_}}, context.scratchpad);
+    return;
+  }
+  winners_ = MakeMemory(forward.workspace_desc());
+  forward_ =
+      Op(forward, {{DNNL_ARG_SRC, source}, {DNNL_ARG_DST, output_}, {DNNL_ARG_WORKSPACE, winners_}},
+         context.scratchpad);
+  output_gradient_ = MakeMemory(output_.get_desc());
+  if (!source_gradient) return;
+  has_source_gradient_ = true;
+  const dnnl::pooling_backward::primitive_desc backward(
+      {kAlgorithm, source_gradient.get_desc(), output_gradient_.get_desc(), strides, kernel,
+       padding, padding},
+      Attributes(), CpuEngine(), forward);
+  backward_ = Op(backward,
+                 {{DNNL_ARG_DIFF_DST, output_gradient_},
+                  {DNNL_ARG_DIFF_SRC, source_gradient},
+                  {DNNL_ARG_WORKSPACE, winners_}},
+                 context.scratchpad);
+}
+
+void MaxPool::Forward(Statistics) { forward_.Run(); }
+
+void MaxPool::Backward() {
+  if (has_source_gradient_) backward_.Run();
+}
+
+}  // namespace shoal::nn

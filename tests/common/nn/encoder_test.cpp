@@ -1,0 +1,116 @@
+// Encoders whose layers have several readers: skips and pools together, against their doubles in
+// double.
+#include "common/nn/encoder.h"
+
+#include <cmath>
+
+#include "tests/common/nn/layer_fixture.h"
+#include "tests/common/nn/reference_network.h"
+
+namespace shoal::nn {
+namespace {
+
+using reference::Values;
+
+constexpr int kBatch = 3;
+
+// Pixels (2, 13, 11), a stem, a block around which its input goes as it is, one around which it is
+// convolved, averages of 2x3.
+NetworkPlan ResidualPlan() {
+  NetworkPlan plan({2, 13, 11});
+  plan.AddPixels(1, "k", PixelRange::kUnit);
+  const auto add = [&](const std::string& name, int filters, int kernel, int stride,
+                       Activation activation, int source, int skip) {
+    return plan.Add(NetworkPlan::Convolution{.name = name,
+                                             .key = "k",
+                                             .filters = filters,
+                                             .kernel = kernel,
+                                             .stride = stride,
+                                             .padding = kernel / 2,
+                                             .activation = activation,
+                                             .bias = false,
+                                             .batch_norm = name + ".bn",
+                                             .source = source,
+                                             .skip = skip});
+  };
+  constexpr Activation kRelu = Activation::kRelu, kNone = Activation::kNone;
+  add("stem", 5, 3, 1, kRelu, kPreviousLayer, kNoLayer);
+  const int in = plan.Add(
+      NetworkPlan::MaxPool{.name = "pool", .key = "k", .kernel = 3, .stride = 2, .padding = 1});
+  const int same = add("a.conv1", 5, 3, 1, kRelu, in, kNoLayer);
+  const int middle = add("a.conv2", 5, 3, 1, kRelu, same, in);
+  const int inner = add("b.conv1", 7, 3, 2, kRelu, middle, kNoLayer);
+  const int around = add("b.around", 7, 1, 2, kNone, middle, kNoLayer);
+  add("b.conv2", 7, 3, 1, kRelu, inner, around);
+  plan.Add(NetworkPlan::AveragePool{.name = "average", .key = "k", .height = 2, .width = 3});
+  return plan;
+}
+
+class ResidualEncoderTest : public LayerTest {
+ protected:
+  void SetUp() override {
+    LayerTest::SetUp();
+    parameters_.Initialise(1);
+    Random random(2);
+    for (int64_t i = 0; i < parameters_.size(); ++i) {
+      parameters_.values()[i] += float(0.1 * random.Normal());
+    }
+    for (uint8_t& pixel : frames_) pixel = uint8_t(random.Next());
+    TensorMap tensors;
+    parameters_.Export(&tensors);
+    exact_ = reference::ToParameters(tensors);
+    encoder_ = std::make_unique<Encoder>(Context(parameters_, kBatch), plan_);
+    encoder_->Refresh();
+  }
+
+  Values Exact(Statistics statistics) const {
+    return reference::Features(plan_, exact_, kBatch, frames_.data(), statistics);
+  }
+
+  const NetworkPlan plan_ = ResidualPlan();
+  ParameterSet parameters_{plan_.Parameters(), ParameterSet::Use::kTraining};
+  std::vector<uint8_t> frames_ = std::vector<uint8_t>(size_t{kBatch} * 2 * 13 * 11);
+  reference::Parameters exact_;
+  std::unique_ptr<Encoder> encoder_;
+};
+
+TEST_P(ResidualEncoderTest, FeaturesAgreeWithTheReferenceByBatchAndRunningStatistics) {
+  for (const Statistics statistics : {Statistics::kBatch, Statistics::kRunning}) {
+    encoder_->Forward(frames_.data(), statistics);
+    EXPECT_LT(RelativeError(ReadMemory(encoder_->features()), Exact(statistics)),
+              Tolerance(GetParam()));
+  }
+}
+
+TEST_P(ResidualEncoderTest, GradientsOfAllReadersOfAMapAreSummed) {
+  encoder_->Forward(frames_.data(), Statistics::kBatch);
+  const Values dfeatures = RandomValues(Exact(Statistics::kBatch).size(), 8);
+  FillMemory(dfeatures, encoder_->features_gradient());
+  encoder_->Backward();
+  Values all, all_exact;
+  for (auto& [name, values] : exact_) {
+    if (name.ends_with(kRunningMean) || name.ends_with(kRunningVariance)) continue;
+    const std::span<const float> gradient = GradientOf(parameters_, name);
+    std::vector<float> some;
+    Values exact;
+    for (size_t i = 0; i < values.size(); i += 1 + values.size() / 12) {
+      some.push_back(gradient[i]);
+      exact.push_back(
+          CentralDifference(&values[i], [&] { return Dot(dfeatures, Exact(Statistics::kBatch)); }));
+    }
+    if (GetParam() == Precision::kF32) {
+      EXPECT_LT(RelativeError(some, exact), 5e-4) << name;
+    }
+    all.insert(all.end(), some.begin(), some.end());
+    all_exact.insert(all_exact.end(), exact.begin(), exact.end());
+  }
+  // In bf16 units at the edge of their ReLU are on the other side than in double; the direction of
+  // the whole is what is left to compare.
+  EXPECT_GT(Dot(all, all_exact) / std::sqrt(Dot(all, all) * Dot(all_exact, all_exact)),
+            GetParam() == Precision::kF32 ? 0.9999 : 0.95);
+}
+
+INSTANTIATE_PRECISIONS(ResidualEncoderTest);
+
+}  // namespace
+}  // namespace shoal::nn
