@@ -193,7 +193,7 @@ TensorMap ReadSafetensors(std::string_view bytes, const std::string& source) {
 TensorMap ToBf16(const TensorMap& tensors) {
   TensorMap result = tensors;
   for (auto& [name, tensor] : result) {
-    if (tensor.dtype != "F32") continue;
+    if (tensor.dtype != "F32" || name.starts_with("observation.")) continue;
     const NamedTensor& from = tensors.at(name);
     const size_t count = from.data.size() / sizeof(float);
     tensor.dtype = "BF16";

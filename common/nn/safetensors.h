@@ -25,7 +25,8 @@ std::string WriteSafetensors(const TensorMap& tensors,
 // `source` names the bytes in errors. Throws Error on anything but a well-formed file.
 TensorMap ReadSafetensors(std::string_view bytes, const std::string& source);
 
-// Every F32 tensor rounded to BF16 (nearest even), for the wire; and back.
+// Every F32 tensor rounded to BF16 (nearest even), for the wire, but those of observation.*, whose
+// means may be far from 0; and back.
 TensorMap ToBf16(const TensorMap& tensors);
 TensorMap ToF32(const TensorMap& tensors);
 
