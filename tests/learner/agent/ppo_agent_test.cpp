@@ -23,31 +23,9 @@ Config PpoConfigOf(const Config& base) {
   return config;
 }
 
-// A rollout with memory of its own: one environment, one episode, random numbers.
-class RandomRollout {
- public:
-  RandomRollout(const ObservationSpec& spec, int rows, uint64_t key)
-      : schema_(spec, {.batch = rows, .rollout = true}),
-        memory_(static_cast<uint8_t*>(std::aligned_alloc(64, schema_.total_bytes())), &std::free) {
-    std::memset(memory_.get(), 0, schema_.total_bytes());
-    Random random(key);
-    const BatchView view = View();
-    for (uint8_t& pixel : view.obs_frames) pixel = uint8_t(random.Next());
-    for (float& value : view.obs_vector) value = float(random.Normal());
-    for (float& value : view.drawn_action) value = float(random.Normal());
-    for (float& value : view.reward) value = float(random.Normal());
-    for (float& value : view.log_prob) value = -2.5f + 0.2f * float(random.Normal());
-    for (float& value : view.bootstrap) value = 1;
-    for (float& value : view.continues) value = 1;
-    view.continues[view.continues.size() - 1] = 0;
-  }
-
-  BatchView View() const { return schema_.View(memory_.get()); }
-
- private:
-  BatchSchema schema_;
-  std::unique_ptr<uint8_t, decltype(&std::free)> memory_;
-};
+RandomBatch RandomRollout(const ObservationSpec& spec, int rows, uint64_t key) {
+  return {spec, rows, key, /*rollout=*/true};
+}
 
 TEST(Advantages, AreThoseByHandWithATimeLimitAndATermination) {
   // Steps 0, 1: a time limit after 1; step 2 terminates; step 3 is the rollout's last.
@@ -162,7 +140,7 @@ TEST_P(PpoAgentTest, ARestoredAgentGoesOnBitForBit) {
     ASSERT_TRUE(one->Update(RandomRollout(spec_, 12, u).View()).finite);
   other->Restore(one->AllTensors(), "test");
   EXPECT_EQ(other->updates(), 2u);
-  const RandomRollout next(spec_, 12, 9);
+  const RandomBatch next = RandomRollout(spec_, 12, 9);
   ASSERT_TRUE(one->Update(next.View()).finite);
   ASSERT_TRUE(other->Update(next.View()).finite);
   const nn::TensorMap a = one->AllTensors(), b = other->AllTensors();
@@ -173,7 +151,7 @@ TEST_P(PpoAgentTest, ARestoredAgentGoesOnBitForBit) {
 TEST_P(PpoAgentTest, WhatIsNotFiniteChangesNothing) {
   const auto agent = Make();
   const nn::TensorMap before = agent->AllTensors();
-  const RandomRollout rollout(spec_, 12, 1);
+  const RandomBatch rollout = RandomRollout(spec_, 12, 1);
   // Finite itself, but its loss is not.
   for (float& log_prob : rollout.View().log_prob) log_prob = -3e38f;
   EXPECT_FALSE(agent->Update(rollout.View()).finite);
@@ -185,7 +163,7 @@ TEST_P(PpoAgentTest, WhatIsNotFiniteChangesNothing) {
 
 TEST_P(PpoAgentTest, ThePolicyActsAsTheAgentSees) {
   const auto agent = Make();
-  const RandomRollout rollout(spec_, 12, 3);
+  const RandomBatch rollout = RandomRollout(spec_, 12, 3);
   ASSERT_TRUE(agent->Update(rollout.View()).finite);
   nn::Policy policy(config_.network, spec_, nn::Precision::kF32, 1);
   policy.Load(agent->PolicyTensors(), "agent");
@@ -236,7 +214,7 @@ TEST(PpoAgent, LearnsABandit) {
   Random random(1);
   for (uint64_t u = 0; u < 60; ++u) {
     policy.Load(agent->PolicyTensors(), "agent");
-    const RandomRollout rollout(spec, 256, u);
+    const RandomBatch rollout = RandomRollout(spec, 256, u);
     const BatchView view = rollout.View();
     for (size_t b = 0; b < view.reward.size(); ++b) {
       view.obs_vector[2 * b] = float(random.Uniform(-1, 1));
