@@ -45,12 +45,12 @@ TrainingLoop::End TrainingLoop::Run() {
   bool lost = false;
   while (!lost && !StopRequested() && parts_.control.state() != RunState::kStopping) {
     ApplySettings();
+    if (on_policy_) GiveAwaitedWeights();
     if (parts_.control.state() == RunState::kDraining) {
       Drain();
     } else {
       TryTrain();
     }
-    if (on_policy_) GiveAwaitedWeights();
     evaluations_.Retry();
     Report();
     lost = parts_.control.CoordinatorLost(Now());

@@ -6,100 +6,18 @@
 #include <cstring>
 #include <memory>
 
-#include "tests/learner/training_fixture.h"
+#include "tests/learner/rollouts/actor_script.h"
 
 namespace shoal::learner {
 namespace {
 
-constexpr WeightsVersion kFirst{100, 0};
-
-// What one actor publishes: its environments in turn, by hand.
-class ActorScript {
- public:
-  ActorScript(const ObservationSpec& spec, uint32_t actor, uint64_t session)
-      : layout_(spec), spec_hash_(spec.Hash()), actor_(actor), session_(session) {}
-
-  void Reset(uint32_t env, uint32_t episode, float observation) {
-    uint8_t* record = Add(env, episode, 0, RecordKind::kReset);
-    for (float& x : layout_.Vector(record)) x = observation;
-  }
-  // A step that leads to `observation`; reward = observation.
-  void Step(uint32_t env, uint32_t episode, uint32_t index, float observation,
-            const WeightsVersion& version = kFirst, uint8_t flags = 0) {
-    uint8_t* record = Add(env, episode, index, RecordKind::kStep);
-    RecordHeader& header = RecordLayout::Header(record);
-    header.weights_session = version.session;
-    header.weights_update = version.update;
-    header.reward = observation;
-    header.log_prob = -observation;
-    header.flags = flags;
-    for (float& x : layout_.Vector(record)) x = observation;
-    for (float& x : layout_.DrawnAction(record)) x = 2 * observation;
-  }
-  // Everything since the last one.
-  TransitionChunk Chunk() {
-    sent_ = std::move(records_);
-    records_.clear();
-    const auto count = sent_.size() * 8 / size_t(layout_.record_bytes());
-    const uint64_t first = next_ - count;
-    return {.spec_hash = spec_hash_,
-            .actor = actor_,
-            .count = uint32_t(count),
-            .session = session_,
-            .first_sequence = first,
-            .payload = {reinterpret_cast<const uint8_t*>(sent_.data()), sent_.size() * 8}};
-  }
-
- private:
-  uint8_t* Add(uint32_t env, uint32_t episode, uint32_t index, RecordKind kind) {
-    const size_t words = size_t(layout_.record_bytes()) / 8;
-    records_.resize(records_.size() + words);
-    auto* record = reinterpret_cast<uint8_t*>(records_.data() + records_.size() - words);
-    RecordHeader& header = RecordLayout::Header(record);
-    header.sequence = next_++;
-    header.env = env;
-    header.episode = episode;
-    header.index = index;
-    header.kind = kind;
-    header.version = kRecordVersion;
-    return record;
-  }
-
-  const RecordLayout layout_;
-  const uint64_t spec_hash_;
-  const uint32_t actor_;
-  const uint64_t session_;
-  std::vector<uint64_t> records_, sent_;
-  uint64_t next_ = 1;
-};
-
-ObservationSpec PpoSpec() {
-  ObservationSpec spec = SmallRun().spec;
-  spec.drawn_actions = true;
-  return spec;
-}
-
 class RolloutCoreTest : public testing::Test {
  protected:
-  RolloutCoreTest() {
-    run_ = SmallRun();
-    run_.config.learner.algorithm = "ppo";
-    run_.config.ppo.rollout_steps = 3;
-    run_.config.actors = 2;
-    run_.config.envs_per_actor = 1;
-    run_.spec = PpoSpec();
-    Restart(100);
-  }
+  RolloutCoreTest() { Restart(100); }
   void Restart(uint64_t session, const AccountBefore& before = {}) {
     core_ = std::make_unique<RolloutCore>(run_, session, before);
     core_->SetActors(2);
     core_->Await({session, 0});
-  }
-  // Three steps from a reset.
-  static void PlayThree(ActorScript* actor, uint32_t env, uint32_t episode,
-                        const WeightsVersion& version = kFirst) {
-    actor->Reset(env, episode, 1);
-    for (uint32_t i = 1; i <= 3; ++i) actor->Step(env, episode, i, float(i + 1), version);
   }
   BatchView TakeReady() {
     schema_.emplace(core_->ReadySchema());
@@ -111,7 +29,7 @@ class RolloutCoreTest : public testing::Test {
     return core_->sessions().at(*core_->sessions().Find(actor, session));
   }
 
-  RunConfig run_;
+  RunConfig run_ = PpoRun(2);
   std::unique_ptr<RolloutCore> core_;
   std::optional<BatchSchema> schema_;
   std::unique_ptr<uint8_t, decltype(&std::free)> memory_{nullptr, &std::free};
@@ -119,8 +37,8 @@ class RolloutCoreTest : public testing::Test {
 };
 
 TEST_F(RolloutCoreTest, ARolloutHasWhatWasSeenDoneAndEarned) {
-  PlayThree(&a_, 0, 0);
-  PlayThree(&b_, 1, 0);
+  a_.PlayThree(0, 0);
+  b_.PlayThree(1, 0);
   EXPECT_EQ(core_->TakeChunk(b_.Chunk()).stored, 4u);
   EXPECT_EQ(core_->Ready(), 1);
   core_->TakeChunk(a_.Chunk());
@@ -166,7 +84,7 @@ TEST_F(RolloutCoreTest, GoesOnOverTheEndsOfEpisodes) {
 }
 
 TEST_F(RolloutCoreTest, TheNextRolloutGoesOnWhereTheLastOneEnded) {
-  PlayThree(&a_, 0, 0);
+  a_.PlayThree(0, 0);
   core_->TakeChunk(a_.Chunk());
   TakeReady();
   core_->Await({100, 1});
@@ -183,7 +101,7 @@ TEST_F(RolloutCoreTest, AKilledActorsPartialRolloutIsDiscardedAndCounted) {
   a_.Step(0, 0, 2, 3);
   core_->TakeChunk(a_.Chunk());
   ActorScript successor(run_.spec, 0, 12);
-  PlayThree(&successor, 0, 1);
+  successor.PlayThree(0, 1);
   core_->TakeChunk(successor.Chunk());
   ASSERT_EQ(core_->Ready(), 1);
   EXPECT_EQ(TakeReady().reward.size(), 3u);
@@ -194,11 +112,11 @@ TEST_F(RolloutCoreTest, AKilledActorsPartialRolloutIsDiscardedAndCounted) {
 }
 
 TEST_F(RolloutCoreTest, RolloutsOfAnotherVersionAreDropped) {
-  PlayThree(&a_, 0, 0, {99, 7});
+  a_.PlayThree(0, 0, {99, 7});
   core_->TakeChunk(a_.Chunk());
   EXPECT_EQ(core_->Ready(), 0) << "of a learner that is gone";
   core_->Await({100, 1});
-  PlayThree(&b_, 1, 0, {100, 0});
+  b_.PlayThree(1, 0, {100, 0});
   core_->TakeChunk(b_.Chunk());
   EXPECT_EQ(core_->Ready(), 0) << "too late for its update";
   EXPECT_EQ(Counters(1, 11).discarded, 4u);
@@ -208,14 +126,14 @@ TEST_F(RolloutCoreTest, RolloutsOfAnotherVersionAreDropped) {
 TEST_F(RolloutCoreTest, OneVersionAheadAnOlderRolloutServesOneUpdateMore) {
   run_.config.ppo.versions_ahead = 1;
   Restart(100);
-  PlayThree(&a_, 0, 0);
+  a_.PlayThree(0, 0);
   for (uint32_t i = 4; i <= 6; ++i) a_.Step(0, 0, i, float(i + 1));
   core_->TakeChunk(a_.Chunk());
   EXPECT_EQ(TakeReady().obs_vector[0], 1);
   core_->Await({100, 1});
   ASSERT_EQ(core_->Ready(), 1);
   EXPECT_EQ(TakeReady().obs_vector[0], 4);
-  PlayThree(&b_, 1, 0);
+  b_.PlayThree(1, 0);
   core_->TakeChunk(b_.Chunk());
   EXPECT_EQ(core_->Ready(), 1);
   core_->Await({100, 2});
@@ -227,7 +145,7 @@ TEST_F(RolloutCoreTest, AStepWithoutItsPredecessorIsOfNoUse) {
   a_.Step(0, 3, 9, 2);
   EXPECT_EQ(core_->TakeChunk(a_.Chunk()).after_gap, 2u);
   EXPECT_EQ(core_->stored_steps(), 0u);
-  PlayThree(&a_, 0, 4);
+  a_.PlayThree(0, 4);
   EXPECT_EQ(core_->TakeChunk(a_.Chunk()).stored, 4u);
   EXPECT_EQ(core_->Ready(), 1);
 }
@@ -235,7 +153,7 @@ TEST_F(RolloutCoreTest, AStepWithoutItsPredecessorIsOfNoUse) {
 TEST_F(RolloutCoreTest, AnEpisodeLeftInItsMidstEndsTheRollout) {
   a_.Reset(0, 0, 1);
   a_.Step(0, 0, 1, 2);
-  PlayThree(&a_, 0, 1);
+  a_.PlayThree(0, 1);
   core_->TakeChunk(a_.Chunk());
   ASSERT_EQ(core_->Ready(), 1);
   EXPECT_EQ(TakeReady().obs_vector[0], 1);
@@ -244,10 +162,10 @@ TEST_F(RolloutCoreTest, AnEpisodeLeftInItsMidstEndsTheRollout) {
 }
 
 TEST_F(RolloutCoreTest, ARestartedLearnerCountsWhatItsPredecessorHadNotUsedAsDiscarded) {
-  PlayThree(&a_, 0, 0);
+  a_.PlayThree(0, 0);
   core_->TakeChunk(a_.Chunk());
   TakeReady();
-  PlayThree(&b_, 1, 0);
+  b_.PlayThree(1, 0);
   core_->TakeChunk(b_.Chunk());
   AccountBefore before{.stored_steps = core_->stored_steps(), .sessions = {}};
   for (int i = 0; i < core_->sessions().size(); ++i) {
@@ -271,12 +189,12 @@ TEST_F(RolloutCoreTest, MoreActorsAreWaitedForFromTheNextUpdateFewerAtOnce) {
 }
 
 TEST_F(RolloutCoreTest, EnvironmentsThatTheActorDoesNotHostAreRefused) {
-  PlayThree(&a_, 1, 0);
+  a_.PlayThree(1, 0);
   EXPECT_EQ(core_->TakeChunk(a_.Chunk()).after_gap, 4u);
 }
 
 TEST_F(RolloutCoreTest, GrantsCreditForWhatWasDealtWith) {
-  PlayThree(&a_, 0, 0);
+  a_.PlayThree(0, 0);
   core_->TakeChunk(a_.Chunk());
   const auto credits = core_->TakeCredits(/*changed_only=*/true);
   ASSERT_EQ(credits.size(), 1u);
