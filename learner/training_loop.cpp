@@ -83,11 +83,16 @@ bool TrainingLoop::TryTrain() {
 
 UpdateOutcome TrainingLoop::Update(const BatchView& batch) {
   SteadyTime since = Now();
-  return parts_.agent.Update(batch, [&](UpdateStage stage) {
+  updating_ = true;
+  UpdateOutcome outcome = parts_.agent.Update(batch, [&](UpdateStage stage) {
     const SteadyTime now = Now();
     seconds_.update[static_cast<size_t>(stage)] +=
         std::chrono::duration<double>(now - std::exchange(since, now)).count();
+    // An update of a whole rollout may take a minute: who says nothing is taken for hung.
+    if (on_policy_) Report();
   });
+  updating_ = false;
+  return outcome;
 }
 
 void TrainingLoop::AfterUpdate(const Batch& batch, const UpdateFigures& figures) {
@@ -239,6 +244,7 @@ void TrainingLoop::Report(bool now) {
 const char* TrainingLoop::State() const {
   if (stopping_) return "stopping";
   if (drain_start_) return "draining";
+  if (updating_) return "running";
   if (parts_.agent.updates() == 0) return "starting";
   return Now() - waiting_since_ > kBlockedAfter ? "blocked" : "running";
 }

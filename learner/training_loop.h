@@ -109,7 +109,7 @@ class TrainingLoop {
   SteadyTime waiting_since_;               // the last batch, or the start
   std::optional<SteadyTime> drain_start_;
   int drain_batches_ = 0;  // used while draining
-  bool drained_ = false, stopping_ = false;
+  bool drained_ = false, stopping_ = false, updating_ = false;
 };
 
 }  // namespace shoal::learner

@@ -133,6 +133,68 @@ TEST(OnPolicy, OneVersionAheadActorsPlayWhileTheLearnerLearns) {
   ExpectBalanced(meta);
 }
 
+// An actor that stands still does not hold the others up for longer than the deadline.
+TEST(OnPolicy, WithoutAnActorThatHangsUpdatesAreMadeOfTheOtherHalf) {
+  const TrainingRun run;
+  RunningTraining training(run, Command(run, {{"env_steps", "10000000"},
+                                              {"eval.interval", "1000000"},
+                                              {"ppo.rollout_deadline", "1"}}));
+  ASSERT_TRUE(WaitForMoreUpdates(&training, 2)) << training.Output();
+  const json actor = training.reports().WaitFor("actor", [](const json&) { return true; });
+  ASSERT_FALSE(actor.is_null());
+  const pid_t victim = actor.at("pid").get<pid_t>();
+  ASSERT_EQ(kill(victim, SIGSTOP), 0);
+  ASSERT_TRUE(WaitForMoreUpdates(&training, 3)) << training.Output();
+  const json late = training.reports().WaitFor(
+      "learner", [](const json& r) { return r.at("rollouts_late").get<double>() >= 4; });
+  EXPECT_FALSE(late.is_null()) << "an update of all four other environments is said to be short";
+  ASSERT_EQ(kill(victim, SIGCONT), 0);
+  const int64_t then = late.is_null() ? 0 : Updates(late);
+  EXPECT_FALSE(training.reports()
+                   .WaitFor(
+                       "learner",
+                       [&](const json& r) {
+                         return Updates(r) > then + 3 && r.at("rollout_steps") == 8 * 128;
+                       },
+                       seconds(60))
+                   .is_null())
+      << "it joins again";
+  training.Interrupt();
+  ASSERT_EQ(training.End(seconds(120)), 0) << training.Output();
+  ExpectBalanced(run.Json("meta.json"));
+}
+
+TEST(OnPolicy, ARunIsScaledAndSetWhileItGoesOn) {
+  const TrainingRun run;
+  RunningTraining training(run,
+                           Command(run, {{"env_steps", "10000000"}, {"eval.interval", "1000000"}}));
+  ASSERT_TRUE(WaitForMoreUpdates(&training, 2)) << training.Output();
+  const std::string folder = run.path().string();
+  const auto order = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), "shoal");
+    words.insert(words.end(), {"--run", folder});
+    return RunProgram(words, seconds(60));
+  };
+  for (const int actors : {3, 1}) {
+    const ProgramResult scaled = order({"scale", "--actors", std::to_string(actors)});
+    ASSERT_EQ(ExitCode(scaled), 0) << scaled.out << scaled.err;
+    const json whole = training.reports().WaitFor("learner", [&](const json& r) {
+      return r.at("rollout_steps") == actors * 4 * 128;  // the mean of a second with one update
+    });
+    EXPECT_FALSE(whole.is_null()) << actors << " actors: " << training.Output();
+  }
+  const ProgramResult set = order({"set", "env_steps=20000000"});
+  EXPECT_EQ(ExitCode(set), 0) << set.out << set.err;
+  const ProgramResult refused = order({"set", "replay.samples_per_insert=3"});
+  EXPECT_NE(ExitCode(refused), 0);
+  EXPECT_NE(refused.err.find("replay.samples_per_insert = 3.0: learner.algorithm = ppo"),
+            std::string::npos)
+      << refused.err;
+  training.Interrupt();
+  ASSERT_EQ(training.End(seconds(120)), 0) << training.Output();
+  ExpectBalanced(run.Json("meta.json"));
+}
+
 TEST(OnPolicy, WhatDoesNotFitIsRefusedByName) {
   const TrainingRun run;
   const std::pair<TrainingRun::Keys, const char*> cases[] = {

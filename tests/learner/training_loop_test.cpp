@@ -388,6 +388,16 @@ TEST_F(OnPolicyLoopTest, WeightsThatTheTransportDidNotTakeAreSentAgain) {
   EXPECT_THAT(outlet_.Updates(outlet_.weights), ElementsAre(0));
 }
 
+// It may take longer than a process may be silent.
+TEST_F(OnPolicyLoopTest, ReportsInTheMidstOfAnUpdate) {
+  Train(1);
+  const MetricsMessage& first = outlet_.reports.front();
+  const auto updates = std::ranges::find(first.names, "updates");
+  ASSERT_NE(updates, first.names.end());
+  EXPECT_EQ(first.values[size_t(updates - first.names.begin())], 0) << "the first is not over";
+  EXPECT_EQ(first.state, "running");
+}
+
 TEST_F(OnPolicyLoopTest, DrainsAtOnce) {
   uint64_t drained_at = 0;
   Train(50, [&](PlayedBatches& batches) {
