@@ -390,8 +390,8 @@ TEST_F(OnPolicyLoopTest, WeightsThatTheTransportDidNotTakeAreSentAgain) {
 
 // It may take longer than a process may be silent.
 TEST_F(OnPolicyLoopTest, ReportsInTheMidstOfAnUpdate) {
-  run_.config.ppo.epochs = 1000;  // more than the second between two reports
-  run_.config.network.hidden = {1024, 1024};
+  run_.config.ppo.epochs = 500;  // more than the second between two reports
+  run_.config.network.hidden = {512, 512};
   Train(1);
   const MetricsMessage& first = outlet_.reports.front();
   const auto updates = std::ranges::find(first.names, "updates");
