@@ -24,6 +24,18 @@ struct BatchCounters {
   uint64_t unknown_parts = 0;    // of requests done with, or of a former learner session
   uint64_t malformed_parts = 0;  // sizes or offsets no batch has
   uint64_t dropped_answers = 0;  // incomplete ones overtaken by another answer
+
+  // In place of all of these, of a stream of rollouts.
+  struct Rollouts {
+    uint64_t expected = 0, ready = 0;  // environments the next update waits for; with a rollout
+    uint64_t late = 0;                 // that updates were made without
+    uint64_t dropped = 0;              // begun or whole, that no update was made of
+    uint64_t records = 0;              // taken
+    uint64_t rejected = 0, after_gap = 0, lost = 0, duplicates = 0;
+    uint64_t refused_chunks = 0, pool_drops = 0;
+    uint64_t actor_sessions = 0;
+  };
+  std::optional<Rollouts> rollouts{};
 };
 
 class BatchStream {
@@ -34,6 +46,8 @@ class BatchStream {
   // ask again. Throws Error when the sender's observation spec is another one.
   virtual std::optional<Batch> Next(SteadyTime deadline) = 0;
   virtual BatchCounters counters() const = 0;
+  // How many actors the run has now, where that matters.
+  virtual void SetActors(int /*actors*/) {}
 };
 
 }  // namespace shoal::learner

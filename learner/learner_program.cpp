@@ -10,12 +10,11 @@
 #include "common/config/run_files.h"
 #include "common/config/run_membership.h"
 #include "common/config/session_number.h"
-#include "common/dds/publisher.h"
 #include "common/dds/subscriber.h"
 #include "common/nn/encoder_weights.h"
 #include "learner/agent/algorithms.h"
 #include "learner/agent/encoder_start.h"
-#include "learner/batch_source.h"
+#include "learner/batch_feed.h"
 #include "learner/checkpoint_store.h"
 #include "learner/dds_outlet.h"
 #include "learner/openmp_environment.h"
@@ -39,10 +38,7 @@ class Learner {
         control_(Now()),
         bus_(dds::FindPlace(folder, run.config.transport, reach), dds::Role::kLearner),
         outlet_(bus_),
-        requests_(bus_),
-        batches_(run, session_, agent_->updates() + 1,
-                 [this](const SampleRequest& request) { return Ask(request); }),
-        part_subscriber_(bus_, [this](const BatchPart& part) { batches_.OnPart(part); }),
+        batches_(MakeFeed(folder, run, session_, agent_->updates(), bus_)),
         evaluation_subscriber_(
             bus_,
             [this](const EvalMessage& m) { pending_evaluations_.OnEvaluated(m.version.update); }),
@@ -58,7 +54,7 @@ class Learner {
                        .precision = precision_,
                        .session = session_,
                        .agent = *agent_,
-                       .batches = batches_,
+                       .batches = batches_->stream(),
                        .outlet = outlet_,
                        .checkpoints = checkpoints_,
                        .pending_evaluations = pending_evaluations_,
@@ -66,15 +62,11 @@ class Learner {
                       restored_);
     if (loop.Run() == TrainingLoop::End::kStopped) return 0;
     log::Failure("the coordinator is gone: no heartbeat; a checkpoint was written; leaving");
+    batches_->SayFarewell();
     return 1;
   }
 
  private:
-  // Without a matched reader the transport would take the request and lose it.
-  bool Ask(const SampleRequest& request) {
-    return requests_.Matched() > 0 && requests_.Write(request);
-  }
-
   std::optional<CheckpointState> Restore() {
     const std::optional<Checkpoint> checkpoint = checkpoints_.RestoreNewest();
     if (!checkpoint) {
@@ -113,9 +105,7 @@ class Learner {
   ControlState control_;
   dds::Bus bus_;
   DdsOutlet outlet_;
-  dds::Publisher<SampleRequest> requests_;
-  BatchSource batches_;
-  dds::Subscriber<BatchPart> part_subscriber_;
+  const std::unique_ptr<BatchFeed> batches_;
   dds::Subscriber<EvalMessage> evaluation_subscriber_;
   dds::Subscriber<ControlMessage> control_subscriber_;
 };

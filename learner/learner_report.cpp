@@ -1,13 +1,14 @@
 #include "learner/learner_report.h"
 
 #include "common/base/log.h"
+#include "common/config/on_policy.h"
 #include "learner/agent/frame_figures.h"
 
 namespace shoal::learner {
 
 LearnerReport::LearnerReport(const RunConfig& run)
     : spec_(run.spec),
-      shift_pad_(run.config.replay.shift_pad),
+      shift_pad_(LearnsOnPolicy(run.config) ? 0 : run.config.replay.shift_pad),
       guard_(run.config),
       report_("learner", 0) {}
 
@@ -42,25 +43,56 @@ const MetricsMessage& LearnerReport::Make(const LearnerFigures& figures) {
     report_.AddQuantiles("data_age_updates", data_age_);
   }
   AddTimes(figures.seconds);
-  add("requests_outstanding", figures.batches.requests_outstanding);
-  add("batches_ready", figures.batches.ready);
-  add("samples_per_insert", figures.samples_per_insert);
+  if (figures.batches.rollouts) {
+    AddRollouts(*figures.batches.rollouts);
+  } else {
+    AddBatches(figures);
+  }
   add("eval_interval", figures.eval_interval);
-  add("weights_period", figures.weights_period);
+  add("budget_env_steps", figures.budget);
   add("weights_sent", figures.weights_sent);
   add("weights_unsent", figures.weights_unsent);
   add("evaluations_overtaken", figures.evaluations_overtaken);
   add("checkpoints", figures.checkpoints);
   add("eval_updates", figures.eval_updates);
   add("drained", figures.drained);
-  add("resent_requests", figures.batches.resent_requests);
-  add("duplicate_parts", figures.batches.duplicate_parts);
-  add("unknown_parts", figures.batches.unknown_parts);
-  add("malformed_parts", figures.batches.malformed_parts);
-  add("dropped_answers", figures.batches.dropped_answers);
   add("warnings", guard_.warnings());
   report_.AddResources();
   return report_.message();
+}
+
+void LearnerReport::AddBatches(const LearnerFigures& figures) {
+  const BatchCounters& batches = figures.batches;
+  const auto add = [&](const std::string& name, auto value) {
+    report_.Add(name, static_cast<double>(value));
+  };
+  add("requests_outstanding", batches.requests_outstanding);
+  add("batches_ready", batches.ready);
+  add("samples_per_insert", figures.samples_per_insert);
+  add("weights_period", figures.weights_period);
+  add("resent_requests", batches.resent_requests);
+  add("duplicate_parts", batches.duplicate_parts);
+  add("unknown_parts", batches.unknown_parts);
+  add("malformed_parts", batches.malformed_parts);
+  add("dropped_answers", batches.dropped_answers);
+}
+
+void LearnerReport::AddRollouts(const BatchCounters::Rollouts& rollouts) {
+  const auto add = [&](const std::string& name, uint64_t value) {
+    report_.Add(name, static_cast<double>(value));
+  };
+  add("rollouts_expected", rollouts.expected);
+  add("rollouts_ready", rollouts.ready);
+  add("rollouts_late", rollouts.late);
+  add("rollouts_dropped", rollouts.dropped);
+  add("stored_records", rollouts.records);
+  add("rejected", rollouts.rejected);
+  add("after_gap", rollouts.after_gap);
+  add("lost", rollouts.lost);
+  add("duplicates", rollouts.duplicates);
+  add("refused_chunks", rollouts.refused_chunks);
+  add("pool_drops", rollouts.pool_drops);
+  add("actor_sessions", rollouts.actor_sessions);
 }
 
 void LearnerReport::AddTimes(const LearnerSeconds& seconds) {

@@ -7,7 +7,8 @@
 //   the figures of the updates         as the algorithm names them (agent/update_figures.h)
 //   data_age_updates_p50, _p90, _p99  updates since the weights that chose the actions
 //   seconds_STAGE, share_STAGE        where the learner's time went
-//   samples_per_insert, eval_interval, weights_period   in force
+//   eval_interval, budget_env_steps   in force
+//   samples_per_insert, weights_period   the same, with a replay
 //   eval_updates                      updates of the last evaluation point handed out
 //   drained                           1 once draining is over
 #pragma once
@@ -41,6 +42,7 @@ struct LearnerFigures {
   uint64_t eval_updates = 0;
   bool drained = false;
   double samples_per_insert = 0, eval_interval = 0, weights_period = 0;
+  double budget = 0;  // env steps
   LearnerSeconds seconds;
   BatchCounters batches;
 };
@@ -58,6 +60,8 @@ class LearnerReport {
 
  private:
   void AddTimes(const LearnerSeconds& seconds);
+  void AddBatches(const LearnerFigures& figures);
+  void AddRollouts(const BatchCounters::Rollouts& rollouts);
 
   const ObservationSpec spec_;
   const int shift_pad_;

@@ -9,6 +9,7 @@
 #include "common/base/saturating_cast.h"
 #include "common/base/stop.h"
 #include "common/config/lockstep.h"
+#include "common/config/on_policy.h"
 #include "common/wire/scoped_seconds.h"
 
 namespace shoal::learner {
@@ -28,6 +29,8 @@ TrainingLoop::TrainingLoop(const Parts& parts, const std::optional<CheckpointSta
       evaluations_(parts.run, parts.session, restored ? restored->env_steps : 0, parts.agent,
                    parts.outlet),
       report_(parts.run),
+      on_policy_(LearnsOnPolicy(config_)),
+      budget_(static_cast<uint64_t>(config_.env_steps)),
       samples_per_insert_(config_.replay.samples_per_insert),
       granted_from_steps_(static_cast<uint64_t>(config_.replay.min_size)),
       waiting_since_(Now()) {
@@ -38,10 +41,11 @@ TrainingLoop::TrainingLoop(const Parts& parts, const std::optional<CheckpointSta
 }
 
 TrainingLoop::End TrainingLoop::Run() {
-  if (parts_.agent.updates() > 0) weights_.Send(env_steps_);
+  if (parts_.agent.updates() > 0 && !on_policy_) weights_.Send(env_steps_);
   bool lost = false;
   while (!lost && !StopRequested() && parts_.control.state() != RunState::kStopping) {
     ApplySettings();
+    if (on_policy_) GiveAwaitedWeights();
     if (parts_.control.state() == RunState::kDraining) {
       Drain();
     } else {
@@ -79,11 +83,16 @@ bool TrainingLoop::TryTrain() {
 
 UpdateOutcome TrainingLoop::Update(const BatchView& batch) {
   SteadyTime since = Now();
-  return parts_.agent.Update(batch, [&](UpdateStage stage) {
+  updating_ = true;
+  UpdateOutcome outcome = parts_.agent.Update(batch, [&](UpdateStage stage) {
     const SteadyTime now = Now();
     seconds_.update[static_cast<size_t>(stage)] +=
         std::chrono::duration<double>(now - std::exchange(since, now)).count();
+    // An update of a whole rollout may take a minute: who says nothing is taken for hung.
+    if (on_policy_) Report();
   });
+  updating_ = false;
+  return outcome;
 }
 
 void TrainingLoop::AfterUpdate(const Batch& batch, const UpdateFigures& figures) {
@@ -91,7 +100,10 @@ void TrainingLoop::AfterUpdate(const Batch& batch, const UpdateFigures& figures)
   env_steps_ = batch.stored_steps;
   request_ = batch.request;
   report_.OnUpdate(figures, batch, updates);
-  {
+  if (on_policy_) {
+    TellProgress();  // the budget is judged by whole rollouts
+    GiveAwaitedWeights();
+  } else {
     const ScopedSeconds timed(seconds_.weights);
     weights_.AfterUpdate(env_steps_);
   }
@@ -100,6 +112,14 @@ void TrainingLoop::AfterUpdate(const Batch& batch, const UpdateFigures& figures)
   } else if (updates % static_cast<uint64_t>(config_.learner.checkpoint_period) == 0) {
     WriteCheckpoint();
   }
+}
+
+void TrainingLoop::GiveAwaitedWeights() {
+  const ScopedSeconds timed(seconds_.weights);
+  if (given_weights_ == parts_.agent.updates()) return weights_.Retry(env_steps_);
+  if (env_steps_ >= budget_ || drain_start_) return;
+  given_weights_ = parts_.agent.updates();
+  weights_.Send(env_steps_);
 }
 
 void TrainingLoop::MakeEvaluationPoint() {
@@ -152,8 +172,10 @@ void TrainingLoop::Drain() {
     std::this_thread::sleep_for(kPoll);
     return;
   }
-  if (TryTrain()) ++drain_batches_;
-  if (!DrainingIsOver()) return;
+  if (!on_policy_) {
+    if (TryTrain()) ++drain_batches_;
+    if (!DrainingIsOver()) return;
+  }
   drained_ = true;
   if (parts_.agent.updates() > 0 && evaluations_.last_updates() != parts_.agent.updates()) {
     MakeEvaluationPoint();
@@ -181,6 +203,10 @@ bool TrainingLoop::RatioReached() const {
 
 void TrainingLoop::ApplySettings() {
   const ControlState& control = parts_.control;
+  budget_ = SaturatingCast<uint64_t>(
+      control.SettingOr("env_steps", static_cast<double>(config_.env_steps)));
+  parts_.batches.SetActors(
+      SaturatingCast<int>(control.SettingOr("actors", static_cast<double>(config_.actors))));
   weights_.SetPeriod(SaturatingCast<uint64_t>(
       control.SettingOr("learner.weights_period", config_.learner.weights_period)));
   evaluations_.SetInterval(SaturatingCast<uint64_t>(control.SettingOr(
@@ -208,6 +234,7 @@ void TrainingLoop::Report(bool now) {
                                .samples_per_insert = samples_per_insert_,
                                .eval_interval = static_cast<double>(evaluations_.interval()),
                                .weights_period = static_cast<double>(weights_.period()),
+                               .budget = static_cast<double>(budget_),
                                .seconds = seconds_,
                                .batches = parts_.batches.counters()};
   TellProgress();
@@ -217,6 +244,7 @@ void TrainingLoop::Report(bool now) {
 const char* TrainingLoop::State() const {
   if (stopping_) return "stopping";
   if (drain_start_) return "draining";
+  if (updating_) return "running";
   if (parts_.agent.updates() == 0) return "starting";
   return Now() - waiting_since_ > kBlockedAfter ? "blocked" : "running";
 }

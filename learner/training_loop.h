@@ -7,7 +7,11 @@
 // Draining: the replay no longer holds batches back, so the learner itself stops, once it has seen
 // what was stored when draining began and has done the updates that samples_per_insert grants for
 // it (in lockstep: the run's last update). It is over as well kDrainIdle after the last batch, and
-// after kDrainMost.
+// after kDrainMost. On policy it is over at once: what actors send while they leave is no whole
+// rollout.
+//
+// On policy actors wait for the weights of each update, those of none before the first included;
+// once the budget is reached they get no more, unless it is raised.
 #pragma once
 
 #include <chrono>
@@ -76,6 +80,8 @@ class TrainingLoop {
   double GrantedSamples() const;
   // Whether the updates done are those granted.
   bool RatioReached() const;
+  // On policy: the weights that actors wait for, once; not beyond the budget.
+  void GiveAwaitedWeights();
   // Takes over what was changed while the run goes on.
   void ApplySettings();
   // To the coordinator: what the run is decided by.
@@ -90,17 +96,20 @@ class TrainingLoop {
   EvaluationPoints evaluations_;
   LearnerReport report_;
   LearnerSeconds seconds_;
-  double samples_per_insert_;    // in force
-  double granted_before_ = 0;    // samples, up to granted_from_steps_
-  uint64_t granted_from_steps_;  // env steps from which samples_per_insert_ counts
-  uint64_t env_steps_ = 0;       // stored when the last batch was drawn
-  uint64_t request_ = 0;         // of that batch
+  const bool on_policy_;
+  uint64_t budget_;                        // env steps, in force
+  std::optional<uint64_t> given_weights_;  // on policy: the update of those given last
+  double samples_per_insert_;              // in force
+  double granted_before_ = 0;              // samples, up to granted_from_steps_
+  uint64_t granted_from_steps_;            // env steps from which samples_per_insert_ counts
+  uint64_t env_steps_ = 0;                 // stored when the last batch was drawn
+  uint64_t request_ = 0;                   // of that batch
   uint64_t checkpoints_written_ = 0;
   std::optional<uint64_t> saved_updates_;  // of the newest checkpoint
   SteadyTime waiting_since_;               // the last batch, or the start
   std::optional<SteadyTime> drain_start_;
   int drain_batches_ = 0;  // used while draining
-  bool drained_ = false, stopping_ = false;
+  bool drained_ = false, stopping_ = false, updating_ = false;
 };
 
 }  // namespace shoal::learner

@@ -1,6 +1,7 @@
 #include "learner/weights_sender.h"
 
 #include "common/config/lockstep.h"
+#include "common/config/on_policy.h"
 #include "common/nn/safetensors.h"
 
 namespace shoal::learner {
@@ -13,12 +14,13 @@ WeightsSender::WeightsSender(const RunConfig& run, nn::Precision precision, uint
       precision_(precision),
       agent_(agent),
       outlet_(outlet),
+      awaited_(config_.lockstep || LearnsOnPolicy(config_)),
       period_(static_cast<uint64_t>(config_.learner.weights_period)) {}
 
 void WeightsSender::AfterUpdate(uint64_t env_steps) {
   due_ = due_ || Due(agent_.updates());
   if (!due_) return;
-  if (!config_.lockstep && Now() - last_sent_ < kPatience && !outlet_.WeightsArrived()) return;
+  if (!awaited_ && Now() - last_sent_ < kPatience && !outlet_.WeightsArrived()) return;
   Send(env_steps);
 }
 
@@ -37,6 +39,7 @@ void WeightsSender::Send(uint64_t env_steps) {
 }
 
 bool WeightsSender::Due(uint64_t updates) {
+  if (LearnsOnPolicy(config_)) return true;
   if (!config_.lockstep) {
     return updates == 1 || updates % period_ == 0;
   }

@@ -1,9 +1,10 @@
 // Sends the policy's parameters to the actors as the updates go by: at the first update, then every
-// learner.weights_period; in lockstep at the end of each phase. BF16 when the precision is, else
-// F32.
+// learner.weights_period; in lockstep at the end of each phase; on policy after each one. BF16 when
+// the precision is, else F32.
 //
 // Weights that are due while readers still lack the last ones wait for them, at most kPatience, so
-// that slow readers are not starved; not in lockstep, where actors wait for exactly these.
+// that slow readers are not starved; not in lockstep or on policy, where actors wait for exactly
+// these.
 #pragma once
 
 #include <chrono>
@@ -28,6 +29,11 @@ class WeightsSender {
   // Sends at once: after a restart, so that actors need not wait.
   void Send(uint64_t env_steps);
 
+  // Sends again what the transport did not take: where actors wait for exactly that.
+  void Retry(uint64_t env_steps) {
+    if (due_) Send(env_steps);
+  }
+
   // Replaces learner.weights_period. Not for lockstep.
   void SetPeriod(uint64_t updates) { period_ = updates; }
   uint64_t period() const { return period_; }
@@ -46,6 +52,7 @@ class WeightsSender {
   const nn::Precision precision_;
   const Agent& agent_;
   Outlet& outlet_;
+  const bool awaited_;  // by actors that do not step meanwhile
   uint64_t period_;
   bool due_ = false;
   SteadyTime last_sent_{};

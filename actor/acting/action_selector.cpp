@@ -19,7 +19,9 @@ ActionSelector::ActionSelector(const Config& config, const ObservationSpec& spec
       streams_(size_t(envs), Random(0)),
       frames_(size_t(envs) * stack_bytes_),
       vectors_(size_t(envs) * vector_size_),
-      actions_(size_t(envs) * action_size_) {}
+      actions_(size_t(envs) * action_size_),
+      drawn_(spec.drawn_actions ? actions_.size() : 0),
+      log_probs_(size_t(envs)) {}
 
 void ActionSelector::Load(const ReceivedWeights& weights) {
   const std::string source = fmt::format("weights of update {}", weights.version.update);
@@ -55,6 +57,11 @@ std::span<const float> ActionSelector::ActionOf(int e) const {
   return std::span(actions_).subspan(size_t(e) * action_size_, size_t(action_size_));
 }
 
+std::span<const float> ActionSelector::DrawnOf(int e) const {
+  if (drawn_.empty()) return {};
+  return std::span(drawn_).subspan(size_t(e) * action_size_, size_t(action_size_));
+}
+
 void ActionSelector::Select(Acting acting) {
   if (version_.session == 0) acting = Acting::kUniform;
   nn::PolicyOutput all;
@@ -73,9 +80,14 @@ void ActionSelector::Select(Acting acting) {
         break;
       case Acting::kExplore:
         exploration_->Act(e, output, stream, action);
+        if (!drawn_.empty()) {
+          log_probs_[size_t(e)] = exploration_->Drawn(std::span(drawn_).subspan(at, size));
+        }
         break;
       case Acting::kMean:
-        std::ranges::transform(output.mean, action.begin(), [](float m) { return std::tanh(m); });
+        std::ranges::transform(output.mean, action.begin(), [&](float m) {
+          return all.squashed ? std::tanh(m) : std::clamp(m, -1.f, 1.f);
+        });
         break;
     }
   }

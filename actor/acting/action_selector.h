@@ -22,7 +22,7 @@ namespace shoal::actor {
 enum class Acting {
   kUniform,  // each component ~ U(-1, 1)
   kExplore,  // actor/acting/exploration.h
-  kMean,     // tanh(mean): evaluation
+  kMean,     // tanh(mean), or clip(mean, -1, 1) of an unsquashed policy: evaluation
 };
 
 class ActionSelector {
@@ -56,6 +56,10 @@ class ActionSelector {
   // actions (E, A) in [-1, 1], valid until the next call.
   void Select(Acting acting);
   std::span<const float> ActionOf(int e) const;
+  // Of kExplore where the spec has drawn actions: as drawn, before it was clipped, and its
+  // log-probability. Empty and 0 otherwise.
+  std::span<const float> DrawnOf(int e) const;
+  float LogProbOf(int e) const { return log_probs_[size_t(e)]; }
 
  private:
   int envs_, action_size_, vector_size_, stack_bytes_;
@@ -66,6 +70,8 @@ class ActionSelector {
   std::vector<Random> streams_;
   std::vector<uint8_t> frames_;
   std::vector<float> vectors_, actions_;
+  std::vector<float> drawn_;      // (E, A); empty: not asked for
+  std::vector<float> log_probs_;  // (E)
 };
 
 }  // namespace shoal::actor

@@ -62,6 +62,33 @@ class Gaussian final : public Memoryless {
   float now_ = 0;
 };
 
+// An on-policy algorithm's own draw; no factor, since the log-probability is the policy's.
+class PolicyDraw final : public Memoryless {
+ public:
+  void OnEnvSteps(uint64_t) override {}
+  void Act(int, const nn::PolicyOutput& policy, Random& stream, std::span<float> action) override {
+    CHECK(policy.log_std.size() == action.size()) << "a deterministic policy";
+    drawn_.resize(action.size());
+    double log_prob = 0;
+    for (size_t a = 0; a < action.size(); ++a) {
+      const double noise = stream.Normal();
+      drawn_[a] = policy.mean[a] + std::exp(policy.log_std[a]) * static_cast<float>(noise);
+      log_prob -= noise * noise / 2 + policy.log_std[a] + kHalfLogTwoPi;
+      action[a] = Bounded(drawn_[a]);
+    }
+    log_prob_ = static_cast<float>(log_prob);
+  }
+  float Drawn(std::span<float> drawn) const override {
+    std::ranges::copy(drawn_, drawn.begin());
+    return log_prob_;
+  }
+
+ private:
+  static constexpr double kHalfLogTwoPi = 0.91893853320467274;
+  std::vector<float> drawn_;
+  float log_prob_ = 0;
+};
+
 class OrnsteinUhlenbeck final : public Exploration {
  public:
   OrnsteinUhlenbeck(const ExplorationConfig& config, double factor, int envs, int action_size)
@@ -108,6 +135,8 @@ std::unique_ptr<Exploration> MakeExploration(const Config& config, int envs, int
       return std::make_unique<SquashedGaussian>(static_cast<float>(factor));
     case ExplorationKind::kGaussian:
       return std::make_unique<Gaussian>(config.exploration.sigma, factor);
+    case ExplorationKind::kPolicy:
+      return std::make_unique<PolicyDraw>();
     case ExplorationKind::kOrnsteinUhlenbeck:
       return std::make_unique<OrnsteinUhlenbeck>(config.exploration, factor, envs, action_size);
   }

@@ -6,6 +6,9 @@
 //   ou                  a = clip(tanh(mean) + x_t, -1, 1),
 //                       x_t = x_{t-1} (1 - theta dt) + f sigma sqrt(dt) eps,   x = 0 at a reset
 //
+//   policy              u = mean + exp(log_std) eps,   a = clip(u, -1, 1)
+//                       log pi(u) = sum_j -eps_j^2 / 2 - log_std_j - log(2 pi) / 2       (Eq. 22)
+//
 // eps ~ N(0, I); sigma follows a schedule over the run's env steps; f is the actor's own factor.
 // ou: Ornstein-Uhlenbeck noise as in Lillicrap et al. 2015, arXiv:1509.02971, section 7.
 //
@@ -35,6 +38,9 @@ class Exploration {
   // Writes the action (A) of environment `e`, each in [-1, 1]. `policy`: its rows, (A).
   virtual void Act(int e, const nn::PolicyOutput& policy, Random& stream,
                    std::span<float> action) = 0;
+  // Of the last Act, for on-policy learning: the action as drawn, written to `drawn` (A), and its
+  // log-probability. Others than `policy` have none, leave it and return 0.
+  virtual float Drawn(std::span<float> /*drawn*/) const { return 0; }
 
   // What BeginEpisode forgets, to go on with it in another process; empty where there is nothing.
   // SetState throws Error when the state is of another kind or size.

@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "actor/acting/episode_log.h"
-#include "actor/acting/frame_stack.h"
 #include "actor/worlds/environment.h"
+#include "common/spec/frame_stack.h"
 
 namespace shoal::actor {
 

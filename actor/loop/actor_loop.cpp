@@ -37,9 +37,9 @@ const char* ActorLoop::Advance() {
 // A look for the weights that the pace wants; the learner makes them of what is stored.
 void ActorLoop::AwaitWeights() {
   const SteadyTime now = parts_.now();
-  if (!awaiting_until_) awaiting_until_ = now + Pace::kPatience;
+  if (!awaiting_until_) awaiting_until_ = now + parts_.pace.patience();
   if (now > *awaiting_until_) {
-    throw RuntimeError("{} within {} s", parts_.pace.Awaited(), Pace::kPatience.count());
+    throw RuntimeError("{} within {} s", parts_.pace.Awaited(), parts_.pace.patience().count());
   }
   parts_.sender.Flush();
   {
@@ -53,7 +53,11 @@ void ActorLoop::TakeWeights() {
   const auto weights = parts_.weights.TryTake();
   if (!weights) return;
   const ScopedSeconds timed(weights_seconds_);
+  const uint64_t former = parts_.selector.version().session;
   parts_.selector.Load(*weights);
+  if (former != 0 && former != weights->version.session && parts_.pace.BeginsAnewWithLearner()) {
+    parts_.rollout.AbandonEpisodes();
+  }
 }
 
 // The window is full or shut: what lies in an open chunk goes out, so that it can be stored.

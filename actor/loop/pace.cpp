@@ -2,8 +2,11 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 #include "common/base/check.h"
 #include "common/config/lockstep.h"
+#include "common/config/on_policy.h"
 
 namespace shoal::actor {
 
@@ -31,23 +34,33 @@ std::string LockstepPace::Awaited() const {
   return fmt::format("lockstep: no weights of update {}", update_);
 }
 
-VersionPace::VersionPace(int64_t vector_steps) : length_(vector_steps) {
-  CHECK(vector_steps > 0) << vector_steps;
+VersionPace::VersionPace(int64_t vector_steps, int ahead)
+    : length_(vector_steps), ahead_(static_cast<uint64_t>(ahead)) {
+  CHECK(vector_steps > 0 && ahead >= 0) << vector_steps << " " << ahead;
 }
 
 Pace::Turn VersionPace::Next(int64_t vector_steps, const WeightsVersion& version) {
   if (vector_steps < end_) return Turn::kStep;
-  if (!version.NewerThan(played_)) return Turn::kAwaitWeights;
-  played_ = version;
+  if (version.session == 0) return Turn::kAwaitWeights;
+  if (version.session != session_) {
+    session_ = version.session;
+    next_update_ = version.update;
+  }
+  next_update_ = std::max(next_update_, version.update);
+  if (version.update + ahead_ < next_update_) return Turn::kAwaitWeights;
+  ++next_update_;
   end_ = vector_steps + length_;
   return Turn::kStep;
 }
 
 std::string VersionPace::Awaited() const {
-  return fmt::format("no weights newer than update {}", played_.update);
+  return fmt::format("no weights of update {}", next_update_ - std::min(next_update_, ahead_));
 }
 
 std::unique_ptr<Pace> MakePace(const Config& config, int64_t vector_steps) {
+  if (LearnsOnPolicy(config)) {
+    return std::make_unique<VersionPace>(config.ppo.rollout_steps, config.ppo.versions_ahead);
+  }
   if (config.lockstep) return std::make_unique<LockstepPace>(config, vector_steps);
   return std::make_unique<FreePace>();
 }

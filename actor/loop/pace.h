@@ -30,7 +30,10 @@ class Pace {
   virtual std::string Awaited() const = 0;
 
   // For how long weights are awaited before that is an error.
-  static constexpr std::chrono::seconds kPatience{120};
+  virtual std::chrono::seconds patience() const { return std::chrono::seconds(120); }
+  // Whether episodes end where they are when another learner's weights are taken: it has forgotten
+  // what came before.
+  virtual bool BeginsAnewWithLearner() const { return false; }
 };
 
 // Steps always, by the newest weights there are.
@@ -62,20 +65,27 @@ class LockstepPace final : public Pace {
   uint64_t update_ = 0;  // of the weights that the phase is played by, at least
 };
 
-// Plays rollouts of `vector_steps` each by one version of the weights, and awaits a newer one
-// before the next: the pace of an algorithm that learns from its newest policy alone.
+// Plays rollouts of `vector_steps` each by one version of the weights, and awaits the one that
+// follows before the next, or, `ahead` = 1, the one before that: the pace of on-policy learning,
+// where each rollout makes one update. A learner that was restarted, or went on without this actor,
+// says by its version where it is.
 class VersionPace final : public Pace {
  public:
-  explicit VersionPace(int64_t vector_steps);
+  explicit VersionPace(int64_t vector_steps, int ahead = 0);
 
   Turn Next(int64_t vector_steps, const WeightsVersion& version) override;
   bool TakesWeightsAnytime() const override { return false; }
   std::string Awaited() const override;
+  // An update takes as long as it takes.
+  std::chrono::seconds patience() const override { return std::chrono::seconds(600); }
+  bool BeginsAnewWithLearner() const override { return true; }
 
  private:
   const int64_t length_;
-  int64_t end_ = 0;        // of the running rollout, in vector steps
-  WeightsVersion played_;  // the running rollout is played by it
+  const uint64_t ahead_;
+  int64_t end_ = 0;           // of the running rollout, in vector steps
+  uint64_t session_ = 0;      // of the learner whose weights it is played by
+  uint64_t next_update_ = 0;  // of the weights that the next rollout is to be played by
 };
 
 // The pace that a run's configuration asks of an actor that has done `vector_steps` before.

@@ -54,6 +54,10 @@ bool Rollout::WarmingUp() const {
          selector_.run_env_steps() < options_.run_random_steps;
 }
 
+void Rollout::AbandonEpisodes() {
+  for (Slot& slot : slots_) slot.seat.Abandon();
+}
+
 StageSeconds Rollout::seconds() const {
   StageSeconds seconds;
   for (const Slot& slot : slots_) {
@@ -84,6 +88,7 @@ void Rollout::StepOne(int e) {
   const std::span<const float> action = selector_.ActionOf(e);
   std::copy(action.begin(), action.end(), layout_.Action(record).begin());
   slot.actions.insert(slot.actions.end(), action.begin(), action.end());
+  std::ranges::copy(selector_.DrawnOf(e), layout_.DrawnAction(record).begin());
   const worlds::StepResult result =
       slot.seat.Step(action, {layout_.Frame(record), layout_.Vector(record)});
 
@@ -91,6 +96,7 @@ void Rollout::StepOne(int e) {
   FillHeader(e, RecordKind::kStep, &header);
   header.reward = result.reward;
   header.distance = result.distance;
+  header.log_prob = selector_.LogProbOf(e);
   header.flags =
       static_cast<uint8_t>((result.terminated ? kTerminated : 0) |
                            (result.truncated ? kTruncated : 0) | (result.success ? kSuccess : 0));

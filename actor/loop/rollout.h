@@ -47,6 +47,10 @@ class Rollout {
   // done, while the sink has no room for its records.
   bool TryStep();
 
+  // Ends the running episodes where they are: the next step begins new ones. For a receiver that
+  // does not know what came before.
+  void AbandonEpisodes();
+
   // Where it is, without session and count of records, which are others'.
   RolloutState State() const;
   // Goes on where another process was, before the first step: plays the running episodes again by

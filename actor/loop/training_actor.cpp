@@ -8,6 +8,7 @@
 #include "actor/sending/actor_lock.h"
 #include "common/base/error.h"
 #include "common/base/log.h"
+#include "common/config/on_policy.h"
 #include "common/config/run_membership.h"
 #include "common/config/sending_window.h"
 #include "common/config/session_number.h"
@@ -23,6 +24,9 @@ using std::chrono::milliseconds;
 constexpr std::chrono::seconds kLockDeadline = ActorLoop::kDrainDeadline + std::chrono::seconds(15);
 constexpr milliseconds kLastReportDeadline{500};
 
+// In lockstep, where the receiver of the records remembers the episodes that go on.
+bool GoesOnExactly(const Config& config) { return config.lockstep && !LearnsOnPolicy(config); }
+
 ChunkWindow::Options WindowOptions(const RunConfig& run, uint32_t id, uint64_t session,
                                    uint64_t records_before) {
   const Config& config = run.config;
@@ -30,9 +34,10 @@ ChunkWindow::Options WindowOptions(const RunConfig& run, uint32_t id, uint64_t s
   const SendingWindow window = SendingWindowOf(config, record_bytes);
   if (2 * config.envs_per_actor > window.records()) {
     throw UsageError(
-        "envs_per_actor {} does not fit the window of {} chunks of {} records: raise "
-        "replay.window_chunks or transport.chunk_records",
-        config.envs_per_actor, window.chunks, window.chunk_records);
+        "envs_per_actor {} does not fit the window of {} chunks of {} records: raise {}",
+        config.envs_per_actor, window.chunks, window.chunk_records,
+        LearnsOnPolicy(config) ? "transport.chunk_records"
+                               : "replay.window_chunks or transport.chunk_records");
   }
   return {.spec_hash = run.spec.Hash(),
           .actor = id,
@@ -55,7 +60,7 @@ class TrainingActor {
         lock_(folder, id, kLockDeadline, StopRequested),
         folder_(folder),
         id_(id),
-        resumed_(run_.config.lockstep ? TakeRolloutState(folder, id) : std::nullopt),
+        resumed_(GoesOnExactly(run_.config) ? TakeRolloutState(folder, id) : std::nullopt),
         session_(resumed_ ? resumed_->session
                           : NextSession(folder, fmt::format("actor-{}", id), WallTimeNs())),
         first_env_(id * static_cast<uint32_t>(run_.config.envs_per_actor)),
@@ -95,7 +100,7 @@ class TrainingActor {
     const ActorLoop::End end = RunLoop(loop, report);
     metrics_.WaitForAcks(kLastReportDeadline);
     const bool stored = end == ActorLoop::End::kAllStored;
-    if (stored && run_.config.lockstep) Leave();
+    if (stored && GoesOnExactly(run_.config)) Leave();
     return stored ? 0 : 1;
   }
 

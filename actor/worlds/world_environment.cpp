@@ -12,6 +12,7 @@
 #include "common/base/check.h"
 #include "common/base/error.h"
 #include "common/base/random.h"
+#include "common/config/on_policy.h"
 #include "common/tasks/task_registry.h"
 #include "common/wire/scoped_seconds.h"
 
@@ -61,6 +62,7 @@ WorldEnvironment::WorldEnvironment(const tasks::Task& task, std::unique_ptr<Worl
   }
   world_->ReleaseTextures();
   BuildSpec(config.observation);
+  spec_.drawn_actions = LearnsOnPolicy(config);
 }
 
 void WorldEnvironment::HideGoal() {

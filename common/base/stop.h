@@ -16,8 +16,8 @@ bool StopRequested();
 // How many times a stop was asked for but by SIGHUP: a second Ctrl-C means "now".
 int StopRequests();
 
-// Exit code of a command that a signal stopped, as shells have it: a script that loops over commands
-// ends with it, too.
+// Exit code of a command that a signal stopped, as shells have it: a script that loops over
+// commands ends with it, too.
 inline constexpr int kInterruptedExit = 130;
 
 }  // namespace shoal

@@ -92,6 +92,26 @@ struct LearnerConfig {
   int checkpoint_period = 2'000;     // updates between checkpoints
 };
 
+// On-policy learning: rollouts of every environment, learned from together and then forgotten.
+struct PpoConfig {
+  int rollout_steps = 1024;                 // T, of each environment, by one version of the weights
+  int epochs = 10;                          // passes over a rollout in one update
+  Schedule clip = Schedule::Constant(0.2);  // of the probability ratio, around 1
+  double value_clip = 0;                    // of a value's change; 0 = none
+  double gae_lambda = 0.95;                 // weight of later steps' advantages
+  double entropy_weight = 0;                // of the policy's entropy in the loss
+  double value_weight = 0.5;                // of the squared value error in the loss
+  double target_kl = 0;                     // an update ends beyond 1.5 of it; 0 = never
+  Schedule rate_factor = Schedule::Constant(1);  // on learner.learning_rate
+  bool normalise_advantages = true;              // in each minibatch
+  bool normalise_observations = false;           // vectors, by running mean and deviation
+  bool normalise_rewards = false;                // by the running deviation of returns
+  std::string networks = "separate";             // separate | shared: of policy and value
+  double initial_log_std = 0;                    // of the policy, before the first update
+  int versions_ahead = 0;                        // rollouts begun before the awaited weights
+  double rollout_deadline = 30;                  // s, for those that are late
+};
+
 // What training actors play beyond what their policy says (actor/acting/exploration.h).
 struct ExplorationConfig {
   std::string kind = "auto";                 // auto | squashed_gaussian | gaussian | ou
@@ -112,6 +132,7 @@ struct NetworkConfig {
   int features = 0;                           // outputs of the trunk; 0 = the encoder's own
   std::vector<int> hidden{256, 256};          // MLPs of actor and critics
   bool layer_norm = true;                     // after each hidden layer of the MLPs
+  std::string activation = "relu";            // relu | tanh: of those layers
   std::string log_std = "smooth";             // smooth | clamped: how the deviation is bounded
   std::string initialisation = "orthogonal";  // orthogonal | pytorch
 };
@@ -157,6 +178,7 @@ struct Config {
   RandomizationConfig randomization;
   ReplayConfig replay;
   LearnerConfig learner;
+  PpoConfig ppo;
   ExplorationConfig exploration;
   NetworkConfig network;
   EvalConfig eval;

@@ -107,9 +107,10 @@ std::vector<Key> ReplayKeys() {
 std::vector<Key> LearnerKeys() {
   const RealRange positive{0, 1, true};
   return {
-      SHOAL_SAME(learner.algorithm, (Choices{{"sac", "td3", "ddpg"}}),
+      SHOAL_SAME(learner.algorithm, (Choices{{"sac", "td3", "ddpg", "ppo"}}),
                  "what learns: docs/algorithm.md"),
-      SHOAL_SAME(learner.batch, (IntegerRange{1, 65'536}), "transitions per update"),
+      SHOAL_SAME(learner.batch, (IntegerRange{1, 65'536}),
+                 "transitions per update; ppo: per minibatch"),
       SHOAL_SAME(learner.precision, (Choices{{"auto", "f32", "bf16"}}),
                  "arithmetic of the large products; auto = bf16 with pixels "
                  "where the CPU has it natively, else f32"),
@@ -152,6 +153,47 @@ std::vector<Key> LearnerKeys() {
   };
 }
 
+std::vector<Key> PpoKeys() {
+  return {
+      SHOAL_SAME(ppo.rollout_steps, (IntegerRange{1, 1'000'000}),
+                 "env steps of each environment that one update learns from; at least 2, and over "
+                 "all environments a multiple of learner.batch"),
+      SHOAL_SAME(ppo.epochs, (IntegerRange{1, 1000}), "passes over a rollout in one update"),
+      SHOAL_SAME(ppo.clip, (RealRange{0, 10, true}),
+                 "the probability ratio counts within 1 - clip and 1 + clip, over the run's env "
+                 "steps"),
+      SHOAL_SAME(ppo.value_clip, (RealRange{0, 1e6}),
+                 "how far a value may move from that before the update; 0 = any distance"),
+      SHOAL_SAME(ppo.gae_lambda, (RealRange{0, 1}),
+                 "advantages: 0 = one step's, 1 = the whole rollout's"),
+      SHOAL_SAME(ppo.entropy_weight, (RealRange{0, 100}), "of the policy's entropy in the loss"),
+      SHOAL_SAME(ppo.value_weight, (RealRange{0, 1e6}), "of the squared value error in the loss"),
+      SHOAL_SAME(
+          ppo.target_kl, (RealRange{0, 1e6}),
+          "an update ends when the policy has moved by 1.5 times this divergence; 0 = never"),
+      SHOAL_SAME(ppo.rate_factor, (RealRange{0, 1}),
+                 "on learner.learning_rate, over the run's env steps"),
+      SHOAL_SAME(ppo.normalise_advantages, AnyValue{},
+                 "advantages of a minibatch get mean 0 and deviation 1"),
+      SHOAL_SAME(ppo.normalise_observations, AnyValue{},
+                 "vectors are scaled by their running mean and deviation, which belong to the "
+                 "policy; cut off at 10"),
+      SHOAL_SAME(ppo.normalise_rewards, AnyValue{},
+                 "rewards are divided by the running deviation of discounted returns; cut off at "
+                 "10"),
+      SHOAL_SAME(ppo.networks, (Choices{{"separate", "shared"}}),
+                 "policy and value have networks of their own, or one with two outputs"),
+      SHOAL_SAME(ppo.initial_log_std, (RealRange{-20, 2}),
+                 "log deviation of the policy before the first update"),
+      SHOAL_SAME(ppo.versions_ahead, (IntegerRange{0, 1}),
+                 "0 = an actor awaits the weights that follow its rollout; 1 = it plays the next "
+                 "rollout meanwhile"),
+      SHOAL_SAME(ppo.rollout_deadline, (RealRange{0.1, 60}),
+                 "seconds after the first rollout of an update is there, after which the update is "
+                 "made of those there are, at least half"),
+  };
+}
+
 std::vector<Key> ExplorationKeys() {
   return {
       SHOAL_SAME(exploration.kind, (Choices{{"auto", "squashed_gaussian", "gaussian", "ou"}}),
@@ -191,6 +233,7 @@ std::vector<Key> NetworkKeys() {
                  "outputs of the trunk; 0 = the encoder's own: 512 of nature, else 50"),
       SHOAL_SAME(network.hidden, (IntegerRange{1, 65'536}), "hidden layers of actor and critics"),
       SHOAL_SAME(network.layer_norm, AnyValue{}, "LayerNorm after each hidden layer"),
+      SHOAL_SAME(network.activation, (Choices{{"relu", "tanh"}}), "of each hidden layer"),
       SHOAL_SAME(
           network.log_std, (Choices{{"smooth", "clamped"}}),
           "log deviation of a Gaussian policy: smooth = by tanh in [-5, 2]; clamped = cut off "
@@ -235,7 +278,7 @@ std::vector<Key> TransportKeys() {
 std::vector<Key> AllKeys() {
   std::vector<Key> all;
   for (const auto& section :
-       {RunKeys(), ObservationKeys(), RandomizationKeys(), ReplayKeys(), LearnerKeys(),
+       {RunKeys(), ObservationKeys(), RandomizationKeys(), ReplayKeys(), LearnerKeys(), PpoKeys(),
         ExplorationKeys(), NetworkKeys(), EvalKeys(), TransportKeys()}) {
     all.insert(all.end(), section.begin(), section.end());
   }

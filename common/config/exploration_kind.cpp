@@ -1,6 +1,7 @@
 #include "common/config/exploration_kind.h"
 
 #include "common/base/check.h"
+#include "common/config/on_policy.h"
 
 namespace shoal {
 
@@ -12,6 +13,7 @@ ExplorationKind ExplorationKindOf(const Config& config) {
   if (kind == "ou") return ExplorationKind::kOrnsteinUhlenbeck;
   if (kind == "squashed_gaussian") return ExplorationKind::kSquashedGaussian;
   CHECK(kind == "auto") << kind;
+  if (LearnsOnPolicy(config)) return ExplorationKind::kPolicy;
   return LearnsDeviation(config) ? ExplorationKind::kSquashedGaussian : ExplorationKind::kGaussian;
 }
 

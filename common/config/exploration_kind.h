@@ -5,9 +5,11 @@
 
 namespace shoal {
 
-enum class ExplorationKind { kSquashedGaussian, kGaussian, kOrnsteinUhlenbeck };
+// kPolicy: the unsquashed Gaussian of an on-policy algorithm.
+enum class ExplorationKind { kSquashedGaussian, kGaussian, kOrnsteinUhlenbeck, kPolicy };
 
-// Whether the run's algorithm learns a Gaussian policy; the others' are deterministic.
+// Whether the run's algorithm learns a Gaussian policy that is squashed by tanh; that of on-policy
+// algorithms is not squashed, the others' are deterministic.
 bool LearnsDeviation(const Config& config);
 
 // What exploration.kind says; `auto` is what the run's algorithm wants: its own Gaussian, or

@@ -5,6 +5,7 @@
 #include "common/base/error.h"
 #include "common/config/config_io.h"
 #include "common/config/exploration_kind.h"
+#include "common/config/on_policy.h"
 
 namespace shoal {
 namespace {
@@ -83,16 +84,7 @@ void ValidateEntropy(const Config& config) {
   }
 }
 
-}  // namespace
-
-void Validate(const Config& config) {
-  ValidateObservation(config.observation);
-  ValidateExploration(config);
-  ValidateEntropy(config);
-  if (config.run_dir.empty()) throw UsageError("run_dir = \"\": expected a folder");
-  if (config.transport.interface.empty()) {
-    throw UsageError("transport.interface = \"\": expected a network interface");
-  }
+void ValidateReplay(const Config& config) {
   if (config.replay.min_size > config.replay.capacity / 2) {
     throw UsageError("replay.min_size = {}: expected at most half of replay.capacity = {}",
                      config.replay.min_size, config.replay.capacity);
@@ -108,6 +100,20 @@ void Validate(const Config& config) {
     throw UsageError("replay.copies = {}: expected a divisor of learner.batch = {}",
                      config.replay.copies, config.learner.batch);
   }
+}
+
+}  // namespace
+
+void Validate(const Config& config) {
+  ValidateObservation(config.observation);
+  ValidateOnPolicy(config);
+  ValidateExploration(config);
+  if (!LearnsOnPolicy(config)) ValidateEntropy(config);
+  if (config.run_dir.empty()) throw UsageError("run_dir = \"\": expected a folder");
+  if (config.transport.interface.empty()) {
+    throw UsageError("transport.interface = \"\": expected a network interface");
+  }
+  if (!LearnsOnPolicy(config)) ValidateReplay(config);
   if (config.lockstep && config.actors > 1) {
     throw UsageError("actors = {}: lockstep takes one actor", config.actors);
   }

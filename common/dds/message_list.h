@@ -17,8 +17,8 @@
 
 #define SHOAL_MESSAGES(X)                                                                          \
   X(TransitionChunk, TransitionChunk, "transitions_v1", Main, 0, now, bulk, 200, (kActor),         \
-    (kReplay))                                                                                     \
-  X(CreditsMessage, Credits, "credits", Main, 16, late, small, 100, (kReplay), (kActor))           \
+    (kReplay, kLearner))                                                                           \
+  X(CreditsMessage, Credits, "credits", Main, 16, late, small, 100, (kReplay, kLearner), (kActor)) \
   X(SampleRequest, SampleRequest, "sample_request", Batch, 0, now, small, 2000, (kLearner),        \
     (kReplay))                                                                                     \
   X(BatchPart, BatchPart, "batch_part_v1", Batch, 0, now, bulk, 2000, (kReplay), (kLearner))       \

@@ -1,5 +1,7 @@
 #include "common/nn/actor_critic_plan.h"
 
+#include <numbers>
+
 #include "common/base/error.h"
 #include "common/nn/encoders/encoder_kind.h"
 
@@ -54,21 +56,30 @@ NetworkPlan PlanTrunk(const NetworkConfig& network, const ObservationSpec& spec,
   return trunk;
 }
 
-NetworkPlan PlanMlp(const NetworkConfig& network, const std::string& name, int inputs,
-                    int outputs) {
+// Of orthogonal weights.
+struct Gains {
+  double hidden = 1, output = 1;
+};
+
+NetworkPlan PlanMlp(const NetworkConfig& network, const std::string& name, int inputs, int outputs,
+                    const Gains& gains = {}) {
+  const Activation activation =
+      network.activation == "tanh" ? Activation::kTanh : Activation::kRelu;
   NetworkPlan mlp({inputs});
   for (size_t i = 0; i < network.hidden.size(); ++i) {
     mlp.Add(NetworkPlan::Linear{.name = name + ".layer" + std::to_string(i),
                                 .key = "network.hidden",
                                 .outputs = network.hidden[i],
                                 .layer_norm = network.layer_norm,
-                                .activation = Activation::kRelu,
-                                .initialisation = InitialisationOf(network)});
+                                .activation = activation,
+                                .initialisation = InitialisationOf(network),
+                                .gain = gains.hidden});
   }
   mlp.Add(NetworkPlan::Linear{.name = name + ".output",
                               .key = "network.hidden",
                               .outputs = outputs,
-                              .initialisation = InitialisationOf(network)});
+                              .initialisation = InitialisationOf(network),
+                              .gain = gains.output});
   return mlp;
 }
 
@@ -104,10 +115,26 @@ ActorPlan PlanActor(const NetworkConfig& network, const ObservationSpec& spec, A
   plan.trunk = PlanTrunk(network, spec, name);
   plan.vector_columns = spec.VectorSize();
   plan.output = output;
+  plan.action_size = spec.action_size;
+  plan.name = name;
   plan.log_std = network.log_std == "clamped" ? LogStd::kClamped : LogStd::kSmooth;
   const int outputs = (output == ActorOutput::kGaussian ? 2 : 1) * spec.action_size;
   plan.mlps.push_back(
       PlanMlp(network, name + ".mlp", plan.trunk_columns() + plan.vector_columns, outputs));
+  return plan;
+}
+
+std::vector<ParameterSpec> ActorPlan::Parameters() const {
+  std::vector<ParameterSpec> parameters = HeadPlan::Parameters();
+  if (output == ActorOutput::kUnsquashed) parameters.push_back({name + ".log_std", {action_size}});
+  return parameters;
+}
+
+HeadPlan PlanObservationHead(const NetworkConfig& network, const ObservationSpec& spec,
+                             const std::string& name, int outputs, double output_gain) {
+  HeadPlan plan{.trunk = PlanTrunk(network, spec, name), .vector_columns = spec.VectorSize()};
+  plan.mlps.push_back(PlanMlp(network, name + ".mlp", plan.trunk_columns() + plan.vector_columns,
+                              outputs, {.hidden = std::numbers::sqrt2, .output = output_gain}));
   return plan;
 }
 

@@ -7,6 +7,7 @@
 //   HEAD.trunk.{weight, bias, norm.weight, norm.bias}                only with pixels
 //   MLP.layer{i}.{weight (H_i, H_{i-1}), bias, norm.weight, norm.bias}
 //   MLP.output.{weight (outputs, H), bias (outputs)}
+//   HEAD.log_std (A)                                                 of an unsquashed actor
 //
 // HEAD: an actor or a critic, with MLP HEAD.mlp of an actor, HEAD.q1, HEAD.q2, ... of a critic. A
 // policy is the encoder "encoder" and the actor "actor". norm of the trunk: where the trunk has a
@@ -43,6 +44,7 @@ struct HeadPlan {
 enum class ActorOutput {
   kGaussian,       // 2A: mean, raw log deviation
   kDeterministic,  // A
+  kUnsquashed,     // A: mean of a Gaussian that no tanh follows; its log deviation is a parameter
 };
 // How the raw log deviation is bounded.
 enum class LogStd {
@@ -52,12 +54,26 @@ enum class LogStd {
 struct ActorPlan : HeadPlan {
   ActorOutput output = ActorOutput::kGaussian;
   LogStd log_std = LogStd::kSmooth;
+  int action_size = 0;
+  std::string name = {};  // of the head
+
+  std::vector<ParameterSpec> Parameters() const;
 };
 ActorPlan PlanActor(const NetworkConfig& network, const ObservationSpec& spec,
                     ActorOutput output = ActorOutput::kGaussian, const std::string& name = "actor");
 // `name`: "critic", "target". Q functions `name`.q1 to `name`.q`count` of observation and action.
 HeadPlan PlanCritic(const NetworkConfig& network, const ObservationSpec& spec,
                     const std::string& name, int count = 2);
+
+// `outputs` functions of the observation alone, one MLP `name`.mlp of weights with the gains that
+// on-policy learning starts from: sqrt(2) in hidden layers, `output_gain` in the last one.
+HeadPlan PlanObservationHead(const NetworkConfig& network, const ObservationSpec& spec,
+                             const std::string& name, int outputs, double output_gain);
+
+// Where the observation is to be normalised, a policy has these tensors (V) beside its parameters:
+// the mean and the variance of the observations that its network was trained with.
+inline constexpr char kObservationMean[] = "observation.mean";
+inline constexpr char kObservationVariance[] = "observation.variance";
 
 // Of the encoder and the Gaussian actor.
 std::vector<ParameterSpec> PolicyParameters(const NetworkConfig& network,

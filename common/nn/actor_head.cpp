@@ -18,17 +18,24 @@ ActorHead::ActorHead(const LayerContext& context, const ActorPlan& plan,
     : trunk_(context, plan, features, features_gradient),
       mlp_(context, plan.mlps.at(0), trunk_.input()),
       gaussian_(plan.output == ActorOutput::kGaussian),
+      free_log_std_(plan.output == ActorOutput::kUnsquashed
+                        ? context.parameters->Find(plan.name + ".log_std")
+                        : Parameter()),
       log_std_kind_(plan.log_std),
       batch_(context.batch),
       action_size_(mlp_.outputs() / (gaussian_ ? 2 : 1)),
       mean_(size_t(batch_) * size_t(action_size_)),
-      log_std_(gaussian_ ? mean_.size() : 0),
-      action_(gaussian_ ? 0 : mean_.size()),
+      log_std_(plan.output == ActorOutput::kDeterministic ? 0 : mean_.size()),
+      action_(plan.output == ActorOutput::kDeterministic ? mean_.size() : 0),
       output_gradient_(size_t(batch_) * size_t(mlp_.outputs())) {}
 
 void ActorHead::Refresh() {
   trunk_.Refresh();
   mlp_.Refresh();
+  if (gaussian_ || log_std_.empty()) return;
+  for (size_t i = 0; i < log_std_.size(); ++i) {
+    log_std_[i] = free_log_std_.value()[i % size_t(action_size_)];
+  }
 }
 
 void ActorHead::Forward(const float* vector) {
@@ -78,7 +85,7 @@ void ActorHead::Backward(const float* mean_gradient, const float* log_std_gradie
 
 // daction/dmean = 1 - action^2.
 void ActorHead::Backward(const float* action_gradient) {
-  CHECK(!gaussian_);
+  CHECK(!action_.empty());
   for (size_t i = 0; i < action_.size(); ++i) {
     output_gradient_[i] = action_gradient[i] * (1 - action_[i] * action_[i]);
   }

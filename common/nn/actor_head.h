@@ -4,6 +4,7 @@
 //   Gaussian        (mean, r) = MLP(trunk(features), vector)
 //                   log_std = -5 + 3.5 (tanh(r) + 1), in [-5, 2]     LogStd::kSmooth
 //                   log_std = r clamped to [-20, 2]                  LogStd::kClamped
+//   unsquashed      mean = MLP(trunk(features), vector),   log_std a parameter of its own
 //   deterministic   mean = MLP(trunk(features), vector),   action = tanh(mean)
 //
 // Dimensions: B batch, A actions, V vector size.
@@ -43,7 +44,8 @@ class ActorHead {
 
   ObservationTrunk trunk_;
   Mlp mlp_;
-  const bool gaussian_;
+  const bool gaussian_;           // mean and log deviation are outputs of the MLP
+  const Parameter free_log_std_;  // of an unsquashed one
   const LogStd log_std_kind_;
   int batch_, action_size_;
   std::vector<float> mean_;             // (B, A)

@@ -11,6 +11,7 @@
 #include "common/nn/encoder.h"
 #include "common/nn/parallel.h"
 #include "common/nn/parameter_set.h"
+#include "common/nn/vector_scale.h"
 
 namespace shoal::nn {
 namespace {
@@ -68,6 +69,7 @@ struct Built {
 
 // What the last layer's bias says; a missing or misshaped one is refused when it is taken over.
 ActorOutput OutputOf(const TensorMap& tensors, int action_size) {
+  if (tensors.contains("actor.log_std")) return ActorOutput::kUnsquashed;
   const auto bias = tensors.find("actor.mlp.output.bias");
   const bool deterministic =
       bias != tensors.end() && bias->second.shape == std::vector<int64_t>{action_size};
@@ -89,6 +91,8 @@ struct Policy::Impl {
   const int max_batch;
   const int threads = Threads();
   std::unique_ptr<Built> built = nullptr;
+  std::optional<VectorScale> scale = std::nullopt;
+  std::vector<float> scaled = {};  // (B, V)
 };
 
 Policy::Policy(const NetworkConfig& network, const ObservationSpec& spec, Precision precision,
@@ -108,9 +112,11 @@ void Policy::Load(const TensorMap& tensors, const std::string& source) {
   Built& built = other ? *other : *impl_->built;
   std::vector<float> values(static_cast<size_t>(built.parameters.size()), 0.f);
   built.parameters.Import(tensors, "", source, values.data());
+  std::optional<VectorScale> scale = ReadVectorScale(tensors, impl_->spec.VectorSize(), source);
   std::copy(values.begin(), values.end(), built.parameters.values());
   for (auto& [batch, network] : built.networks) network.Refresh();
   if (other) impl_->built = std::move(other);
+  impl_->scale = std::move(scale);
 }
 
 PolicyOutput Policy::Forward(int batch, const uint8_t* frames, const float* vector) {
@@ -118,9 +124,16 @@ PolicyOutput Policy::Forward(int batch, const uint8_t* frames, const float* vect
   const ThreadScope scope(impl_->threads);
   SizedNetwork& network = impl_->built->ForBatch(batch);
   if (network.encoder) network.encoder->Forward(frames, Statistics::kRunning);
+  if (impl_->scale) {
+    impl_->scaled.resize(size_t(batch) * size_t(impl_->spec.VectorSize()));
+    impl_->scale->Apply(vector, impl_->scaled);
+    vector = impl_->scaled.data();
+  }
   network.actor->Forward(vector);
   const size_t count = static_cast<size_t>(batch) * static_cast<size_t>(impl_->spec.action_size);
-  PolicyOutput result{.mean = {network.actor->mean(), count}, .log_std = {}};
+  PolicyOutput result{.mean = {network.actor->mean(), count},
+                      .log_std = {},
+                      .squashed = impl_->built->actor.output != ActorOutput::kUnsquashed};
   if (network.actor->log_std() != nullptr) result.log_std = {network.actor->log_std(), count};
   return result;
 }

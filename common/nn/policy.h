@@ -17,6 +17,8 @@ namespace shoal::nn {
 struct PolicyOutput {
   std::span<const float> mean;     // before tanh
   std::span<const float> log_std;  // of the Gaussian around it; empty of a deterministic policy
+  // False: an action is not squashed by tanh, but clipped.
+  bool squashed = true;
 };
 
 class Policy {
@@ -26,8 +28,10 @@ class Policy {
   ~Policy();
 
   // Takes F32 or BF16 tensors by name. They say what kind of policy they are: one whose last layer
-  // has A outputs is deterministic. Throws Error naming a missing tensor or a wrong shape, and then
-  // keeps its former weights.
+  // has A outputs is deterministic, unless
+  // it has a log deviation of its own. Vectors are normalised first where there are
+  // kObservationMean and kObservationVariance (actor_critic_plan.h). Throws Error naming a missing
+  // tensor or a wrong shape, and then keeps its former weights.
   void Load(const TensorMap& tensors, const std::string& source);
 
   // frames (B, K*C, H, W) u8 (unread without pixels), vector (B, V) f32 (unread when V = 0).

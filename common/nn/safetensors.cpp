@@ -194,7 +194,8 @@ TensorMap ReadSafetensors(std::string_view bytes, const std::string& source) {
 TensorMap ToBf16(const TensorMap& tensors) {
   TensorMap result = tensors;
   for (auto& [name, tensor] : result) {
-    const bool statistic = name.ends_with(kRunningMean) || name.ends_with(kRunningVariance);
+    const bool statistic = name.ends_with(kRunningMean) || name.ends_with(kRunningVariance) ||
+                           name.starts_with("observation.");
     if (tensor.dtype != "F32" || statistic) continue;
     const NamedTensor& from = tensors.at(name);
     const size_t count = from.data.size() / sizeof(float);

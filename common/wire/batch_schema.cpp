@@ -58,6 +58,11 @@ BatchSchema::BatchSchema(const ObservationSpec& spec, const BatchOptions& option
   Add("bootstrap", ArrayType::kF32);
   Add("weights_update", ArrayType::kU64);
   Add("id", ArrayType::kU64);
+  if (!options.rollout) return;
+  Add("drawn_action", ArrayType::kF32, {spec.action_size});
+  Add("log_prob", ArrayType::kF32);
+  Add("ends", ArrayType::kF32);
+  Add("continues", ArrayType::kF32);
 }
 
 void BatchSchema::Add(const std::string& name, ArrayType type, std::vector<int> shape) {
@@ -121,6 +126,12 @@ BatchView BatchSchema::View(uint8_t* data) const {
   view.bootstrap = Array<float>("bootstrap", data);
   view.weights_update = Array<uint64_t>("weights_update", data);
   view.id = Array<uint64_t>("id", data);
+  if (options_.rollout) {
+    view.drawn_action = Array<float>("drawn_action", data);
+    view.log_prob = Array<float>("log_prob", data);
+    view.ends = Array<float>("ends", data);
+    view.continues = Array<float>("continues", data);
+  }
   return view;
 }
 

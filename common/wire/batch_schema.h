@@ -14,6 +14,15 @@
 //   weights_update   (B) u64             of the policy that chose the action; for policy lag
 //   id               (B) u64             of the record the sample begins with
 //
+// Of a rollout (on policy), whose rows are one environment's steps in order, then the next one's;
+// nothing is shifted, and next_obs_* are filled in only where `continues` is 0:
+//
+//   drawn_action     (B, A) f32          as drawn, before it was clipped to the action
+//   log_prob         (B) f32             of the drawn action under the policy that chose it
+//   ends             (B) f32             1: the step was its episode's last, else 0
+//   continues        (B) f32             1: the next row's observation is this one's next, else 0
+//   id               (B) u64             number of the environment
+//
 // K*C channels: stack K, frame channels C. What a spec does not have (pixels, vectors) has no
 // array. An algorithm or a way of sampling that needs more (importance weights, sequences with a
 // length of their own as the first dimension) adds an option and its arrays.
@@ -41,10 +50,11 @@ struct BatchArray {
 
 // What decides, beside the spec, which arrays there are and what their numbers mean.
 struct BatchOptions {
-  int batch = 1;        // B
-  int copies = 1;       // elements in a row of one transition
-  int n_step = 1;       // n
-  double discount = 1;  // of the steps summed
+  int batch = 1;         // B
+  int copies = 1;        // elements in a row of one transition
+  int n_step = 1;        // n
+  double discount = 1;   // of the steps summed
+  bool rollout = false;  // steps in order, with what on-policy learning needs
 };
 
 struct BatchView;
@@ -89,6 +99,7 @@ struct BatchView {
   std::span<uint8_t> obs_frames, next_obs_frames;
   std::span<float> obs_vector, next_obs_vector, action, reward, bootstrap;
   std::span<uint64_t> weights_update, id;
+  std::span<float> drawn_action, log_prob, ends, continues;  // of a rollout
 
   // Any array by its name: see BatchSchema::Array.
   template <class T>

@@ -54,8 +54,8 @@ void LocalCollection::Deliver() {
   window_.Flush();
   for (const Credit& credit : core_.TakeCredits(/*changed_only=*/false)) window_.OnCredit(credit);
   while (const auto chunk = window_.NextToSend()) {
-    const replay::ChunkResult result = core_.TakeChunk(*chunk);
-    if (result.fate != replay::ChunkFate::kDealtWith || result.stored != chunk->count) {
+    const ChunkResult result = core_.TakeChunk(*chunk);
+    if (result.fate != ChunkFate::kDealtWith || result.stored != chunk->count) {
       throw RuntimeError("the replay stored {} of {} records: {}", result.stored, chunk->count,
                          result.fault == nullptr ? "not taken" : result.fault);
     }

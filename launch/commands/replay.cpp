@@ -2,7 +2,9 @@
 #include <iostream>
 #include <memory>
 
-#include "common/config/config.h"
+#include "common/base/error.h"
+#include "common/config/on_policy.h"
+#include "common/config/run_files.h"
 #include "common/image/png.h"
 #include "launch/commands/commands.h"
 #include "launch/record/run_folder.h"
@@ -18,8 +20,12 @@ struct PeekOptions {
 };
 
 int Peek(const PeekOptions& options) {
-  const replay::Peek peek = replay::PeekBatch(FindNamed(options.run, RunsIn(Config().run_dir)),
-                                              options.batch, options.seed);
+  const std::filesystem::path run = FindNamed(options.run, RunsIn(Config().run_dir));
+  if (const Config config = ReadRunConfig(run).config; LearnsOnPolicy(config)) {
+    throw UsageError("'{}' has no replay: learner.algorithm = {} learns from rollouts",
+                     run.string(), config.learner.algorithm);
+  }
+  const replay::Peek peek = replay::PeekBatch(run, options.batch, options.seed);
   std::cout << peek.records << " records in the ring, " << peek.sampleable
             << " steps can be sampled\n";
   for (const std::string& caption : peek.captions) std::cout << "  " << caption << "\n";

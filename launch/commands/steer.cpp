@@ -68,7 +68,8 @@ std::string InForce(const RunViewMessage& message, const LiveKey& live, double v
       if (used != value) return "";
       text += fmt::format("{}{}-{} {}", text.empty() ? "" : ", ", use.role, process.id, *used);
     }
-    if (!any) return "";
+    // A run that learns on policy has no replay.
+    if (!any && use.role != "replay") return "";
   }
   return text;
 }

@@ -31,8 +31,8 @@ struct ExperimentTask {
 
 // Does what is still to be done of the experiment. Progress goes to stderr; stdout gets one line of
 // JSON for each run that is done with: {run, arm, seed, status, objective, path}. 0 once every run
-// is finished, 1 when one is not, kInterruptedExit (stop.h) after Ctrl-C. Throws Error before anything is
-// written where the definition, the folder or an arm is refused.
+// is finished, 1 when one is not, kInterruptedExit (stop.h) after Ctrl-C. Throws Error before
+// anything is written where the definition, the folder or an arm is refused.
 //
 // As a job array: submits, and stdout gets one line of JSON, {job, script, runs}; 0 unless Slurm
 // refuses.

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/base/error.h"
+#include "common/config/on_policy.h"
 #include "launch/record/run_folder.h"
 
 namespace shoal::launch {
@@ -53,11 +54,16 @@ ActorRange ActorsOf(const Config& config, const std::vector<RemoteHost>& hosts, 
 std::vector<ProcessSpec> PlanProcesses(const Config& config, const std::filesystem::path& run,
                                        const std::vector<RemoteHost>& hosts) {
   std::vector<ProcessSpec> plan;
-  plan.push_back(PlanProcess(run, "replay", 0, "shoal-replay", {}, 1));
-  // When the coordinator is killed, the actors' last records want a replay that stores them: it
-  // leaves by itself when the heartbeat has been missing and nothing comes any more.
-  plan.back().outlives_parent = true;
+  const bool on_policy = LearnsOnPolicy(config);
+  // When the coordinator is killed, the actors' last records want somebody who acknowledges them:
+  // the replay, or on policy the learner, leaves by itself when the heartbeat has been missing and
+  // nothing comes any more.
+  if (!on_policy) {
+    plan.push_back(PlanProcess(run, "replay", 0, "shoal-replay", {}, 1));
+    plan.back().outlives_parent = true;
+  }
   plan.push_back(PlanProcess(run, "learner", 0, "shoal-learner", {}, config.learner.threads));
+  plan.back().outlives_parent = on_policy;
   const int actors_here = hosts.empty() ? config.actors : ActorsOf(config, hosts, 0).first;
   for (int i = 0; i < actors_here; ++i) plan.push_back(ActorProcess(run, i));
   for (size_t host = 0; host < hosts.size(); ++host) {

@@ -18,9 +18,9 @@ std::filesystem::path ProgramFolder();
 ProcessSpec ProgramSpec(const std::string& program, std::vector<std::string> arguments,
                         int threads);
 
-// Replay, learner, actors and evaluation actor of a run, in starting order. `config` is resolved
-// (actors and learner.threads above 0); hosts whose run folder is known run the actors that
-// ActorsOf says.
+// Replay (none of a run that learns on policy), learner, actors and evaluation actor of a run, in
+// starting order. `config` is resolved (actors and learner.threads above 0); hosts whose run folder
+// is known run the actors that ActorsOf says.
 std::vector<ProcessSpec> PlanProcesses(const Config& config, const std::filesystem::path& run,
                                        const std::vector<RemoteHost>& hosts = {});
 

@@ -23,6 +23,7 @@ void AddSession(const Session& name, uint64_t made, const SeenRecords& seen, boo
   sums->lost_with_replay += seen.lost;
   sums->rejected += seen.rejected;
   sums->after_gap += seen.after_gap;
+  sums->discarded += seen.discarded;
   sums->duplicates += seen.duplicates;
   const auto fault = [&](const std::string& what) {
     sums->faults.push_back(fmt::format("actor {} session {}: {}", name.first, name.second, what));
@@ -36,12 +37,13 @@ void AddSession(const Session& name, uint64_t made, const SeenRecords& seen, boo
     fault(fmt::format("{} records were reported stored in the replay file, but are not there",
                       seen.lost));
   }
-  const uint64_t dealt = seen.stored + seen.rejected + seen.after_gap + seen.lost;
+  const uint64_t dealt = seen.stored + seen.rejected + seen.after_gap + seen.lost + seen.discarded;
   if (dealt != seen.highest) {
     fault(
-        fmt::format("stored {} + rejected {} + after a gap {} + lost {} = {}, but sequences up to "
-                    "{} were dealt with",
-                    seen.stored, seen.rejected, seen.after_gap, seen.lost, dealt, seen.highest));
+        fmt::format("stored {} + rejected {} + after a gap {} + lost {} + discarded {} = {}, but "
+                    "sequences up to {} were dealt with",
+                    seen.stored, seen.rejected, seen.after_gap, seen.lost, seen.discarded, dealt,
+                    seen.highest));
   }
 }
 
@@ -91,10 +93,10 @@ std::string Accounting::Line() const {
   return fmt::format(
       "records: made {} {} stored {} + lost with a process {} + lost with a replay {} + rejected "
       "{} + "
-      "after a gap {}; "
+      "after a gap {} + discarded {}; "
       "duplicates {}, resends {}{}",
       made, Balances() ? '=' : '?', stored, lost_with_process, lost_with_replay, rejected,
-      after_gap, duplicates, resends, unknown);
+      after_gap, discarded, duplicates, resends, unknown);
 }
 
 SeenByReplay ReadSeenByReplay(const std::filesystem::path& run) {
@@ -116,6 +118,7 @@ SeenByReplay ReadSeenByReplay(const std::filesystem::path& run) {
       session.at("rejected").get_to(s.rejected);
       session.at("after_gap").get_to(s.after_gap);
       session.at("lost").get_to(s.lost);
+      s.discarded = session.value("discarded", uint64_t{0});  // runs of earlier versions lack it
       session.at("duplicates").get_to(s.duplicates);
       seen.sessions.push_back(s);
     }
@@ -132,6 +135,7 @@ nlohmann::ordered_json ToJson(const Accounting& a) {
           {"lost_with_replay", a.lost_with_replay},
           {"rejected", a.rejected},
           {"after_gap", a.after_gap},
+          {"discarded", a.discarded},
           {"duplicates", a.duplicates},
           {"resends", a.resends},
           {"sessions_without_page", a.sessions_without_page},

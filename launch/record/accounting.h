@@ -1,11 +1,15 @@
 // Where every record went: what the actors made against what the replay dealt with.
 //
-//   made = stored + lost_with_process + lost_with_replay + rejected + after_gap, exactly;
+//   made = stored + lost_with_process + lost_with_replay + rejected + after_gap + discarded,
+//   exactly;
 //   duplicates and resends are apart. Sequences of a session run 1 .. made; the replay dealt with 1
 //   .. highest of them. lost_with_process is what an actor's death kept from the replay, made -
 //   highest; lost_with_replay was stored and is gone: in the memory of a replay server that died,
 //   or with a replay file that was removed. While the file is there, there is none such: it is a
-//   fault. What the sessions say is stored is held against the ring's own count.
+//   fault. A run without a replay stores nothing: there `stored` are the records that updates were
+//   made of, `discarded` the others that the learner took, of rollouts that were not finished or
+//   not used; nothing is ever discarded by a replay. What the sessions say is stored is held
+//   against the ring's own count.
 #pragma once
 
 #include <cstdint>
@@ -29,7 +33,7 @@ struct SeenRecords {
   uint32_t actor = 0;
   uint64_t session = 0;
   uint64_t highest = 0;  // sequences 1..highest were dealt with
-  uint64_t stored = 0, rejected = 0, after_gap = 0, lost = 0, duplicates = 0;
+  uint64_t stored = 0, rejected = 0, after_gap = 0, lost = 0, discarded = 0, duplicates = 0;
 };
 
 struct SeenByReplay {
@@ -40,7 +44,7 @@ struct SeenByReplay {
 
 struct Accounting {
   uint64_t made = 0, stored = 0, lost_with_process = 0, lost_with_replay = 0;
-  uint64_t rejected = 0, after_gap = 0;
+  uint64_t rejected = 0, after_gap = 0, discarded = 0;
   uint64_t duplicates = 0, resends = 0;
   // Of actors started by hand, or on a host that cannot be reached any more: what the replay saw
   // counts as made, what they made beyond it is unknown.
@@ -49,7 +53,7 @@ struct Accounting {
 
   bool Balances() const { return faults.empty(); }
   // "made 120 = stored 117 + lost with a process 2 + lost with a replay 1 + rejected 0 + after a
-  // gap 0; ..."
+  // gap 0 + discarded 0; ..."
   std::string Line() const;
 };
 

@@ -11,7 +11,8 @@ namespace {
 
 constexpr SettingUse kActors[] = {{"coordinator", "actors"}};
 constexpr SettingUse kBudget[] = {{"coordinator", "budget_env_steps"},
-                                  {"replay", "budget_env_steps"}};
+                                  {"replay", "budget_env_steps"},
+                                  {"learner", "budget_env_steps"}};
 constexpr SettingUse kInterval[] = {{"learner", "eval_interval"}};
 constexpr SettingUse kPeriod[] = {{"learner", "weights_period"}};
 constexpr SettingUse kRatio[] = {{"replay", "limiter_samples_per_insert"},

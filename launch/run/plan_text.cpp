@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include "common/config/on_policy.h"
 #include "common/nn/precision.h"
 #include "learner/agent/update_cost.h"
 #include "replay_server/core/storage_needs.h"
@@ -18,6 +19,10 @@ std::string PicturesText(const RunConfig& run, double frame_microseconds) {
 }
 
 std::string ReplayText(const RunConfig& run) {
+  if (LearnsOnPolicy(run.config)) {
+    return fmt::format("no replay, rollouts of {} steps of {} environments",
+                       run.config.ppo.rollout_steps, run.config.actors * run.config.envs_per_actor);
+  }
   const replay::StorageNeeds needs = replay::StorageNeedsOf(run);
   return fmt::format("replay of {} records: {:.0f} MB in {}, {:.0f} MB of memory beside it",
                      run.config.replay.capacity, static_cast<double>(needs.ring_bytes) / kMega,
@@ -26,6 +31,10 @@ std::string ReplayText(const RunConfig& run) {
 }
 
 std::string PaceText(const Config& config) {
+  if (LearnsOnPolicy(config)) {
+    return fmt::format("an update per {} env steps",
+                       int64_t{config.ppo.rollout_steps} * config.actors * config.envs_per_actor);
+  }
   if (config.replay.samples_per_insert <= 0) return "updates as fast as the learner can";
   return fmt::format("{:.3g} updates per env step",
                      config.replay.samples_per_insert / config.learner.batch);

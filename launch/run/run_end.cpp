@@ -6,6 +6,7 @@
 #include "common/base/clock.h"
 #include "common/base/error.h"
 #include "common/base/stop.h"
+#include "common/config/on_policy.h"
 #include "launch/film/film.h"
 #include "launch/processes/actor_program.h"
 #include "launch/processes/run_hosts.h"
@@ -28,7 +29,7 @@ std::optional<Accounting> AccountRun(const fs::path& run, const Config& config, 
   return Account(made, ReadSeenByReplay(run),
                  {.resends = resends,
                   .own_actors = static_cast<uint32_t>(ActorsHere(run, config)),
-                  .outlives_replay = config.replay.storage == "file"});
+                  .outlives_replay = !LearnsOnPolicy(config) && config.replay.storage == "file"});
 }
 
 // Whoever asked for a stop wants the terminal back; a run that has ended by itself is judged.

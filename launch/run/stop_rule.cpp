@@ -1,6 +1,7 @@
 #include "launch/run/stop_rule.h"
 
 #include "common/config/lockstep.h"
+#include "common/config/on_policy.h"
 
 namespace shoal::launch {
 namespace {
@@ -13,7 +14,9 @@ double TargetOf(const Config& config) {
 
 // In lockstep the last phase is played to its end.
 uint64_t BudgetOf(const Config& config) {
-  return config.lockstep ? LockstepEnvSteps(config) : static_cast<uint64_t>(config.env_steps);
+  // On policy only whole rollouts are counted, in lockstep or not.
+  const bool phases = config.lockstep && !LearnsOnPolicy(config);
+  return phases ? LockstepEnvSteps(config) : static_cast<uint64_t>(config.env_steps);
 }
 
 }  // namespace

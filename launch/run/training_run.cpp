@@ -13,6 +13,7 @@
 #include "common/base/stop.h"
 #include "common/base/usable_cores.h"
 #include "common/config/config_io.h"
+#include "common/config/on_policy.h"
 #include "common/config/run_files.h"
 #include "common/credentials/credentials.h"
 #include "common/dds/bus.h"
@@ -148,18 +149,8 @@ void CheckNetwork(const RunConfig& run) {
                    int64_t{kMaxWeightsBytes});
 }
 
-// Asked before anything is made or started. A run that exists has its ring.
-void CheckReplay(const RunConfig& run, bool exists) {
-  const Config& config = run.config;
-  replay::CheckHindsight(run);
-  learner::CheckValueBounds(run);
-  const replay::StorageNeeds needs = replay::StorageNeedsOf(run);
-  if (config.replay.storage == "memory") {
-    replay::CheckMemoryRoom(needs.memory_bytes + needs.ring_bytes);
-    return;
-  }
-  replay::CheckMemoryRoom(needs.memory_bytes, "stop other programs");  // it is never in the file
-  if (exists) return;
+// The nearest folder of a run to be that exists. Throws Error where no run can be made in it.
+std::filesystem::path CheckFolder(const Config& config) {
   std::error_code error;
   std::filesystem::path folder = std::filesystem::absolute(config.run_dir);
   while (!std::filesystem::exists(folder, error) && folder.has_relative_path()) {
@@ -170,16 +161,36 @@ void CheckReplay(const RunConfig& run, bool exists) {
                        (std::filesystem::path(config.run_dir) / config.run_name).string(),
                        std::strerror(errno));
   }
-  replay::CheckDiskRoom(folder, needs.ring_bytes);
+  return folder;
+}
+
+// Asked before anything is made or started. A run that exists has its ring.
+void CheckReplay(const RunConfig& run, bool exists) {
+  const Config& config = run.config;
+  if (LearnsOnPolicy(config)) {  // it has none
+    if (!exists) CheckFolder(config);
+    return;
+  }
+  replay::CheckHindsight(run);
+  learner::CheckValueBounds(run);
+  const replay::StorageNeeds needs = replay::StorageNeedsOf(run);
+  if (config.replay.storage == "memory") {
+    replay::CheckMemoryRoom(needs.memory_bytes + needs.ring_bytes);
+    return;
+  }
+  replay::CheckMemoryRoom(needs.memory_bytes, "stop other programs");  // it is never in the file
+  if (exists) return;
+  replay::CheckDiskRoom(CheckFolder(config), needs.ring_bytes);
 }
 
 void PrintStart(const PreparedRun& run, const ClusterAddress& address) {
   const Config& config = run.config.config;
   fmt::print("run {}: {}\n", run.folder.path().string(), run.config.spec.Summary());
   fmt::print(
-      "  seed {}, {} env steps; 1 replay, 1 learner ({} threads), {} actor(s) of {} environments, "
+      "  seed {}, {} env steps; {}1 learner ({} threads), {} actor(s) of {} environments, "
       "1 evaluation actor; logs in {}\n",
-      config.seed, config.env_steps, config.learner.threads, config.actors, config.envs_per_actor,
+      config.seed, config.env_steps, LearnsOnPolicy(config) ? "" : "1 replay, ",
+      config.learner.threads, config.actors, config.envs_per_actor,
       (run.folder.path() / "logs").string());
   if (run.meta.env_steps > 0) {
     const std::filesystem::path checkpoint = NewestCheckpoint(run.folder.path());

@@ -49,8 +49,11 @@ ProcessTimes TimesOf(const MetricsView& view, std::string_view role) {
   }
   if (1 - named >= kLeastShown) times.stages.push_back({"other", 1 - named});
   std::ranges::stable_sort(times.stages, std::ranges::greater(), &StageShare::share);
-  // The replay runs as long as the run does; actors come and go.
-  const double run_seconds = view.Seconds("replay") > 0 ? view.Seconds("replay") : times.seconds;
+  // Replay and learner run as long as the run does; actors come and go.
+  double run_seconds = times.seconds;
+  for (const char* server : {"learner", "replay"}) {
+    if (view.Seconds(server) > 0) run_seconds = view.Seconds(server);
+  }
   times.cores = view.Total(role, "cpu_seconds") / run_seconds;
   return times;
 }
@@ -93,6 +96,25 @@ std::string AdviseMoreActing(const Bottleneck& figures, int actors) {
       why, most, actors + 1);
 }
 
+// On policy actors and learner take turns; who waits more says whose part is the longer one.
+std::string AdviseOnPolicy(const Bottleneck& figures, int actors) {
+  const double learner_waits = ShareOf(figures, "learner", "waiting_data");
+  const double actors_wait = ShareOf(figures, "actor", "weights");
+  if (learner_waits >= actors_wait) {
+    const std::string more =
+        NoCoreToSpare(figures)
+            ? fmt::format("all {:.0f} cores are busy: more of them would help", figures.usable)
+            : fmt::format("add an actor (shoal scale --actors {})", actors + 1);
+    return fmt::format(
+        "The learner waits for rollouts {:.0f} % of the time, the actors for weights {:.0f} %: {}.",
+        100 * learner_waits, 100 * actors_wait, more);
+  }
+  return fmt::format(
+      "The actors wait for weights {:.0f} % of the time, the learner for rollouts {:.0f} %: let "
+      "them play meanwhile (ppo.versions_ahead), or learn less of each rollout (ppo.epochs).",
+      100 * actors_wait, 100 * learner_waits);
+}
+
 std::string AdviseMoreLearning(const Bottleneck& figures) {
   const StageShare* stage =
       Largest(figures, "learner", {"forward", "backward", "optimiser", "weights", "checkpoint"});
@@ -123,6 +145,7 @@ Bottleneck FindBottleneck(const MetricsView& view, double usable_cores, int acto
     result.roles.push_back(std::move(times));
   }
   const double replay_seconds = view.Seconds("replay");
+  result.limited = replay_seconds > 0;
   if (replay_seconds > 0) {
     const auto share = [&](const char* name) {
       return view.Total("replay", name) / replay_seconds;
@@ -140,6 +163,7 @@ std::string Advise(const Bottleneck& figures, int actors) {
   const double replay_works =
       ShareOf(figures, "replay", "inserting") + ShareOf(figures, "replay", "sampling");
   if (figures.roles.empty()) return "Nothing was measured.";
+  if (!figures.limited) return AdviseOnPolicy(figures, actors);
   if (replay_works >= kBusy || ShareOf(figures, "replay", "sending") >= kBusy) {
     return fmt::format(
         "The replay server is busy all the time ({:.0f} % inserting, {:.0f} % sampling, {:.0f} % "
@@ -185,8 +209,11 @@ std::vector<std::string> FormatBottleneck(const Bottleneck& bottleneck) {
     line += fmt::format(" {:.1f} cores", times.cores);
     lines.push_back(std::move(line));
   }
-  lines.push_back(fmt::format("limiter: held the actors {:.0f} %, the learner {:.0f} % of the time",
-                              100 * bottleneck.inserts_blocked, 100 * bottleneck.samples_blocked));
+  if (bottleneck.limited) {
+    lines.push_back(
+        fmt::format("limiter: held the actors {:.0f} %, the learner {:.0f} % of the time",
+                    100 * bottleneck.inserts_blocked, 100 * bottleneck.samples_blocked));
+  }
   lines.push_back(bottleneck.advice);
   return lines;
 }

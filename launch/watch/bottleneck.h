@@ -26,6 +26,7 @@ struct ProcessTimes {
 struct Bottleneck {
   double inserts_blocked = 0;  // share of time in which the limiter held actors back
   double samples_blocked = 0;  // ... the learner
+  bool limited = true;         // there is a limiter: the run has a replay
   std::vector<ProcessTimes> roles;
   double cores = 0;    // processors used by all processes
   double usable = 0;   // processors there are

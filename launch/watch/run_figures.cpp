@@ -15,6 +15,7 @@ ProgressFigures CollectFigures(const MetricsView& view, SteadyTime now) {
     if (figure->headline && value) figures.update_figures.emplace_back(figure->name, *value);
   }
   figures.policy_lag = view.Get("replay", 0, "policy_lag_p50");
+  if (!figures.policy_lag) figures.policy_lag = view.Get("learner", 0, "rollout_lag");
   figures.data_age = view.Get("learner", 0, "data_age_updates_p50");
   figures.rollout_success = view.Mean("actor", "rollout_success", "episodes", now);
   // Seconds blocked per second: a share.

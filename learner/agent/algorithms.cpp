@@ -9,6 +9,7 @@
 #include "common/base/error.h"
 #include "learner/agent/ddpg/ddpg_agent.h"
 #include "learner/agent/frame_figures.h"
+#include "learner/agent/ppo/ppo_agent.h"
 #include "learner/agent/sac/sac_agent.h"
 #include "learner/agent/td3/td3_agent.h"
 
@@ -19,6 +20,7 @@ constexpr Algorithm kAlgorithms[] = {
     {"sac", kSacFigures, MakeSacAgent},
     {"td3", kDeterministicFigures, MakeTd3Agent},
     {"ddpg", kDeterministicFigures, MakeDdpgAgent},
+    {"ppo", kPpoFigures, MakePpoAgent},
 };
 
 std::vector<const Figure*> CollectFigures() {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/config/on_policy.h"
 #include "common/nn/actor_critic_plan.h"
 
 namespace shoal::learner {
@@ -37,19 +38,37 @@ int64_t ParameterCount(const nn::NetworkPlan& plan) {
   return count;
 }
 
-}  // namespace
-
-UpdateCost CostOfUpdate(const Config& config, const ObservationSpec& spec) {
-  const nn::NetworkPlan encoder = nn::PlanEncoder(config.network, spec);
+// Multiply-adds of an update; `of_encoder`: of one sample.
+double OffPolicy(const Config& config, const ObservationSpec& spec, double of_encoder) {
   const int critics = config.learner.algorithm == "ddpg" ? 1 : 2;
-  const double of_encoder = MultiplyAdds(encoder);
   const double of_actor = MultiplyAdds(nn::PlanActor(config.network, spec));
   const double of_critics = MultiplyAdds(nn::PlanCritic(config.network, spec, "critic", critics));
   const double critic_step = 4 * of_encoder + 4 * of_critics + of_actor;
   const double actor_step = 3 * of_actor + 2 * of_critics;
-  return {.encoder_parameters = ParameterCount(encoder),
-          .flop = 2.0 * config.learner.batch *
-                  (critic_step + actor_step / std::max(1, config.learner.actor_period))};
+  return config.learner.batch *
+         (critic_step + actor_step / std::max(1, config.learner.actor_period));
+}
+
+double OnPolicy(const Config& config, const ObservationSpec& spec, double of_encoder) {
+  const bool shared = config.ppo.networks == "shared";
+  const auto head = [&](const char* name, int outputs) {
+    return MultiplyAdds(nn::PlanObservationHead(config.network, spec, name, outputs, 1));
+  };
+  const double of_actor = of_encoder + head("actor", spec.action_size + (shared ? 1 : 0));
+  const double of_value = shared ? of_actor : of_encoder + head("value", 1);
+  const double of_both = shared ? of_actor : of_actor + of_value;
+  const double rows = double(config.ppo.rollout_steps) * config.actors * config.envs_per_actor;
+  return rows * (of_value + 3 * config.ppo.epochs * of_both);
+}
+
+}  // namespace
+
+UpdateCost CostOfUpdate(const Config& config, const ObservationSpec& spec) {
+  const nn::NetworkPlan encoder = nn::PlanEncoder(config.network, spec);
+  const double of_encoder = MultiplyAdds(encoder);
+  const double multiply_adds = LearnsOnPolicy(config) ? OnPolicy(config, spec, of_encoder)
+                                                      : OffPolicy(config, spec, of_encoder);
+  return {.encoder_parameters = ParameterCount(encoder), .flop = 2 * multiply_adds};
 }
 
 }  // namespace shoal::learner

@@ -10,14 +10,17 @@ namespace shoal::learner {
 
 struct UpdateCost {
   int64_t encoder_parameters = 0;  // 0 without pixels
-  // Floating-point operations of the matrix products, 2 a multiply-add, on average over updates
-  // with and without a step of the actor: encoder on observations and next observations, critics on
-  // both (targets on the next), actor likewise; a backward pass is twice a forward pass, the
-  // actor's through the critics once. Activations, norms and optimisers are left out.
+  // Floating-point operations of the matrix products, 2 a multiply-add; a backward pass is twice a
+  // forward pass. Activations, norms and optimisers are left out.
+  //
+  // Off policy, on average over updates with and without a step of the actor: encoder on
+  // observations and next observations, critics on both (targets on the next), actor likewise, and
+  // once back through the critics. On policy, of a whole rollout of all actors: values once, policy
+  // and values forward and backward in each epoch.
   double flop = 0;
 };
 
-// Of SAC, TD3 and DDPG alike. Throws Error where the networks do not fit.
+// Throws Error where the networks do not fit.
 UpdateCost CostOfUpdate(const Config& config, const ObservationSpec& spec);
 
 }  // namespace shoal::learner

@@ -1,26 +1,16 @@
-// From chunks to stored records: duplicates, gaps and malformed records are sorted out and counted
-// here. Per (actor, session) every sequence up to the highest is dealt with exactly once.
+// The records of an intake (common/intake/chunk_intake.h) into the ring, each behind its
+// predecessor in the episode.
 //
-// Resending. An actor keeps what is not reported stored and resends it oldest first, so a chunk
-// ahead of the next expected sequence is not a loss yet: it is set aside and will come again.
-//
-// Taking over. What an earlier server reported stored the actor keeps no more; where that server's
-// memory is gone, nobody has it. So whenever the actor sends again what it keeps, it says first
-// where its keeping begins: a chunk without records, whose first_sequence that is. The first time
-// that this server hears of a session, what lies between what it knows and that sequence is counted
-// as lost. Afterwards it cannot be news: nobody else has reported anything stored.
-//
-// Sessions from the future. A session is the actor's clock at its start, and the newest supersedes
-// the others: a number far beyond the present would shut the true actor out for good.
+// The counters are written after each record: whenever this process is killed, at most one stored
+// record is not counted yet, and the constructor finds it by its sequence.
 //
 // Threads: none inside; one owner.
 #pragma once
 
 #include <cstdint>
 #include <limits>
-#include <optional>
-#include <set>
 
+#include "common/intake/chunk_intake.h"
 #include "common/wire/messages.h"
 #include "replay_server/core/episode_index.h"
 #include "replay_server/core/ring.h"
@@ -28,52 +18,27 @@
 
 namespace shoal::replay {
 
-enum class ChunkFate {
-  kDealtWith,   // every record in it is stored or counted
-  kAhead,       // set aside: what lies before it did not come yet
-  kSuperseded,  // of a session whose actor has a newer one: its process is gone
-  kFuture,      // of a session that cannot have begun yet
-  kWrongSpec,   // another observation spec
-  kMalformed,   // its length or sequences make no sense
-  kTableFull,   // kMaxSessions actor sessions are known
-};
-
-struct ChunkResult {
-  ChunkFate fate = ChunkFate::kDealtWith;
-  uint32_t stored = 0, rejected = 0, after_gap = 0, duplicates = 0;  // of its records
-  uint64_t lost = 0;            // sequences taken as lost before it
-  const char* fault = nullptr;  // why the last rejected record was rejected
-};
-
-class Intake {
+class Intake final : private RecordTaker {
  public:
-  // How far an actor's new session may lie beyond its former one, whatever the clock says: its
-  // clock may have been set back since (common/config/session_number.h).
-  static constexpr uint64_t kSessionStep = 1'000'000'000;
-
   // Borrows all three. Accounts for records that were stored after their session's counters were
   // last written (the writer died between the two). Throws Error when ring and sessions disagree.
   Intake(uint64_t spec_hash, Ring* ring, SessionTable* sessions, EpisodeIndex* index);
+  Intake(const Intake&) = delete;
+  Intake& operator=(const Intake&) = delete;
 
-  // `chunk.payload` must be aligned to 8. `latest_session`: none begun by now has a higher number.
+  // As ChunkIntake.
   ChunkResult Take(const TransitionChunk& chunk,
-                   uint64_t latest_session = std::numeric_limits<uint64_t>::max());
+                   uint64_t latest_session = std::numeric_limits<uint64_t>::max()) {
+    return chunks_.Take(chunk, latest_session);
+  }
 
  private:
-  bool WellFormed(const TransitionChunk& chunk) const;
-  // The session's index, added where it is new; or why the chunk is not taken.
-  std::optional<int> FindSession(const TransitionChunk& chunk, uint64_t latest_session,
-                                 ChunkFate* fate);
-  // Of a chunk without records.
-  ChunkResult TakePosition(const TransitionChunk& chunk, int i);
-  void TakeRecord(const uint8_t* record, uint64_t sequence, SessionCounters* counters,
-                  ChunkResult* result);
+  bool Take(const SessionCounters& session, const uint8_t* record) override;
+  void OnGap(const SessionCounters& session, uint32_t env) override;
 
-  const uint64_t spec_hash_;
   Ring& ring_;
-  SessionTable& sessions_;
   EpisodeIndex& index_;
-  std::set<int> unheard_;  // sessions, by index, of which this process has not heard anything
+  ChunkIntake chunks_;
 };
 
 }  // namespace shoal::replay

@@ -188,15 +188,7 @@ bool ReplayCore::CreditsUrgent() {
 }
 
 Credit ReplayCore::Refusal(const TransitionChunk& chunk) const {
-  const std::optional<int> newest = sessions_.Newest(chunk.actor);
-  const uint64_t session = newest ? sessions_.at(*newest).session : 0;
-  return {.replay_session = replay_session_,
-          .actor = chunk.actor,
-          .session = chunk.session,
-          .stored = 0,
-          .allowed = 0,
-          .spec_hash = spec_hash_,
-          .superseded_by = session > chunk.session ? session : 0};
+  return shoal::Refusal(chunk, sessions_, spec_hash_, replay_session_);
 }
 
 bool ReplayCore::InsertsBlocked() const {

@@ -21,10 +21,10 @@
 #include <vector>
 
 #include "common/config/run_files.h"
+#include "common/intake/credit_book.h"
 #include "common/wire/batch_schema.h"
 #include "common/wire/messages.h"
 #include "replay_server/core/batch_gather.h"
-#include "replay_server/core/credit_book.h"
 #include "replay_server/core/episode_index.h"
 #include "replay_server/core/intake.h"
 #include "replay_server/core/rate_limiter.h"

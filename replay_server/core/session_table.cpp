@@ -25,6 +25,7 @@ SessionCounters FromCopy(const SessionCopy& copy) {
           .rejected = copy.rejected,
           .after_gap = copy.after_gap,
           .lost = copy.lost,
+          .discarded = 0,
           .duplicates = copy.duplicates};
 }
 
@@ -41,7 +42,8 @@ const SessionCopy* NewestCopy(const StoredSession& stored) {
 
 }  // namespace
 
-SessionTable::SessionTable(std::span<StoredSession> storage) : storage_(storage) {
+SessionTable::SessionTable(std::span<StoredSession> storage)
+    : SessionLedger(storage.size()), storage_(storage) {
   for (const StoredSession& stored : storage) {
     const SessionCopy* copy = NewestCopy(stored);
     if (copy == nullptr) {
@@ -50,43 +52,15 @@ SessionTable::SessionTable(std::span<StoredSession> storage) : storage_(storage)
       throw RuntimeError("the replay file's session {} is damaged; remove the file to start afresh",
                          size());
     }
-    sessions_.push_back(FromCopy(*copy));
     versions_.push_back(copy->version);
-    Index(size() - 1);
+    Load(FromCopy(*copy));
   }
 }
 
-void SessionTable::Index(int i) {
-  const SessionCounters& counters = at(i);
-  by_name_[{counters.actor, counters.session}] = i;
-  const auto [it, added] = newest_.try_emplace(counters.actor, i);
-  if (!added && at(it->second).session < counters.session) it->second = i;
-}
-
-std::optional<int> SessionTable::Find(uint32_t actor, uint64_t session) const {
-  const auto it = by_name_.find({actor, session});
-  return it == by_name_.end() ? std::nullopt : std::optional(it->second);
-}
-
-std::optional<int> SessionTable::Newest(uint32_t actor) const {
-  const auto it = newest_.find(actor);
-  return it == newest_.end() ? std::nullopt : std::optional(it->second);
-}
-
-std::optional<int> SessionTable::Add(uint32_t actor, uint64_t session) {
-  CHECK(!Find(actor, session)) << "actor " << actor << " session " << session;
-  if (sessions_.size() == storage_.size()) return std::nullopt;
-  sessions_.push_back({.actor = actor, .session = session});
-  versions_.push_back(0);
-  const int i = size() - 1;
-  Index(i);
-  Update(i, at(i));
-  return i;
-}
-
-void SessionTable::Update(int i, const SessionCounters& counters) {
+void SessionTable::OnUpdate(int i, const SessionCounters& counters) {
+  CHECK(counters.discarded == 0) << "a replay keeps what it takes";
   const size_t index = static_cast<size_t>(i);
-  CHECK(counters.actor == at(i).actor && counters.session == at(i).session);
+  if (index == versions_.size()) versions_.push_back(0);
   const uint64_t version = ++versions_[index];
   SessionCopy& copy = storage_[index].copies[version % 2];
   const std::atomic_ref<uint64_t> check(copy.check);
@@ -101,23 +75,16 @@ void SessionTable::Update(int i, const SessionCounters& counters) {
   copy.lost = counters.lost;
   copy.duplicates = counters.duplicates;
   check.store(CheckWord(copy), std::memory_order_release);
-  sessions_[index] = counters;
 }
 
 void SessionTable::Inherit(const FormerServer& former) {
-  CHECK(sessions_.empty());
+  CHECK(size() == 0);
   for (SessionCounters counters : former.sessions) {
     const std::optional<int> i = Add(counters.actor, counters.session);
     if (!i) return;  // a table as full as the former one's was: the next chunk will say so
     counters.lost += counters.stored();
     Update(*i, counters);
   }
-}
-
-uint64_t SessionTable::TotalStored() const {
-  uint64_t total = 0;
-  for (const SessionCounters& counters : sessions_) total += counters.stored();
-  return total;
 }
 
 }  // namespace shoal::replay

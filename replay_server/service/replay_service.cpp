@@ -19,11 +19,11 @@
 #include "common/dds/metrics_publisher.h"
 #include "common/dds/publisher.h"
 #include "common/dds/subscriber.h"
+#include "common/intake/accounting_file.h"
 #include "common/wire/control_state.h"
 #include "common/wire/metrics_report.h"
 #include "common/wire/scoped_seconds.h"
 #include "replay_server/core/replay_core.h"
-#include "replay_server/service/accounting_file.h"
 #include "replay_server/service/batch_sender.h"
 #include "replay_server/service/flow_ages.h"
 #include "replay_server/service/problem_log.h"
@@ -76,8 +76,8 @@ class ReplayService {
         bus_(dds::FindPlace(folder, run_.config.transport, reach), dds::Role::kReplay),
         metrics_publisher_(bus_),
         before_(ReadAccountBefore(folder)),
-        core_(run_, folder, NextSession(folder, "replay-0", WallTimeNs()), before_.server,
-              [this] { ReportStarting(); }),
+        core_(run_, folder, NextSession(folder, "replay-0", WallTimeNs()),
+              {before_.stored_steps, before_.sessions}, [this] { ReportStarting(); }),
         control_(Now()),
         inbox_(SpecHash(), ChunkBytes(), MaxChunks()),
         problems_(SpecHash(), core_.batch_schema()),
@@ -102,7 +102,7 @@ class ReplayService {
       log::Warning(
           "the {} env steps stored by earlier servers are gone ({}); refilling to {} sampleable "
           "transitions (replay.min_size) before training goes on",
-          before_.server.stored_steps,
+          before_.stored_steps,
           Settings().replay.storage == "memory" ? "replay.storage=memory" : "the file is new",
           Settings().replay.min_size);
     }

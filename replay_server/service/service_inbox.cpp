@@ -1,40 +1,12 @@
 #include "replay_server/service/service_inbox.h"
 
-#include <cstring>
 #include <utility>
 
 namespace shoal::replay {
 
-ServiceInbox::ServiceInbox(uint64_t spec_hash, uint64_t chunk_bytes, size_t max_chunks)
-    : spec_hash_(spec_hash), chunk_words_((chunk_bytes + 7) / 8), max_chunks_(max_chunks) {}
-
-std::unique_ptr<PooledChunk> ServiceInbox::TakeBuffer() {
-  const MutexLock lock(mutex_);
-  if (!free_.empty()) {
-    std::unique_ptr<PooledChunk> buffer = std::move(free_.back());
-    free_.pop_back();
-    return buffer;
-  }
-  if (chunks_ >= max_chunks_) {
-    ++dropped_chunks_;
-    return nullptr;
-  }
-  ++chunks_;
-  return std::make_unique<PooledChunk>();
-}
-
 void ServiceInbox::OnChunk(const TransitionChunk& chunk) {
-  std::unique_ptr<PooledChunk> buffer = TakeBuffer();
+  std::unique_ptr<PooledChunk> buffer = pool_.Copy(chunk);
   if (!buffer) return;
-  buffer->words.resize(chunk_words_);
-  buffer->chunk = chunk;
-  buffer->chunk.payload = {};
-  if (chunk.spec_hash == spec_hash_ && chunk.payload.size() <= chunk_words_ * 8) {
-    auto* bytes = reinterpret_cast<uint8_t*>(buffer->words.data());
-    if (!chunk.payload.empty()) std::memcpy(bytes, chunk.payload.data(), chunk.payload.size());
-    buffer->chunk.payload = {bytes, chunk.payload.size()};
-  }
-  buffer->arrived = Now();
   const MutexLock lock(mutex_);
   waiting_.chunks.push_back(std::move(buffer));
   arrived_.NotifyOne();
@@ -65,24 +37,9 @@ ServiceInbox::Arrivals ServiceInbox::Wait(SteadyTime deadline) {
   return std::exchange(waiting_, {});
 }
 
-void ServiceInbox::Release(std::unique_ptr<PooledChunk> chunk) {
-  const MutexLock lock(mutex_);
-  free_.push_back(std::move(chunk));
-}
-
-void ServiceInbox::SetMaxChunks(size_t max_chunks) {
-  const MutexLock lock(mutex_);
-  max_chunks_ = max_chunks;
-}
-
 size_t ServiceInbox::Depth() const {
   const MutexLock lock(mutex_);
   return waiting_.chunks.size() + waiting_.requests.size();
-}
-
-uint64_t ServiceInbox::DroppedChunks() const {
-  const MutexLock lock(mutex_);
-  return dropped_chunks_;
 }
 
 uint64_t ServiceInbox::DroppedRequests() const {

@@ -18,17 +18,17 @@ inline ReceivedWeights ConstantPolicy(const NetworkConfig& network, const Observ
                                       WeightsVersion version, float mean, float raw_log_std,
                                       uint64_t env_steps = 0) {
   nn::TensorMap tensors;
-  for (const auto& [name, shape, start] : nn::PolicyParameters(network, spec)) {
+  for (const nn::ParameterSpec& parameter : nn::PolicyParameters(network, spec)) {
     int64_t count = 1;
-    for (const int64_t size : shape) count *= size;
+    for (const int64_t size : parameter.shape) count *= size;
     std::vector<float> values(static_cast<size_t>(count), 0.0F);
-    if (name == "actor.mlp.output.bias") {
+    if (parameter.name == "actor.mlp.output.bias") {
       std::fill(values.begin(), values.begin() + count / 2, mean);
       std::fill(values.begin() + count / 2, values.end(), raw_log_std);
     }
     std::vector<uint8_t> bytes(values.size() * 4);
     std::memcpy(bytes.data(), values.data(), bytes.size());
-    tensors[name] = {"F32", shape, std::move(bytes)};
+    tensors[parameter.name] = {"F32", parameter.shape, std::move(bytes)};
   }
   return {version, env_steps, "", nn::WriteSafetensors(tensors, {})};
 }

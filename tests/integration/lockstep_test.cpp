@@ -75,7 +75,7 @@ TEST(Lockstep, RunningStatisticsRepeatAndGoOnBitForBit) {
   RunningTraining first(interrupted, interrupted.Command(keys, {"--lockstep"}));
   ASSERT_TRUE(first.WaitForSteps(130)) << first.Output();
   first.Interrupt();
-  ASSERT_EQ(first.End(std::chrono::seconds(120)), 0) << first.Output();
+  ASSERT_EQ(first.End(std::chrono::seconds(120)), kInterruptedExit) << first.Output();
   const auto steps = interrupted.Json("meta.json").at("env_steps").get<int64_t>();
   ASSERT_LT(steps, 352) << "ended before it was interrupted";
   RunningTraining rest(interrupted, {"shoal", "train", "--resume", interrupted.path().string()});

@@ -12,6 +12,7 @@
 
 #include "common/base/random.h"
 #include "common/config/batch_options.h"
+#include "common/config/on_policy.h"
 #include "common/config/run_files.h"
 #include "learner/batch_stream.h"
 #include "learner/outlet.h"
@@ -22,7 +23,7 @@ namespace shoal::learner {
 class PlayedBatches final : public BatchStream {
  public:
   PlayedBatches(const RunConfig& run, uint64_t first_request)
-      : schema_(BatchSchemaOf(run)), space_(schema_.total_bytes() + 64), next_(first_request) {}
+      : schema_(SchemaOf(run)), space_(schema_.total_bytes() + 64), next_(first_request) {}
 
   std::optional<Batch> Next(SteadyTime) override {
     if (before) before(next_);
@@ -49,6 +50,11 @@ class PlayedBatches final : public BatchStream {
   std::function<uint64_t(uint64_t request)> stored_steps = [](uint64_t r) { return 10 * r; };
 
  private:
+  static BatchSchema SchemaOf(const RunConfig& run) {
+    if (!LearnsOnPolicy(run.config)) return BatchSchemaOf(run);
+    return {run.spec, {.batch = run.config.learner.batch, .rollout = true}};
+  }
+
   const BatchSchema schema_;
   std::vector<uint8_t> space_;
   uint64_t next_;

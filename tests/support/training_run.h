@@ -69,14 +69,15 @@ class TrainingRun {
   TemporaryFolder folder_;
 };
 
-// made = stored + lost with a killed actor + lost with a replay + rejected + after gap, exactly.
+// made = stored + lost with a killed actor + lost with a replay + rejected + after gap + discarded,
+// exactly.
 inline void ExpectBalanced(const nlohmann::json& meta) {
   const auto& a = meta.at("accounting");
   EXPECT_GT(a.at("made").get<int64_t>(), 0);
   EXPECT_EQ(a.at("made").get<int64_t>(),
             a.at("stored").get<int64_t>() + a.at("lost_with_process").get<int64_t>() +
                 a.at("lost_with_replay").get<int64_t>() + a.at("rejected").get<int64_t>() +
-                a.at("after_gap").get<int64_t>())
+                a.at("after_gap").get<int64_t>() + a.at("discarded").get<int64_t>())
       << a.dump();
 }
 

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "common/base/error.h"
@@ -62,6 +63,32 @@ class Player {
   std::unique_ptr<Exploration> exploration_;
   Random stream_{17};
 };
+
+TEST(PolicyDraw, IsClippedForTheEnvironmentAndRememberedAsDrawn) {
+  Config config;
+  config.learner.algorithm = "ppo";
+  const auto exploration = MakeExploration(config, /*envs=*/1, /*action_size=*/2, 1);
+  const float mean[] = {0.9F, -0.3F}, log_std[] = {0.5F, -1.F};
+  Random stream(17), same(17);
+  int clipped = 0;
+  for (int i = 0; i < 200; ++i) {
+    float action[2], drawn[2];
+    exploration->Act(0, {.mean = mean, .log_std = log_std, .squashed = false}, stream, action);
+    const float log_prob = exploration->Drawn(drawn);
+    double expected = 0;
+    for (int a = 0; a < 2; ++a) {
+      const double noise = same.Normal(), sigma = std::exp(double{log_std[a]});
+      EXPECT_NEAR(drawn[a], mean[a] + sigma * noise, 1e-5);
+      EXPECT_EQ(action[a], std::clamp(drawn[a], -1.F, 1.F));
+      // The density of N(mean, sigma^2) where it was drawn.
+      const double pi = std::acos(-1.0), z = (double{drawn[a]} - mean[a]) / sigma;
+      expected += std::log(std::exp(-z * z / 2) / (sigma * std::sqrt(2 * pi)));
+      clipped += action[a] != drawn[a];
+    }
+    EXPECT_NEAR(log_prob, expected, 1e-4);
+  }
+  EXPECT_GT(clipped, 20) << "the case is too easy";
+}
 
 TEST(SquashedGaussian, IsEquationFourBitForBit) {
   Player player(ConfigOf("squashed_gaussian"));

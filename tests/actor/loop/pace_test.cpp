@@ -72,11 +72,25 @@ TEST(VersionPace, PlaysEachRolloutByOneVersionAndAwaitsANewer) {
   EXPECT_EQ(pace.Next(0, {9, 0}), Turn::kStep) << "a session's untrained policy is one";
   EXPECT_EQ(pace.Next(1, {9, 0}), Turn::kStep);
   EXPECT_EQ(pace.Next(2, {9, 0}), Turn::kAwaitWeights);
-  EXPECT_THAT(pace.Awaited(), HasSubstr("newer than update 0"));
+  EXPECT_THAT(pace.Awaited(), HasSubstr("no weights of update 1"));
   EXPECT_EQ(pace.Next(2, {9, 10}), Turn::kStep);
   EXPECT_EQ(pace.Next(3, {9, 10}), Turn::kStep);
   EXPECT_EQ(pace.Next(4, {9, 10}), Turn::kAwaitWeights);
   EXPECT_EQ(pace.Next(4, {10, 5}), Turn::kStep) << "a newer learner's, whatever its number";
+}
+
+TEST(VersionPace, OneVersionAheadPlaysOneRolloutMoreThanItHasWeightsFor) {
+  VersionPace pace(/*vector_steps=*/1, /*ahead=*/1);
+  EXPECT_EQ(pace.Next(0, {}), Turn::kAwaitWeights);
+  EXPECT_EQ(pace.Next(0, {9, 3}), Turn::kStep);
+  EXPECT_EQ(pace.Next(1, {9, 3}), Turn::kStep) << "for the update after the next";
+  EXPECT_EQ(pace.Next(2, {9, 3}), Turn::kAwaitWeights);
+  EXPECT_THAT(pace.Awaited(), HasSubstr("no weights of update 4"));
+  EXPECT_EQ(pace.Next(2, {9, 4}), Turn::kStep);
+  EXPECT_EQ(pace.Next(3, {9, 4}), Turn::kAwaitWeights) << "it never falls further behind";
+  EXPECT_EQ(pace.Next(3, {9, 8}), Turn::kStep) << "the learner went on without it";
+  EXPECT_EQ(pace.Next(4, {9, 8}), Turn::kStep);
+  EXPECT_EQ(pace.Next(5, {9, 8}), Turn::kAwaitWeights);
 }
 
 TEST(MakePace, IsWhatTheConfigurationAsksFor) {

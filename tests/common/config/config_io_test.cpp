@@ -175,8 +175,8 @@ TEST(ToJson, ListsSectionsInTheOrderOfTheStruct) {
   for (const auto& [name, value] : object.items()) {
     if (value.is_object()) names.push_back(name);
   }
-  EXPECT_THAT(names, ElementsAre("observation", "randomization", "replay", "learner", "exploration",
-                                 "network", "eval", "stop", "transport"));
+  EXPECT_THAT(names, ElementsAre("observation", "randomization", "replay", "learner", "ppo",
+                                 "exploration", "network", "eval", "stop", "transport"));
 }
 
 TEST(ConfigHash, ChangesWithWhatIsComputedButNotWithNameOrLength) {
@@ -215,6 +215,40 @@ TEST(Validate, RefusesCombinationsThatCannotWork) {
     ApplyAssignments(assignments, &config);
     EXPECT_THAT(UsageMessage([&] { Validate(config); }), HasSubstr(message));
   }
+}
+
+TEST(Validate, RefusesWhatOnPolicyLearningHasNoUseForByName) {
+  const std::pair<std::vector<std::string>, const char*> cases[] = {
+      {{"replay.n_step=3"}, "replay.n_step = 3: learner.algorithm = ppo learns from rollouts"},
+      {{"replay.hindsight=future"}, "replay.hindsight = \"future\""},
+      {{"replay.samples_per_insert=8"}, "expected it unset (64.0), or learner.algorithm = sac"},
+      {{"exploration.random_steps=10"}, "exploration.random_steps = 10"},
+      {{"learner.tau=0.5"}, "learner.tau = 0.5"},
+      {{"learner.weights_period=3"}, "learner.weights_period = 3"},
+      {{"ppo.rollout_steps=1"}, "ppo.rollout_steps = 1: a rollout needs"},
+      {{"ppo.rollout_steps=100", "actors=2", "learner.batch=256"},
+       "are 800, which learner.batch = 256 does not divide; expected a multiple of 32, 128 for"},
+      {{"ppo.normalise_observations=true"}, "ppo.normalise_observations = true: the run observes"},
+  };
+  for (const auto& [assignments, message] : cases) {
+    Config config;
+    ApplyAssignments({"learner.algorithm=ppo"}, &config);
+    EXPECT_NO_THROW(Validate(config));
+    ApplyAssignments(assignments, &config);
+    EXPECT_THAT(UsageMessage([&] { Validate(config); }), HasSubstr(message));
+  }
+  Config config;
+  ApplyAssignments({"ppo.epochs=3"}, &config);
+  EXPECT_THAT(UsageMessage([&] { Validate(config); }),
+              HasSubstr("ppo.epochs belongs to learner.algorithm = ppo: expected not to be set"));
+}
+
+// A run's config.json lists every key.
+TEST(Validate, AcceptsEveryKeyOfAnOnPolicyRunAsItIs) {
+  Config config = LoadPreset("fetch-reach-ppo"), again;
+  ApplyJson(nlohmann::json::parse(ToJson(config).dump()), "config.json", &again);
+  EXPECT_NO_THROW(Validate(again));
+  EXPECT_EQ(ToJson(again), ToJson(config));
 }
 
 TEST(DescribeKeys, IsWhatTheDocumentationShows) {

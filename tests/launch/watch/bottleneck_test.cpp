@@ -99,6 +99,20 @@ TEST(Advice, ABusyReplayIsNamedBeforeAnybodyWhoWaitsForIt) {
   EXPECT_THAT(Advise(figures, 2), HasSubstr("replay server is busy"));
 }
 
+TEST(Advice, OnPolicyWhoeverWaitsLessHasTheLongerPart) {
+  Bottleneck figures = Balanced();
+  figures.limited = false;
+  SetShare(&figures, "learner", "waiting_data", 0.6);
+  EXPECT_THAT(Advise(figures, 2), AllOf(HasSubstr("learner waits for rollouts 60 %"),
+                                        HasSubstr("shoal scale --actors 3")));
+  SetShare(&figures, "actor", "weights", 0.7);
+  EXPECT_THAT(Advise(figures, 2),
+              AllOf(HasSubstr("actors wait for weights 70 %"), HasSubstr("ppo.versions_ahead")));
+  for (const std::string& line : FormatBottleneck(figures)) {
+    EXPECT_THAT(line, Not(HasSubstr("limiter")));
+  }
+}
+
 TEST(Advice, WithoutFiguresThereIsNone) {
   EXPECT_EQ(Advise(Bottleneck(), 1), "Nothing was measured.");
 }

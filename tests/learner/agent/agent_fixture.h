@@ -18,11 +18,11 @@
 
 namespace shoal::learner {
 
-// A batch with memory of its own, filled with random values.
+// A batch with memory of its own, filled with random values. A rollout is one of one environment.
 class RandomBatch {
  public:
-  RandomBatch(const ObservationSpec& spec, int batch, uint64_t key)
-      : schema_(spec, {.batch = batch}),
+  RandomBatch(const ObservationSpec& spec, int batch, uint64_t key, bool rollout = false)
+      : schema_(spec, {.batch = batch, .rollout = rollout}),
         memory_(static_cast<uint8_t*>(std::aligned_alloc(64, schema_.total_bytes())), &std::free) {
     std::memset(memory_.get(), 0, schema_.total_bytes());
     Random random(key);
@@ -34,6 +34,12 @@ class RandomBatch {
     for (float& value : view.action) value = float(random.Uniform(-1, 1));
     for (float& value : view.reward) value = float(random.Normal());
     for (float& value : view.bootstrap) value = random.Uniform() < 0.8 ? 1.f : 0.f;
+    for (float& value : view.drawn_action) value = float(random.Normal());
+    for (float& value : view.log_prob) value = -2.5f + 0.2f * float(random.Normal());
+    for (size_t t = 0; t < view.continues.size(); ++t) {
+      view.ends[t] = 1 - view.bootstrap[t];
+      view.continues[t] = t + 1 < view.continues.size() ? view.bootstrap[t] : 0;
+    }
   }
 
   BatchView View() const { return schema_.View(memory_.get()); }

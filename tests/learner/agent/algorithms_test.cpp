@@ -9,6 +9,7 @@
 
 #include "common/base/error.h"
 #include "common/config/config_io.h"
+#include "common/config/on_policy.h"
 #include "tests/learner/agent/agent_fixture.h"
 
 namespace shoal::learner {
@@ -31,6 +32,10 @@ class EachAlgorithm : public testing::TestWithParam<std::string> {
     return *std::ranges::find(Algorithms(), GetParam(), &Algorithm::name);
   }
 
+  RandomBatch Batch(uint64_t key) const {
+    return {SmallSpec(), config_.learner.batch, key, LearnsOnPolicy(config_)};
+  }
+
   Config config_ = SmallConfig();
 };
 
@@ -43,7 +48,7 @@ TEST_P(EachAlgorithm, ReportsItsFiguresAndNoOthers) {
     EXPECT_EQ(FindFigure(figure->name)->name, figure->name);
   }
   for (int u = 0; u < 10; ++u) {
-    const RandomBatch batch(SmallSpec(), config_.learner.batch, uint64_t(u));
+    const RandomBatch batch = Batch(uint64_t(u));
     const UpdateOutcome outcome = agent->Update(batch.View());
     ASSERT_TRUE(outcome.finite);
     for (const auto& [figure, value] : outcome.figures.entries()) {
@@ -56,7 +61,7 @@ TEST_P(EachAlgorithm, ReportsItsFiguresAndNoOthers) {
 
 TEST_P(EachAlgorithm, EndsEveryStageOfAnUpdate) {
   const auto agent = MakeAgent(config_, SmallSpec(), nn::Precision::kF32);
-  const RandomBatch batch(SmallSpec(), config_.learner.batch, 1);
+  const RandomBatch batch = Batch(1);
   std::map<UpdateStage, int> ends;
   agent->Update(batch.View(), [&](UpdateStage stage) { ++ends[stage]; });
   for (const UpdateStage stage :

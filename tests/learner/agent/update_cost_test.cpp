@@ -31,6 +31,20 @@ TEST(UpdateCost, CountsTheProductsOfAllPasses) {
   EXPECT_DOUBLE_EQ(cost.flop, 2 * 10 * (4 * critics + actor + (3 * actor + 2 * critics) / 2));
 }
 
+// Actor 3 x 8 + 8 x 2, value 3 x 8 + 8 x 1, for 6 steps of 2 x 5 environments in 4 epochs.
+TEST(UpdateCost, OnPolicyItIsThatOfAWholeRollout) {
+  Config config = SmallNetworks("ppo");
+  config.actors = 2;
+  config.envs_per_actor = 5;
+  config.ppo.rollout_steps = 6;
+  config.ppo.epochs = 4;
+  const double actor = 3 * 8 + 8 * 2, value = 3 * 8 + 8;
+  EXPECT_DOUBLE_EQ(CostOfUpdate(config, State()).flop, 2 * 60 * (value + 4 * 3 * (actor + value)));
+  config.ppo.networks = "shared";
+  const double both = 3 * 8 + 8 * 3;
+  EXPECT_DOUBLE_EQ(CostOfUpdate(config, State()).flop, 2 * 60 * (both + 4 * 3 * both));
+}
+
 TEST(UpdateCost, PicturesCostTheEncodersMaps) {
   Config config = SmallNetworks("sac");
   config.network.encoder = "nature";

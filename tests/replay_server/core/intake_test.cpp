@@ -155,7 +155,8 @@ TEST_F(IntakeTest, ASessionFromTheFutureIsRefusedAndDoesNotSupersede) {
 
 TEST_F(IntakeTest, AnActorWhoseClockWasSetBackFollowsItsFormerSession) {
   intake_.Take(a_.Chunk(1, 2));
-  RecordScript next(spec_, 0, 10 + Intake::kSessionStep), leap(spec_, 1, 12 + Intake::kSessionStep);
+  RecordScript next(spec_, 0, 10 + ChunkIntake::kSessionStep),
+      leap(spec_, 1, 12 + ChunkIntake::kSessionStep);
   EXPECT_EQ(intake_.Take(next.Chunk(1, 2), /*latest_session=*/5).fate, ChunkFate::kDealtWith);
   intake_.Take(b_.Chunk(1, 2));
   EXPECT_EQ(intake_.Take(leap.Chunk(1, 2), 5).fate, ChunkFate::kFuture);

@@ -1,8 +1,8 @@
-#include "replay_server/core/credit_book.h"
+#include "common/intake/credit_book.h"
 
 #include <gtest/gtest.h>
 
-namespace shoal::replay {
+namespace shoal {
 namespace {
 
 class CreditBookTest : public testing::Test {
@@ -17,10 +17,9 @@ class CreditBookTest : public testing::Test {
     return book_.Take(/*changed_only=*/true);
   }
 
-  std::vector<StoredSession> storage_ = std::vector<StoredSession>(8);
-  SessionTable table_{storage_};
+  SessionLedger table_{8};
   std::optional<uint64_t> steps_left_;
-  CreditBook book_{table_, /*spec_hash=*/5, /*replay_session=*/77, /*window_records=*/10,
+  CreditBook book_{table_, /*spec_hash=*/5, /*receiver_session=*/77, /*window_records=*/10,
                    /*least_records=*/3};
 };
 
@@ -123,4 +122,4 @@ TEST_F(CreditBookTest, OnlyTheNewestSessionOfAnActorHasCredit) {
 }
 
 }  // namespace
-}  // namespace shoal::replay
+}  // namespace shoal

@@ -1,4 +1,4 @@
-#include "replay_server/service/accounting_file.h"
+#include "common/intake/accounting_file.h"
 
 #include <cerrno>
 #include <cstring>
@@ -9,7 +9,7 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 
-namespace shoal::replay {
+namespace shoal {
 namespace {
 
 constexpr char kSchema[] = "shoal-accounting-1";
@@ -23,7 +23,7 @@ uint64_t Count(const nlohmann::json& object, const char* key) {
 
 }  // namespace
 
-std::string AccountingJson(const SessionTable& sessions, const AccountTotals& totals) {
+std::string AccountingJson(const SessionLedger& sessions, const AccountTotals& totals) {
   nlohmann::ordered_json list = nlohmann::ordered_json::array();
   for (int i = 0; i < sessions.size(); ++i) {
     const SessionCounters& counters = sessions.at(i);
@@ -34,6 +34,7 @@ std::string AccountingJson(const SessionTable& sessions, const AccountTotals& to
                     {"rejected", counters.rejected},
                     {"after_gap", counters.after_gap},
                     {"lost", counters.lost},
+                    {"discarded", counters.discarded},
                     {"duplicates", counters.duplicates}});
   }
   const nlohmann::ordered_json object = {{"schema", kSchema},
@@ -54,21 +55,23 @@ AccountBefore ReadAccountBefore(const std::filesystem::path& run) {
     throw RuntimeError("'{}': expected an object of schema '{}'", path.string(), kSchema);
   }
   try {
-    before.server.stored_steps = Count(object, "stored_steps");
+    before.stored_steps = Count(object, "stored_steps");
     before.ring_replaced = object.value("ring_replaced", false);
     for (const auto& session : object.at("sessions")) {
-      const SessionCounters counters{.actor = session.at("actor").get<uint32_t>(),
-                                     .session = Count(session, "session"),
-                                     .highest = Count(session, "highest"),
-                                     .rejected = Count(session, "rejected"),
-                                     .after_gap = Count(session, "after_gap"),
-                                     .lost = Count(session, "lost"),
-                                     .duplicates = Count(session, "duplicates")};
+      const SessionCounters counters{
+          .actor = session.at("actor").get<uint32_t>(),
+          .session = Count(session, "session"),
+          .highest = Count(session, "highest"),
+          .rejected = Count(session, "rejected"),
+          .after_gap = Count(session, "after_gap"),
+          .lost = Count(session, "lost"),
+          .discarded = session.contains("discarded") ? Count(session, "discarded") : 0,
+          .duplicates = Count(session, "duplicates")};
       if (counters.stored() != Count(session, "stored")) {
         throw RuntimeError("'{}': the counts of actor {} do not add up", path.string(),
                            counters.actor);
       }
-      before.server.sessions.push_back(counters);
+      before.sessions.push_back(counters);
     }
   } catch (const nlohmann::json::exception& e) {
     throw RuntimeError("'{}': {}", path.string(), e.what());
@@ -91,4 +94,4 @@ void ReplaceFile(const std::filesystem::path& path, const std::string& content) 
   if (error) throw RuntimeError("cannot write '{}': {}", path.string(), error.message());
 }
 
-}  // namespace shoal::replay
+}  // namespace shoal

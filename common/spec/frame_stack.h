@@ -6,7 +6,7 @@
 #include <cstring>
 #include <span>
 
-namespace shoal::actor {
+namespace shoal {
 
 // Writes into memory owned by the caller: K * frame_bytes, one slice of the inference batch.
 class FrameStack {
@@ -33,4 +33,4 @@ class FrameStack {
   size_t frame_bytes_;
 };
 
-}  // namespace shoal::actor
+}  // namespace shoal

@@ -1,4 +1,4 @@
-#include "replay_server/service/accounting_file.h"
+#include "common/intake/accounting_file.h"
 
 #include <gtest/gtest.h>
 
@@ -9,12 +9,11 @@
 #include "common/base/files.h"
 #include "tests/support/temporary_folder.h"
 
-namespace shoal::replay {
+namespace shoal {
 namespace {
 
 TEST(AccountingFile, ListsEverySessionWithItsCounters) {
-  std::vector<StoredSession> storage(4);
-  SessionTable table(storage);
+  SessionLedger table(4);
   table.Add(1, 1'700'000'000'000'000'001);
   table.Update(0, {.actor = 1,
                    .session = 1'700'000'000'000'000'001,
@@ -22,6 +21,7 @@ TEST(AccountingFile, ListsEverySessionWithItsCounters) {
                    .rejected = 1,
                    .after_gap = 2,
                    .lost = 3,
+                   .discarded = 5,
                    .duplicates = 4});
   table.Add(2, 5);
   EXPECT_EQ(
@@ -32,17 +32,16 @@ TEST(AccountingFile, ListsEverySessionWithItsCounters) {
     "stored_records": 14,
     "ring_replaced": false,
     "sessions": [
-      {"actor": 1, "session": 1700000000000000001, "highest": 20, "stored": 14, "rejected": 1,
-       "after_gap": 2, "lost": 3, "duplicates": 4},
+      {"actor": 1, "session": 1700000000000000001, "highest": 20, "stored": 9, "rejected": 1,
+       "after_gap": 2, "lost": 3, "discarded": 5, "duplicates": 4},
       {"actor": 2, "session": 5, "highest": 0, "stored": 0, "rejected": 0, "after_gap": 0,
-       "lost": 0, "duplicates": 0}]})"));
+       "lost": 0, "discarded": 0, "duplicates": 0}]})"));
 }
 
 TEST(AccountingFile, TellsALaterServerWhatWasStored) {
   const TemporaryFolder folder;
-  std::vector<StoredSession> storage(4);
-  EXPECT_EQ(ReadAccountBefore(folder.path()).server.stored_steps, 0u);
-  SessionTable table(storage);
+  EXPECT_EQ(ReadAccountBefore(folder.path()).stored_steps, 0u);
+  SessionLedger table(4);
   table.Add(1, 1'700'000'000'000'000'001);
   table.Update(0, {.actor = 1,
                    .session = 1'700'000'000'000'000'001,
@@ -54,9 +53,9 @@ TEST(AccountingFile, TellsALaterServerWhatWasStored) {
   ReplaceFile(folder.path() / kAccountingFile,
               AccountingJson(table, {.stored_steps = 1234, .stored_records = 1250}));
   const AccountBefore before = ReadAccountBefore(folder.path());
-  EXPECT_EQ(before.server.stored_steps, 1234u);
-  ASSERT_EQ(before.server.sessions.size(), 1u);
-  EXPECT_EQ(before.server.sessions[0], table.at(0));
+  EXPECT_EQ(before.stored_steps, 1234u);
+  ASSERT_EQ(before.sessions.size(), 1u);
+  EXPECT_EQ(before.sessions[0], table.at(0));
   EXPECT_FALSE(before.ring_replaced);
   for (const char* damaged :
        {"", "{", "{}", R"({"schema": "shoal-accounting-2"})", R"({"schema": "shoal-accounting-1"})",
@@ -86,4 +85,4 @@ TEST(AccountingFile, SaysWhereItCannotBeWritten) {
 }
 
 }  // namespace
-}  // namespace shoal::replay
+}  // namespace shoal

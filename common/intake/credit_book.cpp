@@ -1,14 +1,14 @@
-#include "replay_server/core/credit_book.h"
+#include "common/intake/credit_book.h"
 
 #include <algorithm>
 
-namespace shoal::replay {
+namespace shoal {
 
-CreditBook::CreditBook(const SessionTable& sessions, uint64_t spec_hash, uint64_t replay_session,
+CreditBook::CreditBook(const SessionLedger& sessions, uint64_t spec_hash, uint64_t receiver_session,
                        uint64_t window_records, uint64_t least_records)
     : sessions_(sessions),
       spec_hash_(spec_hash),
-      replay_session_(replay_session),
+      receiver_session_(receiver_session),
       window_records_(window_records),
       least_records_(std::min(least_records, window_records)) {}
 
@@ -42,7 +42,7 @@ std::vector<Credit> CreditBook::Take(bool changed_only) {
     account.changed = false;
     account.told = true;
     account.told_stored = account.stored;
-    credits.push_back({.replay_session = replay_session_,
+    credits.push_back({.replay_session = receiver_session_,
                        .actor = actor,
                        .session = account.session,
                        .stored = account.stored,
@@ -66,4 +66,4 @@ bool CreditBook::Withholding() const {
   });
 }
 
-}  // namespace shoal::replay
+}  // namespace shoal

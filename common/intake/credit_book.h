@@ -17,15 +17,15 @@
 #include <optional>
 #include <vector>
 
+#include "common/intake/session_ledger.h"
 #include "common/wire/messages.h"
-#include "replay_server/core/session_table.h"
 
-namespace shoal::replay {
+namespace shoal {
 
 class CreditBook {
  public:
-  // Borrows the table.
-  CreditBook(const SessionTable& sessions, uint64_t spec_hash, uint64_t replay_session,
+  // Borrows the ledger. `receiver_session`: of the process that writes the credits.
+  CreditBook(const SessionLedger& sessions, uint64_t spec_hash, uint64_t receiver_session,
              uint64_t window_records, uint64_t least_records);
 
   // Takes over new sessions and newly dealt-with records; raises windows if `may_insert`.
@@ -54,9 +54,9 @@ class CreditBook {
   // Records that a session may have allowed and not stored, for the budget's sake.
   uint64_t Share(std::optional<uint64_t> steps_left) const;
 
-  const SessionTable& sessions_;
-  const uint64_t spec_hash_, replay_session_, window_records_, least_records_;
+  const SessionLedger& sessions_;
+  const uint64_t spec_hash_, receiver_session_, window_records_, least_records_;
   std::map<uint32_t, Account> accounts_;  // by actor
 };
 
-}  // namespace shoal::replay
+}  // namespace shoal

@@ -4,31 +4,33 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
-#include "replay_server/core/session_table.h"
+#include "common/intake/session_ledger.h"
 
-namespace shoal::replay {
+namespace shoal {
 
 inline constexpr char kAccountingFile[] = "accounting.json";
 
 struct AccountTotals {
   uint64_t stored_steps = 0;
-  uint64_t stored_records = 0;  // the ring's own count of what was ever put in
+  uint64_t stored_records = 0;  // the receiver's own count of what was ever put in, or learned from
   // At some time in the run a ring was gone with what it held, and another one begun.
   bool ring_replaced = false;
 };
 
 // {schema, stored_steps, stored_records, ring_replaced, sessions: [{actor, session, highest,
-// stored, rejected, after_gap, lost, duplicates}]} with highest = stored + rejected + after_gap +
-// lost.
-std::string AccountingJson(const SessionTable& sessions, const AccountTotals& totals);
+// stored, rejected, after_gap, lost, discarded, duplicates}]} with highest = stored + rejected +
+// after_gap + lost + discarded.
+std::string AccountingJson(const SessionLedger& sessions, const AccountTotals& totals);
 
 struct AccountBefore {
-  FormerServer server;
+  uint64_t stored_steps = 0;
+  std::vector<SessionCounters> sessions;
   bool ring_replaced = false;
 };
 
-// What an earlier server of the run left; zeros when there was none. Throws Error.
+// What an earlier receiver of the run left; zeros when there was none. Throws Error.
 AccountBefore ReadAccountBefore(const std::filesystem::path& run);
 
 // Replaces the file: readers see the old one or the new one. Not synced, so that a busy disk does
@@ -36,4 +38,4 @@ AccountBefore ReadAccountBefore(const std::filesystem::path& run);
 // Error.
 void ReplaceFile(const std::filesystem::path& path, const std::string& content);
 
-}  // namespace shoal::replay
+}  // namespace shoal

@@ -1,10 +1,10 @@
-#include "actor/acting/frame_stack.h"
+#include "common/spec/frame_stack.h"
 
 #include <gtest/gtest.h>
 
 #include <vector>
 
-namespace shoal::actor {
+namespace shoal {
 namespace {
 
 using Bytes = std::vector<uint8_t>;
@@ -30,4 +30,4 @@ TEST(FrameStack, WithoutPixelsDoesNothing) {
 }
 
 }  // namespace
-}  // namespace shoal::actor
+}  // namespace shoal

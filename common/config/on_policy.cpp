@@ -1,0 +1,111 @@
+#include "common/config/on_policy.h"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <numeric>
+#include <string_view>
+
+#include "common/base/error.h"
+#include "common/config/config_io.h"
+
+namespace shoal {
+namespace {
+
+using nlohmann::ordered_json;
+
+// Keys, or sections with a dot at their end, that say how transitions are kept and learned from
+// again and again.
+constexpr std::string_view kOffPolicyKeys[] = {"replay.",
+                                               "exploration.",
+                                               "lockstep_steps",
+                                               "learner.actor_learning_rate",
+                                               "learner.critic_learning_rate",
+                                               "learner.temperature_learning_rate",
+                                               "learner.reward_scale",
+                                               "learner.tau",
+                                               "learner.average_rate",
+                                               "learner.actor_period",
+                                               "learner.target_period",
+                                               "learner.initial_temperature",
+                                               "learner.temperature",
+                                               "learner.min_temperature",
+                                               "learner.target_entropy",
+                                               "learner.bounded_targets",
+                                               "learner.weights_period",
+                                               "learner.request_credits",
+                                               "network.log_std"};
+
+const ordered_json& ValueAt(const ordered_json& keys, std::string path) {
+  std::ranges::replace(path, '.', '/');
+  return keys.at(ordered_json::json_pointer(fmt::format("/{}", path)));
+}
+
+// The first of `path` or, of a section, its keys that is not at its default; empty when all are.
+std::string FirstChanged(std::string_view path, const ordered_json& asked,
+                         const ordered_json& usual) {
+  if (path.ends_with('.')) {
+    const std::string section(path.substr(0, path.size() - 1));
+    for (const auto& [name, value] : asked.at(section).items()) {
+      if (value != usual.at(section).at(name)) return fmt::format("{}.{}", section, name);
+    }
+    return "";
+  }
+  const std::string key(path);
+  return ValueAt(asked, key) == ValueAt(usual, key) ? "" : key;
+}
+
+void RefuseOffPolicyKeys(const Config& config) {
+  const ordered_json asked = ToJson(config), usual = ToJson(Config());
+  for (const std::string_view path : kOffPolicyKeys) {
+    const std::string key = FirstChanged(path, asked, usual);
+    if (key.empty()) continue;
+    throw UsageError(
+        "{} = {}: learner.algorithm = {} learns from rollouts, past the replay; expected it unset "
+        "({}), or learner.algorithm = sac | td3 | ddpg",
+        key, ValueAt(asked, key).dump(), config.learner.algorithm, ValueAt(usual, key).dump());
+  }
+}
+
+void RefuseOnPolicyKeys(const Config& config) {
+  const std::string key = FirstChanged("ppo.", ToJson(config), ToJson(Config()));
+  if (key.empty()) return;
+  throw UsageError("{} belongs to learner.algorithm = ppo: expected not to be set beside {}", key,
+                   config.learner.algorithm);
+}
+
+void ValidateRollout(const Config& config) {
+  const int steps = config.ppo.rollout_steps;
+  if (steps < 2) {
+    throw UsageError(
+        "ppo.rollout_steps = {}: a rollout needs a step to learn from and one that its value is "
+        "bootstrapped by; expected at least 2",
+        steps);
+  }
+  if (config.actors == 0) return;  // not known yet
+  const int64_t envs = int64_t{config.actors} * config.envs_per_actor;
+  const int64_t batch = config.learner.batch;
+  if (steps * envs % batch == 0) return;
+  const int64_t unit = batch / std::gcd(batch, envs);
+  throw UsageError(
+      "ppo.rollout_steps = {}: {} steps of {} actor(s) with {} environments each are {}, which "
+      "learner.batch = {} does not divide; expected a multiple of {}, {} for one",
+      steps, steps, config.actors, config.envs_per_actor, steps * envs, batch, unit,
+      (steps + unit - 1) / unit * unit);
+}
+
+}  // namespace
+
+bool LearnsOnPolicy(const Config& config) { return config.learner.algorithm == "ppo"; }
+
+void ValidateOnPolicy(const Config& config) {
+  if (!LearnsOnPolicy(config)) return RefuseOnPolicyKeys(config);
+  RefuseOffPolicyKeys(config);
+  ValidateRollout(config);
+  if (config.ppo.normalise_observations && !config.observation.proprioception &&
+      config.observation.goal_mode == "none") {
+    throw UsageError(
+        "ppo.normalise_observations = true: the run observes pixels alone, expected false");
+  }
+}
+
+}  // namespace shoal

@@ -1,0 +1,49 @@
+// Buffers for chunks on their way from DDS receive threads to the thread that deals with them,
+// reused, their number bounded.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "common/base/clock.h"
+#include "common/base/mutex.h"
+#include "common/wire/messages.h"
+
+namespace shoal {
+
+struct PooledChunk {
+  TransitionChunk chunk;  // its payload lies in `words`
+  SteadyTime arrived{};
+  std::vector<uint64_t> words;  // aligned to 8
+};
+
+// Any thread.
+class ChunkPool {
+ public:
+  // At most `max_chunks` chunks of up to `chunk_bytes`, allocated when first needed.
+  ChunkPool(uint64_t spec_hash, uint64_t chunk_bytes, size_t max_chunks);
+
+  // A copy of the chunk; null, and a drop counted, when no buffer is free. The payload of a chunk
+  // of another spec or larger than chunk_bytes is left out.
+  std::unique_ptr<PooledChunk> Copy(const TransitionChunk& chunk);
+  // Gives a buffer back.
+  void Release(std::unique_ptr<PooledChunk> chunk);
+  void SetMaxChunks(size_t max_chunks);
+  uint64_t Dropped() const;
+
+ private:
+  // A free buffer, or nullptr and a drop counted.
+  std::unique_ptr<PooledChunk> TakeBuffer();
+
+  const uint64_t spec_hash_;
+  const size_t chunk_words_;
+  mutable Mutex mutex_;
+  std::vector<std::unique_ptr<PooledChunk>> free_ SHOAL_GUARDED_BY(mutex_);
+  size_t max_chunks_ SHOAL_GUARDED_BY(mutex_);
+  size_t chunks_ SHOAL_GUARDED_BY(mutex_) = 0;  // buffers there are, wherever they are
+  uint64_t dropped_ SHOAL_GUARDED_BY(mutex_) = 0;
+};
+
+}  // namespace shoal

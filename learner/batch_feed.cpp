@@ -1,0 +1,62 @@
+#include "learner/batch_feed.h"
+
+#include "common/config/on_policy.h"
+#include "common/dds/publisher.h"
+#include "common/dds/subscriber.h"
+#include "learner/batch_source.h"
+#include "learner/rollouts/rollout_source.h"
+
+namespace shoal::learner {
+namespace {
+
+// Members are in construction order: subscribers, which end first, write to what is above them.
+class ReplayFeed final : public BatchFeed {
+ public:
+  ReplayFeed(const RunConfig& run, uint64_t learner_session, uint64_t updates, dds::Bus& bus)
+      : requests_(bus),
+        source_(run, learner_session, updates + 1,
+                [this](const SampleRequest& request) { return Ask(request); }),
+        parts_(bus, [this](const BatchPart& part) { source_.OnPart(part); }) {}
+
+  BatchStream& stream() override { return source_; }
+
+ private:
+  // Without a matched reader the transport would take the request and lose it.
+  bool Ask(const SampleRequest& request) {
+    return requests_.Matched() > 0 && requests_.Write(request);
+  }
+
+  dds::Publisher<SampleRequest> requests_;
+  BatchSource source_;
+  dds::Subscriber<BatchPart> parts_;
+};
+
+class RolloutFeed final : public BatchFeed {
+ public:
+  RolloutFeed(const std::filesystem::path& folder, const RunConfig& run, uint64_t learner_session,
+              uint64_t updates, dds::Bus& bus)
+      : credits_(bus),
+        source_(run, folder, learner_session, updates,
+                [this](const CreditsMessage& message) { credits_.Write(message); }),
+        chunks_(bus, [this](const TransitionChunk& chunk) { source_.OnChunk(chunk); }) {}
+
+  BatchStream& stream() override { return source_; }
+  void SayFarewell() override { source_.SayFarewell(); }
+
+ private:
+  dds::Publisher<CreditsMessage> credits_;
+  RolloutSource source_;
+  dds::Subscriber<TransitionChunk> chunks_;
+};
+
+}  // namespace
+
+std::unique_ptr<BatchFeed> MakeFeed(const std::filesystem::path& folder, const RunConfig& run,
+                                    uint64_t learner_session, uint64_t updates, dds::Bus& bus) {
+  if (LearnsOnPolicy(run.config)) {
+    return std::make_unique<RolloutFeed>(folder, run, learner_session, updates, bus);
+  }
+  return std::make_unique<ReplayFeed>(run, learner_session, updates, bus);
+}
+
+}  // namespace shoal::learner

@@ -1,0 +1,143 @@
+// Rollouts put together from records, without threads, clocks and network: chunks in, credits out;
+// whole rollouts of one environment each, and batches of them.
+//
+// A rollout is `ppo.rollout_steps` steps of one environment, one after another, by one version of
+// the weights, over episodes' ends. Of each environment the observation that its next step starts
+// from is known, once it was reset: a step is of use where it goes on from there. Rollouts are for
+// the update that follows the version they were played by, or, with ppo.versions_ahead = 1, for the
+// one after that; older ones are dropped.
+//
+// Accounting. A record is dealt with when it came, whatever becomes of it. It counts as discarded
+// until an update is made of it, and so do those of rollouts that are dropped, never completed, or
+// lost with this process: what the account says at any instant is true if the process ends there.
+//
+// Threads: none inside; one owner.
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <limits>
+#include <map>
+#include <optional>
+#include <vector>
+
+#include "common/config/run_files.h"
+#include "common/intake/accounting_file.h"
+#include "common/intake/chunk_intake.h"
+#include "common/intake/credit_book.h"
+#include "common/intake/session_ledger.h"
+#include "common/spec/record.h"
+#include "common/wire/batch_schema.h"
+
+namespace shoal::learner {
+
+// Since construction.
+struct RolloutCounters {
+  uint64_t records = 0;  // taken
+  uint64_t rejected = 0, after_gap = 0, duplicates = 0, lost = 0;
+  uint64_t refused_chunks = 0;    // of another spec, malformed, superseded or from the future
+  uint64_t ahead_chunks = 0;      // that came before their predecessor
+  uint64_t dropped_rollouts = 0;  // whole and begun ones that no update was made of
+};
+
+class RolloutCore final : private RecordTaker {
+ public:
+  // As many as a replay keeps.
+  static constexpr size_t kMostSessions = 4096;
+
+  // `receiver_session`: this process's. `before`: what a former learner of the run left.
+  RolloutCore(const RunConfig& run, uint64_t receiver_session, const AccountBefore& before);
+  RolloutCore(const RolloutCore&) = delete;
+  RolloutCore& operator=(const RolloutCore&) = delete;
+
+  // As ChunkIntake.
+  ChunkResult TakeChunk(const TransitionChunk& chunk,
+                        uint64_t latest_session = std::numeric_limits<uint64_t>::max());
+  // Words to actors; `changed_only`: those that differ from what was taken last.
+  std::vector<Credit> TakeCredits(bool changed_only);
+  // The word to an actor whose chunk was refused.
+  Credit RefusalOf(const TransitionChunk& chunk) const;
+
+  // The weights whose update is next. Drops rollouts that are too old for it.
+  void Await(const WeightsVersion& version);
+  // How many actors the next update waits for; more only from the next Await on.
+  void SetActors(int actors);
+
+  // Environments whose rollouts the next update waits for, and of these those that have one.
+  int expected() const { return expected_actors_ * envs_per_actor_; }
+  int Ready() const;
+  // The schema of a batch of the rollouts that are ready: at least one.
+  BatchSchema ReadySchema() const;
+  // Fills `data`, of ReadySchema(), aligned to 64, and takes the rollouts off, in the order of
+  // environments: an update is made of them.
+  void TakeReady(const BatchSchema& schema, uint8_t* data);
+
+  // Of the whole run: step records taken; records that updates were made of.
+  uint64_t stored_steps() const { return stored_steps_; }
+  uint64_t used_records() const { return used_records_; }
+  const SessionLedger& sessions() const { return sessions_; }
+  const RolloutCounters& counters() const { return counters_; }
+  AccountTotals Totals() const {
+    return {.stored_steps = stored_steps_, .stored_records = used_records_};
+  }
+
+ private:
+  // What was recorded of one environment by one version, in the order of steps.
+  struct Rollout {
+    WeightsVersion version;
+    int session = 0;                             // index of the actor session
+    uint64_t records = 0;                        // resets too
+    int rows = 0;                                // steps
+    std::vector<uint8_t> frames;                 // (rows, K*C, H, W)
+    std::vector<float> vectors, actions, drawn;  // (rows, V), (rows, A) twice
+    std::vector<float> rewards, bootstraps, log_probs, ends, continues;  // (rows)
+    // Where the next row is no next observation: of these rows, in order.
+    std::vector<uint8_t> next_frames;
+    std::vector<float> next_vectors;
+
+    void Clear();
+  };
+  struct Lane {
+    uint64_t actor_session = 0;
+    int session = -1;   // its index
+    bool open = false;  // the observation and the episode of the next step are known
+    uint32_t episode = 0, index = 0;
+    std::vector<uint8_t> stack;  // (K*C, H, W): the observation of the next step
+    std::vector<float> vector;   // (V)
+    Rollout building;
+    std::deque<Rollout> whole;  // oldest first
+  };
+
+  bool Take(const SessionCounters& session, const uint8_t* record) override;
+  void OnGap(const SessionCounters& session, uint32_t env) override;
+  // The lane of an environment that this actor may host; null for any other.
+  Lane* FindLane(uint32_t actor, uint32_t env);
+  void TakeReset(const uint8_t* record, Lane* lane);
+  bool TakeStep(const uint8_t* record, Lane* lane);
+  void AddRow(const uint8_t* record, Lane* lane);
+  void Observe(const uint8_t* record, bool reset, Lane* lane);
+  void Drop(Rollout* rollout);
+  void DropOld(Lane* lane);
+  bool Usable(const Rollout& rollout) const;
+  void Count(const ChunkResult& result);
+  void CopyRows(const BatchView& batch, int first_row, uint32_t env, const Rollout& rollout);
+
+  const RunConfig run_;
+  const RecordLayout layout_;
+  const ObservedBlocks observed_;
+  const int steps_, envs_per_actor_;  // T
+  const uint64_t versions_ahead_;
+  const uint64_t receiver_session_;
+  const size_t stack_bytes_;
+  SessionLedger sessions_;
+  ChunkIntake intake_;
+  CreditBook credits_;
+  std::map<uint32_t, Lane> lanes_;  // by environment
+  std::vector<Rollout> spare_;      // memory of former ones
+  WeightsVersion awaited_;
+  int actors_ = 1, expected_actors_ = 1;
+  uint64_t stored_steps_ = 0, used_records_ = 0;
+  RolloutCounters counters_;
+};
+
+}  // namespace shoal::learner

@@ -1,0 +1,245 @@
+#include "learner/rollouts/rollout_source.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "common/base/check.h"
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/base/log.h"
+#include "common/config/sending_window.h"
+
+namespace shoal::learner {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+
+constexpr milliseconds kPoll{20};      // words about credit are collected for so long
+constexpr seconds kCreditInterval{1};  // between repetitions of every credit
+constexpr seconds kProblemInterval{10};
+// How far beyond this host's clock that of an actor may be.
+constexpr std::chrono::minutes kClockMargin{10};
+constexpr size_t kAlignment = 64;
+
+uint64_t LatestSession() {
+  return static_cast<uint64_t>(
+      std::max<int64_t>(0, WallTimeNs() + std::chrono::nanoseconds(kClockMargin).count()));
+}
+
+uint64_t ChunkBytes(const RunConfig& run) {
+  const int record_bytes = RecordLayout(run.spec).record_bytes();
+  return static_cast<uint64_t>(SendingWindowOf(run.config, record_bytes).chunk_records) *
+         static_cast<uint64_t>(record_bytes);
+}
+
+}  // namespace
+
+RolloutSource::RolloutSource(const RunConfig& run, const std::filesystem::path& folder,
+                             uint64_t learner_session, uint64_t updates, Send send)
+    : run_(run),
+      folder_(folder),
+      learner_session_(learner_session),
+      send_(std::move(send)),
+      deadline_(run.config.ppo.rollout_deadline),
+      pool_(run.spec.Hash(), ChunkBytes(run), MaxChunks(run.config.actors)),
+      core_(run, learner_session, ReadAccountBefore(folder)),
+      updates_(updates),
+      last_chunk_(Now()) {
+  {
+    const MutexLock lock(mutex_);
+    core_.SetActors(run.config.actors);
+    core_.Await({learner_session_, updates_});
+  }
+  thread_ = std::thread([this] { Serve(); });
+}
+
+RolloutSource::~RolloutSource() {
+  {
+    const MutexLock lock(inbox_mutex_);
+    stopping_ = true;
+    inbox_changed_.NotifyAll();
+  }
+  thread_.join();
+}
+
+size_t RolloutSource::MaxChunks(int actors) const {
+  const SendingWindow window = SendingWindowOf(run_.config, RecordLayout(run_.spec).record_bytes());
+  // Every actor may have its window under way, in full chunks and one part of one, twice when it
+  // sends again.
+  return (static_cast<size_t>(std::max(actors, 1)) + 1) * 2 *
+         static_cast<size_t>(window.chunks + 1);
+}
+
+void RolloutSource::OnChunk(const TransitionChunk& chunk) {
+  std::unique_ptr<PooledChunk> copy = pool_.Copy(chunk);
+  if (!copy) return;  // it comes again
+  const MutexLock lock(inbox_mutex_);
+  inbox_.push_back(std::move(copy));
+  inbox_changed_.NotifyOne();
+}
+
+std::deque<std::unique_ptr<PooledChunk>> RolloutSource::Arrivals() {
+  const SteadyTime deadline = Now() + kPoll;
+  const MutexLock lock(inbox_mutex_);
+  while (inbox_.empty() && !stopping_) {
+    if (!inbox_changed_.WaitUntil(inbox_mutex_, deadline)) break;
+  }
+  return std::exchange(inbox_, {});
+}
+
+void RolloutSource::Serve() {
+  SteadyTime last_all{}, last_told{};
+  bool stopping = false;
+  while (!stopping) {
+    {
+      const MutexLock lock(inbox_mutex_);
+      stopping = stopping_;
+    }
+    TakeChunks(Arrivals());
+    const SteadyTime now = Now();
+    const bool all = stopping || now - last_all >= kCreditInterval;
+    if (!all && now - last_told < kPoll) continue;
+    Tell(all);
+    last_told = now;
+    if (all) last_all = now;
+    ReportProblems(now);
+  }
+}
+
+void RolloutSource::TakeChunks(std::deque<std::unique_ptr<PooledChunk>> chunks) {
+  std::vector<Credit> refusals;
+  for (std::unique_ptr<PooledChunk>& pooled : chunks) {
+    {
+      const MutexLock lock(mutex_);
+      const ChunkResult result = core_.TakeChunk(pooled->chunk, LatestSession());
+      if (result.fault != nullptr) fault_ = result.fault;
+      if (result.fate == ChunkFate::kWrongSpec || result.fate == ChunkFate::kSuperseded) {
+        refusals.push_back(core_.RefusalOf(pooled->chunk));
+      }
+      if (pooled->chunk.count > 0) last_chunk_ = Now();
+      changed_.NotifyAll();
+    }
+    pool_.Release(std::move(pooled));
+  }
+  if (!refusals.empty()) send_({refusals});
+}
+
+bool RolloutSource::WriteAccount() {
+  try {
+    ReplaceFile(folder_ / kAccountingFile, AccountingJson(core_.sessions(), core_.Totals()));
+    return true;
+  } catch (const Error& e) {
+    log::Warning("nothing is acknowledged: {}", e.what());
+    return false;
+  }
+}
+
+void RolloutSource::Tell(bool all) {
+  std::vector<Credit> credits;
+  {
+    const MutexLock lock(mutex_);
+    credits = core_.TakeCredits(/*changed_only=*/!all);
+    if (credits.empty() && !all) return;
+    if (!WriteAccount()) return;  // said again with the next repetition
+  }
+  if (!credits.empty()) send_({credits});
+}
+
+void RolloutSource::ReportProblems(SteadyTime now) {
+  if (now - last_problems_ < kProblemInterval) return;
+  last_problems_ = now;
+  const MutexLock lock(mutex_);
+  const RolloutCounters counters = core_.counters();
+  const RolloutCounters before = std::exchange(reported_, counters);
+  if (const uint64_t n = counters.rejected - before.rejected) {
+    log::Warning("{} records rejected; the last one: {}", n, fault_);
+  }
+  if (const uint64_t n = counters.after_gap - before.after_gap) {
+    log::Warning("{} records not used: an earlier one of their episode is missing", n);
+  }
+  if (const uint64_t n = counters.lost - before.lost) {
+    log::Warning("{} records are lost: an earlier learner had acknowledged them", n);
+  }
+  if (const uint64_t n = counters.refused_chunks - before.refused_chunks) {
+    log::Warning("{} chunks refused: of another observation spec, superseded or malformed", n);
+  }
+}
+
+bool RolloutSource::Complete(SteadyTime now) {
+  const int ready = core_.Ready(), expected = core_.expected();
+  if (ready == 0) return false;
+  if (!first_ready_) first_ready_ = now;
+  if (ready >= expected) return true;
+  return now - *first_ready_ >= deadline_ && 2 * ready >= expected;
+}
+
+Batch RolloutSource::HandOut() {
+  const int ready = core_.Ready(), expected = core_.expected();
+  if (ready < expected) {
+    late_rollouts_ += static_cast<uint64_t>(expected - ready);
+    log::Warning(
+        "update {} is made of the rollouts of {} environments: those of {} others did not come "
+        "within ppo.rollout_deadline = {} s",
+        updates_ + 1, ready, expected - ready, deadline_.count());
+  }
+  schema_.emplace(core_.ReadySchema());
+  if (memory_bytes_ < schema_->total_bytes()) {
+    memory_bytes_ = schema_->total_bytes();
+    memory_.reset(static_cast<uint8_t*>(std::aligned_alloc(kAlignment, memory_bytes_)));
+    CHECK(memory_ != nullptr) << "no memory for a rollout of " << memory_bytes_ << " bytes";
+  }
+  core_.TakeReady(*schema_, memory_.get());
+  handed_out_ = true;
+  first_ready_.reset();
+  return {.view = schema_->View(memory_.get()),
+          .request = updates_ + 1,
+          .stored_records = core_.used_records(),
+          .stored_steps = core_.stored_steps()};
+}
+
+std::optional<Batch> RolloutSource::Next(SteadyTime deadline) {
+  const MutexLock lock(mutex_);
+  if (std::exchange(handed_out_, false)) core_.Await({learner_session_, ++updates_});
+  while (!Complete(Now())) {
+    if (!changed_.WaitUntil(mutex_, deadline)) break;
+  }
+  if (!Complete(Now())) return std::nullopt;
+  return HandOut();
+}
+
+void RolloutSource::SetActors(int actors) {
+  pool_.SetMaxChunks(MaxChunks(actors));
+  const MutexLock lock(mutex_);
+  core_.SetActors(actors);
+}
+
+BatchCounters RolloutSource::counters() const {
+  const MutexLock lock(mutex_);
+  const RolloutCounters& counters = core_.counters();
+  return {.rollouts = BatchCounters::Rollouts{.expected = uint64_t(core_.expected()),
+                                              .ready = uint64_t(core_.Ready()),
+                                              .late = late_rollouts_,
+                                              .dropped = counters.dropped_rollouts,
+                                              .records = counters.records,
+                                              .rejected = counters.rejected,
+                                              .after_gap = counters.after_gap,
+                                              .lost = counters.lost,
+                                              .duplicates = counters.duplicates,
+                                              .refused_chunks = counters.refused_chunks,
+                                              .pool_drops = pool_.Dropped(),
+                                              .actor_sessions = core_.sessions().newest().size()}};
+}
+
+void RolloutSource::SayFarewell() {
+  const SteadyTime start = Now();
+  while (Now() - start < kFarewellLimit) {
+    {
+      const MutexLock lock(mutex_);
+      if (Now() - std::max(last_chunk_, start) > kFarewell) return;
+    }
+    std::this_thread::sleep_for(kPoll);
+  }
+}
+
+}  // namespace shoal::learner

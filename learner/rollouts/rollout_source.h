@@ -1,0 +1,111 @@
+// Rollouts pulled from actors, as batches of the training loop: a thread of its own takes chunks,
+// keeps the account and acknowledges, while the loop learns.
+//
+// Nothing is acknowledged that RUN/accounting.json does not say: a learner that is killed leaves a
+// true account, and its successor goes on from it. Knows nothing of DDS: chunks come in through
+// OnChunk, words go out through `send`.
+//
+// A batch is whole when every environment that the update waits for has its rollout, or, once
+// ppo.rollout_deadline has passed since the first one was there, when at least half of them have.
+//
+// Threads: OnChunk from receive threads; Next, SetActors, counters from one other. Memory: two
+// rollouts of every environment, more with ppo.versions_ahead.
+#pragma once
+
+#include <chrono>
+#include <cstdlib>
+#include <deque>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <thread>
+
+#include "common/base/mutex.h"
+#include "common/intake/chunk_pool.h"
+#include "learner/batch_stream.h"
+#include "learner/rollouts/rollout_core.h"
+
+namespace shoal::learner {
+
+class RolloutSource final : public BatchStream {
+ public:
+  using Send = std::function<void(const CreditsMessage&)>;
+
+  // `learner_session`, `updates`: of the weights that the first rollouts are played by. Throws
+  // Error when the run's account cannot be read.
+  RolloutSource(const RunConfig& run, const std::filesystem::path& folder, uint64_t learner_session,
+                uint64_t updates, Send send);
+  // The last account is written.
+  ~RolloutSource() override;
+  RolloutSource(const RolloutSource&) = delete;
+  RolloutSource& operator=(const RolloutSource&) = delete;
+
+  void OnChunk(const TransitionChunk& chunk);
+
+  // The former batch's update is done, or there was none: its weights are the awaited ones.
+  std::optional<Batch> Next(SteadyTime deadline) override;
+  BatchCounters counters() const override;
+  // Of the run, now; takes effect with the next update where there are more of them.
+  void SetActors(int actors) override;
+
+  // When the coordinator is gone: acknowledges what actors still send, until nothing has come for
+  // kFarewell, kFarewellLimit at most.
+  void SayFarewell();
+
+  static constexpr std::chrono::seconds kFarewell{2};
+  static constexpr std::chrono::seconds kFarewellLimit{20};
+
+ private:
+  struct Free {
+    void operator()(uint8_t* data) const { std::free(data); }
+  };
+
+  void Serve();
+  // What has come since the last call, waiting for it a moment.
+  std::deque<std::unique_ptr<PooledChunk>> Arrivals() SHOAL_EXCLUDES(inbox_mutex_);
+  void TakeChunks(std::deque<std::unique_ptr<PooledChunk>> chunks) SHOAL_EXCLUDES(mutex_);
+  // Writes the account and, where that worked, acknowledges.
+  void Tell(bool all) SHOAL_EXCLUDES(mutex_);
+  bool WriteAccount() SHOAL_REQUIRES(mutex_);
+  // Warns of what was refused or lost, at most once per interval.
+  void ReportProblems(SteadyTime now) SHOAL_EXCLUDES(mutex_);
+  bool Complete(SteadyTime now) SHOAL_REQUIRES(mutex_);
+  Batch HandOut() SHOAL_REQUIRES(mutex_);
+  size_t MaxChunks(int actors) const;
+
+  const RunConfig run_;
+  const std::filesystem::path folder_;
+  const uint64_t learner_session_;
+  const Send send_;
+  const std::chrono::duration<double> deadline_;
+  ChunkPool pool_;
+
+  mutable Mutex inbox_mutex_;
+  ConditionVariable inbox_changed_;
+  std::deque<std::unique_ptr<PooledChunk>> inbox_ SHOAL_GUARDED_BY(inbox_mutex_);
+  bool stopping_ SHOAL_GUARDED_BY(inbox_mutex_) = false;
+
+  mutable Mutex mutex_;
+  ConditionVariable changed_;
+  RolloutCore core_ SHOAL_GUARDED_BY(mutex_);
+  uint64_t updates_ SHOAL_GUARDED_BY(mutex_);  // of the awaited weights
+  bool handed_out_ SHOAL_GUARDED_BY(mutex_) = false;
+  std::optional<SteadyTime> first_ready_ SHOAL_GUARDED_BY(mutex_);
+  uint64_t late_rollouts_ SHOAL_GUARDED_BY(mutex_) = 0;
+  SteadyTime last_chunk_ SHOAL_GUARDED_BY(mutex_);
+  const char* fault_ SHOAL_GUARDED_BY(mutex_) = "";
+
+  // Of the batch that is handed out; the loop's thread.
+  std::optional<BatchSchema> schema_;
+  std::unique_ptr<uint8_t, Free> memory_;
+  uint64_t memory_bytes_ = 0;
+
+  // Of the serving thread.
+  RolloutCounters reported_;
+  SteadyTime last_problems_{};
+
+  std::thread thread_;  // last: it uses the others
+};
+
+}  // namespace shoal::learner

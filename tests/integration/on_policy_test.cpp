@@ -1,0 +1,214 @@
+// Runs of PPO through the real programs: no replay, rollouts to the learner, an exact account.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include "tests/support/running_training.h"
+
+namespace shoal {
+namespace {
+
+using nlohmann::json;
+using std::chrono::seconds;
+
+std::vector<std::string> Command(const TrainingRun& run, const TrainingRun::Keys& keys,
+                                 const std::vector<std::string>& flags = {}) {
+  TrainingRun::Keys all{{"eval.episodes", "8"},    {"eval.final_episodes", "0"},
+                        {"eval.interval", "4000"}, {"ppo.rollout_steps", "128"},
+                        {"stop.success", "2"},     {"run_dir", run.parent().string()}};
+  for (const auto& [key, value] : keys) all[key] = value;
+  std::vector<std::string> command{"shoal",           "train",      "--preset",
+                                   "fetch-reach-ppo", "--run-name", "run"};
+  for (const auto& [key, value] : all) {
+    command.push_back("--set");
+    command.push_back(key + "=" + value);
+  }
+  command.insert(command.end(), flags.begin(), flags.end());
+  return command;
+}
+
+int64_t Updates(const json& report) { return report.at("updates").get<int64_t>(); }
+
+// By the learner, which counts them: there is no replay to.
+bool WaitForMoreUpdates(RunningTraining* training, int64_t updates) {
+  const json now = training->reports().Await("learner");
+  if (now.is_null()) return false;
+  const int64_t wanted = Updates(now) + updates;
+  return !training->reports()
+              .WaitFor(
+                  "learner", [&](const json& r) { return Updates(r) >= wanted; }, seconds(120))
+              .is_null();
+}
+
+void KillAndWaitForSuccessor(RunningTraining* training, const std::string& role) {
+  const json before = training->reports().WaitFor(role, [](const json&) { return true; });
+  ASSERT_FALSE(before.is_null()) << role;
+  const pid_t victim = before.at("pid").get<pid_t>();
+  ASSERT_EQ(kill(victim, SIGKILL), 0) << role;
+  const json after =
+      training->reports().WaitFor(role, [&](const json& r) { return r.at("pid") != victim; });
+  ASSERT_FALSE(after.is_null()) << role << " was not restarted";
+}
+
+TEST(OnPolicy, ARunOfWholeRolloutsHasNoReplayAndAnExactAccount) {
+  const TrainingRun run;
+  const ProgramResult result = RunProgram(Command(run, {{"env_steps", "8000"}}), seconds(180));
+  ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
+  EXPECT_EQ(result.out.find("1 replay"), std::string::npos) << result.out;
+  EXPECT_FALSE(std::filesystem::exists(run.path() / "replay.ring"));
+  EXPECT_FALSE(std::filesystem::exists(run.path() / "logs" / "replay-0.log"));
+  const json meta = run.Json("meta.json");
+  ExpectBalanced(meta);
+  EXPECT_EQ(meta.at("env_steps"), 8 * 1024) << "the budget, in whole rollouts of 2 x 4 x 128";
+  EXPECT_EQ(meta.at("updates"), 8);
+  EXPECT_EQ(meta.at("accounting").at("discarded"), 0) << "nobody plays beyond the budget";
+}
+
+TEST(OnPolicy, TheDeathOfAnActorAndOfTheLearnerIsSurvivedAndAccountedFor) {
+  const TrainingRun run;
+  RunningTraining training(run, Command(run, {{"env_steps", "10000000"},
+                                              {"eval.interval", "1000000"},
+                                              {"ppo.rollout_steps", "512"},
+                                              {"learner.checkpoint_period", "2"}}));
+  ASSERT_TRUE(WaitForMoreUpdates(&training, 3)) << training.Output();
+  for (const char* role : {"actor", "learner", "actor", "learner"}) {
+    KillAndWaitForSuccessor(&training, role);
+    ASSERT_TRUE(WaitForMoreUpdates(&training, 2)) << role << ": " << training.Output();
+  }
+  training.Interrupt();
+  ASSERT_EQ(training.End(seconds(120)), kInterruptedExit) << training.Output();
+  const json meta = run.Json("meta.json");
+  ExpectBalanced(meta);
+  const json& account = meta.at("accounting");
+  EXPECT_EQ(account.at("rejected"), 0);
+  EXPECT_GT(account.at("discarded").get<int64_t>(), 0) << "of the rollouts that were cut";
+  EXPECT_EQ(account.at("lost_with_replay"), 0) << "nothing acknowledged is lost";
+  EXPECT_GT(account.at("stored").get<int64_t>(), 8 * 4096) << account.dump();
+}
+
+TEST(OnPolicy, AStoppedRunIsResumedAndTheAccountGoesOn) {
+  const TrainingRun run;
+  RunningTraining training(run, Command(run, {{"env_steps", "12000"}, {"eval.interval", "4000"}}));
+  ASSERT_TRUE(WaitForMoreUpdates(&training, 2)) << training.Output();
+  training.Interrupt();
+  ASSERT_EQ(training.End(seconds(120)), kInterruptedExit) << training.Output();
+  const json before = run.Json("meta.json");
+  ASSERT_LT(before.at("env_steps").get<int64_t>(), 12000) << "ended before it was interrupted";
+  ExpectBalanced(before);
+  RunningTraining resumed(run, {"shoal", "train", "--resume", run.path().string()});
+  ASSERT_EQ(resumed.End(seconds(180)), 0) << resumed.Output();
+  const json meta = run.Json("meta.json");
+  EXPECT_EQ(meta.at("exit"), "budget");
+  EXPECT_GE(meta.at("env_steps").get<int64_t>(), 12000);
+  EXPECT_GT(meta.at("updates").get<int64_t>(), before.at("updates").get<int64_t>());
+  ExpectBalanced(meta);
+}
+
+TEST(OnPolicy, InLockstepTheRunRepeatsBitForBit) {
+  const auto learner = [](const std::string& seed) {
+    const TrainingRun run;
+    const ProgramResult result = RunProgram(
+        Command(run,
+                {{"env_steps", "2500"}, {"actors", "1"}, {"eval.interval", "1000"}, {"seed", seed}},
+                {"--lockstep"}),
+        seconds(180));
+    EXPECT_EQ(ExitCode(result), 0) << result.out << result.err;
+    std::filesystem::path newest;
+    for (const auto& entry : std::filesystem::directory_iterator(run.path() / "checkpoints")) {
+      if (entry.path().filename() != "best") newest = std::max(newest, entry.path());
+    }
+    return ReadFile(newest / "learner.safetensors");
+  };
+  const std::string one = learner("1");
+  EXPECT_TRUE(one == learner("1")) << "the same seed, other parameters";
+  EXPECT_FALSE(one == learner("2")) << "another seed, the same parameters";
+}
+
+TEST(OnPolicy, OneVersionAheadActorsPlayWhileTheLearnerLearns) {
+  const TrainingRun run;
+  const ProgramResult result =
+      RunProgram(Command(run, {{"env_steps", "12000"}, {"ppo.versions_ahead", "1"}}), seconds(180));
+  ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
+  const json meta = run.Json("meta.json");
+  EXPECT_EQ(meta.at("exit"), "budget");
+  ExpectBalanced(meta);
+}
+
+// An actor that stands still does not hold the others up for longer than the deadline.
+TEST(OnPolicy, WithoutAnActorThatHangsUpdatesAreMadeOfTheOtherHalf) {
+  const TrainingRun run;
+  RunningTraining training(run, Command(run, {{"env_steps", "10000000"},
+                                              {"eval.interval", "1000000"},
+                                              {"ppo.rollout_deadline", "1"}}));
+  ASSERT_TRUE(WaitForMoreUpdates(&training, 2)) << training.Output();
+  const json actor = training.reports().WaitFor("actor", [](const json&) { return true; });
+  ASSERT_FALSE(actor.is_null());
+  const pid_t victim = actor.at("pid").get<pid_t>();
+  ASSERT_EQ(kill(victim, SIGSTOP), 0);
+  ASSERT_TRUE(WaitForMoreUpdates(&training, 3)) << training.Output();
+  const json late = training.reports().WaitFor(
+      "learner", [](const json& r) { return r.at("rollouts_late").get<double>() >= 4; });
+  EXPECT_FALSE(late.is_null()) << "an update of all four other environments is said to be short";
+  ASSERT_EQ(kill(victim, SIGCONT), 0);
+  const int64_t then = late.is_null() ? 0 : Updates(late);
+  EXPECT_FALSE(training.reports()
+                   .WaitFor(
+                       "learner",
+                       [&](const json& r) {
+                         return Updates(r) > then + 3 && r.at("rollout_steps") == 8 * 128;
+                       },
+                       seconds(60))
+                   .is_null())
+      << "it joins again";
+  training.Interrupt();
+  ASSERT_EQ(training.End(seconds(120)), kInterruptedExit) << training.Output();
+  ExpectBalanced(run.Json("meta.json"));
+}
+
+TEST(OnPolicy, ARunIsScaledAndSetWhileItGoesOn) {
+  const TrainingRun run;
+  RunningTraining training(run,
+                           Command(run, {{"env_steps", "10000000"}, {"eval.interval", "1000000"}}));
+  ASSERT_TRUE(WaitForMoreUpdates(&training, 2)) << training.Output();
+  const std::string folder = run.path().string();
+  const auto order = [&](std::vector<std::string> words) {
+    words.insert(words.begin(), "shoal");
+    words.insert(words.end(), {"--run", folder});
+    return RunProgram(words, seconds(60));
+  };
+  for (const int actors : {3, 1}) {
+    const ProgramResult scaled = order({"scale", "--actors", std::to_string(actors)});
+    ASSERT_EQ(ExitCode(scaled), 0) << scaled.out << scaled.err;
+    const json whole = training.reports().WaitFor("learner", [&](const json& r) {
+      return r.at("rollout_steps") == actors * 4 * 128;  // the mean of a second with one update
+    });
+    EXPECT_FALSE(whole.is_null()) << actors << " actors: " << training.Output();
+  }
+  const ProgramResult set = order({"set", "env_steps=20000000"});
+  EXPECT_EQ(ExitCode(set), 0) << set.out << set.err;
+  const ProgramResult refused = order({"set", "replay.samples_per_insert=3"});
+  EXPECT_NE(ExitCode(refused), 0);
+  EXPECT_NE(refused.err.find("replay.samples_per_insert = 3.0: learner.algorithm = ppo"),
+            std::string::npos)
+      << refused.err;
+  training.Interrupt();
+  ASSERT_EQ(training.End(seconds(120)), kInterruptedExit) << training.Output();
+  ExpectBalanced(run.Json("meta.json"));
+}
+
+TEST(OnPolicy, WhatDoesNotFitIsRefusedByName) {
+  const TrainingRun run;
+  const std::pair<TrainingRun::Keys, const char*> cases[] = {
+      {{{"replay.n_step", "3"}}, "replay.n_step = 3: learner.algorithm = ppo"},
+      {{{"replay.hindsight", "future"}}, "replay.hindsight"},
+      {{{"ppo.rollout_steps", "100"}}, "ppo.rollout_steps = 100"},
+      {{{"ppo.rollout_steps", "1"}}, "ppo.rollout_steps = 1"}};
+  for (const auto& [keys, message] : cases) {
+    const ProgramResult result = RunProgram(Command(run, keys), seconds(60));
+    EXPECT_EQ(ExitCode(result), 2);
+    EXPECT_NE(result.err.find(message), std::string::npos) << result.err;
+    EXPECT_FALSE(std::filesystem::exists(run.path()));
+  }
+}
+
+}  // namespace
+}  // namespace shoal

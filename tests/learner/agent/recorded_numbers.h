@@ -1,0 +1,33 @@
+// The inputs of recorded comparisons, which both sides compute: tests/comparison/sb3_updates.py.
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace shoal::learner {
+
+// Numbers in [0, 1), exact in double: splitmix64 of fnv1a(name) + index, as the script has it.
+inline std::vector<double> Uniform(const std::string& name, size_t count) {
+  uint64_t first = 0xcbf29ce484222325;
+  for (const char c : name) first = (first ^ static_cast<uint8_t>(c)) * 0x100000001b3;
+  std::vector<double> numbers;
+  for (size_t i = 0; i < count; ++i) {
+    uint64_t x = (first + i) * 0x9e3779b97f4a7c15;
+    x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9;
+    x = (x ^ (x >> 27)) * 0x94d049bb133111eb;
+    x ^= x >> 31;
+    numbers.push_back(double(x >> 11) * 0x1p-53);
+  }
+  return numbers;
+}
+
+template <class Out>
+void FillSymmetric(const std::string& name, double scale, Out&& out) {
+  const std::vector<double> numbers = Uniform(name, out.size());
+  std::ranges::transform(numbers, out.begin(),
+                         [&](double u) { return float((2 * u - 1) * scale); });
+}
+
+}  // namespace shoal::learner
