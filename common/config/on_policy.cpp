@@ -101,6 +101,11 @@ void ValidateOnPolicy(const Config& config) {
   if (!LearnsOnPolicy(config)) return RefuseOnPolicyKeys(config);
   RefuseOffPolicyKeys(config);
   ValidateRollout(config);
+  if (config.lockstep && config.ppo.versions_ahead > 0) {
+    throw UsageError(
+        "ppo.versions_ahead = {}: in lockstep an actor awaits each version; expected 0",
+        config.ppo.versions_ahead);
+  }
   if (config.ppo.normalise_observations && !config.observation.proprioception &&
       config.observation.goal_mode == "none") {
     throw UsageError(

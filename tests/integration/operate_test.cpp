@@ -210,20 +210,35 @@ TEST(Operate, ADetachedRunIsAttachedToAndStopped) {
   ExpectBalanced(run.Json("meta.json"));
 }
 
-TEST(Operate, EveryMetricIsInTheTableOfMetrics) {
-  const TrainingRun run;
-  ASSERT_EQ(ExitCode(run.Train()), 0);
+using RoleMetric = std::pair<std::string, std::string>;
+
+// What the processes of a run have reported, each in the table.
+void AddReported(const TrainingRun& run, std::set<RoleMetric>* seen) {
   std::ifstream in(run.path() / "metrics.jsonl");
-  std::set<std::pair<std::string, std::string>> seen;
   for (std::string line; std::getline(in, line);) {
     const json report = json::parse(line);
     const std::string role = report.at("role");
     for (const auto& [name, value] : report.items()) {
       if (std::set<std::string>{"t", "role", "id", "host", "pid", "state"}.contains(name)) continue;
-      seen.emplace(role, name);
+      seen->emplace(role, name);
       EXPECT_NE(FindMetric(launch::RunMetrics(), role, name), nullptr) << role << ' ' << name;
     }
   }
+}
+
+TEST(Operate, EveryMetricIsInTheTableOfMetrics) {
+  std::set<RoleMetric> seen;
+  const TrainingRun run, on_policy;
+  ASSERT_EQ(ExitCode(run.Train()), 0);
+  AddReported(run, &seen);
+  const ProgramResult result =
+      RunProgram({"shoal", "train", "--preset", "fetch-reach-ppo", "--run-name", "run", "--set",
+                  "run_dir=" + on_policy.parent().string(), "--set", "env_steps=4000", "--set",
+                  "ppo.rollout_steps=128", "--set", "eval.interval=2000", "--set",
+                  "eval.episodes=4", "--set", "eval.final_episodes=0"},
+                 seconds(120));
+  ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
+  AddReported(on_policy, &seen);
   // And the table names nothing that no process reports.
   for (const Metric& metric : launch::RunMetrics()) {
     const std::string name(metric.name);
