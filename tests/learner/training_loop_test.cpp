@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <functional>
+#include <memory>
+#include <thread>
 
 #include "common/base/error.h"
 #include "common/base/files.h"
@@ -24,6 +26,27 @@ using testing::ElementsAre;
 
 constexpr uint64_t kSession = 77;
 
+// An agent whose updates last longer than the second between two reports.
+class SlowAgent final : public Agent {
+ public:
+  explicit SlowAgent(std::unique_ptr<Agent> agent) : agent_(std::move(agent)) {}
+
+  UpdateOutcome Update(const BatchView& batch, const OnStageEnd& on_stage_end) override {
+    std::this_thread::sleep_for(milliseconds(1100));
+    return agent_->Update(batch, on_stage_end);
+  }
+  uint64_t updates() const override { return agent_->updates(); }
+  nn::TensorMap PolicyTensors() const override { return agent_->PolicyTensors(); }
+  nn::TensorMap AveragedPolicyTensors() const override { return agent_->AveragedPolicyTensors(); }
+  nn::TensorMap AllTensors() const override { return agent_->AllTensors(); }
+  void Restore(const nn::TensorMap& tensors, const std::string& source) override {
+    agent_->Restore(tensors, source);
+  }
+
+ private:
+  std::unique_ptr<Agent> agent_;
+};
+
 class TrainingLoopTest : public testing::Test {
  protected:
   // One learner process: from the newest checkpoint until `stop_after` batches were given.
@@ -31,7 +54,8 @@ class TrainingLoopTest : public testing::Test {
                           const std::function<void(PlayedBatches&)>& script = {}) {
     outlet_.spec_hash = run_.spec.Hash();
     outlet_.session = kSession;
-    const auto agent = MakeAgent(run_.config, run_.spec, precision_);
+    std::unique_ptr<Agent> agent = MakeAgent(run_.config, run_.spec, precision_);
+    if (slow_) agent = std::make_unique<SlowAgent>(std::move(agent));
     CheckpointStore checkpoints(folder_.path(), run_);
     std::optional<CheckpointState> restored;
     if (const auto checkpoint = checkpoints.RestoreNewest()) {
@@ -92,6 +116,7 @@ class TrainingLoopTest : public testing::Test {
   ControlState control_{Now()};
   uint64_t epoch_ = 0;
   uint64_t given_ = 0, updates_ = 0;
+  bool slow_ = false;
 };
 
 TEST_F(TrainingLoopTest, SendsWeightsAtTheFirstUpdateAndEveryPeriod) {
@@ -390,8 +415,7 @@ TEST_F(OnPolicyLoopTest, WeightsThatTheTransportDidNotTakeAreSentAgain) {
 
 // It may take longer than a process may be silent.
 TEST_F(OnPolicyLoopTest, ReportsInTheMidstOfAnUpdate) {
-  run_.config.ppo.epochs = 500;  // more than the second between two reports
-  run_.config.network.hidden = {512, 512};
+  slow_ = true;
   Train(1);
   const MetricsMessage& first = outlet_.reports.front();
   const auto updates = std::ranges::find(first.names, "updates");
