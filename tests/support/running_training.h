@@ -44,7 +44,8 @@ class RunningTraining {
 
   // Ctrl-C.
   void Interrupt() { child_.Signal(SIGINT); }
-  // Waits for the end; exit code (kInterruptedExit after Interrupt), or -1 when it was killed or did not end.
+  // Waits for the end; exit code (kInterruptedExit after Interrupt), or -1 when it was killed or
+  // did not end.
   int End(std::chrono::seconds deadline) {
     const SteadyTime end = Now() + deadline;
     while (Now() < end) {
