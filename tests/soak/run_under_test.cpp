@@ -10,6 +10,7 @@
 
 #include "common/base/clock.h"
 #include "common/base/files.h"
+#include "common/base/stop.h"
 #include "tests/support/processes.h"
 
 namespace shoal::soak {
@@ -216,8 +217,9 @@ json RunUnderTest::End(seconds deadline) {
   const SteadyTime start = Now();
   while (true) {
     if (const auto status = coordinator_.Poll()) {
-      if (!status->Clean())
+      if (status->by_signal || status->code != kInterruptedExit) {
         throw Broken("the run ended with " + status->Describe() + ": " + Output());
+      }
       break;
     }
     if (Now() - start > deadline) throw Broken("the run did not stop in time: " + Output());
