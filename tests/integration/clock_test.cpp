@@ -10,14 +10,6 @@ namespace {
 using nlohmann::json;
 using std::chrono::seconds;
 
-void KillAndWaitForSuccessor(RunningTraining* training, const std::string& role) {
-  const pid_t victim = training->reports().Await(role).at("pid").get<pid_t>();
-  ASSERT_EQ(kill(victim, SIGKILL), 0) << role;
-  const json after =
-      training->reports().WaitFor(role, [&](const json& r) { return r.at("pid") != victim; });
-  ASSERT_FALSE(after.is_null()) << role << ": " << training->Output();
-}
-
 TEST(Clock, ARunGoesOnWhileItIsSetBackAndForth) {
   const TrainingRun run;
   const std::filesystem::path skew = run.parent() / "skew";

@@ -11,17 +11,6 @@ namespace {
 using nlohmann::json;
 using std::chrono::seconds;
 
-// Kills the process of a role and waits until another one reports in its place.
-void KillAndWaitForSuccessor(RunningTraining* training, const std::string& role) {
-  const json before = training->reports().WaitFor(role, [](const json&) { return true; });
-  ASSERT_FALSE(before.is_null()) << role;
-  const pid_t victim = before.at("pid").get<pid_t>();
-  ASSERT_EQ(kill(victim, SIGKILL), 0) << role;
-  const json after =
-      training->reports().WaitFor(role, [&](const json& r) { return r.at("pid") != victim; });
-  ASSERT_FALSE(after.is_null()) << role << " was not restarted";
-}
-
 TEST(Kill, TrainingSurvivesTheDeathOfEachRole) {
   const TrainingRun run;
   RunningTraining training(

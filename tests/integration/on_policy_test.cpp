@@ -39,16 +39,6 @@ bool WaitForMoreUpdates(RunningTraining* training, int64_t updates) {
               .is_null();
 }
 
-void KillAndWaitForSuccessor(RunningTraining* training, const std::string& role) {
-  const json before = training->reports().WaitFor(role, [](const json&) { return true; });
-  ASSERT_FALSE(before.is_null()) << role;
-  const pid_t victim = before.at("pid").get<pid_t>();
-  ASSERT_EQ(kill(victim, SIGKILL), 0) << role;
-  const json after =
-      training->reports().WaitFor(role, [&](const json& r) { return r.at("pid") != victim; });
-  ASSERT_FALSE(after.is_null()) << role << " was not restarted";
-}
-
 TEST(OnPolicy, ARunOfWholeRolloutsHasNoReplayAndAnExactAccount) {
   const TrainingRun run;
   const ProgramResult result = RunProgram(Command(run, {{"env_steps", "8000"}}), seconds(180));

@@ -85,4 +85,15 @@ class RunningTraining {
   launch::ChildProcess child_;
 };
 
+// Kills the process of a role and waits until another one reports in its place.
+inline void KillAndWaitForSuccessor(RunningTraining* training, const std::string& role) {
+  const nlohmann::json before = training->reports().WaitFor(role, [](const auto&) { return true; });
+  ASSERT_FALSE(before.is_null()) << role;
+  const pid_t victim = before.at("pid").get<pid_t>();
+  ASSERT_EQ(kill(victim, SIGKILL), 0) << role;
+  const nlohmann::json after =
+      training->reports().WaitFor(role, [&](const auto& r) { return r.at("pid") != victim; });
+  ASSERT_FALSE(after.is_null()) << role << " was not restarted";
+}
+
 }  // namespace shoal

@@ -10,8 +10,8 @@
 #include "learner/agent/ppo/advantages.h"
 #include "learner/agent/ppo/ppo_agent.h"
 #include "tests/learner/agent/agent_fixture.h"
-#include "tests/learner/agent/recorded_numbers.h"
 #include "tests/support/paths.h"
+#include "tests/support/shared_numbers.h"
 
 namespace shoal::learner {
 namespace {

@@ -9,7 +9,6 @@
 #include "common/base/files.h"
 #include "learner/agent/deterministic/deterministic_agent.h"
 #include "tests/learner/agent/agent_fixture.h"
-#include "tests/learner/agent/recorded_numbers.h"
 #include "tests/support/paths.h"
 #include "tests/support/shared_numbers.h"
 
