@@ -106,7 +106,7 @@ struct Coordinator::Impl {
   void Note(SettingChange change);
   void Stop();
   // Heartbeat, messages, display. What fails in it is remembered as the run's failure.
-  void Tick();
+  void Tick(bool last = false);
   ProgressFigures Figures(SteadyTime now) const;
   void ShowView(const ProgressFigures& figures, SteadyTime now);
   void Heartbeat(SteadyTime now);
@@ -276,11 +276,11 @@ void Coordinator::Impl::Stop() {
                .at_once = [this] { return StopRequests() > stops_before_end; },
                .say = [this](const std::string& line) { progress.Say(line); },
                .settled = [this] { return Settled(); }});
-  Tick();  // what arrived last
+  Tick(/*last=*/true);  // what arrived last
   evaluations.End(Now());
 }
 
-void Coordinator::Impl::Tick() {
+void Coordinator::Impl::Tick(bool last) {
   const SteadyTime now = Now();
   Heartbeat(now);
   try {
@@ -296,7 +296,8 @@ void Coordinator::Impl::Tick() {
   } catch (const Error& e) {
     Fail(e.what());
   }
-  ShowView(figures, now);
+  // The last view is in metrics.jsonl whenever it comes: it alone may know the last evaluation.
+  if (last || desk.Due(now)) ShowView(figures, now);
   progress.Show(figures, now);
 }
 
@@ -316,7 +317,6 @@ ProgressFigures Coordinator::Impl::Figures(SteadyTime now) const {
 
 // The coordinator's own report is made here: it watches itself as it does the others.
 void Coordinator::Impl::ShowView(const ProgressFigures& figures, SteadyTime now) {
-  if (!desk.Due(now)) return;
   own_report.Begin(figures.state);
   AddRunFigures(figures, &own_report);
   AddOrders(settings.config(), usable_cores, &own_report);

@@ -212,6 +212,17 @@ TEST(Operate, ADetachedRunIsAttachedToAndStopped) {
 
 using RoleMetric = std::pair<std::string, std::string>;
 
+// The newest line of a role in a run's metrics.jsonl.
+json LastReported(const TrainingRun& run, const std::string& role) {
+  json last;
+  std::ifstream in(run.path() / "metrics.jsonl");
+  for (std::string line; std::getline(in, line);) {
+    json report = json::parse(line);
+    if (report.at("role") == role) last = std::move(report);
+  }
+  return last;
+}
+
 // What the processes of a run have reported, each in the table.
 void AddReported(const TrainingRun& run, std::set<RoleMetric>* seen) {
   std::ifstream in(run.path() / "metrics.jsonl");
@@ -230,6 +241,8 @@ TEST(Operate, EveryMetricIsInTheTableOfMetrics) {
   std::set<RoleMetric> seen;
   const TrainingRun run, on_policy;
   ASSERT_EQ(ExitCode(run.Train()), 0);
+  EXPECT_GE(LastReported(run, "coordinator").value("last_evaluation_env_steps", 0.0), 4000)
+      << "an evaluation that came after the last second's report";
   AddReported(run, &seen);
   const ProgramResult result =
       RunProgram({"shoal", "train", "--preset", "fetch-reach-ppo", "--run-name", "run", "--set",
