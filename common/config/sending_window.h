@@ -7,6 +7,7 @@
 //              each of its environments
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 
 #include "common/config/config.h"
@@ -26,5 +27,15 @@ struct SendingWindow {
 
 // `record_bytes` > 0: RecordLayout::record_bytes().
 SendingWindow SendingWindowOf(const Config& config, int record_bytes);
+
+inline uint64_t ChunkBytes(const SendingWindow& window, int record_bytes) {
+  return static_cast<uint64_t>(window.chunk_records) * static_cast<uint64_t>(record_bytes);
+}
+
+// Chunks on their way to a receiver at once: each of so many actor sessions, and one more, may have
+// its window under way, in full chunks and one part of one, twice when it sends again.
+inline size_t MostChunks(const SendingWindow& window, size_t sessions) {
+  return (sessions + 1) * 2 * static_cast<size_t>(window.chunks + 1);
+}
 
 }  // namespace shoal

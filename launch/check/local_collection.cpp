@@ -43,7 +43,7 @@ void LocalCollection::Collect(uint64_t env_steps) {
   while (rollout_.env_steps() < until) {
     if (!rollout_.TryStep()) {
       throw RuntimeError("the replay stores nothing more after {} records",
-                         core_.counters().records);
+                         core_.counters().intake.records);
     }
     Deliver();
   }
@@ -72,7 +72,8 @@ BatchView LocalCollection::Draw() {
                      .after_steps = 0,
                      .schema_hash = core_.batch_schema().Hash()});
   if (!core_.TryAnswer(batch_.get())) {
-    throw RuntimeError("the replay gives no batch with {} records", core_.counters().records);
+    throw RuntimeError("the replay gives no batch with {} records",
+                       core_.counters().intake.records);
   }
   return core_.batch_schema().View(batch_.get());
 }

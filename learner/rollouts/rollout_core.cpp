@@ -67,20 +67,8 @@ ChunkResult RolloutCore::TakeChunk(const TransitionChunk& chunk, uint64_t latest
     counters.discarded += result.stored;  // until an update is made of them
     sessions_.Update(i, counters);
   }
-  Count(result);
+  counters_.intake.Count(result);
   return result;
-}
-
-void RolloutCore::Count(const ChunkResult& result) {
-  counters_.records += result.stored;
-  counters_.rejected += result.rejected;
-  counters_.after_gap += result.after_gap;
-  counters_.duplicates += result.duplicates;
-  counters_.lost += result.lost;
-  if (result.fate == ChunkFate::kAhead) ++counters_.ahead_chunks;
-  if (result.fate != ChunkFate::kAhead && result.fate != ChunkFate::kDealtWith) {
-    ++counters_.refused_chunks;
-  }
 }
 
 std::vector<Credit> RolloutCore::TakeCredits(bool changed_only) {

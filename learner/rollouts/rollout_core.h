@@ -25,6 +25,7 @@
 #include "common/intake/accounting_file.h"
 #include "common/intake/chunk_intake.h"
 #include "common/intake/credit_book.h"
+#include "common/intake/intake_counters.h"
 #include "common/intake/session_ledger.h"
 #include "common/spec/record.h"
 #include "common/wire/batch_schema.h"
@@ -33,10 +34,7 @@ namespace shoal::learner {
 
 // Since construction.
 struct RolloutCounters {
-  uint64_t records = 0;  // taken
-  uint64_t rejected = 0, after_gap = 0, duplicates = 0, lost = 0;
-  uint64_t refused_chunks = 0;    // of another spec, malformed, superseded or from the future
-  uint64_t ahead_chunks = 0;      // that came before their predecessor
+  IntakeCounters intake;
   uint64_t dropped_rollouts = 0;  // whole and begun ones that no update was made of
 };
 
@@ -119,7 +117,6 @@ class RolloutCore final : private RecordTaker {
   void Drop(Rollout* rollout);
   void DropOld(Lane* lane);
   bool Usable(const Rollout& rollout) const;
-  void Count(const ChunkResult& result);
   void CopyRows(const BatchView& batch, int first_row, uint32_t env, const Rollout& rollout);
 
   const RunConfig run_;

@@ -8,29 +8,17 @@
 #include "common/base/files.h"
 #include "common/base/log.h"
 #include "common/config/sending_window.h"
+#include "common/intake/receiver_terms.h"
 
 namespace shoal::learner {
 namespace {
 
-using std::chrono::milliseconds;
-using std::chrono::seconds;
-
-constexpr milliseconds kPoll{20};      // words about credit are collected for so long
-constexpr seconds kCreditInterval{1};  // between repetitions of every credit
-constexpr seconds kProblemInterval{10};
-// How far beyond this host's clock that of an actor may be.
-constexpr std::chrono::minutes kClockMargin{10};
 constexpr size_t kAlignment = 64;
 
-uint64_t LatestSession() {
-  return static_cast<uint64_t>(
-      std::max<int64_t>(0, WallTimeNs() + std::chrono::nanoseconds(kClockMargin).count()));
-}
+int RecordBytes(const RunConfig& run) { return RecordLayout(run.spec).record_bytes(); }
 
-uint64_t ChunkBytes(const RunConfig& run) {
-  const int record_bytes = RecordLayout(run.spec).record_bytes();
-  return static_cast<uint64_t>(SendingWindowOf(run.config, record_bytes).chunk_records) *
-         static_cast<uint64_t>(record_bytes);
+SendingWindow WindowOf(const RunConfig& run) {
+  return SendingWindowOf(run.config, RecordBytes(run));
 }
 
 }  // namespace
@@ -42,10 +30,12 @@ RolloutSource::RolloutSource(const RunConfig& run, const std::filesystem::path& 
       learner_session_(learner_session),
       send_(std::move(send)),
       deadline_(run.config.ppo.rollout_deadline),
-      pool_(run.spec.Hash(), ChunkBytes(run), MaxChunks(run.config.actors)),
+      pool_(run.spec.Hash(), ChunkBytes(WindowOf(run), RecordBytes(run)),
+            MaxChunks(run.config.actors)),
       core_(run, learner_session, ReadAccountBefore(folder)),
       updates_(updates),
-      last_chunk_(Now()) {
+      last_chunk_(Now()),
+      problems_(run.spec.Hash(), "learner") {
   {
     const MutexLock lock(mutex_);
     core_.SetActors(run.config.actors);
@@ -64,11 +54,7 @@ RolloutSource::~RolloutSource() {
 }
 
 size_t RolloutSource::MaxChunks(int actors) const {
-  const SendingWindow window = SendingWindowOf(run_.config, RecordLayout(run_.spec).record_bytes());
-  // Every actor may have its window under way, in full chunks and one part of one, twice when it
-  // sends again.
-  return (static_cast<size_t>(std::max(actors, 1)) + 1) * 2 *
-         static_cast<size_t>(window.chunks + 1);
+  return MostChunks(WindowOf(run_), static_cast<size_t>(std::max(actors, 1)));
 }
 
 void RolloutSource::OnChunk(const TransitionChunk& chunk) {
@@ -80,7 +66,7 @@ void RolloutSource::OnChunk(const TransitionChunk& chunk) {
 }
 
 std::deque<std::unique_ptr<PooledChunk>> RolloutSource::Arrivals() {
-  const SteadyTime deadline = Now() + kPoll;
+  const SteadyTime deadline = Now() + kCreditSpacing;
   const MutexLock lock(inbox_mutex_);
   while (inbox_.empty() && !stopping_) {
     if (!inbox_changed_.WaitUntil(inbox_mutex_, deadline)) break;
@@ -99,11 +85,12 @@ void RolloutSource::Serve() {
     TakeChunks(Arrivals());
     const SteadyTime now = Now();
     const bool all = stopping || now - last_all >= kCreditInterval;
-    if (!all && now - last_told < kPoll) continue;
+    if (!all && now - last_told < kCreditSpacing) continue;
     Tell(all);
     last_told = now;
     if (all) last_all = now;
-    ReportProblems(now);
+    const MutexLock lock(mutex_);
+    problems_.Report(now, core_.counters().intake, pool_.Dropped());
   }
 }
 
@@ -113,7 +100,7 @@ void RolloutSource::TakeChunks(std::deque<std::unique_ptr<PooledChunk>> chunks) 
     {
       const MutexLock lock(mutex_);
       const ChunkResult result = core_.TakeChunk(pooled->chunk, LatestSession());
-      if (result.fault != nullptr) fault_ = result.fault;
+      problems_.Note(pooled->chunk, result);
       if (result.fate == ChunkFate::kWrongSpec || result.fate == ChunkFate::kSuperseded) {
         refusals.push_back(core_.RefusalOf(pooled->chunk));
       }
@@ -144,26 +131,6 @@ void RolloutSource::Tell(bool all) {
     if (!WriteAccount()) return;  // said again with the next repetition
   }
   if (!credits.empty()) send_({credits});
-}
-
-void RolloutSource::ReportProblems(SteadyTime now) {
-  if (now - last_problems_ < kProblemInterval) return;
-  last_problems_ = now;
-  const MutexLock lock(mutex_);
-  const RolloutCounters counters = core_.counters();
-  const RolloutCounters before = std::exchange(reported_, counters);
-  if (const uint64_t n = counters.rejected - before.rejected) {
-    log::Warning("{} records rejected; the last one: {}", n, fault_);
-  }
-  if (const uint64_t n = counters.after_gap - before.after_gap) {
-    log::Warning("{} records not used: an earlier one of their episode is missing", n);
-  }
-  if (const uint64_t n = counters.lost - before.lost) {
-    log::Warning("{} records are lost: an earlier learner had acknowledged them", n);
-  }
-  if (const uint64_t n = counters.refused_chunks - before.refused_chunks) {
-    log::Warning("{} chunks refused: of another observation spec, superseded or malformed", n);
-  }
 }
 
 bool RolloutSource::Complete(SteadyTime now) {
@@ -221,12 +188,12 @@ BatchCounters RolloutSource::counters() const {
                                               .ready = uint64_t(core_.Ready()),
                                               .late = late_rollouts_,
                                               .dropped = counters.dropped_rollouts,
-                                              .records = counters.records,
-                                              .rejected = counters.rejected,
-                                              .after_gap = counters.after_gap,
-                                              .lost = counters.lost,
-                                              .duplicates = counters.duplicates,
-                                              .refused_chunks = counters.refused_chunks,
+                                              .records = counters.intake.records,
+                                              .rejected = counters.intake.rejected,
+                                              .after_gap = counters.intake.after_gap,
+                                              .lost = counters.intake.lost,
+                                              .duplicates = counters.intake.duplicates,
+                                              .refused_chunks = counters.intake.refused_chunks(),
                                               .pool_drops = pool_.Dropped(),
                                               .actor_sessions = core_.sessions().newest().size()}};
 }
@@ -238,7 +205,7 @@ void RolloutSource::SayFarewell() {
       const MutexLock lock(mutex_);
       if (Now() - std::max(last_chunk_, start) > kFarewell) return;
     }
-    std::this_thread::sleep_for(kPoll);
+    std::this_thread::sleep_for(kCreditSpacing);
   }
 }
 

@@ -23,6 +23,7 @@
 
 #include "common/base/mutex.h"
 #include "common/intake/chunk_pool.h"
+#include "common/intake/intake_problems.h"
 #include "learner/batch_stream.h"
 #include "learner/rollouts/rollout_core.h"
 
@@ -53,9 +54,6 @@ class RolloutSource final : public BatchStream {
   // kFarewell, kFarewellLimit at most.
   void SayFarewell();
 
-  static constexpr std::chrono::seconds kFarewell{2};
-  static constexpr std::chrono::seconds kFarewellLimit{20};
-
  private:
   struct Free {
     void operator()(uint8_t* data) const { std::free(data); }
@@ -68,8 +66,6 @@ class RolloutSource final : public BatchStream {
   // Writes the account and, where that worked, acknowledges.
   void Tell(bool all) SHOAL_EXCLUDES(mutex_);
   bool WriteAccount() SHOAL_REQUIRES(mutex_);
-  // Warns of what was refused or lost, at most once per interval.
-  void ReportProblems(SteadyTime now) SHOAL_EXCLUDES(mutex_);
   bool Complete(SteadyTime now) SHOAL_REQUIRES(mutex_);
   Batch HandOut() SHOAL_REQUIRES(mutex_);
   size_t MaxChunks(int actors) const;
@@ -94,16 +90,12 @@ class RolloutSource final : public BatchStream {
   std::optional<SteadyTime> first_ready_ SHOAL_GUARDED_BY(mutex_);
   uint64_t late_rollouts_ SHOAL_GUARDED_BY(mutex_) = 0;
   SteadyTime last_chunk_ SHOAL_GUARDED_BY(mutex_);
-  const char* fault_ SHOAL_GUARDED_BY(mutex_) = "";
+  IntakeProblems problems_ SHOAL_GUARDED_BY(mutex_);
 
   // Of the batch that is handed out; the loop's thread.
   std::optional<BatchSchema> schema_;
   std::unique_ptr<uint8_t, Free> memory_;
   uint64_t memory_bytes_ = 0;
-
-  // Of the serving thread.
-  RolloutCounters reported_;
-  SteadyTime last_problems_{};
 
   std::thread thread_;  // last: it uses the others
 };

@@ -110,33 +110,7 @@ std::optional<uint64_t> ReplayCore::StepsLeft() const {
 ChunkResult ReplayCore::TakeChunk(const TransitionChunk& chunk, uint64_t latest_session) {
   const uint64_t became_before = index_.became_sampleable();
   const ChunkResult result = intake_.Take(chunk, latest_session);
-  switch (result.fate) {
-    case ChunkFate::kDealtWith:
-      break;
-    case ChunkFate::kAhead:
-      ++counters_.ahead_chunks;
-      break;
-    case ChunkFate::kSuperseded:
-      ++counters_.superseded_chunks;
-      break;
-    case ChunkFate::kFuture:
-      ++counters_.future_chunks;
-      break;
-    case ChunkFate::kWrongSpec:
-      ++counters_.wrong_spec_chunks;
-      break;
-    case ChunkFate::kMalformed:
-      ++counters_.malformed_chunks;
-      break;
-    case ChunkFate::kTableFull:
-      ++counters_.table_full_chunks;
-      break;
-  }
-  counters_.records += result.stored;
-  counters_.rejected += result.rejected;
-  counters_.after_gap += result.after_gap;
-  counters_.duplicates += result.duplicates;
-  counters_.lost += result.lost;
+  counters_.intake.Count(result);
   limiter_.SetSessions(static_cast<int>(sessions_.newest().size()));
   limiter_.Inserted(index_.became_sampleable() - became_before, index_.sampleable());
   return result;

@@ -22,6 +22,7 @@
 
 #include "common/config/run_files.h"
 #include "common/intake/credit_book.h"
+#include "common/intake/intake_counters.h"
 #include "common/wire/batch_schema.h"
 #include "common/wire/messages.h"
 #include "replay_server/core/batch_gather.h"
@@ -49,10 +50,7 @@ struct DrawnBatch {
 
 // Counts since construction, where not said otherwise.
 struct CoreCounters {
-  uint64_t records = 0;  // stored
-  uint64_t rejected = 0, after_gap = 0, duplicates = 0, lost = 0;
-  uint64_t ahead_chunks = 0, superseded_chunks = 0, wrong_spec_chunks = 0, malformed_chunks = 0;
-  uint64_t table_full_chunks = 0, future_chunks = 0;
+  IntakeCounters intake;
   uint64_t batches = 0, repeated_batches = 0;
   uint64_t relabelled = 0;        // batch elements with another goal than their own
   uint64_t zero_rewards = 0;      // batch elements of reward 0

@@ -1,63 +1,21 @@
 #include "replay_server/service/problem_log.h"
 
+#include <utility>
+
 #include "common/base/log.h"
 
 namespace shoal::replay {
 
-void ProblemLog::Note(const TransitionChunk& chunk, const ChunkResult& result) {
-  if (result.fate == ChunkFate::kWrongSpec) {
-    other_spec_ = chunk.spec_hash;
-    other_spec_actor_ = chunk.actor;
-  }
-  if (result.fate == ChunkFate::kFuture) {
-    future_actor_ = chunk.actor;
-    future_session_ = chunk.session;
-  }
-  if (result.fault != nullptr) {
-    fault_ = result.fault;
-    fault_actor_ = chunk.actor;
-  }
-}
-
 void ProblemLog::Report(SteadyTime now, const CoreCounters& counters, uint64_t dropped_chunks) {
-  if (now - last_ < kInterval) return;
-  last_ = now;
-  const CoreCounters before = std::exchange(reported_, counters);
-  if (const uint64_t n = counters.wrong_spec_chunks - before.wrong_spec_chunks) {
-    log::Warning("{} chunks refused: actor {} has observation spec {:016x}, the run has {:016x}", n,
-                 other_spec_actor_, other_spec_, spec_hash_);
-  }
-  if (const uint64_t n = counters.rejected - before.rejected) {
-    log::Warning("{} records rejected; the last one, of actor {}: {}", n, fault_actor_, fault_);
-  }
-  if (const uint64_t n = counters.after_gap - before.after_gap) {
-    log::Warning("{} records not used: an earlier one of their episode is missing", n);
-  }
-  if (const uint64_t n = counters.lost - before.lost) {
-    log::Warning("{} records are lost: an earlier replay server had them in its memory", n);
-  }
-  if (const uint64_t n = counters.future_chunks - before.future_chunks) {
-    log::Warning(
-        "{} chunks refused: actor {} says that its session begins at {:.0f} s from now: is its "
-        "host's clock right?",
-        n, future_actor_,
-        1e-9 * (static_cast<double>(future_session_) - static_cast<double>(WallTimeNs())));
-  }
-  if (const uint64_t n = counters.malformed_chunks - before.malformed_chunks) {
-    log::Warning("{} chunks refused: their length or sequences make no sense", n);
-  }
-  if (const uint64_t n = counters.refused_requests - before.refused_requests) {
+  if (!intake_.Report(now, counters.intake, dropped_chunks)) return;
+  const uint64_t before = std::exchange(reported_requests_, counters.refused_requests);
+  if (const uint64_t n = counters.refused_requests - before) {
     log::Warning(
         "{} batch requests refused; the last one, of {}: spec {:016x} (the run's {:016x}), schema "
         "{:016x} (the run's {:016x}: {})",
         n, refused_request_.batch, refused_request_.spec_hash, spec_hash_,
         refused_request_.schema_hash, schema_.Hash(), schema_.Summary());
   }
-  if (dropped_chunks > reported_drops_) {
-    log::Warning("{} chunks dropped: no buffer was free; their actors send them again",
-                 dropped_chunks - reported_drops_);
-  }
-  reported_drops_ = dropped_chunks;
 }
 
 }  // namespace shoal::replay

@@ -20,6 +20,7 @@
 #include "common/dds/publisher.h"
 #include "common/dds/subscriber.h"
 #include "common/intake/accounting_file.h"
+#include "common/intake/receiver_terms.h"
 #include "common/wire/control_state.h"
 #include "common/wire/metrics_report.h"
 #include "common/wire/scoped_seconds.h"
@@ -34,18 +35,11 @@ namespace shoal::replay {
 namespace {
 
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 
 constexpr uint32_t kReplayNumber = 0;
 constexpr milliseconds kPoll{100};  // between looks at control and stop requests
 constexpr int kBatchBuffers = 2;    // one being filled, one being sent
-// Each word about credit goes to every actor, so that with many of them words are collected for a
-// moment: then what a transition costs does not grow with their number.
-constexpr milliseconds kCreditSpacing{20};
 constexpr milliseconds kProgressSpacing{200};
-constexpr seconds kCreditInterval{1};  // between repetitions of every credit
-constexpr seconds kFarewell{2};        // without a chunk, after the coordinator is gone
-constexpr seconds kFarewellLimit{20};
 
 class DdsPartWriter : public PartWriter {
  public:
@@ -56,14 +50,6 @@ class DdsPartWriter : public PartWriter {
  private:
   dds::Publisher<BatchPart> publisher_;
 };
-
-// How far beyond this host's clock that of an actor may be.
-constexpr std::chrono::minutes kClockMargin{10};
-
-uint64_t LatestSession() {
-  return static_cast<uint64_t>(
-      std::max<int64_t>(0, WallTimeNs() + std::chrono::nanoseconds(kClockMargin).count()));
-}
 
 // Members are in construction order; destruction, the reverse, ends the receive threads' callbacks
 // and the sender before what they use.
@@ -79,7 +65,7 @@ class ReplayService {
         core_(run_, folder, NextSession(folder, "replay-0", WallTimeNs()),
               {before_.stored_steps, before_.sessions}, [this] { ReportStarting(); }),
         control_(Now()),
-        inbox_(SpecHash(), ChunkBytes(), MaxChunks()),
+        inbox_(SpecHash(), ChunkBytes(Window(), core_.ring().layout().record_bytes()), MaxChunks()),
         problems_(SpecHash(), core_.batch_schema()),
         ages_(core_.ring().layout(), Settings().learner.request_credits),
         credit_publisher_(bus_),
@@ -117,10 +103,10 @@ class ReplayService {
       }
       core_.SetDraining(control_.state() == RunState::kDraining);
       Turn();
-      if (core_.counters().table_full_chunks > 0) break;
+      if (core_.counters().intake.table_full_chunks > 0) break;
     }
     Finish();
-    if (core_.counters().table_full_chunks > 0) RefuseMoreSessions();
+    if (core_.counters().intake.table_full_chunks > 0) RefuseMoreSessions();
     return exit_code;
   }
 
@@ -130,17 +116,11 @@ class ReplayService {
   SendingWindow Window() const {
     return SendingWindowOf(Settings(), core_.ring().layout().record_bytes());
   }
-  uint64_t ChunkBytes() const {
-    return static_cast<uint64_t>(Window().chunk_records) *
-           static_cast<uint64_t>(core_.ring().layout().record_bytes());
-  }
-  // Every actor session may have its window under way, in full chunks and one part of one, twice
-  // when it sends again.
   size_t MaxChunks() const {
     const size_t known = core_.sessions().newest().size();
     const double actors = control_.SettingOr("actors", Settings().actors);
     const size_t sessions = std::max(known, SaturatingCast<size_t>(std::clamp(actors, 1.0, 1e6)));
-    return (sessions + 1) * 2 * static_cast<size_t>(Window().chunks + 1);
+    return MostChunks(Window(), sessions);
   }
 
   // A restart would find the same full table.

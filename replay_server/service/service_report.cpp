@@ -11,7 +11,7 @@ const MetricsMessage& ServiceReport::Make(const std::string& state, const Servic
   report_.Begin(state);
   Add("stored_records", core_.ring().last_id());
   Add("stored_steps", core_.ring().stored_steps());
-  report_.AddRate("stored_records_per_second", static_cast<double>(counters.records));
+  report_.AddRate("stored_records_per_second", static_cast<double>(counters.intake.records));
   Add("sampleable", core_.index().sampleable());
   Add("sampled", counters.batches * batch);
   Add("relabelled", counters.relabelled);
@@ -35,15 +35,13 @@ const MetricsMessage& ServiceReport::Make(const std::string& state, const Servic
 void ServiceReport::AddTroubles() {
   const CoreCounters& counters = core_.counters();
   Add("redraws", core_.selector().redraws());
-  Add("duplicates", counters.duplicates);
-  Add("rejected", counters.rejected);
-  Add("after_gap", counters.after_gap);
-  Add("lost", counters.lost);
+  Add("duplicates", counters.intake.duplicates);
+  Add("rejected", counters.intake.rejected);
+  Add("after_gap", counters.intake.after_gap);
+  Add("lost", counters.intake.lost);
   Add("cut_episodes", core_.index().cut_episodes());
-  Add("refused_chunks", counters.wrong_spec_chunks + counters.malformed_chunks +
-                            counters.superseded_chunks + counters.table_full_chunks +
-                            counters.future_chunks);
-  Add("ahead_chunks", counters.ahead_chunks);
+  Add("refused_chunks", counters.intake.refused_chunks());
+  Add("ahead_chunks", counters.intake.ahead_chunks);
   Add("refused_requests", counters.refused_requests);
   Add("surplus_requests", counters.surplus_requests + inbox_.DroppedRequests());
   Add("repeated_batches", counters.repeated_batches);

@@ -49,7 +49,7 @@ void TakeChunk(std::span<const uint8_t> cdr) {
   for (int i = 0; i < 3; ++i) core.TakeChunk(chunk);
   const replay::CoreCounters& counters = core.counters();
   CHECK(core.sessions().TotalStored() == core.ring().last_id());
-  CHECK(counters.records == core.ring().last_id());
+  CHECK(counters.intake.records == core.ring().last_id());
 }
 
 void TakePart(std::span<const uint8_t> cdr) {

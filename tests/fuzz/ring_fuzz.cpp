@@ -73,7 +73,7 @@ void Use(const RunConfig& run) {
   core.TryAnswer(aligned);
   RecordScript script(run.spec, 7, 3);
   for (uint32_t i = 0; i < 80; i += 4) core.TakeChunk(script.Chunk(i + 1, 4));
-  CHECK(core.ring().last_id() == before + core.counters().records);
+  CHECK(core.ring().last_id() == before + core.counters().intake.records);
   core.TryAnswer(aligned);
   core.TakeCredits(false);
 }

@@ -80,7 +80,7 @@ TEST_P(Observations, GoAllTheWayFromConfigurationToUpdate) {
   // Records, ring, batch.
   LocalCollection collection(run, folder.path());
   collection.Collect(60);
-  EXPECT_EQ(collection.core().counters().rejected, 0u);
+  EXPECT_EQ(collection.core().counters().intake.rejected, 0u);
   EXPECT_GE(collection.core().ring().stored_steps(), 60u);
   const BatchView batch = collection.Draw();
   const auto elements = static_cast<size_t>(run.config.learner.batch);

@@ -220,7 +220,7 @@ TEST_F(ReplayCoreTest, AnActorOfAnotherSpecIsToldOurs) {
   EXPECT_EQ(refusal.spec_hash, run_.spec.Hash());
   EXPECT_EQ(refusal.session, 10u);
   EXPECT_EQ(refusal.allowed, 0u);
-  EXPECT_EQ(core_->counters().wrong_spec_chunks, 1u);
+  EXPECT_EQ(core_->counters().intake.wrong_spec_chunks, 1u);
 }
 
 TEST_F(ReplayCoreTest, AProcessWhoseNumberHasANewerSessionIsToldOfIt) {

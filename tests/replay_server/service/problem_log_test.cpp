@@ -35,30 +35,7 @@ class ProblemLogTest : public testing::Test {
 
 TEST_F(ProblemLogTest, IsSilentWithoutProblems) {
   EXPECT_THAT(Report(start_), IsEmpty());
-  EXPECT_THAT(Report(start_ + ProblemLog::kInterval), IsEmpty());
-}
-
-TEST_F(ProblemLogTest, NamesBothSpecsOncePerInterval) {
-  TransitionChunk chunk;
-  chunk.actor = 4;
-  chunk.spec_hash = 0xdef;
-  log_.Note(chunk, {.fate = ChunkFate::kWrongSpec});
-  counters_.wrong_spec_chunks = 2;
-  EXPECT_THAT(Report(start_), HasSubstr("2 chunks refused: actor 4 has observation spec "
-                                        "0000000000000def, the run has 0000000000000abc"));
-  counters_.wrong_spec_chunks = 5;
-  EXPECT_THAT(Report(start_ + ProblemLog::kInterval / 2), IsEmpty());
-  EXPECT_THAT(Report(start_ + ProblemLog::kInterval), HasSubstr("3 chunks refused"));
-}
-
-TEST_F(ProblemLogTest, NamesTheFaultOfRejectedRecords) {
-  ChunkResult result;
-  result.rejected = 1;
-  result.fault = "reward is not finite";
-  log_.Note({}, result);
-  counters_.rejected = 1;
-  EXPECT_THAT(Report(start_), HasSubstr("1 records rejected; the last one, of actor 0: reward is "
-                                        "not finite"));
+  EXPECT_THAT(Report(start_ + IntakeProblems::kInterval), IsEmpty());
 }
 
 TEST_F(ProblemLogTest, NamesBothSchemasOfARefusedRequest) {
@@ -73,12 +50,10 @@ TEST_F(ProblemLogTest, NamesBothSchemasOfARefusedRequest) {
                                                     schema_.Hash())));
 }
 
-TEST_F(ProblemLogTest, TellsOfDropsGapsAndLosses) {
-  counters_.after_gap = 3;
-  counters_.lost = 4;
+TEST_F(ProblemLogTest, TellsOfTheIntakeToo) {
+  counters_.intake.after_gap = 3;
   const std::string lines = Report(start_, /*dropped_chunks=*/5);
   EXPECT_THAT(lines, HasSubstr("3 records not used"));
-  EXPECT_THAT(lines, HasSubstr("4 records are lost"));
   EXPECT_THAT(lines, HasSubstr("5 chunks dropped"));
 }
 

@@ -1,0 +1,46 @@
+// What a receiver of records refused or lost, logged once per interval as one line each, with its
+// number and an example.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+
+#include "common/base/clock.h"
+#include "common/intake/intake_counters.h"
+#include "common/wire/messages.h"
+
+namespace shoal {
+
+// Threads: none inside; one owner.
+class IntakeProblems {
+ public:
+  static constexpr std::chrono::seconds kInterval{10};
+
+  // `receiver`: what its lines call the process, "replay server".
+  IntakeProblems(uint64_t spec_hash, std::string receiver)
+      : spec_hash_(spec_hash), receiver_(std::move(receiver)) {}
+
+  // Remembers the example that the next line will name.
+  void Note(const TransitionChunk& chunk, const ChunkResult& result);
+  // Logs what has grown since the last line, at most once per interval: false in between.
+  bool Report(SteadyTime now, const IntakeCounters& counters, uint64_t dropped_chunks);
+
+ private:
+  void ReportChunks(const IntakeCounters& counters, const IntakeCounters& before) const;
+  void ReportRecords(const IntakeCounters& counters, const IntakeCounters& before) const;
+
+  const uint64_t spec_hash_;
+  const std::string receiver_;
+  SteadyTime last_{};
+  IntakeCounters reported_;
+  uint64_t reported_drops_ = 0;
+  uint64_t other_spec_ = 0;
+  uint32_t other_spec_actor_ = 0;
+  uint32_t future_actor_ = 0;
+  uint64_t future_session_ = 0;
+  const char* fault_ = "";
+  uint32_t fault_actor_ = 0;
+};
+
+}  // namespace shoal
