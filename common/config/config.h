@@ -86,6 +86,7 @@ struct LearnerConfig {
   std::string temperature = "auto";  // auto | fixed
   double min_temperature = 0;        // of an automatic one
   double target_entropy = 0;         // 0 = -(action size)
+  bool normalise_vectors = false;    // of observations, by running mean and deviation
   bool bounded_targets = false;      // values cut off at what rewards of -1 and 0 allow
   int weights_period = 20;           // updates between weights broadcasts
   int request_credits = 3;           // batches asked for ahead
@@ -104,7 +105,6 @@ struct PpoConfig {
   double target_kl = 0;                     // an update ends beyond 1.5 of it; 0 = never
   Schedule rate_factor = Schedule::Constant(1);  // on learner.learning_rate
   bool normalise_advantages = true;              // in each minibatch
-  bool normalise_observations = false;           // vectors, by running mean and deviation
   bool normalise_rewards = false;                // by the running deviation of returns
   std::string networks = "separate";             // separate | shared: of policy and value
   double initial_log_std = 0;                    // of the policy, before the first update
@@ -125,6 +125,8 @@ struct ExplorationConfig {
 struct NetworkConfig {
   std::string encoder = "compact";  // of pixels: the kinds of common/nn/encoders/encoder_kind.h
   std::string encoder_weights;      // safetensors file that the encoder starts from; empty = none
+  std::string encoders = "shared";  // shared | separate: of actor and critic
+  bool target_encoder = false;      // the target critic has one of its own, which follows
   // Of the compact encoder alone; 0 and [] = its own values.
   int pool = 0;  // average pooling of the input, 1 = none
   std::vector<int> filters, strides;

@@ -143,6 +143,9 @@ std::vector<Key> LearnerKeys() {
       SHOAL_SAME(learner.min_temperature, (RealRange{0, 100}), "of an automatic one, at least"),
       SHOAL_SAME(learner.target_entropy, (RealRange{-1000, 1000}),
                  "entropy the temperature aims at, in nats; 0 = -(action size)"),
+      SHOAL_SAME(learner.normalise_vectors, AnyValue{},
+                 "vectors are scaled by their running mean and deviation, which belong to the "
+                 "policy; cut off at 10"),
       SHOAL_SAME(learner.bounded_targets, AnyValue{},
                  "cut target values off at what rewards of -1 and 0 allow"),
       SHOAL_SAME(learner.weights_period, (IntegerRange{1, 1'000'000}),
@@ -175,9 +178,6 @@ std::vector<Key> PpoKeys() {
                  "on learner.learning_rate, over the run's env steps"),
       SHOAL_SAME(ppo.normalise_advantages, AnyValue{},
                  "advantages of a minibatch get mean 0 and deviation 1"),
-      SHOAL_SAME(ppo.normalise_observations, AnyValue{},
-                 "vectors are scaled by their running mean and deviation, which belong to the "
-                 "policy; cut off at 10"),
       SHOAL_SAME(ppo.normalise_rewards, AnyValue{},
                  "rewards are divided by the running deviation of discounted returns; cut off at "
                  "10"),
@@ -225,6 +225,12 @@ std::vector<Key> NetworkKeys() {
                  "compact: channels of each 3x3 convolution; [] = [32,32,32]"),
       SHOAL_SAME(network.strides, (IntegerRange{1, 8}),
                  "compact: stride of each convolution; [] = [2,1,2]"),
+      SHOAL_SAME(network.encoders, (Choices{{"shared", "separate"}}),
+                 "sac: shared = one, trained by the critic's loss; separate = the actor has its "
+                 "own, trained by its loss"),
+      SHOAL_SAME(network.target_encoder, AnyValue{},
+                 "sac: the target critic has an encoder of its own, which follows the critic's as "
+                 "the rest of it does"),
       SHOAL_SAME(
           network.trunk, (Choices{{"auto", "tanh", "relu"}}),
           "over the feature map: tanh = linear, LayerNorm, tanh; relu = linear, ReLU; auto = "

@@ -33,7 +33,9 @@ constexpr std::string_view kOffPolicyKeys[] = {"replay.",
                                                "learner.bounded_targets",
                                                "learner.weights_period",
                                                "learner.request_credits",
-                                               "network.log_std"};
+                                               "network.log_std",
+                                               "network.encoders",
+                                               "network.target_encoder"};
 
 const ordered_json& ValueAt(const ordered_json& keys, std::string path) {
   std::ranges::replace(path, '.', '/');
@@ -105,11 +107,6 @@ void ValidateOnPolicy(const Config& config) {
     throw UsageError(
         "ppo.versions_ahead = {}: in lockstep an actor awaits each version; expected 0",
         config.ppo.versions_ahead);
-  }
-  if (config.ppo.normalise_observations && !config.observation.proprioception &&
-      config.observation.goal_mode == "none") {
-    throw UsageError(
-        "ppo.normalise_observations = true: the run observes pixels alone, expected false");
   }
 }
 

@@ -38,6 +38,15 @@ void ValidateObservation(const ObservationConfig& observation) {
   }
 }
 
+void ValidateVectors(const Config& config) {
+  const ObservationConfig& observation = config.observation;
+  if (config.learner.normalise_vectors && !observation.proprioception &&
+      observation.goal_mode == "none") {
+    throw UsageError(
+        "learner.normalise_vectors = true: the run observes pixels alone, expected false");
+  }
+}
+
 void ValidateExploration(const Config& config) {
   const ExplorationConfig& exploration = config.exploration;
   if (exploration.kind == "squashed_gaussian" && !LearnsDeviation(config)) {
@@ -84,6 +93,24 @@ void ValidateEntropy(const Config& config) {
   }
 }
 
+// The keys of encoders besides the critic's.
+void ValidateEncoders(const Config& config) {
+  const NetworkConfig usual;
+  const std::pair<const char*, bool> keys[] = {
+      {"network.encoders", config.network.encoders != usual.encoders},
+      {"network.target_encoder", config.network.target_encoder != usual.target_encoder}};
+  for (const auto& [key, is_set] : keys) {
+    if (!is_set) continue;
+    if (config.learner.algorithm != "sac") {
+      throw UsageError("{}: learner.algorithm = {} has one encoder; expected it unset, or sac", key,
+                       config.learner.algorithm);
+    }
+    if (!config.observation.pixels) {
+      throw UsageError("{}: nothing is encoded without observation.pixels; expected it unset", key);
+    }
+  }
+}
+
 void ValidateReplay(const Config& config) {
   if (config.replay.min_size > config.replay.capacity / 2) {
     throw UsageError("replay.min_size = {}: expected at most half of replay.capacity = {}",
@@ -107,13 +134,17 @@ void ValidateReplay(const Config& config) {
 void Validate(const Config& config) {
   ValidateObservation(config.observation);
   ValidateOnPolicy(config);
+  ValidateVectors(config);
   ValidateExploration(config);
   if (!LearnsOnPolicy(config)) ValidateEntropy(config);
   if (config.run_dir.empty()) throw UsageError("run_dir = \"\": expected a folder");
   if (config.transport.interface.empty()) {
     throw UsageError("transport.interface = \"\": expected a network interface");
   }
-  if (!LearnsOnPolicy(config)) ValidateReplay(config);
+  if (!LearnsOnPolicy(config)) {
+    ValidateEncoders(config);
+    ValidateReplay(config);
+  }
   if (config.lockstep && config.actors > 1) {
     throw UsageError("actors = {}: lockstep takes one actor", config.actors);
   }

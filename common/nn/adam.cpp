@@ -6,7 +6,7 @@
 #include "common/base/check.h"
 #include "common/base/cpu_clones.h"
 #include "common/nn/parallel.h"
-#include "common/nn/tensor_counter.h"
+#include "common/nn/tensor_words.h"
 
 namespace shoal::nn {
 namespace {

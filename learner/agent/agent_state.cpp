@@ -1,7 +1,7 @@
 #include "learner/agent/agent_state.h"
 
 #include "common/base/error.h"
-#include "common/nn/tensor_counter.h"
+#include "common/nn/tensor_words.h"
 
 namespace shoal::learner {
 

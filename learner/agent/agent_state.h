@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/nn/adam.h"
@@ -23,6 +24,10 @@ class AgentState {
   // Moments and steps; `group` names the counter of steps.
   void Add(nn::Adam* optimiser, const std::string& group);
   void Add(uint64_t* counter, const std::string& name);
+  // Anything else: what writes it, and what reads it back, throwing Error as Restore does.
+  using Write = std::function<void(nn::TensorMap*)>;
+  using Read = std::function<void(const nn::TensorMap&, const std::string& source)>;
+  void Add(Write write, Read read) { parts_.push_back({std::move(write), std::move(read)}); }
 
   nn::TensorMap Export() const;
   // Throws Error naming a missing tensor or a wrong shape; then nothing has changed.
@@ -32,8 +37,8 @@ class AgentState {
   void Import(const nn::TensorMap& tensors, const std::string& source);
 
   struct Part {
-    std::function<void(nn::TensorMap*)> write;
-    std::function<void(const nn::TensorMap&, const std::string& source)> read;
+    Write write;
+    Read read;
   };
   std::vector<Part> parts_;
 };

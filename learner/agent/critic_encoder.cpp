@@ -4,12 +4,12 @@
 
 namespace shoal::learner {
 
-std::unique_ptr<nn::EncoderModule> MakeCriticEncoder(const NetworkConfig& network,
-                                                     const ObservationSpec& spec,
-                                                     const nn::ModuleContext& context) {
+std::unique_ptr<nn::EncoderModule> MakeEncoder(const NetworkConfig& network,
+                                               const ObservationSpec& spec, nn::Module::Use use,
+                                               const nn::ModuleContext& context,
+                                               const std::string& name) {
   if (!spec.HasPixels()) return nullptr;
-  return std::make_unique<nn::EncoderModule>(nn::PlanEncoder(network, spec),
-                                             nn::Module::Use::kTraining, context);
+  return std::make_unique<nn::EncoderModule>(nn::PlanEncoder(network, spec, name), use, context);
 }
 
 std::vector<nn::ParameterSet*> CriticSets(nn::EncoderModule* encoder, nn::CriticModule* critic) {

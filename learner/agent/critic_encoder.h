@@ -1,7 +1,8 @@
-// The encoder that a critic's loss trains (and nobody else's): SAC, TD3 and DDPG have it alike.
+// Encoders of the algorithms that have critics, and what a critic's optimiser steps.
 #pragma once
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "common/config/config.h"
@@ -11,10 +12,11 @@
 
 namespace shoal::learner {
 
-// Null without pixels.
-std::unique_ptr<nn::EncoderModule> MakeCriticEncoder(const NetworkConfig& network,
-                                                     const ObservationSpec& spec,
-                                                     const nn::ModuleContext& context);
+// Null without pixels. `name` as nn::PlanEncoder's.
+std::unique_ptr<nn::EncoderModule> MakeEncoder(const NetworkConfig& network,
+                                               const ObservationSpec& spec, nn::Module::Use use,
+                                               const nn::ModuleContext& context,
+                                               const std::string& name = "encoder");
 
 // What one optimiser steps together; `encoder` may be null. Borrows both.
 std::vector<nn::ParameterSet*> CriticSets(nn::EncoderModule* encoder, nn::CriticModule* critic);

@@ -43,8 +43,10 @@ double OffPolicy(const Config& config, const ObservationSpec& spec, double of_en
   const int critics = config.learner.algorithm == "ddpg" ? 1 : 2;
   const double of_actor = MultiplyAdds(nn::PlanActor(config.network, spec));
   const double of_critics = MultiplyAdds(nn::PlanCritic(config.network, spec, "critic", critics));
-  const double critic_step = 4 * of_encoder + 4 * of_critics + of_actor;
-  const double actor_step = 3 * of_actor + 2 * of_critics;
+  const bool separate = config.network.encoders == "separate";
+  const int next_encoders = separate || config.network.target_encoder ? 2 : 1;
+  const double critic_step = (next_encoders + 3) * of_encoder + 4 * of_critics + of_actor;
+  const double actor_step = (separate ? 4 : 0) * of_encoder + 3 * of_actor + 2 * of_critics;
   return config.learner.batch *
          (critic_step + actor_step / std::max(1, config.learner.actor_period));
 }

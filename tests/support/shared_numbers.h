@@ -33,4 +33,11 @@ void FillSymmetric(const std::string& name, double scale, Out&& out) {
                          [&](double u) { return float((2 * u - 1) * scale); });
 }
 
+// Numbers in 0..255.
+template <class Out>
+void FillBytes(const std::string& name, Out&& out) {
+  const std::vector<double> numbers = SharedUniform(name, out.size());
+  std::ranges::transform(numbers, out.begin(), [](double u) { return uint8_t(256 * u); });
+}
+
 }  // namespace shoal

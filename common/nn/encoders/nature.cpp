@@ -3,7 +3,7 @@
 namespace shoal::nn {
 
 void AddNature(const NetworkConfig& network, const std::string& prefix, NetworkPlan* plan) {
-  plan->AddPixels(/*pool=*/1, "network.encoder");
+  plan->AddPixels(/*pool=*/1, "network.encoder", PixelRange::kUnit);
   constexpr struct {
     int filters, kernel, stride;
   } kLayers[] = {{32, 8, 4}, {64, 4, 2}, {64, 3, 1}};

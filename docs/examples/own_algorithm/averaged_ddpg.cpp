@@ -28,7 +28,7 @@ class AveragedDdpgAgent final : public Agent {
   AveragedDdpgAgent(const Config& config, const ObservationSpec& spec, nn::Precision precision)
       : learner_(config.learner),
         context_(precision, config.learner.batch, nn::Threads()),
-        encoder_(MakeCriticEncoder(config.network, spec, context_)),
+        encoder_(MakeEncoder(config.network, spec, Use::kTraining, context_)),
         actor_(PlanOfActor(config, spec, "actor"), Features(), /*trains_encoder=*/false,
                Use::kTraining, context_),
         target_actor_(PlanOfActor(config, spec, "target_actor"), Features(),

@@ -19,6 +19,7 @@
 #include "learner/agent/critic_encoder.h"
 #include "learner/agent/losses.h"
 #include "learner/agent/step_sizes.h"
+#include "learner/agent/vector_standard.h"
 
 namespace shoal::learner {
 namespace {
@@ -34,7 +35,7 @@ class DeterministicAgent final : public Agent {
   DeterministicAgent(const Config& config, const ObservationSpec& spec, nn::Precision precision,
                      const DeterministicOptions& options);
 
-  UpdateOutcome Update(const BatchView& batch, const OnStageEnd& on_stage_end) override;
+  UpdateOutcome Update(const BatchView& drawn, const OnStageEnd& on_stage_end) override;
   uint64_t updates() const override { return updates_; }
   nn::TensorMap PolicyTensors() const override;
   nn::TensorMap AveragedPolicyTensors() const override;
@@ -66,6 +67,7 @@ class DeterministicAgent final : public Agent {
   nn::CriticModule critic_, target_critic_;
   nn::ParameterSet encoder_average_, actor_average_;
   nn::Adam critic_optimiser_, actor_optimiser_;
+  VectorStandard standard_;
   uint64_t updates_ = 0;
   AgentState state_;
 
@@ -82,7 +84,7 @@ DeterministicAgent::DeterministicAgent(const Config& config, const ObservationSp
       batch_size_(config.learner.batch),
       action_size_(spec.action_size),
       context_(precision, batch_size_, nn::Threads()),
-      encoder_(MakeCriticEncoder(config.network, spec, context_)),
+      encoder_(MakeEncoder(config.network, spec, Use::kTraining, context_)),
       features_(encoder_ ? &encoder_->features() : nullptr),
       actor_(PlanActor(config, spec, "actor"), features_, /*trains_encoder=*/false, Use::kTraining,
              context_),
@@ -96,6 +98,7 @@ DeterministicAgent::DeterministicAgent(const Config& config, const ObservationSp
       actor_average_(PlanActor(config, spec, "actor").Parameters(), Use::kInference),
       critic_optimiser_(CriticSets(encoder_.get(), &critic_), CriticStep(config.learner)),
       actor_optimiser_({&actor_.parameters()}, ActorStep(config.learner)),
+      standard_(config.learner.normalise_vectors, spec.VectorSize()),
       target_action_(size_t(batch_size_) * size_t(action_size_)),
       targets_(size_t(batch_size_)),
       q_gradients_(size_t(options.critics), targets_),
@@ -122,6 +125,7 @@ DeterministicAgent::DeterministicAgent(const Config& config, const ObservationSp
   state_.Add(&actor_optimiser_, "actor");
   state_.Add(&critic_optimiser_, "critic");
   state_.Add(&updates_, "agent.updates");
+  standard_.AddTo(&state_);
 }
 
 void DeterministicAgent::RefreshCritic() {
@@ -222,11 +226,12 @@ void DeterministicAgent::MoveTargetsAndAverage() {
   if (encoder_) nn::MoveTowards(rate, encoder_->parameters(), &encoder_average_);
 }
 
-UpdateOutcome DeterministicAgent::Update(const BatchView& batch, const OnStageEnd& on_stage_end) {
-  CHECK(int(batch.reward.size()) == batch_size_) << "batch of " << batch.reward.size();
+UpdateOutcome DeterministicAgent::Update(const BatchView& drawn, const OnStageEnd& on_stage_end) {
+  CHECK(int(drawn.reward.size()) == batch_size_) << "batch of " << drawn.reward.size();
   const nn::ThreadScope scope(context_.threads);
-  UpdateOutcome outcome{.figures = {}, .finite = AllFinite(batch)};
+  UpdateOutcome outcome{.figures = {}, .finite = AllFinite(drawn)};
   if (!outcome.finite) return outcome;
+  const BatchView batch = standard_.Seen(drawn);
   Random random(StreamKey(uint64_t(config_.seed), StreamRole::kLearnerUpdate, updates_));
   ComputeTargets(batch, &random, on_stage_end);
   outcome.finite = UpdateCritic(batch, on_stage_end, &outcome.figures);
@@ -238,6 +243,7 @@ UpdateOutcome DeterministicAgent::Update(const BatchView& batch, const OnStageEn
     return outcome;
   }
   MoveTargetsAndAverage();
+  standard_.Add(drawn.obs_vector);
   on_stage_end(UpdateStage::kOptimiser);
   ++updates_;
   return outcome;
@@ -247,6 +253,7 @@ nn::TensorMap DeterministicAgent::PolicyTensors() const {
   nn::TensorMap policy;
   if (encoder_) encoder_->parameters().Export(&policy);
   actor_.parameters().Export(&policy);
+  standard_.ExportTo(&policy);
   return policy;
 }
 
@@ -254,6 +261,7 @@ nn::TensorMap DeterministicAgent::AveragedPolicyTensors() const {
   nn::TensorMap policy;
   encoder_average_.Export(&policy);  // nothing without pixels
   actor_average_.Export(&policy);
+  standard_.ExportTo(&policy);
   return policy;
 }
 

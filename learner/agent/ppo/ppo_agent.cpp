@@ -10,13 +10,13 @@
 #include "common/nn/actor_critic_plan.h"
 #include "common/nn/adam.h"
 #include "common/nn/parallel.h"
-#include "common/nn/vector_scale.h"
 #include "learner/agent/agent_state.h"
 #include "learner/agent/batch_faults.h"
 #include "learner/agent/ppo/advantages.h"
 #include "learner/agent/ppo/ppo_loss.h"
 #include "learner/agent/ppo/ppo_networks.h"
-#include "learner/agent/ppo/running_moments.h"
+#include "learner/agent/ppo/reward_scale.h"
+#include "learner/agent/vector_standard.h"
 
 namespace shoal::learner {
 namespace {
@@ -26,13 +26,6 @@ constexpr double kKlMargin = 1.5;  // an update ends beyond so many times target
 
 bool FiniteNumbers(std::span<const float> values) {
   return std::ranges::all_of(values, [](float x) { return std::isfinite(x); });
-}
-
-nn::NamedTensor Vector(const std::vector<float>& values) {
-  nn::NamedTensor tensor{.dtype = "F32", .shape = {int64_t(values.size())}, .data = {}};
-  tensor.data.resize(values.size() * sizeof(float));
-  std::memcpy(tensor.data.data(), values.data(), tensor.data.size());
-  return tensor;
 }
 
 // Sums over the minibatches of an update.
@@ -51,14 +44,15 @@ class PpoAgent final : public Agent {
   uint64_t updates() const override { return updates_; }
   nn::TensorMap PolicyTensors() const override;
   nn::TensorMap AveragedPolicyTensors() const override { return PolicyTensors(); }
-  nn::TensorMap AllTensors() const override;
-  void Restore(const nn::TensorMap& tensors, const std::string& source) override;
+  nn::TensorMap AllTensors() const override { return state_.Export(); }
+  void Restore(const nn::TensorMap& tensors, const std::string& source) override {
+    state_.Restore(tensors, source);
+  }
 
  private:
   // A rollout and what is computed of it before the first minibatch.
   struct Prepared {
     int rows = 0;                  // N
-    std::vector<float> vector;     // (N, V), normalised
     std::vector<float> reward;     // (N)
     std::vector<float> value;      // (N)
     std::vector<float> advantage;  // (N)
@@ -66,7 +60,6 @@ class PpoAgent final : public Agent {
   };
 
   Prepared Prepare(const BatchView& batch);
-  void ScaleObservations(const BatchView& batch, Prepared* prepared);
   // V of these rows of observations; the other rows of the result stay 0.
   std::vector<float> Values(std::span<const uint8_t> frames, std::span<const float> vectors,
                             const std::vector<int>& rows, int count);
@@ -89,7 +82,7 @@ class PpoAgent final : public Agent {
   const nn::ModuleContext context_;
   PpoNetworks networks_;
   nn::Adam optimiser_;
-  RunningMoments observations_;
+  VectorStandard standard_;
   RewardScale rewards_;
   uint64_t updates_ = 0;
   uint64_t env_steps_ = 0;  // learned from: what schedules go by
@@ -115,7 +108,7 @@ PpoAgent::PpoAgent(const Config& config, const ObservationSpec& spec, nn::Precis
       optimiser_(networks_.Sets(), {.rate = config.learner.learning_rate,
                                     .epsilon = kAdamEpsilon,
                                     .max_norm = config.learner.max_grad_norm}),
-      observations_(vector_size_),
+      standard_(config.learner.normalise_vectors, vector_size_),
       rewards_(config.learner.discount),
       frames_(size_t(batch_size_) * frame_bytes_),
       vectors_(size_t(batch_size_) * size_t(vector_size_)),
@@ -128,39 +121,17 @@ PpoAgent::PpoAgent(const Config& config, const ObservationSpec& spec, nn::Precis
   state_.Add(&optimiser_, "ppo");
   state_.Add(&updates_, "agent.updates");
   state_.Add(&env_steps_, "agent.env_steps");
+  standard_.AddTo(&state_);
+  state_.Add([this](nn::TensorMap* tensors) { rewards_.Export(tensors); },
+             [this](const nn::TensorMap& tensors, const std::string& source) {
+               rewards_.Import(tensors, source);
+             });
 }
 
 nn::TensorMap PpoAgent::PolicyTensors() const {
   nn::TensorMap policy = networks_.PolicyTensors();
-  if (config_.ppo.normalise_observations) {
-    policy[nn::kObservationMean] = Vector(observations_.Mean());
-    policy[nn::kObservationVariance] = Vector(observations_.Variance());
-  }
+  standard_.ExportTo(&policy);
   return policy;
-}
-
-nn::TensorMap PpoAgent::AllTensors() const {
-  nn::TensorMap tensors = state_.Export();
-  observations_.Export("observation.moments", &tensors);
-  rewards_.Export(&tensors);
-  return tensors;
-}
-
-void PpoAgent::Restore(const nn::TensorMap& tensors, const std::string& source) {
-  RunningMoments observations(vector_size_);
-  observations.Import(tensors, "observation.moments", source);
-  RewardScale rewards(config_.learner.discount);
-  rewards.Import(tensors, source);
-  state_.Restore(tensors, source);
-  observations_ = std::move(observations);
-  rewards_ = std::move(rewards);
-}
-
-void PpoAgent::ScaleObservations(const BatchView& batch, Prepared* prepared) {
-  prepared->vector.assign(batch.obs_vector.begin(), batch.obs_vector.end());
-  if (!config_.ppo.normalise_observations) return;
-  nn::VectorScale(observations_.Mean(), observations_.Variance())
-      .Apply(batch.obs_vector.data(), prepared->vector);
 }
 
 void PpoAgent::GatherInputs(std::span<const uint8_t> frames, std::span<const float> vectors,
@@ -196,21 +167,16 @@ PpoAgent::Prepared PpoAgent::Prepare(const BatchView& batch) {
   if (config_.ppo.normalise_rewards) {
     prepared.reward = rewards_.Scale(batch.reward, batch.ends, batch.id);
   }
-  ScaleObservations(batch, &prepared);
   std::vector<int> all(rows);
   std::iota(all.begin(), all.end(), 0);
-  prepared.value = Values(batch.obs_frames, prepared.vector, all, prepared.rows);
+  prepared.value = Values(batch.obs_frames, batch.obs_vector, all, prepared.rows);
 
   std::vector<int> ends;  // where the next row is no next observation
   for (int t = 0; t < prepared.rows; ++t) {
     if (batch.continues[size_t(t)] == 0 && batch.bootstrap[size_t(t)] != 0) ends.push_back(t);
   }
-  std::vector<float> next_vector(batch.next_obs_vector.begin(), batch.next_obs_vector.end());
-  if (config_.ppo.normalise_observations) {
-    nn::VectorScale(observations_.Mean(), observations_.Variance())
-        .Apply(batch.next_obs_vector.data(), next_vector);
-  }
-  std::vector<float> next_value = Values(batch.next_obs_frames, next_vector, ends, prepared.rows);
+  std::vector<float> next_value =
+      Values(batch.next_obs_frames, batch.next_obs_vector, ends, prepared.rows);
   for (size_t t = 0; t + 1 < rows; ++t) {
     if (batch.continues[t] != 0) next_value[t] = prepared.value[t + 1];
   }
@@ -230,7 +196,7 @@ PpoAgent::Prepared PpoAgent::Prepare(const BatchView& batch) {
 bool PpoAgent::Minibatch(const BatchView& batch, const Prepared& prepared,
                          std::span<const int> rows, const OnStageEnd& on_stage_end, Sums* sums,
                          bool* over) {
-  GatherInputs(batch.obs_frames, prepared.vector, rows);
+  GatherInputs(batch.obs_frames, batch.obs_vector, rows);
   const auto actions = size_t(action_size_);
   for (size_t b = 0; b < rows.size(); ++b) {
     const auto row = size_t(rows[b]);
@@ -338,16 +304,17 @@ UpdateOutcome PpoAgent::Update(const BatchView& batch, const OnStageEnd& on_stag
   clip_ = config_.ppo.clip.At(StepsWith(rows));
   rate_ = config_.learner.learning_rate * config_.ppo.rate_factor.At(StepsWith(rows));
   optimiser_.set_rate(rate_);
-  const Prepared prepared = Prepare(batch);
+  const BatchView seen = standard_.Seen(batch);
+  const Prepared prepared = Prepare(seen);
   on_stage_end(UpdateStage::kForward);
   Sums sums;
-  outcome.finite = Epochs(batch, prepared, on_stage_end, &sums);
+  outcome.finite = Epochs(seen, prepared, on_stage_end, &sums);
   SetFigures(batch, prepared, sums, &outcome.figures);
   if (!outcome.finite) {
     Restore(former, "former state");
     return outcome;
   }
-  if (config_.ppo.normalise_observations) observations_.Add(batch.obs_vector);
+  standard_.Add(batch.obs_vector);
   env_steps_ += uint64_t(rows);
   ++updates_;
   on_stage_end(UpdateStage::kOptimiser);

@@ -1,16 +1,18 @@
 // One update, in order (equations of docs/algorithm.md):
 //
-//   1. targets     next_obs -> encoder -> actor, target heads -> y                 (Eq. 5, 15)
+//   1. targets     next_obs -> encoders -> actor, target heads -> y                (Eq. 5, 15)
 //   2. critic      obs -> encoder -> critic heads -> loss -> encoder and critic step   (Eq. 6)
 //   3. actor       the features of 2, detached -> actor -> critic heads -> actor step  (Eq. 7)
 //   4. temperature from the log-probabilities of 3                                     (Eq. 8)
 //   5. target heads follow the critic's                                                (Eq. 9)
 //   6. the averaged policy follows encoder and actor                                  (Eq. 12)
 //
-// 3 and 4 every actor_period updates, 5 every target_period, both from the first update on. The
+// 3 and 4 every actor_period updates, 5 every target_period, both from the first update on. An
 // encoder keeps one set of activations, so next_obs goes through it first. The temperature in 1 and
 // 3 is the one before this update. An encoder with batch normalisation takes running statistics in
-// 1, those of the batch in 2 and 3.
+// 1, those of the batch in 2 and 3. An actor with an encoder of its own (network.encoders) takes
+// that one's features in 3 and trains it, and the critic's heads stand on features of the critic's
+// encoder as 2 has left it.
 #include "learner/agent/sac/sac_agent.h"
 
 #include <array>
@@ -25,6 +27,7 @@
 #include "learner/agent/losses.h"
 #include "learner/agent/sac/sac_networks.h"
 #include "learner/agent/squashed_gaussian.h"
+#include "learner/agent/vector_standard.h"
 
 namespace shoal::learner {
 namespace {
@@ -33,14 +36,20 @@ class SacAgent final : public Agent {
  public:
   SacAgent(const Config& config, const ObservationSpec& spec, nn::Precision precision);
 
-  UpdateOutcome Update(const BatchView& batch, const OnStageEnd& on_stage_end) override;
+  UpdateOutcome Update(const BatchView& drawn, const OnStageEnd& on_stage_end) override;
   uint64_t updates() const override { return updates_; }
-  nn::TensorMap PolicyTensors() const override { return networks_.PolicyTensors(); }
-  nn::TensorMap AveragedPolicyTensors() const override { return networks_.AveragedPolicyTensors(); }
+  nn::TensorMap PolicyTensors() const override { return Policy(networks_.PolicyTensors()); }
+  nn::TensorMap AveragedPolicyTensors() const override {
+    return Policy(networks_.AveragedPolicyTensors());
+  }
   nn::TensorMap AllTensors() const override { return state_.Export(); }
   void Restore(const nn::TensorMap& tensors, const std::string& source) override;
 
  private:
+  nn::TensorMap Policy(nn::TensorMap parameters) const {
+    standard_.ExportTo(&parameters);
+    return parameters;
+  }
   void ComputeTargets(const BatchView& batch, float temperature, Random* random,
                       const OnStageEnd& on_stage_end);
   bool UpdateCritic(const BatchView& batch, const OnStageEnd& on_stage_end, UpdateFigures* figures);
@@ -53,6 +62,7 @@ class SacAgent final : public Agent {
   const ValueBounds bounds_;
   const int threads_;
   SacNetworks networks_;
+  VectorStandard standard_;
   uint64_t updates_ = 0;
   AgentState state_;
 
@@ -70,6 +80,7 @@ SacAgent::SacAgent(const Config& config, const ObservationSpec& spec, nn::Precis
       bounds_(ValueBoundsOf(config.learner)),
       threads_(nn::Threads()),
       networks_(config, spec, precision, threads_),
+      standard_(config.learner.normalise_vectors, spec.VectorSize()),
       gaussian_(batch_size_, spec.action_size),
       targets_(size_t(batch_size_)),
       q_gradients_{targets_, targets_},
@@ -77,13 +88,14 @@ SacAgent::SacAgent(const Config& config, const ObservationSpec& spec, nn::Precis
       mean_gradient_(action_gradient_),
       log_std_gradient_(action_gradient_) {
   networks_.AddTo(&state_);
+  standard_.AddTo(&state_);
   state_.Add(&updates_, "agent.updates");
 }
 
 void SacAgent::ComputeTargets(const BatchView& batch, float temperature, Random* random,
                               const OnStageEnd& on_stage_end) {
   const float* vector = batch.next_obs_vector.data();
-  networks_.Encode(batch.next_obs_frames.data(), nn::Statistics::kRunning);
+  networks_.EncodeNext(batch.next_obs_frames.data());
   const auto [mean, log_std] = networks_.ForwardActor(vector);
   gaussian_.Sample(mean, log_std, random);
   const auto [q0, q1] = networks_.ForwardTarget(vector, gaussian_.action());
@@ -99,7 +111,7 @@ void SacAgent::ComputeTargets(const BatchView& batch, float temperature, Random*
 // False where the loss or its gradient is not finite; then no parameter has changed.
 bool SacAgent::UpdateCritic(const BatchView& batch, const OnStageEnd& on_stage_end,
                             UpdateFigures* figures) {
-  networks_.Encode(batch.obs_frames.data(), nn::Statistics::kBatch);
+  networks_.Encode(batch.obs_frames.data());
   const auto [q0, q1] = networks_.ForwardCritic(batch.obs_vector.data(), batch.action.data());
   const CriticLoss loss = CriticLossForward(batch_size_, q0, q1, targets_.data());
   on_stage_end(UpdateStage::kForward);
@@ -117,11 +129,12 @@ bool SacAgent::UpdateCritic(const BatchView& batch, const OnStageEnd& on_stage_e
   return true;
 }
 
-// The features are still those of obs. False where the loss or its gradient is not finite; then
+// After UpdateCritic. False where the loss or its gradient is not finite; then
 // neither actor nor temperature has changed.
 bool SacAgent::UpdateActor(const BatchView& batch, float temperature, Random* random,
                            const OnStageEnd& on_stage_end, UpdateFigures* figures) {
   const float* vector = batch.obs_vector.data();
+  networks_.EncodeForActor(batch.obs_frames.data());
   const auto [mean, log_std] = networks_.ForwardActor(vector);
   gaussian_.Sample(mean, log_std, random);
   const auto [q0, q1] = networks_.ForwardCritic(vector, gaussian_.action());
@@ -149,11 +162,12 @@ bool SacAgent::UpdateActor(const BatchView& batch, float temperature, Random* ra
   return true;
 }
 
-UpdateOutcome SacAgent::Update(const BatchView& batch, const OnStageEnd& on_stage_end) {
-  CHECK(int(batch.reward.size()) == batch_size_) << "batch of " << batch.reward.size();
+UpdateOutcome SacAgent::Update(const BatchView& drawn, const OnStageEnd& on_stage_end) {
+  CHECK(int(drawn.reward.size()) == batch_size_) << "batch of " << drawn.reward.size();
   const nn::ThreadScope scope(threads_);
-  UpdateOutcome outcome{.figures = {}, .finite = AllFinite(batch)};
+  UpdateOutcome outcome{.figures = {}, .finite = AllFinite(drawn)};
   if (!outcome.finite) return outcome;
+  const BatchView batch = standard_.Seen(drawn);
 
   Random random(StreamKey(uint64_t(config_.seed), StreamRole::kLearnerUpdate, updates_));
   const float temperature = networks_.Temperature();
@@ -170,6 +184,7 @@ UpdateOutcome SacAgent::Update(const BatchView& batch, const OnStageEnd& on_stag
     networks_.MoveTarget(float(config_.learner.tau));
   }
   networks_.MovePolicyAverage(float(config_.learner.average_rate));
+  standard_.Add(drawn.obs_vector);
   on_stage_end(UpdateStage::kOptimiser);
   ++updates_;
   outcome.figures.Set(kTemperature, networks_.Temperature());

@@ -16,8 +16,23 @@ using nn::ParameterSet;
 
 constexpr const char* kLogTemperature = "temperature.log";
 
-const nn::Features* FeaturesOf(const std::unique_ptr<nn::EncoderModule>& encoder) {
-  return encoder ? &encoder->features() : nullptr;
+using nn::EncoderModule;
+
+// Of the first that is there; null where none is.
+const nn::Features* FeaturesOf(std::initializer_list<const EncoderModule*> encoders) {
+  for (const EncoderModule* encoder : encoders) {
+    if (encoder != nullptr) return &encoder->features();
+  }
+  return nullptr;
+}
+
+bool Separate(const Config& config) { return config.network.encoders == "separate"; }
+
+std::vector<ParameterSet*> ActorSets(EncoderModule* own_encoder, nn::ActorModule* actor) {
+  std::vector<ParameterSet*> sets;
+  if (own_encoder != nullptr) sets.push_back(&own_encoder->parameters());
+  sets.push_back(&actor->parameters());
+  return sets;
 }
 
 }  // namespace
@@ -25,26 +40,39 @@ const nn::Features* FeaturesOf(const std::unique_ptr<nn::EncoderModule>& encoder
 SacNetworks::SacNetworks(const Config& config, const ObservationSpec& spec, nn::Precision precision,
                          int threads)
     : context_(precision, config.learner.batch, threads),
-      encoder_(MakeCriticEncoder(config.network, spec, context_)),
-      critic_(nn::PlanCritic(config.network, spec, "critic"), FeaturesOf(encoder_),
-              /*trains_encoder=*/true, Module::Use::kTraining, context_),
-      target_(nn::PlanCritic(config.network, spec, "target"), FeaturesOf(encoder_),
+      encoder_(MakeEncoder(config.network, spec, Module::Use::kTraining, context_)),
+      critic_encoder_(Separate(config) ? MakeEncoder(config.network, spec, Module::Use::kTraining,
+                                                     context_, "critic.encoder")
+                                       : nullptr),
+      target_encoder_(config.network.target_encoder
+                          ? MakeEncoder(config.network, spec, Module::Use::kInference, context_,
+                                        "target.encoder")
+                          : nullptr),
+      critic_(nn::PlanCritic(config.network, spec, "critic"),
+              FeaturesOf({critic_encoder_.get(), encoder_.get()}), /*trains_encoder=*/true,
+              Module::Use::kTraining, context_),
+      target_(nn::PlanCritic(config.network, spec, "target"),
+              FeaturesOf({target_encoder_.get(), critic_encoder_.get(), encoder_.get()}),
               /*trains_encoder=*/false, Module::Use::kInference, context_),
-      actor_(nn::PlanActor(config.network, spec), FeaturesOf(encoder_), /*trains_encoder=*/false,
-             Module::Use::kTraining, context_),
+      actor_(nn::PlanActor(config.network, spec), FeaturesOf({encoder_.get()}),
+             /*trains_encoder=*/critic_encoder_ != nullptr, Module::Use::kTraining, context_),
       temperature_({{kLogTemperature, {1}}}, ParameterSet::Use::kTraining),
       encoder_average_(nn::PlanEncoder(config.network, spec).Parameters(),
                        ParameterSet::Use::kInference),
       actor_average_(nn::PlanActor(config.network, spec).Parameters(),
                      ParameterSet::Use::kInference),
-      critic_optimiser_(CriticSets(encoder_.get(), &critic_), CriticStep(config.learner)),
-      actor_optimiser_({&actor_.parameters()}, ActorStep(config.learner)),
+      critic_optimiser_(CriticSets(CriticEncoder(), &critic_), CriticStep(config.learner)),
+      actor_optimiser_(ActorSets(critic_encoder_ ? encoder_.get() : nullptr, &actor_),
+                       ActorStep(config.learner)),
       temperature_optimiser_({&temperature_}, {.rate = TemperatureRate(config.learner)}) {
   const auto seed = static_cast<uint64_t>(config.seed);
-  if (encoder_) {
-    encoder_->parameters().Initialise(seed);
-    nn::CopyParameters(encoder_->parameters(), &encoder_average_);
+  for (EncoderModule* encoder : {encoder_.get(), critic_encoder_.get()}) {
+    if (encoder == nullptr) continue;
+    encoder->parameters().Initialise(seed);
+    encoder->Refresh();
   }
+  if (encoder_) nn::CopyParameters(encoder_->parameters(), &encoder_average_);
+  if (target_encoder_) nn::CopyParameters(*CriticEncoder(), target_encoder_.get());
   critic_.parameters().Initialise(seed);
   actor_.parameters().Initialise(seed);
   temperature_.values()[0] = static_cast<float>(std::log(config.learner.initial_temperature));
@@ -54,8 +82,25 @@ SacNetworks::SacNetworks(const Config& config, const ObservationSpec& spec, nn::
   nn::CopyParameters(actor_.parameters(), &actor_average_);
 }
 
-void SacNetworks::Encode(const uint8_t* frames, nn::Statistics statistics) {
-  if (encoder_) encoder_->Forward(frames, statistics);
+EncoderModule* SacNetworks::CriticEncoder() {
+  return critic_encoder_ ? critic_encoder_.get() : encoder_.get();
+}
+
+void SacNetworks::EncodeNext(const uint8_t* frames) {
+  if (!encoder_) return;
+  encoder_->Forward(frames, nn::Statistics::kRunning);
+  EncoderModule* of_target = target_encoder_ ? target_encoder_.get() : critic_encoder_.get();
+  if (of_target != nullptr) of_target->Forward(frames, nn::Statistics::kRunning);
+}
+
+void SacNetworks::Encode(const uint8_t* frames) {
+  if (encoder_) CriticEncoder()->Forward(frames, nn::Statistics::kBatch);
+}
+
+void SacNetworks::EncodeForActor(const uint8_t* frames) {
+  if (!critic_encoder_) return;
+  encoder_->Forward(frames, nn::Statistics::kBatch);
+  critic_encoder_->Forward(frames, nn::Statistics::kRunning);
 }
 
 SacNetworks::Gaussian SacNetworks::ForwardActor(const float* vector) {
@@ -77,7 +122,7 @@ SacNetworks::TwinQ SacNetworks::ForwardCritic(const float* vector, const float* 
 
 double SacNetworks::BackwardCritic(const QGradients& q_gradients) {
   critic_.Backward(q_gradients);
-  if (encoder_) encoder_->Backward();
+  if (encoder_) CriticEncoder()->Backward();
   return critic_optimiser_.GradientSquares();
 }
 
@@ -87,11 +132,12 @@ void SacNetworks::BackwardAction(const QGradients& q_gradients, float* action_gr
 
 double SacNetworks::BackwardActor(const float* mean_gradient, const float* log_std_gradient) {
   actor_.Backward(mean_gradient, log_std_gradient);
+  if (critic_encoder_) encoder_->Backward();
   return actor_optimiser_.GradientSquares();
 }
 
 void SacNetworks::RefreshCritic() {
-  if (encoder_) encoder_->Refresh();
+  if (encoder_) CriticEncoder()->Refresh();
   critic_.Refresh();
 }
 
@@ -107,6 +153,7 @@ void SacNetworks::UndoStepCritic() {
 
 void SacNetworks::StepActor() {
   actor_optimiser_.Step();
+  if (critic_encoder_) encoder_->Refresh();
   actor_.Refresh();
 }
 
@@ -119,7 +166,10 @@ void SacNetworks::StepTemperature(float gradient, double least) {
   log_temperature = std::max(log_temperature, float(std::log(least)));  // of 0: no bound
 }
 
-void SacNetworks::MoveTarget(float tau) { nn::MoveTowards(tau, critic_, &target_); }
+void SacNetworks::MoveTarget(float tau) {
+  nn::MoveTowards(tau, critic_, &target_);
+  if (target_encoder_) nn::MoveTowards(tau, *CriticEncoder(), target_encoder_.get());
+}
 
 void SacNetworks::MovePolicyAverage(float rate) {
   if (encoder_) nn::MoveTowards(rate, encoder_->parameters(), &encoder_average_);
@@ -141,7 +191,9 @@ nn::TensorMap SacNetworks::AveragedPolicyTensors() const {
 }
 
 void SacNetworks::AddTo(AgentState* state) {
-  if (encoder_) state->Add(encoder_.get());
+  for (EncoderModule* encoder : {encoder_.get(), critic_encoder_.get(), target_encoder_.get()}) {
+    if (encoder != nullptr) state->Add(encoder);
+  }
   for (nn::Module* module : std::initializer_list<nn::Module*>{&critic_, &target_, &actor_}) {
     state->Add(module);
   }

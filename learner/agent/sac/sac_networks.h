@@ -2,9 +2,13 @@
 //
 //   encoder.*, critic.*    trained by the critic's loss, one optimiser
 //   actor.*                trained by the actor's loss on the same features, detached
-//   target.*               trunk and Q functions that follow critic.*; there is no target encoder
+//   target.*               trunk and Q functions that follow critic.*, on the critic's features
 //   average.*              moving average of encoder.* and actor.*
 //   temperature.log        one number
+//
+// network.encoders = separate: encoder.* is the actor's, trained by its loss; the critic has
+// critic.encoder.* instead. network.target_encoder: target.encoder.* follows the critic's encoder,
+// and the target stands on its features.
 //
 // Dimensions: B batch, A actions, V vector size, K*C channels. Arrays are row-major f32; a result
 // is valid until the function that returned it is called again.
@@ -36,9 +40,17 @@ class SacNetworks {
   SacNetworks(const SacNetworks&) = delete;
   SacNetworks& operator=(const SacNetworks&) = delete;
 
-  // frames (B, K*C, H, W) u8. The features stay until the next call and are what every head below
-  // sees. `statistics` as EncoderModule's. Without pixels it does nothing.
-  void Encode(const uint8_t* frames, nn::Statistics statistics);
+  // frames (B, K*C, H, W) u8. The features stay until the next call and are what the heads below
+  // see. Without pixels these do nothing.
+  //
+  // For actor and target, by running statistics.
+  void EncodeNext(const uint8_t* frames);
+  // For critic and, of shared encoders, actor; by the batch's statistics.
+  void Encode(const uint8_t* frames);
+  // For the actor's loss, after the critic's step, the frames of the latest Encode. Separate
+  // encoders: the actor's by the batch's statistics, the critic's anew by running ones. A shared
+  // one's features stay those of before the step.
+  void EncodeForActor(const uint8_t* frames);
 
   // vector (B, V) in all of these, action (B, A).
   struct Gaussian {
@@ -52,13 +64,13 @@ class SacNetworks {
   TwinQ ForwardCritic(const float* vector, const float* action);
 
   using QGradients = std::array<std::vector<float>, 2>;  // dL/dq_i (B)
-  // Gradients of encoder and critic from those of the latest ForwardCritic, which has to be of the
-  // latest Encode. Returns the sum of their squares.
+  // Gradients of critic and its encoder from those of the latest ForwardCritic, which has to be of
+  // the latest Encode. Returns the sum of their squares.
   double BackwardCritic(const QGradients& q_gradients);
   // dL/daction (B, A) of the latest ForwardCritic alone.
   void BackwardAction(const QGradients& q_gradients, float* action_gradient);
-  // Gradients of the actor from dL/dmean, dL/dlog_std (B, A) of the latest ForwardActor. Returns
-  // the sum of their squares.
+  // Gradients of the actor, and of an encoder of its own, from dL/dmean, dL/dlog_std (B, A) of the
+  // latest ForwardActor. Returns the sum of their squares.
   double BackwardActor(const float* mean_gradient, const float* log_std_gradient);
 
   // One optimiser step with the latest gradients. Features stay those of before.
@@ -69,7 +81,7 @@ class SacNetworks {
   float Temperature() const;
   // Gradient of the log temperature, which then is at least log `least`.
   void StepTemperature(float gradient, double least);
-  // target += tau * (critic - target), trunk and Q functions (Eq. 9).
+  // target += tau * (critic - target), a target encoder included (Eq. 9).
   void MoveTarget(float tau);
   // average += rate * (policy - average), encoder and actor (Eq. 12); the encoder's running
   // statistics whole.
@@ -82,10 +94,14 @@ class SacNetworks {
   void AddTo(AgentState* state);
 
  private:
+  nn::EncoderModule* CriticEncoder();  // null without pixels
   void RefreshCritic();
 
   const nn::ModuleContext context_;
-  std::unique_ptr<nn::EncoderModule> encoder_;  // null without pixels
+  // Null without pixels: the policy's, which is the critic's, too, unless that has its own.
+  const std::unique_ptr<nn::EncoderModule> encoder_;
+  const std::unique_ptr<nn::EncoderModule> critic_encoder_;  // null: encoder_
+  const std::unique_ptr<nn::EncoderModule> target_encoder_;  // null: the critic's
   nn::CriticModule critic_, target_;
   nn::ActorModule actor_;
   nn::ParameterSet temperature_;

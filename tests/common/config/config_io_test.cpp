@@ -229,7 +229,7 @@ TEST(Validate, RefusesWhatOnPolicyLearningHasNoUseForByName) {
       {{"ppo.rollout_steps=100", "actors=2", "learner.batch=256"},
        "are 800, which learner.batch = 256 does not divide; expected a multiple of 32, 128 for"},
       {{"lockstep=true", "ppo.versions_ahead=1"}, "ppo.versions_ahead = 1: in lockstep"},
-      {{"ppo.normalise_observations=true"}, "ppo.normalise_observations = true: the run observes"},
+      {{"learner.normalise_vectors=true"}, "learner.normalise_vectors = true: the run observes"},
   };
   for (const auto& [assignments, message] : cases) {
     Config config;

@@ -52,5 +52,25 @@ TEST(Validate, ATemperaturesFloorIsBelowItsStartAndOfOneThatMoves) {
               HasSubstr("learner.temperature = fixed"));
 }
 
+TEST(Validate, FurtherEncodersAreOfSacFromPixels) {
+  const auto separate = [](Config* c) {
+    c->observation.pixels = true;
+    c->network.encoders = "separate";
+    c->network.target_encoder = true;
+  };
+  EXPECT_EQ(Refusal(separate), "");
+  EXPECT_THAT(Refusal([&](Config* c) {
+                separate(c);
+                c->learner.algorithm = "td3";
+              }),
+              HasSubstr("network.encoders: learner.algorithm = td3 has one encoder"));
+  EXPECT_THAT(Refusal([](Config* c) {
+                c->observation.pixels = false;
+                c->observation.proprioception = true;
+                c->network.target_encoder = true;
+              }),
+              HasSubstr("network.target_encoder: nothing is encoded without observation.pixels"));
+}
+
 }  // namespace
 }  // namespace shoal

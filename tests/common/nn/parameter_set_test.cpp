@@ -9,7 +9,7 @@
 #include "common/base/error.h"
 #include "common/base/random.h"
 #include "common/nn/orthogonal.h"
-#include "common/nn/tensor_counter.h"
+#include "common/nn/tensor_words.h"
 
 namespace shoal::nn {
 namespace {

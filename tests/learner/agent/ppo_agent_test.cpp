@@ -9,7 +9,7 @@
 #include "common/nn/policy.h"
 #include "learner/agent/ppo/advantages.h"
 #include "learner/agent/ppo/ppo_loss.h"
-#include "learner/agent/ppo/running_moments.h"
+#include "learner/agent/ppo/reward_scale.h"
 #include "tests/learner/agent/agent_fixture.h"
 
 namespace shoal::learner {
@@ -97,20 +97,6 @@ TEST(PpoLoss, GradientsAreThoseOfTheLoss) {
   expect(&value, value_gradient);
 }
 
-TEST(RunningMoments, OfTwoBatchesAreThoseOfAllNumbers) {
-  RunningMoments moments(2);
-  moments.Add(std::vector<float>{1, 10, 2, 20});
-  moments.Add(std::vector<float>{6, 60});
-  EXPECT_EQ(moments.Mean(), (std::vector<float>{3, 30}));
-  EXPECT_NEAR(moments.Variance()[0], 14.0 / 3, 1e-6);
-  nn::TensorMap tensors;
-  moments.Export("m", &tensors);
-  RunningMoments other(2);
-  other.Import(tensors, "m", "test");
-  EXPECT_EQ(other.Variance(), moments.Variance());
-  EXPECT_EQ(other.count(), 3);
-}
-
 TEST(RewardScale, ReturnsGoOnFromRolloutToRolloutAndBeginAnewWithEpisodes) {
   RewardScale scale(0.5);
   const std::vector<uint64_t> env{3, 3, 3};
@@ -125,7 +111,7 @@ class PpoAgentTest : public testing::TestWithParam<const char*> {
   PpoAgentTest() {
     config_ = PpoConfigOf(SmallConfig());
     config_.ppo.networks = GetParam();
-    config_.ppo.normalise_observations = config_.ppo.normalise_rewards = true;
+    config_.learner.normalise_vectors = config_.ppo.normalise_rewards = true;
     spec_.drawn_actions = true;
   }
   std::unique_ptr<Agent> Make() const { return MakePpoAgent(config_, spec_, nn::Precision::kF32); }

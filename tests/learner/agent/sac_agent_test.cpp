@@ -58,6 +58,71 @@ TEST(SacAgent, EncoderAndCriticGetNoGradientFromTheActor) {
   }
 }
 
+Config WithEncoders(const char* encoders, bool target_encoder) {
+  Config config = SmallConfig();
+  config.network.encoders = encoders;
+  config.network.target_encoder = target_encoder;
+  return config;
+}
+
+TEST(SacAgent, AnActorsOwnEncoderIsTrainedByItsLossAlone) {
+  Config with = WithEncoders("separate", true), without = with;
+  with.learner.actor_period = 1;
+  without.learner.actor_period = 1'000;
+  const auto a = SmallAgent(with), b = SmallAgent(without);
+  UpdateTimes(a.get(), 1);
+  b->Restore(a->AllTensors(), "a");
+  const TensorMap before = a->AllTensors();
+  UpdateTimes(a.get(), 1, 200);
+  UpdateTimes(b.get(), 1, 200);
+  const TensorMap after_a = a->AllTensors(), after_b = b->AllTensors();
+  EXPECT_THAT(Differences(after_a, after_b, "critic."), IsEmpty());
+  EXPECT_THAT(Differences(after_a, after_b, "target."), IsEmpty());
+  EXPECT_THAT(Differences(before, after_b, "critic.encoder."), Not(IsEmpty()));
+  EXPECT_THAT(Differences(before, after_b, "encoder."), IsEmpty());
+  EXPECT_THAT(Differences(before, after_a, "encoder."), Not(IsEmpty()));
+}
+
+// The encoder of `of` is `source`'s.
+void ExpectEncoder(const TensorMap& tensors, const std::string& of, const std::string& source,
+                   bool equal) {
+  int compared = 0;
+  for (const auto& [name, tensor] : tensors) {
+    if (!name.starts_with(of)) continue;
+    const auto a = Floats(tensors, name), b = Floats(tensors, source + name.substr(of.size()));
+    float apart = 0;
+    for (size_t i = 0; i < a.size(); ++i) apart = std::max(apart, std::abs(a[i] - b[i]));
+    EXPECT_EQ(apart < 1e-6f, equal) << name << ' ' << apart;
+    ++compared;
+  }
+  EXPECT_EQ(compared, 4);
+}
+
+TEST(SacAgent, ATargetEncoderStartsAtTheCriticsAndFollowsIt) {
+  for (const auto& [encoders, critics] :
+       {std::pair("shared", "encoder."), std::pair("separate", "critic.encoder.")}) {
+    Config config = WithEncoders(encoders, true);
+    config.learner.tau = 1;
+    config.learner.target_period = 2;
+    const auto agent = SmallAgent(config);
+    ExpectEncoder(agent->AllTensors(), "target.encoder.", critics, true);
+    UpdateTimes(agent.get(), 2);  // after the first one it moved, after the second it did not
+    ExpectEncoder(agent->AllTensors(), "target.encoder.", critics, false);
+    UpdateTimes(agent.get(), 1, 300);
+    ExpectEncoder(agent->AllTensors(), "target.encoder.", critics, true);
+  }
+}
+
+TEST(SacAgent, TheTargetSeesItsOwnEncoder) {
+  const Config config = WithEncoders("shared", true);
+  const auto agent = SmallAgent(config), disturbed = SmallAgent(config);
+  disturbed->Restore(Perturbed(agent->AllTensors(), "target.encoder."), "test");
+  const RandomBatch batch(SmallSpec(), config.learner.batch, 1);
+  const UpdateOutcome a = agent->Update(batch.View()), b = disturbed->Update(batch.View());
+  EXPECT_NE(Get(a, kTargetMean), Get(b, kTargetMean));
+  EXPECT_EQ(Get(a, kQMean), Get(b, kQMean));
+}
+
 TEST(SacAgent, ActorAndTemperatureMoveEveryPeriodAndHaveNoFiguresBetween) {
   Config config = SmallConfig();
   config.learner.actor_period = 3;
@@ -113,21 +178,28 @@ TEST(SacAgent, TargetsStartAtTheCriticAndMoveByTauEveryPeriod) {
   }
 }
 
+void ExpectExactRestart(const Config& config, Precision precision, int updates) {
+  const auto original = SmallAgent(config, precision), restored = SmallAgent(config, precision);
+  UpdateTimes(original.get(), 7);
+  // Through the bytes of a file, as a checkpoint does.
+  restored->Restore(
+      nn::ReadSafetensors(nn::WriteSafetensors(original->AllTensors(), {}), "checkpoint"),
+      "checkpoint");
+  EXPECT_EQ(restored->updates(), 7u);
+  UpdateTimes(original.get(), updates, 500);
+  UpdateTimes(restored.get(), updates, 500);
+  EXPECT_THAT(Differences(original->AllTensors(), restored->AllTensors()), IsEmpty());
+}
+
 TEST(SacAgent, RestoredAgentGoesOnByteForByteForAHundredUpdates) {
-  for (const Precision precision : Precisions()) {
-    const auto original = SmallAgent(SmallConfig(), precision);
-    UpdateTimes(original.get(), 7);
-    Config config = SmallConfig();
-    config.seed = SmallConfig().seed;
-    const auto restored = SmallAgent(config, precision);
-    // Through the bytes of a file, as a checkpoint does.
-    restored->Restore(
-        nn::ReadSafetensors(nn::WriteSafetensors(original->AllTensors(), {}), "checkpoint"),
-        "checkpoint");
-    EXPECT_EQ(restored->updates(), 7u);
-    UpdateTimes(original.get(), 100, 500);
-    UpdateTimes(restored.get(), 100, 500);
-    EXPECT_THAT(Differences(original->AllTensors(), restored->AllTensors()), IsEmpty());
+  for (const Precision precision : Precisions()) ExpectExactRestart(SmallConfig(), precision, 100);
+}
+
+TEST(SacAgent, RestoredAgentGoesOnByteForByteWithFurtherEncoders) {
+  for (const bool target : {false, true}) {
+    for (const char* encoders : {"shared", "separate"}) {
+      ExpectExactRestart(WithEncoders(encoders, target), Precision::kF32, 3);
+    }
   }
 }
 
@@ -214,15 +286,17 @@ TEST(SacAgent, RestoreRefusesWhatDoesNotFitAndChangesNothing) {
 }
 
 TEST(SacAgent, PolicyTensorsAreTheAgentsOwnAndLoadIntoAPolicy) {
-  const auto agent = SmallAgent(SmallConfig());
-  UpdateTimes(agent.get(), 2);
-  const TensorMap policy = agent->PolicyTensors(), all = agent->AllTensors();
-  for (const auto& [name, tensor] : policy) {
-    EXPECT_TRUE(name.starts_with("encoder.") || name.starts_with("actor.")) << name;
-    EXPECT_EQ(tensor.data, all.at(name).data) << name;
+  for (const Config& config : {SmallConfig(), WithEncoders("separate", true)}) {
+    const auto agent = SmallAgent(config);
+    UpdateTimes(agent.get(), 2);
+    const TensorMap policy = agent->PolicyTensors(), all = agent->AllTensors();
+    for (const auto& [name, tensor] : policy) {
+      EXPECT_TRUE(name.starts_with("encoder.") || name.starts_with("actor.")) << name;
+      EXPECT_EQ(tensor.data, all.at(name).data) << name;
+    }
+    nn::Policy loaded(config.network, SmallSpec(), Precision::kF32, 4);
+    EXPECT_NO_THROW(loaded.Load(policy, "agent"));
   }
-  nn::Policy loaded(SmallConfig().network, SmallSpec(), Precision::kF32, 4);
-  EXPECT_NO_THROW(loaded.Load(policy, "agent"));
 }
 
 TEST(SacAgent, TheAveragedPolicyFollowsByTheRate) {

@@ -1,26 +1,16 @@
 // Four updates of TD3 and DDPG, held to what Stable-Baselines3 computes from the same weights and
-// batches: tests/comparison/sb3_updates.py recorded it and says what the files hold. Without noise
-// on the target's action: both sides' random numbers are their own.
+// batches. Without noise on the target's action: both sides' random numbers are their own.
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-
-#include "common/base/files.h"
+#include "common/config/config_io.h"
 #include "learner/agent/deterministic/deterministic_agent.h"
-#include "tests/learner/agent/agent_fixture.h"
-#include "tests/support/paths.h"
-#include "tests/support/shared_numbers.h"
+#include "tests/learner/agent/sb3_recording.h"
 
 namespace shoal::learner {
 namespace {
 
-constexpr int kBatch = 8, kActions = 3, kVector = 11, kUpdates = 4;
-constexpr double kFirstMoment = 0.1;  // 1 - b1 of Adam
-
-struct Layer {
-  std::string ours, theirs;  // names without ".weight" and ".bias"
-};
+constexpr int kBatch = 8, kActions = 3, kVector = 11;
 
 struct Case {
   const char* name;
@@ -32,10 +22,7 @@ void PrintTo(const Case& each, std::ostream* out) { *out << each.name; }
 
 class Sb3UpdatesTest : public testing::TestWithParam<Case> {
  protected:
-  Sb3UpdatesTest()
-      : recorded_(nn::ReadSafetensors(
-            ReadFile(GoldenPath(std::string("sb3/") + GetParam().name + ".safetensors")),
-            GetParam().name)) {
+  Sb3UpdatesTest() : recording_(GetParam().name) {
     spec_.task = "test";
     spec_.blocks = {{"observation", kVector}};
     spec_.action_size = kActions;
@@ -47,118 +34,40 @@ class Sb3UpdatesTest : public testing::TestWithParam<Case> {
     config_.learner.actor_period = config_.learner.target_period = GetParam().period;
     config_.network.hidden = {20, 16};
     config_.network.layer_norm = false;
-    AddMlp("actor.mlp", "actor.mu");
-    AddMlp("target_actor.mlp", "actor_target.mu");
+    recording_.AddMlp("actor.mlp", "actor.mu");
+    recording_.AddMlp("target_actor.mlp", "actor_target.mu");
     for (int i = 0; i < GetParam().options.critics; ++i) {
-      AddMlp("critic.q" + std::to_string(i + 1), "critic.qf" + std::to_string(i));
-      AddMlp("target.q" + std::to_string(i + 1), "critic_target.qf" + std::to_string(i));
+      recording_.AddMlp("critic.q" + std::to_string(i + 1), "critic.qf" + std::to_string(i));
+      recording_.AddMlp("target.q" + std::to_string(i + 1), "critic_target.qf" + std::to_string(i));
     }
     agent_ = MakeDeterministicAgent(config_, spec_, nn::Precision::kF32, GetParam().options);
-    agent_->Restore(WithTheirWeights(agent_->AllTensors()), "test");
+    agent_->Restore(recording_.WithTheirWeights(agent_->AllTensors()), "test");
   }
 
-  void AddMlp(const std::string& ours, const std::string& theirs) {
-    layers_.push_back({ours + ".layer0", theirs + ".0"});
-    layers_.push_back({ours + ".layer1", theirs + ".2"});
-    layers_.push_back({ours + ".output", theirs + ".4"});
-  }
-
-  nn::TensorMap WithTheirWeights(nn::TensorMap tensors) const {
-    for (const Layer& layer : layers_) {
-      const auto fan_in = double(tensors.at(layer.ours + ".weight").shape[1]);
-      for (const char* kind : {".weight", ".bias"}) {
-        nn::NamedTensor& tensor = tensors.at(layer.ours + kind);
-        const double scale = std::sqrt((std::string(kind) == ".weight" ? 6 : 1) / fan_in);
-        FillSymmetric(layer.theirs + kind, scale,
-                      std::span(reinterpret_cast<float*>(tensor.data.data()),
-                                tensor.data.size() / sizeof(float)));
-      }
-    }
-    return tensors;
-  }
-
-  static void Fill(int update, const BatchView& batch) {
-    const std::string at = "update" + std::to_string(update) + ".";
-    FillSymmetric(at + "obs", 1.5, batch.obs_vector);
-    FillSymmetric(at + "action", 1.0, batch.action);
-    FillSymmetric(at + "next_obs", 1.5, batch.next_obs_vector);
-    FillSymmetric(at + "reward", 2.0, batch.reward);
-    std::ranges::fill(batch.bootstrap, 1.f);
-    batch.bootstrap[size_t(update % kBatch)] = batch.bootstrap[size_t((update + 3) % kBatch)] = 0;
-  }
-
-  bool Has(int update, const std::string& name) const {
-    return recorded_.contains(std::to_string(update) + "." + name);
-  }
-  std::vector<float> Recorded(int update, const std::string& name) const {
-    return Floats(recorded_, std::to_string(update) + "." + name);
-  }
-
-  // Every parameter and target when the update is over.
-  void ExpectTheirParameters(int update) const {
-    const nn::TensorMap tensors = agent_->AllTensors();
-    for (const Layer& layer : layers_) {
-      for (const char* kind : {".weight", ".bias"}) {
-        const auto ours = Floats(tensors, layer.ours + kind);
-        const auto theirs = Recorded(update, "after." + layer.theirs + kind);
-        ASSERT_EQ(ours.size(), theirs.size());
-        for (size_t i = 0; i < ours.size(); ++i) {
-          ASSERT_NEAR(ours[i], theirs[i], 5e-6) << layer.ours << kind << " " << i;
-        }
-      }
-    }
-  }
-
-  // The gradients, read off Adam's first moments before and after: m' = 0.9 m + 0.1 g.
-  void ExpectTheirGradients(int update, const nn::TensorMap& before) const {
-    const nn::TensorMap after = agent_->AllTensors();
-    int compared = 0;
-    for (const Layer& layer : layers_) {
-      for (const char* kind : {".weight", ".bias"}) {
-        if (!Has(update, "gradient." + layer.theirs + kind)) continue;
-        const auto theirs = Recorded(update, "gradient." + layer.theirs + kind);
-        const std::string moment = "adam.m." + layer.ours + kind;
-        const auto m = Floats(before, moment), next = Floats(after, moment);
-        const float largest =
-            std::abs(*std::ranges::max_element(theirs, {}, [](float g) { return std::abs(g); }));
-        ASSERT_GT(largest, 0) << layer.theirs;
-        for (size_t i = 0; i < theirs.size(); ++i) {
-          const double ours = (next[i] - (1 - kFirstMoment) * m[i]) / kFirstMoment;
-          ASSERT_NEAR(ours, theirs[i], 1e-4 * largest) << layer.ours << kind << " " << i;
-        }
-        ++compared;
-      }
-    }
-    EXPECT_GE(compared, 6);
-  }
-
-  const nn::TensorMap recorded_;
+  Sb3Recording recording_;
   ObservationSpec spec_;
   Config config_;
-  std::vector<Layer> layers_;
   std::unique_ptr<Agent> agent_;
 };
 
 TEST_P(Sb3UpdatesTest, LossesGradientsParametersAndTargetsAreTheirs) {
   const RandomBatch batch(spec_, kBatch, 1);
-  for (int update = 0; update < kUpdates; ++update) {
+  for (int update = 0; update < Sb3Recording::kUpdates; ++update) {
     SCOPED_TRACE(update);
-    Fill(update, batch.View());
+    FillSb3Batch(update, batch.View());
     const nn::TensorMap before = agent_->AllTensors();
     const UpdateOutcome outcome = agent_->Update(batch.View());
     ASSERT_TRUE(outcome.finite);
-    const auto y = Recorded(update, "target");
-    double mean = 0;
-    for (const float target : y) mean += double(target) / double(y.size());
-    EXPECT_NEAR(Get(outcome, kTargetMean), mean, 1e-5);
-    const float critic_loss = Recorded(update, "critic_loss")[0];
+    EXPECT_NEAR(Get(outcome, kTargetMean), recording_.Mean(update, "target"), 1e-5);
+    const float critic_loss = recording_.Get(update, "critic_loss")[0];
     EXPECT_NEAR(Get(outcome, kCriticLoss), critic_loss, 1e-5 * std::abs(critic_loss));
-    ASSERT_EQ(outcome.figures.Get(kActorLoss).has_value(), Has(update, "actor_loss"));
-    if (Has(update, "actor_loss")) {
-      EXPECT_NEAR(Get(outcome, kActorLoss), Recorded(update, "actor_loss")[0], 1e-5);
+    ASSERT_EQ(outcome.figures.Get(kActorLoss).has_value(), recording_.Has(update, "actor_loss"));
+    if (recording_.Has(update, "actor_loss")) {
+      EXPECT_NEAR(Get(outcome, kActorLoss), recording_.Get(update, "actor_loss")[0], 1e-5);
     }
-    ExpectTheirGradients(update, before);
-    ExpectTheirParameters(update);
+    const nn::TensorMap after = agent_->AllTensors();
+    EXPECT_GE(recording_.ExpectGradients(update, before, after, [](auto&) { return 1; }), 6);
+    recording_.ExpectParameters(update, after);
   }
 }
 
@@ -166,6 +75,73 @@ INSTANTIATE_TEST_SUITE_P(Of, Sb3UpdatesTest,
                          testing::Values(Case{"td3", {.critics = 2}, 2},
                                          Case{"ddpg", {.critics = 1}, 1}),
                          [](const auto& each) { return std::string(each.param.name); });
+
+// The preset's networks and rates, in small: SAC of CnnPolicy.
+class Sb3NatureTest : public testing::Test {
+ protected:
+  Sb3NatureTest() : recording_("sac") {
+    config_ = LoadPreset("sb3-nature");
+    config_.seed = 7;
+    config_.learner.batch = kBatch;
+    config_.network.features = 24;
+    config_.network.hidden = {20, 16};
+    spec_.task = "test";
+    spec_.cameras = {"gymnasium"};
+    spec_.channels = 3;
+    spec_.height = spec_.width = 36;
+    spec_.action_size = kActions;
+    for (const auto& [ours, theirs] :
+         {std::pair("encoder", "actor"), std::pair("critic.encoder", "critic"),
+          std::pair("target.encoder", "critic_target")}) {
+      for (const int i : {0, 1, 2}) {
+        recording_.Add(fmt::format("{}.conv{}", ours, i),
+                       fmt::format("{}.features_extractor.cnn.{}", theirs, 2 * i));
+      }
+    }
+    recording_.Add("actor.trunk", "actor.features_extractor.linear.0");
+    recording_.Add("critic.trunk", "critic.features_extractor.linear.0");
+    recording_.Add("target.trunk", "critic_target.features_extractor.linear.0");
+    recording_.Add("actor.mlp.layer0", "actor.latent_pi.0");
+    recording_.Add("actor.mlp.layer1", "actor.latent_pi.2");
+    recording_.Add("actor.mlp.output", "actor.mu", 0, 2, 0.1);
+    recording_.Add("actor.mlp.output", "actor.log_std", 1, 2, 0.1);
+    for (const int i : {0, 1}) {
+      recording_.AddMlp(fmt::format("critic.q{}", i + 1), fmt::format("critic.qf{}", i));
+      recording_.AddMlp(fmt::format("target.q{}", i + 1), fmt::format("critic_target.qf{}", i));
+    }
+    agent_ = MakeAgent(config_, spec_, nn::Precision::kF32);
+    agent_->Restore(recording_.WithTheirWeights(agent_->AllTensors()), "test");
+  }
+
+  Sb3Recording recording_;
+  ObservationSpec spec_;
+  Config config_;
+  std::unique_ptr<Agent> agent_;
+};
+
+TEST_F(Sb3NatureTest, LossesGradientsParametersAndTargetsAreTheirs) {
+  const RandomBatch batch(spec_, kBatch, 1);
+  for (int update = 0; update < Sb3Recording::kUpdates; ++update) {
+    SCOPED_TRACE(update);
+    FillSb3Batch(update, batch.View());
+    const nn::TensorMap before = agent_->AllTensors();
+    const UpdateOutcome outcome = agent_->Update(batch.View());
+    ASSERT_TRUE(outcome.finite);
+    EXPECT_NEAR(Get(outcome, kTargetMean), recording_.Mean(update, "target"), 1e-5);
+    // Their critic's loss is half of ours: Adam does not mind.
+    const float critic_loss = 2 * recording_.Get(update, "critic_loss")[0];
+    EXPECT_NEAR(Get(outcome, kCriticLoss), critic_loss, 1e-5 * std::abs(critic_loss));
+    EXPECT_NEAR(Get(outcome, kActorLoss), recording_.Get(update, "actor_loss")[0], 1e-5);
+    const nn::TensorMap after = agent_->AllTensors();
+    const auto factor = [](const std::string& layer) {
+      return layer.starts_with("critic") ? 2 : 1;
+    };
+    EXPECT_EQ(recording_.ExpectGradients(update, before, after, factor), 16 + 20);
+    recording_.ExpectParameters(update, after);
+    EXPECT_NEAR(Floats(after, "temperature.log")[0],
+                recording_.Get(update, "after.log_ent_coef")[0], 1e-6);
+  }
+}
 
 }  // namespace
 }  // namespace shoal::learner

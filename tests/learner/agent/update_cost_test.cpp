@@ -61,6 +61,11 @@ TEST(UpdateCost, PicturesCostTheEncodersMaps) {
   const double maps = 400 * weights[0] + 81 * weights[1] + 49 * weights[2];
   EXPECT_GT(cost.flop, 2 * 10 * 4 * maps);
   EXPECT_LT(cost.flop, 2 * 10 * 4 * maps * 1.5) << "trunks and heads are small beside it";
+  config.network.target_encoder = true;
+  EXPECT_DOUBLE_EQ(CostOfUpdate(config, spec).flop - cost.flop, 2 * 10 * maps);
+  // In every second update: there and back for the actor, there for the critic.
+  config.network.encoders = "separate";
+  EXPECT_DOUBLE_EQ(CostOfUpdate(config, spec).flop - cost.flop, 2 * 10 * (1 + 4 / 2.0) * maps);
 }
 
 }  // namespace

@@ -1,0 +1,38 @@
+// Rewards at about the deviation of the discounted returns that they add up to.
+//
+// Source: VecNormalize of Stable-Baselines3, common/vec_env/vec_normalize.py.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/nn/safetensors.h"
+#include "learner/agent/running_moments.h"
+
+namespace shoal::learner {
+
+// r' = clip(r / sqrt(Var(G) + 1e-8), -10, 10),   G_t = discount G_{t-1} + r_t, from 0 in each
+// episode
+class RewardScale {
+ public:
+  explicit RewardScale(double discount) : discount_(discount) {}
+
+  // Takes the rewards (N) of a rollout over and scales them. `ends` (N): 1 where an episode ended;
+  // `env` (N): whose steps they are. Returns go on from rollout to rollout.
+  std::vector<float> Scale(std::span<const float> reward, std::span<const float> ends,
+                           std::span<const uint64_t> env);
+
+  // Tensors "reward.moments", "reward.envs", "reward.returns".
+  void Export(nn::TensorMap* tensors) const;
+  void Import(const nn::TensorMap& tensors, const std::string& source);
+
+ private:
+  double discount_;
+  RunningMoments returns_{1};
+  std::map<uint64_t, double> running_;  // G by environment
+};
+
+}  // namespace shoal::learner
