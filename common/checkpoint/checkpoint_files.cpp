@@ -25,7 +25,6 @@ using nlohmann::ordered_json;
 constexpr char kSchema[] = "shoal-checkpoint-1";
 constexpr char kPrefix[] = "step_";
 constexpr char kLearnerFile[] = "learner.safetensors";
-constexpr char kPolicyFile[] = "policy.safetensors";
 constexpr char kStateFile[] = "state.json";
 
 uint32_t Crc(std::string_view bytes) {

@@ -18,6 +18,8 @@
 
 namespace shoal {
 
+inline constexpr char kPolicyFile[] = "policy.safetensors";
+
 struct CheckpointState {
   uint64_t updates = 0;
   uint64_t env_steps = 0;         // stored in the replay when the last batch was drawn

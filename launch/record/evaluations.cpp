@@ -73,14 +73,6 @@ std::string SourceOf(const EvalMessage& message) {
   return fmt::format("evaluation at {} env steps", message.env_steps);
 }
 
-// Exchanges two folders, or moves `from` to `to` where that does not exist.
-void Swap(const fs::path& from, const fs::path& to) {
-  if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_EXCHANGE) == 0) return;
-  if (errno == ENOENT && rename(from.c_str(), to.c_str()) == 0) return;
-  throw RuntimeError("cannot rename '{}' to '{}': {}", from.string(), to.string(),
-                     std::strerror(errno));
-}
-
 }  // namespace
 
 EvaluationPoint ParseEvaluation(const std::string& json, const std::string& source) {
@@ -121,24 +113,6 @@ std::vector<EvaluationPoint> ReadEvaluations(const fs::path& run) {
   points.reserve(files.size());
   for (const fs::path& file : files) points.push_back(ParseEvaluation(ReadFile(file), file));
   return points;
-}
-
-void KeepAsBest(const fs::path& run, const std::string& name) {
-  const fs::path source = run / "checkpoints" / name;
-  const fs::path best = run / "checkpoints" / "best", fresh = run / "checkpoints" / ".best.tmp";
-  std::error_code error;
-  fs::remove_all(fresh, error);
-  if (!fs::is_directory(source)) {
-    throw RuntimeError("checkpoint '{}' is gone: it cannot be kept as the best", source.string());
-  }
-  ReadCheckpointFiles(source);  // refuses what is not whole
-  MakeFolders(fresh);
-  for (const auto& entry : fs::directory_iterator(source)) {
-    WriteFileAtomically(fresh / entry.path().filename(), ReadFile(entry.path()));
-  }
-  Swap(fresh, best);
-  SyncFolder(best.parent_path());
-  fs::remove_all(fresh, error);  // the former best
 }
 
 }  // namespace shoal::launch

@@ -25,9 +25,4 @@ EvaluationPoint StoreEvaluation(const std::filesystem::path& run, const EvalMess
 // What StoreEvaluation wrote, by env steps. Throws Error naming a broken file.
 std::vector<EvaluationPoint> ReadEvaluations(const std::filesystem::path& run);
 
-// Makes checkpoints/best a copy of checkpoints/NAME; a reader finds the old one or the new one,
-// whole. Throws Error when NAME is gone, cut short or altered, or the
-// disk is full; the old best is then still there.
-void KeepAsBest(const std::filesystem::path& run, const std::string& name);
-
 }  // namespace shoal::launch

@@ -16,20 +16,33 @@ double ChanceDifference(const EvaluationPoint& point) {
   return std::sqrt(2 * rate * (1 - rate) / episodes);
 }
 
+// Without a success of its own a task's evaluations are told apart by their returns alone.
+double SuccessOf(const EvaluationPoint& point) { return point.success.value_or(0); }
+
+// Whatever later evaluations bring, `b` comes before `a`.
+bool IsOutdone(const EvaluationPoint& a, const EvaluationPoint& b) {
+  return SuccessOf(b) >= SuccessOf(a) && b.mean_return >= a.mean_return;
+}
+
 }  // namespace
 
-bool BestEvaluation::IsBest(const EvaluationPoint& point) const {
-  if (!best_ || !point.success) return !best_ || point.mean_return > best_->mean_return;
-  if (*point.success < least_success_) return false;
-  return *best_->success < least_success_ || point.mean_return > best_->mean_return;
+const EvaluationPoint* BestEvaluation::best() const {
+  const auto best = std::ranges::max_element(candidates_, {}, &EvaluationPoint::mean_return);
+  return best == candidates_.end() ? nullptr : &*best;
 }
 
 void BestEvaluation::OnEvaluation(const EvaluationPoint& point) {
   if (point.success) {
     least_success_ = std::max(least_success_, *point.success - ChanceDifference(point));
   }
-  newest_is_best_ = IsBest(point);
-  if (newest_is_best_) best_ = point;
+  std::erase_if(candidates_,
+                [&](const EvaluationPoint& other) { return SuccessOf(other) < least_success_; });
+  newest_is_best_ = false;
+  const auto outdoes = [&](const EvaluationPoint& other) { return IsOutdone(point, other); };
+  if (SuccessOf(point) < least_success_ || std::ranges::any_of(candidates_, outdoes)) return;
+  std::erase_if(candidates_, [&](const EvaluationPoint& other) { return IsOutdone(other, point); });
+  candidates_.push_back(point);
+  newest_is_best_ = best() == &candidates_.back();
 }
 
 }  // namespace shoal::launch

@@ -14,6 +14,7 @@
 #include "launch/processes/ordered_stop.h"
 #include "launch/processes/process_plan.h"
 #include "launch/record/evaluations.h"
+#include "launch/record/kept_checkpoints.h"
 #include "launch/record/metrics_log.h"
 #include "launch/run/best_evaluation.h"
 #include "launch/run/command_handler.h"
@@ -112,6 +113,7 @@ struct Coordinator::Impl {
   void Heartbeat(SteadyTime now);
   void TakeMessages(SteadyTime now);
   void TakeEvaluation(const EvalMessage& message);
+  void KeepCandidates();
   // Returns a warning where the run gets no better.
   std::optional<std::string> Count(const EvaluationPoint& point);
   void Fail(const std::string& why);
@@ -376,9 +378,15 @@ void Coordinator::Impl::TakeEvaluation(const EvalMessage& message) {
   scalars.WriteEvaluation(point);
   if (warning) progress.Say(*warning);
   StoreMeta();
-  if (!best || point.checkpoint.empty()) return;
+  KeepCandidates();
+}
+
+void Coordinator::Impl::KeepCandidates() {
+  std::vector<std::string> names;
+  for (const EvaluationPoint& candidate : bests.candidates()) names.push_back(candidate.checkpoint);
+  if (names.empty() || std::ranges::find(names, "") != names.end()) return;
   try {
-    KeepAsBest(run, point.checkpoint);
+    KeepCheckpoints(run, names, bests.best()->checkpoint);
   } catch (const Error& e) {
     progress.Say(e.what());  // the run goes on: the former best is still whole
   }
@@ -389,7 +397,7 @@ std::optional<std::string> Coordinator::Impl::Count(const EvaluationPoint& point
   meta.first_success = rule.first_success();
   last_evaluation = point;
   bests.OnEvaluation(point);
-  meta.best = bests.best();
+  meta.best = *bests.best();
   return flat.OnEvaluation(point, rule.target());
 }
 

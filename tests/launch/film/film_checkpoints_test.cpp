@@ -8,7 +8,7 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/checkpoint/checkpoint_files.h"
-#include "launch/record/evaluations.h"
+#include "launch/record/kept_checkpoints.h"
 #include "tests/support/temporary_folder.h"
 
 namespace shoal::launch {
@@ -51,7 +51,7 @@ TEST_F(FilmCheckpointsTest, TheBestElseTheNewestUnlessOneIsNamed) {
   Store(10);
   Store(20);
   EXPECT_EQ(FilmedCheckpoint(run_, "").filename(), CheckpointName(20));
-  KeepAsBest(run_, CheckpointName(10));
+  KeepCheckpoints(run_, {CheckpointName(10)}, CheckpointName(10));
   EXPECT_EQ(FilmedCheckpoint(run_, "").filename(), "best");
   EXPECT_EQ(FilmedCheckpoint(run_, CheckpointName(20)).filename(), CheckpointName(20));
 }
@@ -70,9 +70,9 @@ TEST_F(FilmCheckpointsTest, AcrossThemAreTheFirstTwoBetweenAndTheBest) {
   for (uint64_t updates = 1; updates <= 8; ++updates) Store(updates);
   EXPECT_THAT(Across(), ElementsAre(CheckpointName(1), CheckpointName(3), CheckpointName(5),
                                     CheckpointName(8)));
-  KeepAsBest(run_, CheckpointName(3));
+  KeepCheckpoints(run_, {CheckpointName(3)}, CheckpointName(3));
   EXPECT_THAT(Across(), ElementsAre(CheckpointName(1), CheckpointName(2), "best"));
-  KeepAsBest(run_, CheckpointName(1));
+  KeepCheckpoints(run_, {CheckpointName(1)}, CheckpointName(1));
   EXPECT_THAT(Across(), ElementsAre("best"));
 }
 

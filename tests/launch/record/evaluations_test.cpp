@@ -7,7 +7,6 @@
 
 #include "common/base/error.h"
 #include "common/base/files.h"
-#include "common/checkpoint/checkpoint_files.h"
 #include "tests/launch/evaluation_message.h"
 #include "tests/support/temporary_folder.h"
 
@@ -18,20 +17,7 @@ using ::testing::HasSubstr;
 
 class EvaluationsTest : public ::testing::Test {
  protected:
-  EvaluationsTest() {
-    MakeFolders(run_.path() / "eval");
-    MakeFolders(run_.path() / "checkpoints");
-  }
-  void MakeCheckpoint(uint64_t updates, const std::string& policy) const {
-    CheckpointFiles files;
-    files.state.updates = updates;
-    files.policy = policy;
-    WriteCheckpointFiles(run_.path() / "checkpoints", files, {});
-  }
-  std::string Best() const {
-    return ReadFile(run_.path() / "checkpoints" / "best" / "policy.safetensors");
-  }
-
+  EvaluationsTest() { MakeFolders(run_.path() / "eval"); }
   TemporaryFolder run_;
 };
 
@@ -112,48 +98,6 @@ TEST_F(EvaluationsTest, ATaskWithoutSuccessHasNoneAndStillAReturn) {
   const EvaluationPoint point = ParseEvaluation(object.dump(), "x");
   EXPECT_EQ(point.success, std::nullopt);
   EXPECT_EQ(point.mean_return, -2.5);
-}
-
-TEST_F(EvaluationsTest, KeepAsBestReplacesTheFormerBest) {
-  MakeCheckpoint(1, "one");
-  MakeCheckpoint(2, "two");
-  KeepAsBest(run_.path(), CheckpointName(1));
-  EXPECT_EQ(Best(), "one");
-  KeepAsBest(run_.path(), CheckpointName(2));
-  EXPECT_EQ(Best(), "two");
-  int entries = 0;
-  for (const auto& entry : std::filesystem::directory_iterator(run_.path() / "checkpoints")) {
-    entries += !entry.path().empty();
-  }
-  EXPECT_EQ(entries, 3) << "two checkpoints and best: nothing is left over";
-}
-
-TEST_F(EvaluationsTest, KeepAsBestLeavesTheFormerBestWhenTheNewOneIsGone) {
-  MakeCheckpoint(1, "one");
-  KeepAsBest(run_.path(), CheckpointName(1));
-  try {
-    KeepAsBest(run_.path(), CheckpointName(9));
-    ADD_FAILURE();
-  } catch (const Error& e) {
-    EXPECT_THAT(e.what(), HasSubstr(CheckpointName(9)));
-  }
-  EXPECT_EQ(Best(), "one");
-}
-
-TEST_F(EvaluationsTest, KeepAsBestRefusesAnAlteredCheckpointAndLeavesTheFormerBest) {
-  MakeCheckpoint(1, "one");
-  MakeCheckpoint(2, "two");
-  KeepAsBest(run_.path(), CheckpointName(1));
-  WriteFileAtomically(run_.path() / "checkpoints" / CheckpointName(2) / "policy.safetensors",
-                      "twp");
-  try {
-    KeepAsBest(run_.path(), CheckpointName(2));
-    ADD_FAILURE();
-  } catch (const Error& e) {
-    EXPECT_THAT(e.what(), HasSubstr("step_000000002/policy.safetensors"));
-    EXPECT_THAT(e.what(), HasSubstr("CRC-32"));
-  }
-  EXPECT_EQ(Best(), "one");
 }
 
 }  // namespace

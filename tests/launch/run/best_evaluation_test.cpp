@@ -1,11 +1,15 @@
 #include "launch/run/best_evaluation.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace shoal::launch {
 namespace {
+
+using testing::ElementsAre;
 
 EvaluationPoint Point(std::optional<double> success, double mean_return) {
   return {.success = success, .mean_return = mean_return, .episodes = 50};
@@ -20,7 +24,7 @@ double BestReturn(const std::vector<EvaluationPoint>& points) {
 
 TEST(BestEvaluation, ThereIsNoneAtFirst) {
   const BestEvaluation best;
-  EXPECT_FALSE(best.best().has_value());
+  EXPECT_EQ(best.best(), nullptr);
   EXPECT_FALSE(best.newest_is_best());
 }
 
@@ -45,6 +49,32 @@ TEST(BestEvaluation, IsMeasuredAgainstTheHighestSuccessNotTheFormerBest) {
 
 TEST(BestEvaluation, OneThatIsOutdoneGivesWayToTheOneThatDidIt) {
   EXPECT_EQ(BestReturn({Point(0.9, -0.5), Point(1.0, -1.5)}), -1.5);
+}
+
+// The second is within chance of the third and has the better return, though the first outdid it
+// when it came.
+TEST(BestEvaluation, DoesNotDependOnTheOrder) {
+  std::vector<EvaluationPoint> points{Point(0.96, -0.5), Point(0.98, -0.6), Point(1.0, -0.9),
+                                      Point(0.94, -0.55)};
+  std::ranges::sort(points, {}, &EvaluationPoint::mean_return);
+  do {
+    EXPECT_EQ(BestReturn(points), -0.6);
+  } while (std::ranges::next_permutation(points, {}, &EvaluationPoint::mean_return).found);
+}
+
+TEST(BestEvaluation, CandidatesAreThoseThatMayBecomeTheBest) {
+  BestEvaluation best;
+  const auto after = [&](const EvaluationPoint& point) {
+    best.OnEvaluation(point);
+    std::vector<double> returns;
+    for (const EvaluationPoint& each : best.candidates()) returns.push_back(each.mean_return);
+    return returns;
+  };
+  EXPECT_THAT(after(Point(0.96, -0.5)), ElementsAre(-0.5));
+  EXPECT_THAT(after(Point(0.98, -0.6)), ElementsAre(-0.5, -0.6));
+  EXPECT_THAT(after(Point(0.96, -0.55)), ElementsAre(-0.5, -0.6)) << "outdone in both";
+  EXPECT_THAT(after(Point(1.0, -0.9)), ElementsAre(-0.6, -0.9)) << "the first is beyond chance now";
+  EXPECT_THAT(after(Point(1.0, -0.4)), ElementsAre(-0.4));
 }
 
 TEST(BestEvaluation, FewerEpisodesSayLess) {

@@ -1,0 +1,87 @@
+#include "launch/record/kept_checkpoints.h"
+
+#include <fcntl.h>
+#include <stdio.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/checkpoint/checkpoint_files.h"
+
+namespace shoal::launch {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Exchanges two folders, or moves `from` to `to` where that does not exist.
+void Swap(const fs::path& from, const fs::path& to) {
+  if (renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_EXCHANGE) == 0) return;
+  if (errno == ENOENT && rename(from.c_str(), to.c_str()) == 0) return;
+  throw RuntimeError("cannot rename '{}' to '{}': {}", from.string(), to.string(),
+                     std::strerror(errno));
+}
+
+// Makes folder `to` hold the files of checkpoint `from`, under another name first.
+void Keep(const fs::path& from, const fs::path& to) {
+  const fs::path fresh = to.parent_path() / fmt::format(".{}.tmp", to.filename().string());
+  std::error_code error;
+  fs::remove_all(fresh, error);
+  if (!fs::is_directory(from)) {
+    throw RuntimeError("checkpoint '{}' is gone: it cannot be kept", from.string());
+  }
+  ReadCheckpointFiles(from);  // refuses what is not whole
+  MakeFolders(fresh);
+  for (const auto& entry : fs::directory_iterator(from)) {
+    const fs::path file = fresh / entry.path().filename();
+    // Nobody writes into a checkpoint's files, so two folders may share them.
+    fs::create_hard_link(entry.path(), file, error);
+    if (error) WriteFileAtomically(file, ReadFile(entry.path()));
+  }
+  SyncFolder(fresh);
+  Swap(fresh, to);
+  SyncFolder(to.parent_path());
+  fs::remove_all(fresh, error);  // what was there before
+}
+
+// Whether both folders share their files. A checkpoint may come again under the same name with
+// other contents: a learner that went on from an earlier one wrote it.
+bool ShareFiles(const fs::path& a, const fs::path& b) {
+  std::error_code error;
+  return fs::equivalent(a / kPolicyFile, b / kPolicyFile, error);
+}
+
+void RemoveOthers(const fs::path& folder, const std::vector<std::string>& names) {
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (std::ranges::find(names, entry.path().filename().string()) == names.end()) {
+      fs::remove_all(entry.path(), error);
+    }
+  }
+}
+
+}  // namespace
+
+void KeepCheckpoints(const fs::path& run, const std::vector<std::string>& candidates,
+                     const std::string& best) {
+  const fs::path checkpoints = run / "checkpoints", kept = checkpoints / "candidates";
+  MakeFolders(kept);
+  // The best first: what goes wrong with another one does not keep it from its place.
+  std::vector<std::string> names{best};
+  std::ranges::copy_if(candidates, std::back_inserter(names),
+                       [&](const std::string& name) { return name != best; });
+  for (const std::string& name : names) {
+    const bool pruned = fs::is_directory(kept / name) && !fs::is_directory(checkpoints / name);
+    if (!pruned && !ShareFiles(checkpoints / name, kept / name)) {
+      Keep(checkpoints / name, kept / name);
+    }
+    if (name == best && !ShareFiles(kept / best, checkpoints / "best")) {
+      Keep(kept / best, checkpoints / "best");
+    }
+  }
+  RemoveOthers(kept, names);
+}
+
+}  // namespace shoal::launch
