@@ -13,6 +13,7 @@ struct EvaluationPoint {
   double wall_seconds = 0;        // since the run's start
   std::optional<double> success;  // rate, 0..1; empty where the task has no success of its own
   double mean_return = 0;         // unscaled
+  double mean_length = 0;         // env steps
   std::string checkpoint{};       // folder name under checkpoints/
   size_t episodes = 0;            // played
   uint64_t learner_session = 0;   // whose parameters were evaluated

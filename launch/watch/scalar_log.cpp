@@ -70,6 +70,7 @@ void ScalarLog::WriteEnd(bool success) {
 void ScalarLog::WriteEvaluation(const EvaluationPoint& point) {
   const auto step = static_cast<int64_t>(point.env_steps);
   writer_.Scalar("eval/mean_reward", step, point.mean_return);
+  writer_.Scalar("eval/mean_ep_length", step, point.mean_length);
   if (point.success) writer_.Scalar("eval/success_rate", step, *point.success);
   writer_.Flush();
 }

@@ -25,7 +25,7 @@ class ScalarLog {
   // How it ended, for the hparams tab.
   void WriteEnd(bool success);
 
-  // eval/mean_reward, eval/success_rate.
+  // eval/mean_reward, eval/mean_ep_length, eval/success_rate.
   void WriteEvaluation(const EvaluationPoint& point);
   // rollout/ep_rew_mean, rollout/success_rate, rollout/ep_len_mean; every 5 s, from
   // the first finished episode on.

@@ -85,7 +85,7 @@ TEST(RepeatedMessages, AnEvaluationThatCannotBeIsSaidAndTheRunGoesOn) {
       {"env_steps", 1000},
       {"weights_version", {{"session", 1}, {"update", 5}}},
       {"checkpoint", forged.checkpoint},
-      {"aggregate", {{"return_mean", 0}, {"success_rate", 1.0}}},
+      {"aggregate", {{"return_mean", 0}, {"length_mean", 50}, {"success_rate", 1.0}}},
       {"episodes",
        episodes}}.dump();
   ASSERT_TRUE(publisher.Write(forged));

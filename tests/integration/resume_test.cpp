@@ -1,6 +1,9 @@
 // --resume: goes on where the run was, and says what it could not keep.
 #include <gtest/gtest.h>
 
+#include <map>
+#include <string>
+
 #include "tests/support/event_files.h"
 #include "tests/support/training_run.h"
 
@@ -13,17 +16,23 @@ ProgramResult Resume(const TrainingRun& run, const std::string& env_steps) {
       std::chrono::seconds(180));
 }
 
-// One file per start of the run, each with every tag.
+// One file per start of the run, each with every tag; over all files a tag's env steps never go
+// back.
 void ExpectScalars(const std::filesystem::path& run, size_t starts) {
   const auto files = EventFiles(run / "tensorboard");
   ASSERT_EQ(files.size(), starts);
+  std::map<std::string, int64_t> reached;
   for (const auto& file : files) {
     const Scalars scalars = ReadScalars(file);
     for (const char* tag :
          {"rollout/ep_rew_mean", "rollout/success_rate", "rollout/ep_len_mean", "eval/mean_reward",
-          "eval/success_rate", "train/critic_loss", "train/actor_loss", "train/ent_coef",
-          "train/ent_coef_loss", "train/n_updates"}) {
-      EXPECT_TRUE(scalars.contains(tag)) << file << ": " << tag;
+          "eval/mean_ep_length", "eval/success_rate", "train/critic_loss", "train/actor_loss",
+          "train/ent_coef", "train/ent_coef_loss", "train/n_updates", "time/fps"}) {
+      ASSERT_TRUE(scalars.contains(tag)) << file << ": " << tag;
+      for (const auto& [env_steps, value] : scalars.at(tag)) {
+        EXPECT_GE(env_steps, reached[tag]) << file << ": " << tag;
+        reached[tag] = env_steps;
+      }
     }
   }
 }

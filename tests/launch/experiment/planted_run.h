@@ -27,6 +27,7 @@ inline nlohmann::ordered_json PlantedEvaluation(uint64_t env_steps, double succe
            {{"success_rate", success},
             {"return_mean", return_mean},
             {"return_std", 0.1},
+            {"length_mean", 50.0},
             {"final_distance_mean", 0.02}}}};
 }
 

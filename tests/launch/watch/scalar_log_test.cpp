@@ -40,7 +40,7 @@ class ScalarLogTest : public ::testing::Test {
 TEST_F(ScalarLogTest, OneFileHasTheTagsThatPeopleKnow) {
   log_.WriteTraining(LearnerReport(10, 1000, 0.5), start_);
   log_.WriteTraining(LearnerReport(30, 1500, 0.75), start_ + seconds(2));
-  log_.WriteEvaluation({.env_steps = 1400, .success = 0.5, .mean_return = -3});
+  log_.WriteEvaluation({.env_steps = 1400, .success = 0.5, .mean_return = -3, .mean_length = 50});
   MetricsView view;
   MetricsMessage actor;
   actor.role = "actor";
@@ -60,6 +60,7 @@ TEST_F(ScalarLogTest, OneFileHasTheTagsThatPeopleKnow) {
   EXPECT_THAT(scalars.at("train/n_updates"), ElementsAre(Pair(1000, 10), Pair(1500, 30)));
   EXPECT_THAT(scalars.at("time/fps"), ElementsAre(Pair(1500, 250)));
   EXPECT_THAT(scalars.at("eval/mean_reward"), ElementsAre(Pair(1400, -3)));
+  EXPECT_THAT(scalars.at("eval/mean_ep_length"), ElementsAre(Pair(1400, 50)));
   EXPECT_THAT(scalars.at("eval/success_rate"), ElementsAre(Pair(1400, 0.5f)));
   EXPECT_THAT(scalars.at("rollout/ep_rew_mean"), ElementsAre(Pair(1450, -2)));
   EXPECT_THAT(scalars.at("rollout/success_rate"), ElementsAre(Pair(1450, 0.25f)));
