@@ -155,11 +155,15 @@ void Assign(const Key& key, const json& value, const std::string& source, Config
   if (!std::visit(read, key.slot(*config))) Refuse(key, value, source);
 }
 
+// What keys were called in files of runs and experiments that were begun then, and today's names.
+constexpr std::pair<std::string_view, std::string_view> kFormerNames[] = {
+    {"ppo.normalise_observations", "learner.normalise_vectors"}};
+
 const Key* FindKey(std::string_view path) {
-  for (const Key& key : internal::Keys()) {
-    if (key.path == path) return &key;
-  }
-  return nullptr;
+  const auto former = std::ranges::find(kFormerNames, path, [](auto& name) { return name.first; });
+  if (former != std::end(kFormerNames)) path = former->second;
+  const auto key = std::ranges::find(internal::Keys(), path, &Key::path);
+  return key == internal::Keys().end() ? nullptr : &*key;
 }
 
 bool IsSection(std::string_view path) {

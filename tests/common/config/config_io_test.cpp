@@ -244,6 +244,12 @@ TEST(Validate, RefusesWhatOnPolicyLearningHasNoUseForByName) {
               HasSubstr("ppo.epochs belongs to learner.algorithm = ppo: expected not to be set"));
 }
 
+TEST(ApplyJson, TakesAKeyByItsFormerName) {
+  Config config;
+  ApplyJson(nlohmann::json::parse(R"({"ppo": {"normalise_observations": true}})"), "x", &config);
+  EXPECT_TRUE(config.learner.normalise_vectors);
+}
+
 // A run's config.json lists every key.
 TEST(Validate, AcceptsEveryKeyOfAnOnPolicyRunAsItIs) {
   Config config = LoadPreset("fetch-reach-ppo"), again;
