@@ -55,6 +55,17 @@ std::string TableHtml(const Row& head, const std::vector<Row>& rows) {
   return html + "</table></div>\n";
 }
 
+// Leaves out columns in which no row has anything to say, as of a task without success or goals.
+std::string TableHtmlOfFilled(Row head, std::vector<Row> rows) {
+  for (size_t column = head.size(); column-- > 0;) {
+    const auto at = static_cast<std::ptrdiff_t>(column);
+    if (!std::ranges::all_of(rows, [&](const Row& row) { return row[column] == "-"; })) continue;
+    head.erase(head.begin() + at);
+    for (Row& row : rows) row.erase(row.begin() + at);
+  }
+  return TableHtml(head, rows);
+}
+
 std::string Section(const std::string& title, const std::string& body) {
   return body.empty() ? "" : fmt::format("<h2>{}</h2>\n{}", EscapeMarkup(title), body);
 }
@@ -77,16 +88,19 @@ std::string ResultsHtml(const Comparison& comparison) {
                     success ? ratio : "-"});
   }
   std::string html =
-      TableHtml({"", "seeds", "success [95 %]", "return [95 %]", "distance, cm [95 %]",
-                 fmt::format("env steps to {:.0f} %", 100 * comparison.target_success),
-                 "median ratio to the first"},
-                rows);
+      TableHtmlOfFilled({"", "seeds", "success [95 %]", "return [95 %]", "distance, cm [95 %]",
+                         fmt::format("env steps to {:.0f} %", 100 * comparison.target_success),
+                         "median ratio to the first"},
+                        rows);
+  const bool success = std::ranges::any_of(
+      comparison.groups, [](const GroupFigures& group) { return group.episodes > 0; });
   html +=
-      "<p class=\"note\">Success: episodes of all seeds pooled, Wilson's interval. Return and "
-      "distance: mean over seeds, Student's interval. Env steps: at the first of two evaluations "
-      "in a row at or above the rate; a seed that did not get there is counted, not dropped. "
-      "Ratios: "
-      "over the seeds that are finished in both.</p>\n";
+      success
+          ? "<p class=\"note\">Success: episodes of all seeds pooled, Wilson's interval. Return "
+            "and distance: mean over seeds, Student's interval. Env steps: at the first of two "
+            "evaluations in a row at or above the rate; a seed that did not get there is "
+            "counted, not dropped. Ratios: over the seeds that are finished in both.</p>\n"
+          : "<p class=\"note\">Return: mean over seeds, Student's interval.</p>\n";
   if (comparison.baselines) {
     html += "<p>" + EscapeMarkup(FormatBaselines(*comparison.baselines)) + ".</p>\n";
   }

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 
 #include "common/base/files.h"
@@ -13,9 +14,9 @@
 
 namespace shoal::launch {
 
-// One evaluation of schema shoal-eval-1 with these means.
-inline nlohmann::ordered_json PlantedEvaluation(uint64_t env_steps, double success, int episodes,
-                                                double return_mean = -1) {
+// One evaluation of schema shoal-eval-1 with these means; without success, of a task that has none.
+inline nlohmann::ordered_json PlantedEvaluation(uint64_t env_steps, std::optional<double> success,
+                                                int episodes, double return_mean = -1) {
   return {{"schema", "shoal-eval-1"},
           {"task", "FetchReachDense"},
           {"checkpoint", "best"},
@@ -24,7 +25,7 @@ inline nlohmann::ordered_json PlantedEvaluation(uint64_t env_steps, double succe
           {"wall_seconds", static_cast<double>(env_steps) / 100},
           {"episodes", std::vector<int>(static_cast<size_t>(episodes), 0)},
           {"aggregate",
-           {{"success_rate", success},
+           {{"success_rate", success ? nlohmann::ordered_json(*success) : nlohmann::ordered_json()},
             {"return_mean", return_mean},
             {"return_std", 0.1},
             {"length_mean", 50.0},
@@ -55,7 +56,7 @@ class RunPlanter {
     meta["error"] = error.empty() ? nlohmann::ordered_json(nullptr) : nlohmann::ordered_json(error);
     WriteFileAtomically(path_ / "meta.json", meta.dump());
   }
-  void WriteFinal(double success, int episodes, double return_mean = -1) const {
+  void WriteFinal(std::optional<double> success, int episodes, double return_mean = -1) const {
     WriteFileAtomically(path_ / "eval/final.json",
                         PlantedEvaluation(1000, success, episodes, return_mean).dump());
   }

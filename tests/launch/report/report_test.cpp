@@ -11,6 +11,7 @@
 namespace shoal::launch {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::Not;
 
@@ -41,6 +42,18 @@ TEST(Report, IsOnePageThatNeedsNothingElse) {
   for (const char* link : {"<script", "src=\"http", "<link", "url("}) {
     EXPECT_THAT(html, Not(HasSubstr(link)));
   }
+}
+
+TEST(Report, OfATaskWithoutSuccessItSaysNothingAboutIt) {
+  const TemporaryFolder folder;
+  const RunPlanter run = Plant(folder.path() / "a");
+  const auto page = [&] {
+    return ReportHtml(GatherReport({.names = {"a"}, .run_dir = folder.path().string()}));
+  };
+  EXPECT_THAT(page(), AllOf(HasSubstr("<th>success"), HasSubstr("<th>env steps to 90 %")));
+  run.WriteFinal(std::nullopt, 100);
+  EXPECT_THAT(page(), AllOf(HasSubstr("<th>return"), Not(HasSubstr("<th>success")),
+                            Not(HasSubstr("<th>env steps to"))));
 }
 
 TEST(Report, ShowsTheDefinitionOfAnExperiment) {
