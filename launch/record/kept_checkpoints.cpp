@@ -24,6 +24,17 @@ void Swap(const fs::path& from, const fs::path& to) {
                      std::strerror(errno));
 }
 
+// Throws Error when it cannot be read.
+std::vector<std::string> NamesIn(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    names.push_back(it->path().filename());
+  }
+  if (error) throw RuntimeError("cannot read '{}': {}", folder.string(), error.message());
+  return names;
+}
+
 // Makes folder `to` hold the files of checkpoint `from`, under another name first.
 void Keep(const fs::path& from, const fs::path& to) {
   const fs::path fresh = to.parent_path() / fmt::format(".{}.tmp", to.filename().string());
@@ -34,12 +45,12 @@ void Keep(const fs::path& from, const fs::path& to) {
   }
   ReadCheckpointFiles(from);  // refuses what is not whole
   MakeFolders(fresh);
-  for (const auto& entry : fs::directory_iterator(from)) {
-    const fs::path file = fresh / entry.path().filename();
+  for (const std::string& name : NamesIn(from)) {
     // Nobody writes into a checkpoint's files, so two folders may share them.
-    fs::create_hard_link(entry.path(), file, error);
-    if (error) WriteFileAtomically(file, ReadFile(entry.path()));
+    fs::create_hard_link(from / name, fresh / name, error);
+    if (error) WriteFileAtomically(fresh / name, ReadFile(from / name));
   }
+  ReadCheckpointFiles(fresh);  // the learner may have pruned it meanwhile
   SyncFolder(fresh);
   Swap(fresh, to);
   SyncFolder(to.parent_path());
@@ -55,10 +66,8 @@ bool ShareFiles(const fs::path& a, const fs::path& b) {
 
 void RemoveOthers(const fs::path& folder, const std::vector<std::string>& names) {
   std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder)) {
-    if (std::ranges::find(names, entry.path().filename().string()) == names.end()) {
-      fs::remove_all(entry.path(), error);
-    }
+  for (const std::string& name : NamesIn(folder)) {
+    if (std::ranges::find(names, name) == names.end()) fs::remove_all(folder / name, error);
   }
 }
 

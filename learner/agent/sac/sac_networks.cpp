@@ -11,12 +11,11 @@
 namespace shoal::learner {
 namespace {
 
+using nn::EncoderModule;
 using nn::Module;
 using nn::ParameterSet;
 
 constexpr const char* kLogTemperature = "temperature.log";
-
-using nn::EncoderModule;
 
 // Of the first that is there; null where none is.
 const nn::Features* FeaturesOf(std::initializer_list<const EncoderModule*> encoders) {
