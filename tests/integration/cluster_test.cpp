@@ -66,6 +66,16 @@ class Cluster : public testing::Test {
         },
         seconds(60), kFarActor);
   }
+  // What the far actor said last that it had made.
+  double FarRecords() const {
+    double made = 0;
+    std::ifstream in(run_.path() / "metrics.jsonl");
+    for (std::string line; std::getline(in, line);) {
+      const json report = json::parse(line);
+      if (report.at("role") == "actor" && report.at("id") == kFarActor) made = report.at("made");
+    }
+    return made;
+  }
   // The longest time between two reports of the far actor that were heard.
   double LongestSilence() const {
     std::ifstream in(run_.path() / "metrics.jsonl");
@@ -99,16 +109,23 @@ TEST_F(Cluster, AnActorOnAnotherHostTrains) {
   const json meta = run_.Json("meta.json");
   ExpectBalanced(meta);
   EXPECT_EQ(meta.at("accounting").at("lost_with_process"), 0);
-  double far_records = 0;
-  std::ifstream in(run_.path() / "metrics.jsonl");
-  for (std::string line; std::getline(in, line);) {
-    const json report = json::parse(line);
-    if (report.at("role") == "actor" && report.at("id") == kFarActor) {
-      far_records = report.at("made");
-    }
-  }
-  EXPECT_GT(far_records, 500);
-  EXPECT_GT(meta.at("accounting").at("made"), far_records);
+  EXPECT_GT(FarRecords(), 500);
+  EXPECT_GT(meta.at("accounting").at("made"), FarRecords());
+}
+
+TEST_F(Cluster, OnPolicyTheActorOnAnotherHostPlaysItsHalf) {
+  const std::string secure = (run_.parent() / "secure").string();
+  const ProgramResult made = RunProgram({"shoal", "secure", "init", secure}, seconds(20));
+  ASSERT_EQ(ExitCode(made), 0) << made.err;
+  std::vector<std::string> flags = Hosts(net_.Shell());
+  flags.insert(flags.end(), {"--secure", secure});
+  const ProgramResult result = RunProgram(run_.OnPolicyCommand(Keys("8192"), flags), seconds(180));
+  ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
+  const json meta = run_.Json("meta.json");
+  ExpectBalanced(meta);
+  EXPECT_EQ(meta.at("accounting").at("lost_with_process"), 0);
+  EXPECT_GE(FarRecords(), 4096);
+  EXPECT_GE(meta.at("updates"), 8) << "rollouts of 128 steps of eight environments";
 }
 
 TEST_F(Cluster, ASecuredRunTrainsOnAnotherHostAndOnlyActorsKeysGoThere) {

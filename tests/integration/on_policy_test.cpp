@@ -10,22 +10,6 @@ namespace {
 using nlohmann::json;
 using std::chrono::seconds;
 
-std::vector<std::string> Command(const TrainingRun& run, const TrainingRun::Keys& keys,
-                                 const std::vector<std::string>& flags = {}) {
-  TrainingRun::Keys all{{"eval.episodes", "8"},    {"eval.final_episodes", "0"},
-                        {"eval.interval", "4000"}, {"ppo.rollout_steps", "128"},
-                        {"stop.success", "2"},     {"run_dir", run.parent().string()}};
-  for (const auto& [key, value] : keys) all[key] = value;
-  std::vector<std::string> command{"shoal",           "train",      "--preset",
-                                   "fetch-reach-ppo", "--run-name", "run"};
-  for (const auto& [key, value] : all) {
-    command.push_back("--set");
-    command.push_back(key + "=" + value);
-  }
-  command.insert(command.end(), flags.begin(), flags.end());
-  return command;
-}
-
 int64_t Updates(const json& report) { return report.at("updates").get<int64_t>(); }
 
 // By the learner, which counts them: there is no replay to.
@@ -41,7 +25,8 @@ bool WaitForMoreUpdates(RunningTraining* training, int64_t updates) {
 
 TEST(OnPolicy, ARunOfWholeRolloutsHasNoReplayAndAnExactAccount) {
   const TrainingRun run;
-  const ProgramResult result = RunProgram(Command(run, {{"env_steps", "8000"}}), seconds(180));
+  const ProgramResult result =
+      RunProgram(run.OnPolicyCommand({{"env_steps", "8000"}}), seconds(180));
   ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
   EXPECT_EQ(result.out.find("1 replay"), std::string::npos) << result.out;
   EXPECT_FALSE(std::filesystem::exists(run.path() / "replay.ring"));
@@ -55,10 +40,10 @@ TEST(OnPolicy, ARunOfWholeRolloutsHasNoReplayAndAnExactAccount) {
 
 TEST(OnPolicy, TheDeathOfAnActorAndOfTheLearnerIsSurvivedAndAccountedFor) {
   const TrainingRun run;
-  RunningTraining training(run, Command(run, {{"env_steps", "10000000"},
-                                              {"eval.interval", "1000000"},
-                                              {"ppo.rollout_steps", "512"},
-                                              {"learner.checkpoint_period", "2"}}));
+  RunningTraining training(run, run.OnPolicyCommand({{"env_steps", "10000000"},
+                                                     {"eval.interval", "1000000"},
+                                                     {"ppo.rollout_steps", "512"},
+                                                     {"learner.checkpoint_period", "2"}}));
   ASSERT_TRUE(WaitForMoreUpdates(&training, 3)) << training.Output();
   for (const char* role : {"actor", "learner", "actor", "learner"}) {
     KillAndWaitForSuccessor(&training, role);
@@ -77,7 +62,8 @@ TEST(OnPolicy, TheDeathOfAnActorAndOfTheLearnerIsSurvivedAndAccountedFor) {
 
 TEST(OnPolicy, AStoppedRunIsResumedAndTheAccountGoesOn) {
   const TrainingRun run;
-  RunningTraining training(run, Command(run, {{"env_steps", "12000"}, {"eval.interval", "4000"}}));
+  RunningTraining training(
+      run, run.OnPolicyCommand({{"env_steps", "12000"}, {"eval.interval", "4000"}}));
   ASSERT_TRUE(WaitForMoreUpdates(&training, 2)) << training.Output();
   training.Interrupt();
   ASSERT_EQ(training.End(seconds(120)), kInterruptedExit) << training.Output();
@@ -97,9 +83,9 @@ TEST(OnPolicy, InLockstepTheRunRepeatsBitForBit) {
   const auto learner = [](const std::string& seed) {
     const TrainingRun run;
     const ProgramResult result = RunProgram(
-        Command(run,
-                {{"env_steps", "2500"}, {"actors", "1"}, {"eval.interval", "1000"}, {"seed", seed}},
-                {"--lockstep"}),
+        run.OnPolicyCommand(
+            {{"env_steps", "2500"}, {"actors", "1"}, {"eval.interval", "1000"}, {"seed", seed}},
+            {"--lockstep"}),
         seconds(180));
     EXPECT_EQ(ExitCode(result), 0) << result.out << result.err;
     std::filesystem::path newest;
@@ -115,8 +101,8 @@ TEST(OnPolicy, InLockstepTheRunRepeatsBitForBit) {
 
 TEST(OnPolicy, OneVersionAheadActorsPlayWhileTheLearnerLearns) {
   const TrainingRun run;
-  const ProgramResult result =
-      RunProgram(Command(run, {{"env_steps", "12000"}, {"ppo.versions_ahead", "1"}}), seconds(180));
+  const ProgramResult result = RunProgram(
+      run.OnPolicyCommand({{"env_steps", "12000"}, {"ppo.versions_ahead", "1"}}), seconds(180));
   ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
   const json meta = run.Json("meta.json");
   EXPECT_EQ(meta.at("exit"), "budget");
@@ -126,9 +112,9 @@ TEST(OnPolicy, OneVersionAheadActorsPlayWhileTheLearnerLearns) {
 // An actor that stands still does not hold the others up for longer than the deadline.
 TEST(OnPolicy, WithoutAnActorThatHangsUpdatesAreMadeOfTheOtherHalf) {
   const TrainingRun run;
-  RunningTraining training(run, Command(run, {{"env_steps", "10000000"},
-                                              {"eval.interval", "1000000"},
-                                              {"ppo.rollout_deadline", "1"}}));
+  RunningTraining training(run, run.OnPolicyCommand({{"env_steps", "10000000"},
+                                                     {"eval.interval", "1000000"},
+                                                     {"ppo.rollout_deadline", "1"}}));
   ASSERT_TRUE(WaitForMoreUpdates(&training, 2)) << training.Output();
   const json actor = training.reports().WaitFor("actor", [](const json&) { return true; });
   ASSERT_FALSE(actor.is_null());
@@ -156,8 +142,8 @@ TEST(OnPolicy, WithoutAnActorThatHangsUpdatesAreMadeOfTheOtherHalf) {
 
 TEST(OnPolicy, ARunIsScaledAndSetWhileItGoesOn) {
   const TrainingRun run;
-  RunningTraining training(run,
-                           Command(run, {{"env_steps", "10000000"}, {"eval.interval", "1000000"}}));
+  RunningTraining training(
+      run, run.OnPolicyCommand({{"env_steps", "10000000"}, {"eval.interval", "1000000"}}));
   ASSERT_TRUE(WaitForMoreUpdates(&training, 2)) << training.Output();
   const std::string folder = run.path().string();
   const auto order = [&](std::vector<std::string> words) {
@@ -193,7 +179,7 @@ TEST(OnPolicy, WhatDoesNotFitIsRefusedByName) {
       {{{"ppo.rollout_steps", "100"}}, "ppo.rollout_steps = 100"},
       {{{"ppo.rollout_steps", "1"}}, "ppo.rollout_steps = 1"}};
   for (const auto& [keys, message] : cases) {
-    const ProgramResult result = RunProgram(Command(run, keys), seconds(60));
+    const ProgramResult result = RunProgram(run.OnPolicyCommand(keys), seconds(60));
     EXPECT_EQ(ExitCode(result), 2);
     EXPECT_NE(result.err.find(message), std::string::npos) << result.err;
     EXPECT_FALSE(std::filesystem::exists(run.path()));

@@ -27,7 +27,7 @@ void ExpectScalars(const std::filesystem::path& run, size_t starts) {
     for (const char* tag :
          {"rollout/ep_rew_mean", "rollout/success_rate", "rollout/ep_len_mean", "eval/mean_reward",
           "eval/mean_ep_length", "eval/success_rate", "train/critic_loss", "train/actor_loss",
-          "train/ent_coef", "train/ent_coef_loss", "train/n_updates", "time/fps"}) {
+          "train/ent_coef", "train/ent_coef_loss", "train/n_updates"}) {
       ASSERT_TRUE(scalars.contains(tag)) << file << ": " << tag;
       for (const auto& [env_steps, value] : scalars.at(tag)) {
         EXPECT_GE(env_steps, reached[tag]) << file << ": " << tag;

@@ -42,16 +42,18 @@ class TrainingRun {
              {"learner.threads", "1"},     {"replay.samples_per_insert", "32"},
              {"stop.success", "2"},        {"run_dir", folder_.path().string()}};
     for (const auto& [key, value] : keys) all[key] = value;
-    std::vector<std::string> command{"shoal", "train", "--run-name", "run"};
-    if (std::ranges::find(flags, "--preset") == flags.end()) {
-      command.insert(command.end(), {"--preset", "fetch-reach-state"});
-    }
-    for (const auto& [key, value] : all) {
-      command.push_back("--set");
-      command.push_back(key + "=" + value);
-    }
-    command.insert(command.end(), flags.begin(), flags.end());
-    return command;
+    const bool named = std::ranges::find(flags, "--preset") != flags.end();
+    return CommandOf(named ? "" : "fetch-reach-state", all, flags);
+  }
+
+  // The same of a run of PPO, which has no replay.
+  std::vector<std::string> OnPolicyCommand(const Keys& keys = {},
+                                           const std::vector<std::string>& flags = {}) const {
+    Keys all{{"eval.episodes", "8"},    {"eval.final_episodes", "0"},
+             {"eval.interval", "4000"}, {"ppo.rollout_steps", "128"},
+             {"stop.success", "2"},     {"run_dir", folder_.path().string()}};
+    for (const auto& [key, value] : keys) all[key] = value;
+    return CommandOf("fetch-reach-ppo", all, flags);
   }
 
   ProgramResult Train(const Keys& keys = {}, const std::vector<std::string>& flags = {},
@@ -66,6 +68,19 @@ class TrainingRun {
   }
 
  private:
+  // `preset` may be empty.
+  static std::vector<std::string> CommandOf(const std::string& preset, const Keys& keys,
+                                            const std::vector<std::string>& flags) {
+    std::vector<std::string> command{"shoal", "train", "--run-name", "run"};
+    if (!preset.empty()) command.insert(command.end(), {"--preset", preset});
+    for (const auto& [key, value] : keys) {
+      command.push_back("--set");
+      command.push_back(key + "=" + value);
+    }
+    command.insert(command.end(), flags.begin(), flags.end());
+    return command;
+  }
+
   TemporaryFolder folder_;
 };
 
