@@ -12,7 +12,7 @@
 #include "common/nn/parallel.h"
 #include "learner/agent/agent_state.h"
 #include "learner/agent/batch_faults.h"
-#include "learner/agent/critic_encoder.h"
+#include "learner/agent/encoder_and_head.h"
 #include "learner/agent/losses.h"
 #include "learner/agent/step_sizes.h"
 
@@ -37,7 +37,7 @@ class AveragedDdpgAgent final : public Agent {
                 /*trains_encoder=*/true, Use::kTraining, context_),
         target_critic_(nn::PlanCritic(config.network, spec, "target", kCritics), Features(),
                        /*trains_encoder=*/false, Use::kInference, context_),
-        critic_optimiser_(CriticSets(encoder_.get(), &critic_), CriticStep(learner_)),
+        critic_optimiser_(SetsOf(encoder_.get(), &critic_), CriticStep(learner_)),
         actor_optimiser_({&actor_.parameters()}, ActorStep(learner_)),
         targets_(size_t(learner_.batch)),
         q_gradients_(kCritics, targets_),

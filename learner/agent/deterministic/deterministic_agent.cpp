@@ -16,7 +16,7 @@
 #include "common/nn/parallel.h"
 #include "learner/agent/agent_state.h"
 #include "learner/agent/batch_faults.h"
-#include "learner/agent/critic_encoder.h"
+#include "learner/agent/encoder_and_head.h"
 #include "learner/agent/losses.h"
 #include "learner/agent/step_sizes.h"
 #include "learner/agent/vector_standard.h"
@@ -96,7 +96,7 @@ DeterministicAgent::DeterministicAgent(const Config& config, const ObservationSp
                      /*trains_encoder=*/false, Use::kInference, context_),
       encoder_average_(nn::PlanEncoder(config.network, spec).Parameters(), Use::kInference),
       actor_average_(PlanActor(config, spec, "actor").Parameters(), Use::kInference),
-      critic_optimiser_(CriticSets(encoder_.get(), &critic_), CriticStep(config.learner)),
+      critic_optimiser_(SetsOf(encoder_.get(), &critic_), CriticStep(config.learner)),
       actor_optimiser_({&actor_.parameters()}, ActorStep(config.learner)),
       standard_(config.learner.normalise_vectors, spec.VectorSize()),
       target_action_(size_t(batch_size_) * size_t(action_size_)),

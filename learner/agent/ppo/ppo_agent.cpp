@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "common/base/check.h"
-#include "common/nn/actor_critic_plan.h"
 #include "common/nn/adam.h"
 #include "common/nn/parallel.h"
 #include "learner/agent/agent_state.h"

@@ -1,6 +1,9 @@
 #include "learner/agent/ppo/ppo_networks.h"
 
 #include <algorithm>
+#include <iterator>
+
+#include "learner/agent/encoder_and_head.h"
 
 namespace shoal::learner {
 namespace {
@@ -30,10 +33,7 @@ void KeepRows(int64_t rows, nn::NamedTensor* tensor) {
 PpoNetworks::Network::Network(const Config& config, const ObservationSpec& spec,
                               const nn::ModuleContext& context, const std::string& encoder_name,
                               const nn::HeadPlan& plan)
-    : encoder(spec.HasPixels() ? std::make_unique<nn::EncoderModule>(
-                                     nn::PlanEncoder(config.network, spec, encoder_name),
-                                     Use::kTraining, context)
-                               : nullptr),
+    : encoder(MakeEncoder(config.network, spec, Use::kTraining, context, encoder_name)),
       head(plan, encoder ? &encoder->features() : nullptr, /*trains_encoder=*/true, Use::kTraining,
            context) {
   const auto seed = uint64_t(config.seed);
@@ -133,8 +133,7 @@ std::vector<nn::ParameterSet*> PpoNetworks::Sets() {
   std::vector<nn::ParameterSet*> sets;
   for (Network* network : {&actor_, own_value_.get()}) {
     if (network == nullptr) continue;
-    if (network->encoder) sets.push_back(&network->encoder->parameters());
-    sets.push_back(&network->head.parameters());
+    std::ranges::copy(SetsOf(network->encoder.get(), &network->head), std::back_inserter(sets));
   }
   sets.push_back(&log_std_);
   return sets;

@@ -5,7 +5,7 @@
 #include <initializer_list>
 
 #include "common/nn/actor_critic_plan.h"
-#include "learner/agent/critic_encoder.h"
+#include "learner/agent/encoder_and_head.h"
 #include "learner/agent/step_sizes.h"
 
 namespace shoal::learner {
@@ -26,13 +26,6 @@ const nn::Features* FeaturesOf(std::initializer_list<const EncoderModule*> encod
 }
 
 bool Separate(const Config& config) { return config.network.encoders == "separate"; }
-
-std::vector<ParameterSet*> ActorSets(EncoderModule* own_encoder, nn::ActorModule* actor) {
-  std::vector<ParameterSet*> sets;
-  if (own_encoder != nullptr) sets.push_back(&own_encoder->parameters());
-  sets.push_back(&actor->parameters());
-  return sets;
-}
 
 }  // namespace
 
@@ -60,8 +53,8 @@ SacNetworks::SacNetworks(const Config& config, const ObservationSpec& spec, nn::
                        ParameterSet::Use::kInference),
       actor_average_(nn::PlanActor(config.network, spec).Parameters(),
                      ParameterSet::Use::kInference),
-      critic_optimiser_(CriticSets(CriticEncoder(), &critic_), CriticStep(config.learner)),
-      actor_optimiser_(ActorSets(critic_encoder_ ? encoder_.get() : nullptr, &actor_),
+      critic_optimiser_(SetsOf(CriticEncoder(), &critic_), CriticStep(config.learner)),
+      actor_optimiser_(SetsOf(critic_encoder_ ? encoder_.get() : nullptr, &actor_),
                        ActorStep(config.learner)),
       temperature_optimiser_({&temperature_}, {.rate = TemperatureRate(config.learner)}) {
   const auto seed = static_cast<uint64_t>(config.seed);

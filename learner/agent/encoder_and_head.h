@@ -1,4 +1,4 @@
-// Encoders of the algorithms that have critics, and what a critic's optimiser steps.
+// What algorithms build networks of: an encoder, where there are pixels, and a head above it.
 #pragma once
 
 #include <memory>
@@ -6,7 +6,6 @@
 #include <vector>
 
 #include "common/config/config.h"
-#include "common/nn/critic_module.h"
 #include "common/nn/encoder_module.h"
 #include "common/spec/observation_spec.h"
 
@@ -19,6 +18,6 @@ std::unique_ptr<nn::EncoderModule> MakeEncoder(const NetworkConfig& network,
                                                const std::string& name = "encoder");
 
 // What one optimiser steps together; `encoder` may be null. Borrows both.
-std::vector<nn::ParameterSet*> CriticSets(nn::EncoderModule* encoder, nn::CriticModule* critic);
+std::vector<nn::ParameterSet*> SetsOf(nn::EncoderModule* encoder, nn::Module* head);
 
 }  // namespace shoal::learner

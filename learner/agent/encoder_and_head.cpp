@@ -1,4 +1,4 @@
-#include "learner/agent/critic_encoder.h"
+#include "learner/agent/encoder_and_head.h"
 
 #include "common/nn/actor_critic_plan.h"
 
@@ -12,10 +12,10 @@ std::unique_ptr<nn::EncoderModule> MakeEncoder(const NetworkConfig& network,
   return std::make_unique<nn::EncoderModule>(nn::PlanEncoder(network, spec, name), use, context);
 }
 
-std::vector<nn::ParameterSet*> CriticSets(nn::EncoderModule* encoder, nn::CriticModule* critic) {
+std::vector<nn::ParameterSet*> SetsOf(nn::EncoderModule* encoder, nn::Module* head) {
   std::vector<nn::ParameterSet*> sets;
   if (encoder != nullptr) sets.push_back(&encoder->parameters());
-  sets.push_back(&critic->parameters());
+  sets.push_back(&head->parameters());
   return sets;
 }
 
