@@ -1,0 +1,32 @@
+// Frames of a task with numbers that are to be told from them, from random play.
+//
+// Dimensions: S samples, L labels, C channels of a frame (all cameras), H, W.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/config/config.h"
+#include "common/spec/observation_spec.h"
+
+namespace shoal::launch {
+
+struct LabelledFrames {
+  ObservationSpec spec;            // without vectors: the frames alone are observed
+  int labels = 0;                  // L
+  std::vector<uint8_t> frames;     // (S, C, H, W)
+  std::vector<float> values;       // (S, L)
+  std::vector<uint64_t> episodes;  // (S), from 0
+  size_t size() const { return episodes.size(); }
+  const uint8_t* frame(size_t sample) const {
+    return frames.data() + sample * size_t(spec.FrameBytes());
+  }
+};
+
+// `samples` frames of config.task through config.observation's cameras, at the start of episodes
+// and during their first steps of uniform random actions; the labels are those of learner.aux, each
+// as PrivilegedBlocksOf reads it. Throws Error: unknown task, camera or block.
+LabelledFrames CollectLabelledFrames(const Config& config, int samples);
+
+}  // namespace shoal::launch
