@@ -22,7 +22,8 @@ constexpr uint64_t kSpec = 0xfeedfacecafebeef;
 std::filesystem::path RealCheckpoint() {
   const nn::NamedTensor tensor{"F32", {2, 3}, std::vector<uint8_t>(24, 1)};
   WriteCheckpoint(fuzz::Scratch(), {.updates = 3, .spec_hash = kSpec, .precision = "f32"},
-                  {{"a", tensor}}, {{"b", tensor}}, {{"schema", "x"}});
+                  {{"a", tensor}}, {{"b", tensor}}, {SmallConfig(), SmallSpec()},
+                  {{"schema", "x"}});
   return fuzz::Scratch() / CheckpointName(3);
 }
 
