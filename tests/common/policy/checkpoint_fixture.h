@@ -42,6 +42,8 @@ inline RunConfig RunWithEncoder(const std::string& encoder, int side = 84) {
   run.config.network.encoder = encoder;
   run.config.network.filters.clear();
   run.config.network.strides.clear();
+  run.config.network.initialisation = "pytorch";  // fast
+  run.config.learner.batch = 2;
   run.spec.height = run.spec.width = side;
   return run;
 }
