@@ -3,6 +3,7 @@
 #include "common/base/log.h"
 #include "common/config/on_policy.h"
 #include "learner/agent/frame_figures.h"
+#include "learner/agent/sample_figures.h"
 
 namespace shoal::learner {
 
@@ -14,6 +15,7 @@ LearnerReport::LearnerReport(const RunConfig& run)
 
 void LearnerReport::OnUpdate(const UpdateFigures& figures, const Batch& batch, uint64_t updates) {
   UpdateFigures all = figures;
+  AddSampleFigures(batch.view, spec_, &all);
   AddFrameFigures(batch.view, spec_, shift_pad_, &all);
   window_.Add(all);
   AddDataAges(batch.view.weights_update, updates, &data_ages_);

@@ -11,7 +11,7 @@ namespace shoal::actor {
 Seat::Seat(std::unique_ptr<worlds::Environment> environment, PolicyInput input)
     : environment_(std::move(environment)),
       input_(input),
-      observed_(environment_->spec()),
+      observed_(BlockPicker::Observed(environment_->spec())),
       stack_(input.stack, environment_->spec().FrameBytes()) {
   const ObservationSpec& spec = environment_->spec();
   CHECK(input.stack.size() == size_t(spec.FrameBytes()) * spec.stack) << input.stack.size();

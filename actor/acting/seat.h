@@ -67,7 +67,7 @@ class Seat {
 
   std::unique_ptr<worlds::Environment> environment_;
   PolicyInput input_;
-  ObservedBlocks observed_;
+  BlockPicker observed_;
   FrameStack stack_;
   EpisodeFigures figures_;
   std::vector<float> last_action_;  // empty before the episode's first

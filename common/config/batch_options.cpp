@@ -1,14 +1,20 @@
 #include "common/config/batch_options.h"
 
+#include <utility>
+
+#include "common/config/privileged_blocks.h"
+
 namespace shoal {
 
-BatchOptions BatchOptionsOf(const Config& config) {
-  return {.batch = config.learner.batch,
-          .copies = config.replay.copies,
-          .n_step = config.replay.n_step,
-          .discount = config.learner.discount};
+BatchOptions BatchOptionsOf(const RunConfig& run) {
+  std::vector<std::string> privileged = PrivilegedBlocksOf(run.config.learner, run.spec).all;
+  return {.batch = run.config.learner.batch,
+          .copies = run.config.replay.copies,
+          .n_step = run.config.replay.n_step,
+          .discount = run.config.learner.discount,
+          .privileged = std::move(privileged)};
 }
 
-BatchSchema BatchSchemaOf(const RunConfig& run) { return {run.spec, BatchOptionsOf(run.config)}; }
+BatchSchema BatchSchemaOf(const RunConfig& run) { return {run.spec, BatchOptionsOf(run)}; }
 
 }  // namespace shoal

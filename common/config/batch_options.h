@@ -6,7 +6,8 @@
 
 namespace shoal {
 
-BatchOptions BatchOptionsOf(const Config& config);
+// Throws Error as PrivilegedBlocksOf.
+BatchOptions BatchOptionsOf(const RunConfig& run);
 BatchSchema BatchSchemaOf(const RunConfig& run);
 
 }  // namespace shoal

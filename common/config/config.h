@@ -25,7 +25,7 @@ struct CustomCamera {
   bool operator==(const CustomCamera&) const = default;
 };
 
-// Which of a task's state blocks a policy sees: all, none, or those named.
+// Some of a task's blocks: all, none, or those named.
 struct StateBlocks {
   bool all = false;
   std::vector<std::string> names{};  // unless all
@@ -88,9 +88,13 @@ struct LearnerConfig {
   double target_entropy = 0;         // 0 = -(action size)
   bool normalise_vectors = false;    // of observations, by running mean and deviation
   bool bounded_targets = false;      // values cut off at what rewards of -1 and 0 allow
-  int weights_period = 20;           // updates between weights broadcasts
-  int request_credits = 3;           // batches asked for ahead
-  int checkpoint_period = 2'000;     // updates between checkpoints
+  // What learning knows and acting does not: common/config/privileged_blocks.h.
+  StateBlocks critic_blocks = false;  // that the critic sees in place of pixels; false = pixels
+  std::vector<std::string> aux;   // what the features are trained to tell: BLOCK, or BLOCK-BLOCK
+  double aux_weight = 1;          // of that loss
+  int weights_period = 20;        // updates between weights broadcasts
+  int request_credits = 3;        // batches asked for ahead
+  int checkpoint_period = 2'000;  // updates between checkpoints
 };
 
 // On-policy learning: rollouts of every environment, learned from together and then forgotten.

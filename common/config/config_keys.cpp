@@ -148,6 +148,14 @@ std::vector<Key> LearnerKeys() {
                  "policy; cut off at 10"),
       SHOAL_SAME(learner.bounded_targets, AnyValue{},
                  "cut target values off at what rewards of -1 and 0 allow"),
+      SHOAL_SAME(
+          learner.critic_blocks, AnyValue{},
+          "sac: the critic sees these recorded blocks in place of pixels, beside the vectors "
+          "that the policy sees: true (all), false (it sees the pixels) or their names"),
+      SHOAL_SAME(learner.aux, AnyValue{},
+                 "sac: what the encoder's features are trained to tell besides: recorded blocks or "
+                 "differences of two, as \"object\" or \"object-grip\"; [] = nothing"),
+      SHOAL_SAME(learner.aux_weight, (RealRange{0, 1e6, true}), "of that loss"),
       SHOAL_SAME(learner.weights_period, (IntegerRange{1, 1'000'000}),
                  "updates between weights broadcasts"),
       SHOAL_SAME(learner.request_credits, (IntegerRange{1, 64}), "batches asked for ahead"),

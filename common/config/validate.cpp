@@ -111,6 +111,33 @@ void ValidateEncoders(const Config& config) {
   }
 }
 
+// What learning alone knows. Whether the task records it is PrivilegedBlocksOf's to say.
+void ValidatePrivileged(const Config& config) {
+  const LearnerConfig& learner = config.learner;
+  const char* key = learner.critic_blocks                               ? "learner.critic_blocks"
+                    : !learner.aux.empty()                              ? "learner.aux"
+                    : learner.aux_weight != Config().learner.aux_weight ? "learner.aux_weight"
+                                                                        : nullptr;
+  if (key == nullptr) return;
+  if (learner.algorithm != "sac") {
+    throw UsageError("{}: learner.algorithm = {} does not take it; expected it unset, or sac", key,
+                     learner.algorithm);
+  }
+  if (!learner.aux.empty() && !config.observation.pixels) {
+    throw UsageError(
+        "learner.aux: nothing is encoded without observation.pixels; expected it unset");
+  }
+  if (learner.aux.empty() && learner.aux_weight != Config().learner.aux_weight) {
+    throw UsageError("learner.aux_weight = {}: expected it unset without learner.aux",
+                     learner.aux_weight);
+  }
+  if (!learner.critic_blocks) return;
+  if (config.network.encoders == "separate" || config.network.target_encoder) {
+    throw UsageError("{}: with learner.critic_blocks the critic has no encoder; expected it unset",
+                     config.network.target_encoder ? "network.target_encoder" : "network.encoders");
+  }
+}
+
 void ValidateReplay(const Config& config) {
   if (config.replay.min_size > config.replay.capacity / 2) {
     throw UsageError("replay.min_size = {}: expected at most half of replay.capacity = {}",
@@ -143,6 +170,7 @@ void Validate(const Config& config) {
   }
   if (!LearnsOnPolicy(config)) {
     ValidateEncoders(config);
+    ValidatePrivileged(config);
     ValidateReplay(config);
   }
   if (config.lockstep && config.actors > 1) {

@@ -29,6 +29,9 @@ class ActorHead {
   // (B, A); null: deterministic.
   const float* log_std() const { return log_std_.empty() ? nullptr : log_std_.data(); }
 
+  // As ObservationTrunk::features.
+  const Features* trunk_features() const { return trunk_.features(); }
+
   void Refresh();
   // vector (B, V).
   void Forward(const float* vector);

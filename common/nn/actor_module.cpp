@@ -21,6 +21,8 @@ ActorModule::ActorModule(const ActorPlan& plan, const Features* features, bool t
 
 ActorModule::~ActorModule() = default;
 
+const Features* ActorModule::trunk_features() const { return impl_->head.trunk_features(); }
+
 void ActorModule::Refresh() {
   const ThreadScope scope(context_.threads);
   impl_->head.Refresh();

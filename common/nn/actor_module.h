@@ -25,6 +25,9 @@ class ActorModule final : public Module {
     const float *mean, *log_std, *action;
   };
 
+  // The trunk's outputs, for a readout; null without pixels.
+  const Features* trunk_features() const;
+
   void Refresh() override;
   // vector (B, V), for the features as they are.
   Output Forward(const float* vector);

@@ -22,6 +22,9 @@ class CriticHeads {
   int count() const { return int(mlps_.size()); }
   const float* q(int i) const { return mlps_[size_t(i)].output(); }  // (B)
 
+  // As ObservationTrunk::features.
+  const Features* trunk_features() const { return trunk_.features(); }
+
   void Refresh();
   // The observation's part; vector (B, V).
   void ForwardObservation(const float* vector);

@@ -25,6 +25,8 @@ int CriticModule::count() const { return impl_->heads.count(); }
 
 const float* CriticModule::q(int i) const { return impl_->heads.q(i); }
 
+const Features* CriticModule::trunk_features() const { return impl_->heads.trunk_features(); }
+
 void CriticModule::Refresh() {
   const ThreadScope scope(context_.threads);
   impl_->heads.Refresh();

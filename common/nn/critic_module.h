@@ -24,6 +24,9 @@ class CriticModule final : public Module {
   int count() const;
   const float* q(int i) const;  // (B) of the latest ForwardAction
 
+  // The trunk's outputs, for a readout; null without pixels.
+  const Features* trunk_features() const;
+
   void Refresh() override;
   // The observation's part, for the features as they are; vector (B, V).
   void ForwardObservation(const float* vector);

@@ -16,6 +16,12 @@ ObservationTrunk::ObservationTrunk(const LayerContext& context, const HeadPlan& 
   CHECK(plan.trunk.layers().size() == 1);
   dense_.emplace(context, plan.trunk.layers()[0], features, features_gradient, Precision::kF32);
   dense_gradient_.resize(size_t(context.batch) * size_t(features_));
+  if (context.training) {
+    readout_gradient_.emplace(context.batch, features_, Precision::kF32);
+    std::fill_n(readout_gradient_->values(), readout_gradient_->size(), 0.f);
+  }
+  own_features_.emplace(dense_->output().f32(),
+                        readout_gradient_ ? readout_gradient_->f32() : dnnl::memory());
 }
 
 void ObservationTrunk::Refresh() {
@@ -36,6 +42,10 @@ void ObservationTrunk::Backward(const float* input_gradient) {
     std::copy_n(input_gradient + int64_t(b) * input_.columns(), features_,
                 dense_gradient_.data() + int64_t(b) * features_);
   }
+  for (size_t i = 0; i < dense_gradient_.size(); ++i) {
+    dense_gradient_[i] += readout_gradient_->values()[i];
+  }
+  std::fill_n(readout_gradient_->values(), readout_gradient_->size(), 0.f);
   dense_->Backward(dense_gradient_.data(), {.parameters = true, .source = true});
 }
 

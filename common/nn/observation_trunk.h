@@ -15,6 +15,7 @@
 
 #include "common/nn/actor_critic_plan.h"
 #include "common/nn/dense_layer.h"
+#include "common/nn/features.h"
 #include "common/nn/layer_context.h"
 #include "common/nn/rows.h"
 
@@ -27,6 +28,10 @@ class ObservationTrunk {
   ObservationTrunk(const LayerContext& context, const HeadPlan& plan, const dnnl::memory& features,
                    const dnnl::memory& features_gradient);
 
+  // The trunk's outputs (B, F) f32, for a readout (readout_module.h), which may leave a gradient
+  // there before Backward, in training. Null without pixels.
+  const Features* features() const { return own_features_ ? &*own_features_ : nullptr; }
+
   // (B, F + V + extra) f32.
   Rows& input() { return input_; }
   const Rows& input() const { return input_; }
@@ -35,13 +40,16 @@ class ObservationTrunk {
   void Refresh();
   // vector (B, V); unread when V = 0.
   void Forward(const float* vector);
-  // dL/dinput (B, F + V + extra), the sum over everybody who read the input.
+  // dL/dinput (B, F + V + extra), the sum over everybody who read the input. What a readout left is
+  // added to it, once.
   void Backward(const float* input_gradient);
 
  private:
   std::optional<DenseLayer> dense_;
   int features_, vector_size_, extra_column_;
   Rows input_;
+  std::optional<Rows> readout_gradient_;  // dL/d(trunk's outputs) (B, F); 0: nobody left one
+  std::optional<Features> own_features_;
   std::vector<float> dense_gradient_;  // (B, F)
 };
 

@@ -103,23 +103,38 @@ ObservationSpec ObservationSpecFromJson(const json& object) {
   return spec;
 }
 
-ObservedBlocks::ObservedBlocks(const ObservationSpec& spec)
-    : recorded_size_(spec.RecordedVectorSize()), size_(spec.VectorSize()) {
+BlockPicker::BlockPicker(const ObservationSpec& spec,
+                         const std::function<bool(const BlockSpec&)>& wanted)
+    : recorded_size_(spec.RecordedVectorSize()) {
   int first = 0;
   for (const BlockSpec& block : spec.blocks) {
-    if (block.observed && !ranges_.empty() && ranges_.back().first + ranges_.back().size == first) {
-      ranges_.back().size += block.size;
-    } else if (block.observed) {
-      ranges_.push_back({first, block.size});
+    if (wanted(block)) {
+      if (!ranges_.empty() && ranges_.back().first + ranges_.back().size == first) {
+        ranges_.back().size += block.size;
+      } else {
+        ranges_.push_back({first, block.size});
+      }
+      size_ += block.size;
     }
     first += block.size;
   }
 }
 
-void ObservedBlocks::Copy(std::span<const float> recorded, std::span<float> observed) const {
-  CHECK(recorded.size() == size_t(recorded_size_) && observed.size() == size_t(size_))
-      << recorded.size() << " to " << observed.size();
-  auto to = observed.begin();
+BlockPicker BlockPicker::Observed(const ObservationSpec& spec) {
+  return {spec, [](const BlockSpec& block) { return block.observed; }};
+}
+
+BlockPicker BlockPicker::Named(const ObservationSpec& spec, std::span<const std::string> names) {
+  for (const std::string& name : names) CHECK(spec.Recorded(name)) << "no block '" << name << "'";
+  return {spec, [&](const BlockSpec& block) {
+            return std::ranges::find(names, block.name) != names.end();
+          }};
+}
+
+void BlockPicker::Copy(std::span<const float> recorded, std::span<float> picked) const {
+  CHECK(recorded.size() == size_t(recorded_size_) && picked.size() == size_t(size_))
+      << recorded.size() << " to " << picked.size();
+  auto to = picked.begin();
   for (const auto& [first, size] : ranges_) {
     to = std::ranges::copy(recorded.subspan(size_t(first), size_t(size)), to).out;
   }

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <span>
@@ -69,18 +70,23 @@ nlohmann::json ToJson(const ObservationSpec& spec);
 // Throws Error naming the missing or ill-typed key.
 ObservationSpec ObservationSpecFromJson(const nlohmann::json& object);
 
-// Picks the policy's vector (V) out of a record's (R). A value type.
-class ObservedBlocks {
+// Picks some blocks out of a record's vector (R), in the record's order. A value type.
+class BlockPicker {
  public:
-  explicit ObservedBlocks(const ObservationSpec& spec);
+  // The policy's vector (V).
+  static BlockPicker Observed(const ObservationSpec& spec);
+  // Those of these names. CHECK: the spec has each.
+  static BlockPicker Named(const ObservationSpec& spec, std::span<const std::string> names);
 
-  int size() const { return size_; }  // V
+  int size() const { return size_; }  // of what is picked
   // CHECK on other sizes than those of the spec. May not overlap.
-  void Copy(std::span<const float> recorded, std::span<float> observed) const;
+  void Copy(std::span<const float> recorded, std::span<float> picked) const;
 
  private:
+  BlockPicker(const ObservationSpec& spec, const std::function<bool(const BlockSpec&)>& wanted);
+
   std::vector<ObservationSpec::Range> ranges_;  // of the record's vector; neighbours are one
-  int recorded_size_, size_;
+  int recorded_size_, size_ = 0;
 };
 
 }  // namespace shoal

@@ -53,6 +53,11 @@ BatchSchema::BatchSchema(const ObservationSpec& spec, const BatchOptions& option
     Add("obs_vector", ArrayType::kF32, {size});
     Add("next_obs_vector", ArrayType::kF32, {size});
   }
+  if (!options.privileged.empty()) {
+    const int size = BlockPicker::Named(spec, options.privileged).size();
+    Add("obs_privileged", ArrayType::kF32, {size});
+    Add("next_obs_privileged", ArrayType::kF32, {size});
+  }
   Add("action", ArrayType::kF32, {spec.action_size});
   Add("reward", ArrayType::kF32);
   Add("bootstrap", ArrayType::kF32);
@@ -92,8 +97,12 @@ std::string BatchSchema::Summary() const {
     arrays += fmt::format("{}{} {}", arrays.empty() ? "" : ", ", array.name, NameOf(array.type));
     if (!array.shape.empty()) arrays += fmt::format(" {}", fmt::join(array.shape, "x"));
   }
-  return fmt::format("batch {}, copies {}, n_step {}, discount {}: {}", options_.batch,
-                     options_.copies, options_.n_step, options_.discount, arrays);
+  const std::string privileged =
+      options_.privileged.empty()
+          ? ""
+          : fmt::format(", privileged {}", fmt::join(options_.privileged, " "));
+  return fmt::format("batch {}, copies {}, n_step {}, discount {}{}: {}", options_.batch,
+                     options_.copies, options_.n_step, options_.discount, privileged, arrays);
 }
 
 template <class T>
@@ -120,6 +129,10 @@ BatchView BatchSchema::View(uint8_t* data) const {
   if (Has("obs_vector")) {
     view.obs_vector = Array<float>("obs_vector", data);
     view.next_obs_vector = Array<float>("next_obs_vector", data);
+  }
+  if (Has("obs_privileged")) {
+    view.obs_privileged = Array<float>("obs_privileged", data);
+    view.next_obs_privileged = Array<float>("next_obs_privileged", data);
   }
   view.action = Array<float>("action", data);
   view.reward = Array<float>("reward", data);

@@ -7,6 +7,8 @@
 //   next_obs_frames  (B, K*C, H, W) u8   shifted with offsets of their own
 //   obs_vector       (B, V) f32
 //   next_obs_vector  (B, V) f32
+//   obs_privileged       (B, P) f32      recorded blocks that acting does not see, in record order
+//   next_obs_privileged  (B, P) f32
 //   action           (B, A) f32
 //   reward           (B) f32             discounted sum over the sample's n steps
 //   bootstrap        (B) f32             factor of the next value besides the discount: 0 where the
@@ -23,9 +25,10 @@
 //   continues        (B) f32             1: the next row's observation is this one's next, else 0
 //   id               (B) u64             number of the environment
 //
-// K*C channels: stack K, frame channels C. What a spec does not have (pixels, vectors) has no
-// array. An algorithm or a way of sampling that needs more (importance weights, sequences with a
-// length of their own as the first dimension) adds an option and its arrays.
+// K*C channels: stack K, frame channels C; P floats of BatchOptions::privileged. What a spec or the
+// options do not have (pixels, vectors, privileged blocks) has no array. An algorithm or a way of
+// sampling that needs more (importance weights, sequences with a length of their own as the first
+// dimension) adds an option and its arrays.
 #pragma once
 
 #include <cstdint>
@@ -55,6 +58,8 @@ struct BatchOptions {
   int n_step = 1;        // n
   double discount = 1;   // of the steps summed
   bool rollout = false;  // steps in order, with what on-policy learning needs
+  // Blocks of the record, none of them observed, that learning sees besides; in any order.
+  std::vector<std::string> privileged{};
 };
 
 struct BatchView;
@@ -98,6 +103,7 @@ class BatchSchema {
 struct BatchView {
   std::span<uint8_t> obs_frames, next_obs_frames;
   std::span<float> obs_vector, next_obs_vector, action, reward, bootstrap;
+  std::span<float> obs_privileged, next_obs_privileged;
   std::span<uint64_t> weights_update, id;
   std::span<float> drawn_action, log_prob, ends, continues;  // of a rollout
 

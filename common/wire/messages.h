@@ -25,9 +25,9 @@ struct WeightsVersion {
 // Bytes of a batch or of weights that travel as one message: below 1 MB with its header.
 inline constexpr uint64_t kBulkPartBytes = 960 * 1024;
 
-// actor -> replay. `count` records of equal size, sequences first_sequence ..
-// first_sequence+count-1. Without records it says that the actor keeps nothing before
-// first_sequence any more.
+// actor -> the receiver of its records: the replay, or the learner of a run on policy. `count`
+// records of equal size, sequences first_sequence .. first_sequence+count-1. Without records it
+// says that the actor keeps nothing before first_sequence any more.
 struct TransitionChunk {
   uint64_t spec_hash = 0;
   uint32_t actor = 0;
@@ -37,18 +37,18 @@ struct TransitionChunk {
   std::span<const uint8_t> payload;
 };
 
-// The replay's word to one actor session: flow control and acknowledgement in one.
+// The receiver's word to one actor session: flow control and acknowledgement in one.
 struct Credit {
-  uint64_t replay_session = 0;  // changes when the replay restarts: resend what is not stored
+  uint64_t replay_session = 0;  // of the receiver: when it changes, resend what is not stored
   uint32_t actor = 0;
   uint64_t session = 0;
   uint64_t stored = 0;         // highest sequence up to which every record was dealt with
   uint64_t allowed = 0;        // highest sequence that may be sent
-  uint64_t spec_hash = 0;      // the replay's: an actor with another one stops, naming both
+  uint64_t spec_hash = 0;      // the receiver's: an actor with another one stops, naming both
   uint64_t superseded_by = 0;  // the actor's newer session, where there is one: this one ends
 };
 
-// replay -> all actors: what has changed, in one message, since each message goes to every actor.
+// receiver -> all actors: what has changed, in one message, since each message goes to every actor.
 struct CreditsMessage {
   std::vector<Credit> credits;
 };

@@ -8,6 +8,7 @@
 #include "common/base/files.h"
 #include "common/base/or_null.h"
 #include "common/config/config_io.h"
+#include "common/config/privileged_blocks.h"
 #include "common/nn/precision.h"
 #include "launch/record/machine.h"
 
@@ -89,6 +90,11 @@ PolicyInputs PolicyInputsOf(const ObservationSpec& spec) {
   return inputs;
 }
 
+PrivilegedInputs PrivilegedInputsOf(const Config& config, const ObservationSpec& spec) {
+  return {.critic_blocks = PrivilegedBlocksOf(config.learner, spec).critic,
+          .labels = config.learner.aux};
+}
+
 void RunMeta::OnUpdates(uint64_t reported) {
   if (reported < updates) updates_lost += updates - reported;
   updates = reported;
@@ -109,6 +115,9 @@ void WriteRunMeta(const std::filesystem::path& run, const Config& config, const 
        nn::ToString(nn::ChoosePrecision(config.learner.precision, config.observation.pixels))},
       {"policy_inputs",
        {{"blocks", meta.policy_inputs.blocks}, {"cameras", meta.policy_inputs.cameras}}},
+      {"privileged_inputs",
+       {{"critic_blocks", meta.privileged_inputs.critic_blocks},
+        {"labels", meta.privileged_inputs.labels}}},
       {"started", meta.started},
       {"finished", meta.finished.empty() ? ordered_json(nullptr) : ordered_json(meta.finished)},
       {"env_steps", meta.env_steps},

@@ -21,9 +21,17 @@ struct PolicyInputs {
 };
 PolicyInputs PolicyInputsOf(const ObservationSpec& spec);
 
+// What learning was told beside it (common/config/privileged_blocks.h).
+struct PrivilegedInputs {
+  std::vector<std::string> critic_blocks{};  // in place of the pixels
+  std::vector<std::string> labels{};         // as learner.aux names them
+};
+PrivilegedInputs PrivilegedInputsOf(const Config& config, const ObservationSpec& spec);
+
 struct RunMeta {
   std::vector<std::string> commits;  // builds that took part before this one, the first one first
   PolicyInputs policy_inputs;
+  PrivilegedInputs privileged_inputs;
   std::string started, finished;  // UTC; finished is empty while running
   uint64_t env_steps = 0, updates = 0;
   uint64_t updates_lost = 0;  // with learners that died, since their newest checkpoints

@@ -1,8 +1,10 @@
 #include "launch/run/plan_text.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "common/config/on_policy.h"
+#include "common/config/privileged_blocks.h"
 #include "common/nn/precision.h"
 #include "learner/agent/update_cost.h"
 #include "replay_server/core/storage_needs.h"
@@ -53,11 +55,28 @@ std::string UpdateText(const RunConfig& run) {
       encoder, config.learner.batch, cost.flop / kGiga);
 }
 
+// What learning is told that the policy is not: a figure of such a run has to say so.
+std::string PrivilegedText(const RunConfig& run) {
+  const LearnerConfig& learner = run.config.learner;
+  if (!learner.critic_blocks && learner.aux.empty()) return "";
+  const PrivilegedBlocks blocks = PrivilegedBlocksOf(learner, run.spec);
+  std::string told;
+  if (learner.critic_blocks) {
+    told = fmt::format("the critic sees {}{}", fmt::join(blocks.critic, ", "),
+                       run.spec.HasPixels() ? " in place of pixels" : "");
+  }
+  if (!learner.aux.empty()) {
+    told += fmt::format("{}the encoder is taught {}", told.empty() ? "" : ", ",
+                        fmt::join(learner.aux, ", "));
+  }
+  return fmt::format("  privileged, in training alone: {}\n", told);
+}
+
 }  // namespace
 
 std::string PlanText(const RunConfig& run, double frame_microseconds) {
-  return fmt::format("  {}; {}\n  {}; {}\n", PicturesText(run, frame_microseconds), ReplayText(run),
-                     PaceText(run.config), UpdateText(run));
+  return fmt::format("  {}; {}\n  {}; {}\n{}", PicturesText(run, frame_microseconds),
+                     ReplayText(run), PaceText(run.config), UpdateText(run), PrivilegedText(run));
 }
 
 }  // namespace shoal::launch

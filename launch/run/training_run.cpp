@@ -14,6 +14,7 @@
 #include "common/base/usable_cores.h"
 #include "common/config/config_io.h"
 #include "common/config/on_policy.h"
+#include "common/config/privileged_blocks.h"
 #include "common/config/run_files.h"
 #include "common/credentials/credentials.h"
 #include "common/dds/bus.h"
@@ -243,6 +244,7 @@ int Start(PreparedRun run, const TrainOptions& options, std::unique_ptr<dds::Bus
   if (!options.prometheus.empty()) prometheus.emplace(options.prometheus);
   WriteRunConfig(path, run.config);
   run.meta.policy_inputs = PolicyInputsOf(run.config.spec);
+  run.meta.privileged_inputs = PrivilegedInputsOf(run.config.config, run.config.spec);
   WriteClusterAddress(path, address);
   OperatorDesk desk(*bus, run.config.config.run_name, [&](const RunViewMessage& view) {
     if (prometheus) prometheus->Update(view);
@@ -304,6 +306,7 @@ int Train(const TrainOptions& options, Detachment* detachment) {
   tasks::LoadTaskLibrary(config.config.task_library);
   const ObservedWorld world = DescribeObservations(config.config);
   config.spec = world.spec;
+  PrivilegedBlocksOf(config.config.learner, config.spec);  // refused here
   CheckNetwork(config);
   nn::ReadEncoderWeights(config.config.network, config.spec);  // the learner will; refused here
   CheckReplay(config, /*exists=*/false);

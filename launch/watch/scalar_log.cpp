@@ -100,7 +100,9 @@ void ScalarLog::WriteTraining(const MetricsMessage& report, SteadyTime now) {
     if (*updates == updates_written_) return;  // the figures are those of the report before
     writer_.Scalar(fmt::format("train/{}", figure->name), x, report.values[i]);
     if (!figure->known_as.empty()) {
-      writer_.Scalar(fmt::format("train/{}", figure->known_as), x, report.values[i]);
+      const bool has_group = figure->known_as.find('/') != std::string_view::npos;
+      writer_.Scalar(fmt::format("{}{}", has_group ? "" : "train/", figure->known_as), x,
+                     report.values[i]);
     }
     any = true;
   }

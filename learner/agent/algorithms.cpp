@@ -11,6 +11,7 @@
 #include "learner/agent/frame_figures.h"
 #include "learner/agent/ppo/ppo_agent.h"
 #include "learner/agent/sac/sac_agent.h"
+#include "learner/agent/sample_figures.h"
 #include "learner/agent/td3/td3_agent.h"
 
 namespace shoal::learner {
@@ -18,7 +19,7 @@ namespace {
 
 constexpr Algorithm kAlgorithms[] = {
     {"sac", kSacFigures, MakeSacAgent},
-    {"td3", kDeterministicFigures, MakeTd3Agent},
+    {"td3", kTwinFigures, MakeTd3Agent},
     {"ddpg", kDeterministicFigures, MakeDdpgAgent},
     {"ppo", kPpoFigures, MakePpoAgent},
 };
@@ -31,6 +32,7 @@ std::vector<const Figure*> CollectFigures() {
     }
   };
   for (const Algorithm& algorithm : kAlgorithms) add(algorithm.figures);
+  add(kSampleFigures);
   add(kFrameFigures);
   return all;
 }

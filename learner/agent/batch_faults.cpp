@@ -16,6 +16,8 @@ bool AllFinite(std::span<const float> values) {
 bool AllFinite(const BatchView& batch) {
   return AllFinite(std::span<const float>(batch.obs_vector)) &&
          AllFinite(std::span<const float>(batch.next_obs_vector)) &&
+         AllFinite(std::span<const float>(batch.obs_privileged)) &&
+         AllFinite(std::span<const float>(batch.next_obs_privileged)) &&
          AllFinite(std::span<const float>(batch.action)) &&
          AllFinite(std::span<const float>(batch.reward)) &&
          AllFinite(std::span<const float>(batch.bootstrap));

@@ -4,6 +4,7 @@
 
 #include "common/config/on_policy.h"
 #include "common/nn/actor_critic_plan.h"
+#include "learner/agent/critic_vectors.h"
 
 namespace shoal::learner {
 namespace {
@@ -42,11 +43,15 @@ int64_t ParameterCount(const nn::NetworkPlan& plan) {
 double OffPolicy(const Config& config, const ObservationSpec& spec, double of_encoder) {
   const int critics = config.learner.algorithm == "ddpg" ? 1 : 2;
   const double of_actor = MultiplyAdds(nn::PlanActor(config.network, spec));
-  const double of_critics = MultiplyAdds(nn::PlanCritic(config.network, spec, "critic", critics));
+  const double of_critics = MultiplyAdds(
+      nn::PlanCritic(config.network, CriticSpec(config.learner, spec), "critic", critics));
   const bool separate = config.network.encoders == "separate";
+  const bool asymmetric = bool(config.learner.critic_blocks);
   const int next_encoders = separate || config.network.target_encoder ? 2 : 1;
-  const double critic_step = (next_encoders + 3) * of_encoder + 4 * of_critics + of_actor;
-  const double actor_step = (separate ? 4 : 0) * of_encoder + 3 * of_actor + 2 * of_critics;
+  const int critic_encoders = next_encoders + (asymmetric ? 0 : 3);
+  const int actor_encoders = separate ? 4 : asymmetric ? 3 : 0;
+  const double critic_step = critic_encoders * of_encoder + 4 * of_critics + of_actor;
+  const double actor_step = actor_encoders * of_encoder + 3 * of_actor + 2 * of_critics;
   return config.learner.batch *
          (critic_step + actor_step / std::max(1, config.learner.actor_period));
 }

@@ -17,7 +17,8 @@ struct Figure {
   std::string_view unit;      // empty: a plain number
   std::string_view meaning;   // one line
   bool headline = false;      // the progress display shows it
-  std::string_view known_as;  // TensorBoard writes train/KNOWN_AS as well; empty: nothing more
+  std::string_view known_as;  // TensorBoard writes train/KNOWN_AS as well, or, with a slash in
+                              // it, KNOWN_AS; empty: nothing more
 };
 
 class UpdateFigures {

@@ -17,37 +17,48 @@ nn::NamedTensor Vector(const std::vector<float>& values) {
 
 }  // namespace
 
+VectorStandard::VectorStandard(bool on, int vector_size, int privileged_size) {
+  if (on && vector_size > 0) observed_.emplace(Part{RunningMoments(vector_size), {}, {}});
+  if (on && privileged_size > 0) privileged_.emplace(Part{RunningMoments(privileged_size), {}, {}});
+}
+
 BatchView VectorStandard::Seen(const BatchView& batch) {
-  if (!on_) return batch;
-  const nn::VectorScale scale(moments_.Mean(), moments_.Variance());
-  const auto apply = [&](std::span<const float> x, std::vector<float>* y) {
-    y->resize(x.size());
-    scale.Apply(x.data(), *y);
-    return std::span(*y);
+  const auto scale = [](Part& part, std::span<float>* obs, std::span<float>* next_obs) {
+    const nn::VectorScale moved(part.moments.Mean(), part.moments.Variance());
+    const auto apply = [&](std::span<float>* x, std::vector<float>* y) {
+      y->resize(x->size());
+      moved.Apply(x->data(), *y);
+      *x = *y;
+    };
+    apply(obs, &part.obs);
+    apply(next_obs, &part.next_obs);
   };
   BatchView seen = batch;
-  seen.obs_vector = apply(batch.obs_vector, &obs_);
-  seen.next_obs_vector = apply(batch.next_obs_vector, &next_obs_);
+  if (observed_) scale(*observed_, &seen.obs_vector, &seen.next_obs_vector);
+  if (privileged_) scale(*privileged_, &seen.obs_privileged, &seen.next_obs_privileged);
   return seen;
 }
 
-void VectorStandard::Add(std::span<const float> vectors) {
-  if (on_) moments_.Add(vectors);
+void VectorStandard::Add(const BatchView& batch) {
+  if (observed_) observed_->moments.Add(batch.obs_vector);
+  if (privileged_) privileged_->moments.Add(batch.obs_privileged);
 }
 
 void VectorStandard::ExportTo(nn::TensorMap* policy) const {
-  if (!on_) return;
-  (*policy)[nn::kObservationMean] = Vector(moments_.Mean());
-  (*policy)[nn::kObservationVariance] = Vector(moments_.Variance());
+  if (!observed_) return;
+  (*policy)[nn::kObservationMean] = Vector(observed_->moments.Mean());
+  (*policy)[nn::kObservationVariance] = Vector(observed_->moments.Variance());
 }
 
 void VectorStandard::AddTo(AgentState* state) {
-  if (!on_) return;
-  const std::string name = "observation.moments";
-  state->Add([=, this](nn::TensorMap* tensors) { moments_.Export(name, tensors); },
-             [=, this](const nn::TensorMap& tensors, const std::string& source) {
-               moments_.Import(tensors, name, source);
-             });
+  const auto add = [state](RunningMoments* moments, const std::string& name) {
+    state->Add([=](nn::TensorMap* tensors) { moments->Export(name, tensors); },
+               [=](const nn::TensorMap& tensors, const std::string& source) {
+                 moments->Import(tensors, name, source);
+               });
+  };
+  if (observed_) add(&observed_->moments, "observation.moments");
+  if (privileged_) add(&privileged_->moments, "privileged.moments");
 }
 
 }  // namespace shoal::learner

@@ -1,11 +1,12 @@
 // Vectors as an algorithm's networks see them with learner.normalise_vectors: at about mean 0 and
-// deviation 1, by the moments of all vectors of earlier updates. The moments belong to the policy:
-// actors and evaluations scale by those that came with their weights (common/nn/vector_scale.h).
+// deviation 1, by the moments of all vectors of earlier updates. Those of the observation belong to
+// the policy: actors and evaluations scale by those that came with their weights
+// (common/nn/vector_scale.h). Those of privileged blocks stay with the learner.
 //
-// Dimensions: B batch, V vector size.
+// Dimensions: B batch, V vector size, P privileged size.
 #pragma once
 
-#include <span>
+#include <optional>
 #include <vector>
 
 #include "common/nn/safetensors.h"
@@ -19,12 +20,12 @@ namespace shoal::learner {
 class VectorStandard {
  public:
   // Off, or without vectors: they stay as they are.
-  VectorStandard(bool on, int vector_size) : on_(on && vector_size > 0), moments_(vector_size) {}
+  VectorStandard(bool on, int vector_size, int privileged_size = 0);
 
   // The batch with vectors as networks see them; valid until the next call.
   BatchView Seen(const BatchView& batch);
-  // Takes the vectors (B, V) of a batch, as they came, into the moments.
-  void Add(std::span<const float> vectors);
+  // Takes the vectors of a batch, as they came, into the moments.
+  void Add(const BatchView& batch);
 
   // Into a policy's tensors.
   void ExportTo(nn::TensorMap* policy) const;
@@ -32,9 +33,13 @@ class VectorStandard {
   void AddTo(AgentState* state);
 
  private:
-  const bool on_;
-  RunningMoments moments_;
-  std::vector<float> obs_, next_obs_;  // (B, V), scaled
+  struct Part {
+    RunningMoments moments;
+    std::vector<float> obs, next_obs;  // (B, V) or (B, P), scaled
+  };
+
+  // Nothing: they stay as they are.
+  std::optional<Part> observed_, privileged_;
 };
 
 }  // namespace shoal::learner

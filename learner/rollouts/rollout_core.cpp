@@ -45,7 +45,7 @@ RolloutCore::RolloutCore(const RunConfig& run, uint64_t receiver_session,
                          const AccountBefore& before)
     : run_(run),
       layout_(run.spec),
-      observed_(run.spec),
+      observed_(BlockPicker::Observed(run.spec)),
       steps_(run.config.ppo.rollout_steps),
       envs_per_actor_(run.config.envs_per_actor),
       versions_ahead_(static_cast<uint64_t>(run.config.ppo.versions_ahead)),

@@ -121,7 +121,7 @@ class RolloutCore final : private RecordTaker {
 
   const RunConfig run_;
   const RecordLayout layout_;
-  const ObservedBlocks observed_;
+  const BlockPicker observed_;
   const int steps_, envs_per_actor_;  // T
   const uint64_t versions_ahead_;
   const uint64_t receiver_session_;

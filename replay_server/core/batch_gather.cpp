@@ -32,10 +32,12 @@ std::optional<BatchPlan> DrawPlan(const PlanOptions& options, Selector* selector
 }
 
 BatchGather::BatchGather(const Ring& ring, const EpisodeIndex& index, const ObservationSpec& spec,
-                         const NStep& n_step, const GoalChange* goals)
+                         const NStep& n_step, const GoalChange* goals,
+                         std::span<const std::string> privileged)
     : ring_(ring),
       index_(index),
-      observed_(spec),
+      observed_(BlockPicker::Observed(spec)),
+      privileged_(BlockPicker::Named(spec, privileged)),
       stack_(spec.stack),
       channels_(spec.channels),
       height_(spec.height),
@@ -83,7 +85,9 @@ void BatchGather::Gather(const BatchPlan& plan, const BatchView& out) const {
   const size_t stack_bytes =
       static_cast<size_t>(layout.frame_bytes()) * static_cast<size_t>(stack_);
   const size_t vector_size = static_cast<size_t>(observed_.size());
+  const size_t privileged_size = static_cast<size_t>(privileged_.size());
   const size_t action_size = static_cast<size_t>(layout.action_size());
+  CHECK(out.obs_privileged.size() == batch * privileged_size);
   CHECK(out.reward.size() == batch && out.obs_frames.size() == batch * stack_bytes &&
         out.obs_vector.size() == batch * vector_size && out.action.size() == batch * action_size)
       << "a batch of " << out.reward.size() << " for a plan of " << batch;
@@ -104,6 +108,13 @@ void BatchGather::Gather(const BatchPlan& plan, const BatchView& out) const {
     const auto next_obs = out.next_obs_vector.subspan(b * vector_size, vector_size);
     observed_.Copy(layout.Vector(ring_.Record(prev)), obs);
     observed_.Copy(layout.Vector(last), next_obs);
+    if (privileged_size > 0) {
+      const auto part = [&](std::span<float> all) {
+        return all.subspan(b * privileged_size, privileged_size);
+      };
+      privileged_.Copy(layout.Vector(ring_.Record(prev)), part(out.obs_privileged));
+      privileged_.Copy(layout.Vector(last), part(out.next_obs_privileged));
+    }
     if (!goal.empty()) {
       goals_->WriteGoal(goal, obs);
       goals_->WriteGoal(goal, next_obs);

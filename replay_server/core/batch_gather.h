@@ -63,9 +63,11 @@ struct NStep {
 
 class BatchGather {
  public:
-  // Borrows ring, index and, where plans have goals, how these change a transition.
+  // Borrows ring, index and, where plans have goals, how these change a transition. `privileged` as
+  // BatchOptions has it.
   BatchGather(const Ring& ring, const EpisodeIndex& index, const ObservationSpec& spec,
-              const NStep& n_step = {}, const GoalChange* goals = nullptr);
+              const NStep& n_step = {}, const GoalChange* goals = nullptr,
+              std::span<const std::string> privileged = {});
 
   // Writes every byte of the arrays in `out`, whose batch is plan.elements.size() (CHECKed). The
   // steps must be sampleable for this stack and n.
@@ -85,7 +87,7 @@ class BatchGather {
 
   const Ring& ring_;
   const EpisodeIndex& index_;
-  const ObservedBlocks observed_;
+  const BlockPicker observed_, privileged_;
   const int stack_, channels_, height_, width_;
   const NStep n_step_;
   const GoalChange* const goals_;

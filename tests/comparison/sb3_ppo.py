@@ -4,7 +4,7 @@ usage: sb3_ppo.py FOLDER
 
 Writes ppo.safetensors and ppo_clipped.safetensors to FOLDER: from state, two epochs of a rollout of
 STEPS steps of ENVS environments; the latter with clipped values, an entropy bonus and a small
-clip. Inputs are not stored but computed on both sides from `uniform`, as in sb3_updates.py.
+clip. Inputs are not stored but computed on both sides, as shared_numbers.py says.
 
 In a file; rows are steps of environment 0 in order, then of environment 1:
 
@@ -27,28 +27,9 @@ from stable_baselines3 import PPO
 from stable_baselines3.common.logger import Logger
 from stable_baselines3.common.vec_env import DummyVecEnv
 
+from shared_numbers import symmetric, uniform
+
 STEPS, ENVS, BATCH, ACTIONS, VECTOR = 8, 2, 4, 3, 5
-MASK = (1 << 64) - 1
-
-
-def uniform(name, count):
-    """Numbers in [0, 1), exact in double: splitmix64 of fnv1a(name) + index."""
-    value = 0xCBF29CE484222325
-    for byte in name.encode():
-        value = ((value ^ byte) * 0x100000001B3) & MASK
-    with np.errstate(over="ignore"):
-        x = np.uint64(value) + np.arange(count, dtype=np.uint64)
-        x = x * np.uint64(0x9E3779B97F4A7C15)
-        x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
-        x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
-        x = x ^ (x >> np.uint64(31))
-    return (x >> np.uint64(11)).astype(np.float64) * 2.0**-53
-
-
-def symmetric(name, shape, scale):
-    """Numbers in [-scale, scale), rounded to f32 once."""
-    numbers = (2 * uniform(name, int(np.prod(shape))) - 1) * scale
-    return numbers.astype(np.float32).reshape(shape)
 
 
 class Spaces(gymnasium.Env):
@@ -66,7 +47,7 @@ def set_weights(policy):
             if name != "log_std":
                 fan_in = parameters[name.rsplit(".", 1)[0] + ".weight"].shape[1]
                 scale = ((6 if name.endswith("weight") else 1) / fan_in) ** 0.5
-            parameter.copy_(torch.from_numpy(symmetric(name, parameter.shape, scale)))
+            parameter.copy_(symmetric(name, parameter.shape, scale))
 
 
 def rows(array):
@@ -81,7 +62,7 @@ def fill(model):
     buffer, policy = model.rollout_buffer, model.policy
     obs = symmetric("obs", (STEPS + 1, ENVS, VECTOR), 1.5)
     drawn = symmetric("drawn", (STEPS, ENVS, ACTIONS), 1.5)
-    reward = symmetric("reward", (STEPS, ENVS), 2.0)
+    reward = symmetric("reward", (STEPS, ENVS), 2.0).numpy()
     final = symmetric("final", (1, VECTOR), 1.5)
     starts = np.zeros((STEPS + 1, ENVS), np.float32)
     starts[0] = 1
@@ -89,14 +70,13 @@ def fill(model):
     starts[5, 1] = 1
     buffer.reset()
     with torch.no_grad():
-        reward[4, 1] += model.gamma * float(policy.predict_values(torch.from_numpy(final)))
+        reward[4, 1] += model.gamma * float(policy.predict_values(final))
         for t in range(STEPS):
-            values, log_prob, _ = policy.evaluate_actions(torch.from_numpy(obs[t]),
-                                                          torch.from_numpy(drawn[t]))
+            values, log_prob, _ = policy.evaluate_actions(obs[t], drawn[t])
             # The policy that acted was another one: ratios are not 1, and some are clipped.
-            log_prob = log_prob + torch.from_numpy(symmetric(f"moved{t}", (ENVS,), 0.3))
-            buffer.add(obs[t], drawn[t], reward[t], starts[t], values, log_prob)
-        last = policy.predict_values(torch.from_numpy(obs[STEPS]))
+            log_prob = log_prob + symmetric(f"moved{t}", (ENVS,), 0.3)
+            buffer.add(obs[t].numpy(), drawn[t].numpy(), reward[t], starts[t], values, log_prob)
+        last = policy.predict_values(obs[STEPS])
     buffer.compute_returns_and_advantage(last_values=last, dones=starts[STEPS])
     return {"value": rows(buffer.values), "log_prob": rows(buffer.log_probs),
             "advantage": rows(buffer.advantages), "target": rows(buffer.returns)}

@@ -92,6 +92,8 @@ class SlurmTest : public testing::Test {
     return status && status->Clean();
   }
   std::string Said() const { return Log("said"); }
+  void ExpectTrainsWithActorsThatSrunStarts(const TrainingRun& run,
+                                            const std::vector<std::string>& train);
   std::string Log(const std::string& name) const {
     const fs::path file = folder_.path() / name;
     return fs::exists(file) ? ReadFile(file) : "";
@@ -101,9 +103,9 @@ class SlurmTest : public testing::Test {
   const fs::path conf_ = folder_.path() / "slurm.conf";
 };
 
-TEST_F(SlurmTest, TheBatchScriptTrainsWithActorsThatSrunStarts) {
-  const TrainingRun run;
-  std::vector<std::string> train = run.Command({{"env_steps", "4000"}});
+// As a job; `train` is "shoal train ...".
+void SlurmTest::ExpectTrainsWithActorsThatSrunStarts(const TrainingRun& run,
+                                                     const std::vector<std::string>& train) {
   const fs::path output = folder_.path() / "job";
   std::vector<std::string> command{"sbatch",
                                    "--wait",
@@ -125,6 +127,17 @@ TEST_F(SlurmTest, TheBatchScriptTrainsWithActorsThatSrunStarts) {
   EXPECT_EQ(hosts.at("hosts").at(0).at("ssh").at(0), "srun");
   EXPECT_EQ(hosts.at("hosts").at(0).at("actors"), 1) << "half of two: this node learns, too";
   EXPECT_EQ(run.Json("config.json").at("actors"), 1) << "no other actor but srun's";
+}
+
+TEST_F(SlurmTest, TheBatchScriptTrainsWithActorsThatSrunStarts) {
+  const TrainingRun run;
+  ExpectTrainsWithActorsThatSrunStarts(run, run.Command({{"env_steps", "4000"}}));
+}
+
+TEST_F(SlurmTest, OnPolicyTheirRolloutsGoToTheLearner) {
+  const TrainingRun run;
+  ExpectTrainsWithActorsThatSrunStarts(run, run.OnPolicyCommand({{"env_steps", "4000"}}));
+  EXPECT_GT(run.Json("meta.json").at("updates"), 0);
 }
 
 TEST_F(SlurmTest, AnExperimentIsAJobArrayOfItsRuns) {

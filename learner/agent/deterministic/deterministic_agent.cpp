@@ -18,6 +18,7 @@
 #include "learner/agent/batch_faults.h"
 #include "learner/agent/encoder_and_head.h"
 #include "learner/agent/losses.h"
+#include "learner/agent/sample_figures.h"
 #include "learner/agent/step_sizes.h"
 #include "learner/agent/vector_standard.h"
 
@@ -180,6 +181,7 @@ bool DeterministicAgent::UpdateCritic(const BatchView& batch, const OnStageEnd& 
   figures->Set(kQMean, loss.q_mean);
   figures->Set(kTargetMean, loss.target_mean);
   figures->Set(kCriticGradNorm, std::sqrt(squares));
+  AddValueFigures(batch_size_, Values(critic_), figures);
   if (!Usable(loss.loss, squares)) return false;
   critic_optimiser_.Step();
   RefreshCritic();
@@ -243,7 +245,7 @@ UpdateOutcome DeterministicAgent::Update(const BatchView& drawn, const OnStageEn
     return outcome;
   }
   MoveTargetsAndAverage();
-  standard_.Add(drawn.obs_vector);
+  standard_.Add(drawn);
   on_stage_end(UpdateStage::kOptimiser);
   ++updates_;
   return outcome;

@@ -20,6 +20,7 @@
 #include "common/nn/precision.h"
 #include "common/spec/observation_spec.h"
 #include "learner/agent/agent.h"
+#include "learner/agent/sample_figures.h"
 
 namespace shoal::learner {
 
@@ -31,8 +32,14 @@ struct DeterministicOptions {
 
 // In the order of an update; the actor's only where the update moves the actor.
 inline constexpr const Figure* kDeterministicFigures[] = {
-    &kCriticLoss, &kQMean,         &kTargetMean,      &kCriticGradNorm,
-    &kActorLoss,  &kActorGradNorm, &kActionSaturation};
+    &kCriticLoss,       &kQMean,  &kTargetMean, &kCriticGradNorm, &kActorLoss, &kActorGradNorm,
+    &kActionSaturation, &kQ1Mean, &kQ1Std,      &kQMinMean,       &kQMinStd,   &kQMinMin,
+    &kQMinMax};
+// With a second critic.
+inline constexpr const Figure* kTwinFigures[] = {
+    &kCriticLoss,       &kQMean,   &kTargetMean, &kCriticGradNorm, &kActorLoss, &kActorGradNorm,
+    &kActionSaturation, &kQ1Mean,  &kQ1Std,      &kQ2Mean,         &kQ2Std,     &kQMinMean,
+    &kQMinStd,          &kQMinMin, &kQMinMax};
 
 // Takes batch, seed, discount, reward scale, rates and periods from `config`.
 std::unique_ptr<Agent> MakeDeterministicAgent(const Config& config, const ObservationSpec& spec,

@@ -313,7 +313,7 @@ UpdateOutcome PpoAgent::Update(const BatchView& batch, const OnStageEnd& on_stag
     Restore(former, "former state");
     return outcome;
   }
-  standard_.Add(batch.obs_vector);
+  standard_.Add(batch);
   env_steps_ += uint64_t(rows);
   ++updates_;
   on_stage_end(UpdateStage::kOptimiser);

@@ -12,7 +12,9 @@
 // 3 is the one before this update. An encoder with batch normalisation takes running statistics in
 // 1, those of the batch in 2 and 3. An actor with an encoder of its own (network.encoders) takes
 // that one's features in 3 and trains it, and the critic's heads stand on features of the critic's
-// encoder as 2 has left it.
+// encoder as 2 has left it. An asymmetric critic (learner.critic_blocks) has vectors of its own and
+// no encoder; the actor's is trained in 3. Where the encoder is trained, learner.aux joins in (Eq.
+// 27).
 #include "learner/agent/sac/sac_agent.h"
 
 #include <array>
@@ -21,11 +23,14 @@
 
 #include "common/base/check.h"
 #include "common/base/random.h"
+#include "common/config/privileged_blocks.h"
 #include "common/nn/parallel.h"
 #include "learner/agent/agent_state.h"
 #include "learner/agent/batch_faults.h"
+#include "learner/agent/critic_vectors.h"
 #include "learner/agent/losses.h"
 #include "learner/agent/sac/sac_networks.h"
+#include "learner/agent/sample_figures.h"
 #include "learner/agent/squashed_gaussian.h"
 #include "learner/agent/vector_standard.h"
 
@@ -50,10 +55,16 @@ class SacAgent final : public Agent {
     standard_.ExportTo(&parameters);
     return parameters;
   }
-  void ComputeTargets(const BatchView& batch, float temperature, Random* random,
+  // A batch as it was drawn, and as the networks see it.
+  struct Seen {
+    const BatchView& drawn;
+    BatchView batch;
+    CriticVectors::Vectors of_critic;
+  };
+  void ComputeTargets(const Seen& seen, float temperature, Random* random,
                       const OnStageEnd& on_stage_end);
-  bool UpdateCritic(const BatchView& batch, const OnStageEnd& on_stage_end, UpdateFigures* figures);
-  bool UpdateActor(const BatchView& batch, float temperature, Random* random,
+  bool UpdateCritic(const Seen& seen, const OnStageEnd& on_stage_end, UpdateFigures* figures);
+  bool UpdateActor(const Seen& seen, float temperature, Random* random,
                    const OnStageEnd& on_stage_end, UpdateFigures* figures);
 
   const Config config_;
@@ -63,6 +74,7 @@ class SacAgent final : public Agent {
   const int threads_;
   SacNetworks networks_;
   VectorStandard standard_;
+  CriticVectors critic_vectors_;
   uint64_t updates_ = 0;
   AgentState state_;
 
@@ -80,7 +92,9 @@ SacAgent::SacAgent(const Config& config, const ObservationSpec& spec, nn::Precis
       bounds_(ValueBoundsOf(config.learner)),
       threads_(nn::Threads()),
       networks_(config, spec, precision, threads_),
-      standard_(config.learner.normalise_vectors, spec.VectorSize()),
+      standard_(config.learner.normalise_vectors, spec.VectorSize(),
+                BlockPicker::Named(spec, PrivilegedBlocksOf(config.learner, spec).all).size()),
+      critic_vectors_(config.learner, spec),
       gaussian_(batch_size_, spec.action_size),
       targets_(size_t(batch_size_)),
       q_gradients_{targets_, targets_},
@@ -92,13 +106,13 @@ SacAgent::SacAgent(const Config& config, const ObservationSpec& spec, nn::Precis
   state_.Add(&updates_, "agent.updates");
 }
 
-void SacAgent::ComputeTargets(const BatchView& batch, float temperature, Random* random,
+void SacAgent::ComputeTargets(const Seen& seen, float temperature, Random* random,
                               const OnStageEnd& on_stage_end) {
-  const float* vector = batch.next_obs_vector.data();
+  const BatchView& batch = seen.batch;
   networks_.EncodeNext(batch.next_obs_frames.data());
-  const auto [mean, log_std] = networks_.ForwardActor(vector);
+  const auto [mean, log_std] = networks_.ForwardActor(batch.next_obs_vector.data());
   gaussian_.Sample(mean, log_std, random);
-  const auto [q0, q1] = networks_.ForwardTarget(vector, gaussian_.action());
+  const auto [q0, q1] = networks_.ForwardTarget(seen.of_critic.next_obs, gaussian_.action());
   const TargetInputs inputs{
       batch.reward.data(), batch.bootstrap.data(), {q0, q1}, gaussian_.log_prob()};
   const TargetRates rates{float(config_.learner.reward_scale), float(config_.learner.discount),
@@ -109,20 +123,25 @@ void SacAgent::ComputeTargets(const BatchView& batch, float temperature, Random*
 }
 
 // False where the loss or its gradient is not finite; then no parameter has changed.
-bool SacAgent::UpdateCritic(const BatchView& batch, const OnStageEnd& on_stage_end,
+bool SacAgent::UpdateCritic(const Seen& seen, const OnStageEnd& on_stage_end,
                             UpdateFigures* figures) {
+  const BatchView& batch = seen.batch;
   networks_.Encode(batch.obs_frames.data());
-  const auto [q0, q1] = networks_.ForwardCritic(batch.obs_vector.data(), batch.action.data());
+  const auto [q0, q1] = networks_.ForwardCritic(seen.of_critic.obs, batch.action.data());
   const CriticLoss loss = CriticLossForward(batch_size_, q0, q1, targets_.data());
   on_stage_end(UpdateStage::kForward);
   CriticLossBackward(batch_size_, q0, targets_.data(), q_gradients_[0].data());
   CriticLossBackward(batch_size_, q1, targets_.data(), q_gradients_[1].data());
+  if (networks_.Aux(SacNetworks::Head::kCritic)) {
+    figures->Set(kAuxError, networks_.ForwardBackwardAux(seen.drawn));
+  }
   const double squares = networks_.BackwardCritic(q_gradients_);
   on_stage_end(UpdateStage::kBackward);
   figures->Set(kCriticLoss, loss.loss);
   figures->Set(kQMean, loss.q_mean);
   figures->Set(kTargetMean, loss.target_mean);
   figures->Set(kCriticGradNorm, std::sqrt(squares));
+  AddValueFigures(batch_size_, std::array{q0, q1}, figures);
   if (!Usable(loss.loss, squares)) return false;
   networks_.StepCritic();
   on_stage_end(UpdateStage::kOptimiser);
@@ -131,19 +150,21 @@ bool SacAgent::UpdateCritic(const BatchView& batch, const OnStageEnd& on_stage_e
 
 // After UpdateCritic. False where the loss or its gradient is not finite; then
 // neither actor nor temperature has changed.
-bool SacAgent::UpdateActor(const BatchView& batch, float temperature, Random* random,
+bool SacAgent::UpdateActor(const Seen& seen, float temperature, Random* random,
                            const OnStageEnd& on_stage_end, UpdateFigures* figures) {
-  const float* vector = batch.obs_vector.data();
-  networks_.EncodeForActor(batch.obs_frames.data());
-  const auto [mean, log_std] = networks_.ForwardActor(vector);
+  networks_.EncodeForActor(seen.batch.obs_frames.data());
+  const auto [mean, log_std] = networks_.ForwardActor(seen.batch.obs_vector.data());
   gaussian_.Sample(mean, log_std, random);
-  const auto [q0, q1] = networks_.ForwardCritic(vector, gaussian_.action());
+  const auto [q0, q1] = networks_.ForwardCritic(seen.of_critic.obs, gaussian_.action());
   const float loss = ActorLossForward(batch_size_, gaussian_.log_prob(), q0, q1, temperature);
   on_stage_end(UpdateStage::kForward);
   ActorLossBackward(batch_size_, q0, q1, q_gradients_[0].data(), q_gradients_[1].data());
   networks_.BackwardAction(q_gradients_, action_gradient_.data());
   gaussian_.Backward(action_gradient_.data(), temperature / float(batch_size_),
                      mean_gradient_.data(), log_std_gradient_.data());
+  if (networks_.Aux(SacNetworks::Head::kActor)) {
+    figures->Set(kAuxError, networks_.ForwardBackwardAux(seen.drawn));
+  }
   const double squares = networks_.BackwardActor(mean_gradient_.data(), log_std_gradient_.data());
   on_stage_end(UpdateStage::kBackward);
   const float entropy = gaussian_.Entropy();
@@ -168,14 +189,15 @@ UpdateOutcome SacAgent::Update(const BatchView& drawn, const OnStageEnd& on_stag
   UpdateOutcome outcome{.figures = {}, .finite = AllFinite(drawn)};
   if (!outcome.finite) return outcome;
   const BatchView batch = standard_.Seen(drawn);
+  const Seen seen{drawn, batch, critic_vectors_.Of(batch)};
 
   Random random(StreamKey(uint64_t(config_.seed), StreamRole::kLearnerUpdate, updates_));
   const float temperature = networks_.Temperature();
-  ComputeTargets(batch, temperature, &random, on_stage_end);
-  outcome.finite = UpdateCritic(batch, on_stage_end, &outcome.figures);
+  ComputeTargets(seen, temperature, &random, on_stage_end);
+  outcome.finite = UpdateCritic(seen, on_stage_end, &outcome.figures);
   if (!outcome.finite) return outcome;
   if (updates_ % uint64_t(config_.learner.actor_period) == 0 &&
-      !UpdateActor(batch, temperature, &random, on_stage_end, &outcome.figures)) {
+      !UpdateActor(seen, temperature, &random, on_stage_end, &outcome.figures)) {
     networks_.UndoStepCritic();
     outcome.finite = false;
     return outcome;
@@ -184,7 +206,7 @@ UpdateOutcome SacAgent::Update(const BatchView& drawn, const OnStageEnd& on_stag
     networks_.MoveTarget(float(config_.learner.tau));
   }
   networks_.MovePolicyAverage(float(config_.learner.average_rate));
-  standard_.Add(drawn.obs_vector);
+  standard_.Add(drawn);
   on_stage_end(UpdateStage::kOptimiser);
   ++updates_;
   outcome.figures.Set(kTemperature, networks_.Temperature());

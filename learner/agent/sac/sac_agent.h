@@ -8,17 +8,24 @@
 #include "common/nn/precision.h"
 #include "common/spec/observation_spec.h"
 #include "learner/agent/agent.h"
+#include "learner/agent/sample_figures.h"
 
 namespace shoal::learner {
 
 inline constexpr Figure kTemperatureLoss{
     "temperature_loss", "", "temperature times entropy above the target", false, "ent_coef_loss"};
 
+inline constexpr Figure kAuxError{"aux_error", "m",
+                                  "root mean square error of what learner.aux tells", false, ""};
+
 // In the order of an update. Temperature: after it; the actor's and those after it only where the
-// update moves the actor.
+// update moves the actor; the error where an update trains the encoder and learner.aux is set.
 inline constexpr const Figure* kSacFigures[] = {
-    &kCriticLoss,      &kQMean,   &kTargetMean,       &kCriticGradNorm, &kActorLoss,
-    &kTemperatureLoss, &kEntropy, &kActionSaturation, &kActorGradNorm,  &kTemperature};
+    &kCriticLoss,    &kQMean,           &kTargetMean, &kCriticGradNorm,
+    &kActorLoss,     &kTemperatureLoss, &kEntropy,    &kActionSaturation,
+    &kActorGradNorm, &kTemperature,     &kAuxError,   &kQ1Mean,
+    &kQ1Std,         &kQ2Mean,          &kQ2Std,      &kQMinMean,
+    &kQMinStd,       &kQMinMin,         &kQMinMax};
 
 // As MakeAgent.
 std::unique_ptr<Agent> MakeSacAgent(const Config& config, const ObservationSpec& spec,

@@ -4,7 +4,9 @@
 #include <cmath>
 #include <initializer_list>
 
+#include "common/base/check.h"
 #include "common/nn/actor_critic_plan.h"
+#include "learner/agent/critic_vectors.h"
 #include "learner/agent/encoder_and_head.h"
 #include "learner/agent/step_sizes.h"
 
@@ -17,21 +19,22 @@ using nn::ParameterSet;
 
 constexpr const char* kLogTemperature = "temperature.log";
 
-// Of the first that is there; null where none is.
-const nn::Features* FeaturesOf(std::initializer_list<const EncoderModule*> encoders) {
-  for (const EncoderModule* encoder : encoders) {
-    if (encoder != nullptr) return &encoder->features();
-  }
-  return nullptr;
+const nn::Features* FeaturesOf(const EncoderModule* encoder) {
+  return encoder != nullptr ? &encoder->features() : nullptr;
 }
 
 bool Separate(const Config& config) { return config.network.encoders == "separate"; }
+
+nn::HeadPlan CriticPlan(const Config& config, const ObservationSpec& spec, const char* name) {
+  return nn::PlanCritic(config.network, CriticSpec(config.learner, spec), name);
+}
 
 }  // namespace
 
 SacNetworks::SacNetworks(const Config& config, const ObservationSpec& spec, nn::Precision precision,
                          int threads)
     : context_(precision, config.learner.batch, threads),
+      asymmetric_(bool(config.learner.critic_blocks)),
       encoder_(MakeEncoder(config.network, spec, Module::Use::kTraining, context_)),
       critic_encoder_(Separate(config) ? MakeEncoder(config.network, spec, Module::Use::kTraining,
                                                      context_, "critic.encoder")
@@ -40,22 +43,23 @@ SacNetworks::SacNetworks(const Config& config, const ObservationSpec& spec, nn::
                           ? MakeEncoder(config.network, spec, Module::Use::kInference, context_,
                                         "target.encoder")
                           : nullptr),
-      critic_(nn::PlanCritic(config.network, spec, "critic"),
-              FeaturesOf({critic_encoder_.get(), encoder_.get()}), /*trains_encoder=*/true,
-              Module::Use::kTraining, context_),
-      target_(nn::PlanCritic(config.network, spec, "target"),
-              FeaturesOf({target_encoder_.get(), critic_encoder_.get(), encoder_.get()}),
+      critic_(CriticPlan(config, spec, "critic"), FeaturesOf(CriticEncoder()),
+              /*trains_encoder=*/true, Module::Use::kTraining, context_),
+      target_(CriticPlan(config, spec, "target"),
+              FeaturesOf(target_encoder_ ? target_encoder_.get() : CriticEncoder()),
               /*trains_encoder=*/false, Module::Use::kInference, context_),
-      actor_(nn::PlanActor(config.network, spec), FeaturesOf({encoder_.get()}),
-             /*trains_encoder=*/critic_encoder_ != nullptr, Module::Use::kTraining, context_),
+      actor_(nn::PlanActor(config.network, spec), FeaturesOf(encoder_.get()),
+             /*trains_encoder=*/ActorTrains(), Module::Use::kTraining, context_),
+      aux_(AuxLoss::Make(config, spec,
+                         ActorTrains() ? actor_.trunk_features() : critic_.trunk_features(),
+                         context_)),
       temperature_({{kLogTemperature, {1}}}, ParameterSet::Use::kTraining),
       encoder_average_(nn::PlanEncoder(config.network, spec).Parameters(),
                        ParameterSet::Use::kInference),
       actor_average_(nn::PlanActor(config.network, spec).Parameters(),
                      ParameterSet::Use::kInference),
-      critic_optimiser_(SetsOf(CriticEncoder(), &critic_), CriticStep(config.learner)),
-      actor_optimiser_(SetsOf(critic_encoder_ ? encoder_.get() : nullptr, &actor_),
-                       ActorStep(config.learner)),
+      critic_optimiser_(CriticSets(), CriticStep(config.learner)),
+      actor_optimiser_(ActorSets(), ActorStep(config.learner)),
       temperature_optimiser_({&temperature_}, {.rate = TemperatureRate(config.learner)}) {
   const auto seed = static_cast<uint64_t>(config.seed);
   for (EncoderModule* encoder : {encoder_.get(), critic_encoder_.get()}) {
@@ -75,7 +79,20 @@ SacNetworks::SacNetworks(const Config& config, const ObservationSpec& spec, nn::
 }
 
 EncoderModule* SacNetworks::CriticEncoder() {
+  if (asymmetric_) return nullptr;
   return critic_encoder_ ? critic_encoder_.get() : encoder_.get();
+}
+
+std::vector<ParameterSet*> SacNetworks::CriticSets() {
+  std::vector<ParameterSet*> sets = SetsOf(CriticEncoder(), &critic_);
+  if (Aux(Head::kCritic)) sets.push_back(&aux_->readout().parameters());
+  return sets;
+}
+
+std::vector<ParameterSet*> SacNetworks::ActorSets() {
+  std::vector<ParameterSet*> sets = SetsOf(ActorTrains() ? encoder_.get() : nullptr, &actor_);
+  if (Aux(Head::kActor)) sets.push_back(&aux_->readout().parameters());
+  return sets;
 }
 
 void SacNetworks::EncodeNext(const uint8_t* frames) {
@@ -86,13 +103,13 @@ void SacNetworks::EncodeNext(const uint8_t* frames) {
 }
 
 void SacNetworks::Encode(const uint8_t* frames) {
-  if (encoder_) CriticEncoder()->Forward(frames, nn::Statistics::kBatch);
+  if (CriticEncoder() != nullptr) CriticEncoder()->Forward(frames, nn::Statistics::kBatch);
 }
 
 void SacNetworks::EncodeForActor(const uint8_t* frames) {
-  if (!critic_encoder_) return;
+  if (!ActorTrains()) return;
   encoder_->Forward(frames, nn::Statistics::kBatch);
-  critic_encoder_->Forward(frames, nn::Statistics::kRunning);
+  if (critic_encoder_) critic_encoder_->Forward(frames, nn::Statistics::kRunning);
 }
 
 SacNetworks::Gaussian SacNetworks::ForwardActor(const float* vector) {
@@ -112,9 +129,14 @@ SacNetworks::TwinQ SacNetworks::ForwardCritic(const float* vector, const float* 
   return {critic_.q(0), critic_.q(1)};
 }
 
+double SacNetworks::ForwardBackwardAux(const BatchView& drawn) {
+  CHECK(aux_);
+  return aux_->ForwardBackward(drawn);
+}
+
 double SacNetworks::BackwardCritic(const QGradients& q_gradients) {
   critic_.Backward(q_gradients);
-  if (encoder_) CriticEncoder()->Backward();
+  if (CriticEncoder() != nullptr) CriticEncoder()->Backward();
   return critic_optimiser_.GradientSquares();
 }
 
@@ -124,13 +146,14 @@ void SacNetworks::BackwardAction(const QGradients& q_gradients, float* action_gr
 
 double SacNetworks::BackwardActor(const float* mean_gradient, const float* log_std_gradient) {
   actor_.Backward(mean_gradient, log_std_gradient);
-  if (critic_encoder_) encoder_->Backward();
+  if (ActorTrains()) encoder_->Backward();
   return actor_optimiser_.GradientSquares();
 }
 
 void SacNetworks::RefreshCritic() {
-  if (encoder_) CriticEncoder()->Refresh();
+  if (CriticEncoder() != nullptr) CriticEncoder()->Refresh();
   critic_.Refresh();
+  if (Aux(Head::kCritic)) aux_->readout().Refresh();
 }
 
 void SacNetworks::StepCritic() {
@@ -145,8 +168,9 @@ void SacNetworks::UndoStepCritic() {
 
 void SacNetworks::StepActor() {
   actor_optimiser_.Step();
-  if (critic_encoder_) encoder_->Refresh();
+  if (ActorTrains()) encoder_->Refresh();
   actor_.Refresh();
+  if (Aux(Head::kActor)) aux_->readout().Refresh();
 }
 
 float SacNetworks::Temperature() const { return std::exp(temperature_.values()[0]); }
@@ -189,6 +213,7 @@ void SacNetworks::AddTo(AgentState* state) {
   for (nn::Module* module : std::initializer_list<nn::Module*>{&critic_, &target_, &actor_}) {
     state->Add(module);
   }
+  if (aux_) state->Add(&aux_->readout());
   state->Add(&temperature_, "");
   state->Add(&encoder_average_, "average");
   state->Add(&actor_average_, "average");

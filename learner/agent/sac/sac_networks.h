@@ -10,6 +10,11 @@
 // critic.encoder.* instead. network.target_encoder: target.encoder.* follows the critic's encoder,
 // and the target stands on its features.
 //
+// learner.critic_blocks: the critic is asymmetric: it sees no pixels, and encoder.* is the actor's,
+// trained by its loss.
+//
+// learner.aux: aux.*, trained together with the encoder, by a loss of its own beside the other.
+//
 // Dimensions: B batch, A actions, V vector size, K*C channels. Arrays are row-major f32; a result
 // is valid until the function that returned it is called again.
 #pragma once
@@ -28,6 +33,7 @@
 #include "common/nn/safetensors.h"
 #include "common/spec/observation_spec.h"
 #include "learner/agent/agent_state.h"
+#include "learner/agent/aux_loss.h"
 
 namespace shoal::learner {
 
@@ -45,14 +51,15 @@ class SacNetworks {
   //
   // For actor and target, by running statistics.
   void EncodeNext(const uint8_t* frames);
-  // For critic and, of shared encoders, actor; by the batch's statistics.
+  // For critic and, of shared encoders, actor; by the batch's statistics. Nothing of an asymmetric
+  // critic.
   void Encode(const uint8_t* frames);
-  // For the actor's loss, after the critic's step, the frames of the latest Encode. Separate
-  // encoders: the actor's by the batch's statistics, the critic's anew by running ones. A shared
-  // one's features stay those of before the step.
+  // For the actor's loss, after the critic's step, the frames of the latest Encode. An encoder of
+  // the actor's own: by the batch's statistics; then the critic's, if any, anew by running ones. A
+  // shared one's features stay those of before the step.
   void EncodeForActor(const uint8_t* frames);
 
-  // vector (B, V) in all of these, action (B, A).
+  // vector (B, V) of the actor; of critic and target theirs (critic_vectors.h); action (B, A).
   struct Gaussian {
     const float *mean, *log_std;  // (B, A), before tanh
   };
@@ -62,6 +69,13 @@ class SacNetworks {
   };
   TwinQ ForwardTarget(const float* vector, const float* action);
   TwinQ ForwardCritic(const float* vector, const float* action);
+
+  // Where the loss of learner.aux joins in: of the head that trains the encoder, for the features
+  // of its latest forward pass and before its backward pass. Nothing without it.
+  enum class Head { kCritic, kActor };
+  bool Aux(Head head) const { return aux_ && (head == Head::kActor) == ActorTrains(); }
+  // Root mean square error of the labels: AuxLoss::ForwardBackward. CHECK: there is one.
+  double ForwardBackwardAux(const BatchView& drawn);
 
   using QGradients = std::array<std::vector<float>, 2>;  // dL/dq_i (B)
   // Gradients of critic and its encoder from those of the latest ForwardCritic, which has to be of
@@ -94,16 +108,22 @@ class SacNetworks {
   void AddTo(AgentState* state);
 
  private:
+  // Whether the actor's loss trains the policy's encoder; else the critic's does.
+  bool ActorTrains() const { return encoder_ && (asymmetric_ || critic_encoder_); }
   nn::EncoderModule* CriticEncoder();  // null without pixels
+  std::vector<nn::ParameterSet*> CriticSets();
+  std::vector<nn::ParameterSet*> ActorSets();
   void RefreshCritic();
 
   const nn::ModuleContext context_;
+  const bool asymmetric_;  // the critic sees no pixels
   // Null without pixels: the policy's, which is the critic's, too, unless that has its own.
   const std::unique_ptr<nn::EncoderModule> encoder_;
   const std::unique_ptr<nn::EncoderModule> critic_encoder_;  // null: encoder_
   const std::unique_ptr<nn::EncoderModule> target_encoder_;  // null: the critic's
   nn::CriticModule critic_, target_;
   nn::ActorModule actor_;
+  const std::unique_ptr<AuxLoss> aux_;  // null without learner.aux
   nn::ParameterSet temperature_;
   nn::ParameterSet encoder_average_, actor_average_;
   nn::Adam critic_optimiser_, actor_optimiser_, temperature_optimiser_;

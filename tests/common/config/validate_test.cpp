@@ -72,5 +72,43 @@ TEST(Validate, FurtherEncodersAreOfSacFromPixels) {
               HasSubstr("network.target_encoder: nothing is encoded without observation.pixels"));
 }
 
+TEST(Validate, PrivilegedInputsAreOfSac) {
+  const auto asymmetric = [](Config* c) {
+    c->learner.critic_blocks = true;
+    c->learner.aux = {"object"};
+  };
+  EXPECT_EQ(Refusal(asymmetric), "");
+  for (const char* algorithm : {"td3", "ddpg"}) {
+    EXPECT_THAT(Refusal([&](Config* c) {
+                  asymmetric(c);
+                  c->learner.algorithm = algorithm;
+                }),
+                HasSubstr("learner.critic_blocks: learner.algorithm = "));
+  }
+  EXPECT_THAT(Refusal([](Config* c) {
+                c->learner.algorithm = "ppo";
+                c->learner.aux = {"object"};
+              }),
+              HasSubstr("learner.aux"));
+  EXPECT_THAT(Refusal([&](Config* c) {
+                asymmetric(c);
+                c->network.encoders = "separate";
+              }),
+              HasSubstr("network.encoders: with learner.critic_blocks the critic has no encoder"));
+  EXPECT_THAT(Refusal([&](Config* c) {
+                asymmetric(c);
+                c->network.target_encoder = true;
+              }),
+              HasSubstr("network.target_encoder: with learner.critic_blocks"));
+  EXPECT_THAT(Refusal([&](Config* c) {
+                asymmetric(c);
+                c->observation.pixels = false;
+                c->observation.proprioception = true;
+              }),
+              HasSubstr("learner.aux: nothing is encoded without observation.pixels"));
+  EXPECT_THAT(Refusal([](Config* c) { c->learner.aux_weight = 2; }),
+              HasSubstr("learner.aux_weight = 2: expected it unset without learner.aux"));
+}
+
 }  // namespace
 }  // namespace shoal

@@ -135,8 +135,12 @@ TEST(ObservationSpec, ObservedBlocksArePickedInRecordOrder) {
   EXPECT_FALSE(spec.Recorded("d"));
   const std::vector<float> recorded{1, 2, 3, 4, 5, 6};
   std::vector<float> observed(4);
-  ObservedBlocks(spec).Copy(recorded, observed);
+  BlockPicker::Observed(spec).Copy(recorded, observed);
   EXPECT_EQ(observed, (std::vector<float>{1, 2, 3, 6}));
+  const std::vector<std::string> names{"c", "hidden"};
+  std::vector<float> named(3);
+  BlockPicker::Named(spec, names).Copy(recorded, named);
+  EXPECT_EQ(named, (std::vector<float>{4, 5, 6}));
 }
 
 TEST(ObservationSpec, AMissingKeyIsNamed) {

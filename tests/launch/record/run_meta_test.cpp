@@ -58,6 +58,16 @@ TEST(RunMeta, SaysWhatThePolicySeesAndHowOftenItWasUpdated) {
   };
   EXPECT_EQ(written().at("policy_inputs"),
             nlohmann::json({{"blocks", {"grip", "desired_goal"}}, {"cameras", {"front"}}}));
+  EXPECT_EQ(written().at("privileged_inputs"),
+            nlohmann::json(
+                {{"critic_blocks", nlohmann::json::array()}, {"labels", nlohmann::json::array()}}));
+  Config config;
+  config.learner.critic_blocks = true;
+  config.learner.aux = {"achieved_goal-desired_goal"};
+  meta.privileged_inputs = PrivilegedInputsOf(config, spec);
+  EXPECT_EQ(written().at("privileged_inputs"),
+            nlohmann::json({{"critic_blocks", {"achieved_goal"}},
+                            {"labels", {"achieved_goal-desired_goal"}}}));
   EXPECT_TRUE(written().at("updates_per_env_step").is_null());
   meta.env_steps = 200;
   meta.updates = 100;

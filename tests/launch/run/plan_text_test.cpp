@@ -42,5 +42,20 @@ TEST(PlanText, PicturesSayWhatTheyCost) {
                     HasSubstr("sac in f32: encoder nature of 82080 parameters, ")));
 }
 
+TEST(PlanText, WhatOnlyTrainingIsToldIsSaid) {
+  RunConfig run;
+  run.spec.cameras = {"front"};
+  run.spec.channels = 3;
+  run.spec.height = run.spec.width = 84;
+  run.spec.action_size = 2;
+  run.spec.blocks = {{"grip", 3}, {"object", 3, /*observed=*/false}};
+  EXPECT_THAT(PlanText(run, 1), Not(HasSubstr("privileged")));
+  run.config.learner.critic_blocks = true;
+  run.config.learner.aux = {"object-grip"};
+  EXPECT_THAT(PlanText(run, 1),
+              HasSubstr("  privileged, in training alone: the critic sees object in place of "
+                        "pixels, the encoder is taught object-grip\n"));
+}
+
 }  // namespace
 }  // namespace shoal::launch

@@ -18,9 +18,9 @@ using ::testing::Pair;
 MetricsMessage LearnerReport(double updates, double env_steps, double critic_loss) {
   MetricsMessage report;
   report.role = "learner";
-  report.names = {"updates",    "env_steps",   "critic_loss",
-                  "actor_loss", "temperature", "temperature_loss"};
-  report.values = {updates, env_steps, critic_loss, -1, 0.25, 2};
+  report.names = {"updates",     "env_steps",        "critic_loss", "actor_loss",
+                  "temperature", "temperature_loss", "reward_mean"};
+  report.values = {updates, env_steps, critic_loss, -1, 0.25, 2, -0.75};
   return report;
 }
 
@@ -57,6 +57,7 @@ TEST_F(ScalarLogTest, OneFileHasTheTagsThatPeopleKnow) {
   EXPECT_THAT(scalars.at("train/temperature"), ElementsAre(Pair(1000, 0.25f), Pair(1500, 0.25f)));
   EXPECT_THAT(scalars.at("train/ent_coef"), ElementsAre(Pair(1000, 0.25f), Pair(1500, 0.25f)));
   EXPECT_THAT(scalars.at("train/ent_coef_loss"), ElementsAre(Pair(1000, 2), Pair(1500, 2)));
+  EXPECT_THAT(scalars.at("replay/reward_mean"), ElementsAre(Pair(1000, -0.75), Pair(1500, -0.75)));
   EXPECT_THAT(scalars.at("train/n_updates"), ElementsAre(Pair(1000, 10), Pair(1500, 30)));
   EXPECT_THAT(scalars.at("time/fps"), ElementsAre(Pair(1500, 250)));
   EXPECT_THAT(scalars.at("eval/mean_reward"), ElementsAre(Pair(1400, -3)));

@@ -22,7 +22,9 @@ namespace shoal::learner {
 class RandomBatch {
  public:
   RandomBatch(const ObservationSpec& spec, int batch, uint64_t key, bool rollout = false)
-      : schema_(spec, {.batch = batch, .rollout = rollout}),
+      : RandomBatch(spec, BatchOptions{.batch = batch, .rollout = rollout}, key) {}
+  RandomBatch(const ObservationSpec& spec, const BatchOptions& options, uint64_t key)
+      : schema_(spec, options),
         memory_(static_cast<uint8_t*>(std::aligned_alloc(64, schema_.total_bytes())), &std::free) {
     std::memset(memory_.get(), 0, schema_.total_bytes());
     Random random(key);
@@ -35,6 +37,8 @@ class RandomBatch {
     for (float& value : view.reward) value = float(random.Normal());
     for (float& value : view.bootstrap) value = random.Uniform() < 0.8 ? 1.f : 0.f;
     for (float& value : view.drawn_action) value = float(random.Normal());
+    for (float& value : view.obs_privileged) value = float(random.Normal());
+    for (float& value : view.next_obs_privileged) value = float(random.Normal());
     for (float& value : view.log_prob) value = -2.5f + 0.2f * float(random.Normal());
     for (size_t t = 0; t < view.continues.size(); ++t) {
       view.ends[t] = 1 - view.bootstrap[t];

@@ -44,12 +44,15 @@ class BatchGatherTest : public testing::Test {
     ring_->Append(0, 1, 0, MakeRecord(spec_, 0, 0, 1, 0, 6).data());
   }
 
-  BatchView Gather(const BatchPlan& plan, const NStep& n_step = {}) {
-    schema_.emplace(spec_, BatchOptions{.batch = static_cast<int>(plan.elements.size())});
+  BatchView Gather(const BatchPlan& plan, const NStep& n_step = {},
+                   std::vector<std::string> privileged = {}) {
+    schema_.emplace(spec_, BatchOptions{.batch = static_cast<int>(plan.elements.size()),
+                                        .privileged = std::move(privileged)});
     memory_.reset(static_cast<uint8_t*>(std::aligned_alloc(64, schema_->total_bytes())));
     const BatchView view = schema_->View(memory_.get());
     const EpisodeIndex index(*ring_, {.stack = spec_.stack, .n_step = n_step.steps});
-    BatchGather(*ring_, index, spec_, n_step).Gather(plan, view);
+    BatchGather(*ring_, index, spec_, n_step, nullptr, schema_->options().privileged)
+        .Gather(plan, view);
     return view;
   }
 
@@ -103,6 +106,24 @@ TEST_F(BatchGatherTest, OneShiftHoldsForAllFramesAndChannelsOfAStackAndAnotherFo
   const BatchView view = Gather({.elements = {{.id = 4, .obs = obs, .next_obs = next}}});
   EXPECT_EQ(Bytes(view.obs_frames), Stack({1, 2}, obs));
   EXPECT_EQ(Bytes(view.next_obs_frames), Stack({2, 3}, next));
+}
+
+TEST_F(BatchGatherTest, PrivilegedBlocksAreThoseOfTheSameRecordsAsTheVectors) {
+  Fill(TinySpec(1), 0);
+  const BatchPlan plan{
+      .elements = {{.id = 4, .obs = {}, .next_obs = {}}, {.id = 3, .obs = {}, .next_obs = {}}}};
+  const std::string hidden = spec_.blocks[1].name;
+  ASSERT_FALSE(spec_.blocks[1].observed);
+  const BatchView view = Gather(plan, {}, {hidden});
+  const auto expect = [&](std::span<const float> all, size_t row, size_t record) {
+    const auto recorded = ring_->layout().Vector(records_[record].data());
+    EXPECT_EQ(all[2 * row], recorded[2]);
+    EXPECT_EQ(all[2 * row + 1], recorded[3]);
+  };
+  expect(view.obs_privileged, 0, 2);
+  expect(view.next_obs_privileged, 0, 3);
+  expect(view.obs_privileged, 1, 1);
+  expect(view.next_obs_privileged, 1, 2);
 }
 
 TEST_F(BatchGatherTest, ATimeLimitBootstrapsATerminationDoesNot) {

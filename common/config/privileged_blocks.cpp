@@ -1,0 +1,74 @@
+#include "common/config/privileged_blocks.h"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "common/base/error.h"
+
+namespace shoal {
+namespace {
+
+std::string BlocksOf(const ObservationSpec& spec) {
+  std::string blocks;
+  for (const BlockSpec& block : spec.blocks) {
+    blocks += fmt::format("{}{} ({})", blocks.empty() ? "" : ", ", block.name, block.size);
+  }
+  return blocks.empty() ? "none" : blocks;
+}
+
+int SizeOf(const char* key, const std::string& block, const ObservationSpec& spec) {
+  const auto range = spec.Recorded(block);
+  if (!range) {
+    throw UsageError("{}: {} records no block '{}'; expected some of: {}", key, spec.task, block,
+                     BlocksOf(spec));
+  }
+  return range->size;
+}
+
+std::vector<std::string> CriticBlocks(const StateBlocks& asked, const ObservationSpec& spec) {
+  for (const std::string& name : asked.names) SizeOf("learner.critic_blocks", name, spec);
+  std::vector<std::string> critic;
+  for (const BlockSpec& block : spec.blocks) {
+    const bool named = asked.all || std::ranges::count(asked.names, block.name) > 0;
+    if (named && !block.observed) critic.push_back(block.name);
+  }
+  return critic;
+}
+
+// A block's own name may have a dash in it; only what is no block is read as a difference.
+AuxLabel LabelOf(const std::string& text, const ObservationSpec& spec) {
+  constexpr const char* kKey = "learner.aux";
+  const size_t dash = text.find('-');
+  if (spec.Recorded(text) || dash == std::string::npos) {
+    return {.block = text, .minus = "", .size = SizeOf(kKey, text, spec)};
+  }
+  AuxLabel label{.block = text.substr(0, dash), .minus = text.substr(dash + 1)};
+  label.size = SizeOf(kKey, label.block, spec);
+  const int taken_off = SizeOf(kKey, label.minus, spec);
+  if (label.size != taken_off) {
+    throw UsageError("{}: '{}' is of {} and {} numbers, expected two blocks of one size", kKey,
+                     text, label.size, taken_off);
+  }
+  return label;
+}
+
+}  // namespace
+
+PrivilegedBlocks PrivilegedBlocksOf(const LearnerConfig& learner, const ObservationSpec& spec) {
+  PrivilegedBlocks blocks;
+  blocks.critic = CriticBlocks(learner.critic_blocks, spec);
+  std::set<std::string> wanted(blocks.critic.begin(), blocks.critic.end());
+  for (const std::string& text : learner.aux) {
+    const AuxLabel& label = blocks.labels.emplace_back(LabelOf(text, spec));
+    wanted.insert(label.block);
+    wanted.insert(label.minus);
+  }
+  for (const BlockSpec& block : spec.blocks) {
+    if (!block.observed && wanted.contains(block.name)) blocks.all.push_back(block.name);
+  }
+  return blocks;
+}
+
+}  // namespace shoal

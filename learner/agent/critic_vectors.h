@@ -1,0 +1,40 @@
+// What a critic sees of a batch's vectors: the policy's and, of an asymmetric one
+// (learner.critic_blocks), privileged blocks beside them.
+//
+//   obs[b] = [ obs_vector[b] | critic's columns of obs_privileged[b] ],   (B, C)
+#pragma once
+
+#include <vector>
+
+#include "common/config/config.h"
+#include "common/spec/observation_spec.h"
+#include "common/wire/batch_schema.h"
+
+namespace shoal::learner {
+
+// The spec that a critic's networks are planned by: `spec` or, of an asymmetric critic, one without
+// pixels whose vector (C) has the privileged blocks at its end.
+ObservationSpec CriticSpec(const LearnerConfig& learner, const ObservationSpec& spec);
+
+// One thread.
+class CriticVectors {
+ public:
+  CriticVectors(const LearnerConfig& learner, const ObservationSpec& spec);
+
+  // (B, C); the batch's own arrays where nothing is added, else valid until the next call.
+  struct Vectors {
+    const float *obs, *next_obs;
+  };
+  Vectors Of(const BatchView& batch);
+
+ private:
+  void Join(std::span<const float> observed, std::span<const float> privileged,
+            std::vector<float>* joined) const;
+
+  const int vector_size_;                        // V
+  int privileged_size_ = 0;                      // P
+  std::vector<ObservationSpec::Range> columns_;  // of the privileged vector
+  std::vector<float> obs_, next_obs_;
+};
+
+}  // namespace shoal::learner

@@ -1,0 +1,58 @@
+// What the transitions of a batch say, whatever the algorithm, and what critics make of them: the
+// figures that TensorBoard shows below replay/.
+#pragma once
+
+#include <span>
+
+#include "common/spec/observation_spec.h"
+#include "common/wire/batch_schema.h"
+#include "learner/agent/update_figures.h"
+
+namespace shoal::learner {
+
+// Of sampled rewards, unscaled; of n steps: their sum.
+inline constexpr Figure kRewardMean{"reward_mean", "", "mean of sampled rewards", false,
+                                    "replay/reward_mean"};
+inline constexpr Figure kRewardStd{"reward_std", "", "their standard deviation", false,
+                                   "replay/reward_std"};
+inline constexpr Figure kRewardMin{"reward_min", "", "the smallest", false, "replay/reward_min"};
+inline constexpr Figure kRewardMax{"reward_max", "", "the largest", false, "replay/reward_max"};
+inline constexpr Figure kRewardPositive{"reward_positive", "",
+                                        "share of sampled rewards above -0.5", false,
+                                        "replay/reward_positive_frac"};
+// Where the policy sees both goals.
+inline constexpr Figure kGoalDistanceMean{"goal_distance_mean", "m",
+                                          "between sampled goals; observation.goal_mode = both",
+                                          false, "replay/goal_distance_mean"};
+inline constexpr Figure kGoalDistanceStd{"goal_distance_std", "m", "their standard deviation",
+                                         false, "replay/goal_distance_std"};
+inline constexpr Figure kGoalDistanceMin{"goal_distance_min", "m", "the smallest", false,
+                                         "replay/goal_distance_min"};
+inline constexpr Figure kGoalDistanceMax{"goal_distance_max", "m", "the largest", false,
+                                         "replay/goal_distance_max"};
+inline constexpr Figure kGoalWithin{"goal_within", "", "share of them below 0.05 m", false,
+                                    "replay/goal_within_threshold"};
+inline constexpr const Figure* kSampleFigures[] = {
+    &kRewardMean,       &kRewardStd,       &kRewardMin,       &kRewardMax,       &kRewardPositive,
+    &kGoalDistanceMean, &kGoalDistanceStd, &kGoalDistanceMin, &kGoalDistanceMax, &kGoalWithin};
+
+// Appends those that the batch, as it was drawn, has; nothing of a rollout.
+void AddSampleFigures(const BatchView& batch, const ObservationSpec& spec, UpdateFigures* figures);
+
+// Of the Q functions before an update, at the sampled actions.
+inline constexpr Figure kQ1Mean{"q1_mean", "", "mean of the first Q function", false,
+                                "replay/q1_mean"};
+inline constexpr Figure kQ1Std{"q1_std", "", "its standard deviation", false, "replay/q1_std"};
+inline constexpr Figure kQ2Mean{"q2_mean", "", "mean of the second one, if any", false,
+                                "replay/q2_mean"};
+inline constexpr Figure kQ2Std{"q2_std", "", "its standard deviation", false, "replay/q2_std"};
+inline constexpr Figure kQMinMean{"q_min_mean", "", "mean of the smaller Q", false,
+                                  "replay/q_min_mean"};
+inline constexpr Figure kQMinStd{"q_min_std", "", "its standard deviation", false,
+                                 "replay/q_min_std"};
+inline constexpr Figure kQMinMin{"q_min_min", "", "its smallest", false, "replay/q_min_min"};
+inline constexpr Figure kQMinMax{"q_min_max", "", "its largest", false, "replay/q_min_max"};
+// q_i (B) of one Q function or more.
+void AddValueFigures(int batch, std::span<const float* const> q, UpdateFigures* figures);
+
+}  // namespace shoal::learner

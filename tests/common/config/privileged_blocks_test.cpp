@@ -1,0 +1,89 @@
+#include "common/config/privileged_blocks.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "common/config/batch_options.h"
+#include "tests/support/error_message.h"
+
+namespace shoal {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::IsEmpty;
+
+ObservationSpec PushSpec() {
+  ObservationSpec spec;
+  spec.task = "FetchPush";
+  spec.blocks = {{"grip", 3},
+                 {"object", 3, /*observed=*/false},
+                 {"object-like", 3, false},
+                 {"fingers", 2, false},
+                 {"desired_goal", 3}};
+  return spec;
+}
+
+LearnerConfig Asking(StateBlocks critic, std::vector<std::string> aux = {}) {
+  LearnerConfig learner;
+  learner.critic_blocks = std::move(critic);
+  learner.aux = std::move(aux);
+  return learner;
+}
+
+TEST(PrivilegedBlocks, AreThoseThatThePolicyDoesNotSeeInRecordOrder) {
+  const auto blocks = PrivilegedBlocksOf(
+      Asking(StateBlocks({"fingers", "grip"}), {"desired_goal-object", "object"}), PushSpec());
+  EXPECT_THAT(blocks.critic, ElementsAre("fingers"));
+  EXPECT_THAT(blocks.all, ElementsAre("object", "fingers"));
+  ASSERT_EQ(blocks.labels.size(), 2u);
+  EXPECT_EQ(blocks.labels[0].block, "desired_goal");
+  EXPECT_EQ(blocks.labels[0].minus, "object");
+  EXPECT_EQ(blocks.labels[0].size, 3);
+  EXPECT_EQ(blocks.labels[1].block, "object");
+  EXPECT_EQ(blocks.labels[1].minus, "");
+}
+
+TEST(PrivilegedBlocks, AreNoneUnlessAskedFor) {
+  EXPECT_THAT(PrivilegedBlocksOf(Asking(false), PushSpec()).all, IsEmpty());
+  EXPECT_THAT(PrivilegedBlocksOf(Asking(true), PushSpec()).all,
+              ElementsAre("object", "object-like", "fingers"));
+}
+
+TEST(PrivilegedBlocks, ADashInABlocksNameIsNoDifference) {
+  const auto blocks = PrivilegedBlocksOf(Asking(false, {"object-like", "object-grip"}), PushSpec());
+  EXPECT_EQ(blocks.labels[0].block, "object-like");
+  EXPECT_EQ(blocks.labels[0].minus, "");
+  EXPECT_EQ(blocks.labels[1].minus, "grip");
+}
+
+TEST(PrivilegedBlocks, OthersAreRefusedNamingThoseThereAre) {
+  EXPECT_EQ(UsageMessage([] {
+              PrivilegedBlocksOf(Asking(StateBlocks(std::vector<std::string>{"objekt"})),
+                                 PushSpec());
+            }),
+            "learner.critic_blocks: FetchPush records no block 'objekt'; expected some of: grip "
+            "(3), object (3), object-like (3), fingers (2), desired_goal (3)");
+  EXPECT_EQ(UsageMessage([] { PrivilegedBlocksOf(Asking(false, {"object-gripp"}), PushSpec()); }),
+            "learner.aux: FetchPush records no block 'gripp'; expected some of: grip (3), object "
+            "(3), object-like (3), fingers (2), desired_goal (3)");
+  EXPECT_EQ(UsageMessage([] { PrivilegedBlocksOf(Asking(false, {"object-fingers"}), PushSpec()); }),
+            "learner.aux: 'object-fingers' is of 3 and 2 numbers, expected two blocks of one size");
+}
+
+TEST(PrivilegedBlocks, TravelInBatchesAndChangeTheirHash) {
+  RunConfig run;
+  run.spec = PushSpec();
+  run.spec.action_size = 4;
+  const uint64_t plain = BatchSchemaOf(run).Hash();
+  EXPECT_FALSE(BatchSchemaOf(run).Has("obs_privileged"));
+  run.config.learner.critic_blocks = StateBlocks({"object", "fingers"});
+  const BatchSchema schema = BatchSchemaOf(run);
+  EXPECT_TRUE(schema.Has("obs_privileged") && schema.Has("next_obs_privileged"));
+  EXPECT_NE(schema.Hash(), plain);
+  // As many numbers, of another meaning.
+  run.config.learner.critic_blocks = StateBlocks({"object-like", "fingers"});
+  EXPECT_NE(BatchSchemaOf(run).Hash(), schema.Hash());
+}
+
+}  // namespace
+}  // namespace shoal
