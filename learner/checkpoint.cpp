@@ -5,18 +5,23 @@
 #include <string>
 
 #include "common/base/error.h"
+#include "common/nn/policy.h"
+#include "common/policy/policy_description.h"
 
 namespace shoal::learner {
 
 void WriteCheckpoint(const std::filesystem::path& parent, const CheckpointState& state,
                      const nn::TensorMap& learner, const nn::TensorMap& policy,
-                     const nlohmann::ordered_json& meta) {
+                     const RunConfig& described, const nlohmann::ordered_json& meta) {
+  const nn::ActorOutput output = nn::ActorOutputOf(policy, described.spec.action_size);
   const std::map<std::string, std::string> metadata{{"format", "shoal"},
                                                     {"updates", std::to_string(state.updates)}};
   WriteCheckpointFiles(parent,
                        {.state = state,
                         .learner = nn::WriteSafetensors(learner, metadata),
-                        .policy = nn::WriteSafetensors(policy, metadata)},
+                        .policy = nn::WriteSafetensors(policy, metadata),
+                        .description = policy::WriteDescription(
+                            policy::Describe(described.config, described.spec, output))},
                        meta);
 }
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "common/checkpoint/checkpoint_files.h"
+#include "common/config/run_files.h"
 #include "common/nn/precision.h"
 #include "common/nn/safetensors.h"
 
@@ -18,10 +19,10 @@ struct Checkpoint {
   std::filesystem::path folder;
 };
 
-// As WriteCheckpointFiles.
+// As WriteCheckpointFiles. `described`: whose policy it is, for policy.json.
 void WriteCheckpoint(const std::filesystem::path& parent, const CheckpointState& state,
                      const nn::TensorMap& learner, const nn::TensorMap& policy,
-                     const nlohmann::ordered_json& meta);
+                     const RunConfig& described, const nlohmann::ordered_json& meta);
 
 // As ReadCheckpointFiles.
 Checkpoint ReadCheckpoint(const std::filesystem::path& folder, uint64_t spec_hash);

@@ -59,7 +59,7 @@ std::optional<Checkpoint> CheckpointStore::RestoreNewest() {
 std::string CheckpointStore::Write(const CheckpointState& state, const nn::TensorMap& learner,
                                    const nn::TensorMap& policy,
                                    const std::set<std::string>& wanted) {
-  WriteCheckpoint(folder_, state, learner, policy, Meta(state));
+  WriteCheckpoint(folder_, state, learner, policy, run_, Meta(state));
   const std::vector<uint64_t> existing = Existing();
   for (size_t i = kKept; i < existing.size(); ++i) {
     const std::string name = CheckpointName(existing[i]);

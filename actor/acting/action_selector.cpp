@@ -2,9 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
-#include <cmath>
-
 namespace shoal::actor {
 
 ActionSelector::ActionSelector(const Config& config, const ObservationSpec& spec, int envs,
@@ -85,9 +82,8 @@ void ActionSelector::Select(Acting acting) {
         }
         break;
       case Acting::kMean:
-        std::ranges::transform(output.mean, action.begin(), [&](float m) {
-          return all.squashed ? std::tanh(m) : std::clamp(m, -1.f, 1.f);
-        });
+        output.squashed = all.squashed;
+        nn::MeanActions(output, action);
         break;
     }
   }

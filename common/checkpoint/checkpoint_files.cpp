@@ -115,6 +115,26 @@ std::string ReadVerified(const fs::path& folder, const char* name, const ordered
   return bytes;
 }
 
+CheckpointFiles ReadFiles(const fs::path& folder, bool policy_alone) {
+  const fs::path state_file = folder / kStateFile;
+  const ordered_json json = ReadStateObject(state_file);
+  CheckpointFiles checkpoint;
+  try {
+    checkpoint.state = StateFromJson(json);
+    const ordered_json& files = json.at("files");
+    if (!policy_alone) {
+      checkpoint.learner = ReadVerified(folder, kLearnerFile, files.at(kLearnerFile));
+    }
+    checkpoint.policy = ReadVerified(folder, kPolicyFile, files.at(kPolicyFile));
+    if (files.contains(kDescriptionFile)) {
+      checkpoint.description = ReadVerified(folder, kDescriptionFile, files.at(kDescriptionFile));
+    }
+  } catch (const ordered_json::exception& e) {
+    throw RuntimeError("'{}': {}", state_file.string(), e.what());
+  }
+  return checkpoint;
+}
+
 // Moves `from` to `to`; what was there before is then at `from`.
 void MoveOver(const fs::path& from, const fs::path& to) {
   if (rename(from.c_str(), to.c_str()) == 0) return;
@@ -149,6 +169,9 @@ void WriteCheckpointFiles(const fs::path& parent, const CheckpointFiles& files,
   ordered_json json = ToJson(files.state);
   json["files"] = {{kLearnerFile, FileEntry(files.learner)},
                    {kPolicyFile, FileEntry(files.policy)}};
+  if (!files.description.empty()) {
+    json["files"][kDescriptionFile] = FileEntry(files.description);
+  }
   json["crc32"] = Crc(json.dump());
   std::error_code ignored;
   fs::remove_all(fresh, ignored);
@@ -156,6 +179,9 @@ void WriteCheckpointFiles(const fs::path& parent, const CheckpointFiles& files,
     MakeFolders(fresh);
     WriteFileAtomically(fresh / kLearnerFile, files.learner);
     WriteFileAtomically(fresh / kPolicyFile, files.policy);
+    if (!files.description.empty()) {
+      WriteFileAtomically(fresh / kDescriptionFile, files.description);
+    }
     WriteFileAtomically(fresh / kStateFile, json.dump(2) + "\n");
     WriteFileAtomically(fresh / ".meta.json", meta.dump(2) + "\n");
     MoveOver(fresh, parent / name);
@@ -168,18 +194,11 @@ void WriteCheckpointFiles(const fs::path& parent, const CheckpointFiles& files,
 }
 
 CheckpointFiles ReadCheckpointFiles(const fs::path& folder) {
-  const fs::path state_file = folder / kStateFile;
-  const ordered_json json = ReadStateObject(state_file);
-  CheckpointFiles checkpoint;
-  try {
-    checkpoint.state = StateFromJson(json);
-    const ordered_json& files = json.at("files");
-    checkpoint.learner = ReadVerified(folder, kLearnerFile, files.at(kLearnerFile));
-    checkpoint.policy = ReadVerified(folder, kPolicyFile, files.at(kPolicyFile));
-  } catch (const ordered_json::exception& e) {
-    throw RuntimeError("'{}': {}", state_file.string(), e.what());
-  }
-  return checkpoint;
+  return ReadFiles(folder, /*policy_alone=*/false);
+}
+
+CheckpointFiles ReadPolicyFiles(const fs::path& folder) {
+  return ReadFiles(folder, /*policy_alone=*/true);
 }
 
 CheckpointFiles ReadCheckpointFiles(const fs::path& folder, uint64_t spec_hash) {

@@ -2,8 +2,10 @@
 //
 //   learner.safetensors  everything an exact resume needs
 //   policy.safetensors   what an actor needs, F32
+//   policy.json          what is to be known to act by it (common/policy/policy_description.h);
+//                        checkpoints of former versions have none
 //   state.json           schema shoal-checkpoint-1: counters, session, hashes, precision,
-//                        algorithm, size and CRC-32 of both files, and a CRC-32 of itself
+//                        algorithm, size and CRC-32 of these files, and a CRC-32 of itself
 //   .meta.json           schema shoal-checkpoint-meta-1: where it comes from, for people and tools
 //
 // It appears whole or not at all: written as a folder of another name, every file synced, renamed,
@@ -19,6 +21,7 @@
 namespace shoal {
 
 inline constexpr char kPolicyFile[] = "policy.safetensors";
+inline constexpr char kDescriptionFile[] = "policy.json";
 
 struct CheckpointState {
   uint64_t updates = 0;
@@ -36,6 +39,7 @@ struct CheckpointState {
 struct CheckpointFiles {
   CheckpointState state;
   std::string learner, policy;  // safetensors
+  std::string description;      // policy.json; empty: the checkpoint has none
 };
 
 // "step_000002000"
@@ -54,5 +58,7 @@ void WriteCheckpointFiles(const std::filesystem::path& parent, const CheckpointF
 // observation spec.
 CheckpointFiles ReadCheckpointFiles(const std::filesystem::path& folder);
 CheckpointFiles ReadCheckpointFiles(const std::filesystem::path& folder, uint64_t spec_hash);
+// The same without `learner`, which need not be there: what acting takes.
+CheckpointFiles ReadPolicyFiles(const std::filesystem::path& folder);
 
 }  // namespace shoal

@@ -1,12 +1,12 @@
 #include "common/nn/policy.h"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <vector>
 
 #include "common/base/check.h"
-#include "common/nn/actor_critic_plan.h"
 #include "common/nn/actor_head.h"
 #include "common/nn/encoder.h"
 #include "common/nn/parallel.h"
@@ -67,8 +67,16 @@ struct Built {
   std::map<int, SizedNetwork> networks;
 };
 
-// What the last layer's bias says; a missing or misshaped one is refused when it is taken over.
-ActorOutput OutputOf(const TensorMap& tensors, int action_size) {
+}  // namespace
+
+void MeanActions(const PolicyOutput& output, std::span<float> actions) {
+  CHECK(actions.size() == output.mean.size()) << actions.size() << " of " << output.mean.size();
+  std::ranges::transform(output.mean, actions.begin(), [&](float mean) {
+    return output.squashed ? std::tanh(mean) : std::clamp(mean, -1.f, 1.f);
+  });
+}
+
+ActorOutput ActorOutputOf(const TensorMap& tensors, int action_size) {
   if (tensors.contains("actor.log_std")) return ActorOutput::kUnsquashed;
   const auto bias = tensors.find("actor.mlp.output.bias");
   const bool deterministic =
@@ -76,13 +84,9 @@ ActorOutput OutputOf(const TensorMap& tensors, int action_size) {
   return deterministic ? ActorOutput::kDeterministic : ActorOutput::kGaussian;
 }
 
-}  // namespace
-
 struct Policy::Impl {
   std::unique_ptr<Built> Build(ActorOutput output) const {
-    auto result = std::make_unique<Built>(network, spec, precision, output);
-    result->ForBatch(max_batch);
-    return result;
+    return std::make_unique<Built>(network, spec, precision, output);
   }
 
   const NetworkConfig network;
@@ -106,7 +110,7 @@ Policy::~Policy() = default;
 
 void Policy::Load(const TensorMap& tensors, const std::string& source) {
   const ThreadScope scope(impl_->threads);
-  const ActorOutput output = OutputOf(tensors, impl_->spec.action_size);
+  const ActorOutput output = ActorOutputOf(tensors, impl_->spec.action_size);
   std::unique_ptr<Built> other;
   if (output != impl_->built->actor.output) other = impl_->Build(output);
   Built& built = other ? *other : *impl_->built;

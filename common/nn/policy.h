@@ -1,5 +1,5 @@
-// The policy as an actor uses it: encoder, trunk and actor MLP, forward only. What an actor makes
-// of the output, with or without exploration, is the actor's.
+// The policy as an actor uses it: encoder, trunk and actor MLP, forward only, and the action
+// without exploration. What exploration makes of the output is the actor's.
 #pragma once
 
 #include <cstdint>
@@ -7,6 +7,7 @@
 #include <span>
 
 #include "common/config/config.h"
+#include "common/nn/actor_critic_plan.h"
 #include "common/nn/precision.h"
 #include "common/nn/safetensors.h"
 #include "common/spec/observation_spec.h"
@@ -21,15 +22,22 @@ struct PolicyOutput {
   bool squashed = true;
 };
 
+// The actions of no exploration, (B, A) in [-1, 1]: tanh(mean), or clip(mean, -1, 1) of a policy
+// that is not squashed. CHECK that there are as many as means.
+void MeanActions(const PolicyOutput& output, std::span<float> actions);
+
+// What kind of policy its tensors are: one with a log deviation of its own is unsquashed, one whose
+// last layer has A outputs deterministic. A missing or misshaped tensor is Load's to refuse.
+ActorOutput ActorOutputOf(const TensorMap& tensors, int action_size);
+
 class Policy {
  public:
   Policy(const NetworkConfig& network, const ObservationSpec& spec, Precision precision,
          int max_batch);
   ~Policy();
 
-  // Takes F32 or BF16 tensors by name. They say what kind of policy they are: one whose last layer
-  // has A outputs is deterministic, unless
-  // it has a log deviation of its own. Vectors are normalised first where there are
+  // Takes F32 or BF16 tensors by name; they say what kind of policy they are (ActorOutputOf).
+  // Vectors are normalised first where there are
   // kObservationMean and kObservationVariance (actor_critic_plan.h). Throws Error naming a missing
   // tensor or a wrong shape, and then keeps its former weights.
   void Load(const TensorMap& tensors, const std::string& source);

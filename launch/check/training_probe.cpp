@@ -59,7 +59,7 @@ void CompareRestored(const RunConfig& run, nn::Precision precision, const BatchV
   state.precision = nn::ToString(precision);
   state.algorithm = run.config.learner.algorithm;
   fs::create_directories(folder);
-  learner::WriteCheckpoint(folder, state, agent->AllTensors(), agent->AveragedPolicyTensors(),
+  learner::WriteCheckpoint(folder, state, agent->AllTensors(), agent->AveragedPolicyTensors(), run,
                            nlohmann::ordered_json::object());
   probe->checkpoint_bytes = BytesBelow(folder);
   const learner::Checkpoint checkpoint =

@@ -9,6 +9,7 @@
 
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "tests/learner/training_fixture.h"
 #include "tests/support/error_message.h"
 #include "tests/support/temporary_folder.h"
 
@@ -44,7 +45,8 @@ class CheckpointTest : public testing::Test {
  protected:
   void Write(uint8_t first = 1) {
     WriteCheckpoint(parent_.path(), state_, Tensors("critic", 4000, first),
-                    Tensors("actor", 400, first), {{"schema", "shoal-checkpoint-meta-1"}});
+                    Tensors("actor", 400, first), SmallRun(),
+                    {{"schema", "shoal-checkpoint-meta-1"}});
   }
 
   // The message of the Error with which the checkpoint is refused.
@@ -104,7 +106,8 @@ TEST_F(CheckpointTest, TakesThePlaceOfOneOfTheSameName) {
 }
 
 TEST_F(CheckpointTest, TruncationOfAnyFileIsRefusedNamingIt) {
-  for (const char* name : {"learner.safetensors", "policy.safetensors", "state.json"}) {
+  for (const char* name :
+       {"learner.safetensors", "policy.safetensors", "policy.json", "state.json"}) {
     Write();
     const std::string whole = ReadFile(folder_ / name);
     for (const size_t bytes : {size_t{0}, size_t{1}, whole.size() / 2, whole.size() - 2}) {
@@ -128,7 +131,7 @@ TEST_F(CheckpointTest, AnyFlippedBitOfTheStateIsRefused) {
 }
 
 TEST_F(CheckpointTest, AFlippedBitOfTheParametersIsRefusedByChecksum) {
-  for (const char* name : {"learner.safetensors", "policy.safetensors"}) {
+  for (const char* name : {"learner.safetensors", "policy.safetensors", "policy.json"}) {
     Write();
     const std::string whole = ReadFile(folder_ / name);
     for (size_t byte = 0; byte < whole.size(); byte += 37) {

@@ -1,0 +1,25 @@
+// What a policy computes, in words: one line per layer, of all that its result depends on but the
+// parameters. Equal lines mean equal networks; how parameters start is left out. Written beside a
+// policy's parameters, so that a program whose network of the same name computes something else
+// finds out before it acts.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/nn/actor_critic_plan.h"
+#include "common/nn/network_plan.h"
+
+namespace shoal::nn {
+
+// "encoder.conv0: convolution of layer 0, 9x42x42 to 32x20x20, kernel 3, stride 2, padding 0, bias,
+// relu"
+std::string PlanLine(const LayerPlan& layer);
+
+// The encoder's layers, the trunk's, the MLP's, and what becomes of its outputs.
+std::vector<std::string> PlanLines(const NetworkPlan& encoder, const ActorPlan& actor);
+
+// "gaussian", "deterministic", "unsquashed"
+const char* ToString(ActorOutput output);
+
+}  // namespace shoal::nn

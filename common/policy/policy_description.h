@@ -1,0 +1,45 @@
+// policy.json of a checkpoint, schema shoal-policy-1: everything but parameters that acting by its
+// policy takes, so that the folder is complete in itself.
+//
+//   version      of the Shoal that wrote it
+//   algorithm    learner.algorithm
+//   output       gaussian | deterministic | unsquashed: what the actor's last layer says
+//   network      the configuration keys network.*
+//   spec         the observation spec, spec_hash its hash
+//   layers       what the network computes, a line per layer (common/nn/plan_text.h)
+//
+// Parameters and running normalisation are in policy.safetensors. `layers` follows from what stands
+// above it; a program that makes other layers of it refuses the checkpoint.
+#pragma once
+
+#include <string>
+
+#include "common/config/config.h"
+#include "common/nn/actor_critic_plan.h"
+#include "common/spec/observation_spec.h"
+
+namespace shoal::policy {
+
+struct PolicyDescription {
+  std::string version, algorithm;
+  nn::ActorOutput output = nn::ActorOutput::kGaussian;
+  NetworkConfig network;
+  ObservationSpec spec;
+
+  nn::NetworkPlan Encoder() const { return nn::PlanEncoder(network, spec); }
+  nn::ActorPlan Actor() const { return nn::PlanActor(network, spec, output); }
+};
+
+// Of a run's policy, by this program's version.
+PolicyDescription Describe(const Config& config, const ObservationSpec& spec,
+                           nn::ActorOutput output);
+
+// The bytes of policy.json.
+std::string WriteDescription(const PolicyDescription& description);
+
+// `source` names the text in errors. Throws Error in one line: another or a newer schema, a missing
+// or ill-typed key, a spec that makes no sense, a network that this program does not have or that
+// computes something else here.
+PolicyDescription ReadDescription(const std::string& text, const std::string& source);
+
+}  // namespace shoal::policy

@@ -1,0 +1,100 @@
+// Checkpoints of small agents, written as the learner writes them.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/base/random.h"
+#include "common/config/run_files.h"
+#include "learner/agent/algorithms.h"
+#include "learner/checkpoint.h"
+#include "learner/checkpoint_store.h"
+#include "tests/learner/agent/agent_fixture.h"
+
+namespace shoal::policy {
+
+// Frames beside two observed blocks, and one that the policy does not see between them.
+inline RunConfig SmallRun(const std::string& algorithm, bool pixels) {
+  RunConfig run{learner::SmallConfig(), learner::SmallSpec()};
+  run.config.learner.algorithm = algorithm;
+  run.config.learner.precision = "f32";
+  run.config.learner.normalise_vectors = true;
+  run.config.observation.pixels = pixels;
+  run.config.observation.proprioception = true;
+  run.spec.blocks = {{"grip", 3}, {"hidden", 4, /*observed=*/false}, {"goal", 2}};
+  if (algorithm == "ppo") {
+    run.config.learner.reward_scale = LearnerConfig().reward_scale;
+    run.spec.drawn_actions = true;
+  }
+  if (!pixels) {
+    run.spec.cameras.clear();
+    run.spec.channels = run.spec.height = run.spec.width = 0;
+    run.spec.stack = 1;
+  }
+  return run;
+}
+
+// The same with another encoder and images that it takes.
+inline RunConfig RunWithEncoder(const std::string& encoder, int side = 84) {
+  RunConfig run = SmallRun("sac", /*pixels=*/true);
+  run.config.network.encoder = encoder;
+  run.config.network.filters.clear();
+  run.config.network.strides.clear();
+  run.config.network.initialisation = "pytorch";  // fast
+  run.config.learner.batch = 2;
+  run.spec.height = run.spec.width = side;
+  return run;
+}
+
+// Trains an agent for three updates on random numbers and writes it to RUN/checkpoints. Returns the
+// checkpoint's folder.
+inline std::filesystem::path WriteCheckpointOf(const RunConfig& run,
+                                               const std::filesystem::path& folder) {
+  const auto agent = learner::MakeAgent(run.config, run.spec, nn::Precision::kF32);
+  const bool rollout = run.config.learner.algorithm == "ppo";
+  const int rows = rollout ? 2 * run.config.learner.batch : run.config.learner.batch;
+  for (uint64_t u = 0; u < 3; ++u) {
+    const learner::RandomBatch batch(run.spec, rows, u, rollout);
+    EXPECT_TRUE(agent->Update(batch.View()).finite);
+  }
+  learner::CheckpointStore store(folder, run);
+  CheckpointState state;
+  state.updates = agent->updates();
+  state.config_hash = store.config_hash();
+  state.spec_hash = run.spec.Hash();
+  state.precision = "f32";
+  state.algorithm = run.config.learner.algorithm;
+  return folder / "checkpoints" /
+         store.Write(state, agent->AllTensors(), agent->AveragedPolicyTensors(), {});
+}
+
+// `count` random observations of a spec.
+struct RandomObservations {
+  RandomObservations(const ObservationSpec& spec, int number, uint64_t key)
+      : count(number),
+        pixels(size_t(number) * size_t(spec.FrameBytes()) * size_t(spec.stack)),
+        vectors(size_t(number) * size_t(spec.VectorSize())) {
+    Random random(key);
+    for (uint8_t& pixel : pixels) pixel = uint8_t(random.Next());
+    for (float& value : vectors) value = float(random.Normal());
+    for (const BlockSpec& block : spec.blocks) {
+      const auto range = spec.Observed(block.name);
+      if (!range) continue;
+      std::vector<float> values;
+      for (int n = 0; n < count; ++n) {
+        const auto first = vectors.begin() + n * spec.VectorSize() + range->first;
+        values.insert(values.end(), first, first + range->size);
+      }
+      blocks.emplace_back(block.name, std::move(values));
+    }
+  }
+
+  int count;
+  std::vector<uint8_t> pixels;                                     // (N, K*C, H, W)
+  std::vector<float> vectors;                                      // (N, V)
+  std::vector<std::pair<std::string, std::vector<float>>> blocks;  // the same, block by block
+};
+
+}  // namespace shoal::policy
