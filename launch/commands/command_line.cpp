@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/base/build_info.h"
+#include "launch/commands/own_commands.h"
 
 namespace shoal::launch {
 

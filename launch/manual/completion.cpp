@@ -88,8 +88,9 @@ std::string Table(Shell shell, const std::vector<Row>& rows) {
   std::string text =
       fish ? "function __shoal_table\n  switch $argv[1]\n" : "_shoal_table() {\n  case $1 in\n";
   for (const Row& row : rows) {
-    text += fmt::format(fish ? "    case {}\n      {}\n" : "    {})\n      {}\n      ;;\n",
-                        Quoted(shell, row.place), PrintWords(shell, row.words));
+    const std::string place = Quoted(shell, row.place), print = PrintWords(shell, row.words);
+    text += fish ? fmt::format("    case {}\n      {}\n", place, print)
+                 : fmt::format("    {})\n      {}\n      ;;\n", place, print);
   }
   text += fish ? "    case '*'\n      return 1\n  end\nend\n"
                : "    *)\n      return 1\n      ;;\n  esac\n}\n";

@@ -46,12 +46,14 @@ std::string Roff(std::string_view text) {
 std::string Title(const std::string& name, int section) {
   std::string upper = name;
   std::ranges::transform(upper, upper.begin(), [](unsigned char c) { return std::toupper(c); });
-  return fmt::format(".TH {} {} \"\" \"Shoal {}\" \"Shoal\"\n", Roff(upper), section,
+  // Left-adjusted and without hyphenation: names of options and presets stay whole.
+  return fmt::format(".TH {} {} \"\" \"Shoal {}\" \"Shoal\"\n.nh\n.ad l\n", Roff(upper), section,
                      Roff(BuildVersion()));
 }
 
-// A meaning as the NAME section has it: in lower case, without a full stop.
+// A meaning as the NAME section has it: what it does, in lower case, without a full stop.
 std::string Brief(std::string meaning) {
+  if (meaning.starts_with("Shoal ")) meaning.erase(0, 6);
   const size_t end = meaning.find(". ");
   if (end != std::string::npos) meaning.resize(end);
   if (meaning.ends_with('.')) meaning.pop_back();
@@ -70,7 +72,7 @@ std::string OptionEntry(const OptionText& option) {
   for (const std::string& flag : option.flags) {
     names += fmt::format("{}\\fB{}\\fR", names.empty() ? "" : ", ", Roff(flag));
   }
-  if (!option.takes.empty()) names += " " + Roff(option.takes);
+  if (!option.takes.empty()) names += fmt::format(" {}", Roff(option.takes));
   return fmt::format(".TP\n{}\n{}\n", names, Roff(option.meaning));
 }
 
