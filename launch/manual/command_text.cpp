@@ -87,9 +87,13 @@ CommandText DescribeCommand(const CLI::App& app, const std::string& name) {
   const std::string label = "Usage: ";
   if (text.usage.starts_with(label)) text.usage.erase(0, label.size());
   text.usage.erase(text.usage.find_last_not_of('\n') + 1);
-  for (const CLI::Option* option : app.get_options())
+  // What belongs to no group is kept from --help, for other programs to use.
+  for (const CLI::Option* option :
+       app.get_options([](const CLI::Option* one) { return !one->get_group().empty(); })) {
     text.options.push_back(DescribeOption(*option));
-  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+  }
+  for (const CLI::App* command :
+       app.get_subcommands([](const CLI::App* one) { return !one->get_group().empty(); })) {
     text.commands.push_back(DescribeCommand(*command, name + " " + command->get_name()));
   }
   return text;

@@ -1,5 +1,6 @@
 #include "common/config/config_schema.h"
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -131,7 +132,7 @@ TEST(ConfigSchema, SaysOfEachKeyItsDefaultAndMeaning) {
   const json defaults = json::parse(ToJson(Config{}).dump());
   for (const internal::Key& key : internal::Keys()) {
     const json& schema = SchemaOf(key.path);
-    std::string pointer = "/" + std::string(key.path);
+    std::string pointer = fmt::format("/{}", key.path);
     std::ranges::replace(pointer, '.', '/');
     EXPECT_EQ(schema.at("default"), defaults.at(json::json_pointer(pointer))) << key.path;
     EXPECT_EQ(schema.at("description"), key.meaning);
