@@ -14,9 +14,11 @@ using nlohmann::ordered_json;
 
 constexpr char kFileName[] = "^[A-Za-z0-9_][A-Za-z0-9._-]*$";
 constexpr char kFileNameOrEmpty[] = "^([A-Za-z0-9_][A-Za-z0-9._-]*)?$";
-// JSON numbers, blanks only behind commas, as ParseSchedule has it.
+// Blanks only behind commas, as ParseSchedule has it.
+#define SHOAL_NUMBER "-?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][+-]?[0-9]+)?"
 constexpr char kSchedule[] =
-    "^linear\\(-?[0-9][0-9.eE+-]*, *-?[0-9][0-9.eE+-]*, *[1-9][0-9.eE+]*\\)$";
+    "^linear\\(" SHOAL_NUMBER ", *" SHOAL_NUMBER ", *0*[1-9][0-9]{0,12}\\)$";
+#undef SHOAL_NUMBER
 
 ordered_json Integer(const internal::Rule& rule) {
   ordered_json schema{{"type", "integer"}};

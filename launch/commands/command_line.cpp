@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 
 #include "common/base/build_info.h"
-#include "launch/commands/own_commands.h"
 
 namespace shoal::launch {
 

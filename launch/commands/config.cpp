@@ -5,7 +5,7 @@
 
 #include "common/config/config_io.h"
 #include "common/config/config_schema.h"
-#include "launch/commands/own_commands.h"
+#include "launch/commands/commands.h"
 
 namespace shoal::launch {
 

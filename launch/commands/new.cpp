@@ -2,7 +2,7 @@
 #include <iostream>
 #include <memory>
 
-#include "launch/commands/own_commands.h"
+#include "launch/commands/commands.h"
 #include "launch/project/new_project.h"
 
 namespace shoal::launch {

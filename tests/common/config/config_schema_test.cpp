@@ -76,7 +76,13 @@ std::vector<json> Probes(const internal::Rule& rule) {
                               {{"a", {-1, 2}}},
                               {{"a", 1}},
                               "linear(0.5,0.25,1000)",
-                              "linear(0.5, 0.25,1e3)",
+                              "linear(0.5, .25,1000)",
+                              "linear(5e-1,1.,01000)",
+                              "linear(0.5,0.25,1e3)",
+                              "linear(0.5,0.25,0)",
+                              "linear(0..5,0.25,10)",
+                              "linear(a,0.25,10)",
+                              "linear(0.5 ,0.25,10)",
                               "linear(1,2)",
                               "linear(0.5,0.25,1000) "};
   const json camera = {{"lookat", {0, 0, 0}}, {"distance", 1}, {"azimuth", 0}, {"elevation", -90}};
