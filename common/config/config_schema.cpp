@@ -1,5 +1,7 @@
 #include "common/config/config_schema.h"
 
+#include <fmt/core.h>
+
 #include <nlohmann/json.hpp>
 
 #include "common/base/check.h"
@@ -14,11 +16,6 @@ using nlohmann::ordered_json;
 
 constexpr char kFileName[] = "^[A-Za-z0-9_][A-Za-z0-9._-]*$";
 constexpr char kFileNameOrEmpty[] = "^([A-Za-z0-9_][A-Za-z0-9._-]*)?$";
-// Blanks only behind commas, as ParseSchedule has it.
-#define SHOAL_NUMBER "-?([0-9]+\\.?[0-9]*|\\.[0-9]+)([eE][+-]?[0-9]+)?"
-constexpr char kSchedule[] =
-    "^linear\\(" SHOAL_NUMBER ", *" SHOAL_NUMBER ", *0*[1-9][0-9]{0,12}\\)$";
-#undef SHOAL_NUMBER
 
 ordered_json Integer(const internal::Rule& rule) {
   ordered_json schema{{"type", "integer"}};
@@ -90,7 +87,11 @@ struct ValueSchema {
             {"additionalProperties", Camera()}};
   }
   ordered_json operator()(const Schedule*) const {
-    const ordered_json text{{"type", "string"}, {"pattern", kSchedule}};
+    // Blanks only behind commas, as ParseSchedule has it.
+    const std::string number = R"(-?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?)";
+    const ordered_json text{
+        {"type", "string"},
+        {"pattern", fmt::format(R"(^linear\({0}, *{0}, *0*[1-9][0-9]{{0,12}}\)$)", number)}};
     return {{"anyOf", {Number(rule), text}}};
   }
 };
