@@ -5,12 +5,11 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
+#include "actor/command_line.h"
 #include "actor/evaluation/eval_actor.h"
-#include "actor/evaluation/evaluation.h"
 #include "actor/loop/training_actor.h"
 #include "actor/worlds/environment.h"
 #include "actor/worlds/physics_library.h"
-#include "common/base/build_info.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/log.h"
@@ -23,62 +22,13 @@
 namespace shoal::actor {
 namespace {
 
-struct Options {
-  std::string run, role = "train", config_json, checkpoint, json;
-  uint32_t id = 0;
-  CheckpointEvaluation evaluation;
-  FrameRecorder::Options frames;
-  bool describe = false, stop_with_input = false;
-  dds::Reach reach;
-};
-
-void AddOptions(CLI::App& app, Options* options) {
-  app.add_option("--run", options->run, "run folder (config.json, cluster.json)");
-  app.add_option("--id", options->id, "number of this actor within the run");
-  app.add_option("--role", options->role, "train or eval")->check(CLI::IsMember({"train", "eval"}));
-  app.add_option("--peer", options->reach.peer,
-                 "HOST[:PORT] of the servers instead of cluster.json's");
-  app.add_option("--interface", options->reach.interface,
-                 "network interface of this host instead of transport.interface");
-  app.add_option("--secure", options->reach.secure,
-                 "folder of credentials instead of cluster.json's (shoal secure init)");
-  app.add_flag(
-      "--stop-with-input", options->stop_with_input,
-      "stop when standard input ends: a remote shell's way to say that its caller is gone");
-  auto* describe = app.add_flag("--describe", options->describe, "print the observation spec");
-  app.add_option("--config-json", options->config_json, "configuration for --describe")
-      ->needs(describe);
-  auto* evaluate =
-      app.add_option("--evaluate", options->checkpoint, "checkpoint folder to evaluate");
-  app.add_option("--task", options->evaluation.task, "task of --evaluate instead of the run's")
-      ->needs(evaluate);
-  app.add_option("--episodes", options->evaluation.episodes, "episodes of --evaluate")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--seed", options->evaluation.seed, "seed of --evaluate");
-  auto* frames = app.add_option("--frames", options->frames.file,
-                                "file or pipe for what --evaluate shows, step by step")
-                     ->needs(evaluate);
-  app.add_option("--view", options->frames.camera,
-                 "camera of the larger view among --frames; default: the run's first")
-      ->needs(frames);
-  app.add_option("--view-height", options->frames.height, "its height in pixels")
-      ->needs(frames)
-      ->check(CLI::Range(16, 2160));
-  app.add_option("--view-width", options->frames.width, "its width in pixels")
-      ->needs(frames)
-      ->check(CLI::Range(16, 3840));
-  app.add_option("--json", options->json, "file for the result of --evaluate");
-}
-
 // An exit code where the command line asked for nothing but help or the version.
 std::optional<int> Parse(int argc, char** argv, Options* options) {
-  CLI::App app("Steps and renders environments for a run, or evaluates a checkpoint.");
-  app.set_version_flag("--version", BuildVersion());
-  AddOptions(app, options);
+  const auto app = MakeCommandLine(options);
   try {
-    app.parse(argc, argv);
+    app->parse(argc, argv);
   } catch (const CLI::Success& e) {
-    return app.exit(e);
+    return app->exit(e);
   } catch (const CLI::ParseError& e) {
     throw UsageError("{}", e.what());
   }

@@ -1,11 +1,10 @@
 // shoal: the command line. See launch/commands.
 #include <CLI/CLI.hpp>
 
-#include "common/base/build_info.h"
 #include "common/base/error.h"
 #include "common/base/main_guard.h"
 #include "common/dds/bus.h"
-#include "launch/commands/commands.h"
+#include "launch/commands/command_line.h"
 
 namespace {
 
@@ -23,28 +22,9 @@ std::string UnknownCommand(const CLI::App& app, int argc, char** argv) {
 }
 
 int Run(int argc, char** argv) {
-  CLI::App app("Shoal trains robot policies from pixels and from state, on many processes.",
-               "shoal");
-  app.set_version_flag("--version",
-                       fmt::format("shoal {} ({})", shoal::BuildVersion(), shoal::BuildCommit()));
-  app.require_subcommand(1);
   shoal::launch::Action chosen;
-  shoal::launch::AddTrainCommand(app, &chosen);
-  shoal::launch::AddEvalCommand(app, &chosen);
-  shoal::launch::AddExperimentCommand(app, &chosen);
-  shoal::launch::AddCompareCommand(app, &chosen);
-  shoal::launch::AddPlotCommand(app, &chosen);
-  shoal::launch::AddReportCommand(app, &chosen);
-  shoal::launch::AddCardCommand(app, &chosen);
-  shoal::launch::AddFilmCommand(app, &chosen);
-  shoal::launch::AddTopCommand(app, &chosen);
-  shoal::launch::AddRunsCommand(app, &chosen);
-  shoal::launch::AddSteerCommands(app, &chosen);
-  shoal::launch::AddAttachCommand(app, &chosen);
-  shoal::launch::AddEnvCommand(app, &chosen);
-  shoal::launch::AddReplayCommand(app, &chosen);
-  shoal::launch::AddCheckCommand(app, &chosen);
-  shoal::launch::AddSecureCommand(app, &chosen);
+  const auto command_line = shoal::launch::MakeCommandLine(&chosen);
+  CLI::App& app = *command_line;
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& e) {

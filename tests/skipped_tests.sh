@@ -57,7 +57,7 @@ explained() {
     "needs CAP_NET_RAW") ! has_capability 13 ;;
     "needs two cores") (($(nproc) < 2)) ;;
     "needs root: slurmd"*) ((EUID != 0)) ;;
-    "needs "*" (Debian's slurm-wlm and munge)")
+    "needs "*" (Debian's "*")")
       local program=${1#needs }
       ! command -v "${program%% *}" >/dev/null
       ;;

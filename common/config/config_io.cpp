@@ -238,6 +238,10 @@ void ApplyJson(const json& object, const std::string& source, Config* config) {
 
 void ApplyFile(const std::string& path, Config* config) {
   json object = ParseStrictJson(ReadFile(path), path);
+  // Tells an editor what keys there are (config_schema.h).
+  if (object.is_object() && object.contains("$schema") && object["$schema"].is_string()) {
+    object.erase("$schema");
+  }
   // A run's config.json may be used as a configuration; what describes the run is not a key.
   if (object.is_object() && object.contains("schema") && object["schema"] == kConfigSchema) {
     for (const char* name : {"schema", "spec", "spec_hash", "config_hash"}) object.erase(name);

@@ -4,6 +4,7 @@
 
 #include "common/config/config_io.h"
 #include "common/config/config_keys.h"
+#include "common/config/key_description.h"
 #include "common/config/value_json.h"
 
 namespace shoal {
@@ -16,16 +17,34 @@ std::string Cell(std::string_view text) {
   return cell;
 }
 
+std::vector<std::string_view> Words(const internal::Key& key, Config& config) {
+  if (const auto* choices = std::get_if<internal::Choices>(&key.rule)) return choices->words;
+  if (std::holds_alternative<bool*>(key.slot(config))) return {"true", "false"};
+  return {};
+}
+
 }  // namespace
 
-std::string DescribeKeys() {
-  std::string table = "| key | default | takes | meaning |\n| --- | --- | --- | --- |\n";
+std::vector<KeyDescription> DescribeEachKey() {
+  std::vector<KeyDescription> descriptions;
   Config defaults;
   for (const internal::Key& key : internal::Keys()) {
     const nlohmann::json value =
         std::visit([](const auto* slot) { return nlohmann::json(*slot); }, key.slot(defaults));
-    table += fmt::format("| `{}` | `{}` | {} | {} |\n", key.path, value.dump(),
-                         Cell(internal::Expected(key)), Cell(key.meaning));
+    descriptions.push_back({.path = key.path,
+                            .default_value = value.dump(),
+                            .takes = internal::Expected(key),
+                            .meaning = key.meaning,
+                            .words = Words(key, defaults)});
+  }
+  return descriptions;
+}
+
+std::string DescribeKeys() {
+  std::string table = "| key | default | takes | meaning |\n| --- | --- | --- | --- |\n";
+  for (const KeyDescription& key : DescribeEachKey()) {
+    table += fmt::format("| `{}` | `{}` | {} | {} |\n", key.path, key.default_value,
+                         Cell(key.takes), Cell(key.meaning));
   }
   return table;
 }

@@ -22,6 +22,8 @@ void AddCardCommand(CLI::App& app, Action* chosen);
 void AddFilmCommand(CLI::App& app, Action* chosen);
 void AddEnvCommand(CLI::App& app, Action* chosen);  // see env.cpp and env_tasks.cpp
 void AddTopCommand(CLI::App& app, Action* chosen);
+void AddConfigCommand(CLI::App& app, Action* chosen);
+void AddNewCommand(CLI::App& app, Action* chosen);
 void AddCheckCommand(CLI::App& app, Action* chosen);
 void AddSecureCommand(CLI::App& app, Action* chosen);  // secure init
 void AddRunsCommand(CLI::App& app, Action* chosen);

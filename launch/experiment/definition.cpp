@@ -11,6 +11,7 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/config/config_io.h"
+#include "common/config/shared_data.h"
 #include "common/tasks/task_library.h"
 #include "common/tasks/task_registry.h"
 
@@ -22,6 +23,7 @@ using nlohmann::json;
 using nlohmann::ordered_json;
 
 constexpr char kSchema[] = "shoal-experiment-definition-1";
+constexpr char kKind[] = "experiments";
 
 // What a run of an experiment is called, where it lies and how it is judged is the experiment's.
 constexpr std::array kOwnKeys = {"seed", "run_name", "run_dir", "preset", "eval.final_episodes"};
@@ -157,18 +159,6 @@ json Nested(const ordered_json& set, const std::string& source) {
   return nested;
 }
 
-std::vector<fs::path> DefinitionFolders() {
-  std::vector<fs::path> folders;
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (!error) {
-    folders.push_back(program.parent_path() / "experiments");
-    folders.push_back(program.parent_path().parent_path() / "share/shoal/experiments");
-  }
-  folders.emplace_back(SHOAL_SOURCE_EXPERIMENTS);
-  return folders;
-}
-
 }  // namespace
 
 Definition ParseDefinition(const ordered_json& object, const std::string& source,
@@ -227,26 +217,13 @@ ordered_json ToJson(const Definition& definition) {
   return object;
 }
 
-std::vector<std::string> ListDefinitions() {
-  std::set<std::string> names;
-  for (const fs::path& folder : DefinitionFolders()) {
-    std::error_code error;
-    for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
-      if (it->path().extension() == ".json") names.insert(it->path().stem());
-    }
-  }
-  return {names.begin(), names.end()};
-}
+std::vector<std::string> ListDefinitions() { return ListSharedData(kKind); }
 
 fs::path FindDefinition(const std::string& file_or_name) {
   const bool is_file =
       file_or_name.find('/') != std::string::npos || fs::path(file_or_name).extension() == ".json";
   if (is_file) return file_or_name;
-  for (const fs::path& folder : DefinitionFolders()) {
-    std::error_code error;
-    const fs::path path = folder / (file_or_name + ".json");
-    if (fs::is_regular_file(path, error)) return path;
-  }
+  if (const auto path = FindSharedData(kKind, file_or_name)) return *path;
   throw UsageError("no experiment '{}': expected a file (*.json) or one of: {}", file_or_name,
                    fmt::join(ListDefinitions(), ", "));
 }

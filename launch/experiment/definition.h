@@ -44,8 +44,8 @@ Definition ParseDefinition(const nlohmann::ordered_json& object, const std::stri
                            const std::string& stem);
 nlohmann::ordered_json ToJson(const Definition& definition);
 
-// FILE, or NAME of a definition in launch/experiments (beside the program, the install prefix, the
-// source tree). Throws Error (usage) listing the names there are.
+// FILE, or NAME of a definition among the experiments of common/config/shared_data.h. Throws Error
+// (usage) listing the names there are.
 std::filesystem::path FindDefinition(const std::string& file_or_name);
 std::vector<std::string> ListDefinitions();  // sorted
 

@@ -117,7 +117,7 @@ TEST(Surroundings, WithoutAnyPresetTheFoldersAreNamed) {
   SHOAL_NEEDS(disk.why_not());
   ExpectOneErrorLine(RunProgram({"shoal", "train", "--preset", "fetch-reach-state"}, seconds(60)),
                      AllOf(HasSubstr("found no presets"), HasSubstr("bin/presets (No such file"),
-                           HasSubstr(kPresets + " (holds none)")));
+                           HasSubstr("share/shoal/presets (holds none)")));
 }
 
 TEST(Surroundings, AReadOnlyDiskIsNamed) {

@@ -35,7 +35,7 @@ const std::map<std::string, std::vector<std::string>> kRooms = {
     {"actor", {"worlds", "acting", "sending", "loop", "evaluation"}},
     {"launch",
      {"record", "processes", "film", "watch", "run", "experiment", "report", "observability",
-      "check", "commands"}},
+      "project", "check", "commands", "manual"}},
 };
 
 // What a room may not include: a folder, or one header.

@@ -4,8 +4,8 @@
 //   it; the three in the middle do not use each other.
 // - Inside common, a folder uses those before it in the order of common/CMakeLists.txt; inside
 //   actor, worlds < acting < sending < loop < evaluation; inside launch, record < processes < film
-//   < watch < run < experiment < report < check < commands. A new room gets its place in
-//   include_rules.cpp.
+//   < watch < run < experiment < report < project < check < commands < manual. A new room gets its
+//   place in include_rules.cpp.
 // - replay_server/core knows neither its service nor the transport, no clock and no threads.
 // - A third-party library with a home (DDS, oneDNN, MuJoCo, ...) is included there and in that
 //   folder's tests alone; and in tests/stock_client, a program as others would write it.

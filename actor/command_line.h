@@ -1,0 +1,29 @@
+// The command line of `shoal-actor`.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "actor/evaluation/evaluation.h"
+#include "common/dds/reach.h"
+
+namespace CLI {
+class App;
+}
+
+namespace shoal::actor {
+
+struct Options {
+  std::string run, role = "train", config_json, checkpoint, json;
+  uint32_t id = 0;
+  CheckpointEvaluation evaluation;
+  FrameRecorder::Options frames;
+  bool describe = false, stop_with_input = false;
+  dds::Reach reach;
+};
+
+// `options` must outlive the command line.
+std::unique_ptr<CLI::App> MakeCommandLine(Options* options);
+
+}  // namespace shoal::actor

@@ -1,0 +1,28 @@
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+
+#include "launch/commands/commands.h"
+#include "launch/project/new_project.h"
+
+namespace shoal::launch {
+
+void AddNewCommand(CLI::App& app, Action* chosen) {
+  CLI::App* command = app.add_subcommand(
+      "new",
+      "A project of one's own: a task, a preset and an experiment that build against the installed "
+      "Shoal, to be changed.");
+  const auto folder = std::make_shared<std::string>();
+  command->add_option("folder", *folder, "Folder to make; an existing one is refused")->required();
+  command->callback([=] {
+    *chosen = [=] {
+      NewProject(*folder);
+      std::cout << *folder << ": next: cd " << *folder
+                << " && cmake -B build && cmake --build build && shoal train --preset point-reach\n"
+                << std::flush;
+      return 0;
+    };
+  });
+}
+
+}  // namespace shoal::launch

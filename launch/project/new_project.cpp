@@ -1,0 +1,62 @@
+#include "launch/project/new_project.h"
+
+#include <unistd.h>
+
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/config/shared_data.h"
+
+namespace shoal::launch {
+namespace {
+
+namespace fs = std::filesystem;
+
+// The folder of an installation, or of the build.
+fs::path Template() {
+  std::string looked;
+  for (const fs::path& folder : SharedDataFolders("template")) {
+    std::error_code error;
+    if (fs::is_regular_file(folder / kProjectFile, error)) return folder;
+    looked += (looked.empty() ? "" : ", ") + folder.string();
+  }
+  throw RuntimeError("found no template of a project; looked in {}", looked);
+}
+
+// Folders and plain files; what is a link in a build's shared data becomes a file.
+void CopyTree(const fs::path& from, const fs::path& to) {
+  MakeFolders(to);
+  OpenToOthers(to);
+  for (const auto& entry : fs::directory_iterator(from)) {
+    const fs::path target = to / entry.path().filename();
+    if (entry.is_directory()) {
+      CopyTree(entry.path(), target);
+    } else {
+      WriteFileForOthers(target, ReadFile(entry.path()));
+    }
+  }
+}
+
+}  // namespace
+
+void NewProject(const fs::path& given) {
+  // "robot/" is the folder robot, whose parent is not robot itself.
+  const fs::path absolute = fs::absolute(given).lexically_normal();
+  const fs::path folder = absolute.has_filename() ? absolute : absolute.parent_path();
+  std::error_code error;
+  if (fs::exists(folder, error)) throw UsageError("{}: it exists already", given.string());
+  if (!fs::is_directory(folder.parent_path(), error)) {
+    throw UsageError("{}: there is no folder {}", given.string(), folder.parent_path().string());
+  }
+  const fs::path source = Template();
+  fs::path half = folder;
+  half += fmt::format(".tmp-{}", getpid());
+  try {
+    CopyTree(source, half);
+    fs::rename(half, folder);
+  } catch (const std::exception& e) {
+    fs::remove_all(half, error);
+    throw RuntimeError("{}: {}", given.string(), e.what());
+  }
+}
+
+}  // namespace shoal::launch

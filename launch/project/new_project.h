@@ -1,0 +1,13 @@
+// A project of the user's, made from the template that lies among the shared data: a task of one's
+// own (docs/examples/point_reach), a preset, an experiment, and how to build them.
+#pragma once
+
+#include <filesystem>
+
+namespace shoal::launch {
+
+// Makes the folder whole or not at all. Throws Error: usage when it exists or its parent does not,
+// run-time when there is no template or something cannot be written.
+void NewProject(const std::filesystem::path& folder);
+
+}  // namespace shoal::launch

@@ -1,0 +1,23 @@
+// The command line of `shoal-learner`.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "common/dds/reach.h"
+
+namespace CLI {
+class App;
+}
+
+namespace shoal::learner {
+
+struct Options {
+  std::string run;  // folder
+  dds::Reach reach;
+};
+
+// `options` must outlive the command line.
+std::unique_ptr<CLI::App> MakeCommandLine(Options* options);
+
+}  // namespace shoal::learner

@@ -1,0 +1,27 @@
+// What the built programs' --help says, read off their output: what man pages and completions are
+// compared with. Knows nothing of how those are made.
+#pragma once
+
+#include <set>
+#include <string>
+#include <vector>
+
+namespace shoal {
+
+struct HelpText {
+  std::vector<std::string> words;  // {"shoal", "env", "render"}
+  std::string description;         // its first line
+  std::set<std::string> flags;     // "-h", "--help", "--camera"
+  std::set<std::string> arguments;
+  std::set<std::string> commands;
+
+  std::string name() const;  // "shoal env render"
+};
+
+// Of a program and each of its commands, as `PROGRAM ... --help` prints it.
+const std::vector<HelpText>& AllHelp();
+
+// build/share/FILE as the build made it.
+std::string SharePath(const std::string& file);
+
+}  // namespace shoal
