@@ -36,6 +36,7 @@ int Run(int argc, char** argv) {
   shoal::launch::AddPlotCommand(app, &chosen);
   shoal::launch::AddReportCommand(app, &chosen);
   shoal::launch::AddCardCommand(app, &chosen);
+  shoal::launch::AddExportCommand(app, &chosen);
   shoal::launch::AddFilmCommand(app, &chosen);
   shoal::launch::AddTopCommand(app, &chosen);
   shoal::launch::AddRunsCommand(app, &chosen);
