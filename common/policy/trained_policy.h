@@ -37,8 +37,8 @@ struct Observations {
 // One thread at a time; objects are independent of each other. Computes on the calling thread.
 class TrainedPolicy {
  public:
-  // Parameters that do not fit the description are refused with Error. After that, acting on one
-  // observation allocates nothing.
+  // Parameters that do not fit the description are refused with Error. Builds the network for one
+  // observation; those for batches are built when they are first asked for.
   explicit TrainedPolicy(const CheckpointPolicy& policy,
                          nn::Precision precision = nn::Precision::kF32);
   // As ReadCheckpointPolicy.

@@ -34,6 +34,7 @@ nlohmann::ordered_json ToJson(const Row& row);
 // What is measured, one function per room.
 std::vector<Pairing> ReplayPairings();
 std::vector<Pairing> NetworkPairings();
+std::vector<Pairing> PolicyPairings();
 std::vector<Pairing> TransportPairings();
 std::vector<Pairing> WorldPairings();
 

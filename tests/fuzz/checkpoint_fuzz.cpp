@@ -3,6 +3,7 @@
 //   1  the rest is learner.safetensors; state.json is made to fit it, so that the checksums do not
 //      keep the input from the reader behind them
 //   2  the rest is a policy as an actor gets it over the wire
+//   3  the rest is policy.json
 #include <nlohmann/json.hpp>
 
 #include "common/base/check.h"
@@ -10,6 +11,7 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/nn/policy.h"
+#include "common/policy/policy_description.h"
 #include "learner/checkpoint.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/learner/agent/agent_fixture.h"
@@ -63,7 +65,10 @@ void Read(uint8_t mode, const std::string& bytes) {
   static const std::filesystem::path folder = RealCheckpoint();
   if (mode == 0) return ReadWithState(folder, bytes);
   if (mode == 1) return ReadWithLearner(folder, bytes);
-  LoadPolicy(bytes);
+  if (mode == 2) return LoadPolicy(bytes);
+  // What was taken says the same when written and read again.
+  const std::string written = policy::WriteDescription(policy::ReadDescription(bytes, "described"));
+  CHECK(policy::WriteDescription(policy::ReadDescription(written, "again")) == written);
 }
 
 }  // namespace

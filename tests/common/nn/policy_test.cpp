@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "common/base/error.h"
 #include "common/nn/actor_head.h"
 #include "tests/common/nn/network_fixture.h"
@@ -154,6 +156,23 @@ TEST_P(PolicyTest, ADeterministicPolicyHasNoDeviation) {
   tensors.erase("actor.trunk.bias");
   EXPECT_THROW(policy.Load(tensors, "test"), Error);
   EXPECT_EQ(Run(&policy, kBatch).log_std, gaussian.log_std);
+}
+
+TEST(MeanActions, AreSquashedOrClipped) {
+  const std::vector<float> mean{0.5f, -3, 2, 0};
+  std::vector<float> actions(4);
+  MeanActions({.mean = mean, .log_std = {}}, actions);
+  EXPECT_EQ(actions, (std::vector<float>{std::tanh(0.5f), std::tanh(-3.f), std::tanh(2.f), 0}));
+  MeanActions({.mean = mean, .log_std = {}, .squashed = false}, actions);
+  EXPECT_EQ(actions, (std::vector<float>{0.5f, -1, 1, 0}));
+}
+
+TEST(ActorOutputOf, IsWhatTheTensorsSay) {
+  TensorMap tensors{{"actor.mlp.output.bias", {"F32", {6}, {}}}};
+  EXPECT_EQ(ActorOutputOf(tensors, 3), ActorOutput::kGaussian);
+  EXPECT_EQ(ActorOutputOf(tensors, 6), ActorOutput::kDeterministic);
+  tensors["actor.log_std"] = {"F32", {6}, {}};
+  EXPECT_EQ(ActorOutputOf(tensors, 6), ActorOutput::kUnsquashed);
 }
 
 // Acting by statistics of the batch would make an action depend on who acts beside it.

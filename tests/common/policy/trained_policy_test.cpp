@@ -5,8 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "actor/acting/action_selector.h"
-#include "common/base/files.h"
+#include "tests/common/policy/actors_actions.h"
 #include "tests/common/policy/checkpoint_fixture.h"
 #include "tests/support/error_message.h"
 #include "tests/support/temporary_folder.h"
@@ -27,27 +26,6 @@ std::vector<float> Act(TrainedPolicy* policy, const RandomObservations& random) 
   std::vector<float> actions(size_t(random.count) * size_t(policy->spec().action_size));
   const std::vector<ObservedBlock> blocks = BlocksOf(random);
   policy->Act({.count = random.count, .pixels = random.pixels, .blocks = blocks}, actions);
-  return actions;
-}
-
-// What the evaluation actor plays.
-std::vector<float> ActorsActions(const RunConfig& run, const std::filesystem::path& checkpoint,
-                                 const RandomObservations& random) {
-  actor::ActionSelector selector(run.config, run.spec, random.count);
-  selector.Load({{1, 3}, 0, "", ReadFile(checkpoint / kPolicyFile)});
-  std::vector<float> actions;
-  for (int e = 0; e < random.count; ++e) {
-    const auto frames = selector.FrameStackOf(e);
-    std::copy_n(random.pixels.begin() + std::ptrdiff_t(e * frames.size()), frames.size(),
-                frames.begin());
-    const auto vector = selector.VectorOf(e);
-    std::copy_n(random.vectors.begin() + std::ptrdiff_t(e * vector.size()), vector.size(),
-                vector.begin());
-  }
-  selector.Select(actor::Acting::kMean);
-  for (int e = 0; e < random.count; ++e) {
-    actions.insert(actions.end(), selector.ActionOf(e).begin(), selector.ActionOf(e).end());
-  }
   return actions;
 }
 
