@@ -44,7 +44,7 @@ ObservationSet RandomObservations(const ObservationSpec& spec,
   }
   const auto columns = size_t(spec.VectorSize());
   for (size_t i = 0; i < size_t(count) * columns; ++i) {
-    const double far = random.Uniform() < kFarShare ? kFarFactor : 1;
+    const double far = scale && random.Uniform() < kFarShare ? kFarFactor : 1;
     const double z = random.Normal() * far;
     const size_t j = i % columns;
     result.vectors.push_back(scale ? scale->mean()[j] + float(z) / scale->factor()[j] : float(z));

@@ -19,9 +19,9 @@ struct ObservationSet {
   std::vector<float> vectors = {};   // (N, V)
 };
 
-// Images of noise, each of a range of brightness of its own. Vectors normal around what the policy
-// is used to (`scale`; else around 0 with deviation 1), a tenth of their numbers 30 times as far
-// away: where normalisation cuts off.
+// Images of noise, each of a range of brightness of its own. Vectors normal around 0 with deviation
+// 1; where the policy normalises them (`scale`) around what it is used to, a tenth of their numbers
+// 30 times as far away: what is cut off is seen.
 ObservationSet RandomObservations(const ObservationSpec& spec,
                                   const std::optional<nn::VectorScale>& scale, int count,
                                   uint64_t seed);

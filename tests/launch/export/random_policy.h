@@ -17,7 +17,7 @@ struct PolicyKind {
   bool normalised = false;
 };
 
-// Odd sizes where the encoder takes them: alexnet's windows of its average pool differ then.
+// Small, and odd where the encoder takes it: the windows of alexnet's average pool differ then.
 inline ObservationSpec SpecFor(const std::string& encoder) {
   ObservationSpec spec;
   spec.task = "test";
@@ -25,8 +25,8 @@ inline ObservationSpec SpecFor(const std::string& encoder) {
     spec.cameras = {"front", "side"};
     spec.channels = 6;
     spec.stack = 2;
-    spec.height = 84;
-    spec.width = encoder == "alexnet" || encoder == "resnet18" ? 101 : 84;
+    spec.height = encoder == "alexnet" ? 63 : 48;
+    spec.width = encoder == "alexnet" ? 127 : 44;
   }
   spec.blocks = {{"grip", 4}, {"unseen", 3, /*observed=*/false}, {"goal", 3}};
   spec.action_size = 3;
