@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "common/base/error.h"
+#include "common/base/files.h"
 #include "common/base/log.h"
 #include "common/base/usable_cores.h"
 #include "common/config/run_files.h"
@@ -14,6 +15,7 @@
 #include "common/nn/encoder_weights.h"
 #include "learner/agent/algorithms.h"
 #include "learner/agent/encoder_start.h"
+#include "learner/agent/network_start.h"
 #include "learner/batch_feed.h"
 #include "learner/checkpoint_store.h"
 #include "learner/dds_outlet.h"
@@ -28,7 +30,8 @@ class Learner {
  public:
   Learner(const std::filesystem::path& folder, const RunConfig& run, const dds::Reach& reach,
           int threads)
-      : member_(folder),
+      : folder_(folder),
+        member_(folder),
         run_(run),
         session_(NextSession(folder, "learner-0", WallTimeNs())),
         precision_(nn::ChoosePrecision(run.config.learner.precision, run.spec.HasPixels())),
@@ -88,12 +91,21 @@ class Learner {
   }
 
   void StartFresh() {
+    const std::filesystem::path initial = folder_ / kInitialWeightsFile;
+    if (std::filesystem::exists(initial)) {
+      const std::string source = initial.string();
+      agent_->Restore(StartTensors(nn::ReadSafetensors(ReadFile(initial), source), source, *agent_),
+                      source);
+      log::Info("the networks start from {}", source);
+      return;
+    }
     const nn::TensorMap weights = nn::ReadEncoderWeights(run_.config.network, run_.spec);
     if (weights.empty()) return;
     StartEncoder(weights, agent_.get());
     log::Info("the encoder starts from {}", run_.config.network.encoder_weights);
   }
 
+  const std::filesystem::path folder_;
   const RunMembership member_;
   const RunConfig run_;
   const uint64_t session_;

@@ -61,6 +61,9 @@ explained() {
       local program=${1#needs }
       ! command -v "${program%% *}" >/dev/null
       ;;
+    "needs the Python module "*)
+      ! "${SHOAL_PYTHON:-/usr/bin/python3}" -c "import ${1##* }" 2>/dev/null
+      ;;
     *) false ;;
   esac
 }

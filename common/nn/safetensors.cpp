@@ -27,6 +27,7 @@ constexpr const char* kMetadata = "__metadata__";
 uint64_t ElementBytes(const std::string& dtype) {
   if (dtype == "F32") return 4;
   if (dtype == "BF16") return 2;
+  if (dtype == "U8") return 1;
   if (dtype == "U64" || dtype == "I64") return 8;
   return 0;
 }
@@ -85,7 +86,7 @@ Entry ParseEntry(const std::string& name, const json& value, const std::string& 
   }
   const json &dtype = value["dtype"], &shape = value["shape"], &offsets = value["data_offsets"];
   if (!dtype.is_string() || ElementBytes(dtype.get<std::string>()) == 0) {
-    throw fault("expected dtype F32, BF16, U64 or I64");
+    throw fault("expected dtype F32, BF16, U8, U64 or I64");
   }
   Entry entry{name, {dtype.get<std::string>(), {}, {}}, 0, 0};
   if (!shape.is_array()) throw fault("shape is not an array");

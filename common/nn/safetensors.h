@@ -11,7 +11,7 @@
 namespace shoal::nn {
 
 struct NamedTensor {
-  std::string dtype;  // "F32", "BF16", "U64"; "I64" of PyTorch's counters
+  std::string dtype;  // "F32", "BF16", "U64"; "I64" of PyTorch's counters; "U8"
   std::vector<int64_t> shape;
   std::vector<uint8_t> data;
 };

@@ -11,7 +11,7 @@
 namespace shoal::nn {
 namespace {
 
-constexpr float kLimit = 10, kEpsilon = 1e-8f;
+constexpr float kEpsilon = 1e-8f;
 
 std::vector<float> ReadVector(const TensorMap& tensors, const std::string& name, int size,
                               const std::string& source) {

@@ -23,6 +23,11 @@ class VectorScale {
   // x (B, V) to y (B, V), which says how many; they may be the same.
   void Apply(const float* x, std::span<float> y) const;
 
+  // (V): y = clip((x - mean) * factor, -kLimit, kLimit).
+  static constexpr float kLimit = 10;
+  std::span<const float> mean() const { return mean_; }
+  std::span<const float> factor() const { return factor_; }
+
  private:
   std::vector<float> mean_, factor_;  // (V)
 };

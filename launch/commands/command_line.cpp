@@ -20,6 +20,7 @@ std::unique_ptr<CLI::App> MakeCommandLine(Action* chosen) {
   AddPlotCommand(*app, chosen);
   AddReportCommand(*app, chosen);
   AddCardCommand(*app, chosen);
+  AddExportCommand(*app, chosen);
   AddFilmCommand(*app, chosen);
   AddTopCommand(*app, chosen);
   AddRunsCommand(*app, chosen);

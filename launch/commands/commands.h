@@ -19,6 +19,7 @@ void AddCompareCommand(CLI::App& app, Action* chosen);
 void AddPlotCommand(CLI::App& app, Action* chosen);
 void AddReportCommand(CLI::App& app, Action* chosen);
 void AddCardCommand(CLI::App& app, Action* chosen);
+void AddExportCommand(CLI::App& app, Action* chosen);
 void AddFilmCommand(CLI::App& app, Action* chosen);
 void AddEnvCommand(CLI::App& app, Action* chosen);  // see env.cpp and env_tasks.cpp
 void AddTopCommand(CLI::App& app, Action* chosen);

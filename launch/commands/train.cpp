@@ -36,6 +36,13 @@ void AddTrainCommand(CLI::App& app, Action* chosen) {
   command->add_option("--secure", options->secure,
                       "Folder of credentials (shoal secure init): authenticated and encrypted");
   command->add_option("--resume", options->resume, "Go on with a stopped run: its name or folder");
+  auto* init_from = command->add_option(
+      "--init-from", options->init_from,
+      "safetensors file that the networks start from: of a checkpoint, or of others by --name-map");
+  command
+      ->add_option("--name-map", options->name_map,
+                   "JSON file: our tensors' names to those of --init-from")
+      ->needs(init_from);
   command->add_flag("--detach", options->detach,
                     "Return once the run has started; watch it with shoal attach or shoal top");
   command->add_option("--prometheus", options->prometheus,

@@ -66,11 +66,10 @@ bool SetsPrecision(const std::string& assignment) {
 }
 
 void ApplyResumeOptions(const TrainOptions& options, Config* config) {
-  const std::pair<bool, const char*> refused[] = {{!options.preset.empty(), "--preset"},
-                                                  {!options.config_file.empty(), "--config"},
-                                                  {!options.run_name.empty(), "--run-name"},
-                                                  {options.overwrite, "--overwrite"},
-                                                  {options.lockstep, "--lockstep"}};
+  const std::pair<bool, const char*> refused[] = {
+      {!options.preset.empty(), "--preset"},       {!options.config_file.empty(), "--config"},
+      {!options.run_name.empty(), "--run-name"},   {options.overwrite, "--overwrite"},
+      {!options.init_from.empty(), "--init-from"}, {options.lockstep, "--lockstep"}};
   for (const auto& [given, name] : refused) {
     if (given) throw UsageError("--resume goes on with the run's own configuration: no {}", name);
   }

@@ -14,7 +14,8 @@ struct TrainOptions {
   std::string run_name;          // empty = automatic
   std::string hosts;             // file of other hosts; empty = none, or those of the resumed run
   std::string secure;            // folder of credentials; empty = none, or the resumed run's
-  std::string resume;            // run to go on with: its path or its name
+  std::string init_from, name_map;  // safetensors and JSON file (common/nn/named_weights.h)
+  std::string resume;               // run to go on with: its path or its name
   bool overwrite = false, lockstep = false;
   bool print_config = false, dry_run = false;
   bool film = false;       // of the judged checkpoint, once the run has been judged

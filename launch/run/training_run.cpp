@@ -10,6 +10,7 @@
 
 #include "common/base/clock.h"
 #include "common/base/error.h"
+#include "common/base/files.h"
 #include "common/base/stop.h"
 #include "common/base/usable_cores.h"
 #include "common/config/config_io.h"
@@ -21,6 +22,7 @@
 #include "common/dds/publisher.h"
 #include "common/dds/role_rights.h"
 #include "common/nn/encoder_weights.h"
+#include "common/nn/named_weights.h"
 #include "common/nn/network_check.h"
 #include "common/tasks/task_library.h"
 #include "common/wire/weights_parts.h"
@@ -35,6 +37,8 @@
 #include "launch/run/plan_text.h"
 #include "launch/run/run_end.h"
 #include "launch/watch/prometheus_endpoint.h"
+#include "learner/agent/algorithms.h"
+#include "learner/agent/network_start.h"
 #include "learner/agent/value_bounds.h"
 #include "replay_server/core/hindsight.h"
 #include "replay_server/core/storage_limits.h"
@@ -148,6 +152,19 @@ PreparedRun PrepareResumed(const TrainOptions& options) {
 void CheckNetwork(const RunConfig& run) {
   nn::CheckNetwork(run.config.network, run.spec, run.config.learner.batch,
                    int64_t{kMaxWeightsBytes});
+}
+
+// What --init-from names, by our names; empty without. Refused here is what the learner would
+// refuse.
+nn::TensorMap ReadInitialWeights(const TrainOptions& options, const RunConfig& run) {
+  if (options.init_from.empty()) return {};
+  if (!run.config.network.encoder_weights.empty()) {
+    throw UsageError("--init-from: network.encoder_weights is set, too: expected one of both");
+  }
+  nn::TensorMap weights = nn::ReadNamedWeights(options.init_from, options.name_map);
+  const auto agent = learner::MakeAgent(run.config, run.spec, nn::Precision::kF32);
+  learner::StartTensors(weights, options.init_from, *agent);
+  return weights;
 }
 
 // The nearest folder of a run to be that exists. Throws Error where no run can be made in it.
@@ -309,6 +326,7 @@ int Train(const TrainOptions& options, Detachment* detachment) {
   PrivilegedBlocksOf(config.config.learner, config.spec);  // refused here
   CheckNetwork(config);
   nn::ReadEncoderWeights(config.config.network, config.spec);  // the learner will; refused here
+  const nn::TensorMap initial = ReadInitialWeights(options, config);
   CheckReplay(config, /*exists=*/false);
   CheckHosts(hosts, StopRequested);
   address.host = ServersHost(hosts);
@@ -323,6 +341,10 @@ int Train(const TrainOptions& options, Detachment* detachment) {
   }
   PreparedRun run = PrepareFresh(options, std::move(config), std::move(hosts));
   run.frame_microseconds = world.frame_microseconds;
+  if (!initial.empty()) {
+    WriteFileAtomically(run.folder.path() / learner::kInitialWeightsFile,
+                        nn::WriteSafetensors(initial, {}));
+  }
   return Start(std::move(run), options, std::move(bus), address, detachment);
 }
 

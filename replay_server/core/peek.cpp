@@ -6,6 +6,7 @@
 #include <new>
 #include <optional>
 #include <span>
+#include <type_traits>
 
 #include "common/base/error.h"
 #include "common/base/random.h"
@@ -117,9 +118,18 @@ class Painter {
   int cameras_, planes_;
 };
 
-// One attempt: nothing when the server was faster.
-std::optional<Peek> TryPeek(const RunConfig& run, const std::filesystem::path& file, int batch,
-                            Random* random) {
+// Elements drawn from a ring, and what they are gathered by.
+struct Draw {
+  const Ring& ring;
+  const EpisodeIndex& index;
+  const BatchPlan& plan;
+  const BatchGather& gather;
+};
+
+// One attempt: what `look` makes of a draw, or nothing when the server was faster.
+template <class Look>
+auto TryLook(const RunConfig& run, const std::filesystem::path& file, int batch, const Look& look,
+             Random* random) -> std::optional<std::invoke_result_t<Look, const Draw&>> {
   const Ring ring = Ring::OpenSnapshot(run.spec, file);
   const EpisodeIndex index(ring, IndexOptionsOf(run));
   if (index.sampleable() == 0) {
@@ -130,22 +140,44 @@ std::optional<Peek> TryPeek(const RunConfig& run, const std::filesystem::path& f
   const auto plan = DrawPlan(options, policies.selector.get(), policies.relabeller.get(), random);
   if (!plan || !StillThere(ring, index, *plan, run)) return std::nullopt;
   const BatchGather gather(ring, index, run.spec, NStepOf(run.config), policies.goals.get());
-  const Batch plain(run.spec, batch), shifted(run.spec, batch);
-  gather.Gather(WithoutShift(*plan), plain.View());
-  gather.Gather(*plan, shifted.View());
-
-  Peek peek;
-  peek.records = ring.last_id() - ring.oldest_id() + 1;
-  peek.sampleable = index.sampleable();
-  for (const BatchPlan::Element& e : plan->elements) peek.captions.push_back(Caption(ring, e.id));
-  if (run.spec.HasPixels()) {
-    Painter painter(run.spec, batch, &peek);
-    painter.PaintRow(plain.View().obs_frames, 0);
-    painter.PaintRow(shifted.View().obs_frames, 1);
-    painter.PaintRow(plain.View().next_obs_frames, 2);
-    painter.PaintRow(shifted.View().next_obs_frames, 3);
-  }
+  auto seen = look({ring, index, *plan, gather});
   if (!StillThere(ring, index, *plan, run)) return std::nullopt;
+  return seen;
+}
+
+template <class Look>
+auto LookIntoRing(const RunConfig& run, const std::filesystem::path& folder, int batch,
+                  uint64_t seed, const Look& look) {
+  if (run.config.replay.storage != "file") {
+    throw UsageError("the run in '{}' keeps its replay in memory (replay.storage): nothing to see",
+                     folder.string());
+  }
+  Random random(StreamKey(seed, StreamRole::kReplaySampler));
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    if (auto seen = TryLook(run, folder / kRingFile, batch, look, &random)) {
+      return *std::move(seen);
+    }
+  }
+  throw RuntimeError("replay file '{}' is overwritten faster than it can be read",
+                     (folder / kRingFile).string());
+}
+
+Peek Paint(const RunConfig& run, int batch, const Draw& draw) {
+  const Batch plain(run.spec, batch), shifted(run.spec, batch);
+  draw.gather.Gather(WithoutShift(draw.plan), plain.View());
+  draw.gather.Gather(draw.plan, shifted.View());
+  Peek peek;
+  peek.records = draw.ring.last_id() - draw.ring.oldest_id() + 1;
+  peek.sampleable = draw.index.sampleable();
+  for (const BatchPlan::Element& e : draw.plan.elements) {
+    peek.captions.push_back(Caption(draw.ring, e.id));
+  }
+  if (!run.spec.HasPixels()) return peek;
+  Painter painter(run.spec, batch, &peek);
+  painter.PaintRow(plain.View().obs_frames, 0);
+  painter.PaintRow(shifted.View().obs_frames, 1);
+  painter.PaintRow(plain.View().next_obs_frames, 2);
+  painter.PaintRow(shifted.View().next_obs_frames, 3);
   return peek;
 }
 
@@ -153,16 +185,19 @@ std::optional<Peek> TryPeek(const RunConfig& run, const std::filesystem::path& f
 
 Peek PeekBatch(const std::filesystem::path& folder, int batch, uint64_t seed) {
   const RunConfig run = ReadRunConfig(folder);
-  if (run.config.replay.storage != "file") {
-    throw UsageError("the run in '{}' keeps its replay in memory (replay.storage): nothing to see",
-                     folder.string());
-  }
-  Random random(StreamKey(seed, StreamRole::kReplaySampler));
-  for (int attempt = 0; attempt < kAttempts; ++attempt) {
-    if (auto peek = TryPeek(run, folder / kRingFile, batch, &random)) return *std::move(peek);
-  }
-  throw RuntimeError("replay file '{}' is overwritten faster than it can be read",
-                     (folder / kRingFile).string());
+  return LookIntoRing(run, folder, batch, seed,
+                      [&](const Draw& draw) { return Paint(run, batch, draw); });
+}
+
+PeekedObservations PeekObservations(const std::filesystem::path& folder, int batch, uint64_t seed) {
+  const RunConfig run = ReadRunConfig(folder);
+  return LookIntoRing(run, folder, batch, seed, [&](const Draw& draw) {
+    const Batch plain(run.spec, batch);
+    draw.gather.Gather(WithoutShift(draw.plan), plain.View());
+    const BatchView view = plain.View();
+    return PeekedObservations{{view.obs_frames.begin(), view.obs_frames.end()},
+                              {view.obs_vector.begin(), view.obs_vector.end()}};
+  });
 }
 
 }  // namespace shoal::replay

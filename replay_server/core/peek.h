@@ -1,5 +1,5 @@
-// A look into the ring of a run, for `shoal replay peek`: what the learner would be given, as a
-// picture, with and without the random shift.
+// A look into the ring of a run: what the learner would be given. For `shoal replay peek` as a
+// picture, with and without the random shift; for `shoal export` the observations alone.
 #pragma once
 
 #include <cstdint>
@@ -23,5 +23,13 @@ struct Peek {
 // Draws `batch` elements from the ring of the run in `folder`; a server may be writing to it.
 // Throws Error when there is no ring file, it does not fit the run, or it holds no sampleable step.
 Peek PeekBatch(const std::filesystem::path& folder, int batch, uint64_t seed);
+
+struct PeekedObservations {
+  std::vector<uint8_t> frames;  // (batch, K*C, H, W), not shifted; empty without pixels
+  std::vector<float> vectors;   // (batch, V)
+};
+
+// The observations before `batch` steps, drawn as PeekBatch draws them; throws Error as it does.
+PeekedObservations PeekObservations(const std::filesystem::path& folder, int batch, uint64_t seed);
 
 }  // namespace shoal::replay

@@ -34,8 +34,8 @@ const std::set<std::string> kEmptyNames = {"utils", "util",    "helpers", "helpe
 const std::map<std::string, std::vector<std::string>> kRooms = {
     {"actor", {"worlds", "acting", "sending", "loop", "evaluation"}},
     {"launch",
-     {"record", "processes", "film", "watch", "run", "experiment", "report", "observability",
-      "project", "check", "commands", "manual"}},
+     {"record", "processes", "film", "watch", "run", "experiment", "report", "export",
+      "observability", "project", "check", "commands", "manual"}},
 };
 
 // What a room may not include: a folder, or one header.

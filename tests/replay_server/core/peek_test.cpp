@@ -59,6 +59,20 @@ TEST_F(PeekTest, ShowsThePredecessorsFrameAndThenTheStepsOwn) {
   EXPECT_EQ(pixel(6), next_obs[15]);
 }
 
+TEST_F(PeekTest, ObservationsAreThoseOfTheSameDrawNotShifted) {
+  ReplayCore core(run_, folder_.path(), 1);
+  core.TakeChunk(actor_.Chunk(1, 40));
+  const Peek peek = PeekBatch(folder_.path(), 1, 1);
+  uint64_t id = 0;
+  ASSERT_EQ(std::sscanf(peek.captions[0].c_str(), "record %lu", &id), 1);
+  const PeekedObservations peeked = PeekObservations(folder_.path(), 1, 1);
+  const auto newest = core.ring().layout().Frame(core.ring().Record(core.ring().Slot(id).prev));
+  ASSERT_EQ(peeked.frames.size(), newest.size() * size_t(run_.spec.stack));
+  EXPECT_TRUE(std::equal(newest.rbegin(), newest.rend(), peeked.frames.rbegin()));
+  EXPECT_EQ(peeked.vectors.size(), size_t(run_.spec.VectorSize()));
+  EXPECT_THROW(PeekObservations(folder_.path() / "absent", 1, 1), Error);
+}
+
 TEST_F(PeekTest, TheSameSeedShowsTheSame) {
   ReplayCore core(run_, folder_.path(), 1);
   core.TakeChunk(actor_.Chunk(1, 40));

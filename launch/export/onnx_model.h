@@ -1,0 +1,72 @@
+// An ONNX file as a value: what of the format a policy needs, and its bytes.
+//
+// Constants are f32. Inputs and the output have the batch as their first dimension, N, which
+// whoever runs the file chooses. Nodes are in an order in which each finds what it reads.
+//
+// Source: ONNX, github.com/onnx/onnx, docs/IR.md and docs/Operators.md, operator set 17 of 2022:
+// the first with LayerNormalization, and old enough that runtimes of the years since read it.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <variant>
+#include <vector>
+
+namespace shoal::launch {
+
+inline constexpr int kOnnxOperatorSet = 17;
+inline constexpr int kOnnxIrVersion = 8;  // what came with that operator set
+
+// Row-major. No shape: one number.
+struct OnnxTensor {
+  std::vector<int64_t> shape = {};
+  std::vector<float> values = {};
+
+  bool operator==(const OnnxTensor&) const = default;
+};
+
+// Numbers of a tensor of this shape.
+size_t Count(const std::vector<int64_t>& shape);
+
+using OnnxAttribute = std::variant<int64_t, float, std::vector<int64_t>>;
+
+struct OnnxNode {
+  std::string op;                   // "Conv"
+  std::vector<std::string> inputs;  // of constants, of the model's inputs, of earlier outputs
+  std::string output;
+  std::map<std::string, OnnxAttribute> attributes = {};
+
+  bool operator==(const OnnxNode&) const = default;
+};
+
+// An input or an output: (N, shape...).
+struct OnnxPort {
+  enum class Type { kF32 = 1, kU8 = 2 };  // as the format numbers them
+  std::string name = {};
+  Type type = Type::kF32;
+  std::vector<int64_t> shape = {};
+
+  bool operator==(const OnnxPort&) const = default;
+};
+
+struct OnnxModel {
+  std::vector<OnnxPort> inputs = {};
+  OnnxPort output = {};
+  std::vector<OnnxNode> nodes = {};
+  std::map<std::string, OnnxTensor> constants = {};
+  std::map<std::string, std::string> metadata = {};  // free text by key, for people and tools
+
+  bool operator==(const OnnxModel&) const = default;
+};
+
+// The bytes of a file. The same model gives the same bytes. Throws Error where it is too large for
+// the format (2 GB).
+std::string WriteOnnx(const OnnxModel& model);
+
+// Reads what WriteOnnx writes. `source` names the bytes in errors. Throws Error on anything else,
+// other operator sets and tensors of other types included.
+OnnxModel ReadOnnx(std::string_view bytes, const std::string& source);
+
+}  // namespace shoal::launch

@@ -1,0 +1,17 @@
+// Zip archives of files that are stored as they are, not compressed.
+//
+// Source: PKWARE's APPNOTE.TXT 6.3, sections 4.3.7 (local header), 4.3.12 (central directory),
+// 4.3.16 (its end).
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace shoal::launch {
+
+// (name, content), in their order; times are 1980-01-01, so that equal files give equal bytes.
+// Throws Error where it comes to 2 GB.
+std::string WriteZip(const std::vector<std::pair<std::string, std::string>>& files);
+
+}  // namespace shoal::launch

@@ -1,0 +1,103 @@
+#include "learner/agent/network_start.h"
+
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <cstring>
+#include <string_view>
+#include <utility>
+
+#include "common/base/error.h"
+#include "common/nn/actor_critic_plan.h"
+
+namespace shoal::learner {
+namespace {
+
+constexpr std::string_view kMoments = "observation.moments";
+
+// Of a checkpoint's learner.safetensors, but of no network.
+bool IsLeftAlone(std::string_view name) {
+  return name.starts_with("adam.") || name.starts_with("agent.") ||
+         name.starts_with("temperature.") || name.starts_with("reward.");
+}
+
+bool IsPolicys(std::string_view name) {
+  return name.starts_with("encoder.") || name.starts_with("actor.");
+}
+
+void RefuseNonFinite(const std::string& name, const nn::NamedTensor& tensor,
+                     const std::string& source) {
+  for (size_t i = 0; tensor.dtype == "F32" && i < tensor.data.size(); i += sizeof(float)) {
+    float value;
+    std::memcpy(&value, tensor.data.data() + i, sizeof(value));
+    if (std::isfinite(value)) continue;
+    throw UsageError("{}: tensor {} holds {}, expected finite numbers", source, name, value);
+  }
+}
+
+void RefuseMisfit(const std::string& name, const nn::NamedTensor& tensor, const nn::TensorMap& own,
+                  const std::string& source) {
+  const auto at = own.find(name);
+  if (at == own.end()) {
+    throw UsageError("{}: tensor {} is none of this run's networks", source, name);
+  }
+  if (tensor.dtype != at->second.dtype) {
+    throw UsageError("{}: tensor {} is {}, expected {}", source, name, tensor.dtype,
+                     at->second.dtype);
+  }
+  if (tensor.shape != at->second.shape) {
+    throw UsageError("{}: tensor {} has shape {}, expected {}", source, name,
+                     fmt::join(tensor.shape, "x"), fmt::join(at->second.shape, "x"));
+  }
+  RefuseNonFinite(name, tensor, source);
+}
+
+// A policy's own file has the mean and the variance, but not of how many observations they are.
+void RefuseStatisticsAlone(const nn::TensorMap& weights, const std::string& source) {
+  if (!weights.contains(nn::kObservationMean) || weights.contains(std::string(kMoments))) return;
+  throw UsageError(
+      "{}: the policy normalises observations, and how many {} is of stands only in "
+      "its checkpoint's learner.safetensors: expected that file",
+      source, nn::kObservationMean);
+}
+
+// What a tensor of the agent starts from; null: what it starts from always. A target follows its
+// critic rather than the encoder that both repeat.
+const nn::NamedTensor* SourceOf(const std::string& name, const nn::TensorMap& weights) {
+  if (IsLeftAlone(name)) return nullptr;
+  const auto find = [&](const std::string& wanted) {
+    const auto at = weights.find(wanted);
+    return at == weights.end() ? nullptr : &at->second;
+  };
+  if (const auto* own = find(name)) return own;
+  for (const auto& [target, of] : {std::pair{"target.", "critic."}, {"target_actor.", "actor."}}) {
+    if (!name.starts_with(target)) continue;
+    if (const auto* followed = find(of + name.substr(std::strlen(target)))) return followed;
+  }
+  for (size_t dot = name.find('.'); dot != std::string::npos; dot = name.find('.', dot + 1)) {
+    if (const auto* repeated = find(name.substr(dot + 1))) return repeated;
+  }
+  return nullptr;
+}
+
+}  // namespace
+
+nn::TensorMap StartTensors(const nn::TensorMap& weights, const std::string& source,
+                           const Agent& agent) {
+  RefuseStatisticsAlone(weights, source);
+  const nn::TensorMap own = agent.AllTensors();
+  for (const auto& [name, weight] : weights) {
+    if (!IsLeftAlone(name)) RefuseMisfit(name, weight, own, source);
+  }
+  for (const auto& [name, tensor] : own) {
+    if (!IsPolicys(name) || weights.contains(name)) continue;
+    throw UsageError("{}: tensor {} is missing", source, name);
+  }
+  nn::TensorMap result = own;
+  for (auto& [name, tensor] : result) {
+    if (const auto* weight = SourceOf(name, weights)) tensor = *weight;
+  }
+  return result;
+}
+
+}  // namespace shoal::learner

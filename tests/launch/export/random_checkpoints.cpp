@@ -1,0 +1,70 @@
+// Writes a checkpoint of every algorithm and encoder, trained for three updates on random numbers,
+// for scripts that hold other programs to what `shoal export` makes of them
+// (tests/comparison/onnx_actions.py, sb3_policy.py).
+//
+// usage: random-checkpoints FOLDER
+//   FOLDER/ALGORITHM-ENCODER/checkpoints/step_N; ENCODER "state" without pixels, "sb3" of networks
+//   that Stable-Baselines3 has: nature alone of pixels, "sb3-state" of vectors.
+#include <fmt/core.h>
+
+#include <filesystem>
+
+#include "common/base/main_guard.h"
+#include "common/nn/encoders/encoder_kind.h"
+#include "tests/common/policy/checkpoint_fixture.h"
+
+namespace shoal {
+namespace {
+
+namespace fs = std::filesystem;
+
+void Write(const std::string& name, const RunConfig& run, const fs::path& folder) {
+  fs::create_directories(folder / name);
+  fmt::print("{}\n", policy::WriteCheckpointOf(run, folder / name).string());
+}
+
+// What Stable-Baselines3's MlpPolicy or CnnPolicy is.
+RunConfig Sb3Run(const std::string& algorithm, bool pixels) {
+  RunConfig run = policy::SmallRun(algorithm, pixels);
+  run.config.network.layer_norm = false;
+  run.config.network.log_std = "clamped";
+  if (algorithm == "ppo") run.config.network.activation = "tanh";
+  if (!pixels) return run;
+  run.config.network.encoder = "nature";
+  run.config.network.trunk = "auto";
+  run.config.network.filters.clear();
+  run.config.network.strides.clear();
+  run.config.learner.normalise_vectors = false;
+  run.config.observation.proprioception = false;
+  run.spec.height = run.spec.width = 84;
+  for (BlockSpec& block : run.spec.blocks) block.observed = false;
+  return run;
+}
+
+int Main(const fs::path& folder) {
+  for (const std::string algorithm : {"sac", "td3", "ddpg", "ppo"}) {
+    Write(algorithm + "-state", policy::SmallRun(algorithm, /*pixels=*/false), folder);
+    Write(algorithm + "-sb3-state", Sb3Run(algorithm, /*pixels=*/false), folder);
+    Write(algorithm + "-sb3", Sb3Run(algorithm, /*pixels=*/true), folder);
+    for (const nn::EncoderKind& kind : nn::kEncoderKinds) {
+      RunConfig run = policy::SmallRun(algorithm, /*pixels=*/true);
+      run.config.network.encoder = kind.name;
+      run.config.network.filters.clear();
+      run.config.network.strides.clear();
+      run.spec.height = run.spec.width = 84;
+      Write(algorithm + "-" + std::string(kind.name), run, folder);
+    }
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace shoal
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    fmt::print(stderr, "usage: random-checkpoints FOLDER\n");
+    return 2;
+  }
+  return shoal::GuardMain("random-checkpoints", [&] { return shoal::Main(argv[1]); });
+}
