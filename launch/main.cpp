@@ -39,6 +39,7 @@ int Run(int argc, char** argv) {
   shoal::launch::AddFilmCommand(app, &chosen);
   shoal::launch::AddTopCommand(app, &chosen);
   shoal::launch::AddRunsCommand(app, &chosen);
+  shoal::launch::AddWebCommand(app, &chosen);
   shoal::launch::AddSteerCommands(app, &chosen);
   shoal::launch::AddAttachCommand(app, &chosen);
   shoal::launch::AddEnvCommand(app, &chosen);
