@@ -16,12 +16,12 @@
 namespace shoal::launch {
 
 struct ServerLimits {
-  std::chrono::milliseconds request{5000};  // for a request to arrive as a whole
+  std::chrono::milliseconds request{3000};  // for a request to arrive as a whole
   std::chrono::milliseconds answer{15000};  // for its answer to be taken
   std::chrono::milliseconds file{300000};   // for a file's, behind a slow line
   size_t request_bytes = 24000;             // headers and body
-  size_t threads = 8;
-  size_t waiting = 32;  // connections; what comes beyond is closed at once
+  size_t threads = 16;
+  size_t waiting = 16;  // connections; what comes beyond is closed at once
 };
 
 class BoundedServer final : public httplib::Server {

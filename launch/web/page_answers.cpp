@@ -80,7 +80,9 @@ std::string TopAnswer(const RunViewMessage& view) {
 
 std::string RunsAnswer(const std::filesystem::path& dir, const std::vector<RunListing>& runs) {
   ordered_json keys = ordered_json::array();
-  for (const LiveKey& live : LiveKeys()) keys.push_back(live.key);
+  for (const LiveKey& live : LiveKeys()) {
+    if (live.key != "actors") keys.push_back(live.key);  // by `scale` alone
+  }
   return "{\"runs\":" + RunListJson(dir, runs) + ",\"keys\":" + Text(keys) + "}";
 }
 

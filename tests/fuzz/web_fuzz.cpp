@@ -59,9 +59,11 @@ void Read(uint8_t which, const std::string& bytes) {
       const std::string token(32, 'a');
       const Gate gate({.address = "127.0.0.1", .port = 1}, token);
       const std::string cookie(CookieValue(bytes, "shoal_token_1"));
-      CHECK(gate.Decide({.acts = true, .host = bytes, .origin = bytes, .header_token = cookie}) !=
-                Access::kAllowed ||
-            cookie == token);
+      Caller caller;
+      caller.acts = true;
+      caller.host = caller.origin = bytes;
+      caller.header_token = cookie;
+      CHECK(gate.Decide(caller) != Access::kAllowed || cookie == token);
       break;
     }
     case 5: {

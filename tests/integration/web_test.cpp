@@ -42,7 +42,8 @@ TEST(Web, ThePageShowsWhatTopShowsAndSteers) {
   const TrainingRun run;
   RunningTraining training(run, run.Command(kLong));
   ASSERT_TRUE(WaitForView(run, [](const json& view) {
-                return ProcessOf(view, "learner").value("updates", 0.0) > 50;
+                const json learner = ProcessOf(view, "learner");
+                return learner.is_object() && learner.value("updates", 0.0) > 50;
               }).is_object());
   launch::WebServer server({.run = "",
                             .run_dir = run.parent().string(),

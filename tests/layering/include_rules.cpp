@@ -22,6 +22,7 @@ const std::map<std::string, std::string> kHomes = {
     {"Eigen/", "common/nn"},    {"mujoco/", "actor/worlds"}, {"GL/", "actor/worlds"},
     {"spdlog/", "common/base"}, {"png.h", "common/image"},   {"openssl/", "common/credentials"},
     {"libav", "launch/film"},   {"libsw", "launch/film"},    {"cairo", "launch/film"},
+    {"httplib", "launch/web"},
 };
 
 // Stands for a program of others, which knows of Shoal what the documentation says.
@@ -34,7 +35,8 @@ const std::set<std::string> kEmptyNames = {"utils", "util",    "helpers", "helpe
 const std::map<std::string, std::vector<std::string>> kRooms = {
     {"actor", {"worlds", "acting", "sending", "loop", "evaluation"}},
     {"launch",
-     {"record", "processes", "film", "watch", "run", "experiment", "report", "check", "commands"}},
+     {"record", "processes", "film", "watch", "run", "experiment", "report", "web", "check",
+      "commands"}},
 };
 
 // What a room may not include: a folder, or one header.

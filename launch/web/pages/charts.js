@@ -1,6 +1,6 @@
 // A run's curves, drawn by dygraphs: a small chart each, all over env steps.
 
-const drawn = new Map();  // id of a chart -> {graph, box}
+const drawn = new Map();  // id of a chart -> {chart, graph, labels, box}
 
 const compact = new Intl.NumberFormat("en", { notation: "compact", maximumSignificantDigits: 4 });
 const exact = new Intl.NumberFormat("en", { maximumSignificantDigits: 6 });
@@ -19,21 +19,22 @@ function rowsOf(series) {
   return [...rows.values()].sort((a, b) => a[0] - b[0]);
 }
 
-// No HTML is made of what the server says: text alone.
-function legendOf(data) {
+const text = (chart, y) => chart.id === "success" ? Math.round(1000 * y) / 10 + " %" : exact.format(y);
+
+// The newest point of each series, or those under the pointer. No HTML is made of what the server
+// says: text alone.
+function legendOf(chart, data) {
   const parts = document.createDocumentFragment();
-  if (data.x === undefined) {
-    for (const one of data.series) {
-      const name = document.createElement("span");
-      name.textContent = one.label;
-      name.style.color = one.color;
-      parts.append(name, " ");
-    }
-    return parts;
-  }
-  parts.append(exact.format(data.x) + " env steps: ");
-  parts.append(data.series.filter((one) => one.y !== undefined && one.y !== null)
-    .map((one) => one.label + " " + exact.format(one.y)).join(", "));
+  if (data.x !== undefined) parts.append("at " + exact.format(data.x) + " env steps: ");
+  data.series.forEach((one, i) => {
+    const points = chart().series[i].points;
+    const y = data.x === undefined ? points[points.length - 1][1] : one.y;
+    if (y === undefined || y === null) return;
+    const name = document.createElement("span");
+    name.textContent = one.label;
+    name.style.color = one.color;
+    parts.append(name, " " + text(chart(), y) + " ");
+  });
   return parts;
 }
 
@@ -53,8 +54,7 @@ function options(chart) {
     connectSeparatedPoints: true,
     strokeWidth: 1.5,
     legend: "always",
-    legendFormatter: legendOf,
-    labelsDiv: null,
+    legendFormatter: (data) => legendOf(() => drawn.get(chart.id).chart, data),
     axisLabelFontSize: 12,
     axes: {
       x: { axisLabelFormatter: (x) => compact.format(x), pixelsPerLabel: 70 },
@@ -99,6 +99,7 @@ function draw(chart, parent) {
     known = { box, graph: null };
     drawn.set(chart.id, known);
   }
+  known.chart = chart;
   const area = known.box.querySelector(".chart");
   area.setAttribute("aria-label", describe(chart));
   const labels = chart.series.map((one) => one.name).join();

@@ -38,9 +38,11 @@ function row(cells) {
   return element;
 }
 
+// A heading stands as the cells below it do.
 function fill(table, columns, rows) {
   const head = document.createElement("thead");
-  head.append(row(columns.map((name) => Object.assign(cell(name, "th"), { scope: "col" }))));
+  head.append(row(columns.map((name, i) => Object.assign(cell(name, "th"),
+    { scope: "col", className: rows[0]?.children[i].className ?? "" }))));
   const body = document.createElement("tbody");
   body.append(...rows);
   table.replaceChildren(head, body);
@@ -102,14 +104,11 @@ function showProgress(progress) {
 }
 
 function showProcesses(answer) {
-  const numeric = /^[-–]?[\d.]/;
-  fill($("processes"), answer.columns, answer.rows.map((texts) => row(texts.map((text, i) => {
-    const entry = cell(text);
-    if (answer.columns[i] === "STATE") {
-      entry.replaceChildren(state(text));
-    } else if (numeric.test(text)) {
-      entry.className = "number";
-    }
+  const text = ["PROCESS", "HOST", "STATE", "MOST TIME IN"];
+  fill($("processes"), answer.columns, answer.rows.map((texts) => row(texts.map((figure, i) => {
+    const entry = cell(figure === "-" ? "–" : figure);
+    if (answer.columns[i] === "STATE") entry.replaceChildren(state(figure));
+    if (!text.includes(answer.columns[i])) entry.className = "number";
     return entry;
   }))));
   if (!$("all-figures").open) return;
@@ -295,6 +294,7 @@ async function watch() {
   setTimeout(watch, 250);
 }
 
+$("all-figures").open = new URLSearchParams(location.search).has("all-figures");
 addEventListener("hashchange", choose);
 document.addEventListener("visibilitychange", () => { for (const name of Object.keys(next)) next[name] = 0; });
 choose();

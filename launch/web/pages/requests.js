@@ -5,10 +5,12 @@ const tokenKey = "shoal-token";
 
 // The token of the printed address, for steering. It goes out of the address bar, and so out of the
 // history; the tab keeps it.
-const inAddress = new URLSearchParams(location.search).get("token");
-if (inAddress) {
-  sessionStorage.setItem(tokenKey, inAddress);
-  history.replaceState(null, "", location.pathname + location.hash);
+const words = new URLSearchParams(location.search);
+if (words.has("token")) {
+  sessionStorage.setItem(tokenKey, words.get("token"));
+  words.delete("token");
+  const rest = words.toString();
+  history.replaceState(null, "", location.pathname + (rest ? "?" + rest : "") + location.hash);
 }
 
 export const mayAct = () => sessionStorage.getItem(tokenKey) !== null;

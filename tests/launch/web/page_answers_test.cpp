@@ -65,6 +65,7 @@ TEST(PageAnswers, RunsAreThoseOfShoalRuns) {
   const json answer = json::parse(RunsAnswer("runs", {run}));
   EXPECT_EQ(answer.at("runs"), json::parse(RunListJson("runs", {run})));
   EXPECT_THAT(answer.at("keys"), ::testing::Contains("eval.interval"));
+  EXPECT_THAT(answer.at("keys"), ::testing::Not(::testing::Contains("actors")));
 }
 
 TEST(PageAnswers, ARunsAnswerSaysWhichEpisodeIsShown) {

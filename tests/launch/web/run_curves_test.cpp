@@ -26,7 +26,8 @@ class RunCurvesTest : public ::testing::Test {
   }
   // Points of the first series of a chart; null when there is no such chart.
   json Points(const std::string& id) const {
-    for (const json& chart : json::parse(curves_.Json()).at("charts")) {
+    const json answer = json::parse(curves_.Json());
+    for (const json& chart : answer.at("charts")) {
       if (chart.at("id") == id) return chart.at("series")[0].at("points");
     }
     return {};

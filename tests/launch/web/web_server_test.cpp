@@ -111,7 +111,7 @@ TEST_F(WebServerTest, SteeringTakesTheToken) {
   const std::string stop = "POST /api/runs/reach/order";
   const std::string body = R"({"verb": "stop", "arguments": []})";
   const auto order = [&](const std::string& headers) {
-    return Ask(
+    return AskPage(
         server.port(),
         Request(stop, headers + "Content-Length: " + std::to_string(body.size()) + "\r\n") + body);
   };
@@ -196,8 +196,6 @@ TEST_F(WebServerTest, LongRequestsEndAtTheirBounds) {
                std::string(1'000'000, '['),
            Request("POST /api/runs/reach/order", token + "Transfer-Encoding: chunked\r\n") +
                "fffff\r\n" + std::string(1'000'000, '['),
-           Request("GET /", "Range: bytes=" + std::string(8000, '0') + "-\r\n") +
-               std::string(100'000, 'x'),
        }) {
     const PageConnection client(server.port());
     client.Send(request);
@@ -208,6 +206,10 @@ TEST_F(WebServerTest, LongRequestsEndAtTheirBounds) {
                                      token + "Content-Encoding: gzip\r\nContent-Length: 2\r\n") +
                                  "{}"),
       StartsWith("HTTP/1.1 415"));
+  // The library reads ranges by a regular expression, which goes deeper with each digit.
+  EXPECT_THAT(
+      AskPage(server.port(), Request("GET /", "Range: bytes=" + std::string(8000, '0') + "-\r\n")),
+      AnyOf(StartsWith("HTTP/1.1 200"), StartsWith("HTTP/1.1 416")));
   ExpectAlive(server);
 }
 
