@@ -49,7 +49,8 @@ function options(chart) {
     colors: [colour("--curve-1"), colour("--curve-2")],
     axisLineColor: colour("--line"),
     gridLineColor: colour("--line"),
-    valueRange: share ? [0, 1.05] : null,
+    valueRange: share ? [-0.04, 1.05] : null,
+    xRangePad: 6,
     includeZero: chart.id.endsWith("_per_second"),
     connectSeparatedPoints: true,
     strokeWidth: 1.5,
@@ -57,7 +58,7 @@ function options(chart) {
     legendFormatter: (data) => legendOf(() => drawn.get(chart.id).chart, data),
     axisLabelFontSize: 12,
     axes: {
-      x: { axisLabelFormatter: (x) => compact.format(x), pixelsPerLabel: 70 },
+      x: { axisLabelFormatter: (x) => compact.format(x), pixelsPerLabel: 45 },
       y: {
         axisLabelFormatter: (y) => share ? Math.round(100 * y) + " %" : compact.format(y),
         axisLabelWidth: 52,
