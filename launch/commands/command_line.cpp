@@ -24,6 +24,7 @@ std::unique_ptr<CLI::App> MakeCommandLine(Action* chosen) {
   AddFilmCommand(*app, chosen);
   AddTopCommand(*app, chosen);
   AddRunsCommand(*app, chosen);
+  AddWebCommand(*app, chosen);
   AddSteerCommands(*app, chosen);
   AddAttachCommand(*app, chosen);
   AddEnvCommand(*app, chosen);

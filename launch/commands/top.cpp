@@ -96,7 +96,7 @@ int Top(const TopOptions& options) {
   } else if (options.once) {
     const int width = isatty(STDOUT_FILENO) == 1 ? SizeOfTerminal().columns : 0;
     Print(FormatTop(view, TopOrder(), width));
-  } else if (isatty(STDOUT_FILENO) == 1) {
+  } else if (DrawsInPlace()) {
     ShowLive(client, view);
   } else {
     ShowLines(client, view);

@@ -1,22 +1,11 @@
 #include "launch/watch/live_terminal.h"
 
 #include <poll.h>
-#include <sys/ioctl.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <cstdio>
 
 namespace shoal::launch {
-
-TerminalSize SizeOfTerminal() {
-  winsize size{};
-  TerminalSize result;
-  if (ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) != 0) return result;
-  if (size.ws_col > 0) result.columns = size.ws_col;
-  if (size.ws_row > 0) result.rows = size.ws_row;
-  return result;
-}
 
 LiveTerminal::LiveTerminal() {
   termios settings{};
@@ -32,14 +21,6 @@ LiveTerminal::LiveTerminal() {
 LiveTerminal::~LiveTerminal() {
   std::fflush(stdout);
   if (before_) tcsetattr(STDIN_FILENO, TCSANOW, &*before_);
-}
-
-void LiveTerminal::Draw(const std::vector<std::string>& lines) {
-  if (drawn_lines_ > 0) std::printf("\x1b[%dA\x1b[J", drawn_lines_);  // up, then clear below
-  const int rows = std::max(1, SizeOfTerminal().rows - 1);
-  drawn_lines_ = std::min(rows, static_cast<int>(lines.size()));
-  for (int i = 0; i < drawn_lines_; ++i) std::printf("%s\n", lines[static_cast<size_t>(i)].c_str());
-  std::fflush(stdout);
 }
 
 std::optional<char> LiveTerminal::WaitForKey(std::chrono::milliseconds most) {

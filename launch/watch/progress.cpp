@@ -1,8 +1,5 @@
 #include "launch/watch/progress.h"
 
-#include <sys/ioctl.h>
-#include <unistd.h>
-
 #include <cerrno>
 #include <cstring>
 #include <utility>
@@ -53,11 +50,6 @@ std::string Headlines(const ProgressFigures& f, std::string_view between) {
     text += fmt::format("{}{} {:.4g}", text.empty() ? "" : between, name, value);
   }
   return text.empty() ? "no update yet" : text;
-}
-
-int TerminalWidth() {
-  winsize size{};
-  return ioctl(STDOUT_FILENO, TIOCGWINSZ, &size) == 0 && size.ws_col > 0 ? size.ws_col : 80;
 }
 
 std::string Bar(double share, int width) {
@@ -111,15 +103,13 @@ std::vector<std::string> FormatProgressBlock(const ProgressFigures& f, int width
                   Number(f.data_age)),
       fmt::format("  flow       {}", LimiterState(f)),
   };
-  for (std::string& line : lines) {
-    if (line.size() > static_cast<size_t>(width)) line.resize(static_cast<size_t>(width));
-  }
+  for (std::string& line : lines) line = CutToColumns(std::move(line), static_cast<size_t>(width));
   return lines;
 }
 
 Progress::Progress(const std::string& log_file, std::function<void(const std::string&)> on_say,
                    bool plain)
-    : terminal_(!plain && isatty(STDOUT_FILENO) == 1), on_say_(std::move(on_say)) {
+    : terminal_(!plain && DrawsInPlace()), on_say_(std::move(on_say)) {
   if (log_file.empty()) return;
   log_.open(log_file, std::ios::app);
   if (!log_) throw RuntimeError("cannot write '{}': {}", log_file, std::strerror(errno));
@@ -127,33 +117,34 @@ Progress::Progress(const std::string& log_file, std::function<void(const std::st
 
 Progress::~Progress() { std::fflush(stdout); }
 
-void Progress::Show(const ProgressFigures& figures, SteadyTime now) {
+void Progress::Show(ProgressFigures figures, SteadyTime now) {
   if (shown_ && now - *shown_ < (terminal_ ? kBlockPeriod : SteadyTime::duration(kLinePeriod))) {
     return;
   }
   shown_ = now;
-  if (!terminal_) {
-    std::printf("%s\n", FormatProgressLine(figures).c_str());
-  } else {
-    EraseBlock();
-    const auto lines = FormatProgressBlock(figures, TerminalWidth() - 1);
-    for (const std::string& line : lines) std::printf("%s\n", line.c_str());
-    block_lines_ = static_cast<int>(lines.size());
+  const double seconds = figures.elapsed_seconds;
+  if (const auto rate = env_steps_rate_.Add(seconds, static_cast<double>(figures.env_steps))) {
+    figures.env_steps_per_second = rate;
   }
-  std::fflush(stdout);
+  if (figures.updates) {
+    if (const auto rate = updates_rate_.Add(seconds, *figures.updates)) {
+      figures.updates_per_second = rate;
+    }
+  }
+  if (terminal_) {
+    block_.Draw(FormatProgressBlock(figures, SizeOfTerminal().columns - 1));
+  } else {
+    std::printf("%s\n", FormatProgressLine(figures).c_str());
+    std::fflush(stdout);
+  }
 }
 
 void Progress::Say(const std::string& line) {
-  EraseBlock();
+  block_.Erase();
   std::printf("%s\n", line.c_str());
   std::fflush(stdout);
   if (log_.is_open()) log_ << UtcTimestamp() << ' ' << line << std::endl;
   if (on_say_) on_say_(line);
-}
-
-void Progress::EraseBlock() {
-  if (block_lines_ > 0) std::printf("\x1b[%dA\x1b[J", block_lines_);  // up, then clear below
-  block_lines_ = 0;
 }
 
 }  // namespace shoal::launch

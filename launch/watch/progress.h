@@ -11,6 +11,8 @@
 
 #include "common/base/clock.h"
 #include "launch/record/evaluation_point.h"
+#include "launch/watch/recent_rate.h"
+#include "launch/watch/terminal_block.h"
 
 namespace shoal::launch {
 
@@ -44,25 +46,26 @@ std::vector<std::string> FormatProgressBlock(const ProgressFigures& figures, int
 // Writes to stdout and copies event lines to a log file. One thread.
 class Progress {
  public:
-  // `on_say` hears every line that is said. `plain`: lines, even on a terminal. Throws Error when
+  // `on_say` hears every line that is said. `plain`: lines, even on a terminal that draws in place.
+  // Throws Error when
   // the log cannot be opened; an empty name is no log.
   explicit Progress(const std::string& log_file,
                     std::function<void(const std::string&)> on_say = nullptr, bool plain = false);
   // Leaves the cursor below the last block.
   ~Progress();
 
-  // Shows the figures: at most twice a second as a block, every 5 s as a line.
-  void Show(const ProgressFigures& figures, SteadyTime now);
+  // Shows the figures: at most twice a second as a block, every 5 s as a line. Rates are those of
+  // the last half minute, as soon as it is known.
+  void Show(ProgressFigures figures, SteadyTime now);
   // One line that stays: above the block on a terminal, with a time in the log.
   void Say(const std::string& line);
 
  private:
-  void EraseBlock();
-
   const bool terminal_;
   std::ofstream log_;
   const std::function<void(const std::string&)> on_say_;
-  int block_lines_ = 0;
+  TerminalBlock block_;
+  RecentRate env_steps_rate_, updates_rate_;
   std::optional<SteadyTime> shown_;
 };
 

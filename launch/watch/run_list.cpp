@@ -46,22 +46,6 @@ void ReadMeta(const std::filesystem::path& run, RunListing* listing) {
   listing->status = StatusOfExit(meta.at("exit").get<std::string>());
 }
 
-RunListing List(const std::filesystem::path& run) {
-  RunListing listing;
-  listing.name = run.filename().string();
-  try {
-    ReadMeta(run, &listing);
-  } catch (const Error& e) {
-    listing.status = RunStatus::kUnreadable;
-    listing.problem = e.what();
-  } catch (const json::exception& e) {
-    listing.status = RunStatus::kUnreadable;
-    listing.problem = fmt::format("{}: {}", (run / "meta.json").string(), e.what());
-  }
-  if (IsHeld(run)) listing.status = RunStatus::kRunning;
-  return listing;
-}
-
 std::string Format(const RunScore& score) {
   if (score.success) return fmt::format("{:.0f} %", 100 * *score.success);
   return score.mean_return ? fmt::format("return {:.1f}", *score.mean_return) : "-";
@@ -106,9 +90,25 @@ const char* ToString(RunStatus status) {
   return "?";
 }
 
+RunListing RunStatusOf(const std::filesystem::path& run) {
+  RunListing listing;
+  listing.name = run.filename().string();
+  try {
+    ReadMeta(run, &listing);
+  } catch (const Error& e) {
+    listing.status = RunStatus::kUnreadable;
+    listing.problem = e.what();
+  } catch (const json::exception& e) {
+    listing.status = RunStatus::kUnreadable;
+    listing.problem = fmt::format("{}: {}", (run / "meta.json").string(), e.what());
+  }
+  if (IsHeld(run)) listing.status = RunStatus::kRunning;
+  return listing;
+}
+
 std::vector<RunListing> ListRunStatus(const std::filesystem::path& dir) {
   std::vector<RunListing> runs;
-  for (const std::filesystem::path& run : ListRuns(dir)) runs.push_back(List(run));
+  for (const std::filesystem::path& run : ListRuns(dir)) runs.push_back(RunStatusOf(run));
   return runs;
 }
 
@@ -156,7 +156,8 @@ std::string RunListJson(const std::filesystem::path& dir, const std::vector<RunL
                     {"problem", text_or_null(run.problem)}});
   }
   const ordered_json object{{"schema", "shoal-runs-1"}, {"run_dir", dir.string()}, {"runs", list}};
-  return object.dump(2);
+  // Names of folders and texts of files: what is not UTF-8 in them is replaced.
+  return object.dump(2, ' ', /*ensure_ascii=*/false, ordered_json::error_handler_t::replace);
 }
 
 }  // namespace shoal::launch

@@ -33,6 +33,8 @@ struct RunListing {
   RunScore best, final;
 };
 
+// Of one run's folder. Never throws for what is in it: a broken run is listed as such.
+RunListing RunStatusOf(const std::filesystem::path& run);
 // By name. Never throws for what is in the folder: a broken run is listed as such.
 std::vector<RunListing> ListRunStatus(const std::filesystem::path& dir);
 

@@ -221,14 +221,6 @@ std::vector<std::string> Wrapped(std::string text, size_t width) {
   return lines;
 }
 
-// What to do about where the time has gone since the processes' start.
-std::string AdviceFor(const RunViewMessage& message) {
-  MetricsView view;
-  for (const Process& process : message.processes) view.OnMessage(process, Now());
-  const auto asked = [&](const char* name) { return view.Get("coordinator", 0, name).value_or(0); };
-  return FindBottleneck(view, asked("usable_cores"), SaturatingCast<int>(asked("actors"))).advice;
-}
-
 }  // namespace
 
 int TopColumns() { return static_cast<int>(std::size(kColumns)); }
@@ -238,7 +230,7 @@ std::string TopColumnName(int column) { return kColumns[column].name; }
 std::vector<std::string> FormatTop(const RunViewMessage& view, const TopOrder& order, int width) {
   const size_t most = width > 0 ? static_cast<size_t>(width) : std::string::npos;
   std::vector<std::string> lines = Wrapped(FormatTopLine(view), most);
-  for (std::string& line : Wrapped(AdviceFor(view), most)) lines.push_back(std::move(line));
+  for (std::string& line : Wrapped(TopAdvice(view), most)) lines.push_back(std::move(line));
   Row heading;
   for (const Column& column : kColumns) heading.push_back({column.name});
   const std::vector<Row> rows = SortedRows(view, order);
@@ -251,6 +243,23 @@ std::vector<std::string> FormatTop(const RunViewMessage& view, const TopOrder& o
   lines.push_back(Rendered(heading, widths).substr(0, most));
   for (const Row& row : rows) lines.push_back(Rendered(row, widths).substr(0, most));
   return lines;
+}
+
+TopCells MakeTopCells(const RunViewMessage& view) {
+  TopCells cells;
+  for (const Column& column : kColumns) cells.columns.emplace_back(column.name);
+  for (const Row& row : SortedRows(view, TopOrder())) {
+    std::vector<std::string>& texts = cells.rows.emplace_back();
+    for (const Cell& cell : row) texts.push_back(cell.text);
+  }
+  return cells;
+}
+
+std::string TopAdvice(const RunViewMessage& message) {
+  MetricsView view;
+  for (const Process& process : message.processes) view.OnMessage(process, Now());
+  const auto asked = [&](const char* name) { return view.Get("coordinator", 0, name).value_or(0); };
+  return FindBottleneck(view, asked("usable_cores"), SaturatingCast<int>(asked("actors"))).advice;
 }
 
 std::string FormatTopLine(const RunViewMessage& view) {

@@ -23,6 +23,14 @@ std::string TopColumnName(int column);
 std::vector<std::string> FormatTop(const RunViewMessage& view, const TopOrder& order, int width);
 // The whole run as one plain line.
 std::string FormatTopLine(const RunViewMessage& view);
+// The same rows as text in cells, under `columns`, in the order of roles.
+struct TopCells {
+  std::vector<std::string> columns;
+  std::vector<std::vector<std::string>> rows;
+};
+TopCells MakeTopCells(const RunViewMessage& view);
+// One sentence: what to do about where the time has gone since the processes' start.
+std::string TopAdvice(const RunViewMessage& view);
 // shoal-top-1, indented.
 std::string TopJson(const RunViewMessage& view);
 

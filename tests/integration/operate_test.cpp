@@ -74,6 +74,20 @@ TEST(Operate, TopShowsEveryProcessUntilTheRunEnds) {
   EXPECT_THAT(over.err, HasSubstr("is not running"));
 }
 
+TEST(Operate, ATerminalThatCannotMoveItsCursorGetsLines) {
+  const TrainingRun run;
+  RunningTraining training(run, run.Command(kLong));
+  ASSERT_TRUE(WaitForView(run, Learns).is_object());
+  for (const char* command : {"top", "attach"}) {
+    TerminalProgram watcher({"shoal", command, "--run-dir", run.parent().string()}, "dumb");
+    EXPECT_TRUE(watcher.WaitFor(" running | ", seconds(30))) << command;
+    EXPECT_TRUE(watcher.WaitFor(" running | ", seconds(30))) << command;
+    EXPECT_THAT(watcher.shown(), ::testing::Not(HasSubstr("\x1b"))) << command;
+    watcher.Signal(SIGINT);
+    EXPECT_EQ(watcher.End(seconds(30)), 0) << command;
+  }
+}
+
 TEST(Operate, TopOnATerminalIsALiveTableAndLeavesTheTerminalAsItWas) {
   const TrainingRun run;
   RunningTraining training(run, run.Command(kLong));

@@ -22,6 +22,7 @@ const std::map<std::string, std::string> kHomes = {
     {"Eigen/", "common/nn"},    {"mujoco/", "actor/worlds"}, {"GL/", "actor/worlds"},
     {"spdlog/", "common/base"}, {"png.h", "common/image"},   {"openssl/", "common/credentials"},
     {"libav", "launch/film"},   {"libsw", "launch/film"},    {"cairo", "launch/film"},
+    {"httplib", "launch/web"},
 };
 
 // Stands for a program of others, which knows of Shoal what the documentation says.
@@ -35,7 +36,7 @@ const std::map<std::string, std::vector<std::string>> kRooms = {
     {"actor", {"worlds", "acting", "sending", "loop", "evaluation"}},
     {"launch",
      {"record", "processes", "film", "watch", "run", "experiment", "report", "export",
-      "observability", "project", "check", "commands", "manual"}},
+      "observability", "project", "web", "check", "commands", "manual"}},
 };
 
 // What a room may not include: a folder, or one header.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <poll.h>
 #include <pty.h>
+#include <stdlib.h>
 #include <sys/wait.h>
 #include <termios.h>
 #include <unistd.h>
@@ -21,8 +22,8 @@ namespace shoal {
 
 class TerminalProgram {
  public:
-  // command[0] is a program's name in the build's bin folder.
-  explicit TerminalProgram(std::vector<std::string> command) {
+  // command[0] is a program's name in the build's bin folder. `kind`: TERM.
+  explicit TerminalProgram(std::vector<std::string> command, const char* kind = "xterm") {
     winsize size{.ws_row = 24, .ws_col = 100, .ws_xpixel = 0, .ws_ypixel = 0};
     EXPECT_EQ(openpty(&own_end_, &its_end_, nullptr, nullptr, &size), 0);
     tcgetattr(its_end_, &before_);
@@ -33,6 +34,7 @@ class TerminalProgram {
     pid_ = fork();
     if (pid_ != 0) return;
     login_tty(its_end_);
+    setenv("TERM", kind, 1);
     execv(words[0], words.data());
     _exit(127);
   }

@@ -113,5 +113,13 @@ TEST_F(RunListTest, AFolderThatIsNotThereHoldsNoRuns) {
   EXPECT_TRUE(ListRunStatus(dir_.path() / "absent").empty());
 }
 
+TEST_F(RunListTest, ANameThatIsNotUtf8IsReplacedInJson) {
+  Begin("l\xe4uft", "target");
+  const auto runs = ListRunStatus(dir_.path());
+  ASSERT_EQ(runs.size(), 1u);
+  EXPECT_EQ(nlohmann::json::parse(RunListJson("runs", runs)).at("runs")[0].at("name"),
+            "l\xef\xbf\xbduft");
+}
+
 }  // namespace
 }  // namespace shoal::launch

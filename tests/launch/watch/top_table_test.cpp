@@ -138,5 +138,18 @@ TEST(TopTable, TheJsonHasTheSchemaAndEveryFigureByItsName) {
   EXPECT_EQ(actor.at("outstanding"), 12);
 }
 
+TEST(TopTable, CellsAreThoseOfTheTable) {
+  const TopCells cells = MakeTopCells(View());
+  ASSERT_EQ(cells.columns.size(), static_cast<size_t>(TopColumns()));
+  ASSERT_EQ(cells.rows.size(), View().processes.size());
+  const std::vector<std::string> lines = FormatTop(View(), TopOrder(), 0);
+  for (size_t i = 0; i < cells.rows.size(); ++i) {
+    for (const std::string& text : cells.rows[i]) {
+      EXPECT_THAT(lines[lines.size() - cells.rows.size() + i], HasSubstr(text));
+    }
+  }
+  EXPECT_EQ(lines[1], TopAdvice(View()));
+}
+
 }  // namespace
 }  // namespace shoal::launch

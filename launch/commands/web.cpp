@@ -1,0 +1,67 @@
+#include <CLI/CLI.hpp>
+#include <chrono>
+#include <cstdio>
+#include <memory>
+#include <thread>
+
+#include "common/base/error.h"
+#include "common/base/stop.h"
+#include "launch/commands/commands.h"
+#include "launch/web/web_server.h"
+
+namespace shoal::launch {
+namespace {
+
+constexpr std::chrono::milliseconds kLook{100};  // between looks at stop signals
+constexpr int kLooksToTend = 20;
+
+int Web(const WebOptions& options) {
+  if (!IsAddress(options.listen.address)) {
+    throw UsageError("--address {}: expected an IPv4 address of this host, such as 127.0.0.1",
+                     options.listen.address);
+  }
+  InstallStopSignals();
+  WebServer server(options);
+  fmt::print("{} at {}\n",
+             options.run.empty() ? fmt::format("the runs of '{}'", options.run_dir)
+                                 : fmt::format("run '{}'", options.run),
+             server.Url());
+  fmt::print("{}\n", options.listen.Loopback()
+                         ? "who has no token may look, on this host alone; Ctrl-C ends it"
+                         : "whoever has this address may look and steer, and the network between "
+                           "may read along; Ctrl-C ends it");
+  std::fflush(stdout);
+  for (int looks = 1; !StopRequested(); ++looks) {
+    std::this_thread::sleep_for(kLook);
+    if (looks % kLooksToTend == 0) server.Tend();
+  }
+  return 0;
+}
+
+}  // namespace
+
+void AddWebCommand(CLI::App& app, Action* chosen) {
+  CLI::App* command = app.add_subcommand(
+      "web",
+      "A page to watch runs on, in a browser: states, curves, processes, films; with the token of "
+      "the printed address also set, scale, stop. Needs libjs-dygraphs.");
+  const auto options = std::make_shared<WebOptions>();
+  options->listen.port = 8470;
+  command->add_option("--run", options->run,
+                      "Name or folder of the run to show; all of --run-dir when not given");
+  command->add_option("--run-dir", options->run_dir, "Folder that holds the runs")
+      ->capture_default_str();
+  command->add_option("--secure", options->secure,
+                      "Folder of credentials of secured runs; as each run says when not given");
+  command
+      ->add_option("--address", options->listen.address,
+                   "IPv4 address of this host to listen on; at all but a loopback one nothing is "
+                   "shown without the token")
+      ->capture_default_str();
+  command->add_option("--port", options->listen.port, "Port to listen on; 0: any that is free")
+      ->check(CLI::Range(0, 65535))
+      ->capture_default_str();
+  command->callback([=] { *chosen = [=] { return Web(*options); }; });
+}
+
+}  // namespace shoal::launch

@@ -1,0 +1,17 @@
+#include "launch/watch/recent_rate.h"
+
+namespace shoal::launch {
+
+std::optional<double> RecentRate::Add(double seconds, double count) {
+  if (!seen_.empty() && (count < seen_.back().count || seconds < seen_.back().seconds)) {
+    seen_.clear();
+  }
+  seen_.push_back({seconds, count});
+  // The oldest that is kept is the last before the window, so that the window is covered.
+  while (seen_.size() > 2 && seconds - seen_[1].seconds >= kWindowSeconds) seen_.pop_front();
+  const double span = seconds - seen_.front().seconds;
+  if (span < kLeastSeconds) return std::nullopt;
+  return (count - seen_.front().count) / span;
+}
+
+}  // namespace shoal::launch

@@ -1,0 +1,57 @@
+// Lines to the running runs that somebody looks at. A run's network is joined when it is first
+// asked for, and left when it has not been asked for in a while: a run that nobody looks at is not
+// touched.
+#pragma once
+
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/base/mutex.h"
+#include "launch/watch/run_client.h"
+
+namespace shoal::launch {
+
+// Any thread. Answers about one run come one after the other.
+class LiveRuns {
+ public:
+  static constexpr std::chrono::seconds kUnwatched{15};  // then a run is left
+  static constexpr size_t kMost = 4;                     // at once: the longest unasked goes first
+
+  // `secure`: folder of credentials; empty = as each run's cluster.json says.
+  explicit LiveRuns(const std::string& secure) : secure_(secure) {}
+
+  // The run's newest view. The first waits for it, 5 s at most. Throws Error: the run is not
+  // running, its coordinator does not answer or is silent.
+  RunViewMessage View(const std::filesystem::path& run);
+  // RunClient::Order.
+  ReplyMessage Order(const std::filesystem::path& run, const std::string& verb,
+                     const std::vector<std::string>& arguments);
+  // To be called every few seconds.
+  void LeaveUnwatched(SteadyTime now);
+  // Joined now.
+  size_t size() const;
+
+ private:
+  struct Line {
+    Mutex mutex;
+    std::unique_ptr<RunClient> client SHOAL_GUARDED_BY(mutex);
+    std::optional<RunViewMessage> view SHOAL_GUARDED_BY(mutex);
+    SteadyTime heard SHOAL_GUARDED_BY(mutex){};
+    SteadyTime asked{};  // guarded by LiveRuns::mutex_
+  };
+
+  std::shared_ptr<Line> LineTo(const std::filesystem::path& run);
+  // The client of a line, joining where there is none yet.
+  RunClient& Client(const std::filesystem::path& run, Line& line) SHOAL_REQUIRES(line.mutex);
+
+  const std::string secure_;
+  mutable Mutex mutex_;
+  std::map<std::filesystem::path, std::shared_ptr<Line>> lines_ SHOAL_GUARDED_BY(mutex_);
+};
+
+}  // namespace shoal::launch

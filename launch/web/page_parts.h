@@ -1,0 +1,23 @@
+// The page itself: what is built into the program, and the library that draws its curves.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+
+namespace shoal::launch {
+
+// Of Debian's package libjs-dygraphs.
+inline constexpr char kChartLibrary[] = "/usr/share/javascript/dygraphs";
+
+struct PagePart {
+  std::string type;  // MIME
+  std::string content;
+};
+
+// By name: "index.html", "page.js", "dygraph.min.js", ... Reads the chart library from its folder.
+// Throws Error naming the file that is missing, and its package.
+std::map<std::string, PagePart> LoadPageParts(
+    const std::filesystem::path& chart_library = kChartLibrary);
+
+}  // namespace shoal::launch

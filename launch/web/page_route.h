@@ -1,0 +1,42 @@
+// What a request asks for, from its method and path. Pure.
+//
+//   GET   /                             the page
+//         /page.js, /dygraph.min.js ... a part of it
+//         /api/runs                     every run and its state
+//         /api/runs/NAME                films, reports and pictures of a run; its played episode
+//         /api/runs/NAME/top            what `shoal top` shows of it
+//         /api/runs/NAME/curves         its curves
+//         /files/NAME/videos/best.mp4   a file of its folder (served_file.h)
+//         /episode/NAME                 the film of its played episode
+//   POST  /api/runs/NAME/order          {"verb": "set" | "scale" | "stop", "arguments": [...]}
+//         /api/runs/NAME/episode        plays an episode with its newest checkpoint
+#pragma once
+
+#include <string>
+#include <string_view>
+
+namespace shoal::launch {
+
+enum class PageItem {
+  kNothing,  // there is no such thing
+  kPart,     // of the page; also the page itself, "index.html"
+  kRuns,
+  kRun,
+  kTop,
+  kCurves,
+  kFile,
+  kEpisode,
+  kOrder,
+  kPlay,
+};
+
+struct PageRoute {
+  PageItem item = PageItem::kNothing;
+  std::string run{};   // name, as asked for: not yet one of those there are
+  std::string file{};  // kPart: name; kFile: path below the run's folder
+};
+
+// `path` without its query, percent signs decoded.
+PageRoute ParsePageRoute(bool acts, std::string_view path);
+
+}  // namespace shoal::launch

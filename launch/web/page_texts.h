@@ -1,0 +1,13 @@
+// The files of launch/web/pages, built in.
+#pragma once
+
+namespace shoal::launch {
+
+extern const char* const kIndexHtml;
+extern const char* const kStyleCss;
+extern const char* const kPageJs;
+extern const char* const kChartsJs;
+extern const char* const kSteeringJs;
+extern const char* const kRequestsJs;
+
+}  // namespace shoal::launch

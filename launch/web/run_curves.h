@@ -1,0 +1,61 @@
+// A run's curves over env steps, read from its files as they grow: metrics.jsonl and eval/.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "launch/record/evaluation_point.h"
+
+namespace shoal::launch {
+
+// A curve of bounded size, however long it grows: when it is full, every second point goes, and
+// of those that come only so many are kept. The newest point is always there.
+class ThinnedCurve {
+ public:
+  struct Point {
+    double x = 0, y = 0;
+  };
+  static constexpr size_t kMost = 1000;
+
+  void Add(double x, double y);
+  std::vector<Point> Points() const;
+
+ private:
+  std::vector<Point> kept_;
+  Point newest_{};
+  bool newest_kept_ = true;
+  uint64_t stride_ = 1, seen_ = 0;
+};
+
+// One thread.
+class RunCurves {
+ public:
+  explicit RunCurves(const std::filesystem::path& run) : run_(run) {}
+
+  // Reads what has come since, at most `most_bytes` of it. A file that was begun anew is read anew.
+  // Never throws for what is in the files: lines that make no sense are passed over.
+  void ReadOn(uint64_t most_bytes = 8'000'000);
+
+  // {"complete": there is nothing more to be read,
+  //  "charts": [{"id", "title", "meaning", "series": [{"name", "points": [[x, y], ...]}]}]},
+  // charts with at least one point.
+  std::string Json() const;
+
+ private:
+  void ReadMetrics(uint64_t most_bytes);
+  void ReadEvaluationFiles();
+  void OnLine(const std::string& line);
+
+  const std::filesystem::path run_;
+  uint64_t read_bytes_ = 0, inode_ = 0;
+  bool complete_ = false;
+  double env_steps_ = 0;                        // as the learner said last
+  std::map<std::string, ThinnedCurve> curves_;  // by metric
+  std::filesystem::file_time_type evaluations_of_{};
+  std::vector<EvaluationPoint> evaluations_;
+};
+
+}  // namespace shoal::launch
