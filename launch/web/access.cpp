@@ -56,10 +56,10 @@ Access Gate::Decide(const Caller& caller) const {
     }
     return EqualInConstantTime(caller.header_token, token_) ? Access::kAllowed : Access::kNoToken;
   }
-  // Each is compared, so that the time does not say which of them was there.
-  const bool known = EqualInConstantTime(caller.header_token, token_) |
-                     EqualInConstantTime(caller.cookie_token, token_) |
-                     EqualInConstantTime(caller.query_token, token_);
+  bool known = false;
+  for (const std::string& shown : {caller.header_token, caller.cookie_token, caller.query_token}) {
+    known = EqualInConstantTime(shown, token_) || known;
+  }
   return loopback || known ? Access::kAllowed : Access::kNoToken;
 }
 

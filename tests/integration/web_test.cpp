@@ -26,7 +26,7 @@ const TrainingRun::Keys kLong{
 // when none came in time.
 template <class Done>
 json WaitForAnswer(const PageClient& page, const std::string& path, Done done) {
-  const SteadyTime end = Now() + seconds(90);
+  const SteadyTime end = Now() + seconds(180);
   PageAnswer answer;
   while (Now() < end) {
     answer = page.Get(path);
@@ -58,7 +58,9 @@ TEST(Web, ThePageShowsWhatTopShowsAndSteers) {
     const json view = WaitForAnswer(page, "/api/runs/run/top", [](const json&) { return true; });
     ASSERT_TRUE(view.is_object());
     seen[view.at("view").at("time")] = view.at("view");
-    top = json::parse(RunShoal(run, {"top", "--once", "--json"}).out);
+    const ProgramResult asked = RunShoal(run, {"top", "--once", "--json"});
+    ASSERT_EQ(ExitCode(asked), 0) << asked.err;
+    top = json::parse(asked.out);
     const auto after = WaitForAnswer(page, "/api/runs/run/top", [](const json&) { return true; });
     seen[after.at("view").at("time")] = after.at("view");
     if (seen.contains(top.at("time"))) equal = seen[top.at("time")];

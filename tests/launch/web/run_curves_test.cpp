@@ -85,6 +85,11 @@ TEST_F(RunCurvesTest, AFileThatWasBegunAnewIsReadAnew) {
   Append(LearnerLine(7, 2) + "\n");
   curves_.ReadOn();
   EXPECT_EQ(Points("critic_loss"), json::array({{7.0, 2.0}}));
+  // Another file in its place, though it is longer already.
+  std::ofstream(folder_.path() / "new") << LearnerLine(8, 2) + "\n" + LearnerLine(9, 3) + "\n";
+  std::filesystem::rename(folder_.path() / "new", folder_.path() / "metrics.jsonl");
+  curves_.ReadOn();
+  EXPECT_EQ(Points("critic_loss"), json({{8.0, 2.0}, {9.0, 3.0}}));
 }
 
 TEST_F(RunCurvesTest, LinesThatMakeNoSenseArePassedOver) {

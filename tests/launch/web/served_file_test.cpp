@@ -23,6 +23,8 @@ class RunWithFiles {
     Write("plots/curves.svg", "<svg/>");
     Write("../secret.mp4", "secret");
     Write("checkpoints/policy.mp4", "no film");
+    Write("plots/.svg", "hidden");
+    Write(".html", "hidden");
   }
   void Write(const std::string& file, const std::string& text) const {
     fs::create_directories((path() / file).parent_path());
