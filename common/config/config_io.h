@@ -46,8 +46,8 @@ uint64_t ConfigHash(const Config& config);
 // Markdown table of every key: default, range, meaning. Source of docs/configuration.md.
 std::string DescribeKeys();
 
-// The file of a preset, found as shared_data.h says: a project's own, beside the program, installed.
-// Throws Error (kUsage) listing the presets there are.
+// The file of a preset, found as shared_data.h says: a project's own, beside the program or
+// installed. Throws Error (kUsage) listing the presets there are.
 std::string FindPreset(const std::string& name);
 std::vector<std::string> ListPresets();  // sorted
 // Defaults with the preset applied; config.preset is its name.
