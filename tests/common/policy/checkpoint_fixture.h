@@ -8,6 +8,7 @@
 
 #include "common/base/random.h"
 #include "common/config/run_files.h"
+#include "common/nn/parameter_set.h"
 #include "learner/agent/algorithms.h"
 #include "learner/checkpoint.h"
 #include "learner/checkpoint_store.h"
@@ -43,13 +44,25 @@ inline RunConfig RunWithEncoder(const std::string& encoder, int side = 84) {
   run.config.network.filters.clear();
   run.config.network.strides.clear();
   run.config.network.initialisation = "pytorch";  // fast
-  run.config.learner.batch = 2;
   run.spec.height = run.spec.width = side;
   return run;
 }
 
-// Trains an agent for three updates on random numbers and writes it to RUN/checkpoints. Returns the
-// checkpoint's folder.
+// Writes a checkpoint to FOLDER/checkpoints as the learner does, and returns its folder.
+inline std::filesystem::path Store(const RunConfig& run, const std::filesystem::path& folder,
+                                   uint64_t updates, const nn::TensorMap& learner,
+                                   const nn::TensorMap& policy) {
+  learner::CheckpointStore store(folder, run);
+  CheckpointState state;
+  state.updates = updates;
+  state.config_hash = store.config_hash();
+  state.spec_hash = run.spec.Hash();
+  state.precision = "f32";
+  state.algorithm = run.config.learner.algorithm;
+  return folder / "checkpoints" / store.Write(state, learner, policy, {});
+}
+
+// Of an agent after three updates on random numbers.
 inline std::filesystem::path WriteCheckpointOf(const RunConfig& run,
                                                const std::filesystem::path& folder) {
   const auto agent = learner::MakeAgent(run.config, run.spec, nn::Precision::kF32);
@@ -59,15 +72,18 @@ inline std::filesystem::path WriteCheckpointOf(const RunConfig& run,
     const learner::RandomBatch batch(run.spec, rows, u, rollout);
     EXPECT_TRUE(agent->Update(batch.View()).finite);
   }
-  learner::CheckpointStore store(folder, run);
-  CheckpointState state;
-  state.updates = agent->updates();
-  state.config_hash = store.config_hash();
-  state.spec_hash = run.spec.Hash();
-  state.precision = "f32";
-  state.algorithm = run.config.learner.algorithm;
-  return folder / "checkpoints" /
-         store.Write(state, agent->AllTensors(), agent->AveragedPolicyTensors(), {});
+  return Store(run, folder, agent->updates(), agent->AllTensors(), agent->AveragedPolicyTensors());
+}
+
+// Of a policy of random parameters alone: for encoders whose optimisers would be large files.
+inline std::filesystem::path WritePolicyOf(const RunConfig& run,
+                                           const std::filesystem::path& folder) {
+  nn::ParameterSet parameters(nn::PolicyParameters(run.config.network, run.spec),
+                              nn::ParameterSet::Use::kInference);
+  parameters.Initialise(3);
+  nn::TensorMap policy;
+  parameters.Export(&policy);
+  return Store(run, folder, 0, {}, policy);
 }
 
 // `count` random observations of a spec.

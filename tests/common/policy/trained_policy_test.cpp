@@ -13,6 +13,7 @@
 namespace shoal::policy {
 namespace {
 
+namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
 
@@ -29,35 +30,37 @@ std::vector<float> Act(TrainedPolicy* policy, const RandomObservations& random) 
   return actions;
 }
 
-class TrainedPolicyTest : public testing::Test {
- protected:
-  void ExpectTheActorsActions(const RunConfig& run) {
-    const TemporaryFolder folder;
-    const auto checkpoint = WriteCheckpointOf(run, folder.path());
-    TrainedPolicy policy(checkpoint);
-    const RandomObservations random(run.spec, 4, 5);
-    const std::vector<float> actions = Act(&policy, random);
-    EXPECT_EQ(actions, ActorsActions(run, checkpoint, random));
-    for (const float action : actions) EXPECT_LE(std::abs(action), 1);
-    EXPECT_NE(actions[0], actions[size_t(run.spec.action_size)]) << "depends on what is seen";
-  }
-};
+void ExpectTheActorsActions(const RunConfig& run, const fs::path& checkpoint) {
+  TrainedPolicy policy(checkpoint);
+  const RandomObservations random(run.spec, 4, 5);
+  const std::vector<float> actions = Act(&policy, random);
+  EXPECT_EQ(actions, ActorsActions(run, checkpoint, random));
+  for (const float action : actions) EXPECT_LE(std::abs(action), 1);
+  EXPECT_NE(actions[0], actions[size_t(run.spec.action_size)]) << "depends on what is seen";
+}
 
-TEST_F(TrainedPolicyTest, PlaysWhatTheActorPlaysByEveryAlgorithm) {
+TEST(TrainedPolicy, PlaysWhatTheActorPlaysByEveryAlgorithm) {
   for (const std::string algorithm : {"sac", "td3", "ddpg", "ppo"}) {
     for (const bool pixels : {false, true}) {
       SCOPED_TRACE(algorithm + (pixels ? ", pixels" : ", state"));
-      ExpectTheActorsActions(SmallRun(algorithm, pixels));
+      const TemporaryFolder folder;
+      const RunConfig run = SmallRun(algorithm, pixels);
+      ExpectTheActorsActions(run, WriteCheckpointOf(run, folder.path()));
     }
   }
 }
 
-TEST_F(TrainedPolicyTest, PlaysWhatTheActorPlaysByEveryEncoder) {
-  for (const std::string encoder : {"compact", "drq", "mrq", "nature", "resnet18", "alexnet"}) {
-    SCOPED_TRACE(encoder);
-    ExpectTheActorsActions(RunWithEncoder(encoder));
-  }
+class EncoderTest : public testing::TestWithParam<const char*> {};
+
+TEST_P(EncoderTest, PlaysWhatTheActorPlays) {
+  const TemporaryFolder folder;
+  const RunConfig run = RunWithEncoder(GetParam());
+  ExpectTheActorsActions(run, WritePolicyOf(run, folder.path()));
 }
+
+INSTANTIATE_TEST_SUITE_P(Every, EncoderTest,
+                         testing::Values("compact", "drq", "mrq", "nature", "resnet18", "alexnet"),
+                         [](const auto& name) { return std::string(name.param); });
 
 class SmallPolicyTest : public testing::Test {
  protected:
