@@ -8,7 +8,7 @@ predicts the actions of a file of samples. Every parameter of the file must be o
 Prints the largest difference of an action for each and exits with 1 where one is above 1e-4. Wants
 stable-baselines3 and safetensors from PyPI; nothing of Shoal needs Python. Checkpoints:
 
-  build/release/bin/random-checkpoints /tmp/checkpoints
+  build/release/bin/random-checkpoints /tmp/checkpoints sb3
   sb3_policy.py build/release/bin/shoal /tmp/checkpoints/*-sb3*/checkpoints/step_*
 """
 

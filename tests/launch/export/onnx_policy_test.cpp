@@ -71,7 +71,7 @@ TEST(OnnxPolicy, NetworksVariantsAreFollowed) {
 TEST(OnnxPolicy, HasTheSpecsInputs) {
   const OnnxModel model = PolicyToOnnx(RandomPolicy({"drq"}));
   const std::vector<OnnxPort> expected{
-      {.name = "pixels", .type = OnnxPort::Type::kU8, .shape = {12, 84, 84}},
+      {.name = "pixels", .type = OnnxPort::Type::kU8, .shape = {12, 48, 44}},
       {.name = "grip", .shape = {4}},
       {.name = "goal", .shape = {3}}};
   EXPECT_EQ(model.inputs, expected);

@@ -2,9 +2,10 @@
 // for scripts that hold other programs to what `shoal export` makes of them
 // (tests/comparison/onnx_actions.py, sb3_policy.py).
 //
-// usage: random-checkpoints FOLDER
+// usage: random-checkpoints FOLDER [TEXT]
 //   FOLDER/ALGORITHM-ENCODER/checkpoints/step_N; ENCODER "state" without pixels, "sb3" of networks
-//   that Stable-Baselines3 has: nature alone of pixels, "sb3-state" of vectors.
+//   that Stable-Baselines3 has: nature alone of pixels, "sb3-state" of vectors. With TEXT those
+//   alone whose ALGORITHM-ENCODER has it.
 #include <fmt/core.h>
 
 #include <filesystem>
@@ -41,18 +42,21 @@ RunConfig Sb3Run(const std::string& algorithm, bool pixels) {
   return run;
 }
 
-int Main(const fs::path& folder) {
+int Main(const fs::path& folder, const std::string& text) {
+  const auto write = [&](const std::string& name, const RunConfig& run) {
+    if (name.find(text) != std::string::npos) Write(name, run, folder);
+  };
   for (const std::string algorithm : {"sac", "td3", "ddpg", "ppo"}) {
-    Write(algorithm + "-state", policy::SmallRun(algorithm, /*pixels=*/false), folder);
-    Write(algorithm + "-sb3-state", Sb3Run(algorithm, /*pixels=*/false), folder);
-    Write(algorithm + "-sb3", Sb3Run(algorithm, /*pixels=*/true), folder);
+    write(algorithm + "-state", policy::SmallRun(algorithm, /*pixels=*/false));
+    write(algorithm + "-sb3-state", Sb3Run(algorithm, /*pixels=*/false));
+    write(algorithm + "-sb3", Sb3Run(algorithm, /*pixels=*/true));
     for (const nn::EncoderKind& kind : nn::kEncoderKinds) {
       RunConfig run = policy::SmallRun(algorithm, /*pixels=*/true);
       run.config.network.encoder = kind.name;
       run.config.network.filters.clear();
       run.config.network.strides.clear();
       run.spec.height = run.spec.width = 84;
-      Write(algorithm + "-" + std::string(kind.name), run, folder);
+      write(algorithm + "-" + std::string(kind.name), run);
     }
   }
   return 0;
@@ -62,9 +66,10 @@ int Main(const fs::path& folder) {
 }  // namespace shoal
 
 int main(int argc, char** argv) {
-  if (argc != 2) {
-    fmt::print(stderr, "usage: random-checkpoints FOLDER\n");
+  if (argc != 2 && argc != 3) {
+    fmt::print(stderr, "usage: random-checkpoints FOLDER [TEXT]\n");
     return 2;
   }
-  return shoal::GuardMain("random-checkpoints", [&] { return shoal::Main(argv[1]); });
+  return shoal::GuardMain("random-checkpoints",
+                          [&] { return shoal::Main(argv[1], argc == 3 ? argv[2] : ""); });
 }
