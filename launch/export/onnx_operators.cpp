@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <tuple>
 #include <utility>
 
 #include "common/base/error.h"
@@ -110,7 +109,7 @@ OnnxTensor Concat(const OnnxNode& node, OnnxArguments in) {
 // y = x W' + b; x (N, I), W (O, I), b (O).
 OnnxTensor Gemm(const OnnxNode& node, OnnxArguments in) {
   Expect(Get<int64_t>(node, "transB") == 1 && in.size() == 3, node, "transB and three inputs");
-  const auto& [x, w, b] = std::tie(*in[0], *in[1], *in[2]);
+  const OnnxTensor &x = *in[0], &w = *in[1], &b = *in[2];
   Expect(x.shape.size() == 2 && w.shape.size() == 2 && x.shape[1] == w.shape[1] &&
              b.shape == Shape{w.shape[0]},
          node, "x (N, I), W (O, I), b (O)");
@@ -131,7 +130,7 @@ OnnxTensor Gemm(const OnnxNode& node, OnnxArguments in) {
 // The last two dimensions of each are matrices; one of both is a single one.
 OnnxTensor MatMul(const OnnxNode& node, OnnxArguments in) {
   Expect(in.size() == 2, node, "two inputs");
-  const auto& [a, b] = std::tie(*in[0], *in[1]);
+  const OnnxTensor &a = *in[0], &b = *in[1];
   Expect(std::min(a.shape.size(), b.shape.size()) == 2, node, "a matrix on one side");
   const int64_t rows = a.shape[a.shape.size() - 2], inner = a.shape.back();
   const int64_t columns = b.shape.back();
@@ -233,7 +232,7 @@ OnnxTensor MaxPool(const OnnxNode& node, OnnxArguments in) {
 // x (N, C, H, W), W (O, C, k, k), b (O) or nothing. Outside the map is 0.
 OnnxTensor Conv(const OnnxNode& node, OnnxArguments in) {
   const Window window(node, in[0]->shape);
-  const auto& [x, w] = std::tie(*in[0], *in[1]);
+  const OnnxTensor &x = *in[0], &w = *in[1];
   const int64_t channels = x.shape[1], outputs = w.shape.at(0),
                 cells = window.kernel * window.kernel;
   Expect(w.shape == Shape{outputs, channels, window.kernel, window.kernel} &&

@@ -7,6 +7,8 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "common/base/bounded_json.h"
+#include "common/base/bounded_json.h"
 #include "common/base/error.h"
 #include "launch/record/evaluations.h"
 #include "learner/agent/algorithms.h"
@@ -96,7 +98,7 @@ void RunCurves::OnLine(const std::string& line) {
       (!learner && line.find(R"("role":"coordinator")") == std::string::npos)) {
     return;
   }
-  const json object = json::parse(line, nullptr, /*allow_exceptions=*/false);
+  const json object = ParseBoundedJson<json>(line);
   if (!object.is_object()) return;
   if (const auto steps = object.find("env_steps");
       learner && steps != object.end() && steps->is_number()) {

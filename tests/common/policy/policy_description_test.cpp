@@ -39,7 +39,8 @@ TEST_F(PolicyDescriptionTest, SaysTheSameWhenReadAndWritten) {
 
 TEST_F(PolicyDescriptionTest, EveryKeyIsNeeded) {
   const json whole = json::parse(text_);
-  for (const auto& [key, value] : whole.items()) {
+  for (const auto& item : whole.items()) {
+    const std::string key = item.key();
     EXPECT_THAT(Refusal([&](json* object) { object->erase(key); }), HasSubstr("'" + key + "'"));
   }
 }
