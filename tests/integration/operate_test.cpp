@@ -87,6 +87,8 @@ TEST(Operate, ATerminalThatCannotMoveItsCursorGetsLines) {
     watcher.Signal(SIGINT);
     EXPECT_EQ(watcher.End(seconds(30)), 0) << command;
   }
+  kill(training.pid(), SIGINT);
+  EXPECT_EQ(training.End(seconds(120)), kInterruptedExit) << training.Output();
 }
 
 TEST(Operate, TopOnATerminalIsALiveTableAndLeavesTheTerminalAsItWas) {
