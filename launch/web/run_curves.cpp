@@ -8,7 +8,6 @@
 #include <string_view>
 
 #include "common/base/bounded_json.h"
-#include "common/base/bounded_json.h"
 #include "common/base/error.h"
 #include "launch/record/evaluations.h"
 #include "learner/agent/algorithms.h"
