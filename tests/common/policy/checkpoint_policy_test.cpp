@@ -50,7 +50,9 @@ class CheckpointPolicyTest : public testing::Test {
     const std::string text = description.dump(2) + "\n";
     WriteFileAtomically(checkpoint_ / kDescriptionFile, text);
     if (state["files"].contains(kDescriptionFile)) {
-      state["files"][kDescriptionFile] = {{"bytes", text.size()}, {"crc32", Crc(text)}};
+      ordered_json& entry = state["files"][kDescriptionFile];
+      entry["bytes"] = text.size();
+      entry["crc32"] = Crc(text);
     }
     state.erase("crc32");
     state["crc32"] = Crc(state.dump());
