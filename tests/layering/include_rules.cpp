@@ -18,11 +18,11 @@ const std::vector<std::string> kTopFolders = {"common",  "actor",  "replay_serve
 
 // Start of an include path -> the folder that wraps the library.
 const std::map<std::string, std::string> kHomes = {
-    {"dds/", "common/dds"},     {"dnnl", "common/nn"},       {"oneapi/", "common/nn"},
-    {"Eigen/", "common/nn"},    {"mujoco/", "actor/worlds"}, {"GL/", "actor/worlds"},
-    {"spdlog/", "common/base"}, {"png.h", "common/image"},   {"openssl/", "common/credentials"},
-    {"libav", "launch/film"},   {"libsw", "launch/film"},    {"cairo", "launch/film"},
-    {"httplib", "launch/web"},
+    {"dds/", "common/dds"},     {"dnnl", "common/nn"},          {"oneapi/", "common/nn"},
+    {"Eigen/", "common/nn"},    {"mujoco/", "actor/worlds"},    {"GL/", "actor/worlds"},
+    {"spdlog/", "common/base"}, {"png.h", "common/image"},      {"openssl/", "common/credentials"},
+    {"libav", "launch/film"},   {"libsw", "launch/film"},       {"cairo", "launch/film"},
+    {"httplib", "launch/web"},  {"pybind11/", "launch/python"},
 };
 
 // Stands for a program of others, which knows of Shoal what the documentation says.
@@ -36,7 +36,7 @@ const std::map<std::string, std::vector<std::string>> kRooms = {
     {"actor", {"worlds", "acting", "sending", "loop", "evaluation"}},
     {"launch",
      {"record", "processes", "film", "watch", "run", "experiment", "report", "export",
-      "observability", "project", "web", "check", "commands", "manual"}},
+      "observability", "project", "web", "check", "commands", "manual", "python"}},
 };
 
 // What a room may not include: a folder, or one header.

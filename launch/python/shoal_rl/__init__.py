@@ -1,0 +1,37 @@
+"""Policies, environments and runs of Shoal.
+
+Policy(path).act(observation)   acts by a checkpoint
+make(task, **keys)              a Gymnasium environment; make_vec(task, n, **keys): n side by side
+tasks()                         names of the tasks there are
+metrics(run), evaluations(run)  what a run has written, as data frames
+
+What is wrong is said by Error, in one line. Wants numpy; make also gymnasium, data frames pandas.
+"""
+
+from shoal_rl._native import Error, Policy, __version__, tasks
+from shoal_rl.runs import evaluations, metrics
+
+__all__ = ["Error", "Policy", "__version__", "evaluations", "make", "make_vec", "metrics", "tasks"]
+
+
+def make(task, *, render_mode=None, **keys):
+    """A gymnasium.Env of the task.
+
+    keys: those of a configuration that an environment has, observation.* by their last name: pixels,
+    cameras, grey, height, width, stack, goal_mode, proprioception, quality, custom_cameras; model,
+    physics, action_repeat, distance_threshold, body_mass. Without cameras: the task's first. With
+    pixels=False: state and goals, unless proprioception or goal_mode say what of them.
+    render_mode: None or "rgb_array", the latest frame, cameras side by side.
+    """
+    from shoal_rl.environment import Environment
+
+    return Environment(task, render_mode=render_mode, **keys)
+
+
+def make_vec(task, n, **keys):
+    """n environments, each in a process of its own: a gymnasium.vector.AsyncVectorEnv."""
+    from functools import partial
+
+    from gymnasium.vector import AsyncVectorEnv
+
+    return AsyncVectorEnv([partial(make, task, **keys)] * n)

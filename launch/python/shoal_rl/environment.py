@@ -1,0 +1,114 @@
+"""Shoal's worlds and renderer as a Gymnasium environment."""
+
+import json
+
+import gymnasium
+import numpy as np
+
+from shoal_rl import _native
+
+_SECTIONS = {
+    "observation": (
+        "pixels",
+        "cameras",
+        "grey",
+        "height",
+        "width",
+        "stack",
+        "goal_mode",
+        "proprioception",
+        "quality",
+        "custom_cameras",
+    ),
+    "randomization": ("body_mass",),
+    None: ("model", "physics", "action_repeat", "distance_threshold"),
+}
+
+
+def _configuration(keys):
+    """Keys of make() as the JSON of a configuration, whose reader checks the values."""
+    section_of = {key: section for section, names in _SECTIONS.items() for key in names}
+    configuration = {}
+    for key, value in keys.items():
+        if key not in section_of:
+            raise _native.Error(f"make has no key '{key}'; expected {', '.join(section_of)}")
+        section = section_of[key]
+        place = configuration if section is None else configuration.setdefault(section, {})
+        place[key] = value
+    try:
+        return json.dumps(configuration)
+    except TypeError as error:
+        raise _native.Error(f"make: a key's value has no JSON: {error}") from None
+
+
+class Environment(gymnasium.Env):
+    """Made by shoal_rl.make.
+
+    Observation: a dict of `pixels` (K*C, H, W) uint8 and the vectors that the keys ask for, float32.
+    Action: Box(-1, 1). info: `distance` (m) and `is_success`, where the task has a goal.
+    reset(seed=s) starts the first of the episodes that s names, reset() the next of them.
+    """
+
+    metadata = {"render_modes": ["rgb_array"]}
+
+    def __init__(self, task, *, render_mode=None, **keys):
+        if render_mode not in (None, *self.metadata["render_modes"]):
+            raise _native.Error(f"render_mode is '{render_mode}'; expected None or 'rgb_array'")
+        self._native = _native.Environment(task, _configuration(keys))
+        self.task = task
+        self.cameras = self._native.cameras
+        self.render_mode = render_mode
+        spaces = {}
+        if self._native.pixels is not None:
+            spaces["pixels"] = gymnasium.spaces.Box(0, 255, self._native.pixels, np.uint8)
+        elif render_mode is not None:
+            raise _native.Error("render_mode 'rgb_array' shows the pixels; expected pixels=True")
+        for name, size in self._native.blocks.items():
+            spaces[name] = gymnasium.spaces.Box(-np.inf, np.inf, (size,), np.float32)
+        self.observation_space = gymnasium.spaces.Dict(spaces)
+        self.action_space = gymnasium.spaces.Box(-1, 1, (self._native.action_size,), np.float32)
+        if render_mode is not None:
+            self.metadata = {**self.metadata, "render_fps": self._frames_per_second()}
+        self._seed = None
+        self._episode = 0
+        self._pixels = None
+
+    def _frames_per_second(self):
+        """By the simulation's clock, over one step of an episode that nobody sees."""
+        self._native.reset(0, 0)
+        start = self._native.simulated_seconds
+        self._native.step(np.zeros(self._native.action_size, np.float32))
+        return round(1 / (self._native.simulated_seconds - start), 3)
+
+    def _info(self, success, distance):
+        if not self._native.has_success:
+            return {}
+        return {"is_success": success, "distance": distance}
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        if seed is not None:
+            self._seed, self._episode = seed % 2**64, 0
+        elif self._seed is None:
+            self._seed = int(self.np_random.integers(2**63))
+        else:
+            self._episode += 1
+        observation, distance = self._native.reset(self._seed, self._episode)
+        self._pixels = observation.get("pixels")
+        # Nothing has been done yet, wherever the goal is.
+        return observation, self._info(False, distance)
+
+    def step(self, action):
+        observation, reward, terminated, truncated, success, distance = self._native.step(action)
+        self._pixels = observation.get("pixels")
+        return observation, reward, terminated, truncated, self._info(success, distance)
+
+    def render(self):
+        """The latest frame (H, cameras * W, 3); grey ones in three equal channels."""
+        if self.render_mode is None or self._pixels is None:
+            return None
+        channels, height, width = self._pixels.shape
+        shown = channels // self._native.stack
+        frame = self._pixels[channels - shown :].reshape(len(self.cameras), -1, height, width)
+        colours = np.broadcast_to(frame, (len(self.cameras), 3, height, width))
+        return colours.transpose(2, 0, 3, 1).reshape(height, -1, 3)

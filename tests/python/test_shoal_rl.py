@@ -1,0 +1,348 @@
+"""The package shoal-rl as it is installed. `./run python` says where these lie:
+
+SHOAL_CHECKPOINTS     checkpoints that random-checkpoints has written
+SHOAL_POLICY_LIBRARY  libshoal-policy.so, whose actions are compared
+"""
+
+import ctypes
+import json
+import os
+import pathlib
+import shutil
+
+import gymnasium
+import numpy as np
+import pytest
+import shoal_rl
+from gymnasium.utils.env_checker import check_env
+
+CHECKPOINTS = sorted(pathlib.Path(os.environ["SHOAL_CHECKPOINTS"]).glob("*/checkpoints/step_*"))
+assert CHECKPOINTS
+
+
+def checkpoint(name):
+    (found,) = [c for c in CHECKPOINTS if c.parent.parent.name == name]
+    return found
+
+
+def random_observations(policy, count, seed=1):
+    random = np.random.default_rng(seed)
+    observations = {
+        name: random.normal(size=(count, size)).astype(np.float32)
+        for name, size in policy.blocks.items()
+    }
+    if policy.pixels is not None:
+        observations["pixels"] = random.integers(0, 256, (count, *policy.pixels), np.uint8)
+    return observations
+
+
+# --- the C library, by ctypes (common/policy/shoal_policy.h)
+
+
+class Block(ctypes.Structure):
+    _fields_ = [("name", ctypes.c_char_p), ("values", ctypes.c_void_p), ("count", ctypes.c_size_t)]
+
+
+class Observations(ctypes.Structure):
+    _fields_ = [
+        ("count", ctypes.c_size_t),
+        ("pixels", ctypes.c_void_p),
+        ("pixel_count", ctypes.c_size_t),
+        ("blocks", ctypes.POINTER(Block)),
+        ("block_count", ctypes.c_size_t),
+    ]
+
+
+def act_by_c_library(folder, observations, count, action_size):
+    library = ctypes.CDLL(os.environ["SHOAL_POLICY_LIBRARY"])
+    policy = ctypes.c_void_p()
+    assert library.shoal_policy_load(os.fsencode(folder), ctypes.byref(policy)) == 0
+    pixels = observations.get("pixels")
+    names = [name for name in observations if name != "pixels"]
+    blocks = (Block * len(names))(
+        *[Block(n.encode(), observations[n].ctypes.data, observations[n].size) for n in names]
+    )
+    given = Observations(
+        count,
+        None if pixels is None else pixels.ctypes.data,
+        0 if pixels is None else pixels.size,
+        blocks,
+        len(names),
+    )
+    actions = np.empty((count, action_size), np.float32)
+    act = library.shoal_policy_act
+    act.argtypes = [ctypes.c_void_p, ctypes.c_void_p, ctypes.c_void_p, ctypes.c_size_t]
+    assert act(policy, ctypes.byref(given), actions.ctypes.data, actions.size) == 0
+    library.shoal_policy_free(policy)
+    return actions
+
+
+# --- Policy
+
+
+@pytest.mark.parametrize("folder", CHECKPOINTS, ids=lambda folder: folder.parent.parent.name)
+def test_actions_are_those_of_the_c_library(folder):
+    policy = shoal_rl.Policy(folder)
+    observations = random_observations(policy, 5)
+    actions = policy.act(observations)
+    assert actions.dtype == np.float32 and actions.shape == (5, policy.action_size)
+    assert np.array_equal(actions, act_by_c_library(folder, observations, 5, policy.action_size))
+    assert np.unique(actions, axis=0).shape[0] == 5
+    for n in range(5):
+        one = policy.act({name: array[n] for name, array in observations.items()})
+        assert one.shape == (policy.action_size,)
+        np.testing.assert_allclose(one, actions[n], atol=1e-5)
+
+
+def test_arrays_may_be_views_and_blocks_of_any_float():
+    policy = shoal_rl.Policy(checkpoint("sac-compact"))
+    observations = random_observations(policy, 4)
+    strided = {}
+    for name, array in observations.items():
+        wide = np.repeat(array, 2, axis=-1)
+        wide[..., 1::2] = 0
+        strided[name] = wide[..., ::2]
+        assert not strided[name].flags.c_contiguous
+        if name != "pixels":
+            strided[name] = strided[name].astype(np.float64)[::1]
+    assert np.array_equal(policy.act(strided), policy.act(observations))
+
+
+def test_policy_says_what_it_observes():
+    policy = shoal_rl.Policy(str(checkpoint("sac-compact")))
+    description = json.loads((checkpoint("sac-compact") / "policy.json").read_text())
+    spec = description["spec"]
+    assert policy.task == spec["task"] and policy.algorithm == "sac"
+    assert policy.action_size == spec["action_size"] and policy.cameras == spec["cameras"]
+    assert policy.stack == spec["stack"]
+    assert policy.pixels == (spec["stack"] * spec["channels"], spec["height"], spec["width"])
+    observed = {block["name"]: block["size"] for block in spec["blocks"] if block["observed"]}
+    assert policy.blocks == observed
+    assert shoal_rl.Policy(checkpoint("sac-state")).pixels is None
+
+
+def refusal(call, *arguments, **keys):
+    with pytest.raises(shoal_rl.Error) as raised:
+        call(*arguments, **keys)
+    line = str(raised.value)
+    assert line and "\n" not in line
+    return line
+
+
+def test_observations_that_do_not_fit_are_refused_by_name():
+    policy = shoal_rl.Policy(checkpoint("sac-compact"))
+    good = random_observations(policy, 2)
+    name, size = next(iter(policy.blocks.items()))
+    assert "pixels are missing" in refusal(policy.act, {name: good[name]})
+    assert f"block '{name}' is missing" in refusal(policy.act, {"pixels": good["pixels"]})
+    assert "uint8" in refusal(policy.act, good | {"pixels": good["pixels"] / 255})
+    assert "expected" in refusal(policy.act, good | {"pixels": good["pixels"][:, :, ::2]})
+    three = refusal(policy.act, good | {name: np.zeros((3, size))})
+    assert f"does not go with block '{name}', which is of N = 3" in three
+    assert "without N" in refusal(policy.act, good | {name: np.zeros(size)})
+    long = refusal(policy.act, good | {name: np.zeros(2 * size)})
+    assert f"shape ({2 * size},), expected ({size},) or (N, {size})" in long
+    assert "array of numbers" in refusal(policy.act, good | {name: ["a"] * size})
+    assert "not finite" in refusal(policy.act, good | {name: np.full((2, size), np.nan)})
+    assert "'other' is not observed" in refusal(policy.act, good | {"other": np.zeros((2, 1))})
+    assert "names" in refusal(policy.act, good | {1: np.zeros((2, 1))})
+    assert "at least 1" in refusal(policy.act, {key: array[:0] for key, array in good.items()})
+
+
+def test_checkpoints_that_cannot_be_read_are_refused(tmp_path):
+    assert "no-such" in refusal(shoal_rl.Policy, tmp_path / "no-such")
+    copy = tmp_path / "copy"
+    shutil.copytree(checkpoint("sac-state"), copy)
+    shoal_rl.Policy(copy)
+    damaged = copy / "policy.safetensors"
+    damaged.write_bytes(damaged.read_bytes()[:-1])
+    assert "policy.safetensors" in refusal(shoal_rl.Policy, copy)
+
+
+# --- make
+
+FORMS = {
+    "pixels": {},
+    "state": {"pixels": False},
+    "stacked": {"stack": 3, "grey": True, "proprioception": True, "height": 40, "width": 50,
+                "render_mode": "rgb_array"},
+}
+
+
+@pytest.mark.filterwarnings("ignore")
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("task", shoal_rl.tasks())
+def test_gymnasium_accepts_every_task(task, form):
+    env = shoal_rl.make(task, **FORMS[form])
+    check_env(env)
+    env.close()
+
+
+def play(env, seed, steps):
+    env.action_space.seed(seed)
+    observation, info = env.reset(seed=seed)
+    rows = [(observation, info)]
+    for _ in range(steps):
+        observation, reward, terminated, truncated, info = env.step(env.action_space.sample())
+        rows.append((observation, reward, terminated, truncated, info))
+        if terminated or truncated:
+            rows.append(env.reset())
+    return rows
+
+
+def same(left, right):
+    if isinstance(left, dict):
+        return left.keys() == right.keys() and all(same(left[k], right[k]) for k in left)
+    return np.array_equal(left, right)
+
+
+def test_a_seed_names_its_episodes():
+    keys = {"goal_mode": "both", "height": 32, "width": 32}
+    rows = [play(shoal_rl.make("FetchReach", **keys), seed, 60) for seed in (3, 3, 4)]
+    assert all(same(a, b) for first, again in zip(rows[0], rows[1]) for a, b in zip(first, again))
+    assert not same(rows[0][0][0], rows[2][0][0])
+    # The second episode is another.
+    starts = [row[0] for row in rows[0] if len(row) == 2]
+    assert len(starts) == 2 and not same(starts[0]["desired_goal"], starts[1]["desired_goal"])
+
+
+def test_numbers_of_a_step_agree():
+    env = shoal_rl.make("FetchReachDense", goal_mode="both")
+    assert set(env.observation_space.spaces) == {"pixels", "achieved_goal", "desired_goal"}
+    env.reset(seed=1)
+    ends = []
+    for step in range(50):
+        observation, reward, terminated, truncated, info = env.step(np.full(4, 0.5))
+        distance = np.linalg.norm(observation["achieved_goal"] - observation["desired_goal"])
+        assert info["distance"] == pytest.approx(distance, abs=1e-6)
+        assert reward == pytest.approx(-distance, abs=1e-6)
+        assert info["is_success"] == (distance < 0.05)
+        ends.append(terminated or truncated)
+    assert ends == [False] * 49 + [True]
+    assert "reset()" in refusal(env.step, np.zeros(4))
+
+
+def test_tasks_without_goals_say_nothing_of_success():
+    env = shoal_rl.make("cartpole_swingup", pixels=False)
+    assert env.reset(seed=1)[1] == {}
+    assert env.step(np.zeros(1))[4] == {}
+
+
+def test_a_stack_starts_with_its_first_frame_and_shifts():
+    env = shoal_rl.make("FetchReachDense", stack=3, render_mode="rgb_array")
+    first = env.reset(seed=1)[0]["pixels"].reshape(3, 3, 84, 84)
+    assert np.array_equal(first[0], first[1]) and np.array_equal(first[1], first[2])
+    second = env.step(np.ones(4))[0]["pixels"].reshape(3, 3, 84, 84)
+    assert np.array_equal(second[:2], first[1:]) and not np.array_equal(second[2], first[2])
+    assert np.array_equal(env.render(), second[2].transpose(1, 2, 0))
+    assert first.std() > 10
+
+
+def test_render_shows_cameras_side_by_side():
+    env = shoal_rl.make("FetchReachDense", cameras=["front", "side"], render_mode="rgb_array")
+    frame = env.reset(seed=1)[0]["pixels"]
+    picture = env.render()
+    assert picture.shape == (84, 168, 3)
+    assert np.array_equal(picture[:, 84:], frame[3:].transpose(1, 2, 0))
+    assert "render_mode" in refusal(shoal_rl.make, "FetchReachDense", render_mode="human")
+    assert "pixels" in refusal(
+        shoal_rl.make, "FetchReachDense", render_mode="rgb_array", pixels=False
+    )
+
+
+def test_what_make_does_not_know_is_refused():
+    line = refusal(shoal_rl.make, "FetchRech")
+    assert "'FetchRech'" in line and all(task in line for task in shoal_rl.tasks())
+    assert "'camras'" in refusal(shoal_rl.make, "FetchReach", camras=["front"])
+    assert "front, side" in refusal(shoal_rl.make, "FetchReach", cameras=["top"])
+    assert "width" in refusal(shoal_rl.make, "FetchReach", width=-1)
+    assert "JSON" in refusal(shoal_rl.make, "FetchReach", width=np.zeros(2))
+    env = shoal_rl.make("FetchReach", pixels=False)
+    assert "reset()" in refusal(env.step, np.zeros(4))
+    env.reset(seed=0)
+    assert "4 numbers" in refusal(env.step, np.zeros(3))
+    assert "number 1" in refusal(env.step, [0, 2, 0, 0])
+    assert "nan" in refusal(env.step, np.full(4, np.nan))
+    env.step(np.zeros(4))
+
+
+def test_environments_side_by_side_are_those_alone():
+    envs = shoal_rl.make_vec("FetchReachDense", 2, height=32, width=32)
+    try:
+        assert isinstance(envs, gymnasium.vector.VectorEnv)
+        observations, _ = envs.reset(seed=[5, 6])
+        actions = np.full((2, 4), 0.25, np.float32)
+        stepped, rewards, *_ = envs.step(actions)
+    finally:
+        envs.close()
+    for n, seed in enumerate((5, 6)):
+        alone = shoal_rl.make("FetchReachDense", height=32, width=32)
+        assert np.array_equal(alone.reset(seed=seed)[0]["pixels"], observations["pixels"][n])
+        observation, reward, *_ = alone.step(actions[n])
+        assert np.array_equal(observation["pixels"], stepped["pixels"][n])
+        assert reward == rewards[n]
+
+
+# --- runs
+
+
+def write_run(folder):
+    (folder / "eval").mkdir()
+    (folder / "config.json").write_text("{}")
+    (folder / "metrics.jsonl").write_text(
+        '{"t":100.5,"role":"actor","id":0,"env_steps":7}\n'
+        '{"t":101.5,"role":"learner","id":0,"updates":3,"loss":null}\n'
+        '{"t":102.5,"role":"ac'
+    )
+
+    def evaluation(name, env_steps, success, **more):
+        figures = {"episodes": 2, "return_mean": -1.0, "return_std": 0.5, "length_mean": 50.0}
+        if success is not None:
+            figures |= {"success_rate": success, "final_distance_mean": 0.01}
+        (folder / "eval" / name).write_text(
+            json.dumps(
+                {
+                    "schema": "shoal-eval-1",
+                    "checkpoint": "best",
+                    "weights_version": {"session": 1, "update": env_steps // 10},
+                    "env_steps": env_steps,
+                    "aggregate": figures,
+                    **more,
+                }
+            )
+        )
+
+    evaluation("steps_0000000200_updates_0000000020.json", 200, None, wall_seconds=2.0)
+    evaluation("steps_0000000100_updates_0000000010.json", 100, 0.5, wall_seconds=1.0)
+    evaluation("final.json", 200, 1.0)
+
+
+def test_metrics_are_a_row_for_each_report(tmp_path):
+    write_run(tmp_path)
+    frame = shoal_rl.metrics(tmp_path)
+    assert list(frame["role"]) == ["actor", "learner"]  # not the line that is being written
+    assert frame["t"][0].timestamp() == 100.5 and str(frame["t"].dt.tz) == "UTC"
+    assert frame["env_steps"][0] == 7 and np.isnan(frame["env_steps"][1])
+    with open(tmp_path / "metrics.jsonl", "a") as file:
+        file.write("\n")
+    assert "metrics.jsonl:3" in refusal(shoal_rl.metrics, tmp_path)
+
+
+def test_evaluations_are_rows_by_env_steps(tmp_path):
+    write_run(tmp_path)
+    frame = shoal_rl.evaluations(str(tmp_path))
+    assert list(frame["env_steps"]) == [100, 200, 200]
+    assert list(frame["final"]) == [False, False, True]
+    assert frame["success"][0] == 0.5 and np.isnan(frame["success"][1])
+    assert list(frame["updates"]) == [10, 20, 20] and frame["episodes"].sum() == 6
+    assert frame["wall_seconds"][1] == 2 and np.isnan(frame["wall_seconds"][2])
+    broken = tmp_path / "eval" / "steps_0000000300_updates_0000000030.json"
+    broken.write_text('{"schema": "shoal-eval-1"}')
+    assert broken.name in refusal(shoal_rl.evaluations, tmp_path)
+    broken.write_text('{"schema": "other"}')
+    assert "shoal-eval-1" in refusal(shoal_rl.evaluations, tmp_path)
+
+
+def test_a_folder_that_is_no_run_is_refused(tmp_path):
+    assert "config.json" in refusal(shoal_rl.metrics, tmp_path)
+    assert "config.json" in refusal(shoal_rl.evaluations, tmp_path / "nothing")
