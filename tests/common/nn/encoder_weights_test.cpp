@@ -27,6 +27,7 @@ class EncoderWeightsTest : public testing::Test {
     spec_.stack = 4;
     spec_.action_size = 2;
     network_.encoder = "alexnet";
+    network_.initialisation = "pytorch";  // orthogonal weights take long
     network_.encoder_weights = (folder_.path() / "encoder.safetensors").string();
     ParameterSet set(PlanEncoder(network_, spec_).Parameters(), ParameterSet::Use::kInference);
     set.Initialise(5);

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <ostream>
 #include <string>
 
 #include "common/base/random.h"
@@ -16,6 +17,11 @@ struct PolicyKind {
   nn::ActorOutput output = nn::ActorOutput::kGaussian;
   bool normalised = false;
 };
+
+// For what googletest says of a test's parameter.
+inline void PrintTo(const PolicyKind& kind, std::ostream* out) {
+  *out << '"' << kind.encoder << '"';
+}
 
 // Small, and odd where the encoder takes it: the windows of alexnet's average pool differ then.
 inline ObservationSpec SpecFor(const std::string& encoder) {
@@ -41,6 +47,7 @@ inline nn::NamedTensor FloatTensor(const std::vector<float>& values) {
 inline policy::CheckpointPolicy RandomPolicy(const PolicyKind& kind, NetworkConfig network = {}) {
   constexpr const char* kAlgorithms[] = {"sac", "td3", "ppo"};
   if (!kind.encoder.empty()) network.encoder = kind.encoder;
+  network.initialisation = "pytorch";  // orthogonal weights of the large encoders take long
   network.hidden = {17, 12};
   policy::CheckpointPolicy policy;
   policy.description = {.version = "0.1.0",
