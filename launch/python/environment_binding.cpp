@@ -73,7 +73,6 @@ class PlayedEnvironment {
     if (!running_) throw UsageError("step: no episode is running; reset() starts one");
     const auto numbers =
         py::array_t<float, py::array::c_style | py::array::forcecast>::ensure(action);
-    if (!numbers) PyErr_Clear();
     if (!numbers || numbers.ndim() != 1 || numbers.size() != spec().action_size) {
       throw UsageError("step: expected an action of {} numbers", spec().action_size);
     }

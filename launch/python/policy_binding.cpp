@@ -65,10 +65,10 @@ void CheckShape(const std::string& name, const py::array& array, const Shape& ex
 
 void TakePixels(const ObservationSpec& spec, const py::handle& value, Arrays* arrays) {
   // Pixels scaled to floats would, converted back, be black.
-  if (!py::isinstance<py::array_t<uint8_t>>(value)) {
-    throw UsageError("pixels: expected a numpy array of uint8, 0..255");
-  }
-  arrays->pixels = Bytes::ensure(value);
+  const bool bytes = py::isinstance<py::array_t<uint8_t>>(value);
+  const Bytes pixels = bytes ? Bytes::ensure(value) : Bytes();
+  if (!bytes || !pixels) throw UsageError("pixels: expected a numpy array of uint8, 0..255");
+  arrays->pixels = pixels;
   CheckShape("pixels", arrays->pixels,
              {py::ssize_t(spec.stack) * spec.channels, spec.height, spec.width}, arrays);
 }
@@ -76,10 +76,7 @@ void TakePixels(const ObservationSpec& spec, const py::handle& value, Arrays* ar
 void TakeBlock(const ObservationSpec& spec, const std::string& name, const py::handle& value,
                Arrays* arrays) {
   const Floats block = Floats::ensure(value);
-  if (!block) {
-    PyErr_Clear();
-    throw UsageError("block '{}': expected an array of numbers", name);
-  }
+  if (!block) throw UsageError("block '{}': expected an array of numbers", name);
   // A name that is not observed is refused, with those that are, by the policy.
   if (const auto range = spec.Observed(name)) {
     CheckShape(fmt::format("block '{}'", name), block, {range->size}, arrays);

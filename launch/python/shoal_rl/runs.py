@@ -82,7 +82,7 @@ def _evaluation(file):
 
 
 def evaluations(run):
-    """eval/*.json: a row for each evaluation, by env steps; last the one marked `final`, of the best checkpoint.
+    """eval/*.json: a row for each evaluation, by env steps; last the `final` one.
 
     run: the run's folder. success: rate, 0..1, and final_distance_mean: m, NaN where the task has
     none; lengths in env steps; wall_seconds since the run's start, NaN for the final one.
