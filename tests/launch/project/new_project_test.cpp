@@ -68,7 +68,9 @@ TEST_F(NewProject, AnInstallationFindsItsPresetsFromAnyFolderWithoutTheSources) 
   Expect(result);
   EXPECT_EQ(nlohmann::json::parse(result.out).at("preset"), "fetch-reach-state");
   const std::string program = ReadFile(Shoal());
-  EXPECT_EQ(program.find(SourcePath("launch")), std::string::npos);
+  for (const char* folder : {"launch/presets", "launch/experiments"}) {
+    EXPECT_EQ(program.find(SourcePath(folder)), std::string::npos) << folder;
+  }
 }
 
 TEST_F(NewProject, BuildsAndTrainsAgainstTheInstallation) {
