@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/base/build_info.h"
+#include "common/dds/reach_options.h"
 
 namespace shoal::actor {
 namespace {
@@ -11,12 +12,7 @@ void AddOptions(CLI::App& app, Options* options) {
   app.add_option("--run", options->run, "run folder (config.json, cluster.json)");
   app.add_option("--id", options->id, "number of this actor within the run");
   app.add_option("--role", options->role, "train or eval")->check(CLI::IsMember({"train", "eval"}));
-  app.add_option("--peer", options->reach.peer,
-                 "HOST[:PORT] of the servers instead of cluster.json's");
-  app.add_option("--interface", options->reach.interface,
-                 "network interface of this host instead of transport.interface");
-  app.add_option("--secure", options->reach.secure,
-                 "folder of credentials instead of cluster.json's (shoal secure init)");
+  dds::AddReachOptions(&app, &options->reach);
   app.add_flag(
       "--stop-with-input", options->stop_with_input,
       "stop when standard input ends: a remote shell's way to say that its caller is gone");

@@ -71,4 +71,8 @@ PrivilegedBlocks PrivilegedBlocksOf(const LearnerConfig& learner, const Observat
   return blocks;
 }
 
+int PrivilegedSize(const LearnerConfig& learner, const ObservationSpec& spec) {
+  return BlockPicker::Named(spec, PrivilegedBlocksOf(learner, spec).all).size();
+}
+
 }  // namespace shoal

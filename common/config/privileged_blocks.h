@@ -34,5 +34,7 @@ struct PrivilegedBlocks {
 // Throws Error (kUsage) naming the key, the block that the record does not have or that does not
 // fit, and the blocks there are.
 PrivilegedBlocks PrivilegedBlocksOf(const LearnerConfig& learner, const ObservationSpec& spec);
+// P, of all of them. Throws the same.
+int PrivilegedSize(const LearnerConfig& learner, const ObservationSpec& spec);
 
 }  // namespace shoal

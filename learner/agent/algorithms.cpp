@@ -20,7 +20,7 @@ namespace {
 constexpr Algorithm kAlgorithms[] = {
     {"sac", kSacFigures, MakeSacAgent},
     {"td3", kTwinFigures, MakeTd3Agent},
-    {"ddpg", kDeterministicFigures, MakeDdpgAgent},
+    {"ddpg", kSingleCriticFigures, MakeDdpgAgent},
     {"ppo", kPpoFigures, MakePpoAgent},
 };
 

@@ -11,10 +11,6 @@ namespace {
 
 constexpr float kUnit = 0.15f;
 
-int PrivilegedSize(const LearnerConfig& learner, const ObservationSpec& spec) {
-  return BlockPicker::Named(spec, PrivilegedBlocksOf(learner, spec).all).size();
-}
-
 }  // namespace
 
 std::unique_ptr<AuxLoss> AuxLoss::Make(const Config& config, const ObservationSpec& spec,

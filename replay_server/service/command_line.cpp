@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/base/build_info.h"
+#include "common/dds/reach_options.h"
 
 namespace shoal::replay {
 
@@ -11,12 +12,7 @@ std::unique_ptr<CLI::App> MakeCommandLine(Options* options) {
                                         "shoal-replay");
   app->set_version_flag("--version", BuildVersion());
   app->add_option("--run", options->run, "run folder (config.json, cluster.json)")->required();
-  app->add_option("--peer", options->reach.peer,
-                  "HOST[:PORT] of the servers instead of cluster.json's");
-  app->add_option("--interface", options->reach.interface,
-                  "network interface of this host instead of transport.interface");
-  app->add_option("--secure", options->reach.secure,
-                  "folder of credentials instead of cluster.json's (shoal secure init)");
+  dds::AddReachOptions(app.get(), &options->reach);
   return app;
 }
 

@@ -8,7 +8,6 @@
 
 #include "common/base/check.h"
 #include "common/base/crc32.h"
-#include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/nn/policy.h"
 #include "common/policy/policy_description.h"
@@ -75,11 +74,5 @@ void Read(uint8_t mode, const std::string& bytes) {
 }  // namespace shoal::learner
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-  if (size == 0) return 0;
-  try {
-    shoal::learner::Read(data[0], shoal::fuzz::Text(data + 1, size - 1));
-  } catch (const shoal::Error& e) {
-    shoal::fuzz::CheckOneLine(e.what());
-  }
-  return 0;
+  return shoal::fuzz::Try(data, size, shoal::learner::Read);
 }

@@ -4,7 +4,6 @@
 #include <sstream>
 
 #include "common/base/check.h"
-#include "common/base/error.h"
 #include "common/config/config_io.h"
 #include "tests/fuzz/fuzz_target.h"
 
@@ -25,19 +24,16 @@ Config Read(uint8_t mode, const std::string& text) {
   return config;
 }
 
+void Check(uint8_t mode, const std::string& text) {
+  const std::string written = ToJson(Read(mode, text)).dump();
+  Config again;
+  ApplyJson(ParseStrictJson(written, "written"), "written", &again);
+  CHECK(ToJson(again).dump() == written) << written;
+}
+
 }  // namespace
 }  // namespace shoal
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-  if (size == 0) return 0;
-  try {
-    const shoal::Config config = shoal::Read(data[0], shoal::fuzz::Text(data + 1, size - 1));
-    const std::string written = shoal::ToJson(config).dump();
-    shoal::Config again;
-    shoal::ApplyJson(shoal::ParseStrictJson(written, "written"), "written", &again);
-    CHECK(shoal::ToJson(again).dump() == written) << written;
-  } catch (const shoal::Error& e) {
-    shoal::fuzz::CheckOneLine(e.what());
-  }
-  return 0;
+  return shoal::fuzz::Try(data, size, shoal::Check);
 }

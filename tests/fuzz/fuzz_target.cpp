@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "common/base/check.h"
+#include "common/base/error.h"
 
 namespace shoal::fuzz {
 namespace {
@@ -36,6 +37,17 @@ class ScratchFolder {
 void CheckOneLine(std::string_view message) {
   CHECK(!message.empty());
   CHECK(message.find('\n') == std::string_view::npos) << message;
+}
+
+int Try(const uint8_t* data, size_t size,
+        const std::function<void(uint8_t which, const std::string& bytes)>& read) {
+  if (size == 0) return 0;
+  try {
+    read(data[0], Text(data + 1, size - 1));
+  } catch (const Error& e) {
+    CheckOneLine(e.what());
+  }
+  return 0;
 }
 
 const fs::path& Scratch() {

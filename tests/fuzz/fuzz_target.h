@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <string_view>
 
@@ -18,6 +19,11 @@ inline std::string Text(const uint8_t* data, size_t size) {
 
 // Ends the process unless the message of a refusal is one line with something in it.
 void CheckOneLine(std::string_view message);
+
+// Hands `read` the first byte and the text behind it; an Error that it throws has to be one line.
+// Returns what an entry point returns.
+int Try(const uint8_t* data, size_t size,
+        const std::function<void(uint8_t which, const std::string& bytes)>& read);
 
 // A folder in memory for targets that read files; one per process, removed at its end.
 const std::filesystem::path& Scratch();

@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/check.h"
-#include "common/base/error.h"
 #include "launch/web/access.h"
 #include "launch/web/byte_range.h"
 #include "launch/web/page_answers.h"
@@ -80,11 +79,5 @@ void Read(uint8_t which, const std::string& bytes) {
 }  // namespace shoal
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
-  if (size == 0) return 0;
-  try {
-    shoal::Read(data[0], shoal::fuzz::Text(data + 1, size - 1));
-  } catch (const shoal::Error& e) {
-    shoal::fuzz::CheckOneLine(e.what());
-  }
-  return 0;
+  return shoal::fuzz::Try(data, size, shoal::Read);
 }

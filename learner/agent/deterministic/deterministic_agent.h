@@ -15,6 +15,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 
 #include "common/config/config.h"
 #include "common/nn/precision.h"
@@ -31,15 +32,13 @@ struct DeterministicOptions {
 };
 
 // In the order of an update; the actor's only where the update moves the actor.
-inline constexpr const Figure* kDeterministicFigures[] = {
+// The last two need a second critic.
+inline constexpr const Figure* kTwinFigures[] = {
     &kCriticLoss,       &kQMean,  &kTargetMean, &kCriticGradNorm, &kActorLoss, &kActorGradNorm,
     &kActionSaturation, &kQ1Mean, &kQ1Std,      &kQMinMean,       &kQMinStd,   &kQMinMin,
-    &kQMinMax};
-// With a second critic.
-inline constexpr const Figure* kTwinFigures[] = {
-    &kCriticLoss,       &kQMean,   &kTargetMean, &kCriticGradNorm, &kActorLoss, &kActorGradNorm,
-    &kActionSaturation, &kQ1Mean,  &kQ1Std,      &kQ2Mean,         &kQ2Std,     &kQMinMean,
-    &kQMinStd,          &kQMinMin, &kQMinMax};
+    &kQMinMax,          &kQ2Mean, &kQ2Std};
+inline constexpr std::span<const Figure* const> kSingleCriticFigures =
+    std::span(kTwinFigures).first(std::size(kTwinFigures) - 2);
 
 // Takes batch, seed, discount, reward scale, rates and periods from `config`.
 std::unique_ptr<Agent> MakeDeterministicAgent(const Config& config, const ObservationSpec& spec,

@@ -93,7 +93,7 @@ SacAgent::SacAgent(const Config& config, const ObservationSpec& spec, nn::Precis
       threads_(nn::Threads()),
       networks_(config, spec, precision, threads_),
       standard_(config.learner.normalise_vectors, spec.VectorSize(),
-                BlockPicker::Named(spec, PrivilegedBlocksOf(config.learner, spec).all).size()),
+                PrivilegedSize(config.learner, spec)),
       critic_vectors_(config.learner, spec),
       gaussian_(batch_size_, spec.action_size),
       targets_(size_t(batch_size_)),
