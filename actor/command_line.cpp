@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "common/base/build_info.h"
+#include "common/base/command_line.h"
 #include "common/dds/reach_options.h"
 
 namespace shoal::actor {
@@ -46,7 +46,7 @@ void AddOptions(CLI::App& app, Options* options) {
 std::unique_ptr<CLI::App> MakeCommandLine(Options* options) {
   auto app = std::make_unique<CLI::App>(
       "Steps and renders environments for a run, or evaluates a checkpoint.", "shoal-actor");
-  app->set_version_flag("--version", BuildVersion());
+  AddVersion(app.get());
   AddOptions(*app, options);
   return app;
 }

@@ -10,6 +10,7 @@
 #include "actor/loop/training_actor.h"
 #include "actor/worlds/environment.h"
 #include "actor/worlds/physics_library.h"
+#include "common/base/command_line.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/log.h"
@@ -25,13 +26,7 @@ namespace {
 // An exit code where the command line asked for nothing but help or the version.
 std::optional<int> Parse(int argc, char** argv, Options* options) {
   const auto app = MakeCommandLine(options);
-  try {
-    app->parse(argc, argv);
-  } catch (const CLI::Success& e) {
-    return app->exit(e);
-  } catch (const CLI::ParseError& e) {
-    throw UsageError("{}", e.what());
-  }
+  if (const auto exit_code = ParseCommandLine(app.get(), argc, argv)) return exit_code;
   if (options->describe && options->config_json.empty()) {
     throw UsageError("--describe needs --config-json FILE");
   }

@@ -1,42 +1,41 @@
 // shoal: the command line. See launch/commands.
 #include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
 
+#include "common/base/command_line.h"
 #include "common/base/error.h"
 #include "common/base/main_guard.h"
+#include "common/base/nearest_name.h"
 #include "common/dds/bus.h"
 #include "launch/commands/command_line.h"
 
 namespace {
 
-// The first word that should be a command and is none; empty when there is no such word.
-std::string UnknownCommand(const CLI::App& app, int argc, char** argv) {
+// Asked first: what is said of its options would be of no use.
+void CheckCommand(const CLI::App& app, int argc, char** argv) {
   const CLI::App* level = &app;
-  const auto any = [](const CLI::App*) { return true; };
-  for (int i = 1; i < argc && argv[i][0] != '-' && !level->get_subcommands(any).empty(); ++i) {
-    const auto named = level->get_subcommands(
-        [&](const CLI::App* command) { return command->get_name() == argv[i]; });
-    if (named.empty()) return argv[i];
-    level = named[0];
+  for (int i = 1; i < argc && argv[i][0] != '-'; ++i) {
+    std::vector<std::string> names;
+    const CLI::App* named = nullptr;
+    for (const CLI::App* command : level->get_subcommands([](const CLI::App*) { return true; })) {
+      names.push_back(command->get_name());
+      if (names.back() == argv[i]) named = command;
+    }
+    if (names.empty()) return;
+    if (named == nullptr) {
+      throw shoal::UsageError("unknown command '{}' (see {} --help){}", argv[i], level->get_name(),
+                              shoal::NearestHint(argv[i], names));
+    }
+    level = named;
   }
-  return "";
 }
 
 int Run(int argc, char** argv) {
   shoal::launch::Action chosen;
-  const auto command_line = shoal::launch::MakeCommandLine(&chosen);
-  CLI::App& app = *command_line;
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& e) {
-    return app.exit(e);  // --help, --version
-  } catch (const CLI::RequiredError& e) {
-    const std::string unknown = UnknownCommand(app, argc, argv);
-    if (!unknown.empty())
-      throw shoal::UsageError("unknown command '{}' (see shoal --help)", unknown);
-    throw shoal::UsageError("{} (see shoal --help)", e.what());
-  } catch (const CLI::ParseError& e) {
-    throw shoal::UsageError("{} (see shoal --help)", e.what());
-  }
+  const auto app = shoal::launch::MakeCommandLine(&chosen);
+  CheckCommand(*app, argc, argv);
+  if (const auto exit_code = shoal::ParseCommandLine(app.get(), argc, argv)) return *exit_code;
   return chosen();
 }
 

@@ -2,7 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
-#include "common/base/build_info.h"
+#include "common/base/command_line.h"
 #include "common/dds/reach_options.h"
 
 namespace shoal::learner {
@@ -10,7 +10,7 @@ namespace shoal::learner {
 std::unique_ptr<CLI::App> MakeCommandLine(Options* options) {
   auto app = std::make_unique<CLI::App>("Trains the policy of a run on batches from its replay.",
                                         "shoal-learner");
-  app->set_version_flag("--version", BuildVersion());
+  AddVersion(app.get());
   app->add_option("--run", options->run, "run folder (config.json, cluster.json)")->required();
   dds::AddReachOptions(app.get(), &options->reach);
   return app;

@@ -1,7 +1,7 @@
 // shoal-learner: the learner process of a run.
 #include <CLI/CLI.hpp>
 
-#include "common/base/error.h"
+#include "common/base/command_line.h"
 #include "common/base/log.h"
 #include "common/base/main_guard.h"
 #include "common/base/stop.h"
@@ -16,13 +16,7 @@ namespace {
 int Run(int argc, char** argv) {
   shoal::learner::Options options;
   const auto app = shoal::learner::MakeCommandLine(&options);
-  try {
-    app->parse(argc, argv);
-  } catch (const CLI::Success& e) {
-    return app->exit(e);
-  } catch (const CLI::ParseError& e) {
-    throw shoal::UsageError("{}", e.what());
-  }
+  if (const auto exit_code = shoal::ParseCommandLine(app.get(), argc, argv)) return *exit_code;
   shoal::log::Start("learner-0", "");
   shoal::InstallStopSignals();
   shoal::tasks::LoadTaskLibrary(shoal::ReadRunConfig(options.run).config.task_library);

@@ -1,7 +1,7 @@
 // shoal-replay: the replay server of a run.
 #include <CLI/CLI.hpp>
 
-#include "common/base/error.h"
+#include "common/base/command_line.h"
 #include "common/base/log.h"
 #include "common/base/main_guard.h"
 #include "common/base/stop.h"
@@ -16,13 +16,7 @@ namespace {
 int Run(int argc, char** argv) {
   shoal::replay::Options options;
   const auto app = shoal::replay::MakeCommandLine(&options);
-  try {
-    app->parse(argc, argv);
-  } catch (const CLI::Success& e) {
-    return app->exit(e);
-  } catch (const CLI::ParseError& e) {
-    throw shoal::UsageError("{}", e.what());
-  }
+  if (const auto exit_code = shoal::ParseCommandLine(app.get(), argc, argv)) return *exit_code;
   shoal::InstallStopSignals();
   shoal::log::Start("replay-0", "");
   shoal::tasks::LoadTaskLibrary(shoal::ReadRunConfig(options.run).config.task_library);

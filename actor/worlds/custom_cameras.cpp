@@ -30,7 +30,8 @@ CameraView ChooseCamera(const World& world, const ObservationConfig& observation
     return view;
   }
   for (const auto& [own, camera] : custom) names += (names.empty() ? "" : ", ") + own;
-  throw UsageError("unknown camera '{}'; cameras of this task: {}", name, names);
+  throw UsageError("unknown camera '{}' (observation.cameras); cameras of this task: {}", name,
+                   names);
 }
 
 }  // namespace shoal::worlds

@@ -1,28 +1,9 @@
 #include "common/config/nearest_key.h"
 
-#include <algorithm>
-#include <numeric>
-#include <vector>
-
+#include "common/base/nearest_name.h"
 #include "common/config/config_keys.h"
 
 namespace shoal::internal {
-
-int EditDistance(std::string_view a, std::string_view b) {
-  // row[j]: distance of the first i characters of a to the first j of b.
-  std::vector<int> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), 0);
-  for (size_t i = 1; i <= a.size(); ++i) {
-    int diagonal = row[0];
-    row[0] = static_cast<int>(i);
-    for (size_t j = 1; j <= b.size(); ++j) {
-      const int replace = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({replace, row[j] + 1, row[j - 1] + 1});
-    }
-  }
-  return row[b.size()];
-}
 
 std::string NearestKey(std::string_view path) {
   std::string_view best;

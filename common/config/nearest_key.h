@@ -6,9 +6,6 @@
 
 namespace shoal::internal {
 
-// Edits (insert, delete, replace one character) that turn `a` into `b`.
-int EditDistance(std::string_view a, std::string_view b);
-
 // The known key or section nearest to `path`: by its whole path, or by its last word when `path`
 // has no section ("batch" -> "learner.batch"). Empty where more than half of `path` would have to
 // change: that is another word, not a misspelt one.

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/error.h"
+#include "common/base/nearest_name.h"
 #include "common/config/config_io.h"
 #include "common/config/shared_data.h"
 
@@ -33,7 +34,8 @@ std::string FindPreset(const std::string& name) {
   if (const auto path = FindSharedData(kKind, name)) return *path;
   const std::vector<std::string> known = ListPresets();
   if (known.empty()) FailWithoutPresets();
-  throw UsageError("unknown preset '{}', there are: {}", name, fmt::join(known, ", "));
+  throw UsageError("unknown preset '{}', there are: {}{}", name, fmt::join(known, ", "),
+                   NearestHint(name, known));
 }
 
 Config LoadPreset(const std::string& name) {

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "common/base/error.h"
+#include "common/base/nearest_name.h"
 #include "common/tasks/control_tasks.h"
 #include "common/tasks/fetch_tasks.h"
 #include "common/tasks/hopper_tasks.h"
@@ -31,7 +32,9 @@ const Task& FindTask(const std::string& name) {
   for (const Task& task : AllTasks()) {
     if (task.name() == name) return task;
   }
-  throw UsageError("unknown task '{}'; tasks: {}", name, fmt::join(TaskNames(), ", "));
+  const std::vector<std::string> names = TaskNames();
+  throw UsageError("unknown task '{}'; tasks: {}{}", name, fmt::join(names, ", "),
+                   NearestHint(name, names));
 }
 
 std::vector<std::string> TaskNames() {

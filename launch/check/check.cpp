@@ -2,6 +2,7 @@
 
 #include "actor/worlds/environment.h"
 #include "common/base/error.h"
+#include "common/base/stop.h"
 #include "common/base/usable_cores.h"
 #include "common/config/config_io.h"
 #include "common/nn/precision.h"
@@ -41,6 +42,7 @@ std::vector<CheckLine> CheckMachine(const CheckRequest& request,
   std::vector<CheckLine> lines;
   const auto look = [&](const std::string& name, const std::string& advice,
                         const std::function<CheckLine()>& at) {
+    if (StopRequested()) return false;
     lines.push_back(Guarded(name, advice, at));
     show(lines.back());
     return lines.back().verdict != Verdict::kFail;

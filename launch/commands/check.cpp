@@ -23,6 +23,10 @@ int Check(const CheckRequest& request, const std::string& json) {
   const SteadyTime start = Now();
   const std::vector<CheckLine> lines =
       CheckMachine(request, [](const CheckLine& line) { std::cout << ToText(line) << std::flush; });
+  if (StopRequested()) {
+    std::cout << "interrupted\n";
+    return kInterruptedExit;
+  }
   const double seconds = SecondsSince(start);
   if (!json.empty()) {
     WriteFileAtomically(json, ToJson(lines, seconds, DescribeMachine()).dump(2) + "\n");

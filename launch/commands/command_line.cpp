@@ -1,17 +1,15 @@
 #include "launch/commands/command_line.h"
 
-#include <fmt/core.h>
-
 #include <CLI/CLI.hpp>
 
-#include "common/base/build_info.h"
+#include "common/base/command_line.h"
 
 namespace shoal::launch {
 
 std::unique_ptr<CLI::App> MakeCommandLine(Action* chosen) {
   auto app = std::make_unique<CLI::App>(
       "Shoal trains robot policies from pixels and from state, on many processes.", "shoal");
-  app->set_version_flag("--version", fmt::format("shoal {} ({})", BuildVersion(), BuildCommit()));
+  AddVersion(app.get());
   app->require_subcommand(1);
   AddTrainCommand(*app, chosen);
   AddEvalCommand(*app, chosen);

@@ -12,6 +12,7 @@
 #include "common/image/png.h"
 #include "launch/commands/commands.h"
 #include "launch/commands/env_tasks.h"
+#include "launch/commands/target_options.h"
 
 namespace shoal::launch {
 namespace {
@@ -60,7 +61,7 @@ void AddRender(CLI::App& env, Action* chosen) {
   const auto png = std::make_shared<std::string>();
   CLI::Option* task = command->add_option("task", request->task, "Task, e.g. FetchReachDense");
   command->add_option("--camera", request->camera, "Camera of the task; its first by default");
-  command->add_option("--png", *png, "File to write")->required();
+  ExpectPng(command->add_option("--png", *png, "File to write")->required());
   command->add_option("--steps", request->env_steps, "Random env steps before the picture")
       ->capture_default_str();
   command->add_option("--seed", request->seed, "Of the goal and the actions")

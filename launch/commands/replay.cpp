@@ -7,6 +7,7 @@
 #include "common/config/run_files.h"
 #include "common/image/png.h"
 #include "launch/commands/commands.h"
+#include "launch/commands/target_options.h"
 #include "launch/record/run_folder.h"
 #include "replay_server/core/peek.h"
 
@@ -49,7 +50,7 @@ void AddReplayCommand(CLI::App& app, Action* chosen) {
       replay->add_subcommand("peek", "Draw a batch as the learner would get it and show it.");
   const auto options = std::make_shared<PeekOptions>();
   command->add_option("--run", options->run, "Run: name or folder")->required();
-  command->add_option("--png", options->png, "File for the batch as a picture");
+  ExpectPng(command->add_option("--png", options->png, "File for the batch as a picture"));
   command->add_option("--batch", options->batch, "Elements to draw")
       ->check(CLI::Range(1, 64))
       ->capture_default_str();

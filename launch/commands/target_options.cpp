@@ -1,6 +1,7 @@
 #include "launch/commands/target_options.h"
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 
 namespace shoal::launch {
 
@@ -13,6 +14,14 @@ void AddTargetOptions(CLI::App& command, TargetOptions* options) {
                      "Folder of credentials of a secured run, with --peer (shoal secure init)");
   command.add_option("--run-dir", options->run_dir, "Folder that holds the runs")
       ->capture_default_str();
+}
+
+void ExpectPng(CLI::Option* option) {
+  option->check([](const std::string& file) {
+    return std::filesystem::path(file).extension() == ".png"
+               ? ""
+               : "'" + file + "': expected a name that ends in .png";
+  });
 }
 
 }  // namespace shoal::launch

@@ -30,6 +30,7 @@ void AddTrainCommand(CLI::App& app, Action* chosen) {
       ->allow_extra_args(false);
   command->add_flag("--lockstep", options->lockstep, "Repeat bit for bit (one actor, slower)");
   command->add_option("--run-name", options->run_name, "Name of the run's folder");
+  command->add_option("--run-dir", options->run_dir, "Folder that holds the runs (run_dir)");
   command->add_flag("--overwrite", options->overwrite, "Delete a run of that name first");
   command->add_option("--hosts", options->hosts,
                       "JSON file of other hosts that run actors (docs/cluster.md)");

@@ -3,9 +3,12 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "common/config/on_policy.h"
 #include "common/config/privileged_blocks.h"
 #include "common/nn/precision.h"
+#include "common/tasks/task_registry.h"
 #include "learner/agent/update_cost.h"
 #include "replay_server/core/storage_needs.h"
 
@@ -72,11 +75,38 @@ std::string PrivilegedText(const RunConfig& run) {
   return fmt::format("  privileged, in training alone: {}\n", told);
 }
 
+// One frame shows no velocity; where there is a goal to reach, success is possible without.
+std::string StackText(const RunConfig& run) {
+  const auto tells_velocity = [](const BlockSpec& block) {
+    return block.observed && block.name.find("velocit") != std::string::npos;
+  };
+  if (!run.spec.HasPixels() || run.config.observation.stack > 1 ||
+      tasks::FindTask(run.config.task).has_success() ||
+      std::ranges::any_of(run.spec.blocks, tells_velocity)) {
+    return "";
+  }
+  return "  observation.stack = 1: the policy sees no velocity; 3 is usual for this task\n";
+}
+
+// Without a preset, keys that nobody set are right for one task.
+std::string DefaultsText(const Config& config) {
+  const Config defaults;
+  std::string kept;
+  const auto keep = [&](const char* key, double value, double of_default) {
+    if (value == of_default) kept += fmt::format("{}{} = {}", kept.empty() ? "" : ", ", key, value);
+  };
+  keep("learner.discount", config.learner.discount, defaults.learner.discount);
+  keep("learner.reward_scale", config.learner.reward_scale, defaults.learner.reward_scale);
+  if (!config.preset.empty() || config.task == defaults.task || kept.empty()) return "";
+  return fmt::format("  no preset: {} as {} needs it\n", kept, defaults.task);
+}
+
 }  // namespace
 
 std::string PlanText(const RunConfig& run, double frame_microseconds) {
-  return fmt::format("  {}; {}\n  {}; {}\n{}", PicturesText(run, frame_microseconds),
-                     ReplayText(run), PaceText(run.config), UpdateText(run), PrivilegedText(run));
+  return fmt::format("  {}; {}\n  {}; {}\n{}{}{}", PicturesText(run, frame_microseconds),
+                     ReplayText(run), PaceText(run.config), UpdateText(run), PrivilegedText(run),
+                     StackText(run), DefaultsText(run.config));
 }
 
 }  // namespace shoal::launch

@@ -47,6 +47,7 @@ Config ResolveConfig(const TrainOptions& options, int cores) {
     throw UsageError("--set preset={}: a preset is chosen with --preset", config.preset);
   }
   if (!options.run_name.empty()) ApplyAssignments({"run_name=" + options.run_name}, &config);
+  if (!options.run_dir.empty()) ApplyAssignments({"run_dir=" + options.run_dir}, &config);
   if (options.lockstep) config.lockstep = true;
   // Programs that start later, also of a resumed run, need not stand where this one does.
   for (std::string* path : {&config.task_library, &config.network.encoder_weights}) {

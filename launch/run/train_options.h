@@ -12,6 +12,7 @@ struct TrainOptions {
   std::string preset, config_file;
   std::vector<std::string> set;  // KEY=VALUE
   std::string run_name;          // empty = automatic
+  std::string run_dir;           // folder of the runs; empty = as configured
   std::string hosts;             // file of other hosts; empty = none, or those of the resumed run
   std::string secure;            // folder of credentials; empty = none, or the resumed run's
   std::string init_from, name_map;  // safetensors and JSON file (common/nn/named_weights.h)

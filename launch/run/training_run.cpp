@@ -122,7 +122,8 @@ void RefuseFinished(const std::filesystem::path& run, const RunMeta& meta, const
 }
 
 PreparedRun PrepareResumed(const TrainOptions& options) {
-  RunFolder folder = RunFolder::Reopen(Config().run_dir, options.resume);
+  RunFolder folder = RunFolder::Reopen(options.run_dir.empty() ? Config().run_dir : options.run_dir,
+                                       options.resume);
   RunConfig config = ReadRunConfig(folder.path());
   const Config before = config.config;
   RunMeta meta = ReadRunMeta(folder.path());

@@ -9,6 +9,8 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/config/config_io.h"
+#include "common/config/run_files.h"
+#include "common/dds/bus.h"
 #include "launch/record/json_fields.h"
 #include "launch/record/run_folder.h"
 #include "launch/watch/progress.h"
@@ -58,6 +60,14 @@ std::string ToTheMinute(std::string time) {
   return time.substr(0, 16);
 }
 
+// Empty where its address is not written yet or not to be read.
+std::string PeerOf(const std::filesystem::path& run) try {
+  const ClusterAddress address = ReadClusterAddress(run);
+  return fmt::format("{}:{}", address.host, dds::OperatePort(address));
+} catch (const Error&) {
+  return "";
+}
+
 using Row = std::array<std::string, 8>;
 
 std::string Rendered(const Row& row, const std::array<size_t, 8>& widths) {
@@ -102,7 +112,10 @@ RunListing RunStatusOf(const std::filesystem::path& run) {
     listing.status = RunStatus::kUnreadable;
     listing.problem = fmt::format("{}: {}", (run / "meta.json").string(), e.what());
   }
-  if (IsHeld(run)) listing.status = RunStatus::kRunning;
+  if (IsHeld(run)) {
+    listing.status = RunStatus::kRunning;
+    listing.peer = PeerOf(run);
+  }
   return listing;
 }
 
@@ -153,6 +166,7 @@ std::string RunListJson(const std::filesystem::path& dir, const std::vector<RunL
                     {"final_return_mean", or_null(run.final.mean_return)},
                     {"wall_seconds", run.wall_seconds},
                     {"started", text_or_null(run.started)},
+                    {"peer", text_or_null(run.peer)},
                     {"problem", text_or_null(run.problem)}});
   }
   const ordered_json object{{"schema", "shoal-runs-1"}, {"run_dir", dir.string()}, {"runs", list}};

@@ -28,6 +28,7 @@ struct RunListing {
   RunStatus status = RunStatus::kDead;
   std::string preset, task, started;
   std::string problem;  // why it failed, or what cannot be read
+  std::string peer;     // HOST:PORT for --peer while it runs, else empty
   uint64_t env_steps = 0, updates = 0;
   double wall_seconds = 0;
   RunScore best, final;

@@ -7,6 +7,7 @@
 
 #include "actor/loop/training_actor.h"
 #include "common/base/clock.h"
+#include "common/base/command_line.h"
 #include "common/base/error.h"
 #include "common/base/log.h"
 #include "common/base/main_guard.h"
@@ -62,11 +63,13 @@ int Run(int argc, char** argv) {
   std::string run;
   uint32_t id = 0;
   int step_microseconds = 10'000;
-  CLI::App app("A training actor over environments that cost nothing but time.");
+  CLI::App app("A training actor over environments that cost nothing but time.",
+               "shoal-fake-actor");
+  shoal::AddVersion(&app);
   app.add_option("--run", run, "run folder")->required();
   app.add_option("--id", id, "number of this actor within the run");
   app.add_option("--step-us", step_microseconds, "span of a step")->check(CLI::PositiveNumber);
-  CLI11_PARSE(app, argc, argv);
+  if (const auto exit_code = shoal::ParseCommandLine(&app, argc, argv)) return *exit_code;
   shoal::nn::SetThreads(1);
   shoal::InstallStopSignals();
   shoal::log::Start(fmt::format("actor-{}", id), "");

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/build_info.h"
+#include "common/base/command_line.h"
 #include "common/base/error.h"
 #include "common/base/main_guard.h"
 #include "common/nn/precision.h"
@@ -17,12 +18,14 @@ int Run(int argc, char** argv) {
   int repetitions = 7, threads = 1;
   double seconds = 0.5;
   std::string only;
-  CLI::App app("Measures Shoal's stages, each against another way of doing the same.");
+  CLI::App app("Measures Shoal's stages, each against another way of doing the same.",
+               "shoal-bench");
+  shoal::AddVersion(&app);
   app.add_option("--repetitions", repetitions, "pairs per row")->check(CLI::Range(1, 1000));
   app.add_option("--seconds", seconds, "of each side of a pair")->check(CLI::Range(0.001, 60.0));
   app.add_option("--threads", threads, "of the networks")->check(CLI::Range(1, 1024));
   app.add_option("--only", only, "rows whose stage contains this text");
-  CLI11_PARSE(app, argc, argv);
+  if (const auto exit_code = shoal::ParseCommandLine(&app, argc, argv)) return *exit_code;
   shoal::nn::SetThreads(threads);
 
   shoal::learner::EnsurePassiveOpenMp(threads, argv);  // as shoal-learner does: no spinning threads

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/build_info.h"
+#include "common/base/command_line.h"
 #include "common/base/error.h"
 #include "common/base/main_guard.h"
 #include "launch/processes/process_plan.h"
@@ -55,13 +56,14 @@ nlohmann::ordered_json Row(const ManyActorsFigures& figures, const ManyActorsFig
 int Run(int argc, char** argv) {
   std::vector<int> counts{4, 16, 64};
   ManyActorsOptions options;
-  CLI::App app("Measures a replay server under many actor processes.");
+  CLI::App app("Measures a replay server under many actor processes.", "shoal-bench-actors");
+  shoal::AddVersion(&app);
   app.add_option("--actors", counts, "numbers of actor processes")->check(CLI::Range(1, 1024));
   app.add_option("--steps-per-second", options.steps_per_second, "of each actor")
       ->check(CLI::Range(1.0, 1e5));
   app.add_option("--seconds", options.seconds, "measured for each number")
       ->check(CLI::Range(1.0, 600.0));
-  CLI11_PARSE(app, argc, argv);
+  if (const auto exit_code = shoal::ParseCommandLine(&app, argc, argv)) return *exit_code;
   options.programs = shoal::launch::ProgramFolder();
 
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();

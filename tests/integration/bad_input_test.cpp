@@ -15,6 +15,8 @@ struct Mistake {
   std::vector<std::string> mentions;
 };
 
+void PrintTo(const Mistake& mistake, std::ostream* out) { *out << mistake.name; }
+
 class BadInput : public testing::TestWithParam<Mistake> {};
 
 TEST_P(BadInput, GetsOneLineThatNamesIt) {
@@ -86,7 +88,12 @@ INSTANTIATE_TEST_SUITE_P(
                 1,
                 {"/absent.json"}},
         Mistake{"UnknownOption", {"shoal", "train", "--fast"}, 2, {"--fast"}},
-        Mistake{"UnknownCommand", {"shoal", "trian"}, 2, {"trian"}},
+        Mistake{"UnknownCommand", {"shoal", "trian"}, 2, {"trian", "nearest is 'train'"}},
+        Mistake{"HelpOfAnUnknownCommand", {"shoal", "env", "rendr", "--help"}, 2, {"'render'"}},
+        Mistake{"PictureOfAnotherKind",
+                {"shoal", "env", "render", "FetchReach", "--png", "x.jpg"},
+                2,
+                {"'x.jpg'", ".png"}},
         Mistake{"AbsentCheckpoint",
                 {"shoal", "eval", "--checkpoint", "/absent/checkpoints/best", "--episodes", "1"},
                 2,
@@ -104,6 +111,14 @@ INSTANTIATE_TEST_SUITE_P(
                 {"shoal", "env", "describe", "FetchFly"},
                 2,
                 {"FetchFly", "FetchReachDense"}},
+        Mistake{"MisspeltTask",
+                {"shoal", "env", "describe", "FetchReechDense"},
+                2,
+                {"nearest is 'FetchReachDense'"}},
+        Mistake{"MisspeltPreset",
+                {"shoal", "train", "--preset", "fetch-reach-stat"},
+                2,
+                {"nearest is 'fetch-reach-state'"}},
         Mistake{"DescribeIntoNowhere",
                 {"shoal", "env", "describe", "FetchReach", "--json", "/absent/x.json"},
                 1,

@@ -1,8 +1,11 @@
 // `shoal check` as a user runs it.
 #include <gtest/gtest.h>
 
+#include <csignal>
 #include <nlohmann/json.hpp>
+#include <thread>
 
+#include "common/base/clock.h"
 #include "tests/support/program.h"
 
 namespace shoal {
@@ -44,6 +47,30 @@ TEST(Check, AFolderThatTakesNoRunsFailsTheLinesThatNeedIt) {
   EXPECT_NE(result.out.find("FAIL  training"), std::string::npos) << result.out;
   EXPECT_NE(result.out.find("/proc/sys"), std::string::npos) << result.out;
   EXPECT_NE(result.out.find("OK    rendering"), std::string::npos) << "the others are looked at";
+}
+
+TEST(Check, AnInterruptionEndsItAfterTheLineThatItIsAt) {
+  const TemporaryFolder folder;
+  launch::ProcessSpec spec;
+  spec.command = {ProgramPath("shoal"), "check", "--run-dir", folder.path().string()};
+  spec.output = folder.path() / "out";
+  launch::ChildProcess check(spec);
+  const auto said = [&] {
+    return std::filesystem::exists(spec.output) ? ReadFile(spec.output) : "";
+  };
+  const SteadyTime end = Now() + std::chrono::seconds(30);
+  while (Now() < end && said().find("preset") == std::string::npos) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  check.Signal(SIGINT);
+  std::optional<launch::ExitStatus> status;
+  while (Now() < end && !(status = check.Poll())) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  }
+  ASSERT_TRUE(status);
+  EXPECT_EQ(status->Describe(), "exit code 130");
+  EXPECT_NE(said().find("\ninterrupted\n"), std::string::npos) << said();
+  EXPECT_EQ(said().find("training"), std::string::npos) << said();
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include "common/base/command_line.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/main_guard.h"
@@ -41,6 +42,7 @@ int Run(int argc, char** argv) {
   Options options;
   CLI::App app("Strikes a training run's processes at random moments, or watches it for leaks.",
                "shoal-soak");
+  shoal::AddVersion(&app);
   app.add_option("--faults", options.faults, "SIGKILLs and ten-second SIGSTOPs")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
@@ -52,13 +54,7 @@ int Run(int argc, char** argv) {
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
   app.add_option("--json", options.json, "file for the result");
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& e) {
-    return app.exit(e);
-  } catch (const CLI::ParseError& e) {
-    throw shoal::UsageError("{}", e.what());
-  }
+  if (const auto exit_code = shoal::ParseCommandLine(&app, argc, argv)) return *exit_code;
   prctl(PR_SET_CHILD_SUBREAPER, 1);  // what a run leaves behind becomes a child of ours
   options.soak.programs = shoal::launch::ProgramFolder();
   options.soak.folder = FreshFolder();

@@ -5,13 +5,6 @@
 namespace shoal::internal {
 namespace {
 
-TEST(EditDistance, CountsInsertionsDeletionsAndReplacements) {
-  EXPECT_EQ(EditDistance("", ""), 0);
-  EXPECT_EQ(EditDistance("abc", ""), 3);
-  EXPECT_EQ(EditDistance("kitten", "sitting"), 3);
-  EXPECT_EQ(EditDistance("sitting", "kitten"), 3);
-}
-
 TEST(NearestKey, FindsMisspelledPaths) {
   EXPECT_EQ(NearestKey("learner.bach"), "learner.batch");
   EXPECT_EQ(NearestKey("sed"), "seed");

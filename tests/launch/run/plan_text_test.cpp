@@ -57,5 +57,40 @@ TEST(PlanText, WhatOnlyTrainingIsToldIsSaid) {
                         "pixels, the encoder is taught object-grip\n"));
 }
 
+TEST(PlanText, OneFrameOfATaskOfMotionIsSaidToShowNoVelocity) {
+  RunConfig run;
+  run.config.task = "walker_walk";
+  run.config.preset = "of-ours";
+  run.spec.cameras = {"side"};
+  run.spec.channels = 3;
+  run.spec.height = run.spec.width = 84;
+  run.spec.action_size = 6;
+  const auto said = HasSubstr("observation.stack = 1: the policy sees no velocity");
+  EXPECT_THAT(PlanText(run, 1), said);
+  RunConfig stacked = run;
+  stacked.config.observation.stack = 3;
+  EXPECT_THAT(PlanText(stacked, 1), Not(said));
+  RunConfig reach = run;
+  reach.config.task = "FetchReachDense";
+  EXPECT_THAT(PlanText(reach, 1), Not(said));
+  run.spec.blocks = {{"velocity", 9}};
+  EXPECT_THAT(PlanText(run, 1), Not(said));
+}
+
+TEST(PlanText, WithoutAPresetDefaultsOfAnotherTaskAreNamed) {
+  RunConfig run;
+  run.config.task = "walker_walk";
+  run.config.observation.pixels = false;
+  run.spec.action_size = 6;
+  run.spec.blocks = {{"velocity", 9}};
+  EXPECT_THAT(PlanText(run, 0),
+              HasSubstr("  no preset: learner.discount = 0.9, "
+                        "learner.reward_scale = 10 as FetchReachDense needs it\n"));
+  run.config.learner.discount = 0.99;
+  EXPECT_THAT(PlanText(run, 0), HasSubstr("no preset: learner.reward_scale = 10 as"));
+  run.config.preset = "of-ours";
+  EXPECT_THAT(PlanText(run, 0), Not(HasSubstr("no preset")));
+}
+
 }  // namespace
 }  // namespace shoal::launch

@@ -60,6 +60,14 @@ TEST(ResolveConfig, RefusesAPresetBySet) {
   EXPECT_THAT(UsageMessage([&] { ResolveConfig(options, 2); }), HasSubstr("--preset"));
 }
 
+TEST(ResolveConfig, RunDirIsTheKeyOfThatName) {
+  TrainOptions options;
+  options.set = {"run_dir=elsewhere"};
+  EXPECT_EQ(ResolveConfig(options, 2).run_dir, "elsewhere");
+  options.run_dir = "/there";
+  EXPECT_EQ(ResolveConfig(options, 2).run_dir, "/there");
+}
+
 TEST(ResolveConfig, RefusesARunNameThatIsNoFileName) {
   TrainOptions options;
   options.run_name = "a/b";

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/files.h"
+#include "common/config/run_files.h"
+#include "common/dds/bus.h"
 #include "launch/record/run_folder.h"
 #include "launch/record/run_meta.h"
 #include "tests/support/temporary_folder.h"
@@ -60,6 +62,20 @@ TEST_F(RunListTest, StatusIsOfTheLockFirstAndOfTheRecordedEndThen) {
     }
     EXPECT_EQ(Only(name).status, status) << exit;
   }
+}
+
+TEST_F(RunListTest, ARunningRunSaysWhereItIsToBeReached) {
+  const auto peer = [&](const RunListing& run) {
+    return nlohmann::json::parse(RunListJson(dir_.path(), {run})).at("runs").at(0).at("peer");
+  };
+  {
+    const RunFolder held = Begin("a", "running");
+    EXPECT_TRUE(peer(Only("a")).is_null()) << "not yet";
+    const ClusterAddress address{.domain = 4, .tag = "a", .host = "10.0.0.7"};
+    WriteClusterAddress(held.path(), address);
+    EXPECT_EQ(peer(Only("a")), "10.0.0.7:" + std::to_string(dds::OperatePort(address)));
+  }
+  EXPECT_TRUE(peer(Only("a")).is_null()) << "nobody is there any more";
 }
 
 TEST_F(RunListTest, ARunOfATaskWithoutSuccessIsListedByItsReturn) {
