@@ -26,9 +26,23 @@ class FakeWriter : public PartWriter {
     bytes_.emplace_back(part.payload.begin(), part.payload.end());
     return true;
   }
-  bool HasReader() override {
+  bool Write(const BatchSlot& slot) override {
+    const std::lock_guard lock(mutex_);
+    ++writes_;
+    if (refusals_ != 0) {
+      if (refusals_ > 0) --refusals_;
+      return false;
+    }
+    slots_.push_back(slot);
+    return true;
+  }
+  bool HasPartReader() override {
     ++looks_;
     return has_reader_;
+  }
+  bool HasSlotReader() override {
+    ++slot_looks_;
+    return has_slot_reader_;
   }
   // < 0: always.
   void Refuse(int times) {
@@ -38,9 +52,10 @@ class FakeWriter : public PartWriter {
 
   std::mutex mutex_;
   int refusals_ = 0;
-  std::atomic<int> writes_{0}, looks_{0};
-  std::atomic<bool> has_reader_{true};
+  std::atomic<int> writes_{0}, looks_{0}, slot_looks_{0};
+  std::atomic<bool> has_reader_{true}, has_slot_reader_{true};
   std::vector<BatchPart> parts_;
+  std::vector<BatchSlot> slots_;
   std::vector<std::vector<uint8_t>> bytes_;
 };
 
