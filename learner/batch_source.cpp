@@ -132,7 +132,7 @@ BatchCounters BatchSource::counters() const {
   const MutexLock lock(mutex_);
   BatchCounters counters = counters_;
   counters.requests_outstanding = outstanding_.size();
-  counters.shared = shared_.value_or(false);
+  counters.shared = shared_;
   counters.ready = static_cast<uint64_t>(
       std::ranges::count(outstanding_, SteadyTime::max(), &Outstanding::next_send));
   return counters;

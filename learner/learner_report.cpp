@@ -70,7 +70,7 @@ void LearnerReport::AddBatches(const LearnerFigures& figures) {
   };
   add("requests_outstanding", batches.requests_outstanding);
   add("batches_ready", batches.ready);
-  add("batches_shared", batches.shared);
+  if (batches.shared) add("batches_shared", *batches.shared);
   add("samples_per_insert", figures.samples_per_insert);
   add("weights_period", figures.weights_period);
   add("resent_requests", batches.resent_requests);

@@ -149,7 +149,7 @@ constexpr Metric kMetrics[] = {
     {"learner", "requests_outstanding", kGauge, "batches", "asked for and not used"},
     {"learner", "batches_ready", kGauge, "batches", "of these arrived"},
     {"learner", "batches_shared", kGauge, "",
-     "1: batches come through shared memory; 0: over the network, or none yet"},
+     "1: batches come through shared memory; 0: over the network"},
     {"learner", "samples_per_insert", kGauge, "", "replay.samples_per_insert in force"},
     {"learner", "budget_env_steps", kGauge, "env steps", "env_steps in force"},
     {"learner", "eval_interval", kGauge, "env steps", "eval.interval in force"},
