@@ -155,7 +155,7 @@ TEST(Surroundings, WhenEveryDomainIsTakenThePortsAreNamed) {
 
 TEST(Surroundings, TrainingNeedsNoSharedMemory) {
   SHOAL_NEEDS(OwnMounts());
-  const SmallDisk disk("/dev/shm", "4k");
+  const SmallDisk disk("/dev/shm", "4k", MS_RDONLY);
   SHOAL_NEEDS(disk.why_not());
   const TrainingRun run;
   const ProgramResult result =
