@@ -16,7 +16,8 @@ class ReplayFeed final : public BatchFeed {
       : requests_(bus),
         source_(run, learner_session, updates + 1,
                 [this](const SampleRequest& request) { return Ask(request); }),
-        parts_(bus, [this](const BatchPart& part) { source_.OnPart(part); }) {}
+        parts_(bus, [this](const BatchPart& part) { source_.OnPart(part); }),
+        slots_(bus, [this](const BatchSlot& slot) { source_.OnSlot(slot); }) {}
 
   BatchStream& stream() override { return source_; }
 
@@ -29,6 +30,7 @@ class ReplayFeed final : public BatchFeed {
   dds::Publisher<SampleRequest> requests_;
   BatchSource source_;
   dds::Subscriber<BatchPart> parts_;
+  dds::Subscriber<BatchSlot> slots_;
 };
 
 class RolloutFeed final : public BatchFeed {

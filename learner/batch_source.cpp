@@ -7,6 +7,7 @@
 
 #include "common/base/check.h"
 #include "common/base/error.h"
+#include "common/base/log.h"
 #include "common/config/lockstep.h"
 
 namespace shoal::learner {
@@ -32,6 +33,7 @@ BatchSource::BatchSource(const RunConfig& run, uint64_t learner_session, uint64_
       resend_after_(resend_after),
       assembler_(spec_hash_, learner_session, schema_.total_bytes(),
                  run.config.learner.request_credits + 1),
+      slots_(learner_session, schema_.total_bytes()),
       next_request_(first_request) {
   CHECK(first_request > 0);
 }
@@ -39,6 +41,10 @@ BatchSource::BatchSource(const RunConfig& run, uint64_t learner_session, uint64_
 void BatchSource::OnPart(const BatchPart& part) {
   using Verdict = BatchAssembler::Verdict;
   const MutexLock lock(mutex_);
+  if (slots_.Has(part.request)) {
+    ++counters_.duplicate_parts;
+    return;
+  }
   const Verdict verdict = assembler_.Add(part);
   switch (verdict) {
     case Verdict::kStartedOver:
@@ -62,18 +68,51 @@ void BatchSource::OnPart(const BatchPart& part) {
       arrived_.NotifyOne();
       return;
   }
-  const auto outstanding = std::ranges::find(outstanding_, part.request, &Outstanding::request);
-  if (outstanding != outstanding_.end()) {
+  if (Outstanding* outstanding = Find(part.request)) {
     outstanding->next_send =
         verdict == Verdict::kCompleted ? SteadyTime::max() : Now() + resend_after_;
   }
   arrived_.NotifyOne();
 }
 
+void BatchSource::OnSlot(const BatchSlot& slot) {
+  using Verdict = SlotBatches::Verdict;
+  const MutexLock lock(mutex_);
+  if (slot.spec_hash != spec_hash_) {
+    other_spec_hash_ = slot.spec_hash;
+    arrived_.NotifyOne();
+    return;
+  }
+  Outstanding* outstanding = Find(slot.request);
+  if (slot.learner_session != learner_session_ || outstanding == nullptr) {
+    ++counters_.unknown_parts;
+    return;
+  }
+  if (assembler_.TryGet(slot.request)) {
+    ++counters_.duplicate_parts;
+    return;
+  }
+  switch (slots_.Add(slot)) {
+    case Verdict::kStartedOver:
+      ++counters_.dropped_answers;
+      [[fallthrough]];
+    case Verdict::kTaken:
+      outstanding->next_send = SteadyTime::max();
+      arrived_.NotifyOne();
+      return;
+    case Verdict::kDuplicate:
+      ++counters_.duplicate_parts;
+      return;
+    case Verdict::kRefused:
+      ++counters_.refused_slots;
+      return;
+  }
+}
+
 std::optional<Batch> BatchSource::Next(SteadyTime deadline) {
   {
     const MutexLock lock(mutex_);
-    if (handed_out_ != 0) assembler_.Release(std::exchange(handed_out_, 0));
+    ReleaseHandedOut();
   }
   std::optional<Batch> batch;
   while (!batch) {
@@ -93,6 +132,7 @@ BatchCounters BatchSource::counters() const {
   const MutexLock lock(mutex_);
   BatchCounters counters = counters_;
   counters.requests_outstanding = outstanding_.size();
+  counters.shared = shared_;
   counters.ready = static_cast<uint64_t>(
       std::ranges::count(outstanding_, SteadyTime::max(), &Outstanding::next_send));
   return counters;
@@ -105,7 +145,26 @@ SampleRequest BatchSource::MakeRequest(uint64_t request) const {
           .request = request,
           .batch = static_cast<uint32_t>(config.learner.batch),
           .after_steps = config.lockstep ? LockstepStepsBeforeUpdate(config, request) : 0,
-          .schema_hash = schema_.Hash()};
+          .schema_hash = schema_.Hash(),
+          .released = released_,
+          .takes_slots = true,
+          .refused_token = slots_.refused_token()};
+}
+
+BatchSource::Outstanding* BatchSource::Find(uint64_t request) {
+  const auto found = std::ranges::find(outstanding_, request, &Outstanding::request);
+  return found == outstanding_.end() ? nullptr : &*found;
+}
+
+bool BatchSource::Whole(uint64_t request) {
+  return slots_.Has(request) || assembler_.TryGet(request).has_value();
+}
+
+void BatchSource::ReleaseHandedOut() {
+  if (handed_out_ == 0) return;
+  released_ = std::exchange(handed_out_, 0);
+  assembler_.Release(released_);
+  slots_.Release(released_);
 }
 
 void BatchSource::Extend() {
@@ -117,27 +176,27 @@ void BatchSource::Extend() {
 }
 
 void BatchSource::SendDue() {
-  std::vector<uint64_t> due;
+  std::vector<SampleRequest> due;
   {
     const MutexLock lock(mutex_);
     Extend();
     due = TakeDue();
   }
   std::vector<uint64_t> unsent;
-  for (const uint64_t request : due) {
-    if (!send_(MakeRequest(request))) unsent.push_back(request);
+  for (const SampleRequest& request : due) {
+    if (!send_(request)) unsent.push_back(request.request);
   }
   if (unsent.empty()) return;
   const MutexLock lock(mutex_);
   TryAgain(unsent);
 }
 
-std::vector<uint64_t> BatchSource::TakeDue() {
+std::vector<SampleRequest> BatchSource::TakeDue() {
   const SteadyTime now = Now();
-  std::vector<uint64_t> due;
+  std::vector<SampleRequest> due;
   for (Outstanding& o : outstanding_) {
     if (o.next_send > now) continue;
-    due.push_back(o.request);
+    due.push_back(MakeRequest(o.request));
     o.next_send = now + resend_after_;
     if (std::exchange(o.sent, true)) ++counters_.resent_requests;
   }
@@ -146,7 +205,7 @@ std::vector<uint64_t> BatchSource::TakeDue() {
 
 void BatchSource::TryAgain(const std::vector<uint64_t>& unsent) {
   for (Outstanding& o : outstanding_) {
-    if (!std::ranges::count(unsent, o.request) || assembler_.TryGet(o.request)) continue;
+    if (!std::ranges::count(unsent, o.request) || Whole(o.request)) continue;
     o.sent = false;
     o.next_send = Now() + kRetryAfter;
   }
@@ -160,15 +219,44 @@ SteadyTime BatchSource::NextDue() const {
 
 std::optional<Batch> BatchSource::TakeFirst() {
   if (outstanding_.empty()) return std::nullopt;
-  const uint64_t request = outstanding_.front().request;
+  const std::optional<Batch> batch = FindBatch(outstanding_.front().request);
+  if (!batch) return std::nullopt;
+  SayWay(slots_.Has(batch->request));
+  outstanding_.pop_front();
+  handed_out_ = batch->request;
+  return batch;
+}
+
+std::optional<Batch> BatchSource::FindBatch(uint64_t request) {
+  if (slots_.Has(request)) return OpenSlot(request);
   const auto assembled = assembler_.TryGet(request);
   if (!assembled) return std::nullopt;
-  outstanding_.pop_front();
-  handed_out_ = request;
   return Batch{.view = schema_.View(assembled->data),
                .request = request,
                .stored_records = assembled->stored_records,
                .stored_steps = assembled->stored_steps};
+}
+
+std::optional<Batch> BatchSource::OpenSlot(uint64_t request) {
+  try {
+    return Batch{.view = schema_.View(slots_.Open(request)),
+                 .request = request,
+                 .stored_records = slots_.stored_records(request),
+                 .stored_steps = slots_.stored_steps(request)};
+  } catch (const Error& e) {
+    log::Warning("{}; asking for batches over the network", e.what());
+    for (const uint64_t refused : slots_.Refuse(request)) {
+      ++counters_.refused_slots;
+      if (Outstanding* outstanding = Find(refused)) outstanding->next_send = Now();
+    }
+    return std::nullopt;
+  }
+}
+
+void BatchSource::SayWay(bool shared) {
+  if (shared_ == shared) return;
+  shared_ = shared;
+  log::Info("batches come {}", shared ? "through shared memory" : "over the network");
 }
 
 void BatchSource::RefuseOtherSpec() const {

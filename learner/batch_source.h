@@ -1,10 +1,14 @@
 // Batches pulled from the replay: keeps learner.request_credits requests outstanding and sends one
 // again when nothing of its answer has arrived for a while (the replay has restarted, or its
 // limiter holds it back: sending it again is harmless). Knows nothing of DDS: requests go out
-// through `send`, parts come in through OnPart.
+// through `send`, parts come in through OnPart, words of batches in shared memory through OnSlot.
 //
-// Threads: OnPart from one receive thread; everything else from one other. `send` is called
-// without a lock held. Memory: request_credits + 1 batches.
+// A batch in shared memory is read where it lies; the requests after it say that it is read no
+// more. Memory that cannot be used is logged and refused in every further request: the replay then
+// sends parts.
+//
+// Threads: OnPart and OnSlot from receive threads; everything else from one other. `send` is called
+// without a lock held. Memory: request_credits + 1 batches, touched when parts come.
 #pragma once
 
 #include <chrono>
@@ -17,6 +21,7 @@
 #include "common/config/batch_options.h"
 #include "learner/batch_assembler.h"
 #include "learner/batch_stream.h"
+#include "learner/slot_batches.h"
 
 namespace shoal::learner {
 
@@ -31,6 +36,7 @@ class BatchSource final : public BatchStream {
               std::chrono::milliseconds resend_after = kResendAfter);
 
   void OnPart(const BatchPart& part);
+  void OnSlot(const BatchSlot& slot);
 
   std::optional<Batch> Next(SteadyTime deadline) override;
   BatchCounters counters() const override;
@@ -44,13 +50,20 @@ class BatchSource final : public BatchStream {
     SteadyTime next_send{};  // when it is due to be sent (again); max() once its batch is whole
   };
 
-  SampleRequest MakeRequest(uint64_t request) const;
+  SampleRequest MakeRequest(uint64_t request) const SHOAL_REQUIRES(mutex_);
+  Outstanding* Find(uint64_t request) SHOAL_REQUIRES(mutex_);
+  bool Whole(uint64_t request) SHOAL_REQUIRES(mutex_);
   // Expects further requests while credits and buffers last, and sends what is due.
   void SendDue() SHOAL_EXCLUDES(mutex_);
   void Extend() SHOAL_REQUIRES(mutex_);
-  std::vector<uint64_t> TakeDue() SHOAL_REQUIRES(mutex_);
+  std::vector<SampleRequest> TakeDue() SHOAL_REQUIRES(mutex_);
   void TryAgain(const std::vector<uint64_t>& unsent) SHOAL_REQUIRES(mutex_);
   std::optional<Batch> TakeFirst() SHOAL_REQUIRES(mutex_);
+  std::optional<Batch> FindBatch(uint64_t request) SHOAL_REQUIRES(mutex_);
+  // Nothing when its memory cannot be used: it is asked for again.
+  std::optional<Batch> OpenSlot(uint64_t request) SHOAL_REQUIRES(mutex_);
+  void SayWay(bool shared) SHOAL_REQUIRES(mutex_);
+  void ReleaseHandedOut() SHOAL_REQUIRES(mutex_);
   // When the next request is due to be sent again.
   SteadyTime NextDue() const SHOAL_REQUIRES(mutex_);
   void RefuseOtherSpec() const SHOAL_REQUIRES(mutex_);
@@ -66,10 +79,13 @@ class BatchSource final : public BatchStream {
   mutable Mutex mutex_;
   ConditionVariable arrived_;
   BatchAssembler assembler_ SHOAL_GUARDED_BY(mutex_);
+  SlotBatches slots_ SHOAL_GUARDED_BY(mutex_);
   std::deque<Outstanding> outstanding_ SHOAL_GUARDED_BY(mutex_);  // ascending request ids
   uint64_t next_request_ SHOAL_GUARDED_BY(mutex_);
   // Request whose batch the caller holds; 0 = none.
   uint64_t handed_out_ SHOAL_GUARDED_BY(mutex_) = 0;
+  uint64_t released_ SHOAL_GUARDED_BY(mutex_) = 0;         // highest request handed out before
+  std::optional<bool> shared_ SHOAL_GUARDED_BY(mutex_);    // how batches come, as was said last
   uint64_t other_spec_hash_ SHOAL_GUARDED_BY(mutex_) = 0;  // of a refused part; 0 = none
   BatchCounters counters_ SHOAL_GUARDED_BY(mutex_);
 };

@@ -20,10 +20,12 @@ struct BatchCounters {
   uint64_t requests_outstanding = 0;  // batches asked for and not handed out, now
   uint64_t ready = 0;                 // of these whole, waiting to be used
   uint64_t resent_requests = 0;
-  uint64_t duplicate_parts = 0;
+  std::optional<bool> shared{};  // whether the batch handed out last lies in shared memory
+  uint64_t duplicate_parts = 0;  // these and the next: parts, and words of slots
   uint64_t unknown_parts = 0;    // of requests done with, or of a former learner session
   uint64_t malformed_parts = 0;  // sizes or offsets no batch has
-  uint64_t dropped_answers = 0;  // incomplete ones overtaken by another answer
+  uint64_t refused_slots = 0;    // not to be opened, or without their batch
+  uint64_t dropped_answers = 0;  // overtaken by another answer
 
   // In place of all of these, of a stream of rollouts.
   struct Rollouts {

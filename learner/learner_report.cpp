@@ -70,12 +70,14 @@ void LearnerReport::AddBatches(const LearnerFigures& figures) {
   };
   add("requests_outstanding", batches.requests_outstanding);
   add("batches_ready", batches.ready);
+  if (batches.shared) add("batches_shared", *batches.shared);
   add("samples_per_insert", figures.samples_per_insert);
   add("weights_period", figures.weights_period);
   add("resent_requests", batches.resent_requests);
   add("duplicate_parts", batches.duplicate_parts);
   add("unknown_parts", batches.unknown_parts);
   add("malformed_parts", batches.malformed_parts);
+  add("refused_slots", batches.refused_slots);
   add("dropped_answers", batches.dropped_answers);
 }
 

@@ -56,7 +56,7 @@ explained() {
     "no writable memory control group"*) ! can_limit_memory ;;
     "needs CAP_NET_RAW") ! has_capability 13 ;;
     "needs two cores") (($(nproc) < 2)) ;;
-    "needs root: slurmd"*) ((EUID != 0)) ;;
+    "needs root: slurmd"* | "needs root: to be another user") ((EUID != 0)) ;;
     "needs "*" (Debian's "*")")
       local program=${1#needs }
       ! command -v "${program%% *}" >/dev/null

@@ -108,9 +108,31 @@ bool ParseCdr(std::span<const uint8_t> cdr, SampleRequest* message) {
     message->after_steps = reader.Read<uint64_t>();
     message->batch = reader.Read<uint32_t>();
     message->schema_hash = reader.Read<uint64_t>();
+    message->released = reader.Read<uint64_t>();
+    message->takes_slots = reader.Read<uint8_t>() != 0;
+    message->refused_token = reader.Read<uint64_t>();
   });
   return reader.Finished() && message->learner_session > 0 && message->request > 0 &&
-         message->batch > 0;
+         message->batch > 0 && message->released < message->request;
+}
+
+bool ParseCdr(std::span<const uint8_t> cdr, BatchSlot* message) {
+  CdrReader reader = Reader(cdr);
+  reader.ReadAppendable([&] {
+    message->spec_hash = reader.Read<uint64_t>();
+    message->learner_session = reader.Read<uint64_t>();
+    message->request = reader.Read<uint64_t>();
+    message->stored_records = reader.Read<uint64_t>();
+    message->stored_steps = reader.Read<uint64_t>();
+    message->address.pid = reader.Read<int32_t>();
+    message->address.descriptor = reader.Read<int32_t>();
+    message->address.token[0] = reader.Read<uint64_t>();
+    message->address.token[1] = reader.Read<uint64_t>();
+    message->address.bytes = reader.Read<uint64_t>();
+    message->slot = reader.Read<uint32_t>();
+  });
+  return reader.Finished() && message->learner_session > 0 && message->request > 0 &&
+         message->address.pid > 0 && message->address.descriptor >= 0;
 }
 
 bool ParseCdr(std::span<const uint8_t> cdr, MetricsMessage* message) {

@@ -17,6 +17,7 @@ namespace shoal::dds {
 // hold no control characters (OneLine).
 bool ParseCdr(std::span<const uint8_t> cdr, CreditsMessage* message);
 bool ParseCdr(std::span<const uint8_t> cdr, SampleRequest* message);
+bool ParseCdr(std::span<const uint8_t> cdr, BatchSlot* message);
 bool ParseCdr(std::span<const uint8_t> cdr, MetricsMessage* message);
 bool ParseCdr(std::span<const uint8_t> cdr, ReplayProgress* message);
 bool ParseCdr(std::span<const uint8_t> cdr, LearnerProgress* message);

@@ -72,7 +72,18 @@ shoal_idl_Credits ToWire(const CreditsMessage& message, WireBuffers* buffers) {
 
 shoal_idl_SampleRequest ToWire(const SampleRequest& message, WireBuffers*) {
   return {message.spec_hash,   message.learner_session, message.request,
-          message.after_steps, message.batch,           message.schema_hash};
+          message.after_steps, message.batch,           message.schema_hash,
+          message.released,    message.takes_slots,     message.refused_token};
+}
+
+shoal_idl_BatchSlot ToWire(const BatchSlot& message, WireBuffers*) {
+  const SlotAddress& address = message.address;
+  return {message.spec_hash,    message.learner_session,
+          message.request,      message.stored_records,
+          message.stored_steps, address.pid,
+          address.descriptor,   address.token[0],
+          address.token[1],     address.bytes,
+          message.slot};
 }
 
 shoal_idl_Metrics ToWire(const MetricsMessage& message, WireBuffers* buffers) {

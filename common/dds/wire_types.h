@@ -29,6 +29,7 @@ shoal_idl_BatchPart ToWire(const BatchPart& message, WireBuffers* buffers);
 shoal_idl_WeightsPart ToWire(const WeightsPart& message, WireBuffers* buffers);
 shoal_idl_Credits ToWire(const CreditsMessage& message, WireBuffers* buffers);
 shoal_idl_SampleRequest ToWire(const SampleRequest& message, WireBuffers* buffers);
+shoal_idl_BatchSlot ToWire(const BatchSlot& message, WireBuffers* buffers);
 shoal_idl_Metrics ToWire(const MetricsMessage& message, WireBuffers* buffers);
 shoal_idl_ReplayProgress ToWire(const ReplayProgress& message, WireBuffers* buffers);
 shoal_idl_LearnerProgress ToWire(const LearnerProgress& message, WireBuffers* buffers);

@@ -63,6 +63,11 @@ struct SampleRequest {
   // Served only when this many step records are stored (lockstep); 0 = at once.
   uint64_t after_steps = 0;
   uint64_t schema_hash = 0;  // of the batch: common/wire/batch_schema.h
+  // Batches of this session's requests up to here are not read any more; < request.
+  uint64_t released = 0;
+  // The answer may come as a BatchSlot; else it comes as parts.
+  bool takes_slots = false;
+  uint64_t refused_token = 0;  // SlotAddress::token[0] of slots that cannot be opened; 0 = none
 };
 
 // replay -> learner: part of one batch as common/wire/batch_schema.h lays it out.
@@ -75,6 +80,27 @@ struct BatchPart {
   uint64_t stored_records = 0;  // in the replay when the batch was drawn, over the whole run
   uint64_t stored_steps = 0;    // of these the step records: the run's env steps
   std::span<const uint8_t> payload;
+};
+
+// Where slots of batches lie: shared memory of a process on the same host, which a token in its
+// first bytes tells from anything else (common/wire/batch_slots.h).
+struct SlotAddress {
+  int32_t pid = 0;
+  int32_t descriptor = 0;      // of that process
+  uint64_t token[2] = {0, 0};  // random
+  uint64_t bytes = 0;          // of all
+  bool operator==(const SlotAddress&) const = default;
+};
+
+// replay -> learner, in place of its parts: the whole batch lies in a slot, and stays there
+// unchanged until a request says that it was released.
+struct BatchSlot {
+  uint64_t spec_hash = 0;
+  uint64_t learner_session = 0;
+  uint64_t request = 0;
+  uint64_t stored_records = 0, stored_steps = 0;  // as in BatchPart
+  SlotAddress address;
+  uint32_t slot = 0;
 };
 
 // One version of a policy: the payload is a safetensors file of its parameters.

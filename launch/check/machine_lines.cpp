@@ -102,7 +102,8 @@ CheckLine LookAtSharedMemory(const fs::path& folder) {
       fs::is_directory(folder)
           ? fmt::format("{:.0f} MB free in '{}'", Megabytes(FreeBytes(folder)), folder.string())
           : fmt::format("no '{}'", folder.string());
-  return {"shared memory", Verdict::kOk, room + "; none is needed, batches come over loopback", ""};
+  return {"shared memory", Verdict::kOk,
+          room + "; none is needed, batches go through memory without a file", ""};
 }
 
 }  // namespace shoal::launch

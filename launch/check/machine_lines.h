@@ -31,7 +31,7 @@ std::filesystem::path ExistingFolder(const std::filesystem::path& path);
 // `available`: bytes, limited by `source`. The ring's pages want to stay in memory.
 CheckLine JudgeMemory(uint64_t available, const std::string& source, const Needs& needs);
 
-// Room in `folder` ("/dev/shm"), told because people look for it: no process needs any.
+// Room in `folder` ("/dev/shm"), told because people look for it: no process uses it.
 CheckLine LookAtSharedMemory(const std::filesystem::path& folder);
 
 }  // namespace shoal::launch

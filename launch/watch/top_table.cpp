@@ -96,6 +96,12 @@ Cell Blocked(const Process& process) {
   return {};
 }
 
+// How the learner gets its batches.
+Cell Batches(const Process& process) {
+  const auto shared = Get(process, "batches_shared");
+  return shared ? Text(*shared > 0 ? "memory" : "network") : Cell();
+}
+
 // The stage that took most of the last second.
 Cell Busiest(const Process& process) {
   constexpr std::string_view kPrefix = "share_";
@@ -130,6 +136,7 @@ constexpr Column kColumns[] = {
     {"AGE", QueueAge},
     {"CREDIT", Credit},
     {"BLOCKED", Blocked},
+    {"BATCHES", Batches},
     {"LAG 50/90/99", [](const Process& p) { return Quantiles(p, "policy_lag", "{:.0f}"); }},
     {"DATA AGE 50/90/99",
      [](const Process& p) { return Quantiles(p, "data_age_updates", "{:.0f}"); }},
@@ -192,8 +199,8 @@ std::string Rendered(const Row& row, const std::vector<size_t>& widths) {
 // Sets the widths of columns to 0 until a row fits; the first to go are what `--json` is for.
 void LeaveOutColumns(size_t most, std::vector<size_t>* widths) {
   constexpr std::string_view kFirstToGo[] = {
-      "FILES", "DATA s 50/90/99", "PID", "HOST",        "DATA AGE 50/90/99",
-      "AGE",   "CREDIT",          "MB",  "LAG 50/90/99"};
+      "FILES",  "BATCHES", "DATA s 50/90/99", "PID", "HOST", "DATA AGE 50/90/99", "AGE",
+      "CREDIT", "MB",      "LAG 50/90/99"};
   const auto needed = [&] {
     size_t sum = widths->back();
     for (size_t i = 0; i + 1 < widths->size(); ++i) {

@@ -123,6 +123,7 @@ RequestFate ReplayCore::TakeRequest(const SampleRequest& request) {
     ++counters_.refused_requests;
   }
   if (fate == RequestFate::kFull) ++counters_.surplus_requests;
+  if (fate == RequestFate::kStale) ++counters_.stale_requests;
   return fate;
 }
 
@@ -150,6 +151,16 @@ std::optional<DrawnBatch> ReplayCore::TryAnswer(uint8_t* data) {
     limiter_.Sampled();
   }
   return DrawnBatch{*request, ring_.last_id(), ring_.stored_steps()};
+}
+
+std::optional<SampleRequest> ReplayCore::NextRepeated() const {
+  const std::optional<SampleRequest> request = requests_.Next(ring_.stored_steps());
+  return request && requests_.Answered(*request) ? request : std::nullopt;
+}
+
+void ReplayCore::AnsweredAgain() {
+  requests_.Pop();
+  ++counters_.repeated_batches;
 }
 
 std::vector<Credit> ReplayCore::TakeCredits(bool changed_only) {

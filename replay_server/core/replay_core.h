@@ -56,6 +56,7 @@ struct CoreCounters {
   uint64_t zero_rewards = 0;      // batch elements of reward 0
   uint64_t refused_requests = 0;  // wrong spec or wrong schema
   uint64_t surplus_requests = 0;  // more than the learner has credits for
+  uint64_t stale_requests = 0;    // of a learner session that has been replaced
 };
 
 class ReplayCore {
@@ -78,6 +79,10 @@ class ReplayCore {
   // Draws and writes the next batch that is due into `data` (batch_schema().total_bytes(), aligned
   // to 64); nothing when no request waits or it must wait on.
   std::optional<DrawnBatch> TryAnswer(uint8_t* data);
+  // The request that TryAnswer would answer, where it was answered before: should that batch still
+  // be there, it is the answer again, and AnsweredAgain() in place of TryAnswer.
+  std::optional<SampleRequest> NextRepeated() const;
+  void AnsweredAgain();
   // The elements of the batch drawn last.
   const BatchPlan& last_plan() const { return last_plan_; }
 

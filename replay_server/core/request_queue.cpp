@@ -15,6 +15,7 @@ RequestFate RequestQueue::Offer(const SampleRequest& request) {
     answered_ = 0;
     waiting_.clear();
   }
+  waiting_.erase(waiting_.begin(), waiting_.upper_bound(request.released));
   if (waiting_.contains(request.request)) return RequestFate::kAlreadyQueued;
   if (waiting_.size() >= credits_) return RequestFate::kFull;
   waiting_.emplace(request.request, request);

@@ -2,7 +2,7 @@
 //
 // Bounded by the learner's credits. A new learner session discards the old one's requests. A
 // request that comes again while it waits is the same request; one that was answered is answered
-// again, at no charge to the rate limiter.
+// again, at no charge to the rate limiter; one that the learner is done with waits no more.
 //
 // Threads: none inside; one owner.
 #pragma once

@@ -1,5 +1,7 @@
 #include "replay_server/service/batch_sender.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <exception>
 #include <new>
@@ -53,7 +55,17 @@ void BatchSender::Send(const DrawnBatch& batch, uint8_t* buffer) {
   const auto it = std::ranges::find(free_, buffer);
   CHECK(it != free_.end());
   free_.erase(it);
-  queue_.push_back({batch, buffer});
+  queue_.push_back(BufferedBatch{batch, buffer});
+  changed_.NotifyOne();
+}
+
+void BatchSender::Send(const BatchSlot& slot) {
+  const MutexLock lock(mutex_);
+  for (const Outgoing& waiting : queue_) {
+    const auto* word = std::get_if<BatchSlot>(&waiting);
+    if (word != nullptr && word->address == slot.address && word->request == slot.request) return;
+  }
+  queue_.push_back(slot);
   changed_.NotifyOne();
 }
 
@@ -77,11 +89,14 @@ void BatchSender::Run() {
   try {
     while (const auto outgoing = TakeNext()) {
       const SteadyTime start = Now();
-      ++(SendParts(*outgoing) ? sent_ : given_up_);
+      const bool sent = std::visit([this](const auto& o) { return SendBatch(o); }, *outgoing);
+      ++(sent ? sent_ : given_up_);
       sending_seconds_ = sending_seconds_ + SecondsSince(start);  // this thread alone writes it
+      const auto* buffered = std::get_if<BufferedBatch>(&*outgoing);
+      if (buffered == nullptr) continue;
       {
         const MutexLock lock(mutex_);
-        free_.push_back(outgoing->buffer);
+        free_.push_back(buffered->buffer);
       }
       on_free_();
     }
@@ -91,20 +106,20 @@ void BatchSender::Run() {
   }
 }
 
-bool BatchSender::WaitForReader(const DrawnBatch& batch) {
+bool BatchSender::WaitForReader(uint64_t session, bool (PartWriter::*has_reader)()) {
   // The learner's request may come before its reader is matched, and a volatile writer without a
   // reader sends to nobody. DDS tells of a match in a status, so this looks again and again.
   const SteadyTime deadline = Now() + kReaderDeadline;
-  while (!writer_.HasReader()) {
-    if (!Wanted(batch.request.learner_session) || Now() > deadline) return false;
+  while (!(writer_.*has_reader)()) {
+    if (!Wanted(session) || Now() > deadline) return false;
     Pause();
   }
   return true;
 }
 
-bool BatchSender::SendParts(const Outgoing& outgoing) {
-  if (!WaitForReader(outgoing.batch)) return false;
+bool BatchSender::SendBatch(const BufferedBatch& outgoing) {
   const SampleRequest& request = outgoing.batch.request;
+  if (!WaitForReader(request.learner_session, &PartWriter::HasPartReader)) return false;
   BatchPart part;
   part.spec_hash = spec_hash_;
   part.learner_session = request.learner_session;
@@ -117,18 +132,23 @@ bool BatchSender::SendParts(const Outgoing& outgoing) {
     part.offset = part.part * kBulkPartBytes;
     part.payload = {outgoing.buffer + part.offset,
                     std::min(kBulkPartBytes, batch_bytes_ - part.offset)};
-    if (!SendPart(part)) return false;
+    if (!SendMessage(part, fmt::format("part {} of {}", part.part, part.parts))) return false;
   }
   return true;
 }
 
-bool BatchSender::SendPart(const BatchPart& part) {
+bool BatchSender::SendBatch(const BatchSlot& slot) {
+  return WaitForReader(slot.learner_session, &PartWriter::HasSlotReader) &&
+         SendMessage(slot, fmt::format("the word of slot {}", slot.slot));
+}
+
+bool BatchSender::SendMessage(const auto& message, const std::string& what) {
   const SteadyTime deadline = Now() + kPartDeadline;
-  while (Wanted(part.learner_session)) {
-    if (writer_.Write(part)) return true;
+  while (Wanted(message.learner_session)) {
+    if (writer_.Write(message)) return true;
     if (Now() > deadline) {
-      log::Warning("batch of request {} given up: part {} of {} was not taken within {} s",
-                   part.request, part.part, part.parts, kPartDeadline.count());
+      log::Warning("batch of request {} given up: {} was not taken within {} s", message.request,
+                   what, kPartDeadline.count());
       return false;
     }
     Pause();  // a writer that fails at once must not make this a busy loop

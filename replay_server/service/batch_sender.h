@@ -2,9 +2,10 @@
 // intake.
 //
 // Owns a few batch buffers. The service thread fills one and hands it over; it comes back when all
-// its parts are written or given up. A batch is given up when its learner session is replaced,
-// when no learner is there, or when a part could not be written for kPartDeadline: the learner
-// asks again.
+// its parts are written or given up. Of a batch that lies in a slot of shared memory only the word
+// is sent; the slot is the caller's. A batch is given up when its learner session is replaced, when
+// no learner is there, or when a part could not be written for kPartDeadline: the learner asks
+// again.
 #pragma once
 
 #include <atomic>
@@ -15,7 +16,9 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
 #include <thread>
+#include <variant>
 #include <vector>
 
 #include "common/base/mutex.h"
@@ -30,8 +33,10 @@ class PartWriter {
   virtual ~PartWriter() = default;
   // False when it was not sent within the writer's own deadline.
   virtual bool Write(const BatchPart& part) = 0;
-  // A learner is there to read.
-  virtual bool HasReader() = 0;
+  virtual bool Write(const BatchSlot& slot) = 0;
+  // A learner is there to read them.
+  virtual bool HasPartReader() = 0;
+  virtual bool HasSlotReader() = 0;
 };
 
 class BatchSender {
@@ -52,6 +57,8 @@ class BatchSender {
   uint8_t* FreeBuffer();
   // Sends the batch in the buffer that FreeBuffer() returned.
   void Send(const DrawnBatch& batch, uint8_t* buffer);
+  // Says that a slot is full; once, if the word already waits to be sent.
+  void Send(const BatchSlot& slot);
   // Batches of other sessions are given up.
   void SetLearnerSession(uint64_t session) { learner_session_ = session; }
 
@@ -64,19 +71,23 @@ class BatchSender {
   struct FreeBytes {
     void operator()(uint8_t* data) const { std::free(data); }
   };
-  struct Outgoing {
+  // Either of them.
+  struct BufferedBatch {
     DrawnBatch batch;
     uint8_t* buffer = nullptr;
   };
+  using Outgoing = std::variant<BufferedBatch, BatchSlot>;
 
   void Run();
   // The next batch to send; waits for it. Nothing when stopping.
   std::optional<Outgoing> TakeNext();
   // Between tries; ends early when stopping.
   void Pause();
-  bool SendParts(const Outgoing& outgoing);
-  bool SendPart(const BatchPart& part);
-  bool WaitForReader(const DrawnBatch& batch);
+  bool SendBatch(const BufferedBatch& outgoing);
+  bool SendBatch(const BatchSlot& slot);
+  // A BatchPart or a BatchSlot.
+  bool SendMessage(const auto& message, const std::string& what);
+  bool WaitForReader(uint64_t session, bool (PartWriter::*has_reader)());
   bool Wanted(uint64_t session) const { return !stopping_ && session == learner_session_; }
 
   const uint64_t spec_hash_, batch_bytes_;

@@ -27,6 +27,7 @@
 #include "replay_server/core/replay_core.h"
 #include "replay_server/service/batch_sender.h"
 #include "replay_server/service/flow_ages.h"
+#include "replay_server/service/learner_slots.h"
 #include "replay_server/service/problem_log.h"
 #include "replay_server/service/service_inbox.h"
 #include "replay_server/service/service_report.h"
@@ -43,12 +44,15 @@ constexpr milliseconds kProgressSpacing{200};
 
 class DdsPartWriter : public PartWriter {
  public:
-  explicit DdsPartWriter(dds::Bus& bus) : publisher_(bus) {}
-  bool Write(const BatchPart& part) override { return publisher_.Write(part); }
-  bool HasReader() override { return publisher_.Matched() > 0; }
+  explicit DdsPartWriter(dds::Bus& bus) : parts_(bus), slots_(bus) {}
+  bool Write(const BatchPart& part) override { return parts_.Write(part); }
+  bool Write(const BatchSlot& slot) override { return slots_.Write(slot); }
+  bool HasPartReader() override { return parts_.Matched() > 0; }
+  bool HasSlotReader() override { return slots_.Matched() > 0; }
 
  private:
-  dds::Publisher<BatchPart> publisher_;
+  dds::Publisher<BatchPart> parts_;
+  dds::Publisher<BatchSlot> slots_;
 };
 
 // Members are in construction order; destruction, the reverse, ends the receive threads' callbacks
@@ -73,7 +77,10 @@ class ReplayService {
         part_writer_(bus_),
         sender_(SpecHash(), core_.batch_schema().total_bytes(), kBatchBuffers, &part_writer_,
                 [this] { inbox_.Wake(); }),
-        report_(core_, inbox_, sender_),
+        // One for each batch that the learner may have asked for, one for that which it reads.
+        slots_(SpecHash(), core_.batch_schema().total_bytes(),
+               static_cast<uint32_t>(Settings().learner.request_credits) + 1),
+        report_(core_, inbox_, sender_, slots_),
         control_subscriber_(bus_,
                             [this](const ControlMessage& m) { control_.OnMessage(m, Now()); }),
         request_subscriber_(bus_, [this](const SampleRequest& r) { inbox_.OnRequest(r); }),
@@ -215,23 +222,51 @@ class ReplayService {
       const RequestFate fate = core_.TakeRequest(request);
       if (fate == RequestFate::kWrongSpec || fate == RequestFate::kWrongSchema) {
         problems_.NoteRefused(request);
-      } else if (fate == RequestFate::kQueued || fate == RequestFate::kAlreadyQueued) {
+        continue;
+      }
+      if (fate == RequestFate::kQueued || fate == RequestFate::kAlreadyQueued) {
         ages_.OnRequest(request);
       }
+      if (fate != RequestFate::kStale) slots_.OnRequest(request);
     }
     sender_.SetLearnerSession(core_.requests().learner_session());
   }
 
   void AnswerOne() {
-    answered_ = false;
+    SlotWriter* slots = slots_.writer();
+    answered_ = slots != nullptr ? AnswerInSlot(*slots) : AnswerInBuffer();
+  }
+
+  bool AnswerInBuffer() {
     uint8_t* buffer = sender_.FreeBuffer();
-    if (buffer == nullptr) return;
+    if (buffer == nullptr) return false;
+    const std::optional<DrawnBatch> batch = Draw(buffer);
+    if (batch) sender_.Send(*batch, buffer);
+    return batch.has_value();
+  }
+
+  bool AnswerInSlot(SlotWriter& slots) {
+    // The learner may be reading the slot of a batch that it asked for again: it stays as it is.
+    const std::optional<SampleRequest> again = core_.NextRepeated();
+    if (const auto held = again ? slots.Held(again->request) : std::nullopt) {
+      core_.AnsweredAgain();
+      sender_.Send(*held);
+      return true;
+    }
+    uint8_t* slot = slots.FreeSlot();
+    if (slot == nullptr) return false;
+    const std::optional<DrawnBatch> batch = Draw(slot);
+    if (!batch) return false;
+    sender_.Send(slots.Fill(batch->request.request, batch->stored_records, batch->stored_steps));
+    report_.NoteSlotBatch();
+    return true;
+  }
+
+  std::optional<DrawnBatch> Draw(uint8_t* data) {
     const ScopedSeconds timed(seconds_.sampling);
-    const std::optional<DrawnBatch> batch = core_.TryAnswer(buffer);
-    if (!batch) return;
-    ages_.OnBatch(core_.last_plan(), core_.ring(), WallTimeNs());
-    sender_.Send(*batch, buffer);
-    answered_ = true;
+    const std::optional<DrawnBatch> batch = core_.TryAnswer(data);
+    if (batch) ages_.OnBatch(core_.last_plan(), core_.ring(), WallTimeNs());
+    return batch;
   }
 
   void Publish(const std::vector<Credit>& credits) {
@@ -294,6 +329,7 @@ class ReplayService {
   dds::Publisher<ReplayProgress> progress_publisher_;
   DdsPartWriter part_writer_;
   BatchSender sender_;
+  LearnerSlots slots_;
   ServiceReport report_;
   dds::Subscriber<ControlMessage> control_subscriber_;
   dds::Subscriber<SampleRequest> request_subscriber_;

@@ -25,6 +25,8 @@ const MetricsMessage& ServiceReport::Make(const std::string& state, const Servic
   Add("queue_depth", inbox_.Depth());
   report_.Add("queue_age_seconds", std::exchange(queue_age_seconds_, 0));
   Add("requests_waiting", core_.requests().size());
+  Add("slot_batches", slot_batches_);
+  Add("slots_held", slots_.held());
   AddTroubles();
   AddTimes(seconds);
   ages->Report(&report_);
@@ -44,6 +46,7 @@ void ServiceReport::AddTroubles() {
   Add("ahead_chunks", counters.intake.ahead_chunks);
   Add("refused_requests", counters.refused_requests);
   Add("surplus_requests", counters.surplus_requests + inbox_.DroppedRequests());
+  Add("stale_requests", counters.stale_requests);
   Add("repeated_batches", counters.repeated_batches);
   Add("batches_given_up", sender_.given_up());
   Add("pool_drops", inbox_.DroppedChunks());

@@ -10,6 +10,7 @@
 #include "replay_server/core/replay_core.h"
 #include "replay_server/service/batch_sender.h"
 #include "replay_server/service/flow_ages.h"
+#include "replay_server/service/learner_slots.h"
 #include "replay_server/service/service_inbox.h"
 
 namespace shoal::replay {
@@ -26,11 +27,14 @@ struct ServiceSeconds {
 class ServiceReport {
  public:
   // Borrows all of them.
-  ServiceReport(const ReplayCore& core, const ServiceInbox& inbox, const BatchSender& sender)
-      : core_(core), inbox_(inbox), sender_(sender), report_("replay", 0) {}
+  ServiceReport(const ReplayCore& core, const ServiceInbox& inbox, const BatchSender& sender,
+                const LearnerSlots& slots)
+      : core_(core), inbox_(inbox), sender_(sender), slots_(slots), report_("replay", 0) {}
 
   // A chunk waited this long in the inbox.
   void NoteQueueAge(double seconds) { queue_age_seconds_ = std::max(queue_age_seconds_, seconds); }
+  // A batch was drawn into a slot.
+  void NoteSlotBatch() { ++slot_batches_; }
   bool Due(SteadyTime now) { return report_.Due(now); }
   // Fills in every figure. Empties the windows of `ages`.
   const MetricsMessage& Make(const std::string& state, const ServiceSeconds& seconds,
@@ -46,7 +50,9 @@ class ServiceReport {
   const ReplayCore& core_;
   const ServiceInbox& inbox_;
   const BatchSender& sender_;
+  const LearnerSlots& slots_;
   MetricsReport report_;
+  uint64_t slot_batches_ = 0;
   double queue_age_seconds_ = 0;  // largest of the interval
 };
 

@@ -61,6 +61,8 @@ void Use(const SampleRequest& message) {
   core.TakeRequest(ours);
 }
 
+void Use(const BatchSlot& message) { CHECK(message.address.pid > 0); }
+
 void Use(const MetricsMessage& message) {
   launch::MetricsView view;
   const SteadyTime now = Now();
@@ -141,9 +143,9 @@ void Run(const std::string& body) {
 }
 
 constexpr void (*kMessages[])(const std::string&) = {
-    Run<CreditsMessage>, Run<SampleRequest>,  Run<MetricsMessage>, Run<ControlMessage>,
-    Run<EvalMessage>,    Run<RunViewMessage>, Run<CommandMessage>, Run<ReplyMessage>,
-    Run<ReplayProgress>, Run<LearnerProgress>};
+    Run<CreditsMessage>, Run<SampleRequest>,   Run<MetricsMessage>, Run<ControlMessage>,
+    Run<EvalMessage>,    Run<RunViewMessage>,  Run<CommandMessage>, Run<ReplyMessage>,
+    Run<ReplayProgress>, Run<LearnerProgress>, Run<BatchSlot>};
 
 }  // namespace
 }  // namespace shoal

@@ -155,13 +155,15 @@ TEST(Surroundings, WhenEveryDomainIsTakenThePortsAreNamed) {
 
 TEST(Surroundings, TrainingNeedsNoSharedMemory) {
   SHOAL_NEEDS(OwnMounts());
-  const SmallDisk disk("/dev/shm", "4k");
+  const SmallDisk disk("/dev/shm", "4k", MS_RDONLY);
   SHOAL_NEEDS(disk.why_not());
   const TrainingRun run;
   const ProgramResult result =
       run.Train({{"env_steps", "2000"}, {"actors", "1"}, {"eval.final_episodes", "0"}});
   ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
   ExpectBalanced(run.Json("meta.json"));
+  // The memory that batches go through is none of its files.
+  EXPECT_EQ(ReportReader(run.path()).Last("learner").at("batches_shared"), 1);
 }
 
 TEST(Surroundings, AReplayBeyondTheMemoryLimitIsRefusedNamingTheLimit) {

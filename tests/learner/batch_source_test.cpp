@@ -7,6 +7,7 @@
 #include <deque>
 #include <map>
 #include <mutex>
+#include <stdexcept>
 #include <thread>
 #include <vector>
 
@@ -51,6 +52,20 @@ class BatchSourceTest : public testing::Test {
     part.stored_steps = stored_steps;
     part.payload = {data, schema.total_bytes()};
     source_->OnPart(part);
+  }
+
+  // Answers a request in a slot of `replay`; its rewards are the request's number.
+  BatchSlot AnswerInSlot(SlotWriter& replay, uint64_t request, uint64_t stored_steps = 100) {
+    uint8_t* slot = replay.FreeSlot();
+    if (slot == nullptr) throw std::runtime_error("no free slot");
+    const BatchSchema schema = BatchSchemaOf(run_);
+    for (float& reward : schema.View(slot).reward) reward = static_cast<float>(request);
+    const BatchSlot word = replay.Fill(request, stored_steps + 2, stored_steps);
+    source_->OnSlot(word);
+    return word;
+  }
+  SlotWriter Replay(uint64_t session = kSession) const {
+    return {spec_hash_, session, BatchSchemaOf(run_).total_bytes(), 3};
   }
 
   std::vector<uint64_t> Asked() const {
@@ -184,6 +199,116 @@ TEST_F(BatchSourceTest, InLockstepWaitsForPhasesAndEndsWithTheRun) {
   EXPECT_EQ(requests_[0].after_steps, 12u);
   EXPECT_EQ(requests_[1].after_steps, 16u);
   EXPECT_EQ(requests_[2].after_steps, 20u);
+}
+
+TEST_F(BatchSourceTest, ReadsABatchInSharedMemoryWhereItLies) {
+  BatchSource& source = Make();
+  SlotWriter replay = Replay();
+  source.Next(Now());
+  EXPECT_TRUE(requests_[0].takes_slots);
+  EXPECT_FALSE(source.counters().shared);
+  AnswerInSlot(replay, 1, 70);
+  const auto batch = source.Next(Now());
+  ASSERT_TRUE(batch);
+  EXPECT_EQ(batch->request, 1u);
+  EXPECT_EQ(batch->stored_steps, 70u);
+  EXPECT_EQ(batch->stored_records, 72u);
+  EXPECT_EQ(batch->view.reward[3], 1.0f);
+  EXPECT_EQ(source.counters().shared, true);
+  EXPECT_EQ(source.counters().refused_slots, 0u);
+}
+
+TEST_F(BatchSourceTest, SaysWhichBatchesAreReadNoMore) {
+  BatchSource& source = Make();
+  SlotWriter replay = Replay();
+  source.Next(Now());
+  AnswerInSlot(replay, 1);
+  AnswerInSlot(replay, 2);
+  ASSERT_TRUE(source.Next(Now()));  // asks for 3 while it reads 1
+  ASSERT_TRUE(source.Next(Now()));  // asks for 4 while it reads 2
+  ASSERT_EQ(Asked(), (std::vector<uint64_t>{1, 2, 3, 4}));
+  EXPECT_EQ(requests_[1].released, 0u);
+  EXPECT_EQ(requests_[2].released, 0u) << "1 is being read";
+  EXPECT_EQ(requests_[3].released, 1u);
+}
+
+TEST_F(BatchSourceTest, AsksOverTheNetworkForWhatItCannotOpen) {
+  BatchSource& source = Make();
+  uint64_t token = 0;
+  source.Next(Now());
+  {
+    SlotWriter gone = Replay();
+    AnswerInSlot(gone, 1);
+    token = AnswerInSlot(gone, 2).address.token[0];
+  }
+  requests_.clear();
+  EXPECT_FALSE(source.Next(Now()));
+  EXPECT_FALSE(source.Next(Now()));
+  EXPECT_EQ(Asked(), (std::vector<uint64_t>{1, 2}));
+  EXPECT_EQ(requests_[0].refused_token, token);
+  EXPECT_EQ(source.counters().refused_slots, 2u);
+  Answer(1);
+  const auto batch = source.Next(Now());
+  ASSERT_TRUE(batch);
+  EXPECT_EQ(batch->view.reward[0], 1.0f);
+  EXPECT_EQ(source.counters().shared, false);
+}
+
+TEST_F(BatchSourceTest, AReplaysSuccessorMayAnswerInItsOwnMemory) {
+  BatchSource& source = Make();
+  source.Next(Now());
+  std::optional<SlotWriter> replay(std::in_place, spec_hash_, kSession,
+                                   BatchSchemaOf(run_).total_bytes(), 3);
+  AnswerInSlot(*replay, 1);
+  ASSERT_TRUE(source.Next(Now()));
+  AnswerInSlot(*replay, 2);
+  replay.reset();  // killed: what it had said stays true
+  SlotWriter successor = Replay();
+  AnswerInSlot(successor, 3);
+  for (uint64_t request = 2; request <= 3; ++request) {
+    const auto batch = source.Next(Now());
+    ASSERT_TRUE(batch) << request;
+    EXPECT_EQ(batch->view.reward[0], static_cast<float>(request));
+  }
+  EXPECT_EQ(source.counters().refused_slots, 0u);
+}
+
+TEST_F(BatchSourceTest, WordsOfSlotsThatNobodyWaitsForAreCounted) {
+  BatchSource& source = Make();
+  SlotWriter replay = Replay(), former = Replay(kSession - 1);
+  source.Next(Now());
+  AnswerInSlot(former, 1);
+  AnswerInSlot(replay, 9);
+  EXPECT_EQ(source.counters().unknown_parts, 2u);
+  EXPECT_FALSE(source.Next(Now()));
+  source.OnSlot(AnswerInSlot(replay, 1));
+  EXPECT_EQ(source.counters().duplicate_parts, 1u);
+  Answer(1);
+  EXPECT_EQ(source.counters().duplicate_parts, 2u) << "it lies in a slot already";
+  Answer(2);
+  AnswerInSlot(replay, 2);
+  EXPECT_EQ(source.counters().duplicate_parts, 3u) << "its parts came first";
+  EXPECT_TRUE(source.Next(Now()));
+  EXPECT_TRUE(source.Next(Now()));
+}
+
+TEST_F(BatchSourceTest, RefusesSlotsOfAnotherSpec) {
+  BatchSource& source = Make();
+  source.Next(Now());
+  spec_hash_ = 0xabcdef;
+  SlotWriter replay = Replay();
+  AnswerInSlot(replay, 1);
+  EXPECT_THROW(source.Next(Now()), Error);
+}
+
+TEST_F(BatchSourceTest, AWordOfASlotWakesWhoWaits) {
+  BatchSource& source = Make();
+  SlotWriter replay = Replay();
+  source.Next(Now());
+  std::thread receiver([&] { AnswerInSlot(replay, 1); });
+  const auto batch = source.Next(Now() + kLong);
+  receiver.join();
+  ASSERT_TRUE(batch);
 }
 
 // The receive thread answers while batches are read, each request with parts in turn.

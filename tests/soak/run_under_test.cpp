@@ -152,6 +152,9 @@ RunUnderTest::Progress RunUnderTest::TakeProgress() {
   }
   if (const json& learner = Report("learner-0"); learner.is_object()) {
     progress.updates = Figure(learner, "updates");
+    if (learner.value("batches_shared", 1.0) == 0) {
+      throw Broken("the learner's batches come over the network, no more through shared memory");
+    }
   }
   for (int i = 0; i < options_.actors; ++i) {
     const std::string name = fmt::format("actor-{}", i);

@@ -43,7 +43,8 @@ class RunUnderTest {
   struct Progress {
     double stored_steps = 0, updates = 0;
   };
-  // Of the newest reports. Throws Broken when stored records have become fewer.
+  // Of the newest reports. Throws Broken when stored records have become fewer, or batches no
+  // longer come through shared memory.
   Progress TakeProgress();
   // Waits until `process` (not `former`) has reported after `since`, steps were stored and updates
   // done since `before`. Throws Broken at `deadline`.

@@ -50,7 +50,19 @@ inline void Fill(uint64_t n, SampleRequest* m) {
         .request = n,
         .batch = 128,
         .after_steps = n + 7,
-        .schema_hash = n + 8};
+        .schema_hash = n + 8,
+        .released = n - 1,
+        .takes_slots = true,
+        .refused_token = n + 22};
+}
+inline void Fill(uint64_t n, BatchSlot* m) {
+  *m = {.spec_hash = n + 1000,
+        .learner_session = 6,
+        .request = n,
+        .stored_records = n + 8,
+        .stored_steps = n + 9,
+        .address = {.pid = 12, .descriptor = 13, .token = {n + 19, n + 20}, .bytes = n + 21},
+        .slot = 14};
 }
 inline void Fill(uint64_t n, BatchPart* m) {
   *m = {.spec_hash = n + 1000,
@@ -138,6 +150,7 @@ inline void Fill(uint64_t n, ReplyMessage* m) {
 inline uint64_t Number(const TransitionChunk& m) { return m.first_sequence; }
 inline uint64_t Number(const CreditsMessage& m) { return m.credits.at(0).stored; }
 inline uint64_t Number(const SampleRequest& m) { return m.request; }
+inline uint64_t Number(const BatchSlot& m) { return m.request; }
 inline uint64_t Number(const BatchPart& m) { return m.request; }
 inline uint64_t Number(const WeightsPart& m) { return m.version.update; }
 inline uint64_t Number(const MetricsMessage& m) { return static_cast<uint64_t>(m.time); }
@@ -167,8 +180,14 @@ inline std::string Describe(const CreditsMessage& m) {
   return all;
 }
 inline std::string Describe(const SampleRequest& m) {
-  return fmt::format("{} {} {} {} {} {}", m.spec_hash, m.learner_session, m.request, m.batch,
-                     m.after_steps, m.schema_hash);
+  return fmt::format("{} {} {} {} {} {} {} {} {}", m.spec_hash, m.learner_session, m.request,
+                     m.batch, m.after_steps, m.schema_hash, m.released, m.takes_slots,
+                     m.refused_token);
+}
+inline std::string Describe(const BatchSlot& m) {
+  return fmt::format("{} {} {} {} {} {} {} {} {} {} {}", m.spec_hash, m.learner_session, m.request,
+                     m.stored_records, m.stored_steps, m.address.pid, m.address.descriptor,
+                     m.address.token[0], m.address.token[1], m.address.bytes, m.slot);
 }
 inline std::string Describe(const BatchPart& m) {
   return fmt::format("{} {} {} {} {} {} {} {} {} {}", m.spec_hash, m.learner_session, m.request,

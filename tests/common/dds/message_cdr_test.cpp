@@ -45,9 +45,9 @@ class EveryMessage : public testing::Test {
   EveryMessage() { Fill(41, &message_); }
   M message_{};
 };
-using Messages =
-    testing::Types<CreditsMessage, SampleRequest, ActorMetrics, ReplayProgress, LearnerProgress,
-                   ControlMessage, EvalMessage, RunViewMessage, CommandMessage, ReplyMessage>;
+using Messages = testing::Types<CreditsMessage, SampleRequest, BatchSlot, ActorMetrics,
+                                ReplayProgress, LearnerProgress, ControlMessage, EvalMessage,
+                                RunViewMessage, CommandMessage, ReplyMessage>;
 TYPED_TEST_SUITE(EveryMessage, Messages);
 
 TYPED_TEST(EveryMessage, IsReadAsCycloneWroteIt) {
@@ -207,6 +207,23 @@ TEST(MessageCdr, SessionsAndRequestsStartAtOne) {
   request.request = 1;
   request.batch = 0;
   EXPECT_FALSE(IsTaken(request));
+}
+
+TEST(MessageCdr, ARequestReleasesOnlyWhatCameBeforeIt) {
+  SampleRequest request{.learner_session = 1, .request = 5, .batch = 1, .released = 4};
+  EXPECT_TRUE(IsTaken(request));
+  request.released = 5;
+  EXPECT_FALSE(IsTaken(request));
+}
+
+TEST(MessageCdr, ASlotLiesInADescriptorOfAProcess) {
+  BatchSlot slot;
+  Fill(3, &slot);
+  EXPECT_TRUE(IsTaken(slot));
+  slot.address.descriptor = -1;
+  EXPECT_FALSE(IsTaken(slot));
+  slot.address = {.pid = 0, .descriptor = 3};
+  EXPECT_FALSE(IsTaken(slot));
 }
 
 }  // namespace

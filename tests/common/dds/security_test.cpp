@@ -48,6 +48,7 @@ TEST_F(SecurityTest, EachRoleExchangesItsMessages) {
   ExpectSame<TransitionChunk>(actor, replay, "TransitionChunk");
   ExpectSame<CreditsMessage>(replay, actor, "CreditsMessage");
   ExpectSame<SampleRequest>(learner, replay, "SampleRequest");
+  ExpectSame<BatchSlot>(replay, learner, "BatchSlot");
   ExpectSame<BatchPart>(replay, learner, "BatchPart");
   ExpectSame<WeightsPart>(learner, actor, "WeightsPart");
   ExpectSame<EvalWeightsPart>(learner, eval, "EvalWeightsPart");

@@ -30,6 +30,7 @@ TEST_F(TwoProcessesTest, MessagesBetweenActorAndReplayArriveAsSent) {
 TEST_F(TwoProcessesTest, MessagesBetweenLearnerAndReplayArriveAsSent) {
   PeerProcess learner("learner", address_), replay("replay", address_);
   ExpectSame<SampleRequest>(learner, replay, "SampleRequest");
+  ExpectSame<BatchSlot>(replay, learner, "BatchSlot");
   ExpectSame<BatchPart>(replay, learner, "BatchPart");
 }
 

@@ -65,6 +65,31 @@ TEST_F(ReplayCoreTest, ARepeatedRequestGetsTheSameBytesAndAnotherOneOthers) {
   EXPECT_EQ(core_->counters().batches, 2u);
 }
 
+TEST_F(ReplayCoreTest, WhoHasKeptABatchAnswersARepeatedRequestWithIt) {
+  Start();
+  Store(&actor_, 1, 40);
+  EXPECT_FALSE(core_->NextRepeated());
+  Ask(1);
+  EXPECT_FALSE(core_->NextRepeated()) << "it was never answered";
+  ASSERT_FALSE(Answer().empty());
+  Ask(1);
+  const auto again = core_->NextRepeated();
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->request, 1u);
+  core_->AnsweredAgain();
+  EXPECT_TRUE(Answer().empty()) << "nothing waits any more";
+  EXPECT_EQ(core_->counters().batches, 1u);
+  EXPECT_EQ(core_->counters().repeated_batches, 1u);
+}
+
+TEST_F(ReplayCoreTest, WordsOfAFormerLearnerAreCounted) {
+  Start();
+  Ask(1, 0, /*session=*/8);
+  Ask(5, 0, /*session=*/7);
+  EXPECT_EQ(core_->counters().stale_requests, 1u);
+  EXPECT_EQ(core_->requests().size(), 1u);
+}
+
 TEST_F(ReplayCoreTest, AnswersDependOnSeedAndRequestOnlyNotOnTheLearnersSession) {
   Start();
   Store(&actor_, 1, 40);

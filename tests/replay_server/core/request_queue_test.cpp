@@ -59,6 +59,18 @@ TEST_F(RequestQueueTest, ANewLearnerSessionDiscardsTheFormerOnesRequests) {
   EXPECT_EQ(queue_.learner_session(), 2u);
 }
 
+TEST_F(RequestQueueTest, WhatTheLearnerIsDoneWithWaitsNoMore) {
+  Offer(1);
+  Offer(2);
+  Offer(3);
+  EXPECT_EQ(
+      queue_.Offer(
+          {.spec_hash = 5, .learner_session = 1, .request = 4, .schema_hash = 64, .released = 2}),
+      RequestFate::kQueued);
+  EXPECT_EQ(queue_.size(), 2u);
+  EXPECT_EQ(NextId(), 3u);
+}
+
 TEST_F(RequestQueueTest, WaitsForTheStepsARequestNames) {
   Offer(1, 1, /*after_steps=*/50);
   Offer(2, 1);

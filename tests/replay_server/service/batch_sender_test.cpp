@@ -26,9 +26,23 @@ class FakeWriter : public PartWriter {
     bytes_.emplace_back(part.payload.begin(), part.payload.end());
     return true;
   }
-  bool HasReader() override {
+  bool Write(const BatchSlot& slot) override {
+    const std::lock_guard lock(mutex_);
+    ++writes_;
+    if (refusals_ != 0) {
+      if (refusals_ > 0) --refusals_;
+      return false;
+    }
+    slots_.push_back(slot);
+    return true;
+  }
+  bool HasPartReader() override {
     ++looks_;
     return has_reader_;
+  }
+  bool HasSlotReader() override {
+    ++slot_looks_;
+    return has_slot_reader_;
   }
   // < 0: always.
   void Refuse(int times) {
@@ -38,9 +52,10 @@ class FakeWriter : public PartWriter {
 
   std::mutex mutex_;
   int refusals_ = 0;
-  std::atomic<int> writes_{0}, looks_{0};
-  std::atomic<bool> has_reader_{true};
+  std::atomic<int> writes_{0}, looks_{0}, slot_looks_{0};
+  std::atomic<bool> has_reader_{true}, has_slot_reader_{true};
   std::vector<BatchPart> parts_;
+  std::vector<BatchSlot> slots_;
   std::vector<std::vector<uint8_t>> bytes_;
 };
 
@@ -67,6 +82,15 @@ class BatchSenderTest : public testing::Test {
   bool WaitForEnds(int count) {
     std::unique_lock lock(mutex_);
     return freed_.wait_for(lock, seconds(20), [&] { return ends_ >= count; });
+  }
+
+  static BatchSlot Word(uint64_t request) {
+    return {.spec_hash = 5, .learner_session = 7, .request = request, .address = {}, .slot = 2};
+  }
+  bool WaitForSent(uint64_t count) {
+    const SteadyTime deadline = Now() + seconds(20);
+    while (sender_.sent() < count && Now() < deadline) std::this_thread::yield();
+    return sender_.sent() == count;
   }
 
   FakeWriter writer_;
@@ -146,6 +170,39 @@ TEST_F(BatchSenderTest, WaitsForTheLearnersReaderBeforeTheFirstPart) {
   writer_.has_reader_ = true;
   ASSERT_TRUE(WaitForEnds(1));
   EXPECT_EQ(writer_.parts_.size(), 3u);
+}
+
+TEST_F(BatchSenderTest, SaysThatASlotIsFull) {
+  sender_.Send(Word(3));
+  ASSERT_TRUE(WaitForSent(1));
+  ASSERT_EQ(writer_.slots_.size(), 1u);
+  EXPECT_EQ(writer_.slots_[0].request, 3u);
+  EXPECT_EQ(writer_.slots_[0].slot, 2u);
+  EXPECT_TRUE(writer_.parts_.empty());
+}
+
+TEST_F(BatchSenderTest, SaysOnceWhatWaitsToBeSaid) {
+  writer_.has_slot_reader_ = false;
+  sender_.Send(Word(1));
+  const SteadyTime deadline = Now() + seconds(20);
+  while (writer_.slot_looks_ == 0 && Now() < deadline) std::this_thread::yield();
+  for (int again = 0; again < 3; ++again) sender_.Send(Word(2));
+  sender_.Send(Word(3));
+  writer_.has_slot_reader_ = true;
+  ASSERT_TRUE(WaitForSent(3));
+  ASSERT_EQ(writer_.slots_.size(), 3u);
+  EXPECT_EQ(writer_.slots_[1].request, 2u);
+  EXPECT_EQ(writer_.slots_[2].request, 3u);
+}
+
+TEST_F(BatchSenderTest, GivesUpTheSlotsOfAReplacedLearnerSession) {
+  writer_.Refuse(-1);
+  sender_.Send(Word(1));
+  sender_.SetLearnerSession(8);
+  const SteadyTime deadline = Now() + seconds(20);
+  while (sender_.given_up() < 1 && Now() < deadline) std::this_thread::yield();
+  EXPECT_EQ(sender_.given_up(), 1u);
+  EXPECT_TRUE(writer_.slots_.empty());
 }
 
 TEST_F(BatchSenderTest, EndsInTheMiddleOfABatch) {

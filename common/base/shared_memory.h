@@ -1,0 +1,49 @@
+// Memory that processes of one user on one host share. It has no name in any file system: when its
+// maker and whoever has it mapped are gone, however they ended, nothing of it is left; nobody meets
+// that of another run by accident; and the size of /dev/shm does not matter.
+//
+// A reader finds it by the maker's process number and descriptor, through /proc, while the maker
+// lives; what it has mapped stays there. The kernel lets nobody in but the maker's user and root.
+// The size is sealed, so that no access can fail later.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <utility>
+
+#include "common/base/descriptor.h"
+
+namespace shoal {
+
+class SharedMemory {
+ public:
+  // `bytes` of zeros, taken from the system at once. `label` shows in /proc/PID/maps. Throws Error
+  // with the reason: a limit on files' sizes, no memory, a kernel without memfd_create. A control
+  // group with too little room kills instead: the caller asks before.
+  static SharedMemory Make(const std::string& label, uint64_t bytes);
+  // That of a process on this host, for reading. Throws Error: nothing there, not ours to read,
+  // not made by Make, of another size.
+  static SharedMemory Open(int32_t pid, int32_t descriptor, uint64_t bytes);
+
+  SharedMemory(SharedMemory&& other) noexcept
+      : descriptor_(std::move(other.descriptor_)),
+        data_(std::exchange(other.data_, nullptr)),
+        bytes_(other.bytes_) {}
+  SharedMemory& operator=(SharedMemory&&) = delete;
+  ~SharedMemory();
+
+  // Aligned to a page. A write to what was opened ends the process (SIGSEGV).
+  uint8_t* data() const { return data_; }
+  uint64_t bytes() const { return bytes_; }
+  int descriptor() const { return descriptor_.get(); }
+
+ private:
+  SharedMemory(Descriptor descriptor, uint8_t* data, uint64_t bytes)
+      : descriptor_(std::move(descriptor)), data_(data), bytes_(bytes) {}
+
+  Descriptor descriptor_;
+  uint8_t* data_;
+  const uint64_t bytes_;
+};
+
+}  // namespace shoal

@@ -1,0 +1,85 @@
+// Whole batches in shared memory (common/base/shared_memory.h): the replay writes them into slots,
+// the learner reads them where they lie. Which slot is full, and which is free again, is said in
+// messages (BatchSlot, SampleRequest::released).
+//
+//   offset  bytes
+//   0       8       magic "SHOALSL1"
+//   8       16      token, random
+//   24      8       learner session that the slots are for
+//   32      8       bytes of a slot
+//   40      4       slots, n
+//   64      8 n     per slot: the request whose batch lies there whole; 0 = none
+//   then    slots, each at a multiple of 4096
+//
+// Slots belong to one learner session, which releases what it was given in the order of its
+// requests; another session gets other memory. So a slot is written again only after its reader
+// has said that it reads it no more, and what is left to a reader that is gone goes with the
+// memory.
+//
+// Errors: what a process cannot know beforehand throws Error; both sides fall back to BatchPart.
+// Threads: one at a time per object.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "common/base/shared_memory.h"
+#include "common/wire/messages.h"
+
+namespace shoal {
+
+// The replay's side. Owns the memory.
+class SlotWriter {
+ public:
+  // `slots` batches of `batch_bytes`. Throws Error: SharedMemory::Make.
+  SlotWriter(uint64_t spec_hash, uint64_t learner_session, uint64_t batch_bytes, uint32_t slots);
+  static uint64_t MemoryBytes(uint64_t batch_bytes, uint32_t slots);
+
+  const SlotAddress& address() const { return address_; }
+  // Memory of a free slot, batch_bytes aligned to 4096; nullptr while all hold batches. It stays
+  // free until Fill().
+  uint8_t* FreeSlot();
+  // The batch of `request`, not held yet, lies whole in the slot that FreeSlot() returned last;
+  // returns what to tell the learner.
+  BatchSlot Fill(uint64_t request, uint64_t stored_records, uint64_t stored_steps);
+  // What was told when the slot of `request` was filled, if it is held.
+  std::optional<BatchSlot> Held(uint64_t request) const;
+  // Requests up to `released` are done with: their slots are free.
+  void Release(uint64_t released);
+  // Slots that hold a batch.
+  uint32_t held() const;
+
+ private:
+  struct Slot {
+    uint64_t request = 0;  // 0: free
+    uint64_t stored_records = 0, stored_steps = 0;
+  };
+  BatchSlot Word(uint32_t slot) const;
+
+  const uint64_t spec_hash_, learner_session_, batch_bytes_;
+  const SharedMemory memory_;
+  SlotAddress address_;
+  std::vector<Slot> slots_;
+  std::optional<uint32_t> writing_;  // handed out by FreeSlot
+};
+
+// The learner's side of what a BatchSlot names. Its memory stays mapped while it lives.
+class SlotReader {
+ public:
+  // Throws Error when what lies there is not the slots of this session that the address means.
+  SlotReader(const SlotAddress& address, uint64_t learner_session, uint64_t batch_bytes);
+
+  const SlotAddress& address() const { return address_; }
+  // The batch of the request, to be read until it is released. Throws Error when the slot does not
+  // hold it.
+  uint8_t* Batch(uint32_t slot, uint64_t request) const;
+
+ private:
+  const SlotAddress address_;
+  const uint64_t batch_bytes_;
+  const SharedMemory memory_;
+  uint32_t slots_ = 0;
+};
+
+}  // namespace shoal

@@ -1,0 +1,56 @@
+#include "learner/slot_batches.h"
+
+#include <algorithm>
+
+#include "common/base/check.h"
+
+namespace shoal::learner {
+
+SlotBatches::Verdict SlotBatches::Add(const BatchSlot& slot) {
+  if (slot.address.token[0] == refused_token_) return Verdict::kRefused;
+  const auto [known, is_new] = words_.try_emplace(slot.request, slot);
+  if (is_new) return Verdict::kTaken;
+  if (known->second.address == slot.address && known->second.slot == slot.slot) {
+    return Verdict::kDuplicate;
+  }
+  known->second = slot;
+  return Verdict::kStartedOver;
+}
+
+uint8_t* SlotBatches::Open(uint64_t request) {
+  const BatchSlot& word = words_.at(request);
+  auto memory = std::ranges::find(memories_, word.address, &SlotReader::address);
+  if (memory == memories_.end()) {
+    memories_.push_back(std::make_unique<SlotReader>(word.address, learner_session_, batch_bytes_));
+    memory = std::prev(memories_.end());
+  }
+  return (*memory)->Batch(word.slot, request);
+}
+
+std::vector<uint64_t> SlotBatches::Refuse(uint64_t request) {
+  const SlotAddress address = words_.at(request).address;
+  refused_token_ = address.token[0];
+  std::vector<uint64_t> requests;
+  std::erase_if(words_, [&](const auto& word) {
+    if (word.second.address != address) return false;
+    requests.push_back(word.first);
+    return true;
+  });
+  Forget();
+  return requests;
+}
+
+void SlotBatches::Release(uint64_t request) {
+  if (words_.erase(request) > 0) Forget();
+}
+
+void SlotBatches::Forget() {
+  const SlotReader* newest = memories_.empty() ? nullptr : memories_.back().get();
+  std::erase_if(memories_, [&](const auto& memory) {
+    return memory.get() != newest && std::ranges::none_of(words_, [&](const auto& word) {
+             return word.second.address == memory->address();
+           });
+  });
+}
+
+}  // namespace shoal::learner

@@ -1,0 +1,80 @@
+// shoal-bench-batches: what a batch costs on its way from replay to learner, through shared memory
+// and over the network of one host, as JSON (schema shoal-bench-1) on stdout. `./run
+// bench-batches`.
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "common/base/build_info.h"
+#include "common/base/main_guard.h"
+#include "launch/record/machine.h"
+#include "tests/benchmark/batch_handover.h"
+
+namespace {
+
+using shoal::bench::HandoverFigures;
+using shoal::bench::HandoverOptions;
+
+double CpuPerGigabyte(const HandoverFigures& figures) {
+  return (figures.replay_seconds + figures.learner_seconds) / figures.gigabytes;
+}
+
+// The repetition in the middle.
+HandoverFigures Median(std::vector<HandoverFigures> all) {
+  std::ranges::sort(all, {}, CpuPerGigabyte);
+  return all[all.size() / 2];
+}
+
+nlohmann::ordered_json Row(const HandoverFigures& shared, const HandoverFigures& network) {
+  return {{"stage", "batches handed to a learner on the same host, beside the gather"},
+          {"figure", CpuPerGigabyte(shared)},
+          {"unit", "s of CPU per GB"},
+          {"against", "over the network"},
+          {"against_figure", CpuPerGigabyte(network)},
+          {"ratio", CpuPerGigabyte(shared) / CpuPerGigabyte(network)},
+          {"target", 0.05},
+          {"replay_seconds_per_gb", shared.replay_seconds / shared.gigabytes},
+          {"learner_seconds_per_gb", shared.learner_seconds / shared.gigabytes},
+          {"against_replay_seconds_per_gb", network.replay_seconds / network.gigabytes},
+          {"against_learner_seconds_per_gb", network.learner_seconds / network.gigabytes}};
+}
+
+int Run(int argc, char** argv) {
+  HandoverOptions options;
+  int repetitions = 3;
+  CLI::App app("Measures what handing batches over costs.");
+  app.add_option("--batch", options.batch, "of two 84x84 RGB cameras")->check(CLI::Range(1, 4096));
+  app.add_option("--batches", options.batches, "handed over each time")
+      ->check(CLI::Range(1, 100'000));
+  app.add_option("--repetitions", repetitions, "of both ways in turn; the median counts")
+      ->check(CLI::Range(1, 100));
+  CLI11_PARSE(app, argc, argv);
+  std::vector<HandoverFigures> shared, network;
+  for (int i = 0; i < repetitions; ++i) {
+    for (const bool way : {true, false}) {
+      options.shared = way;
+      const HandoverFigures figures = shoal::bench::MeasureHandover(options);
+      (way ? shared : network).push_back(figures);
+      std::cerr << fmt::format("{}: {:.4f} s of CPU per GB (replay {:.4f}, learner {:.4f})\n",
+                               way ? "shared memory" : "network", CpuPerGigabyte(figures),
+                               figures.replay_seconds / figures.gigabytes,
+                               figures.learner_seconds / figures.gigabytes);
+    }
+  }
+  const nlohmann::ordered_json report{{"schema", "shoal-bench-1"},
+                                      {"commit", shoal::BuildCommit()},
+                                      {"machine", shoal::launch::DescribeMachine()},
+                                      {"rows", {Row(Median(shared), Median(network))}}};
+  std::cout << report.dump(2) << std::endl;
+  return 0;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  return shoal::GuardMain("shoal-bench-batches", [&] { return Run(argc, argv); });
+}
