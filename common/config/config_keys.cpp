@@ -63,9 +63,10 @@ std::vector<Key> ObservationKeys() {
                  "describe lists them)"),
       SHOAL_SAME(observation.quality, (Choices{{"fast", "reference"}}),
                  "fast = no shadows, reflections, multisampling; reference = as the originals"),
-      SHOAL_SAME(observation.custom_cameras, AnyValue{},
-                 "cameras of one's own for observation.cameras; in m and degrees, azimuth 0 looks "
-                 "along +x, negative elevation down"),
+      SHOAL_SAME(
+          observation.custom_cameras, AnyValue{},
+          "cameras of one's own for observation.cameras; in m and degrees, azimuth 0 looks "
+          "along +x, negative elevation down; with `body` in that body's frame, moving with it"),
   };
 }
 
@@ -336,7 +337,8 @@ struct TypeText {
     return "a number, or \"linear(START,END,ENV_STEPS)\", each end";
   }
   std::string operator()(const std::map<std::string, CustomCamera>*) const {
-    return "an object {name: {lookat: [x, y, z], distance: > 0, azimuth, elevation: -90..90}, ...}";
+    return "an object {name: {lookat: [x, y, z], distance: > 0, azimuth, elevation: -90..90, body: "
+           "optional}, ...}";
   }
 };
 
