@@ -18,6 +18,7 @@
 
 #include "common/config/config.h"
 #include "common/nn/precision.h"
+#include "common/nn/replica.h"
 #include "common/spec/observation_spec.h"
 #include "learner/agent/agent.h"
 #include "learner/agent/sample_figures.h"
@@ -41,9 +42,11 @@ inline constexpr const Figure* kTwinFigures[] = {
     &kActionSaturation, &kQ1Mean,  &kQ1Std,      &kQ2Mean,         &kQ2Std,     &kQMinMean,
     &kQMinStd,          &kQMinMin, &kQMinMax};
 
-// Takes batch, seed, discount, reward scale, rates and periods from `config`.
+// One replica, which it borrows, or the only one. Takes batch, seed, discount, reward scale, rates
+// and periods from `config`.
 std::unique_ptr<Agent> MakeDeterministicAgent(const Config& config, const ObservationSpec& spec,
                                               nn::Precision precision,
-                                              const DeterministicOptions& options);
+                                              const DeterministicOptions& options,
+                                              nn::Replica* replica);
 
 }  // namespace shoal::learner
