@@ -8,6 +8,10 @@
 namespace shoal {
 namespace {
 
+// Below, what does not shrink with the rows (steps of the optimiser, weights in the layouts of the
+// CPU) takes most of a replica's time, and each holds parameters of its own.
+constexpr int kLeastRows = 16;
+
 // Transitions of a batch, each with its copies.
 int Groups(const Config& config) { return config.learner.batch / config.replay.copies; }
 
@@ -23,19 +27,22 @@ int LargestDivisor(int groups, int most) {
 int LearnerThreads(const Config& config, int cores) {
   if (config.learner.threads > 0) return config.learner.threads;
   const int half = std::max(1, cores / 2);
-  return LearnsOnPolicy(config) ? half : LargestDivisor(Groups(config), half);
+  if (LearnsOnPolicy(config)) return half;
+  const int useful = std::max(1, config.learner.batch / kLeastRows);
+  return LargestDivisor(Groups(config), std::min(half, useful));
 }
 
 void CheckReplicas(const Config& config, int replicas) {
   const int groups = Groups(config);
   if (groups % replicas == 0) return;
-  int more = std::min(replicas, groups);
-  while (groups % more != 0) ++more;
+  const int fewer = LargestDivisor(groups, replicas);
+  int more = replicas;
+  while (more < groups && groups % more != 0) ++more;
   throw UsageError(
       "learner.threads = {}: expected a divisor of learner.batch / replay.copies = {} / {} = {}, "
-      "such as {} or {}: each thread learns from an equal part of the batch",
+      "such as {}: each thread learns from an equal part of the batch",
       replicas, config.learner.batch, config.replay.copies, groups,
-      LargestDivisor(groups, replicas), more);
+      more > groups ? fmt::format("{}", fewer) : fmt::format("{} or {}", fewer, more));
 }
 
 }  // namespace shoal

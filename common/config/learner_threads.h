@@ -5,8 +5,9 @@
 
 namespace shoal {
 
-// learner.threads, or where it is 0 half of `cores`, at least 1: for replicas (off policy) the
-// largest number up to there that can share the batch.
+// learner.threads, or where it is 0 half of `cores`, at least 1. Off policy, where threads are
+// replicas as a rule: the largest number up to there that leaves each an equal part of the batch of
+// at least kLeastRows rows.
 int LearnerThreads(const Config& config, int cores);
 
 // Throws Error (kUsage) naming the numbers that would fit unless so many replicas can share

@@ -59,6 +59,20 @@ int ReplicasOf(const Config& config, const ObservationSpec& spec, int threads) {
   return threads;
 }
 
+std::string DescribeThreads(const Config& config, const ObservationSpec& spec, int threads,
+                            int cores) {
+  if (threads == 1) return "1 thread";
+  const char* more = threads > cores ? ", more than there are cores" : "";
+  if (ReplicasOf(config, spec, threads) > 1) {
+    return fmt::format("{} threads, a replica each{}", threads, more);
+  }
+  const bool unknown = Find(config.learner.algorithm).make_replica == nullptr;
+  return fmt::format("{} threads that share each layer: {}{}", threads,
+                     unknown ? config.learner.algorithm + " knows no replicas"
+                             : config.network.encoder + " normalises over the batch",
+                     more);
+}
+
 std::unique_ptr<Agent> MakeAgent(const Config& config, const ObservationSpec& spec,
                                  nn::Precision precision) {
   const Algorithm& algorithm = Find(config.learner.algorithm);

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "common/config/config.h"
@@ -35,6 +36,10 @@ std::span<const Algorithm> Algorithms();
 // normalisation, whose statistics are of the whole batch. Throws Error (kUsage) where they cannot
 // share the batch (CheckReplicas), and as MakeAgent.
 int ReplicasOf(const Config& config, const ObservationSpec& spec, int threads);
+
+// What threads the learner has, for people: "2 threads, a replica each".
+std::string DescribeThreads(const Config& config, const ObservationSpec& spec, int threads,
+                            int cores);
 
 // The agent of config.learner.algorithm, for nn::Threads. Throws Error (kUsage) naming the
 // algorithms there are when there is none of that name.
