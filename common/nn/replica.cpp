@@ -1,6 +1,7 @@
 #include "common/nn/replica.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "common/base/check.h"
 #include "common/base/cpu_clones.h"
@@ -35,7 +36,7 @@ void AverageRange(std::span<float* const> arrays, int64_t begin, int64_t end) {
 }  // namespace
 
 Replica::Replica(Exchange* exchange, int rank)
-    : exchange_(exchange), rank_(rank), count_(int(exchange->offered_.size())) {
+    : exchange_(exchange), rank_(rank), count_(int(exchange->offers_[0].size())) {
   CHECK(rank >= 0 && rank < count_) << rank << " of " << count_;
 }
 
@@ -46,56 +47,49 @@ int Replica::Rows(int batch) const {
   return batch / count_;
 }
 
-void Replica::Offer(const Exchange::Offer& offer) {
-  exchange_->offered_[size_t(rank_)] = offer;
+std::span<const Exchange::Offer> Replica::Show(Exchange::Offer offer) {
+  std::vector<Exchange::Offer>& offers = exchange_->offers_[turn_++ % 2];
+  offers[size_t(rank_)] = std::move(offer);
   exchange_->barrier_.ArriveAndWait();
+  return offers;
 }
-
-void Replica::Done() { exchange_->barrier_.ArriveAndWait(); }
 
 // Every replica averages a range of its own, in the arrays of all.
 void Replica::AverageGradients(std::span<ParameterSet* const> sets) {
   if (count_ == 1) return;
-  Offer({.sets = sets, .arrays = {}, .numbers = {}});
-  std::vector<float*> arrays(static_cast<size_t>(count_));
+  const auto offers = Show({.sets = sets, .arrays = {}, .numbers = {}});
+  std::vector<float*> arrays(offers.size());
   for (size_t s = 0; s < sets.size(); ++s) {
     const int64_t lines = sets[s]->trained_size() / kCacheLine;
-    for (size_t r = 0; r < arrays.size(); ++r) {
-      arrays[r] = exchange_->offered_[r].sets[s]->gradients();
-    }
+    for (size_t r = 0; r < arrays.size(); ++r) arrays[r] = offers[r].sets[s]->gradients();
     AverageRange(arrays, lines * rank_ / count_ * kCacheLine,
                  lines * (rank_ + 1) / count_ * kCacheLine);
   }
-  Done();
+  exchange_->barrier_.ArriveAndWait();
 }
 
 std::vector<std::vector<float>> Replica::Whole(std::span<const std::span<const float>> own) {
-  std::vector<std::vector<float>> whole(own.size());
-  if (count_ == 1) {
-    std::ranges::transform(own, whole.begin(), [](std::span<const float> values) {
-      return std::vector<float>(values.begin(), values.end());
-    });
-    return whole;
-  }
-  Offer({.sets = {}, .arrays = own, .numbers = {}});
-  for (const Exchange::Offer& offer : exchange_->offered_) {
-    for (size_t i = 0; i < whole.size(); ++i) {
+  std::vector<std::vector<float>> whole;
+  for (const std::span<const float> values : own) whole.emplace_back(values.begin(), values.end());
+  if (count_ == 1) return whole;
+  const auto offers = Show({.sets = {}, .arrays = whole, .numbers = {}});
+  for (size_t i = 0; i < whole.size(); ++i) {
+    whole[i].clear();
+    for (const Exchange::Offer& offer : offers) {
       whole[i].insert(whole[i].end(), offer.arrays[i].begin(), offer.arrays[i].end());
     }
   }
-  Done();
   return whole;
 }
 
 std::vector<double> Replica::Means(std::initializer_list<double> own) {
   std::vector<double> means(own);
   if (count_ == 1) return means;
-  Offer({.sets = {}, .arrays = {}, .numbers = {own.begin(), own.size()}});
+  const auto offers = Show({.sets = {}, .arrays = {}, .numbers = means});
   std::ranges::fill(means, 0.0);
-  for (const Exchange::Offer& offer : exchange_->offered_) {
+  for (const Exchange::Offer& offer : offers) {
     for (size_t i = 0; i < means.size(); ++i) means[i] += offer.numbers[i] / count_;
   }
-  Done();
   return means;
 }
 

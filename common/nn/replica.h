@@ -10,6 +10,7 @@
 // Dimensions: B batch, b = B/N rows of a replica.
 #pragma once
 
+#include <array>
 #include <initializer_list>
 #include <span>
 #include <vector>
@@ -23,20 +24,24 @@ namespace shoal::nn {
 // Where N replicas exchange. They borrow it.
 class Exchange {
  public:
-  explicit Exchange(int replicas) : barrier_(replicas), offered_(size_t(replicas)) {}
+  explicit Exchange(int replicas) : barrier_(replicas) {
+    for (std::vector<Offer>& turn : offers_) turn.resize(size_t(replicas));
+  }
 
  private:
   friend class Replica;
 
-  // What a replica shows to the others between two barriers.
+  // What a replica shows to the others.
   struct Offer {
     std::span<ParameterSet* const> sets;
-    std::span<const std::span<const float>> arrays;
-    std::span<const double> numbers;
+    std::vector<std::vector<float>> arrays;
+    std::vector<double> numbers;
   };
 
   Barrier barrier_;
-  std::vector<Offer> offered_;  // by rank
+  // By turn and rank. Two turns: a replica may make its next offer while others still read the
+  // last, but not the one after that, for which it would have to pass the next one's barrier.
+  std::array<std::vector<Offer>, 2> offers_;
 };
 
 // One thread: the one that runs this replica. Alone every function gives back what it was given,
@@ -67,12 +72,13 @@ class Replica {
   std::vector<double> Normals(int rows, int per_row, Random* random) const;
 
  private:
-  // Shows `offer` and waits until all have shown theirs.
-  void Offer(const Exchange::Offer& offer);
-  void Done();  // what was offered may change again
+  // Shows an offer and waits until all have shown theirs, which come back by rank and stay until
+  // the next but one.
+  std::span<const Exchange::Offer> Show(Exchange::Offer offer);
 
   Exchange* exchange_ = nullptr;
   int rank_ = 0, count_ = 1;
+  size_t turn_ = 0;
 };
 
 }  // namespace shoal::nn
