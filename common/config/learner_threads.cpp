@@ -28,6 +28,7 @@ int LearnerThreads(const Config& config, int cores) {
   if (config.learner.threads > 0) return config.learner.threads;
   const int half = std::max(1, cores / 2);
   if (LearnsOnPolicy(config)) return half;
+  if (!config.observation.pixels) return 1;
   const int useful = std::max(1, config.learner.batch / kLeastRows);
   return LargestDivisor(Groups(config), std::min(half, useful));
 }

@@ -8,7 +8,9 @@
 namespace shoal::nn {
 namespace {
 
-constexpr std::chrono::microseconds kSpin{50};
+// Measured with updates of 15 ms (compact, batch 128): spins of 5, 50 and 300 us gave 1.2, 1.4 and
+// 1.5 times the updates of one thread on idle cores, and no difference beside a busy one.
+constexpr std::chrono::microseconds kSpin{200};
 constexpr int kLooksPerClock = 16;  // reading the clock is dearer than looking
 
 }  // namespace

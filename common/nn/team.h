@@ -11,9 +11,9 @@ namespace shoal::nn {
 
 // Where all of `parties` threads wait for the last of them. What each wrote before, all read after.
 //
-// Who waits spins for kSpin, which is what a wake-up costs and more than parts of equal work that
-// run at once are apart, as a rule; then it sleeps and leaves its core to who is still at work: on
-// a busy machine that may be the very thread that is waited for.
+// Who waits spins for 200 us, about what parts of equal work that run at once are apart; then it
+// sleeps and leaves its core to who is still at work: on a busy machine that may be the very thread
+// that is waited for.
 class Barrier {
  public:
   explicit Barrier(int parties) : parties_(parties) {}

@@ -34,6 +34,12 @@ TEST(LearnerThreads, AreHalfTheCoresAsFarAsTheyShareTheBatch) {
   EXPECT_EQ(LearnerThreads(Of(0, 8), 64), 1);
 }
 
+TEST(LearnerThreads, IsOneWithoutPixels) {
+  Config config = Of(0, 128);
+  config.observation.pixels = false;
+  EXPECT_EQ(LearnerThreads(config, 8), 1);
+}
+
 TEST(LearnerThreads, OfAnOnPolicyRunAreHalfTheCores) {
   Config config = Of(0, 64);
   config.learner.algorithm = "ppo";
