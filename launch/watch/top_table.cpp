@@ -133,14 +133,14 @@ constexpr Column kColumns[] = {
     {"HOST", [](const Process& p) { return Text(p.host); }, 0, "where it runs"},
     {"PID", [](const Process& p) { return Number(p.pid); }, 0, "process number there"},
     {"STATE", [](const Process& p) { return Text(p.state); }, 10,
-     "running, waiting for a limit (blocked), ...; silent: not heard for 5 s"},
-    {"RATE", Rate, 16, "env steps/s (actor), updates/s (learner), records stored/s (replay)"},
+     "running, idle, ...; silent: not heard for 5 s"},
+    {"RATE", Rate, 16, "env steps, updates or stored records per second"},
     {"CPU", [](const Process& p) { return Share(Get(p, "cpu_share")); }, 6,
      "of the last second, 100 % = one core"},
-    {"QUEUE", Queue, 5, "to be dealt with: chunks, batches, records not yet stored"},
+    {"QUEUE", Queue, 5, "what waits: chunks, batches, records not yet stored"},
     {"AGE", QueueAge, 8, "of the oldest of these"},
-    {"CREDIT", Credit, 6, "records that may be sent, batches asked for or to be answered"},
-    {"BLOCKED", Blocked, 9, "replay: share that the limiter held in- or output; else waiting"},
+    {"CREDIT", Credit, 6, "what may still be sent, or is still to be answered"},
+    {"BLOCKED", Blocked, 9, "share of the last second: the limiter held (in, out), waits"},
     {"BATCHES", Batches, 7, "how batches come to the learner"},
     {"LAG 50/90/99", [](const Process& p) { return Quantiles(p, "policy_lag", "{:.0f}"); }, 12,
      "policy lag of stored records in updates, quantiles"},
@@ -225,8 +225,8 @@ TopWidths LeastWidths() {
 // Sets the widths of columns to 0 until a row fits; the first to go are what `--json` is for.
 void LeaveOutColumns(size_t most, TopWidths* widths) {
   constexpr std::string_view kFirstToGo[] = {
-      "FILES", "BATCHES", "DATA s 50/90/99", "PID", "HOST", "DATA AGE 50/90/99", "AGE", "CREDIT",
-      "MB",    "CPU",     "LAG 50/90/99"};
+      "FILES", "BATCHES", "DATA s 50/90/99", "PID",  "HOST", "DATA AGE 50/90/99", "AGE", "CREDIT",
+      "MB",    "CPU",     "LAG 50/90/99",    "QUEUE"};
   const auto needed = [&] {
     size_t sum = widths->back();
     for (size_t i = 0; i + 1 < widths->size(); ++i) {

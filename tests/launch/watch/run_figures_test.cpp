@@ -45,8 +45,12 @@ ProgressFigures Figures() {
   figures.budget = 4000;
   figures.env_steps_per_second = 75;
   figures.seconds_left = 40;
-  figures.last_evaluation = EvaluationPoint{
-      .env_steps = 900, .mean_return = 312.5, .return_std = 8, .mean_length = 740, .episodes = 20};
+  figures.last_evaluation = EvaluationPoint{.env_steps = 900,
+                                            .success = std::nullopt,
+                                            .mean_return = 312.5,
+                                            .return_std = 8,
+                                            .mean_length = 740,
+                                            .episodes = 20};
   AddLately(RecentRun(), Lately(), &figures);
   figures.seconds_left = 40;
   return figures;

@@ -118,6 +118,13 @@ TEST(TopTable, ColumnsStayWhereTheyAreWhileATableIsWatched) {
   EXPECT_EQ(StartOf(FormatTop(View(), {}, 0), "CREDIT"), usual);
 }
 
+TEST(TopTable, ABusiestStageOfALongNameFitsOnANarrowTerminal) {
+  RunViewMessage view = View();
+  view.processes[0].names.emplace_back("share_waiting_credit");
+  view.processes[0].values.push_back(1);
+  EXPECT_TRUE(FormatTop(view, {}, 79).end()[-2].ends_with("waiting credit 100 %"));
+}
+
 TEST(TopTable, TheHeadingMarksTheSortedColumn) {
   EXPECT_THAT(FormatTop(View(), {}, 0)[2], HasSubstr("PROCESS*"));
   const std::string heading = FormatTop(View(), {.column = ColumnOf("RATE")}, 0)[2];
