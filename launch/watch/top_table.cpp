@@ -140,7 +140,7 @@ constexpr Column kColumns[] = {
     {"QUEUE", Queue, 5, "what waits: chunks, batches, records not yet stored"},
     {"AGE", QueueAge, 8, "of the oldest of these"},
     {"CREDIT", Credit, 6, "what may still be sent, or is still to be answered"},
-    {"BLOCKED", Blocked, 9, "share of the last second: the limiter held (in, out), waits"},
+    {"BLOCKED", Blocked, 9, "share of the last second: held (in, out), or waiting"},
     {"BATCHES", Batches, 7, "how batches come to the learner"},
     {"LAG 50/90/99", [](const Process& p) { return Quantiles(p, "policy_lag", "{:.0f}"); }, 12,
      "policy lag of stored records in updates, quantiles"},

@@ -7,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "common/base/stop.h"
 #include "tests/support/processes.h"
 #include "tests/support/run_views.h"
 #include "tests/support/terminal_program.h"

@@ -93,7 +93,7 @@ TEST(FormatProgressBlock, NeverExceedsTheWidth) {
 
 TEST(FormatProgressBlock, EvaluationsAndActorsFitOnOrdinaryTerminals) {
   ProgressFigures f = Sample();
-  f.last_evaluation->env_steps = 1234567;
+  f.last_evaluation->env_steps = 123456;
   f.last_evaluation->success = 1;
   f.last_evaluation->episodes = 100;
   const std::vector<std::string> narrow = FormatProgressBlock(f, 79),

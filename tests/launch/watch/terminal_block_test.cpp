@@ -24,7 +24,7 @@ TEST(TerminalBlock, LinesAreBrokenAtWords) {
   EXPECT_EQ(WrapToColumns("one two three", 20), Lines({"one two three"}));
   EXPECT_EQ(WrapToColumns("one two three", 7), Lines({"one two", "  three"}));
   EXPECT_EQ(WrapToColumns("one two three", 8, false), Lines({"one two", "three"}));
-  EXPECT_EQ(WrapToColumns("  one two", 6), Lines({"  one", "    two"}));
+  EXPECT_EQ(WrapToColumns("  one two", 7), Lines({"  one", "    two"}));
   EXPECT_EQ(WrapToColumns("", 5), Lines({""}));
 }
 
