@@ -37,13 +37,13 @@ TEST(RecentRun, RolesThatHaveNotRunMeanwhileAreAbsent) {
 // What an ordinary run looks like: quick while the replay is filled, then bounded by the learner,
 // with records stored in chunks and a pause at each checkpoint.
 TEST(RecentRun, TheTimeLeftOfASteadyRunNeverJumps) {
-  constexpr double kBudget = 60000;
+  constexpr double kBudget = 80000;
   RecentRun run;
   double steps = 0, updates = 0;
   std::optional<double> before;
   int told = 0;
   for (int second = 0; steps < kBudget; ++second) {
-    const bool filling = steps < 5000;
+    const bool filling = steps < 20000;
     const bool pauses = second % 17 == 0;
     if (filling) steps += 1000;
     if (!filling && !pauses && second % 3 == 0) steps += 300;
