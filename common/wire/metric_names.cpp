@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+
 namespace shoal {
 namespace {
 
@@ -21,16 +23,34 @@ constexpr Metric kMetrics[] = {
     {"coordinator", "stop_success", kGauge, "", "success rate at which the run ends"},
     {"coordinator", "stop_evaluations", kGauge, "", "evaluations in a row that must reach it"},
     {"coordinator", "usable_cores", kGauge, "cores", "that the coordinator may use"},
-    {"coordinator", "env_steps_per_second", kGauge, "env steps/s", "of all actors together"},
-    {"coordinator", "updates_per_second", kGauge, "updates/s", "of the learner"},
+    {"coordinator", "env_steps_per_second", kGauge, "env steps/s",
+     "of all actors together, over the last half minute"},
+    {"coordinator", "updates_per_second", kGauge, "updates/s",
+     "of the learner, over the last half minute"},
+    {"coordinator", "seconds_left", kGauge, "s",
+     "until the budget is spent, at the pace of the last two minutes"},
     {"coordinator", "rollout_success", kGauge, "", "success rate of the actors' latest episodes"},
-    {"coordinator", "limiter_blocked_insert_share", kGauge, "", "as the replay has it"},
-    {"coordinator", "limiter_blocked_sample_share", kGauge, "", "as the replay has it"},
+    {"coordinator", "limiter_blocked_insert_share", kGauge, "",
+     "the share of the last half minute in which the limiter held the actors"},
+    {"coordinator", "limiter_blocked_sample_share", kGauge, "", "the same for the learner"},
+    {"coordinator", "recent", kPerStage, "",
+     "the share of the last half minute that a role spent in a stage; not in metrics.jsonl"},
+    {"coordinator", "recent_cores", kGauge, "cores",
+     "used by all processes over the last half minute; not in metrics.jsonl"},
+    {"coordinator", "actors_elsewhere", kGauge, "", "1: actors run on other hosts"},
     {"coordinator", "last_evaluation_success", kGauge, "", "success rate of the last evaluation"},
     {"coordinator", "last_evaluation_return", kGauge, "", "its mean return, unscaled"},
+    {"coordinator", "last_evaluation_return_std", kGauge, "",
+     "the standard deviation of its returns"},
+    {"coordinator", "last_evaluation_length", kGauge, "env steps",
+     "the mean length of its episodes"},
+    {"coordinator", "last_evaluation_episodes", kGauge, "", "played in it"},
     {"coordinator", "last_evaluation_env_steps", kGauge, "env steps", "when it was made"},
     {"coordinator", "best_evaluation_success", kGauge, "", "the same of the best evaluation"},
     {"coordinator", "best_evaluation_return", kGauge, "", ""},
+    {"coordinator", "best_evaluation_return_std", kGauge, "", ""},
+    {"coordinator", "best_evaluation_length", kGauge, "env steps", ""},
+    {"coordinator", "best_evaluation_episodes", kGauge, "", ""},
     {"coordinator", "best_evaluation_env_steps", kGauge, "env steps", ""},
     {"coordinator", "processes", kGauge, "", "that run or are being restarted"},
     {"coordinator", "restarts", kCounter, "", "of processes, over the whole run"},
@@ -182,12 +202,18 @@ bool Matches(const Metric& metric, std::string_view reported) {
       return reported.starts_with(name + "_");
     case kStage:
       return reported == "seconds_" + name || reported == "share_" + name;
+    case kPerStage:
+      return std::ranges::any_of(kMetrics, [&](const Metric& stage) {
+        return stage.kind == kStage &&
+               reported == fmt::format("{}_{}_{}", name, stage.role, stage.name);
+      });
   }
   return false;
 }
 
 std::string ShownName(const Metric& metric) {
   if (metric.kind == kStage) return fmt::format("`seconds_{0}`, `share_{0}`", metric.name);
+  if (metric.kind == kPerStage) return fmt::format("`{}_ROLE_STAGE`", metric.name);
   if (metric.kind == kPerTopic) return fmt::format("`{}_TOPIC`", metric.name);
   if (metric.kind == kQuantiles) return fmt::format("`{}_p50`, `_p90`, `_p99`", metric.name);
   return fmt::format("`{}`", metric.name);

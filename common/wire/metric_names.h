@@ -14,6 +14,7 @@ enum class MetricKind {
   kQuantiles,  // NAME_p50, NAME_p90 and NAME_p99 over the last interval
   kPerTopic,   // NAME_TOPIC for each topic that the process reads, a counter
   kStage,      // seconds_NAME, a counter, and share_NAME, the share of the last interval
+  kPerStage,   // NAME_ROLE_STAGE for each stage of each role
 };
 
 struct Metric {

@@ -3,6 +3,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <utility>
@@ -48,14 +49,15 @@ void MetricsReport::AddQuantiles(const std::string& name, const Quantiles& quant
   Add(name + "_p99", quantiles.p99);
 }
 
-void MetricsReport::AddRate(const std::string& name, double total) {
+void MetricsReport::AddRate(const std::string& name, double total, double most) {
   const double before = std::exchange(totals_[name], total);
-  if (interval_seconds_ >= kShortest) Add(name, (total - before) / interval_seconds_);
+  if (interval_seconds_ < kShortest) return;
+  Add(name, std::min(most, (total - before) / interval_seconds_));
 }
 
 void MetricsReport::AddSeconds(const std::string& stage, double total) {
   Add("seconds_" + stage, total);
-  AddRate("share_" + stage, total);
+  AddRate("share_" + stage, total, 1);
 }
 
 void MetricsReport::AddResources() {

@@ -2,6 +2,7 @@
 // adds is in the table of metric_names.h.
 #pragma once
 
+#include <limits>
 #include <map>
 #include <string>
 
@@ -29,10 +30,12 @@ class MetricsReport {
   void AddQuantiles(const std::string& name, QuantileWindow* window);
   void AddQuantiles(const std::string& name, const Quantiles& quantiles);
   // `total` grows: its growth per second of the interval that ended, nothing where that is too
-  // short to tell.
-  void AddRate(const std::string& name, double total);
+  // short to tell; at most `most`.
+  void AddRate(const std::string& name, double total,
+               double most = std::numeric_limits<double>::infinity());
   // Time spent in a stage, of seconds since the start: seconds_STAGE and share_STAGE, the share of
-  // the interval that ended.
+  // the interval that ended. Seconds are counted when a stage ends: one that began before the
+  // interval, as a send that found nobody to take it, has all of it, and not more.
   void AddSeconds(const std::string& stage, double total);
   // How long the process reports and what it takes of its host: uptime_seconds, rss_mb, open_files,
   // cpu_seconds, cpu_share.

@@ -1,10 +1,12 @@
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <utility>
 
 #include "common/base/error.h"
 #include "common/base/stop.h"
 #include "launch/commands/commands.h"
 #include "launch/commands/target_options.h"
+#include "launch/processes/suspension.h"
 #include "launch/watch/progress.h"
 #include "launch/watch/run_client.h"
 #include "launch/watch/run_figures.h"
@@ -25,11 +27,14 @@ void SayNew(const RunViewMessage& view, uint64_t* said, Progress* progress) {
 
 int Attach(const TargetOptions& options) {
   InstallStopSignals();
+  SuspendWithChildren();  // which it has none of
   RunClient client(ResolveTarget(options));
   RunViewMessage view = client.FirstView();
   Progress progress("");
   uint64_t said = 0;
+  int suspensions = Suspensions();
   while (true) {
+    if (std::exchange(suspensions, Suspensions()) != suspensions) progress.Resume();
     SayNew(view, &said, &progress);
     if (view.state == "ended") return ExitCodeOf(view);
     if (view.state != "evaluating") progress.Show(FiguresOfView(view, Now()), Now());

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <memory>
+#include <utility>
 
 #include "common/base/error.h"
 #include "common/base/stop.h"
@@ -11,6 +12,7 @@
 #include "launch/watch/live_terminal.h"
 #include "launch/watch/run_client.h"
 #include "launch/watch/run_metrics.h"
+#include "launch/watch/terminal_block.h"
 #include "launch/watch/top_table.h"
 
 namespace shoal::launch {
@@ -26,6 +28,7 @@ struct TopOptions {
 
 constexpr milliseconds kKeys{100};   // between looks at the keyboard
 constexpr seconds kCoordinator{10};  // without a view: it is gone
+constexpr char kSilent[] = "the run's coordinator is silent: it has ended, or is paused (Ctrl-Z)";
 
 bool Ended(const RunViewMessage& view) { return view.state == "ended"; }
 
@@ -34,40 +37,72 @@ void Print(const std::vector<std::string>& lines) {
   std::fflush(stdout);
 }
 
-// What a key does to the order; false: quit.
-bool OnKey(char key, TopOrder* order) {
+// What is watched and how.
+struct Watched {
+  RunViewMessage view;
+  TopOrder order{};
+  TopWidths widths{};
+  bool help = false;  // the keys in place of the table
+};
+
+// What a key does; false: quit.
+bool OnKey(char key, Watched* watched) {
+  TopOrder& order = watched->order;
+  watched->help = !watched->help && (key == 'h' || key == '?');
   if (key == 'q' || key == 'Q') return false;
-  if (key == 's') order->column = (order->column + 1) % TopColumns();
-  if (key == 'S') order->column = (order->column + TopColumns() - 1) % TopColumns();
-  if (key == 'r') order->reversed = !order->reversed;
+  if (key == 's') order.column = (order.column + 1) % TopColumns();
+  if (key == 'S') order.column = (order.column + TopColumns() - 1) % TopColumns();
+  if (key == 'r') order.reversed = !order.reversed;
   return true;
 }
 
-std::vector<std::string> Screen(const RunViewMessage& view, const TopOrder& order) {
-  std::vector<std::string> lines = FormatTop(view, order, SizeOfTerminal().columns - 1);
-  lines.insert(lines.begin(),
-               fmt::format("s, S: sort by another column (now {}{}); r: reverse; q: quit",
-                           TopColumnName(order.column), order.reversed ? ", reversed" : ""));
+std::vector<std::string> HelpScreen() {
+  std::vector<std::string> lines{"s, S  sort by the next, by the former column: the one with a *",
+                                 "r     reverse the order", "q     quit; any other key: back", ""};
+  for (std::string& line : DescribeTopColumns()) lines.push_back(std::move(line));
   return lines;
 }
 
-// A live table until a key, a signal or the run's end.
-void ShowLive(RunClient& client, RunViewMessage view) {
+std::vector<std::string> Screen(Watched* watched) {
+  const int width = SizeOfTerminal().columns - 1;
+  const TopOrder& order = watched->order;
+  std::vector<std::string> lines =
+      watched->help ? HelpScreen() : FormatTop(watched->view, order, width, &watched->widths);
+  if (!watched->help) {
+    lines.insert(
+        lines.begin(),
+        fmt::format("s, S: sort by another column (now {}{}); r: reverse; h: help; q: quit",
+                    TopColumnName(order.column), order.reversed ? ", reversed" : ""));
+  }
+  for (std::string& line : lines) line = CutToColumns(std::move(line), static_cast<size_t>(width));
+  return lines;
+}
+
+// A live table until a key, a signal or the run's end. Returns the last view.
+RunViewMessage ShowLive(RunClient& client, RunViewMessage view) {
   LiveTerminal terminal;
-  TopOrder order;
+  Watched watched{.view = std::move(view)};
   SteadyTime heard = Now();
-  terminal.Draw(Screen(view, order));
-  while (!StopRequested() && !Ended(view)) {
+  TerminalSize size = SizeOfTerminal();
+  terminal.Draw(Screen(&watched));
+  while (!StopRequested() && !Ended(watched.view)) {
     const auto key = terminal.WaitForKey(kKeys);
-    if (key && !OnKey(*key, &order)) return;
+    if (key == LiveTerminal::kSuspendKey) {
+      terminal.Suspend();
+      heard = Now();
+    } else if (key && !OnKey(*key, &watched)) {
+      break;
+    }
     const auto fresh = client.WaitForView(Now());
     if (fresh) {
-      view = *fresh;
+      watched.view = *fresh;
       heard = Now();
     }
-    if (key || fresh) terminal.Draw(Screen(view, order));
-    if (Now() - heard > kCoordinator) throw RuntimeError("the run's coordinator is silent");
+    const bool resized = std::exchange(size, SizeOfTerminal()) != size;
+    if (key || fresh || resized) terminal.Draw(Screen(&watched));
+    if (Now() - heard > kCoordinator) throw RuntimeError("{}", kSilent);
   }
+  return watched.view;
 }
 
 // A line a second until a signal or the run's end.
@@ -76,7 +111,7 @@ void ShowLines(RunClient& client, RunViewMessage view) {
   while (!StopRequested() && !Ended(view)) {
     const auto fresh = client.WaitForView(Now() + kCoordinator);
     if (StopRequested()) return;
-    if (!fresh) throw RuntimeError("the run's coordinator is silent");
+    if (!fresh) throw RuntimeError("{}", kSilent);
     view = *fresh;
     Print({FormatTopLine(view)});
   }
@@ -97,7 +132,8 @@ int Top(const TopOptions& options) {
     const int width = isatty(STDOUT_FILENO) == 1 ? SizeOfTerminal().columns : 0;
     Print(FormatTop(view, TopOrder(), width));
   } else if (DrawsInPlace()) {
-    ShowLive(client, view);
+    const RunViewMessage last = ShowLive(client, view);
+    if (Ended(last)) Print({FormatTopLine(last)});  // the table is gone with its screen
   } else {
     ShowLines(client, view);
   }

@@ -21,7 +21,7 @@ void AddTrainCommand(CLI::App& app, Action* chosen) {
       "train",
       "Train a policy: starts replay, learner, actors and evaluation, watches them, stops them in "
       "order and evaluates the best checkpoint. Ctrl-C stops in order, without that evaluation "
-      "(--resume goes on); twice at once.");
+      "(--resume goes on); twice at once. Ctrl-Z pauses the run.");
   const auto options = std::make_shared<TrainOptions>();
   const auto describe_keys = std::make_shared<bool>(false);
   command->add_option("--preset", options->preset, PresetHelp());

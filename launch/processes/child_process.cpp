@@ -15,6 +15,7 @@
 
 #include "common/base/clock.h"
 #include "common/base/error.h"
+#include "launch/processes/suspension.h"
 
 namespace shoal::launch {
 namespace {
@@ -142,6 +143,7 @@ ChildProcess::ChildProcess(const ProcessSpec& spec) {
   pid_ = fork();
   if (pid_ < 0) throw RuntimeError("cannot start {}: {}", spec.command[0], std::strerror(errno));
   if (pid_ == 0) ExecChild(plan);
+  AddSuspended(pid_);
   report.write.Close();
   int error = 0;
   if (read(report.read.get(), &error, sizeof error) == static_cast<ssize_t>(sizeof error)) {
@@ -167,8 +169,14 @@ ChildProcess& ChildProcess::operator=(ChildProcess&& other) noexcept {
 }
 
 std::optional<ExitStatus> ChildProcess::Poll() {
+  siginfo_t end{};
+  if (ended_ || waitid(P_PID, static_cast<id_t>(pid_), &end, WEXITED | WNOHANG | WNOWAIT) != 0 ||
+      end.si_pid != pid_) {
+    return ended_;
+  }
+  RemoveSuspended(pid_);  // before it is reaped, which frees its number
   int status = 0;
-  if (ended_ || waitpid(pid_, &status, WNOHANG) != pid_) return ended_;
+  if (waitpid(pid_, &status, WNOHANG) != pid_) return ended_;
   const bool by_signal = WIFSIGNALED(status);
   ended_ = ExitStatus{by_signal, by_signal ? WTERMSIG(status) : WEXITSTATUS(status)};
   return ended_;
@@ -183,24 +191,26 @@ void ChildProcess::KillAndReap() {
   kill(pid_, SIGKILL);
   const SteadyTime deadline = Now() + kReap;
   while (!Poll() && Now() < deadline) std::this_thread::sleep_for(milliseconds(1));
-  if (!ended_) ended_ = ExitStatus{true, SIGKILL};
+  if (ended_) return;
+  RemoveSuspended(pid_);
+  ended_ = ExitStatus{true, SIGKILL};
 }
 
 std::optional<ExitStatus> RunToEnd(const ProcessSpec& spec, std::chrono::seconds deadline,
                                    const std::function<bool()>& stop) {
   constexpr milliseconds kPoll{100};
   ChildProcess child(spec);
-  const SteadyTime start = Now();
+  const SteadyTime start = AwakeNow();
   std::optional<SteadyTime> terminated;
   while (true) {
     if (const auto status = child.Poll()) {
       return terminated ? std::nullopt : status;
     }
-    if (!terminated && (Now() - start > deadline || stop())) {
+    if (!terminated && (AwakeNow() - start > deadline || stop())) {
       child.Signal(SIGTERM);
-      terminated = Now();
+      terminated = AwakeNow();
     }
-    if (terminated && Now() - *terminated > kTerminate) return std::nullopt;  // and is killed
+    if (terminated && AwakeNow() - *terminated > kTerminate) return std::nullopt;  // and is killed
     std::this_thread::sleep_for(kPoll);
   }
 }

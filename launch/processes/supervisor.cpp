@@ -4,11 +4,13 @@
 
 #include <algorithm>
 #include <csignal>
+#include <filesystem>
 #include <limits>
 #include <utility>
 
 #include "common/base/check.h"
 #include "common/base/error.h"
+#include "launch/processes/last_words.h"
 
 namespace shoal::launch {
 namespace {
@@ -34,9 +36,9 @@ bool Hopeless(const ExitStatus& status) {
 }
 
 std::string Describe(const ProcessSpec& spec, const ExitStatus& status,
-                     const std::string& last_line) {
-  return fmt::format("{}: {}{}{}", spec.Name(), status.Describe(), last_line.empty() ? "" : ": ",
-                     last_line);
+                     const std::string& last_words) {
+  return fmt::format("{}: {}{}{}", spec.Name(), status.Describe(), last_words.empty() ? "" : ": ",
+                     last_words);
 }
 
 }  // namespace
@@ -84,6 +86,9 @@ void Supervisor::Retire(std::string_view role, int id, SteadyTime now) {
 }
 
 void Supervisor::Launch(Child& child, SteadyTime now) {
+  std::error_code none;
+  const uintmax_t before = std::filesystem::file_size(child.spec.output, none);
+  child.output_before = none ? 0 : before;
   child.process.emplace(child.spec);
   child.silence = Silence(now);
   child.heard = child.hung = false;
@@ -150,8 +155,8 @@ std::optional<std::string> Supervisor::OnExit(Child& child, const ExitStatus& st
     }
     return std::nullopt;
   }
-  const std::string last_line = LastLine(child.spec.output);
-  const std::string death = Describe(child.spec, status, last_line);
+  const std::string death =
+      Describe(child.spec, status, LastWords(child.spec.output, child.output_before));
   if (Hopeless(status)) return death;
   const bool disconnected =
       child.spec.elsewhere && !status.by_signal && status.code == kDisconnected;
@@ -170,7 +175,8 @@ void Supervisor::OnExpectedExit(Child& child, const ExitStatus& status) {
   // Having obeyed a signal of ours is as asked; SIGKILL came only after everything else was
   // ignored.
   const bool obeyed = status.by_signal && status.code == child.signalled;
-  std::string line = Describe(child.spec, status, obeyed ? "" : LastLine(child.spec.output));
+  std::string line =
+      Describe(child.spec, status, obeyed ? "" : LastWords(child.spec.output, child.output_before));
   line += " while stopping";
   say_(line);
   unclean_exits_.push_back(std::move(line));

@@ -3,6 +3,7 @@
 // and counts as dead from then on.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -26,7 +27,7 @@ struct HangLimits {
 // Destruction kills what still runs.
 class Supervisor {
  public:
-  // `say` gets one line for each death and restart.
+  // `say` gets one line for each death and restart, with the process's last words (last_words.h).
   Supervisor(const RestartLimits& limits, const HangLimits& hang_limits,
              std::function<void(const std::string&)> say);
 
@@ -68,7 +69,8 @@ class Supervisor {
     RestartPolicy policy;
     RestartPolicy connection;  // for lost connections to a process elsewhere
     std::optional<ChildProcess> process;
-    Silence silence;  // of `process`
+    uintmax_t output_before = 0;  // bytes in its output when `process` was started
+    Silence silence;              // of `process`
     bool heard = false;
     bool hung = false;  // and killed for it
     std::optional<SteadyTime> restart_at;

@@ -5,8 +5,15 @@
 namespace shoal::launch {
 
 std::string FormatScore(const EvaluationPoint& point) {
-  const std::string score = fmt::format("return {:.3f}", point.mean_return);
-  return point.success ? fmt::format("success {:.1f} %, {}", 100 * *point.success, score) : score;
+  std::string mean = fmt::format("return {:.3f}", point.mean_return);
+  if (point.return_std) mean += fmt::format(" +- {:.3f}", *point.return_std);
+  if (point.success) {
+    const std::string of = point.episodes > 0 ? fmt::format(" of {} episodes", point.episodes) : "";
+    return fmt::format("success {:.1f} %{}, {}", 100 * *point.success, of, mean);
+  }
+  if (point.mean_length > 0) mean += fmt::format(", length {:.1f}", point.mean_length);
+  if (point.episodes > 0) mean += fmt::format(", {} episodes", point.episodes);
+  return mean;
 }
 
 }  // namespace shoal::launch

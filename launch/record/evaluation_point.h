@@ -10,16 +10,19 @@ namespace shoal::launch {
 
 struct EvaluationPoint {
   uint64_t env_steps = 0, updates = 0;
-  double wall_seconds = 0;        // since the run's start
-  std::optional<double> success;  // rate, 0..1; empty where the task has no success of its own
-  double mean_return = 0;         // unscaled
-  double mean_length = 0;         // env steps
-  std::string checkpoint{};       // folder name under checkpoints/
-  size_t episodes = 0;            // played
-  uint64_t learner_session = 0;   // whose parameters were evaluated
+  double wall_seconds = 0;             // since the run's start
+  std::optional<double> success;       // rate, 0..1; empty where the task has no success of its own
+  double mean_return = 0;              // unscaled
+  std::optional<double> return_std{};  // standard deviation of the episodes' returns
+  double mean_length = 0;              // env steps
+  std::string checkpoint{};            // folder name under checkpoints/
+  size_t episodes = 0;                 // played
+  uint64_t learner_session = 0;        // whose parameters were evaluated
 };
 
-// "success 98.0 %, return -0.970", or the return alone where there is no success.
+// "success 98.0 % of 50 episodes, return -0.970 +- 0.120", with what is known; where there is no
+// success "return 312.500 +- 8.100, length 740.2, 50 episodes". After +- stands the standard
+// deviation of the episodes' returns.
 std::string FormatScore(const EvaluationPoint& point);
 
 }  // namespace shoal::launch

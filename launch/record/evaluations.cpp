@@ -41,6 +41,9 @@ void CheckFigures(const EvaluationPoint& point, const std::string& source) {
     throw RuntimeError("{}: success_rate {}: expected 0 to 1", source, *point.success);
   }
   if (!std::isfinite(point.mean_return)) throw RuntimeError("{}: return_mean is no number", source);
+  if (point.return_std && !std::isfinite(*point.return_std)) {
+    throw RuntimeError("{}: return_std is no number", source);
+  }
   if (!std::isfinite(point.mean_length)) throw RuntimeError("{}: length_mean is no number", source);
   if (point.episodes == 0) throw RuntimeError("{}: no episodes", source);
 }
@@ -55,6 +58,9 @@ EvaluationPoint PointOf(const ordered_json& object, const std::string& source) {
     object.at("checkpoint").get_to(point.checkpoint);
     aggregate.at("return_mean").get_to(point.mean_return);
     aggregate.at("length_mean").get_to(point.mean_length);
+    if (const auto std = aggregate.find("return_std"); std != aggregate.end()) {
+      point.return_std = std->get<double>();
+    }
     if (const ordered_json& success = aggregate.at("success_rate"); !success.is_null()) {
       point.success = success.get<double>();
     }

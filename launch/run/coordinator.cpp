@@ -13,6 +13,7 @@
 #include "common/wire/metrics_report.h"
 #include "launch/processes/ordered_stop.h"
 #include "launch/processes/process_plan.h"
+#include "launch/processes/suspension.h"
 #include "launch/record/evaluations.h"
 #include "launch/record/kept_checkpoints.h"
 #include "launch/record/metrics_log.h"
@@ -91,7 +92,14 @@ struct Coordinator::Impl {
             .note = [this](const SettingChange& change) { Note(change); }};
   }
 
-  double Elapsed() const { return meta.wall_seconds + SecondsSince(start); }
+  double Elapsed() const {
+    return meta.wall_seconds + std::chrono::duration<double>(AwakeNow() - start).count();
+  }
+  RunResources Resources() const {
+    return {.usable_cores = static_cast<double>(usable_cores),
+            .actors = settings.config().actors,
+            .actors_elsewhere = !hosts.empty()};
+  }
   uint64_t EnvSteps() const { return std::max(meta.env_steps, run_progress.stored_steps()); }
 
   // Since this coordinator's start.
@@ -108,6 +116,10 @@ struct Coordinator::Impl {
   void Stop();
   // Heartbeat, messages, display. What fails in it is remembered as the run's failure.
   void Tick(bool last = false);
+  // Says that the run was suspended, or why it was not.
+  void SaySuspensions();
+  // Once a second: what the figures of late are made of.
+  void LookBack();
   ProgressFigures Figures(SteadyTime now) const;
   void ShowView(const ProgressFigures& figures, SteadyTime now);
   void Heartbeat(SteadyTime now);
@@ -140,6 +152,8 @@ struct Coordinator::Impl {
   std::optional<EvaluationPoint> last_evaluation;
   std::vector<ProcessSpec> plan;  // as started; `shoal scale` may have changed the actors since
   MetricsView view;
+  RecentRun recent;
+  Bottleneck lately;
   MetricsLog log;
   ScalarLog scalars;
   Supervisor supervisor;
@@ -148,13 +162,14 @@ struct Coordinator::Impl {
   RunInbox inbox;
 
   ControlMessage order{.epoch = 1};
-  SteadyTime start = Now();
+  SteadyTime start = AwakeNow();
   std::optional<SteadyTime> heartbeat, meta_stored;
   bool stop_asked = false;  // by a command
   bool meta_due = false;    // something happened that it records
   const int usable_cores = UsableCores();
   uint64_t dropped_said = 0;  // messages dropped by the inboxes
-  int stops_before_end = 0;   // Ctrl-C's that had been answered when the ordered stop began
+  int suspensions_said = Suspensions(), refusals_said = RefusedSuspensions();
+  int stops_before_end = 0;  // Ctrl-C's that had been answered when the ordered stop began
 };
 
 Coordinator::Coordinator(const std::filesystem::path& run, const RunConfig& config, dds::Bus& bus,
@@ -184,7 +199,7 @@ RunResult Coordinator::Impl::Run(const std::function<void()>& on_started) {
   scalars.WriteEnd(meta.exit != "failed");
   return {.meta = meta,
           .clean = supervisor.unclean_exits().empty(),
-          .bottleneck = FindBottleneck(view, usable_cores, settings.config().actors)};
+          .bottleneck = FindBottleneck(TotalsOf(view), Resources())};
 }
 
 std::string Coordinator::Impl::WaitForEnd(const std::function<void()>& on_started) {
@@ -285,6 +300,7 @@ void Coordinator::Impl::Stop() {
 void Coordinator::Impl::Tick(bool last) {
   const SteadyTime now = Now();
   Heartbeat(now);
+  SaySuspensions();
   try {
     TakeMessages(now);
     TakeCommands();
@@ -292,6 +308,8 @@ void Coordinator::Impl::Tick(bool last) {
   } catch (const Error& e) {
     Fail(e.what());
   }
+  const bool view_due = last || desk.Due(now);
+  if (view_due) LookBack();
   const ProgressFigures figures = Figures(now);
   try {
     scalars.WriteRollouts(view, figures, now);
@@ -299,8 +317,30 @@ void Coordinator::Impl::Tick(bool last) {
     Fail(e.what());
   }
   // The last view is in metrics.jsonl whenever it comes: it alone may know the last evaluation.
-  if (last || desk.Due(now)) ShowView(figures, now);
+  if (view_due) ShowView(figures, now);
   progress.Show(figures, now);
+}
+
+void Coordinator::Impl::SaySuspensions() {
+  if (Suspensions() != suspensions_said) {
+    suspensions_said = Suspensions();
+    recent.Forget(Elapsed());
+    progress.Resume();
+    progress.Say("goes on after a pause (Ctrl-Z)");
+  }
+  if (RefusedSuspensions() == refusals_said) return;
+  refusals_said = RefusedSuspensions();
+  progress.Say(
+      "a run on several hosts does not pause: it goes on; end it with Ctrl-C, and shoal train "
+      "--resume goes on with it");
+}
+
+void Coordinator::Impl::LookBack() {
+  recent.Add({.seconds = Elapsed(),
+              .env_steps = static_cast<double>(EnvSteps()),
+              .updates = view.Get("learner", 0, "updates")},
+             TotalsOf(view));
+  lately = FindBottleneck(recent.Totals(), Resources());
 }
 
 ProgressFigures Coordinator::Impl::Figures(SteadyTime now) const {
@@ -310,6 +350,7 @@ ProgressFigures Coordinator::Impl::Figures(SteadyTime now) const {
   figures.elapsed_seconds = Elapsed();
   figures.env_steps = EnvSteps();
   figures.budget = static_cast<uint64_t>(settings.config().env_steps);
+  AddLately(recent, lately, &figures);
   figures.last_evaluation = last_evaluation;
   figures.best = meta.best;
   figures.processes = supervisor.Running("");
@@ -321,7 +362,7 @@ ProgressFigures Coordinator::Impl::Figures(SteadyTime now) const {
 void Coordinator::Impl::ShowView(const ProgressFigures& figures, SteadyTime now) {
   own_report.Begin(figures.state);
   AddRunFigures(figures, &own_report);
-  AddOrders(settings.config(), usable_cores, &own_report);
+  AddOrders(settings.config(), Resources(), &own_report);
   const uint64_t dropped = inbox.dropped();
   own_report.Add("messages_dropped", static_cast<double>(dropped));
   if (dropped > dropped_said) {
@@ -334,8 +375,9 @@ void Coordinator::Impl::ShowView(const ProgressFigures& figures, SteadyTime now)
   own_report.Add("reports_refused", static_cast<double>(inbox.refused()));
   MetricsMessage own = own_report.message();
   dds::AddMalformed(own_bus, &own);
-  view.OnMessage(own, now);
   log.Write(own);
+  AddShares(lately, &own);  // for who watches; the file has what they are made of
+  view.OnMessage(own, now);
   RunViewMessage shown;
   shown.state = figures.state;
   shown.env_steps = figures.env_steps;

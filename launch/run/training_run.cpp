@@ -7,6 +7,7 @@
 #include <cstring>
 #include <ctime>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "common/base/clock.h"
 #include "common/base/error.h"
@@ -30,6 +31,7 @@
 #include "launch/processes/detachment.h"
 #include "launch/processes/run_hosts.h"
 #include "launch/processes/run_leftovers.h"
+#include "launch/processes/suspension.h"
 #include "launch/record/run_folder.h"
 #include "launch/run/coordinator.h"
 #include "launch/run/live_settings.h"
@@ -37,6 +39,7 @@
 #include "launch/run/plan_text.h"
 #include "launch/run/run_end.h"
 #include "launch/watch/prometheus_endpoint.h"
+#include "launch/watch/terminal_block.h"
 #include "learner/agent/algorithms.h"
 #include "learner/agent/network_start.h"
 #include "learner/agent/value_bounds.h"
@@ -203,10 +206,20 @@ void CheckReplay(const RunConfig& run, bool exists) {
   replay::CheckDiskRoom(CheckFolder(config), needs.ring_bytes);
 }
 
+// Wrapped on a terminal.
+void PrintLines(const std::string& text) {
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) {
+    for (const std::string& row : LinesOnTerminal(line)) fmt::print("{}\n", row);
+  }
+  std::fflush(stdout);
+}
+
 void PrintStart(const PreparedRun& run, const ClusterAddress& address) {
   const Config& config = run.config.config;
-  fmt::print("run {}: {}\n", run.folder.path().string(), run.config.spec.Summary());
-  fmt::print(
+  std::string text =
+      fmt::format("run {}: {}\n", run.folder.path().string(), run.config.spec.Summary());
+  text += fmt::format(
       "  seed {}, {} env steps; {}1 learner ({}), {} actor(s) of {} environments, "
       "1 evaluation actor; logs in {}\n",
       config.seed, config.env_steps, LearnsOnPolicy(config) ? "" : "1 replay, ",
@@ -214,16 +227,18 @@ void PrintStart(const PreparedRun& run, const ClusterAddress& address) {
       config.actors, config.envs_per_actor, (run.folder.path() / "logs").string());
   if (run.meta.env_steps > 0) {
     const std::filesystem::path checkpoint = NewestCheckpoint(run.folder.path());
-    fmt::print("  goes on at {} env steps, {}\n", run.meta.env_steps,
-               checkpoint.empty() ? "without a checkpoint" : "from " + checkpoint.string());
+    text +=
+        fmt::format("  goes on at {} env steps, {}\n", run.meta.env_steps,
+                    checkpoint.empty() ? "without a checkpoint" : "from " + checkpoint.string());
   }
-  fmt::print("{}", PlanText(run.config, run.frame_microseconds));
+  text += PlanText(run.config, run.frame_microseconds);
   for (const RemoteHost& host : run.hosts.hosts) {
-    fmt::print("  {} of the actors on {}, in {}\n", host.actors, host.name, host.run.string());
+    text +=
+        fmt::format("  {} of the actors on {}, in {}\n", host.actors, host.name, host.run.string());
   }
-  fmt::print("  watch it with: shoal top --run {}, or --peer {}:{}\n", run.folder.path().string(),
-             address.host, dds::OperatePort(address));
-  std::fflush(stdout);
+  text += fmt::format("  watch it with: shoal top --run {}, or --peer {}:{}\n",
+                      run.folder.path().string(), address.host, dds::OperatePort(address));
+  PrintLines(text);
 }
 
 std::string ServersHost(const Hosts& hosts) {
@@ -273,10 +288,10 @@ int Start(PreparedRun run, const TrainOptions& options, std::unique_ptr<dds::Bus
       [&desk](const std::string& line) { desk.AddEvent(line); },
       /*plain=*/detachment != nullptr);
   const auto say = [&](const std::string& line) { progress.Say(line); };
+  if (!run.hosts.hosts.empty()) RefuseSuspension();
   PushToHosts(path, run.config.config, address.tag, &run.hosts, say, StopRequested);
   PrintStart(run, address);
-  if (prometheus) fmt::print("  metrics for Prometheus at {}\n", prometheus->Url());
-  std::fflush(stdout);
+  if (prometheus) PrintLines(fmt::format("  metrics for Prometheus at {}", prometheus->Url()));
   RunResult result;
   {
     Coordinator coordinator(path, run.config, *bus, run.meta, run.hosts.hosts, desk, progress);
@@ -354,7 +369,10 @@ int Train(const TrainOptions& options, Detachment* detachment) {
 
 int RunTraining(const TrainOptions& options) {
   InstallStopSignals();
-  if (!options.detach) return Train(options, nullptr);
+  if (!options.detach) {
+    SuspendWithChildren();
+    return Train(options, nullptr);
+  }
   Detachment detachment;  // before there are threads
   return detachment.IsChild() ? Train(options, &detachment) : detachment.exit_code();
 }

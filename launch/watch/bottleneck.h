@@ -1,17 +1,21 @@
-// Where the time of a run goes, and what to do about it: per process the share of each stage, who
-// was held back by the limiter, and one sentence of advice. Pure.
+// Where the time of a run goes, and what to do about it: per role the share of each stage, who was
+// held back by the limiter, and one sentence of advice. Pure.
 #pragma once
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
-#include "launch/watch/metrics_view.h"
+#include "launch/watch/run_totals.h"
 
 namespace shoal::launch {
 
+// In none of the named stages.
+inline constexpr std::string_view kOtherStage = "other";
+
 struct StageShare {
-  std::string stage;  // "physics"; "other": in none of the named stages
+  std::string stage;  // "physics", kOtherStage
   double share = 0;   // of the process's time, 0..1
 };
 
@@ -27,18 +31,24 @@ struct Bottleneck {
   double inserts_blocked = 0;  // share of time in which the limiter held actors back
   double samples_blocked = 0;  // ... the learner
   bool limited = true;         // there is a limiter: the run has a replay
-  std::vector<ProcessTimes> roles;
-  double cores = 0;    // processors used by all processes
-  double usable = 0;   // processors there are
-  std::string advice;  // one sentence
+  std::vector<ProcessTimes> roles{};
+  double cores = 0;      // processors used by all processes
+  double usable = 0;     // processors there are
+  std::string advice{};  // one sentence
 };
 
-// What the run did so far, its restarted processes included; empty roles where nothing was
-// reported. `usable_cores`: of this machine. `actors`: asked for now.
-Bottleneck FindBottleneck(const MetricsView& view, double usable_cores, int actors);
+// What a run may take.
+struct RunResources {
+  double usable_cores = 0;        // of the coordinator's host
+  int actors = 0;                 // asked for
+  bool actors_elsewhere = false;  // on other hosts: it has those that were named at its start
+};
 
-// The sentence, from the other figures.
-std::string Advise(const Bottleneck& figures, int actors);
+// Of all that was counted; empty roles where nothing was.
+Bottleneck FindBottleneck(const RunTotals& totals, const RunResources& resources);
+
+// The share of its time that a role spent in a stage; 0 where it has none.
+double ShareOf(const Bottleneck& figures, std::string_view role, std::string_view stage);
 
 // The report, a line per role and the advice.
 std::vector<std::string> FormatBottleneck(const Bottleneck& bottleneck);

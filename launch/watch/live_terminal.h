@@ -1,5 +1,4 @@
-// A block of lines on the terminal that is drawn again and again in place, and keys as they are
-// pressed.
+// A screen of lines that is drawn again and again, and keys as they are pressed.
 #pragma once
 
 #include <termios.h>
@@ -9,13 +8,12 @@
 #include <string>
 #include <vector>
 
-#include "launch/watch/terminal_block.h"
-
 namespace shoal::launch {
 
-// While it lives, keys come without Enter and are not echoed, and Ctrl-\ does nothing. Its end,
-// which stop signals must lead to (common/base/stop.h), puts the terminal back as it was. One
-// thread.
+// While it lives the terminal shows its alternate screen, which has no history: what a change of
+// size makes of the lines is gone with the next drawing. Keys come without Enter and are not
+// echoed; Ctrl-\ does nothing and Ctrl-Z is a key (kSuspendKey). Its end, which stop signals must
+// lead to (common/base/stop.h), puts the terminal back as it was. One thread.
 class LiveTerminal {
  public:
   // Stdout is a terminal; keys are read when stdin is one too.
@@ -25,13 +23,19 @@ class LiveTerminal {
   LiveTerminal& operator=(const LiveTerminal&) = delete;
 
   // Replaces what was drawn before. Lines that the terminal has no row for are left out.
-  void Draw(const std::vector<std::string>& lines) { block_.Draw(lines); }
+  void Draw(const std::vector<std::string>& lines);
   // The next key, waiting at most this long; none at a stop signal or without a terminal on stdin.
   std::optional<char> WaitForKey(std::chrono::milliseconds most);
+  // What Ctrl-Z asks for: gives the terminal back and stops this process until it is continued.
+  void Suspend();
+
+  static constexpr char kSuspendKey = 0x1a;
 
  private:
+  void Enter();
+  void Leave();
+
   std::optional<termios> before_;  // what stdin was; empty when it is no terminal
-  TerminalBlock block_;
 };
 
 }  // namespace shoal::launch

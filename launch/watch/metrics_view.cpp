@@ -29,16 +29,11 @@ void MetricsView::OnMessage(const MetricsMessage& message, SteadyTime now) {
   Process& process = processes_[{message.role, message.id}];
   if (IsSuccessor(message, process)) {
     for (const auto& [name, value] : process.values) process.ended[name] += value;
-    process.values.clear();
-    process.time = 0;
   }
-  process.previous = std::move(process.values);
-  process.previous_time = process.time;
   process.values.clear();
   for (size_t i = 0; i < message.names.size() && i < message.values.size(); ++i) {
     process.values[message.names[i]] = message.values[i];
   }
-  process.time = message.time;
   process.heard = now;
   process.newest = message;
 }
@@ -76,18 +71,6 @@ std::optional<double> MetricsView::Mean(std::string_view role, std::string_view 
     weights += *w;
   });
   return weights > 0 ? std::optional(sum / weights) : std::nullopt;
-}
-
-std::optional<double> MetricsView::Rate(std::string_view role, std::string_view name) const {
-  double sum = 0;
-  int processes = 0;
-  ForRole(role, [&](const Process& process) {
-    const auto newest = Find(process.values, name), before = Find(process.previous, name);
-    if (!newest || !before || process.time <= process.previous_time) return;
-    sum += (*newest - *before) / (process.time - process.previous_time);
-    ++processes;
-  });
-  return processes > 0 ? std::optional(sum / processes) : std::nullopt;
 }
 
 double MetricsView::Total(std::string_view role, std::string_view name) const {

@@ -1,4 +1,4 @@
-// The newest figures of every process of a run, and how fast their counters grow.
+// The newest figures of every process of a run, and what their counters have come to.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace shoal::launch {
 
-// One thread. Holds two reports per process id and one final value per counter of dead ones.
+// One thread. Holds one report per process id and one final value per counter of dead ones.
 class MetricsView {
  public:
   // Reports of one process come in the order they were made; their wall-clock times say nothing
@@ -29,9 +29,6 @@ class MetricsView {
   // Mean over them, weighted by the figure `weight`.
   std::optional<double> Mean(std::string_view role, std::string_view name, std::string_view weight,
                              SteadyTime now) const;
-  // Growth per second of a counter between the two newest reports, the mean over the role's
-  // processes.
-  std::optional<double> Rate(std::string_view role, std::string_view name) const;
   // A counter of the role over the whole run: restarted processes begin again at 0, so the last
   // values of their predecessors are added.
   double Total(std::string_view role, std::string_view name) const;
@@ -54,10 +51,9 @@ class MetricsView {
  private:
   using Values = std::map<std::string, double, std::less<>>;
   struct Process {
-    double time = 0, previous_time = 0;
     SteadyTime heard;
     MetricsMessage newest;
-    Values values, previous;
+    Values values;
     Values ended;  // sums of the last values of former processes of this id
   };
 

@@ -1,5 +1,6 @@
 #include "launch/watch/progress.h"
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <utility>
@@ -33,14 +34,35 @@ std::string LimiterState(const ProgressFigures& f) {
 }
 
 std::string Evaluation(const std::optional<EvaluationPoint>& e) {
-  if (!e) return "none yet";
-  return fmt::format("{} at {} env steps", FormatScore(*e), e->env_steps);
+  return e ? fmt::format("at {}: {}", e->env_steps, FormatScore(*e)) : "none yet";
 }
 
-// Of the plain line: the rate alone, or the return where the task has no success.
+// Of the plain line: the rate alone, or return and length where the task has no success.
+std::string ShortScore(const std::optional<double>& success, const std::optional<double>& mean,
+                       const std::optional<double>& length) {
+  if (success) return Percent(success);
+  if (!mean) return "-";
+  return fmt::format("return {:.2f}", *mean) +
+         (length.value_or(0) > 0 ? fmt::format(" length {:.0f}", *length) : "");
+}
+
 std::string ShortScore(const std::optional<EvaluationPoint>& e) {
-  if (!e) return "-";
-  return e->success ? Percent(e->success) : fmt::format("return {:.2f}", e->mean_return);
+  return e ? ShortScore(e->success, e->mean_return, e->mean_length) : "-";
+}
+
+// Of the block.
+std::string Rollouts(const ProgressFigures& f) {
+  if (!f.rollout_return) return "no episode has ended yet";
+  const std::string success =
+      f.rollout_success ? "success " + Percent(f.rollout_success) + ", " : "";
+  return fmt::format("{}return {:.3f}, length {}; their last 100 episodes", success,
+                     *f.rollout_return, Number(f.rollout_length));
+}
+
+// "2500/10000 env steps"; a run may be past its budget, as after `shoal set env_steps`.
+std::string StepsOfBudget(const ProgressFigures& f) {
+  if (f.env_steps > f.budget) return fmt::format("{} env steps (budget {})", f.env_steps, f.budget);
+  return fmt::format("{}/{} env steps", f.env_steps, f.budget);
 }
 
 // The headlines of the updates; "no update yet" before the first.
@@ -53,7 +75,7 @@ std::string Headlines(const ProgressFigures& f, std::string_view between) {
 }
 
 std::string Bar(double share, int width) {
-  const int full = static_cast<int>(std::min(1.0, std::max(0.0, share)) * width);
+  const int full = static_cast<int>(share * width);
   return std::string(static_cast<size_t>(full), '#') +
          std::string(static_cast<size_t>(width - full), '.');
 }
@@ -68,28 +90,23 @@ std::string FormatDuration(std::optional<double> seconds) {
   return fmt::format("{:02}:{:02}", minutes, whole % 60);
 }
 
-std::optional<double> SecondsLeft(const ProgressFigures& f) {
-  if (!f.env_steps_per_second || *f.env_steps_per_second <= 0) return std::nullopt;
-  const uint64_t left = f.env_steps < f.budget ? f.budget - f.env_steps : 0;
-  return static_cast<double>(left) / *f.env_steps_per_second;
-}
-
 std::string FormatProgressLine(const ProgressFigures& f) {
   return fmt::format(
-      "{} {} | {}/{} env steps, {}/s | {} updates, {}/s | eval {} | {} | lag {} | {} | left {}",
-      FormatDuration(f.elapsed_seconds), f.state, f.env_steps, f.budget,
-      Number(f.env_steps_per_second), Number(f.updates), Number(f.updates_per_second, "{:.1f}"),
-      ShortScore(f.last_evaluation), Headlines(f, " "), Number(f.policy_lag), LimiterState(f),
-      FormatDuration(SecondsLeft(f)));
+      "{} {} | {}, {}/s | {} updates, {}/s | eval {} | actors {} | {} | lag {} | {} | left {}",
+      FormatDuration(f.elapsed_seconds), f.state, StepsOfBudget(f), Number(f.env_steps_per_second),
+      Number(f.updates), Number(f.updates_per_second, "{:.1f}"), ShortScore(f.last_evaluation),
+      ShortScore(f.rollout_success, f.rollout_return, f.rollout_length), Headlines(f, " "),
+      Number(f.policy_lag), LimiterState(f), FormatDuration(f.seconds_left));
 }
 
 std::vector<std::string> FormatProgressBlock(const ProgressFigures& f, int width) {
   const double share =
-      f.budget > 0 ? static_cast<double>(f.env_steps) / static_cast<double>(f.budget) : 0;
+      f.budget > 0 ? std::min(1.0, static_cast<double>(f.env_steps) / static_cast<double>(f.budget))
+                   : 0;
   std::vector<std::string> lines{
       fmt::format("{}  {}", f.run, f.state),
       fmt::format("  time       {} elapsed, {} left; {} processes, {} restarts",
-                  FormatDuration(f.elapsed_seconds), FormatDuration(SecondsLeft(f)), f.processes,
+                  FormatDuration(f.elapsed_seconds), FormatDuration(f.seconds_left), f.processes,
                   f.restarts),
       fmt::format("  env steps  {} of {}  {:.0f} %  [{}]  {}/s", f.env_steps, f.budget, 100 * share,
                   Bar(share, 20), Number(f.env_steps_per_second)),
@@ -97,7 +114,7 @@ std::vector<std::string> FormatProgressBlock(const ProgressFigures& f, int width
                   Number(f.updates_per_second, "{:.1f}")),
       fmt::format("  last eval  {}", Evaluation(f.last_evaluation)),
       fmt::format("  best       {}", Evaluation(f.best)),
-      fmt::format("  actors     success {} in their last episodes", Percent(f.rollout_success)),
+      fmt::format("  actors     {}", Rollouts(f)),
       fmt::format("  figures    {}", Headlines(f, "  ")),
       fmt::format("  age        policy lag {} updates, data {} updates old", Number(f.policy_lag),
                   Number(f.data_age)),
@@ -115,22 +132,17 @@ Progress::Progress(const std::string& log_file, std::function<void(const std::st
   if (!log_) throw RuntimeError("cannot write '{}': {}", log_file, std::strerror(errno));
 }
 
-Progress::~Progress() { std::fflush(stdout); }
+Progress::~Progress() {
+  if (terminal_) block_.Leave();
+  std::fflush(stdout);
+}
 
-void Progress::Show(ProgressFigures figures, SteadyTime now) {
+void Progress::Show(const ProgressFigures& figures, SteadyTime now) {
   if (shown_ && now - *shown_ < (terminal_ ? kBlockPeriod : SteadyTime::duration(kLinePeriod))) {
     return;
   }
+  if (terminal_ && !InForeground()) return;
   shown_ = now;
-  const double seconds = figures.elapsed_seconds;
-  if (const auto rate = env_steps_rate_.Add(seconds, static_cast<double>(figures.env_steps))) {
-    figures.env_steps_per_second = rate;
-  }
-  if (figures.updates) {
-    if (const auto rate = updates_rate_.Add(seconds, *figures.updates)) {
-      figures.updates_per_second = rate;
-    }
-  }
   if (terminal_) {
     block_.Draw(FormatProgressBlock(figures, SizeOfTerminal().columns - 1));
   } else {
@@ -140,8 +152,8 @@ void Progress::Show(ProgressFigures figures, SteadyTime now) {
 }
 
 void Progress::Say(const std::string& line) {
-  block_.Erase();
-  std::printf("%s\n", line.c_str());
+  if (terminal_) block_.Erase();
+  for (const std::string& row : LinesOnTerminal(line)) std::printf("%s\n", row.c_str());
   std::fflush(stdout);
   if (log_.is_open()) log_ << UtcTimestamp() << ' ' << line << std::endl;
   if (on_say_) on_say_(line);

@@ -11,7 +11,6 @@
 
 #include "common/base/clock.h"
 #include "launch/record/evaluation_point.h"
-#include "launch/watch/recent_rate.h"
 #include "launch/watch/terminal_block.h"
 
 namespace shoal::launch {
@@ -22,22 +21,22 @@ struct ProgressFigures {
   std::string state;  // "running", "draining", "stopping"
   double elapsed_seconds = 0;
   uint64_t env_steps = 0, budget = 0;
-  std::optional<double> env_steps_per_second;
+  std::optional<double> env_steps_per_second;  // lately, as the next three
   std::optional<double> updates, updates_per_second;
+  std::optional<double> seconds_left;                          // until the budget is spent
   std::vector<std::pair<std::string, double>> update_figures;  // headlines: name, value
-  std::optional<double> policy_lag;       // of the policies that act, updates, median
-  std::optional<double> data_age;         // of the batches' data, updates, median
-  std::optional<double> rollout_success;  // rate over the last episodes of the actors
-  std::optional<double> actors_wait;      // share of the last second the limiter held actors
-  std::optional<double> learner_waits;    // the same for the learner
+  std::optional<double> policy_lag;  // of the policies that act, updates, median
+  std::optional<double> data_age;    // of the batches' data, updates, median
+  // Means over the last episodes of the actors.
+  std::optional<double> rollout_success, rollout_return, rollout_length;
+  std::optional<double> actors_wait;    // share of the time, lately, the limiter held actors
+  std::optional<double> learner_waits;  // the same for the learner
   std::optional<EvaluationPoint> last_evaluation, best;
   int processes = 0, restarts = 0;
 };
 
 // "12:05" or "1:02:03"; "-" when unknown.
 std::string FormatDuration(std::optional<double> seconds);
-// Time until the budget is spent at the present rate.
-std::optional<double> SecondsLeft(const ProgressFigures& figures);
 // One plain line.
 std::string FormatProgressLine(const ProgressFigures& figures);
 // The live block, each line at most `width` characters.
@@ -47,25 +46,26 @@ std::vector<std::string> FormatProgressBlock(const ProgressFigures& figures, int
 class Progress {
  public:
   // `on_say` hears every line that is said. `plain`: lines, even on a terminal that draws in place.
-  // Throws Error when
-  // the log cannot be opened; an empty name is no log.
+  // Throws Error when the log cannot be opened; an empty name is no log.
   explicit Progress(const std::string& log_file,
                     std::function<void(const std::string&)> on_say = nullptr, bool plain = false);
   // Leaves the cursor below the last block.
   ~Progress();
 
-  // Shows the figures: at most twice a second as a block, every 5 s as a line. Rates are those of
-  // the last half minute, as soon as it is known.
-  void Show(ProgressFigures figures, SteadyTime now);
-  // One line that stays: above the block on a terminal, with a time in the log.
+  // Shows the figures: at most twice a second as a block, every 5 s as a line. No block while
+  // another program has the terminal.
+  void Show(const ProgressFigures& figures, SteadyTime now);
+  // One line that stays: above the block on a terminal, broken at words there; with a time in the
+  // log.
   void Say(const std::string& line);
+  // Another program has written on the terminal since: what was drawn is left as it is.
+  void Resume() { block_.Forget(); }
 
  private:
   const bool terminal_;
   std::ofstream log_;
   const std::function<void(const std::string&)> on_say_;
   TerminalBlock block_;
-  RecentRate env_steps_rate_, updates_rate_;
   std::optional<SteadyTime> shown_;
 };
 

@@ -8,9 +8,9 @@ std::optional<double> RecentRate::Add(double seconds, double count) {
   }
   seen_.push_back({seconds, count});
   // The oldest that is kept is the last before the window, so that the window is covered.
-  while (seen_.size() > 2 && seconds - seen_[1].seconds >= kWindowSeconds) seen_.pop_front();
+  while (seen_.size() > 2 && seconds - seen_[1].seconds >= window_seconds_) seen_.pop_front();
   const double span = seconds - seen_.front().seconds;
-  if (span < kLeastSeconds) return std::nullopt;
+  if (span < least_seconds_) return std::nullopt;
   return (count - seen_.front().count) / span;
 }
 

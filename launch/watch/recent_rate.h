@@ -13,6 +13,9 @@ class RecentRate {
   static constexpr double kWindowSeconds = 30;
   static constexpr double kLeastSeconds = 3;  // for a rate to mean anything
 
+  explicit RecentRate(double window_seconds = kWindowSeconds, double least_seconds = kLeastSeconds)
+      : window_seconds_(window_seconds), least_seconds_(least_seconds) {}
+
   // The count at a time; times grow. Afterwards the growth per second over the window, empty while
   // too little of it is known. A count that has become smaller, as that of a learner that went on
   // from a checkpoint, begins anew.
@@ -22,6 +25,7 @@ class RecentRate {
   struct Seen {
     double seconds, count;
   };
+  double window_seconds_, least_seconds_;
   std::deque<Seen> seen_;
 };
 

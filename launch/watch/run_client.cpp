@@ -52,8 +52,9 @@ std::optional<RunViewMessage> RunClient::WaitForView(SteadyTime deadline) {
 RunViewMessage RunClient::FirstView() {
   if (auto view = WaitForView(Now() + kAnswer)) return *std::move(view);
   ThrowIfInterrupted();
-  throw RuntimeError("run '{}': its coordinator at {}:{} did not answer within {} s", target_.name,
-                     target_.address.host, dds::OperatePort(target_.address), kAnswer.count());
+  throw RuntimeError(
+      "run '{}': its coordinator at {}:{} did not answer within {} s; it may be paused (Ctrl-Z)",
+      target_.name, target_.address.host, dds::OperatePort(target_.address), kAnswer.count());
 }
 
 std::optional<ReplyMessage> RunClient::Ask(const CommandMessage& command) {
@@ -77,9 +78,10 @@ ReplyMessage RunClient::Order(const std::string& verb, const std::vector<std::st
       Ask({.client = client_, .request = ++requests_, .verb = verb, .arguments = arguments});
   if (!reply) {
     ThrowIfInterrupted();
-    throw RuntimeError("run '{}': its coordinator at {}:{} did not answer the command within {} s",
-                       target_.name, target_.address.host, dds::OperatePort(target_.address),
-                       kAnswer.count());
+    throw RuntimeError(
+        "run '{}': its coordinator at {}:{} did not answer the command within {} s; it may be "
+        "paused (Ctrl-Z)",
+        target_.name, target_.address.host, dds::OperatePort(target_.address), kAnswer.count());
   }
   if (!reply->accepted) throw RuntimeError("refused: {}", reply->text);
   return *reply;

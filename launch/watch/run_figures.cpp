@@ -1,6 +1,13 @@
 #include "launch/watch/run_figures.h"
 
+#include <fmt/core.h>
+
+#include <string_view>
+#include <utility>
+
 #include "common/base/saturating_cast.h"
+#include "common/wire/metric_names.h"
+#include "launch/watch/advice.h"
 #include "learner/agent/algorithms.h"
 
 namespace shoal::launch {
@@ -18,10 +25,19 @@ ProgressFigures CollectFigures(const MetricsView& view, SteadyTime now) {
   if (!figures.policy_lag) figures.policy_lag = view.Get("learner", 0, "rollout_lag");
   figures.data_age = view.Get("learner", 0, "data_age_updates_p50");
   figures.rollout_success = view.Mean("actor", "rollout_success", "episodes", now);
-  // Seconds blocked per second: a share.
-  figures.actors_wait = view.Rate("replay", "limiter_blocked_insert_seconds");
-  figures.learner_waits = view.Rate("replay", "limiter_blocked_sample_seconds");
+  figures.rollout_return = view.Mean("actor", "rollout_return", "episodes", now);
+  figures.rollout_length = view.Mean("actor", "rollout_length", "episodes", now);
   return figures;
+}
+
+void AddLately(const RecentRun& recent, const Bottleneck& lately, ProgressFigures* figures) {
+  if (const auto rate = recent.env_steps_per_second()) figures->env_steps_per_second = rate;
+  if (const auto rate = recent.updates_per_second()) figures->updates_per_second = rate;
+  figures->seconds_left = recent.SecondsLeft(static_cast<double>(figures->env_steps),
+                                             static_cast<double>(figures->budget));
+  if (!lately.limited) return;
+  figures->actors_wait = lately.inserts_blocked;
+  figures->learner_waits = lately.samples_blocked;
 }
 
 namespace {
@@ -31,6 +47,9 @@ void AddEvaluation(const std::string& prefix, const std::optional<EvaluationPoin
   if (!point) return;
   if (point->success) report->Add(prefix + "_success", *point->success);
   report->Add(prefix + "_return", point->mean_return);
+  if (point->return_std) report->Add(prefix + "_return_std", *point->return_std);
+  report->Add(prefix + "_length", point->mean_length);
+  report->Add(prefix + "_episodes", static_cast<double>(point->episodes));
   report->Add(prefix + "_env_steps", static_cast<double>(point->env_steps));
 }
 
@@ -40,6 +59,9 @@ std::optional<EvaluationPoint> FindEvaluation(const MetricsView& view, const std
   EvaluationPoint point;
   point.success = get("_success");
   point.mean_return = *get("_return");
+  point.return_std = get("_return_std");
+  point.mean_length = get("_length").value_or(0);
+  point.episodes = SaturatingCast<size_t>(get("_episodes").value_or(0));
   point.env_steps = SaturatingCast<uint64_t>(get("_env_steps").value_or(0));
   return point;
 }
@@ -53,6 +75,7 @@ void AddRunFigures(const ProgressFigures& figures, MetricsReport* report) {
   report->Add("elapsed_seconds", figures.elapsed_seconds);
   add("env_steps_per_second", figures.env_steps_per_second);
   add("updates_per_second", figures.updates_per_second);
+  add("seconds_left", figures.seconds_left);
   add("rollout_success", figures.rollout_success);
   add("limiter_blocked_insert_share", figures.actors_wait);
   add("limiter_blocked_sample_share", figures.learner_waits);
@@ -63,12 +86,59 @@ void AddRunFigures(const ProgressFigures& figures, MetricsReport* report) {
   report->AddResources();
 }
 
-void AddOrders(const Config& config, int usable_cores, MetricsReport* report) {
-  report->Add("actors", config.actors);
+void AddOrders(const Config& config, const RunResources& resources, MetricsReport* report) {
+  report->Add("actors", resources.actors);
+  report->Add("actors_elsewhere", resources.actors_elsewhere ? 1 : 0);
   report->Add("budget_env_steps", static_cast<double>(config.env_steps));
   report->Add("stop_success", config.stop.success);
   report->Add("stop_evaluations", config.stop.evaluations);
-  report->Add("usable_cores", usable_cores);
+  report->Add("usable_cores", resources.usable_cores);
+}
+
+namespace {
+
+constexpr std::string_view kRecent = "recent";
+
+}  // namespace
+
+void AddShares(const Bottleneck& lately, MetricsMessage* report) {
+  const auto add = [&](std::string name, double value) {
+    report->names.push_back(std::move(name));
+    report->values.push_back(value);
+  };
+  for (const ProcessTimes& times : lately.roles) {
+    for (const StageShare& share : times.stages) {
+      if (share.stage == kOtherStage) continue;
+      add(fmt::format("{}_{}_{}", kRecent, times.role, share.stage), share.share);
+    }
+  }
+  if (!lately.roles.empty()) add("recent_cores", lately.cores);
+}
+
+std::string AdviceOfView(const RunViewMessage& message) {
+  if (message.state == "evaluating") return "Training is over; its final evaluation is played.";
+  if (message.state == "ended") return "The run has ended.";
+  if (message.state != "running") return "The run is ending: its processes store what they have.";
+  MetricsView view;
+  for (const MetricsMessage& process : message.processes) view.OnMessage(process, Now());
+  const auto own = [&](const std::string& name) { return view.Get("coordinator", 0, name); };
+  Bottleneck lately{.cores = own("recent_cores").value_or(0),
+                    .usable = own("usable_cores").value_or(0)};
+  lately.limited = own("limiter_blocked_insert_share").has_value();
+  lately.inserts_blocked = own("limiter_blocked_insert_share").value_or(0);
+  lately.samples_blocked = own("limiter_blocked_sample_share").value_or(0);
+  for (const Metric& metric : ProcessMetrics()) {
+    if (metric.kind != MetricKind::kStage) continue;
+    const auto share = own(fmt::format("{}_{}_{}", kRecent, metric.role, metric.name));
+    if (!share) continue;
+    if (lately.roles.empty() || lately.roles.back().role != metric.role) {
+      lately.roles.push_back({.role = std::string(metric.role)});
+    }
+    lately.roles.back().stages.push_back({std::string(metric.name), *share});
+  }
+  return Advise(lately, {.usable_cores = lately.usable,
+                         .actors = SaturatingCast<int>(own("actors").value_or(0)),
+                         .actors_elsewhere = own("actors_elsewhere").value_or(0) > 0});
 }
 
 ProgressFigures FiguresOfView(const RunViewMessage& message, SteadyTime now) {
@@ -81,15 +151,19 @@ ProgressFigures FiguresOfView(const RunViewMessage& message, SteadyTime now) {
   figures.elapsed_seconds = own("elapsed_seconds").value_or(0);
   figures.env_steps = message.env_steps;
   figures.budget = SaturatingCast<uint64_t>(own("budget_env_steps").value_or(0));
-  figures.env_steps_per_second = own("env_steps_per_second");
-  figures.updates_per_second = own("updates_per_second");
-  figures.rollout_success = own("rollout_success");
-  figures.actors_wait = own("limiter_blocked_insert_share");
-  figures.learner_waits = own("limiter_blocked_sample_share");
   figures.last_evaluation = FindEvaluation(view, "last_evaluation");
   figures.best = FindEvaluation(view, "best_evaluation");
   figures.processes = SaturatingCast<int>(own("processes").value_or(0));
   figures.restarts = SaturatingCast<int>(own("restarts").value_or(0));
+  figures.env_steps_per_second = figures.updates_per_second = std::nullopt;
+  // What is shown again and again once no process is left tells of nothing that goes on.
+  if (message.state == "evaluating" || message.state == "ended") return figures;
+  figures.env_steps_per_second = own("env_steps_per_second");
+  figures.updates_per_second = own("updates_per_second");
+  figures.seconds_left = own("seconds_left");
+  figures.rollout_success = own("rollout_success");
+  figures.actors_wait = own("limiter_blocked_insert_share");
+  figures.learner_waits = own("limiter_blocked_sample_share");
   return figures;
 }
 

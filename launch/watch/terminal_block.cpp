@@ -29,6 +29,11 @@ bool DrawsInPlace() {
   return isatty(STDOUT_FILENO) == 1 && (kind == nullptr || std::string_view(kind) != "dumb");
 }
 
+bool InForeground() {
+  const pid_t foreground = tcgetpgrp(STDOUT_FILENO);
+  return foreground < 0 || foreground == getpgrp();  // < 0: not the terminal of our session
+}
+
 size_t ColumnsOf(std::string_view text) {
   return text.size() - static_cast<size_t>(std::ranges::count_if(text, GoesOn));
 }
@@ -40,6 +45,30 @@ std::string CutToColumns(std::string text, size_t columns) {
   }
   text.resize(end);
   return text;
+}
+
+std::vector<std::string> WrapToColumns(std::string_view text, size_t columns, bool hanging) {
+  const size_t leading = std::min(text.find_first_not_of(' '), text.size());
+  const std::string indent(hanging && leading + 2 < columns ? leading + 2 : 0, ' ');
+  std::vector<std::string> lines;
+  std::string rest(text);
+  while (ColumnsOf(rest) > columns) {
+    const std::string fits = CutToColumns(rest, columns);
+    // A space just behind what fits ends the line, too; one of the indent does not.
+    size_t end = rest[fits.size()] == ' ' ? fits.size() : fits.rfind(' ');
+    const size_t first_word = std::min(rest.find_first_not_of(' '), fits.size());
+    const bool at_space = end != std::string::npos && end > first_word;
+    if (!at_space) end = std::max<size_t>(1, fits.size());
+    lines.push_back(rest.substr(0, end));
+    rest = indent + rest.substr(at_space ? end + 1 : end);
+  }
+  lines.push_back(std::move(rest));
+  return lines;
+}
+
+std::vector<std::string> LinesOnTerminal(const std::string& line) {
+  if (isatty(STDOUT_FILENO) != 1) return {line};
+  return WrapToColumns(line, static_cast<size_t>(SizeOfTerminal().columns));
 }
 
 int RowsOf(const std::vector<size_t>& line_columns, int terminal_columns) {
@@ -61,8 +90,16 @@ void TerminalBlock::Draw(const std::vector<std::string>& lines) {
 }
 
 void TerminalBlock::Erase() {
+  std::printf("\r");  // from behind what was echoed
+  if (!drawn_.empty()) std::printf("\x1b[%dA", RowsOf(drawn_, SizeOfTerminal().columns));
+  std::printf("\x1b[J");  // and all below
+  drawn_.clear();
+}
+
+void TerminalBlock::Leave() {
   if (drawn_.empty()) return;
-  std::printf("\x1b[%dA\x1b[J", RowsOf(drawn_, SizeOfTerminal().columns));  // up, then clear below
+  std::printf("\r\x1b[J");
+  std::fflush(stdout);
   drawn_.clear();
 }
 

@@ -8,9 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 
-#include "common/base/saturating_cast.h"
-#include "launch/watch/bottleneck.h"
 #include "launch/watch/run_figures.h"
+#include "launch/watch/terminal_block.h"
 
 namespace shoal::launch {
 namespace {
@@ -124,27 +123,35 @@ int RoleOrder(const std::string& role) {
 struct Column {
   const char* name;
   Cell (*cell)(const Process&);
+  size_t least;  // width from the start, so that usual figures do not change it
+  const char* meaning;
 };
 
 constexpr Column kColumns[] = {
-    {"PROCESS", [](const Process& p) { return Text(fmt::format("{}-{}", p.role, p.id)); }},
-    {"HOST", [](const Process& p) { return Text(p.host); }},
-    {"PID", [](const Process& p) { return Number(p.pid); }},
-    {"STATE", [](const Process& p) { return Text(p.state); }},
-    {"RATE", Rate},
-    {"QUEUE", Queue},
-    {"AGE", QueueAge},
-    {"CREDIT", Credit},
-    {"BLOCKED", Blocked},
-    {"BATCHES", Batches},
-    {"LAG 50/90/99", [](const Process& p) { return Quantiles(p, "policy_lag", "{:.0f}"); }},
+    {"PROCESS", [](const Process& p) { return Text(fmt::format("{}-{}", p.role, p.id)); }, 13,
+     "role and number"},
+    {"HOST", [](const Process& p) { return Text(p.host); }, 0, "where it runs"},
+    {"PID", [](const Process& p) { return Number(p.pid); }, 0, "process number there"},
+    {"STATE", [](const Process& p) { return Text(p.state); }, 10,
+     "running, idle, ...; silent: not heard for 5 s"},
+    {"RATE", Rate, 16, "env steps, updates or stored records per second"},
+    {"CPU", [](const Process& p) { return Share(Get(p, "cpu_share")); }, 6,
+     "of the last second, 100 % = one core"},
+    {"QUEUE", Queue, 5, "what waits: chunks, batches, records not yet stored"},
+    {"AGE", QueueAge, 8, "of the oldest of these"},
+    {"CREDIT", Credit, 6, "what may still be sent, or is still to be answered"},
+    {"BLOCKED", Blocked, 9, "share of the last second: held (in, out), or waiting"},
+    {"BATCHES", Batches, 7, "how batches come to the learner"},
+    {"LAG 50/90/99", [](const Process& p) { return Quantiles(p, "policy_lag", "{:.0f}"); }, 12,
+     "policy lag of stored records in updates, quantiles"},
     {"DATA AGE 50/90/99",
-     [](const Process& p) { return Quantiles(p, "data_age_updates", "{:.0f}"); }},
-    {"DATA s 50/90/99",
-     [](const Process& p) { return Quantiles(p, "data_age_seconds", "{:.1f}"); }},
-    {"MB", [](const Process& p) { return Number(Get(p, "rss_mb")); }},
-    {"FILES", [](const Process& p) { return Number(Get(p, "open_files")); }},
-    {"MOST TIME IN", Busiest},
+     [](const Process& p) { return Quantiles(p, "data_age_updates", "{:.0f}"); }, 17,
+     "age of the data learned from, in updates"},
+    {"DATA s 50/90/99", [](const Process& p) { return Quantiles(p, "data_age_seconds", "{:.1f}"); },
+     17, "the same in seconds"},
+    {"MB", [](const Process& p) { return Number(Get(p, "rss_mb")); }, 5, "resident memory"},
+    {"FILES", [](const Process& p) { return Number(Get(p, "open_files")); }, 5, "open files"},
+    {"MOST TIME IN", Busiest, 0, "the stage that took most of the last second"},
 };
 
 using Row = std::vector<Cell>;
@@ -179,7 +186,7 @@ std::vector<Row> SortedRows(const RunViewMessage& view, const TopOrder& order) {
 }
 
 // A width of 0 leaves the column out.
-std::string Rendered(const Row& row, const std::vector<size_t>& widths) {
+std::string Rendered(const Row& row, const TopWidths& widths) {
   std::string line;
   for (size_t i = 0; i < row.size(); ++i) {
     // Text to the left, numbers to the right, the last column as it is.
@@ -196,11 +203,30 @@ std::string Rendered(const Row& row, const std::vector<size_t>& widths) {
   return line;
 }
 
+Row Heading(const TopOrder& order) {
+  Row heading;
+  for (int i = 0; i < TopColumns(); ++i) {
+    heading.push_back({TopColumnName(i) + (i == order.column ? "*" : "")});
+  }
+  return heading;
+}
+
+void Widen(const Row& row, TopWidths* widths) {
+  for (size_t i = 0; i < row.size(); ++i)
+    widths->at(i) = std::max(widths->at(i), row[i].text.size());
+}
+
+TopWidths LeastWidths() {
+  TopWidths widths;
+  for (const Column& column : kColumns) widths.push_back(column.least);
+  return widths;
+}
+
 // Sets the widths of columns to 0 until a row fits; the first to go are what `--json` is for.
-void LeaveOutColumns(size_t most, std::vector<size_t>* widths) {
+void LeaveOutColumns(size_t most, TopWidths* widths) {
   constexpr std::string_view kFirstToGo[] = {
-      "FILES",  "BATCHES", "DATA s 50/90/99", "PID", "HOST", "DATA AGE 50/90/99", "AGE",
-      "CREDIT", "MB",      "LAG 50/90/99"};
+      "FILES", "BATCHES", "DATA s 50/90/99", "PID",  "HOST", "DATA AGE 50/90/99", "AGE", "CREDIT",
+      "MB",    "CPU",     "LAG 50/90/99",    "QUEUE"};
   const auto needed = [&] {
     size_t sum = widths->back();
     for (size_t i = 0; i + 1 < widths->size(); ++i) {
@@ -215,40 +241,38 @@ void LeaveOutColumns(size_t most, std::vector<size_t>* widths) {
   }
 }
 
-// The text in lines of at most `width` characters, broken at spaces where there are any.
-std::vector<std::string> Wrapped(std::string text, size_t width) {
-  std::vector<std::string> lines;
-  while (text.size() > width) {
-    const size_t space = text.rfind(' ', width);
-    const size_t end = space == std::string::npos || space == 0 ? width : space;
-    lines.push_back(text.substr(0, end));
-    text.erase(0, end == space ? end + 1 : end);
-  }
-  lines.push_back(std::move(text));
-  return lines;
-}
-
 }  // namespace
 
 int TopColumns() { return static_cast<int>(std::size(kColumns)); }
 
 std::string TopColumnName(int column) { return kColumns[column].name; }
 
-std::vector<std::string> FormatTop(const RunViewMessage& view, const TopOrder& order, int width) {
-  const size_t most = width > 0 ? static_cast<size_t>(width) : std::string::npos;
-  std::vector<std::string> lines = Wrapped(FormatTopLine(view), most);
-  for (std::string& line : Wrapped(TopAdvice(view), most)) lines.push_back(std::move(line));
-  Row heading;
-  for (const Column& column : kColumns) heading.push_back({column.name});
-  const std::vector<Row> rows = SortedRows(view, order);
-  std::vector<size_t> widths;
-  for (const Cell& cell : heading) widths.push_back(cell.text.size());
-  for (const Row& row : rows) {
-    for (size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].text.size());
+std::vector<std::string> DescribeTopColumns() {
+  std::vector<std::string> lines;
+  for (const Column& column : kColumns) {
+    lines.push_back(fmt::format("  {:<17}  {}", column.name, column.meaning));
   }
-  LeaveOutColumns(most, &widths);
-  lines.push_back(Rendered(heading, widths).substr(0, most));
-  for (const Row& row : rows) lines.push_back(Rendered(row, widths).substr(0, most));
+  return lines;
+}
+
+std::vector<std::string> FormatTop(const RunViewMessage& view, const TopOrder& order, int width,
+                                   TopWidths* widths) {
+  const size_t most = width > 0 ? static_cast<size_t>(width) : std::string::npos;
+  std::vector<std::string> lines;
+  for (const std::string& text : {FormatTopLine(view), AdviceOfView(view)}) {
+    for (std::string& line : WrapToColumns(text, most, /*hanging=*/false)) {
+      lines.push_back(std::move(line));
+    }
+  }
+  const Row heading = Heading(order);
+  const std::vector<Row> rows = SortedRows(view, order);
+  TopWidths now = widths == nullptr || widths->empty() ? LeastWidths() : *widths;
+  Widen(heading, &now);
+  for (const Row& row : rows) Widen(row, &now);
+  if (widths != nullptr) *widths = now;
+  LeaveOutColumns(most, &now);
+  lines.push_back(CutToColumns(Rendered(heading, now), most));
+  for (const Row& row : rows) lines.push_back(CutToColumns(Rendered(row, now), most));
   return lines;
 }
 
@@ -260,13 +284,6 @@ TopCells MakeTopCells(const RunViewMessage& view) {
     for (const Cell& cell : row) texts.push_back(cell.text);
   }
   return cells;
-}
-
-std::string TopAdvice(const RunViewMessage& message) {
-  MetricsView view;
-  for (const Process& process : message.processes) view.OnMessage(process, Now());
-  const auto asked = [&](const char* name) { return view.Get("coordinator", 0, name).value_or(0); };
-  return FindBottleneck(view, asked("usable_cores"), SaturatingCast<int>(asked("actors"))).advice;
 }
 
 std::string FormatTopLine(const RunViewMessage& view) {

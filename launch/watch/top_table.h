@@ -17,10 +17,19 @@ struct TopOrder {
 int TopColumns();
 // The heading of a column.
 std::string TopColumnName(int column);
+// What each column shows, a line each, at most 79 characters.
+std::vector<std::string> DescribeTopColumns();
+
+// The widths that columns have had while a table is watched: they only grow, so that what is shown
+// once stays where it is.
+using TopWidths = std::vector<size_t>;
 
 // The run as one line, advice, a heading, then one row per process; each at most `width` characters
-// (0 = no limit): text goes on in further lines, the least important columns are left out.
-std::vector<std::string> FormatTop(const RunViewMessage& view, const TopOrder& order, int width);
+// (0 = no limit): text goes on in further lines, the least important columns are left out. The
+// column that the rows are sorted by is marked with a *. `widths`: of the tables before, empty for
+// the first; may be null.
+std::vector<std::string> FormatTop(const RunViewMessage& view, const TopOrder& order, int width,
+                                   TopWidths* widths = nullptr);
 // The whole run as one plain line.
 std::string FormatTopLine(const RunViewMessage& view);
 // The same rows as text in cells, under `columns`, in the order of roles.
@@ -29,8 +38,6 @@ struct TopCells {
   std::vector<std::vector<std::string>> rows;
 };
 TopCells MakeTopCells(const RunViewMessage& view);
-// One sentence: what to do about where the time has gone since the processes' start.
-std::string TopAdvice(const RunViewMessage& view);
 // shoal-top-1, indented.
 std::string TopJson(const RunViewMessage& view);
 

@@ -34,13 +34,15 @@ ordered_json EvaluationJson(const std::optional<EvaluationPoint>& point) {
 
 ordered_json ProgressJson(const ProgressFigures& f) {
   return {{"elapsed_seconds", f.elapsed_seconds},
-          {"seconds_left", OrNull(SecondsLeft(f))},
+          {"seconds_left", OrNull(f.seconds_left)},
           {"env_steps", f.env_steps},
           {"budget_env_steps", f.budget},
           {"env_steps_per_second", OrNull(f.env_steps_per_second)},
           {"updates", OrNull(f.updates)},
           {"updates_per_second", OrNull(f.updates_per_second)},
           {"rollout_success", OrNull(f.rollout_success)},
+          {"rollout_return", OrNull(f.rollout_return)},
+          {"rollout_length", OrNull(f.rollout_length)},
           {"last_evaluation", EvaluationJson(f.last_evaluation)},
           {"best", EvaluationJson(f.best)},
           {"restarts", f.restarts}};
@@ -69,7 +71,7 @@ std::string TopAnswer(const RunViewMessage& view) {
   ordered_json events = ordered_json::array();
   for (const RunEvent& event : view.events) events.push_back({event.time, event.text});
   const ordered_json rest{{"line", FormatTopLine(view)},
-                          {"advice", TopAdvice(view)},
+                          {"advice", AdviceOfView(view)},
                           {"columns", cells.columns},
                           {"rows", cells.rows},
                           {"progress", ProgressJson(FiguresOfView(view, Now()))},

@@ -85,38 +85,23 @@ function tile(name, value, more = "") {
   return box;
 }
 
-// The rate of a count over the last half minute: that of one second jumps where records come in
-// chunks. Unknown for the first seconds, and after a count has fallen.
-const recent = { env_steps: [], updates: [] };
-function recentRate(name, progress) {
-  const seen = recent[name], at = progress.elapsed_seconds, count = progress[name];
-  const last = seen[seen.length - 1];
-  if (last && (unknown(count) || count < last.count || at < last.at)) seen.length = 0;
-  if (!unknown(count) && (!last || at > last.at)) seen.push({ at, count });
-  while (seen.length > 2 && at - seen[1].at >= 30) seen.shift();
-  const span = seen.length > 0 ? at - seen[0].at : 0;
-  return span < 3 ? null : (count - seen[0].count) / span;
-}
-
 function showProgress(progress) {
-  const stepsRate = recentRate("env_steps", progress) ?? progress.env_steps_per_second;
-  const updatesRate = recentRate("updates", progress) ?? progress.updates_per_second;
-  const left = stepsRate > 0
-    ? Math.max(0, progress.budget_env_steps - progress.env_steps) / stepsRate : null;
   const share = progress.budget_env_steps > 0 ? progress.env_steps / progress.budget_env_steps : 0;
   $("progress").value = share;
   $("progress-text").textContent = number(progress.env_steps) + " of " +
     number(progress.budget_env_steps) + " env steps, " + percent(share);
   const evaluation = progress.last_evaluation, best = progress.best;
   $("tiles").replaceChildren(
-    tile("Time", duration(progress.elapsed_seconds), duration(left) + " left"),
-    tile("Env steps per second", number(stepsRate, rate)),
-    tile("Updates", number(progress.updates), number(updatesRate, rate) + " per second"),
+    tile("Time", duration(progress.elapsed_seconds), duration(progress.seconds_left) + " left"),
+    tile("Env steps per second", number(progress.env_steps_per_second, rate)),
+    tile("Updates", number(progress.updates), number(progress.updates_per_second, rate) + " per second"),
     tile("Last evaluation", evaluation ? score(evaluation.success, evaluation.return) : "none yet",
       evaluation ? "at " + number(evaluation.env_steps) + " env steps" : ""),
     tile("Best", best ? score(best.success, best.return) : "–",
       best ? "at " + number(best.env_steps) + " env steps" : ""),
-    tile("Actors' success", percent(progress.rollout_success), "in their last episodes"),
+    tile(unknown(progress.rollout_success) ? "Actors' return" : "Actors' success",
+      score(progress.rollout_success, progress.rollout_return),
+      "in their last episodes, of " + number(progress.rollout_length) + " env steps"),
     tile("Restarts", number(progress.restarts)));
 }
 
@@ -289,8 +274,6 @@ function choose() {
   const name = decodeURIComponent(location.hash.slice(1));
   shown = name === "" ? null : name;
   episodeOf = lastPlayed = "";
-  recent.env_steps = [];
-  recent.updates = [];
   forgetCharts();
   for (const id of ["episode", "film"]) {
     $(id).removeAttribute("src");

@@ -24,6 +24,9 @@ TEST(MetricNames, ReportedNamesAreFoundWithTheirRole) {
   EXPECT_EQ(FindMetric(ProcessMetrics(), "actor", "physics"), nullptr);
   EXPECT_EQ(FindMetric(ProcessMetrics(), "replay", "policy_lag"), nullptr);
   EXPECT_EQ(FindMetric(ProcessMetrics(), "replay", "policy_lag_p95"), nullptr);
+  EXPECT_EQ(FindMetric(ProcessMetrics(), "coordinator", "recent_learner_backward")->name, "recent");
+  EXPECT_EQ(FindMetric(ProcessMetrics(), "coordinator", "recent_learner_physics"), nullptr);
+  EXPECT_EQ(FindMetric(ProcessMetrics(), "coordinator", "recent_cores")->unit, "cores");
 }
 
 }  // namespace

@@ -66,6 +66,16 @@ TEST(MetricsReport, SharesAndRatesAreOfTheIntervalThatEnded) {
   EXPECT_NEAR(Figures(report).at("share_physics"), 0.06 / second, 1e-9);
 }
 
+TEST(MetricsReport, AShareIsNeverMoreThanTheWhole) {
+  const SteadyTime start = Now();
+  MetricsReport report("replay", 0);
+  WaitUntilSince(start, 0.12);
+  report.Begin("running");
+  report.AddSeconds("sending", 3.5);  // a send that has waited since long before
+  EXPECT_EQ(Figures(report).at("share_sending"), 1);
+  EXPECT_EQ(Figures(report).at("seconds_sending"), 3.5);
+}
+
 TEST(MetricsReport, AnIntervalTooShortHasNoShares) {
   MetricsReport report("actor", 0);
   report.Begin("running");

@@ -87,6 +87,18 @@ TEST_F(SupervisorTest, RestartsWhatDiesAndSaysWhy) {
               ElementsAre(AllOf(HasSubstr("actor-1: exit code 9: oops"), HasSubstr("restart in"))));
 }
 
+TEST_F(SupervisorTest, AKilledProcessIsNotSaidToHaveDiedOfWhatItToldLast) {
+  supervisor_.Start(Fake("learner", 0,
+                         "echo 2026-01-31 12:00:00.000 learner-0 info: session 7; echo "
+                         "> " +
+                             folder_.path().string() + "/told; exec sleep 60"));
+  ASSERT_TRUE(PollUntil([&] { return std::filesystem::exists(folder_.path() / "told"); }));
+  kill(supervisor_.Pid("learner", 0), SIGKILL);
+  ASSERT_TRUE(PollUntil([&] { return !said_.empty(); }));
+  EXPECT_THAT(said_[0], ::testing::Not(HasSubstr("session 7")));
+  EXPECT_THAT(said_[0], HasSubstr("learner-0: killed by SIGKILL"));
+}
+
 TEST_F(SupervisorTest, RestartsAProcessThatLeavesWithoutBeingAsked) {
   supervisor_.Start(Fake(
       "replay", 0,

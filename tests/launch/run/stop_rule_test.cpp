@@ -93,5 +93,17 @@ TEST(FormatScore, LeavesOutASuccessThatIsNotThere) {
   EXPECT_EQ(FormatScore({.success = std::nullopt, .mean_return = 312.5}), "return 312.500");
 }
 
+TEST(FormatScore, SaysHowSureItIs) {
+  EXPECT_EQ(
+      FormatScore({.success = 0.98, .mean_return = -0.97, .return_std = 0.12, .episodes = 50}),
+      "success 98.0 % of 50 episodes, return -0.970 +- 0.120");
+  EXPECT_EQ(FormatScore({.success = std::nullopt,
+                         .mean_return = 312.5,
+                         .return_std = 8.1,
+                         .mean_length = 740.2,
+                         .episodes = 20}),
+            "return 312.500 +- 8.100, length 740.2, 20 episodes");
+}
+
 }  // namespace
 }  // namespace shoal::launch

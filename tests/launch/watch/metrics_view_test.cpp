@@ -16,7 +16,6 @@ TEST(MetricsView, MissingFiguresAreEmpty) {
   EXPECT_FALSE(view.Get("learner", 0, "updates"));
   EXPECT_FALSE(view.Sum("actor", "env_steps", kNow));
   EXPECT_FALSE(view.Mean("actor", "rollout_success", "episodes", kNow));
-  EXPECT_FALSE(view.Rate("replay", "stored_steps"));
   EXPECT_EQ(view.Total("actor", "resends"), 0);
 }
 
@@ -25,9 +24,6 @@ TEST(MetricsView, KeepsTheLastReportThoughTheClockWasSetBack) {
   view.OnMessage(Report("learner", 0, 7, 5000, {{"updates", 10}}), kNow);
   view.OnMessage(Report("learner", 0, 7, 1401, {{"updates", 20}}), kNow);
   EXPECT_EQ(view.Get("learner", 0, "updates"), 20);
-  EXPECT_FALSE(view.Rate("learner", "updates")) << "over a span of less than nothing";
-  view.OnMessage(Report("learner", 0, 7, 1402, {{"updates", 30}}), kNow);
-  EXPECT_EQ(view.Rate("learner", "updates"), 10);
 }
 
 TEST(MetricsView, SumsAndWeighsFreshProcessesOnly) {
@@ -38,16 +34,6 @@ TEST(MetricsView, SumsAndWeighsFreshProcessesOnly) {
   view.OnMessage(Report("actor", 3, 4, 1, {{"episodes", 0}}), kNow);
   EXPECT_EQ(view.Sum("actor", "rate", kNow), 50);
   EXPECT_EQ(view.Mean("actor", "success", "episodes", kNow), 0.75);
-}
-
-TEST(MetricsView, RateIsGrowthPerSecondBetweenTwoReports) {
-  MetricsView view;
-  view.OnMessage(Report("replay", 0, 1, 10, {{"blocked", 1}}), kNow);
-  EXPECT_FALSE(view.Rate("replay", "blocked"));
-  view.OnMessage(Report("replay", 0, 1, 12, {{"blocked", 2}}), kNow);
-  EXPECT_EQ(view.Rate("replay", "blocked"), 0.5);
-  view.OnMessage(Report("replay", 0, 2, 13, {{"blocked", 0}}), kNow);
-  EXPECT_FALSE(view.Rate("replay", "blocked")) << "a restarted process has no former report";
 }
 
 TEST(MetricsView, TotalsSurviveRestarts) {
@@ -64,7 +50,6 @@ TEST(MetricsView, ASuccessorMayHaveTheProcessNumberOfItsPredecessor) {
   view.OnMessage(Report("actor", 0, 1, 1, {{"uptime_seconds", 50}, {"resends", 5}}), kNow);
   view.OnMessage(Report("actor", 0, 1, 2, {{"uptime_seconds", 2}, {"resends", 1}}), kNow);
   EXPECT_EQ(view.Total("actor", "resends"), 6) << "as in a container, where everybody is 1";
-  EXPECT_FALSE(view.Rate("actor", "resends"));
   MetricsMessage elsewhere = Report("actor", 0, 1, 3, {{"uptime_seconds", 9}, {"resends", 1}});
   elsewhere.host = "another";
   view.OnMessage(elsewhere, kNow);

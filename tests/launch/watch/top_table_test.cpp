@@ -6,6 +6,8 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "launch/watch/run_figures.h"
+
 namespace shoal::launch {
 namespace {
 
@@ -93,6 +95,59 @@ TEST(TopTable, ShowsEachRolesOwnFigures) {
   EXPECT_THAT(lines[6], HasSubstr("20.0 steps/s"));
 }
 
+// Where a column begins in the heading of a table.
+size_t StartOf(const std::vector<std::string>& lines, const std::string& column) {
+  for (const std::string& line : lines) {
+    if (line.starts_with("PROCESS")) return line.find(column);
+  }
+  return std::string::npos;
+}
+
+TEST(TopTable, ColumnsStayWhereTheyAreWhileATableIsWatched) {
+  TopWidths widths;
+  RunViewMessage view = View();
+  const size_t usual = StartOf(FormatTop(view, {}, 0, &widths), "CREDIT");
+  view.processes[3] = Process("learner", 0, {{"updates_per_second", 1234.5}});
+  view.processes[3].state = "evaluating";
+  view.processes[4].values[3] = 0.9;
+  EXPECT_EQ(StartOf(FormatTop(view, {}, 0, &widths), "CREDIT"), usual) << "of usual figures";
+  view.processes[4].values[3] = 123456;
+  const size_t wider = StartOf(FormatTop(view, {}, 0, &widths), "CREDIT");
+  EXPECT_GT(wider, usual);
+  EXPECT_EQ(StartOf(FormatTop(View(), {}, 0, &widths), "CREDIT"), wider) << "as it was shown once";
+  EXPECT_EQ(StartOf(FormatTop(View(), {}, 0), "CREDIT"), usual);
+}
+
+TEST(TopTable, ABusiestStageOfALongNameFitsOnANarrowTerminal) {
+  RunViewMessage view = View();
+  view.processes[0].names.emplace_back("share_waiting_credit");
+  view.processes[0].values.push_back(1);
+  EXPECT_TRUE(FormatTop(view, {}, 79).end()[-2].ends_with("waiting credit 100 %"));
+}
+
+TEST(TopTable, TheHeadingMarksTheSortedColumn) {
+  EXPECT_THAT(FormatTop(View(), {}, 0)[2], HasSubstr("PROCESS*"));
+  const std::string heading = FormatTop(View(), {.column = ColumnOf("RATE")}, 0)[2];
+  EXPECT_THAT(heading, HasSubstr("RATE*"));
+  EXPECT_THAT(heading, Not(HasSubstr("PROCESS*")));
+}
+
+TEST(TopTable, EveryColumnIsExplainedOnOneLine) {
+  const std::vector<std::string> lines = DescribeTopColumns();
+  ASSERT_EQ(lines.size(), static_cast<size_t>(TopColumns()));
+  for (int i = 0; i < TopColumns(); ++i) {
+    EXPECT_TRUE(lines[static_cast<size_t>(i)].starts_with("  " + TopColumnName(i) + " ")) << i;
+    EXPECT_LE(lines[static_cast<size_t>(i)].size(), 79u) << i;
+  }
+}
+
+TEST(TopTable, ShowsTheProcessorTimeOfEach) {
+  RunViewMessage view = View();
+  view.processes[3].names.emplace_back("cpu_share");
+  view.processes[3].values.push_back(1.254);
+  EXPECT_THAT(FormatTop(view, {}, 0)[4], HasSubstr(" 125 % "));
+}
+
 TEST(TopTable, LinesAreCutToTheWidth) {
   for (const std::string& line : FormatTop(View(), {}, 30)) EXPECT_LE(line.size(), 30u) << line;
 }
@@ -148,7 +203,7 @@ TEST(TopTable, CellsAreThoseOfTheTable) {
       EXPECT_THAT(lines[lines.size() - cells.rows.size() + i], HasSubstr(text));
     }
   }
-  EXPECT_EQ(lines[1], TopAdvice(View()));
+  EXPECT_EQ(lines[1], AdviceOfView(View()));
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "launch/watch/run_figures.h"
 #include "launch/watch/top_table.h"
 #include "tests/support/error_message.h"
 
@@ -25,9 +26,10 @@ RunViewMessage View() {
   view.updates = 300;
   MetricsMessage coordinator;
   coordinator.role = "coordinator";
-  coordinator.names = {"budget_env_steps", "env_steps_per_second", "last_evaluation_return",
-                       "last_evaluation_success", "last_evaluation_env_steps"};
-  coordinator.values = {2400, 60, -1.5, 0.25, 1000};
+  coordinator.names = {
+      "budget_env_steps",       "env_steps_per_second",    "seconds_left",
+      "last_evaluation_return", "last_evaluation_success", "last_evaluation_env_steps"};
+  coordinator.values = {2400, 60, 20, -1.5, 0.25, 1000};
   MetricsMessage learner;
   learner.role = "learner";
   learner.names = {"updates", "critic_loss"};
@@ -43,7 +45,7 @@ TEST(PageAnswers, TheViewIsThatOfShoalTop) {
   const TopCells cells = MakeTopCells(View());
   EXPECT_EQ(answer.at("columns").get<std::vector<std::string>>(), cells.columns);
   EXPECT_EQ(answer.at("rows").get<std::vector<std::vector<std::string>>>(), cells.rows);
-  EXPECT_EQ(answer.at("advice"), TopAdvice(View()));
+  EXPECT_EQ(answer.at("advice"), AdviceOfView(View()));
   const json& progress = answer.at("progress");
   EXPECT_EQ(progress.at("env_steps"), 1200);
   EXPECT_EQ(progress.at("budget_env_steps"), 2400);

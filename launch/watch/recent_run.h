@@ -1,0 +1,54 @@
+// What a run did lately, for people: how fast it goes, how long it still takes and where its time
+// goes. The figures of the last second alone jump, those since its start say what has long changed.
+#pragma once
+
+#include <deque>
+#include <optional>
+
+#include "launch/watch/recent_rate.h"
+#include "launch/watch/run_totals.h"
+
+namespace shoal::launch {
+
+// How far a run was at a moment.
+struct RunMoment {
+  double seconds = 0;  // of the run so far; never falls
+  double env_steps = 0;
+  std::optional<double> updates;  // empty: the learner has not reported
+};
+
+// One thread.
+class RecentRun {
+ public:
+  // To be told about once a second.
+  void Add(const RunMoment& moment, RunTotals totals);
+  // What was before says nothing about what comes, as after a pause: begins anew, with what comes
+  // kSettling later.
+  void Forget(double seconds);
+
+  // Per second, over the last half minute; empty while too little of it is known.
+  std::optional<double> env_steps_per_second() const { return env_steps_per_second_; }
+  std::optional<double> updates_per_second() const { return updates_per_second_; }
+  // At the pace of the last two minutes. Unknown before the first update and in the first seconds
+  // after it: without updates a run goes many times faster.
+  std::optional<double> SecondsLeft(double env_steps, double budget) const;
+  // Over the last half minute, or what is known of it.
+  RunTotals Totals() const;
+
+  static constexpr double kSettling = 3;  // seconds: the reports that span a pause have come
+
+ private:
+  struct Counted {
+    double seconds = 0;
+    RunTotals totals;
+  };
+
+  RecentRate env_steps_, updates_;
+  RecentRate pace_{120, 10};  // env steps, since the first update
+  std::optional<double> env_steps_per_second_, updates_per_second_, steady_pace_;
+  bool learned_ = false;  // there has been an update
+  std::deque<Counted> counted_;
+  double from_ = 0;  // moments before are not taken
+};
+
+}  // namespace shoal::launch
