@@ -15,6 +15,7 @@ namespace {
 
 // A request that could not be sent is tried again after this long.
 constexpr std::chrono::milliseconds kRetryAfter{100};
+constexpr std::chrono::seconds kRefusalInterval{10};  // between lines about it
 
 uint64_t LastRequest(const Config& config) {
   return config.lockstep ? LockstepLastUpdate(config) : std::numeric_limits<uint64_t>::max();
@@ -244,13 +245,20 @@ std::optional<Batch> BatchSource::OpenSlot(uint64_t request) {
                  .stored_records = slots_.stored_records(request),
                  .stored_steps = slots_.stored_steps(request)};
   } catch (const Error& e) {
-    log::Warning("{}; asking for batches over the network", e.what());
+    SayRefusal(e.what());
     for (const uint64_t refused : slots_.Refuse(request)) {
       ++counters_.refused_slots;
       if (Outstanding* outstanding = Find(refused)) outstanding->next_send = Now();
     }
     return std::nullopt;
   }
+}
+
+// Whatever comes, not more than a line in a while.
+void BatchSource::SayRefusal(const char* why) {
+  if (refusal_said_ && Now() - *refusal_said_ < kRefusalInterval) return;
+  refusal_said_ = Now();
+  log::Warning("{}; asking for batches over the network", why);
 }
 
 void BatchSource::SayWay(bool shared) {

@@ -63,6 +63,7 @@ class BatchSource final : public BatchStream {
   // Nothing when its memory cannot be used: it is asked for again.
   std::optional<Batch> OpenSlot(uint64_t request) SHOAL_REQUIRES(mutex_);
   void SayWay(bool shared) SHOAL_REQUIRES(mutex_);
+  void SayRefusal(const char* why) SHOAL_REQUIRES(mutex_);
   void ReleaseHandedOut() SHOAL_REQUIRES(mutex_);
   // When the next request is due to be sent again.
   SteadyTime NextDue() const SHOAL_REQUIRES(mutex_);
@@ -87,6 +88,7 @@ class BatchSource final : public BatchStream {
   uint64_t released_ SHOAL_GUARDED_BY(mutex_) = 0;         // highest request handed out before
   std::optional<bool> shared_ SHOAL_GUARDED_BY(mutex_);    // how batches come, as was said last
   uint64_t other_spec_hash_ SHOAL_GUARDED_BY(mutex_) = 0;  // of a refused part; 0 = none
+  std::optional<SteadyTime> refusal_said_ SHOAL_GUARDED_BY(mutex_);
   BatchCounters counters_ SHOAL_GUARDED_BY(mutex_);
 };
 

@@ -8,6 +8,7 @@
 #include "common/base/files.h"
 #include "common/base/log.h"
 #include "common/base/usable_cores.h"
+#include "common/config/learner_threads.h"
 #include "common/config/run_files.h"
 #include "common/config/run_membership.h"
 #include "common/config/session_number.h"
@@ -47,8 +48,9 @@ class Learner {
             [this](const EvalMessage& m) { pending_evaluations_.OnEvaluated(m.version.update); }),
         control_subscriber_(bus_,
                             [this](const ControlMessage& m) { control_.OnMessage(m, Now()); }) {
-    log::Info("session {}: {}, {} ({}), {} thread(s), batches of {}, {}", session_,
-              run.config.learner.algorithm, nn::ToString(precision_), nn::CpuIsa(), threads,
+    log::Info("session {}: {}, {} ({}), {}, batches of {}, {}", session_,
+              run.config.learner.algorithm, nn::ToString(precision_), nn::CpuIsa(),
+              DescribeThreads(run.config, run.spec, threads, UsableCores()),
               run.config.learner.batch, run.spec.Summary());
   }
 
@@ -126,8 +128,7 @@ class Learner {
 
 int RunLearner(const std::filesystem::path& folder, const dds::Reach& reach, char** argv) {
   const RunConfig run = ReadRunConfig(folder);
-  const int asked = run.config.learner.threads;
-  const int threads = asked > 0 ? asked : std::max(1, UsableCores() / 2);
+  const int threads = LearnerThreads(run.config, UsableCores());
   EnsurePassiveOpenMp(threads, argv);
   nn::SetThreads(threads);
   return Learner(folder, run, reach, threads).Run();

@@ -1,8 +1,7 @@
 #include "learner/slot_batches.h"
 
 #include <algorithm>
-
-#include "common/base/check.h"
+#include <iterator>
 
 namespace shoal::learner {
 

@@ -9,6 +9,9 @@ namespace shoal::worlds {
 // A free view looks at `lookat` from `distance`; azimuth 0 looks along +x, 90 along +y; negative
 // elevation looks down. Its vertical field of view is the model's (45 degrees by default).
 //
+// With a `body`, numbers are in that body's frame, its position the origin and its axes x, y and z:
+// the view is mounted on it and moves with it.
+//
 // A camera of the model, which may follow a body, has `model_camera` and ignores those numbers.
 struct CameraView {
   std::string name;
@@ -16,6 +19,7 @@ struct CameraView {
   double distance = 0;             // m
   double azimuth_degrees = 0;
   double elevation_degrees = 0;
+  std::string body = {};  // of a mounted view; empty = the world
   int model_camera = -1;  // number of the camera in the model; -1 = a free view
 };
 

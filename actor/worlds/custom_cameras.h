@@ -10,7 +10,8 @@
 namespace shoal::worlds {
 
 // The camera of that name, the world's own or one of observation.custom_cameras. Throws Error
-// (kUsage) listing those there are, and when a custom camera takes a name of the world's own.
+// (kUsage) listing those there are, when a custom camera takes a name of the world's own, and when
+// the model lacks the body that one is mounted on.
 CameraView ChooseCamera(const World& world, const ObservationConfig& observation,
                         const std::string& name);
 

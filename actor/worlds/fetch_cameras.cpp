@@ -6,6 +6,10 @@ namespace {
 // As Gymnasium-Robotics has it.
 CameraView Gymnasium() { return {"gymnasium", {1.3, 0.75, 0.55}, 2.5, 132, -14}; }
 
+// On the gripper, whose x axis points from the wrist to the fingers: from above and outside of
+// them.
+CameraView Wrist() { return {"wrist", {0.1, 0, 0.06}, 0.4, 0, -45, "robot0:gripper_link"}; }
+
 }  // namespace
 
 std::span<const CameraView> FetchCameras() {
@@ -14,6 +18,7 @@ std::span<const CameraView> FetchCameras() {
       {"side", {1.34, 0.75, 0.53}, 0.75, 90, -30},
       {"close", {1.34, 0.75, 0.53}, 1.1, 132, -35},
       Gymnasium(),
+      Wrist(),
   };
   return cameras;
 }
@@ -24,6 +29,7 @@ std::span<const CameraView> FetchPickAndPlaceCameras() {
       {"side", {1.34, 0.75, 0.6}, 1.05, 90, -20},
       {"close", {1.34, 0.75, 0.6}, 1.2, 132, -35},
       Gymnasium(),
+      Wrist(),
   };
   return cameras;
 }
@@ -34,6 +40,7 @@ std::span<const CameraView> FetchSlideCameras() {
       {"side", {1.32, 0.75, 0.42}, 1.3, 90, -35},
       {"close", {1.34, 0.75, 0.42}, 1.5, 132, -35},
       Gymnasium(),
+      Wrist(),
   };
   return cameras;
 }

@@ -11,6 +11,7 @@
 #include "actor/worlds/engine_messages.h"
 #include "actor/worlds/frame_packing.h"
 #include "actor/worlds/low_poly_shapes.h"
+#include "actor/worlds/mounted_view.h"
 #include "actor/worlds/scene_culling.h"
 #include "common/base/check.h"
 #include "common/base/error.h"
@@ -213,6 +214,9 @@ void RenderContext::Draw(World* world, const CameraView& camera) {
   mjvCamera view = EngineCamera(camera);
   mjv_updateScene(&world->model(), &world->data(), &engine_->option, /*pert=*/nullptr, &view,
                   mjCAT_ALL, &engine_->scene);
+  if (!camera.body.empty()) {
+    MountCamera(world->model(), world->data(), camera, &engine_->scene);
+  }
   if (light_unclamped_) LimitHeadlight(&engine_->scene);
   if (fast_) {
     RemoveUnseenGeoms(&engine_->scene, static_cast<float>(width_) / static_cast<float>(height_));

@@ -21,6 +21,7 @@ struct CustomCamera {
   double distance = 1;             // m
   double azimuth = 0;              // degrees
   double elevation = 0;            // degrees
+  std::string body = {};           // whose frame the numbers are in; empty = the world's
 
   bool operator==(const CustomCamera&) const = default;
 };

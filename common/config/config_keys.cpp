@@ -63,9 +63,10 @@ std::vector<Key> ObservationKeys() {
                  "describe lists them)"),
       SHOAL_SAME(observation.quality, (Choices{{"fast", "reference"}}),
                  "fast = no shadows, reflections, multisampling; reference = as the originals"),
-      SHOAL_SAME(observation.custom_cameras, AnyValue{},
-                 "cameras of one's own for observation.cameras; in m and degrees, azimuth 0 looks "
-                 "along +x, negative elevation down"),
+      SHOAL_SAME(
+          observation.custom_cameras, AnyValue{},
+          "cameras of one's own for observation.cameras; in m and degrees, azimuth 0 looks "
+          "along +x, negative elevation down; with `body` in that body's frame, moving with it"),
   };
 }
 
@@ -114,8 +115,11 @@ std::vector<Key> LearnerKeys() {
       SHOAL_SAME(learner.precision, (Choices{{"auto", "f32", "bf16"}}),
                  "arithmetic of the large products; auto = bf16 with pixels "
                  "where the CPU has it natively, else f32"),
-      SHOAL_SAME(learner.threads, (IntegerRange{0, 1024}),
-                 "threads of the learner; 0 = half the cores this process may use, at least 1"),
+      SHOAL_SAME(
+          learner.threads, (IntegerRange{0, 1024}),
+          "threads of the learner, each with an equal part of the batch (ppo and encoders with "
+          "batch normalisation: with a share of each layer); 0 = at most half the cores this "
+          "process may use; without pixels, but for ppo, 1"),
       SHOAL_SAME(learner.learning_rate, positive, "Adam step of actor, critic and temperature"),
       SHOAL_SAME(learner.actor_learning_rate, (RealRange{0, 1}),
                  "that of the actor alone; 0 = learner.learning_rate"),
@@ -336,7 +340,8 @@ struct TypeText {
     return "a number, or \"linear(START,END,ENV_STEPS)\", each end";
   }
   std::string operator()(const std::map<std::string, CustomCamera>*) const {
-    return "an object {name: {lookat: [x, y, z], distance: > 0, azimuth, elevation: -90..90}, ...}";
+    return "an object {name: {lookat: [x, y, z], distance: > 0, azimuth, elevation: -90..90, body: "
+           "optional}, ...}";
   }
 };
 

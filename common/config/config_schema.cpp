@@ -43,7 +43,8 @@ ordered_json Camera() {
            {{"lookat", point},
             {"distance", {{"type", "number"}, {"exclusiveMinimum", 0}}},
             {"azimuth", number},
-            {"elevation", {{"type", "number"}, {"minimum", -90}, {"maximum", 90}}}}},
+            {"elevation", {{"type", "number"}, {"minimum", -90}, {"maximum", 90}}},
+            {"body", {{"type", "string"}, {"minLength", 1}}}}},
           {"required", {"lookat", "distance", "azimuth", "elevation"}},
           {"additionalProperties", false}};
 }

@@ -24,7 +24,13 @@ bool ReadPoint(const json& value, std::array<double, 3>* point) {
 }
 
 bool ReadCamera(const json& value, CustomCamera* camera) {
-  if (!value.is_object() || value.size() != 4) return false;
+  const bool mounted = value.is_object() && value.contains("body");
+  if (!value.is_object() || value.size() != (mounted ? 5 : 4)) return false;
+  if (mounted) {
+    if (!value["body"].is_string() || value["body"].empty()) return false;
+    value["body"].get_to(camera->body);
+    if (camera->body.empty()) return false;
+  }
   for (const char* key : {"lookat", "distance", "azimuth", "elevation"}) {
     if (!value.contains(key)) return false;
   }

@@ -16,6 +16,7 @@ void to_json(Json& out, const CustomCamera& camera) {
              {"distance", camera.distance},
              {"azimuth", camera.azimuth},
              {"elevation", camera.elevation}};
+  if (!camera.body.empty()) out["body"] = camera.body;
 }
 
 template <class Json>
@@ -33,7 +34,7 @@ namespace internal {
 bool ReadStateBlocks(const nlohmann::json& value, StateBlocks* blocks);
 
 // An object of cameras by name. False when it is none, a name is empty, one of the four numbers is
-// missing, ill-typed or out of range, or there is another key.
+// missing, ill-typed or out of range, `body` is there and no name, or there is another key.
 bool ReadCustomCameras(const nlohmann::json& value, std::map<std::string, CustomCamera>* cameras);
 
 }  // namespace internal

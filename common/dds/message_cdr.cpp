@@ -132,7 +132,8 @@ bool ParseCdr(std::span<const uint8_t> cdr, BatchSlot* message) {
     message->slot = reader.Read<uint32_t>();
   });
   return reader.Finished() && message->learner_session > 0 && message->request > 0 &&
-         message->address.pid > 0 && message->address.descriptor >= 0;
+         message->address.pid > 0 && message->address.descriptor >= 0 &&
+         message->address.token[0] != 0;
 }
 
 bool ParseCdr(std::span<const uint8_t> cdr, MetricsMessage* message) {

@@ -79,6 +79,12 @@ void Adam::Moments::Exchange() {
   v.swap(next_v);
 }
 
+std::vector<ParameterSet*> Adam::sets() const {
+  std::vector<ParameterSet*> sets;
+  for (const Moments& moments : moments_) sets.push_back(moments.set);
+  return sets;
+}
+
 double Adam::GradientSquares() const {
   double squares = 0;
   for (const Moments& moments : moments_) {

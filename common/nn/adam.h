@@ -28,6 +28,8 @@ class Adam {
 
   Adam(std::vector<ParameterSet*> sets, const Options& options);
 
+  // What it steps.
+  std::vector<ParameterSet*> sets() const;
   // For the steps from now on.
   void set_rate(double rate) { rate_ = rate; }
 

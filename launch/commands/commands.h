@@ -31,6 +31,6 @@ void AddRunsCommand(CLI::App& app, Action* chosen);
 void AddWebCommand(CLI::App& app, Action* chosen);
 void AddSteerCommands(CLI::App& app, Action* chosen);  // set, scale, stop
 void AddAttachCommand(CLI::App& app, Action* chosen);
-void AddReplayCommand(CLI::App& app, Action* chosen);  // replay peek
+void AddReplayCommand(CLI::App& app, Action* chosen);  // replay peek, export
 
 }  // namespace shoal::launch

@@ -7,6 +7,7 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/config/config_io.h"
+#include "common/config/learner_threads.h"
 
 namespace shoal::launch {
 namespace {
@@ -54,7 +55,7 @@ Config ResolveConfig(const TrainOptions& options, int cores) {
     if (!path->empty()) *path = std::filesystem::absolute(*path).lexically_normal();
   }
   // Threads of one update wait for each other, so a core shared with an actor stalls them all.
-  if (config.learner.threads == 0) config.learner.threads = std::max(1, cores / 2);
+  config.learner.threads = LearnerThreads(config, cores);
   if (config.actors == 0) {
     config.actors = config.lockstep ? 1 : std::max(1, cores - config.learner.threads);
   }

@@ -152,10 +152,11 @@ PreparedRun PrepareResumed(const TrainOptions& options) {
   return {std::move(folder), std::move(config), meta, std::move(hosts), now.frame_microseconds};
 }
 
-// What a receiver of weights takes.
+// What a receiver of weights takes, and what the learner's threads can share.
 void CheckNetwork(const RunConfig& run) {
   nn::CheckNetwork(run.config.network, run.spec, run.config.learner.batch,
                    int64_t{kMaxWeightsBytes});
+  learner::ReplicasOf(run.config, run.spec, run.config.learner.threads);
 }
 
 // What --init-from names, by our names; empty without. Refused here is what the learner would
@@ -219,11 +220,11 @@ void PrintStart(const PreparedRun& run, const ClusterAddress& address) {
   std::string text =
       fmt::format("run {}: {}\n", run.folder.path().string(), run.config.spec.Summary());
   text += fmt::format(
-      "  seed {}, {} env steps; {}1 learner ({} threads), {} actor(s) of {} environments, "
+      "  seed {}, {} env steps; {}1 learner ({}), {} actor(s) of {} environments, "
       "1 evaluation actor; logs in {}\n",
       config.seed, config.env_steps, LearnsOnPolicy(config) ? "" : "1 replay, ",
-      config.learner.threads, config.actors, config.envs_per_actor,
-      (run.folder.path() / "logs").string());
+      learner::DescribeThreads(config, run.config.spec, config.learner.threads, UsableCores()),
+      config.actors, config.envs_per_actor, (run.folder.path() / "logs").string());
   if (run.meta.env_steps > 0) {
     const std::filesystem::path checkpoint = NewestCheckpoint(run.folder.path());
     text +=

@@ -7,9 +7,12 @@
 #include <vector>
 
 #include "common/base/error.h"
+#include "common/config/learner_threads.h"
+#include "common/nn/parallel.h"
 #include "learner/agent/ddpg/ddpg_agent.h"
 #include "learner/agent/frame_figures.h"
 #include "learner/agent/ppo/ppo_agent.h"
+#include "learner/agent/replicated_agent.h"
 #include "learner/agent/sac/sac_agent.h"
 #include "learner/agent/sample_figures.h"
 #include "learner/agent/td3/td3_agent.h"
@@ -18,10 +21,10 @@ namespace shoal::learner {
 namespace {
 
 constexpr Algorithm kAlgorithms[] = {
-    {"sac", kSacFigures, MakeSacAgent},
-    {"td3", kTwinFigures, MakeTd3Agent},
-    {"ddpg", kSingleCriticFigures, MakeDdpgAgent},
-    {"ppo", kPpoFigures, MakePpoAgent},
+    {.name = "sac", .figures = kSacFigures, .make_replica = MakeSacAgent},
+    {.name = "td3", .figures = kTwinFigures, .make_replica = MakeTd3Agent},
+    {.name = "ddpg", .figures = kSingleCriticFigures, .make_replica = MakeDdpgAgent},
+    {.name = "ppo", .figures = kPpoFigures, .make = MakePpoAgent},
 };
 
 std::vector<const Figure*> CollectFigures() {
@@ -37,18 +40,47 @@ std::vector<const Figure*> CollectFigures() {
   return all;
 }
 
+const Algorithm& Find(const std::string& name) {
+  const auto algorithm = std::ranges::find(kAlgorithms, name, &Algorithm::name);
+  if (algorithm != std::end(kAlgorithms)) return *algorithm;
+  std::vector<std::string_view> names;
+  for (const Algorithm& known : kAlgorithms) names.push_back(known.name);
+  throw UsageError("learner.algorithm = \"{}\": expected {}", name, fmt::join(names, " | "));
+}
+
 }  // namespace
 
 std::span<const Algorithm> Algorithms() { return kAlgorithms; }
 
+int ReplicasOf(const Config& config, const ObservationSpec& spec, int threads) {
+  if (threads == 1 || Find(config.learner.algorithm).make_replica == nullptr) return 1;
+  if (NormalisesOverBatch(config.network, spec)) return 1;
+  CheckReplicas(config, threads);
+  return threads;
+}
+
+std::string DescribeThreads(const Config& config, const ObservationSpec& spec, int threads,
+                            int cores) {
+  if (threads == 1) return "1 thread";
+  const char* more = threads > cores ? ", more than there are cores" : "";
+  if (ReplicasOf(config, spec, threads) > 1) {
+    return fmt::format("{} threads, a replica each{}", threads, more);
+  }
+  const bool unknown = Find(config.learner.algorithm).make_replica == nullptr;
+  return fmt::format("{} threads that share each layer: {}{}", threads,
+                     unknown ? config.learner.algorithm + " knows no replicas"
+                             : config.network.encoder + " normalises over the batch",
+                     more);
+}
+
 std::unique_ptr<Agent> MakeAgent(const Config& config, const ObservationSpec& spec,
                                  nn::Precision precision) {
-  const std::string& name = config.learner.algorithm;
-  const auto algorithm = std::ranges::find(kAlgorithms, name, &Algorithm::name);
-  if (algorithm != std::end(kAlgorithms)) return algorithm->make(config, spec, precision);
-  std::vector<std::string_view> names;
-  for (const Algorithm& known : kAlgorithms) names.push_back(known.name);
-  throw UsageError("learner.algorithm = \"{}\": expected {}", name, fmt::join(names, " | "));
+  const Algorithm& algorithm = Find(config.learner.algorithm);
+  if (algorithm.make != nullptr) return algorithm.make(config, spec, precision);
+  const MakeReplica make = [&](nn::Replica* replica) {
+    return algorithm.make_replica(config, spec, precision, replica);
+  };
+  return MakeReplicatedAgent(ReplicasOf(config, spec, nn::Threads()), make);
 }
 
 std::span<const Figure* const> AllFigures() {

@@ -3,10 +3,12 @@
 
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
 
 #include "common/config/config.h"
 #include "common/nn/precision.h"
+#include "common/nn/replica.h"
 #include "common/spec/observation_spec.h"
 #include "learner/agent/agent.h"
 
@@ -16,15 +18,31 @@ struct Algorithm {
   std::string_view name;  // of learner.algorithm
   // What its updates report, in this order; each in at least every update that computes it.
   std::span<const Figure* const> figures;
-  // Initialises the networks from config.seed. Throws Error where the configuration does not fit.
+  // Either of the two. Initialises the networks from config.seed. Throws Error where the
+  // configuration does not fit.
+  //
+  // An agent that knows no replicas: nn::Threads share each pass of its networks.
   std::unique_ptr<Agent> (*make)(const Config& config, const ObservationSpec& spec,
-                                 nn::Precision precision);
+                                 nn::Precision precision) = nullptr;
+  // One of replicas, or the only one: replicated_agent.h. Borrows the replica.
+  std::unique_ptr<Agent> (*make_replica)(const Config& config, const ObservationSpec& spec,
+                                         nn::Precision precision, nn::Replica* replica) = nullptr;
 };
 
 std::span<const Algorithm> Algorithms();
 
-// The agent of config.learner.algorithm. Throws Error (kUsage) naming the algorithms there are when
-// there is none of that name.
+// In how many replicas (common/nn/replica.h) `threads` threads learn: one a thread; a single one,
+// whose passes they share, where the algorithm knows no replicas or the encoder has batch
+// normalisation, whose statistics are of the whole batch. Throws Error (kUsage) where they cannot
+// share the batch (CheckReplicas), and as MakeAgent.
+int ReplicasOf(const Config& config, const ObservationSpec& spec, int threads);
+
+// What threads the learner has, for people: "2 threads, a replica each".
+std::string DescribeThreads(const Config& config, const ObservationSpec& spec, int threads,
+                            int cores);
+
+// The agent of config.learner.algorithm, for nn::Threads. Throws Error (kUsage) naming the
+// algorithms there are when there is none of that name.
 std::unique_ptr<Agent> MakeAgent(const Config& config, const ObservationSpec& spec,
                                  nn::Precision precision);
 

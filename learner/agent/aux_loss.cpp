@@ -75,7 +75,7 @@ double AuxLoss::ForwardBackward(const BatchView& batch) {
     gradient_[i] = scale * difference;
   }
   readout_.Backward(gradient_.data());
-  return kUnit * std::sqrt(squares / double(gradient_.size()));
+  return double(kUnit) * kUnit * squares / double(gradient_.size());
 }
 
 }  // namespace shoal::learner

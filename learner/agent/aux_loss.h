@@ -31,7 +31,7 @@ class AuxLoss {
   nn::ReadoutModule& readout() { return readout_; }
 
   // For the trunk's outputs as they are; `batch` as it was drawn. Leaves its gradient for the
-  // trunk's next Backward. Root of the mean square of (0.15 y - label), in the labels' unit.
+  // trunk's next Backward. The mean square of (0.15 y - label), in the labels' unit squared.
   double ForwardBackward(const BatchView& batch);
 
  private:

@@ -29,14 +29,29 @@ HandoverFigures Median(std::vector<HandoverFigures> all) {
   return all[all.size() / 2];
 }
 
-nlohmann::ordered_json Row(const HandoverFigures& shared, const HandoverFigures& network) {
+// (Largest - smallest) / median of the ratios, pair by pair.
+double Spread(const std::vector<HandoverFigures>& shared,
+              const std::vector<HandoverFigures>& network) {
+  std::vector<double> ratios;
+  for (size_t i = 0; i < shared.size(); ++i) {
+    ratios.push_back(CpuPerGigabyte(shared[i]) / CpuPerGigabyte(network[i]));
+  }
+  std::ranges::sort(ratios);
+  return (ratios.back() - ratios.front()) / ratios[ratios.size() / 2];
+}
+
+nlohmann::ordered_json Row(const std::vector<HandoverFigures>& all_shared,
+                           const std::vector<HandoverFigures>& all_network) {
+  const HandoverFigures shared = Median(all_shared), network = Median(all_network);
   return {{"stage", "batches handed to a learner on the same host, beside the gather"},
           {"figure", CpuPerGigabyte(shared)},
           {"unit", "s of CPU per GB"},
           {"against", "over the network"},
           {"against_figure", CpuPerGigabyte(network)},
           {"ratio", CpuPerGigabyte(shared) / CpuPerGigabyte(network)},
-          {"target", 0.05},
+          {"at_most", 0.05},
+          {"repetitions", all_shared.size()},
+          {"spread", Spread(all_shared, all_network)},
           {"replay_seconds_per_gb", shared.replay_seconds / shared.gigabytes},
           {"learner_seconds_per_gb", shared.learner_seconds / shared.gigabytes},
           {"against_replay_seconds_per_gb", network.replay_seconds / network.gigabytes},
@@ -65,10 +80,11 @@ int Run(int argc, char** argv) {
                                figures.learner_seconds / figures.gigabytes);
     }
   }
-  const nlohmann::ordered_json report{{"schema", "shoal-bench-1"},
-                                      {"commit", shoal::BuildCommit()},
-                                      {"machine", shoal::launch::DescribeMachine()},
-                                      {"rows", {Row(Median(shared), Median(network))}}};
+  const nlohmann::ordered_json report{
+      {"schema", "shoal-bench-1"},
+      {"commit", shoal::BuildCommit()},
+      {"machine", shoal::launch::DescribeMachine()},
+      {"rows", nlohmann::ordered_json::array({Row(shared, network)})}};
   std::cout << report.dump(2) << std::endl;
   return 0;
 }

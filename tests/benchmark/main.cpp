@@ -32,8 +32,8 @@ int Run(int argc, char** argv) {
 
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (const auto& pairings : {shoal::bench::ReplayPairings(), shoal::bench::NetworkPairings(),
-                               shoal::bench::PolicyPairings(), shoal::bench::TransportPairings(),
-                               shoal::bench::WorldPairings()}) {
+                               shoal::bench::LearnerPairings(), shoal::bench::PolicyPairings(),
+                               shoal::bench::TransportPairings(), shoal::bench::WorldPairings()}) {
     for (const shoal::bench::Pairing& pairing : pairings) {
       if (pairing.stage.find(only) == std::string::npos) continue;
       const auto row = shoal::bench::TimePair(pairing, repetitions, seconds);

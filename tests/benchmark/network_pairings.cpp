@@ -1,13 +1,11 @@
 #include <fmt/core.h>
 
-#include <algorithm>
-#include <cstdlib>
 #include <memory>
 #include <string>
 
-#include "common/base/random.h"
 #include "common/nn/policy.h"
 #include "learner/agent/algorithms.h"
+#include "tests/benchmark/noise_batch.h"
 #include "tests/benchmark/paired_timing.h"
 
 namespace shoal::bench {
@@ -15,46 +13,17 @@ namespace {
 
 constexpr int kActors = 4;  // environments of one actor
 
-ObservationSpec PixelSpec(int channels = 6) {
-  ObservationSpec spec;
-  spec.task = "bench";
-  spec.cameras = {"front", "side"};
-  spec.channels = channels;
-  spec.height = spec.width = 84;
-  spec.action_size = 4;
-  return spec;
-}
-
 // A batch of noise and agents of both precisions that learn from it.
 struct Learners {
-  struct Free {
-    void operator()(uint8_t* p) const { std::free(p); }
-  };
+  Learners(const Config& with, const ObservationSpec& seen) : config(with), spec(seen) {}
 
   Config config;
   ObservationSpec spec;
-  BatchSchema schema{spec, {.batch = config.learner.batch}};
-  std::unique_ptr<uint8_t, Free> memory{
-      static_cast<uint8_t*>(std::aligned_alloc(64, schema.total_bytes()))};
-  BatchView batch = schema.View(memory.get());
+  NoiseBatch noise{config, spec};
+  BatchView batch = noise.batch;
   std::unique_ptr<learner::Agent> automatic =
       learner::MakeAgent(config, spec, nn::ChoosePrecision("auto", /*pixels=*/true));
   std::unique_ptr<learner::Agent> f32 = learner::MakeAgent(config, spec, nn::Precision::kF32);
-
-  Learners(const Config& with, const ObservationSpec& seen) : config(with), spec(seen) {
-    Random random(1);
-    const auto fill = [&](auto& array, double low, double high) {
-      for (auto& x : array) {
-        x = static_cast<std::remove_reference_t<decltype(x)>>(random.Uniform(low, high));
-      }
-    };
-    fill(batch.obs_frames, 0, 256);
-    fill(batch.next_obs_frames, 0, 256);
-    fill(batch.action, -1, 1);
-    fill(batch.reward, -0.3, 0);
-    fill(batch.bootstrap, 1, 1);
-    fill(batch.weights_update, 0, 1);
-  }
 };
 
 // Large networks one at a time: made when a row asks for them, in the place of the row's before.

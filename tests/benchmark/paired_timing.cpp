@@ -27,6 +27,7 @@ double Median(std::vector<double> values) {
 }  // namespace
 
 Row TimePair(const Pairing& pairing, int repetitions, double seconds) {
+  const std::shared_ptr<void> held = pairing.meanwhile ? pairing.meanwhile() : nullptr;
   pairing.ours();
   pairing.other();
   std::vector<double> ours, other, ratios;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
@@ -24,6 +25,8 @@ struct Pairing {
   double units_per_call = 1;
   double target = 0;
   std::function<void()> ours, other;
+  // What goes on meanwhile, for as long as the result lives; empty: nothing.
+  std::function<std::shared_ptr<void>()> meanwhile{};
 };
 
 // Each side runs for about `seconds` per repetition; the first, uncounted call of each warms up.
@@ -34,6 +37,7 @@ nlohmann::ordered_json ToJson(const Row& row);
 // What is measured, one function per room.
 std::vector<Pairing> ReplayPairings();
 std::vector<Pairing> NetworkPairings();
+std::vector<Pairing> LearnerPairings();
 std::vector<Pairing> PolicyPairings();
 std::vector<Pairing> TransportPairings();
 std::vector<Pairing> WorldPairings();

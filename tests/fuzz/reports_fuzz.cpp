@@ -1,6 +1,8 @@
 // The messages that are not bulk: any bytes are refused or taken apart within their bounds, and
 // those who get the message bear with what it says. First byte: which message; the rest is
 // serialised CDR.
+#include <unistd.h>
+
 #include <nlohmann/json.hpp>
 
 #include "actor/sending/chunk_window.h"
@@ -18,6 +20,7 @@
 #include "launch/watch/prometheus_families.h"
 #include "launch/watch/run_figures.h"
 #include "launch/watch/top_table.h"
+#include "learner/slot_batches.h"
 #include "replay_server/core/replay_core.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/replay_server/record_script.h"
@@ -61,7 +64,20 @@ void Use(const SampleRequest& message) {
   core.TakeRequest(ours);
 }
 
-void Use(const BatchSlot& message) { CHECK(message.address.pid > 0); }
+// Of this process: what it has open are not slots, whatever the word says.
+void Use(const BatchSlot& message) {
+  BatchSlot ours = message;
+  ours.address.pid = getpid();
+  learner::SlotBatches batches(message.learner_session, 64);
+  CHECK(batches.Add(ours) == learner::SlotBatches::Verdict::kTaken);
+  try {
+    batches.Open(ours.request);
+    CHECK(false) << "opened";
+  } catch (const Error& e) {
+    fuzz::CheckOneLine(e.what());
+  }
+  CHECK(batches.Refuse(ours.request).size() == 1);
+}
 
 void Use(const MetricsMessage& message) {
   launch::MetricsView view;

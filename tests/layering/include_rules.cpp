@@ -22,7 +22,7 @@ const std::map<std::string, std::string> kHomes = {
     {"Eigen/", "common/nn"},    {"mujoco/", "actor/worlds"},    {"GL/", "actor/worlds"},
     {"spdlog/", "common/base"}, {"png.h", "common/image"},      {"openssl/", "common/credentials"},
     {"libav", "launch/film"},   {"libsw", "launch/film"},       {"cairo", "launch/film"},
-    {"httplib", "launch/web"},  {"pybind11/", "launch/python"},
+    {"httplib", "launch/web"},  {"pybind11/", "launch/python"}, {"hdf5", "launch/dataset"},
 };
 
 // Stands for a program of others, which knows of Shoal what the documentation says.
@@ -35,7 +35,7 @@ const std::set<std::string> kEmptyNames = {"utils", "util",    "helpers", "helpe
 const std::map<std::string, std::vector<std::string>> kRooms = {
     {"actor", {"worlds", "acting", "sending", "loop", "evaluation"}},
     {"launch",
-     {"record", "processes", "film", "watch", "run", "experiment", "report", "export",
+     {"record", "processes", "film", "watch", "run", "experiment", "report", "export", "dataset",
       "observability", "project", "web", "check", "commands", "manual", "python"}},
 };
 

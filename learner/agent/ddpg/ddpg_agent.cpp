@@ -3,8 +3,8 @@
 namespace shoal::learner {
 
 std::unique_ptr<Agent> MakeDdpgAgent(const Config& config, const ObservationSpec& spec,
-                                     nn::Precision precision) {
-  return MakeDeterministicAgent(config, spec, precision, {.critics = 1});
+                                     nn::Precision precision, nn::Replica* replica) {
+  return MakeDeterministicAgent(config, spec, precision, {.critics = 1}, replica);
 }
 
 }  // namespace shoal::learner

@@ -8,8 +8,8 @@
 
 namespace shoal::learner {
 
-// As MakeAgent.
+// As Algorithm::make_replica.
 std::unique_ptr<Agent> MakeDdpgAgent(const Config& config, const ObservationSpec& spec,
-                                     nn::Precision precision);
+                                     nn::Precision precision, nn::Replica* replica);
 
 }  // namespace shoal::learner

@@ -16,6 +16,8 @@
 #include "common/nn/parallel.h"
 #include "learner/agent/agent_state.h"
 #include "learner/agent/batch_faults.h"
+#include "learner/agent/batch_part.h"
+#include "learner/agent/critic_figures.h"
 #include "learner/agent/encoder_and_head.h"
 #include "learner/agent/losses.h"
 #include "learner/agent/sample_figures.h"
@@ -34,7 +36,7 @@ nn::ActorPlan PlanActor(const Config& config, const ObservationSpec& spec, const
 class DeterministicAgent final : public Agent {
  public:
   DeterministicAgent(const Config& config, const ObservationSpec& spec, nn::Precision precision,
-                     const DeterministicOptions& options);
+                     const DeterministicOptions& options, nn::Replica* replica);
 
   UpdateOutcome Update(const BatchView& drawn, const OnStageEnd& on_stage_end) override;
   uint64_t updates() const override { return updates_; }
@@ -60,7 +62,8 @@ class DeterministicAgent final : public Agent {
 
   const Config config_;
   const DeterministicOptions options_;
-  const int batch_size_, action_size_;  // B, A
+  nn::Replica* const replica_;
+  const int batch_size_, rows_, action_size_;  // B of the batch, b of this replica, A
   const nn::ModuleContext context_;
   const std::unique_ptr<nn::EncoderModule> encoder_;  // null without pixels
   const nn::Features* const features_;
@@ -72,19 +75,22 @@ class DeterministicAgent final : public Agent {
   uint64_t updates_ = 0;
   AgentState state_;
 
-  std::vector<float> target_action_;             // a' (B, A)
-  std::vector<float> targets_;                   // y (B)
-  std::vector<std::vector<float>> q_gradients_;  // (B) for each critic
-  std::vector<float> action_gradient_;           // (B, A)
+  std::vector<float> target_action_;             // a' (b, A)
+  std::vector<float> targets_;                   // y (b)
+  std::vector<std::vector<float>> q_gradients_;  // (b) for each critic
+  std::vector<float> action_gradient_;           // (b, A)
 };
 
 DeterministicAgent::DeterministicAgent(const Config& config, const ObservationSpec& spec,
-                                       nn::Precision precision, const DeterministicOptions& options)
+                                       nn::Precision precision, const DeterministicOptions& options,
+                                       nn::Replica* replica)
     : config_(config),
       options_(options),
+      replica_(replica),
       batch_size_(config.learner.batch),
+      rows_(replica->Rows(batch_size_)),
       action_size_(spec.action_size),
-      context_(precision, batch_size_, nn::Threads()),
+      context_(precision, rows_, replica->threads()),
       encoder_(MakeEncoder(config.network, spec, Use::kTraining, context_)),
       features_(encoder_ ? &encoder_->features() : nullptr),
       actor_(PlanActor(config, spec, "actor"), features_, /*trains_encoder=*/false, Use::kTraining,
@@ -100,8 +106,8 @@ DeterministicAgent::DeterministicAgent(const Config& config, const ObservationSp
       critic_optimiser_(SetsOf(encoder_.get(), &critic_), CriticStep(config.learner)),
       actor_optimiser_({&actor_.parameters()}, ActorStep(config.learner)),
       standard_(config.learner.normalise_vectors, spec.VectorSize()),
-      target_action_(size_t(batch_size_) * size_t(action_size_)),
-      targets_(size_t(batch_size_)),
+      target_action_(size_t(rows_) * size_t(action_size_)),
+      targets_(size_t(rows_)),
       q_gradients_(size_t(options.critics), targets_),
       action_gradient_(target_action_) {
   const auto seed = uint64_t(config.seed);
@@ -146,19 +152,20 @@ void DeterministicAgent::ComputeTargets(const BatchView& batch, Random* random,
   Encode(batch.next_obs_frames, nn::Statistics::kRunning);
   std::copy_n(target_actor_.Forward(vector).action, target_action_.size(), target_action_.begin());
   if (options_.target_noise > 0) {
-    for (float& action : target_action_) {
-      const double noise = std::clamp(options_.target_noise * random->Normal(),
+    const std::vector<double> normals = replica_->Normals(rows_, action_size_, random);
+    for (size_t i = 0; i < normals.size(); ++i) {
+      const double noise = std::clamp(options_.target_noise * normals[i],
                                       -options_.target_noise_clip, options_.target_noise_clip);
-      action = float(std::clamp(action + noise, -1.0, 1.0));
+      target_action_[i] = float(std::clamp(target_action_[i] + noise, -1.0, 1.0));
     }
   }
   target_critic_.ForwardObservation(vector);
   target_critic_.ForwardAction(target_action_.data());
   const TargetRates rates{float(config_.learner.reward_scale), float(config_.learner.discount),
                           /*temperature=*/0, ValueBoundsOf(config_.learner)};
-  MinTargets(batch_size_, batch.reward.data(), batch.bootstrap.data(), Values(target_critic_),
-             rates, targets_.data());
-  AverageCopies(batch_size_, config_.replay.copies, targets_.data());
+  MinTargets(rows_, batch.reward.data(), batch.bootstrap.data(), Values(target_critic_), rates,
+             targets_.data());
+  AverageCopies(rows_, config_.replay.copies, targets_.data());
   on_stage_end(UpdateStage::kForward);
 }
 
@@ -168,21 +175,17 @@ bool DeterministicAgent::UpdateCritic(const BatchView& batch, const OnStageEnd& 
   Encode(batch.obs_frames, nn::Statistics::kBatch);
   critic_.ForwardObservation(batch.obs_vector.data());
   critic_.ForwardAction(batch.action.data());
-  const CriticLoss loss = CriticLossForward(batch_size_, Values(critic_), targets_.data());
   on_stage_end(UpdateStage::kForward);
   for (int i = 0; i < options_.critics; ++i) {
-    CriticLossBackward(batch_size_, critic_.q(i), targets_.data(), q_gradients_[size_t(i)].data());
+    CriticLossBackward(rows_, critic_.q(i), targets_.data(), q_gradients_[size_t(i)].data());
   }
   critic_.Backward(q_gradients_);
   if (encoder_) encoder_->Backward();
+  replica_->AverageGradients(critic_optimiser_.sets());
   const double squares = critic_optimiser_.GradientSquares();
+  const float loss = SetCriticFigures(replica_, Values(critic_), targets_, squares, figures);
   on_stage_end(UpdateStage::kBackward);
-  figures->Set(kCriticLoss, loss.loss);
-  figures->Set(kQMean, loss.q_mean);
-  figures->Set(kTargetMean, loss.target_mean);
-  figures->Set(kCriticGradNorm, std::sqrt(squares));
-  AddValueFigures(batch_size_, Values(critic_), figures);
-  if (!Usable(loss.loss, squares)) return false;
+  if (!Usable(loss, squares)) return false;
   critic_optimiser_.Step();
   RefreshCritic();
   on_stage_end(UpdateStage::kOptimiser);
@@ -197,20 +200,24 @@ bool DeterministicAgent::UpdateActor(const BatchView& batch, const OnStageEnd& o
   const float* action = actor_.Forward(vector).action;
   critic_.ForwardObservation(vector);
   critic_.ForwardAction(action);
-  const float loss = DeterministicActorLoss(batch_size_, critic_.q(0));
+  const float own_loss = DeterministicActorLoss(rows_, critic_.q(0));
   int64_t saturated = 0;
   for (size_t i = 0; i < action_gradient_.size(); ++i) saturated += std::abs(action[i]) > 0.99f;
   on_stage_end(UpdateStage::kForward);
   // The others are no part of the loss.
   std::vector<std::vector<float>> gradients(size_t(options_.critics));
-  gradients[0].assign(size_t(batch_size_), -1.f / float(batch_size_));
+  gradients[0].assign(size_t(rows_), -1.f / float(rows_));
   critic_.BackwardAction(gradients, action_gradient_.data());
   actor_.Backward(action_gradient_.data());
+  replica_->AverageGradients(actor_optimiser_.sets());
   const double squares = actor_optimiser_.GradientSquares();
+  const std::vector<double> means =
+      replica_->Means({own_loss, double(saturated) / double(action_gradient_.size())});
+  const auto loss = float(means[0]);
   on_stage_end(UpdateStage::kBackward);
   figures->Set(kActorLoss, loss);
   figures->Set(kActorGradNorm, std::sqrt(squares));
-  figures->Set(kActionSaturation, double(saturated) / double(action_gradient_.size()));
+  figures->Set(kActionSaturation, means[1]);
   if (!Usable(loss, squares)) return false;
   actor_optimiser_.Step();
   actor_.Refresh();
@@ -233,7 +240,7 @@ UpdateOutcome DeterministicAgent::Update(const BatchView& drawn, const OnStageEn
   const nn::ThreadScope scope(context_.threads);
   UpdateOutcome outcome{.figures = {}, .finite = AllFinite(drawn)};
   if (!outcome.finite) return outcome;
-  const BatchView batch = standard_.Seen(drawn);
+  const BatchView batch = PartOf(standard_.Seen(drawn), replica_->rank(), replica_->count());
   Random random(StreamKey(uint64_t(config_.seed), StreamRole::kLearnerUpdate, updates_));
   ComputeTargets(batch, &random, on_stage_end);
   outcome.finite = UpdateCritic(batch, on_stage_end, &outcome.figures);
@@ -271,8 +278,9 @@ nn::TensorMap DeterministicAgent::AveragedPolicyTensors() const {
 
 std::unique_ptr<Agent> MakeDeterministicAgent(const Config& config, const ObservationSpec& spec,
                                               nn::Precision precision,
-                                              const DeterministicOptions& options) {
-  return std::make_unique<DeterministicAgent>(config, spec, precision, options);
+                                              const DeterministicOptions& options,
+                                              nn::Replica* replica) {
+  return std::make_unique<DeterministicAgent>(config, spec, precision, options, replica);
 }
 
 }  // namespace shoal::learner

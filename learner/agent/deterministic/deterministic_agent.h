@@ -19,6 +19,7 @@
 
 #include "common/config/config.h"
 #include "common/nn/precision.h"
+#include "common/nn/replica.h"
 #include "common/spec/observation_spec.h"
 #include "learner/agent/agent.h"
 #include "learner/agent/sample_figures.h"
@@ -31,8 +32,8 @@ struct DeterministicOptions {
   double target_noise = 0, target_noise_clip = 0;
 };
 
-// In the order of an update; the actor's only where the update moves the actor.
-// The last two need a second critic.
+// In the order of an update; the actor's only where the update moves the actor. The last two need a
+// second critic.
 inline constexpr const Figure* kTwinFigures[] = {
     &kCriticLoss,       &kQMean,  &kTargetMean, &kCriticGradNorm, &kActorLoss, &kActorGradNorm,
     &kActionSaturation, &kQ1Mean, &kQ1Std,      &kQMinMean,       &kQMinStd,   &kQMinMin,
@@ -40,9 +41,11 @@ inline constexpr const Figure* kTwinFigures[] = {
 inline constexpr std::span<const Figure* const> kSingleCriticFigures =
     std::span(kTwinFigures).first(std::size(kTwinFigures) - 2);
 
-// Takes batch, seed, discount, reward scale, rates and periods from `config`.
+// One replica, which it borrows, or the only one. Takes batch, seed, discount, reward scale, rates
+// and periods from `config`.
 std::unique_ptr<Agent> MakeDeterministicAgent(const Config& config, const ObservationSpec& spec,
                                               nn::Precision precision,
-                                              const DeterministicOptions& options);
+                                              const DeterministicOptions& options,
+                                              nn::Replica* replica);
 
 }  // namespace shoal::learner

@@ -15,6 +15,9 @@
 // encoder as 2 has left it. An asymmetric critic (learner.critic_blocks) has vectors of its own and
 // no encoder; the actor's is trained in 3. Where the encoder is trained, learner.aux joins in (Eq.
 // 27).
+//
+// One of several replicas sees its rows of the batch; 2 and 3 end with gradients and figures of all
+// of it.
 #include "learner/agent/sac/sac_agent.h"
 
 #include <array>
@@ -27,6 +30,8 @@
 #include "common/nn/parallel.h"
 #include "learner/agent/agent_state.h"
 #include "learner/agent/batch_faults.h"
+#include "learner/agent/batch_part.h"
+#include "learner/agent/critic_figures.h"
 #include "learner/agent/critic_vectors.h"
 #include "learner/agent/losses.h"
 #include "learner/agent/sac/sac_networks.h"
@@ -39,7 +44,8 @@ namespace {
 
 class SacAgent final : public Agent {
  public:
-  SacAgent(const Config& config, const ObservationSpec& spec, nn::Precision precision);
+  SacAgent(const Config& config, const ObservationSpec& spec, nn::Precision precision,
+           nn::Replica* replica);
 
   UpdateOutcome Update(const BatchView& drawn, const OnStageEnd& on_stage_end) override;
   uint64_t updates() const override { return updates_; }
@@ -55,12 +61,15 @@ class SacAgent final : public Agent {
     standard_.ExportTo(&parameters);
     return parameters;
   }
-  // A batch as it was drawn, and as the networks see it.
+  // This replica's rows of a batch as they were drawn, and as the networks see them.
   struct Seen {
-    const BatchView& drawn;
+    BatchView drawn;
     BatchView batch;
     CriticVectors::Vectors of_critic;
   };
+  // Actions of the Gaussian with new noise, into gaussian_.
+  void Draw(const float* mean, const float* log_std, Random* random);
+  void ForwardBackwardAux(const Seen& seen, UpdateFigures* figures);
   void ComputeTargets(const Seen& seen, float temperature, Random* random,
                       const OnStageEnd& on_stage_end);
   bool UpdateCritic(const Seen& seen, const OnStageEnd& on_stage_end, UpdateFigures* figures);
@@ -68,7 +77,8 @@ class SacAgent final : public Agent {
                    const OnStageEnd& on_stage_end, UpdateFigures* figures);
 
   const Config config_;
-  const int batch_size_;  // B
+  nn::Replica* const replica_;
+  const int batch_size_, rows_, action_size_;  // B of the batch, b of this replica, A
   const float target_entropy_;
   const ValueBounds bounds_;
   const int threads_;
@@ -79,26 +89,30 @@ class SacAgent final : public Agent {
   AgentState state_;
 
   SquashedGaussian gaussian_;
-  std::vector<float> targets_;                                             // y (B)
-  std::array<std::vector<float>, 2> q_gradients_;                          // (B)
-  std::vector<float> action_gradient_, mean_gradient_, log_std_gradient_;  // (B, A)
+  std::vector<float> targets_;                                             // y (b)
+  std::array<std::vector<float>, 2> q_gradients_;                          // (b)
+  std::vector<float> action_gradient_, mean_gradient_, log_std_gradient_;  // (b, A)
 };
 
-SacAgent::SacAgent(const Config& config, const ObservationSpec& spec, nn::Precision precision)
+SacAgent::SacAgent(const Config& config, const ObservationSpec& spec, nn::Precision precision,
+                   nn::Replica* replica)
     : config_(config),
+      replica_(replica),
       batch_size_(config.learner.batch),
+      rows_(replica->Rows(batch_size_)),
+      action_size_(spec.action_size),
       target_entropy_(float(config.learner.target_entropy == 0 ? -spec.action_size
                                                                : config.learner.target_entropy)),
       bounds_(ValueBoundsOf(config.learner)),
-      threads_(nn::Threads()),
-      networks_(config, spec, precision, threads_),
+      threads_(replica->threads()),
+      networks_(config, spec, precision, replica),
       standard_(config.learner.normalise_vectors, spec.VectorSize(),
                 PrivilegedSize(config.learner, spec)),
       critic_vectors_(config.learner, spec),
-      gaussian_(batch_size_, spec.action_size),
-      targets_(size_t(batch_size_)),
+      gaussian_(rows_, spec.action_size),
+      targets_(size_t(rows_)),
       q_gradients_{targets_, targets_},
-      action_gradient_(size_t(batch_size_) * size_t(spec.action_size)),
+      action_gradient_(size_t(rows_) * size_t(spec.action_size)),
       mean_gradient_(action_gradient_),
       log_std_gradient_(action_gradient_) {
   networks_.AddTo(&state_);
@@ -106,19 +120,30 @@ SacAgent::SacAgent(const Config& config, const ObservationSpec& spec, nn::Precis
   state_.Add(&updates_, "agent.updates");
 }
 
+void SacAgent::Draw(const float* mean, const float* log_std, Random* random) {
+  const std::vector<double> normals = replica_->Normals(rows_, action_size_, random);
+  const std::vector<float> noise(normals.begin(), normals.end());
+  gaussian_.Transform(mean, log_std, noise.data());
+}
+
+void SacAgent::ForwardBackwardAux(const Seen& seen, UpdateFigures* figures) {
+  const double square = networks_.ForwardBackwardAux(seen.drawn);
+  figures->Set(kAuxError, std::sqrt(replica_->Means({square})[0]));
+}
+
 void SacAgent::ComputeTargets(const Seen& seen, float temperature, Random* random,
                               const OnStageEnd& on_stage_end) {
   const BatchView& batch = seen.batch;
   networks_.EncodeNext(batch.next_obs_frames.data());
   const auto [mean, log_std] = networks_.ForwardActor(batch.next_obs_vector.data());
-  gaussian_.Sample(mean, log_std, random);
+  Draw(mean, log_std, random);
   const auto [q0, q1] = networks_.ForwardTarget(seen.of_critic.next_obs, gaussian_.action());
   const TargetInputs inputs{
       batch.reward.data(), batch.bootstrap.data(), {q0, q1}, gaussian_.log_prob()};
   const TargetRates rates{float(config_.learner.reward_scale), float(config_.learner.discount),
                           temperature, bounds_};
-  TdTargets(batch_size_, inputs, rates, targets_.data());
-  AverageCopies(batch_size_, config_.replay.copies, targets_.data());
+  TdTargets(rows_, inputs, rates, targets_.data());
+  AverageCopies(rows_, config_.replay.copies, targets_.data());
   on_stage_end(UpdateStage::kForward);
 }
 
@@ -128,21 +153,14 @@ bool SacAgent::UpdateCritic(const Seen& seen, const OnStageEnd& on_stage_end,
   const BatchView& batch = seen.batch;
   networks_.Encode(batch.obs_frames.data());
   const auto [q0, q1] = networks_.ForwardCritic(seen.of_critic.obs, batch.action.data());
-  const CriticLoss loss = CriticLossForward(batch_size_, q0, q1, targets_.data());
   on_stage_end(UpdateStage::kForward);
-  CriticLossBackward(batch_size_, q0, targets_.data(), q_gradients_[0].data());
-  CriticLossBackward(batch_size_, q1, targets_.data(), q_gradients_[1].data());
-  if (networks_.Aux(SacNetworks::Head::kCritic)) {
-    figures->Set(kAuxError, networks_.ForwardBackwardAux(seen.drawn));
-  }
+  CriticLossBackward(rows_, q0, targets_.data(), q_gradients_[0].data());
+  CriticLossBackward(rows_, q1, targets_.data(), q_gradients_[1].data());
+  if (networks_.Aux(SacNetworks::Head::kCritic)) ForwardBackwardAux(seen, figures);
   const double squares = networks_.BackwardCritic(q_gradients_);
+  const float loss = SetCriticFigures(replica_, std::array{q0, q1}, targets_, squares, figures);
   on_stage_end(UpdateStage::kBackward);
-  figures->Set(kCriticLoss, loss.loss);
-  figures->Set(kQMean, loss.q_mean);
-  figures->Set(kTargetMean, loss.target_mean);
-  figures->Set(kCriticGradNorm, std::sqrt(squares));
-  AddValueFigures(batch_size_, std::array{q0, q1}, figures);
-  if (!Usable(loss.loss, squares)) return false;
+  if (!Usable(loss, squares)) return false;
   networks_.StepCritic();
   on_stage_end(UpdateStage::kOptimiser);
   return true;
@@ -154,25 +172,25 @@ bool SacAgent::UpdateActor(const Seen& seen, float temperature, Random* random,
                            const OnStageEnd& on_stage_end, UpdateFigures* figures) {
   networks_.EncodeForActor(seen.batch.obs_frames.data());
   const auto [mean, log_std] = networks_.ForwardActor(seen.batch.obs_vector.data());
-  gaussian_.Sample(mean, log_std, random);
+  Draw(mean, log_std, random);
   const auto [q0, q1] = networks_.ForwardCritic(seen.of_critic.obs, gaussian_.action());
-  const float loss = ActorLossForward(batch_size_, gaussian_.log_prob(), q0, q1, temperature);
+  const float own_loss = ActorLossForward(rows_, gaussian_.log_prob(), q0, q1, temperature);
   on_stage_end(UpdateStage::kForward);
-  ActorLossBackward(batch_size_, q0, q1, q_gradients_[0].data(), q_gradients_[1].data());
+  ActorLossBackward(rows_, q0, q1, q_gradients_[0].data(), q_gradients_[1].data());
   networks_.BackwardAction(q_gradients_, action_gradient_.data());
-  gaussian_.Backward(action_gradient_.data(), temperature / float(batch_size_),
-                     mean_gradient_.data(), log_std_gradient_.data());
-  if (networks_.Aux(SacNetworks::Head::kActor)) {
-    figures->Set(kAuxError, networks_.ForwardBackwardAux(seen.drawn));
-  }
+  gaussian_.Backward(action_gradient_.data(), temperature / float(rows_), mean_gradient_.data(),
+                     log_std_gradient_.data());
+  if (networks_.Aux(SacNetworks::Head::kActor)) ForwardBackwardAux(seen, figures);
   const double squares = networks_.BackwardActor(mean_gradient_.data(), log_std_gradient_.data());
+  const std::vector<double> means =
+      replica_->Means({own_loss, gaussian_.Entropy(), gaussian_.Saturation()});
   on_stage_end(UpdateStage::kBackward);
-  const float entropy = gaussian_.Entropy();
+  const auto loss = float(means[0]), entropy = float(means[1]);
   const float temperature_loss = TemperatureLoss(temperature, entropy, target_entropy_);
   figures->Set(kActorLoss, loss);
   figures->Set(kTemperatureLoss, temperature_loss);
   figures->Set(kEntropy, entropy);
-  figures->Set(kActionSaturation, gaussian_.Saturation());
+  figures->Set(kActionSaturation, means[2]);
   figures->Set(kActorGradNorm, std::sqrt(squares));
   if (!Usable(loss, squares) || !std::isfinite(temperature_loss)) return false;
   networks_.StepActor();
@@ -188,8 +206,9 @@ UpdateOutcome SacAgent::Update(const BatchView& drawn, const OnStageEnd& on_stag
   const nn::ThreadScope scope(threads_);
   UpdateOutcome outcome{.figures = {}, .finite = AllFinite(drawn)};
   if (!outcome.finite) return outcome;
-  const BatchView batch = standard_.Seen(drawn);
-  const Seen seen{drawn, batch, critic_vectors_.Of(batch)};
+  const int rank = replica_->rank(), count = replica_->count();
+  const BatchView batch = PartOf(standard_.Seen(drawn), rank, count);
+  const Seen seen{PartOf(drawn, rank, count), batch, critic_vectors_.Of(batch)};
 
   Random random(StreamKey(uint64_t(config_.seed), StreamRole::kLearnerUpdate, updates_));
   const float temperature = networks_.Temperature();
@@ -221,9 +240,8 @@ void SacAgent::Restore(const nn::TensorMap& tensors, const std::string& source) 
 }  // namespace
 
 std::unique_ptr<Agent> MakeSacAgent(const Config& config, const ObservationSpec& spec,
-                                    nn::Precision precision) {
-  const nn::ThreadScope scope(nn::Threads());  // layers are built in the size they run in
-  return std::make_unique<SacAgent>(config, spec, precision);
+                                    nn::Precision precision, nn::Replica* replica) {
+  return std::make_unique<SacAgent>(config, spec, precision, replica);
 }
 
 }  // namespace shoal::learner

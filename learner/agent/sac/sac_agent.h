@@ -6,6 +6,7 @@
 
 #include "common/config/config.h"
 #include "common/nn/precision.h"
+#include "common/nn/replica.h"
 #include "common/spec/observation_spec.h"
 #include "learner/agent/agent.h"
 #include "learner/agent/sample_figures.h"
@@ -27,8 +28,8 @@ inline constexpr const Figure* kSacFigures[] = {
     &kQ1Std,         &kQ2Mean,          &kQ2Std,      &kQMinMean,
     &kQMinStd,       &kQMinMin,         &kQMinMax};
 
-// As MakeAgent.
+// As Algorithm::make_replica.
 std::unique_ptr<Agent> MakeSacAgent(const Config& config, const ObservationSpec& spec,
-                                    nn::Precision precision);
+                                    nn::Precision precision, nn::Replica* replica);
 
 }  // namespace shoal::learner

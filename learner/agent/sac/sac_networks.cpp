@@ -32,8 +32,9 @@ nn::HeadPlan CriticPlan(const Config& config, const ObservationSpec& spec, const
 }  // namespace
 
 SacNetworks::SacNetworks(const Config& config, const ObservationSpec& spec, nn::Precision precision,
-                         int threads)
-    : context_(precision, config.learner.batch, threads),
+                         nn::Replica* replica)
+    : replica_(replica),
+      context_(precision, replica->Rows(config.learner.batch), replica->threads()),
       asymmetric_(bool(config.learner.critic_blocks)),
       encoder_(MakeEncoder(config.network, spec, Module::Use::kTraining, context_)),
       critic_encoder_(Separate(config) ? MakeEncoder(config.network, spec, Module::Use::kTraining,
@@ -137,6 +138,7 @@ double SacNetworks::ForwardBackwardAux(const BatchView& drawn) {
 double SacNetworks::BackwardCritic(const QGradients& q_gradients) {
   critic_.Backward(q_gradients);
   if (CriticEncoder() != nullptr) CriticEncoder()->Backward();
+  replica_->AverageGradients(critic_optimiser_.sets());
   return critic_optimiser_.GradientSquares();
 }
 
@@ -147,6 +149,7 @@ void SacNetworks::BackwardAction(const QGradients& q_gradients, float* action_gr
 double SacNetworks::BackwardActor(const float* mean_gradient, const float* log_std_gradient) {
   actor_.Backward(mean_gradient, log_std_gradient);
   if (ActorTrains()) encoder_->Backward();
+  replica_->AverageGradients(actor_optimiser_.sets());
   return actor_optimiser_.GradientSquares();
 }
 

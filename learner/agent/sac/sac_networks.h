@@ -15,8 +15,9 @@
 //
 // learner.aux: aux.*, trained together with the encoder, by a loss of its own beside the other.
 //
-// Dimensions: B batch, A actions, V vector size, K*C channels. Arrays are row-major f32; a result
-// is valid until the function that returned it is called again.
+// Dimensions: B batch (of several replicas: the rows of this one), A actions, V vector size, K*C
+// channels. Arrays are row-major f32; a result is valid until the function that returned it is
+// called again.
 #pragma once
 
 #include <array>
@@ -30,6 +31,7 @@
 #include "common/nn/adam.h"
 #include "common/nn/critic_module.h"
 #include "common/nn/encoder_module.h"
+#include "common/nn/replica.h"
 #include "common/nn/safetensors.h"
 #include "common/spec/observation_spec.h"
 #include "learner/agent/agent_state.h"
@@ -40,9 +42,10 @@ namespace shoal::learner {
 // Not movable. One thread; passes over parameters use the current nn::ThreadScope.
 class SacNetworks {
  public:
-  // Batch, seed, learning rates, clipping and initial temperature of `config`.
+  // Seed, learning rates, clipping and initial temperature of `config`; the replica's rows of its
+  // batch. Borrows the replica, over which gradients are averaged.
   SacNetworks(const Config& config, const ObservationSpec& spec, nn::Precision precision,
-              int threads);
+              nn::Replica* replica);
   SacNetworks(const SacNetworks&) = delete;
   SacNetworks& operator=(const SacNetworks&) = delete;
 
@@ -74,7 +77,7 @@ class SacNetworks {
   // of its latest forward pass and before its backward pass. Nothing without it.
   enum class Head { kCritic, kActor };
   bool Aux(Head head) const { return aux_ && (head == Head::kActor) == ActorTrains(); }
-  // Root mean square error of the labels: AuxLoss::ForwardBackward. CHECK: there is one.
+  // Mean square error of the labels: AuxLoss::ForwardBackward. CHECK: there is one.
   double ForwardBackwardAux(const BatchView& drawn);
 
   using QGradients = std::array<std::vector<float>, 2>;  // dL/dq_i (B)
@@ -115,6 +118,7 @@ class SacNetworks {
   std::vector<nn::ParameterSet*> ActorSets();
   void RefreshCritic();
 
+  nn::Replica* const replica_;
   const nn::ModuleContext context_;
   const bool asymmetric_;  // the critic sees no pixels
   // Null without pixels: the policy's, which is the critic's, too, unless that has its own.

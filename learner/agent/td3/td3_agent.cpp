@@ -3,10 +3,11 @@
 namespace shoal::learner {
 
 std::unique_ptr<Agent> MakeTd3Agent(const Config& config, const ObservationSpec& spec,
-                                    nn::Precision precision) {
+                                    nn::Precision precision, nn::Replica* replica) {
   return MakeDeterministicAgent(
       config, spec, precision,
-      {.critics = 2, .target_noise = kTd3TargetNoise, .target_noise_clip = kTd3TargetNoiseClip});
+      {.critics = 2, .target_noise = kTd3TargetNoise, .target_noise_clip = kTd3TargetNoiseClip},
+      replica);
 }
 
 }  // namespace shoal::learner

@@ -12,8 +12,8 @@ namespace shoal::learner {
 // clipped to.
 inline constexpr double kTd3TargetNoise = 0.2, kTd3TargetNoiseClip = 0.5;
 
-// As MakeAgent.
+// As Algorithm::make_replica.
 std::unique_ptr<Agent> MakeTd3Agent(const Config& config, const ObservationSpec& spec,
-                                    nn::Precision precision);
+                                    nn::Precision precision, nn::Replica* replica);
 
 }  // namespace shoal::learner

@@ -47,6 +47,15 @@ TEST(CustomCamera, SurvivesBeingWrittenAndReadAndIsPartOfTheRunsIdentity) {
   EXPECT_THAT(DescribeKeys(), HasSubstr("observation.custom_cameras"));
 }
 
+TEST(CustomCamera, MayBeMountedOnABody) {
+  const Config config = Applied(R"({"hand": {"lookat": [0, 0, 0], "distance": 1, "azimuth": 0,
+                                       "elevation": 0, "body": "palm"}})");
+  EXPECT_EQ(config.observation.custom_cameras.at("hand").body, "palm");
+  Config again;
+  ApplyJson(nlohmann::json::parse(ToJson(config).dump()), "again", &again);
+  EXPECT_EQ(again.observation.custom_cameras, config.observation.custom_cameras);
+}
+
 TEST(CustomCamera, CanBeGivenWithSet) {
   Config config;
   ApplyAssignments({R"(observation.custom_cameras={"top": )" + std::string(kTop) + "}"}, &config);
@@ -66,6 +75,8 @@ TEST(CustomCamera, AnythingWrongIsRefusedNamingTheKeyAndWhatItTakes) {
       R"({"top": {"lookat": [0, 0, 0], "distance": 1, "azimuth": "left", "elevation": 0}})",
       R"({"top": {"lookat": [0, 0, 0], "distance": 1, "azimuth": 0, "elevation": 91}})",
       R"({"top": {"lookat": [0, 0, 0], "distance": 1, "azimuht": 0, "elevation": 0}})",
+      R"({"top": {"lookat": [0, 0, 0], "distance": 1, "azimuth": 0, "elevation": 0, "body": ""}})",
+      R"({"top": {"lookat": [0, 0, 0], "distance": 1, "azimuth": 0, "elevation": 0, "body": 1}})",
   };
   for (const char* cameras : wrong) {
     EXPECT_THAT(Complaint(cameras), testing::AllOf(HasSubstr("observation.custom_cameras"),

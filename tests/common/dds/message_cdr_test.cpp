@@ -216,13 +216,17 @@ TEST(MessageCdr, ARequestReleasesOnlyWhatCameBeforeIt) {
   EXPECT_FALSE(IsTaken(request));
 }
 
-TEST(MessageCdr, ASlotLiesInADescriptorOfAProcess) {
+TEST(MessageCdr, ASlotLiesInADescriptorOfAProcessAndHasAToken) {
   BatchSlot slot;
   Fill(3, &slot);
   EXPECT_TRUE(IsTaken(slot));
   slot.address.descriptor = -1;
   EXPECT_FALSE(IsTaken(slot));
-  slot.address = {.pid = 0, .descriptor = 3};
+  slot.address.descriptor = 3;
+  slot.address.pid = 0;
+  EXPECT_FALSE(IsTaken(slot));
+  slot.address.pid = 3;
+  slot.address.token[0] = 0;  // would mean no token
   EXPECT_FALSE(IsTaken(slot));
 }
 

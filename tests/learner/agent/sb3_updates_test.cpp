@@ -40,13 +40,15 @@ class Sb3UpdatesTest : public testing::TestWithParam<Case> {
       recording_.AddMlp("critic.q" + std::to_string(i + 1), "critic.qf" + std::to_string(i));
       recording_.AddMlp("target.q" + std::to_string(i + 1), "critic_target.qf" + std::to_string(i));
     }
-    agent_ = MakeDeterministicAgent(config_, spec_, nn::Precision::kF32, GetParam().options);
+    agent_ =
+        MakeDeterministicAgent(config_, spec_, nn::Precision::kF32, GetParam().options, &alone_);
     agent_->Restore(recording_.WithTheirWeights(agent_->AllTensors()), "test");
   }
 
   Sb3Recording recording_;
   ObservationSpec spec_;
   Config config_;
+  nn::Replica alone_;
   std::unique_ptr<Agent> agent_;
 };
 

@@ -1,0 +1,17 @@
+// How many threads learn, and whether the batch can be shared among them.
+#pragma once
+
+#include "common/config/config.h"
+
+namespace shoal {
+
+// learner.threads, or where it is 0 half of `cores`, at least 1. Off policy, where threads are
+// replicas as a rule: the largest number up to there that leaves each an equal part of the batch of
+// at least 16 rows; without pixels 1, as updates are too short to wait for each other.
+int LearnerThreads(const Config& config, int cores);
+
+// Throws Error (kUsage) naming the numbers that would fit unless so many replicas can share
+// learner.batch: in equal parts that split no replay.copies of one transition.
+void CheckReplicas(const Config& config, int replicas);
+
+}  // namespace shoal

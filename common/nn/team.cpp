@@ -1,0 +1,63 @@
+#include "common/nn/team.h"
+
+#include <chrono>
+
+#include "common/base/check.h"
+#include "common/base/clock.h"
+
+namespace shoal::nn {
+namespace {
+
+// Measured with updates of 15 ms (compact, batch 128): spins of 5, 50 and 300 us gave 1.2, 1.4 and
+// 1.5 times the updates of one thread on idle cores, and no difference beside a busy one.
+constexpr std::chrono::microseconds kSpin{200};
+constexpr int kLooksPerClock = 16;  // reading the clock is dearer than looking
+
+}  // namespace
+
+void Barrier::ArriveAndWait() {
+  const uint32_t round = round_.load(std::memory_order_acquire);
+  if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == parties_) {
+    arrived_.store(0, std::memory_order_relaxed);  // published by the next round's number
+    round_.store(round + 1, std::memory_order_release);
+    round_.notify_all();  // no system call where nobody sleeps
+    return;
+  }
+  const SteadyTime until = Now() + kSpin;
+  do {
+    for (int i = 0; i < kLooksPerClock; ++i) {
+      if (round_.load(std::memory_order_acquire) != round) return;
+      __builtin_ia32_pause();
+    }
+  } while (Now() < until);
+  while (round_.load(std::memory_order_acquire) == round) round_.wait(round);
+}
+
+Team::Team(int ranks) : start_(ranks), end_(ranks) {
+  CHECK(ranks > 0) << ranks << " ranks";
+  for (int rank = 1; rank < ranks; ++rank) threads_.emplace_back([this, rank] { Serve(rank); });
+}
+
+Team::~Team() {
+  body_ = nullptr;
+  start_.ArriveAndWait();
+  for (std::thread& thread : threads_) thread.join();
+}
+
+void Team::Run(const std::function<void(int rank)>& body) {
+  body_ = &body;
+  start_.ArriveAndWait();
+  body(0);
+  end_.ArriveAndWait();
+}
+
+void Team::Serve(int rank) {
+  for (;;) {
+    start_.ArriveAndWait();
+    if (body_ == nullptr) return;
+    (*body_)(rank);
+    end_.ArriveAndWait();
+  }
+}
+
+}  // namespace shoal::nn

@@ -1,0 +1,30 @@
+#include "learner/agent/critic_figures.h"
+
+#include <cmath>
+#include <vector>
+
+#include "learner/agent/losses.h"
+#include "learner/agent/sample_figures.h"
+
+namespace shoal::learner {
+
+float SetCriticFigures(nn::Replica* replica, std::span<const float* const> q,
+                       std::span<const float> y, double gradient_squares, UpdateFigures* figures) {
+  std::vector<std::span<const float>> own;
+  for (const float* values : q) own.emplace_back(values, y.size());
+  own.push_back(y);
+  const std::vector<std::vector<float>> whole = replica->Whole(own);
+  std::vector<const float*> whole_q;
+  for (size_t i = 0; i < q.size(); ++i) whole_q.push_back(whole[i].data());
+  const std::vector<float>& whole_y = whole.back();
+  const auto batch = int(whole_y.size());
+  const CriticLoss loss = CriticLossForward(batch, whole_q, whole_y.data());
+  figures->Set(kCriticLoss, loss.loss);
+  figures->Set(kQMean, loss.q_mean);
+  figures->Set(kTargetMean, loss.target_mean);
+  figures->Set(kCriticGradNorm, std::sqrt(gradient_squares));
+  AddValueFigures(batch, whole_q, figures);
+  return loss.loss;
+}
+
+}  // namespace shoal::learner

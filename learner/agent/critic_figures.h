@@ -1,0 +1,17 @@
+// What a critic's loss says about a whole batch, of which a replica has seen its rows.
+#pragma once
+
+#include <span>
+
+#include "common/nn/replica.h"
+#include "learner/agent/update_figures.h"
+
+namespace shoal::learner {
+
+// q_i of one Q function or more and targets y, each (b) of the replica's rows; gradient_squares:
+// the sum over the averaged gradients. Sets the figures from the critic's loss to AddValueFigures
+// and returns the loss; both are the same in all replicas.
+float SetCriticFigures(nn::Replica* replica, std::span<const float* const> q,
+                       std::span<const float> y, double gradient_squares, UpdateFigures* figures);
+
+}  // namespace shoal::learner

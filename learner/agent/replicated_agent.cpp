@@ -1,0 +1,67 @@
+#include "learner/agent/replicated_agent.h"
+
+#include <algorithm>
+#include <deque>
+#include <vector>
+
+#include "common/base/check.h"
+#include "common/nn/actor_critic_plan.h"
+#include "common/nn/parallel.h"
+#include "common/nn/team.h"
+
+namespace shoal::learner {
+namespace {
+
+class ReplicatedAgent final : public Agent {
+ public:
+  ReplicatedAgent(int replicas, const MakeReplica& make) : exchange_(replicas), team_(replicas) {
+    for (int rank = 0; rank < replicas; ++rank) {
+      replicas_.push_back(replicas == 1 ? nn::Replica() : nn::Replica(&exchange_, rank));
+      const nn::ThreadScope scope(replicas_.back().threads());  // built in the size they run in
+      agents_.push_back(make(&replicas_.back()));
+    }
+  }
+
+  // Stages are the first replica's, whose thread is the caller's.
+  UpdateOutcome Update(const BatchView& batch, const OnStageEnd& on_stage_end) override {
+    std::vector<UpdateOutcome> outcomes(agents_.size());
+    team_.Run([&](int rank) {
+      outcomes[size_t(rank)] = agents_[size_t(rank)]->Update(
+          batch, rank == 0 ? on_stage_end : [](UpdateStage) {});
+    });
+    for (const UpdateOutcome& outcome : outcomes) {
+      CHECK(outcome.finite == outcomes[0].finite) << "replicas disagree";
+    }
+    return std::move(outcomes[0]);
+  }
+  uint64_t updates() const override { return agents_[0]->updates(); }
+  nn::TensorMap PolicyTensors() const override { return agents_[0]->PolicyTensors(); }
+  nn::TensorMap AveragedPolicyTensors() const override {
+    return agents_[0]->AveragedPolicyTensors();
+  }
+  nn::TensorMap AllTensors() const override { return agents_[0]->AllTensors(); }
+  // What the first one refuses has changed none.
+  void Restore(const nn::TensorMap& tensors, const std::string& source) override {
+    for (const auto& agent : agents_) agent->Restore(tensors, source);
+  }
+
+ private:
+  nn::Exchange exchange_;
+  std::deque<nn::Replica> replicas_;
+  std::vector<std::unique_ptr<Agent>> agents_;
+  nn::Team team_;
+};
+
+}  // namespace
+
+std::unique_ptr<Agent> MakeReplicatedAgent(int replicas, const MakeReplica& make) {
+  return std::make_unique<ReplicatedAgent>(replicas, make);
+}
+
+bool NormalisesOverBatch(const NetworkConfig& network, const ObservationSpec& spec) {
+  return spec.HasPixels() &&
+         std::ranges::any_of(nn::PlanEncoder(network, spec).layers(),
+                             [](const nn::LayerPlan& layer) { return !layer.batch_norm.empty(); });
+}
+
+}  // namespace shoal::learner

@@ -1,0 +1,28 @@
+// Whole episodes in a ring: from the reset to the record that ended them. For `shoal replay
+// export`.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "replay_server/core/ring.h"
+
+namespace shoal::replay {
+
+struct StoredEpisodes {
+  // Record ids, reset first; the episode that ended first comes first.
+  std::vector<std::vector<uint64_t>> whole;
+  uint64_t overwritten = 0;  // their first records are gone; at most one per environment, as a rule
+  uint64_t unended = 0;      // go on, or were cut: neither terminated nor truncated
+};
+
+// Every record of the ring belongs to one of the episodes counted or listed. Of a snapshot, too,
+// that a server is writing to: ask CopyEpisode for the records.
+StoredEpisodes FindEpisodes(const Ring& ring);
+
+// The records of an episode one after the other, layout().record_bytes() each; nothing where a
+// server has overwritten one of them since.
+std::optional<std::vector<uint8_t>> CopyEpisode(const Ring& ring, const std::vector<uint64_t>& ids);
+
+}  // namespace shoal::replay

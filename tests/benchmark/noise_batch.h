@@ -1,0 +1,58 @@
+// A batch of noise that agents of the default task learn from.
+#pragma once
+
+#include <cstdlib>
+#include <memory>
+#include <type_traits>
+
+#include "common/base/random.h"
+#include "common/config/config.h"
+#include "common/spec/observation_spec.h"
+#include "common/wire/batch_schema.h"
+
+namespace shoal::bench {
+
+// Two cameras' frames of 84x84, `channels` together.
+inline ObservationSpec PixelSpec(int channels = 6) {
+  ObservationSpec spec;
+  spec.task = "bench";
+  spec.cameras = {"front", "side"};
+  spec.channels = channels;
+  spec.height = spec.width = 84;
+  spec.action_size = 4;
+  return spec;
+}
+
+// Not movable: the schema is borrowed.
+struct NoiseBatch {
+  struct Free {
+    void operator()(uint8_t* p) const { std::free(p); }
+  };
+
+  NoiseBatch(const Config& config, const ObservationSpec& spec)
+      : schema(spec, {.batch = config.learner.batch}) {
+    Random random(1);
+    const auto fill = [&](auto& array, double low, double high) {
+      for (auto& x : array) {
+        x = static_cast<std::remove_reference_t<decltype(x)>>(random.Uniform(low, high));
+      }
+    };
+    fill(batch.obs_frames, 0, 256);
+    fill(batch.next_obs_frames, 0, 256);
+    fill(batch.obs_vector, -1, 1);
+    fill(batch.next_obs_vector, -1, 1);
+    fill(batch.action, -1, 1);
+    fill(batch.reward, -0.3, 0);
+    fill(batch.bootstrap, 1, 1);
+    fill(batch.weights_update, 0, 1);
+  }
+  NoiseBatch(const NoiseBatch&) = delete;
+  NoiseBatch& operator=(const NoiseBatch&) = delete;
+
+  BatchSchema schema;
+  std::unique_ptr<uint8_t, Free> memory{
+      static_cast<uint8_t*>(std::aligned_alloc(64, schema.total_bytes()))};
+  BatchView batch = schema.View(memory.get());
+};
+
+}  // namespace shoal::bench

@@ -1,0 +1,60 @@
+#include "common/config/learner_threads.h"
+
+#include <gmock/gmock.h>
+
+#include "common/base/error.h"
+
+namespace shoal {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+Config Of(int threads, int batch, int copies = 1) {
+  Config config;
+  config.learner.threads = threads;
+  config.learner.batch = batch;
+  config.replay.copies = copies;
+  return config;
+}
+
+TEST(LearnerThreads, AreThoseAskedForWhateverTheCores) {
+  EXPECT_EQ(LearnerThreads(Of(3, 128), 2), 3);
+}
+
+TEST(LearnerThreads, AreHalfTheCoresAsFarAsTheyShareTheBatch) {
+  EXPECT_EQ(LearnerThreads(Of(0, 128), 1), 1);
+  EXPECT_EQ(LearnerThreads(Of(0, 128), 5), 2);
+  EXPECT_EQ(LearnerThreads(Of(0, 128), 8), 4);
+  EXPECT_EQ(LearnerThreads(Of(0, 128), 6), 2) << "three cannot";
+  EXPECT_EQ(LearnerThreads(Of(0, 96), 6), 3);
+  EXPECT_EQ(LearnerThreads(Of(0, 96, /*copies=*/32), 8), 3) << "three transitions with copies";
+  EXPECT_EQ(LearnerThreads(Of(0, 128), 64), 8) << "of 16 rows each";
+  EXPECT_EQ(LearnerThreads(Of(0, 8), 64), 1);
+}
+
+TEST(LearnerThreads, IsOneWithoutPixels) {
+  Config config = Of(0, 128);
+  config.observation.pixels = false;
+  EXPECT_EQ(LearnerThreads(config, 8), 1);
+}
+
+TEST(LearnerThreads, OfAnOnPolicyRunAreHalfTheCores) {
+  Config config = Of(0, 64);
+  config.learner.algorithm = "ppo";
+  EXPECT_EQ(LearnerThreads(config, 6), 3);
+}
+
+TEST(CheckReplicas, RefusesWhatWouldSplitUnequallyAndSaysWhatFits) {
+  EXPECT_NO_THROW(CheckReplicas(Of(0, 128), 4));
+  EXPECT_NO_THROW(CheckReplicas(Of(0, 6, 2), 3));
+  EXPECT_THAT([] { CheckReplicas(Of(0, 128), 3); },
+              ThrowsMessage<Error>(AllOf(HasSubstr("learner.threads = 3"), HasSubstr("2 or 4"))));
+  EXPECT_THAT([] { CheckReplicas(Of(0, 4, 2), 4); },
+              ThrowsMessage<Error>(AllOf(HasSubstr("4 / 2 = 2"), HasSubstr("such as 2:"))))
+      << "a transition's copies stay together";
+}
+
+}  // namespace
+}  // namespace shoal

@@ -1,0 +1,38 @@
+// The parts of a page in Markdown that tests look at. Knows what the pages here use: fenced blocks,
+// also within lists, spans of code, headings with #, links and images in one line.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace shoal {
+
+struct Span {
+  int line = 0;  // from 1
+  std::string text;
+};
+
+struct Block {
+  int line = 0;          // of its first line of content
+  std::string language;  // "sh"; may be empty
+  std::vector<std::string> lines;
+};
+
+struct Page {
+  std::string file;  // from the root: "docs/install.md"
+  std::vector<Block> blocks;
+  std::vector<Span> headings;  // as written, without the #
+  std::vector<Span> code;      // `...` outside of blocks
+  std::vector<Span> links;     // targets
+};
+
+Page ParsePage(const std::string& file, const std::string& text);
+
+// README.md, CHANGELOG.md and every page below docs, by name.
+std::vector<Page> ReadPages(const std::filesystem::path& root);
+
+// The names by which links reach the page's headings, as GitHub makes them.
+std::vector<std::string> AnchorsOf(const Page& page);
+
+}  // namespace shoal

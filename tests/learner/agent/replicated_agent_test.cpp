@@ -1,0 +1,231 @@
+// Several replicas are the agent that one would be, within rounding, and the same bits each time.
+#include "learner/agent/replicated_agent.h"
+
+#include <gmock/gmock.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "common/base/error.h"
+#include "common/nn/parallel.h"
+#include "learner/agent/sac/sac_agent.h"
+#include "tests/learner/agent/agent_fixture.h"
+
+namespace shoal::learner {
+namespace {
+
+using nn::Precision;
+using nn::TensorMap;
+using testing::HasSubstr;
+using testing::IsEmpty;
+using testing::Not;
+using testing::ThrowsMessage;
+
+struct Case {
+  std::string name;
+  std::function<void(Config*)> set;
+};
+
+void PrintTo(const Case& each, std::ostream* out) { *out << each.name; }
+
+// Whose policy sees the frames and the goal alone.
+ObservationSpec Spec() {
+  ObservationSpec spec = SmallSpec();
+  spec.blocks.push_back({"object", 2, /*observed=*/false});
+  return spec;
+}
+
+class ReplicatedAgentTest : public testing::TestWithParam<Case> {
+ protected:
+  ReplicatedAgentTest() {
+    config_.learner.actor_period = config_.learner.target_period = 1;
+    GetParam().set(&config_);
+  }
+  ~ReplicatedAgentTest() override { nn::SetThreads(1); }
+
+  std::unique_ptr<Agent> Of(int replicas) const {
+    nn::SetThreads(replicas);
+    return MakeAgent(config_, Spec(), Precision::kF32);
+  }
+  RandomBatch Batch(uint64_t key) const {
+    const bool told = !config_.learner.aux.empty() || config_.learner.critic_blocks;
+    return {Spec(),
+            BatchOptions{.batch = config_.learner.batch,
+                         .copies = config_.replay.copies,
+                         .privileged = told ? std::vector<std::string>{"object"}
+                                            : std::vector<std::string>{}},
+            key};
+  }
+  UpdateOutcome Update(Agent* agent, uint64_t key) const {
+    return agent->Update(Batch(key).View());
+  }
+
+  Config config_ = SmallConfig();
+};
+
+// Targets as after many updates, so that each network is seen where it belongs. Gradients are read
+// off Adam's first moments, which were 0 before.
+TEST_P(ReplicatedAgentTest, GradientsAndFiguresAreThoseOfTheWholeBatch) {
+  const TensorMap start = Perturbed(Of(1)->AllTensors(), "target");
+  for (const int replicas : {2, 3}) {
+    if (config_.learner.batch / config_.replay.copies % replicas != 0) continue;
+    const auto one = Of(1), several = Of(replicas);
+    one->Restore(start, "test");
+    several->Restore(start, "test");
+    const UpdateOutcome expected = Update(one.get(), 3), got = Update(several.get(), 3);
+    ASSERT_EQ(got.figures.entries().size(), expected.figures.entries().size());
+    for (size_t i = 0; i < got.figures.entries().size(); ++i) {
+      const auto &figure = got.figures.entries()[i], &other = expected.figures.entries()[i];
+      EXPECT_EQ(figure.figure, other.figure);
+      EXPECT_NEAR(figure.value, other.value, 1e-5 + 1e-5 * std::abs(other.value))
+          << figure.figure->name;
+    }
+    const TensorMap after = several->AllTensors(), reference = one->AllTensors();
+    size_t compared = 0;
+    for (const auto& [name, tensor] : reference) {
+      if (!name.starts_with("adam.m.")) continue;
+      const std::vector<float> x = Floats(reference, name), y = Floats(after, name);
+      float most = 0;
+      for (const float value : x) most = std::max(most, std::abs(value));
+      EXPECT_GT(most, 0) << name;
+      for (size_t j = 0; j < x.size(); ++j, ++compared) {
+        ASSERT_NEAR(y[j], x[j], 1e-5f * most + 1e-8f) << name << " " << replicas;
+      }
+    }
+    EXPECT_GT(compared, 500u);
+  }
+}
+
+TEST_P(ReplicatedAgentTest, RunsRepeatBitForBitAndGoOnFromACheckpoint) {
+  const auto a = Of(2), b = Of(2), restored = Of(2);
+  for (uint64_t u = 0; u < 3; ++u) {
+    ASSERT_TRUE(Update(a.get(), u).finite);
+    ASSERT_TRUE(Update(b.get(), u).finite);
+  }
+  EXPECT_THAT(Differences(a->AllTensors(), b->AllTensors()), IsEmpty());
+  restored->Restore(a->AllTensors(), "test");
+  EXPECT_EQ(restored->updates(), 3u);
+  for (uint64_t u = 3; u < 6; ++u) {
+    Update(a.get(), u);
+    Update(restored.get(), u);
+  }
+  EXPECT_THAT(Differences(a->AllTensors(), restored->AllTensors()), IsEmpty());
+}
+
+const Case kCases[] = {
+    {"sac", [](Config*) {}},
+    {"sac_with_copies",
+     [](Config* config) {
+       config->learner.batch = 12;
+       config->replay.copies = 2;
+     }},
+    {"sac_with_further_encoders",
+     [](Config* config) {
+       config->network.encoders = "separate";
+       config->network.target_encoder = true;
+     }},
+    {"sac_told_more",
+     [](Config* config) {
+       config->learner.critic_blocks = true;
+       config->learner.aux = {"object"};
+       config->learner.normalise_vectors = true;
+     }},
+    {"sac_clipped", [](Config* config) { config->learner.max_grad_norm = 0.1; }},
+    {"td3", [](Config* config) { config->learner.algorithm = "td3"; }},
+    {"ddpg", [](Config* config) { config->learner.algorithm = "ddpg"; }},
+};
+
+INSTANTIATE_TEST_SUITE_P(Of, ReplicatedAgentTest, testing::ValuesIn(kCases),
+                         [](const auto& test) { return test.param.name; });
+
+// With access to each.
+class Replicas {
+ public:
+  explicit Replicas(int count, const Config& config = SmallConfig())
+      : whole(MakeReplicatedAgent(count, [&](nn::Replica* replica) {
+          auto agent = MakeSacAgent(config, SmallSpec(), Precision::kF32, replica);
+          each.push_back(agent.get());
+          return agent;
+        })) {}
+
+  std::vector<Agent*> each;
+  const std::unique_ptr<Agent> whole;
+};
+
+TEST(ReplicatedAgent, ReplicasStayEqualBitForBit) {
+  const Replicas replicas(3);
+  const TensorMap before = replicas.whole->AllTensors();
+  for (uint64_t u = 0; u < 10; ++u) {
+    const RandomBatch batch(SmallSpec(), SmallConfig().learner.batch, u);
+    ASSERT_TRUE(replicas.whole->Update(batch.View()).finite);
+  }
+  const TensorMap after = replicas.whole->AllTensors();
+  EXPECT_THAT(Differences(before, after), Not(IsEmpty()));
+  for (const Agent* agent : replicas.each) {
+    EXPECT_THAT(Differences(agent->AllTensors(), after), IsEmpty());
+  }
+}
+
+TEST(ReplicatedAgent, WhatOneReplicaCannotUseChangesNone) {
+  const Replicas replicas(2);
+  const TensorMap before = replicas.whole->AllTensors();
+  const RandomBatch batch(SmallSpec(), SmallConfig().learner.batch, 9);
+  batch.View().reward[5] = 1e25f;  // of the second; its squared error is not finite
+  EXPECT_FALSE(replicas.whole->Update(batch.View()).finite);
+  batch.View().reward[5] = std::nanf("");
+  EXPECT_FALSE(replicas.whole->Update(batch.View()).finite);
+  for (const Agent* agent : replicas.each) {
+    EXPECT_THAT(Differences(agent->AllTensors(), before), IsEmpty());
+  }
+  batch.View().reward[5] = 0;
+  EXPECT_TRUE(replicas.whole->Update(batch.View()).finite) << "and it goes on";
+}
+
+// The actor's loss shows a step of the critic that must be taken back, in all replicas.
+TEST(ReplicatedAgent, NonFiniteActorLossTakesTheCriticsStepBackInAll) {
+  Config config = SmallConfig();
+  config.learner.learning_rate = 1e37;
+  const Replicas replicas(2, config);
+  const TensorMap before = replicas.whole->AllTensors();
+  const RandomBatch batch(SmallSpec(), config.learner.batch, 1);
+  const UpdateOutcome outcome = replicas.whole->Update(batch.View());
+  EXPECT_TRUE(std::isfinite(Get(outcome, kCriticLoss)));
+  EXPECT_FALSE(outcome.finite);
+  for (const Agent* agent : replicas.each) {
+    EXPECT_THAT(Differences(agent->AllTensors(), before), IsEmpty());
+  }
+}
+
+TEST(ReplicatedAgent, ACheckpointIsOfNoNumberOfReplicas) {
+  const Replicas one(1), three(3);
+  const RandomBatch batch(SmallSpec(), SmallConfig().learner.batch, 4);
+  ASSERT_TRUE(one.whole->Update(batch.View()).finite);
+  three.whole->Restore(one.whole->AllTensors(), "test");
+  EXPECT_EQ(three.whole->updates(), 1u);
+  for (const Agent* agent : three.each) {
+    EXPECT_THAT(Differences(agent->AllTensors(), one.whole->AllTensors()), IsEmpty());
+  }
+}
+
+TEST(ReplicasOf, AreOneWhereTheWholeBatchHasToStayTogether) {
+  Config config = SmallConfig();
+  EXPECT_EQ(ReplicasOf(config, SmallSpec(), 2), 2);
+  EXPECT_EQ(DescribeThreads(config, SmallSpec(), 2, 4), "2 threads, a replica each");
+  EXPECT_EQ(DescribeThreads(config, SmallSpec(), 3, 2),
+            "3 threads, a replica each, more than there are cores");
+  EXPECT_THAT([&] { ReplicasOf(config, SmallSpec(), 4); },
+              ThrowsMessage<Error>(HasSubstr("learner.threads = 4")));
+  config.network.encoder = "resnet18";
+  config.network.filters.clear();
+  config.network.strides.clear();
+  EXPECT_EQ(ReplicasOf(config, SmallSpec(), 4), 1);
+  EXPECT_EQ(DescribeThreads(config, SmallSpec(), 2, 2),
+            "2 threads that share each layer: resnet18 normalises over the batch");
+  config.learner.algorithm = "ppo";
+  EXPECT_EQ(DescribeThreads(config, SmallSpec(), 2, 2),
+            "2 threads that share each layer: ppo knows no replicas");
+  EXPECT_EQ(DescribeThreads(config, SmallSpec(), 1, 2), "1 thread");
+}
+
+}  // namespace
+}  // namespace shoal::learner
