@@ -87,7 +87,8 @@ void Use(const MetricsMessage& message) {
   for (double& value : next.values) value += 1;
   view.OnMessage(next, now);
   launch::CollectFigures(view, now);
-  launch::FormatBottleneck(launch::FindBottleneck(view, 2, 2));
+  launch::FormatBottleneck(
+      launch::FindBottleneck(launch::TotalsOf(view), {.usable_cores = 2, .actors = 2}));
   CHECK(view.Reports(now).size() == 1);
   const std::filesystem::path file = fuzz::Scratch() / "metrics.jsonl";
   fuzz::WriteScratch(file, "");
