@@ -93,12 +93,12 @@ TEST(Observability, EachCameraAndEachPairHasARow) {
   int told = 0;
   const Observability result = MeasureObservability(
       request, [&](const ObservabilityRow&) { ++told; }, Never);
-  ASSERT_EQ(result.rows.size(), 4u + 6u);  // front, side, close, gymnasium
-  EXPECT_EQ(told, 10);
-  EXPECT_EQ(result.rows[4].cameras, (std::vector<std::string>{"front", "side"}));
-  EXPECT_EQ(ToJson(result).at("rows").size(), 10u);
-  EXPECT_THAT(ToText(request, result.rows[4]), HasSubstr("front,side"));
-  EXPECT_THAT(ToText(request, result.rows[4]), HasSubstr(" mm (the mean alone: "));
+  ASSERT_EQ(result.rows.size(), 5u + 10u);  // front, side, close, gymnasium, wrist
+  EXPECT_EQ(told, 15);
+  EXPECT_EQ(result.rows[5].cameras, (std::vector<std::string>{"front", "side"}));
+  EXPECT_EQ(ToJson(result).at("rows").size(), 15u);
+  EXPECT_THAT(ToText(request, result.rows[5]), HasSubstr("front,side"));
+  EXPECT_THAT(ToText(request, result.rows[5]), HasSubstr(" mm (the mean alone: "));
 }
 
 TEST(Observability, WhatIsNotThereIsNamed) {
