@@ -8,15 +8,12 @@
 #include "common/base/saturating_cast.h"
 #include "common/base/stop.h"
 #include "common/base/usable_cores.h"
-#include "common/dds/metrics_publisher.h"
 #include "common/dds/publisher.h"
-#include "common/wire/metrics_report.h"
 #include "launch/processes/ordered_stop.h"
 #include "launch/processes/process_plan.h"
 #include "launch/processes/suspension.h"
 #include "launch/record/evaluations.h"
 #include "launch/record/kept_checkpoints.h"
-#include "launch/record/metrics_log.h"
 #include "launch/run/best_evaluation.h"
 #include "launch/run/command_handler.h"
 #include "launch/run/evaluation_intake.h"
@@ -24,8 +21,7 @@
 #include "launch/run/live_settings.h"
 #include "launch/run/run_inbox.h"
 #include "launch/run/run_progress.h"
-#include "launch/watch/metrics_view.h"
-#include "launch/watch/run_figures.h"
+#include "launch/run/run_watch.h"
 #include "launch/watch/scalar_log.h"
 
 namespace shoal::launch {
@@ -56,8 +52,7 @@ struct Coordinator::Impl {
   Impl(const std::filesystem::path& folder, const RunConfig& run_config, dds::Bus& bus,
        const RunMeta& before, const std::vector<RemoteHost>& remote_hosts, OperatorDesk& run_desk,
        Progress& shown)
-      : own_bus(bus),
-        run(folder),
+      : run(folder),
         config(run_config.config),
         hosts(remote_hosts),
         settings(config),
@@ -68,11 +63,10 @@ struct Coordinator::Impl {
         rule(config),
         evaluations(config.eval.episodes, run_progress,
                     [this](const std::string& line) { progress.Say(line); }),
-        log(run / "metrics.jsonl", MetricsLogLimits()),
+        watch(folder, bus, [this](const std::string& line) { progress.Say(line); }),
         scalars(run),
         supervisor(RestartLimits(), HangLimits(),
                    [this](const std::string& line) { progress.Say(line); }),
-        own_report("coordinator", 0),
         control(bus),
         inbox(bus) {
     settings.Restore(meta.changes);
@@ -103,7 +97,9 @@ struct Coordinator::Impl {
   uint64_t EnvSteps() const { return std::max(meta.env_steps, run_progress.stored_steps()); }
 
   // Since this coordinator's start.
-  uint64_t Resends() const { return SaturatingCast<uint64_t>(view.Total("actor", "resends")); }
+  uint64_t Resends() const {
+    return SaturatingCast<uint64_t>(watch.view().Total("actor", "resends"));
+  }
 
   RunResult Run(const std::function<void()>& on_started);
   std::string WaitForEnd(const std::function<void()>& on_started);
@@ -118,8 +114,6 @@ struct Coordinator::Impl {
   void Tick(bool last = false);
   // Says that the run was suspended, or why it was not.
   void SaySuspensions();
-  // Once a second: what the figures of late are made of.
-  void LookBack();
   ProgressFigures Figures(SteadyTime now) const;
   void ShowView(const ProgressFigures& figures, SteadyTime now);
   void Heartbeat(SteadyTime now);
@@ -135,7 +129,6 @@ struct Coordinator::Impl {
   // evaluation arrives.
   bool Settled() const;
 
-  const dds::Bus& own_bus;
   const std::filesystem::path run;
   const Config config;  // as the run was started
   const std::vector<RemoteHost> hosts;
@@ -151,13 +144,9 @@ struct Coordinator::Impl {
   FlatScore flat;
   std::optional<EvaluationPoint> last_evaluation;
   std::vector<ProcessSpec> plan;  // as started; `shoal scale` may have changed the actors since
-  MetricsView view;
-  RecentRun recent;
-  Bottleneck lately;
-  MetricsLog log;
+  RunWatch watch;
   ScalarLog scalars;
   Supervisor supervisor;
-  MetricsReport own_report;
   dds::Publisher<ControlMessage> control;
   RunInbox inbox;
 
@@ -167,7 +156,6 @@ struct Coordinator::Impl {
   bool stop_asked = false;  // by a command
   bool meta_due = false;    // something happened that it records
   const int usable_cores = UsableCores();
-  uint64_t dropped_said = 0;  // messages dropped by the inboxes
   int suspensions_said = Suspensions(), refusals_said = RefusedSuspensions();
   int stops_before_end = 0;  // Ctrl-C's that had been answered when the ordered stop began
 };
@@ -199,7 +187,7 @@ RunResult Coordinator::Impl::Run(const std::function<void()>& on_started) {
   scalars.WriteEnd(meta.exit != "failed");
   return {.meta = meta,
           .clean = supervisor.unclean_exits().empty(),
-          .bottleneck = FindBottleneck(TotalsOf(view), Resources())};
+          .bottleneck = FindBottleneck(TotalsOf(watch.view()), Resources())};
 }
 
 std::string Coordinator::Impl::WaitForEnd(const std::function<void()>& on_started) {
@@ -222,7 +210,7 @@ std::string Coordinator::Impl::WaitForEnd(const std::function<void()>& on_starte
 bool Coordinator::Impl::Started() const {
   return std::ranges::all_of(plan, [this](const ProcessSpec& spec) {
     const bool retired = spec.role == "actor" && spec.id >= settings.config().actors;
-    return retired || view.Heard(spec.role, static_cast<uint32_t>(spec.id));
+    return retired || watch.view().Heard(spec.role, static_cast<uint32_t>(spec.id));
   });
 }
 
@@ -309,10 +297,12 @@ void Coordinator::Impl::Tick(bool last) {
     Fail(e.what());
   }
   const bool view_due = last || desk.Due(now);
-  if (view_due) LookBack();
+  if (view_due) {
+    watch.LookBack(Elapsed(), EnvSteps(), Resources());
+  }
   const ProgressFigures figures = Figures(now);
   try {
-    scalars.WriteRollouts(view, figures, now);
+    scalars.WriteRollouts(watch.view(), figures, now);
   } catch (const Error& e) {
     Fail(e.what());
   }
@@ -324,7 +314,7 @@ void Coordinator::Impl::Tick(bool last) {
 void Coordinator::Impl::SaySuspensions() {
   if (Suspensions() != suspensions_said) {
     suspensions_said = Suspensions();
-    recent.Forget(Elapsed());
+    watch.Forget(Elapsed());
     progress.Resume();
     progress.Say("goes on after a pause (Ctrl-Z)");
   }
@@ -335,22 +325,14 @@ void Coordinator::Impl::SaySuspensions() {
       "--resume goes on with it");
 }
 
-void Coordinator::Impl::LookBack() {
-  recent.Add({.seconds = Elapsed(),
-              .env_steps = static_cast<double>(EnvSteps()),
-              .updates = view.Get("learner", 0, "updates")},
-             TotalsOf(view));
-  lately = FindBottleneck(recent.Totals(), Resources());
-}
-
 ProgressFigures Coordinator::Impl::Figures(SteadyTime now) const {
-  ProgressFigures figures = CollectFigures(view, now);
+  ProgressFigures figures = watch.Reported(now);
   figures.run = config.run_name;
   figures.state = ToString(order.state);
   figures.elapsed_seconds = Elapsed();
   figures.env_steps = EnvSteps();
   figures.budget = static_cast<uint64_t>(settings.config().env_steps);
-  AddLately(recent, lately, &figures);
+  watch.AddLately(&figures);
   figures.last_evaluation = last_evaluation;
   figures.best = meta.best;
   figures.processes = supervisor.Running("");
@@ -358,31 +340,16 @@ ProgressFigures Coordinator::Impl::Figures(SteadyTime now) const {
   return figures;
 }
 
-// The coordinator's own report is made here: it watches itself as it does the others.
 void Coordinator::Impl::ShowView(const ProgressFigures& figures, SteadyTime now) {
-  own_report.Begin(figures.state);
-  AddRunFigures(figures, &own_report);
-  AddOrders(settings.config(), Resources(), &own_report);
-  const uint64_t dropped = inbox.dropped();
-  own_report.Add("messages_dropped", static_cast<double>(dropped));
-  if (dropped > dropped_said) {
-    progress.Say(fmt::format("{} report(s) dropped: they came faster than they were read",
-                             dropped - std::exchange(dropped_said, dropped)));
-  }
-  own_report.Add("metrics_lines_left_out", static_cast<double>(log.lines_left_out()));
-  own_report.Add("evaluations_repeated", static_cast<double>(evaluations.repeated()));
-  own_report.Add("evaluations_refused", static_cast<double>(evaluations.refused()));
-  own_report.Add("reports_refused", static_cast<double>(inbox.refused()));
-  MetricsMessage own = own_report.message();
-  dds::AddMalformed(own_bus, &own);
-  log.Write(own);
-  AddShares(lately, &own);  // for who watches; the file has what they are made of
-  view.OnMessage(own, now);
+  const CoordinatorCounts counts{.messages_dropped = inbox.dropped(),
+                                 .reports_refused = inbox.refused(),
+                                 .evaluations_repeated = evaluations.repeated(),
+                                 .evaluations_refused = evaluations.refused()};
   RunViewMessage shown;
   shown.state = figures.state;
   shown.env_steps = figures.env_steps;
   shown.updates = meta.updates;
-  shown.processes = view.Reports(now);
+  shown.processes = watch.Reports(figures, settings.config(), Resources(), counts, now);
   desk.Show(std::move(shown), now);
 }
 
@@ -394,11 +361,8 @@ void Coordinator::Impl::Heartbeat(SteadyTime now) {
 
 void Coordinator::Impl::TakeMessages(SteadyTime now) {
   for (const MetricsMessage& message : inbox.TakeReports()) {
-    view.OnMessage(message, now);
+    watch.OnReport(message, now);
     supervisor.Heard(message.role, static_cast<int>(message.id), message.pid, now);
-    if (!log.Write(message)) {
-      progress.Say("metrics.jsonl cannot be written any more (disk full or size limit)");
-    }
     scalars.WriteTraining(message, now);
   }
   for (const ReplayProgress& word : inbox.TakeReplayProgress()) run_progress.OnReplay(word);

@@ -1,0 +1,61 @@
+#include "launch/run/run_watch.h"
+
+#include <fmt/core.h>
+
+#include <utility>
+
+#include "common/dds/metrics_publisher.h"
+#include "launch/watch/run_totals.h"
+
+namespace shoal::launch {
+
+RunWatch::RunWatch(const std::filesystem::path& run, const dds::Bus& bus,
+                   std::function<void(const std::string&)> say)
+    : bus_(bus),
+      say_(std::move(say)),
+      log_(run / "metrics.jsonl", MetricsLogLimits()),
+      own_report_("coordinator", 0) {}
+
+void RunWatch::OnReport(const MetricsMessage& report, SteadyTime now) {
+  view_.OnMessage(report, now);
+  if (!log_.Write(report)) {
+    say_("metrics.jsonl cannot be written any more (disk full or size limit)");
+  }
+}
+
+void RunWatch::LookBack(double seconds, uint64_t env_steps, const RunResources& resources) {
+  recent_.Add({.seconds = seconds,
+               .env_steps = static_cast<double>(env_steps),
+               .updates = view_.Get("learner", 0, "updates")},
+              TotalsOf(view_));
+  lately_ = FindBottleneck(recent_.Totals(), resources);
+}
+
+std::vector<MetricsMessage> RunWatch::Reports(const ProgressFigures& figures, const Config& config,
+                                              const RunResources& resources,
+                                              const CoordinatorCounts& counts, SteadyTime now) {
+  own_report_.Begin(figures.state);
+  AddRunFigures(figures, &own_report_);
+  AddOrders(config, resources, &own_report_);
+  const auto add = [this](const char* name, uint64_t count) {
+    own_report_.Add(name, static_cast<double>(count));
+  };
+  add("messages_dropped", counts.messages_dropped);
+  add("metrics_lines_left_out", log_.lines_left_out());
+  add("evaluations_repeated", counts.evaluations_repeated);
+  add("evaluations_refused", counts.evaluations_refused);
+  add("reports_refused", counts.reports_refused);
+  if (counts.messages_dropped > dropped_said_) {
+    const uint64_t former = std::exchange(dropped_said_, counts.messages_dropped);
+    say_(fmt::format("{} report(s) dropped: they came faster than they were read",
+                     counts.messages_dropped - former));
+  }
+  MetricsMessage own = own_report_.message();
+  dds::AddMalformed(bus_, &own);
+  log_.Write(own);
+  AddShares(lately_, &own);  // for who watches; the file has what they are made of
+  view_.OnMessage(own, now);
+  return view_.Reports(now);
+}
+
+}  // namespace shoal::launch
