@@ -96,7 +96,8 @@ void CheckHost(const RemoteHost& host, const StopQuestion& stop) {
   RunOrThrow(fmt::format("host {}: {}", host.name, program),
              Through(host, ShellLine({program, "--version"})), "", output, stop);
   const std::string version = LastLine(output);
-  if (version != BuildVersion()) {
+  // The release counts; commits may differ.
+  if (!version.starts_with(fmt::format("shoal-actor {} ", BuildVersion()))) {
     throw RuntimeError("host {}: {} has version '{}', this program has '{}'", host.name, program,
                        version, BuildVersion());
   }

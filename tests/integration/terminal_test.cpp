@@ -61,9 +61,10 @@ TEST(Terminal, CtrlCLeavesNothingOfItsEchoInTheLinesThatFollow) {
 TEST(Terminal, CtrlZPausesEveryProcessOfTheRun) {
   const TrainingRun run;
   TerminalProgram training(run.Command(kLong));
-  const json view = WaitForView(run, Learns);
+  // Coordinator, replay, learner, actor, evaluation actor.
+  const json view =
+      WaitForView(run, [](const json& v) { return Learns(v) && PidsOf(v).size() == 5; });
   ASSERT_TRUE(view.is_object()) << training.shown();
-  ASSERT_EQ(PidsOf(view).size(), 5u);
   training.Type(kCtrlZ);
   EXPECT_TRUE(WaitUntilStopped(PidsOf(view), true));
   const ProgramResult top = RunShoal(run, {"top", "--once", "--run", "run"});

@@ -64,11 +64,15 @@ TEST(ShellLine, KeepsWordsApartWhateverIsInThem) {
 }
 
 TEST_F(RemoteHostTest, AHostIsGoodWhenItsProgramHasOurVersion) {
-  InstallProgram(std::string("echo ") + BuildVersion());
+  const std::string release = BuildVersion();
+  InstallProgram("echo 'shoal-actor " + release + " (another commit)'");
   CheckHost(host_, Never);
-  InstallProgram("echo 9.9.9");
-  EXPECT_THAT(Mistake([&] { CheckHost(host_, Never); }),
-              AllOf(HasSubstr("host far"), HasSubstr("'9.9.9'"), HasSubstr(BuildVersion())));
+  for (const std::string& other : {std::string("9.9.9"), release + "9"}) {
+    const std::string said = "shoal-actor " + other + " (x)";
+    InstallProgram("echo '" + said + "'");
+    EXPECT_THAT(Mistake([&] { CheckHost(host_, Never); }),
+                AllOf(HasSubstr("host far"), HasSubstr("'" + said + "'"), HasSubstr(release)));
+  }
 }
 
 TEST_F(RemoteHostTest, AHostThatCannotBeReachedIsNamedWithItsLastWord) {
