@@ -1,6 +1,8 @@
 #include <fmt/chrono.h>
 #include <openssl/err.h>
 
+#include <utility>
+
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/credentials/credentials.h"
@@ -58,6 +60,25 @@ void CheckCredentials(const fs::path& folder, const std::string& role, std::time
   if (X509_check_private_key(certificate.get(), key.get()) != 1) {
     ERR_clear_error();
     throw RuntimeError("'{}' is not the key of certificate '{}'", key_file.string(), file.string());
+  }
+}
+
+void CheckRights(const fs::path& folder, const RoleRights& rights) {
+  const fs::path file = folder / (rights.role + ".p7s");
+  const std::string permissions = ReadFile(file);
+  for (const auto& [verb, topics] : {std::pair(std::string("publish"), rights.publishes),
+                                     std::pair(std::string("subscribe"), rights.subscribes)}) {
+    const size_t begin = permissions.find("<" + verb + ">");
+    const size_t end = permissions.find("</" + verb + ">");
+    const std::string part =
+        begin < end && end != std::string::npos ? permissions.substr(begin, end - begin) : "";
+    for (const std::string& topic : topics) {
+      if (part.find("<topic>" + topic + "</topic>") != std::string::npos) continue;
+      throw RuntimeError(
+          "'{}' does not let the role {} topic '{}', another version made it: make others with "
+          "shoal secure init",
+          file.string(), verb, topic);
+    }
   }
 }
 

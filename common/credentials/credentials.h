@@ -45,5 +45,8 @@ std::array<std::filesystem::path, 5> CredentialFiles(const std::filesystem::path
 // own.
 void CheckCredentials(const std::filesystem::path& folder, const std::string& role,
                       std::time_t now);
+// Throws Error naming file and topic when the role's credentials do not permit one of the topics,
+// as those made by a version that did not have it.
+void CheckRights(const std::filesystem::path& folder, const RoleRights& rights);
 
 }  // namespace shoal

@@ -257,6 +257,7 @@ void CheckRunCredentials(const std::string& secure) {
   for (const RoleRights& rights : dds::AllRoleRights()) {
     if (rights.role == "client") continue;
     CheckCredentials(secure, rights.role, std::time(nullptr));
+    CheckRights(secure, rights);
   }
 }
 

@@ -57,6 +57,24 @@ TEST_F(CredentialsTest, PermitARoleItsTopicsAndNoOthers) {
   EXPECT_EQ(ReadFile(folder_ / "learner.p7s").find("<subscribe>"), std::string::npos);
 }
 
+TEST_F(CredentialsTest, ATopicThatTheyDoNotPermitIsNamedWithTheFile) {
+  const auto mistake = [&](const RoleRights& rights) -> std::string {
+    try {
+      CheckRights(folder_, rights);
+    } catch (const Error& e) {
+      return e.what();
+    }
+    return "no error";
+  };
+  EXPECT_EQ(mistake({"actor", {"transitions"}, {"credit"}}), "no error");
+  EXPECT_EQ(mistake({"learner", {}, {}}), "no error");
+  EXPECT_THAT(mistake({"actor", {"transitions", "slots"}, {}}),
+              AllOf(HasSubstr("actor.p7s"), HasSubstr("publish topic 'slots'"),
+                    HasSubstr("shoal secure init")));
+  EXPECT_THAT(mistake({"actor", {}, {"transitions"}}), HasSubstr("subscribe topic 'transitions'"));
+  EXPECT_THAT(mistake({"learner", {}, {"credit"}}), HasSubstr("subscribe topic 'credit'"));
+}
+
 TEST_F(CredentialsTest, AnExistingFolderIsNotOverwritten) {
   const std::string before = ReadFile(folder_ / "ca.pem");
   try {
