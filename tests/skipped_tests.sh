@@ -52,6 +52,7 @@ explained() {
     "needs root, iproute2 and network namespaces")
       ((EUID != 0)) || ! command -v ip >/dev/null || ! can_unshare --net
       ;;
+    "unshare: no process numbers"*) ! can_unshare --pid --fork --mount-proc ;;
     unshare:* | mount* | loopback:*) ! can_unshare --mount --net ;;
     "no writable memory control group"*) ! can_limit_memory ;;
     "needs CAP_NET_RAW") ! has_capability 13 ;;

@@ -26,6 +26,7 @@
 #include "common/wire/scoped_seconds.h"
 #include "replay_server/core/replay_core.h"
 #include "replay_server/service/batch_sender.h"
+#include "replay_server/service/dds_part_writer.h"
 #include "replay_server/service/flow_ages.h"
 #include "replay_server/service/learner_slots.h"
 #include "replay_server/service/problem_log.h"
@@ -41,19 +42,6 @@ constexpr uint32_t kReplayNumber = 0;
 constexpr milliseconds kPoll{100};  // between looks at control and stop requests
 constexpr int kBatchBuffers = 2;    // one being filled, one being sent
 constexpr milliseconds kProgressSpacing{200};
-
-class DdsPartWriter : public PartWriter {
- public:
-  explicit DdsPartWriter(dds::Bus& bus) : parts_(bus), slots_(bus) {}
-  bool Write(const BatchPart& part) override { return parts_.Write(part); }
-  bool Write(const BatchSlot& slot) override { return slots_.Write(slot); }
-  bool HasPartReader() override { return parts_.Matched() > 0; }
-  bool HasSlotReader() override { return slots_.Matched() > 0; }
-
- private:
-  dds::Publisher<BatchPart> parts_;
-  dds::Publisher<BatchSlot> slots_;
-};
 
 // Members are in construction order; destruction, the reverse, ends the receive threads' callbacks
 // and the sender before what they use.

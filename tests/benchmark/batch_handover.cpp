@@ -22,6 +22,7 @@
 #include "learner/batch_feed.h"
 #include "replay_server/core/request_queue.h"
 #include "replay_server/service/batch_sender.h"
+#include "replay_server/service/dds_part_writer.h"
 #include "replay_server/service/learner_slots.h"
 #include "replay_server/service/service_inbox.h"
 
@@ -90,19 +91,6 @@ ClusterAddress AddressOf(const Meeting& meeting) {
   return address;
 }
 
-class DdsWriter final : public replay::PartWriter {
- public:
-  explicit DdsWriter(dds::Bus& bus) : parts_(bus), slots_(bus) {}
-  bool Write(const BatchPart& part) override { return parts_.Write(part); }
-  bool Write(const BatchSlot& slot) override { return slots_.Write(slot); }
-  bool HasPartReader() override { return parts_.Matched() > 0; }
-  bool HasSlotReader() override { return slots_.Matched() > 0; }
-
- private:
-  dds::Publisher<BatchPart> parts_;
-  dds::Publisher<BatchSlot> slots_;
-};
-
 // The replay server without a ring: whatever is asked for is there.
 class EmptyReplay {
  public:
@@ -159,7 +147,7 @@ class EmptyReplay {
   dds::Bus bus_;
   replay::ServiceInbox inbox_;
   replay::RequestQueue queue_;
-  DdsWriter writer_;
+  replay::DdsPartWriter writer_;
   replay::BatchSender sender_;
   replay::LearnerSlots slots_;
   dds::Subscriber<SampleRequest> requests_;

@@ -27,12 +27,6 @@ using ::testing::HasSubstr;
 const TrainingRun::Keys kLong{
     {"env_steps", "10000000"}, {"actors", "1"}, {"eval.interval", "5000"}};
 
-bool Learns(const json& view) {
-  const json learner = ProcessOf(view, "learner");
-  return learner.is_object() && learner.value("updates", 0.0) > 50 &&
-         ProcessOf(view, "replay").contains("policy_lag_p50");
-}
-
 TEST(Operate, TopShowsEveryProcessUntilTheRunEnds) {
   const TrainingRun run;
   RunningTraining training(run, run.Command(kLong));

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <cstdlib>
@@ -93,9 +94,9 @@ TEST(SharedBatches, WhereTheyDoNotFitTheNetworkIsUsedAndItIsSaid) {
 // As on another host: the replay's process number means nothing, or another process, to a learner
 // with process numbers of its own.
 TEST(SharedBatches, ALearnerThatCannotOpenThemGetsItsBatchesOverTheNetwork) {
-  const std::vector<std::string> apart{"/usr/bin/unshare", "--pid", "--fork", "--mount-proc"};
-  if (ExitCode(RunCommand({apart[0], apart[1], apart[2], apart[3], "/bin/true"}, seconds(20))) !=
-      0) {
+  const std::string apart = std::string("/usr/bin/unshare --pid --fork --kill-child --mount-proc") +
+                            (geteuid() == 0 ? "" : " --user --map-root-user");
+  if (ExitCode(RunCommand({"/bin/sh", "-c", apart + " /bin/true"}, seconds(20))) != 0) {
     GTEST_SKIP() << "unshare: no process numbers of one's own";
   }
   const TrainingRun run;
@@ -106,8 +107,7 @@ TEST(SharedBatches, ALearnerThatCannotOpenThemGetsItsBatchesOverTheNetwork) {
   }
   fs::copy(SourcePath("launch/presets"), bin / "presets");
   std::ofstream(bin / "shoal-learner")
-      << "#!/bin/sh\nexec " << apart[0] << " " << apart[1] << " " << apart[2] << " --kill-child "
-      << apart[3] << " " << ProgramPath("shoal-learner") << " \"$@\"\n";
+      << "#!/bin/sh\nexec " << apart << " " << ProgramPath("shoal-learner") << " \"$@\"\n";
   fs::permissions(bin / "shoal-learner", fs::perms::owner_all);
   std::vector<std::string> command = run.Command(Keys());
   command[0] = (bin / "shoal").string();

@@ -24,11 +24,6 @@ const TrainingRun::Keys kLong{
 
 constexpr char kCtrlC[] = "\x03", kCtrlZ[] = "\x1a";
 
-bool Learns(const json& view) {
-  const json learner = ProcessOf(view, "learner");
-  return learner.is_object() && learner.value("updates", 0.0) > 50;
-}
-
 std::vector<pid_t> PidsOf(const json& view) {
   std::vector<pid_t> pids;
   for (const json& process : view.at("processes")) pids.push_back(process.at("pid").get<pid_t>());

@@ -49,4 +49,11 @@ inline nlohmann::json ProcessOf(const nlohmann::json& view, const std::string& r
   return {};
 }
 
+// For WaitForView: there are more than 50 updates, by batches whose policies are known.
+inline bool Learns(const nlohmann::json& view) {
+  const nlohmann::json learner = ProcessOf(view, "learner");
+  return learner.is_object() && learner.value("updates", 0.0) > 50 &&
+         ProcessOf(view, "replay").contains("policy_lag_p50");
+}
+
 }  // namespace shoal
