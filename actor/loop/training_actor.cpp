@@ -32,7 +32,7 @@ ChunkWindow::Options WindowOptions(const RunConfig& run, uint32_t id, uint64_t s
   const Config& config = run.config;
   const int record_bytes = RecordLayout(run.spec).record_bytes();
   const SendingWindow window = SendingWindowOf(config, record_bytes);
-  if (2 * config.envs_per_actor > window.records()) {
+  if (MostRecordsOfStep(config) * config.envs_per_actor > window.records()) {
     throw UsageError(
         "envs_per_actor {} does not fit the window of {} chunks of {} records: raise {}",
         config.envs_per_actor, window.chunks, window.chunk_records,

@@ -56,8 +56,9 @@ std::vector<Key> ObservationKeys() {
       SHOAL_SAME(observation.height, (IntegerRange{8, 1024}), "image height in pixels"),
       SHOAL_SAME(observation.width, (IntegerRange{8, 1024}), "image width in pixels"),
       SHOAL_SAME(observation.stack, (IntegerRange{1, 16}), "frames per observation"),
-      SHOAL_SAME(observation.goal_mode, (Choices{{"none", "desired", "both"}}),
-                 "goal vectors among the observations (both = desired and achieved)"),
+      SHOAL_SAME(observation.goal_mode, (Choices{{"none", "desired", "both", "image"}}),
+                 "the goal among the observations: as vectors (both = desired and achieved), or "
+                 "image = a picture of the goal reached beside the frames"),
       SHOAL_SAME(observation.proprioception, AnyValue{},
                  "the task's state vector: all of it, nothing, or the blocks named (shoal env "
                  "describe lists them)"),

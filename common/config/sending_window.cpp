@@ -9,9 +9,14 @@ SendingWindow SendingWindowOf(const Config& config, int record_bytes) {
   const int64_t asked_in_all = int64_t{asked} * std::max(2, config.replay.window_chunks);
   const int fitting = static_cast<int>(std::max<int64_t>(1, kChunkBytes / record_bytes));
   const int chunk_records = std::min(asked, fitting);
+  const int of_environment = MostRecordsOfStep(config);
   return {.chunk_records = chunk_records,
           .chunks = static_cast<int>(asked_in_all / chunk_records),
-          .least_records = std::max(chunk_records, 2 * config.envs_per_actor)};
+          .least_records = std::max(chunk_records, of_environment * config.envs_per_actor)};
+}
+
+int MostRecordsOfStep(const Config& config) {
+  return config.observation.goal_mode == "image" ? 3 : 2;
 }
 
 }  // namespace shoal

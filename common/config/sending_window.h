@@ -4,7 +4,7 @@
 //   per chunk  transport.chunk_records, fewer (but one) where they exceed kChunkBytes together
 //   chunks     as many of these as replay.window_chunks chunks of transport.chunk_records hold
 //   least      what an actor must be allowed to go on: its oldest chunk, and a reset and a step of
-//              each of its environments
+//              each of its environments, with the goal record that comes before the reset
 #pragma once
 
 #include <cstddef>
@@ -24,6 +24,10 @@ struct SendingWindow {
 
   int64_t records() const { return int64_t{chunk_records} * chunks; }
 };
+
+// Records that an environment may make in one step: a reset and a step, and a goal record before
+// them where the policy sees pictures of goals.
+int MostRecordsOfStep(const Config& config);
 
 // `record_bytes` > 0: RecordLayout::record_bytes().
 SendingWindow SendingWindowOf(const Config& config, int record_bytes);

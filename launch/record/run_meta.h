@@ -18,6 +18,7 @@ namespace shoal::launch {
 struct PolicyInputs {
   std::vector<std::string> blocks{};   // in the order of its vector
   std::vector<std::string> cameras{};  // empty: no pixels
+  bool goal_picture = false;           // of each camera, beside its frames
 };
 PolicyInputs PolicyInputsOf(const ObservationSpec& spec);
 

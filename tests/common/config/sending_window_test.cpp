@@ -32,6 +32,8 @@ TEST(SendingWindow, AnActorNeedsItsOldestChunkAndAStepOfAllItsEnvironmentsToGoOn
   EXPECT_EQ(SendingWindowOf(config, 200'000).least_records, 8);
   config.envs_per_actor = 16;
   EXPECT_EQ(SendingWindowOf(config, 42'440).least_records, 32);
+  config.observation.goal_mode = "image";
+  EXPECT_EQ(SendingWindowOf(config, 42'440).least_records, 48) << "with a goal record each";
 }
 
 TEST(SendingWindow, NeverLetsAChunkExceedItsBoundUnlessOneRecordDoes) {

@@ -85,7 +85,8 @@ TEST_P(Observations, GoAllTheWayFromConfigurationToUpdate) {
   const BatchView batch = collection.Draw();
   const auto elements = static_cast<size_t>(run.config.learner.batch);
   EXPECT_EQ(batch.obs_frames.size(),
-            elements * static_cast<size_t>(run.spec.FrameBytes() * kind.stack));
+            elements * static_cast<size_t>(run.spec.FrameBytes() *
+                                           (kind.stack + (kind.goal_mode == "image" ? 1 : 0))));
   EXPECT_EQ(batch.next_obs_vector.size(), elements * static_cast<size_t>(vector));
   if (kind.pixels) {
     // Not one flat colour, in no channel of no element.
@@ -107,7 +108,7 @@ TEST_P(Observations, GoAllTheWayFromConfigurationToUpdate) {
   EXPECT_EQ(peek.rgb.empty(), !kind.pixels);
   if (kind.pixels) {
     EXPECT_GE(peek.width, 3 * kWidth);
-    EXPECT_GE(peek.height, 4 * kind.cameras * kHeight);
+    EXPECT_GE(peek.height, (kind.goal_mode == "image" ? 5 : 4) * kind.cameras * kHeight);
   }
 }
 
@@ -125,6 +126,8 @@ std::vector<Kind> AllKinds() {
       }
     }
   }
+  kinds.push_back({"image", false, false, /*pixels=*/true, /*stack=*/1, /*cameras=*/2});
+  kinds.push_back({"image", true, true, /*pixels=*/true, /*stack=*/3, /*cameras=*/1});
   // Nothing to observe is refused (config tests).
   std::erase_if(kinds, [](const Kind& kind) {
     return !kind.pixels && kind.goal_mode == "none" && !kind.proprioception;

@@ -56,8 +56,9 @@ TEST(RunMeta, SaysWhatThePolicySeesAndHowOftenItWasUpdated) {
     WriteRunMeta(run.path(), Config(), meta);
     return nlohmann::json::parse(ReadFile(run.path() / "meta.json"));
   };
-  EXPECT_EQ(written().at("policy_inputs"),
-            nlohmann::json({{"blocks", {"grip", "desired_goal"}}, {"cameras", {"front"}}}));
+  EXPECT_EQ(written().at("policy_inputs"), nlohmann::json({{"blocks", {"grip", "desired_goal"}},
+                                                           {"cameras", {"front"}},
+                                                           {"goal_picture", false}}));
   EXPECT_EQ(written().at("privileged_inputs"),
             nlohmann::json(
                 {{"critic_blocks", nlohmann::json::array()}, {"labels", nlohmann::json::array()}}));
