@@ -53,6 +53,8 @@ int Run(int argc, char** argv) {
   app.add_option("--actors", options.soak.actors, "actor processes")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  app.add_option("--preset", options.soak.preset, "of the run, e.g. fetch-reach-her")
+      ->capture_default_str();
   app.add_option("--json", options.json, "file for the result");
   if (const auto exit_code = shoal::ParseCommandLine(&app, argc, argv)) return *exit_code;
   prctl(PR_SET_CHILD_SUBREAPER, 1);  // what a run leaves behind becomes a child of ours

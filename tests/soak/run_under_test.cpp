@@ -61,7 +61,7 @@ RunUnderTest::RunUnderTest(const RunOptions& options)
 }
 
 std::vector<std::string> RunUnderTest::FirstArguments() const {
-  std::vector<std::string> arguments{"train", "--preset", "fetch-reach-state", "--run-name", "run"};
+  std::vector<std::string> arguments{"train", "--preset", options_.preset, "--run-name", "run"};
   std::vector<std::string> keys{fmt::format("run_dir={}", options_.folder.string()),
                                 fmt::format("actors={}", options_.actors),
                                 fmt::format("seed={}", options_.seed),

@@ -25,6 +25,7 @@ struct RunOptions {
   std::filesystem::path programs;
   int actors = 2;
   int64_t seed = 1;
+  std::string preset = "fetch-reach-state";
   std::vector<std::string> keys;  // further KEY=VALUE
 };
 

@@ -81,6 +81,7 @@ nlohmann::ordered_json SoakSteadily(const SoakOptions& options, double minutes) 
                       .programs = options.programs,
                       .actors = options.actors,
                       .seed = static_cast<int64_t>(options.seed),
+                      .preset = options.preset,
                       .keys = {}});
     path = run.path();
     temporary_files = run.temporary_files();
