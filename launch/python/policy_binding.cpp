@@ -165,7 +165,8 @@ void BindPolicy(py::module_& module) {
           "action_size", [](const TrainedPolicy& policy) { return policy.spec().action_size; },
           "A, the numbers of an action.")
       .def_property_readonly("pixels", &PixelShape,
-                             "(K*C, H, W) of one observation; None without pixels.")
+                             "(K*C, H, W) of one observation, with a goal picture "
+                             "((K+1)*C, H, W); None without pixels.")
       .def_property_readonly(
           "goal_picture", [](const TrainedPolicy& policy) { return policy.spec().goal_picture; },
           "Whether a picture of the goal reached follows the stack in the pixels.")
