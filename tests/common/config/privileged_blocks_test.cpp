@@ -49,7 +49,9 @@ TEST(PrivilegedBlocks, ACriticWithoutPixelsIsToldTheGoalThatAPictureShows) {
   spec.blocks.back().observed = false;
   EXPECT_THAT(PrivilegedBlocksOf(Asking(StateBlocks({"object", "desired_goal"})), spec).critic,
               ElementsAre("object", "desired_goal"));
-  EXPECT_THAT(UsageMessage([&] { PrivilegedBlocksOf(Asking(StateBlocks({"object"})), spec); }),
+  EXPECT_THAT(UsageMessage([&] {
+                PrivilegedBlocksOf(Asking(StateBlocks(std::vector<std::string>{"object"})), spec);
+              }),
               testing::HasSubstr("expected 'desired_goal' among them"));
 }
 

@@ -112,6 +112,31 @@ TEST_P(Observations, GoAllTheWayFromConfigurationToUpdate) {
   }
 }
 
+// As the preset fetch-push-image-goals: goals of hindsight shown by stored frames, and told to the
+// critic as numbers.
+TEST(ImageGoals, GoWithHindsightAndACriticWithoutPixels) {
+  const TemporaryFolder folder;
+  Config config = ConfigOf({"image", true, false, /*pixels=*/true, /*stack=*/1, /*cameras=*/2});
+  config.task = "FetchPush";
+  config.replay.capacity = 1000;
+  config.replay.hindsight = "future";
+  config.learner.batch = 32;
+  config.learner.critic_blocks = true;
+  config.learner.aux = {"object-desired_goal"};
+  config.learner.bounded_targets = true;
+  config.observation.proprioception = StateBlocks(std::vector<std::string>{"grip"});
+  const RunConfig run = RunOf(config);
+  WriteRunConfig(folder.path(), run);
+  LocalCollection collection(run, folder.path());
+  collection.Collect(220);  // two episodes of each of the two environments
+  const auto agent = learner::MakeAgent(run.config, run.spec, nn::Precision::kF32);
+  for (int update = 0; update < 5; ++update) {
+    EXPECT_TRUE(agent->Update(collection.Draw()).finite) << update;
+  }
+  EXPECT_GT(collection.core().counters().relabelled, 50u);
+  EXPECT_LT(collection.core().counters().relabelled, 5u * 32u);
+}
+
 std::vector<Kind> AllKinds() {
   std::vector<Kind> kinds;
   for (const char* mode : {"none", "desired", "both"}) {
