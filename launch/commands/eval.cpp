@@ -16,6 +16,7 @@
 #include "launch/commands/commands.h"
 #include "launch/experiment/baselines.h"
 #include "launch/processes/actor_program.h"
+#include "launch/processes/scratch_folder.h"
 #include "launch/record/run_folder.h"
 
 namespace shoal::launch {
