@@ -88,7 +88,8 @@ int Evaluate(const EvalOptions& options) {
   if (!options.json.empty()) CheckWritable(options.json);
   InstallStopSignals();
   const ScratchFolder scratch;
-  const fs::path json = options.json.empty() ? scratch.path() / "eval.json" : options.json;
+  const fs::path json =
+      options.json.empty() ? scratch.path() / "eval.json" : fs::path(options.json);
   const auto point = EvaluateByActor({.run = run,
                                       .checkpoint = folder,
                                       .episodes = options.episodes,
