@@ -271,10 +271,9 @@ std::vector<Key> EvalKeys() {
                  "fresh episodes of the evaluation at the end of a run; 0 = none"),
       SHOAL_SAME(eval.envs, (IntegerRange{1, 256}),
                  "environments stepped together by the evaluation actor"),
-      SHOAL_SAME(stop.success, (RealRange{0, 2}),
-                 "stop at this success rate of an evaluation; above 1 = never"),
+      SHOAL_SAME(stop.success, (RealRange{0, 2}), "stop at this success rate; above 1 = never"),
       SHOAL_SAME(stop.evaluations, (IntegerRange{1, 1000}),
-                 "evaluations in a row that must reach stop.success"),
+                 "newest evaluations whose episodes, pooled, must reach stop.success"),
   };
 }
 

@@ -110,9 +110,9 @@ void PrintSummary(const fs::path& run, const Config& config, const RunResult& re
                              100 * meta.target, meta.first_success->env_steps,
                              meta.first_success->updates, meta.first_success->wall_seconds));
   } else if (meta.best && meta.best->success) {
-    progress.Say(
-        fmt::format("  no {} evaluations in a row, while training, had success >= {:.0f} %",
-                    config.stop.evaluations, 100 * meta.target));
+    progress.Say(fmt::format(
+        "  no {} evaluations in a row, while training, had success >= {:.0f} % together",
+        config.stop.evaluations, 100 * meta.target));
   }
   if (meta.exit == "interrupted") {
     progress.Say(
