@@ -7,6 +7,7 @@
 #include "common/base/error.h"
 #include "common/base/stop.h"
 #include "common/config/on_policy.h"
+#include "common/run_folder/update_page.h"
 #include "launch/film/film.h"
 #include "launch/processes/actor_program.h"
 #include "launch/processes/run_hosts.h"
@@ -157,6 +158,7 @@ int EndRun(const fs::path& run, const Config& config, RunResult result, bool fil
   }
   std::optional<EvaluationPoint> final_evaluation;
   try {
+    meta.updates_lost = ReadLostUpdates(run);
     WriteBottleneck(run, result.bottleneck);
     if (WantsFinalEvaluation(meta)) final_evaluation = EvaluateAtEnd(run, config, desk, progress);
     if (final_evaluation) {
