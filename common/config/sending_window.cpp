@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "common/base/error.h"
+#include "common/config/on_policy.h"
+
 namespace shoal {
 
 SendingWindow SendingWindowOf(const Config& config, int record_bytes) {
@@ -12,6 +15,15 @@ SendingWindow SendingWindowOf(const Config& config, int record_bytes) {
   return {.chunk_records = chunk_records,
           .chunks = static_cast<int>(asked_in_all / chunk_records),
           .least_records = std::max(chunk_records, 2 * config.envs_per_actor)};
+}
+
+void CheckSendingWindow(const Config& config, int record_bytes) {
+  const SendingWindow window = SendingWindowOf(config, record_bytes);
+  if (2 * config.envs_per_actor <= window.records()) return;
+  throw UsageError("envs_per_actor {} does not fit the window of {} chunks of {} records: raise {}",
+                   config.envs_per_actor, window.chunks, window.chunk_records,
+                   LearnsOnPolicy(config) ? "transport.chunk_records"
+                                          : "replay.window_chunks or transport.chunk_records");
 }
 
 }  // namespace shoal

@@ -28,6 +28,9 @@ struct SendingWindow {
 // `record_bytes` > 0: RecordLayout::record_bytes().
 SendingWindow SendingWindowOf(const Config& config, int record_bytes);
 
+// Throws Error (usage) when the environments of an actor do not fit its window.
+void CheckSendingWindow(const Config& config, int record_bytes);
+
 inline uint64_t ChunkBytes(const SendingWindow& window, int record_bytes) {
   return static_cast<uint64_t>(window.chunk_records) * static_cast<uint64_t>(record_bytes);
 }
