@@ -2,7 +2,19 @@
 
 #include <algorithm>
 
+#include "common/base/error.h"
+#include "common/config/on_policy.h"
+
 namespace shoal {
+namespace {
+
+// Records that an environment may make in one step: a reset and a step, and a goal record before
+// them where the policy sees pictures of goals.
+int MostRecordsOfStep(const Config& config) {
+  return config.observation.goal_mode == "image" ? 3 : 2;
+}
+
+}  // namespace
 
 SendingWindow SendingWindowOf(const Config& config, int record_bytes) {
   const int asked = config.transport.chunk_records;
@@ -15,8 +27,13 @@ SendingWindow SendingWindowOf(const Config& config, int record_bytes) {
           .least_records = std::max(chunk_records, of_environment * config.envs_per_actor)};
 }
 
-int MostRecordsOfStep(const Config& config) {
-  return config.observation.goal_mode == "image" ? 3 : 2;
+void CheckSendingWindow(const Config& config, int record_bytes) {
+  const SendingWindow window = SendingWindowOf(config, record_bytes);
+  if (MostRecordsOfStep(config) * config.envs_per_actor <= window.records()) return;
+  throw UsageError("envs_per_actor {} does not fit the window of {} chunks of {} records: raise {}",
+                   config.envs_per_actor, window.chunks, window.chunk_records,
+                   LearnsOnPolicy(config) ? "transport.chunk_records"
+                                          : "replay.window_chunks or transport.chunk_records");
 }
 
 }  // namespace shoal

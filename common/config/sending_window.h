@@ -25,12 +25,11 @@ struct SendingWindow {
   int64_t records() const { return int64_t{chunk_records} * chunks; }
 };
 
-// Records that an environment may make in one step: a reset and a step, and a goal record before
-// them where the policy sees pictures of goals.
-int MostRecordsOfStep(const Config& config);
-
 // `record_bytes` > 0: RecordLayout::record_bytes().
 SendingWindow SendingWindowOf(const Config& config, int record_bytes);
+
+// Throws Error (usage) when the environments of an actor do not fit its window.
+void CheckSendingWindow(const Config& config, int record_bytes);
 
 inline uint64_t ChunkBytes(const SendingWindow& window, int record_bytes) {
   return static_cast<uint64_t>(window.chunk_records) * static_cast<uint64_t>(record_bytes);

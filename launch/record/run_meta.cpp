@@ -95,11 +95,6 @@ PrivilegedInputs PrivilegedInputsOf(const Config& config, const ObservationSpec&
           .labels = config.learner.aux};
 }
 
-void RunMeta::OnUpdates(uint64_t reported) {
-  if (reported < updates) updates_lost += updates - reported;
-  updates = reported;
-}
-
 void WriteRunMeta(const std::filesystem::path& run, const Config& config, const RunMeta& meta) {
   const ordered_json object{
       {"schema", "shoal-run-1"},

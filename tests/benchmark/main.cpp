@@ -7,6 +7,7 @@
 #include "common/base/command_line.h"
 #include "common/base/error.h"
 #include "common/base/main_guard.h"
+#include "common/base/stop.h"
 #include "common/nn/precision.h"
 #include "launch/record/machine.h"
 #include "learner/openmp_environment.h"
@@ -27,8 +28,9 @@ int Run(int argc, char** argv) {
   app.add_option("--only", only, "rows whose stage contains this text");
   if (const auto exit_code = shoal::ParseCommandLine(&app, argc, argv)) return *exit_code;
   shoal::nn::SetThreads(threads);
-
   shoal::learner::EnsurePassiveOpenMp(threads, argv);  // as shoal-learner does: no spinning threads
+
+  shoal::InstallStopSignals();  // an interrupted one takes its processes and files with it
 
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   for (const auto& pairings : {shoal::bench::ReplayPairings(), shoal::bench::NetworkPairings(),
@@ -36,6 +38,7 @@ int Run(int argc, char** argv) {
                                shoal::bench::TransportPairings(), shoal::bench::WorldPairings()}) {
     for (const shoal::bench::Pairing& pairing : pairings) {
       if (pairing.stage.find(only) == std::string::npos) continue;
+      std::cerr << fmt::format("measuring {} ...\n", pairing.stage);
       const auto row = shoal::bench::TimePair(pairing, repetitions, seconds);
       rows.push_back(ToJson(row));
       std::cerr << fmt::format("{}: {:.4g} {}, {:.2f} x {} ({:.4g}), spread {:.2f}\n", row.stage,

@@ -1,14 +1,17 @@
 // shoal-bench-actors: one replay server under 4, 16 and 64 actor processes, as JSON (schema
 // shoal-bench-1) on stdout. `./run bench-actors`.
+#include <fmt/core.h>
+
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "common/base/build_info.h"
 #include "common/base/command_line.h"
-#include "common/base/error.h"
 #include "common/base/main_guard.h"
+#include "common/base/stop.h"
 #include "launch/processes/process_plan.h"
+#include "launch/processes/scratch_folder.h"
 #include "launch/record/machine.h"
 #include "tests/benchmark/many_actors.h"
 
@@ -16,26 +19,6 @@ namespace {
 
 using shoal::bench::ManyActorsFigures;
 using shoal::bench::ManyActorsOptions;
-
-// A fresh folder that goes away with its owner.
-class Folder {
- public:
-  Folder() {
-    std::string name = std::filesystem::temp_directory_path() / "shoal-bench-XXXXXX";
-    if (mkdtemp(name.data()) == nullptr) throw shoal::RuntimeError("cannot create '{}'", name);
-    path_ = name;
-  }
-  ~Folder() {
-    std::error_code error;
-    std::filesystem::remove_all(path_, error);
-  }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
 
 nlohmann::ordered_json Row(const ManyActorsFigures& figures, const ManyActorsFigures& few) {
   return {{"stage", fmt::format("replay server under {} actor processes", figures.actors)},
@@ -65,11 +48,12 @@ int Run(int argc, char** argv) {
       ->check(CLI::Range(1.0, 600.0));
   if (const auto exit_code = shoal::ParseCommandLine(&app, argc, argv)) return *exit_code;
   options.programs = shoal::launch::ProgramFolder();
+  shoal::InstallStopSignals();  // an interrupted one takes its processes and files with it
 
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   std::optional<ManyActorsFigures> few;
   for (const int actors : counts) {
-    const Folder folder;
+    const shoal::launch::ScratchFolder folder;
     options.folder = folder.path();
     options.actors = actors;
     const ManyActorsFigures figures = shoal::bench::MeasureManyActors(options);

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "common/base/clock.h"
+#include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/stop.h"
 #include "tests/support/processes.h"
@@ -209,6 +210,7 @@ std::map<std::string, double> RunUnderTest::QueueDepths() {
 }
 
 void RunUnderTest::CheckAlive() {
+  if (StopRequested()) throw RuntimeError("interrupted");
   if (const auto status = coordinator_.Poll()) {
     throw Broken(fmt::format("the run has ended ({}): {}", status->Describe(), Output()));
   }

@@ -63,7 +63,7 @@ class RunUnderTest {
 
   // Stops it by SIGINT and waits. Throws Broken unless it ends with 0 and balances.
   nlohmann::json End(std::chrono::seconds deadline);
-  // Throws Broken when the coordinator has ended.
+  // Throws Broken when the coordinator has ended, Error when a signal asked for a stop.
   void CheckAlive();
   // Last lines of the coordinator's output, for messages.
   std::string Output() const;

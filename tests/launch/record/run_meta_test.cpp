@@ -75,13 +75,6 @@ TEST(RunMeta, SaysWhatThePolicySeesAndHowOftenItWasUpdated) {
   EXPECT_EQ(written().at("updates_per_env_step"), 0.5);
 }
 
-TEST(RunMeta, UpdatesAfterACheckpointAreLostWithTheLearner) {
-  RunMeta meta;
-  for (const uint64_t reported : {100, 200, 150, 180, 180, 300}) meta.OnUpdates(reported);
-  EXPECT_EQ(meta.updates, 300u);
-  EXPECT_EQ(meta.updates_lost, 50u);
-}
-
 TEST(RunMeta, AProblemInAnyEncodingIsWritten) {
   const TemporaryFolder run;
   RunMeta meta;
