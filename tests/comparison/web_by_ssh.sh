@@ -65,7 +65,7 @@ answer() {
     return 1
   fi
 }
-run=$(curl -s "$desk/api/runs" | python3 -c 'import json, sys; print(json.load(sys.stdin)["runs"][0]["name"])')
+run=$(curl -s "$desk/api/runs" | python3 -c 'import json, sys; print(json.load(sys.stdin)["runs"]["runs"][0]["name"])')
 answer 200 "the page" "$desk/?token=$token"
 grep -q '<title>Shoal</title>' "$work/answer"
 answer 200 "the runs, as localhost" "http://localhost:$desk_port/api/runs"
