@@ -59,9 +59,11 @@ std::string ObservationSpec::Summary() const {
   for (const BlockSpec& block : blocks) {
     if (block.observed) seen += (seen.empty() ? "" : ",") + block.name;
   }
-  return fmt::format("{} pixels {}x{}x{} [{}] stack {}, vector {} [{}], action {}, model {}", task,
-                     channels, height, width, names, stack, VectorSize(), seen, action_size,
-                     model_fingerprint);
+  const std::string pixels = HasPixels() ? fmt::format("pixels {}x{}x{} [{}] stack {}, ", channels,
+                                                       height, width, names, stack)
+                                         : "";
+  return fmt::format("{} {}vector {} [{}], action {}, model {}", task, pixels, VectorSize(), seen,
+                     action_size, model_fingerprint);
 }
 
 json ToJson(const ObservationSpec& spec) {
