@@ -59,10 +59,12 @@ std::string ObservationSpec::Summary() const {
   for (const BlockSpec& block : blocks) {
     if (block.observed) seen += (seen.empty() ? "" : ",") + block.name;
   }
-  return fmt::format("{} pixels {}x{}x{} [{}] stack {}{}, vector {} [{}], action {}, model {}",
-                     task, channels, height, width, names, stack,
-                     goal_picture ? " + goal picture" : "", VectorSize(), seen, action_size,
-                     model_fingerprint);
+  const std::string pixels =
+      HasPixels() ? fmt::format("pixels {}x{}x{} [{}] stack {}{}, ", channels, height, width, names,
+                                stack, goal_picture ? " + goal picture" : "")
+                  : "";
+  return fmt::format("{} {}vector {} [{}], action {}, model {}", task, pixels, VectorSize(), seen,
+                     action_size, model_fingerprint);
 }
 
 json ToJson(const ObservationSpec& spec) {

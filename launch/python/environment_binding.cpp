@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "actor/worlds/environment.h"
+#include "actor/worlds/physics_library.h"
 #include "actor/worlds/world.h"
 #include "actor/worlds/world_registry.h"
 #include "common/base/error.h"
@@ -26,15 +28,25 @@ namespace {
 
 constexpr char kSource[] = "shoal_rl.make";
 
+// Tasks of `library`, NAME.so, as built for this module: NAME_python.so beside it
+// (common/cmake/task_library.cmake).
+void LoadPythonTasks(const std::string& library) {
+  if (library.empty()) return;
+  std::filesystem::path built = library;
+  built.replace_filename(built.stem().string() + "_python" + built.extension().string());
+  worlds::LoadTasks(built.string());
+}
+
 // `keys`: a configuration's, as JSON. Cameras that are not named are the task's first; without
 // pixels everything else is observed, unless the keys say what.
 Config ReadKeys(const std::string& task_name, const std::string& keys) {
-  const tasks::Task& task = tasks::FindTask(task_name);
   Config config;
   ObservationConfig& observation = config.observation;
   observation.cameras.clear();
   ApplyJson(ParseStrictJson(keys, kSource), kSource, &config);
   config.task = task_name;
+  LoadPythonTasks(config.task_library);
+  const tasks::Task& task = tasks::FindTask(task_name);
   if (observation.pixels && observation.cameras.empty()) {
     const auto world = worlds::MakeWorld(task.world(), {config.model, config.physics});
     observation.cameras = {world->cameras().front().name};

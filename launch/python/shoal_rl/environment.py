@@ -1,6 +1,7 @@
 """Shoal's worlds and renderer as a Gymnasium environment."""
 
 import json
+import os
 
 import gymnasium
 import numpy as np
@@ -21,7 +22,7 @@ _SECTIONS = {
         "custom_cameras",
     ),
     "randomization": ("body_mass",),
-    None: ("model", "physics", "action_repeat", "distance_threshold"),
+    None: ("task_library", "model", "physics", "action_repeat", "distance_threshold"),
 }
 
 
@@ -34,7 +35,7 @@ def _configuration(keys):
             raise _native.Error(f"make has no key '{key}'; expected {', '.join(section_of)}")
         section = section_of[key]
         place = configuration if section is None else configuration.setdefault(section, {})
-        place[key] = value
+        place[key] = os.fspath(value) if isinstance(value, os.PathLike) else value
     try:
         return json.dumps(configuration)
     except TypeError as error:
