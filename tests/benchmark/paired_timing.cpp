@@ -20,13 +20,13 @@ double CallsPerSecond(const std::function<void()>& act, double seconds) {
   return calls / SecondsSince(start);
 }
 
+}  // namespace
+
 double Median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const size_t middle = values.size() / 2;
   return values.size() % 2 == 1 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
 }
-
-}  // namespace
 
 Row TimePair(const Pairing& pairing, int repetitions, double seconds) {
   const std::shared_ptr<void> held = pairing.meanwhile ? pairing.meanwhile() : nullptr;

@@ -34,6 +34,9 @@ struct Pairing {
 // Each side runs for about `seconds` per repetition; the first, uncounted call of each warms up.
 Row TimePair(const Pairing& pairing, int repetitions, double seconds);
 
+// Of two in the middle their mean; at least one value.
+double Median(std::vector<double> values);
+
 nlohmann::ordered_json ToJson(const Row& row);
 // For people: figure, ratio, spread and, where it has a target, whether that is met.
 std::string LineOf(const Row& row);
