@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 #include "common/base/bounded_json.h"
@@ -13,8 +14,6 @@ namespace shoal::bench {
 namespace {
 
 using Json = nlohmann::json;
-
-constexpr std::string_view kBegin = "<!-- bench ", kEnd = "<!-- end of bench -->";
 
 std::optional<double> NumberOf(const Json& row, const char* key) {
   const auto found = row.find(key);
@@ -52,29 +51,6 @@ std::string LimitOf(const ReportedRow& row) {
   if (!row.target) return "";
   const bool missed = !row.ratio || *row.ratio < *row.target;
   return fmt::format("{:.2f}{}", *row.target, missed ? ": **missed**" : "");
-}
-
-// The text up to the next line break, which is taken away, too.
-std::string_view TakeLine(std::string_view* text) {
-  const size_t end = text->find('\n');
-  const std::string_view line = text->substr(0, end);
-  text->remove_prefix(end == std::string_view::npos ? text->size() : end + 1);
-  return line;
-}
-
-// What stands between "<!-- bench " and " -->".
-struct Order {
-  std::string file, only;
-};
-
-Order ParseOrder(std::string_view line) {
-  line.remove_prefix(kBegin.size());
-  const size_t end = line.find(" -->");
-  if (end == std::string_view::npos) throw RuntimeError("no ' -->' ends '{}{}'", kBegin, line);
-  line = line.substr(0, end);
-  const size_t colon = line.find(": ");
-  if (colon == std::string_view::npos) return {std::string(line), ""};
-  return {std::string(line.substr(0, colon)), std::string(line.substr(colon + 2))};
 }
 
 const ReportedRow* Find(const Report& report, const ReportedRow& like) {
@@ -116,12 +92,11 @@ Report ParseReport(std::string_view text, const std::string& source) {
   return report;
 }
 
-std::string MarkdownTable(const Report& report, std::string_view only) {
+std::string MarkdownTable(const Report& report) {
   std::string table =
       "| stage | figure | against | ratio | limit | spread |\n| --- | --- | --- | --- | --- | --- "
       "|\n";
   for (const ReportedRow& row : report.rows) {
-    if (row.stage.find(only) == std::string::npos) continue;
     const auto optional = [](const std::optional<double>& value) {
       return value ? fmt::format("{:.2f}", *value) : "";
     };
@@ -133,32 +108,6 @@ std::string MarkdownTable(const Report& report, std::string_view only) {
                     against, optional(row.ratio), LimitOf(row), optional(row.spread));
   }
   return table;
-}
-
-std::string RewritePage(std::string_view page,
-                        const std::function<std::string(const std::string& file)>& read) {
-  std::string out;
-  while (!page.empty()) {
-    const std::string_view line = TakeLine(&page);
-    if (line.starts_with(kEnd)) throw RuntimeError("a line '{}' ends nothing", kEnd);
-    out += fmt::format("{}\n", line);
-    if (!line.starts_with(kBegin)) continue;
-    const Order order = ParseOrder(line);
-    std::string_view former;
-    do {
-      if (page.empty()) throw RuntimeError("'{}' has no '{}'", line, kEnd);
-      former = TakeLine(&page);
-      if (former.starts_with(kBegin)) throw RuntimeError("'{}' has no '{}'", line, kEnd);
-    } while (!former.starts_with(kEnd));
-    const Report report = ParseReport(read(order.file), order.file);
-    const bool any = std::ranges::any_of(report.rows, [&](const ReportedRow& row) {
-      return row.stage.find(order.only) != std::string::npos;
-    });
-    if (!any) throw RuntimeError("'{}' has no row '{}'", order.file, order.only);
-    out += fmt::format("\nCommit {}, {}. [File]({}).\n\n{}\n{}\n", report.commit, report.machine,
-                       order.file, MarkdownTable(report, order.only), kEnd);
-  }
-  return out;
 }
 
 std::vector<Comparison> Compare(std::span<const Report> ours, std::span<const Report> theirs) {

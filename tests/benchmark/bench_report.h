@@ -1,9 +1,7 @@
-// Reads files of schema shoal-bench-1 and makes of them what people read: the tables of
-// docs/performance.md, and how two commits compare. Pure functions of texts.
+// Reads files of schema shoal-bench-1 and makes of them what people read: tables, and how two
+// commits compare. Pure functions of texts.
 #pragma once
 
-#include <filesystem>
-#include <functional>
 #include <optional>
 #include <span>
 #include <string>
@@ -28,19 +26,8 @@ struct Report {
 // Throws Error naming `source` when the text is no such file.
 Report ParseReport(std::string_view text, const std::string& source);
 
-// The rows whose stage contains `only`, a line each, as a Markdown table.
-std::string MarkdownTable(const Report& report, std::string_view only);
-
-// The page with what stands between each pair of lines
-//
-//   <!-- bench FILE: ONLY -->
-//   <!-- end of bench -->
-//
-// replaced: commit and machine of FILE, then its table of the rows ONLY (": ONLY" may be left out).
-// `read` gives the text of a FILE. Throws Error naming a line without its partner, or a file of
-// which no row is left.
-std::string RewritePage(std::string_view page,
-                        const std::function<std::string(const std::string& file)>& read);
+// The rows, a line each, as a Markdown table.
+std::string MarkdownTable(const Report& report);
 
 // One stage of two commits.
 struct Comparison {

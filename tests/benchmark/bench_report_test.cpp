@@ -3,7 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "common/base/files.h"
+#include "tests/benchmark/bench_page.h"
 #include "tests/benchmark/scale_model.h"
 #include "tests/support/error_message.h"
 #include "tests/support/paths.h"
@@ -35,11 +38,10 @@ TEST(BenchReport, ATableSaysWhichLimitsAreMissed) {
       File(RowText("slow", 4) + R"(, {"stage": "share", "unit": "of a core", "against": "nothing",
                                       "figure": 0.04, "at_most": 0.05, "target": null})"),
       "file");
-  const std::string table = MarkdownTable(report, "");
+  const std::string table = MarkdownTable(report);
   EXPECT_THAT(table,
               HasSubstr("| slow | 4.00 u/s | b (8.00) | 0.50 | 0.80: **missed** | 0.10 |\n"));
   EXPECT_THAT(table, HasSubstr("| share | 0.0400 of a core | nothing |  | at most 0.0500 |  |\n"));
-  EXPECT_EQ(MarkdownTable(report, "share").find("slow"), std::string::npos);
 }
 
 TEST(BenchReport, WhatIsNoReportIsNamed) {
@@ -53,7 +55,7 @@ TEST(BenchReport, WhatIsNoReportIsNamed) {
               HasSubstr("odd.json"));
 }
 
-TEST(BenchReport, APageKeepsAllButWhatStandsBetweenItsMarks) {
+TEST(BenchPage, APageKeepsAllButWhatStandsBetweenItsMarks) {
   const std::string page =
       "before\n<!-- bench a.json: fast -->\nold\n<!-- end of bench -->\nafter\n";
   const auto read = [](const std::string& file) {
@@ -70,7 +72,7 @@ TEST(BenchReport, APageKeepsAllButWhatStandsBetweenItsMarks) {
   EXPECT_EQ(RewritePage(once, read), once);
 }
 
-TEST(BenchReport, MarksWithoutPartnersAndRowsThatAreNotThereAreNamed) {
+TEST(BenchPage, MarksWithoutPartnersAndRowsThatAreNotThereAreNamed) {
   const auto read = [](const std::string&) { return File(RowText("s", 4)); };
   const auto fault = [&](const std::string& page) {
     return ErrorMessage([&] { RewritePage(page, read); });
@@ -100,11 +102,15 @@ TEST(BenchReport, OnlyRowsThatBothCommitsHaveAreCompared) {
   EXPECT_TRUE(Compare(ours, theirs).empty());
 }
 
-TEST(BenchReport, ThePageOfPerformanceIsWhatItsFilesSay) {
+TEST(BenchPage, PagesAreWhatTheirFilesSay) {
   const std::filesystem::path docs = SourcePath("docs");
-  const std::string page = ReadFile(docs / "performance.md");
-  EXPECT_EQ(RewritePage(page, [&](const std::string& file) { return ReadFile(docs / file); }), page)
-      << "shoal-bench-report tables docs/performance.md";
+  for (const char* name : {"performance.md", "scale.md"}) {
+    const std::string page = ReadFile(docs / name);
+    const std::string anew =
+        RewritePage(page, [&](const std::string& file) { return ReadFile(docs / file); });
+    EXPECT_EQ(anew, page) << "shoal-bench-report tables docs/" << name;
+    EXPECT_THAT(page, HasSubstr("<!-- bench "));
+  }
 }
 
 constexpr ScaleConstants kRound{.actor_rate = 1000,

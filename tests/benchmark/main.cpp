@@ -49,6 +49,7 @@ int Run(int argc, char** argv) {
       }
     }
   }
+  if (rows.empty() && whole) throw shoal::UsageError("no row's stage contains '{}'", only);
   const nlohmann::ordered_json report{{"schema", "shoal-bench-1"},
                                       {"commit", shoal::BuildCommit()},
                                       {"machine", shoal::launch::DescribeMachine()},

@@ -32,7 +32,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr milliseconds kPoll{5};
-constexpr seconds kFound{60}, kEnd{60};
+constexpr seconds kFound{120}, kEnd{120};
 
 // Frames of one camera of 84x84, without physics.
 RunConfig FakeRun(int actors) {

@@ -10,8 +10,8 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/main_guard.h"
+#include "tests/benchmark/bench_page.h"
 #include "tests/benchmark/bench_report.h"
-#include "tests/benchmark/scale_model.h"
 
 namespace {
 
@@ -48,8 +48,8 @@ void RewritePage(const std::filesystem::path& page) {
 }
 
 int Run(int argc, char** argv) {
-  std::vector<std::string> ours, theirs, files;
-  std::string page;
+  std::vector<std::string> ours, theirs;
+  std::vector<std::string> pages;
   CLI::App app("Makes tables of files that shoal-bench and its like have written.",
                "shoal-bench-report");
   shoal::AddVersion(&app);
@@ -57,16 +57,11 @@ int Run(int argc, char** argv) {
   auto* compare = app.add_subcommand("compare", "two commits, stage by stage");
   compare->add_option("--ours", ours, "files, one per repetition")->required();
   compare->add_option("--theirs", theirs, "files of the other commit, as many")->required();
-  auto* tables = app.add_subcommand("tables", "writes the tables of a page anew");
-  tables->add_option("PAGE", page, "Markdown with lines '<!-- bench FILE: ROWS -->'")->required();
-  auto* scale = app.add_subcommand("scale", "what one replay, learner and link carry");
-  scale->add_option("FILES", files, "of shoal-bench, -batches and -actors")->required();
+  auto* tables = app.add_subcommand("tables", "writes the tables of pages anew");
+  tables->add_option("PAGES", pages, "Markdown with lines '<!-- bench FILE: ROWS -->'")->required();
   if (const auto exit_code = shoal::ParseCommandLine(&app, argc, argv)) return *exit_code;
   if (compare->parsed()) PrintComparison(ours, theirs);
-  if (tables->parsed()) RewritePage(page);
-  if (scale->parsed()) {
-    fmt::print("{}", shoal::bench::ScaleTables(shoal::bench::ReadScaleConstants(ReadAll(files))));
-  }
+  for (const std::string& page : pages) RewritePage(page);
   return 0;
 }
 

@@ -192,27 +192,19 @@ def sb3_train():
     return lambda: model.train(gradient_steps=1, batch_size=256)
 
 
-class Picture:
-    """An environment's wrapper whose observation is its picture."""
-
-    def __new__(cls, env):
-        import gymnasium
-        import numpy as np
-
-        class Wrapper(gymnasium.ObservationWrapper):
-            def __init__(self, inner):
-                super().__init__(inner)
-                self.observation_space = gymnasium.spaces.Box(0, 255, (84, 84, 3), np.uint8)
-
-            def observation(self, _):
-                return np.ascontiguousarray(self.render())
-
-        return Wrapper(env)
-
-
 def make_reach():
+    """FetchReach whose observation is its picture."""
     import gymnasium
     import gymnasium_robotics
+    import numpy as np
+
+    class Picture(gymnasium.ObservationWrapper):
+        def __init__(self, env):
+            super().__init__(env)
+            self.observation_space = gymnasium.spaces.Box(0, 255, (84, 84, 3), np.uint8)
+
+        def observation(self, _):
+            return np.ascontiguousarray(self.render())
 
     gymnasium.register_envs(gymnasium_robotics)
     return Picture(gymnasium.make("FetchReach-v4", render_mode="rgb_array", width=84, height=84))
