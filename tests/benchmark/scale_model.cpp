@@ -25,7 +25,7 @@ constexpr const char* kGatherRow =
 constexpr const char* kHandoverRow =
     "batches handed to a learner on the same host, beside the gather";
 constexpr const char* kUpdateRow = "SAC update, compact, batch 128 of (6, 84, 84), auto";
-constexpr const char* kActorRow = "FetchReach with one 84x84 camera, fast";
+constexpr const char* kActorRow = "1 actor of FetchReach with one 84x84 camera, fast";
 
 const ReportedRow& RowOf(std::span<const Report> reports, std::string_view stage) {
   for (const Report& report : reports) {

@@ -20,6 +20,7 @@ import os
 import statistics
 import subprocess
 import sys
+import tempfile
 import time
 
 ENCODERS = ("compact", "drq", "mrq", "nature")
@@ -224,6 +225,8 @@ def vector_steps(cores):
 
 def work(kind, arguments):
     """Answers each line SECONDS on stdin with calls per second."""
+    answers = os.fdopen(os.dup(1), "w")
+    os.dup2(2, 1)  # what libraries print is no answer
     if kind == "environments":
         call = vector_steps(int(arguments[0]))
     else:
@@ -234,13 +237,13 @@ def work(kind, arguments):
                                                             arguments[3])
         for _ in range(3):  # both kinds of update are compiled
             call()
-    print("ready", flush=True)
+    print("ready", file=answers, flush=True)
     for line in sys.stdin:
         start, calls = time.monotonic(), 0
         while calls == 0 or time.monotonic() - start < float(line):
             call()
             calls += 1
-        print(calls / (time.monotonic() - start), flush=True)
+        print(calls / (time.monotonic() - start), file=answers, flush=True)
 
 
 # --- Side by side ----------------------------------------------------------------------------------
@@ -253,20 +256,25 @@ class PeerError(Exception):
 class Worker:
     def __init__(self, python, *arguments):
         environment = dict(os.environ, MUJOCO_GL="osmesa", PYOPENGL_PLATFORM="osmesa")
+        self.errors = tempfile.TemporaryFile("w+")
         self.process = subprocess.Popen(
             [python, os.path.abspath(__file__), "worker", *map(str, arguments)], text=True,
-            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.PIPE, env=environment)
+            stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=self.errors, env=environment)
 
     def answer(self):
         line = self.process.stdout.readline()
         if not line:
-            errors = [e for e in self.process.stderr.read().splitlines() if e.strip()]
+            self.errors.seek(0)
+            errors = [e for e in self.errors.read().splitlines() if e.strip()]
             raise PeerError(errors[-1] if errors else "it ended without a word")
         return line
 
     def rate(self, seconds):
-        self.process.stdin.write(f"{seconds}\n")
-        self.process.stdin.flush()
+        try:
+            self.process.stdin.write(f"{seconds}\n")
+            self.process.stdin.flush()
+        except BrokenPipeError:
+            pass  # it has ended: answer() says why
         return float(self.answer())
 
     def __enter__(self):
@@ -297,15 +305,17 @@ def ours(options, program, stage, arguments=()):
 
 
 def best_variant(options, threads, encoder, batch):
-    rates = {}
+    rates, faults = {}, {}
     for variant in options.variants.split(","):
         try:
             with Worker(options.python, "update", threads, encoder, batch, variant) as worker:
                 rates[variant] = worker.rate(options.seconds)
         except PeerError as error:
-            print(f"bench: PyTorch, {variant}: {error}", file=sys.stderr)
+            faults[variant] = error
     if not rates:
-        raise PeerError("no variant runs")
+        raise PeerError(next(iter(faults.values())))
+    for variant, error in faults.items():
+        print(f"bench: PyTorch, {variant}: {error}", file=sys.stderr)
     return max(rates, key=rates.get), rates
 
 
