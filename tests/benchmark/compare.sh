@@ -53,6 +53,8 @@ launchers=()
 if command -v ccache >/dev/null; then
   launchers=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
 fi
+# The folder has another name each time: the cache is to know its sources all the same.
+export CCACHE_BASEDIR=$tree CCACHE_NOHASHDIR=1
 echo "building ${theirs:0:12} in $tree" >&2
 if ! (cd "$tree" && cmake --preset release "${launchers[@]}" && ninja -C build/release shoal-bench) \
   >"$work/build.log" 2>&1; then
