@@ -1,23 +1,66 @@
 #include "replay_server/core/random_shift.h"
 
 #include <algorithm>
+#include <cstdint>
 #include <cstdlib>
+#include <cstring>
 
 #include "common/base/check.h"
 
 namespace shoal::replay {
 namespace {
 
-// One plane, row by row: left border, pixels, right border. Bound by memory: clones of this loop
-// for newer instruction sets, or one block copy per plane, measured the same within 5 %.
-void ShiftPlane(const uint8_t* in, int height, int width, Shift shift, uint8_t* __restrict out) {
-  const int left = std::max(0, -shift.dx), right = std::max(0, shift.dx);
-  const int inner = width - left - right;
-  for (int i = 0; i < height; ++i, out += width) {
-    const uint8_t* row = in + std::clamp(i + shift.dy, 0, height - 1) * width;
-    for (int j = 0; j < left; ++j) out[j] = row[0];
-    for (int j = 0; j < inner; ++j) out[left + j] = row[right + j];
-    for (int j = left + inner; j < width; ++j) out[j] = row[width - 1];
+constexpr int kWord = 8;  // bytes that a border is written with
+
+uint64_t LoadWord(const uint8_t* from) {
+  uint64_t word;
+  std::memcpy(&word, from, kWord);
+  return word;
+}
+
+// `pixel` in every byte.
+uint64_t Spread(uint8_t pixel) { return pixel * uint64_t{0x0101010101010101}; }
+
+// The first kWord pixels of a row that was moved to the right by `left` of them, 0 < left < kWord.
+uint64_t LeftEnd(const uint8_t* row, int left) {
+  const uint64_t border = Spread(row[0]) & (~uint64_t{0} >> (8 * (kWord - left)));
+  return LoadWord(row) << (8 * left) | border;
+}
+
+// The last kWord pixels of a row of that width that was moved to the left by `right`.
+uint64_t RightEnd(const uint8_t* row, int width, int right) {
+  const uint64_t border = Spread(row[width - 1]) & (~uint64_t{0} << (8 * (kWord - right)));
+  return LoadWord(row + width - kWord) >> (8 * right) | border;
+}
+
+// Writes the columns of `rows` rows that no column of `in` was moved to.
+void FillColumns(const uint8_t* in, int rows, int width, int dx, uint8_t* __restrict out) {
+  const int left = std::max(0, -dx), right = std::max(0, dx);
+  const bool in_words = std::abs(dx) < kWord && width >= kWord;
+  for (int i = 0; i < rows; ++i, in += width, out += width) {
+    if (!in_words) {
+      std::memset(out, in[0], size_t(left));
+      std::memset(out + width - right, in[width - 1], size_t(right));
+    } else if (left > 0) {
+      const uint64_t word = LeftEnd(in, left);
+      std::memcpy(out, &word, kWord);
+    } else {
+      const uint64_t word = RightEnd(in, width, right);
+      std::memcpy(out + width - kWord, &word, kWord);
+    }
+  }
+}
+
+// Writes what is not in the place of a pixel of `in` of one plane: columns, then whole rows.
+void FillBorder(const uint8_t* in, int height, int width, Shift shift, uint8_t* __restrict out) {
+  const int top = std::max(0, -shift.dy), bottom = std::max(0, shift.dy);
+  const int rows = height - top - bottom;
+  uint8_t* const moved = out + top * width;
+  if (shift.dx != 0) FillColumns(in + bottom * width, rows, width, shift.dx, moved);
+  for (int i = 0; i < top; ++i) std::memcpy(out + i * width, moved, size_t(width));
+  for (int i = 0; i < bottom; ++i) {
+    uint8_t* const row = moved + (rows + i) * width;
+    std::memcpy(row, row - width, size_t(width));
   }
 }
 
@@ -34,8 +77,13 @@ void ShiftPlanes(const uint8_t* in, int planes, int height, int width, Shift shi
   CHECK(planes > 0 && height > 0 && width > 0) << planes << "x" << height << "x" << width;
   CHECK(std::abs(shift.dx) < width && std::abs(shift.dy) < height)
       << "shift " << shift.dx << "," << shift.dy << " of " << height << "x" << width;
+  // In and out are equally wide: every pixel moves equally far in memory, all in one block, after
+  // which the borders are written over what the block took there from neighbouring rows and planes.
+  const int bytes = planes * height * width, distance = shift.dy * width + shift.dx;
+  std::memcpy(out + std::max(0, -distance), in + std::max(0, distance),
+              size_t(bytes - std::abs(distance)));
   for (int p = 0; p < planes; ++p, in += height * width, out += height * width) {
-    ShiftPlane(in, height, width, shift, out);
+    FillBorder(in, height, width, shift, out);
   }
 }
 

@@ -100,7 +100,11 @@ std::vector<Pairing> LearnerPairings() {
   for (const auto& [encoder, name, batch] : {Network{"compact", "compact", 128},
                                              {"compact", "compact", 256},
                                              {"drq", "drq", 128},
+                                             {"drq", "drq", 256},
+                                             {"mrq", "mrq", 128},
+                                             {"mrq", "mrq", 256},
                                              {"nature", "nature", 128},
+                                             {"nature", "nature", 256},
                                              {"", "vectors alone", 128}}) {
     const auto get = [agents, encoder = std::string(encoder), batch = batch]() -> TwoAgents::Of& {
       return agents->Get(encoder, batch);

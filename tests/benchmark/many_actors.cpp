@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <csignal>
 #include <fstream>
 #include <map>
@@ -20,6 +21,7 @@
 #include "common/dds/bus.h"
 #include "common/dds/publisher.h"
 #include "common/dds/subscriber.h"
+#include "common/wire/weights_parts.h"
 #include "launch/processes/child_process.h"
 #include "launch/record/accounting.h"
 
@@ -31,16 +33,12 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr milliseconds kPoll{5};
-constexpr seconds kFound{60}, kEnd{60};
+constexpr seconds kFound{120}, kEnd{120};
 
-RunConfig Run(int actors) {
-  RunConfig run;
-  run.config.run_name = "many-actors";
-  run.config.actors = actors;
+// Frames of one camera of 84x84, without physics.
+RunConfig FakeRun(int actors) {
+  RunConfig run = UnlearnedRun(actors);
   run.config.envs_per_actor = 1;
-  run.config.replay.capacity = 2000;
-  run.config.replay.min_size = 100;
-  run.config.replay.samples_per_insert = 0;  // nobody learns, so nobody is to be waited for
   run.config.network.filters = {8};
   run.config.network.strides = {2};
   run.config.network.hidden = {16};
@@ -76,6 +74,7 @@ class Bystander {
   Bystander(std::unique_ptr<dds::Bus> bus)
       : bus_(std::move(bus)),
         control_(*bus_),
+        weights_(*bus_),
         credits_(*bus_, [this](const CreditsMessage& message) { OnCredits(message); }),
         metrics_(*bus_, [this](const ReplayMetrics& message) { OnMetrics(message); }) {}
 
@@ -97,11 +96,27 @@ class Bystander {
     last_beat_ = {};
     Beat();
   }
+  // What all actors are to act by, those that come later, too.
+  void Publish(const RunConfig& run, const std::string& weights) {
+    WeightsMessage message;
+    message.spec_hash = run.spec.Hash();
+    message.version = {/*session=*/1, /*update=*/1};
+    message.payload = {reinterpret_cast<const uint8_t*>(weights.data()), weights.size()};
+    for (uint32_t part = 0; part < WeightsParts(weights.size()); ++part) {
+      if (!weights_.Write(PartOf<WeightsPart>(message, part))) {
+        throw RuntimeError("the weights were not taken");
+      }
+    }
+  }
   size_t ActorsAnswered() {
     const std::lock_guard lock(mutex_);
     return answered_.size();
   }
-  double Stored() {
+  // Of records and, among them, of steps.
+  struct Stored {
+    double records = 0, steps = 0;
+  };
+  Stored StoredNow() {
     const std::lock_guard lock(mutex_);
     return stored_;
   }
@@ -122,17 +137,19 @@ class Bystander {
   void OnMetrics(const ReplayMetrics& message) {
     const std::lock_guard lock(mutex_);
     for (size_t i = 0; i < message.names.size(); ++i) {
-      if (message.names[i] == "stored_records") stored_ = message.values[i];
+      if (message.names[i] == "stored_records") stored_.records = message.values[i];
+      if (message.names[i] == "stored_steps") stored_.steps = message.values[i];
     }
   }
 
   std::mutex mutex_;
   std::set<uint32_t> answered_;
-  double stored_ = 0;
+  Stored stored_;
   ControlMessage order_{.epoch = 1};
   SteadyTime last_beat_{};
   std::unique_ptr<dds::Bus> bus_;
   dds::Publisher<ControlMessage> control_;
+  dds::Publisher<WeightsPart> weights_;
   dds::Subscriber<CreditsMessage> credits_;
   dds::Subscriber<ReplayMetrics> metrics_;
 };
@@ -152,6 +169,37 @@ double CpuSeconds(const std::vector<launch::ChildProcess>& processes) {
   double sum = 0;
   for (const launch::ChildProcess& process : processes) sum += CpuSeconds(process.pid());
   return sum;
+}
+
+launch::ProcessSpec ActorSpec(const ManyActorsOptions& options, int id) {
+  std::vector<std::string> arguments{"--id", std::to_string(id)};
+  if (options.run) return Spec(options, "shoal-actor", arguments);
+  const int step_us = std::max(1, static_cast<int>(1e6 / options.steps_per_second));
+  arguments.insert(arguments.end(), {"--step-us", std::to_string(step_us)});
+  return Spec(options, "shoal-fake-actor", arguments);
+}
+
+// From one report of the replay's to another, so that both ends of the span are exact.
+void MeasureSpan(const ManyActorsOptions& options, pid_t replay,
+                 const std::vector<launch::ChildProcess>& actors, Bystander* bystander,
+                 ManyActorsFigures* figures) {
+  const auto next_report = [&] {
+    const double before = bystander->StoredNow().records;
+    bystander->Until([&] { return bystander->StoredNow().records > before; }, seconds(10));
+  };
+  next_report();
+  const SteadyTime begin = Now();
+  const Bystander::Stored stored = bystander->StoredNow();
+  const double replay_cpu = CpuSeconds(replay), actor_cpu = CpuSeconds(actors);
+  bystander->Until([&] { return SecondsSince(begin) > options.seconds; }, kFound);
+  next_report();
+  const double span = SecondsSince(begin);
+  const double transitions = bystander->StoredNow().records - stored.records;
+  if (transitions <= 0) throw RuntimeError("nothing was stored in {:.0f} s", span);
+  figures->transitions_per_second = transitions / span;
+  figures->env_steps_per_second = (bystander->StoredNow().steps - stored.steps) / span;
+  figures->replay_us_per_transition = 1e6 * (CpuSeconds(replay) - replay_cpu) / transitions;
+  figures->actor_us_per_transition = 1e6 * (CpuSeconds(actors) - actor_cpu) / transitions;
 }
 
 void RequireEnd(Bystander* bystander, std::vector<launch::ChildProcess>* processes,
@@ -187,12 +235,24 @@ void TakeAccount(const fs::path& run, ManyActorsFigures* figures) {
 
 }  // namespace
 
+RunConfig UnlearnedRun(int actors) {
+  RunConfig run;
+  run.config.run_name = "many-actors";
+  run.config.actors = actors;
+  run.config.replay.capacity = 2000;
+  run.config.replay.min_size = 100;
+  run.config.replay.samples_per_insert = 0;
+  return run;
+}
+
 ManyActorsFigures MeasureManyActors(const ManyActorsOptions& options) {
-  const RunConfig run = Run(options.actors);
+  RunConfig run = options.run.value_or(FakeRun(options.actors));
+  run.config.actors = options.actors;
   ClusterAddress address;
   Bystander bystander(dds::ClaimDomain(run.config.transport, &address));
   WriteRunConfig(options.folder, run);
   WriteClusterAddress(options.folder, address);
+  if (!options.weights.empty()) bystander.Publish(run, options.weights);
   std::vector<launch::ChildProcess> replay, actors;
   replay.emplace_back(Spec(options, "shoal-replay", {}));
   if (!bystander.Until([&] { return fs::exists(options.folder / "accounting.json"); }, kFound)) {
@@ -200,34 +260,15 @@ ManyActorsFigures MeasureManyActors(const ManyActorsOptions& options) {
   }
   ManyActorsFigures figures{.actors = options.actors};
   const SteadyTime start = Now();
-  const int step_us = static_cast<int>(1e6 / options.steps_per_second);
-  for (int i = 0; i < options.actors; ++i) {
-    actors.emplace_back(Spec(options, "shoal-fake-actor",
-                             {"--id", std::to_string(i), "--step-us", std::to_string(step_us)}));
-  }
+  for (int i = 0; i < options.actors; ++i) actors.emplace_back(ActorSpec(options, i));
   figures.start_seconds = SecondsSince(start);
   const auto all = static_cast<size_t>(options.actors);
   if (!bystander.Until([&] { return bystander.ActorsAnswered() == all; }, kFound)) {
-    throw RuntimeError("{} of {} actors were found within {} s", bystander.ActorsAnswered(), all,
-                       kFound.count());
+    throw RuntimeError("{} of {} actors were found within {} s: {}", bystander.ActorsAnswered(),
+                       all, kFound.count(), launch::LastLine(options.folder / "log"));
   }
   figures.found_seconds = SecondsSince(start) - figures.start_seconds;
-
-  // Whole seconds of the replay's reports, so that both ends of the span are reports.
-  const auto next_report = [&] {
-    const double before = bystander.Stored();
-    bystander.Until([&] { return bystander.Stored() > before; }, seconds(10));
-  };
-  next_report();
-  const SteadyTime begin = Now();
-  const double stored = bystander.Stored(), replay_cpu = CpuSeconds(replay[0].pid()),
-               actor_cpu = CpuSeconds(actors);
-  bystander.Until([&] { return SecondsSince(begin) > options.seconds; }, kFound);
-  next_report();
-  const double transitions = bystander.Stored() - stored;
-  figures.transitions_per_second = transitions / SecondsSince(begin);
-  figures.replay_us_per_transition = 1e6 * (CpuSeconds(replay[0].pid()) - replay_cpu) / transitions;
-  figures.actor_us_per_transition = 1e6 * (CpuSeconds(actors) - actor_cpu) / transitions;
+  MeasureSpan(options, replay[0].pid(), actors, &bystander, &figures);
 
   bystander.Tell(RunState::kDraining);
   RequireEnd(&bystander, &actors, "an actor");

@@ -3,6 +3,10 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
+#include <string>
+
+#include "common/config/run_files.h"
 
 namespace shoal::bench {
 
@@ -12,14 +16,22 @@ struct ManyActorsOptions {
   int actors = 4;
   double steps_per_second = 50;  // of each actor
   double seconds = 10;           // measured, once all are found
+  // Real actors of this run in place of those that cost nothing but time, and what they act by, as
+  // safetensors. Their number is that above.
+  std::optional<RunConfig> run{};
+  std::string weights{};
 };
+
+// Config of a run that nobody learns from, so that nobody is waited for.
+RunConfig UnlearnedRun(int actors);
 
 struct ManyActorsFigures {
   int actors = 0;
   // From the last actor's start until the replay has answered every one of them, and from then on
   // which of it was starting programs.
   double found_seconds = 0, start_seconds = 0;
-  double transitions_per_second = 0;        // stored
+  double transitions_per_second = 0;        // stored, resets included
+  double env_steps_per_second = 0;          // of them the steps
   double replay_us_per_transition = 0;      // CPU time of the replay server
   double actor_us_per_transition = 0;       // CPU time of all actors
   uint64_t made = 0, stored = 0, lost = 0;  // the account, which balances

@@ -26,24 +26,42 @@ struct Learners {
   std::unique_ptr<learner::Agent> f32 = learner::MakeAgent(config, spec, nn::Precision::kF32);
 };
 
-// Large networks one at a time: made when a row asks for them, in the place of the row's before.
-class LargeLearners {
+// Networks one at a time: made when a row asks for them, in the place of the row's before.
+class LatestLearners {
  public:
-  Learners& Of(const std::string& encoder, int batch, int channels) {
-    if (!learners_ || learners_->config.network.encoder != encoder ||
-        learners_->config.learner.batch != batch) {
+  Learners& Of(const std::string& name, const Config& config, int channels) {
+    if (!learners_ || name_ != name) {
       learners_.reset();
-      Config config;
-      config.network.encoder = encoder;
-      config.learner.batch = batch;
       learners_ = std::make_unique<Learners>(config, PixelSpec(channels));
+      name_ = name;
     }
     return *learners_;
   }
 
  private:
+  std::string name_;
   std::unique_ptr<Learners> learners_;
 };
+
+Config WithEncoder(const std::string& encoder, int batch) {
+  Config config;
+  config.network.encoder = encoder;
+  config.learner.batch = batch;
+  return config;
+}
+
+// SAC from pixels as Stable-Baselines3 has it (preset sb3-nature): encoders of the actor's, the
+// critic's and the target's own, or one in their place.
+Config LikeStableBaselines(bool three_encoders) {
+  Config config = WithEncoder("nature", 256);
+  config.network.encoders = three_encoders ? "separate" : "shared";
+  config.network.target_encoder = three_encoders;
+  config.network.features = 256;
+  config.network.layer_norm = false;
+  config.network.log_std = "clamped";
+  config.learner.actor_period = 1;
+  return config;
+}
 
 struct Policies {
   ObservationSpec spec = PixelSpec();
@@ -55,14 +73,21 @@ struct Policies {
 }  // namespace
 
 std::vector<Pairing> NetworkPairings() {
-  const auto learners = std::make_shared<Learners>(Config(), PixelSpec());
+  const auto latest = std::make_shared<LatestLearners>();
+  // An update of automatic precision beside one of f32. `name`: of the network and its batch.
+  const auto update = [latest](const std::string& name, const Config& config, int channels) {
+    const std::string stage =
+        fmt::format("SAC update, {} of ({}, 84, 84), precision auto", name, channels);
+    const auto get = [=]() -> Learners& { return latest->Of(name, config, channels); };
+    return Pairing{.stage = stage,
+                   .unit = "updates/s",
+                   .against = "precision f32",
+                   .ours = [get] { get().automatic->Update(get().batch); },
+                   .other = [get] { get().f32->Update(get().batch); }};
+  };
   const auto policies = std::make_shared<Policies>();
   std::vector<Pairing> pairings{
-      {.stage = "SAC update, batch 128 of (6, 84, 84), precision auto",
-       .unit = "updates/s",
-       .against = "precision f32",
-       .ours = [learners] { learners->automatic->Update(learners->batch); },
-       .other = [learners] { learners->f32->Update(learners->batch); }},
+      update("batch 128", Config(), 6),
       {.stage = "policy for 4 environments at once",
        .unit = "actions/s",
        .against = "one by one",
@@ -76,18 +101,16 @@ std::vector<Pairing> NetworkPairings() {
                    1, policies->frames.data() + size_t(e) * policies->spec.FrameBytes(), nullptr);
              }
            }}};
-  const auto large = std::make_shared<LargeLearners>();
+  for (const bool three : {true, false}) {
+    pairings.push_back(update(fmt::format("Stable-Baselines3's networks with {}, batch 256",
+                                          three ? "its three encoders" : "one encoder"),
+                              LikeStableBaselines(three), 3));
+  }
   constexpr int kChannels = 4;  // grey, a stack of four
   for (const char* encoder : {"resnet18", "alexnet"}) {
     for (const int batch : {4, 128}) {
-      const auto get = [=]() -> Learners& { return large->Of(encoder, batch, kChannels); };
-      pairings.push_back(
-          {.stage = fmt::format("SAC update, {}, batch {} of ({}, 84, 84), precision auto", encoder,
-                                batch, kChannels),
-           .unit = "updates/s",
-           .against = "precision f32",
-           .ours = [get] { get().automatic->Update(get().batch); },
-           .other = [get] { get().f32->Update(get().batch); }});
+      pairings.push_back(update(fmt::format("{}, batch {}", encoder, batch),
+                                WithEncoder(encoder, batch), kChannels));
     }
   }
   return pairings;

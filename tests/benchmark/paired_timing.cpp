@@ -1,5 +1,7 @@
 #include "tests/benchmark/paired_timing.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -21,22 +23,23 @@ double CallsPerSecond(const std::function<void()>& act, double seconds) {
   return calls / SecondsSince(start);
 }
 
+}  // namespace
+
 double Median(std::vector<double> values) {
   std::sort(values.begin(), values.end());
   const size_t middle = values.size() / 2;
   return values.size() % 2 == 1 ? values[middle] : (values[middle - 1] + values[middle]) / 2;
 }
 
-}  // namespace
-
 Row TimePair(const Pairing& pairing, int repetitions, double seconds) {
   const std::shared_ptr<void> held = pairing.meanwhile ? pairing.meanwhile() : nullptr;
   pairing.ours();
-  pairing.other();
+  if (pairing.other) pairing.other();
   std::vector<double> ours, other, ratios;
   for (int i = 0; i < repetitions; ++i) {
     ours.push_back(CallsPerSecond(pairing.ours, seconds));
-    other.push_back(CallsPerSecond(pairing.other, seconds));
+    other.push_back(pairing.other ? CallsPerSecond(pairing.other, seconds)
+                                  : pairing.other_rate / pairing.units_per_call);
     ratios.push_back(ours.back() / other.back());
   }
   const auto [least, most] = std::minmax_element(ratios.begin(), ratios.end());
@@ -63,6 +66,16 @@ nlohmann::ordered_json ToJson(const Row& row) {
           {"target", row.target > 0 ? nlohmann::ordered_json(row.target) : nullptr},
           {"repetitions", row.repetitions},
           {"spread", row.spread}};
+}
+
+std::string LineOf(const Row& row) {
+  std::string line =
+      fmt::format("{}: {:.4g} {}, {:.2f} x {} ({:.4g}), spread {:.2f}", row.stage, row.figure,
+                  row.unit, row.ratio, row.against, row.against_figure, row.spread);
+  if (row.target > 0) {
+    line += fmt::format(", target {:.2f}{}", row.target, row.ratio < row.target ? " missed" : "");
+  }
+  return line;
 }
 
 }  // namespace shoal::bench

@@ -25,6 +25,8 @@ struct Pairing {
   double units_per_call = 1;
   double target = 0;
   std::function<void()> ours, other;
+  // In place of `other`: a rate that is a limit by itself, in units per second.
+  double other_rate = 0;
   // What goes on meanwhile, for as long as the result lives; empty: nothing.
   std::function<std::shared_ptr<void>()> meanwhile{};
 };
@@ -32,11 +34,18 @@ struct Pairing {
 // Each side runs for about `seconds` per repetition; the first, uncounted call of each warms up.
 Row TimePair(const Pairing& pairing, int repetitions, double seconds);
 
+// Of two in the middle their mean; at least one value.
+double Median(std::vector<double> values);
+
 nlohmann::ordered_json ToJson(const Row& row);
+// For people: figure, ratio, spread and, where it has a target, whether that is met.
+std::string LineOf(const Row& row);
 
 // What is measured, one function per room.
 std::vector<Pairing> ReplayPairings();
+std::vector<Pairing> GatherPairings();
 std::vector<Pairing> NetworkPairings();
+std::vector<Pairing> UpdatePairings();
 std::vector<Pairing> LearnerPairings();
 std::vector<Pairing> PolicyPairings();
 std::vector<Pairing> TransportPairings();

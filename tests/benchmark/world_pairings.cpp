@@ -1,3 +1,5 @@
+#include <fmt/core.h>
+
 #include <memory>
 
 #include "actor/worlds/environment.h"
@@ -6,17 +8,44 @@
 namespace shoal::bench {
 namespace {
 
-// One environment stepped for ever with a fixed action.
+constexpr int kSize = 84, kLargeSize = 480;
+
+// Each pixel the mean of those that it covers, also in part: channels of `from` squared pixels to
+// `to` squared ones.
+void ShrinkByArea(std::span<const uint8_t> in, int channels, int from, int to,
+                  std::vector<uint8_t>* out) {
+  out->resize(size_t(channels) * size_t(to) * size_t(to));
+  const auto first = [=](int i) { return i * from / to; };
+  const auto last = [=](int i) { return ((i + 1) * from - 1) / to; };
+  uint8_t* pixel = out->data();
+  for (int c = 0; c < channels; ++c) {
+    const uint8_t* plane = in.data() + size_t(c) * size_t(from) * size_t(from);
+    for (int i = 0; i < to; ++i) {
+      for (int j = 0; j < to; ++j) {
+        int sum = 0, count = 0;
+        for (int y = first(i); y <= last(i); ++y) {
+          for (int x = first(j); x <= last(j); ++x, ++count) sum += plane[y * from + x];
+        }
+        *pixel++ = static_cast<uint8_t>(sum / count);
+      }
+    }
+  }
+}
+
+// One environment stepped for ever with a fixed action. Frames of another size than 84x84 are
+// brought to it.
 class Stepper {
  public:
   Stepper(const std::string& task, const std::vector<std::string>& cameras,
-          const std::string& quality) {
+          const std::string& quality, int size = kSize)
+      : size_(size) {
     const bool pixels = !cameras.empty();
     Config config;
     config.task = task;
     config.observation.pixels = pixels;
     config.observation.cameras = cameras;
     config.observation.quality = quality;
+    config.observation.height = config.observation.width = size;
     std::shared_ptr<worlds::RenderContext> render;
     if (pixels) render = worlds::MakeRenderContext(config.observation);
     environment_ = worlds::MakeEnvironment(config, render);
@@ -30,11 +59,15 @@ class Stepper {
     if (!running_) environment_->Reset(++episode_, {frame_, vector_});
     const worlds::StepResult result = environment_->Step(action_, {frame_, vector_});
     running_ = !result.truncated && !result.terminated;
+    if (size_ != kSize) {
+      ShrinkByArea(frame_, environment_->spec().channels, size_, kSize, &shrunk_);
+    }
   }
 
  private:
   std::unique_ptr<worlds::Environment> environment_;
-  std::vector<uint8_t> frame_;
+  const int size_;
+  std::vector<uint8_t> frame_, shrunk_;
   std::vector<float> vector_, action_;
   uint64_t episode_ = 0;
   bool running_ = false;
@@ -44,8 +77,8 @@ class Stepper {
 
 std::vector<Pairing> WorldPairings() {
   const auto make = [](const std::string& task, const std::vector<std::string>& cameras,
-                       const char* quality) {
-    const auto stepper = std::make_shared<Stepper>(task, cameras, quality);
+                       const char* quality, int size = kSize) {
+    const auto stepper = std::make_shared<Stepper>(task, cameras, quality, size);
     return [stepper] { stepper->Step(); };
   };
   std::vector<Pairing> pairings;
@@ -80,6 +113,13 @@ std::vector<Pairing> WorldPairings() {
                       .against = "quality reference",
                       .ours = make("FetchReach", {"front", "side"}, "fast"),
                       .other = make("FetchReach", {"front", "side"}, "reference")});
+  for (const char* quality : {"fast", "reference"}) {
+    pairings.push_back({.stage = fmt::format("FetchReach with one 84x84 camera, {}", quality),
+                        .unit = "env steps/s",
+                        .against = "drawn at 480x480, then resized",
+                        .ours = make("FetchReach", {"front"}, quality),
+                        .other = make("FetchReach", {"front"}, quality, kLargeSize)});
+  }
   return pairings;
 }
 

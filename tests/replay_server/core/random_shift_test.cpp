@@ -46,8 +46,9 @@ TEST(RandomShift, IsPaddingByReplicationAndACropAtEveryOffset) {
   struct Size {
     int planes, height, width, pad;
   };
-  for (const Size& s : {Size{1, 1, 1, 0}, Size{2, 5, 7, 4}, Size{3, 9, 5, 4}, Size{1, 84, 84, 4},
-                        Size{6, 17, 33, 2}, Size{2, 3, 64, 2}}) {
+  for (const Size& s :
+       {Size{1, 1, 1, 0}, Size{2, 5, 7, 4}, Size{3, 9, 5, 4}, Size{1, 84, 84, 4},
+        Size{6, 17, 33, 2}, Size{2, 3, 64, 2}, Size{2, 20, 30, 9}, Size{2, 9, 8, 7}}) {
     const auto in = Noise(static_cast<size_t>(s.planes) * s.height * s.width, 3);
     for (int dy = -s.pad; dy <= s.pad; ++dy) {
       for (int dx = -s.pad; dx <= s.pad; ++dx) {

@@ -1,0 +1,84 @@
+#include "tests/benchmark/bench_page.h"
+
+#include <fmt/core.h>
+
+#include <sstream>
+#include <vector>
+
+#include "common/base/error.h"
+#include "tests/benchmark/bench_report.h"
+#include "tests/benchmark/scale_model.h"
+
+namespace shoal::bench {
+namespace {
+
+using Reader = std::function<std::string(const std::string& file)>;
+
+constexpr std::string_view kBegin = "<!-- bench ", kEnd = "<!-- end of bench -->";
+constexpr std::string_view kScale = "scale of ";
+
+// The text up to the next line break, which is taken away, too.
+std::string_view TakeLine(std::string_view* text) {
+  const size_t end = text->find('\n');
+  const std::string_view line = text->substr(0, end);
+  text->remove_prefix(end == std::string_view::npos ? text->size() : end + 1);
+  return line;
+}
+
+// What stands between "<!-- bench " and " -->".
+std::string_view OrderOf(std::string_view line) {
+  const size_t end = line.find(" -->");
+  if (end == std::string_view::npos) throw RuntimeError("no ' -->' ends '{}'", line);
+  return line.substr(kBegin.size(), end - kBegin.size());
+}
+
+std::string Source(const Report& report, const std::string& file) {
+  return fmt::format("Commit {}, {}. [File]({}).\n", report.commit, report.machine, file);
+}
+
+std::string Rows(std::string_view order, const Reader& read) {
+  const size_t colon = order.find(": ");
+  const std::string file(order.substr(0, colon));
+  const std::string_view only =
+      colon == std::string_view::npos ? std::string_view() : order.substr(colon + 2);
+  Report report = ParseReport(read(file), file);
+  std::erase_if(report.rows,
+                [&](const ReportedRow& row) { return row.stage.find(only) == std::string::npos; });
+  if (report.rows.empty()) throw RuntimeError("'{}' has no row '{}'", file, only);
+  return fmt::format("{}\n{}", Source(report, file), MarkdownTable(report));
+}
+
+std::string Scale(std::string_view order, const Reader& read) {
+  std::istringstream files{std::string(order.substr(kScale.size()))};
+  std::vector<Report> reports;
+  std::string sources;
+  for (std::string file; files >> file;) {
+    reports.push_back(ParseReport(read(file), file));
+    sources += Source(reports.back(), file);
+  }
+  return fmt::format("{}\n{}", sources, ScaleTables(ReadScaleConstants(reports)));
+}
+
+}  // namespace
+
+std::string RewritePage(std::string_view page, const Reader& read) {
+  std::string out;
+  while (!page.empty()) {
+    const std::string_view line = TakeLine(&page);
+    if (line.starts_with(kEnd)) throw RuntimeError("a line '{}' ends nothing", kEnd);
+    out += fmt::format("{}\n", line);
+    if (!line.starts_with(kBegin)) continue;
+    std::string_view former;
+    do {
+      if (page.empty()) throw RuntimeError("'{}' has no '{}'", line, kEnd);
+      former = TakeLine(&page);
+      if (former.starts_with(kBegin)) throw RuntimeError("'{}' has no '{}'", line, kEnd);
+    } while (!former.starts_with(kEnd));
+    const std::string_view order = OrderOf(line);
+    out += fmt::format("\n{}\n{}\n",
+                       order.starts_with(kScale) ? Scale(order, read) : Rows(order, read), kEnd);
+  }
+  return out;
+}
+
+}  // namespace shoal::bench

@@ -1,0 +1,23 @@
+// Pages whose tables are made from files of measurements, so that the whole page can be made anew.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <string_view>
+
+namespace shoal::bench {
+
+// The page with what stands between each pair of lines
+//
+//   <!-- bench FILE: ONLY -->            commit and machine of FILE, then its rows whose stage
+//   <!-- end of bench -->                contains ONLY; all where ": ONLY" is left out
+//
+//   <!-- bench scale of FILE FILE -->    what one replay, learner and link carry (scale_model.h)
+//   <!-- end of bench -->
+//
+// replaced. `read` gives the text of a FILE, which the page names from where it lies. Throws Error
+// naming a line without its partner, a file of which no row is left, a row that is missing.
+std::string RewritePage(std::string_view page,
+                        const std::function<std::string(const std::string& file)>& read);
+
+}  // namespace shoal::bench

@@ -1,0 +1,144 @@
+#include "tests/benchmark/real_actors.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <functional>
+#include <memory>
+
+#include "actor/acting/action_selector.h"
+#include "actor/worlds/environment.h"
+#include "common/base/clock.h"
+#include "common/base/usable_cores.h"
+#include "common/nn/actor_critic_plan.h"
+#include "common/nn/parameter_set.h"
+#include "common/nn/safetensors.h"
+#include "launch/processes/scratch_folder.h"
+
+namespace shoal::bench {
+namespace {
+
+constexpr double kPartsTarget = 0.9, kCoresTarget = 0.85;
+constexpr double kFlatOut = 1e6;  // steps a second of an actor whose environment costs nothing
+
+RunConfig ReachRun(const char* quality) {
+  RunConfig run = UnlearnedRun(1);
+  run.config.task = "FetchReach";
+  run.config.observation.cameras = {"front"};
+  run.config.observation.quality = quality;
+  run.spec = worlds::MakeEnvironment(run.config, worlds::MakeRenderContext(run.config.observation))
+                 ->spec();
+  return run;
+}
+
+// A policy as it starts.
+std::string FirstWeights(const RunConfig& run) {
+  nn::ParameterSet parameters(nn::PolicyParameters(run.config.network, run.spec),
+                              nn::ParameterSet::Use::kInference);
+  parameters.Initialise(1);
+  nn::TensorMap tensors;
+  parameters.Export(&tensors);
+  return nn::WriteSafetensors(tensors, {});
+}
+
+double SecondsPerCall(double seconds, const std::function<void()>& act) {
+  act();
+  const SteadyTime start = Now();
+  int calls = 0;
+  do {
+    act();
+    ++calls;
+  } while (SecondsSince(start) < seconds);
+  return SecondsSince(start) / calls;
+}
+
+// Physics and rendering of an env step, resets included; nothing else.
+double StepSeconds(const RunConfig& run, double seconds) {
+  const auto environment =
+      worlds::MakeEnvironment(run.config, worlds::MakeRenderContext(run.config.observation));
+  std::vector<uint8_t> frame(static_cast<size_t>(run.spec.FrameBytes()));
+  std::vector<float> vector(static_cast<size_t>(run.spec.RecordedVectorSize()));
+  const std::vector<float> action(static_cast<size_t>(run.spec.action_size), 0.2f);
+  uint64_t episode = 0;
+  bool running = false;
+  return SecondsPerCall(seconds, [&] {
+    if (!running) environment->Reset(++episode, {frame, vector});
+    const worlds::StepResult result = environment->Step(action, {frame, vector});
+    running = !result.truncated && !result.terminated;
+  });
+}
+
+// An action of one environment, of all that an actor has at once.
+double InferSeconds(const RunConfig& run, const std::string& weights, double seconds) {
+  const int envs = run.config.envs_per_actor;
+  actor::ActionSelector selector(run.config, run.spec, envs);
+  selector.Load({{/*session=*/1, /*update=*/1}, 0, "", weights});
+  for (int e = 0; e < envs; ++e) selector.BeginEpisode(e, static_cast<uint64_t>(e));
+  return SecondsPerCall(seconds, [&] { selector.Select(actor::Acting::kExplore); }) / envs;
+}
+
+ManyActorsFigures Measure(ManyActorsOptions options, int actors) {
+  const launch::ScratchFolder folder;
+  options.folder = folder.path();
+  options.actors = actors;
+  return MeasureManyActors(options);
+}
+
+// Figure and what it is held to, repetition by repetition.
+struct Pairs {
+  std::vector<double> figures, against;
+
+  Row Summary(const std::string& stage, const std::string& of, double target) const {
+    std::vector<double> ratios;
+    for (size_t i = 0; i < figures.size(); ++i) ratios.push_back(figures[i] / against[i]);
+    const auto [least, most] = std::ranges::minmax(ratios);
+    const double ratio = Median(ratios);
+    return {.stage = stage,
+            .unit = "env steps/s",
+            .against = of,
+            .figure = Median(figures),
+            .against_figure = Median(against),
+            .ratio = ratio,
+            .spread = (most - least) / ratio,
+            .target = target,
+            .repetitions = static_cast<int>(figures.size())};
+  }
+};
+
+}  // namespace
+
+std::vector<Row> RealActorRows(const ManyActorsOptions& options, int repetitions) {
+  ManyActorsOptions fast = options, reference = options, sending = options;
+  fast.run = ReachRun("fast");
+  reference.run = ReachRun("reference");
+  fast.weights = reference.weights = FirstWeights(*fast.run);
+  sending.run.reset();
+  sending.steps_per_second = kFlatOut;
+  const int cores = UsableCores();
+  Pairs parts, all, slow;
+  for (int i = 0; i < repetitions; ++i) {
+    const double step = StepSeconds(*fast.run, options.seconds / 2);
+    const double infer = InferSeconds(*fast.run, fast.weights, options.seconds / 2);
+    const double send = 1e-6 * Measure(sending, 1).actor_us_per_transition;
+    const double one = Measure(fast, 1).env_steps_per_second;
+    parts.figures.push_back(one);
+    parts.against.push_back(1 / (step + infer + send));
+    all.figures.push_back(Measure(fast, cores).env_steps_per_second);
+    all.against.push_back(cores * one);
+    slow.figures.push_back(Measure(reference, cores).env_steps_per_second);
+    slow.against.push_back(all.figures.back());
+  }
+  const auto actors = [&](int count, const char* quality) {
+    return fmt::format("{} actor{} of FetchReach with one 84x84 camera, {}", count,
+                       count == 1 ? "" : "s", quality);
+  };
+  std::vector<Row> rows{parts.Summary(
+      actors(1, "fast"), "1 / (step + render + infer + send, each alone)", kPartsTarget)};
+  rows.push_back(all.Summary(actors(cores, "fast") + fmt::format(", on {} cores", cores),
+                             fmt::format("{} times one", cores), kCoresTarget));
+  rows.push_back(slow.Summary(actors(cores, "reference") + fmt::format(", on {} cores", cores),
+                              "quality fast", 0));
+  return rows;
+}
+
+}  // namespace shoal::bench

@@ -1,0 +1,45 @@
+// What one replay server, one learner and one link carry, by arithmetic from measured rows: the
+// tables of docs/scale.md.
+//
+// A run makes `t` transitions a second, of which the learner wants S = replay.samples_per_insert
+// samples each, so t S / B batches. Shares of what there is:
+//
+//   replay    t (intake + S / B (gather + batch_bytes * handover))   of one core
+//   learner   t S / B * update                                       of one core
+//   link in   t * record_bytes                                       of the replay host's
+//   link out  t S / B * batch_bytes                                  of it, to a learner elsewhere
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "tests/benchmark/bench_report.h"
+
+namespace shoal::bench {
+
+// Measured; CPU seconds of one core.
+struct ScaleConstants {
+  double actor_rate = 0;                       // transitions/s of one actor on a core of its own
+  double intake = 0;                           // of the replay, per transition
+  double gather = 0;                           // of the replay, per batch
+  double handover_near = 0, handover_far = 0;  // of the replay, per byte: to its host, to another
+  double update = 0;                           // of the learner, per batch
+};
+
+// By the rows that shoal-bench, shoal-bench-batches and shoal-bench-actors write. Throws Error
+// naming a row that no report has.
+ScaleConstants ReadScaleConstants(std::span<const Report> reports);
+
+struct ScaleLoad {
+  double replay = 0, learner = 0, link_in = 0, link_out = 0;  // 1 = all of it
+};
+
+// `far`: the learner is on another host than the replay.
+ScaleLoad LoadOf(const ScaleConstants& constants, double transitions_per_second,
+                 double samples_per_insert, bool far);
+
+// Markdown: the constants with their rows, what one of each carries, loads of 16, 100 and 1,000
+// actors and what is exceeded first.
+std::string ScaleTables(const ScaleConstants& constants);
+
+}  // namespace shoal::bench

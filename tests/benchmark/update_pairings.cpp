@@ -1,0 +1,96 @@
+// An update beside the oneDNN primitives that it consists of, run alone back to back: what the
+// update costs beyond them is ours. Beside its convolutions alone: how near it is to what the
+// network itself takes.
+#include <fmt/core.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "common/nn/parallel.h"
+#include "common/nn/precision.h"
+#include "learner/agent/algorithms.h"
+#include "tests/benchmark/noise_batch.h"
+#include "tests/benchmark/paired_timing.h"
+#include "tests/common/nn/primitive_trace.h"
+
+namespace shoal::bench {
+namespace {
+
+constexpr double kPrimitivesTarget = 1 / 1.25, kConvolutionsTarget = 0.8;
+constexpr double kCompactSeconds = 0.015;  // meant for an update of `compact`, batch 128
+constexpr int kUpdates = 2;                // of a call: one of them moves the actor
+
+// An agent, its batch, and the primitives of kUpdates updates.
+struct Traced {
+  Traced(const Config& config, const ObservationSpec& spec)
+      : noise(config, spec),
+        agent(learner::MakeAgent(config, spec, nn::ChoosePrecision("auto", /*pixels=*/true))) {
+    Update();  // what happens once does not count
+    trace.emplace([this] { Update(); });
+  }
+  void Update() {
+    for (int i = 0; i < kUpdates; ++i) agent->Update(noise.batch);
+  }
+
+  NoiseBatch noise;
+  const std::unique_ptr<learner::Agent> agent;
+  std::optional<nn::PrimitiveTrace> trace;
+};
+
+// The one that a row asked for last: each is large.
+class LatestTraced {
+ public:
+  Traced& Get(const std::string& encoder, int batch) {
+    const std::string name = fmt::format("{} {}", encoder, batch);
+    if (name != name_) {
+      traced_.reset();
+      Config config;
+      config.network.encoder = encoder;
+      config.learner.batch = batch;
+      traced_ = std::make_unique<Traced>(config, PixelSpec());
+      name_ = name;
+    }
+    return *traced_;
+  }
+
+ private:
+  std::string name_;
+  std::unique_ptr<Traced> traced_;
+};
+
+}  // namespace
+
+std::vector<Pairing> UpdatePairings() {
+  if (nn::Threads() > 1) return {};  // replicas on threads: their primitives never run alone
+  std::vector<Pairing> pairings;
+  const auto latest = std::make_shared<LatestTraced>();
+  for (const std::string encoder : {"compact", "drq", "mrq", "nature"}) {
+    for (const int batch : {128, 256}) {
+      const auto get = [=]() -> Traced& { return latest->Get(encoder, batch); };
+      Pairing pairing{
+          .stage = fmt::format("SAC update, {}, batch {} of (6, 84, 84), auto", encoder, batch),
+          .unit = "updates/s",
+          .against = "its primitives alone",
+          .units_per_call = kUpdates,
+          .target = kPrimitivesTarget,
+          .ours = [get] { get().Update(); },
+          .other = [get] { get().trace->Run(); }};
+      pairings.push_back(pairing);
+      pairing.against = "its convolutions alone";
+      pairing.target = encoder == "compact" ? 0 : kConvolutionsTarget;
+      pairing.other = [get] { get().trace->Run(nn::PrimitiveTrace::Part::kConvolutions); };
+      pairings.push_back(pairing);
+      if (encoder == "compact" && batch == 128) {
+        pairing.against = fmt::format("one in {:.0f} ms", 1e3 * kCompactSeconds);
+        pairing.target = 1;
+        pairing.other = {};
+        pairing.other_rate = 1 / kCompactSeconds;
+        pairings.push_back(pairing);
+      }
+    }
+  }
+  return pairings;
+}
+
+}  // namespace shoal::bench
