@@ -39,6 +39,7 @@ class Learner {
         agent_(MakeAgent(run.config, run.spec, precision_)),
         checkpoints_(folder, run),
         restored_(Restore()),
+        update_page_(folder, agent_->updates()),
         control_(Now()),
         bus_(dds::FindPlace(folder, run.config.transport, reach), dds::Role::kLearner),
         outlet_(bus_),
@@ -63,7 +64,8 @@ class Learner {
                        .outlet = outlet_,
                        .checkpoints = checkpoints_,
                        .pending_evaluations = pending_evaluations_,
-                       .control = control_},
+                       .control = control_,
+                       .update_page = &update_page_},
                       restored_);
     if (loop.Run() == TrainingLoop::End::kStopped) return 0;
     log::Failure("the coordinator is gone: no heartbeat; a checkpoint was written; leaving");
@@ -115,6 +117,7 @@ class Learner {
   const std::unique_ptr<Agent> agent_;
   CheckpointStore checkpoints_;
   const std::optional<CheckpointState> restored_;
+  UpdatePage update_page_;
   PendingEvaluations pending_evaluations_;
   ControlState control_;
   dds::Bus bus_;

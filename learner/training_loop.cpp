@@ -20,6 +20,13 @@ using std::chrono::milliseconds;
 constexpr milliseconds kPoll{100};            // the longest that control is not looked at
 constexpr milliseconds kBlockedAfter{1'000};  // without a batch
 
+// A key that counts from one. Whoever else sends its orders on an open network may say zero, which
+// is not taken over.
+uint64_t CountInForce(const ControlState& control, std::string_view key, uint64_t configured) {
+  const double value = control.SettingOr(key, static_cast<double>(configured));
+  return value < 1 ? configured : SaturatingCast<uint64_t>(value);
+}
+
 }  // namespace
 
 TrainingLoop::TrainingLoop(const Parts& parts, const std::optional<CheckpointState>& restored)
@@ -76,6 +83,7 @@ bool TrainingLoop::TryTrain() {
                          DescribeNonFinite(outcome.figures, parts_.agent.updates()),
                          saved_updates_ ? CheckpointName(*saved_updates_) : "none");
   }
+  if (parts_.update_page != nullptr) parts_.update_page->SetDone(parts_.agent.updates());
   AfterUpdate(*batch, outcome.figures);
   waiting_since_ = Now();
   return true;
@@ -207,11 +215,11 @@ void TrainingLoop::ApplySettings() {
       control.SettingOr("env_steps", static_cast<double>(config_.env_steps)));
   parts_.batches.SetActors(
       SaturatingCast<int>(control.SettingOr("actors", static_cast<double>(config_.actors))));
-  weights_.SetPeriod(SaturatingCast<uint64_t>(
-      control.SettingOr("learner.weights_period", config_.learner.weights_period)));
-  evaluations_.SetInterval(SaturatingCast<uint64_t>(control.SettingOr(
-                               "eval.interval", static_cast<double>(config_.eval.interval))),
-                           env_steps_);
+  weights_.SetPeriod(CountInForce(control, "learner.weights_period",
+                                  static_cast<uint64_t>(config_.learner.weights_period)));
+  evaluations_.SetInterval(
+      CountInForce(control, "eval.interval", static_cast<uint64_t>(config_.eval.interval)),
+      env_steps_);
   const double ratio =
       control.SettingOr("replay.samples_per_insert", config_.replay.samples_per_insert);
   if (ratio == samples_per_insert_) return;

@@ -22,6 +22,7 @@
 
 #include "common/base/clock.h"
 #include "common/config/run_files.h"
+#include "common/run_folder/update_page.h"
 #include "common/wire/control_state.h"
 #include "learner/agent/agent.h"
 #include "learner/batch_stream.h"
@@ -49,6 +50,7 @@ class TrainingLoop {
     CheckpointStore& checkpoints;
     PendingEvaluations& pending_evaluations;
     ControlState& control;
+    UpdatePage* update_page = nullptr;  // counts for whoever comes after a kill; null: nobody
     std::chrono::milliseconds drain_idle = kDrainIdle;
   };
 

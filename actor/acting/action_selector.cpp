@@ -9,7 +9,7 @@ ActionSelector::ActionSelector(const Config& config, const ObservationSpec& spec
     : envs_(envs),
       action_size_(spec.action_size),
       vector_size_(spec.VectorSize()),
-      stack_bytes_(spec.FrameBytes() * spec.stack),
+      stack_bytes_(spec.InputBytes()),
       policy_(config.network, spec, nn::ChoosePrecision(config.learner.precision, spec.HasPixels()),
               envs),
       exploration_(MakeExploration(config, envs, spec.action_size, NoiseFactor(config, actor))),

@@ -12,9 +12,11 @@ Seat::Seat(std::unique_ptr<worlds::Environment> environment, PolicyInput input)
     : environment_(std::move(environment)),
       input_(input),
       observed_(BlockPicker::Observed(environment_->spec())),
-      stack_(input.stack, environment_->spec().FrameBytes()) {
+      stack_(input.stack.first(size_t(environment_->spec().FrameBytes()) *
+                               size_t(environment_->spec().stack)),
+             environment_->spec().FrameBytes()) {
   const ObservationSpec& spec = environment_->spec();
-  CHECK(input.stack.size() == size_t(spec.FrameBytes()) * spec.stack) << input.stack.size();
+  CHECK(input.stack.size() == size_t(spec.InputBytes())) << input.stack.size();
   CHECK(input.vector.size() == size_t(spec.VectorSize())) << input.vector.size();
 }
 
@@ -25,6 +27,8 @@ float Seat::Begin(uint64_t stream_key, worlds::ObservationOut out) {
   const auto masses = environment_->drawn_masses();
   figures_.drawn_masses.assign(masses.begin(), masses.end());
   stack_.Reset(out.frame);
+  const std::span<const uint8_t> goal = environment_->goal_picture();
+  std::ranges::copy(goal, input_.stack.last(goal.size()).begin());
   observed_.Copy(out.vector, input_.vector);
   running_ = true;
   if (listener_ != nullptr) listener_->OnBegin(stream_key, input_.stack);

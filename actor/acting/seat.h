@@ -1,6 +1,6 @@
-// One environment and what belongs to the episode it plays: the frame stack and the vector that the
-// policy reads next, the episode's figures, whether it still runs. Rollouts and evaluations are
-// made of seats.
+// One environment and what belongs to the episode it plays: the pictures (the frame stack, then the
+// goal picture where the policy sees one) and the vector that the policy reads next, the episode's
+// figures, whether it still runs. Rollouts and evaluations are made of seats.
 //
 //   Begin: reset -> stack, vector -> figures        Step: step -> stack, vector -> figures
 #pragma once
@@ -20,7 +20,7 @@ namespace shoal::actor {
 class SeatListener {
  public:
   struct SeenStep {
-    std::span<const uint8_t> stack;  // (K*C, H, W): the policy's next input, after the step
+    std::span<const uint8_t> stack;  // (I, H, W): the policy's next input, after the step
     std::span<const float> action;   // (A)
     float reward = 0;                // unscaled
     bool success = false;            // false where the task has none
@@ -28,7 +28,7 @@ class SeatListener {
   };
 
   virtual ~SeatListener() = default;
-  // The episode's stream key; stack (K*C, H, W): the policy's first input of the episode.
+  // The episode's stream key; stack (I, H, W): the policy's first input of the episode.
   virtual void OnBegin(uint64_t stream_key, std::span<const uint8_t> stack) = 0;
   virtual void OnStep(const SeenStep& step) = 0;
 };
@@ -36,7 +36,7 @@ class SeatListener {
 // Owns the environment, borrows the policy's input. One thread.
 class Seat {
  public:
-  // Where the policy reads its observation: (K*C, H, W) u8, empty without pixels; (V) f32.
+  // Where the policy reads its observation: (I, H, W) u8, empty without pixels; (V) f32.
   struct PolicyInput {
     std::span<uint8_t> stack;
     std::span<float> vector;
@@ -68,7 +68,7 @@ class Seat {
   std::unique_ptr<worlds::Environment> environment_;
   PolicyInput input_;
   BlockPicker observed_;
-  FrameStack stack_;
+  FrameStack stack_;  // the first K*C channels of the input
   EpisodeFigures figures_;
   std::vector<float> last_action_;  // empty before the episode's first
   bool running_ = false;

@@ -1,5 +1,6 @@
 #include "actor/evaluation/evaluation.h"
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -18,11 +19,18 @@ namespace {
 
 using nlohmann::ordered_json;
 
+// With the run's threshold.
+tasks::Task PlayedTask(const Config& config) {
+  const tasks::Task& task = tasks::FindTask(config.task);
+  const double threshold = config.distance_threshold;
+  return threshold > 0 ? task.WithThreshold(threshold) : task;
+}
+
 ordered_json NumberOrNull(double value) {
   return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
 }
 
-ordered_json EpisodeJson(const EpisodeResult& result, bool has_success) {
+ordered_json EpisodeJson(const EpisodeResult& result, bool has_success, bool has_causes) {
   const EpisodeFigures& episode = result.figures;
   ordered_json object{{"seed", result.seed},
                       {"success", has_success ? ordered_json(episode.success) : nullptr},
@@ -30,6 +38,9 @@ ordered_json EpisodeJson(const EpisodeResult& result, bool has_success) {
                       {"length", episode.length},
                       {"final_distance", NumberOrNull(episode.final_distance)},
                       {"action_smoothness", episode.action_smoothness}};
+  if (has_causes) {
+    object["failure"] = result.failure ? ordered_json(NameOf(*result.failure)) : nullptr;
+  }
   for (const worlds::DrawnMass& drawn : episode.drawn_masses) {
     object["body_mass"][drawn.body] = drawn.mass_kg;
   }
@@ -39,13 +50,13 @@ ordered_json EpisodeJson(const EpisodeResult& result, bool has_success) {
 ordered_json Aggregate(const std::vector<EpisodeResult>& episodes, bool has_success) {
   const double n = static_cast<double>(episodes.size());
   double successes = 0, mean = 0, length = 0, distance = 0, variance = 0;
-  for (const auto& [seed, episode] : episodes) {
+  for (const auto& [seed, episode, failure] : episodes) {
     successes += episode.success;
     mean += episode.episode_return / n;
     length += episode.length / n;
     distance += episode.final_distance / n;
   }
-  for (const auto& [seed, episode] : episodes) {
+  for (const auto& [seed, episode, failure] : episodes) {
     variance += std::pow(episode.episode_return - mean, 2) / n;
   }
   return {{"episodes", episodes.size()},
@@ -54,6 +65,17 @@ ordered_json Aggregate(const std::vector<EpisodeResult>& episodes, bool has_succ
           {"return_std", std::sqrt(variance)},
           {"length_mean", length},
           {"final_distance_mean", NumberOrNull(distance)}};
+}
+
+// By name, in the order in which they are asked; empty for a task without.
+ordered_json FailureCounts(std::span<const FailureCause> causes,
+                           const std::vector<EpisodeResult>& episodes) {
+  ordered_json counts = ordered_json::object();
+  for (const FailureCause cause : causes) {
+    counts[std::string(NameOf(cause))] =
+        std::ranges::count(episodes, std::optional(cause), &EpisodeResult::failure);
+  }
+  return counts;
 }
 
 }  // namespace
@@ -67,7 +89,8 @@ Evaluator::Evaluator(const RunConfig& run, bool noop)
   int e = 0;
   for (auto& environment : MakeEnvironments(run, run.config.eval.envs)) {
     const Seat::PolicyInput input{selector_.FrameStackOf(e), selector_.VectorOf(e)};
-    players_.push_back({.seat = Seat(std::move(environment), input)});
+    players_.push_back({.seat = Seat(std::move(environment), input),
+                        .facts = FailureFacts(run.spec, PlayedTask(run.config))});
     ++e;
   }
 }
@@ -85,6 +108,7 @@ void Evaluator::Begin(int e, int64_t episode, const EpisodeStream& stream) {
   // draws.
   selector_.BeginEpisode(e, HashWords({key, static_cast<uint64_t>(StreamRole::kEvalPolicy)}));
   player.seat.Begin(key, {frame_, vector_});
+  player.facts.Begin(vector_);
 }
 
 std::vector<EpisodeResult> Evaluator::Play(int episodes, const EpisodeStream& stream,
@@ -100,11 +124,14 @@ std::vector<EpisodeResult> Evaluator::Play(int episodes, const EpisodeStream& st
     }
     selector_.Select(Acting::kMean);
     for (int e = 0; e < envs; ++e) {
-      auto& [seat, episode] = players_[size_t(e)];
+      auto& [seat, facts, episode] = players_[size_t(e)];
       if (!seat.running()) continue;
       seat.Step(noop_.empty() ? selector_.ActionOf(e) : noop_, {frame_, vector_});
+      facts.Step(vector_);
       if (seat.running()) continue;
-      results[static_cast<size_t>(episode)] = {episode, seat.figures()};
+      EpisodeResult& result = results[static_cast<size_t>(episode)];
+      result = {.seed = episode, .figures = seat.figures()};
+      if (facts.applies() && !result.figures.success) result.failure = facts.Cause();
       ++done;
     }
   }
@@ -115,26 +142,30 @@ ordered_json EvaluationJson(const RunConfig& run, const EvaluationLabel& label,
                             const EpisodeStream& stream,
                             const std::vector<EpisodeResult>& episodes) {
   const bool has_success = tasks::FindTask(run.config.task).has_success();
+  const FailureFacts causes(run.spec, PlayedTask(run.config));
   ordered_json list = ordered_json::array();
   for (const EpisodeResult& episode : episodes) {
-    list.push_back(EpisodeJson(episode, has_success));
+    list.push_back(EpisodeJson(episode, has_success, causes.applies()));
   }
   const bool baseline = label.policy != "checkpoint";
   const ordered_json version{{"session", label.version.session}, {"update", label.version.update}};
-  return {{"schema", "shoal-eval-1"},
-          {"task", run.config.task},
-          {"policy", label.policy},
-          {"checkpoint", baseline ? ordered_json(nullptr) : ordered_json(label.checkpoint)},
-          {"weights_version", baseline ? ordered_json(nullptr) : version},
-          {"env_steps", label.env_steps},
-          {"deterministic", label.policy != "random"},
-          {"cameras", run.spec.cameras},
-          {"seeds", {stream.seed}},
-          {"stream", {{"role", static_cast<uint64_t>(stream.role)}, {"group", stream.group}}},
-          {"episodes", list},
-          {"aggregate", Aggregate(episodes, has_success)},
-          {"commit", BuildCommit()},
-          {"created", UtcTimestamp()}};
+  ordered_json object{
+      {"schema", "shoal-eval-1"},
+      {"task", run.config.task},
+      {"policy", label.policy},
+      {"checkpoint", baseline ? ordered_json(nullptr) : ordered_json(label.checkpoint)},
+      {"weights_version", baseline ? ordered_json(nullptr) : version},
+      {"env_steps", label.env_steps},
+      {"deterministic", label.policy != "random"},
+      {"cameras", run.spec.cameras},
+      {"seeds", {stream.seed}},
+      {"stream", {{"role", static_cast<uint64_t>(stream.role)}, {"group", stream.group}}},
+      {"episodes", list},
+      {"aggregate", Aggregate(episodes, has_success)},
+      {"commit", BuildCommit()},
+      {"created", UtcTimestamp()}};
+  if (causes.applies()) object["failures"] = FailureCounts(causes.causes(), episodes);
+  return object;
 }
 
 ordered_json EvaluateCheckpoint(const std::filesystem::path& run_folder,

@@ -12,6 +12,7 @@
 
 #include "actor/acting/action_selector.h"
 #include "actor/acting/seat.h"
+#include "actor/evaluation/failure_cause.h"
 #include "actor/evaluation/frame_recorder.h"
 #include "actor/worlds/environment.h"
 #include "common/config/run_files.h"
@@ -21,6 +22,8 @@ namespace shoal::actor {
 struct EpisodeResult {
   int64_t seed = 0;  // number of the episode in its stream
   EpisodeFigures figures;
+  // Of a failed episode of a task that has causes (failure_cause.h).
+  std::optional<FailureCause> failure{};
 };
 
 // Which episodes are played: episode k starts from StreamKey(seed, role, group, k). Train,
@@ -63,6 +66,7 @@ class Evaluator {
  private:
   struct Player {
     Seat seat;
+    FailureFacts facts;
     int64_t episode = 0;
   };
 
@@ -77,9 +81,10 @@ class Evaluator {
   std::vector<float> vector_;
 };
 
-// The object of eval/*.json, schema shoal-eval-1. success, success_rate, final_distance and its
-// mean are null where the task has no such thing; body_mass (body -> kg) is there for randomized
-// episodes.
+// The object of eval/*.json, schema shoal-eval-1. Where the task has causes of failure, `failure`
+// of each episode is one of them, null for a success, and `failures` counts them, all that there
+// are; else neither is there. success, success_rate, final_distance and its mean are null where the
+// task has no such thing; body_mass (body -> kg) is there for randomized episodes.
 nlohmann::ordered_json EvaluationJson(const RunConfig& run, const EvaluationLabel& label,
                                       const EpisodeStream& stream,
                                       const std::vector<EpisodeResult>& episodes);

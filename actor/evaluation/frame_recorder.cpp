@@ -9,14 +9,27 @@
 namespace shoal::actor {
 namespace {
 
+CustomCamera CustomOf(const worlds::CameraView& view) {
+  return {.lookat = view.lookat,
+          .distance = view.distance,
+          .azimuth = view.azimuth_degrees,
+          .elevation = view.elevation_degrees,
+          .body = view.body};
+}
+
 Config ViewConfig(const RunConfig& run, const FrameRecorder::Options& options) {
   Config config = run.config;
   ObservationConfig& observation = config.observation;
   std::string camera = options.camera;
-  if (camera.empty() && observation.pixels) camera = observation.cameras.front();
   if (camera.empty()) {
     const tasks::Task& task = tasks::FindTask(config.task);
-    camera = worlds::MakeWorld(task.world(), {config.model, config.physics})->cameras()[0].name;
+    const auto world = worlds::MakeWorld(task.world(), {config.model, config.physics});
+    if (const worlds::CameraView* own = world->film_camera()) {
+      camera = own->name;
+      observation.custom_cameras[camera] = CustomOf(*own);
+    } else {
+      camera = observation.pixels ? observation.cameras.front() : world->cameras().front().name;
+    }
   }
   observation.pixels = true;
   observation.cameras = {camera};
@@ -24,6 +37,9 @@ Config ViewConfig(const RunConfig& run, const FrameRecorder::Options& options) {
   observation.height = options.height;
   observation.width = options.width;
   observation.stack = 1;
+  // Nobody acts by the view: it shows the goal's marker also where the policy must not see it.
+  observation.goal_mode = "none";
+  config.replay.hindsight = "none";
   observation.quality = options.quality;
   return config;
 }
@@ -43,7 +59,7 @@ uint32_t StepMicroseconds(worlds::Environment& environment, worlds::ObservationO
 image::FrameStreamHeader HeaderOf(const ObservationSpec& seen, const ObservationSpec& view,
                                   uint32_t step_microseconds) {
   return {.magic = {},
-          .channels = static_cast<uint32_t>(seen.channels * seen.stack),
+          .channels = static_cast<uint32_t>(seen.InputChannels()),
           .height = static_cast<uint32_t>(seen.height),
           .width = static_cast<uint32_t>(seen.width),
           .frame_channels = static_cast<uint32_t>(seen.channels),

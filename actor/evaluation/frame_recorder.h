@@ -16,12 +16,14 @@ namespace shoal::actor {
 
 // The view is drawn by an environment of its own, which plays the same episodes by the same
 // actions: equal stream keys and actions give equal physics, so the seat's environment needs to
-// know nothing of it. Owns that environment. One thread.
+// know nothing of it. The view shows the goal's marker, whether or not the policy's pictures do.
+// Owns that environment. One thread.
 class FrameRecorder final : public SeatListener {
  public:
   struct Options {
     std::filesystem::path file;
-    std::string camera = "";            // of the view; empty = the run's first, or the task's
+    // Of the view; empty = the task's for films, else the run's first, else the task's first.
+    std::string camera = "";
     int height = 480, width = 480;      // of the view
     std::string quality = "reference";  // of the view: fast | reference
   };

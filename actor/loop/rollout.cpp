@@ -19,7 +19,12 @@ Rollout::Options Rollout::Options::Of(const Config& config, uint32_t first_env) 
 Rollout::Rollout(const Options& options, const ObservationSpec& spec,
                  std::vector<std::unique_ptr<worlds::Environment>> environments, MadePage& made,
                  RecordSink& sink, ActionSelector& selector)
-    : options_(options), layout_(spec), made_(made), sink_(sink), selector_(selector) {
+    : options_(options),
+      layout_(spec),
+      goal_pictures_(spec.goal_picture),
+      made_(made),
+      sink_(sink),
+      selector_(selector) {
   CHECK(!environments.empty());
   for (size_t e = 0; e < environments.size(); ++e) {
     const Seat::PolicyInput input{selector.FrameStackOf(int(e)), selector.VectorOf(int(e))};
@@ -29,7 +34,7 @@ Rollout::Rollout(const Options& options, const ObservationSpec& spec,
 
 bool Rollout::TryStep() {
   const int envs = static_cast<int>(slots_.size());
-  if (sink_.Room() < 2 * slots_.size()) return false;
+  if (sink_.Room() < MostRecords() * slots_.size()) return false;
   {
     const ScopedSeconds timed(environment_seconds_);
     for (int e = 0; e < envs; ++e) {
@@ -78,7 +83,22 @@ void Rollout::BeginEpisode(int e) {
   RecordHeader& header = RecordLayout::Header(record);
   header.distance = slot.seat.Begin(StreamKeyOf(StreamRole::kTrainEnvironment, e),
                                     {layout_.Frame(record), layout_.Vector(record)});
-  FillHeader(e, RecordKind::kReset, &header);
+  if (goal_pictures_) {
+    // The picture is known once the reset is: the reset waits while the goal goes first.
+    reset_.assign(record, record + layout_.record_bytes());
+    PublishGoal(e, record);
+    record = sink_.BeginRecord();
+    std::ranges::copy(reset_, record);
+  }
+  FillHeader(e, RecordKind::kReset, &RecordLayout::Header(record));
+  Publish(record);
+}
+
+void Rollout::PublishGoal(int e, uint8_t* record) {
+  const std::span<const uint8_t> picture = slots_[size_t(e)].seat.environment().goal_picture();
+  CHECK(picture.size() == size_t(layout_.frame_bytes())) << picture.size();
+  std::ranges::copy(picture, layout_.Frame(record).begin());
+  FillHeader(e, RecordKind::kGoal, &RecordLayout::Header(record));
   Publish(record);
 }
 

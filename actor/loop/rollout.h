@@ -70,6 +70,8 @@ class Rollout {
     std::vector<float> actions;  // of the running episode
   };
 
+  // That an environment may make in one step: a goal, a reset and a step.
+  size_t MostRecords() const { return goal_pictures_ ? 3 : 2; }
   bool WarmingUp() const;
   void BeginEpisode(int e);
   void StepOne(int e);
@@ -77,14 +79,18 @@ class Rollout {
   // Of the episode that local environment `e` plays.
   uint64_t StreamKeyOf(StreamRole role, int e) const;
   void FillHeader(int e, RecordKind kind, RecordHeader* header) const;
+  // Of the episode whose reset is in `record`, which it comes before.
+  void PublishGoal(int e, uint8_t* record);
   void Publish(uint8_t* record);
 
   const Options options_;
   const RecordLayout layout_;
+  const bool goal_pictures_;
   MadePage& made_;
   RecordSink& sink_;
   ActionSelector& selector_;
   std::vector<Slot> slots_;
+  std::vector<uint8_t> reset_;  // a record, while its episode's goal is published
   EpisodeLog episodes_;
   double environment_seconds_ = 0, inference_seconds_ = 0;
   uint64_t env_steps_ = 0;

@@ -31,14 +31,8 @@ ChunkWindow::Options WindowOptions(const RunConfig& run, uint32_t id, uint64_t s
                                    uint64_t records_before) {
   const Config& config = run.config;
   const int record_bytes = RecordLayout(run.spec).record_bytes();
+  CheckSendingWindow(config, record_bytes);
   const SendingWindow window = SendingWindowOf(config, record_bytes);
-  if (2 * config.envs_per_actor > window.records()) {
-    throw UsageError(
-        "envs_per_actor {} does not fit the window of {} chunks of {} records: raise {}",
-        config.envs_per_actor, window.chunks, window.chunk_records,
-        LearnsOnPolicy(config) ? "transport.chunk_records"
-                               : "replay.window_chunks or transport.chunk_records");
-  }
   return {.spec_hash = run.spec.Hash(),
           .actor = id,
           .session = session,

@@ -52,6 +52,9 @@ class Environment {
   virtual double render_seconds() const = 0;
   // Drawn at the last reset, in the order drawn; empty unless the configuration randomizes.
   virtual std::span<const DrawnMass> drawn_masses() const = 0;
+  // The goal of the running episode reached, drawn at its reset: (C, H, W) like a frame, from the
+  // same cameras. Empty unless the spec has a goal picture.
+  virtual std::span<const uint8_t> goal_picture() const { return {}; }
 };
 
 // Shares one off-screen render context between the environments of a process (one thread).

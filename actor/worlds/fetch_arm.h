@@ -45,6 +45,11 @@ class FetchArm {
   // With a blocked gripper: shuts the fingers again and brings positions up to date.
   void FinishStep();
 
+  // For pictures of goals: the engine runs until the grip site is within 1 mm of `position` (m), or
+  // as near as it comes within 20 env steps, and the fingers then stand `opening` m from the
+  // middle. At rest, positions up to date.
+  void MoveTo(const std::array<double, 3>& position, double opening);
+
   // Grip site in m.
   std::array<double, 3> GripPosition() const;
   // Grip site's linear velocity times the length of an env step, m per env step.

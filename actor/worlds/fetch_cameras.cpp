@@ -45,4 +45,19 @@ std::span<const CameraView> FetchSlideCameras() {
   return cameras;
 }
 
+const CameraView& FetchPushFilmCamera() {
+  static const CameraView camera{"film", {1.34, 0.75, 0.44}, 0.95, 115, -55};
+  return camera;
+}
+
+const CameraView& FetchPickAndPlaceFilmCamera() {
+  static const CameraView camera{"film", {1.34, 0.75, 0.58}, 1.3, 125, -30};
+  return camera;
+}
+
+const CameraView& FetchSlideFilmCamera() {
+  static const CameraView camera{"film", {1.25, 0.75, 0.42}, 1.6, 155, -48};
+  return camera;
+}
+
 }  // namespace shoal::worlds

@@ -16,10 +16,15 @@ namespace {
 constexpr double kLeastDistance = 0.1;  // of the object from the grip, m
 constexpr double kHighestGoal = 0.45;   // above the table, m
 constexpr double kShareInTheAir = 0.5;
+constexpr double kAboveGoal = 0.1;       // the grip of GripperAtGoal::kAbove, m
+constexpr double kFingersApart = 0.025;  // from the middle: half the width of the block, m
+constexpr double kOutOfTheWay = 10;      // z from which the object falls while the arm moves, m
+constexpr double kUnturned[4] = {1, 0, 0, 0};
 
 constexpr FetchObjectSetup kPush{
     .model = "fetch_push.xml",
     .cameras = FetchCameras,
+    .film_camera = FetchPushFilmCamera,
     .arm = {.base = {0.405, 0.48, 0}, .gripper_extra_height = 0, .block_gripper = true},
     .object = {1.25, 0.53, 0.4},
     .object_range = 0.15,
@@ -29,19 +34,23 @@ constexpr FetchObjectSetup kPush{
 constexpr FetchObjectSetup kSlide{
     .model = "fetch_slide.xml",
     .cameras = FetchSlideCameras,
+    .film_camera = FetchSlideFilmCamera,
     .arm = {.base = {0.05, 0.48, 0}, .gripper_extra_height = -0.02, .block_gripper = true},
     .object = {1.7, 1.1, 0.41},
     .object_range = 0.1,
     .goal_range = 0.3,
-    .goal_offset_x = 0.4};
+    .goal_offset_x = 0.4,
+    .gripper_at_goal = GripperAtGoal::kStart};
 constexpr FetchObjectSetup kPickAndPlace{
     .model = "fetch_pick_and_place.xml",
     .cameras = FetchPickAndPlaceCameras,
+    .film_camera = FetchPickAndPlaceFilmCamera,
     .arm = {.base = {0.405, 0.48, 0}, .gripper_extra_height = 0.2, .block_gripper = false},
     .object = {1.25, 0.53, 0.4},
     .object_range = 0.15,
     .goal_range = 0.15,
-    .goal_in_the_air = true};
+    .goal_in_the_air = true,
+    .gripper_at_goal = GripperAtGoal::kAround};
 
 }  // namespace
 
@@ -64,10 +73,8 @@ FetchObjectWorld::FetchObjectWorld(const FetchObjectSetup& setup, const WorldOpt
     throw RuntimeError("{}: joint 'object0:joint' is not a free joint", source());
   }
   object_position_ = model().jnt_qposadr[joint];
-  double* pose = data().qpos + object_position_;
-  std::copy_n(setup.object.begin(), 3, pose);
-  constexpr double kUnturned[4] = {1, 0, 0, 0};
-  std::copy_n(kUnturned, 4, pose + 3);
+  object_velocity_ = model().jnt_dofadr[joint];
+  SetObject(setup.object);
   SetUpArm();
   table_height_ = PositionOfSite(*this, object_site_)[2];
 }
@@ -94,6 +101,27 @@ void FetchObjectWorld::Reset(Random* random) {
 
 void FetchObjectWorld::PlaceObject(const std::array<double, 2>& xy) {
   std::copy(xy.begin(), xy.end(), data().qpos + object_position_);
+}
+
+void FetchObjectWorld::SetObject(const std::array<double, 3>& position) {
+  double* pose = data().qpos + object_position_;
+  std::copy(position.begin(), position.end(), pose);
+  std::copy_n(kUnturned, 4, pose + 3);
+  std::fill_n(data().qvel + object_velocity_, 6, 0.0);
+}
+
+void FetchObjectWorld::MoveToGoal() {
+  const bool around = setup_.gripper_at_goal == GripperAtGoal::kAround;
+  std::array<double, 3> grip = goal();
+  if (setup_.gripper_at_goal == GripperAtGoal::kAbove) grip[2] += kAboveGoal;
+  // Nothing is in the arm's way, and nothing is pushed by it.
+  SetObject({goal()[0], goal()[1], kOutOfTheWay});
+  if (setup_.gripper_at_goal != GripperAtGoal::kStart) {
+    moving_arm().MoveTo(grip, around ? kFingersApart : 0);
+  }
+  CheckState();
+  SetObject(goal());
+  mj_forward(&model(), &data());
 }
 
 void FetchObjectWorld::Observe(std::span<double> observation, std::span<double> achieved_goal,

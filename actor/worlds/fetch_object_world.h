@@ -10,15 +10,24 @@
 
 namespace shoal::worlds {
 
+// Where the gripper stands in the picture of a goal, the object unturned and at rest at the goal.
+enum class GripperAtGoal {
+  kAbove,   // 10 cm above the object, fingers shut: beside nothing, and a wrist camera sees it
+  kAround,  // the grip site in the object's middle, the fingers at its sides
+  kStart,   // where episodes start: goals lie out of the arm's reach
+};
+
 struct FetchObjectSetup {
   const char* model;  // "fetch_push.xml"
   std::span<const CameraView> (*cameras)();
+  const CameraView& (*film_camera)();
   FetchArmSetup arm;
   std::array<double, 3> object{};  // position before the set-up's engine steps, m; unturned
   double object_range = 0;         // of the object around the grip, each axis, m
   double goal_range = 0;           // likewise of the goal
   double goal_offset_x = 0;        // added to the goal, m
   bool goal_in_the_air = false;    // half of the goals
+  GripperAtGoal gripper_at_goal = GripperAtGoal::kAbove;
 };
 
 class FetchObjectWorld final : public FetchWorld {
@@ -34,6 +43,7 @@ class FetchObjectWorld final : public FetchWorld {
   void Observe(std::span<double> observation, std::span<double> achieved_goal,
                std::span<double> desired_goal) const override;
 
+  const CameraView* film_camera() const override { return &setup_.film_camera(); }
   int object_site() const override { return object_site_; }
   // z in m of the object's site as the last of the set-up's engine steps left it: that of a goal on
   // the table.
@@ -41,10 +51,15 @@ class FetchObjectWorld final : public FetchWorld {
 
  private:
   void PlaceObject(const std::array<double, 2>& xy) override;
+  // The object at the goal, the gripper as the set-up says.
+  void MoveToGoal() override;
+  // The object's position, m, unturned; takes its velocity away.
+  void SetObject(const std::array<double, 3>& position);
 
   FetchObjectSetup setup_;
   int object_site_;
   int object_position_;  // in qpos
+  int object_velocity_;  // in qvel
   double table_height_ = 0;
 };
 

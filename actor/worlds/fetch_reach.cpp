@@ -29,6 +29,11 @@ void FetchReach::Reset(Random* random) {
   ResetTo(goal);
 }
 
+void FetchReach::MoveToGoal() {
+  moving_arm().MoveTo(goal(), /*opening=*/0);
+  CheckState();
+}
+
 void FetchReach::Observe(std::span<double> observation, std::span<double> achieved_goal,
                          std::span<double> desired_goal) const {
   CHECK(observation.size() == 10) << observation.size();

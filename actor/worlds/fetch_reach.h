@@ -18,6 +18,10 @@ class FetchReach final : public FetchWorld {
   // observation (10): grip position, fingers, grip velocity, finger velocities; see the goal half.
   void Observe(std::span<double> observation, std::span<double> achieved_goal,
                std::span<double> desired_goal) const override;
+
+ private:
+  // The grip site at the goal, the fingers shut.
+  void MoveToGoal() override;
 };
 
 std::unique_ptr<World> MakeFetchReach(const WorldOptions& options);

@@ -25,6 +25,7 @@ class FetchWorld : public World {
 
   Outcome Step(std::span<const double> action) final;
   bool HideGoal() final;
+  bool CanMoveToGoal() const final { return true; }
   std::span<const CameraView> cameras() const final { return cameras_; }
 
   const FetchArm& arm() const { return arm_; }
@@ -42,6 +43,7 @@ class FetchWorld : public World {
 
   // Once, at the end of the constructor, the object placed: see FetchArm::SetUp.
   void SetUpArm() { arm_.SetUp(); }
+  FetchArm& moving_arm() { return arm_; }
   const std::array<double, 3>& goal() const { return goal_; }
 
  private:

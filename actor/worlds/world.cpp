@@ -52,6 +52,15 @@ void World::PlaceSite(int site, std::span<const double> position) {
       0;  // 1: same frame as the body, decided when the model was compiled
 }
 
+void World::LookAtGoal(const std::function<void()>& look) {
+  CHECK(CanMoveToGoal());
+  if (kept_data_ == nullptr) kept_data_ = MakeData(*model_);
+  mj_copyData(kept_data_.get(), model_.get(), data_.get());
+  MoveToGoal();
+  look();
+  mj_copyData(data_.get(), model_.get(), kept_data_.get());
+}
+
 double World::simulated_seconds() const { return data_->time; }
 
 void World::Advance(int count) {

@@ -6,6 +6,7 @@
 // Numbers are the engine's doubles. One thread at a time per world; worlds are independent.
 #pragma once
 
+#include <functional>
 #include <span>
 #include <string>
 
@@ -42,6 +43,14 @@ class World {
   virtual bool HideGoal() { return false; }
   // The first is the one to look at by default. Lives as long as the world.
   virtual std::span<const CameraView> cameras() const = 0;
+  // For the larger view of films, none of cameras(); null where one of these serves. Lives as long
+  // as the world.
+  virtual const CameraView* film_camera() const { return nullptr; }
+  // The task can show its goal reached: MoveToGoal, of which pictures of goals are drawn.
+  virtual bool CanMoveToGoal() const { return false; }
+  // Calls `look` with the world in the state that MoveToGoal makes of the running episode's, which
+  // then is the episode's again, to the last bit. CHECK: CanMoveToGoal().
+  void LookAtGoal(const std::function<void()>& look);
 
   mjModel_& model() { return *model_; }
   const mjModel_& model() const { return *model_; }
@@ -81,6 +90,9 @@ class World {
   void CheckState() const;
 
  private:
+  // Moves to a state in which the goal of the running episode is reached; the same state for the
+  // same goal. Where the rest of the world is by then is the task's to say, and documented.
+  virtual void MoveToGoal() {}
   int ElementId(int object_type, const char* kind, const std::string& name) const;
 
   ModelHandle model_;
@@ -89,6 +101,7 @@ class World {
   // Made last: what it takes as much memory as the model for is then free for the next world.
   std::string fingerprint_;
   bool textures_released_ = false;
+  DataHandle kept_data_;  // the episode's, while LookAtGoal has the world moved; null before
 };
 
 }  // namespace shoal::worlds

@@ -19,6 +19,8 @@
 namespace shoal::worlds {
 namespace {
 
+constexpr char kGoalImage[] = "image";
+
 // What makes frames comparable besides the model: quality and the views themselves.
 std::string RenderFingerprint(const std::string& model, const std::string& quality,
                               const std::vector<CameraView>& cameras, bool goal_hidden) {
@@ -57,20 +59,30 @@ WorldEnvironment::WorldEnvironment(const tasks::Task& task, std::unique_ptr<Worl
     for (const std::string& name : config.observation.cameras) {
       cameras_.push_back(ChooseCamera(*world_, config.observation, name));
     }
-    if (config.replay.hindsight != "none") HideGoal();
+    if (config.replay.hindsight != "none") HideGoal("replay.hindsight from pixels");
+    if (config.observation.goal_mode == kGoalImage) PrepareGoalPicture();
     render_->Attach(world_.get());
   }
   world_->ReleaseTextures();
   BuildSpec(config.observation);
+  if (spec_.goal_picture) goal_picture_.resize(static_cast<size_t>(spec_.FrameBytes()));
   spec_.drawn_actions = LearnsOnPolicy(config);
 }
 
-void WorldEnvironment::HideGoal() {
+void WorldEnvironment::PrepareGoalPicture() {
+  if (task_.goal_size() > 0 && !world_->CanMoveToGoal()) {
+    throw UsageError(
+        "observation.goal_mode is 'image', but task {} cannot show its goal reached "
+        "(World::MoveToGoal); expected none, desired or both",
+        task_.name());
+  }
+  HideGoal("observation.goal_mode = image");
+}
+
+void WorldEnvironment::HideGoal(const char* why) {
   if (task_.goal_size() > 0 && !world_->HideGoal()) {
     throw UsageError(
-        "replay.hindsight from pixels: the pictures of task {} show the goal that was meant, and "
-        "it "
-        "cannot be hidden",
+        "{}: the pictures of task {} show the goal that was meant, and it cannot be hidden", why,
         task_.name());
   }
   goal_hidden_ = true;
@@ -78,8 +90,8 @@ void WorldEnvironment::HideGoal() {
 
 void WorldEnvironment::BuildSpec(const ObservationConfig& observation) {
   const std::string& mode = observation.goal_mode;
-  if (mode != "none" && mode != "desired" && mode != "both") {
-    throw UsageError("observation.goal_mode is '{}'; expected none, desired or both", mode);
+  if (mode != "none" && mode != "desired" && mode != "both" && mode != kGoalImage) {
+    throw UsageError("observation.goal_mode is '{}'; expected none, desired, both or image", mode);
   }
   if (mode != "none" && task_.goal_size() == 0) {
     throw UsageError("observation.goal_mode is '{}', but task {} has no goals; expected none", mode,
@@ -94,13 +106,14 @@ void WorldEnvironment::BuildSpec(const ObservationConfig& observation) {
     spec_.channels = render_->channels_per_camera() * static_cast<int>(cameras_.size());
     spec_.height = render_->height();
     spec_.width = render_->width();
+    spec_.goal_picture = mode == kGoalImage;
     spec_.model_fingerprint =
         RenderFingerprint(world_->fingerprint(), observation.quality, cameras_, goal_hidden_);
   }
   // Everything is recorded: it is little beside a frame, and without pixels it is what is seen.
   AddStateBlocks(observation);
   AddGoal(task_.achieved_goal(), mode == "both");
-  AddGoal(task_.desired_goal(), mode != "none");
+  AddGoal(task_.desired_goal(), mode == "desired" || mode == "both");
 }
 
 void WorldEnvironment::AddStateBlocks(const ObservationConfig& observation) {
@@ -148,9 +161,12 @@ void WorldEnvironment::Observe(ObservationOut out) {
   for (const Part* part : {&observation_, &achieved_goal_, &desired_goal_}) {
     to = std::copy(part->numbers.begin(), part->numbers.end(), to);
   }
-  if (render_ == nullptr) return;
+  if (render_ != nullptr) Draw(out.frame);
+}
+
+void WorldEnvironment::Draw(std::span<uint8_t> frame) {
   const ScopedSeconds timed(render_seconds_);
-  render_->Render(world_.get(), cameras_, out.frame);
+  render_->Render(world_.get(), cameras_, frame);
 }
 
 double WorldEnvironment::Distance() const {
@@ -163,6 +179,7 @@ float WorldEnvironment::Reset(uint64_t stream_key, ObservationOut out) {
   masses_.Draw(&random, world_.get());
   world_->Reset(&random);
   control_step_ = 0;
+  if (!goal_picture_.empty()) world_->LookAtGoal([this] { Draw(goal_picture_); });
   ReadWorld();
   Observe(out);
   return static_cast<float>(Distance());

@@ -30,6 +30,7 @@ class WorldEnvironment final : public Environment {
   double simulated_seconds() const override { return world_->simulated_seconds(); }
   double render_seconds() const override { return render_seconds_; }
   std::span<const DrawnMass> drawn_masses() const override { return masses_.drawn(); }
+  std::span<const uint8_t> goal_picture() const override { return goal_picture_; }
 
  private:
   // The state vector or a goal: the world's numbers, and these as records carry them.
@@ -38,8 +39,10 @@ class WorldEnvironment final : public Environment {
     std::vector<float> numbers;
   };
 
-  // Where samples get goals of hindsight, pictures must not show the one that was meant.
-  void HideGoal();
+  // Pictures must not show the goal that was meant where samples get goals of hindsight, and where
+  // a picture of its own shows it.
+  void HideGoal(const char* why);
+  void PrepareGoalPicture();
   void BuildSpec(const ObservationConfig& observation);
   void AddStateBlocks(const ObservationConfig& observation);
   void AddGoal(const tasks::Block& block, bool observed);
@@ -48,6 +51,7 @@ class WorldEnvironment final : public Environment {
   void ReadWorld();
   void RoundBlock(const tasks::Block& block, Part* part) const;
   void Observe(ObservationOut out);
+  void Draw(std::span<uint8_t> frame);
   // NaN without goals.
   double Distance() const;
 
@@ -59,6 +63,7 @@ class WorldEnvironment final : public Environment {
   std::vector<CameraView> cameras_;
   bool goal_hidden_ = false;
   ObservationSpec spec_;
+  std::vector<uint8_t> goal_picture_;  // (C, H, W); empty without
   Part observation_, achieved_goal_, desired_goal_;
   std::vector<double> action_;
   double render_seconds_ = 0;

@@ -152,7 +152,7 @@ struct EvalConfig {
 };
 
 struct StopConfig {
-  double success = 0.98;  // stop after `evaluations` in a row at or above; > 1 = never
+  double success = 0.98;  // stop at this pooled rate of the newest `evaluations`; > 1 = never
   int evaluations = 2;
 };
 

@@ -56,8 +56,9 @@ std::vector<Key> ObservationKeys() {
       SHOAL_SAME(observation.height, (IntegerRange{8, 1024}), "image height in pixels"),
       SHOAL_SAME(observation.width, (IntegerRange{8, 1024}), "image width in pixels"),
       SHOAL_SAME(observation.stack, (IntegerRange{1, 16}), "frames per observation"),
-      SHOAL_SAME(observation.goal_mode, (Choices{{"none", "desired", "both"}}),
-                 "goal vectors among the observations (both = desired and achieved)"),
+      SHOAL_SAME(observation.goal_mode, (Choices{{"none", "desired", "both", "image"}}),
+                 "the goal among the observations: as vectors (both = desired and achieved), or "
+                 "image = a picture of the goal reached beside the frames"),
       SHOAL_SAME(observation.proprioception, AnyValue{},
                  "the task's state vector: all of it, nothing, or the blocks named (shoal env "
                  "describe lists them)"),
@@ -270,10 +271,9 @@ std::vector<Key> EvalKeys() {
                  "fresh episodes of the evaluation at the end of a run; 0 = none"),
       SHOAL_SAME(eval.envs, (IntegerRange{1, 256}),
                  "environments stepped together by the evaluation actor"),
-      SHOAL_SAME(stop.success, (RealRange{0, 2}),
-                 "stop at this success rate of an evaluation; above 1 = never"),
+      SHOAL_SAME(stop.success, (RealRange{0, 2}), "stop at this success rate; above 1 = never"),
       SHOAL_SAME(stop.evaluations, (IntegerRange{1, 1000}),
-                 "evaluations in a row that must reach stop.success"),
+                 "newest evaluations whose episodes, pooled, must reach stop.success"),
   };
 }
 

@@ -105,6 +105,12 @@ bool LearnsOnPolicy(const Config& config) { return config.learner.algorithm == "
 void ValidateOnPolicy(const Config& config) {
   if (!LearnsOnPolicy(config)) return RefuseOnPolicyKeys(config);
   RefuseOffPolicyKeys(config);
+  if (config.observation.goal_mode == "image") {
+    throw UsageError(
+        "observation.goal_mode = image: rollouts of learner.algorithm = {} carry no goal pictures; "
+        "expected none, desired or both, or learner.algorithm = sac | td3 | ddpg",
+        config.learner.algorithm);
+  }
   ValidateRollout(config);
   if (config.lockstep && config.ppo.versions_ahead > 0) {
     throw UsageError(

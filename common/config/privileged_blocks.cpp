@@ -59,6 +59,12 @@ AuxLabel LabelOf(const std::string& text, const ObservationSpec& spec) {
 PrivilegedBlocks PrivilegedBlocksOf(const LearnerConfig& learner, const ObservationSpec& spec) {
   PrivilegedBlocks blocks;
   blocks.critic = CriticBlocks(learner.critic_blocks, spec);
+  if (learner.critic_blocks && spec.goal_picture &&
+      std::ranges::count(blocks.critic, "desired_goal") == 0) {
+    throw UsageError(
+        "learner.critic_blocks with observation.goal_mode = image: a critic without pixels would "
+        "not be told the goal; expected 'desired_goal' among them");
+  }
   std::set<std::string> wanted(blocks.critic.begin(), blocks.critic.end());
   for (const std::string& text : learner.aux) {
     const AuxLabel& label = blocks.labels.emplace_back(LabelOf(text, spec));

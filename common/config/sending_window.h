@@ -4,7 +4,7 @@
 //   per chunk  transport.chunk_records, fewer (but one) where they exceed kChunkBytes together
 //   chunks     as many of these as replay.window_chunks chunks of transport.chunk_records hold
 //   least      what an actor must be allowed to go on: its oldest chunk, and a reset and a step of
-//              each of its environments
+//              each of its environments, with the goal record that comes before the reset
 #pragma once
 
 #include <cstddef>
@@ -27,6 +27,9 @@ struct SendingWindow {
 
 // `record_bytes` > 0: RecordLayout::record_bytes().
 SendingWindow SendingWindowOf(const Config& config, int record_bytes);
+
+// Throws Error (usage) when the environments of an actor do not fit its window.
+void CheckSendingWindow(const Config& config, int record_bytes);
 
 inline uint64_t ChunkBytes(const SendingWindow& window, int record_bytes) {
   return static_cast<uint64_t>(window.chunk_records) * static_cast<uint64_t>(record_bytes);

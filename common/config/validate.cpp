@@ -17,6 +17,11 @@ void ValidateObservation(const ObservationConfig& observation) {
     throw UsageError(
         "observation.pixels = false, goal_mode = none, proprioception = false: nothing to observe");
   }
+  if (!observation.pixels && observation.goal_mode == "image") {
+    throw UsageError(
+        "observation.goal_mode = image without observation.pixels: expected pixels, or none, "
+        "desired or both");
+  }
   if (!observation.pixels) return;
   if (observation.cameras.empty()) {
     throw UsageError("observation.cameras = []: expected at least one camera (or pixels = false)");
@@ -40,8 +45,8 @@ void ValidateObservation(const ObservationConfig& observation) {
 
 void ValidateVectors(const Config& config) {
   const ObservationConfig& observation = config.observation;
-  if (config.learner.normalise_vectors && !observation.proprioception &&
-      observation.goal_mode == "none") {
+  const bool no_goal = observation.goal_mode == "none" || observation.goal_mode == "image";
+  if (config.learner.normalise_vectors && !observation.proprioception && no_goal) {
     throw UsageError(
         "learner.normalise_vectors = true: the run observes pixels alone, expected false");
   }

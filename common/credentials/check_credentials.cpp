@@ -1,5 +1,6 @@
 #include <fmt/chrono.h>
 #include <openssl/err.h>
+#include <openssl/pem.h>
 
 #include <utility>
 
@@ -12,8 +13,11 @@ namespace shoal {
 namespace {
 
 namespace fs = std::filesystem;
+using credentials::Buffer;
 using credentials::Certificate;
 using credentials::Key;
+using credentials::Signed;
+using credentials::Signers;
 
 std::string Date(const ASN1_TIME* time) {
   std::tm parts{};
@@ -34,6 +38,26 @@ void CheckValidity(const X509* certificate, const fs::path& file, std::time_t no
   }
 }
 
+// As the DDS library will: the signature must be the authority's own, over just this text.
+void CheckSigned(const fs::path& file, const Certificate& ca, const fs::path& ca_file) {
+  const std::string bytes = ReadFile(file);
+  if (bytes.empty()) throw RuntimeError("'{}' is empty", file.string());
+  const Buffer text = credentials::MakeBuffer(bytes);
+  BIO* content = nullptr;
+  const Signed signature(SMIME_read_PKCS7(text.get(), &content));
+  const Buffer signed_text(content);
+  const Signers signers(sk_X509_new_null());
+  const Buffer plain = credentials::MakeBuffer();  // takes the text without its heading
+  constexpr int kFlags = PKCS7_TEXT | PKCS7_NOVERIFY | PKCS7_NOINTERN;
+  if (signature != nullptr && signers != nullptr && sk_X509_push(signers.get(), ca.get()) > 0 &&
+      PKCS7_verify(signature.get(), signers.get(), nullptr, content, plain.get(), kFlags) == 1) {
+    return;
+  }
+  ERR_clear_error();
+  throw RuntimeError("'{}' was altered, or not signed by the authority of '{}'", file.string(),
+                     ca_file.string());
+}
+
 }  // namespace
 
 std::array<fs::path, 5> CredentialFiles(const fs::path& folder, const std::string& role) {
@@ -46,9 +70,6 @@ void CheckCredentials(const fs::path& folder, const std::string& role, std::time
   const Certificate ca = credentials::ReadCertificate(ca_file);
   const Certificate certificate = credentials::ReadCertificate(file);
   const Key key = credentials::ReadKey(key_file);
-  for (const fs::path& document : {governance, permissions}) {
-    if (ReadFile(document).empty()) throw RuntimeError("'{}' is empty", document.string());
-  }
   CheckValidity(ca.get(), ca_file, now);
   CheckValidity(certificate.get(), file, now);
   const Key ca_key(X509_get_pubkey(ca.get()));
@@ -61,6 +82,7 @@ void CheckCredentials(const fs::path& folder, const std::string& role, std::time
     ERR_clear_error();
     throw RuntimeError("'{}' is not the key of certificate '{}'", key_file.string(), file.string());
   }
+  for (const fs::path& document : {governance, permissions}) CheckSigned(document, ca, ca_file);
 }
 
 void CheckRights(const fs::path& folder, const RoleRights& rights) {

@@ -41,8 +41,8 @@ std::array<std::filesystem::path, 5> CredentialFiles(const std::filesystem::path
                                                      const std::string& role);
 
 // Throws Error, in one line naming the file, when one of the role's files is missing or unreadable,
-// a certificate is not valid at `now`, another authority than ca.pem made it, or the key is not its
-// own.
+// a certificate is not valid at `now`, another authority than ca.pem made it, the key is not its
+// own, or a signed document was altered or is another authority's.
 void CheckCredentials(const std::filesystem::path& folder, const std::string& role,
                       std::time_t now);
 // Throws Error naming file and topic when the role's credentials do not permit one of the topics,

@@ -21,9 +21,13 @@ struct Free {
   }
 };
 
+inline void FreeList(STACK_OF(X509) * list) { sk_X509_free(list); }
+
 using Key = std::unique_ptr<EVP_PKEY, Free<EVP_PKEY_free>>;
 using Certificate = std::unique_ptr<X509, Free<X509_free>>;
 using Signed = std::unique_ptr<PKCS7, Free<PKCS7_free>>;
+// The list alone: the certificates in it are others'.
+using Signers = std::unique_ptr<STACK_OF(X509), Free<FreeList>>;
 using Buffer = std::unique_ptr<BIO, Free<BIO_free_all>>;
 
 // The oldest error that OpenSSL keeps for this thread, as text; clears them all.

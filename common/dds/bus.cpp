@@ -1,6 +1,7 @@
 #include "common/dds/bus.h"
 
 #include <charconv>
+#include <utility>
 
 #include "common/base/check.h"
 #include "common/base/error.h"
@@ -67,10 +68,14 @@ void Join(const std::string& xml_template, const ClusterAddress& address,
     throw RuntimeError("this process has joined DDS domain {} already", id);
   }
   if (domain_handle < 0) ThrowJoinError(id, role, capture.text());
-  *domain = Entity(domain_handle, "a domain");
+  Entity joined(domain_handle, "a domain");
   const dds_entity_t handle =
       dds_create_participant(static_cast<dds_domainid_t>(id), nullptr, nullptr);
-  if (handle < 0) ThrowJoinError(id, role, capture.text());
+  if (handle < 0) {
+    joined = {};  // else it is our own half of a domain that has the ports
+    ThrowJoinError(id, role, capture.text());
+  }
+  *domain = std::move(joined);
   *participant = Entity(handle, "a participant");
 }
 

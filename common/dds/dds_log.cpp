@@ -1,8 +1,12 @@
 #include "common/dds/dds_log.h"
 
+#include <optional>
 #include <string_view>
 
+#include "common/base/clock.h"
+#include "common/base/line_budget.h"
 #include "common/base/log.h"
+#include "common/base/mutex.h"
 // clang-format off
 #include "dds/dds.h"
 #include "dds/ddsrt/log.h"
@@ -25,8 +29,22 @@ struct DdsLogSink {
     } else if (is_error) {
       log::Failure("dds: {}", line);
     } else if ((data->priority & DDS_LC_WARNING) != 0) {
-      log::Warning("dds: {}", line);
+      WriteWarning(line);
     }
+  }
+
+  // The library warns once per damaged datagram, and anybody can send those. Any thread.
+  static void WriteWarning(std::string_view line) {
+    static Mutex mutex;
+    static LineBudget budget;
+    std::optional<uint64_t> left_out;
+    {
+      const MutexLock lock(mutex);
+      left_out = budget.Take(Now());
+    }
+    if (!left_out) return;
+    if (*left_out > 0) log::Warning("dds: {} warnings were left out", *left_out);
+    log::Warning("dds: {}", line);
   }
 };
 

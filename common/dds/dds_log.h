@@ -5,7 +5,8 @@
 
 namespace shoal::dds {
 
-// Sends Cyclone's warnings and errors to shoal::log, for the whole process. May be called again.
+// Sends Cyclone's warnings (LineBudget) and errors to shoal::log, for the whole process. May be
+// called again.
 void RouteDdsLog();
 
 // While it lives, errors that Cyclone reports on this thread are kept instead of logged, so that

@@ -43,7 +43,7 @@ AddressList Resolve(const std::string& host, const std::string& port) {
 
 bool UdpPortFree(int port) {
   const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (fd < 0) return false;
+  if (fd < 0) throw RuntimeError("cannot open a socket: {}", std::strerror(errno));
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_addr.s_addr = htonl(INADDR_ANY);

@@ -54,6 +54,9 @@ MetricsMessage ReadMetrics(CdrReader* reader) {
 constexpr size_t kMostFigures = 1000;
 constexpr size_t kMostNameBytes = 200;
 
+// What doubles count exactly; far from where arithmetic with it overflows.
+constexpr double kLargestSetting = 9e15;
+
 bool IsShort(const std::string& name) { return name.size() <= kMostNameBytes; }
 
 bool MakesSense(const MetricsMessage& message) {
@@ -181,9 +184,10 @@ bool ParseCdr(std::span<const uint8_t> cdr, ControlMessage* message) {
   });
   const bool known = message->state == RunState::kRunning ||
                      message->state == RunState::kDraining || message->state == RunState::kStopping;
-  const auto finite = [](double value) { return std::isfinite(value); };
+  // Of all keys that change while a run goes on: counts, ratios and shares.
+  const auto possible = [](double value) { return value >= 0 && value <= kLargestSetting; };
   return reader.Finished() && known && std::isfinite(message->time) &&
-         std::ranges::all_of(message->setting_values, finite) &&
+         std::ranges::all_of(message->setting_values, possible) &&
          message->setting_names.size() == message->setting_values.size();
 }
 

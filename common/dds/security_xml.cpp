@@ -37,6 +37,16 @@ std::string Library(const std::string& plugin, const std::string& functions) {
       EscapeMarkup(PluginPath(plugin).string()), functions, functions);
 }
 
+// The library puts environment variables into its configuration, and its access control leaves out
+// quotes and takes backslashes for slashes: there is no way to name such a folder to it.
+void CheckName(const fs::path& folder) {
+  for (const char* text : {"${", "\"", "\\"}) {
+    if (folder.string().find(text) == std::string::npos) continue;
+    throw UsageError("DDS security cannot open a folder with {} in its name: '{}'", text,
+                     folder.string());
+  }
+}
+
 std::string File(const char* element, const fs::path& file) {
   return fmt::format("<{0}>file:{1}</{0}>", element, EscapeMarkup(file.string()));
 }
@@ -45,6 +55,7 @@ std::string File(const char* element, const fs::path& file) {
 
 std::string SecurityElement(const fs::path& folder, Role role) {
   if (folder.empty()) return "";
+  CheckName(fs::absolute(folder));
   CheckCredentials(folder, RoleName(role), std::time(nullptr));
   const auto [ca, governance, certificate, key, permissions] =
       CredentialFiles(fs::absolute(folder), RoleName(role));

@@ -90,7 +90,7 @@ NetworkPlan PlanEncoder(const NetworkConfig& network, const ObservationSpec& spe
   if (!spec.HasPixels()) return {};
   const EncoderKind& kind = FindEncoderKind(network.encoder);
   if (kind.name != "compact") RefuseCompactKeys(network);
-  const MapShape images{spec.stack * spec.channels, spec.height, spec.width};
+  const MapShape images{spec.InputChannels(), spec.height, spec.width};
   try {
     return BuildEncoder(kind, network, images, name);
   } catch (const Error& error) {

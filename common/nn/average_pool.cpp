@@ -5,6 +5,7 @@
 
 #include "common/nn/bf16.h"
 #include "common/nn/parallel.h"
+#include "common/nn/primitive_descs.h"
 
 namespace shoal::nn {
 namespace {
@@ -64,7 +65,7 @@ void MapPlanes(int planes, const memory& in, int n_in, const memory& out, int n_
 template <class AddPlane>
 void MapPlanes(int planes, const memory& in, int n_in, const memory& out, int n_out,
                const AddPlane& add) {
-  if (in.get_desc().data_type() == memory::data_type::bf16) {
+  if (TypeOf(in) == memory::data_type::bf16) {
     MapPlanes<uint16_t>(planes, in, n_in, out, n_out, add);
   } else {
     MapPlanes<float>(planes, in, n_in, out, n_out, add);
@@ -77,8 +78,8 @@ AveragePool::AveragePool(const LayerContext& context, const LayerPlan& plan, con
                          const memory& source_gradient)
     : planes_(context.batch * plan.input.channels), from_(plan.input), to_(plan.output) {
   const auto row_major = [&](const MapShape& map) {
-    return memory::desc({context.batch, map.channels, map.height, map.width},
-                        source.get_desc().data_type(), memory::format_tag::nchw);
+    return memory::desc({context.batch, map.channels, map.height, map.width}, TypeOf(source),
+                        memory::format_tag::nchw);
   };
   source_ = Relayout::Before(source, row_major(from_), context.scratchpad);
   output_ = MakeMemory(row_major(to_));

@@ -2,6 +2,7 @@
 
 #include "common/base/check.h"
 #include "common/nn/map_arithmetic.h"
+#include "common/nn/primitive_descs.h"
 
 namespace shoal::nn {
 namespace {
@@ -26,7 +27,7 @@ BatchNorm::BatchNorm(const LayerContext& context, const LayerPlan& plan, const M
       running_variance_(context.parameters->Find(plan.batch_norm + std::string(kRunningVariance))) {
   CHECK(relu_ || plan.activation == Activation::kNone) << plan.batch_norm;
   const memory::desc map = source.values.get_desc(), channels = PerChannel(weight_);
-  CHECK(map.dims() ==
+  CHECK(DimsOf(map) ==
         memory::dims({context.batch, plan.output.channels, plan.output.height, plan.output.width}))
       << plan.batch_norm << ": another source than planned";
   for (memory* values :
@@ -35,10 +36,8 @@ BatchNorm::BatchNorm(const LayerContext& context, const LayerPlan& plan, const M
   }
   output_ = MakeMemory(map);
   if (skip.values) skip_ = Relayout::Before(skip.values, map, context.scratchpad);
-  const dnnl::batch_normalization_forward::primitive_desc running(
-      {dnnl::prop_kind::forward_inference, map, kEpsilon,
-       kAffine | normalization_flags::use_global_stats},
-      Attributes(), CpuEngine());
+  const auto running = DescribeNormalization(dnnl::prop_kind::forward_inference, map, kEpsilon,
+                                             kAffine | normalization_flags::use_global_stats);
   by_running_ = Op(running,
                    {{DNNL_ARG_SRC, source.values},
                     {DNNL_ARG_MEAN, running_mean_values_},
@@ -56,8 +55,8 @@ void BatchNorm::BuildTraining(const LayerContext& context, const MapSource& sour
   const memory::desc map = output_.get_desc(), channels = PerChannel(weight_);
   mean_ = MakeMemory(channels);
   variance_ = MakeMemory(channels);
-  const dnnl::batch_normalization_forward::primitive_desc forward(
-      {dnnl::prop_kind::forward_training, map, kEpsilon, kAffine}, Attributes(), CpuEngine());
+  const auto forward =
+      DescribeNormalization(dnnl::prop_kind::forward_training, map, kEpsilon, kAffine);
   by_batch_ = Op(forward,
                  {{DNNL_ARG_SRC, source.values},
                   {DNNL_ARG_MEAN, mean_},
@@ -67,8 +66,7 @@ void BatchNorm::BuildTraining(const LayerContext& context, const MapSource& sour
                   {DNNL_ARG_DST, output_}},
                  context.scratchpad);
   output_gradient_ = MakeMemory(map);
-  const dnnl::batch_normalization_backward::primitive_desc backward(
-      {dnnl::prop_kind::backward, map, map, kEpsilon, kAffine}, Attributes(), CpuEngine(), forward);
+  const auto backward = DescribeNormalizationBackward(forward, map, kEpsilon, kAffine);
   backward_ = Op(backward,
                  {{DNNL_ARG_SRC, source.values},
                   {DNNL_ARG_MEAN, mean_},

@@ -2,6 +2,7 @@
 
 #include "common/base/check.h"
 #include "common/nn/map_arithmetic.h"
+#include "common/nn/primitive_descs.h"
 
 namespace shoal::nn {
 namespace {
@@ -20,9 +21,8 @@ Conv::Conv(const LayerContext& context, const LayerPlan& plan, const memory& sou
       has_bias_(plan.bias),
       weight_(context.parameters->Find(plan.name + ".weight")) {
   CHECK(plan.activation == Activation::kRelu || plan.activation == Activation::kNone) << plan.name;
-  const memory::desc source_desc = source.get_desc();
-  const memory::dims dims = source_desc.dims();
-  const memory::data_type type = source_desc.data_type();
+  const memory::dims dims = DimsOf(source);
+  const memory::data_type type = TypeOf(source);
   const memory::dims weight_dims = weight_.shape();
   const MapShape& from = plan.input;
   CHECK(dims == memory::dims({context.batch, from.channels, from.height, from.width}))
@@ -37,17 +37,10 @@ Conv::Conv(const LayerContext& context, const LayerPlan& plan, const memory& sou
   // Descriptions and arguments of a convolution without a bias are empty.
   const memory::desc bias_desc = has_bias_ ? bias_values_.get_desc() : memory::desc();
 
-  dnnl::primitive_attr attributes = Attributes();
-  if (relu_) {
-    dnnl::post_ops relu;
-    relu.append_eltwise(1.f, dnnl::algorithm::eltwise_relu, 0.f, 0.f);
-    attributes.set_post_ops(relu);
-  }
-  const dnnl::convolution_forward::primitive_desc forward(
-      {dnnl::prop_kind::forward_training, kAlgorithm, AnyLayout(dims, type),
-       AnyLayout(weight_dims, type), bias_desc, AnyLayout(output_dims, type), strides_, padding_,
-       padding_},
-      attributes, CpuEngine());
+  const auto forward = DescribeForward<dnnl::convolution_forward>(
+      relu_ ? AttributesWithRelu() : Attributes(), dnnl::prop_kind::forward_training, kAlgorithm,
+      AnyLayout(dims, type), AnyLayout(weight_dims, type), bias_desc, AnyLayout(output_dims, type),
+      strides_, padding_, padding_);
   output_ = MakeMemory(forward.dst_desc());
   forward_source_ = Relayout::Before(source, forward.src_desc(), context.scratchpad);
   forward_weight_ = Relayout::Before(weight_values_, forward.weights_desc(), context.scratchpad);
@@ -65,14 +58,12 @@ Conv::Conv(const LayerContext& context, const LayerPlan& plan, const memory& sou
 
 void Conv::BuildBackwardWeights(const LayerContext& context, const memory& source,
                                 const dnnl::convolution_forward::primitive_desc& forward) {
-  const memory::desc source_desc = source.get_desc(), output_desc = output_.get_desc();
   const memory::dims weight_dims = weight_.shape();
   const memory::desc bias_desc = has_bias_ ? bias_values_.get_desc() : memory::desc();
-  const dnnl::convolution_backward_weights::primitive_desc backward(
-      {kAlgorithm, AnyLayout(source_desc.dims(), source_desc.data_type()),
-       AnyLayout(weight_dims, memory::data_type::f32), bias_desc,
-       AnyLayout(output_desc.dims(), output_desc.data_type()), strides_, padding_, padding_},
-      Attributes(), CpuEngine(), forward);
+  const auto backward = DescribeBackward<dnnl::convolution_backward_weights>(
+      forward, kAlgorithm, AnyLayout(DimsOf(source), TypeOf(source)),
+      AnyLayout(weight_dims, memory::data_type::f32), bias_desc,
+      AnyLayout(DimsOf(output_), TypeOf(output_)), strides_, padding_, padding_);
   const memory weight_target(PlainF32(weight_dims), CpuEngine(), weight_.gradient());
   const memory bias_target =
       has_bias_ ? memory(bias_desc, CpuEngine(), bias_.gradient()) : memory();
@@ -92,12 +83,11 @@ void Conv::BuildBackwardWeights(const LayerContext& context, const memory& sourc
 void Conv::BuildBackwardData(const LayerContext& context, const memory& source_gradient,
                              const dnnl::convolution_forward::primitive_desc& forward) {
   has_source_gradient_ = true;
-  const memory::desc target = source_gradient.get_desc(), output_desc = output_.get_desc();
-  const dnnl::convolution_backward_data::primitive_desc backward(
-      {kAlgorithm, AnyLayout(target.dims(), target.data_type()),
-       AnyLayout(weight_.shape(), target.data_type()),
-       AnyLayout(output_desc.dims(), output_desc.data_type()), strides_, padding_, padding_},
-      Attributes(), CpuEngine(), forward);
+  const memory::data_type type = TypeOf(source_gradient);
+  const auto backward = DescribeBackward<dnnl::convolution_backward_data>(
+      forward, kAlgorithm, AnyLayout(DimsOf(source_gradient), type),
+      AnyLayout(weight_.shape(), type), AnyLayout(DimsOf(output_), TypeOf(output_)), strides_,
+      padding_, padding_);
   data_output_gradient_ =
       Relayout::Before(output_gradient_, backward.diff_dst_desc(), context.scratchpad);
   data_weight_ = Relayout::Before(weight_values_, backward.weights_desc(), context.scratchpad);

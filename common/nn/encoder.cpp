@@ -6,6 +6,7 @@
 #include "common/nn/frame_pooling.h"
 #include "common/nn/map_arithmetic.h"
 #include "common/nn/max_pool.h"
+#include "common/nn/primitive_descs.h"
 
 namespace shoal::nn {
 
@@ -78,8 +79,8 @@ void Encoder::Build(const LayerContext& context, const NetworkPlan& plan) {
 // in each of them.
 void Encoder::BuildFeatures(const LayerContext& context) {
   const dnnl::memory& map = outputs_.back().values;
-  const dnnl::memory::dims dims = map.get_desc().dims();
-  const dnnl::memory::data_type type = map.get_desc().data_type();
+  const dnnl::memory::dims dims = DimsOf(map);
+  const dnnl::memory::data_type type = TypeOf(map);
   const dnnl::memory::desc plain(dims, type, dnnl::memory::format_tag::nchw);
   const dnnl::memory::desc rows({dims[0], dims[1] * dims[2] * dims[3]}, type,
                                 dnnl::memory::format_tag::ab);
@@ -97,7 +98,7 @@ void Encoder::Refresh() {
 
 void Encoder::Forward(const uint8_t* frames, Statistics statistics) {
   const FrameShape shape{planes_, height_, width_};
-  if (input_.get_desc().data_type() == dnnl::memory::data_type::bf16) {
+  if (TypeOf(input_) == dnnl::memory::data_type::bf16) {
     PoolFramesToBf16(frames, shape, pool_, shift_,
                      static_cast<uint16_t*>(input_.get_data_handle()));
   } else {

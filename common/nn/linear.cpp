@@ -1,6 +1,7 @@
 #include "common/nn/linear.h"
 
 #include "common/base/check.h"
+#include "common/nn/primitive_descs.h"
 
 namespace shoal::nn {
 namespace {
@@ -9,8 +10,7 @@ using dnnl::memory;
 
 // The precision whose compute type is the source's.
 Precision PrecisionOf(const memory& source) {
-  return source.get_desc().data_type() == memory::data_type::bf16 ? Precision::kBf16
-                                                                  : Precision::kF32;
+  return TypeOf(source) == memory::data_type::bf16 ? Precision::kBf16 : Precision::kF32;
 }
 
 }  // namespace
@@ -21,19 +21,16 @@ Linear::Linear(const LayerContext& context, const std::string& name, const memor
       weight_(context.parameters->Find(name + ".weight")),
       bias_(context.parameters->Find(name + ".bias")),
       output_gradient_(context.batch, outputs_, PrecisionOf(source)) {
-  const memory::desc source_desc = source.get_desc();
-  const memory::dims weight_dims = weight_.shape();
+  const memory::dims source_dims = DimsOf(source), weight_dims = weight_.shape();
   weight_values_ = memory(PlainF32(weight_dims), CpuEngine(), nullptr);
   bias_values_ = memory(PlainF32({outputs_}), CpuEngine(), nullptr);
   output_ = MakeMemory(PlainF32({context.batch, outputs_}));
-  CHECK(source_desc.dims()[1] == weight_dims[1])
-      << name << ": source has " << source_desc.dims()[1] << " columns";
+  CHECK(source_dims[1] == weight_dims[1])
+      << name << ": source has " << source_dims[1] << " columns";
 
-  const dnnl::inner_product_forward::primitive_desc forward(
-      {dnnl::prop_kind::forward_training, AnyLayout(source_desc.dims(), source_desc.data_type()),
-       AnyLayout(weight_dims, source_desc.data_type()), bias_values_.get_desc(),
-       output_.get_desc()},
-      Attributes(), CpuEngine());
+  const auto forward = DescribeForward<dnnl::inner_product_forward>(
+      Attributes(), dnnl::prop_kind::forward_training, AnyLayout(source_dims, TypeOf(source)),
+      AnyLayout(weight_dims, TypeOf(source)), bias_values_.get_desc(), output_.get_desc());
   forward_source_ = Relayout::Before(source, forward.src_desc(), context.scratchpad);
   forward_weight_ = Relayout::Before(weight_values_, forward.weights_desc(), context.scratchpad);
   forward_ = Op(forward,
@@ -48,14 +45,12 @@ Linear::Linear(const LayerContext& context, const std::string& name, const memor
 void Linear::BuildBackward(const LayerContext& context, const memory& source,
                            const memory& source_gradient,
                            const dnnl::inner_product_forward::primitive_desc& forward) {
-  const memory::desc source_desc = source.get_desc();
   const memory::desc weight_desc = weight_values_.get_desc();
   const memory& gradient = output_gradient_.compute();
-  const dnnl::inner_product_backward_weights::primitive_desc weights(
-      {AnyLayout(source_desc.dims(), source_desc.data_type()),
-       AnyLayout(weight_desc.dims(), memory::data_type::f32), bias_values_.get_desc(),
-       gradient.get_desc()},
-      Attributes(), CpuEngine(), forward);
+  const auto weights = DescribeBackward<dnnl::inner_product_backward_weights>(
+      forward, AnyLayout(DimsOf(source), TypeOf(source)),
+      AnyLayout(weight_.shape(), memory::data_type::f32), bias_values_.get_desc(),
+      gradient.get_desc());
   const memory weight_target(weight_desc, CpuEngine(), weight_.gradient());
   const memory bias_target(bias_values_.get_desc(), CpuEngine(), bias_.gradient());
   backward_source_ = Relayout::Before(source, weights.src_desc(), context.scratchpad);
@@ -69,11 +64,9 @@ void Linear::BuildBackward(const LayerContext& context, const memory& source,
                          context.scratchpad);
   if (!source_gradient) return;
   has_source_gradient_ = true;
-  const memory::desc target = source_gradient.get_desc();
-  const dnnl::inner_product_backward_data::primitive_desc data(
-      {AnyLayout(target.dims(), target.data_type()),
-       AnyLayout(weight_desc.dims(), source_desc.data_type()), gradient.get_desc()},
-      Attributes(), CpuEngine(), forward);
+  const auto data = DescribeBackward<dnnl::inner_product_backward_data>(
+      forward, AnyLayout(DimsOf(source_gradient), TypeOf(source_gradient)),
+      AnyLayout(weight_.shape(), TypeOf(source)), gradient.get_desc());
   backward_weight_ = Relayout::Before(weight_values_, data.weights_desc(), context.scratchpad);
   source_gradient_ = Relayout::After(data.diff_src_desc(), source_gradient, context.scratchpad);
   backward_data_ = Op(data,

@@ -6,6 +6,7 @@
 #include "common/base/check.h"
 #include "common/base/cpu_clones.h"
 #include "common/nn/parallel.h"
+#include "common/nn/primitive_descs.h"
 #include "common/nn/relu_mask.h"
 
 namespace shoal::nn {
@@ -69,11 +70,11 @@ template <class Body>
 void WithArrays(const dnnl::memory& x, const dnnl::memory& y, const Body& body) {
   const dnnl::memory::desc desc = y.get_desc();
   CHECK(x.get_desc() == desc) << "maps of two layouts";
-  if (desc.data_type() == dnnl::memory::data_type::bf16) {
+  if (TypeOf(desc) == dnnl::memory::data_type::bf16) {
     body(static_cast<const uint16_t*>(x.get_data_handle()),
          int64_t(desc.get_size() / sizeof(uint16_t)), static_cast<uint16_t*>(y.get_data_handle()));
   } else {
-    CHECK(desc.data_type() == dnnl::memory::data_type::f32);
+    CHECK(TypeOf(desc) == dnnl::memory::data_type::f32);
     body(static_cast<const float*>(x.get_data_handle()), int64_t(desc.get_size() / sizeof(float)),
          static_cast<float*>(y.get_data_handle()));
   }

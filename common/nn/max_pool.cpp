@@ -1,5 +1,7 @@
 #include "common/nn/max_pool.h"
 
+#include "common/nn/primitive_descs.h"
+
 namespace shoal::nn {
 namespace {
 
@@ -11,16 +13,14 @@ constexpr auto kAlgorithm = dnnl::algorithm::pooling_max;
 
 MaxPool::MaxPool(const LayerContext& context, const LayerPlan& plan, const memory& source,
                  const memory& source_gradient) {
-  const memory::dims kernel{plan.kernel, plan.kernel}, strides{plan.stride, plan.stride},
-      padding{plan.padding, plan.padding};
-  const memory::desc from = source.get_desc();
-  const memory::desc to =
-      AnyLayout({context.batch, plan.output.channels, plan.output.height, plan.output.width},
-                from.data_type());
-  const dnnl::pooling_forward::primitive_desc forward(
-      {context.training ? dnnl::prop_kind::forward_training : dnnl::prop_kind::forward_inference,
-       kAlgorithm, from, to, strides, kernel, padding, padding},
-      Attributes(), CpuEngine());
+  const PoolWindow window{.strides = {plan.stride, plan.stride},
+                          .kernel = {plan.kernel, plan.kernel},
+                          .padding = {plan.padding, plan.padding}};
+  const memory::desc to = AnyLayout(
+      {context.batch, plan.output.channels, plan.output.height, plan.output.width}, TypeOf(source));
+  const auto forward = DescribePooling(
+      context.training ? dnnl::prop_kind::forward_training : dnnl::prop_kind::forward_inference,
+      kAlgorithm, source.get_desc(), to, window);
   output_ = MakeMemory(forward.dst_desc());
   if (!context.training) {
     forward_ = Op(forward, {{DNNL_ARG_SRC, source}, {DNNL_ARG_DST, output_}}, context.scratchpad);
@@ -33,10 +33,8 @@ MaxPool::MaxPool(const LayerContext& context, const LayerPlan& plan, const memor
   output_gradient_ = MakeMemory(output_.get_desc());
   if (!source_gradient) return;
   has_source_gradient_ = true;
-  const dnnl::pooling_backward::primitive_desc backward(
-      {kAlgorithm, source_gradient.get_desc(), output_gradient_.get_desc(), strides, kernel,
-       padding, padding},
-      Attributes(), CpuEngine(), forward);
+  const auto backward = DescribePoolingBackward(forward, kAlgorithm, source_gradient.get_desc(),
+                                                output_gradient_.get_desc(), window);
   backward_ = Op(backward,
                  {{DNNL_ARG_DIFF_DST, output_gradient_},
                   {DNNL_ARG_DIFF_SRC, source_gradient},

@@ -1,22 +1,22 @@
 #include "common/nn/precision.h"
 
 #include <dnnl.hpp>
+#include <utility>
 
 #include "common/base/error.h"
 
 namespace shoal::nn {
 namespace {
 
-// avx512_core emulates bf16 products with f32 ones; only these have the instructions.
-bool HasNativeBf16() {
-  switch (dnnl::get_effective_cpu_isa()) {
-    case dnnl::cpu_isa::avx512_core_bf16:
-    case dnnl::cpu_isa::avx512_core_amx:
-      return true;
-    default:
-      return false;
-  }
+// Whether this CPU has all instructions of `isa`: oneDNN numbers instruction sets by sets of bits.
+// Sets that are newer than the ones named here contain them.
+bool Has(dnnl::cpu_isa isa) {
+  const auto bits = static_cast<unsigned>(isa);
+  return (static_cast<unsigned>(dnnl::get_effective_cpu_isa()) & bits) == bits;
 }
+
+// avx512_core without it emulates bf16 products with f32 ones.
+bool HasNativeBf16() { return Has(dnnl::cpu_isa::avx512_core_bf16); }
 
 }  // namespace
 
@@ -34,26 +34,21 @@ Precision ChoosePrecision(const std::string& asked, bool pixels) {
 const char* ToString(Precision precision) { return precision == Precision::kBf16 ? "bf16" : "f32"; }
 
 std::string CpuIsa() {
-  switch (dnnl::get_effective_cpu_isa()) {
-    case dnnl::cpu_isa::sse41:
-      return "sse41";
-    case dnnl::cpu_isa::avx:
-      return "avx";
-    case dnnl::cpu_isa::avx2:
-      return "avx2";
-    case dnnl::cpu_isa::avx2_vnni:
-      return "avx2_vnni";
-    case dnnl::cpu_isa::avx512_core:
-      return "avx512_core";
-    case dnnl::cpu_isa::avx512_core_vnni:
-      return "avx512_core_vnni";
-    case dnnl::cpu_isa::avx512_core_bf16:
-      return "avx512_core_bf16";
-    case dnnl::cpu_isa::avx512_core_amx:
-      return "avx512_core_amx";
-    default:
-      return "generic";
+  using enum dnnl::cpu_isa;
+  constexpr std::pair<dnnl::cpu_isa, const char*> kNames[] = {
+      {avx512_core_amx, "avx512_core_amx"},
+      {avx512_core_bf16, "avx512_core_bf16"},
+      {avx512_core_vnni, "avx512_core_vnni"},
+      {avx512_core, "avx512_core"},
+      {avx2_vnni, "avx2_vnni"},
+      {avx2, "avx2"},
+      {avx, "avx"},
+      {sse41, "sse41"},
+  };
+  for (const auto& [isa, name] : kNames) {
+    if (Has(isa)) return name;
   }
+  return "generic";
 }
 
 }  // namespace shoal::nn

@@ -6,6 +6,7 @@
 #include "common/nn/linear.h"
 #include "common/nn/network_plan.h"
 #include "common/nn/parallel.h"
+#include "common/nn/primitive_descs.h"
 
 namespace shoal::nn {
 namespace {
@@ -16,7 +17,7 @@ std::vector<ParameterSpec> Parameters(const std::string& name, int inputs, int o
   return plan.Parameters();
 }
 
-int Columns(const Features& trunk) { return int(trunk.values().get_desc().dims()[1]); }
+int Columns(const Features& trunk) { return int(DimsOf(trunk.values())[1]); }
 
 }  // namespace
 

@@ -129,6 +129,10 @@ shoal_policy_shape shoal_policy_pixels(const shoal_policy* policy) {
   return {size_t(spec.stack), size_t(spec.channels), size_t(spec.height), size_t(spec.width)};
 }
 
+size_t shoal_policy_goal_pictures(const shoal_policy* policy) {
+  return policy->trained.spec().goal_picture ? 1 : 0;
+}
+
 size_t shoal_policy_camera_count(const shoal_policy* policy) {
   return policy->trained.spec().cameras.size();
 }

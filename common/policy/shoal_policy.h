@@ -72,6 +72,10 @@ typedef struct shoal_policy_shape {
 } shoal_policy_shape;
 SHOAL_POLICY_API shoal_policy_shape shoal_policy_pixels(const shoal_policy* policy);
 
+/* G: 1 for a policy that sees a picture of its goal reached, which is one more frame behind the
+ * stack; else 0. */
+SHOAL_POLICY_API size_t shoal_policy_goal_pictures(const shoal_policy* policy);
+
 /* The cameras in the order of a frame's channels. NULL from `index` = their count on. */
 SHOAL_POLICY_API size_t shoal_policy_camera_count(const shoal_policy* policy);
 SHOAL_POLICY_API const char* shoal_policy_camera_name(const shoal_policy* policy, size_t index);
@@ -91,8 +95,9 @@ typedef struct shoal_policy_block {
 
 typedef struct shoal_policy_observations {
   size_t count; /* N, at least 1 */
-  /* (N, K*C, H, W), 0..255, row 0 = top, RGB. Of a stack the oldest frame comes first; at an
-   * episode's start the first frame stands K times. NULL and 0 for a policy without pixels. */
+  /* (N, (K+G)*C, H, W), 0..255, row 0 = top, RGB. Of a stack the oldest frame comes first; at an
+   * episode's start the first frame stands K times; the goal's comes last. NULL and 0 for a policy
+   * without pixels. */
   const uint8_t* pixels;
   size_t pixel_count; /* bytes in `pixels` */
   /* Each block that the policy observes, in any order, and no other. */

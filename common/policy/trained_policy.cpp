@@ -34,7 +34,7 @@ TrainedPolicy::TrainedPolicy(const CheckpointPolicy& policy, nn::Precision preci
       policy_(description_.network, description_.spec, precision, kLargestPart) {
   policy_.Load(policy.tensors, kPolicyFile);
   // Builds the network of one observation.
-  const std::vector<uint8_t> frames(size_t(spec().FrameBytes()) * size_t(spec().stack));
+  const std::vector<uint8_t> frames(size_t(spec().InputBytes()));
   const std::vector<float> vector(size_t(spec().VectorSize()));
   policy_.Forward(1, frames.data(), vector.data());
   vectors_.reserve(vector.size());
@@ -44,9 +44,8 @@ TrainedPolicy::TrainedPolicy(const std::filesystem::path& checkpoint, nn::Precis
     : TrainedPolicy(ReadCheckpointPolicy(checkpoint), precision) {}
 
 void TrainedPolicy::CheckPixels(const Observations& observations) const {
-  const int channels = spec().stack * spec().channels;
-  const size_t expected =
-      size_t(observations.count) * size_t(spec().FrameBytes()) * size_t(spec().stack);
+  const int channels = spec().InputChannels();
+  const size_t expected = size_t(observations.count) * size_t(spec().InputBytes());
   if (observations.pixels.size() == expected) return;
   throw UsageError("pixels: {} bytes, expected {} = {} x {} x {} x {}", observations.pixels.size(),
                    expected, observations.count, channels, spec().height, spec().width);
@@ -97,13 +96,13 @@ void TrainedPolicy::Act(const Observations& observations, std::span<float> actio
   }
   if (spec().HasPixels()) CheckPixels(observations);
   GatherVectors(observations);
-  const size_t stack_bytes = size_t(spec().FrameBytes()) * size_t(spec().stack);
+  const auto input_bytes = size_t(spec().InputBytes());
   const auto row = size_t(spec().VectorSize());
   for (int done = 0; done < count;) {
     const int part = std::min(int(std::bit_floor(unsigned(count - done))), kLargestPart);
     const auto first = size_t(done);
     const nn::PolicyOutput output = policy_.Forward(
-        part, observations.pixels.data() + (spec().HasPixels() ? first * stack_bytes : 0),
+        part, observations.pixels.data() + (spec().HasPixels() ? first * input_bytes : 0),
         vectors_.data() + first * row);
     nn::MeanActions(output, actions.subspan(first * size, size_t(part) * size));
     done += part;

@@ -2,7 +2,7 @@
 // an evaluation actor would play.
 //
 // Dimensions: N observations of a batch, K frames of a stack, C channels of a frame (all cameras),
-// H, W, A actions. Arrays are row-major.
+// I = K*C, or (K+1)*C with a goal picture, H, W, A actions. Arrays are row-major.
 #pragma once
 
 #include <cstdint>
@@ -26,8 +26,8 @@ struct ObservedBlock {
 // N observations, borrowed for a call.
 struct Observations {
   int count = 0;  // N
-  // (N, K*C, H, W), row 0 = top; of a stack the oldest frame first, at an episode's start the first
-  // frame K times. Unread by a policy without pixels.
+  // (N, I, H, W), row 0 = top; of a stack the oldest frame first, at an episode's start the first
+  // frame K times; a goal picture comes last. Unread by a policy without pixels.
   std::span<const uint8_t> pixels = {};
   // Each block that the policy observes, in any order, and no other.
   std::span<const ObservedBlock> blocks = {};

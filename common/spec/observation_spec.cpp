@@ -59,9 +59,12 @@ std::string ObservationSpec::Summary() const {
   for (const BlockSpec& block : blocks) {
     if (block.observed) seen += (seen.empty() ? "" : ",") + block.name;
   }
-  return fmt::format("{} pixels {}x{}x{} [{}] stack {}, vector {} [{}], action {}, model {}", task,
-                     channels, height, width, names, stack, VectorSize(), seen, action_size,
-                     model_fingerprint);
+  const std::string pixels =
+      HasPixels() ? fmt::format("pixels {}x{}x{} [{}] stack {}{}, ", channels, height, width, names,
+                                stack, goal_picture ? " + goal picture" : "")
+                  : "";
+  return fmt::format("{} {}vector {} [{}], action {}, model {}", task, pixels, VectorSize(), seen,
+                     action_size, model_fingerprint);
 }
 
 json ToJson(const ObservationSpec& spec) {
@@ -69,16 +72,19 @@ json ToJson(const ObservationSpec& spec) {
   for (const BlockSpec& block : spec.blocks) {
     blocks.push_back({{"name", block.name}, {"size", block.size}, {"observed", block.observed}});
   }
-  return {{"task", spec.task},
-          {"cameras", spec.cameras},
-          {"channels", spec.channels},
-          {"height", spec.height},
-          {"width", spec.width},
-          {"stack", spec.stack},
-          {"blocks", blocks},
-          {"action_size", spec.action_size},
-          {"drawn_actions", spec.drawn_actions},
-          {"model_fingerprint", spec.model_fingerprint}};
+  json object{{"task", spec.task},
+              {"cameras", spec.cameras},
+              {"channels", spec.channels},
+              {"height", spec.height},
+              {"width", spec.width},
+              {"stack", spec.stack},
+              {"blocks", blocks},
+              {"action_size", spec.action_size},
+              {"drawn_actions", spec.drawn_actions},
+              {"model_fingerprint", spec.model_fingerprint}};
+  // Only where there is one: specs without keep the hash they had before goal pictures.
+  if (spec.goal_picture) object["goal_picture"] = true;
+  return object;
 }
 
 ObservationSpec ObservationSpecFromJson(const json& object) {
@@ -90,6 +96,7 @@ ObservationSpec ObservationSpecFromJson(const json& object) {
     object.at("height").get_to(spec.height);
     object.at("width").get_to(spec.width);
     object.at("stack").get_to(spec.stack);
+    if (object.contains("goal_picture")) object.at("goal_picture").get_to(spec.goal_picture);
     for (const auto& block : object.at("blocks")) {
       spec.blocks.push_back({block.at("name").get<std::string>(), block.at("size").get<int>(),
                              block.at("observed").get<bool>()});

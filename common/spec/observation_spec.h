@@ -37,11 +37,17 @@ struct ObservationSpec {
   // Records carry the action as it was drawn, before it was clipped to [-1, 1], too, and their
   // header its log-probability: what on-policy learning needs.
   bool drawn_actions = false;
+  // A picture of the episode's goal reached, (C, H, W) like a frame, follows the stack in what the
+  // policy sees (observation.goal_mode = image).
+  bool goal_picture = false;
   std::string model_fingerprint;  // hash of the compiled physics model and render settings, hex
 
   bool HasPixels() const { return channels > 0; }
   // One frame (C, H, W) uint8.
   int FrameBytes() const { return channels * height * width; }
+  // I: channels of the policy's picture, (I, H, W): K*C of the stack and, with a goal picture, C.
+  int InputChannels() const { return (stack + (goal_picture ? 1 : 0)) * channels; }
+  int InputBytes() const { return InputChannels() * height * width; }
   // V: floats of the observed blocks together, the policy's vector.
   int VectorSize() const;
   // R >= V: floats of all blocks together, a record's vector.

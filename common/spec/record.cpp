@@ -18,10 +18,11 @@ RecordLayout::RecordLayout(const ObservationSpec& spec)
 const char* RecordFault(const RecordLayout& layout, const uint8_t* record) {
   const RecordHeader& header = RecordLayout::Header(record);
   if (header.version != kRecordVersion) return "record version is unknown";
-  if (header.kind != RecordKind::kReset && header.kind != RecordKind::kStep) {
+  if (header.kind != RecordKind::kReset && header.kind != RecordKind::kStep &&
+      header.kind != RecordKind::kGoal) {
     return "record kind is unknown";
   }
-  if ((header.kind == RecordKind::kReset) != (header.index == 0)) {
+  if ((header.kind == RecordKind::kStep) == (header.index == 0)) {
     return "record index does not fit its kind";
   }
   if ((header.flags & ~(kTerminated | kTruncated | kSuccess)) != 0) return "unknown record flags";

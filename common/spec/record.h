@@ -5,7 +5,9 @@
 //   | frame (C, H, W) u8 | pad to 8
 //
 // A *reset* record holds the first observation of an episode (action and reward are zero). A *step*
-// record holds the action taken, what it earned, and the observation it led to. The vector has
+// record holds the action taken, what it earned, and the observation it led to. Where the policy
+// sees a goal picture, a *goal* record comes before each reset: its frame is that picture, all else
+// is the reset's. The vector has
 // every block of the spec, observed or not. The action as drawn is there if the spec says so. All
 // little-endian.
 // docs/wire_format.md describes the layout byte by byte.
@@ -20,7 +22,7 @@ namespace shoal {
 
 inline constexpr uint8_t kRecordVersion = 2;
 
-enum class RecordKind : uint8_t { kReset = 1, kStep = 2 };
+enum class RecordKind : uint8_t { kReset = 1, kStep = 2, kGoal = 3 };
 
 enum RecordFlags : uint8_t {
   kTerminated = 1,  // the task ended: no bootstrap
@@ -35,7 +37,7 @@ struct RecordHeader {
   int64_t time_ns;   // wall clock when made
   uint32_t env;      // global environment index: the same env whichever actor hosts it
   uint32_t episode;  // per env, from 0, never re-used within a run
-  uint32_t index;    // 0 = reset; k = after the k-th step
+  uint32_t index;    // 0 = reset, goal; k = after the k-th step
   float reward;
   float distance;  // task's goal distance in m after this record; NaN where it has no meaning
   RecordKind kind;

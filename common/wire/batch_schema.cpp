@@ -45,9 +45,9 @@ BatchSchema::BatchSchema(const ObservationSpec& spec, const BatchOptions& option
   CHECK(options.batch > 0) << options.batch;
   // The order is that of the bytes on the wire; Hash() covers it.
   if (spec.HasPixels()) {
-    const std::vector<int> stack{spec.stack * spec.channels, spec.height, spec.width};
-    Add("obs_frames", ArrayType::kU8, stack);
-    Add("next_obs_frames", ArrayType::kU8, stack);
+    const std::vector<int> input{spec.InputChannels(), spec.height, spec.width};
+    Add("obs_frames", ArrayType::kU8, input);
+    Add("next_obs_frames", ArrayType::kU8, input);
   }
   if (const int size = spec.VectorSize(); size > 0) {
     Add("obs_vector", ArrayType::kF32, {size});

@@ -20,7 +20,7 @@ namespace {
 constexpr char kPreset[] = "fetch-reach-drq";
 constexpr int kUpdates = 20;
 constexpr std::chrono::milliseconds kLoopbackTime{1500};
-constexpr double kUpdatesPerSecond = 30;            // that loopback must keep up with
+constexpr double kUpdatesPerSecond = 30;            // whose records loopback must keep up with
 constexpr uint64_t kBytesPerProcess = 150'000'000;  // of a run from pixels, as metrics.jsonl has it
 
 Needs NeedsOf(const Config& config) {
@@ -29,7 +29,11 @@ Needs NeedsOf(const Config& config) {
   const replay::StorageNeeds replay = replay::StorageNeedsOf({config, spec});
   Needs needs;
   needs.ring_bytes = replay.ring_bytes;
-  needs.batch_bytes = replay.batch_bytes;
+  // Batches go through memory; every record crosses once.
+  const double records_per_update = config.learner.batch / config.replay.samples_per_insert;
+  needs.loopback_rate = kUpdatesPerSecond * records_per_update *
+                        static_cast<double>(replay.ring_bytes) /
+                        static_cast<double>(config.replay.capacity);
   // Actors, evaluation actor, learner, replay, coordinator.
   needs.process_bytes = kBytesPerProcess * static_cast<uint64_t>(UsableCores() + 4);
   return needs;
@@ -67,7 +71,7 @@ std::vector<CheckLine> CheckMachine(const CheckRequest& request,
   look("dds loopback", "see that UDP passes on the loopback interface and no firewall drops it",
        [&] {
          return JudgeLoopback(MeasureLoopback(config.transport, kLoopbackTime),
-                              kUpdatesPerSecond * static_cast<double>(needs.batch_bytes) / 1e6);
+                              needs.loopback_rate / 1e6);
        });
   look("disk", "free some space, lower replay.capacity or move run_dir",
        [&] { return LookAtDisk(request.run_dir, needs); });

@@ -134,7 +134,7 @@ int RunLoopbackPeer(const std::filesystem::path& folder, const TransportConfig& 
 CheckLine JudgeLoopback(const LoopbackRate& rate, double needed) {
   CheckLine line{"dds loopback", Verdict::kOk,
                  fmt::format("{:.0f} MB/s in chunks of 1 MB between two processes; the default "
-                             "preset at 30 updates/s moves {:.0f} MB/s",
+                             "preset's records at 30 updates/s are {:.0f} MB/s",
                              rate.MegabytesPerSecond(), needed),
                  ""};
   if (rate.chunks == 0) {
@@ -144,7 +144,7 @@ CheckLine JudgeLoopback(const LoopbackRate& rate, double needed) {
   } else if (rate.MegabytesPerSecond() < needed) {
     line.verdict = Verdict::kWarn;
     line.advice =
-        "the learner will wait for batches: free a core, or raise net.core.rmem_max to "
+        "actors will wait for the replay: free a core, or raise net.core.rmem_max to "
         "16 MB (sysctl -w net.core.rmem_max=16777216)";
   }
   return line;

@@ -29,7 +29,7 @@ LoopbackRate MeasureLoopback(const TransportConfig& transport, std::chrono::mill
 // The other side: acknowledges chunks until it is told to stop. `folder` holds cluster.json.
 int RunLoopbackPeer(const std::filesystem::path& folder, const TransportConfig& transport);
 
-// `needed`: MB/s that a run of the default preset moves.
+// `needed`: MB/s of records that actors of the default preset send.
 CheckLine JudgeLoopback(const LoopbackRate& rate, double needed);
 
 }  // namespace shoal::launch

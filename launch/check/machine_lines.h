@@ -18,7 +18,7 @@ CheckLine JudgeCores(const CoreLimits& limits);
 // What a run of the default preset needs.
 struct Needs {
   uint64_t ring_bytes = 0;     // of the replay, a file in the run folder
-  uint64_t batch_bytes = 0;    // of one batch
+  double loopback_rate = 0;    // bytes/s of records, over loopback to the replay
   uint64_t process_bytes = 0;  // of memory for all processes, without the ring
 };
 

@@ -21,7 +21,10 @@ int Render(const worlds::RenderRequest& request, const std::string& png) {
   const worlds::Picture picture = worlds::RenderTask(request);
   image::WritePng(png, picture.width, picture.height, 3, picture.pixels);
   std::cout << png << ": " << request.task << ", camera " << picture.camera << ", " << picture.width
-            << "x" << picture.height << ", after " << request.env_steps << " env steps\n";
+            << "x" << picture.height << ", "
+            << (request.goal ? "the goal reached"
+                             : fmt::format("after {} env steps", request.env_steps))
+            << "\n";
   return 0;
 }
 
@@ -70,11 +73,14 @@ void AddRender(CLI::App& env, Action* chosen) {
   command->add_option("--width", request->width, "Pixels")->capture_default_str();
   command->add_option("--height", request->height, "Pixels")->capture_default_str();
   command->add_option("--model", request->model, "Another MJCF file for the task");
+  command->add_flag("--goal", request->goal,
+                    "The goal reached, as observation.goal_mode = image shows it");
   CLI::Option* all =
       command
           ->add_flag("--contact-sheet", *whole, "All tasks, cameras and qualities in one picture")
           ->excludes(task);
-  for (const char* other : {"--camera", "--steps", "--quality", "--width", "--height", "--model"}) {
+  for (const char* other :
+       {"--goal", "--camera", "--steps", "--quality", "--width", "--height", "--model"}) {
     all->excludes(command->get_option(other));
   }
   command->add_option("--tile", sheet->side, "Pixels a side of a contact sheet's pictures")

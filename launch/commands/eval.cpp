@@ -1,8 +1,12 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
 
 #include "common/base/bounded_json.h"
 #include "common/base/error.h"
@@ -12,6 +16,7 @@
 #include "launch/commands/commands.h"
 #include "launch/experiment/baselines.h"
 #include "launch/processes/actor_program.h"
+#include "launch/processes/scratch_folder.h"
 #include "launch/record/run_folder.h"
 
 namespace shoal::launch {
@@ -29,6 +34,26 @@ void AddBaselines(const fs::path& file, const Baselines& baselines) {
   auto object = ParseBoundedJson<nlohmann::ordered_json>(ReadFile(file));
   object["baselines"] = ToJson(std::optional(baselines));
   WriteFileAtomically(file, object.dump(2) + "\n");
+}
+
+// "failed 3: 2 stopped_short, 1 never_touched", the commonest first; empty where nothing failed or
+// the task has no causes (actor/evaluation/failure_cause.h).
+std::string FailuresText(const fs::path& file) {
+  const auto object = ParseBoundedJson<nlohmann::ordered_json>(ReadFile(file));
+  const auto counts = object.find("failures");
+  if (counts == object.end()) return "";
+  std::vector<std::pair<uint64_t, std::string>> failures;
+  for (const auto& [cause, count] : counts->items()) {
+    if (count > 0) failures.emplace_back(count.get<uint64_t>(), cause);
+  }
+  std::ranges::stable_sort(failures, std::greater<>(), &std::pair<uint64_t, std::string>::first);
+  uint64_t all = 0;
+  std::string text;
+  for (const auto& [count, cause] : failures) {
+    all += count;
+    text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, cause);
+  }
+  return text.empty() ? "" : fmt::format("failed {}: {}", all, text);
 }
 
 struct RunCheckpoint {
@@ -62,16 +87,22 @@ int Evaluate(const EvalOptions& options) {
   const auto [run, folder] = FindCheckpoint(options.checkpoint);
   if (!options.json.empty()) CheckWritable(options.json);
   InstallStopSignals();
+  const ScratchFolder scratch;
+  const fs::path json =
+      options.json.empty() ? scratch.path() / "eval.json" : fs::path(options.json);
   const auto point = EvaluateByActor({.run = run,
                                       .checkpoint = folder,
                                       .episodes = options.episodes,
                                       .seed = options.seed,
                                       .task = options.task,
-                                      .json = options.json},
+                                      .json = json},
                                      StopRequested);
   if (!point) return Interrupted("nothing was evaluated");
   fmt::print("{} episodes (seed {}) of {}: {} ({} env steps, {} updates)\n", options.episodes,
              options.seed, folder.string(), FormatScore(*point), point->env_steps, point->updates);
+  if (const std::string failures = FailuresText(json); !failures.empty()) {
+    fmt::print("{}\n", failures);
+  }
   Config played = ReadRunConfig(run).config;
   if (!options.task.empty()) {  // played without the run's model file
     played.task = options.task;

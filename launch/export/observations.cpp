@@ -38,7 +38,7 @@ ObservationSet RandomObservations(const ObservationSpec& spec,
   ObservationSet result{.count = count};
   for (int n = 0; n < count && spec.HasPixels(); ++n) {
     const uint64_t low = random.Below(256), levels = random.Below(256 - low) + 1;
-    const int bytes = spec.stack * spec.FrameBytes();
+    const int bytes = spec.InputBytes();
     std::generate_n(std::back_inserter(result.frames), bytes,
                     [&] { return uint8_t(low + random.Below(levels)); });
   }

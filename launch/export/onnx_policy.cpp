@@ -173,7 +173,7 @@ void AddPorts(const ObservationSpec& spec, OnnxModel* model) {
   if (spec.HasPixels()) {
     model->inputs.push_back({.name = kPixelsInput,
                              .type = OnnxPort::Type::kU8,
-                             .shape = {spec.stack * spec.channels, spec.height, spec.width}});
+                             .shape = {spec.InputChannels(), spec.height, spec.width}});
   }
   for (const BlockSpec& block : spec.blocks) {
     if (!block.observed || block.size == 0) continue;
@@ -228,6 +228,7 @@ std::map<std::string, std::string> MetadataOf(const policy::CheckpointPolicy& po
           {"algorithm", policy.description.algorithm},
           {"cameras", fmt::format("{}", fmt::join(spec.cameras, ","))},
           {"stack", std::to_string(spec.stack)},
+          {"goal_picture", spec.goal_picture ? "1" : "0"},
           {"updates", std::to_string(policy.state.updates)},
           {"env_steps", std::to_string(policy.state.env_steps)}};
 }

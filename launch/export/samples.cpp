@@ -28,7 +28,7 @@ std::string WriteSamples(const policy::CheckpointPolicy& policy,
   nn::TensorMap tensors;
   if (spec.HasPixels()) {
     tensors[kPixelsInput] =
-        Tensor("U8", {all.count, spec.stack * spec.channels, spec.height, spec.width}, all.frames);
+        Tensor("U8", {all.count, spec.InputChannels(), spec.height, spec.width}, all.frames);
   }
   for (const auto& [name, values] : BlocksOf(spec, all)) {
     tensors[name] = Tensor("F32", {all.count, std::ssize(values) / all.count}, values);

@@ -26,7 +26,8 @@ inline constexpr int kCaptionHeight = 24;
 struct FilmLayout {
   int width = 0, height = 0;  // of the film, even: H.264 halves the resolution of its colours
   Box title, status;
-  std::vector<Box> cameras;  // the policy's pictures, enlarged, in the order of the spec
+  // The policy's pictures, enlarged: its cameras in the order of the spec, then their goals.
+  std::vector<Box> cameras;
   Box view;
 };
 

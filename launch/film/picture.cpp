@@ -23,6 +23,11 @@ constexpr int kStatusColumns = 5;
 
 using RedGreenBlue = std::array<uint8_t, 3>;
 
+// Of the policy's input as it is shown: each camera's newest, and behind them each camera's goal.
+int PicturesOf(const ObservationSpec& spec) {
+  return static_cast<int>(spec.cameras.size()) * (spec.goal_picture ? 2 : 1);
+}
+
 }  // namespace
 
 struct FilmPicture::Canvas {
@@ -70,7 +75,7 @@ struct FilmPicture::Canvas {
 
 FilmPicture::FilmPicture(const ObservationSpec& spec)
     : spec_(spec),
-      layout_(MakeFilmLayout(static_cast<int>(spec.cameras.size()), spec.height, spec.width)),
+      layout_(MakeFilmLayout(PicturesOf(spec), spec.height, spec.width)),
       canvas_(std::make_unique<Canvas>(layout_.width, layout_.height)) {
   if (const auto status = cairo_status(canvas_->context); status != CAIRO_STATUS_SUCCESS) {
     throw RuntimeError("a picture of {} x {} pixels: {}", layout_.width, layout_.height,
@@ -105,8 +110,7 @@ void FilmPicture::Fill(const Box& box, const ColourAt& colour_at) {
   }
 }
 
-void FilmPicture::DrawCamera(size_t camera, std::span<const uint8_t> frame) {
-  const Box& box = layout_.cameras[camera];
+void FilmPicture::DrawCamera(const Box& box, size_t camera, std::span<const uint8_t> frame) {
   const size_t plane = size_t(spec_.height) * size_t(spec_.width);
   const size_t channels = size_t(spec_.channels) / spec_.cameras.size();  // 3, or 1: grey
   const std::span<const uint8_t> picture =
@@ -142,8 +146,10 @@ void FilmPicture::DrawWords(const FilmText& text) {
     canvas.Write(box.x, box.y - 8, words, box.width);
   };
   for (size_t i = 0; i < layout_.cameras.size(); ++i) {
+    const bool goal = i >= spec_.cameras.size();
     caption(layout_.cameras[i],
-            fmt::format("{}, policy input {}×{}", spec_.cameras[i], spec_.width, spec_.height));
+            fmt::format("{}, {} {}×{}", spec_.cameras[i % spec_.cameras.size()],
+                        goal ? "goal picture" : "policy input", spec_.width, spec_.height));
   }
   caption(layout_.view,
           layout_.cameras.empty() ? "the policy sees numbers, no pictures" : "larger view");
@@ -179,13 +185,17 @@ void FilmPicture::DrawWords(const FilmText& text) {
 void FilmPicture::Draw(const FilmText& text, std::span<const uint8_t> input,
                        std::span<const uint8_t> view) {
   const size_t frame = static_cast<size_t>(spec_.FrameBytes());
-  CHECK(input.size() == frame * size_t(spec_.stack)) << input.size();
+  CHECK(input.size() == static_cast<size_t>(spec_.InputBytes())) << input.size();
   CHECK(view.size() == size_t{3} * kFilmView * kFilmView) << view.size();
   canvas_->Use(kPaper);
   cairo_paint(canvas_->context);
   DrawWords(text);
   cairo_surface_flush(canvas_->surface);  // before others touch its memory
-  for (size_t i = 0; i < layout_.cameras.size(); ++i) DrawCamera(i, input.last(frame));
+  const auto newest = size_t(spec_.stack) - 1;
+  for (size_t i = 0; i < layout_.cameras.size(); ++i) {
+    const size_t camera = i % spec_.cameras.size(), behind = i / spec_.cameras.size();
+    DrawCamera(layout_.cameras[i], camera, input.subspan((newest + behind) * frame, frame));
+  }
   DrawView(view);
   cairo_surface_mark_dirty(canvas_->surface);
   if (const auto status = cairo_status(canvas_->context); status != CAIRO_STATUS_SUCCESS) {

@@ -32,8 +32,9 @@ class FilmPicture {
 
   const FilmLayout& layout() const { return layout_; }
 
-  // `input` (K*C, H, W) u8 as the policy gets it, of which the newest of the K frames is shown,
-  // empty without pixels; `view` (kFilmView, kFilmView, 3) u8. CHECK on other sizes.
+  // `input` (I, H, W) u8 as the policy gets it, of which the newest of the K frames and the goal
+  // picture, if there is one, are shown, empty without pixels; `view` (kFilmView, kFilmView, 3) u8.
+  // CHECK on other sizes.
   void Draw(const FilmText& text, std::span<const uint8_t> input, std::span<const uint8_t> view);
 
   // Rows of 4 bytes per pixel, B G R and one without meaning.
@@ -46,7 +47,8 @@ class FilmPicture {
   // A value of the three colours at (row, column) of a box, row and column from 0.
   template <class ColourAt>
   void Fill(const Box& box, const ColourAt& colour_at);
-  void DrawCamera(size_t camera, std::span<const uint8_t> frame);
+  // Of `frame` (C, H, W) one camera's picture.
+  void DrawCamera(const Box& box, size_t camera, std::span<const uint8_t> frame);
   void DrawView(std::span<const uint8_t> view);
   void DrawWords(const FilmText& text);
 

@@ -20,7 +20,7 @@ constexpr uint32_t kLastPicture = 500'000;
 void CheckHeader(const image::FrameStreamHeader& header, const ObservationSpec& spec,
                  const fs::path& stream) {
   const auto number = [](int value) { return static_cast<uint32_t>(value); };
-  const bool input = header.channels == number(spec.channels * spec.stack) &&
+  const bool input = header.channels == number(spec.InputChannels()) &&
                      header.frame_channels == number(spec.channels) &&
                      header.height == number(spec.height) && header.width == number(spec.width) &&
                      header.action_size == number(spec.action_size);
@@ -30,7 +30,7 @@ void CheckHeader(const image::FrameStreamHeader& header, const ObservationSpec& 
         "x "
         "{} x {}, {} x {} and {}",
         stream.string(), header.channels, header.height, header.width, header.view_height,
-        header.view_width, header.action_size, spec.channels * spec.stack, spec.height, spec.width,
+        header.view_width, header.action_size, spec.InputChannels(), spec.height, spec.width,
         kFilmView, kFilmView, spec.action_size);
   }
   if (header.step_microseconds > kLongestStep) {

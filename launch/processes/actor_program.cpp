@@ -57,7 +57,8 @@ ObservedWorld DescribeObservations(const Config& config) {
 
 std::optional<EvaluationPoint> EvaluateByActor(const EvaluationOrder& order,
                                                const std::function<bool()>& stop) {
-  const ScratchFolder scratch;
+  const ScratchFolder scratch =
+      order.own_run ? ScratchFolder::WithinRun(order.run) : ScratchFolder();
   const fs::path json = order.json.empty() ? scratch.path() / "result.json" : order.json;
   ProcessSpec spec = ProgramSpec(kProgram,
                                  {"--evaluate", order.checkpoint.string(), "--run",

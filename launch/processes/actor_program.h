@@ -34,6 +34,7 @@ struct EvaluationOrder {
   std::string task = {};            // to play instead of the run's; empty = the run's
   std::filesystem::path json = {};  // where the result goes; empty = nowhere
   ShownFrames frames = {};
+  bool own_run = false;  // of whoever holds the run: temporary files go into its folder
 };
 
 // `shoal-actor --evaluate`: fresh episodes of the final stream with a checkpoint. Throws Error when

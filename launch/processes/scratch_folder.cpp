@@ -1,6 +1,8 @@
 #include "launch/processes/scratch_folder.h"
 
 #include <stdlib.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstring>
@@ -15,6 +17,16 @@ ScratchFolder::ScratchFolder(const std::filesystem::path& parent) {
     throw RuntimeError("cannot create folder '{}': {}", name, std::strerror(errno));
   }
   path_ = name;
+}
+
+ScratchFolder ScratchFolder::WithinRun(const std::filesystem::path& run) {
+  const std::filesystem::path path = run / fmt::format(".scratch.tmp-{}", getpid());
+  std::error_code error;
+  std::filesystem::remove_all(path, error);  // of a dead process with the same number
+  if (mkdir(path.c_str(), 0700) != 0) {
+    throw RuntimeError("cannot create folder '{}': {}", path.string(), std::strerror(errno));
+  }
+  return {path, Made{}};
 }
 
 ScratchFolder::~ScratchFolder() {

@@ -6,12 +6,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
 #include "actor/worlds/environment.h"
+#include "actor/worlds/physics_library.h"
 #include "actor/worlds/world.h"
 #include "actor/worlds/world_registry.h"
 #include "common/base/error.h"
@@ -26,15 +28,25 @@ namespace {
 
 constexpr char kSource[] = "shoal_rl.make";
 
+// Tasks of `library`, NAME.so, as built for this module: NAME_python.so beside it
+// (common/cmake/task_library.cmake).
+void LoadPythonTasks(const std::string& library) {
+  if (library.empty()) return;
+  std::filesystem::path built = library;
+  built.replace_filename(built.stem().string() + "_python" + built.extension().string());
+  worlds::LoadTasks(built.string());
+}
+
 // `keys`: a configuration's, as JSON. Cameras that are not named are the task's first; without
 // pixels everything else is observed, unless the keys say what.
 Config ReadKeys(const std::string& task_name, const std::string& keys) {
-  const tasks::Task& task = tasks::FindTask(task_name);
   Config config;
   ObservationConfig& observation = config.observation;
   observation.cameras.clear();
   ApplyJson(ParseStrictJson(keys, kSource), kSource, &config);
   config.task = task_name;
+  LoadPythonTasks(config.task_library);
+  const tasks::Task& task = tasks::FindTask(task_name);
   if (observation.pixels && observation.cameras.empty()) {
     const auto world = worlds::MakeWorld(task.world(), {config.model, config.physics});
     observation.cameras = {world->cameras().front().name};
@@ -61,6 +73,8 @@ class PlayedEnvironment {
     running_ = false;
     const float distance = environment_->Reset(
         StreamKey(seed, StreamRole::kEvalEnvironment, episode), {frame_, vector_});
+    const std::span<const uint8_t> goal = environment_->goal_picture();
+    std::ranges::copy(goal, stack_.end() - std::ptrdiff_t(goal.size()));
     for (size_t k = 0; k < size_t(spec().stack); ++k) {
       std::ranges::copy(frame_, stack_.begin() + std::ptrdiff_t(k * frame_.size()));
     }
@@ -86,8 +100,10 @@ class PlayedEnvironment {
         environment_->Step({numbers.data(), size_t(numbers.size())}, {frame_, vector_});
     running_ = !result.terminated && !result.truncated;
     if (!frame_.empty()) {
-      std::ranges::rotate(stack_, stack_.begin() + std::ptrdiff_t(frame_.size()));
-      std::ranges::copy(frame_, stack_.end() - std::ptrdiff_t(frame_.size()));
+      const auto frame = std::ptrdiff_t(frame_.size());
+      const auto end = stack_.begin() + frame * spec().stack;  // a goal picture stays
+      std::rotate(stack_.begin(), stack_.begin() + frame, end);
+      std::ranges::copy(frame_, end - frame);
     }
     return py::make_tuple(Observation(), result.reward, result.terminated, result.truncated,
                           result.success, result.distance);
@@ -103,15 +119,15 @@ class PlayedEnvironment {
             config,
             config.observation.pixels ? worlds::MakeRenderContext(config.observation) : nullptr)),
         frame_(size_t(spec().FrameBytes())),
-        stack_(frame_.size() * size_t(spec().stack)),
+        stack_(size_t(spec().InputBytes())),
         vector_(size_t(spec().RecordedVectorSize())) {}
 
   // What a policy sees: the stack and the observed blocks, each an array of its own.
   py::dict Observation() const {
     py::dict observation;
     if (spec().HasPixels()) {
-      py::array_t<uint8_t> pixels(std::vector<py::ssize_t>{
-          py::ssize_t(spec().stack) * spec().channels, spec().height, spec().width});
+      py::array_t<uint8_t> pixels(
+          std::vector<py::ssize_t>{spec().InputChannels(), spec().height, spec().width});
       std::ranges::copy(stack_, pixels.mutable_data());
       observation["pixels"] = pixels;
     }
@@ -128,7 +144,7 @@ class PlayedEnvironment {
 
   std::unique_ptr<worlds::Environment> environment_;
   std::vector<uint8_t> frame_;  // (C, H, W), the latest
-  std::vector<uint8_t> stack_;  // (K*C, H, W), the oldest frame first
+  std::vector<uint8_t> stack_;  // (I, H, W), the oldest frame first, a goal picture last
   std::vector<float> vector_;   // (R)
   bool running_ = false;        // between a reset and the end of its episode
 };
@@ -136,7 +152,7 @@ class PlayedEnvironment {
 py::object PixelShape(const PlayedEnvironment& environment) {
   const ObservationSpec& spec = environment.spec();
   if (!spec.HasPixels()) return py::none();
-  return py::make_tuple(spec.stack * spec.channels, spec.height, spec.width);
+  return py::make_tuple(spec.InputChannels(), spec.height, spec.width);
 }
 
 py::dict Blocks(const PlayedEnvironment& environment) {
@@ -158,6 +174,7 @@ void BindEnvironment(py::module_& module) {
       .def_property_readonly("pixels", &PixelShape)
       .def_property_readonly("blocks", &Blocks)
       .def_property_readonly("stack", [](const Played& e) { return e.spec().stack; })
+      .def_property_readonly("goal_picture", [](const Played& e) { return e.spec().goal_picture; })
       .def_property_readonly("cameras", [](const Played& e) { return e.spec().cameras; })
       .def_property_readonly("action_size", [](const Played& e) { return e.spec().action_size; })
       .def_property_readonly("has_success", &Played::has_success)

@@ -69,8 +69,7 @@ void TakePixels(const ObservationSpec& spec, const py::handle& value, Arrays* ar
   const Bytes pixels = bytes ? Bytes::ensure(value) : Bytes();
   if (!bytes || !pixels) throw UsageError("pixels: expected a numpy array of uint8, 0..255");
   arrays->pixels = pixels;
-  CheckShape("pixels", arrays->pixels,
-             {py::ssize_t(spec.stack) * spec.channels, spec.height, spec.width}, arrays);
+  CheckShape("pixels", arrays->pixels, {spec.InputChannels(), spec.height, spec.width}, arrays);
 }
 
 void TakeBlock(const ObservationSpec& spec, const std::string& name, const py::handle& value,
@@ -97,9 +96,8 @@ Arrays TakeArrays(const ObservationSpec& spec, const py::dict& observation) {
     }
   }
   if (spec.HasPixels() && !observation.contains("pixels")) {
-    throw UsageError(
-        "pixels are missing: uint8 of shape {}",
-        ShapeText(Shape{py::ssize_t(spec.stack) * spec.channels, spec.height, spec.width}));
+    throw UsageError("pixels are missing: uint8 of shape {}",
+                     ShapeText(Shape{spec.InputChannels(), spec.height, spec.width}));
   }
   return arrays;
 }
@@ -132,7 +130,7 @@ py::dict Blocks(const policy::TrainedPolicy& policy) {
 py::object PixelShape(const policy::TrainedPolicy& policy) {
   const ObservationSpec& spec = policy.spec();
   if (!spec.HasPixels()) return py::none();
-  return py::make_tuple(spec.stack * spec.channels, spec.height, spec.width);
+  return py::make_tuple(spec.InputChannels(), spec.height, spec.width);
 }
 
 std::string Summary(const policy::TrainedPolicy& policy) {
@@ -167,7 +165,11 @@ void BindPolicy(py::module_& module) {
           "action_size", [](const TrainedPolicy& policy) { return policy.spec().action_size; },
           "A, the numbers of an action.")
       .def_property_readonly("pixels", &PixelShape,
-                             "(K*C, H, W) of one observation; None without pixels.")
+                             "(K*C, H, W) of one observation, with a goal picture "
+                             "((K+1)*C, H, W); None without pixels.")
+      .def_property_readonly(
+          "goal_picture", [](const TrainedPolicy& policy) { return policy.spec().goal_picture; },
+          "Whether a picture of the goal reached follows the stack in the pixels.")
       .def_property_readonly(
           "stack", [](const TrainedPolicy& policy) { return policy.spec().stack; },
           "K, the frames of one observation, the oldest first.")

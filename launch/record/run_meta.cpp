@@ -83,7 +83,7 @@ ordered_json Versions() {
 }  // namespace
 
 PolicyInputs PolicyInputsOf(const ObservationSpec& spec) {
-  PolicyInputs inputs{.cameras = spec.cameras};
+  PolicyInputs inputs{.cameras = spec.cameras, .goal_picture = spec.goal_picture};
   for (const BlockSpec& block : spec.blocks) {
     if (block.observed) inputs.blocks.push_back(block.name);
   }
@@ -93,11 +93,6 @@ PolicyInputs PolicyInputsOf(const ObservationSpec& spec) {
 PrivilegedInputs PrivilegedInputsOf(const Config& config, const ObservationSpec& spec) {
   return {.critic_blocks = PrivilegedBlocksOf(config.learner, spec).critic,
           .labels = config.learner.aux};
-}
-
-void RunMeta::OnUpdates(uint64_t reported) {
-  if (reported < updates) updates_lost += updates - reported;
-  updates = reported;
 }
 
 void WriteRunMeta(const std::filesystem::path& run, const Config& config, const RunMeta& meta) {
@@ -114,7 +109,9 @@ void WriteRunMeta(const std::filesystem::path& run, const Config& config, const 
       {"precision",
        nn::ToString(nn::ChoosePrecision(config.learner.precision, config.observation.pixels))},
       {"policy_inputs",
-       {{"blocks", meta.policy_inputs.blocks}, {"cameras", meta.policy_inputs.cameras}}},
+       {{"blocks", meta.policy_inputs.blocks},
+        {"cameras", meta.policy_inputs.cameras},
+        {"goal_picture", meta.policy_inputs.goal_picture}}},
       {"privileged_inputs",
        {{"critic_blocks", meta.privileged_inputs.critic_blocks},
         {"labels", meta.privileged_inputs.labels}}},

@@ -18,6 +18,7 @@ namespace shoal::launch {
 struct PolicyInputs {
   std::vector<std::string> blocks{};   // in the order of its vector
   std::vector<std::string> cameras{};  // empty: no pixels
+  bool goal_picture = false;           // of each camera, beside its frames
 };
 PolicyInputs PolicyInputsOf(const ObservationSpec& spec);
 
@@ -34,7 +35,7 @@ struct RunMeta {
   PrivilegedInputs privileged_inputs;
   std::string started, finished;  // UTC; finished is empty while running
   uint64_t env_steps = 0, updates = 0;
-  uint64_t updates_lost = 0;  // with learners that died, since their newest checkpoints
+  uint64_t updates_lost = 0;  // with learners that died (common/run_folder/update_page.h)
   double wall_seconds = 0;    // over all sessions of a resumed run
   double target = 0;
   std::optional<EvaluationPoint> first_success;
@@ -47,10 +48,6 @@ struct RunMeta {
   uint64_t resends = 0;          // records that actors sent again
   std::string exit = "running";  // then "target", "budget", "interrupted" or "failed"
   std::string error;             // why, where failed
-
-  // The learner's count as it was reported last. Fewer than before: it died, and its successor goes
-  // on from a checkpoint. What it did after its last report, a second ago at most, is unknown.
-  void OnUpdates(uint64_t reported);
 };
 
 // With `updates_per_env_step` as it came about so far, null before the first env step. Throws

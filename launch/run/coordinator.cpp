@@ -9,6 +9,7 @@
 #include "common/base/stop.h"
 #include "common/base/usable_cores.h"
 #include "common/dds/publisher.h"
+#include "common/run_folder/update_page.h"
 #include "launch/processes/ordered_stop.h"
 #include "launch/processes/process_plan.h"
 #include "launch/processes/suspension.h"
@@ -368,7 +369,7 @@ void Coordinator::Impl::TakeMessages(SteadyTime now) {
   for (const ReplayProgress& word : inbox.TakeReplayProgress()) run_progress.OnReplay(word);
   for (const LearnerProgress& word : inbox.TakeLearnerProgress()) {
     run_progress.OnLearner(word);
-    meta.OnUpdates(*run_progress.updates());
+    meta.updates = *run_progress.updates();
   }
   for (const EvalMessage& message : evaluations.Take(inbox.TakeEvaluations(), now)) {
     TakeEvaluation(message);
@@ -421,6 +422,7 @@ void Coordinator::Impl::StoreMeta() {
   now.wall_seconds = Elapsed();
   now.restarts += supervisor.restarts();
   now.resends += Resends();
+  now.updates_lost = ReadLostUpdates(run);
   WriteRunMeta(run, config, now);
 }
 

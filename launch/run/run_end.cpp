@@ -7,6 +7,7 @@
 #include "common/base/error.h"
 #include "common/base/stop.h"
 #include "common/config/on_policy.h"
+#include "common/run_folder/update_page.h"
 #include "launch/film/film.h"
 #include "launch/processes/actor_program.h"
 #include "launch/processes/run_hosts.h"
@@ -41,17 +42,17 @@ std::optional<EvaluationPoint> EvaluateAtEnd(const fs::path& run, const Config& 
                                              OperatorDesk& desk, Progress& progress) {
   const fs::path checkpoint = JudgedCheckpoint(run);
   if (config.eval.final_episodes == 0 || checkpoint.empty()) return std::nullopt;
-  const int stops = StopRequests();
   progress.Say(fmt::format("evaluating {} on {} fresh episodes; Ctrl-C to leave it out",
                            checkpoint.string(), config.eval.final_episodes));
   auto point = EvaluateByActor({.run = run,
                                 .checkpoint = checkpoint,
                                 .episodes = config.eval.final_episodes,
                                 .seed = config.seed,
-                                .json = run / "eval" / "final.json"},
-                               [stops, &desk] {
+                                .json = run / "eval" / "final.json",
+                                .own_run = true},
+                               [&desk] {
                                  desk.ShowAgain("evaluating", Now());
-                                 return StopRequests() > stops;
+                                 return StopRequested();  // by the end of the terminal, too
                                });
   if (!point) progress.Say("the evaluation was left out");
   return point;
@@ -64,16 +65,15 @@ fs::path FilmAtEnd(const fs::path& run, const Config& config, OperatorDesk& desk
   const fs::path checkpoint = JudgedCheckpoint(run);
   if (checkpoint.empty()) throw RuntimeError("run '{}' has no checkpoint", run.string());
   const fs::path film = FilmPath(run, checkpoint.filename());
-  const int stops = StopRequests();
   const auto made = MakeFilm(
       {.run = run,
        .checkpoints = {checkpoint},
        .episodes = kEpisodes,
        .seed = config.seed,
        .output = film},
-      [stops, &desk] {
+      [&desk] {
         desk.ShowAgain("evaluating", Now());
-        return StopRequests() > stops;
+        return StopRequested();  // by the end of the terminal, too
       },
       [&](const std::string& line) { progress.Say(line); });
   if (made) return film;
@@ -110,9 +110,9 @@ void PrintSummary(const fs::path& run, const Config& config, const RunResult& re
                              100 * meta.target, meta.first_success->env_steps,
                              meta.first_success->updates, meta.first_success->wall_seconds));
   } else if (meta.best && meta.best->success) {
-    progress.Say(
-        fmt::format("  no {} evaluations in a row, while training, had success >= {:.0f} %",
-                    config.stop.evaluations, 100 * meta.target));
+    progress.Say(fmt::format(
+        "  no {} evaluations in a row, while training, had success >= {:.0f} % together",
+        config.stop.evaluations, 100 * meta.target));
   }
   if (meta.exit == "interrupted") {
     progress.Say(
@@ -157,6 +157,7 @@ int EndRun(const fs::path& run, const Config& config, RunResult result, bool fil
   }
   std::optional<EvaluationPoint> final_evaluation;
   try {
+    meta.updates_lost = ReadLostUpdates(run);
     WriteBottleneck(run, result.bottleneck);
     if (WantsFinalEvaluation(meta)) final_evaluation = EvaluateAtEnd(run, config, desk, progress);
     if (final_evaluation) {

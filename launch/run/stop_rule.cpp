@@ -7,6 +7,8 @@ namespace shoal::launch {
 namespace {
 
 constexpr double kUsualTarget = 0.98;
+// Of an episode: rates times counts are whole numbers but for their last bits.
+constexpr double kRounding = 1e-6;
 
 double TargetOf(const Config& config) {
   return config.stop.success <= 1 ? config.stop.success : kUsualTarget;
@@ -26,29 +28,34 @@ StopRule::StopRule(const Config& config)
 
 void StopRule::OnEvaluation(const EvaluationPoint& point) {
   points_.push_back(point);
-  Judge(point);
+  Judge(points_.size());
 }
 
 void StopRule::Change(const Config& config) {
   stop_ = config.stop;
   budget_ = BudgetOf(config);
   target_ = TargetOf(config);
-  streak_ = 0;
   first_success_.reset();
-  for (const EvaluationPoint& point : points_) Judge(point);
+  for (size_t end = 1; end <= points_.size(); ++end) Judge(end);
 }
 
-void StopRule::Judge(const EvaluationPoint& point) {
-  if (!point.success || *point.success < target_) {
-    streak_ = 0;
-    return;
+void StopRule::Judge(size_t end) {
+  if (!first_success_ && Reached(end)) first_success_ = points_[end - Evaluations()];
+}
+
+bool StopRule::Reached(size_t end) const {
+  if (end < Evaluations()) return false;
+  double successes = 0, episodes = 0;
+  for (size_t i = end - Evaluations(); i < end; ++i) {
+    const EvaluationPoint& point = points_[i];
+    if (!point.success) return false;
+    episodes += static_cast<double>(point.episodes);
+    successes += *point.success * static_cast<double>(point.episodes);
   }
-  if (streak_ == 0) streak_start_ = point;
-  ++streak_;
-  if (streak_ >= stop_.evaluations && !first_success_) first_success_ = streak_start_;
+  return successes >= target_ * episodes - kRounding;
 }
 
-bool StopRule::TargetReached() const { return stop_.success <= 1 && streak_ >= stop_.evaluations; }
+bool StopRule::TargetReached() const { return stop_.success <= 1 && Reached(points_.size()); }
 
 bool StopRule::BudgetSpent(uint64_t env_steps) const { return env_steps >= budget_; }
 

@@ -19,25 +19,27 @@ class StopRule {
   // Judges by the new env_steps and stop.* from now on, former evaluations too.
   void Change(const Config& config);
 
-  // stop.evaluations in a row reached stop.success. Never for a task without success: its runs end
-  // by their budget.
+  // The episodes of the newest stop.evaluations evaluations, pooled, reached stop.success: how
+  // often that errs is in docs/algorithm.md ("When a run stops"). Never for a task without success:
+  // its runs end by their budget.
   bool TargetReached() const;
   bool BudgetSpent(uint64_t env_steps) const;
 
   // What first_success() is measured against: stop.success, or 0.98 where a run never stops at it.
   double target() const { return target_; }
-  // The first evaluation of the first streak of stop.evaluations at or above target().
+  // The first of the first stop.evaluations in a row whose episodes, pooled, reached target().
   const std::optional<EvaluationPoint>& first_success() const { return first_success_; }
 
  private:
-  void Judge(const EvaluationPoint& point);
+  size_t Evaluations() const { return static_cast<size_t>(stop_.evaluations); }
+  // Both look at the stop.evaluations points before points_[end].
+  bool Reached(size_t end) const;
+  void Judge(size_t end);
 
   StopConfig stop_;
   uint64_t budget_;
   double target_;
   std::vector<EvaluationPoint> points_;
-  int streak_ = 0;
-  EvaluationPoint streak_start_;
   std::optional<EvaluationPoint> first_success_;
 };
 

@@ -1,6 +1,7 @@
 #include "launch/run/training_run.h"
 
 #include <fmt/core.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -18,6 +19,7 @@
 #include "common/config/on_policy.h"
 #include "common/config/privileged_blocks.h"
 #include "common/config/run_files.h"
+#include "common/config/sending_window.h"
 #include "common/credentials/credentials.h"
 #include "common/dds/bus.h"
 #include "common/dds/publisher.h"
@@ -25,6 +27,7 @@
 #include "common/nn/encoder_weights.h"
 #include "common/nn/named_weights.h"
 #include "common/nn/network_check.h"
+#include "common/spec/record.h"
 #include "common/tasks/task_library.h"
 #include "common/wire/weights_parts.h"
 #include "launch/processes/actor_program.h"
@@ -44,6 +47,7 @@
 #include "learner/agent/network_start.h"
 #include "learner/agent/value_bounds.h"
 #include "replay_server/core/hindsight.h"
+#include "replay_server/core/replay_core.h"
 #include "replay_server/core/storage_limits.h"
 #include "replay_server/core/storage_needs.h"
 
@@ -190,11 +194,13 @@ std::filesystem::path CheckFolder(const Config& config) {
 // Asked before anything is made or started. A run that exists has its ring.
 void CheckReplay(const RunConfig& run, bool exists) {
   const Config& config = run.config;
+  CheckSendingWindow(config, RecordLayout(run.spec).record_bytes());
   if (LearnsOnPolicy(config)) {  // it has none
     if (!exists) CheckFolder(config);
     return;
   }
   replay::CheckHindsight(run);
+  replay::CheckSampling(run);
   learner::CheckValueBounds(run);
   const replay::StorageNeeds needs = replay::StorageNeedsOf(run);
   if (config.replay.storage == "memory") {
@@ -311,7 +317,17 @@ int Start(PreparedRun run, const TrainOptions& options, std::unique_ptr<dds::Bus
   return exit_code;
 }
 
+// With fewer the DDS library fails in ways of its own.
+void CheckOpenFiles() {
+  constexpr rlim_t kLeast = 32;
+  struct rlimit limit {};
+  if (getrlimit(RLIMIT_NOFILE, &limit) != 0 || limit.rlim_cur >= kLeast) return;
+  throw RuntimeError("a process may open {} files (ulimit -n): expected at least {}",
+                     limit.rlim_cur, kLeast);
+}
+
 int Train(const TrainOptions& options, Detachment* detachment) {
+  CheckOpenFiles();
   ClusterAddress address;
   if (!options.resume.empty()) {
     PreparedRun run = PrepareResumed(options);

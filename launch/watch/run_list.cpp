@@ -46,6 +46,8 @@ void ReadMeta(const std::filesystem::path& run, RunListing* listing) {
   listing->final = {NumberOrNothing(meta.at("final_success_rate")),
                     NumberOrNothing(meta.value("final_return_mean", json()))};
   listing->status = StatusOfExit(meta.at("exit").get<std::string>());
+  // Its end was decided, but its coordinator did not live to see it.
+  if (meta.value("finished", json()).is_null()) listing->status = RunStatus::kDead;
 }
 
 std::string Format(const RunScore& score) {

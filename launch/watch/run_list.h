@@ -13,7 +13,7 @@ enum class RunStatus {
   kFinished,     // reached its target or spent its budget
   kInterrupted,  // was stopped; --resume goes on
   kFailed,
-  kDead,        // its coordinator ended without a word; --resume goes on
+  kDead,        // its coordinator ended without a word, if only in the last evaluation; --resume
   kUnreadable,  // a broken meta.json or config.json
 };
 const char* ToString(RunStatus status);

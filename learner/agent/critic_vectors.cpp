@@ -12,6 +12,7 @@ ObservationSpec CriticSpec(const LearnerConfig& learner, const ObservationSpec& 
   ObservationSpec seen = spec;
   seen.cameras.clear();
   seen.channels = seen.height = seen.width = 0;
+  seen.goal_picture = false;
   seen.blocks.clear();
   for (const BlockSpec& block : spec.blocks) {
     if (block.observed) seen.blocks.push_back(block);

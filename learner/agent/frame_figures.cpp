@@ -18,8 +18,8 @@ void AddFrameFigures(const BatchView& batch, const ObservationSpec& spec, int sh
   if (!spec.HasPixels()) return;
   const nn::ThreadScope scope(nn::Threads());
   const int frames = std::min(int(batch.reward.size()), kSpreadFrames);
-  figures->Set(kFrameSpread, nn::MeanFrameSpread(batch.obs_frames.data(), frames,
-                                                 spec.stack * spec.FrameBytes()));
+  figures->Set(kFrameSpread,
+               nn::MeanFrameSpread(batch.obs_frames.data(), frames, spec.InputBytes()));
   figures->Set(kFrozenCameras, FrozenCameras(batch.obs_frames, spec, shift_pad));
 }
 

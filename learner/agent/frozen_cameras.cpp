@@ -43,16 +43,16 @@ bool SamePicture(const View& a, const View& b, int margin) {
 int FrozenCameras(std::span<const uint8_t> stacks, const ObservationSpec& spec, int shift_pad) {
   const int margin = 2 * shift_pad;
   if (!spec.HasPixels() || 2 * margin >= std::min(spec.height, spec.width)) return 0;
-  const int64_t frame = spec.FrameBytes(), stack = frame * spec.stack;
+  const int64_t frame = spec.FrameBytes(), input = spec.InputBytes();
   const int64_t count =
-      std::min<int64_t>(static_cast<int64_t>(stacks.size()) / stack, kComparedStacks);
+      std::min<int64_t>(static_cast<int64_t>(stacks.size()) / input, kComparedStacks);
   if (count < 2) return 0;
   const int cameras = static_cast<int>(spec.cameras.size());
   const int planes = spec.channels / cameras;
   int frozen = 0;
   for (int camera = 0; camera < cameras; ++camera) {
     const auto view = [&](int64_t i) {
-      const uint8_t* newest = stacks.data() + (i + 1) * stack - frame;
+      const uint8_t* newest = stacks.data() + i * input + (spec.stack - 1) * frame;
       return View{newest + int64_t{camera} * planes * spec.height * spec.width, planes, spec.height,
                   spec.width};
     };

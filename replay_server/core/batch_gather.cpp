@@ -42,6 +42,7 @@ BatchGather::BatchGather(const Ring& ring, const EpisodeIndex& index, const Obse
       channels_(spec.channels),
       height_(spec.height),
       width_(spec.width),
+      goal_pictures_(spec.goal_picture),
       n_step_(n_step),
       goals_(goals) {}
 
@@ -74,51 +75,63 @@ void BatchGather::GatherStack(uint64_t id, Shift shift, uint8_t* out) const {
   for (int k = stack_ - 1; k >= 0; --k) {
     const uint8_t* frame = ring_.layout().Frame(ring_.Record(id)).data();
     ShiftPlanes(frame, channels_, height_, width_, shift, out + k * frame_bytes);
-    const uint64_t prev = ring_.Slot(id).prev;
-    if (prev != 0) id = prev;
+    if (ring_.Header(id).kind == RecordKind::kStep) id = ring_.Slot(id).prev;
   }
+}
+
+void BatchGather::GatherPictures(const BatchPlan::Element& element, uint64_t last, uint8_t* obs,
+                                 uint8_t* next_obs) const {
+  GatherStack(ring_.Slot(element.id).prev, element.obs, obs);
+  GatherStack(last, element.next_obs, next_obs);
+  if (!goal_pictures_) return;
+  const uint64_t shown = element.goal != 0 ? element.goal : index_.GoalRecord(element.id);
+  const uint8_t* picture = ring_.layout().Frame(ring_.Record(shown)).data();
+  const ptrdiff_t behind = ptrdiff_t{stack_} * ring_.layout().frame_bytes();
+  ShiftPlanes(picture, channels_, height_, width_, element.obs, obs + behind);
+  ShiftPlanes(picture, channels_, height_, width_, element.next_obs, next_obs + behind);
+}
+
+void BatchGather::GatherVectors(const BatchPlan::Element& element, uint64_t last,
+                                std::span<const float> goal, size_t row,
+                                const BatchView& out) const {
+  const RecordLayout& layout = ring_.layout();
+  const auto gather = [&](uint64_t id, std::span<float> vectors, std::span<float> privileged) {
+    const auto part = [row](std::span<float> all, int size) {
+      return all.subspan(row * size_t(size), size_t(size));
+    };
+    const std::span<const float> recorded = layout.Vector(ring_.Record(id));
+    const auto seen = part(vectors, observed_.size()), known = part(privileged, privileged_.size());
+    observed_.Copy(recorded, seen);
+    if (privileged_.size() > 0) privileged_.Copy(recorded, known);
+    if (!goal.empty()) goals_->WriteGoal(goal, seen, known);
+  };
+  gather(ring_.Slot(element.id).prev, out.obs_vector, out.obs_privileged);
+  gather(last, out.next_obs_vector, out.next_obs_privileged);
 }
 
 void BatchGather::Gather(const BatchPlan& plan, const BatchView& out) const {
   const RecordLayout& layout = ring_.layout();
   const size_t batch = plan.elements.size();
-  const size_t stack_bytes =
-      static_cast<size_t>(layout.frame_bytes()) * static_cast<size_t>(stack_);
-  const size_t vector_size = static_cast<size_t>(observed_.size());
-  const size_t privileged_size = static_cast<size_t>(privileged_.size());
+  const size_t input_bytes =
+      static_cast<size_t>(layout.frame_bytes()) * size_t(stack_ + (goal_pictures_ ? 1 : 0));
   const size_t action_size = static_cast<size_t>(layout.action_size());
-  CHECK(out.obs_privileged.size() == batch * privileged_size);
-  CHECK(out.reward.size() == batch && out.obs_frames.size() == batch * stack_bytes &&
-        out.obs_vector.size() == batch * vector_size && out.action.size() == batch * action_size)
+  CHECK(out.obs_privileged.size() == batch * size_t(privileged_.size()));
+  CHECK(out.reward.size() == batch && out.obs_frames.size() == batch * input_bytes &&
+        out.obs_vector.size() == batch * size_t(observed_.size()) &&
+        out.action.size() == batch * action_size)
       << "a batch of " << out.reward.size() << " for a plan of " << batch;
   for (size_t b = 0; b < batch; ++b) {
     const BatchPlan::Element& element = plan.elements[b];
     const std::span<const float> goal = GoalOf(element);
     const Returns returns = SumRewards(element.id, goal);
     const uint8_t* first = ring_.Record(element.id);
-    const uint8_t* last = ring_.Record(returns.last);
-    const uint64_t prev = ring_.Slot(element.id).prev;
-    CHECK(RecordLayout::Header(first).kind == RecordKind::kStep && prev != 0)
+    CHECK(RecordLayout::Header(first).kind == RecordKind::kStep && ring_.Slot(element.id).prev != 0)
         << "record " << element.id;
-    if (stack_bytes > 0) {
-      GatherStack(prev, element.obs, out.obs_frames.data() + b * stack_bytes);
-      GatherStack(returns.last, element.next_obs, out.next_obs_frames.data() + b * stack_bytes);
+    if (input_bytes > 0) {
+      GatherPictures(element, returns.last, out.obs_frames.data() + b * input_bytes,
+                     out.next_obs_frames.data() + b * input_bytes);
     }
-    const auto obs = out.obs_vector.subspan(b * vector_size, vector_size);
-    const auto next_obs = out.next_obs_vector.subspan(b * vector_size, vector_size);
-    observed_.Copy(layout.Vector(ring_.Record(prev)), obs);
-    observed_.Copy(layout.Vector(last), next_obs);
-    if (privileged_size > 0) {
-      const auto part = [&](std::span<float> all) {
-        return all.subspan(b * privileged_size, privileged_size);
-      };
-      privileged_.Copy(layout.Vector(ring_.Record(prev)), part(out.obs_privileged));
-      privileged_.Copy(layout.Vector(last), part(out.next_obs_privileged));
-    }
-    if (!goal.empty()) {
-      goals_->WriteGoal(goal, obs);
-      goals_->WriteGoal(goal, next_obs);
-    }
+    GatherVectors(element, returns.last, goal, b, out);
     std::ranges::copy(layout.Action(first), out.action.data() + b * action_size);
     out.reward[b] = returns.reward;
     out.bootstrap[b] = returns.bootstrap;

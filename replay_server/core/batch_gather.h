@@ -11,8 +11,11 @@
 //   bootstrap = discount^(m-1) (1 - terminated): a time limit's end counts the next value
 //   a stack that would reach before the episode's reset repeats the reset's frame
 //
+// With goal pictures both observations end with one more frame, that of the episode's goal record,
+// shifted like the stack before it: what is apart in the two stays as far apart.
+//
 // Under another goal (goal_change.h) rewards and the desired goal of both observations are those of
-// that goal.
+// that goal, whose picture is the frame of the record that achieved it.
 //
 // K stack, C channels of a frame, H W pixels, B batch.
 #pragma once
@@ -84,11 +87,17 @@ class BatchGather {
   Returns SumRewards(uint64_t first, std::span<const float> goal) const;
   // Writes the stack of K frames that ends at record `id` to `out` (K*C, H, W).
   void GatherStack(uint64_t id, Shift shift, uint8_t* out) const;
+  // Both observations of the element whose last step is `last`: stacks and goal pictures (I, H, W).
+  void GatherPictures(const BatchPlan::Element& element, uint64_t last, uint8_t* obs,
+                      uint8_t* next_obs) const;
+  void GatherVectors(const BatchPlan::Element& element, uint64_t last, std::span<const float> goal,
+                     size_t row, const BatchView& out) const;
 
   const Ring& ring_;
   const EpisodeIndex& index_;
   const BlockPicker observed_, privileged_;
   const int stack_, channels_, height_, width_;
+  const bool goal_pictures_;
   const NStep n_step_;
   const GoalChange* const goals_;
 };

@@ -28,13 +28,20 @@ void EpisodeIndex::SetSelector(Selector* selector) {
 
 std::optional<uint64_t> EpisodeIndex::Predecessor(uint32_t actor, uint64_t session,
                                                   const RecordHeader& header) const {
-  if (header.kind == RecordKind::kReset) return 0;
+  const RecordKind first = options_.goal_pictures ? RecordKind::kGoal : RecordKind::kReset;
+  if (header.kind == first) return 0;
   const auto it = tracks_.find(header.env);
   if (it == tracks_.end()) return std::nullopt;
   const Track& track = it->second;
   const bool continues = track.open && track.actor == actor && track.session == session &&
-                         track.episode == header.episode && track.index + 1 == header.index;
+                         track.episode == header.episode && Follows(header, track);
   return continues ? std::optional(track.last_id) : std::nullopt;
+}
+
+// A reset comes after its goal, the first step after the reset.
+bool EpisodeIndex::Follows(const RecordHeader& header, const Track& last) {
+  if (header.kind == RecordKind::kReset) return last.kind == RecordKind::kGoal;
+  return last.kind != RecordKind::kGoal && last.index + 1 == header.index;
 }
 
 uint64_t EpisodeIndex::Previous(uint64_t id) const {
@@ -57,9 +64,11 @@ void EpisodeIndex::Added(uint64_t id) {
 void EpisodeIndex::Forget(uint64_t gone) {
   const size_t slot = Slot(gone);
   if (selector_ != nullptr && needed_by_[slot] > 0) {
-    // The samples that reached back to it begin with one of the steps after it.
+    // The samples that reached back to it begin with one of the steps after it: the next ones, or
+    // any of the episode that it holds the goal of.
     uint64_t id = gone;
-    for (int k = 0; k < options_.stack && next_[Slot(id)] != 0; ++k) {
+    const bool to_the_end = options_.goal_pictures;
+    for (int k = 0; (to_the_end || k < options_.stack) && next_[Slot(id)] != 0; ++k) {
       id = next_[Slot(id)];
       if (oldest_needed_[Slot(id)] == gone) selector_->Removed(id);
     }
@@ -100,12 +109,13 @@ void EpisodeIndex::MakeSampleable(uint64_t first) {
 void EpisodeIndex::Follow(uint64_t id) {
   const RecordHeader& header = ring_.Header(id);
   Track& track = tracks_[header.env];
-  if (track.open && header.kind == RecordKind::kReset) Cut(&track);
+  if (track.open && ring_.Slot(id).prev == 0) Cut(&track);
   track = {.session = ring_.Slot(id).session,
            .last_id = id,
            .actor = ring_.Slot(id).actor,
            .episode = header.episode,
            .index = header.index,
+           .kind = header.kind,
            .open = (header.flags & (kTerminated | kTruncated)) == 0};
 }
 
@@ -122,7 +132,21 @@ void EpisodeIndex::Cut(Track* track) {
   if (options_.whole_episodes && ring_.Holds(track->last_id)) CompleteEpisode(track->last_id);
 }
 
+uint64_t EpisodeIndex::FirstGoalRecord(uint64_t id) const {
+  while (ring_.Slot(id).prev != 0) {
+    id = Previous(id);
+    if (id == 0) return 0;
+  }
+  return ring_.Header(id).kind == RecordKind::kGoal ? id : 0;
+}
+
+uint64_t EpisodeIndex::GoalRecord(uint64_t id) const {
+  CHECK(options_.goal_pictures && Sampleable(id)) << "record " << id;
+  return oldest_needed_[Slot(id)];
+}
+
 uint64_t EpisodeIndex::OldestNeeded(uint64_t first) const {
+  if (options_.goal_pictures) return FirstGoalRecord(first);
   uint64_t oldest = first;
   for (int k = 0; k < options_.stack; ++k) {
     const uint64_t prev = ring_.Slot(oldest).prev;

@@ -6,6 +6,9 @@
 //   episode has ended (with `whole_episodes`), and prev(s) and its K - 1 predecessors, or what the
 //   episode has of them, are in the ring.
 //
+//   With goal pictures an episode begins with a goal record, which its reset follows, and each of
+//   its samples needs that record too: it is the oldest one then.
+//
 // An episode ends terminated, truncated, or cut: closed because its next record never came.
 //
 // The ring drops its oldest record first, so s can be sampled from the moment its last step is
@@ -31,6 +34,7 @@ struct IndexOptions {
   int stack = 1;                // K
   int n_step = 1;               // n
   bool whole_episodes = false;  // sample nothing of episodes that go on
+  bool goal_pictures = false;   // episodes begin with a goal record
 };
 
 class EpisodeIndex {
@@ -48,8 +52,9 @@ class EpisodeIndex {
     return capacity * (2 * sizeof(uint64_t) + sizeof(uint32_t));
   }
 
-  // What a record of this actor session may be stored as the successor of: 0 for a reset, the id of
-  // the environment's last stored record if the step continues that very episode, nothing else.
+  // What a record of this actor session may be stored as the successor of: 0 for an episode's first
+  // record, the id of the environment's last stored record if this one continues that very episode,
+  // nothing else.
   std::optional<uint64_t> Predecessor(uint32_t actor, uint64_t session,
                                       const RecordHeader& header) const;
   // Call after each Ring::Append, with the id it returned.
@@ -63,6 +68,8 @@ class EpisodeIndex {
   // does (yet), or no longer.
   uint64_t Next(uint64_t id) const { return next_[Slot(id)]; }
   uint64_t Previous(uint64_t id) const;
+  // With goal pictures: the goal record of the episode of a sampleable step.
+  uint64_t GoalRecord(uint64_t id) const;
   uint64_t sampleable() const { return sampleable_; }
   // How often a step became sampleable since construction.
   uint64_t became_sampleable() const { return became_sampleable_; }
@@ -78,9 +85,12 @@ class EpisodeIndex {
     uint32_t actor = 0;
     uint32_t episode = 0;
     uint32_t index = 0;
-    bool open = false;  // a next step may follow
+    RecordKind kind = RecordKind::kReset;  // of the last record
+    bool open = false;                     // a next step may follow
   };
 
+  // The record is the next of an episode that has come as far as `last`, by its kind and index.
+  static bool Follows(const RecordHeader& header, const Track& last);
   size_t Slot(uint64_t id) const { return static_cast<size_t>(id % ring_.capacity()); }
   // Makes the samples sampleable whose last step `id` is: that of n steps and, when it terminated
   // the episode, the shorter ones.
@@ -95,6 +105,8 @@ class EpisodeIndex {
   void Cut(Track* track);
   // The oldest record that the sample beginning with step `first` needs; 0 when it is gone.
   uint64_t OldestNeeded(uint64_t first) const;
+  // The first record of the episode of `id`; 0 when it is gone, or is no goal record.
+  uint64_t FirstGoalRecord(uint64_t id) const;
 
   const Ring& ring_;
   const IndexOptions options_;

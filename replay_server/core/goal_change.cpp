@@ -7,14 +7,19 @@
 
 namespace shoal::replay {
 
-GoalChange::GoalChange(const ObservationSpec& spec, tasks::Task task)
-    : layout_(spec), task_(std::move(task)) {
+GoalChange::GoalChange(const ObservationSpec& spec, tasks::Task task,
+                       std::span<const std::string> privileged)
+    : layout_(spec), task_(std::move(task)), desired_(spec.Observed(task_.desired_goal().name)) {
   const auto achieved = spec.Recorded(task_.achieved_goal().name);
-  const auto desired = spec.Observed(task_.desired_goal().name);
-  CHECK(task_.goal_size() > 0 && achieved && desired) << spec.Summary();
-  CHECK(achieved->size == task_.goal_size() && desired->size == task_.goal_size());
+  CHECK(task_.goal_size() > 0 && achieved && (desired_ || spec.goal_picture)) << spec.Summary();
+  CHECK(achieved->size == task_.goal_size() && (!desired_ || desired_->size == task_.goal_size()));
   achieved_ = *achieved;
-  desired_ = *desired;
+  size_t first = 0;
+  for (const BlockSpec& block : spec.blocks) {  // privileged blocks lie in this order
+    if (std::ranges::find(privileged, block.name) == privileged.end()) continue;
+    if (block.name == task_.desired_goal().name) privileged_first_ = first;
+    first += size_t(block.size);
+  }
 }
 
 std::span<const float> GoalChange::Achieved(const uint8_t* record) const {
@@ -25,8 +30,12 @@ float GoalChange::Reward(const uint8_t* record, std::span<const float> goal) con
   return task_.Reward(task_.Distance(Achieved(record), goal));
 }
 
-void GoalChange::WriteGoal(std::span<const float> goal, std::span<float> observed) const {
-  std::ranges::copy(goal, observed.begin() + desired_.first);
+void GoalChange::WriteGoal(std::span<const float> goal, std::span<float> observed,
+                           std::span<float> privileged) const {
+  if (desired_) std::ranges::copy(goal, observed.begin() + desired_->first);
+  if (privileged_first_ && !privileged.empty()) {
+    std::ranges::copy(goal, privileged.begin() + std::ptrdiff_t(*privileged_first_));
+  }
 }
 
 }  // namespace shoal::replay

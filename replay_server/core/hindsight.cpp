@@ -58,10 +58,10 @@ void CheckHindsight(const RunConfig& run) {
         "be computed for another goal; expected action_repeat = 1",
         kind, repeat);
   }
-  if (!run.spec.Observed(task.desired_goal().name)) {
+  if (!run.spec.Observed(task.desired_goal().name) && !run.spec.goal_picture) {
     throw UsageError(
         "replay.hindsight = {} with observation.goal_mode = {}: the policy would not be told the "
-        "goal; expected desired or both",
+        "goal; expected desired, both or image",
         kind, config.observation.goal_mode);
   }
   const int64_t steps = task.EnvStepsPerEpisode(repeat);
@@ -73,7 +73,8 @@ void CheckHindsight(const RunConfig& run) {
   // Ended episodes enough, and two of every environment: one that just ended, one under way.
   const int64_t envs = int64_t{config.envs_per_actor} * std::max(1, config.actors);
   const int64_t ended = (config.replay.min_size + usable - 1) / usable;
-  const int64_t least = (ended + 2 * envs) * (steps + 1);
+  const int64_t records = steps + (run.spec.goal_picture ? 2 : 1);  // of an episode
+  const int64_t least = (ended + 2 * envs) * records;
   if (config.replay.capacity < least) {
     throw UsageError(
         "replay.hindsight = {}: replay.capacity = {} does not hold replay.min_size = {} "

@@ -47,16 +47,19 @@ BatchPlan WithoutShift(BatchPlan plan) {
 }
 
 // The server has not overwritten any record that the plan's elements are made of: the stack before
-// the first step, that step and those after it. The oldest of these goes first, but any may be
-// torn.
+// the first step, that step and those after it, and what shows the goal. The oldest of these goes
+// first, but any may be torn.
 bool StillThere(const Ring& ring, const EpisodeIndex& index, const BatchPlan& plan,
                 const RunConfig& run) {
+  const auto there = [&ring](uint64_t id) { return ring.Holds(id) && ring.Intact(id); };
   for (const BatchPlan::Element& element : plan.elements) {
     uint64_t id = element.id;
+    if (!there(id) || (element.goal != 0 && !there(element.goal))) return false;
+    if (run.spec.goal_picture && !there(index.GoalRecord(id))) return false;
     for (int k = 1; k < run.config.replay.n_step && index.Next(id) != 0; ++k) id = index.Next(id);
     const int records = run.config.replay.n_step + run.spec.stack;
     for (int k = 0; k < records && id != 0; ++k) {
-      if (!ring.Holds(id) || !ring.Intact(id)) return false;
+      if (!there(id)) return false;
       id = ring.Slot(id).prev;
     }
   }
@@ -78,27 +81,32 @@ class Painter {
   Painter(const ObservationSpec& spec, int batch, Peek* peek) : spec_(spec), peek_(*peek) {
     cameras_ = std::max(1, static_cast<int>(spec.cameras.size()));
     planes_ = spec.channels / cameras_;
+    rows_ = spec.goal_picture ? 5 : 4;
     peek_.width = batch * (spec.width + kBorder) + kBorder;
-    peek_.height = cameras_ * kRows * (spec.height + kBorder) + kBorder;
+    peek_.height = cameras_ * rows_ * (spec.height + kBorder) + kBorder;
     peek_.rgb.assign(static_cast<size_t>(peek_.width) * peek_.height * 3, 64);
   }
 
-  static constexpr int kRows = 4;  // per camera
+  // `inputs` (B, I, H, W): their newest frames become row `row` of every camera.
+  void PaintRow(std::span<const uint8_t> inputs, int row) {
+    PaintFrames(inputs, spec_.stack - 1, row);
+  }
+  // Their goal pictures become the last row.
+  void PaintGoals(std::span<const uint8_t> inputs) { PaintFrames(inputs, spec_.stack, rows_ - 1); }
 
-  // `frames` (B, K*C, H, W): its newest frames become row `row` of every camera.
-  void PaintRow(std::span<const uint8_t> frames, int row) {
-    const size_t stack_bytes = static_cast<size_t>(spec_.FrameBytes()) * spec_.stack;
-    const size_t newest = stack_bytes - static_cast<size_t>(spec_.FrameBytes());
-    for (size_t b = 0; b < frames.size() / stack_bytes; ++b) {
+ private:
+  // Frame `k` of each input.
+  void PaintFrames(std::span<const uint8_t> inputs, int k, int row) {
+    const auto input_bytes = static_cast<size_t>(spec_.InputBytes());
+    const size_t before = static_cast<size_t>(k) * static_cast<size_t>(spec_.FrameBytes());
+    for (size_t b = 0; b < inputs.size() / input_bytes; ++b) {
       for (int camera = 0; camera < cameras_; ++camera) {
-        const uint8_t* image = frames.data() + b * stack_bytes + newest +
+        const uint8_t* image = inputs.data() + b * input_bytes + before +
                                static_cast<size_t>(camera * planes_ * spec_.height * spec_.width);
-        PaintImage(image, static_cast<int>(b), camera * kRows + row);
+        PaintImage(image, static_cast<int>(b), camera * rows_ + row);
       }
     }
   }
-
- private:
   // `image`: planes_ planes (H, W); grey ones are painted as red = green = blue.
   void PaintImage(const uint8_t* image, int column, int row) {
     const int left = kBorder + column * (spec_.width + kBorder);
@@ -115,7 +123,7 @@ class Painter {
 
   const ObservationSpec& spec_;
   Peek& peek_;
-  int cameras_, planes_;
+  int cameras_, planes_, rows_;  // rows of a camera
 };
 
 // Elements drawn from a ring, and what they are gathered by.
@@ -178,6 +186,7 @@ Peek Paint(const RunConfig& run, int batch, const Draw& draw) {
   painter.PaintRow(shifted.View().obs_frames, 1);
   painter.PaintRow(plain.View().next_obs_frames, 2);
   painter.PaintRow(shifted.View().next_obs_frames, 3);
+  if (run.spec.goal_picture) painter.PaintGoals(plain.View().obs_frames);
   return peek;
 }
 

@@ -13,8 +13,9 @@ struct Peek {
   uint64_t records = 0;     // in the ring now
   uint64_t sampleable = 0;  // steps of these that can be sampled
   // Picture: (height, width, 3) uint8 RGB, row 0 = top. One column per element. Four rows per
-  // camera: obs, obs shifted, next_obs, next_obs shifted, each the newest frame of its stack.
-  // Empty for a spec without pixels.
+  // camera: obs, obs shifted, next_obs, next_obs shifted, each the newest frame of its stack; a
+  // fifth with goal pictures: the goal that the element has, not shifted. Empty for a spec without
+  // pixels.
   int width = 0, height = 0;
   std::vector<uint8_t> rgb;
   std::vector<std::string> captions;  // per element: record id, env, episode, index, reward, ends
@@ -25,7 +26,7 @@ struct Peek {
 Peek PeekBatch(const std::filesystem::path& folder, int batch, uint64_t seed);
 
 struct PeekedObservations {
-  std::vector<uint8_t> frames;  // (batch, K*C, H, W), not shifted; empty without pixels
+  std::vector<uint8_t> frames;  // (batch, I, H, W), not shifted; empty without pixels
   std::vector<float> vectors;   // (batch, V)
 };
 

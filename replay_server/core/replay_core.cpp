@@ -68,6 +68,22 @@ PlanOptions PlanOptionsOf(const Config& config) {
 
 }  // namespace
 
+void CheckSampling(const RunConfig& run) {
+  const Config& config = run.config;
+  // Of each environment the newest n steps are no sample yet, and the oldest stack is of one only.
+  const int64_t envs = int64_t{config.envs_per_actor} * std::max(1, config.actors);
+  const int64_t least =
+      config.replay.min_size + envs * (config.replay.n_step + int64_t{run.spec.stack});
+  if (config.replay.capacity < least) {
+    throw UsageError(
+        "replay.capacity = {} does not hold replay.min_size = {} samples: with {} environments, "
+        "replay.n_step = {} and frame stacks of {} expected at least {}",
+        config.replay.capacity, config.replay.min_size, envs, config.replay.n_step, run.spec.stack,
+        least);
+  }
+  OptionsOfLimiter(run);
+}
+
 NStep NStepOf(const Config& config) {
   return {.steps = config.replay.n_step, .discount = config.learner.discount};
 }

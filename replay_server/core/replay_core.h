@@ -42,6 +42,10 @@ inline constexpr char kRingFile[] = "replay.ring";
 // How far apart the two observations of a sample are, by the configuration.
 NStep NStepOf(const Config& config);
 
+// Throws Error (usage) where nothing could ever be drawn, or actors and learner could wait for each
+// other: a ring too small for min_size samples of n steps, a band too narrow for the limiter.
+void CheckSampling(const RunConfig& run);
+
 // The answer to one request, without its bytes.
 struct DrawnBatch {
   SampleRequest request;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "common/config/privileged_blocks.h"
 #include "replay_server/core/hindsight.h"
 #include "replay_server/core/uniform_selector.h"
 
@@ -25,14 +26,16 @@ ReplayPolicies MakePolicies(const RunConfig& run, const Ring& ring, const Episod
   if (!Hindsight(run.config)) return policies;
   policies.relabeller = std::make_unique<HindsightRelabeller>(ring, index, GoalOf(config.hindsight),
                                                               config.hindsight_goals);
-  policies.goals = std::make_unique<GoalChange>(run.spec, TaskOf(run));
+  policies.goals = std::make_unique<GoalChange>(
+      run.spec, TaskOf(run), PrivilegedBlocksOf(run.config.learner, run.spec).all);
   return policies;
 }
 
 IndexOptions IndexOptionsOf(const RunConfig& run) {
   return {.stack = run.spec.stack,
           .n_step = run.config.replay.n_step,
-          .whole_episodes = Hindsight(run.config)};
+          .whole_episodes = Hindsight(run.config),
+          .goal_pictures = run.spec.goal_picture};
 }
 
 uint64_t WaitingSteps(const RunConfig& run) {

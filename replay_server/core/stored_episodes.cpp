@@ -25,7 +25,7 @@ StoredEpisodes FindEpisodes(const Ring& ring) {
     if (const auto before = open.extract(slot.prev); !before.empty()) {
       piece = std::move(before.mapped());
     }
-    piece.ids.push_back(id);
+    if (ring.Header(id).kind != RecordKind::kGoal) piece.ids.push_back(id);
     const bool ended = (ring.Header(id).flags & (kTerminated | kTruncated)) != 0;
     if (!ended) {
       open.emplace(id, std::move(piece));

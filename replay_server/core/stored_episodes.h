@@ -11,7 +11,7 @@
 namespace shoal::replay {
 
 struct StoredEpisodes {
-  // Record ids, reset first; the episode that ended first comes first.
+  // Record ids, reset first (goal records are left out); the episode that ended first comes first.
   std::vector<std::vector<uint64_t>> whole;
   uint64_t overwritten = 0;  // their first records are gone; at most one per environment, as a rule
   uint64_t unended = 0;      // go on, or were cut: neither terminated nor truncated

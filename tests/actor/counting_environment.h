@@ -13,12 +13,15 @@ namespace shoal::actor {
 
 // Frames (2, 4, 4) of bytes 10 * (key % 10) + step; vectors {key % 1000, step}. A step earns the
 // first component of its action and succeeds where that is above 0.5; the distance is 100 - step.
-// Episodes end after `length` steps: terminated, or truncated at an odd key.
+// Episodes end after `length` steps: terminated, or truncated at an odd key. With `goal_picture`
+// that is of bytes 200 + key % 10.
 class CountingEnvironment final : public worlds::Environment {
  public:
   static constexpr int kLength = 3;
 
-  explicit CountingEnvironment(int length = kLength, int stack = 2) : length_(length) {
+  explicit CountingEnvironment(int length = kLength, int stack = 2, bool goal_picture = false)
+      : length_(length) {
+    spec_.goal_picture = goal_picture;
     spec_.task = "FetchReachDense";
     spec_.channels = 2;
     spec_.height = spec_.width = 4;
@@ -33,6 +36,9 @@ class CountingEnvironment final : public worlds::Environment {
     key_ = stream_key;
     step_ = 0;
     masses_ = {{"leg", static_cast<double>(key_ % 1000)}};
+    if (spec_.goal_picture) {
+      goal_picture_.assign(size_t(spec_.FrameBytes()), static_cast<uint8_t>(200 + key_ % 10));
+    }
     Observe(out);
     return 100;
   }
@@ -51,6 +57,7 @@ class CountingEnvironment final : public worlds::Environment {
 
   double render_seconds() const override { return 0; }
   std::span<const worlds::DrawnMass> drawn_masses() const override { return masses_; }
+  std::span<const uint8_t> goal_picture() const override { return goal_picture_; }
 
  private:
   void Observe(worlds::ObservationOut out) const {
@@ -64,6 +71,7 @@ class CountingEnvironment final : public worlds::Environment {
   uint64_t key_ = 0;
   int step_ = 0;
   std::vector<worlds::DrawnMass> masses_;
+  std::vector<uint8_t> goal_picture_;
 };
 
 }  // namespace shoal::actor

@@ -7,6 +7,7 @@
 #include "common/base/command_line.h"
 #include "common/base/error.h"
 #include "common/base/main_guard.h"
+#include "common/base/stop.h"
 #include "common/nn/precision.h"
 #include "launch/record/machine.h"
 #include "learner/openmp_environment.h"
@@ -29,6 +30,7 @@ int Run(int argc, char** argv) {
   shoal::nn::SetThreads(threads);
 
   shoal::learner::EnsurePassiveOpenMp(threads, argv);  // as shoal-learner does: no spinning threads
+  shoal::InstallStopSignals();  // an interrupted one takes its processes and files with it
 
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   bool whole = true;
@@ -39,11 +41,13 @@ int Run(int argc, char** argv) {
         shoal::bench::TransportPairings, shoal::bench::WorldPairings}) {
     for (const shoal::bench::Pairing& pairing : make()) {
       if (pairing.stage.find(only) == std::string::npos) continue;
+      std::cerr << fmt::format("measuring {} ...\n", pairing.stage);
       try {
         const auto row = shoal::bench::TimePair(pairing, repetitions, seconds);
         rows.push_back(ToJson(row));
         std::cerr << shoal::bench::LineOf(row) << "\n";
       } catch (const shoal::Error& e) {  // no room for a large ring: the other rows still count
+        if (shoal::StopRequested()) throw;
         std::cerr << fmt::format("{}: not measured: {}\n", pairing.stage, e.what());
         whole = false;
       }

@@ -9,8 +9,8 @@
 
 #include "common/base/build_info.h"
 #include "common/base/command_line.h"
-#include "common/base/error.h"
 #include "common/base/main_guard.h"
+#include "common/base/stop.h"
 #include "launch/processes/process_plan.h"
 #include "launch/processes/scratch_folder.h"
 #include "launch/record/machine.h"
@@ -103,6 +103,7 @@ int Run(int argc, char** argv) {
   app.add_flag("--fake", fake, "actors that cost nothing but time alone")->excludes(only_real);
   if (const auto exit_code = shoal::ParseCommandLine(&app, argc, argv)) return *exit_code;
   options.programs = shoal::launch::ProgramFolder();
+  shoal::InstallStopSignals();  // an interrupted one takes its processes and files with it
 
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
   if (!real) MeasureCounts(counts, options, &rows);

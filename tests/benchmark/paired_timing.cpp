@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/clock.h"
+#include "common/base/error.h"
+#include "common/base/stop.h"
 
 namespace shoal::bench {
 namespace {
@@ -14,6 +16,7 @@ double CallsPerSecond(const std::function<void()>& act, double seconds) {
   const SteadyTime start = Now();
   int calls = 0;
   do {
+    if (StopRequested()) throw RuntimeError("interrupted");
     act();
     ++calls;
   } while (SecondsSince(start) < seconds);

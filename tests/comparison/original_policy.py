@@ -47,6 +47,8 @@ class Policy:
     def __init__(self, path, description, env):
         self.session = onnxruntime.InferenceSession(path, providers=["CPUExecutionProvider"])
         metadata = self.session.get_modelmeta().custom_metadata_map
+        if metadata.get("goal_picture") == "1":
+            raise SystemExit("the policy sees a goal picture, which the original environment does not draw")
         self.stack = int(metadata["stack"])
         self.shapes = {port.name: port.shape[1:] for port in self.session.get_inputs()}
         sizes = [block["size"] for block in description["state_blocks"]]

@@ -44,6 +44,16 @@ INSTANTIATE_TEST_SUITE_P(
                  "learner.batch=64", "--set", "replay.copies=2", "--set", "learner.threads=3"},
                 2,
                 {"learner.threads = 3", "64 / 2 = 32", "2 or 4"}},
+        Mistake{"MoreEnvironmentsThanAWindowHolds",
+                TrainWith("envs_per_actor=49"),
+                2,
+                {"envs_per_actor 49", "replay.window_chunks"}},
+        Mistake{"ABandInWhichBothWait", TrainWith("replay.band=0.001"), 2, {"replay.band 0.001"}},
+        Mistake{"ARingWithoutRoomForSamples",
+                {"shoal", "train", "--preset", "fetch-reach-state", "--dry-run", "--set",
+                 "replay.capacity=64", "--set", "replay.min_size=32", "--set", "replay.n_step=20"},
+                2,
+                {"replay.capacity = 64", "replay.n_step = 20"}},
         Mistake{"UnknownTask", TrainWith("task=FetchFly"), 2, {"FetchFly", "FetchReachDense"}},
         Mistake{"UnknownCamera",
                 {"shoal", "train", "--preset", "fetch-reach-drq", "--dry-run", "--set",
@@ -189,6 +199,16 @@ INSTANTIATE_TEST_SUITE_P(
                 {"127.0.0.1:32160", "did not answer"}},
         Mistake{"NoInterface", TrainWith("transport.interface=\"eth77\""), 1, {"eth77"}}),
     [](const auto& test) { return test.param.name; });
+
+TEST(BadLimits, FewerOpenFilesThanARunNeedsAreNamed) {
+  std::vector<std::string> command = TrainWith("seed=1");
+  command[0] = ProgramPath("shoal");
+  command.insert(command.begin(), {"/usr/bin/prlimit", "--nofile=12"});
+  const ProgramResult result = RunCommand(command, std::chrono::seconds(30));
+  EXPECT_EQ(ExitCode(result), 1) << result.err;
+  EXPECT_NE(result.err.find("12 files (ulimit -n)"), std::string::npos) << result.err;
+  EXPECT_EQ(std::ranges::count(result.err, '\n'), 1) << result.err;
+}
 
 // As folders are that were made before the evaluation actor had a key of its own.
 TEST(BadCredentials, AMissingKeyOfAnyProcessIsNamedBeforeOneIsStarted) {

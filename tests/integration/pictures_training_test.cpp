@@ -22,6 +22,7 @@ const Kind kKinds[] = {
     {"rgb", "none", false, false, 1, R"(["front"])", 3, 84, 84, 1, 1},
     {"grey_stack_of_four", "desired", true, true, 4, R"(["front","side"])", 2, 64, 64, 2, 1},
     {"three_cameras", "both", false, false, 2, R"(["front","side","close"])", 9, 100, 100, 1, 3},
+    {"image_goals", "image", true, false, 2, R"(["front","side"])", 6, 48, 48, 1, 1},
     {"wide", "both", true, true, 3, R"(["gymnasium"])", 1, 64, 100, 2, 5},
 };
 
@@ -51,6 +52,7 @@ TEST_P(PicturesTraining, UpdatesAndEvaluates) {
   EXPECT_EQ(spec.at("height"), kind.height);
   EXPECT_EQ(spec.at("width"), kind.width);
   EXPECT_EQ(spec.at("stack"), kind.stack);
+  EXPECT_EQ(spec.contains("goal_picture"), std::string(kind.goal_mode) == "image");
   EXPECT_EQ(run.Json("eval/final.json").at("aggregate").at("episodes"), 2);
 }
 

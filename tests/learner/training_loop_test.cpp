@@ -77,6 +77,7 @@ class TrainingLoopTest : public testing::Test {
                        .checkpoints = checkpoints,
                        .pending_evaluations = pending_,
                        .control = control_,
+                       .update_page = update_page_,
                        .drain_idle = std::chrono::milliseconds(20)},
                       restored);
     const TrainingLoop::End end = loop.Run();
@@ -114,10 +115,18 @@ class TrainingLoopTest : public testing::Test {
   KeptMessages outlet_;
   PendingEvaluations pending_;
   ControlState control_{Now()};
+  UpdatePage* update_page_ = nullptr;
   uint64_t epoch_ = 0;
   uint64_t given_ = 0, updates_ = 0;
   bool slow_ = false;
 };
+
+TEST_F(TrainingLoopTest, EveryUpdateIsCountedForWhoeverComesAfterAKill) {
+  UpdatePage page(folder_.path(), 0);
+  update_page_ = &page;
+  Train(7);
+  EXPECT_EQ(UpdatePage(folder_.path(), 5).lost(), 2u) << "had its newest checkpoint been the fifth";
+}
 
 TEST_F(TrainingLoopTest, SendsWeightsAtTheFirstUpdateAndEveryPeriod) {
   EXPECT_EQ(Train(12), TrainingLoop::End::kStopped);

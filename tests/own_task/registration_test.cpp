@@ -75,6 +75,22 @@ TEST(OwnTask, IsSteppedRenderedAndJudged) {
   EXPECT_NE(frame, before);
 }
 
+TEST(OwnTask, ImageGoalsAreRefusedWhereTheWorldCannotShowThem) {
+  Config config;
+  config.task = Example().name();
+  config.observation.cameras = {"top"};
+  config.observation.goal_mode = "image";
+  const auto render = MakeRenderContext(config.observation);
+  try {
+    MakeEnvironment(config, render);
+    FAIL() << "no error";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.exit_code(), 2);
+    EXPECT_NE(std::string(error.what()).find("cannot show its goal reached"), std::string::npos)
+        << error.what();
+  }
+}
+
 // The point starts in the middle of every episode, so the target alone tells the pictures apart.
 TEST(OwnTask, TheTargetIsDrawnWhereTheGoalIs) {
   Config config;

@@ -2,6 +2,7 @@
 
 SHOAL_CHECKPOINTS     checkpoints that random-checkpoints has written
 SHOAL_POLICY_LIBRARY  libshoal-policy.so, whose actions are compared
+SHOAL_TASK_LIBRARY    point_reach.so, whose tasks are played: docs/examples/point_reach
 """
 
 import ctypes
@@ -9,6 +10,8 @@ import json
 import os
 import pathlib
 import shutil
+import subprocess
+import sys
 
 import gymnasium
 import numpy as np
@@ -256,6 +259,7 @@ def test_render_shows_cameras_side_by_side():
 def test_what_make_does_not_know_is_refused():
     line = refusal(shoal_rl.make, "FetchRech")
     assert "'FetchRech'" in line and all(task in line for task in shoal_rl.tasks())
+    assert line.endswith("nearest is 'FetchReach'")
     assert "'camras'" in refusal(shoal_rl.make, "FetchReach", camras=["front"])
     assert "front, side" in refusal(shoal_rl.make, "FetchReach", cameras=["top"])
     assert "width" in refusal(shoal_rl.make, "FetchReach", width=-1)
@@ -284,6 +288,56 @@ def test_environments_side_by_side_are_those_alone():
         observation, reward, *_ = alone.step(actions[n])
         assert np.array_equal(observation["pixels"], stepped["pixels"][n])
         assert reward == rewards[n]
+
+
+# --- tasks of one's own
+
+# A fresh process for each: a library stays loaded.
+PLAY_POINT = """
+import sys, pathlib, numpy, shoal_rl
+from gymnasium.utils.env_checker import check_env
+path = pathlib.Path(sys.argv[1])
+assert "PointReachDense" not in shoal_rl.tasks()
+env = shoal_rl.make("PointReachDense", task_library=path, goal_mode="both")
+assert shoal_rl.tasks()[-1] == "PointReachDense" and env.cameras == ["top"]
+check_env(env)
+observation, info = env.reset(seed=1)
+push = observation["desired_goal"] - observation["achieved_goal"]
+stepped, reward, *_ = env.step(numpy.sign(push).astype(numpy.float32))
+distance = numpy.linalg.norm(stepped["desired_goal"] - stepped["achieved_goal"])
+assert distance < info["distance"] and abs(reward + distance) < 1e-6
+assert stepped["pixels"].std() > 1
+shoal_rl.make("PointReachDense", task_library=str(path), pixels=False).reset(seed=1)
+envs = shoal_rl.make_vec("PointReachDense", 2, task_library=path, pixels=False)
+envs.reset(seed=1)
+envs.close()
+try:
+    shoal_rl.make("PointRech", task_library=path)
+except shoal_rl.Error as error:
+    print(error)
+"""
+
+
+def in_fresh_python(program, *arguments):
+    done = subprocess.run(
+        [sys.executable, "-W", "ignore", "-c", program, *arguments], capture_output=True, text=True
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def test_a_task_library_brings_its_tasks():
+    line = in_fresh_python(PLAY_POINT, os.environ["SHOAL_TASK_LIBRARY"])
+    assert line.startswith("unknown task 'PointRech'") and "PointReachDense" in line
+
+
+def test_task_libraries_that_do_not_load_are_refused(tmp_path):
+    line = refusal(shoal_rl.make, "PointReachDense", task_library=tmp_path / "none.so")
+    assert "task_library: cannot load" in line and "none_python.so" in line
+    (tmp_path / "text_python.so").write_text("no library")
+    line = refusal(shoal_rl.make, "PointReachDense", task_library=tmp_path / "text.so")
+    assert "text_python.so" in line
+    assert "task_library" in refusal(shoal_rl.make, "FetchReach", task_library=3)
 
 
 # --- runs

@@ -31,22 +31,29 @@ struct Oracle {
       Cut(actor, session, h.env);
       return void(++counts->rejected);
     }
+    const bool begins = h.kind == (goal_pictures ? RecordKind::kGoal : RecordKind::kReset);
     uint64_t prev = 0;
-    for (uint64_t id = all.size(); id > 0 && prev == 0 && h.index > 0; --id) {
+    for (uint64_t id = all.size(); id > 0 && prev == 0 && !begins; --id) {
       const Stored& s = all[id - 1];
       const bool same = s.actor == actor && s.session == session && s.header().env == h.env &&
-                        s.header().episode == h.episode && s.header().index + 1 == h.index;
+                        s.header().episode == h.episode && Precedes(s.header(), h);
       if (same) prev = id;
     }
-    if (h.index > 0 && prev == 0) {
+    if (!begins && prev == 0) {
       Cut(actor, session, h.env);
       return void(++counts->after_gap);
     }
-    if (h.index == 0 && newest.contains(h.env)) ended.insert(newest[h.env]);
+    if (begins && newest.contains(h.env)) ended.insert(newest[h.env]);
     all.push_back({actor, session, prev, bytes});
     newest[h.env] = all.size();
     if ((h.flags & (kTerminated | kTruncated)) != 0) ended.insert(all.size());
     ++counts->stored;
+  }
+
+  // Goal, reset, steps by their index.
+  static bool Precedes(const RecordHeader& one, const RecordHeader& other) {
+    if (other.kind == RecordKind::kReset) return one.kind == RecordKind::kGoal;
+    return one.kind != RecordKind::kGoal && one.index + 1 == other.index;
   }
 
   // The environment's episode, if it is of this session, ends with its newest record.
@@ -74,14 +81,14 @@ struct Oracle {
     for (int k = 0; k < stack; ++k) {
       if (!Holds(id)) return std::nullopt;
       ids.push_back(id);
-      if (all[id - 1].prev != 0) id = all[id - 1].prev;
+      if (all[id - 1].header().kind == RecordKind::kStep) id = all[id - 1].prev;
     }
     return ids;
   }
   // The steps of the sample that begins with `id`, oldest first: n_step of them, or those up to a
   // termination; nothing when `id` is gone or no step, or when the episode has fewer (yet).
   std::optional<std::vector<uint64_t>> Steps(uint64_t id) const {
-    if (!Holds(id) || all[id - 1].prev == 0) return std::nullopt;
+    if (!Holds(id) || all[id - 1].header().kind != RecordKind::kStep) return std::nullopt;
     std::vector<uint64_t> ids{id};
     for (uint64_t later = id + 1; later <= all.size() && !Whole(ids); ++later) {
       if (all[later - 1].prev == ids.back()) ids.push_back(later);
@@ -94,6 +101,7 @@ struct Oracle {
   }
   bool Sampleable(uint64_t id) const {
     if (!Holds(id)) return false;
+    if (goal_pictures && !Holds(Episode(id).front())) return false;
     if (whole_episodes && !ended.contains(Episode(id).back())) return false;
     return Steps(id) && Stack(all[id - 1].prev).has_value();
   }
@@ -102,6 +110,7 @@ struct Oracle {
   int stack;
   int n_step = 1;
   bool whole_episodes = false;
+  bool goal_pictures = false;             // each episode's first record is its goal
   std::vector<Stored> all{};              // id = position + 1
   std::map<uint32_t, uint64_t> newest{};  // by env
   std::set<uint64_t> ended{};             // newest records of episodes that have ended

@@ -30,6 +30,13 @@ inline ObservationSpec TinySpec(int stack, int height = 3, int width = 5) {
   return spec;
 }
 
+// The policy sees a picture of the goal in place of its numbers.
+inline ObservationSpec WithGoalPicture(ObservationSpec spec) {
+  spec.goal_picture = true;
+  for (BlockSpec& block : spec.blocks) block.observed &= block.name != "desired_goal";
+  return spec;
+}
+
 inline RunConfig TinyRun(int stack, int64_t capacity) {
   RunConfig run;
   run.spec = TinySpec(stack);
@@ -71,8 +78,21 @@ inline std::vector<uint8_t> MakeRecord(const ObservationSpec& spec, uint32_t act
   return record;
 }
 
+// The goal record of an episode; its pixels are nobody else's.
+inline std::vector<uint8_t> MakeGoalRecord(const ObservationSpec& spec, uint32_t actor,
+                                           uint32_t env, uint32_t episode, uint64_t sequence) {
+  constexpr uint32_t kNoStep = 1'000'000;
+  std::vector<uint8_t> record = MakeRecord(spec, actor, env, episode, 0, sequence);
+  const std::vector<uint8_t> other = MakeRecord(spec, actor, env, episode, kNoStep, sequence);
+  const RecordLayout layout(spec);
+  std::ranges::copy(layout.Frame(other.data()), layout.Frame(record.data()).begin());
+  RecordLayout::Header(record.data()).kind = RecordKind::kGoal;
+  return record;
+}
+
 // What an actor session publishes: `envs` environments step in turn, episodes of random length end
-// terminated or truncated. Sequences run from 1; the same arguments give the same records.
+// terminated or truncated, and begin with a goal record where the spec has a goal picture.
+// Sequences run from 1; the same arguments give the same records.
 class RecordScript {
  public:
   RecordScript(const ObservationSpec& spec, uint32_t actor, uint64_t session, uint32_t envs = 2,
@@ -120,7 +140,8 @@ class RecordScript {
     const uint64_t sequence = records_.size() + 1;
     const uint32_t env = actor_ * envs_ + static_cast<uint32_t>(random_.Below(envs_));
     Where& where = where_[env];
-    if (where.ended) where = {.episode = where.episode + 1, .index = 0, .ended = false};
+    const bool begins = where.ended;
+    if (begins) where = {.episode = where.episode + 1, .index = 0, .ended = false};
     uint8_t flags = 0;
     if (where.index > 0 && random_.Below(static_cast<uint64_t>(mean_length_)) == 0) {
       flags = static_cast<uint8_t>(1 + random_.Below(3));
@@ -128,6 +149,10 @@ class RecordScript {
     }
     // Session in the episode number: episodes are never used again within a run.
     const uint32_t episode = static_cast<uint32_t>(session_ * 1000) + where.episode;
+    if (begins && spec_.goal_picture) {
+      records_.push_back(MakeGoalRecord(spec_, actor_, env, episode, sequence));
+      return;  // the reset is the environment's next
+    }
     records_.push_back(MakeRecord(spec_, actor_, env, episode, where.index, sequence, flags));
     ++where.index;
   }

@@ -117,6 +117,7 @@ nlohmann::ordered_json SoakFaults(const SoakOptions& options, int faults) {
                       .programs = options.programs,
                       .actors = options.actors,
                       .seed = static_cast<int64_t>(options.seed),
+                      .preset = options.preset,
                       .keys = {}});
     FaultPlan plan(options.seed, run.ProcessNames());
     for (int i = 1; i <= faults; ++i) {
@@ -138,6 +139,7 @@ nlohmann::ordered_json SoakFaults(const SoakOptions& options, int faults) {
   nlohmann::ordered_json result{{"schema", "shoal-soak-1"},
                                 {"faults", faults},
                                 {"seed", options.seed},
+                                {"preset", options.preset},
                                 {"seconds", meta.at("wall_seconds")},
                                 {"env_steps", meta.at("env_steps")},
                                 {"updates", meta.at("updates")},

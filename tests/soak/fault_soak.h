@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
+#include <string>
 
 namespace shoal::soak {
 
@@ -12,6 +13,7 @@ struct SoakOptions {
   std::filesystem::path programs;  // where shoal is
   int actors = 2;
   uint64_t seed = 1;
+  std::string preset = "fetch-reach-state";
 };
 
 // Strikes `faults` times, prints a line for each, stops the run and checks what it left. Throws

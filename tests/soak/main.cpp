@@ -1,18 +1,23 @@
 // shoal-soak: strikes a training run's processes at random moments and checks that nothing is lost
 // and nothing is left; or leaves the run alone and checks that nothing grows.
 #include <sys/prctl.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <nlohmann/json.hpp>
 
 #include "common/base/command_line.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/main_guard.h"
+#include "common/base/stop.h"
 #include "launch/processes/process_plan.h"
 #include "tests/soak/fault_soak.h"
 #include "tests/soak/run_under_test.h"
 #include "tests/soak/steady_soak.h"
+#include "tests/support/processes.h"
 
 namespace {
 
@@ -27,6 +32,14 @@ std::filesystem::path FreshFolder() {
   std::string name = (std::filesystem::temp_directory_path() / "shoal-soak-XXXXXX").string();
   if (mkdtemp(name.data()) == nullptr) throw shoal::RuntimeError("cannot create '{}'", name);
   return name;
+}
+
+// An interrupted soak: its run's processes, which this one has adopted, and its files go away.
+void LeaveNothing(const std::filesystem::path& folder) {
+  for (const pid_t pid : shoal::ChildrenOf(getpid())) kill(pid, SIGKILL);
+  while (waitpid(-1, nullptr, 0) > 0) {
+  }
+  std::filesystem::remove_all(folder);
 }
 
 // A steady soak lists what grows instead of stopping at the first figure.
@@ -53,10 +66,13 @@ int Run(int argc, char** argv) {
   app.add_option("--actors", options.soak.actors, "actor processes")
       ->check(CLI::PositiveNumber)
       ->capture_default_str();
+  app.add_option("--preset", options.soak.preset, "of the run, e.g. fetch-reach-her")
+      ->capture_default_str();
   app.add_option("--json", options.json, "file for the result");
   if (const auto exit_code = shoal::ParseCommandLine(&app, argc, argv)) return *exit_code;
   prctl(PR_SET_CHILD_SUBREAPER, 1);  // what a run leaves behind becomes a child of ours
   options.soak.programs = shoal::launch::ProgramFolder();
+  shoal::InstallStopSignals();
   options.soak.folder = FreshFolder();
   try {
     const auto result = options.steady_minutes > 0
@@ -68,6 +84,9 @@ int Run(int argc, char** argv) {
   } catch (const shoal::soak::Broken& e) {
     throw shoal::RuntimeError("{} (seed {}; files kept in '{}')", e.what(), options.soak.seed,
                               options.soak.folder.string());
+  } catch (const shoal::Error&) {
+    if (shoal::StopRequested()) LeaveNothing(options.soak.folder);
+    throw;
   }
   std::filesystem::remove_all(options.soak.folder);
   return 0;

@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "common/base/clock.h"
+#include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/stop.h"
 #include "tests/support/processes.h"
@@ -61,7 +62,7 @@ RunUnderTest::RunUnderTest(const RunOptions& options)
 }
 
 std::vector<std::string> RunUnderTest::FirstArguments() const {
-  std::vector<std::string> arguments{"train", "--preset", "fetch-reach-state", "--run-name", "run"};
+  std::vector<std::string> arguments{"train", "--preset", options_.preset, "--run-name", "run"};
   std::vector<std::string> keys{fmt::format("run_dir={}", options_.folder.string()),
                                 fmt::format("actors={}", options_.actors),
                                 fmt::format("seed={}", options_.seed),
@@ -209,6 +210,7 @@ std::map<std::string, double> RunUnderTest::QueueDepths() {
 }
 
 void RunUnderTest::CheckAlive() {
+  if (StopRequested()) throw RuntimeError("interrupted");
   if (const auto status = coordinator_.Poll()) {
     throw Broken(fmt::format("the run has ended ({}): {}", status->Describe(), Output()));
   }

@@ -25,6 +25,7 @@ struct RunOptions {
   std::filesystem::path programs;
   int actors = 2;
   int64_t seed = 1;
+  std::string preset = "fetch-reach-state";
   std::vector<std::string> keys;  // further KEY=VALUE
 };
 
@@ -62,7 +63,7 @@ class RunUnderTest {
 
   // Stops it by SIGINT and waits. Throws Broken unless it ends with 0 and balances.
   nlohmann::json End(std::chrono::seconds deadline);
-  // Throws Broken when the coordinator has ended.
+  // Throws Broken when the coordinator has ended, Error when a signal asked for a stop.
   void CheckAlive();
   // Last lines of the coordinator's output, for messages.
   std::string Output() const;

@@ -10,6 +10,7 @@
 #include <thread>
 
 #include "common/base/clock.h"
+#include "common/base/stop.h"
 #include "tests/soak/leftovers.h"
 #include "tests/soak/run_under_test.h"
 #include "tests/soak/trend.h"
@@ -81,6 +82,7 @@ nlohmann::ordered_json SoakSteadily(const SoakOptions& options, double minutes) 
                       .programs = options.programs,
                       .actors = options.actors,
                       .seed = static_cast<int64_t>(options.seed),
+                      .preset = options.preset,
                       .keys = {}});
     path = run.path();
     temporary_files = run.temporary_files();
@@ -93,7 +95,9 @@ nlohmann::ordered_json SoakSteadily(const SoakOptions& options, double minutes) 
         Look(&run, now, &trends);
         logs.Add(now, LogMegabytes(path));
       }
-      std::this_thread::sleep_until(start + looks * kLook);
+      while (Now() < start + looks * kLook && !StopRequested()) {
+        std::this_thread::sleep_for(std::chrono::milliseconds(100));
+      }
     }
     meta = run.End(seconds(180));
   }

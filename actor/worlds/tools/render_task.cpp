@@ -1,5 +1,7 @@
 #include "actor/worlds/tools/render_task.h"
 
+#include <algorithm>
+
 #include "actor/worlds/environment.h"
 #include "actor/worlds/world_registry.h"
 #include "common/base/error.h"
@@ -27,7 +29,11 @@ Picture RenderTask(const RenderRequest& request) {
     throw UsageError("{} env steps before the picture; an episode of {} has {}", request.env_steps,
                      task.name(), episode);
   }
+  if (request.goal && request.env_steps > 0) {
+    throw UsageError("the picture of a goal is drawn at the reset; expected 0 env steps before it");
+  }
   Config config;
+  if (request.goal) config.observation.goal_mode = "image";
   config.task = request.task;
   config.model = request.model;
   config.observation.cameras = {
@@ -55,6 +61,7 @@ Picture RenderTask(const RenderRequest& request) {
     }
   }
 
+  if (request.goal) std::ranges::copy(environment->goal_picture(), frame.begin());
   Picture picture{request.width, request.height, std::vector<uint8_t>(3 * plane),
                   config.observation.cameras.front()};
   for (size_t pixel = 0; pixel < plane; ++pixel) {

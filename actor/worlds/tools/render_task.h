@@ -19,13 +19,15 @@ struct RenderRequest {
   std::string camera;  // "front"; empty = the task's first
   int width = 480, height = 480;
   std::string quality = "reference";  // fast | reference
+  bool goal = false;  // the picture of the goal reached, of observation.goal_mode = image
   int env_steps = 0;  // uniform random actions before the picture, at most an episode's
   int64_t seed = 1;   // of the goal and of the actions
   std::string model;  // path of another MJCF file; empty = our own
 };
 
 // Throws Error (kUsage) on an unknown task, camera or quality, a size that is not 1..4096 and more
-// env steps than an episode has; (kRuntime) when the task terminates the episode before.
+// env steps than an episode has, or a goal picture of a task without, or after steps; (kRuntime)
+// when the task terminates the episode before.
 Picture RenderTask(const RenderRequest& request);
 
 }  // namespace shoal::worlds

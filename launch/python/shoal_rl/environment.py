@@ -1,6 +1,7 @@
 """Shoal's worlds and renderer as a Gymnasium environment."""
 
 import json
+import os
 
 import gymnasium
 import numpy as np
@@ -21,7 +22,7 @@ _SECTIONS = {
         "custom_cameras",
     ),
     "randomization": ("body_mass",),
-    None: ("model", "physics", "action_repeat", "distance_threshold"),
+    None: ("task_library", "model", "physics", "action_repeat", "distance_threshold"),
 }
 
 
@@ -34,7 +35,7 @@ def _configuration(keys):
             raise _native.Error(f"make has no key '{key}'; expected {', '.join(section_of)}")
         section = section_of[key]
         place = configuration if section is None else configuration.setdefault(section, {})
-        place[key] = value
+        place[key] = os.fspath(value) if isinstance(value, os.PathLike) else value
     try:
         return json.dumps(configuration)
     except TypeError as error:
@@ -44,7 +45,8 @@ def _configuration(keys):
 class Environment(gymnasium.Env):
     """Made by shoal_rl.make.
 
-    Observation: a dict of `pixels` (K*C, H, W) uint8 and the vectors that the keys ask for, float32.
+    Observation: a dict of `pixels` (K*C, H, W) uint8, with goal_mode="image" ((K+1)*C, H, W) whose
+    last C show the goal reached, and the vectors that the keys ask for, float32.
     Action: Box(-1, 1). info: `distance` (m) and `is_success`, where the task has a goal.
     reset(seed=s) starts the first of the episodes that s names, reset() the next of them.
     """
@@ -108,7 +110,8 @@ class Environment(gymnasium.Env):
         if self.render_mode is None or self._pixels is None:
             return None
         channels, height, width = self._pixels.shape
-        shown = channels // self._native.stack
-        frame = self._pixels[channels - shown :].reshape(len(self.cameras), -1, height, width)
+        stack = self._native.stack
+        shown = channels // (stack + self._native.goal_picture)
+        frame = self._pixels[(stack - 1) * shown : stack * shown].reshape(len(self.cameras), -1, height, width)
         colours = np.broadcast_to(frame, (len(self.cameras), 3, height, width))
         return colours.transpose(2, 0, 3, 1).reshape(height, -1, 3)

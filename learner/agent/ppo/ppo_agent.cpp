@@ -100,7 +100,7 @@ PpoAgent::PpoAgent(const Config& config, const ObservationSpec& spec, nn::Precis
       batch_size_(config.learner.batch),
       action_size_(spec.action_size),
       vector_size_(spec.VectorSize()),
-      frame_bytes_(size_t(spec.stack) * size_t(spec.FrameBytes())),
+      frame_bytes_(size_t(spec.InputBytes())),
       order_(std::move(order)),
       context_(precision, batch_size_, nn::Threads()),
       networks_(config, spec, context_),

@@ -57,6 +57,31 @@ TEST(EvaluationJson, WhatATaskDoesNotHaveIsNull) {
   EXPECT_EQ(json["aggregate"]["length_mean"], 5);
 }
 
+// The whole way: nobody touches the block of FetchPush where nothing is done.
+TEST(EvaluationJson, FailedEpisodesHaveACauseAndAreCountedByIt) {
+  RunConfig run = RunOf("FetchPush");
+  run.config.observation.pixels = false;
+  run.config.observation.proprioception = true;
+  run.config.eval.envs = 2;
+  run.config.network.hidden = {8};
+  run.spec = worlds::MakeEnvironment(run.config, nullptr)->spec();
+  Evaluator evaluator(run, /*noop=*/true);
+  const EpisodeStream stream{7, StreamRole::kFinalEnvironment, 0};
+  const auto json =
+      EvaluationJson(run, {}, stream, evaluator.Play(6, stream, [] { return false; }));
+  size_t failed = 0;
+  for (const auto& episode : json["episodes"]) {
+    EXPECT_EQ(episode["failure"].is_null(), episode["success"] == true);
+    if (episode["failure"].is_null()) continue;
+    EXPECT_EQ(episode["failure"], "never_touched");
+    ++failed;
+  }
+  EXPECT_GT(failed, 0u);
+  EXPECT_EQ(json["failures"]["never_touched"], failed);
+  EXPECT_EQ(json["failures"].size(), 10u);
+  EXPECT_FALSE(EvaluationJson(RunOf("Hopper-v5"), {}, {}, {}).contains("failures"));
+}
+
 // The whole way: configuration, environment, JSON.
 TEST(EvaluationJson, HoldsTheMassesDrawnForEachEpisode) {
   RunConfig run = RunOf("CustomHopper-source");

@@ -70,6 +70,45 @@ TEST_F(RolloutTest, AnEpisodeIsAResetAndItsSteps) {
   EXPECT_NE(sink_.layout().Action(sink_.Bytes(1))[0], sink_.layout().Action(sink_.Bytes(2))[0]);
 }
 
+// Alone: its environment, and so its spec, is another.
+TEST(GoalPictures, AGoalRecordComesBeforeEachResetAndThePolicySeesItsPicture) {
+  const TemporaryFolder run;
+  const CountingEnvironment like(CountingEnvironment::kLength, 2, /*goal_picture=*/true);
+  const ObservationSpec spec = like.spec();
+  FakeSink sink(spec);
+  const Config config = SmallConfig(/*envs=*/1);
+  MadePage made(run.path(), /*actor=*/0, /*session=*/10, kFirstEnv, /*envs=*/1);
+  ActionSelector selector(config, spec, /*envs=*/1);
+  std::vector<std::unique_ptr<worlds::Environment>> environments;
+  environments.push_back(
+      std::make_unique<CountingEnvironment>(CountingEnvironment::kLength, 2, true));
+  Rollout rollout(Rollout::Options::Of(config, kFirstEnv), spec, std::move(environments), made,
+                  sink, selector);
+  sink.room = 2;
+  EXPECT_FALSE(rollout.TryStep()) << "a goal, a reset and a step need room";
+  sink.room = 3;
+  for (int i = 0; i < CountingEnvironment::kLength + 1; ++i) ASSERT_TRUE(rollout.TryStep());
+  using K = RecordKind;
+  const std::vector<K> kinds{K::kGoal, K::kReset, K::kStep,  K::kStep,
+                             K::kStep, K::kGoal,  K::kReset, K::kStep};
+  ASSERT_EQ(sink.records.size(), kinds.size());
+  EXPECT_THAT(sink.sequences, ElementsAre(1, 2, 3, 4, 5, 6, 7, 8));
+  for (size_t i = 0; i < kinds.size(); ++i) {
+    EXPECT_EQ(RecordFault(sink.layout(), sink.Bytes(i)), nullptr) << i;
+    EXPECT_EQ(sink.Header(i).kind, kinds[i]) << i;
+    EXPECT_EQ(sink.Header(i).episode, i < 5 ? 0u : 1u);
+    const uint8_t pixel = sink.layout().Frame(sink.Bytes(i))[0];
+    EXPECT_EQ(pixel >= 200, kinds[i] == K::kGoal) << i;
+  }
+  EXPECT_THAT(sink.layout().Vector(sink.Bytes(0)),
+              testing::ElementsAreArray(sink.layout().Vector(sink.Bytes(1))))
+      << "all but the picture is the reset's";
+  const auto input = selector.FrameStackOf(0);
+  ASSERT_EQ(input.size(), size_t(spec.InputBytes()));
+  EXPECT_THAT(input.last(size_t(spec.FrameBytes())), Each(sink.layout().Frame(sink.Bytes(5))[0]));
+  EXPECT_THAT(input.first(size_t(2 * spec.FrameBytes())), Each(testing::Lt(200)));
+}
+
 TEST_F(RolloutTest, TheFiguresOfEndedEpisodesAreLogged) {
   Start(2);
   Step(CountingEnvironment::kLength);

@@ -122,6 +122,33 @@ TEST_P(FetchObject, HasTheMassesOfTheOriginal) {
   EXPECT_NEAR(model.body_invweight0[2 * object], 0.5, 1e-9);
 }
 
+// docs/worlds.md, pictures of goals.
+TEST_P(FetchObject, ShowsItsGoalReachedAndTheGripperByItsRule) {
+  const auto world = Make();
+  const std::string task = GetParam().name;
+  Random random(11);
+  for (int episode = 0; episode < 20; ++episode) {
+    world->Reset(&random);
+    const Blocks before = Observe(*world);
+    const double time = world->data().time;
+    Blocks shown;
+    world->LookAtGoal([&] { shown = Observe(*world); });
+    const std::array<double, 3> grip{shown.observation[0], shown.observation[1],
+                                     shown.observation[2]};
+    for (size_t i = 0; i < 3; ++i) {
+      EXPECT_NEAR(shown.achieved[i], before.desired[i], 1e-9);
+      const double above = task == "FetchPush" && i == 2 ? 0.1 : 0;
+      const double expected =
+          task == "FetchSlide" ? before.observation[i] : before.desired[i] + above;
+      EXPECT_NEAR(grip[i], expected, task == "FetchSlide" ? 1e-9 : 5e-3) << task << ", " << i;
+    }
+    const Blocks after = Observe(*world);
+    EXPECT_EQ(after.observation, before.observation);
+    EXPECT_EQ(after.achieved, before.achieved);
+    EXPECT_EQ(world->data().time, time);
+  }
+}
+
 // Means of n uniforms over a width w have sigma w / sqrt(12 n).
 TEST_P(FetchObject, GoalsAndObjectsFillTheirRangesAndNothingElse) {
   const Published& task = GetParam();

@@ -14,6 +14,7 @@
 #include "actor/worlds/world_registry.h"
 #include "common/base/error.h"
 #include "common/tasks/task_registry.h"
+#include "tests/support/error_message.h"
 #include "tests/support/paths.h"
 
 namespace shoal::worlds {
@@ -153,6 +154,64 @@ TEST(WorldEnvironment, WithHindsightPicturesDoNotShowTheGoal) {
   };
   EXPECT_NE(first_frame(&shown, 1), first_frame(&shown, 2));
   EXPECT_EQ(first_frame(&hidden, 1), first_frame(&hidden, 2));
+}
+
+// Mean difference of two pictures in grey levels.
+double Difference(std::span<const uint8_t> one, std::span<const uint8_t> other) {
+  double sum = 0;
+  for (size_t i = 0; i < one.size(); ++i) sum += std::abs(one[i] - other[i]);
+  return sum / static_cast<double>(one.size());
+}
+
+TEST(WorldEnvironment, AnImageGoalIsAPictureOfItsOwnAndHidesTheMarker) {
+  Config config = Pixels();
+  config.observation.goal_mode = "image";
+  Player player(Make(config));
+  const ObservationSpec& spec = player.environment->spec();
+  EXPECT_TRUE(spec.goal_picture);
+  EXPECT_TRUE(BlockNames(config).empty());
+  EXPECT_EQ(spec.InputChannels(), 2 * spec.channels);
+  player.Reset(1);
+  const std::vector<uint8_t> frame = player.frame;
+  const auto picture = player.environment->goal_picture();
+  ASSERT_EQ(picture.size(), frame.size());
+  const std::vector<uint8_t> first(picture.begin(), picture.end());
+  EXPECT_GT(Difference(first, frame), 0.5) << "the arm has moved to the goal";
+  player.Reset(2);
+  EXPECT_EQ(player.frame, frame) << "the goal shows in its picture alone";
+  EXPECT_GT(Difference(first, player.environment->goal_picture()), 0.1);
+  player.Reset(1);
+  EXPECT_TRUE(std::ranges::equal(first, player.environment->goal_picture()));
+}
+
+TEST(WorldEnvironment, DrawingTheGoalLeavesTheEpisodeAsItWas) {
+  for (const char* task : {"FetchReach", "FetchPush", "FetchSlide", "FetchPickAndPlace"}) {
+    Config config = Pixels();
+    config.task = task;
+    config.replay.hindsight = "future";
+    config.observation.goal_mode = "desired";
+    Player without(Make(config));
+    config.observation.goal_mode = "image";
+    Player with(Make(config));
+    without.Reset(5);
+    with.Reset(5);
+    const std::vector<float> action{0.5F, -1, -0.25F, 1};
+    for (int step = 0; step < 10; ++step) {
+      ASSERT_EQ(with.vector, without.vector) << task << ", step " << step;
+      ASSERT_EQ(with.frame, without.frame) << task << ", step " << step;
+      with.environment->Step(action, {with.frame, with.vector});
+      without.environment->Step(action, {without.frame, without.vector});
+    }
+  }
+}
+
+TEST(WorldEnvironment, ATaskThatCannotShowItsGoalHasNoImageGoals) {
+  Config config = Pixels();
+  config.task = "Hopper-v4";
+  config.observation.cameras = {"track"};
+  config.observation.goal_mode = "image";
+  EXPECT_THAT(UsageMessage([&] { Make(config); }),
+              testing::HasSubstr("task Hopper-v4 has no goals"));
 }
 
 TEST(WorldEnvironment, WithoutPixelsTheStateIsAlwaysSeen) {

@@ -43,6 +43,18 @@ TEST(PrivilegedBlocks, AreThoseThatThePolicyDoesNotSeeInRecordOrder) {
   EXPECT_EQ(blocks.labels[1].minus, "");
 }
 
+TEST(PrivilegedBlocks, ACriticWithoutPixelsIsToldTheGoalThatAPictureShows) {
+  ObservationSpec spec = PushSpec();
+  spec.goal_picture = true;
+  spec.blocks.back().observed = false;
+  EXPECT_THAT(PrivilegedBlocksOf(Asking(StateBlocks({"object", "desired_goal"})), spec).critic,
+              ElementsAre("object", "desired_goal"));
+  EXPECT_THAT(UsageMessage([&] {
+                PrivilegedBlocksOf(Asking(StateBlocks(std::vector<std::string>{"object"})), spec);
+              }),
+              testing::HasSubstr("expected 'desired_goal' among them"));
+}
+
 TEST(PrivilegedBlocks, AreNoneUnlessAskedFor) {
   EXPECT_THAT(PrivilegedBlocksOf(Asking(false), PushSpec()).all, IsEmpty());
   EXPECT_THAT(PrivilegedBlocksOf(Asking(true), PushSpec()).all,

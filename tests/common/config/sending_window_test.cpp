@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "common/base/error.h"
+
 namespace shoal {
 namespace {
 
@@ -32,6 +34,23 @@ TEST(SendingWindow, AnActorNeedsItsOldestChunkAndAStepOfAllItsEnvironmentsToGoOn
   EXPECT_EQ(SendingWindowOf(config, 200'000).least_records, 8);
   config.envs_per_actor = 16;
   EXPECT_EQ(SendingWindowOf(config, 42'440).least_records, 32);
+  config.observation.goal_mode = "image";
+  EXPECT_EQ(SendingWindowOf(config, 42'440).least_records, 48) << "with a goal record each";
+}
+
+TEST(SendingWindow, EnvironmentsThatDoNotFitAreRefusedNamingWhatWouldHelp) {
+  Config config = Asked(24, 4);
+  config.envs_per_actor = 48;
+  EXPECT_NO_THROW(CheckSendingWindow(config, 1000));
+  config.envs_per_actor = 49;
+  try {
+    CheckSendingWindow(config, 1000);
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_EQ(e.exit_code(), 2);
+    EXPECT_NE(std::string(e.what()).find("envs_per_actor 49"), std::string::npos);
+    EXPECT_NE(std::string(e.what()).find("replay.window_chunks"), std::string::npos);
+  }
 }
 
 TEST(SendingWindow, NeverLetsAChunkExceedItsBoundUnlessOneRecordDoes) {

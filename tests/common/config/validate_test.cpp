@@ -18,6 +18,22 @@ std::string Refusal(const std::function<void(Config*)>& change) {
   return UsageMessage([&] { Validate(config); });
 }
 
+TEST(Validate, AnImageGoalNeedsPixelsAndAReplay) {
+  const auto image = [](Config* config) { config->observation.goal_mode = "image"; };
+  EXPECT_EQ(Refusal(image), "");
+  EXPECT_THAT(Refusal([&](Config* config) {
+                image(config);
+                config->observation.pixels = false;
+              }),
+              HasSubstr("observation.goal_mode = image without observation.pixels"));
+  EXPECT_THAT(Refusal([&](Config* config) {
+                image(config);
+                config->learner.algorithm = "ppo";
+                config->learner.batch = 64;
+              }),
+              HasSubstr("carry no goal pictures"));
+}
+
 TEST(Validate, APolicyWithoutEntropyTakesNoKeysOfIt) {
   for (const char* algorithm : {"td3", "ddpg"}) {
     const auto refusal = [&](const std::function<void(Config*)>& change) {

@@ -119,5 +119,27 @@ TEST_F(CredentialsTest, ACertificateOfAnotherAuthorityOrWithAnotherKeyIsRefused)
   EXPECT_THAT(Mistake(mixed), AllOf(HasSubstr("actor.key"), HasSubstr("not the key")));
 }
 
+// As the DDS library would, which takes them for another process on the port.
+TEST_F(CredentialsTest, ADocumentOfAnotherAuthorityOrOneThatWasAlteredIsRefused) {
+  const fs::path other = parent_.path() / "other";
+  Create(other, ValidForDays(2));
+  for (const char* name : {"governance.p7s", "actor.p7s"}) {
+    const fs::path foreign = parent_.path() / (std::string("foreign-") + name),
+                   altered = parent_.path() / (std::string("altered-") + name);
+    fs::copy(folder_, foreign);
+    fs::copy(other / name, foreign / name, fs::copy_options::overwrite_existing);
+    EXPECT_THAT(Mistake(foreign), AllOf(HasSubstr((foreign / name).string()), HasSubstr("ca.pem")));
+    fs::copy(folder_, altered);
+    std::string text = ReadFile(folder_ / name);
+    const size_t at = text.find("<dds");
+    ASSERT_LT(at, text.size());
+    ++text[at + 1];
+    WriteFileAtomically(altered / name, text);
+    EXPECT_THAT(Mistake(altered), HasSubstr((altered / name).string()));
+    WriteFileAtomically(altered / name, "neither signed nor sealed");
+    EXPECT_THAT(Mistake(altered), HasSubstr((altered / name).string()));
+  }
+}
+
 }  // namespace
 }  // namespace shoal

@@ -111,7 +111,7 @@ inline void Fill(uint64_t n, ControlMessage* m) {
         .state = RunState::kDraining,
         .time = static_cast<double>(n) + 0.5,
         .setting_names = {"eval.interval", "b"},
-        .setting_values = {static_cast<double>(n), -0.25}};
+        .setting_values = {static_cast<double>(n), 0.25}};
 }
 inline void Fill(uint64_t n, EvalMessage* m) {
   *m = {.env_steps = n + 12,

@@ -175,11 +175,17 @@ TEST(MessageCdr, ProgressIsOfASessionAndItsEvaluationsAreOfUpdatesThatWereDone) 
   EXPECT_FALSE(IsTaken(progress));
 }
 
-TEST(MessageCdr, ChangedSettingsAreNumbers) {
+TEST(MessageCdr, ChangedSettingsAreNumbersThatAKeyCanHave) {
   ControlMessage message{.epoch = 1, .state = RunState::kRunning, .time = 1};
   message.setting_names = {"replay.samples_per_insert"};
-  message.setting_values = {NAN};
-  EXPECT_FALSE(IsTaken(message));
+  for (const double value : {double{NAN}, double{INFINITY}, -5.0, 1e300}) {
+    message.setting_values = {value};
+    EXPECT_FALSE(IsTaken(message)) << value;
+  }
+  for (const double value : {0.0, 0.5, 1e12}) {
+    message.setting_values = {value};
+    EXPECT_TRUE(IsTaken(message)) << value;
+  }
 }
 
 TEST(MessageCdr, ControlStatesAreTheThreeThatExist) {

@@ -83,6 +83,42 @@ void ExpectKeptOut(PeerProcess& stranger, const ClusterAddress& run) {
   EXPECT_THAT(stranger.Ask("received WeightsPart 1 100"), StartsWith("received 0 "));
 }
 
+// The library reads its configuration as XML, in which it replaces ${VARIABLES}.
+TEST_F(SecurityTest, AFolderMayHaveCharactersOfXmlInItsName) {
+  ClusterAddress address;
+  address.secure = Credentials("<of> $HOME & 'others'");
+  EXPECT_NO_THROW(ClaimDomain(TransportConfig{}, &address));
+}
+
+TEST_F(SecurityTest, AFolderThatTheLibraryCannotOpenIsRefusedByName) {
+  for (const char* name : {"of ${HOME}", "back\\slash", "a \"quote\""}) {
+    ClusterAddress address;
+    address.secure = Credentials(name);
+    try {
+      ClaimDomain(TransportConfig{}, &address);
+      ADD_FAILURE() << "opened " << name;
+    } catch (const Error& e) {
+      EXPECT_THAT(e.what(), AllOf(HasSubstr("folder"), HasSubstr(address.secure)));
+      EXPECT_EQ(e.exit_code(), 2);
+    }
+  }
+}
+
+// Not that a port is taken: that is had by its own half of a domain.
+TEST_F(SecurityTest, WhyADomainCannotBeJoinedIsSaidAsTheLibrarySaysIt) {
+  ClusterAddress address;
+  address.secure = Credentials("mixed");
+  const std::filesystem::path folder = address.secure;
+  std::filesystem::copy(folder / "learner.p7s", folder / "coordinator.p7s",
+                        std::filesystem::copy_options::overwrite_existing);
+  try {
+    ClaimDomain(TransportConfig{}, &address);
+    ADD_FAILURE() << "joined as a learner";
+  } catch (const Error& e) {
+    EXPECT_THAT(e.what(), AllOf(HasSubstr("cannot join DDS domain"), HasSubstr("coordinator")));
+  }
+}
+
 TEST_F(SecurityTest, AProcessWithoutCredentialsNeitherJoinsNorReads) {
   ClusterAddress plain = address_;
   plain.secure.clear();

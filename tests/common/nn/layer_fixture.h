@@ -12,12 +12,13 @@
 #include "common/nn/op.h"
 #include "common/nn/parallel.h"
 #include "common/nn/parameter_set.h"
+#include "common/nn/primitive_descs.h"
 #include "tests/common/nn/gradient_check.h"
 
 namespace shoal::nn {
 
 inline void FillMemory(const reference::Values& values, const dnnl::memory& memory) {
-  const dnnl::memory plain = MakeMemory(PlainF32(memory.get_desc().dims()));
+  const dnnl::memory plain = MakeMemory(PlainF32(DimsOf(memory)));
   const std::vector<float> floats = ToFloats(values);
   ASSERT_EQ(floats.size() * sizeof(float), plain.get_desc().get_size());
   std::memcpy(plain.get_data_handle(), floats.data(), floats.size() * sizeof(float));
@@ -25,7 +26,7 @@ inline void FillMemory(const reference::Values& values, const dnnl::memory& memo
 }
 
 inline std::vector<float> ReadMemory(const dnnl::memory& memory) {
-  const dnnl::memory plain = MakeMemory(PlainF32(memory.get_desc().dims()));
+  const dnnl::memory plain = MakeMemory(PlainF32(DimsOf(memory)));
   Op::Reorder(memory, plain, std::make_shared<Scratchpad>()).Run();
   const float* values = static_cast<const float*>(plain.get_data_handle());
   return {values, values + plain.get_desc().get_size() / sizeof(float)};

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/base/random.h"
+#include "common/config/batch_options.h"
 #include "common/config/run_files.h"
 #include "common/nn/parameter_set.h"
 #include "learner/agent/algorithms.h"
@@ -67,9 +68,11 @@ inline std::filesystem::path WriteCheckpointOf(const RunConfig& run,
                                                const std::filesystem::path& folder) {
   const auto agent = learner::MakeAgent(run.config, run.spec, nn::Precision::kF32);
   const bool rollout = run.config.learner.algorithm == "ppo";
-  const int rows = rollout ? 2 * run.config.learner.batch : run.config.learner.batch;
+  const BatchOptions options{.batch = run.config.learner.batch * (rollout ? 2 : 1),
+                             .rollout = rollout,
+                             .privileged = BatchOptionsOf(run).privileged};
   for (uint64_t u = 0; u < 3; ++u) {
-    const learner::RandomBatch batch(run.spec, rows, u, rollout);
+    const learner::RandomBatch batch(run.spec, options, u);
     EXPECT_TRUE(agent->Update(batch.View()).finite);
   }
   return Store(run, folder, agent->updates(), agent->AllTensors(), agent->AveragedPolicyTensors());

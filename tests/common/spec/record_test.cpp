@@ -90,12 +90,34 @@ TEST(RecordFault, AcceptsAValidRecordAndNamesEachFault) {
   EXPECT_NE(fault_after([](H& h, uint8_t*) { h.kind = RecordKind{7}; }), "");
   EXPECT_NE(fault_after([](H& h, uint8_t*) { h.index = 0; }), "");
   EXPECT_NE(fault_after([](H& h, uint8_t*) { h.kind = RecordKind::kReset; }), "");
+  EXPECT_NE(fault_after([](H& h, uint8_t*) { h.kind = RecordKind::kGoal; }), "");
   EXPECT_NE(fault_after([](H& h, uint8_t*) { h.flags = 128; }), "");
   EXPECT_NE(fault_after([](H& h, uint8_t*) { h.reward = NAN; }), "");
   EXPECT_NE(fault_after([](H& h, uint8_t*) { h.log_prob = -INFINITY; }), "");
   EXPECT_NE(fault_after([&](H&, uint8_t* r) { layout.Action(r)[3] = 1.01f; }), "");
   EXPECT_NE(fault_after([&](H&, uint8_t* r) { layout.Action(r)[0] = NAN; }), "");
   EXPECT_NE(fault_after([&](H&, uint8_t* r) { layout.Vector(r)[2] = INFINITY; }), "");
+}
+
+TEST(RecordFault, AGoalRecordHasNoIndex) {
+  const RecordLayout layout(SmallSpec());
+  AlignedRecord record = ValidStep(layout);
+  RecordHeader& header = RecordLayout::Header(record.data());
+  header.kind = RecordKind::kGoal;
+  header.index = 0;
+  EXPECT_EQ(RecordFault(layout, record.data()), nullptr);
+  header.index = 1;
+  EXPECT_STREQ(RecordFault(layout, record.data()), "record index does not fit its kind");
+}
+
+TEST(ObservationSpec, AGoalPictureIsOneMoreFrameOfTheInput) {
+  ObservationSpec spec = SmallSpec();
+  const ObservationSpec without = spec;
+  EXPECT_EQ(spec.InputChannels(), spec.stack * spec.channels);
+  EXPECT_FALSE(ToJson(spec).contains("goal_picture")) << "hashes of older runs stay";
+  spec.goal_picture = true;
+  EXPECT_EQ(spec.InputChannels(), without.InputChannels() + spec.channels);
+  EXPECT_EQ(spec.InputBytes(), without.InputBytes() + spec.FrameBytes());
 }
 
 TEST(ObservationSpec, EveryFieldChangesTheHashAndJsonKeepsThemAll) {

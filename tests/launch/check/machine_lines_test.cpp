@@ -14,7 +14,7 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-constexpr Needs kNeeds{.ring_bytes = 1'000'000, .batch_bytes = 10'000, .process_bytes = 500'000};
+constexpr Needs kNeeds{.ring_bytes = 1'000'000, .process_bytes = 500'000};
 
 TEST(MachineLines, ACpuWithoutAvx2IsAWarning) {
   EXPECT_EQ(JudgeCpu("avx512_core_bf16", "bf16").verdict, Verdict::kOk);

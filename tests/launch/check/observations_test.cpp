@@ -85,7 +85,8 @@ TEST_P(Observations, GoAllTheWayFromConfigurationToUpdate) {
   const BatchView batch = collection.Draw();
   const auto elements = static_cast<size_t>(run.config.learner.batch);
   EXPECT_EQ(batch.obs_frames.size(),
-            elements * static_cast<size_t>(run.spec.FrameBytes() * kind.stack));
+            elements * static_cast<size_t>(run.spec.FrameBytes() *
+                                           (kind.stack + (kind.goal_mode == "image" ? 1 : 0))));
   EXPECT_EQ(batch.next_obs_vector.size(), elements * static_cast<size_t>(vector));
   if (kind.pixels) {
     // Not one flat colour, in no channel of no element.
@@ -107,8 +108,33 @@ TEST_P(Observations, GoAllTheWayFromConfigurationToUpdate) {
   EXPECT_EQ(peek.rgb.empty(), !kind.pixels);
   if (kind.pixels) {
     EXPECT_GE(peek.width, 3 * kWidth);
-    EXPECT_GE(peek.height, 4 * kind.cameras * kHeight);
+    EXPECT_GE(peek.height, (kind.goal_mode == "image" ? 5 : 4) * kind.cameras * kHeight);
   }
+}
+
+// As the preset fetch-push-image-goals: goals of hindsight shown by stored frames, and told to the
+// critic as numbers.
+TEST(ImageGoals, GoWithHindsightAndACriticWithoutPixels) {
+  const TemporaryFolder folder;
+  Config config = ConfigOf({"image", true, false, /*pixels=*/true, /*stack=*/1, /*cameras=*/2});
+  config.task = "FetchPush";
+  config.replay.capacity = 1000;
+  config.replay.hindsight = "future";
+  config.learner.batch = 32;
+  config.learner.critic_blocks = true;
+  config.learner.aux = {"object-desired_goal"};
+  config.learner.bounded_targets = true;
+  config.observation.proprioception = StateBlocks(std::vector<std::string>{"grip"});
+  const RunConfig run = RunOf(config);
+  WriteRunConfig(folder.path(), run);
+  LocalCollection collection(run, folder.path());
+  collection.Collect(220);  // two episodes of each of the two environments
+  const auto agent = learner::MakeAgent(run.config, run.spec, nn::Precision::kF32);
+  for (int update = 0; update < 5; ++update) {
+    EXPECT_TRUE(agent->Update(collection.Draw()).finite) << update;
+  }
+  EXPECT_GT(collection.core().counters().relabelled, 50u);
+  EXPECT_LT(collection.core().counters().relabelled, 5u * 32u);
 }
 
 std::vector<Kind> AllKinds() {
@@ -125,6 +151,8 @@ std::vector<Kind> AllKinds() {
       }
     }
   }
+  kinds.push_back({"image", false, false, /*pixels=*/true, /*stack=*/1, /*cameras=*/2});
+  kinds.push_back({"image", true, true, /*pixels=*/true, /*stack=*/3, /*cameras=*/1});
   // Nothing to observe is refused (config tests).
   std::erase_if(kinds, [](const Kind& kind) {
     return !kind.pixels && kind.goal_mode == "none" && !kind.proprioception;

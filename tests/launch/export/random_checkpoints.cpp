@@ -4,8 +4,9 @@
 //
 // usage: random-checkpoints FOLDER [TEXT]
 //   FOLDER/ALGORITHM-ENCODER/checkpoints/step_N; ENCODER "state" without pixels, "sb3" of networks
-//   that Stable-Baselines3 has: nature alone of pixels, "sb3-state" of vectors. With TEXT those
-//   alone whose ALGORITHM-ENCODER has it.
+//   that Stable-Baselines3 has: nature alone of pixels, "sb3-state" of vectors. Of SAC also
+//   "asymmetric" (a critic of blocks), "taught" (learner.aux) and "separate" (an encoder of the
+//   actor's own). With TEXT those alone whose ALGORITHM-ENCODER has it.
 #include <fmt/core.h>
 
 #include <filesystem>
@@ -59,6 +60,16 @@ int Main(const fs::path& folder, const std::string& text) {
       write(algorithm + "-" + std::string(kind.name), run);
     }
   }
+  RunConfig run = policy::SmallRun("sac", /*pixels=*/true);
+  run.config.learner.critic_blocks = true;
+  write("sac-asymmetric", run);
+  run = policy::SmallRun("sac", /*pixels=*/true);
+  run.config.learner.aux = {"hidden"};
+  write("sac-taught", run);
+  run = policy::SmallRun("sac", /*pixels=*/true);
+  run.config.network.encoders = "separate";
+  run.config.network.target_encoder = true;
+  write("sac-separate", run);
   return 0;
 }
 

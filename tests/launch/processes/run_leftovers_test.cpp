@@ -57,8 +57,9 @@ TEST(RunLeftovers, ARunWithoutProcessesIsNotWaitedFor) {
 
 TEST(RunLeftovers, RemovesWhatWasBeingWrittenAndNothingElse) {
   const TemporaryFolder run;
-  for (const char* folder : {"checkpoints/step_000000020", "checkpoints/.step_000000040.tmp-77",
-                             "checkpoints/.step_000000010.old", "checkpoints/.best.tmp", "made"}) {
+  for (const char* folder :
+       {"checkpoints/step_000000020", "checkpoints/.step_000000040.tmp-77",
+        "checkpoints/.step_000000010.old", "checkpoints/.best.tmp", ".scratch.tmp-31", "made"}) {
     MakeFolders(run.path() / folder);
     WriteFileAtomically(run.path() / folder / "content", "x");
   }
@@ -67,7 +68,7 @@ TEST(RunLeftovers, RemovesWhatWasBeingWrittenAndNothingElse) {
         "replay.ring", "replay.ring.new", "accounting.json.new", "notes.tmp-of-mine", "news.new"}) {
     WriteFileAtomically(run.path() / file, "x");
   }
-  EXPECT_EQ(RemoveUnfinishedFiles(run.path()), 7);
+  EXPECT_EQ(RemoveUnfinishedFiles(run.path()), 8);
   std::set<std::string> left;
   for (const auto& entry : fs::recursive_directory_iterator(run.path())) {
     if (entry.is_regular_file()) left.insert(fs::relative(entry.path(), run.path()));

@@ -56,8 +56,9 @@ TEST(RunMeta, SaysWhatThePolicySeesAndHowOftenItWasUpdated) {
     WriteRunMeta(run.path(), Config(), meta);
     return nlohmann::json::parse(ReadFile(run.path() / "meta.json"));
   };
-  EXPECT_EQ(written().at("policy_inputs"),
-            nlohmann::json({{"blocks", {"grip", "desired_goal"}}, {"cameras", {"front"}}}));
+  EXPECT_EQ(written().at("policy_inputs"), nlohmann::json({{"blocks", {"grip", "desired_goal"}},
+                                                           {"cameras", {"front"}},
+                                                           {"goal_picture", false}}));
   EXPECT_EQ(written().at("privileged_inputs"),
             nlohmann::json(
                 {{"critic_blocks", nlohmann::json::array()}, {"labels", nlohmann::json::array()}}));
@@ -72,13 +73,6 @@ TEST(RunMeta, SaysWhatThePolicySeesAndHowOftenItWasUpdated) {
   meta.env_steps = 200;
   meta.updates = 100;
   EXPECT_EQ(written().at("updates_per_env_step"), 0.5);
-}
-
-TEST(RunMeta, UpdatesAfterACheckpointAreLostWithTheLearner) {
-  RunMeta meta;
-  for (const uint64_t reported : {100, 200, 150, 180, 180, 300}) meta.OnUpdates(reported);
-  EXPECT_EQ(meta.updates, 300u);
-  EXPECT_EQ(meta.updates_lost, 50u);
 }
 
 TEST(RunMeta, AProblemInAnyEncodingIsWritten) {

@@ -15,20 +15,34 @@ Config Rule(double success, int evaluations) {
 void Feed(StopRule& rule, std::initializer_list<double> successes) {
   uint64_t steps = 0;
   for (double success : successes) {
-    rule.OnEvaluation({.env_steps = steps += 100, .updates = steps / 2, .success = success});
+    rule.OnEvaluation(
+        {.env_steps = steps += 100, .updates = steps / 2, .success = success, .episodes = 100});
   }
 }
 
-TEST(StopRule, NeedsTheTargetInARow) {
+TEST(StopRule, PoolsTheNewestEvaluations) {
   StopRule rule(Rule(0.9, 2));
-  Feed(rule, {0.95, 0.5, 0.95});
+  Feed(rule, {1});
+  EXPECT_FALSE(rule.TargetReached());  // one is not two
+  Feed(rule, {0.79, 0.99});            // 178 of 200
   EXPECT_FALSE(rule.TargetReached());
   EXPECT_FALSE(rule.first_success().has_value());
-  Feed(rule, {0.9});
+  Feed(rule, {0.81});  // 180 of 200
   EXPECT_TRUE(rule.TargetReached());
+  Feed(rule, {0.98});  // 179 of 200: the newest count
+  EXPECT_FALSE(rule.TargetReached());
 }
 
-TEST(StopRule, FirstSuccessIsTheStartOfTheFirstStreak) {
+TEST(StopRule, WeighsEvaluationsByTheirEpisodes) {
+  StopRule rule(Rule(0.9, 2));
+  rule.OnEvaluation({.success = 1, .episodes = 10});
+  rule.OnEvaluation({.success = 0.88, .episodes = 100});
+  EXPECT_FALSE(rule.TargetReached());  // 98 of 110
+  rule.OnEvaluation({.success = 0.92, .episodes = 100});
+  EXPECT_TRUE(rule.TargetReached());  // 180 of 200
+}
+
+TEST(StopRule, FirstSuccessIsTheStartOfTheFirstThatReachIt) {
   StopRule rule(Rule(0.9, 2));
   Feed(rule, {0.95, 0.5, 0.92, 0.93, 0.94, 0.1, 1, 1});
   ASSERT_TRUE(rule.first_success().has_value());

@@ -32,6 +32,7 @@ class RunListTest : public ::testing::Test {
     meta.updates = 99;
     meta.wall_seconds = 61;
     meta.exit = exit;
+    if (exit != "running") meta.finished = "2026-01-31T12:01:01Z";
     meta.best = EvaluationPoint{.success = 0.5};
     if (exit == "failed") meta.error = "the disk is full";
     WriteRunMeta(run.path(), config, meta);
@@ -64,6 +65,17 @@ TEST_F(RunListTest, StatusIsOfTheLockFirstAndOfTheRecordedEndThen) {
   }
 }
 
+// That it would end is recorded before its last evaluation.
+TEST_F(RunListTest, ARunWhoseCoordinatorDiedAtItsEndIsDead) {
+  RunMeta meta;
+  meta.exit = "budget";
+  WriteRunMeta(Begin("a", "").path(), Config{}, meta);
+  EXPECT_EQ(Only("a").status, RunStatus::kDead);
+  meta.finished = "2026-01-31T12:01:01Z";
+  WriteRunMeta(dir_.path() / "a", Config{}, meta);
+  EXPECT_EQ(Only("a").status, RunStatus::kFinished);
+}
+
 TEST_F(RunListTest, ARunningRunSaysWhereItIsToBeReached) {
   const auto peer = [&](const RunListing& run) {
     return nlohmann::json::parse(RunListJson(dir_.path(), {run})).at("runs").at(0).at("peer");
@@ -83,6 +95,7 @@ TEST_F(RunListTest, ARunOfATaskWithoutSuccessIsListedByItsReturn) {
   meta.exit = "budget";
   meta.best = EvaluationPoint{.success = std::nullopt, .mean_return = 861.25};
   meta.final_return = 863.9;
+  meta.finished = "2026-01-31T12:01:01Z";
   WriteRunMeta(Begin("hopper", "").path(), Config{}, meta);
   const RunListing run = Only("hopper");
   EXPECT_EQ(run.status, RunStatus::kFinished) << run.problem;

@@ -137,6 +137,25 @@ TEST_F(WebServerTest, SteeringTakesTheToken) {
   }
 }
 
+// What a browser sends whose `ssh -L` listens at another port of another host's loopback.
+TEST_F(WebServerTest, BehindAForwardedPortItIsLookedAtAndSteered) {
+  const WebServer server(Options());
+  const std::string token = "X-Shoal-Token: " + server.token() + "\r\n";
+  const auto ask = [&](const std::string& line, const std::string& host, const std::string& more) {
+    return AskPage(server.port(), line + " HTTP/1.1\r\nHost: " + host + "\r\n" + more);
+  };
+  const auto order = [&](const std::string& host, const std::string& origin) {
+    return ask("POST /api/runs/reach/order", host,
+               token + "Origin: " + origin + "\r\nContent-Length: 2\r\n\r\n{}");
+  };
+  for (const std::string host : {"127.0.0.1:18470", "localhost:18470"}) {
+    EXPECT_THAT(ask("GET /?token=" + server.token(), host, "\r\n"), StartsWith("HTTP/1.1 200"));
+    EXPECT_THAT(order(host, "http://" + host), StartsWith("HTTP/1.1 400")) << host;  // no verb
+  }
+  // Another page that is forwarded to the same desk is none of ours.
+  EXPECT_THAT(order("127.0.0.1:18470", "http://127.0.0.1:18471"), StartsWith("HTTP/1.1 403"));
+}
+
 TEST_F(WebServerTest, AtAnotherAddressEverythingTakesTheToken) {
   // Every address of this host: not loopback alone, though a test reaches it there.
   const WebServer server(Options("0.0.0.0"));

@@ -218,6 +218,12 @@ TEST_F(HindsightTest, WhatItCannotServeIsRefusedByName) {
   EXPECT_THAT(Refusal([](RunConfig& r) { r.config.replay.capacity = 305; }),
               HasSubstr("expected at least 306"));
   EXPECT_EQ(Refusal([](RunConfig& r) { r.config.replay.capacity = 306; }), "");
+  EXPECT_THAT(Refusal([](RunConfig& r) {  // a goal record for each episode
+                r.spec.goal_picture = true;
+                r.spec.blocks[2].observed = false;
+                r.config.replay.capacity = 311;
+              }),
+              HasSubstr("expected at least 312"));
   EXPECT_THAT(Refusal([](RunConfig& r) {  // 41 first steps an episode: 3 episodes and 4
                 r.config.replay.capacity = 356;
                 r.config.replay.n_step = 10;

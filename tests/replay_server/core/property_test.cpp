@@ -7,6 +7,8 @@
 #include <memory>
 #include <optional>
 #include <set>
+#include <string>
+#include <vector>
 
 #include "replay_server/core/hindsight.h"
 #include "replay_server/core/replay_core.h"
@@ -23,6 +25,7 @@ constexpr double kThreshold = 1;
 struct Case {
   int stack, n_step;
   std::optional<HindsightGoal> hindsight{};
+  bool goal_pictures = false;
 };
 
 // Goals are points of the plane; the script's are spread over [-2, 2].
@@ -35,6 +38,11 @@ tasks::Task TinyTask() {
   description.reward = tasks::RewardKind::kSparse;
   description.distance_threshold = kThreshold;
   return tasks::Task(description);
+}
+
+ObservationSpec SpecOf(const Case& kind) {
+  const ObservationSpec spec = TinySpec(kind.stack);
+  return kind.goal_pictures ? WithGoalPicture(spec) : spec;
 }
 
 // Knows what it has been told of.
@@ -53,18 +61,21 @@ class KeptSelector final : public Selector {
 class History {
  public:
   History(const Case& kind, uint64_t capacity, uint64_t seed)
-      : spec_(TinySpec(kind.stack)),
+      : spec_(SpecOf(kind)),
         layout_(spec_),
         ring_(spec_, {.file = {}, .capacity = capacity, .run = "history"}),
         sessions_(ring_.sessions()),
         index_(ring_, {.stack = kind.stack,
                        .n_step = kind.n_step,
-                       .whole_episodes = kind.hindsight.has_value()}),
+                       .whole_episodes = kind.hindsight.has_value(),
+                       .goal_pictures = kind.goal_pictures}),
         intake_(std::in_place, spec_.Hash(), &ring_, &sessions_, &index_),
         oracle_{.capacity = capacity,
                 .stack = kind.stack,
                 .n_step = kind.n_step,
-                .whole_episodes = kind.hindsight.has_value()},
+                .whole_episodes = kind.hindsight.has_value(),
+                .goal_pictures = kind.goal_pictures},
+        privileged_(kind.goal_pictures ? Names{"desired_goal"} : Names{}),
         hindsight_(kind.hindsight),
         random_(seed) {
     index_.SetSelector(&kept_);
@@ -88,6 +99,7 @@ class History {
     for (uint64_t id = 1; id <= oracle_.all.size(); ++id) {
       ASSERT_EQ(index_.Sampleable(id), oracle_.Sampleable(id)) << "record " << id;
       sampleable += oracle_.Sampleable(id) ? 1 : 0;
+      without_goal_ += LacksItsGoalAlone(id) ? 1 : 0;
       ASSERT_EQ(kept_.ids.contains(id), oracle_.Sampleable(id)) << "told of record " << id;
     }
     ASSERT_EQ(index_.sampleable(), sampleable);
@@ -105,11 +117,12 @@ class History {
     const auto plan =
         DrawPlan({.batch = kBatch}, &selector, relabeller ? &*relabeller : nullptr, &random_);
     ASSERT_TRUE(plan.has_value());
-    const BatchSchema schema(spec_, {.batch = kBatch});
+    const BatchSchema schema(spec_, {.batch = kBatch, .privileged = privileged_});
     const std::unique_ptr<void, decltype(&std::free)> memory(
         std::aligned_alloc(64, schema.total_bytes()), &std::free);
     const BatchView view = schema.View(static_cast<uint8_t*>(memory.get()));
-    BatchGather(ring_, index_, spec_, {.steps = oracle_.n_step, .discount = kDiscount}, &goals_)
+    BatchGather(ring_, index_, spec_, {.steps = oracle_.n_step, .discount = kDiscount}, &goals_,
+                privileged_)
         .Gather(*plan, view);
     for (size_t b = 0; b < kBatch; ++b) CheckElement(plan->elements[b], b, view);
   }
@@ -122,8 +135,12 @@ class History {
   // Samples with a goal of hindsight, and with one achieved before the sample began.
   uint64_t relabelled() const { return relabelled_; }
   uint64_t goals_before() const { return goals_before_; }
+  // Steps that are stored with all that they need but their episode's goal record.
+  uint64_t without_goal() const { return without_goal_; }
 
  private:
+  using Names = std::vector<std::string>;
+
   struct Actor {
     std::unique_ptr<RecordScript> script;
     uint64_t next = 1;  // first sequence not dealt with
@@ -188,8 +205,9 @@ class History {
       reward += std::pow(kDiscount, k) * Earned(step, element.goal);
       CheckContinues(oracle_.all[step.prev - 1], last);
     }
-    CheckStack(*oracle_.Stack(first.prev), view.obs_frames, b);
-    CheckStack(*oracle_.Stack(steps.back()), view.next_obs_frames, b);
+    const uint64_t shown = element.goal != 0 ? element.goal : oracle_.Episode(id).front();
+    CheckInput(*oracle_.Stack(first.prev), shown, view.obs_frames, b);
+    CheckInput(*oracle_.Stack(steps.back()), shown, view.next_obs_frames, b);
     if (steps.size() < static_cast<size_t>(oracle_.n_step)) ++short_samples_;
     if (before.header().index == 0) ++first_frame_repeats_;
     ASSERT_FLOAT_EQ(view.reward[b], static_cast<float>(reward));
@@ -201,6 +219,14 @@ class History {
     ExpectFloats(layout_.Action(first.bytes.data()), view.action, b);
     ExpectFloats(Observed(before, element.goal), view.obs_vector, b);
     ExpectFloats(Observed(last, element.goal), view.next_obs_vector, b);
+    if (!spec_.goal_picture) return;
+    ExpectFloats(Wanted(before, element.goal), view.obs_privileged, b);
+    ExpectFloats(Wanted(last, element.goal), view.next_obs_privileged, b);
+  }
+
+  bool LacksItsGoalAlone(uint64_t id) const {
+    return spec_.goal_picture && oracle_.Steps(id) && !oracle_.Holds(oracle_.Episode(id).front()) &&
+           oracle_.Stack(oracle_.all[id - 1].prev);
   }
 
   // Of the episode that the sample is of, stored, and where the kind of hindsight says.
@@ -223,13 +249,21 @@ class History {
     return std::sqrt(x * x + y * y) > kThreshold ? -1.0f : 0.0f;
   }
 
-  // Of the script's three blocks of 2 numbers the second, what was achieved, is recorded only.
+  // Of the script's three blocks of 2 numbers the second, what was achieved, is recorded only; so
+  // is the third, what is wanted, where a picture shows it.
   std::vector<float> Observed(const Oracle::Stored& stored, uint64_t goal) const {
     const auto all = layout_.Vector(stored.bytes.data());
+    std::vector<float> observed{all[0], all[1]};
+    if (spec_.goal_picture) return observed;
+    const std::vector<float> wanted = Wanted(stored, goal);
+    observed.insert(observed.end(), wanted.begin(), wanted.end());
+    return observed;
+  }
+  std::vector<float> Wanted(const Oracle::Stored& stored, uint64_t goal) const {
     const auto of_goal =
         layout_.Vector(goal == 0 ? stored.bytes.data() : oracle_.all[goal - 1].bytes.data());
     const auto wanted = of_goal.subspan(goal == 0 ? 4 : 2, 2);
-    return {all[0], all[1], wanted[0], wanted[1]};
+    return {wanted.begin(), wanted.end()};
   }
 
   // Never across an episode's end: `before` is of the same episode and did not end it.
@@ -239,15 +273,16 @@ class History {
     ASSERT_EQ(before.header().flags & (kTerminated | kTruncated), 0);
   }
 
-  // `newest_first` ids against element b of `frames`, which has the oldest frame first.
-  void CheckStack(const std::vector<uint64_t>& newest_first, std::span<const uint8_t> frames,
-                  size_t b) {
+  // `newest_first` ids, and the one that shows the goal, against element b of `frames`, which has
+  // the oldest frame first and the goal last.
+  void CheckInput(std::vector<uint64_t> newest_first, uint64_t goal,
+                  std::span<const uint8_t> frames, size_t b) {
     const size_t frame_bytes = static_cast<size_t>(layout_.frame_bytes());
-    const size_t stack = newest_first.size();
-    for (size_t k = 0; k < stack; ++k) {
-      const auto expected =
-          layout_.Frame(oracle_.all[newest_first[stack - 1 - k] - 1].bytes.data());
-      const auto actual = frames.subspan((b * stack + k) * frame_bytes, frame_bytes);
+    std::vector<uint64_t> ids(newest_first.rbegin(), newest_first.rend());
+    if (spec_.goal_picture) ids.push_back(goal);
+    for (size_t k = 0; k < ids.size(); ++k) {
+      const auto expected = layout_.Frame(oracle_.all[ids[k] - 1].bytes.data());
+      const auto actual = frames.subspan((b * ids.size() + k) * frame_bytes, frame_bytes);
       ASSERT_TRUE(std::ranges::equal(expected, actual)) << "frame " << k << " of element " << b;
     }
   }
@@ -263,13 +298,15 @@ class History {
   EpisodeIndex index_;
   std::optional<Intake> intake_;
   Oracle oracle_;
-  const GoalChange goals_{spec_, TinyTask()};
+  const Names privileged_;
+  const GoalChange goals_{spec_, TinyTask(), privileged_};
   const std::optional<HindsightGoal> hindsight_;
   KeptSelector kept_;
   Random random_;
   std::vector<Actor> actors_;  // the newest session of each
   uint64_t last_session_ = 0;
-  uint64_t first_frame_repeats_ = 0, short_samples_ = 0, relabelled_ = 0, goals_before_ = 0;
+  uint64_t first_frame_repeats_ = 0, short_samples_ = 0, relabelled_ = 0, goals_before_ = 0,
+           without_goal_ = 0;
 };
 
 class ReplayProperty : public testing::TestWithParam<Case> {};
@@ -288,14 +325,16 @@ TEST_P(ReplayProperty, AgreesWithAnOracleThatKeepsEverything) {
     EXPECT_EQ(history.short_samples() > 0, GetParam().n_step > 1);
     EXPECT_EQ(history.relabelled() > 0, GetParam().hindsight.has_value());
     EXPECT_EQ(history.goals_before() > 0, GetParam().hindsight == HindsightGoal::kEpisode);
+    EXPECT_EQ(history.without_goal() > 0, GetParam().goal_pictures);
   }
 }
 
 std::string CaseName(const testing::TestParamInfo<Case>& info) {
   static constexpr const char* kNames[] = {"Future", "Final", "Episode"};
-  const auto& [stack, n_step, hindsight] = info.param;
+  const auto& [stack, n_step, hindsight, goal_pictures] = info.param;
   return "Stack" + std::to_string(stack) + "NStep" + std::to_string(n_step) +
-         (hindsight ? kNames[static_cast<int>(*hindsight)] : "");
+         (hindsight ? kNames[static_cast<int>(*hindsight)] : "") +
+         (goal_pictures ? "GoalPictures" : "");
 }
 
 INSTANTIATE_TEST_SUITE_P(StacksAndSteps, ReplayProperty,
@@ -303,7 +342,10 @@ INSTANTIATE_TEST_SUITE_P(StacksAndSteps, ReplayProperty,
                                          Case{1, 1, HindsightGoal::kFuture},
                                          Case{2, 3, HindsightGoal::kFuture},
                                          Case{1, 1, HindsightGoal::kFinal},
-                                         Case{3, 1, HindsightGoal::kEpisode}),
+                                         Case{3, 1, HindsightGoal::kEpisode}, Case{1, 1, {}, true},
+                                         Case{3, 2, {}, true},
+                                         Case{1, 1, HindsightGoal::kFuture, true},
+                                         Case{2, 3, HindsightGoal::kEpisode, true}),
                          CaseName);
 
 }  // namespace

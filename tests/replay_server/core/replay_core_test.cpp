@@ -273,6 +273,23 @@ TEST_F(ReplayCoreTest, AServerWithoutItsPredecessorsRingTakesItsActorsOver) {
   EXPECT_FALSE(core_->ring_replaced()) << "nobody was there before";
 }
 
+TEST_F(ReplayCoreTest, ARingThatNeverHoldsEnoughSamplesIsRefusedBeforehand) {
+  run_.config.replay.n_step = 20;
+  run_.config.envs_per_actor = 4;
+  run_.config.replay.min_size = 32;
+  run_.config.replay.capacity = 32 + 4 * (20 + run_.spec.stack);
+  EXPECT_NO_THROW(CheckSampling(run_));
+  --run_.config.replay.capacity;
+  try {
+    CheckSampling(run_);
+    FAIL();
+  } catch (const Error& e) {
+    EXPECT_THAT(e.what(), HasSubstr("replay.capacity"));
+    EXPECT_THAT(e.what(), HasSubstr("replay.n_step = 20"));
+    EXPECT_EQ(e.exit_code(), 2);
+  }
+}
+
 TEST_F(ReplayCoreTest, RefusesABandInWhichBothCouldWait) {
   run_.config.replay.samples_per_insert = 2;
   run_.config.replay.band = 10;
@@ -285,6 +302,7 @@ TEST_F(ReplayCoreTest, RefusesABandInWhichBothCouldWait) {
     EXPECT_THAT(e.what(), HasSubstr("at least 80"));
     EXPECT_EQ(e.exit_code(), 2);
   }
+  EXPECT_THROW(CheckSampling(run_), Error) << "before anything is started";
 }
 
 }  // namespace

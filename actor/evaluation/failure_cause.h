@@ -1,0 +1,84 @@
+// Why an episode failed, told from what its records hold: where the object was, where it should be.
+//
+//   p_0, p_t, p_T   achieved goal at the start, after step t, at the end      g   desired goal
+//   d_t = |p_t - g|                                                           D   task's threshold
+//   along = (p_T - p_0) (g - p_0) / |g - p_0|                                 all in m
+//
+// Of a failed episode, the first that fits; the z axis points up:
+//
+//   with an object (a block `object` is recorded; p is its position)
+//     left_the_table      some p_t is 5 cm or more below p_0
+//     never_touched       no p_t is 1 cm or more from p_0
+//     not_lifted          g is more than D above p_0, and no p_t 3 cm above p_0
+//     dropped             g is more than D above p_0, and p_T is within 1 cm of p_0's height
+//     tipped              object_angle turned its up axis by 30 degrees or more away from upright
+//     passed_the_goal     along exceeds |g - p_0| by D or more
+//     reached_then_left   some d_t < D
+//     moved_away          d_T >= d_0
+//     beside_the_goal     p_T is farther from the line from p_0 to g than it lacks along it
+//     stopped_short       else
+//   without
+//     reached_then_left, moved_away, stopped_short
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "common/spec/observation_spec.h"
+#include "common/tasks/task.h"
+
+namespace shoal::actor {
+
+enum class FailureCause {
+  kLeftTheTable,
+  kNeverTouched,
+  kNotLifted,
+  kDropped,
+  kTipped,
+  kPassedTheGoal,
+  kReachedThenLeft,
+  kMovedAway,
+  kBesideTheGoal,
+  kStoppedShort,
+};
+
+// "left_the_table", as files have it.
+std::string_view NameOf(FailureCause cause);
+
+// What has been seen of one episode, observation by observation. One thread.
+class FailureFacts {
+ public:
+  // Tasks with goals of up to three numbers in m; `applies()` is false for others.
+  FailureFacts(const ObservationSpec& spec, const tasks::Task& task);
+
+  bool applies() const { return applies_; }
+  // The causes that an episode of the task can have, in the order in which they are asked.
+  std::span<const FailureCause> causes() const;
+
+  // `vector` (R): every block, as Environment writes it.
+  void Begin(std::span<const float> vector);
+  void Step(std::span<const float> vector);
+  // Of an episode that has ended without success. CHECK: applies, begun.
+  FailureCause Cause() const;
+
+ private:
+  using Point = std::array<double, 3>;  // goals of fewer numbers: zeros behind
+
+  Point Read(std::span<const float> vector, const ObservationSpec::Range& block) const;
+  bool Lifts() const;  // the goal lies above the table
+  FailureCause CauseOfObject() const;
+
+  bool applies_ = false, has_object_ = false;
+  ObservationSpec::Range achieved_, desired_;
+  std::optional<ObservationSpec::Range> angle_;
+  double threshold_ = 0;  // D
+  Point start_{}, now_{}, goal_{};
+  double nearest_ = 0, first_distance_ = 0;               // d_t
+  double farthest_moved_ = 0, highest_ = 0, lowest_ = 0;  // of p_t, from p_0
+  double most_tilted_ = 0;                                // rad
+};
+
+}  // namespace shoal::actor

@@ -1,0 +1,70 @@
+#include "common/run_folder/update_page.h"
+
+#include <fcntl.h>
+#include <sys/mman.h>
+
+#include <atomic>
+#include <cerrno>
+#include <cstring>
+#include <string>
+
+#include "common/base/descriptor.h"
+#include "common/base/error.h"
+#include "common/base/files.h"
+
+namespace shoal {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kMagic[9] = "SHOALUP1";
+
+fs::path PageOf(const fs::path& run) { return run / "learner.page"; }
+
+UpdatePageContent ReadPage(const fs::path& path) {
+  const std::string bytes = ReadFile(path);
+  UpdatePageContent content{};
+  if (bytes.size() != sizeof content || std::memcmp(bytes.data(), kMagic, 8) != 0) {
+    throw RuntimeError("'{}' is not a page of a learner (expected {} and two u64)", path.string(),
+                       kMagic);
+  }
+  std::memcpy(&content, bytes.data(), sizeof content);
+  return content;
+}
+
+}  // namespace
+
+UpdatePage::UpdatePage(const fs::path& run, uint64_t restored) {
+  const fs::path path = PageOf(run);
+  UpdatePageContent content{};
+  if (fs::exists(path)) {
+    content = ReadPage(path);
+  } else {
+    std::memcpy(content.magic, kMagic, 8);
+  }
+  if (content.done > restored) content.lost += content.done - restored;
+  content.done = restored;
+  // A complete page appears under its name, or none.
+  WriteFileAtomically(path, std::string(reinterpret_cast<const char*>(&content), sizeof content));
+  const Descriptor file(open(path.c_str(), O_RDWR | O_CLOEXEC));
+  void* mapped = file.get() < 0 ? MAP_FAILED
+                                : mmap(nullptr, sizeof content, PROT_READ | PROT_WRITE, MAP_SHARED,
+                                       file.get(), 0);
+  if (mapped == MAP_FAILED) {
+    throw RuntimeError("cannot map '{}': {}", path.string(), std::strerror(errno));
+  }
+  content_ = static_cast<UpdatePageContent*>(mapped);
+}
+
+UpdatePage::~UpdatePage() { munmap(content_, sizeof *content_); }
+
+void UpdatePage::SetDone(uint64_t updates) {
+  std::atomic_ref(content_->done).store(updates, std::memory_order_release);
+}
+
+uint64_t ReadLostUpdates(const fs::path& run) {
+  const fs::path path = PageOf(run);
+  return fs::exists(path) ? ReadPage(path).lost : 0;
+}
+
+}  // namespace shoal
