@@ -28,8 +28,8 @@ int Run(int argc, char** argv) {
   app.add_option("--only", only, "rows whose stage contains this text");
   if (const auto exit_code = shoal::ParseCommandLine(&app, argc, argv)) return *exit_code;
   shoal::nn::SetThreads(threads);
-  shoal::learner::EnsurePassiveOpenMp(threads, argv);  // as shoal-learner does: no spinning threads
 
+  shoal::learner::EnsurePassiveOpenMp(threads, argv);  // as shoal-learner does: no spinning threads
   shoal::InstallStopSignals();  // an interrupted one takes its processes and files with it
 
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
