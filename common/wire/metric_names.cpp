@@ -21,7 +21,7 @@ constexpr Metric kMetrics[] = {
     {"coordinator", "budget_env_steps", kGauge, "env steps", "the run ends after these"},
     {"coordinator", "actors", kGauge, "", "actors asked for"},
     {"coordinator", "stop_success", kGauge, "", "success rate at which the run ends"},
-    {"coordinator", "stop_evaluations", kGauge, "", "newest evaluations that must reach it, pooled"},
+    {"coordinator", "stop_evaluations", kGauge, "", "newest evaluations pooled for it"},
     {"coordinator", "usable_cores", kGauge, "cores", "that the coordinator may use"},
     {"coordinator", "env_steps_per_second", kGauge, "env steps/s",
      "of all actors together, over the last half minute"},
