@@ -1,6 +1,7 @@
 #include "replay_server/core/random_shift.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -11,6 +12,7 @@ namespace shoal::replay {
 namespace {
 
 constexpr int kWord = 8;  // bytes that a border is written with
+static_assert(std::endian::native == std::endian::little, "a word's first byte is its lowest");
 
 uint64_t LoadWord(const uint8_t* from) {
   uint64_t word;
