@@ -28,7 +28,7 @@ void WriteCheckpoint(const std::filesystem::path& parent, const CheckpointState&
 Checkpoint ReadCheckpoint(const std::filesystem::path& folder, uint64_t spec_hash) {
   const CheckpointFiles files = ReadCheckpointFiles(folder, spec_hash);
   return {.state = files.state,
-          .tensors = nn::ReadSafetensors(files.learner, (folder / "learner.safetensors").string()),
+          .tensors = nn::ReadSafetensors(files.learner, (folder / kLearnerFile).string()),
           .folder = folder};
 }
 

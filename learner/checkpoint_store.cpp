@@ -10,6 +10,7 @@
 #include "common/base/files.h"
 #include "common/base/log.h"
 #include "common/config/config_io.h"
+#include "common/run_folder/run_file_names.h"
 
 namespace shoal::learner {
 namespace {
@@ -19,7 +20,7 @@ namespace fs = std::filesystem;
 }  // namespace
 
 CheckpointStore::CheckpointStore(const fs::path& run_folder, const RunConfig& run)
-    : folder_(run_folder / "checkpoints"), run_(run), config_hash_(ConfigHash(run.config)) {
+    : folder_(run_folder / kCheckpointFolder), run_(run), config_hash_(ConfigHash(run.config)) {
   MakeFolders(folder_);
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(folder_)) {
@@ -88,7 +89,7 @@ void CheckpointStore::Remove(const std::string& name) {
 }
 
 nlohmann::ordered_json CheckpointStore::Meta(const CheckpointState& state) const {
-  return {{"schema", "shoal-checkpoint-meta-1"},
+  return {{"schema", kCheckpointMetaSchema},
           {"checkpoint", CheckpointName(state.updates)},
           {"run", run_.config.run_name},
           {"task", run_.config.task},

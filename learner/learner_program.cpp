@@ -14,6 +14,7 @@
 #include "common/config/session_number.h"
 #include "common/dds/subscriber.h"
 #include "common/nn/encoder_weights.h"
+#include "common/run_folder/run_file_names.h"
 #include "learner/agent/algorithms.h"
 #include "learner/agent/encoder_start.h"
 #include "learner/agent/network_start.h"
@@ -65,7 +66,7 @@ class Learner {
                        .checkpoints = checkpoints_,
                        .pending_evaluations = pending_evaluations_,
                        .control = control_,
-                       .update_page = &update_page_},
+                       .update_page = update_page_},
                       restored_);
     if (loop.Run() == TrainingLoop::End::kStopped) return 0;
     log::Failure("the coordinator is gone: no heartbeat; a checkpoint was written; leaving");
@@ -84,10 +85,11 @@ class Learner {
     const std::string warning =
         CheckPrecision(*checkpoint, run_.config.learner.precision, precision_);
     if (!warning.empty()) log::Warning("{}", warning);
-    agent_->Restore(checkpoint->tensors, (checkpoint->folder / "learner.safetensors").string());
+    agent_->Restore(checkpoint->tensors, (checkpoint->folder / kLearnerFile).string());
     if (agent_->updates() != checkpoint->state.updates) {
-      throw RuntimeError("'{}': parameters of update {}, but state.json says {}",
-                         checkpoint->folder.string(), agent_->updates(), checkpoint->state.updates);
+      throw RuntimeError("'{}': parameters of update {}, but {} says {}",
+                         checkpoint->folder.string(), agent_->updates(), kStateFile,
+                         checkpoint->state.updates);
     }
     log::Info("restored {}: {} updates, {} env steps", checkpoint->folder.filename().string(),
               checkpoint->state.updates, checkpoint->state.env_steps);

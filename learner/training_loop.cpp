@@ -83,7 +83,7 @@ bool TrainingLoop::TryTrain() {
                          DescribeNonFinite(outcome.figures, parts_.agent.updates()),
                          saved_updates_ ? CheckpointName(*saved_updates_) : "none");
   }
-  if (parts_.update_page != nullptr) parts_.update_page->SetDone(parts_.agent.updates());
+  parts_.update_page.SetDone(parts_.agent.updates());
   AfterUpdate(*batch, outcome.figures);
   waiting_since_ = Now();
   return true;

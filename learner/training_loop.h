@@ -50,7 +50,7 @@ class TrainingLoop {
     CheckpointStore& checkpoints;
     PendingEvaluations& pending_evaluations;
     ControlState& control;
-    UpdatePage* update_page = nullptr;  // counts for whoever comes after a kill; null: nobody
+    UpdatePage& update_page;  // counts for whoever comes after a kill
     std::chrono::milliseconds drain_idle = kDrainIdle;
   };
 

@@ -20,8 +20,9 @@ Seat::Seat(std::unique_ptr<worlds::Environment> environment, PolicyInput input)
   CHECK(input.vector.size() == size_t(spec.VectorSize())) << input.vector.size();
 }
 
-float Seat::Begin(uint64_t stream_key, worlds::ObservationOut out) {
+float Seat::Begin(uint64_t stream_key, worlds::ObservationOut out, int cut_after) {
   figures_ = {};
+  cut_after_ = cut_after;
   last_action_.clear();
   const float distance = environment_->Reset(stream_key, out);
   const auto masses = environment_->drawn_masses();
@@ -37,7 +38,8 @@ float Seat::Begin(uint64_t stream_key, worlds::ObservationOut out) {
 
 worlds::StepResult Seat::Step(std::span<const float> action, worlds::ObservationOut out) {
   CHECK(running_) << "a step without an episode";
-  const worlds::StepResult result = environment_->Step(action, out);
+  worlds::StepResult result = environment_->Step(action, out);
+  if (figures_.length + 1 == cut_after_) result.truncated = !result.terminated;
   stack_.Push(out.frame);
   observed_.Copy(out.vector, input_.vector);
   running_ = !result.terminated && !result.truncated;

@@ -46,11 +46,14 @@ class Seat {
   Seat(std::unique_ptr<worlds::Environment> environment, PolicyInput input);
 
   // Starts the episode of a stream key; the observation is written to `out`, with every block, and
-  // what the policy sees of it into the policy's input. Returns the distance at the start. Errors:
-  // as of Environment.
-  float Begin(uint64_t stream_key, worlds::ObservationOut out);
+  // what the policy sees of it into the policy's input. After `cut_after` env steps it is
+  // truncated, as by a time limit, if it still runs; 0 = its environment ends it. Returns the
+  // distance at the start. Errors: as of Environment.
+  float Begin(uint64_t stream_key, worlds::ObservationOut out, int cut_after = 0);
   // One env step of the running episode, which it may end.
   worlds::StepResult Step(std::span<const float> action, worlds::ObservationOut out);
+  // Of the episode that runs or has just ended, as Begin was told; 0 = it is whole.
+  int cut_after() const { return cut_after_; }
   // Forgets a running episode.
   void Abandon() { running_ = false; }
 
@@ -71,6 +74,7 @@ class Seat {
   FrameStack stack_;  // the first K*C channels of the input
   EpisodeFigures figures_;
   std::vector<float> last_action_;  // empty before the episode's first
+  int cut_after_ = 0;
   bool running_ = false;
   SeatListener* listener_ = nullptr;
 };

@@ -12,6 +12,7 @@
 #include "common/base/error.h"
 #include "common/base/stop.h"
 #include "common/checkpoint/checkpoint_files.h"
+#include "common/run_folder/run_file_names.h"
 #include "common/tasks/task_registry.h"
 
 namespace shoal::actor {
@@ -19,11 +20,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// With the run's threshold.
 tasks::Task PlayedTask(const Config& config) {
-  const tasks::Task& task = tasks::FindTask(config.task);
-  const double threshold = config.distance_threshold;
-  return threshold > 0 ? task.WithThreshold(threshold) : task;
+  return tasks::FindTask(config.task, config.distance_threshold);
 }
 
 ordered_json NumberOrNull(double value) {
@@ -150,7 +148,7 @@ ordered_json EvaluationJson(const RunConfig& run, const EvaluationLabel& label,
   const bool baseline = label.policy != "checkpoint";
   const ordered_json version{{"session", label.version.session}, {"update", label.version.update}};
   ordered_json object{
-      {"schema", "shoal-eval-1"},
+      {"schema", kEvaluationSchema},
       {"task", run.config.task},
       {"policy", label.policy},
       {"checkpoint", baseline ? ordered_json(nullptr) : ordered_json(label.checkpoint)},

@@ -5,15 +5,19 @@
 #include "common/base/check.h"
 #include "common/base/error.h"
 #include "common/base/random.h"
+#include "common/config/sending_window.h"
+#include "common/tasks/task_registry.h"
 #include "common/wire/scoped_seconds.h"
 
 namespace shoal::actor {
 
 Rollout::Options Rollout::Options::Of(const Config& config, uint32_t first_env) {
+  const tasks::Task& task = tasks::FindTask(config.task);
   return {.seed = config.seed,
           .first_env = first_env,
           .own_random_steps = RandomStepsOfActor(config),
-          .run_random_steps = static_cast<uint64_t>(config.exploration.random_steps)};
+          .run_random_steps = static_cast<uint64_t>(config.exploration.random_steps),
+          .episode_steps = task.EnvStepsPerEpisode(task.ActionRepeat(config.action_repeat))};
 }
 
 Rollout::Rollout(const Options& options, const ObservationSpec& spec,
@@ -34,12 +38,10 @@ Rollout::Rollout(const Options& options, const ObservationSpec& spec,
 
 bool Rollout::TryStep() {
   const int envs = static_cast<int>(slots_.size());
-  if (sink_.Room() < MostRecords() * slots_.size()) return false;
+  if (sink_.Room() < size_t(MostRecordsOfStep(goal_pictures_)) * slots_.size()) return false;
   {
     const ScopedSeconds timed(environment_seconds_);
-    for (int e = 0; e < envs; ++e) {
-      if (!slots_[size_t(e)].seat.running()) BeginEpisode(e);
-    }
+    BeginEpisodes();
   }
   {
     const ScopedSeconds timed(inference_seconds_);
@@ -73,7 +75,21 @@ StageSeconds Rollout::seconds() const {
   return seconds;
 }
 
-void Rollout::BeginEpisode(int e) {
+void Rollout::BeginEpisodes() {
+  const auto running = [](const Slot& slot) { return slot.seat.running(); };
+  const bool together = std::ranges::none_of(slots_, running);
+  for (int e = 0; e < static_cast<int>(slots_.size()); ++e) {
+    if (!running(slots_[size_t(e)])) BeginEpisode(e, together ? CutAfter(e) : 0);
+  }
+}
+
+int Rollout::CutAfter(int e) const {
+  const auto envs = static_cast<int64_t>(slots_.size());
+  const int64_t steps = (int64_t{options_.episode_steps} * (e + 1) + envs - 1) / envs;
+  return steps < options_.episode_steps ? static_cast<int>(steps) : 0;
+}
+
+void Rollout::BeginEpisode(int e, int cut_after) {
   Slot& slot = slots_[size_t(e)];
   slot.episode = made_.TakeEpisode(static_cast<uint32_t>(e));
   slot.actions.clear();
@@ -82,7 +98,7 @@ void Rollout::BeginEpisode(int e) {
   uint8_t* record = sink_.BeginRecord();
   RecordHeader& header = RecordLayout::Header(record);
   header.distance = slot.seat.Begin(StreamKeyOf(StreamRole::kTrainEnvironment, e),
-                                    {layout_.Frame(record), layout_.Vector(record)});
+                                    {layout_.Frame(record), layout_.Vector(record)}, cut_after);
   if (goal_pictures_) {
     // The picture is known once the reset is: the reset waits while the goal goes first.
     reset_.assign(record, record + layout_.record_bytes());
@@ -121,7 +137,7 @@ void Rollout::StepOne(int e) {
       static_cast<uint8_t>((result.terminated ? kTerminated : 0) |
                            (result.truncated ? kTruncated : 0) | (result.success ? kSuccess : 0));
   Publish(record);
-  if (!slot.seat.running()) episodes_.Add(slot.seat.figures());
+  if (!slot.seat.running() && slot.seat.cut_after() == 0) episodes_.Add(slot.seat.figures());
 }
 
 RolloutState Rollout::State() const {
@@ -132,6 +148,7 @@ RolloutState Rollout::State() const {
     state.episodes.push_back(
         {.episode = slot.episode,
          .running = slot.seat.running(),
+         .cut_after = slot.seat.running() ? slot.seat.cut_after() : 0,
          .noise = selector_.NoiseOf(e),
          .actions = slot.seat.running() ? slot.actions : std::vector<float>()});
   }
@@ -155,7 +172,7 @@ void Rollout::PlayAgain(int e, const EpisodeState& state) {
   std::vector<uint8_t> memory(static_cast<size_t>(layout_.record_bytes()));
   const worlds::ObservationOut unread{layout_.Frame(memory.data()), layout_.Vector(memory.data())};
   slot.episode = state.episode;
-  slot.seat.Begin(StreamKeyOf(StreamRole::kTrainEnvironment, e), unread);
+  slot.seat.Begin(StreamKeyOf(StreamRole::kTrainEnvironment, e), unread, state.cut_after);
   const auto action_size = static_cast<size_t>(layout_.action_size());
   for (size_t at = 0; at + action_size <= state.actions.size(); at += action_size) {
     slot.seat.Step({state.actions.data() + at, action_size}, unread);

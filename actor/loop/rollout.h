@@ -1,5 +1,11 @@
 // E environments stepped together: reset, act, step, and one record each time.
 //
+// Resets take longer than steps, and all environments wait for one. Where all of them begin an
+// episode in the same step, as at the start, those episodes are cut short so that they end at
+// different steps, and so do those that follow:
+//
+//   environment e of E truncates it after ceil(L (e + 1) / E) of the L env steps of a whole one.
+//
 // Borrows everything it is built from. One thread.
 #pragma once
 
@@ -35,6 +41,7 @@ class Rollout {
     // reached first, the one by its own env steps or the other by the run's, ends the warm-up: so
     // an actor that was restarted or joined late does not begin anew.
     uint64_t own_random_steps = 0, run_random_steps = 0;
+    int episode_steps = 0;  // L
 
     static Options Of(const Config& config, uint32_t first_env);
   };
@@ -60,6 +67,8 @@ class Rollout {
   // Of this actor, since the run's start where it was restored, else since its own.
   uint64_t env_steps() const { return env_steps_; }
   int64_t vector_steps() const { return static_cast<int64_t>(env_steps_ / slots_.size()); }
+  // Of all that ended but those that were to be cut short, however they ended: of these only the
+  // shortest would be whole.
   const EpisodeLog& episodes() const { return episodes_; }
   StageSeconds seconds() const;
 
@@ -70,10 +79,12 @@ class Rollout {
     std::vector<float> actions;  // of the running episode
   };
 
-  // That an environment may make in one step: a goal, a reset and a step.
-  size_t MostRecords() const { return goal_pictures_ ? 3 : 2; }
   bool WarmingUp() const;
-  void BeginEpisode(int e);
+  // Begins an episode wherever none runs.
+  void BeginEpisodes();
+  void BeginEpisode(int e, int cut_after);
+  // Of an episode that begins together with those of all others; 0 = it is not cut.
+  int CutAfter(int e) const;
   void StepOne(int e);
   void PlayAgain(int e, const EpisodeState& state);
   // Of the episode that local environment `e` plays.

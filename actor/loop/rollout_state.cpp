@@ -9,6 +9,7 @@
 #include "common/base/crc32.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/run_folder/run_file_names.h"
 
 namespace shoal::actor {
 namespace {
@@ -16,10 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-constexpr char kSchema[] = "shoal-rollout-2";
-
 fs::path FileOf(const fs::path& run, uint32_t actor) {
-  return run / "made" / fmt::format("actor-{}.rollout", actor);
+  return run / kMadeFolder / fmt::format("actor-{}.rollout", actor);
 }
 
 uint32_t Crc(const std::string& text) {
@@ -33,17 +32,16 @@ ordered_json ToJson(const EpisodeState& state) {
   for (const float action : state.actions) actions.push_back(std::bit_cast<uint32_t>(action));
   ordered_json carried = ordered_json::array();
   for (const double noise : state.noise.carried) carried.push_back(std::bit_cast<uint64_t>(noise));
-  return {{"episode", state.episode},
-          {"running", state.running},
-          {"noise", state.noise.stream},
-          {"carried_noise_bits", carried},
-          {"action_bits", actions}};
+  return {{"episode", state.episode},      {"running", state.running},
+          {"cut_after", state.cut_after},  {"noise", state.noise.stream},
+          {"carried_noise_bits", carried}, {"action_bits", actions}};
 }
 
 EpisodeState EpisodeFromJson(const ordered_json& json) {
   EpisodeState state;
   json.at("episode").get_to(state.episode);
   json.at("running").get_to(state.running);
+  json.at("cut_after").get_to(state.cut_after);
   json.at("noise").get_to(state.noise.stream);
   for (const ordered_json& bits : json.at("carried_noise_bits")) {
     state.noise.carried.push_back(std::bit_cast<double>(bits.get<uint64_t>()));
@@ -57,8 +55,8 @@ EpisodeState EpisodeFromJson(const ordered_json& json) {
 RolloutState Parse(const std::string& text, const std::string& source) {
   ordered_json json = ParseBoundedJson<ordered_json>(text);
   try {
-    if (!json.is_object() || json.at("schema") != kSchema) {
-      throw RuntimeError("'{}': expected an object of schema '{}'", source, kSchema);
+    if (!json.is_object() || json.at("schema") != kRolloutSchema) {
+      throw RuntimeError("'{}': expected an object of schema '{}'", source, kRolloutSchema);
     }
     const auto crc = json.at("crc32").get<uint32_t>();
     json.erase("crc32");
@@ -81,7 +79,7 @@ RolloutState Parse(const std::string& text, const std::string& source) {
 void WriteRolloutState(const fs::path& run, uint32_t actor, const RolloutState& state) {
   ordered_json episodes = ordered_json::array();
   for (const EpisodeState& episode : state.episodes) episodes.push_back(ToJson(episode));
-  ordered_json json{{"schema", kSchema},
+  ordered_json json{{"schema", kRolloutSchema},
                     {"session", state.session},
                     {"made", state.made},
                     {"env_steps", state.env_steps},

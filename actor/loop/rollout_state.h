@@ -2,7 +2,7 @@
 // the running episodes are named by their actions, from which they are played again, since physics
 // follows from the episode's stream and the actions alone.
 //
-// File RUN/made/actor-ID.rollout, JSON (schema shoal-rollout-2) with a CRC-32 of itself: written
+// File RUN/made/actor-ID.rollout, JSON (schema shoal-rollout-3) with a CRC-32 of itself: written
 // when an actor has left in order, taken away by its successor. A killed actor leaves none.
 #pragma once
 
@@ -18,6 +18,7 @@ namespace shoal::actor {
 struct EpisodeState {
   uint32_t episode = 0;
   bool running = false;
+  int cut_after = 0;              // env steps; 0 = the episode is not cut short
   ActionSelector::Noise noise{};  // now
   std::vector<float> actions;     // (length, A) of the running episode
 

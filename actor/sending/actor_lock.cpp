@@ -11,13 +11,14 @@
 #include "common/base/clock.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/run_folder/run_file_names.h"
 
 namespace shoal::actor {
 
 ActorLock::ActorLock(const std::filesystem::path& run, uint32_t actor,
                      std::chrono::seconds deadline, const std::function<bool()>& stop) {
-  MakeFolders(run / "made");
-  const std::filesystem::path path = run / "made" / fmt::format("actor-{}.lock", actor);
+  MakeFolders(run / kMadeFolder);
+  const std::filesystem::path path = run / kMadeFolder / fmt::format("actor-{}.lock", actor);
   fd_ = open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600);
   if (fd_ < 0) throw RuntimeError("cannot write '{}': {}", path.string(), std::strerror(errno));
   const SteadyTime end = Now() + deadline;

@@ -12,6 +12,7 @@
 
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/run_folder/run_file_names.h"
 
 namespace shoal::actor {
 namespace {
@@ -43,7 +44,7 @@ PageContent ReadPage(const std::filesystem::path& path) {
 std::vector<PageContent> ReadPages(const std::filesystem::path& run) {
   std::vector<std::filesystem::path> paths;
   std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(run / "made", error)) {
+  for (const auto& entry : std::filesystem::directory_iterator(run / kMadeFolder, error)) {
     if (entry.path().extension() == ".page") paths.push_back(entry.path());
   }
   std::sort(paths.begin(), paths.end());
@@ -80,8 +81,9 @@ MadePage::MadePage(const std::filesystem::path& run, uint32_t actor, uint64_t se
       next = std::max(next, old.next_episode[i]);
     }
   }
-  MakeFolders(run / "made");
-  const std::filesystem::path path = run / "made" / fmt::format("actor-{}-{}.page", actor, session);
+  MakeFolders(run / kMadeFolder);
+  const std::filesystem::path path =
+      run / kMadeFolder / fmt::format("actor-{}-{}.page", actor, session);
   std::error_code error_code;
   if (!std::filesystem::exists(path, error_code)) WritePage(path, page);
   const int fd = open(path.c_str(), O_RDWR | O_CLOEXEC);

@@ -47,7 +47,7 @@ void Size(const tasks::Block& block, std::vector<double>* exact, std::vector<flo
 WorldEnvironment::WorldEnvironment(const tasks::Task& task, std::unique_ptr<World> world,
                                    const Config& config, std::shared_ptr<RenderContext> render)
     : task_(task),
-      action_repeat_(config.action_repeat > 0 ? config.action_repeat : task.action_repeat()),
+      action_repeat_(task.ActionRepeat(config.action_repeat)),
       world_(std::move(world)),
       masses_(*world_, config.randomization.body_mass),
       render_(std::move(render)) {
@@ -236,9 +236,7 @@ StepResult WorldEnvironment::Step(std::span<const float> action, ObservationOut 
 
 std::unique_ptr<Environment> MakeEnvironment(const Config& config,
                                              std::shared_ptr<RenderContext> render) {
-  const tasks::Task& named = tasks::FindTask(config.task);
-  const tasks::Task task =
-      config.distance_threshold > 0 ? named.WithThreshold(config.distance_threshold) : named;
+  const tasks::Task task = tasks::FindTask(config.task, config.distance_threshold);
   CHECK(!config.observation.pixels || render != nullptr) << "pixels without a render context";
   if (!config.observation.pixels) render = nullptr;
   return std::make_unique<WorldEnvironment>(

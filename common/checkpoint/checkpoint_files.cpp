@@ -12,9 +12,11 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/bounded_json.h"
+#include "common/base/build_info.h"
 #include "common/base/crc32.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/base/one_line.h"
 
 namespace shoal {
 namespace {
@@ -22,10 +24,9 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-constexpr char kSchema[] = "shoal-checkpoint-1";
 constexpr char kPrefix[] = "step_";
-constexpr char kLearnerFile[] = "learner.safetensors";
-constexpr char kStateFile[] = "state.json";
+// Damage cannot be mended.
+constexpr char kInstead[] = "take another checkpoint";
 
 uint32_t Crc(std::string_view bytes) {
   return Crc32({reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()});
@@ -49,7 +50,7 @@ ordered_json FileEntry(const std::string& bytes) {
 }
 
 ordered_json ToJson(const CheckpointState& state) {
-  return {{"schema", kSchema},
+  return {{"schema", kStateSchema},
           {"updates", state.updates},
           {"env_steps", state.env_steps},
           {"request", state.request},
@@ -78,23 +79,29 @@ CheckpointState StateFromJson(const ordered_json& json) {
 ordered_json ReadStateObject(const fs::path& path) {
   const std::string file = path.string();
   ordered_json json = ParseBoundedJson<ordered_json>(ReadFile(path));
-  if (!json.is_object())
-    throw RuntimeError("'{}': not a JSON object (truncated?), or nested too deep", file);
+  if (!json.is_object()) {
+    throw RuntimeError("'{}': not a JSON object (truncated?), or nested too deep; {}", file,
+                       kInstead);
+  }
   const auto schema = json.find("schema");
-  if (schema == json.end() || *schema != kSchema) {
-    throw RuntimeError("'{}': schema {}, expected \"{}\"", file,
-                       schema == json.end() ? "missing" : schema->dump(), kSchema);
+  if (schema == json.end() || *schema != kStateSchema) {
+    const bool newer = schema != json.end() && schema->is_string() &&
+                       schema->get_ref<const std::string&>().starts_with("shoal-checkpoint-");
+    throw RuntimeError("'{}': schema {}, this is Shoal {}, which reads \"{}\": {}", file,
+                       schema == json.end() ? "missing" : Shortened(schema->dump(), 60),
+                       BuildVersion(), kStateSchema,
+                       newer ? "use the version that wrote it, or a newer one" : kInstead);
   }
   const auto stored = json.find("crc32");
   if (stored == json.end() || !stored->is_number_unsigned()) {
-    throw RuntimeError("'{}': key 'crc32' missing", file);
+    throw RuntimeError("'{}': key 'crc32' missing; {}", file, kInstead);
   }
   const auto expected = stored->get<uint64_t>();
   json.erase("crc32");
   const uint32_t found = Crc(json.dump());
   if (found != expected) {
-    throw RuntimeError("'{}': CRC-32 {:08x}, expected {:08x}: the file was altered", file, found,
-                       expected);
+    throw RuntimeError("'{}': CRC-32 {:08x}, expected {:08x}: the file was altered; {}", file,
+                       found, expected, kInstead);
   }
   return json;
 }
@@ -104,13 +111,13 @@ std::string ReadVerified(const fs::path& folder, const char* name, const ordered
   const std::string file = (folder / name).string();
   std::string bytes = ReadFile(file);
   if (bytes.size() != entry.at("bytes").get<uint64_t>()) {
-    throw RuntimeError("'{}': {} bytes, expected {}: truncated or replaced", file, bytes.size(),
-                       entry.at("bytes").get<uint64_t>());
+    throw RuntimeError("'{}': {} bytes, expected {}: truncated or replaced; {}", file, bytes.size(),
+                       entry.at("bytes").get<uint64_t>(), kInstead);
   }
   const uint32_t found = Crc(bytes), expected = entry.at("crc32").get<uint32_t>();
   if (found != expected) {
-    throw RuntimeError("'{}': CRC-32 {:08x}, expected {:08x}: the file was altered", file, found,
-                       expected);
+    throw RuntimeError("'{}': CRC-32 {:08x}, expected {:08x}: the file was altered; {}", file,
+                       found, expected, kInstead);
   }
   return bytes;
 }
@@ -183,7 +190,7 @@ void WriteCheckpointFiles(const fs::path& parent, const CheckpointFiles& files,
       WriteFileAtomically(fresh / kDescriptionFile, files.description);
     }
     WriteFileAtomically(fresh / kStateFile, json.dump(2) + "\n");
-    WriteFileAtomically(fresh / ".meta.json", meta.dump(2) + "\n");
+    WriteFileAtomically(fresh / kCheckpointMetaFile, meta.dump(2) + "\n");
     MoveOver(fresh, parent / name);
     SyncFolder(parent);
   } catch (...) {

@@ -20,8 +20,13 @@
 
 namespace shoal {
 
+inline constexpr char kLearnerFile[] = "learner.safetensors";
 inline constexpr char kPolicyFile[] = "policy.safetensors";
 inline constexpr char kDescriptionFile[] = "policy.json";
+inline constexpr char kStateFile[] = "state.json";
+inline constexpr char kStateSchema[] = "shoal-checkpoint-1";
+inline constexpr char kCheckpointMetaFile[] = ".meta.json";
+inline constexpr char kCheckpointMetaSchema[] = "shoal-checkpoint-meta-1";
 
 struct CheckpointState {
   uint64_t updates = 0;

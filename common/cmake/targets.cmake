@@ -1,4 +1,3 @@
-# shoal_library(NAME SOURCES...): one static library per folder, with the project's warnings.
 set(SHOAL_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
     -Wnon-virtual-dtor -Woverloaded-virtual)
 if(SHOAL_WARNINGS_AS_ERRORS)
@@ -9,8 +8,34 @@ function(shoal_warnings target)
   target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:${SHOAL_WARNINGS}>)
 endfunction()
 
+# For builds without a compiler cache, whose entries they would outdate. Every source includes what it
+# uses all the same: builds with a cache see to that.
+option(SHOAL_PRECOMPILED_HEADERS "Compile the headers that most sources include once" OFF)
+
+# shoal_precompiled(HOLDER HEADERS...): makes them; HOLDER is compiled as those who use them are.
+function(shoal_precompiled holder)
+  shoal_warnings(${holder})
+  if(SHOAL_PRECOMPILED_HEADERS)
+    target_precompile_headers(${holder} PRIVATE ${ARGN})
+  endif()
+endfunction()
+
+# shoal_precompile(NAME HOLDER): its sources use HOLDER's.
+function(shoal_precompile name holder)
+  if(SHOAL_PRECOMPILED_HEADERS)
+    target_precompile_headers(${name} REUSE_FROM ${holder})
+  endif()
+endfunction()
+
+file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/headers.cpp CONTENT "// Holds precompiled headers.\nint main() {}\n")
+add_library(shoal_library_headers OBJECT EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/headers.cpp)
+shoal_precompiled(shoal_library_headers <algorithm> <chrono> <cmath> <cstdint> <filesystem>
+  <functional> <map> <memory> <optional> <span> <string> <string_view> <utility> <vector>)
+
+# shoal_library(NAME SOURCES...): one static library per folder, with the project's warnings.
 function(shoal_library name)
   add_library(${name} STATIC ${ARGN})
+  shoal_precompile(${name} shoal_library_headers)
   target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR})
   shoal_warnings(${name})
 endfunction()
@@ -19,6 +44,15 @@ function(shoal_program name)
   add_executable(${name} ${ARGN})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   shoal_warnings(${name})
+endfunction()
+
+# shoal_hot(SOURCES...): where an unoptimised build, as the sanitizers' are, would spend its tests'
+# time: compiled with SHOAL_HOT_OPTIONS there.
+function(shoal_hot)
+  if(SHOAL_HOT_OPTIONS)
+    set_source_files_properties(${ARGN} PROPERTIES
+      COMPILE_OPTIONS "${SHOAL_HOT_OPTIONS}" SKIP_PRECOMPILE_HEADERS ON)
+  endif()
 endfunction()
 
 # shoal_exports(PROGRAM LIBRARIES...): the program has all of these libraries, whether or not it uses

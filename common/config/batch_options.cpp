@@ -10,6 +10,8 @@ BatchOptions BatchOptionsOf(const RunConfig& run) {
   std::vector<std::string> privileged = PrivilegedBlocksOf(run.config.learner, run.spec).all;
   return {.batch = run.config.learner.batch,
           .copies = run.config.replay.copies,
+          .target_shifts = run.config.replay.target_shifts,
+          .critic_shifts = run.config.replay.critic_shifts,
           .n_step = run.config.replay.n_step,
           .discount = run.config.learner.discount,
           .privileged = std::move(privileged)};

@@ -62,6 +62,8 @@ struct ReplayConfig {
   std::string storage = "file";    // file | memory
   int shift_pad = 4;               // DrQ shift in pixels, 0 = none
   int copies = 1;                  // batch elements per drawn transition, each shifted anew
+  int target_shifts = 0;           // K: of them, with a next frame of their own; 0 = all
+  int critic_shifts = 0;           // M: of them, with a frame of their own; 0 = all
   int n_step = 1;                  // steps whose rewards are summed before the next value
   std::string hindsight = "none";  // none | future | final | episode: goals of an episode's own
   int hindsight_goals = 4;         // N: a share N / (N + 1) of the samples is relabelled

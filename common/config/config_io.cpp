@@ -15,6 +15,7 @@
 #include "common/config/config_keys.h"
 #include "common/config/nearest_key.h"
 #include "common/config/value_json.h"
+#include "common/run_folder/run_file_names.h"
 
 namespace shoal {
 namespace {

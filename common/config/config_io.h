@@ -21,9 +21,6 @@ nlohmann::json ParseStrictJson(std::string_view text, const std::string& source)
 // Applies a (nested) JSON object of keys over `config`. `source` names it in errors.
 void ApplyJson(const nlohmann::json& object, const std::string& source, Config* config);
 
-// `schema` of a run's config.json (run_files.h).
-inline constexpr char kConfigSchema[] = "shoal-config-1";
-
 // ApplyJson of a file's content. A run's config.json is accepted too: its spec and hashes are
 // skipped.
 void ApplyFile(const std::string& path, Config* config);

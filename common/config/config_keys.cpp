@@ -93,6 +93,12 @@ std::vector<Key> ReplayKeys() {
       SHOAL_SAME(
           replay.copies, (IntegerRange{1, 16}),
           "batch elements per drawn transition, each shifted anew, one target for all; DrQ: 2"),
+      SHOAL_SAME(replay.target_shifts, (IntegerRange{0, 16}),
+                 "DrQ's K: different shifts of the next frame among a transition's replay.copies, "
+                 "over which its target is averaged; 0 = as many as copies"),
+      SHOAL_SAME(replay.critic_shifts, (IntegerRange{0, 16}),
+                 "DrQ's M: different shifts of the frame among a transition's replay.copies, over "
+                 "which the critic's loss is averaged; 0 = as many as copies"),
       SHOAL_SAME(replay.n_step, (IntegerRange{1, 20}),
                  "steps whose rewards are summed before the next value; all within an episode"),
       SHOAL_SAME(

@@ -8,6 +8,7 @@
 #include "common/config/config_io.h"
 #include "common/config/config_keys.h"
 #include "common/config/value_json.h"
+#include "common/run_folder/run_file_names.h"
 
 namespace shoal {
 namespace {

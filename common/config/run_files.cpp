@@ -5,13 +5,12 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/config/config_io.h"
+#include "common/run_folder/run_file_names.h"
 
 namespace shoal {
 namespace {
 
 using nlohmann::json;
-
-constexpr char kClusterSchema[] = "shoal-cluster-1";
 
 std::string HexHash(uint64_t hash) { return fmt::format("{:016x}", hash); }
 
@@ -42,11 +41,11 @@ void WriteRunConfig(const std::filesystem::path& run, const RunConfig& config) {
   object["config_hash"] = HexHash(ConfigHash(config.config));
   object["spec"] = ToJson(config.spec);
   object["spec_hash"] = HexHash(config.spec.Hash());
-  WriteFileAtomically(run / "config.json", object.dump(2) + "\n");
+  WriteFileAtomically(run / kConfigFile, object.dump(2) + "\n");
 }
 
 RunConfig ReadRunConfig(const std::filesystem::path& run) {
-  const std::filesystem::path path = run / "config.json";
+  const std::filesystem::path path = run / kConfigFile;
   const json object = ReadObject(path, kConfigSchema);
   RunConfig result;
   ApplyFile(path, &result.config);
@@ -66,11 +65,11 @@ void WriteClusterAddress(const std::filesystem::path& run, const ClusterAddress&
                                 {"tag", address.tag},
                                 {"host", address.host}};
   if (!address.secure.empty()) object["secure"] = address.secure;
-  WriteFileAtomically(run / "cluster.json", object.dump(2) + "\n");
+  WriteFileAtomically(run / kClusterFile, object.dump(2) + "\n");
 }
 
 ClusterAddress ReadClusterAddress(const std::filesystem::path& run) {
-  const std::filesystem::path path = run / "cluster.json";
+  const std::filesystem::path path = run / kClusterFile;
   const json object = ReadObject(path, kClusterSchema);
   ClusterAddress address;
   address.domain = Member<int>(object, "domain", path);

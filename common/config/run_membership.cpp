@@ -7,11 +7,10 @@
 #include <cstring>
 
 #include "common/base/error.h"
+#include "common/run_folder/run_file_names.h"
 
 namespace shoal {
 namespace {
-
-constexpr char kFile[] = ".members";
 
 struct flock WholeFile(short type) {
   struct flock lock {};
@@ -23,18 +22,18 @@ struct flock WholeFile(short type) {
 }  // namespace
 
 RunMembership::RunMembership(const std::filesystem::path& run)
-    : fd_(open((run / kFile).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600)) {
+    : fd_(open((run / kMembersFile).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600)) {
   struct flock shared = WholeFile(F_RDLCK);
   if (fd_ >= 0 && fcntl(fd_, F_SETLK, &shared) == 0) return;
   const int error = errno;
   if (fd_ >= 0) close(fd_);
-  throw RuntimeError("cannot lock '{}': {}", (run / kFile).string(), std::strerror(error));
+  throw RuntimeError("cannot lock '{}': {}", (run / kMembersFile).string(), std::strerror(error));
 }
 
 RunMembership::~RunMembership() { close(fd_); }
 
 std::optional<pid_t> AnyMember(const std::filesystem::path& run) {
-  const std::filesystem::path file = run / kFile;
+  const std::filesystem::path file = run / kMembersFile;
   const int fd = open(file.c_str(), O_RDWR | O_CLOEXEC);
   if (fd < 0) {
     if (errno == ENOENT) return std::nullopt;

@@ -8,10 +8,10 @@
 namespace shoal {
 namespace {
 
-// Records that an environment may make in one step: a reset and a step, and a goal record before
-// them where the policy sees pictures of goals.
-int MostRecordsOfStep(const Config& config) {
-  return config.observation.goal_mode == "image" ? 3 : 2;
+// At once, of all environments of an actor.
+int64_t MostRecords(const Config& config) {
+  return int64_t{MostRecordsOfStep(config.observation.goal_mode == "image")} *
+         config.envs_per_actor;
 }
 
 }  // namespace
@@ -21,15 +21,14 @@ SendingWindow SendingWindowOf(const Config& config, int record_bytes) {
   const int64_t asked_in_all = int64_t{asked} * std::max(2, config.replay.window_chunks);
   const int fitting = static_cast<int>(std::max<int64_t>(1, kChunkBytes / record_bytes));
   const int chunk_records = std::min(asked, fitting);
-  const int of_environment = MostRecordsOfStep(config);
   return {.chunk_records = chunk_records,
           .chunks = static_cast<int>(asked_in_all / chunk_records),
-          .least_records = std::max(chunk_records, of_environment * config.envs_per_actor)};
+          .least_records = std::max(chunk_records, static_cast<int>(MostRecords(config)))};
 }
 
 void CheckSendingWindow(const Config& config, int record_bytes) {
   const SendingWindow window = SendingWindowOf(config, record_bytes);
-  if (MostRecordsOfStep(config) * config.envs_per_actor <= window.records()) return;
+  if (MostRecords(config) <= window.records()) return;
   throw UsageError("envs_per_actor {} does not fit the window of {} chunks of {} records: raise {}",
                    config.envs_per_actor, window.chunks, window.chunk_records,
                    LearnsOnPolicy(config) ? "transport.chunk_records"

@@ -25,6 +25,10 @@ struct SendingWindow {
   int64_t records() const { return int64_t{chunk_records} * chunks; }
 };
 
+// Records that an environment may make in one step: a reset and a step, and a goal record before
+// them where the policy sees goal pictures.
+constexpr int MostRecordsOfStep(bool goal_pictures) { return goal_pictures ? 3 : 2; }
+
 // `record_bytes` > 0: RecordLayout::record_bytes().
 SendingWindow SendingWindowOf(const Config& config, int record_bytes);
 

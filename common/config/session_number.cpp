@@ -6,6 +6,7 @@
 
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/run_folder/run_file_names.h"
 
 namespace shoal {
 namespace {
@@ -30,7 +31,7 @@ uint64_t LastSession(const fs::path& file) {
 }  // namespace
 
 uint64_t NextSession(const fs::path& run, const std::string& process, int64_t wall_time_ns) {
-  const fs::path file = run / "sessions" / process;
+  const fs::path file = run / kSessionFolder / process;
   MakeFolders(file.parent_path());
   const auto clock = static_cast<uint64_t>(std::max<int64_t>(1, wall_time_ns));
   const uint64_t session = std::max(clock, LastSession(file) + 1);

@@ -143,6 +143,24 @@ void ValidatePrivileged(const Config& config) {
   }
 }
 
+// DrQ's K and M, where they are not the number of a transition's copies.
+void ValidateShifts(const Config& config) {
+  const ReplayConfig& replay = config.replay;
+  const std::pair<const char*, int> keys[] = {{"replay.target_shifts", replay.target_shifts},
+                                              {"replay.critic_shifts", replay.critic_shifts}};
+  for (const auto& [key, shifts] : keys) {
+    if (shifts == 0) continue;
+    if (!config.observation.pixels || replay.shift_pad == 0) {
+      throw UsageError("{} = {}: nothing is shifted without {}; expected it unset", key, shifts,
+                       config.observation.pixels ? "replay.shift_pad" : "observation.pixels");
+    }
+    if (replay.copies % shifts != 0) {
+      throw UsageError("{} = {}: expected a divisor of replay.copies = {}, or 0", key, shifts,
+                       replay.copies);
+    }
+  }
+}
+
 void ValidateReplay(const Config& config) {
   if (config.replay.min_size > config.replay.capacity / 2) {
     throw UsageError("replay.min_size = {}: expected at most half of replay.capacity = {}",
@@ -159,6 +177,7 @@ void ValidateReplay(const Config& config) {
     throw UsageError("replay.copies = {}: expected a divisor of learner.batch = {}",
                      config.replay.copies, config.learner.batch);
   }
+  ValidateShifts(config);
 }
 
 }  // namespace

@@ -8,11 +8,10 @@
 #include "common/base/bounded_json.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/run_folder/run_file_names.h"
 
 namespace shoal {
 namespace {
-
-constexpr char kSchema[] = "shoal-accounting-1";
 
 uint64_t Count(const nlohmann::json& object, const char* key) {
   const nlohmann::json& value = object.at(key);
@@ -37,7 +36,7 @@ std::string AccountingJson(const SessionLedger& sessions, const AccountTotals& t
                     {"discarded", counters.discarded},
                     {"duplicates", counters.duplicates}});
   }
-  const nlohmann::ordered_json object = {{"schema", kSchema},
+  const nlohmann::ordered_json object = {{"schema", kAccountingSchema},
                                          {"stored_steps", totals.stored_steps},
                                          {"stored_records", totals.stored_records},
                                          {"ring_replaced", totals.ring_replaced},
@@ -51,8 +50,8 @@ AccountBefore ReadAccountBefore(const std::filesystem::path& run) {
   std::error_code error;
   if (!std::filesystem::exists(path, error)) return before;
   const auto object = ParseBoundedJson<nlohmann::json>(ReadFile(path));
-  if (!object.is_object() || !object.contains("schema") || object["schema"] != kSchema) {
-    throw RuntimeError("'{}': expected an object of schema '{}'", path.string(), kSchema);
+  if (!object.is_object() || !object.contains("schema") || object["schema"] != kAccountingSchema) {
+    throw RuntimeError("'{}': expected an object of schema '{}'", path.string(), kAccountingSchema);
   }
   try {
     before.stored_steps = Count(object, "stored_steps");

@@ -10,8 +10,6 @@
 
 namespace shoal {
 
-inline constexpr char kAccountingFile[] = "accounting.json";
-
 struct AccountTotals {
   uint64_t stored_steps = 0;
   uint64_t stored_records = 0;  // the receiver's own count of what was ever put in, or learned from

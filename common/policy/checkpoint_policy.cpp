@@ -6,6 +6,7 @@
 #include "common/config/run_files.h"
 #include "common/nn/plan_text.h"
 #include "common/nn/policy.h"
+#include "common/run_folder/run_file_names.h"
 
 namespace shoal::policy {
 namespace {
@@ -16,7 +17,7 @@ namespace fs = std::filesystem;
 PolicyDescription DescribeByRun(const fs::path& folder, const CheckpointPolicy& policy) {
   const fs::path checkpoints = fs::weakly_canonical(folder).parent_path();
   for (const fs::path& run : {checkpoints.parent_path(), checkpoints.parent_path().parent_path()}) {
-    if (!fs::exists(run / "config.json")) continue;
+    if (!fs::exists(run / kConfigFile)) continue;
     const auto [config, spec] = ReadRunConfig(run);
     if (spec.Hash() != policy.state.spec_hash) continue;  // another run's
     return Describe(config, spec, nn::ActorOutputOf(policy.tensors, spec.action_size));

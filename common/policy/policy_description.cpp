@@ -118,8 +118,8 @@ PolicyDescription FromJson(const json& object) {
     description.network = NetworkFrom(object.at("network"), "network");
     CheckLayers(description, object.at("layers").get<std::vector<std::string>>());
   } catch (const Error& e) {
-    throw RuntimeError("{} (written by Shoal {}, this is {})", e.what(),
-                       Shortened(description.version, 40), BuildVersion());
+    throw RuntimeError("{} (written by Shoal {}, this is {}: use the version that wrote it)",
+                       e.what(), Shortened(description.version, 40), BuildVersion());
   }
   return description;
 }

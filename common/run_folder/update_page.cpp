@@ -11,6 +11,7 @@
 #include "common/base/descriptor.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/run_folder/run_file_names.h"
 
 namespace shoal {
 namespace {
@@ -19,7 +20,7 @@ namespace fs = std::filesystem;
 
 constexpr char kMagic[9] = "SHOALUP1";
 
-fs::path PageOf(const fs::path& run) { return run / "learner.page"; }
+fs::path PageOf(const fs::path& run) { return run / kUpdatePageFile; }
 
 UpdatePageContent ReadPage(const fs::path& path) {
   const std::string bytes = ReadFile(path);

@@ -69,6 +69,8 @@ class Task {
   const std::string& world() const { return description_.world; }
   int episode_length() const { return description_.episode_length; }
   int action_repeat() const { return description_.action_repeat; }
+  // That of a run that asks for `asked`; 0 = the task's own.
+  int ActionRepeat(int asked) const { return asked > 0 ? asked : action_repeat(); }
   // Env steps after which an episode is truncated: ceil(episode_length / repeat). The last of them
   // may hold fewer control steps.
   int EnvStepsPerEpisode(int repeat) const;

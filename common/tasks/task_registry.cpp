@@ -37,6 +37,11 @@ const Task& FindTask(const std::string& name) {
                    NearestHint(name, names));
 }
 
+Task FindTask(const std::string& name, double distance_threshold) {
+  const Task& task = FindTask(name);
+  return distance_threshold > 0 ? task.WithThreshold(distance_threshold) : task;
+}
+
 std::vector<std::string> TaskNames() {
   std::vector<std::string> names;
   for (const Task& task : AllTasks()) names.push_back(task.name());

@@ -12,6 +12,10 @@ namespace shoal::tasks {
 // Lives as long as the process. Throws Error (kUsage) listing the tasks there are.
 const Task& FindTask(const std::string& name);
 
+// The same task with this distance_threshold (m) in place of its own, unless that is 0. Throws
+// Error (kUsage) also when the task has no goals.
+Task FindTask(const std::string& name, double distance_threshold);
+
 // In the order of registration.
 std::vector<std::string> TaskNames();
 

@@ -101,8 +101,13 @@ std::string BatchSchema::Summary() const {
       options_.privileged.empty()
           ? ""
           : fmt::format(", privileged {}", fmt::join(options_.privileged, " "));
-  return fmt::format("batch {}, copies {}, n_step {}, discount {}{}: {}", options_.batch,
-                     options_.copies, options_.n_step, options_.discount, privileged, arrays);
+  const std::string shifts = options_.target_shifts == 0 && options_.critic_shifts == 0
+                                 ? ""
+                                 : fmt::format(" (shifts {} of next_obs, {} of obs; 0 = all)",
+                                               options_.target_shifts, options_.critic_shifts);
+  return fmt::format("batch {}, copies {}{}, n_step {}, discount {}{}: {}", options_.batch,
+                     options_.copies, shifts, options_.n_step, options_.discount, privileged,
+                     arrays);
 }
 
 template <class T>

@@ -53,11 +53,13 @@ struct BatchArray {
 
 // What decides, beside the spec, which arrays there are and what their numbers mean.
 struct BatchOptions {
-  int batch = 1;         // B
-  int copies = 1;        // elements in a row of one transition
-  int n_step = 1;        // n
-  double discount = 1;   // of the steps summed
-  bool rollout = false;  // steps in order, with what on-policy learning needs
+  int batch = 1;          // B
+  int copies = 1;         // elements in a row of one transition
+  int target_shifts = 0;  // of these, the first with a next_obs of their own; 0 = all
+  int critic_shifts = 0;  // the same of obs
+  int n_step = 1;         // n
+  double discount = 1;    // of the steps summed
+  bool rollout = false;   // steps in order, with what on-policy learning needs
   // Blocks of the record, none of them observed, that learning sees besides; in any order.
   std::vector<std::string> privileged{};
 };

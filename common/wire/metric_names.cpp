@@ -82,7 +82,7 @@ constexpr Metric kMetrics[] = {
     {"actor", "waiting_credit", kStage, "s", "waiting until the replay lets it go on"},
     {"actor", "weights", kStage, "s",
      "taking new weights; in lockstep and on policy waiting for them"},
-    {"actor", "episodes", kCounter, "", "ended"},
+    {"actor", "episodes", kCounter, "", "ended, but those cut short to spread the resets"},
     {"actor", "rollout_success", kGauge, "", "success rate of its last 100 episodes"},
     {"actor", "rollout_return", kGauge, "", "their mean return, unscaled"},
     {"actor", "rollout_length", kGauge, "env steps", "their mean length"},

@@ -7,6 +7,7 @@
 #include "common/base/clock.h"
 #include "common/base/error.h"
 #include "common/nn/precision.h"
+#include "common/run_folder/run_file_names.h"
 #include "launch/check/local_collection.h"
 #include "learner/agent/algorithms.h"
 #include "learner/checkpoint.h"
@@ -100,7 +101,8 @@ TrainingProbe ProbeTraining(const Config& config, const fs::path& folder, int up
   probe.updates = agent->updates();
   probe.updates_per_second = static_cast<double>(updates) / SecondsSince(start);
   probe.moved = !Same(fresh, agent->PolicyTensors());
-  CompareRestored(run, precision, collection.Draw(), folder / "checkpoints", agent.get(), &probe);
+  CompareRestored(run, precision, collection.Draw(), folder / kCheckpointFolder, agent.get(),
+                  &probe);
   return probe;
 }
 

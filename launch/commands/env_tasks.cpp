@@ -11,6 +11,7 @@
 #include "actor/worlds/tools/task_table.h"
 #include "common/base/files.h"
 #include "common/base/stop.h"
+#include "common/run_folder/run_file_names.h"
 #include "launch/observability/observability.h"
 
 namespace shoal::launch {
@@ -122,7 +123,7 @@ void AddRandom(CLI::App& env, Action* chosen) {
   const auto request = std::make_shared<actor::RandomRequest>();
   const auto json = std::make_shared<std::string>();
   AddTask(command, &request->task, &request->model);
-  AddJson(command, "shoal-eval-1", json.get());
+  AddJson(command, kEvaluationSchema, json.get());
   command->add_option("--policy", request->policy, "random | noop (every action is zero)")
       ->capture_default_str();
   command->add_option("--episodes", request->episodes, "Episodes to play")

@@ -13,6 +13,7 @@
 #include "common/base/files.h"
 #include "common/base/stop.h"
 #include "common/config/run_files.h"
+#include "common/run_folder/run_file_names.h"
 #include "launch/commands/commands.h"
 #include "launch/experiment/baselines.h"
 #include "launch/processes/actor_program.h"
@@ -73,7 +74,7 @@ RunCheckpoint FindCheckpoint(const std::string& asked) {
   const fs::path run = path.parent_path().parent_path();
   if (!IsRun(run)) {
     throw UsageError("'{}' is neither a run nor RUN/checkpoints/NAME: there is no '{}'", asked,
-                     (run / "config.json").string());
+                     (run / kConfigFile).string());
   }
   return {run, path};
 }

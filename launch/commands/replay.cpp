@@ -6,6 +6,7 @@
 #include "common/config/on_policy.h"
 #include "common/config/run_files.h"
 #include "common/image/png.h"
+#include "common/run_folder/run_file_names.h"
 #include "launch/commands/commands.h"
 #include "launch/commands/target_options.h"
 #include "launch/dataset/export_episodes.h"
@@ -65,7 +66,7 @@ EpisodeExport Subject(const ExportOptions& options) {
   const fs::path run = is_ring ? fs::absolute(options.source).parent_path()
                                : FindNamed(options.source, RunsIn(Config().run_dir));
   EpisodeExport subject{.run = ReadRunWithReplay(run),
-                        .ring = is_ring ? fs::path(options.source) : run / replay::kRingFile,
+                        .ring = is_ring ? fs::path(options.source) : run / kRingFile,
                         .output = options.output,
                         .episodes = options.episodes,
                         .last = options.last};

@@ -12,6 +12,7 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/config/config_io.h"
+#include "common/run_folder/run_file_names.h"
 
 namespace shoal::launch {
 namespace {
@@ -150,7 +151,7 @@ StandingReport StoredExperiment::Standing(const ExperimentRun& run,
 }
 
 fs::path StoredExperiment::LogFile(const ExperimentRun& run) const {
-  return folder / "logs" / (run.name + ".log");
+  return folder / kLogFolder / (run.name + ".log");
 }
 
 NamedKind ExperimentsIn(const fs::path& dir) {
@@ -230,7 +231,7 @@ ExperimentFolder::ExperimentFolder(const ExperimentPlan& plan) : experiment_(pla
   const auto stored = ReadIfSame(experiment_.folder, experiment_.definition, plan.source);
   if (stored) experiment_.base = stored->base;
   if (stored) experiment_.created = stored->created;
-  for (const char* inner : {"configs", "runs", "logs"}) MakeFolders(experiment_.folder / inner);
+  for (const char* inner : {"configs", "runs", kLogFolder}) MakeFolders(experiment_.folder / inner);
   const bool changed = !stored || ToJson(stored->definition) != ToJson(experiment_.definition);
   if (changed) Write(experiment_);
 }

@@ -7,6 +7,7 @@
 #include "common/base/files.h"
 #include "common/config/config_io.h"
 #include "common/config/run_files.h"
+#include "common/run_folder/run_file_names.h"
 #include "launch/record/json_fields.h"
 #include "launch/record/run_folder.h"
 
@@ -58,7 +59,7 @@ void ReadMeta(const json& meta, RunResults* results) {
 std::vector<EvaluationFigures> ReadAll(const fs::path& run, const std::string& start) {
   std::vector<fs::path> files;
   std::error_code error;
-  for (fs::directory_iterator it(run / "eval", error), end; !error && it != end;
+  for (fs::directory_iterator it(run / kEvaluationFolder, error), end; !error && it != end;
        it.increment(error)) {
     const std::string name = it->path().filename();
     if (name.starts_with(start) && name.ends_with(".json")) files.push_back(it->path());
@@ -77,8 +78,8 @@ uint64_t EvaluationFigures::Successes() const {
 
 EvaluationFigures ReadEvaluationFigures(const fs::path& file) {
   const json object = ParseStrictJson(ReadFile(file), file);
-  if (!object.is_object() || object.value("schema", json()) != "shoal-eval-1") {
-    throw RuntimeError("{}: expected an object of schema 'shoal-eval-1'", file.string());
+  if (!object.is_object() || object.value("schema", json()) != kEvaluationSchema) {
+    throw RuntimeError("{}: expected an object of schema '{}'", file.string(), kEvaluationSchema);
   }
   try {
     return FiguresOf(object);
@@ -100,7 +101,7 @@ std::optional<double> RunResults::Objective() const {
 RunResults ReadRunResults(const fs::path& run) {
   RunResults results{.folder = NamedFolder(run), .config = ReadRunConfig(run).config};
   results.name = results.folder.filename();
-  const fs::path meta = run / "meta.json";
+  const fs::path meta = run / kMetaFile;
   if (fs::exists(meta)) {
     const json object = ParseStrictJson(ReadFile(meta), meta);
     try {
@@ -109,22 +110,28 @@ RunResults ReadRunResults(const fs::path& run) {
       throw RuntimeError("{}: {}", meta.string(), e.what());
     }
   }
-  results.curve = ReadAll(run, "steps_");  // the names are padded: by env steps
-  results.transfer = ReadAll(run, "on-");
-  if (const fs::path final = run / "eval" / "final.json"; fs::exists(final)) {
+  results.curve = ReadAll(run, kEvaluationPrefix);  // the names are padded: by env steps
+  results.transfer = ReadAll(run, kTransferPrefix);
+  if (const fs::path final = run / kEvaluationFolder / kFinalEvaluationFile; fs::exists(final)) {
     results.final = ReadEvaluationFigures(final);
   }
   return results;
 }
 
-std::optional<uint64_t> StepsToSuccess(const std::vector<EvaluationFigures>& curve,
+const EvaluationFigures* FirstReaching(const std::vector<EvaluationFigures>& curve,
                                        double success) {
   for (size_t i = 0; i + 1 < curve.size(); ++i) {
     if (curve[i].success.value_or(-1) >= success && curve[i + 1].success.value_or(-1) >= success) {
-      return curve[i].env_steps;
+      return &curve[i];
     }
   }
-  return std::nullopt;
+  return nullptr;
+}
+
+std::optional<uint64_t> StepsToSuccess(const std::vector<EvaluationFigures>& curve,
+                                       double success) {
+  const EvaluationFigures* first = FirstReaching(curve, success);
+  return first == nullptr ? std::nullopt : std::optional(first->env_steps);
 }
 
 }  // namespace shoal::launch

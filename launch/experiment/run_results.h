@@ -57,8 +57,10 @@ struct RunResults {
 // Throws Error: no config.json, or a broken file.
 RunResults ReadRunResults(const std::filesystem::path& run);
 
-// Env steps at the first of two consecutive evaluations with at least this success; empty = not
-// reached. `curve` is in the order of evaluation.
+// The first of two consecutive evaluations with at least this success; null = not reached. `curve`
+// is in the order of evaluation.
+const EvaluationFigures* FirstReaching(const std::vector<EvaluationFigures>& curve, double success);
+// The env steps at that one; empty = not reached.
 std::optional<uint64_t> StepsToSuccess(const std::vector<EvaluationFigures>& curve, double success);
 
 }  // namespace shoal::launch

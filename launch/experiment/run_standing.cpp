@@ -4,6 +4,7 @@
 
 #include "common/base/error.h"
 #include "common/base/stop.h"
+#include "common/run_folder/run_file_names.h"
 #include "launch/experiment/run_results.h"
 #include "launch/record/run_folder.h"
 
@@ -68,7 +69,7 @@ const char* ToString(RunStanding standing) {
 }
 
 std::filesystem::path TransferFile(const std::filesystem::path& run, const std::string& task) {
-  return run / "eval" / ("on-" + task + ".json");
+  return run / kEvaluationFolder / (kTransferPrefix + task + ".json");
 }
 
 StandingReport StandingOf(const std::filesystem::path& run, const LoggedRun* logged,

@@ -7,6 +7,7 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/stop.h"
+#include "common/run_folder/run_file_names.h"
 #include "launch/processes/child_process.h"
 #include "launch/processes/process_plan.h"
 #include "launch/processes/remote_host.h"
@@ -118,7 +119,7 @@ SlurmArray SubmitArray(const StoredExperiment& experiment, const std::vector<Exp
                       ArrayScript(experiment, runs, terms, ProgramFolder() / "shoal"));
   std::vector<std::string> command{
       "sbatch", "--parsable", "--job-name=shoal-" + experiment.definition.name,
-      fmt::format("--output={}/slurm-%A_%a.log", (experiment.folder / "logs").string())};
+      fmt::format("--output={}/slurm-%A_%a.log", (experiment.folder / kLogFolder).string())};
   command.insert(command.end(), terms.sbatch_options.begin(), terms.sbatch_options.end());
   command.push_back(array.script.string());
   const Answer answer = Ask(std::move(command));

@@ -10,6 +10,7 @@
 #include "common/base/files.h"
 #include "common/base/usable_cores.h"
 #include "common/config/config_io.h"
+#include "common/run_folder/run_file_names.h"
 #include "launch/processes/process_plan.h"
 #include "launch/record/run_folder.h"
 

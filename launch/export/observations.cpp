@@ -8,6 +8,7 @@
 #include "common/base/error.h"
 #include "common/base/random.h"
 #include "common/config/run_files.h"
+#include "common/run_folder/run_file_names.h"
 #include "launch/record/run_folder.h"
 #include "replay_server/core/peek.h"
 #include "replay_server/core/replay_core.h"
@@ -60,8 +61,8 @@ std::optional<ObservationSet> RecordedObservations(const fs::path& checkpoint,
     *why = "the checkpoint lies in no run";
     return std::nullopt;
   }
-  if (!fs::exists(run / replay::kRingFile)) {
-    *why = fmt::format("there is no '{}'", (run / replay::kRingFile).string());
+  if (!fs::exists(run / kRingFile)) {
+    *why = fmt::format("there is no '{}'", (run / kRingFile).string());
     return std::nullopt;
   }
   try {

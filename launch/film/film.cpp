@@ -13,6 +13,7 @@
 #include "common/base/files.h"
 #include "common/checkpoint/checkpoint_files.h"
 #include "common/config/run_files.h"
+#include "common/run_folder/run_file_names.h"
 #include "launch/film/reel.h"
 #include "launch/processes/actor_program.h"
 #include "launch/processes/scratch_folder.h"
@@ -101,7 +102,7 @@ bool FilmCheckpoint(const FilmOrder& order, const fs::path& checkpoint, const st
 }  // namespace
 
 fs::path FilmPath(const fs::path& run, const std::string& name) {
-  return run / "videos" / (name + ".mp4");
+  return run / kVideoFolder / (name + ".mp4");
 }
 
 void CheckFilmOutput(const fs::path& run, const fs::path& output) {

@@ -5,6 +5,7 @@
 
 #include "common/base/error.h"
 #include "common/checkpoint/checkpoint_files.h"
+#include "common/run_folder/run_file_names.h"
 #include "launch/record/run_folder.h"
 
 namespace shoal::launch {
@@ -17,7 +18,7 @@ constexpr size_t kEarlier = 3;  // shown before the last
 std::map<uint64_t, fs::path> CheckpointsByUpdates(const fs::path& run) {
   std::map<uint64_t, fs::path> found;
   std::error_code error;
-  for (fs::directory_iterator it(run / "checkpoints", error), end; !error && it != end;
+  for (fs::directory_iterator it(run / kCheckpointFolder, error), end; !error && it != end;
        it.increment(error)) {
     if (const auto updates = CheckpointUpdates(it->path().filename())) {
       found.emplace(*updates, it->path());
@@ -30,11 +31,11 @@ std::map<uint64_t, fs::path> CheckpointsByUpdates(const fs::path& run) {
 
 fs::path FilmedCheckpoint(const fs::path& run, const std::string& name) {
   if (!name.empty()) {
-    const fs::path named = run / "checkpoints" / name;
+    const fs::path named = run / kCheckpointFolder / name;
     const bool one_name = fs::path(name).filename() == name && name != "." && name != "..";
     if (one_name && fs::is_directory(named)) return named;
     throw UsageError("run '{}' has no checkpoint '{}' (best, or a name in {})", run.string(), name,
-                     (run / "checkpoints").string());
+                     (run / kCheckpointFolder).string());
   }
   const fs::path checkpoint = JudgedCheckpoint(run);
   if (checkpoint.empty()) throw RuntimeError("run '{}' has no checkpoint yet", run.string());

@@ -6,6 +6,7 @@
 #include "common/base/files.h"
 #include "common/base/stop.h"
 #include "common/config/config_io.h"
+#include "common/run_folder/run_file_names.h"
 #include "launch/processes/process_plan.h"
 #include "launch/processes/scratch_folder.h"
 #include "launch/record/evaluations.h"
@@ -36,7 +37,7 @@ Error FailureOf(const ExitStatus& status, const fs::path& errors) {
 
 ObservedWorld DescribeObservations(const Config& config) {
   const ScratchFolder scratch;
-  const fs::path input = scratch.path() / "config.json";
+  const fs::path input = scratch.path() / kConfigFile;
   WriteFileAtomically(input, ToJson(config).dump(2));
   ProcessSpec spec = ProgramSpec(kProgram, {"--describe", "--config-json", input.string()}, 1);
   spec.output = scratch.path() / "spec.json";

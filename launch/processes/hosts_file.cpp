@@ -7,6 +7,7 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/config/config_io.h"
+#include "common/run_folder/run_file_names.h"
 #include "launch/processes/process_plan.h"
 
 namespace shoal::launch {
@@ -14,7 +15,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr char kSchema[] = "shoal-hosts-1";
 constexpr int kMostActors = 1024;
 
 // One JSON object of the file; tells of keys nobody asked for.
@@ -111,7 +111,7 @@ int Hosts::RemoteActors() const {
 Hosts ReadHostsFile(const std::filesystem::path& file) {
   const json object = ParseStrictJson(ReadFile(file), file);
   Block top(object, "", file);
-  if (top.Text("schema") != kSchema) top.Refuse("schema", fmt::format("\"{}\"", kSchema));
+  if (top.Text("schema") != kHostsSchema) top.Refuse("schema", fmt::format("\"{}\"", kHostsSchema));
   Hosts result;
   Block servers(top.At("servers"), "servers", file);
   result.address = servers.Text("address");
@@ -148,7 +148,8 @@ void WriteHostsFile(const std::filesystem::path& file, const Hosts& hosts) {
     if (!host.run.empty()) entry["run"] = host.run.string();
     list.push_back(std::move(entry));
   }
-  const nlohmann::ordered_json object{{"schema", kSchema}, {"servers", servers}, {"hosts", list}};
+  const nlohmann::ordered_json object{
+      {"schema", kHostsSchema}, {"servers", servers}, {"hosts", list}};
   WriteFileAtomically(file, object.dump(2) + "\n");
 }
 

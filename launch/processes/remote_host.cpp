@@ -7,6 +7,7 @@
 #include "common/base/files.h"
 #include "common/config/run_files.h"
 #include "common/credentials/credentials.h"
+#include "common/run_folder/run_file_names.h"
 #include "launch/processes/scratch_folder.h"
 #include "launch/record/run_folder.h"
 
@@ -109,9 +110,9 @@ void PushRun(const fs::path& run, const ActorRange& actors, RemoteHost* host,
   const ScratchFolder scratch;
   const fs::path archive = scratch.path() / "run.tar", answer = scratch.path() / "answer";
   std::vector<std::string> pack =
-      OnPath({"tar", "-c", "-f", archive, "-C", fs::absolute(run), "config.json", "cluster.json"});
-  for (const fs::path& page : PagesIn(run / "made", actors)) {
-    pack.push_back(fs::path("made") / page.filename());
+      OnPath({"tar", "-c", "-f", archive, "-C", fs::absolute(run), kConfigFile, kClusterFile});
+  for (const fs::path& page : PagesIn(run / kMadeFolder, actors)) {
+    pack.push_back(fs::path(kMadeFolder) / page.filename());
   }
   if (const char* file = DdsOverride()) {
     WriteFileAtomically(scratch.path() / kDdsCopy, ReadFile(file));
@@ -128,10 +129,9 @@ void PushRun(const fs::path& run, const ActorRange& actors, RemoteHost* host,
   RunOrThrow("tar of " + run.string(), pack, "", "", stop);
   const std::string folder = ShellLine({host->run});
   const std::string unpack = fmt::format(
-      "umask 077 && mkdir -p {0}/made && cd {0} && rm -rf config.json cluster.json {1} {2} && tar "
-      "-x "
+      "umask 077 && mkdir -p {0}/{1} && cd {0} && rm -rf {2} {3} {4} {5} && tar -x "
       "--skip-old-files --no-same-owner -f - && pwd",
-      folder, kDdsCopy, kSecureCopy);
+      folder, kMadeFolder, kConfigFile, kClusterFile, kDdsCopy, kSecureCopy);
   RunOrThrow(fmt::format("host {}: copying the run to '{}'", host->name, host->run.string()),
              Through(*host, unpack), archive, answer, stop);
   host->run = LastLine(answer);
@@ -152,8 +152,8 @@ void FetchMadePages(const RemoteHost& host, const ActorRange& actors, const fs::
   RunOrThrow(fmt::format("host {}: unpacking counter pages", host.name),
              OnPath({"tar", "-x", "--no-same-owner", "-f", archive, "-C", scratch.path()}), "", "",
              stop);
-  for (const fs::path& page : PagesIn(scratch.path() / "made", actors)) {
-    WriteFileAtomically(run / "made" / page.filename(), ReadFile(page));
+  for (const fs::path& page : PagesIn(scratch.path() / kMadeFolder, actors)) {
+    WriteFileAtomically(run / kMadeFolder / page.filename(), ReadFile(page));
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include "common/base/error.h"
 #include "common/config/config_io.h"
+#include "common/run_folder/run_file_names.h"
 #include "launch/processes/process_plan.h"
 
 namespace shoal::launch {
@@ -70,6 +71,6 @@ int ActorsHere(const fs::path& run, const Config& config) {
   return config.actors - ReadHostsFile(HostsFile(run)).RemoteActors();
 }
 
-fs::path HostsFile(const fs::path& run) { return run / "hosts.json"; }
+fs::path HostsFile(const fs::path& run) { return run / kHostsFile; }
 
 }  // namespace shoal::launch

@@ -8,6 +8,7 @@
 #include "common/base/clock.h"
 #include "common/base/error.h"
 #include "common/config/run_membership.h"
+#include "common/run_folder/run_file_names.h"
 
 namespace shoal::launch {
 namespace {
@@ -24,7 +25,7 @@ bool IsUnfinished(const std::string& name) {
     return rest.empty() || (rest[0] == '-' && rest.size() > 1 &&
                             rest.find_first_not_of("0123456789", 1) == std::string::npos);
   }
-  return name == "replay.ring.new" || name == "accounting.json.new" ||
+  return name == std::string(kRingFile) + ".new" || name == std::string(kAccountingFile) + ".new" ||
          (name.starts_with(".step_") && name.ends_with(".old"));
 }
 

@@ -8,13 +8,12 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/config/config_io.h"
+#include "common/run_folder/run_file_names.h"
 
 namespace shoal::launch {
 namespace {
 
 using Session = std::pair<uint32_t, uint64_t>;  // actor, session
-
-constexpr char kSchema[] = "shoal-accounting-1";
 
 void AddSession(const Session& name, uint64_t made, const SeenRecords& seen, bool outlives_replay,
                 Accounting* sums) {
@@ -100,12 +99,12 @@ std::string Accounting::Line() const {
 }
 
 SeenByReplay ReadSeenByReplay(const std::filesystem::path& run) {
-  const std::filesystem::path path = run / "accounting.json";
+  const std::filesystem::path path = run / kAccountingFile;
   const nlohmann::json object = ParseStrictJson(ReadFile(path), path);
   SeenByReplay seen;
   try {
-    if (object.at("schema") != kSchema) {
-      throw RuntimeError("{}: expected schema '{}'", path.string(), kSchema);
+    if (object.at("schema") != kAccountingSchema) {
+      throw RuntimeError("{}: expected schema '{}'", path.string(), kAccountingSchema);
     }
     object.at("stored_records").get_to(seen.stored_records);
     seen.ring_replaced = object.value("ring_replaced", false);

@@ -14,6 +14,7 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/checkpoint/checkpoint_files.h"
+#include "common/run_folder/run_file_names.h"
 
 namespace shoal::launch {
 namespace {
@@ -21,12 +22,10 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-constexpr char kPrefix[] = "steps_";  // of the files StoreEvaluation writes
-
 ordered_json ParseObject(const std::string& text, const std::string& source) {
   ordered_json object = ParseBoundedJson<ordered_json>(text);
-  if (!object.is_object() || !object.contains("schema") || object["schema"] != "shoal-eval-1") {
-    throw RuntimeError("{}: expected an object of schema 'shoal-eval-1'", source);
+  if (!object.is_object() || !object.contains("schema") || object["schema"] != kEvaluationSchema) {
+    throw RuntimeError("{}: expected an object of schema '{}'", source, kEvaluationSchema);
   }
   return object;
 }
@@ -104,17 +103,18 @@ EvaluationPoint StoreEvaluation(const fs::path& run, const EvalMessage& message,
   ordered_json object = ParseObject(message.json, source);
   object["wall_seconds"] = wall_seconds;
   EvaluationPoint point = PointOf(object, source);
-  const std::string name =
-      fmt::format("{}{:010}_updates_{:010}.json", kPrefix, point.env_steps, point.updates);
-  WriteFileAtomically(run / "eval" / name, object.dump(2) + "\n");
+  const std::string name = fmt::format("{}{:010}_updates_{:010}.json", kEvaluationPrefix,
+                                       point.env_steps, point.updates);
+  WriteFileAtomically(run / kEvaluationFolder / name, object.dump(2) + "\n");
   return point;
 }
 
 std::vector<EvaluationPoint> ReadEvaluations(const fs::path& run) {
   std::vector<fs::path> files;
-  for (const auto& entry : fs::directory_iterator(run / "eval")) {
+  for (const auto& entry : fs::directory_iterator(run / kEvaluationFolder)) {
     const std::string name = entry.path().filename();
-    if (name.starts_with(kPrefix) && name.ends_with(".json")) files.push_back(entry.path());
+    if (name.starts_with(kEvaluationPrefix) && name.ends_with(".json"))
+      files.push_back(entry.path());
   }
   std::ranges::sort(files);  // the names are padded: by env steps, then updates
   std::vector<EvaluationPoint> points;

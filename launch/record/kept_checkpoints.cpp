@@ -10,6 +10,7 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/checkpoint/checkpoint_files.h"
+#include "common/run_folder/run_file_names.h"
 
 namespace shoal::launch {
 namespace {
@@ -75,7 +76,7 @@ void RemoveOthers(const fs::path& folder, const std::vector<std::string>& names)
 
 void KeepCheckpoints(const fs::path& run, const std::vector<std::string>& candidates,
                      const std::string& best) {
-  const fs::path checkpoints = run / "checkpoints", kept = checkpoints / "candidates";
+  const fs::path checkpoints = run / kCheckpointFolder, kept = checkpoints / kCandidateFolder;
   MakeFolders(kept);
   // The best first: what goes wrong with another one does not keep it from its place.
   std::vector<std::string> names{best};
@@ -86,8 +87,8 @@ void KeepCheckpoints(const fs::path& run, const std::vector<std::string>& candid
     if (!pruned && !ShareFiles(checkpoints / name, kept / name)) {
       Keep(checkpoints / name, kept / name);
     }
-    if (name == best && !ShareFiles(kept / best, checkpoints / "best")) {
-      Keep(kept / best, checkpoints / "best");
+    if (name == best && !ShareFiles(kept / best, checkpoints / kBestCheckpoint)) {
+      Keep(kept / best, checkpoints / kBestCheckpoint);
     }
   }
   RemoveOthers(kept, names);

@@ -9,6 +9,7 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/checkpoint/checkpoint_files.h"
+#include "common/run_folder/run_file_names.h"
 
 namespace shoal::launch {
 namespace {
@@ -16,8 +17,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr int kMostNumbers = 10'000;
-constexpr char kConfigFile[] = "config.json";
-constexpr char kLockFile[] = ".lock";
 
 // False when it exists already. Throws Error when it cannot be made.
 bool MakeNewFolder(const fs::path& path) {
@@ -31,7 +30,7 @@ bool MakeNewFolder(const fs::path& path) {
 void Remove(const fs::path& path) {
   std::error_code error;
   if (!IsRun(path) && !fs::is_empty(path, error)) {
-    throw UsageError("'{}' is not a run (no config.json): not overwritten", path.string());
+    throw UsageError("'{}' is not a run (no {}): not overwritten", path.string(), kConfigFile);
   }
   fs::remove_all(path, error);
   if (error) throw RuntimeError("cannot remove '{}': {}", path.string(), error.message());
@@ -65,7 +64,7 @@ fs::path FindNamed(const std::string& name_or_folder, std::span<const NamedKind>
 
 bool IsRun(const fs::path& folder) { return Has(folder, kConfigFile); }
 
-bool IsHeld(const fs::path& run) { return IsLocked(run / kLockFile); }
+bool IsHeld(const fs::path& run) { return IsLocked(run / kRunLockFile); }
 
 RunFolder RunFolder::Create(const fs::path& dir, const std::string& name, bool overwrite) {
   const fs::path path = dir / name;
@@ -95,23 +94,24 @@ RunFolder RunFolder::Reopen(const fs::path& dir, const std::string& run) {
 }
 
 RunFolder::RunFolder(fs::path path)
-    : path_(std::move(path)), lock_(FileLock::Take(path_ / kLockFile)) {
+    : path_(std::move(path)), lock_(FileLock::Take(path_ / kRunLockFile)) {
   if (!lock_) {
     throw UsageError("run '{}' is running (its coordinator holds {})", path_.string(),
-                     (path_ / kLockFile).string());
+                     (path_ / kRunLockFile).string());
   }
-  for (const char* folder : {"logs", "eval", "checkpoints", "made"}) MakeFolders(path_ / folder);
+  for (const char* folder : {kLogFolder, kEvaluationFolder, kCheckpointFolder, kMadeFolder})
+    MakeFolders(path_ / folder);
 }
 
 fs::path LogFile(const fs::path& run, const std::string& process) {
-  return run / "logs" / (process + ".log");
+  return run / kLogFolder / (process + ".log");
 }
 
 fs::path NewestCheckpoint(const fs::path& run) {
   fs::path newest;
   std::optional<uint64_t> newest_updates;
   std::error_code error;
-  for (fs::directory_iterator it(run / "checkpoints", error), end; !error && it != end;
+  for (fs::directory_iterator it(run / kCheckpointFolder, error), end; !error && it != end;
        it.increment(error)) {
     const std::optional<uint64_t> updates = CheckpointUpdates(it->path().filename());
     if (updates > newest_updates) {
@@ -123,7 +123,7 @@ fs::path NewestCheckpoint(const fs::path& run) {
 }
 
 fs::path JudgedCheckpoint(const fs::path& run) {
-  const fs::path best = run / "checkpoints" / "best";
+  const fs::path best = run / kCheckpointFolder / kBestCheckpoint;
   std::error_code error;
   return fs::is_directory(best, error) ? best : NewestCheckpoint(run);
 }
@@ -131,7 +131,7 @@ fs::path JudgedCheckpoint(const fs::path& run) {
 std::vector<fs::path> FilmsOf(const fs::path& run) {
   std::vector<fs::path> films;
   std::error_code error;
-  for (fs::directory_iterator it(run / "videos", error), end; !error && it != end;
+  for (fs::directory_iterator it(run / kVideoFolder, error), end; !error && it != end;
        it.increment(error)) {
     if (it->path().extension() == ".mp4") films.push_back(it->path());
   }

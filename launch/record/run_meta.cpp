@@ -10,6 +10,7 @@
 #include "common/config/config_io.h"
 #include "common/config/privileged_blocks.h"
 #include "common/nn/precision.h"
+#include "common/run_folder/run_file_names.h"
 #include "launch/record/machine.h"
 
 namespace shoal::launch {
@@ -97,7 +98,7 @@ PrivilegedInputs PrivilegedInputsOf(const Config& config, const ObservationSpec&
 
 void WriteRunMeta(const std::filesystem::path& run, const Config& config, const RunMeta& meta) {
   const ordered_json object{
-      {"schema", "shoal-run-1"},
+      {"schema", kMetaSchema},
       {"name", config.run_name},
       {"task", config.task},
       {"preset", config.preset},
@@ -135,11 +136,11 @@ void WriteRunMeta(const std::filesystem::path& run, const Config& config, const 
   // A problem may quote what a process said last, in whatever encoding.
   const std::string text =
       object.dump(2, ' ', /*ensure_ascii=*/false, ordered_json::error_handler_t::replace);
-  WriteFileAtomically(run / "meta.json", text + "\n");
+  WriteFileAtomically(run / kMetaFile, text + "\n");
 }
 
 RunMeta ReadRunMeta(const std::filesystem::path& run) {
-  const std::filesystem::path path = run / "meta.json";
+  const std::filesystem::path path = run / kMetaFile;
   RunMeta meta;
   if (!std::filesystem::exists(path)) return meta;
   const nlohmann::json object = ParseStrictJson(ReadFile(path), path);

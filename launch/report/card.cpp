@@ -9,6 +9,8 @@
 #include "common/base/build_info.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/checkpoint/checkpoint_files.h"
+#include "common/run_folder/run_file_names.h"
 #include "launch/experiment/run_results.h"
 #include "launch/experiment/statistics_json.h"
 #include "launch/record/run_folder.h"
@@ -19,8 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
-
-constexpr char kPolicy[] = "policy.safetensors";
 
 std::string RewardText(const EvaluationFigures& final) {
   return fmt::format("{:.2f} +/- {:.2f}", final.return_mean, final.return_std);
@@ -72,11 +72,12 @@ std::string Readme(const RunResults& run, bool film) {
       RewardText(final),
       final.final_distance_mean ? fmt::format("{:.2f}", Centimetres(*final.final_distance_mean))
                                 : "-");
-  text +=
-      "Deterministic actions, fresh episodes. Files: `results.json` (the figures above), "
-      "`config.json` (every key of the run), `policy.safetensors` (the policy's parameters)";
+  text += fmt::format(
+      "Deterministic actions, fresh episodes. Files: `results.json` (the figures above), `{}` "
+      "(every key of the run), `{}` (the policy's parameters)",
+      kConfigFile, kPolicyFile);
   text += film ? ", `replay.mp4`.\n" : ".\n";
-  return text + fmt::format("\nTo train it again: `{}`.\n", TrainAgain("config.json", run.name));
+  return text + fmt::format("\nTo train it again: `{}`.\n", TrainAgain(kConfigFile, run.name));
 }
 
 }  // namespace
@@ -84,12 +85,12 @@ std::string Readme(const RunResults& run, bool film) {
 void WriteCard(const fs::path& run_folder, const fs::path& folder) {
   const RunResults run = ReadRunResults(run_folder);
   if (!run.final) {
-    throw UsageError("run '{}' has no final evaluation (eval/final.json): a card shows it",
-                     run_folder.string());
+    throw UsageError("run '{}' has no final evaluation ({}/{}): a card shows it",
+                     run_folder.string(), kEvaluationFolder, kFinalEvaluationFile);
   }
   const fs::path checkpoint = JudgedCheckpoint(run_folder);
-  if (checkpoint.empty() || !fs::exists(checkpoint / kPolicy)) {
-    throw UsageError("run '{}' has no checkpoint with a {}", run_folder.string(), kPolicy);
+  if (checkpoint.empty() || !fs::exists(checkpoint / kPolicyFile)) {
+    throw UsageError("run '{}' has no checkpoint with a {}", run_folder.string(), kPolicyFile);
   }
   const fs::path target = NamedFolder(fs::absolute(folder)), fresh = target.string() + ".tmp";
   if (fs::exists(target)) throw UsageError("'{}' exists: not overwritten", target.string());
@@ -101,8 +102,8 @@ void WriteCard(const fs::path& run_folder, const fs::path& folder) {
     const std::vector<fs::path> films = FilmsOf(run_folder);  // the first one goes along
     WriteFileForOthers(fresh / "README.md", Readme(run, !films.empty()));
     WriteFileForOthers(fresh / "results.json", ResultsJson(run).dump(2) + "\n");
-    WriteFileForOthers(fresh / "config.json", ReadFile(run_folder / "config.json"));
-    WriteFileForOthers(fresh / kPolicy, ReadFile(checkpoint / kPolicy));
+    WriteFileForOthers(fresh / kConfigFile, ReadFile(run_folder / kConfigFile));
+    WriteFileForOthers(fresh / kPolicyFile, ReadFile(checkpoint / kPolicyFile));
     if (!films.empty()) WriteFileForOthers(fresh / "replay.mp4", ReadFile(films[0]));
     fs::rename(fresh, target, error);
     if (error) throw RuntimeError("cannot write '{}': {}", target.string(), error.message());

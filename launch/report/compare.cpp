@@ -53,8 +53,13 @@ GroupFigures FiguresOf(const RunGroup& group, double target_success) {
       figures.successes += judged.Successes();
       figures.episodes += judged.episodes;
     }
-    const auto n = StepsToSuccess(run.curve, target_success);
-    figures.n_to_target.push_back(n ? std::optional(static_cast<double>(*n)) : std::nullopt);
+    const EvaluationFigures* first = FirstReaching(run.curve, target_success);
+    figures.n_to_target.emplace_back();
+    figures.seconds_to_target.emplace_back();
+    if (first != nullptr) {
+      figures.n_to_target.back() = static_cast<double>(first->env_steps);
+      figures.seconds_to_target.back() = first->wall_seconds;
+    }
     figures.env_steps.push_back(static_cast<double>(run.env_steps));
     figures.updates.push_back(static_cast<double>(run.updates));
     figures.wall_seconds.push_back(run.wall_seconds);
@@ -86,8 +91,11 @@ ordered_json GroupJson(const GroupFigures& group) {
     pooled = static_cast<double>(group.successes) / static_cast<double>(group.episodes);
     wilson = Wilson95(group.successes, group.episodes);
   }
-  ordered_json n = ordered_json::array();
-  for (const auto& steps : group.n_to_target) n.push_back(OrNull(steps));
+  const auto by_seed = [](const std::vector<std::optional<double>>& values) {
+    ordered_json array = ordered_json::array();
+    for (const auto& value : values) array.push_back(OrNull(value));
+    return array;
+  };
   return {{"name", group.name},
           {"seeds", group.seeds},
           {"success",
@@ -96,7 +104,8 @@ ordered_json GroupJson(const GroupFigures& group) {
             {"wilson95", IntervalJson(wilson)}}},
           {"return", MeanJson(group.returns)},
           {"final_distance", MeanJson(group.distances)},
-          {"n_to_target", n},
+          {"n_to_target", by_seed(group.n_to_target)},
+          {"seconds_to_target", by_seed(group.seconds_to_target)},
           {"env_steps", group.env_steps},
           {"updates", group.updates},
           {"wall_seconds", group.wall_seconds},
@@ -146,8 +155,11 @@ std::string Notes(const Comparison& comparison) {
 std::string FormatSteps(const GroupFigures& group) {
   std::vector<std::string> words;
   for (size_t i = 0; i < group.n_to_target.size(); ++i) {
-    const auto& n = group.n_to_target[i];
-    words.push_back(n ? fmt::format("{:.0f}", *n) : group.finished[i] ? "not reached" : "not yet");
+    if (const auto& n = group.n_to_target[i]) {
+      words.push_back(fmt::format("{:.0f} ({:.0f} s)", *n, *group.seconds_to_target[i]));
+    } else {
+      words.emplace_back(group.finished[i] ? "not reached" : "not yet");
+    }
   }
   return words.empty() ? "-" : fmt::format("{}", fmt::join(words, ", "));
 }
@@ -237,8 +249,8 @@ std::string ToText(const Comparison& comparison) {
   std::string text = comparison.task + "; env steps, updates and wall time are means over seeds\n";
   text += Table(rows);
   if (has_success) {
-    text +=
-        fmt::format("\nenv steps to {:.0f} % success, by seed:\n", 100 * comparison.target_success);
+    text += fmt::format("\nenv steps (wall clock) to {:.0f} % success, by seed:\n",
+                        100 * comparison.target_success);
     for (size_t i = 0; i < comparison.groups.size(); ++i) {
       const GroupFigures& group = comparison.groups[i];
       text += fmt::format("  {}: {}", group.name, FormatSteps(group));

@@ -23,6 +23,7 @@ struct GroupFigures {
   std::vector<std::string> unevaluated{};
   // Env steps, by seed; empty = not reached, or, where the run is not finished, not yet.
   std::vector<std::optional<double>> n_to_target{};
+  std::vector<std::optional<double>> seconds_to_target{};      // of wall clock, likewise
   std::vector<double> env_steps{}, updates{}, wall_seconds{};  // by seed
   double core_hours = 0;  // of all seeds: wall time x usable cores
 };
@@ -52,7 +53,8 @@ Comparison Gather(const std::vector<RunGroup>& groups, double target_success);
 nlohmann::ordered_json ToJson(const Comparison& comparison);
 std::string ToText(const Comparison& comparison);
 
-// Env steps to the target, by seed: "1200, not reached, not yet"; "-" without runs.
+// Env steps and wall clock to the target, by seed: "1200 (35 s), not reached, not yet"; "-" without
+// runs.
 std::string FormatSteps(const GroupFigures& group);
 
 // Configuration keys in which the groups differ; those that only name a run are left out.

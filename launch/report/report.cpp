@@ -10,6 +10,7 @@
 #include "common/base/escape_markup.h"
 #include "common/base/files.h"
 #include "common/config/config_io.h"
+#include "common/run_folder/run_file_names.h"
 #include "launch/experiment/statistics_json.h"
 #include "launch/processes/scratch_folder.h"
 #include "launch/record/run_folder.h"
@@ -87,11 +88,11 @@ std::string ResultsHtml(const Comparison& comparison) {
                     FormatDistances(group.distances), success ? FormatSteps(group) : "-",
                     success ? ratio : "-"});
   }
-  std::string html =
-      TableHtmlOfFilled({"", "seeds", "success [95 %]", "return [95 %]", "distance, cm [95 %]",
-                         fmt::format("env steps to {:.0f} %", 100 * comparison.target_success),
-                         "median ratio to the first"},
-                        rows);
+  std::string html = TableHtmlOfFilled(
+      {"", "seeds", "success [95 %]", "return [95 %]", "distance, cm [95 %]",
+       fmt::format("env steps (wall clock) to {:.0f} %", 100 * comparison.target_success),
+       "median ratio to the first"},
+      rows);
   const bool success = std::ranges::any_of(
       comparison.groups, [](const GroupFigures& group) { return group.episodes > 0; });
   html +=
@@ -257,13 +258,18 @@ std::string SvgElement(const std::string& document) {
   return start == std::string::npos ? "" : document.substr(start);
 }
 
-std::string DrawCurves(const std::string& title, const std::vector<RunGroup>& groups) {
+// Against env steps, which tell algorithms apart, and against wall time, which people wait for.
+std::vector<std::string> DrawCurves(const std::string& title, const std::vector<RunGroup>& groups) {
+  std::vector<std::string> curves;
   const std::vector<PlotFigure> figures = FiguresThereAre(groups);
-  if (figures.empty()) return "";
+  if (figures.empty()) return curves;
   const ScratchFolder scratch;
   const fs::path file = scratch.path() / "curves.svg";
-  Draw({.title = title, .figures = figures}, groups, file);
-  return ReadFile(file);
+  for (const PlotAxis axis : {PlotAxis::kEnvSteps, PlotAxis::kWallMinutes}) {
+    Draw({.title = title, .axis = axis, .figures = figures}, groups, file);
+    curves.push_back(ReadFile(file));
+  }
+  return curves;
 }
 
 }  // namespace
@@ -289,7 +295,7 @@ ReportContent GatherReport(const SubjectOptions& options) {
   if (content.definitions.empty()) {
     for (const RunGroup& group : content.groups) {
       for (const RunResults& run : group.runs) {
-        content.commands.push_back(TrainAgain(run.folder / "config.json", run.name));
+        content.commands.push_back(TrainAgain(run.folder / kConfigFile, run.name));
       }
     }
   }
@@ -313,8 +319,10 @@ std::string ReportHtml(const ReportContent& content) {
   html += Section("Results", ResultsHtml(content.comparison));
   html += Section("On other tasks", TransferHtml(content.groups));
   if (!content.curves.empty()) {
+    std::string drawings;
+    for (const std::string& drawing : content.curves) drawings += SvgElement(drawing);
     html += Section("Evaluations while training",
-                    SvgElement(content.curves) +
+                    drawings +
                         "<p class=\"note\">Mean over seeds; the band reaches from the smallest to "
                         "the largest seed.</p>\n");
   }

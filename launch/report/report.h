@@ -15,7 +15,7 @@ struct ReportContent {
   std::vector<RunGroup> groups{};
   std::vector<Definition> definitions{};  // of the experiments among the subjects
   std::vector<std::string> commands{};    // that repeat it
-  std::string curves{};                   // an SVG document; empty = none
+  std::vector<std::string> curves{};      // SVG documents, one for each axis; none without figures
 };
 
 // Reads the subjects and has their curves drawn. Throws Error: as ReadSubjects and Draw; mixed

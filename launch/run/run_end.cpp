@@ -7,6 +7,7 @@
 #include "common/base/error.h"
 #include "common/base/stop.h"
 #include "common/config/on_policy.h"
+#include "common/run_folder/run_file_names.h"
 #include "common/run_folder/update_page.h"
 #include "launch/film/film.h"
 #include "launch/processes/actor_program.h"
@@ -26,7 +27,7 @@ std::optional<Accounting> AccountRun(const fs::path& run, const Config& config, 
   for (const actor::MadeCount& page : actor::ReadMadePages(run)) {
     made.push_back({page.actor, page.session, page.made});
   }
-  if (made.empty() && !fs::exists(run / "accounting.json")) return std::nullopt;
+  if (made.empty() && !fs::exists(run / kAccountingFile)) return std::nullopt;
   return Account(made, ReadSeenByReplay(run),
                  {.resends = resends,
                   .own_actors = static_cast<uint32_t>(ActorsHere(run, config)),
@@ -48,7 +49,7 @@ std::optional<EvaluationPoint> EvaluateAtEnd(const fs::path& run, const Config& 
                                 .checkpoint = checkpoint,
                                 .episodes = config.eval.final_episodes,
                                 .seed = config.seed,
-                                .json = run / "eval" / "final.json",
+                                .json = run / kEvaluationFolder / kFinalEvaluationFile,
                                 .own_run = true},
                                [&desk] {
                                  desk.ShowAgain("evaluating", Now());
@@ -84,7 +85,7 @@ fs::path FilmAtEnd(const fs::path& run, const Config& config, OperatorDesk& desk
 // A film wants a checkpoint, curves and a page an evaluation.
 void PrintWhatToLookAt(const fs::path& run, bool filmed, Progress& progress) {
   std::string commands;
-  if (!fs::is_empty(run / "eval")) {
+  if (!fs::is_empty(run / kEvaluationFolder)) {
     commands += fmt::format("; curves: shoal plot {0}; page: shoal report {0}", run.string());
   }
   if (!filmed && !NewestCheckpoint(run).empty()) {
@@ -103,7 +104,7 @@ void PrintSummary(const fs::path& run, const Config& config, const RunResult& re
                            FormatDuration(meta.wall_seconds), meta.wall_seconds));
   if (final_evaluation) {
     progress.Say(fmt::format("  final evaluation: {} ({})", FormatScore(*final_evaluation),
-                             (run / "eval/final.json").string()));
+                             (run / kEvaluationFolder / kFinalEvaluationFile).string()));
   }
   if (meta.first_success) {
     progress.Say(fmt::format("  success >= {:.0f} % from {} env steps, {} updates, {:.0f} s on",
@@ -125,8 +126,8 @@ void PrintSummary(const fs::path& run, const Config& config, const RunResult& re
     progress.Say(fmt::format("  updates lost with a learner: {}", meta.updates_lost));
   }
   for (const std::string& line : FormatBottleneck(result.bottleneck)) progress.Say("  " + line);
-  for (const char* name :
-       {"meta.json", "bottleneck.json", "metrics.jsonl", "eval", "checkpoints", "tensorboard"}) {
+  for (const char* name : {kMetaFile, kBottleneckFile, kMetricsFile, kEvaluationFolder,
+                           kCheckpointFolder, kTensorBoardFolder}) {
     if (fs::exists(run / name)) progress.Say(fmt::format("  {}", (run / name).string()));
   }
   if (!film.empty()) progress.Say(fmt::format("  {}", film.string()));

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "common/dds/metrics_publisher.h"
+#include "common/run_folder/run_file_names.h"
 #include "launch/watch/run_totals.h"
 
 namespace shoal::launch {
@@ -13,13 +14,13 @@ RunWatch::RunWatch(const std::filesystem::path& run, const dds::Bus& bus,
                    std::function<void(const std::string&)> say)
     : bus_(bus),
       say_(std::move(say)),
-      log_(run / "metrics.jsonl", MetricsLogLimits()),
+      log_(run / kMetricsFile, MetricsLogLimits()),
       own_report_("coordinator", 0) {}
 
 void RunWatch::OnReport(const MetricsMessage& report, SteadyTime now) {
   view_.OnMessage(report, now);
   if (!log_.Write(report)) {
-    say_("metrics.jsonl cannot be written any more (disk full or size limit)");
+    say_(fmt::format("{} cannot be written any more (disk full or size limit)", kMetricsFile));
   }
 }
 

@@ -8,6 +8,7 @@
 #include "common/base/files.h"
 #include "common/config/config_io.h"
 #include "common/config/learner_threads.h"
+#include "common/run_folder/run_file_names.h"
 
 namespace shoal::launch {
 namespace {

@@ -27,6 +27,7 @@
 #include "common/nn/encoder_weights.h"
 #include "common/nn/named_weights.h"
 #include "common/nn/network_check.h"
+#include "common/run_folder/run_file_names.h"
 #include "common/spec/record.h"
 #include "common/tasks/task_library.h"
 #include "common/wire/weights_parts.h"
@@ -230,7 +231,7 @@ void PrintStart(const PreparedRun& run, const ClusterAddress& address) {
       "1 evaluation actor; logs in {}\n",
       config.seed, config.env_steps, LearnsOnPolicy(config) ? "" : "1 replay, ",
       learner::DescribeThreads(config, run.config.spec, config.learner.threads, UsableCores()),
-      config.actors, config.envs_per_actor, (run.folder.path() / "logs").string());
+      config.actors, config.envs_per_actor, (run.folder.path() / kLogFolder).string());
   if (run.meta.env_steps > 0) {
     const std::filesystem::path checkpoint = NewestCheckpoint(run.folder.path());
     text +=
@@ -376,8 +377,7 @@ int Train(const TrainOptions& options, Detachment* detachment) {
   PreparedRun run = PrepareFresh(options, std::move(config), std::move(hosts));
   run.frame_microseconds = world.frame_microseconds;
   if (!initial.empty()) {
-    WriteFileAtomically(run.folder.path() / learner::kInitialWeightsFile,
-                        nn::WriteSafetensors(initial, {}));
+    WriteFileAtomically(run.folder.path() / kInitialWeightsFile, nn::WriteSafetensors(initial, {}));
   }
   return Start(std::move(run), options, std::move(bus), address, detachment);
 }

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "common/base/files.h"
+#include "common/run_folder/run_file_names.h"
 #include "launch/watch/advice.h"
 
 namespace shoal::launch {
@@ -110,7 +111,7 @@ void WriteBottleneck(const std::filesystem::path& run, const Bottleneck& bottlen
                      {"cores", times.cores},
                      {"shares", shares}});
   }
-  const ordered_json object{{"schema", "shoal-bottleneck-1"},
+  const ordered_json object{{"schema", kBottleneckSchema},
                             {"roles", roles},
                             {"limiter",
                              {{"blocked_insert_share", bottleneck.inserts_blocked},
@@ -118,7 +119,7 @@ void WriteBottleneck(const std::filesystem::path& run, const Bottleneck& bottlen
                             {"cores_used", bottleneck.cores},
                             {"cores_usable", bottleneck.usable},
                             {"advice", bottleneck.advice}};
-  WriteFileAtomically(run / "bottleneck.json", object.dump(2) + "\n");
+  WriteFileAtomically(run / kBottleneckFile, object.dump(2) + "\n");
 }
 
 }  // namespace shoal::launch

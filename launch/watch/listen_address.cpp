@@ -11,6 +11,20 @@
 #include "common/base/error.h"
 
 namespace shoal::launch {
+namespace {
+
+const char* Advice(int reason) {
+  switch (reason) {
+    case EADDRINUSE:
+      return "; choose another port";
+    case EADDRNOTAVAIL:
+      return "; expected an address of this host";
+    default:
+      return "";
+  }
+}
+
+}  // namespace
 
 std::string ListenAddress::Text() const { return fmt::format("{}:{}", address, port); }
 
@@ -34,7 +48,9 @@ void CheckCanListen(const ListenAddress& listen, const std::string& who) {
       ::listen(trial.get(), 1) == 0) {
     return;
   }
-  throw RuntimeError("{}: cannot listen on {}: {}", who, listen.Text(), std::strerror(errno));
+  const int reason = errno;
+  throw RuntimeError("{}: cannot listen on {}: {}{}", who, listen.Text(), std::strerror(reason),
+                     Advice(reason));
 }
 
 }  // namespace shoal::launch

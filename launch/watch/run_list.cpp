@@ -11,6 +11,7 @@
 #include "common/config/config_io.h"
 #include "common/config/run_files.h"
 #include "common/dds/bus.h"
+#include "common/run_folder/run_file_names.h"
 #include "launch/record/json_fields.h"
 #include "launch/record/run_folder.h"
 #include "launch/watch/progress.h"
@@ -29,7 +30,7 @@ RunStatus StatusOfExit(const std::string& exit) {
 }
 
 void ReadMeta(const std::filesystem::path& run, RunListing* listing) {
-  const std::filesystem::path path = run / "meta.json";
+  const std::filesystem::path path = run / kMetaFile;
   if (!std::filesystem::exists(path)) return;  // it ended, or has not come, before the first one
   const json meta = ParseStrictJson(ReadFile(path), path);
   listing->preset = TextOrEmpty(meta, "preset");
@@ -112,7 +113,7 @@ RunListing RunStatusOf(const std::filesystem::path& run) {
     listing.problem = e.what();
   } catch (const json::exception& e) {
     listing.status = RunStatus::kUnreadable;
-    listing.problem = fmt::format("{}: {}", (run / "meta.json").string(), e.what());
+    listing.problem = fmt::format("{}: {}", (run / kMetaFile).string(), e.what());
   }
   if (IsHeld(run)) {
     listing.status = RunStatus::kRunning;

@@ -7,6 +7,7 @@
 #include <string_view>
 
 #include "common/config/config_io.h"
+#include "common/run_folder/run_file_names.h"
 #include "learner/agent/algorithms.h"
 
 namespace shoal::launch {
@@ -47,7 +48,7 @@ Settings SettingsOf(const Config& config) {
 
 }  // namespace
 
-ScalarLog::ScalarLog(const std::filesystem::path& run) : writer_(run / "tensorboard") {}
+ScalarLog::ScalarLog(const std::filesystem::path& run) : writer_(run / kTensorBoardFolder) {}
 
 void ScalarLog::WriteConfig(const Config& config) {
   std::map<std::string, tensorboard::HyperParameter> settings;

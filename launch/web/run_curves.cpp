@@ -9,6 +9,7 @@
 
 #include "common/base/bounded_json.h"
 #include "common/base/error.h"
+#include "common/run_folder/run_file_names.h"
 #include "launch/record/evaluations.h"
 #include "learner/agent/algorithms.h"
 
@@ -65,7 +66,7 @@ void RunCurves::ReadOn(uint64_t most_bytes) {
 }
 
 void RunCurves::ReadMetrics(uint64_t most_bytes) {
-  const std::filesystem::path file = run_ / "metrics.jsonl";
+  const std::filesystem::path file = run_ / kMetricsFile;
   struct stat status {};
   complete_ = true;
   if (stat(file.c_str(), &status) != 0) return;
@@ -112,7 +113,7 @@ void RunCurves::OnLine(const std::string& line) {
 void RunCurves::ReadEvaluationFiles() {
   // Evaluations are renamed into their folder, which has another time from then on.
   std::error_code error;
-  const auto changed = std::filesystem::last_write_time(run_ / "eval", error);
+  const auto changed = std::filesystem::last_write_time(run_ / kEvaluationFolder, error);
   if (error || changed == evaluations_of_) return;
   try {
     evaluations_ = ReadEvaluations(run_);

@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "common/run_folder/run_file_names.h"
+
 namespace shoal::launch {
 namespace {
 
@@ -19,9 +21,9 @@ struct Kind {
 };
 
 constexpr Kind kKinds[] = {
-    {"videos", ".mp4", "video/mp4"},    {"", ".html", "text/html; charset=utf-8"},
-    {"", ".svg", "image/svg+xml"},      {"", ".png", "image/png"},
-    {"plots", ".svg", "image/svg+xml"}, {"plots", ".png", "image/png"},
+    {kVideoFolder, ".mp4", "video/mp4"}, {"", ".html", "text/html; charset=utf-8"},
+    {"", ".svg", "image/svg+xml"},       {"", ".png", "image/png"},
+    {"plots", ".svg", "image/svg+xml"},  {"plots", ".png", "image/png"},
 };
 
 // A plain name: neither hidden nor with anything that a path or a terminal takes for more.
@@ -77,7 +79,7 @@ std::optional<ServedFile> OpenWholeFile(const fs::path& file, const char* type) 
 
 std::vector<ServedName> ListServedFiles(const fs::path& run) {
   std::vector<ServedName> found;
-  for (const std::string folder : {"", "videos", "plots"}) {
+  for (const std::string folder : {"", kVideoFolder, "plots"}) {
     std::error_code error;
     for (fs::directory_iterator it(run / folder, error), end; !error && it != end;
          it.increment(error)) {

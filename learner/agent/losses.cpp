@@ -24,11 +24,12 @@ void MinTargets(int batch, const float* reward, const float* bootstrap,
   }
 }
 
-void AverageCopies(int batch, int copies, float* y) {
+void AverageCopies(int batch, int copies, int shifts, float* y) {
   if (copies == 1) return;
+  const int averaged = shifts == 0 ? copies : shifts;
   for (int first = 0; first < batch; first += copies) {
-    const double sum = std::accumulate(y + first, y + first + copies, 0.0);
-    std::fill_n(y + first, copies, float(sum / copies));
+    const double sum = std::accumulate(y + first, y + first + averaged, 0.0);
+    std::fill_n(y + first, copies, float(sum / averaged));
   }
 }
 

@@ -32,8 +32,9 @@ void TdTargets(int batch, const TargetInputs& inputs, const TargetRates& rates, 
 void MinTargets(int batch, const float* reward, const float* bootstrap,
                 std::span<const float* const> next_q, const TargetRates& rates, float* y);
 
-// Eq. 15:  each `copies` targets in a row become their mean. `copies` divides `batch`.
-void AverageCopies(int batch, int copies, float* y);
+// Eq. 15:  each `copies` targets in a row become the mean of the first `shifts` of them, which are
+// of different shifts; 0 = of all. `copies` divides `batch`.
+void AverageCopies(int batch, int copies, int shifts, float* y);
 
 // Eq. 6:  L = sum_i mean_b (q_i - y)^2;   dL/dq_i = 2 (q_i - y) / B
 struct CriticLoss {

@@ -12,9 +12,6 @@
 
 namespace shoal::learner {
 
-// Of a run, beside config.json: the weights that a learner without a checkpoint starts from.
-inline constexpr char kInitialWeightsFile[] = "initial.safetensors";
-
 // What AllTensors gives of such an agent: `weights`, F32 by our names, in place of `agent`'s, and
 // in place of the copies that `weights` does not have itself: averages, targets, encoders of their
 // own. The policy must be there whole; a critic need not. Throws Error (usage) naming `source` and

@@ -19,12 +19,12 @@ void CheckValueBounds(const RunConfig& run) {
         "have other bounds; expected false",
         task.name());
   }
-  const int repeat = run.config.action_repeat;
-  if (repeat > 1 || (repeat == 0 && task.action_repeat() > 1)) {
+  const int repeat = task.ActionRepeat(run.config.action_repeat);
+  if (repeat > 1) {
     throw UsageError(
         "learner.bounded_targets = true with action_repeat = {}: rewards are sums of -1 and 0; "
         "expected action_repeat = 1",
-        repeat == 0 ? task.action_repeat() : repeat);
+        repeat);
   }
   if (run.config.learner.discount >= 1) {
     throw UsageError(

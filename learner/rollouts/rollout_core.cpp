@@ -193,15 +193,15 @@ void RolloutCore::Drop(Rollout* rollout) {
   rollout->Clear();
 }
 
-bool RolloutCore::Usable(const Rollout& rollout) const {
-  return rollout.version.session == awaited_.session && rollout.version.update <= awaited_.update &&
-         rollout.version.update + versions_ahead_ >= awaited_.update;
+bool RolloutCore::TooOld(const Rollout& rollout) const {
+  return rollout.version.session != awaited_.session ||
+         rollout.version.update + versions_ahead_ < awaited_.update;
 }
 
 // An actor that is in step has at most one more than versions_ahead.
 void RolloutCore::DropOld(Lane* lane) {
   while (!lane->whole.empty() &&
-         (!Usable(lane->whole.front()) || lane->whole.size() > versions_ahead_ + 1)) {
+         (TooOld(lane->whole.front()) || lane->whole.size() > versions_ahead_ + 1)) {
     Drop(&lane->whole.front());
     spare_.push_back(std::move(lane->whole.front()));
     lane->whole.pop_front();

@@ -5,7 +5,8 @@
 // the weights, over episodes' ends. Of each environment the observation that its next step starts
 // from is known, once it was reset: a step is of use where it goes on from there. Rollouts are for
 // the update that follows the version they were played by, or, with ppo.versions_ahead = 1, for the
-// one after that; older ones are dropped.
+// one after that; older ones are dropped. Newer ones are kept: weights go out before the update's
+// checkpoint is written, and by the time that the next rollouts are awaited they may have come.
 //
 // Accounting. A record is dealt with when it came, whatever becomes of it. It counts as discarded
 // until an update is made of it, and so do those of rollouts that are dropped, never completed, or
@@ -116,7 +117,7 @@ class RolloutCore final : private RecordTaker {
   void Observe(const uint8_t* record, bool reset, Lane* lane);
   void Drop(Rollout* rollout);
   void DropOld(Lane* lane);
-  bool Usable(const Rollout& rollout) const;
+  bool TooOld(const Rollout& rollout) const;
   void CopyRows(const BatchView& batch, int first_row, uint32_t env, const Rollout& rollout);
 
   const RunConfig run_;

@@ -9,6 +9,7 @@
 #include "common/base/log.h"
 #include "common/config/sending_window.h"
 #include "common/intake/receiver_terms.h"
+#include "common/run_folder/run_file_names.h"
 
 namespace shoal::learner {
 namespace {

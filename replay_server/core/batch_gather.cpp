@@ -10,18 +10,28 @@ std::optional<BatchPlan> DrawPlan(const PlanOptions& options, Selector* selector
                                   Relabeller* relabeller, Random* random) {
   CHECK(options.copies > 0 && options.batch % options.copies == 0)
       << options.copies << " copies in a batch of " << options.batch;
+  const int target_shifts = options.target_shifts == 0 ? options.copies : options.target_shifts;
+  const int critic_shifts = options.critic_shifts == 0 ? options.copies : options.critic_shifts;
+  CHECK(options.copies % target_shifts == 0 && options.copies % critic_shifts == 0)
+      << target_shifts << " and " << critic_shifts << " shifts of " << options.copies << " copies";
   BatchPlan plan;
   plan.elements.reserve(static_cast<size_t>(options.batch));
   std::optional<Selection> drawn;
   uint64_t goal = 0;
   for (int b = 0; b < options.batch; ++b) {
-    if (b % options.copies == 0) {
+    const int copy = b % options.copies;
+    if (copy == 0) {
       drawn = selector->Draw(random);
       if (!drawn) return std::nullopt;
       if (relabeller != nullptr) goal = relabeller->DrawGoal(drawn->id, random);
     }
-    const Shift obs = DrawShift(options.shift_pad, random);
-    const Shift next_obs = DrawShift(options.shift_pad, random);
+    const auto before = [&](int shifts) -> const BatchPlan::Element& {
+      return plan.elements[static_cast<size_t>(b - shifts)];
+    };
+    const Shift obs =
+        copy < critic_shifts ? DrawShift(options.shift_pad, random) : before(critic_shifts).obs;
+    const Shift next_obs = copy < target_shifts ? DrawShift(options.shift_pad, random)
+                                                : before(target_shifts).next_obs;
     plan.elements.push_back({.id = drawn->id,
                              .probability = drawn->probability,
                              .goal = goal,

@@ -49,13 +49,16 @@ struct BatchPlan {
 };
 
 struct PlanOptions {
-  int batch = 1;      // B
-  int copies = 1;     // elements in a row with the same step; divides B
-  int shift_pad = 0;  // pixels
+  int batch = 1;          // B
+  int copies = 1;         // c: elements in a row with the same step; divides B
+  int target_shifts = 0;  // K: different shifts of next_obs among c; divides c, 0 = c
+  int critic_shifts = 0;  // M: the same of obs
+  int shift_pad = 0;      // pixels
 };
 
-// For every `copies` elements a step's id and, with a relabeller, its goal; for each element the
-// shift of obs and that of next_obs. Nothing when the selector finds no step.
+// For every `copies` elements a step's id and, with a relabeller, its goal; for the i-th of them
+// the shift of obs, drawn for i < M and then that of i - M, and the shift of next_obs, likewise
+// with K. Nothing when the selector finds no step.
 std::optional<BatchPlan> DrawPlan(const PlanOptions& options, Selector* selector,
                                   Relabeller* relabeller, Random* random);
 

@@ -38,9 +38,7 @@ uint64_t HindsightRelabeller::DrawGoal(uint64_t id, Random* random) {
 }
 
 tasks::Task TaskOf(const RunConfig& run) {
-  const tasks::Task& task = tasks::FindTask(run.spec.task);
-  const double threshold = run.config.distance_threshold;
-  return threshold > 0 ? task.WithThreshold(threshold) : task;
+  return tasks::FindTask(run.spec.task, run.config.distance_threshold);
 }
 
 void CheckHindsight(const RunConfig& run) {
@@ -51,7 +49,7 @@ void CheckHindsight(const RunConfig& run) {
   if (task.goal_size() == 0) {
     throw UsageError("replay.hindsight = {}: task {} has no goals", kind, task.name());
   }
-  const int repeat = config.action_repeat > 0 ? config.action_repeat : task.action_repeat();
+  const int repeat = task.ActionRepeat(config.action_repeat);
   if (repeat > 1) {
     throw UsageError(
         "replay.hindsight = {} with action_repeat = {}: a reward summed over control steps cannot "

@@ -11,6 +11,7 @@
 #include "common/base/error.h"
 #include "common/base/random.h"
 #include "common/config/run_files.h"
+#include "common/run_folder/run_file_names.h"
 #include "common/wire/batch_schema.h"
 #include "replay_server/core/batch_gather.h"
 #include "replay_server/core/episode_index.h"

@@ -7,6 +7,7 @@
 #include "common/base/random.h"
 #include "common/config/batch_options.h"
 #include "common/config/sending_window.h"
+#include "common/run_folder/run_file_names.h"
 
 namespace shoal::replay {
 namespace {
@@ -63,6 +64,8 @@ SessionTable SessionsOf(Ring& ring, const FormerServer& former) {
 PlanOptions PlanOptionsOf(const Config& config) {
   return {.batch = config.learner.batch,
           .copies = config.replay.copies,
+          .target_shifts = config.replay.target_shifts,
+          .critic_shifts = config.replay.critic_shifts,
           .shift_pad = config.replay.shift_pad};
 }
 

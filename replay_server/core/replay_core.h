@@ -36,9 +36,6 @@
 
 namespace shoal::replay {
 
-// Name of the ring in a run folder.
-inline constexpr char kRingFile[] = "replay.ring";
-
 // How far apart the two observations of a sample are, by the configuration.
 NStep NStepOf(const Config& config);
 

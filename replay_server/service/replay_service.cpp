@@ -21,6 +21,7 @@
 #include "common/dds/subscriber.h"
 #include "common/intake/accounting_file.h"
 #include "common/intake/receiver_terms.h"
+#include "common/run_folder/run_file_names.h"
 #include "common/wire/control_state.h"
 #include "common/wire/metrics_report.h"
 #include "common/wire/scoped_seconds.h"

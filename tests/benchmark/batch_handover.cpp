@@ -1,19 +1,14 @@
 #include "tests/benchmark/batch_handover.h"
 
-#include <fcntl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cerrno>
 #include <chrono>
-#include <cstring>
-#include <functional>
+#include <csignal>
 #include <optional>
 
 #include "common/base/clock.h"
-#include "common/base/descriptor.h"
 #include "common/base/error.h"
-#include "common/base/main_guard.h"
 #include "common/config/batch_options.h"
 #include "common/dds/bus.h"
 #include "common/dds/publisher.h"
@@ -25,6 +20,7 @@
 #include "replay_server/service/dds_part_writer.h"
 #include "replay_server/service/learner_slots.h"
 #include "replay_server/service/service_inbox.h"
+#include "tests/benchmark/forked_processes.h"
 
 namespace shoal::bench {
 namespace {
@@ -36,59 +32,10 @@ constexpr int kWarmUp = 20;
 constexpr uint64_t kLearnerSession = 1;
 constexpr seconds kDeadline{120};
 
-RunConfig PixelRun(int batch) {
-  RunConfig run;
-  run.config.run_name = "handover";
-  run.config.task = "Test";
+RunConfig RunOf(int batch) {
+  RunConfig run = TwoCameraRun("handover");
   run.config.learner.batch = batch;
-  run.spec.task = "Test";
-  run.spec.cameras = {"front", "side"};
-  run.spec.channels = 6;
-  run.spec.height = run.spec.width = 84;
-  run.spec.action_size = 4;
-  run.spec.model_fingerprint = "none";
   return run;
-}
-
-// Values of one kind from process to process.
-template <class T>
-class Pipe {
- public:
-  Pipe() {
-    int ends[2];
-    if (pipe2(ends, O_CLOEXEC) != 0) throw RuntimeError("pipe: {}", std::strerror(errno));
-    in_ = Descriptor(ends[0]);
-    out_ = Descriptor(ends[1]);
-  }
-  void Write(const T& value) const {
-    if (write(out_.get(), &value, sizeof value) != static_cast<ssize_t>(sizeof value)) {
-      throw RuntimeError("a process of the measurement has ended");
-    }
-  }
-  T Read() const {
-    T value{};
-    if (read(in_.get(), &value, sizeof value) != static_cast<ssize_t>(sizeof value)) {
-      throw RuntimeError("a process of the measurement has ended");
-    }
-    return value;
-  }
-  // Only the other processes write: their end is then the reader's.
-  void CloseWriter() { out_.Close(); }
-
- private:
-  Descriptor in_, out_;
-};
-
-struct Meeting {
-  int domain = 0;
-  char tag[64] = {};
-};
-
-ClusterAddress AddressOf(const Meeting& meeting) {
-  ClusterAddress address;
-  address.domain = meeting.domain;
-  address.tag = meeting.tag;
-  return address;
 }
 
 // The replay server without a ring: whatever is asked for is there.
@@ -174,32 +121,17 @@ double Learn(const RunConfig& run, const ClusterAddress& address, int batches) {
   return CpuSeconds() - start;
 }
 
-pid_t Fork(const char* name, const std::function<void()>& body) {
-  const pid_t child = fork();
-  if (child < 0) throw RuntimeError("fork: {}", std::strerror(errno));
-  if (child == 0) {
-    _exit(GuardMain(name, [&] {
-      body();
-      return 0;
-    }));
-  }
-  return child;
-}
-
 }  // namespace
 
 HandoverFigures MeasureHandover(const HandoverOptions& options) {
-  const RunConfig run = PixelRun(options.batch);
+  const RunConfig run = RunOf(options.batch);
   Pipe<Meeting> meeting;
   Pipe<double> replay_word;
   Pipe<double> learner_word;
   const auto requests = static_cast<uint64_t>(options.batches);
   const pid_t replay = Fork("replay", [&] {
-    ClusterAddress address;
-    dds::ClaimDomain(run.config.transport, &address).reset();
-    EmptyReplay server(run, address, options.shared);
-    Meeting where{.domain = address.domain};
-    std::strncpy(where.tag, address.tag.c_str(), sizeof where.tag - 1);
+    const Meeting where = FreeMeeting(run.config.transport);
+    EmptyReplay server(run, AddressOf(where), options.shared);
     meeting.Write(where);
     replay_word.Write(server.Serve(kWarmUp + 1, kWarmUp + requests));
     while (true) pause();  // its slots are read until the learner is through

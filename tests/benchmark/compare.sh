@@ -41,7 +41,7 @@ mkdir -p "$cache"
 work=$(mktemp -d "$cache/compare-XXXXXX")
 readonly tree=$work/tree
 clean_up() {
-  git worktree remove --force "$tree" 2>/dev/null || true
+  [[ ! -d $tree ]] || git worktree remove --force "$tree"
   rm -rf "$work"
 }
 trap clean_up EXIT

@@ -2,10 +2,11 @@
 
 usage: ppo_rates.py SHOAL [hopper] [reach] [reach-pixels]
 
-SHOAL is the program. The same rollouts, minibatches, epochs and networks on both sides, those of the
+SHOAL is the program; shoal-bench lies beside it. The same rollouts, minibatches, epochs and networks on both sides, those of the
 presets hopper-ppo, fetch-reach-ppo and fetch-reach-pixels-ppo; from pixels theirs is NatureCNN, the
 customary one, on one 84x84 picture of the original environment by OSMesa, ours the preset's small
-encoder on two. Each side counts from the end of its first update on; no evaluations. Prints JSON.
+encoder on two. Each side counts from the end of its first update on; no evaluations. FetchReach from
+state stands beside its physics alone too, on all cores at once, before and after. Prints JSON.
 Wants stable-baselines3, gymnasium[mujoco], gymnasium-robotics and, for the latter's models, mujoco
 3.3.7 from PyPI; nothing of Shoal needs Python.
 """
@@ -56,7 +57,7 @@ KINDS = {
     "reach": ("fetch-reach-ppo", 150_000, "MultiInputPolicy", 8,
               dict(n_steps=1024, batch_size=256, n_epochs=10), 40_000),
     "reach-pixels": ("fetch-reach-pixels-ppo", 30_000, "CnnPolicy", 16,
-                     dict(n_steps=128, batch_size=256, n_epochs=4, gamma=0.9), 8_000),
+                     dict(n_steps=256, batch_size=512, n_epochs=4, gamma=0.9), 8_000),
 }
 
 
@@ -87,6 +88,18 @@ def rate_of_shoal(program, preset, env_steps):
     return (last["env_steps"] - first["env_steps"]) / (last["t"] - first["t"])
 
 
+def rate_of_physics(program):
+    """FetchReach's physics alone: as many processes at once as there are cores, added up."""
+    bench = [os.path.join(os.path.dirname(program), "shoal-bench"), "--only",
+             "FetchReach with one 84x84 camera, fast", "--repetitions", "5", "--seconds", "1"]
+    running = [subprocess.Popen(bench, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+               for _ in range(os.cpu_count())]
+    rows = [row for process in running for row in json.loads(process.communicate()[0])["rows"]]
+    alone = [row["against_figure"] for row in rows if row["against"] == "physics alone"]
+    assert len(alone) == len(running), rows
+    return sum(alone)
+
+
 def rate_of_sb3(kind):
     _, _, policy, envs, settings, env_steps = KINDS[kind]
     venv = SubprocVecEnv([lambda: make(kind)] * envs)
@@ -107,9 +120,17 @@ def main():
     rows = []
     for kind in sys.argv[2:] or KINDS:
         preset, env_steps = KINDS[kind][:2]
-        ours, theirs = rate_of_shoal(program, preset, env_steps), rate_of_sb3(kind)
-        rows.append({"task": kind, "preset": preset, "env_steps_per_second": round(ours, 1),
-                     "stable_baselines3": round(theirs, 1), "ratio": round(ours / theirs, 2)})
+        physics = [rate_of_physics(program)] if kind == "reach" else []
+        ours = rate_of_shoal(program, preset, env_steps)
+        if physics:
+            physics.append(rate_of_physics(program))
+        theirs = rate_of_sb3(kind)
+        row = {"task": kind, "preset": preset, "env_steps_per_second": round(ours, 1),
+               "stable_baselines3": round(theirs, 1), "ratio": round(ours / theirs, 2)}
+        if physics:
+            row["physics_alone_on_all_cores"] = [round(rate, 1) for rate in physics]
+            row["ratio_to_physics_alone"] = round(ours * len(physics) / sum(physics), 2)
+        rows.append(row)
     version = subprocess.run([program, "--version"], capture_output=True, text=True, check=True)
     print(json.dumps({"shoal": version.stdout.strip(), "cores": os.cpu_count(), "rows": rows},
                      indent=2))

@@ -41,7 +41,7 @@ const std::vector<TrialRule>& TrialRules() {
       {"^sbatch ", kElsewhere, "SlurmTest.TheBatchScriptTrainsWithActorsThatSrunStarts"},
       {"^shoal experiment run .*--slurm", kElsewhere, "SlurmTest.AnExperimentIsAJobArrayOfItsRuns"},
       {"^podman ", kNotHere, "takes an image of Debian from a registry"},
-      {"^pip |/bin/pip |^python3 -m venv", kNotHere, kPyPI},
+      {"^pip |/bin/pip |^(/usr/bin/)?python3 -m venv", kNotHere, kPyPI},
       {"python tests/comparison/", kNotHere, kPyPI},
 
       {"--name-map", kElsewhere, "NamedWeightsTest.AMapNamesAndPutsTogether"},

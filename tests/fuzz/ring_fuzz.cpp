@@ -8,6 +8,7 @@
 #include "common/base/check.h"
 #include "common/base/error.h"
 #include "common/base/random.h"
+#include "common/run_folder/run_file_names.h"
 #include "replay_server/core/frame_check.h"
 #include "replay_server/core/replay_core.h"
 #include "tests/fuzz/fuzz_target.h"
@@ -86,7 +87,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   if (size == 0) return 0;
   static const shoal::RunConfig run = Run();
   const std::string bytes = shoal::fuzz::Text(data + 1, size - 1);
-  shoal::fuzz::WriteScratch(shoal::fuzz::Scratch() / kRingFile,
+  shoal::fuzz::WriteScratch(shoal::fuzz::Scratch() / shoal::kRingFile,
                             data[0] == 0 ? bytes : FileWithFittingChecks(bytes, run));
   try {
     Use(run);

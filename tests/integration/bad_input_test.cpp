@@ -37,6 +37,11 @@ INSTANTIATE_TEST_SUITE_P(
     testing::Values(
         Mistake{"UnknownKey", TrainWith("learner.bach=3"), 2, {"learner.bach", "learner.batch"}},
         Mistake{"KeyOfTwoLines", TrainWith("learner.\nbatch=3"), 2, {"learner. batch"}},
+        Mistake{"ShiftsOfNoCopies",
+                {"shoal", "train", "--preset", "fetch-reach-drq", "--dry-run", "--set",
+                 "replay.target_shifts=2"},
+                2,
+                {"replay.target_shifts = 2", "replay.copies = 1"}},
         Mistake{"IllTyped", TrainWith("learner.batch=many"), 2, {"learner.batch", "many"}},
         Mistake{"OutOfRange", TrainWith("learner.batch=-1"), 2, {"learner.batch", "-1"}},
         Mistake{"ThreadsThatCannotShareTheBatch",

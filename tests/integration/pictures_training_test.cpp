@@ -1,6 +1,6 @@
 // Short trainings of the real programs on every kind of observation with pictures: goal modes,
-// proprioception, colours, stacks, numbers of cameras and sizes, copies and n-step returns, each
-// value with others at least once.
+// proprioception, colours, stacks, numbers of cameras and sizes, copies, their shifts and n-step
+// returns, each value with others at least once.
 #include <gtest/gtest.h>
 
 #include "tests/support/training_run.h"
@@ -16,14 +16,15 @@ struct Kind {
   const char* cameras;
   int channels, height, width;
   int copies, n_step;
+  int target_shifts = 0, critic_shifts = 0;
 };
 
 const Kind kKinds[] = {
     {"rgb", "none", false, false, 1, R"(["front"])", 3, 84, 84, 1, 1},
-    {"grey_stack_of_four", "desired", true, true, 4, R"(["front","side"])", 2, 64, 64, 2, 1},
+    {"grey_stack_of_four", "desired", true, true, 4, R"(["front","side"])", 2, 64, 64, 2, 1, 2, 1},
     {"three_cameras", "both", false, false, 2, R"(["front","side","close"])", 9, 100, 100, 1, 3},
     {"image_goals", "image", true, false, 2, R"(["front","side"])", 6, 48, 48, 1, 1},
-    {"wide", "both", true, true, 3, R"(["gymnasium"])", 1, 64, 100, 2, 5},
+    {"wide", "both", true, true, 3, R"(["gymnasium"])", 1, 64, 100, 2, 5, 1, 2},
 };
 
 class PicturesTraining : public testing::TestWithParam<Kind> {};
@@ -32,17 +33,19 @@ TEST_P(PicturesTraining, UpdatesAndEvaluates) {
   const Kind& kind = GetParam();
   const auto text = [](bool value) { return std::string(value ? "true" : "false"); };
   const TrainingRun run;
-  const ProgramResult result =
-      run.Train(TrainingRun::FromPixels({{"observation.goal_mode", kind.goal_mode},
-                                         {"observation.proprioception", text(kind.proprioception)},
-                                         {"observation.grey", text(kind.grey)},
-                                         {"observation.stack", std::to_string(kind.stack)},
-                                         {"observation.cameras", kind.cameras},
-                                         {"observation.height", std::to_string(kind.height)},
-                                         {"observation.width", std::to_string(kind.width)},
-                                         {"replay.shift_pad", "4"},
-                                         {"replay.copies", std::to_string(kind.copies)},
-                                         {"replay.n_step", std::to_string(kind.n_step)}}));
+  const ProgramResult result = run.Train(
+      TrainingRun::FromPixels({{"observation.goal_mode", kind.goal_mode},
+                               {"observation.proprioception", text(kind.proprioception)},
+                               {"observation.grey", text(kind.grey)},
+                               {"observation.stack", std::to_string(kind.stack)},
+                               {"observation.cameras", kind.cameras},
+                               {"observation.height", std::to_string(kind.height)},
+                               {"observation.width", std::to_string(kind.width)},
+                               {"replay.shift_pad", "4"},
+                               {"replay.copies", std::to_string(kind.copies)},
+                               {"replay.target_shifts", std::to_string(kind.target_shifts)},
+                               {"replay.critic_shifts", std::to_string(kind.critic_shifts)},
+                               {"replay.n_step", std::to_string(kind.n_step)}}));
   ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
   const auto meta = run.Json("meta.json");
   ExpectBalanced(meta);

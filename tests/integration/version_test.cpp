@@ -13,7 +13,7 @@ namespace {
 TEST(Version, EveryProgramSaysWhichBuildItIs) {
   for (const char* program :
        {"shoal", "shoal-actor", "shoal-learner", "shoal-replay", "shoal-bench",
-        "shoal-bench-actors", "shoal-fake-actor", "shoal-soak"}) {
+        "shoal-bench-actors", "shoal-bench-weights", "shoal-fake-actor", "shoal-soak"}) {
     const ProgramResult result = RunProgram({program, "--version"}, std::chrono::seconds(10));
     EXPECT_EQ(ExitCode(result), 0) << program << ": " << result.err;
     EXPECT_EQ(result.out, fmt::format("{} {} ({})\n", program, BuildVersion(), BuildCommit()));
@@ -23,7 +23,7 @@ TEST(Version, EveryProgramSaysWhichBuildItIs) {
 TEST(Version, EveryProgramRefusesAnOptionThatItDoesNotHave) {
   for (const char* program :
        {"shoal", "shoal-actor", "shoal-learner", "shoal-replay", "shoal-bench",
-        "shoal-bench-actors", "shoal-fake-actor", "shoal-soak"}) {
+        "shoal-bench-actors", "shoal-bench-weights", "shoal-fake-actor", "shoal-soak"}) {
     const ProgramResult result = RunProgram({program, "--nonsense"}, std::chrono::seconds(10));
     EXPECT_EQ(ExitCode(result), 2) << program;
     EXPECT_EQ(std::ranges::count(result.err, '\n'), 1) << program << ": " << result.err;

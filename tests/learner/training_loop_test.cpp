@@ -1,20 +1,13 @@
-// The loop with a real, small agent; batches, readers and the coordinator are played by the test.
 #include "learner/training_loop.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <functional>
-#include <memory>
-#include <thread>
 
 #include "common/base/error.h"
 #include "common/base/files.h"
-#include "learner/agent/algorithms.h"
-#include "tests/learner/played_parts.h"
-#include "tests/learner/training_fixture.h"
-#include "tests/support/temporary_folder.h"
+#include "tests/learner/training_loop_fixture.h"
 
 namespace shoal::learner {
 namespace {
@@ -24,106 +17,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 using testing::ElementsAre;
 
-constexpr uint64_t kSession = 77;
-
-// An agent whose updates last longer than the second between two reports.
-class SlowAgent final : public Agent {
- public:
-  explicit SlowAgent(std::unique_ptr<Agent> agent) : agent_(std::move(agent)) {}
-
-  UpdateOutcome Update(const BatchView& batch, const OnStageEnd& on_stage_end) override {
-    std::this_thread::sleep_for(milliseconds(1100));
-    return agent_->Update(batch, on_stage_end);
-  }
-  uint64_t updates() const override { return agent_->updates(); }
-  nn::TensorMap PolicyTensors() const override { return agent_->PolicyTensors(); }
-  nn::TensorMap AveragedPolicyTensors() const override { return agent_->AveragedPolicyTensors(); }
-  nn::TensorMap AllTensors() const override { return agent_->AllTensors(); }
-  void Restore(const nn::TensorMap& tensors, const std::string& source) override {
-    agent_->Restore(tensors, source);
-  }
-
- private:
-  std::unique_ptr<Agent> agent_;
-};
-
-class TrainingLoopTest : public testing::Test {
- protected:
-  // One learner process: from the newest checkpoint until `stop_after` batches were given.
-  TrainingLoop::End Train(uint64_t stop_after,
-                          const std::function<void(PlayedBatches&)>& script = {}) {
-    outlet_.spec_hash = run_.spec.Hash();
-    outlet_.session = kSession;
-    std::unique_ptr<Agent> agent = MakeAgent(run_.config, run_.spec, precision_);
-    if (slow_) agent = std::make_unique<SlowAgent>(std::move(agent));
-    CheckpointStore checkpoints(folder_.path(), run_);
-    std::optional<CheckpointState> restored;
-    if (const auto checkpoint = checkpoints.RestoreNewest()) {
-      agent->Restore(checkpoint->tensors, "test");
-      restored = checkpoint->state;
-    }
-    PlayedBatches batches(run_, agent->updates() + 1);
-    batches.last_request = stop_after;
-    batches.before = [&](uint64_t request) {
-      if (request > stop_after) Say(RunState::kStopping);
-    };
-    if (script) script(batches);
-    TrainingLoop loop({.run = run_,
-                       .precision = precision_,
-                       .session = kSession,
-                       .agent = *agent,
-                       .batches = batches,
-                       .outlet = outlet_,
-                       .checkpoints = checkpoints,
-                       .pending_evaluations = pending_,
-                       .control = control_,
-                       .update_page = update_page_,
-                       .drain_idle = std::chrono::milliseconds(20)},
-                      restored);
-    const TrainingLoop::End end = loop.Run();
-    given_ = batches.given();
-    updates_ = agent->updates();
-    return end;
-  }
-
-  void Say(RunState state) {
-    control_.OnMessage({.epoch = ++epoch_, .state = state, .time = 0}, Now());
-  }
-
-  // Of the last report.
-  double Figure(const std::string& name) const {
-    const MetricsMessage& report = outlet_.reports.back();
-    const auto at = std::ranges::find(report.names, name);
-    EXPECT_NE(at, report.names.end()) << name;
-    return at == report.names.end() ? -1 : report.values[size_t(at - report.names.begin())];
-  }
-
-  std::set<std::string> Checkpoints() const {
-    std::set<std::string> names;
-    for (const auto& entry : fs::directory_iterator(folder_.path() / "checkpoints")) {
-      names.insert(entry.path().filename());
-    }
-    return names;
-  }
-  fs::path Checkpoint(const std::string& name) const {
-    return folder_.path() / "checkpoints" / name;
-  }
-
-  const TemporaryFolder folder_;
-  RunConfig run_ = SmallRun();  // weights every 5 updates
-  nn::Precision precision_ = nn::Precision::kF32;
-  KeptMessages outlet_;
-  PendingEvaluations pending_;
-  ControlState control_{Now()};
-  UpdatePage* update_page_ = nullptr;
-  uint64_t epoch_ = 0;
-  uint64_t given_ = 0, updates_ = 0;
-  bool slow_ = false;
-};
-
 TEST_F(TrainingLoopTest, EveryUpdateIsCountedForWhoeverComesAfterAKill) {
-  UpdatePage page(folder_.path(), 0);
-  update_page_ = &page;
   Train(7);
   EXPECT_EQ(UpdatePage(folder_.path(), 5).lost(), 2u) << "had its newest checkpoint been the fifth";
 }
@@ -371,82 +265,6 @@ TEST_F(TrainingLoopTest, ReportsWhatItDid) {
   EXPECT_EQ(Figure("data_age_updates_p99"), 5);
   EXPECT_GT(Figure("seconds_forward"), 0);
   EXPECT_EQ(last.names.size(), last.values.size());
-}
-
-class OnPolicyLoopTest : public TrainingLoopTest {
- protected:
-  OnPolicyLoopTest() {
-    run_.config.learner.algorithm = "ppo";
-    run_.config.ppo.epochs = 1;
-    run_.config.env_steps = 30;  // a batch brings 10
-    run_.spec.drawn_actions = true;
-  }
-};
-
-TEST_F(OnPolicyLoopTest, GivesTheWeightsBeforeTheFirstUpdateAndAfterEachOne) {
-  Train(2);
-  EXPECT_THAT(outlet_.Updates(outlet_.weights), ElementsAre(0, 1, 2));
-}
-
-TEST_F(OnPolicyLoopTest, GivesNoWeightsBeyondTheBudgetUnlessItIsRaised) {
-  Train(3);
-  EXPECT_THAT(outlet_.Updates(outlet_.weights), ElementsAre(0, 1, 2));
-  EXPECT_EQ(outlet_.progress.back().env_steps, 30u);
-  outlet_.weights.clear();
-  Say(RunState::kRunning);
-  Train(5, [&](PlayedBatches& batches) {
-    batches.before = [&](uint64_t request) {
-      if (request > 5) return Say(RunState::kStopping);
-      control_.OnMessage({.epoch = ++epoch_,
-                          .state = RunState::kRunning,
-                          .time = 0,
-                          .setting_names = {"env_steps"},
-                          .setting_values = {60}},
-                         Now());
-    };
-  });
-  // Restored beyond its budget it gives none until that is raised.
-  EXPECT_THAT(outlet_.Updates(outlet_.weights), ElementsAre(4, 5));
-}
-
-TEST_F(OnPolicyLoopTest, WeightsThatTheTransportDidNotTakeAreSentAgain) {
-  outlet_.accept_weights = false;
-  int turns = 0;
-  Train(1, [&](PlayedBatches& batches) {
-    batches.last_request = 0;
-    batches.before = [&](uint64_t) {
-      if (++turns == 3) outlet_.accept_weights = true;
-      if (turns == 6) Say(RunState::kStopping);
-    };
-  });
-  EXPECT_THAT(outlet_.Updates(outlet_.weights), ElementsAre(0));
-}
-
-// It may take longer than a process may be silent.
-TEST_F(OnPolicyLoopTest, ReportsInTheMidstOfAnUpdate) {
-  slow_ = true;
-  Train(1);
-  const MetricsMessage& first = outlet_.reports.front();
-  const auto updates = std::ranges::find(first.names, "updates");
-  ASSERT_NE(updates, first.names.end());
-  EXPECT_EQ(first.values[size_t(updates - first.names.begin())], 0) << "the first is not over";
-  EXPECT_EQ(first.state, "running");
-}
-
-TEST_F(OnPolicyLoopTest, DrainsAtOnce) {
-  uint64_t drained_at = 0;
-  Train(50, [&](PlayedBatches& batches) {
-    batches.before = [&](uint64_t request) {
-      if (request == 2) {
-        drained_at = request;
-        Say(RunState::kDraining);
-      }
-    };
-    outlet_.on_evaluation = [&] { Say(RunState::kStopping); };
-  });
-  EXPECT_EQ(drained_at, 2u);
-  EXPECT_EQ(updates_, 2u) << "the batch that it had, no more";
-  EXPECT_TRUE(outlet_.progress.back().drained);
 }
 
 }  // namespace

@@ -162,6 +162,20 @@ def test_checkpoints_that_cannot_be_read_are_refused(tmp_path):
     assert "policy.safetensors" in refusal(shoal_rl.Policy, copy)
 
 
+def test_a_package_of_another_python_says_so(tmp_path):
+    package = tmp_path / "shoal_rl"
+    shutil.copytree(pathlib.Path(shoal_rl.__file__).parent, package)
+    (native,) = package.glob("_native.*.so")
+    native.rename(package / "_native.cpython-27-x86_64-linux-gnu.so")
+    done = subprocess.run(
+        [sys.executable, "-c", "import shoal_rl"],
+        env={"PYTHONPATH": str(tmp_path)}, capture_output=True, text=True,
+    )
+    line = done.stderr.splitlines()[-1]
+    assert line.startswith("ImportError: ") and "cpython-27" in line
+    assert f"this is Python {sys.version_info.major}.{sys.version_info.minor}" in line
+
+
 # --- make
 
 FORMS = {

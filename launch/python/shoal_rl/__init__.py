@@ -8,7 +8,22 @@ metrics(run), evaluations(run)  what a run has written, as data frames
 What is wrong is said by Error, in one line. Wants numpy; make also gymnasium, data frames pandas.
 """
 
-from shoal_rl._native import Error, Policy, __version__, tasks
+
+def _why_not_native():
+    import pathlib
+    import sys
+
+    folder = pathlib.Path(__file__).parent
+    built = ", ".join(file.name for file in folder.glob("_native.*")) or "nothing compiled"
+    python = f"Python {sys.version_info.major}.{sys.version_info.minor}"
+    return f"{folder} has {built}, this is {python}: use the Python that its wheel was built for"
+
+
+try:
+    from shoal_rl._native import Error, Policy, __version__, tasks
+except ModuleNotFoundError as error:
+    # pip refuses the wheel under another Python, PYTHONPATH and copied folders do not.
+    raise ImportError(_why_not_native()) from error
 from shoal_rl.runs import evaluations, metrics
 
 __all__ = ["Error", "Policy", "__version__", "evaluations", "make", "make_vec", "metrics", "tasks"]

@@ -165,7 +165,7 @@ void DeterministicAgent::ComputeTargets(const BatchView& batch, Random* random,
                           /*temperature=*/0, ValueBoundsOf(config_.learner)};
   MinTargets(rows_, batch.reward.data(), batch.bootstrap.data(), Values(target_critic_), rates,
              targets_.data());
-  AverageCopies(rows_, config_.replay.copies, targets_.data());
+  AverageCopies(rows_, config_.replay.copies, config_.replay.target_shifts, targets_.data());
   on_stage_end(UpdateStage::kForward);
 }
 

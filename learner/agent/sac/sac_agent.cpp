@@ -143,7 +143,7 @@ void SacAgent::ComputeTargets(const Seen& seen, float temperature, Random* rando
   const TargetRates rates{float(config_.learner.reward_scale), float(config_.learner.discount),
                           temperature, bounds_};
   TdTargets(rows_, inputs, rates, targets_.data());
-  AverageCopies(rows_, config_.replay.copies, targets_.data());
+  AverageCopies(rows_, config_.replay.copies, config_.replay.target_shifts, targets_.data());
   on_stage_end(UpdateStage::kForward);
 }
 

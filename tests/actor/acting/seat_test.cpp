@@ -82,6 +82,28 @@ TEST_F(SeatTest, FiguresAreOfTheWholeEpisodeAndStartAnew) {
       << "the change from the episode before is none";
 }
 
+TEST_F(SeatTest, AnEpisodeIsCutAsByATimeLimit) {
+  seat_.Begin(4, {frame_, vector_}, /*cut_after=*/2);
+  EXPECT_FALSE(Step(0, 0).truncated);
+  const worlds::StepResult cut = Step(0.25F, 0);
+  EXPECT_TRUE(cut.truncated);
+  EXPECT_FALSE(cut.terminated);
+  EXPECT_FALSE(seat_.running());
+  EXPECT_EQ(seat_.figures().final_distance, 98);
+  EXPECT_THAT(vector_, ElementsAre(4, 2)) << "observed after its last step";
+
+  seat_.Begin(4, {frame_, vector_}, /*cut_after=*/3);
+  Step(0, 0);
+  Step(0, 0);
+  const worlds::StepResult end = Step(0, 0);
+  EXPECT_TRUE(end.terminated);
+  EXPECT_FALSE(end.truncated) << "the task's own end comes first";
+
+  Begin(5);
+  Step(0, 0);
+  EXPECT_FALSE(Step(0, 0).truncated) << "a cut is of its episode alone";
+}
+
 TEST_F(SeatTest, AnAbandonedEpisodeNoLongerRuns) {
   Begin(4);
   seat_.Abandon();

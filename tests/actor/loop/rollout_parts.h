@@ -67,18 +67,21 @@ struct RolloutParts {
                uint64_t session = 10)
       : RolloutParts(run, sink, SmallConfig(envs), first_env, session) {}
 
+  // `length`: env steps of the environments' episodes.
   RolloutParts(const std::filesystem::path& run, RecordSink& sink, const Config& of,
-               uint32_t first_env, uint64_t session = 10)
+               uint32_t first_env, uint64_t session = 10, int length = CountingEnvironment::kLength)
       : config(of),
         spec(CountingEnvironment().spec()),
         made(run, /*actor=*/0, session, first_env, static_cast<uint32_t>(of.envs_per_actor)),
         selector(config, spec, of.envs_per_actor),
-        rollout(Rollout::Options::Of(config, first_env), spec, Environments(of.envs_per_actor),
-                made, sink, selector) {}
+        rollout(Rollout::Options::Of(config, first_env), spec,
+                Environments(of.envs_per_actor, length), made, sink, selector) {}
 
-  static std::vector<std::unique_ptr<worlds::Environment>> Environments(int envs) {
+  static std::vector<std::unique_ptr<worlds::Environment>> Environments(int envs, int length) {
     std::vector<std::unique_ptr<worlds::Environment>> environments;
-    for (int e = 0; e < envs; ++e) environments.push_back(std::make_unique<CountingEnvironment>());
+    for (int e = 0; e < envs; ++e) {
+      environments.push_back(std::make_unique<CountingEnvironment>(length));
+    }
     return environments;
   }
 

@@ -26,6 +26,7 @@ class RolloutStateTest : public testing::Test {
     EpisodeState& running = state.episodes.emplace_back();
     running.episode = 7;
     running.running = true;
+    running.cut_after = 13;
     running.noise = {{1, ~uint64_t{0}, 3, 4}, {-0.0, 5e-324, 0.1}};
     running.actions = {0.1F, -1.0F, 1e-42F, 0.0F};
     state.episodes.emplace_back().episode = 8;

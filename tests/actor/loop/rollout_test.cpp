@@ -110,13 +110,113 @@ TEST(GoalPictures, AGoalRecordComesBeforeEachResetAndThePolicySeesItsPicture) {
 }
 
 TEST_F(RolloutTest, TheFiguresOfEndedEpisodesAreLogged) {
-  Start(2);
-  Step(CountingEnvironment::kLength);
+  Start(1);
+  Step(2 * CountingEnvironment::kLength);
   ASSERT_EQ(rollout().episodes().count(), 2u);
   double sum = 0;
   for (size_t i = 0; i < sink_.records.size(); ++i) sum += sink_.Header(i).reward;
   EXPECT_NEAR(rollout().episodes().Mean().episode_return, sum / 2, 1e-6);
   EXPECT_EQ(rollout().episodes().Mean().length, CountingEnvironment::kLength);
+}
+
+// Environments whose episodes are as long as the task says, 50 steps.
+class SpreadResetsTest : public RolloutTest {
+ protected:
+  static constexpr int kSteps = 50;
+
+  void Start(int envs) {
+    parts_.emplace(run_.path(), sink_, SmallConfig(envs), kFirstEnv, /*session=*/10, kSteps);
+  }
+  // Steps, and says which of the environments were reset in doing so.
+  std::vector<int> Resets() {
+    const size_t before = sink_.records.size();
+    Step(1);
+    std::vector<int> resets;
+    for (size_t i = before; i < sink_.records.size(); ++i) {
+      const RecordHeader& header = sink_.Header(i);
+      if (header.kind == RecordKind::kReset) resets.push_back(int(header.env - kFirstEnv));
+    }
+    return resets;
+  }
+  // Of each environment, the lengths of its ended episodes.
+  std::vector<std::vector<int>> Lengths(int envs) const {
+    std::vector<std::vector<int>> lengths(static_cast<size_t>(envs));
+    for (size_t i = 0; i < sink_.records.size(); ++i) {
+      const RecordHeader& header = sink_.Header(i);
+      if ((header.flags & (kTerminated | kTruncated)) == 0) continue;
+      lengths[header.env - kFirstEnv].push_back(static_cast<int>(header.index));
+    }
+    return lengths;
+  }
+};
+
+TEST_F(SpreadResetsTest, FirstEpisodesAreCutSoThatNoTwoResetsFallIntoOneStepAgain) {
+  Start(4);
+  EXPECT_THAT(Resets(), ElementsAre(0, 1, 2, 3));
+  for (int step = 1; step <= 3 * kSteps; ++step) EXPECT_LE(Resets().size(), 1u) << step;
+  using L = std::vector<int>;
+  EXPECT_THAT(Lengths(4), ElementsAre(L{13, 50, 50}, L{25, 50, 50}, L{38, 50, 50}, L{50, 50, 50}));
+}
+
+TEST_F(SpreadResetsTest, ACutEpisodeIsTruncatedAtWhatWasObservedLast) {
+  Start(4);
+  Step(13);
+  const size_t last = sink_.records.size() - 4;
+  EXPECT_EQ(sink_.Header(last).env, kFirstEnv);
+  EXPECT_EQ(sink_.Header(last).flags & (kTerminated | kTruncated), kTruncated);
+  EXPECT_EQ(sink_.layout().Vector(sink_.Bytes(last))[1], 13);
+  EXPECT_EQ(sink_.Header(last).distance, 100 - 13);
+  for (size_t i = last + 1; i < last + 4; ++i) {
+    EXPECT_EQ(sink_.Header(i).flags & (kTerminated | kTruncated), 0) << i;
+  }
+}
+
+TEST_F(SpreadResetsTest, EveryEpisodeOfALoneEnvironmentIsWhole) {
+  Start(1);
+  Step(2 * kSteps);
+  EXPECT_THAT(Lengths(1), ElementsAre(std::vector<int>{50, 50}));
+}
+
+TEST_F(SpreadResetsTest, FiguresLeaveOutEpisodesThatAreCut) {
+  Start(4);
+  Step(kSteps - 1);
+  EXPECT_EQ(rollout().episodes().count(), 0u);
+  Step(1);
+  EXPECT_EQ(rollout().episodes().count(), 1u) << "the last environment's is whole";
+  Step(13);
+  EXPECT_EQ(rollout().episodes().count(), 2u);
+  EXPECT_EQ(rollout().episodes().Mean().length, kSteps);
+}
+
+// Of episodes that were to be cut only those that ended early are whole.
+TEST_F(RolloutTest, FiguresLeaveOutEpisodesThatWereToBeCutAndEndedBefore) {
+  Start(2);
+  Step(CountingEnvironment::kLength);
+  EXPECT_EQ(rollout().episodes().count(), 1u);
+}
+
+TEST_F(SpreadResetsTest, AreSpreadAnewAfterAllEpisodesWereAbandoned) {
+  Start(2);
+  Step(kSteps);
+  rollout().AbandonEpisodes();
+  EXPECT_THAT(Resets(), ElementsAre(0, 1));
+  Step(2 * kSteps);
+  EXPECT_THAT(Lengths(2), ElementsAre(std::vector<int>{25, 25, 50}, std::vector<int>{50, 50, 50}));
+}
+
+TEST_F(SpreadResetsTest, ACutEpisodeGoesOnFromItsState) {
+  Start(2);
+  Step(20);
+  const RolloutState state = rollout().State();
+  const TemporaryFolder run;
+  FakeSink sink(parts_->spec);
+  RolloutParts successor(run.path(), sink, SmallConfig(2), kFirstEnv, /*session=*/10, kSteps);
+  successor.rollout.Restore(state);
+  EXPECT_EQ(successor.rollout.State(), state);
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(successor.rollout.TryStep());
+  const RecordHeader& last = sink.Header(sink.records.size() - 2);
+  EXPECT_EQ(last.index, 25u);
+  EXPECT_EQ(last.flags & kTruncated, kTruncated);
 }
 
 TEST_F(RolloutTest, StepsNothingWithoutRoomForAResetAndAStepOfEach) {

@@ -5,6 +5,7 @@
 #include <mujoco/mujoco.h>
 
 #include "common/base/error.h"
+#include "tests/actor/worlds/engine_warnings.h"
 
 namespace shoal::worlds {
 namespace {
@@ -22,6 +23,7 @@ TEST(EngineMessages, AnEngineErrorIsThrownWithItsText) {
 
 TEST(EngineMessages, WarningsAreCountedOneByOne) {
   InstallEngineCallbacks();
+  ExpectEngineWarnings(5);
   const int64_t before = EngineWarnings();
   for (int i = 0; i < 5; ++i) mju_warning("the floor creaks");
   EXPECT_EQ(EngineWarnings(), before + 5);
@@ -29,6 +31,7 @@ TEST(EngineMessages, WarningsAreCountedOneByOne) {
 
 TEST(EngineMessages, ARepeatedWarningIsLoggedWhenItsCountDoubles) {
   InstallEngineCallbacks();
+  ExpectEngineWarnings(8);
   testing::internal::CaptureStderr();
   for (int i = 0; i < 8; ++i) mju_warning("the same again");
   const std::string log = testing::internal::GetCapturedStderr();

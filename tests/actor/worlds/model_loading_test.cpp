@@ -6,7 +6,6 @@
 
 #include <cmath>
 
-#include "actor/worlds/engine_messages.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "tests/support/temporary_folder.h"
@@ -51,13 +50,6 @@ TEST(FetchReachModel, HasTheViewOfTheOriginal) {
   EXPECT_NEAR(model->stat.extent, 2.77437, 1e-9);
   EXPECT_NEAR(model->stat.center[0], 0.387158, 1e-9);
   EXPECT_EQ(model->site_bodyid[0], mj_name2id(model.get(), mjOBJ_BODY, "floor0"));
-}
-
-TEST(FetchReachModel, CompilesWithoutWarnings) {
-  InstallEngineCallbacks();
-  const int64_t before = EngineWarnings();
-  LoadModel(kReach, "");
-  EXPECT_EQ(EngineWarnings(), before);
 }
 
 TEST(ModelFingerprint, IsThatOfTheNumbers) {

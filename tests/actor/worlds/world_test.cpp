@@ -9,6 +9,7 @@
 #include "actor/worlds/model_loading.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "tests/actor/worlds/engine_warnings.h"
 #include "tests/support/temporary_folder.h"
 
 namespace shoal::worlds {
@@ -47,6 +48,7 @@ TEST(World, StepsTheEngine) {
 }
 
 TEST(World, AStateThatIsNotFiniteIsAnErrorAndNotASilentReset) {
+  ExpectEngineWarnings(1);
   FallingBall world;
   world.Step({});
   world.data().qvel[0] = std::numeric_limits<double>::quiet_NaN();

@@ -8,6 +8,7 @@
 #include "common/base/files.h"
 #include "common/config/config_io.h"
 #include "common/config/config_keys.h"
+#include "common/run_folder/run_file_names.h"
 #include "tests/common/config/schema_check.h"
 #include "tests/support/temporary_folder.h"
 

@@ -7,6 +7,7 @@
 
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/run_folder/run_file_names.h"
 #include "tests/support/temporary_folder.h"
 
 namespace shoal {

@@ -93,14 +93,16 @@ TEST_F(CheckpointPolicyTest, DoesNotSayWhereTrainingFoundItsEncoder) {
 
 TEST_F(CheckpointPolicyTest, DamageIsRefusedNamingTheFile) {
   Replace("policy.json", "grip", "grap");
-  EXPECT_THAT(Refusal(), AllOf(HasSubstr("policy.json"), HasSubstr("CRC-32")));
+  EXPECT_THAT(Refusal(), AllOf(HasSubstr("policy.json"), HasSubstr("CRC-32"),
+                               HasSubstr("take another checkpoint")));
   fs::remove(checkpoint_ / "policy.json");
   EXPECT_THAT(Refusal(), HasSubstr("policy.json"));
 }
 
 TEST_F(CheckpointPolicyTest, DamagedParametersAreRefused) {
   fs::resize_file(checkpoint_ / "policy.safetensors", 100);
-  EXPECT_THAT(Refusal(), AllOf(HasSubstr("policy.safetensors"), HasSubstr("100 bytes")));
+  EXPECT_THAT(Refusal(), AllOf(HasSubstr("policy.safetensors"), HasSubstr("100 bytes"),
+                               HasSubstr("take another checkpoint")));
 }
 
 TEST_F(CheckpointPolicyTest, NoCheckpointIsRefusedByName) {
@@ -121,7 +123,7 @@ TEST_F(CheckpointPolicyTest, ANewerFormatIsRefusedNamingBoth) {
 TEST_F(CheckpointPolicyTest, ANewerCheckpointIsRefusedNamingBoth) {
   Rewrite([](ordered_json*, ordered_json* state) { (*state)["schema"] = "shoal-checkpoint-2"; });
   EXPECT_THAT(Refusal(), AllOf(HasSubstr("state.json"), HasSubstr("shoal-checkpoint-2"),
-                               HasSubstr("shoal-checkpoint-1")));
+                               HasSubstr("shoal-checkpoint-1"), HasSubstr("newer")));
 }
 
 TEST_F(CheckpointPolicyTest, AKeyOfAnotherVersionIsRefusedNamingItAndTheVersion) {
@@ -129,8 +131,8 @@ TEST_F(CheckpointPolicyTest, AKeyOfAnotherVersionIsRefusedNamingItAndTheVersion)
     (*description)["version"] = "7.1.0";
     (*description)["network"]["attention"] = 4;
   });
-  EXPECT_THAT(Refusal(),
-              AllOf(HasSubstr("network.attention"), HasSubstr("written by Shoal 7.1.0")));
+  EXPECT_THAT(Refusal(), AllOf(HasSubstr("network.attention"), HasSubstr("written by Shoal 7.1.0"),
+                               HasSubstr("use the version that wrote it")));
 }
 
 TEST_F(CheckpointPolicyTest, AnEncoderThatIsNotHereIsRefused) {

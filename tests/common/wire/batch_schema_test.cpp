@@ -107,12 +107,14 @@ TEST_F(BatchSchemaTest, TheHashTellsWhateverDiffers) {
   };
   add_options([](BatchOptions& o) { o.batch = 4; });
   add_options([](BatchOptions& o) { o.copies = 3; });
+  add_options([](BatchOptions& o) { o.target_shifts = 1; });
+  add_options([](BatchOptions& o) { o.critic_shifts = 1; });
   add_options([](BatchOptions& o) { o.n_step = 1; });
   add_options([](BatchOptions& o) { o.discount = 0.90000001; });
   add_spec([](ObservationSpec& s) { s.stack = 1; });
   add_spec([](ObservationSpec& s) { s.action_size = 3; });
   add_spec([](ObservationSpec& s) { s.blocks.clear(); });
-  EXPECT_EQ(hashes.size(), 8u);
+  EXPECT_EQ(hashes.size(), 10u);
   EXPECT_EQ(BatchSchema(Spec(), options).Hash(), BatchSchema(Spec(), options).Hash());
 }
 

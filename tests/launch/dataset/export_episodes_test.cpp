@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/files.h"
+#include "common/run_folder/run_file_names.h"
 #include "replay_server/core/replay_core.h"
 #include "tests/launch/dataset/read_hdf5.h"
 #include "tests/replay_server/record_script.h"
@@ -25,7 +26,7 @@ class ExportEpisodesTest : public testing::Test {
     std::filesystem::create_directory(output_.parent_path());
     asked_.run = replay::TinyRun(1, 64);
     asked_.run.config.replay.storage = "file";
-    asked_.ring = folder_.path() / replay::kRingFile;
+    asked_.ring = folder_.path() / kRingFile;
     asked_.output = output_;
   }
   // What an actor's first `records` records leave in the ring.

@@ -103,7 +103,7 @@ TEST(FilmPicture, EachFigureChangesThePicture) {
 
 TEST(FilmPicture, WordsThatAreTooLongAreCutWithinTheirPlace) {
   ObservationSpec spec = SmallSpec();
-  spec.cameras[0] = std::string(300, 'w') + "é";
+  spec.cameras[0].assign(300, 'w').append("é");
   FilmPicture picture(spec);
   FilmText text = Text();
   for (int i = 0; i < 200; ++i) text.subtitle += "é";

@@ -55,6 +55,8 @@ TEST_F(CompareTest, RunsAreGroupsOfOneSeed) {
   EXPECT_EQ(comparison.groups[1].successes, 50u);
   EXPECT_EQ(comparison.groups[1].episodes, 100u);
   EXPECT_THAT(comparison.groups[1].n_to_target, ElementsAre(400.0));
+  EXPECT_THAT(comparison.groups[1].seconds_to_target, ElementsAre(4.0));
+  EXPECT_THAT(ToText(comparison), HasSubstr("b: 400 (4 s)"));
   EXPECT_EQ(comparison.ratios[0].median, 2);
   ASSERT_EQ(comparison.differences.size(), 1u) << "not the names of the runs";
   EXPECT_EQ(comparison.differences[0].key, "learner.batch");

@@ -34,9 +34,9 @@ TEST(Report, IsOnePageThatNeedsNothingElse) {
   const std::string html =
       ReportHtml(GatherReport({.names = {"a"}, .run_dir = folder.path().string()}));
   for (const char* part :
-       {"100.0 % [96.3, 100.0] (100/100)", "<svg", "&quot;batch&quot;: ", "abc, def",
-        "a fast one (2 cores)", "/config.json --run-name a-again --set run_dir=runs",
-        "data:video/mp4;base64,TWFu"}) {
+       {"100.0 % [96.3, 100.0] (100/100)", ">env steps<", ">wall time, minutes<",
+        "&quot;batch&quot;: ", "abc, def", "a fast one (2 cores)",
+        "/config.json --run-name a-again --set run_dir=runs", "data:video/mp4;base64,TWFu"}) {
     EXPECT_THAT(html, HasSubstr(part));
   }
   for (const char* link : {"<script", "src=\"http", "<link", "url("}) {
@@ -50,10 +50,11 @@ TEST(Report, OfATaskWithoutSuccessItSaysNothingAboutIt) {
   const auto page = [&] {
     return ReportHtml(GatherReport({.names = {"a"}, .run_dir = folder.path().string()}));
   };
-  EXPECT_THAT(page(), AllOf(HasSubstr("<th>success"), HasSubstr("<th>env steps to 90 %")));
+  EXPECT_THAT(page(),
+              AllOf(HasSubstr("<th>success"), HasSubstr("<th>env steps (wall clock) to 90 %")));
   run.WriteFinal(std::nullopt, 100);
   EXPECT_THAT(page(), AllOf(HasSubstr("<th>return"), Not(HasSubstr("<th>success")),
-                            Not(HasSubstr("<th>env steps to"))));
+                            Not(HasSubstr("<th>env steps (wall"))));
 }
 
 TEST(Report, ShowsTheDefinitionOfAnExperiment) {

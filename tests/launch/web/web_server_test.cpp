@@ -175,11 +175,13 @@ TEST_F(WebServerTest, AtAnotherAddressEverythingTakesTheToken) {
 
 TEST_F(WebServerTest, APortThatIsTakenAndAForeignAddressAreNamed) {
   const WebServer server(Options());
-  EXPECT_THAT(ErrorMessage(1, [&] { WebServer(Options("127.0.0.1", server.port())); }),
-              ::testing::StrEq("shoal web: cannot listen on 127.0.0.1:" +
-                               std::to_string(server.port()) + ": Address already in use"));
+  EXPECT_THAT(
+      ErrorMessage(1, [&] { WebServer(Options("127.0.0.1", server.port())); }),
+      ::testing::StrEq("shoal web: cannot listen on 127.0.0.1:" + std::to_string(server.port()) +
+                       ": Address already in use; choose another port"));
   EXPECT_THAT(ErrorMessage(1, [&] { WebServer(Options("192.0.2.1", 8470)); }),
-              HasSubstr("192.0.2.1:8470: Cannot assign requested address"));
+              HasSubstr("192.0.2.1:8470: Cannot assign requested address; expected an address "
+                        "of this host"));
 }
 
 TEST_F(WebServerTest, ARunThatDoesNotExistIsNamed) {

@@ -44,11 +44,20 @@ TEST(TdTargets, CutTheSmallerHeadOffBeforeTheEntropyTerm) {
 
 TEST(AverageCopies, GivesEveryCopyTheMeanOfItsTransition) {
   float y[6] = {1, 2, 6, -1, -3, 1};
-  AverageCopies(6, 3, y);
+  AverageCopies(6, 3, /*shifts=*/0, y);
   EXPECT_THAT(y, ::testing::ElementsAre(3, 3, 3, -1, -1, -1));
   float alone[3] = {1, 2, 3};
-  AverageCopies(3, 1, alone);
+  AverageCopies(3, 1, /*shifts=*/0, alone);
   EXPECT_THAT(alone, ::testing::ElementsAre(1, 2, 3));
+}
+
+TEST(AverageCopies, CountsEachShiftOnce) {
+  float y[8] = {1, 2, 7, 9, -1, -3, 0, 5};
+  AverageCopies(8, 4, /*shifts=*/2, y);
+  EXPECT_THAT(y, ::testing::ElementsAre(1.5f, 1.5f, 1.5f, 1.5f, -2, -2, -2, -2));
+  float first[4] = {1, 2, 3, 4};
+  AverageCopies(4, 2, /*shifts=*/1, first);
+  EXPECT_THAT(first, ::testing::ElementsAre(1, 1, 3, 3));
 }
 
 TEST(CriticLoss, IsTheSumOverHeadsOfTheMeanSquare) {

@@ -119,6 +119,12 @@ const Case kCases[] = {
        config->learner.batch = 12;
        config->replay.copies = 2;
      }},
+    {"sac_with_fewer_shifts",
+     [](Config* config) {
+       config->learner.batch = 12;
+       config->replay.copies = 2;
+       config->replay.target_shifts = 1;
+     }},
     {"sac_with_further_encoders",
      [](Config* config) {
        config->network.encoders = "separate";

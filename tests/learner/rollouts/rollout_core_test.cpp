@@ -123,6 +123,19 @@ TEST_F(RolloutCoreTest, RolloutsOfAnotherVersionAreDropped) {
   EXPECT_EQ(core_->used_records(), 0u);
 }
 
+// Where writing a checkpoint took longer than playing a rollout, both sides waited for ever.
+TEST_F(RolloutCoreTest, RolloutsByWeightsThatAreOutAreKeptUntilTheirUpdateIsAwaited) {
+  a_.PlayThree(0, 0);
+  core_->TakeChunk(a_.Chunk());
+  TakeReady();
+  for (uint32_t i = 4; i <= 6; ++i) a_.Step(0, 0, i, float(i + 1), {100, 1});
+  core_->TakeChunk(a_.Chunk());
+  core_->Await({100, 1});
+  ASSERT_EQ(core_->Ready(), 1);
+  EXPECT_EQ(TakeReady().weights_update[0], 1u);
+  EXPECT_EQ(core_->counters().dropped_rollouts, 0u);
+}
+
 TEST_F(RolloutCoreTest, OneVersionAheadAnOlderRolloutServesOneUpdateMore) {
   run_.config.ppo.versions_ahead = 1;
   Restart(100);

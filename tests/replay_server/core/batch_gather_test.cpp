@@ -2,10 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <deque>
 #include <memory>
 #include <set>
+#include <utility>
+#include <vector>
 
 #include "tests/replay_server/record_script.h"
 
@@ -215,6 +219,66 @@ TEST_F(BatchGatherTest, CopiesOfAStepStandTogetherEachWithItsShifts) {
   }
   EXPECT_LT(same, 20) << "one of 81 pairs of offsets is equal by chance";
   EXPECT_FALSE(selector.Draw(&random)) << "one draw for four elements";
+}
+
+// Against an oracle that draws all shifts of a step before it deals them out.
+TEST_F(BatchGatherTest, ShiftsOfCopiesRepeatAfterAsManyAsTheirKindHas) {
+  Fill(TinySpec(1), 0);
+  constexpr int kPad = 4, kSteps = 50, kCopies = 6;
+  for (const int target : {1, 2, 3, 6}) {
+    for (const int critic : {1, 2, 3, 6}) {
+      ListedSelector selector(std::deque<uint64_t>(kSteps, 2));
+      Random random(3), again(3);
+      const auto plan = DrawPlan({.batch = kSteps * kCopies,
+                                  .copies = kCopies,
+                                  .target_shifts = target,
+                                  .critic_shifts = critic,
+                                  .shift_pad = kPad},
+                                 &selector, nullptr, &random);
+      ASSERT_TRUE(plan);
+      std::array<size_t, 2> most{};  // different ones of a step: of obs, of next_obs
+      for (size_t step = 0; step < kSteps; ++step) {
+        std::vector<Shift> obs, next_obs;
+        for (int i = 0; i < std::max(target, critic); ++i) {
+          if (i < critic) obs.push_back(DrawShift(kPad, &again));
+          if (i < target) next_obs.push_back(DrawShift(kPad, &again));
+        }
+        std::array<std::set<std::pair<int, int>>, 2> seen;
+        for (size_t i = 0; i < kCopies; ++i) {
+          const BatchPlan::Element& element = plan->elements[step * kCopies + i];
+          EXPECT_EQ(element.obs, obs[i % obs.size()]);
+          EXPECT_EQ(element.next_obs, next_obs[i % next_obs.size()]);
+          seen[0].insert({element.obs.dx, element.obs.dy});
+          seen[1].insert({element.next_obs.dx, element.next_obs.dy});
+        }
+        for (size_t kind = 0; kind < 2; ++kind)
+          most[kind] = std::max(most[kind], seen[kind].size());
+      }
+      EXPECT_EQ(most, (std::array{size_t(critic), size_t(target)}));
+    }
+  }
+}
+
+TEST_F(BatchGatherTest, NoShiftsSaidAreAsManyAsCopies) {
+  Fill(TinySpec(1), 0);
+  const auto draw = [](int target, int critic) {
+    ListedSelector selector(std::deque<uint64_t>(10, 2));
+    Random random(3);
+    const auto plan = DrawPlan({.batch = 30,
+                                .copies = 3,
+                                .target_shifts = target,
+                                .critic_shifts = critic,
+                                .shift_pad = 4},
+                               &selector, nullptr, &random);
+    std::vector<std::pair<Shift, Shift>> shifts;
+    for (const BatchPlan::Element& element : plan.value().elements) {
+      shifts.emplace_back(element.obs, element.next_obs);
+    }
+    return shifts;
+  };
+  EXPECT_EQ(draw(0, 0), draw(3, 3));
+  EXPECT_NE(draw(0, 0), draw(1, 3));
+  EXPECT_DEATH(draw(2, 3), "2 and 3 shifts of 3 copies");
 }
 
 TEST_F(BatchGatherTest, APlanIsWholeOrNothing) {

@@ -9,6 +9,7 @@
 #include <set>
 
 #include "common/config/batch_options.h"
+#include "common/run_folder/run_file_names.h"
 #include "replay_server/core/replay_core.h"
 #include "tests/replay_server/service/replay_peers.h"
 #include "tests/replay_server/service/replay_process.h"

@@ -1,0 +1,86 @@
+// What lies in a run's folder, each name and each schema once: who writes it, who reads it. Further
+// readers are people, and programs of theirs. What a checkpoint consists of is said in
+// common/checkpoint/checkpoint_files.h. The table of docs/monitoring.md ("The files of a run") has
+// the same names; tests/layering compares the two, and sees to it that no other source spells one.
+#pragma once
+
+namespace shoal {
+
+// The run as it was resolved: every key, observation spec, hashes. Written when the run is made,
+// read by each of its processes. A folder with this file is a run.
+inline constexpr char kConfigFile[] = "config.json";
+inline constexpr char kConfigSchema[] = "shoal-config-1";
+
+// Where the processes of a run meet. Written by the coordinator before it starts them; they read
+// it, and so do `shoal top`, `attach`, `set`, ...
+inline constexpr char kClusterFile[] = "cluster.json";
+inline constexpr char kClusterSchema[] = "shoal-cluster-1";
+
+// The hosts of a run with actors elsewhere. Written and read by the coordinator.
+inline constexpr char kHostsFile[] = "hosts.json";
+inline constexpr char kHostsSchema[] = "shoal-hosts-1";
+
+// What the networks started from. Written by the coordinator, read by the learner.
+inline constexpr char kInitialWeightsFile[] = "initial.safetensors";
+
+// What ran where, how far it came and how it ended. Written by the coordinator as the run goes on,
+// read by `shoal runs`, experiments, reports.
+inline constexpr char kMetaFile[] = "meta.json";
+inline constexpr char kMetaSchema[] = "shoal-run-1";
+
+// Figures: the reports of each process, a line each. Written by the coordinator, read by `shoal
+// web`.
+inline constexpr char kMetricsFile[] = "metrics.jsonl";
+
+// How each role spent its time. Written at the end of a run.
+inline constexpr char kBottleneckFile[] = "bottleneck.json";
+inline constexpr char kBottleneckSchema[] = "shoal-bottleneck-1";
+
+// What became of every record. Written by who receives them, replay or learner; read by its
+// successor and by the coordinator.
+inline constexpr char kAccountingFile[] = "accounting.json";
+inline constexpr char kAccountingSchema[] = "shoal-accounting-1";
+
+// The replay's ring (replay_server/core/ring_format.h). Written and read by the replay; read by
+// `shoal replay`.
+inline constexpr char kRingFile[] = "replay.ring";
+
+// Updates done and lost (update_page.h). Written by the learner, read by its successor and by the
+// coordinator.
+inline constexpr char kUpdatePageFile[] = "learner.page";
+
+// Locked: by the coordinator as long as the run goes on, and by each process of it here.
+inline constexpr char kRunLockFile[] = ".lock";
+inline constexpr char kMembersFile[] = ".members";
+
+// Checkpoints, newest and kept; in it the best and what may still become it.
+inline constexpr char kCheckpointFolder[] = "checkpoints";
+inline constexpr char kBestCheckpoint[] = "best";
+inline constexpr char kCandidateFolder[] = "candidates";
+
+// Evaluations: steps_N_updates_N.json of the run itself, on-TASK.json on other tasks, and the
+// final one. Written by the coordinator and by `shoal eval`; read by reports and experiments.
+inline constexpr char kEvaluationFolder[] = "eval";
+inline constexpr char kEvaluationSchema[] = "shoal-eval-1";
+inline constexpr char kFinalEvaluationFile[] = "final.json";
+inline constexpr char kEvaluationPrefix[] = "steps_";
+inline constexpr char kTransferPrefix[] = "on-";
+
+// What each actor has made, and where its episodes stood: counters, locks, states of rollouts.
+// Written by the actors, read by their successors and by the coordinator.
+inline constexpr char kMadeFolder[] = "made";
+inline constexpr char kRolloutSchema[] = "shoal-rollout-3";
+
+// The number of each process's newest session. Written and read when a process starts.
+inline constexpr char kSessionFolder[] = "sessions";
+
+// What the processes said, a file each; an experiment's folder has one for its runs.
+inline constexpr char kLogFolder[] = "logs";
+
+// Event files for TensorBoard. Written by the coordinator.
+inline constexpr char kTensorBoardFolder[] = "tensorboard";
+
+// Films. Written by `shoal film`, read by reports and `shoal web`.
+inline constexpr char kVideoFolder[] = "videos";
+
+}  // namespace shoal

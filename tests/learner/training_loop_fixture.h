@@ -1,0 +1,122 @@
+// The loop with a real, small agent; batches, readers and the coordinator are played by the test.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "learner/agent/algorithms.h"
+#include "learner/training_loop.h"
+#include "tests/learner/played_parts.h"
+#include "tests/learner/training_fixture.h"
+#include "tests/support/temporary_folder.h"
+
+namespace shoal::learner {
+
+inline constexpr uint64_t kSession = 77;
+
+// An agent whose updates last longer than the second between two reports.
+class SlowAgent final : public Agent {
+ public:
+  explicit SlowAgent(std::unique_ptr<Agent> agent) : agent_(std::move(agent)) {}
+
+  UpdateOutcome Update(const BatchView& batch, const OnStageEnd& on_stage_end) override {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+    return agent_->Update(batch, on_stage_end);
+  }
+  uint64_t updates() const override { return agent_->updates(); }
+  nn::TensorMap PolicyTensors() const override { return agent_->PolicyTensors(); }
+  nn::TensorMap AveragedPolicyTensors() const override { return agent_->AveragedPolicyTensors(); }
+  nn::TensorMap AllTensors() const override { return agent_->AllTensors(); }
+  void Restore(const nn::TensorMap& tensors, const std::string& source) override {
+    agent_->Restore(tensors, source);
+  }
+
+ private:
+  std::unique_ptr<Agent> agent_;
+};
+
+class TrainingLoopTest : public testing::Test {
+ protected:
+  // One learner process: from the newest checkpoint until `stop_after` batches were given.
+  TrainingLoop::End Train(uint64_t stop_after,
+                          const std::function<void(PlayedBatches&)>& script = {}) {
+    outlet_.spec_hash = run_.spec.Hash();
+    outlet_.session = kSession;
+    std::unique_ptr<Agent> agent = MakeAgent(run_.config, run_.spec, precision_);
+    if (slow_) agent = std::make_unique<SlowAgent>(std::move(agent));
+    CheckpointStore checkpoints(folder_.path(), run_);
+    std::optional<CheckpointState> restored;
+    if (const auto checkpoint = checkpoints.RestoreNewest()) {
+      agent->Restore(checkpoint->tensors, "test");
+      restored = checkpoint->state;
+    }
+    PlayedBatches batches(run_, agent->updates() + 1);
+    batches.last_request = stop_after;
+    batches.before = [&](uint64_t request) {
+      if (request > stop_after) Say(RunState::kStopping);
+    };
+    if (script) script(batches);
+    UpdatePage page(folder_.path(), agent->updates());
+    TrainingLoop loop({.run = run_,
+                       .precision = precision_,
+                       .session = kSession,
+                       .agent = *agent,
+                       .batches = batches,
+                       .outlet = outlet_,
+                       .checkpoints = checkpoints,
+                       .pending_evaluations = pending_,
+                       .control = control_,
+                       .update_page = page,
+                       .drain_idle = std::chrono::milliseconds(20)},
+                      restored);
+    const TrainingLoop::End end = loop.Run();
+    given_ = batches.given();
+    updates_ = agent->updates();
+    return end;
+  }
+
+  void Say(RunState state) {
+    control_.OnMessage({.epoch = ++epoch_, .state = state, .time = 0}, Now());
+  }
+
+  // Of the last report.
+  double Figure(const std::string& name) const {
+    const MetricsMessage& report = outlet_.reports.back();
+    const auto at = std::ranges::find(report.names, name);
+    EXPECT_NE(at, report.names.end()) << name;
+    return at == report.names.end() ? -1 : report.values[size_t(at - report.names.begin())];
+  }
+
+  std::set<std::string> Checkpoints() const {
+    std::set<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(folder_.path() / "checkpoints")) {
+      names.insert(entry.path().filename());
+    }
+    return names;
+  }
+  std::filesystem::path Checkpoint(const std::string& name) const {
+    return folder_.path() / "checkpoints" / name;
+  }
+
+  const TemporaryFolder folder_;
+  RunConfig run_ = SmallRun();  // weights every 5 updates
+  nn::Precision precision_ = nn::Precision::kF32;
+  KeptMessages outlet_;
+  PendingEvaluations pending_;
+  ControlState control_{Now()};
+  uint64_t epoch_ = 0;
+  uint64_t given_ = 0, updates_ = 0;
+  bool slow_ = false;
+};
+
+}  // namespace shoal::learner
