@@ -86,17 +86,20 @@ TEST(Lockstep, RunningStatisticsRepeatAndGoOnBitForBit) {
   EXPECT_NE(LearnerOf(whole).find("encoder.bn1.running_mean"), std::string::npos);
 }
 
-// Goal pictures are records of their own, and relabelled goals are frames of stored episodes.
+// Goal pictures are records of their own, and relabelled goals are frames of stored episodes. Steps
+// are reported once a second, so that what is left after the interrupt has to take seconds.
 TEST(Lockstep, HindsightWithPicturesOfGoalsGoesOnBitForBit) {
   const TrainingRun whole;
   ExpectGoesOnBitForBit(whole,
                         TrainingRun::FromPixels({{"actors", "1"},
-                                                 {"env_steps", "800"},
+                                                 {"env_steps", "2400"},
+                                                 {"eval.interval", "1200"},
                                                  {"observation.cameras", R"(["front"])"},
                                                  {"observation.goal_mode", "image"},
                                                  {"observation.height", "36"},
                                                  {"observation.width", "36"},
-                                                 {"replay.min_size", "200"}}),
+                                                 {"replay.min_size", "200"},
+                                                 {"replay.samples_per_insert", "16"}}),
                         {"--preset", "fetch-reach-her", "--lockstep"}, {450});
 }
 
