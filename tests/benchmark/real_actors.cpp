@@ -9,6 +9,7 @@
 #include "actor/acting/action_selector.h"
 #include "actor/worlds/environment.h"
 #include "common/base/clock.h"
+#include "common/base/random.h"
 #include "common/base/usable_cores.h"
 #include "common/nn/actor_critic_plan.h"
 #include "common/nn/parameter_set.h"
@@ -52,17 +53,20 @@ double SecondsPerCall(double seconds, const std::function<void()>& act) {
   return SecondsSince(start) / calls;
 }
 
-// Physics and rendering of an env step, resets included; nothing else.
+// Physics and rendering of an env step, resets included; nothing else. Actions are drawn, for one
+// action all the time drives the arm where a policy's does not and costs another amount.
 double StepSeconds(const RunConfig& run, double seconds) {
   const auto environment =
       worlds::MakeEnvironment(run.config, worlds::MakeRenderContext(run.config.observation));
   std::vector<uint8_t> frame(static_cast<size_t>(run.spec.FrameBytes()));
   std::vector<float> vector(static_cast<size_t>(run.spec.RecordedVectorSize()));
-  const std::vector<float> action(static_cast<size_t>(run.spec.action_size), 0.2f);
+  std::vector<float> action(static_cast<size_t>(run.spec.action_size));
+  Random random(1);
   uint64_t episode = 0;
   bool running = false;
   return SecondsPerCall(seconds, [&] {
     if (!running) environment->Reset(++episode, {frame, vector});
+    for (float& a : action) a = static_cast<float>(random.Uniform(-1, 1));
     const worlds::StepResult result = environment->Step(action, {frame, vector});
     running = !result.truncated && !result.terminated;
   });
