@@ -12,6 +12,7 @@ void WeightsInbox::OnMessage(const WeightsPart& part) {
   if (verdict != WeightsAssembler::Verdict::kComplete) return;
   if (newest_) ++overtaken_;
   newest_ = ReceivedWeights{part.version, part.env_steps, part.checkpoint, assembler_.Take()};
+  if (on_newest_) on_newest_(*newest_);
   arrived_.NotifyAll();
 }
 

@@ -2,11 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include "common/base/clock.h"
 #include "common/base/mutex.h"
+#include "common/base/shared_bytes.h"
 #include "common/wire/messages.h"
 #include "common/wire/weights_parts.h"
 
@@ -16,7 +19,7 @@ struct ReceivedWeights {
   WeightsVersion version;
   uint64_t env_steps = 0;
   std::string checkpoint;
-  std::string payload;  // safetensors bytes
+  SharedBytes payload;  // safetensors
 };
 
 // Where an acting loop gets its weights from.
@@ -29,7 +32,10 @@ class WeightsSource {
 
 class WeightsInbox final : public WeightsSource {
  public:
-  explicit WeightsInbox(uint64_t spec_hash) : spec_hash_(spec_hash) {}
+  // `on_newest` sees each version that is kept, on the receive thread, before it can be taken.
+  using OnNewest = std::function<void(const ReceivedWeights&)>;
+  explicit WeightsInbox(uint64_t spec_hash, OnNewest on_newest = {})
+      : spec_hash_(spec_hash), on_newest_(std::move(on_newest)) {}
 
   // Receive thread. Keeps the newest version of which all parts have come; parts of another spec or
   // with a wrong CRC are counted and dropped.
@@ -47,6 +53,7 @@ class WeightsInbox final : public WeightsSource {
   std::optional<ReceivedWeights> TakeNewest() SHOAL_REQUIRES(mutex_);
 
   const uint64_t spec_hash_;
+  const OnNewest on_newest_;
   mutable Mutex mutex_;
   ConditionVariable arrived_;
   WeightsAssembler assembler_ SHOAL_GUARDED_BY(mutex_);

@@ -9,6 +9,7 @@ const MetricsMessage& ActorReport::Make(const char* state) {
   report_.AddRate("env_steps_per_second", env_steps);
   AddSending();
   report_.Add("weights_refused", static_cast<double>(parts_.weights.refused()));
+  report_.Add("weights_receiver", parts_.weights.receives() ? 1 : 0);
   report_.Add("weights_update", static_cast<double>(parts_.selector.version().update));
   AddStages();
   AddEpisodes();

@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "actor/acting/weights_inbox.h"
+#include "actor/acting/host_weights.h"
 #include "actor/loop/actor_loop.h"
 #include "actor/loop/rollout.h"
 #include "common/tasks/task.h"
@@ -18,7 +18,7 @@ class ActorReport {
     const Rollout& rollout;
     const ActionSelector& selector;
     const ChunkSender& sender;
-    const WeightsInbox& weights;
+    const HostWeights& weights;
     const ActorLoop& loop;
     tasks::Task task;
   };

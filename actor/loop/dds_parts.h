@@ -4,8 +4,9 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 
-#include "actor/acting/weights_inbox.h"
+#include "actor/acting/host_weights.h"
 #include "actor/loop/run_control.h"
 #include "actor/sending/chunk_link.h"
 #include "actor/sending/credit_inbox.h"
@@ -35,18 +36,12 @@ class DdsChunkLink final : public ChunkLink {
   dds::Subscriber<CreditsMessage> subscriber_;
 };
 
-class DdsWeights {
- public:
-  DdsWeights(dds::Bus& bus, uint64_t spec_hash)
-      : inbox_(spec_hash),
-        subscriber_(bus, [this](const WeightsPart& m) { inbox_.OnMessage(m); }) {}
-
-  WeightsInbox& inbox() { return inbox_; }
-
- private:
-  WeightsInbox inbox_;
-  dds::Subscriber<WeightsPart> subscriber_;
-};
+inline HostWeights::Subscribe WeightsOver(dds::Bus& bus) {
+  return [&bus](WeightsInbox& inbox) {
+    return std::make_shared<dds::Subscriber<WeightsPart>>(
+        bus, [&inbox](const WeightsPart& m) { inbox.OnMessage(m); });
+  };
+}
 
 class DdsRunControl final : public RunControl {
  public:

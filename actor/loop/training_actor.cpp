@@ -66,7 +66,7 @@ class TrainingActor {
         bus_(dds::FindPlace(folder, run_.config.transport, reach), dds::Role::kActor),
         metrics_(bus_),
         link_(bus_, id, session_),
-        weights_(bus_, run_.spec.Hash()),
+        weights_(folder, HostName(), run_.spec.Hash(), WeightsOver(bus_)),
         control_(bus_),
         sender_(window_, link_,
                 {.spec_hash = run_.spec.Hash(),
@@ -82,13 +82,13 @@ class TrainingActor {
     ActorLoop loop({.rollout = rollout_,
                     .selector = selector_,
                     .sender = sender_,
-                    .weights = weights_.inbox(),
+                    .weights = weights_,
                     .pace = *pace,
                     .control = control_});
     ActorReport report(id_, {.rollout = rollout_,
                              .selector = selector_,
                              .sender = sender_,
-                             .weights = weights_.inbox(),
+                             .weights = weights_,
                              .loop = loop,
                              .task = tasks::FindTask(run_.config.task)});
     const ActorLoop::End end = RunLoop(loop, report);
@@ -145,7 +145,7 @@ class TrainingActor {
   dds::Bus bus_;
   dds::MetricsPublisher<ActorMetrics> metrics_;
   DdsChunkLink link_;
-  DdsWeights weights_;
+  HostWeights weights_;
   DdsRunControl control_;
   ChunkSender sender_;
 };

@@ -26,6 +26,28 @@ std::string Shape(const std::vector<int64_t>& shape) {
   return shape.empty() ? "scalar" : fmt::format("{}", fmt::join(shape, "x"));
 }
 
+// The tensor of this name, of a parameter's shape and a type that Import takes.
+const NamedTensor& Fitting(const ParameterSpec& parameter, const TensorMap& tensors,
+                           const std::string& name, const std::string& source) {
+  const auto found = tensors.find(name);
+  if (found == tensors.end()) throw RuntimeError("{}: tensor {} is missing", source, name);
+  const NamedTensor& tensor = found->second;
+  if (tensor.shape != parameter.shape) {
+    throw RuntimeError("{}: tensor {} has shape {}, expected {}", source, name, Shape(tensor.shape),
+                       Shape(parameter.shape));
+  }
+  if (tensor.dtype != "F32" && tensor.dtype != "BF16") {
+    throw RuntimeError("{}: tensor {} is {}, expected F32 or BF16", source, name, tensor.dtype);
+  }
+  const size_t element = tensor.dtype == "BF16" ? sizeof(uint16_t) : sizeof(float);
+  const size_t bytes = static_cast<size_t>(Count(parameter)) * element;
+  if (tensor.data.size() != bytes) {
+    throw RuntimeError("{}: tensor {} has {} bytes, expected {}", source, name, tensor.data.size(),
+                       bytes);
+  }
+  return tensor;
+}
+
 void InitialiseOne(const ParameterSpec& parameter, uint64_t seed, float* values) {
   const int64_t count = Count(parameter);
   const double scale = parameter.start.scale;
@@ -140,29 +162,17 @@ void ParameterSet::ExportFirst(size_t specs, const float* array, const std::stri
 
 void ParameterSet::ImportFirst(size_t specs, const TensorMap& tensors, const std::string& prefix,
                                const std::string& source, float* array) const {
+  std::vector<const NamedTensor*> found;
   for (size_t i = 0; i < specs; ++i) {
-    const std::string name = prefix + specs_[i].name;
-    const auto found = tensors.find(name);
-    if (found == tensors.end()) throw RuntimeError("{}: tensor {} is missing", source, name);
-    const NamedTensor& tensor = found->second;
-    if (tensor.shape != specs_[i].shape) {
-      throw RuntimeError("{}: tensor {} has shape {}, expected {}", source, name,
-                         Shape(tensor.shape), Shape(specs_[i].shape));
-    }
-    const int64_t count = Count(specs_[i]);
-    const size_t element = tensor.dtype == "BF16" ? sizeof(uint16_t) : sizeof(float);
-    if (tensor.dtype != "F32" && tensor.dtype != "BF16") {
-      throw RuntimeError("{}: tensor {} is {}, expected F32 or BF16", source, name, tensor.dtype);
-    }
-    if (tensor.data.size() != size_t(count) * element) {
-      throw RuntimeError("{}: tensor {} has {} bytes, expected {}", source, name,
-                         tensor.data.size(), size_t(count) * element);
-    }
+    found.push_back(&Fitting(specs_[i], tensors, prefix + specs_[i].name, source));
+  }
+  for (size_t i = 0; i < specs; ++i) {
     float* out = array + offsets_[i];
-    if (tensor.dtype == "F32") {
-      std::memcpy(out, tensor.data.data(), tensor.data.size());
+    const std::vector<uint8_t>& data = found[i]->data;
+    if (found[i]->dtype == "F32") {
+      std::memcpy(out, data.data(), data.size());
     } else {
-      Bf16ToFloats(reinterpret_cast<const uint16_t*>(tensor.data.data()), count, out);
+      Bf16ToFloats(reinterpret_cast<const uint16_t*>(data.data()), Count(specs_[i]), out);
     }
   }
 }

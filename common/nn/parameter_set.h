@@ -73,8 +73,8 @@ class ParameterSet {
   void Export(const float* array, const std::string& prefix, TensorMap* tensors) const;
   // The values under their own names.
   void Export(TensorMap* tensors) const { Export(values(), "", tensors); }
-  // Takes F32 and BF16. Throws Error naming a missing tensor or a wrong type or shape; `array` may
-  // then be partly written.
+  // Takes F32 and BF16. Throws Error naming a missing tensor or a wrong type or shape; `array` is
+  // then as it was.
   void Import(const TensorMap& tensors, const std::string& prefix, const std::string& source,
               float* array) const;
   // The same for an array of what is trained alone (Adam's moments).

@@ -114,10 +114,9 @@ void Policy::Load(const TensorMap& tensors, const std::string& source) {
   std::unique_ptr<Built> other;
   if (output != impl_->built->actor.output) other = impl_->Build(output);
   Built& built = other ? *other : *impl_->built;
-  std::vector<float> values(static_cast<size_t>(built.parameters.size()), 0.f);
-  built.parameters.Import(tensors, "", source, values.data());
+  // What throws comes first: the former weights stay.
   std::optional<VectorScale> scale = ReadVectorScale(tensors, impl_->spec.VectorSize(), source);
-  std::copy(values.begin(), values.end(), built.parameters.values());
+  built.parameters.Import(tensors, "", source, built.parameters.values());
   for (auto& [batch, network] : built.networks) network.Refresh();
   if (other) impl_->built = std::move(other);
   impl_->scale = std::move(scale);

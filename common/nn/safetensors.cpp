@@ -174,6 +174,7 @@ TensorMap ReadSafetensors(std::string_view bytes, const std::string& source) {
   }
   const json header = ParseHeader(bytes.substr(kLengthBytes, length), source);
   const std::string_view data = bytes.substr(kLengthBytes + length);
+  const auto* first = reinterpret_cast<const uint8_t*>(data.data());
   std::vector<Entry> entries;
   for (const auto& [name, value] : header.items()) {
     if (name == kMetadata) {
@@ -185,8 +186,7 @@ TensorMap ReadSafetensors(std::string_view bytes, const std::string& source) {
   CheckCover(&entries, data.size(), source);
   TensorMap tensors;
   for (Entry& entry : entries) {
-    entry.tensor.data.assign(data.begin() + int64_t(entry.begin),
-                             data.begin() + int64_t(entry.end));
+    entry.tensor.data.assign(first + entry.begin, first + entry.end);
     tensors[entry.name] = std::move(entry.tensor);
   }
   return tensors;

@@ -66,8 +66,9 @@ inline constexpr char kFinalEvaluationFile[] = "final.json";
 inline constexpr char kEvaluationPrefix[] = "steps_";
 inline constexpr char kTransferPrefix[] = "on-";
 
-// What each actor has made, and where its episodes stood: counters, locks, states of rollouts.
-// Written by the actors, read by their successors and by the coordinator.
+// What each actor has made, and where its episodes stood: counters, locks, states of rollouts; who
+// of a host receives the weights. Written by the actors, read by their successors, their neighbours
+// and the coordinator.
 inline constexpr char kMadeFolder[] = "made";
 inline constexpr char kRolloutSchema[] = "shoal-rollout-3";
 

@@ -74,6 +74,8 @@ constexpr Metric kMetrics[] = {
     {"actor", "resends", kCounter, "records", "sent again"},
     {"actor", "write_timeouts", kCounter, "", "sends that the network did not take in time"},
     {"actor", "weights_refused", kCounter, "", "weights of another spec or with a wrong checksum"},
+    {"actor", "weights_receiver", kGauge, "",
+     "1: receives the weights, for its host or itself; 0: reads those of the one that does"},
     {"actor", "weights_update", kGauge, "updates", "of the weights that act"},
     {"actor", "physics", kStage, "s", "stepping environments, resets included"},
     {"actor", "rendering", kStage, "s", "drawing frames"},

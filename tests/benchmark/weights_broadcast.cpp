@@ -7,17 +7,22 @@
 #include <chrono>
 #include <cmath>
 #include <csignal>
+#include <filesystem>
 #include <thread>
 #include <vector>
 
 #include "actor/acting/action_selector.h"
-#include "actor/acting/weights_inbox.h"
+#include "actor/acting/host_weights.h"
+#include "actor/loop/actor_loop.h"
+#include "actor/loop/dds_parts.h"
 #include "common/base/check.h"
 #include "common/base/clock.h"
+#include "common/base/files.h"
 #include "common/dds/bus.h"
-#include "common/dds/subscriber.h"
 #include "common/nn/actor_critic_plan.h"
 #include "common/nn/parameter_set.h"
+#include "common/run_folder/run_file_names.h"
+#include "launch/processes/scratch_folder.h"
 #include "learner/agent/agent.h"
 #include "learner/dds_outlet.h"
 #include "learner/weights_sender.h"
@@ -105,16 +110,18 @@ void Learn(const BroadcastOptions& options, const ClusterAddress& address, const
 
 // Acts by each version that comes, as far as loading it.
 void Act(const BroadcastOptions& options, const ClusterAddress& address,
-         const Pipe<int>& acting_by) {
+         const std::filesystem::path& folder, const Pipe<int>& acting_by) {
   const RunConfig run = RunOf(options);
   actor::ActionSelector selector(run.config, run.spec, run.config.envs_per_actor);
-  actor::WeightsInbox inbox(run.spec.Hash());
   dds::Bus bus(address, run.config.transport, dds::Role::kActor);
-  const dds::Subscriber<WeightsPart> subscriber(
-      bus, [&](const WeightsPart& part) { inbox.OnMessage(part); });
+  actor::HostWeights host_weights(folder, actor::HostName(), run.spec.Hash(),
+                                  actor::WeightsOver(bus));
   while (true) {
-    const auto weights = inbox.Take(Now() + seconds(1));
-    if (!weights) continue;
+    const auto weights = host_weights.TryTake();
+    if (!weights) {
+      std::this_thread::sleep_for(actor::ActorLoop::kBlockedWait);
+      continue;
+    }
     selector.Load(*weights);
     acting_by.Write(static_cast<int>(weights->version.update));
   }
@@ -183,6 +190,8 @@ double VersionBytes(const RunConfig& run) {
 BroadcastFigures MeasureBroadcast(const BroadcastOptions& options) {
   const RunConfig run = RunOf(options);
   const double version_bytes = VersionBytes(run);
+  const launch::ScratchFolder folder;
+  MakeFolders(folder.path() / kMadeFolder);
   Pipe<Meeting> meeting;
   Pipe<int> orders, done, acting_by;
   Processes processes;
@@ -194,7 +203,7 @@ BroadcastFigures MeasureBroadcast(const BroadcastOptions& options) {
   }));
   const Meeting where = meeting.Read(kDeadline);
   for (int i = 0; i < options.actors; ++i) {
-    processes.Add(Fork("actor", [&] { Act(options, AddressOf(where), acting_by); }));
+    processes.Add(Fork("actor", [&] { Act(options, AddressOf(where), folder.path(), acting_by); }));
   }
   AwaitVersion(done.Read(kDeadline), options.actors, acting_by);
 

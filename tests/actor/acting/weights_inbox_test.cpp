@@ -32,7 +32,7 @@ TEST(WeightsInbox, KeepsOnlyTheNewest) {
   const auto weights = inbox.TryTake();
   ASSERT_TRUE(weights);
   EXPECT_EQ(weights->version.update, 30u);
-  EXPECT_EQ(weights->payload, "c");
+  EXPECT_EQ(weights->payload.view(), "c");
   EXPECT_FALSE(inbox.TryTake());
 }
 
@@ -41,7 +41,7 @@ TEST(WeightsInbox, ANewerLearnerSessionWinsWhateverItsUpdate) {
   Deliver(inbox, 1, 500, "old");
   ASSERT_TRUE(inbox.TryTake());
   Deliver(inbox, 2, 400, "restored");
-  EXPECT_EQ(inbox.TryTake()->payload, "restored");
+  EXPECT_EQ(inbox.TryTake()->payload.view(), "restored");
   Deliver(inbox, 1, 501, "ghost");
   EXPECT_FALSE(inbox.TryTake());
 }
@@ -73,7 +73,7 @@ TEST(WeightsInbox, PutsAVersionOfManyPartsTogether) {
   Deliver(inbox, 1, 10, large);
   const auto weights = inbox.TryTake();
   ASSERT_TRUE(weights);
-  EXPECT_TRUE(weights->payload == large);
+  EXPECT_TRUE(weights->payload.view() == large);
 }
 
 TEST(WeightsInbox, TakeWaitsForTheReceiveThread) {

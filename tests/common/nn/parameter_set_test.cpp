@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <vector>
 
 #include "common/base/error.h"
 #include "common/base/random.h"
@@ -145,6 +146,18 @@ TEST(ParameterSet, ImportNamesWhatIsMissingOrMisshaped) {
   EXPECT_THAT(import, ThrowsMessage<Error>(AllOf(HasSubstr("b.bias"), HasSubstr("27 bytes"))));
   tensors.erase("b.bias");
   EXPECT_THAT(import, ThrowsMessage<Error>(AllOf(HasSubstr("b.bias"), HasSubstr("missing"))));
+}
+
+TEST(ParameterSet, ARefusedImportWritesNothing) {
+  ParameterSet set = MakeSet(), other = MakeSet();
+  set.Initialise(1);
+  other.Initialise(2);
+  TensorMap tensors;
+  other.Export(&tensors);
+  tensors.erase("b.bias");
+  const std::vector<float> before(set.values(), set.values() + set.size());
+  EXPECT_THROW(set.Import(tensors, "", "test", set.values()), Error);
+  EXPECT_EQ(std::vector<float>(set.values(), set.values() + set.size()), before);
 }
 
 TEST(TensorCounter, GoesThroughTensorsUnchangedAndOthersAreRefused) {

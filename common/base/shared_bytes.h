@@ -1,0 +1,31 @@
+// Bytes that nobody changes any more, and whatever keeps them: a string that was moved in, or
+// memory that is mapped. Copies share both. Copies may be used on different threads.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace shoal {
+
+class SharedBytes {
+ public:
+  SharedBytes() = default;
+  SharedBytes(std::string bytes)
+      : SharedBytes(std::make_shared<const std::string>(std::move(bytes))) {}
+  // `bytes` are there as long as `owner` is.
+  SharedBytes(std::shared_ptr<const void> owner, std::string_view bytes)
+      : owner_(std::move(owner)), bytes_(bytes) {}
+
+  std::string_view view() const { return bytes_; }
+  size_t size() const { return bytes_.size(); }
+
+ private:
+  explicit SharedBytes(std::shared_ptr<const std::string> owner) : owner_(owner), bytes_(*owner) {}
+
+  std::shared_ptr<const void> owner_;
+  std::string_view bytes_;
+};
+
+}  // namespace shoal

@@ -1,0 +1,94 @@
+// The weights of a run through the real processes: one actor of the host receives them, and when it
+// is killed or stopped the others do not stay behind.
+#include <gtest/gtest.h>
+
+#include <csignal>
+
+#include "tests/support/running_training.h"
+
+namespace shoal {
+namespace {
+
+using nlohmann::json;
+using std::chrono::seconds;
+
+constexpr int kActors = 3;
+
+TrainingRun::Keys Keys() {
+  return {{"actors", std::to_string(kActors)},
+          {"env_steps", "2000000"},
+          {"eval.final_episodes", "0"},
+          {"eval.interval", "2000000"},
+          {"replay.samples_per_insert", "2"}};
+}
+
+// Waits until each actor acts by a version after `update`; returns which of them receive.
+std::vector<int> ReceiversAfter(RunningTraining* training, double update) {
+  std::vector<int> receivers;
+  for (int actor = 0; actor < kActors; ++actor) {
+    const json report = training->reports().WaitFor(
+        "actor", [&](const json& r) { return r.value("weights_update", 0.0) > update; },
+        seconds(60), actor);
+    if (report.is_null()) {
+      ADD_FAILURE() << "actor " << actor << " has no weights after update " << update;
+      return {};
+    }
+    if (report.at("weights_receiver") == 1) receivers.push_back(actor);
+  }
+  return receivers;
+}
+
+double NewestUpdate(RunningTraining* training) {
+  return training->reports().Await("learner").at("updates").get<double>();
+}
+
+pid_t PidOf(RunningTraining* training, int actor) {
+  return training->reports().Await("actor", actor).at("pid").get<pid_t>();
+}
+
+class HostWeightsOfARun : public testing::Test {
+ protected:
+  HostWeightsOfARun() : training_(run_, run_.Command(Keys())) {}
+  void TearDown() override {
+    training_.Interrupt();
+    EXPECT_EQ(training_.End(seconds(60)), kInterruptedExit) << training_.Output();
+    ExpectBalanced(run_.Json("meta.json"));
+  }
+
+  const TrainingRun run_;
+  RunningTraining training_;
+};
+
+TEST_F(HostWeightsOfARun, OneActorReceivesAndItsSuccessorIsANeighbour) {
+  const std::vector<int> receivers = ReceiversAfter(&training_, 0);
+  ASSERT_EQ(receivers.size(), 1u) << training_.Output();
+  const pid_t receiver = PidOf(&training_, receivers[0]);
+  ASSERT_EQ(kill(receiver, SIGKILL), 0);
+  ASSERT_FALSE(training_.reports()
+                   .WaitFor(
+                       "actor", [&](const json& r) { return r.at("pid") != receiver; }, seconds(60),
+                       receivers[0])
+                   .is_null());
+  EXPECT_EQ(ReceiversAfter(&training_, NewestUpdate(&training_)).size(), 1u);
+}
+
+TEST_F(HostWeightsOfARun, TheOthersActOnWhileTheReceiverIsStopped) {
+  const std::vector<int> receivers = ReceiversAfter(&training_, 0);
+  ASSERT_EQ(receivers.size(), 1u) << training_.Output();
+  const pid_t receiver = PidOf(&training_, receivers[0]);
+  ASSERT_EQ(kill(receiver, SIGSTOP), 0);
+  for (int actor = 0; actor < kActors; ++actor) {
+    if (actor == receivers[0]) continue;
+    EXPECT_FALSE(training_.reports()
+                     .WaitFor(
+                         "actor", [](const json& r) { return r.at("weights_receiver") == 1; },
+                         seconds(30), actor)
+                     .is_null())
+        << "actor " << actor;
+  }
+  ASSERT_EQ(kill(receiver, SIGCONT), 0);
+  EXPECT_EQ(ReceiversAfter(&training_, NewestUpdate(&training_)).size(), size_t{kActors});
+}
+
+}  // namespace
+}  // namespace shoal
