@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "common/base/bounded_json.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/log.h"
@@ -25,7 +26,7 @@ std::string ToText(const BoardAddress& address) {
 
 // Throws Error or nlohmann's.
 BoardAddress ReadAddress(const std::filesystem::path& file) {
-  const auto json = nlohmann::json::parse(ReadFile(file));
+  const auto json = ParseBoundedJson<nlohmann::json>(ReadFile(file));
   return {.pid = json.at("pid").get<int32_t>(),
           .descriptor = json.at("descriptor").get<int32_t>(),
           .token = json.at("token").get<std::array<uint64_t, 2>>()};
