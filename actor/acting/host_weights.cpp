@@ -1,7 +1,6 @@
 #include "actor/acting/host_weights.h"
 
 #include <fmt/core.h>
-#include <unistd.h>
 
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -45,12 +44,6 @@ bool IsStopped(int32_t pid) {
 }
 
 }  // namespace
-
-std::string HostName() {
-  char name[256] = {};
-  if (gethostname(name, sizeof name - 1) != 0 || name[0] == '\0') return "host";
-  return name;
-}
 
 HostWeights::HostWeights(const std::filesystem::path& run, const std::string& host,
                          uint64_t spec_hash, Subscribe subscribe)
@@ -108,8 +101,9 @@ std::string HostWeights::OpenBoard() {
       reader_ = std::make_unique<WeightsBoardReader>(address, spec_hash_);
     }
     if (reader_->closed()) return fmt::format("process {} posts no more weights", address.pid);
-    if (IsStopped(address.pid))
+    if (IsStopped(address.pid)) {
       return fmt::format("process {}, which receives, is stopped", address.pid);
+    }
     return "";
   } catch (const Error& e) {
     return e.what();

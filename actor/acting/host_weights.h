@@ -65,7 +65,4 @@ class HostWeights final : public WeightsSource {
   std::shared_ptr<void> subscription_;
 };
 
-// This host's name, for HostWeights.
-std::string HostName();
-
 }  // namespace shoal::actor

@@ -7,6 +7,7 @@
 #include "actor/loop/dds_parts.h"
 #include "actor/sending/actor_lock.h"
 #include "common/base/error.h"
+#include "common/base/host_name.h"
 #include "common/base/log.h"
 #include "common/config/on_policy.h"
 #include "common/config/run_membership.h"

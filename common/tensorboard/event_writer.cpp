@@ -11,6 +11,7 @@
 #include "common/base/clock.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/base/host_name.h"
 #include "common/base/log.h"
 #include "common/tensorboard/event.pb.h"
 #include "common/tensorboard/tf_record.h"
@@ -23,10 +24,8 @@ constexpr size_t kPendingBytes = 64 * 1024;
 std::string FileName() {
   // Tells apart the files that one process makes within one second.
   static std::atomic<int> files{0};
-  char host[256] = "unknown";
-  gethostname(host, sizeof host - 1);
-  return fmt::format("events.out.tfevents.{:010}.{}.{}.{}", WallTimeNs() / 1'000'000'000, host,
-                     getpid(), files++);
+  return fmt::format("events.out.tfevents.{:010}.{}.{}.{}", WallTimeNs() / 1'000'000'000,
+                     HostName(), getpid(), files++);
 }
 
 proto::Event EventOfNow(int64_t step = 0) {

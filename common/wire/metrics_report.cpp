@@ -8,15 +8,15 @@
 #include <fstream>
 #include <utility>
 
+#include "common/base/host_name.h"
+
 namespace shoal {
 
 MetricsReport::MetricsReport(const std::string& role, uint32_t id)
     : start_(Now()), last_due_(start_), last_begin_(start_) {
-  char host[256] = "unknown";
-  gethostname(host, sizeof host - 1);
   message_.role = role;
   message_.id = id;
-  message_.host = host;
+  message_.host = HostName();
   message_.pid = getpid();
 }
 

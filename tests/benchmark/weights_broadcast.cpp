@@ -18,6 +18,7 @@
 #include "common/base/check.h"
 #include "common/base/clock.h"
 #include "common/base/files.h"
+#include "common/base/host_name.h"
 #include "common/dds/bus.h"
 #include "common/nn/actor_critic_plan.h"
 #include "common/nn/parameter_set.h"
@@ -114,8 +115,7 @@ void Act(const BroadcastOptions& options, const ClusterAddress& address,
   const RunConfig run = RunOf(options);
   actor::ActionSelector selector(run.config, run.spec, run.config.envs_per_actor);
   dds::Bus bus(address, run.config.transport, dds::Role::kActor);
-  actor::HostWeights host_weights(folder, actor::HostName(), run.spec.Hash(),
-                                  actor::WeightsOver(bus));
+  actor::HostWeights host_weights(folder, HostName(), run.spec.Hash(), actor::WeightsOver(bus));
   while (true) {
     const auto weights = host_weights.TryTake();
     if (!weights) {
