@@ -59,7 +59,7 @@ class HostWeightsOfARun : public testing::Test {
   RunningTraining training_;
 };
 
-TEST_F(HostWeightsOfARun, OneActorReceivesAndItsSuccessorIsANeighbour) {
+TEST_F(HostWeightsOfARun, OneActorReceivesAlsoWhenTheOneThatDidIsKilled) {
   const std::vector<int> receivers = ReceiversAfter(&training_, 0);
   ASSERT_EQ(receivers.size(), 1u) << training_.Output();
   const pid_t receiver = PidOf(&training_, receivers[0]);
