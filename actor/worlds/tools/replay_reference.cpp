@@ -158,8 +158,8 @@ class Replay {
   ReplayReport& report_;
   FetchWorld& world_;
   JointOrder order_;
-  const tasks::Task& sparse_;
-  const tasks::Task& dense_;
+  const tasks::Task sparse_;
+  const tasks::Task dense_;
   int gripper_;
   std::vector<double> observation_;
   std::array<double, 3> achieved_{}, desired_{};
