@@ -101,6 +101,7 @@ std::string HostWeights::OpenBoard() {
       reader_ = std::make_unique<WeightsBoardReader>(address, spec_hash_);
     }
     if (reader_->closed()) return fmt::format("process {} posts no more weights", address.pid);
+    if (reader_->failed()) return fmt::format("what process {} posts cannot be read", address.pid);
     if (IsStopped(address.pid)) {
       return fmt::format("process {}, which receives, is stopped", address.pid);
     }

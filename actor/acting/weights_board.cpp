@@ -21,7 +21,7 @@ constexpr uint64_t kBoardBytes = 4096;
 constexpr uint64_t kClosed = UINT64_MAX;
 
 struct Place {
-  uint64_t number, descriptor, bytes;
+  uint64_t descriptor, bytes;
 };
 struct Board {
   uint64_t magic;
@@ -38,7 +38,7 @@ struct Version {
   uint64_t env_steps;
 };
 static_assert(std::endian::native == std::endian::little);
-static_assert(offsetof(Board, newest) == 32 && sizeof(Board) == 88);
+static_assert(offsetof(Board, newest) == 32 && sizeof(Board) == 72);
 static_assert(sizeof(Version) == 56);
 
 // Words that one process writes while others read. What was written before a store(release) is seen
@@ -98,7 +98,6 @@ void WeightsBoard::Post(const ReceivedWeights& weights) {
   std::memcpy(memory->data() + sizeof version, weights.payload.view().data(),
               weights.payload.size());
   Place& place = board.places[number_ % 2];
-  Word(place.number).store(number_, std::memory_order_relaxed);
   Word(place.descriptor)
       .store(static_cast<uint64_t>(memory->descriptor()), std::memory_order_relaxed);
   Word(place.bytes).store(bytes, std::memory_order_relaxed);
@@ -132,6 +131,7 @@ std::optional<ReceivedWeights> WeightsBoardReader::TryTake() {
   const uint64_t bytes = Word(place.bytes).load(std::memory_order_relaxed);
   // Two newer ones may have come meanwhile, or the process may be gone: then other memory lies
   // there, or none.
+  failed_ = true;
   std::shared_ptr<const SharedMemory> memory;
   try {
     memory = std::make_shared<SharedMemory>(SharedMemory::Open(address_.pid, descriptor, bytes));
@@ -146,6 +146,7 @@ std::optional<ReceivedWeights> WeightsBoardReader::TryTake() {
     return std::nullopt;
   }
   taken_ = number;
+  failed_ = false;
   const auto* payload = reinterpret_cast<const char*>(memory->data()) + sizeof version;
   return ReceivedWeights{.version = {version.session, version.update},
                          .env_steps = version.env_steps,

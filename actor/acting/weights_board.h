@@ -7,7 +7,7 @@
 //           8   16    token, random
 //           24  8     observation spec's hash
 //           32  8     number of the newest version, from 1; 0 = none yet, 2^64 - 1 = no more
-//           40  2 x   number, descriptor, bytes (8 each): version n stands at place n mod 2
+//           40  2 x   descriptor, bytes (8 each): version n stands at place n mod 2
 //   version 0   8     magic "SHOALWV1"
 //           8   16    the board's token
 //           24  8     number
@@ -64,11 +64,14 @@ class WeightsBoardReader {
   std::optional<ReceivedWeights> TryTake();
   // There will be no more.
   bool closed() const;
+  // The last version that was looked up could not be read, and none since.
+  bool failed() const { return failed_; }
 
  private:
   const BoardAddress address_;
   const SharedMemory memory_;
   uint64_t taken_ = 0;  // its number
+  bool failed_ = false;
 };
 
 }  // namespace shoal::actor

@@ -99,8 +99,12 @@ TEST(WeightsBoard, AVersionThatWentWithItsProcessIsNotRead) {
   auto board = std::make_unique<WeightsBoard>(kSpec);
   WeightsBoardReader reader(board->address(), kSpec);
   board->Post(Weights(1, "a"));
+  EXPECT_TRUE(reader.TryTake());
+  EXPECT_FALSE(reader.failed());
+  board->Post(Weights(2, "b"));
   board.reset();
   EXPECT_FALSE(reader.TryTake());
+  EXPECT_TRUE(reader.failed());
 }
 
 }  // namespace
