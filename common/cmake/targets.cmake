@@ -32,18 +32,45 @@ add_library(shoal_library_headers OBJECT EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/he
 shoal_precompiled(shoal_library_headers <algorithm> <chrono> <cmath> <cstdint> <filesystem>
   <functional> <map> <memory> <optional> <span> <string> <string_view> <utility> <vector>)
 
+# What starts, watches and tells computes little: where SHOAL_COLD is set, a folder's libraries and programs
+# are compiled soon rather than to be fast, with the large headers that they all read.
+set(SHOAL_COLD_OPTIONS $<$<CONFIG:Release>:-O1> -Wno-maybe-uninitialized)  # -O1 sees some where none are
+add_library(shoal_cold_headers OBJECT EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/headers.cpp)
+target_compile_options(shoal_cold_headers PRIVATE ${SHOAL_COLD_OPTIONS})
+target_link_libraries(shoal_cold_headers PRIVATE fmt::fmt)
+shoal_precompiled(shoal_cold_headers <CLI/CLI.hpp> <fmt/format.h> <nlohmann/json.hpp> <algorithm> <chrono>
+  <filesystem> <fstream> <functional> <map> <memory> <optional> <span> <string> <string_view> <vector>)
+
+function(shoal_cold name)
+  shoal_precompile(${name} shoal_cold_headers)
+  target_compile_options(${name} PRIVATE ${SHOAL_COLD_OPTIONS})
+endfunction()
+
 # shoal_library(NAME SOURCES...): one static library per folder, with the project's warnings.
 function(shoal_library name)
   add_library(${name} STATIC ${ARGN})
-  shoal_precompile(${name} shoal_library_headers)
   target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR})
   shoal_warnings(${name})
+  if(SHOAL_COLD)
+    shoal_cold(${name})
+  else()
+    shoal_precompile(${name} shoal_library_headers)
+  endif()
 endfunction()
 
 function(shoal_program name)
   add_executable(${name} ${ARGN})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   shoal_warnings(${name})
+  if(SHOAL_COLD)
+    shoal_cold(${name})
+  endif()
+endfunction()
+
+# shoal_cold_sources(SOURCES...): the same for some sources of another library.
+function(shoal_cold_sources)
+  set_source_files_properties(${ARGN} PROPERTIES
+    COMPILE_OPTIONS "${SHOAL_COLD_OPTIONS}" SKIP_PRECOMPILE_HEADERS ON)
 endfunction()
 
 # shoal_hot(SOURCES...): where an unoptimised build, as the sanitizers' are, would spend its tests'
