@@ -29,22 +29,20 @@ endfunction()
 
 file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/headers.cpp CONTENT "// Holds precompiled headers.\nint main() {}\n")
 add_library(shoal_library_headers OBJECT EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/headers.cpp)
-shoal_precompiled(shoal_library_headers <algorithm> <chrono> <cmath> <cstdint> <filesystem>
-  <functional> <map> <memory> <optional> <span> <string> <string_view> <utility> <vector>)
+set(SHOAL_COMMON_HEADERS <algorithm> <chrono> <cmath> <cstdint> <filesystem> <functional> <map> <memory>
+  <optional> <span> <string> <string_view> <utility> <vector>)
+shoal_precompiled(shoal_library_headers ${SHOAL_COMMON_HEADERS})
 
 # What starts, watches and tells computes little: where SHOAL_COLD is set, a folder's libraries and programs
-# are compiled soon rather than to be fast, with the large headers that they all read.
-set(SHOAL_COLD_OPTIONS $<$<CONFIG:Release>:-O1> -Wno-maybe-uninitialized)  # -O1 sees some where none are
+# are compiled soon rather than to be fast. The headers of CLI11 and nlohmann-json are not precompiled: every
+# source would pay seconds for them, most of them in vain.
+set(SHOAL_COLD_OPTIONS $<$<CONFIG:Release>:-O1>)
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)  # g++ 12 sees what is not there when it optimises little
+  list(APPEND SHOAL_COLD_OPTIONS -Wno-array-bounds -Wno-maybe-uninitialized -Wno-stringop-overflow)
+endif()
 add_library(shoal_cold_headers OBJECT EXCLUDE_FROM_ALL ${CMAKE_BINARY_DIR}/headers.cpp)
 target_compile_options(shoal_cold_headers PRIVATE ${SHOAL_COLD_OPTIONS})
-target_link_libraries(shoal_cold_headers PRIVATE fmt::fmt)
-shoal_precompiled(shoal_cold_headers <CLI/CLI.hpp> <fmt/format.h> <nlohmann/json.hpp> <algorithm> <chrono>
-  <filesystem> <fstream> <functional> <map> <memory> <optional> <span> <string> <string_view> <vector>)
-
-function(shoal_cold name)
-  shoal_precompile(${name} shoal_cold_headers)
-  target_compile_options(${name} PRIVATE ${SHOAL_COLD_OPTIONS})
-endfunction()
+shoal_precompiled(shoal_cold_headers ${SHOAL_COMMON_HEADERS})
 
 # shoal_library(NAME SOURCES...): one static library per folder, with the project's warnings.
 function(shoal_library name)
@@ -52,7 +50,8 @@ function(shoal_library name)
   target_include_directories(${name} PUBLIC ${PROJECT_SOURCE_DIR})
   shoal_warnings(${name})
   if(SHOAL_COLD)
-    shoal_cold(${name})
+    shoal_precompile(${name} shoal_cold_headers)
+    target_compile_options(${name} PRIVATE ${SHOAL_COLD_OPTIONS})
   else()
     shoal_precompile(${name} shoal_library_headers)
   endif()
@@ -63,7 +62,7 @@ function(shoal_program name)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   shoal_warnings(${name})
   if(SHOAL_COLD)
-    shoal_cold(${name})
+    target_compile_options(${name} PRIVATE ${SHOAL_COLD_OPTIONS})
   endif()
 endfunction()
 
