@@ -1,16 +1,16 @@
 #include "actor/acting/weights_board.h"
 
-#include <sys/random.h>
 #include <unistd.h>
 
 #include <atomic>
 #include <bit>
-#include <cerrno>
 #include <cstddef>
 #include <cstring>
 #include <memory>
+#include <span>
 
 #include "common/base/error.h"
+#include "common/base/random_bytes.h"
 
 namespace shoal::actor {
 namespace {
@@ -56,9 +56,7 @@ bool SameToken(const uint64_t (&token)[2], const BoardAddress& address) {
 
 std::array<uint64_t, 2> RandomToken() {
   std::array<uint64_t, 2> token{};
-  if (getrandom(token.data(), sizeof token, 0) != static_cast<ssize_t>(sizeof token)) {
-    throw RuntimeError("no random numbers for a token: {}", std::strerror(errno));
-  }
+  FillWithRandomBytes(std::as_writable_bytes(std::span(token)));
   return token;
 }
 

@@ -1,17 +1,17 @@
 #include "common/wire/batch_slots.h"
 
-#include <sys/random.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <atomic>
 #include <bit>
-#include <cerrno>
 #include <cstddef>
 #include <cstring>
+#include <span>
 
 #include "common/base/check.h"
 #include "common/base/error.h"
+#include "common/base/random_bytes.h"
 
 namespace shoal {
 namespace {
@@ -42,10 +42,8 @@ std::atomic_ref<uint64_t> RequestWord(const SharedMemory& memory, uint32_t slot)
   return std::atomic_ref<uint64_t>(reinterpret_cast<uint64_t*>(memory.data() + kWordsAt)[slot]);
 }
 
-void FillRandom(uint64_t (&token)[2]) {
-  if (getrandom(token, sizeof token, 0) != static_cast<ssize_t>(sizeof token)) {
-    throw RuntimeError("no random numbers for a token: {}", std::strerror(errno));
-  }
+void DrawToken(uint64_t (&token)[2]) {
+  FillWithRandomBytes(std::as_writable_bytes(std::span(token)));
   token[0] |= 1;  // 0 means none
 }
 
@@ -64,7 +62,7 @@ SlotWriter::SlotWriter(uint64_t spec_hash, uint64_t learner_session, uint64_t ba
       slots_(slots) {
   CHECK(batch_bytes > 0 && slots > 0 && slots <= kMostSlots) << batch_bytes << " x " << slots;
   address_ = {.pid = getpid(), .descriptor = memory_.descriptor(), .bytes = memory_.bytes()};
-  FillRandom(address_.token);
+  DrawToken(address_.token);
   const Header header{.magic = kMagic,
                       .token = {address_.token[0], address_.token[1]},
                       .learner_session = learner_session,

@@ -1,22 +1,18 @@
 #include "launch/web/access.h"
 
-#include <sys/random.h>
-
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <cstdint>
-#include <cstring>
+#include <span>
 
 #include "common/base/error.h"
+#include "common/base/random_bytes.h"
 
 namespace shoal::launch {
 
 std::string MakeToken() {
   std::array<uint8_t, 16> random{};
-  if (getrandom(random.data(), random.size(), 0) != static_cast<ssize_t>(random.size())) {
-    throw RuntimeError("cannot make a token: no random bytes: {}", std::strerror(errno));
-  }
+  FillWithRandomBytes(std::as_writable_bytes(std::span(random)));
   std::string token;
   for (const uint8_t byte : random) token += fmt::format("{:02x}", byte);
   return token;

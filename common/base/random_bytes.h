@@ -1,0 +1,12 @@
+// Bytes that nobody can guess, from the kernel: for tokens.
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+namespace shoal {
+
+// Throws Error when the kernel has none. At most 256 bytes.
+void FillWithRandomBytes(std::span<std::byte> bytes);
+
+}  // namespace shoal
