@@ -33,18 +33,19 @@ class ConnectionQueue final : public httplib::TaskQueue {
     for (size_t i = 0; i < threads; ++i) threads_.emplace_back([this] { Work(); });
   }
 
-  void enqueue(std::function<void()> connection) override {
+  Enqueued enqueue(std::function<void()> connection) override {
     {
       const MutexLock lock(mutex_);
       if (waiting_.size() < most_waiting_) {
         waiting_.push_back(std::move(connection));
         come_.NotifyOne();
-        return;
+        return Enqueued(true);
       }
     }
     closing_only = true;
     connection();
     closing_only = false;
+    return Enqueued(true);
   }
 
   void shutdown() override {
@@ -180,13 +181,11 @@ bool BoundedServer::process_and_close_socket(socket_t socket) {
   fcntl(socket, F_SETFD, FD_CLOEXEC);  // not for the programs that this one starts
   if (closing_only || ending_) return false;
   BoundedStream stream(socket, limits_, ending_);
-  bool closed = false;
-  const bool answered =
-      process_request(stream, /*close_connection=*/true, closed, [&](httplib::Request& request) {
-        request.headers.erase("Accept-Encoding");
-        request.ranges.clear();
-        stream.SetAnswerEnd(Now() + (is_file_(request.path) ? limits_.file : limits_.answer));
-      });
+  const bool answered = AnswerRequest(stream, [&](httplib::Request& request) {
+    request.headers.erase("Accept-Encoding");
+    request.ranges.clear();
+    stream.SetAnswerEnd(Now() + (is_file_(request.path) ? limits_.file : limits_.answer));
+  });
   shutdown(socket, SHUT_WR);
   Drain(socket);
   return answered;

@@ -6,12 +6,12 @@
 // that who asks decides), and ranges are left to who answers.
 #pragma once
 
-#include <httplib.h>
-
 #include <atomic>
 #include <chrono>
 #include <functional>
 #include <string>
+
+#include "launch/web/http_library.h"
 
 namespace shoal::launch {
 
@@ -24,7 +24,7 @@ struct ServerLimits {
   size_t waiting = 16;  // connections; what comes beyond is closed at once
 };
 
-class BoundedServer final : public httplib::Server {
+class BoundedServer final : public HttpServer {
  public:
   // `is_file`: whether the answer to this path is a file, for which limits.file is the time.
   BoundedServer(const ServerLimits& limits, std::function<bool(const std::string&)> is_file);
