@@ -56,8 +56,12 @@ nlohmann::ordered_json FoundRow(const ManyActorsFigures& figures) {
           {"figure", figures.found_seconds},
           {"unit", "s after its start"},
           {"against", "nothing"},
+          {"against_figure", nullptr},
+          {"ratio", nullptr},
+          {"target", nullptr},
           {"at_most", kFoundSeconds},
-          {"repetitions", 1}};
+          {"repetitions", 1},
+          {"spread", nullptr}};
 }
 
 // Adds both rows of each number of actors.

@@ -35,6 +35,8 @@ nlohmann::ordered_json Row(const BroadcastOptions& options, std::vector<Broadcas
           {"unit", "of a core"},
           {"against", "the same processes without weights"},
           {"against_figure", middle.idle},
+          {"ratio", nullptr},
+          {"target", nullptr},
           {"at_most", kAtMost},
           {"repetitions", all.size()},
           {"spread", (Cost(all.back()) - Cost(all.front())) / Cost(middle)},
