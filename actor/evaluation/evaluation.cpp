@@ -37,6 +37,8 @@ ordered_json EpisodeJson(const EpisodeResult& result, bool has_success, bool has
                       {"final_distance", NumberOrNull(episode.final_distance)},
                       {"action_smoothness", episode.action_smoothness}};
   if (has_causes) {
+    object["desired_goal"] = result.desired;
+    object["achieved_goal"] = result.achieved;
     object["failure"] = result.failure ? ordered_json(NameOf(*result.failure)) : nullptr;
   }
   for (const worlds::DrawnMass& drawn : episode.drawn_masses) {
@@ -48,14 +50,15 @@ ordered_json EpisodeJson(const EpisodeResult& result, bool has_success, bool has
 ordered_json Aggregate(const std::vector<EpisodeResult>& episodes, bool has_success) {
   const double n = static_cast<double>(episodes.size());
   double successes = 0, mean = 0, length = 0, distance = 0, variance = 0;
-  for (const auto& [seed, episode, failure] : episodes) {
+  for (const EpisodeResult& result : episodes) {
+    const EpisodeFigures& episode = result.figures;
     successes += episode.success;
     mean += episode.episode_return / n;
     length += episode.length / n;
     distance += episode.final_distance / n;
   }
-  for (const auto& [seed, episode, failure] : episodes) {
-    variance += std::pow(episode.episode_return - mean, 2) / n;
+  for (const EpisodeResult& result : episodes) {
+    variance += std::pow(result.figures.episode_return - mean, 2) / n;
   }
   return {{"episodes", episodes.size()},
           {"success_rate", has_success ? ordered_json(successes / n) : nullptr},
@@ -129,8 +132,11 @@ std::vector<EpisodeResult> Evaluator::Play(int episodes, const EpisodeStream& st
       if (seat.running()) continue;
       EpisodeResult& result = results[static_cast<size_t>(episode)];
       result = {.seed = episode, .figures = seat.figures()};
-      if (facts.applies() && !result.figures.success) result.failure = facts.Cause();
       ++done;
+      if (!facts.applies()) continue;
+      result.desired = facts.desired();
+      result.achieved = facts.achieved();
+      if (!result.figures.success) result.failure = facts.Cause();
     }
   }
   return results;

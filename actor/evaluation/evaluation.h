@@ -22,7 +22,9 @@ namespace shoal::actor {
 struct EpisodeResult {
   int64_t seed = 0;  // number of the episode in its stream
   EpisodeFigures figures;
-  // Of a failed episode of a task that has causes (failure_cause.h).
+  // Of tasks that have causes (failure_cause.h): the goal and what was achieved at the end, in m,
+  // and why the episode failed, if it did.
+  std::vector<double> desired{}, achieved{};
   std::optional<FailureCause> failure{};
 };
 

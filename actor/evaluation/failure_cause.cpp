@@ -80,6 +80,10 @@ FailureFacts::Point FailureFacts::Read(std::span<const float> vector,
   return point;
 }
 
+std::vector<double> FailureFacts::Numbers(const Point& point) const {
+  return {point.begin(), point.begin() + desired_.size};
+}
+
 void FailureFacts::Begin(std::span<const float> vector) {
   if (!applies_) return;
   start_ = now_ = Read(vector, achieved_);

@@ -61,6 +61,9 @@ class FailureFacts {
   // `vector` (R): every block, as Environment writes it.
   void Begin(std::span<const float> vector);
   void Step(std::span<const float> vector);
+  // Where the episode should end and where it is, in m: as many numbers as the goal has.
+  std::vector<double> desired() const { return Numbers(goal_); }
+  std::vector<double> achieved() const { return Numbers(now_); }
   // Of an episode that has ended without success. CHECK: applies, begun.
   FailureCause Cause() const;
 
@@ -68,6 +71,7 @@ class FailureFacts {
   using Point = std::array<double, 3>;  // goals of fewer numbers: zeros behind
 
   Point Read(std::span<const float> vector, const ObservationSpec::Range& block) const;
+  std::vector<double> Numbers(const Point& point) const;
   bool Lifts() const;  // the goal lies above the table
   FailureCause CauseOfObject() const;
 

@@ -71,6 +71,13 @@ TEST(EvaluationJson, FailedEpisodesHaveACauseAndAreCountedByIt) {
       EvaluationJson(run, {}, stream, evaluator.Play(6, stream, [] { return false; }));
   size_t failed = 0;
   for (const auto& episode : json["episodes"]) {
+    const auto desired = episode["desired_goal"].get<std::vector<double>>();
+    const auto achieved = episode["achieved_goal"].get<std::vector<double>>();
+    ASSERT_EQ(desired.size(), 3u);
+    ASSERT_EQ(achieved.size(), 3u);
+    EXPECT_NEAR(
+        std::hypot(desired[0] - achieved[0], desired[1] - achieved[1], desired[2] - achieved[2]),
+        episode["final_distance"].get<double>(), 1e-5);
     EXPECT_EQ(episode["failure"].is_null(), episode["success"] == true);
     if (episode["failure"].is_null()) continue;
     EXPECT_EQ(episode["failure"], "never_touched");
