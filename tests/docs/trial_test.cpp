@@ -24,7 +24,8 @@ constexpr std::chrono::seconds kDeadline{400};  // of a machine that has much el
 class Surroundings {
  public:
   Surroundings() {
-    for (const char* folder : {"docs/images", "docs/results/original-environment", "home"}) {
+    for (const char* folder : {"docs/images", "docs/results/experiments/reach-recipe",
+                               "docs/results/original-environment", "home"}) {
       fs::create_directories(folder_.path() / folder);
     }
     Link("tests", SourcePath("tests"));
@@ -85,10 +86,13 @@ void Prepare(const Surroundings& surroundings) {
   surroundings.Link("runs/first", "reach");
   surroundings.Link("runs/source", "plain");
   surroundings.Link("runs/reach-sb3", "../experiments/batches/runs/a-s0");
-  for (const char* name : {"reach-three-way", "reach-algorithms", "reach-ppo"}) {
+  for (const char* name : {"reach-three-way", "reach-algorithms", "reach-ppo", "reach-recipe"}) {
     surroundings.Link(std::string("experiments/") + name, "batches");
   }
-  surroundings.Link("experiments/batches/runs/pixels-drq-s0", "../../../runs/pixels");
+  for (const char* name :
+       {"pixels-drq-s0", "preset-s11", "preset-s12", "faster-s11", "faster-s12"}) {
+    surroundings.Link(std::string("experiments/batches/runs/") + name, "../../../runs/pixels");
+  }
 }
 
 std::vector<Page> PagesWithCommands() {
