@@ -10,7 +10,7 @@
 namespace shoal::dds {
 namespace {
 
-CdrReader Reader(std::span<const uint8_t> cdr) { return {cdr, CdrEncoding::kDelimited2}; }
+CdrReader ReaderOf(std::span<const uint8_t> cdr) { return {cdr, CdrEncoding::kDelimited2}; }
 
 // What people may get to see.
 std::string Text(CdrReader* reader) { return OneLine(reader->ReadString()); }
@@ -89,7 +89,7 @@ RunEvent ReadEvent(CdrReader* reader) {
 }  // namespace
 
 bool ParseCdr(std::span<const uint8_t> cdr, CreditsMessage* message) {
-  CdrReader reader = Reader(cdr);
+  CdrReader reader = ReaderOf(cdr);
   bool good = true;
   message->credits.clear();
   reader.ReadAppendable([&] {
@@ -103,7 +103,7 @@ bool ParseCdr(std::span<const uint8_t> cdr, CreditsMessage* message) {
 }
 
 bool ParseCdr(std::span<const uint8_t> cdr, SampleRequest* message) {
-  CdrReader reader = Reader(cdr);
+  CdrReader reader = ReaderOf(cdr);
   reader.ReadAppendable([&] {
     message->spec_hash = reader.Read<uint64_t>();
     message->learner_session = reader.Read<uint64_t>();
@@ -120,7 +120,7 @@ bool ParseCdr(std::span<const uint8_t> cdr, SampleRequest* message) {
 }
 
 bool ParseCdr(std::span<const uint8_t> cdr, BatchSlot* message) {
-  CdrReader reader = Reader(cdr);
+  CdrReader reader = ReaderOf(cdr);
   reader.ReadAppendable([&] {
     message->spec_hash = reader.Read<uint64_t>();
     message->learner_session = reader.Read<uint64_t>();
@@ -140,13 +140,13 @@ bool ParseCdr(std::span<const uint8_t> cdr, BatchSlot* message) {
 }
 
 bool ParseCdr(std::span<const uint8_t> cdr, MetricsMessage* message) {
-  CdrReader reader = Reader(cdr);
+  CdrReader reader = ReaderOf(cdr);
   *message = ReadMetrics(&reader);
   return reader.Finished() && MakesSense(*message);
 }
 
 bool ParseCdr(std::span<const uint8_t> cdr, ReplayProgress* message) {
-  CdrReader reader = Reader(cdr);
+  CdrReader reader = ReaderOf(cdr);
   reader.ReadAppendable([&] {
     message->replay = reader.Read<uint32_t>();
     message->session = reader.Read<uint64_t>();
@@ -157,7 +157,7 @@ bool ParseCdr(std::span<const uint8_t> cdr, ReplayProgress* message) {
 }
 
 bool ParseCdr(std::span<const uint8_t> cdr, LearnerProgress* message) {
-  CdrReader reader = Reader(cdr);
+  CdrReader reader = ReaderOf(cdr);
   message->evaluations.clear();
   reader.ReadAppendable([&] {
     message->session = reader.Read<uint64_t>();
@@ -174,7 +174,7 @@ bool ParseCdr(std::span<const uint8_t> cdr, LearnerProgress* message) {
 }
 
 bool ParseCdr(std::span<const uint8_t> cdr, ControlMessage* message) {
-  CdrReader reader = Reader(cdr);
+  CdrReader reader = ReaderOf(cdr);
   reader.ReadAppendable([&] {
     message->epoch = reader.Read<uint64_t>();
     message->state = static_cast<RunState>(reader.Read<uint32_t>());
@@ -192,7 +192,7 @@ bool ParseCdr(std::span<const uint8_t> cdr, ControlMessage* message) {
 }
 
 bool ParseCdr(std::span<const uint8_t> cdr, EvalMessage* message) {
-  CdrReader reader = Reader(cdr);
+  CdrReader reader = ReaderOf(cdr);
   reader.ReadAppendable([&] {
     message->env_steps = reader.Read<uint64_t>();
     message->version.session = reader.Read<uint64_t>();
@@ -204,7 +204,7 @@ bool ParseCdr(std::span<const uint8_t> cdr, EvalMessage* message) {
 }
 
 bool ParseCdr(std::span<const uint8_t> cdr, RunViewMessage* message) {
-  CdrReader reader = Reader(cdr);
+  CdrReader reader = ReaderOf(cdr);
   bool good = true;
   message->processes.clear();
   message->events.clear();
@@ -225,7 +225,7 @@ bool ParseCdr(std::span<const uint8_t> cdr, RunViewMessage* message) {
 }
 
 bool ParseCdr(std::span<const uint8_t> cdr, CommandMessage* message) {
-  CdrReader reader = Reader(cdr);
+  CdrReader reader = ReaderOf(cdr);
   reader.ReadAppendable([&] {
     message->client = reader.Read<uint64_t>();
     message->request = reader.Read<uint64_t>();
@@ -236,7 +236,7 @@ bool ParseCdr(std::span<const uint8_t> cdr, CommandMessage* message) {
 }
 
 bool ParseCdr(std::span<const uint8_t> cdr, ReplyMessage* message) {
-  CdrReader reader = Reader(cdr);
+  CdrReader reader = ReaderOf(cdr);
   reader.ReadAppendable([&] {
     message->client = reader.Read<uint64_t>();
     message->request = reader.Read<uint64_t>();

@@ -9,7 +9,7 @@ namespace {
 
 using dnnl::memory;
 
-constexpr auto kAlgorithm = dnnl::algorithm::convolution_auto;
+constexpr auto kConvolution = dnnl::algorithm::convolution_auto;
 
 }  // namespace
 
@@ -38,7 +38,7 @@ Conv::Conv(const LayerContext& context, const LayerPlan& plan, const memory& sou
   const memory::desc bias_desc = has_bias_ ? bias_values_.get_desc() : memory::desc();
 
   const auto forward = DescribeForward<dnnl::convolution_forward>(
-      relu_ ? AttributesWithRelu() : Attributes(), dnnl::prop_kind::forward_training, kAlgorithm,
+      relu_ ? AttributesWithRelu() : Attributes(), dnnl::prop_kind::forward_training, kConvolution,
       AnyLayout(dims, type), AnyLayout(weight_dims, type), bias_desc, AnyLayout(output_dims, type),
       strides_, padding_, padding_);
   output_ = MakeMemory(forward.dst_desc());
@@ -61,7 +61,7 @@ void Conv::BuildBackwardWeights(const LayerContext& context, const memory& sourc
   const memory::dims weight_dims = weight_.shape();
   const memory::desc bias_desc = has_bias_ ? bias_values_.get_desc() : memory::desc();
   const auto backward = DescribeBackward<dnnl::convolution_backward_weights>(
-      forward, kAlgorithm, AnyLayout(DimsOf(source), TypeOf(source)),
+      forward, kConvolution, AnyLayout(DimsOf(source), TypeOf(source)),
       AnyLayout(weight_dims, memory::data_type::f32), bias_desc,
       AnyLayout(DimsOf(output_), TypeOf(output_)), strides_, padding_, padding_);
   const memory weight_target(PlainF32(weight_dims), CpuEngine(), weight_.gradient());
@@ -85,7 +85,7 @@ void Conv::BuildBackwardData(const LayerContext& context, const memory& source_g
   has_source_gradient_ = true;
   const memory::data_type type = TypeOf(source_gradient);
   const auto backward = DescribeBackward<dnnl::convolution_backward_data>(
-      forward, kAlgorithm, AnyLayout(DimsOf(source_gradient), type),
+      forward, kConvolution, AnyLayout(DimsOf(source_gradient), type),
       AnyLayout(weight_.shape(), type), AnyLayout(DimsOf(output_), TypeOf(output_)), strides_,
       padding_, padding_);
   data_output_gradient_ =

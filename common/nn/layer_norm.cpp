@@ -10,7 +10,7 @@
 namespace shoal::nn {
 namespace {
 
-constexpr float kEpsilon = 1e-5f;
+constexpr float kLayerEpsilon = 1e-5f;
 constexpr int kMinParallel = 1 << 17;  // elements below which waking other threads costs more
 
 // Runs body(begin, end) over rows, in parallel where there is enough to do.
@@ -32,7 +32,7 @@ SHOAL_CPU_CLONES void NormaliseRow(const float* x, int n, const NormWeights& wei
   float squares = 0;
 #pragma omp simd reduction(+ : squares)
   for (int j = 0; j < n; ++j) squares += (x[j] - mean) * (x[j] - mean);
-  const float scale = 1.f / std::sqrt(squares / float(n) + kEpsilon);
+  const float scale = 1.f / std::sqrt(squares / float(n) + kLayerEpsilon);
   *rstd = scale;
   const float* weight = weights.weight;
   const float* bias = weights.bias;

@@ -7,7 +7,7 @@ namespace {
 
 using dnnl::memory;
 
-constexpr auto kAlgorithm = dnnl::algorithm::pooling_max;
+constexpr auto kPooling = dnnl::algorithm::pooling_max;
 
 }  // namespace
 
@@ -20,7 +20,7 @@ MaxPool::MaxPool(const LayerContext& context, const LayerPlan& plan, const memor
       {context.batch, plan.output.channels, plan.output.height, plan.output.width}, TypeOf(source));
   const auto forward = DescribePooling(
       context.training ? dnnl::prop_kind::forward_training : dnnl::prop_kind::forward_inference,
-      kAlgorithm, source.get_desc(), to, window);
+      kPooling, source.get_desc(), to, window);
   output_ = MakeMemory(forward.dst_desc());
   if (!context.training) {
     forward_ = Op(forward, {{DNNL_ARG_SRC, source}, {DNNL_ARG_DST, output_}}, context.scratchpad);
@@ -33,7 +33,7 @@ MaxPool::MaxPool(const LayerContext& context, const LayerPlan& plan, const memor
   output_gradient_ = MakeMemory(output_.get_desc());
   if (!source_gradient) return;
   has_source_gradient_ = true;
-  const auto backward = DescribePoolingBackward(forward, kAlgorithm, source_gradient.get_desc(),
+  const auto backward = DescribePoolingBackward(forward, kPooling, source_gradient.get_desc(),
                                                 output_gradient_.get_desc(), window);
   backward_ = Op(backward,
                  {{DNNL_ARG_DIFF_DST, output_gradient_},

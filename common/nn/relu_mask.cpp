@@ -8,7 +8,7 @@
 namespace shoal::nn {
 namespace {
 
-constexpr int64_t kBlock = 1 << 14;  // values per unit of parallel work
+constexpr int64_t kMaskBlock = 1 << 14;  // values per unit of parallel work
 
 SHOAL_CPU_CLONES void MaskFloats(const float* __restrict y, int64_t n, float* __restrict dy) {
   for (int64_t i = 0; i < n; ++i) dy[i] = y[i] > 0 ? dy[i] : 0.f;
@@ -20,21 +20,21 @@ SHOAL_CPU_CLONES void MaskBf16(const uint16_t* __restrict y, int64_t n, uint16_t
 }
 
 template <class Kernel>
-void ForBlocks(int64_t n, const Kernel& kernel) {
-  ParallelFor(int((n + kBlock - 1) / kBlock), [&](int begin, int end) {
-    const int64_t first = begin * kBlock;
-    kernel(first, std::min(n, end * kBlock) - first);
+void ForMaskBlocks(int64_t n, const Kernel& kernel) {
+  ParallelFor(int((n + kMaskBlock - 1) / kMaskBlock), [&](int begin, int end) {
+    const int64_t first = begin * kMaskBlock;
+    kernel(first, std::min(n, end * kMaskBlock) - first);
   });
 }
 
 }  // namespace
 
 void MaskWhereZero(const float* y, int64_t n, float* dy) {
-  ForBlocks(n, [&](int64_t first, int64_t count) { MaskFloats(y + first, count, dy + first); });
+  ForMaskBlocks(n, [&](int64_t first, int64_t count) { MaskFloats(y + first, count, dy + first); });
 }
 
 void MaskWhereZero(const uint16_t* y, int64_t n, uint16_t* dy) {
-  ForBlocks(n, [&](int64_t first, int64_t count) { MaskBf16(y + first, count, dy + first); });
+  ForMaskBlocks(n, [&](int64_t first, int64_t count) { MaskBf16(y + first, count, dy + first); });
 }
 
 }  // namespace shoal::nn

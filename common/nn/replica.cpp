@@ -10,8 +10,8 @@
 namespace shoal::nn {
 namespace {
 
-constexpr int64_t kBlock = 1024;    // floats summed at a time: they stay in the first-level cache
-constexpr int64_t kCacheLine = 16;  // floats
+constexpr int64_t kSumBlock = 1024;  // floats summed at a time: they stay in the first-level cache
+constexpr int64_t kCacheLine = 16;   // floats
 
 SHOAL_CPU_CLONES void AddTo(const float* values, int64_t n, float* sum) {
   for (int64_t i = 0; i < n; ++i) sum[i] += values[i];
@@ -23,9 +23,9 @@ SHOAL_CPU_CLONES void Scale(float factor, int64_t n, float* values) {
 
 // Each array's floats [begin, end) become their mean.
 void AverageRange(std::span<float* const> arrays, int64_t begin, int64_t end) {
-  float sum[kBlock];
-  for (int64_t at = begin; at < end; at += kBlock) {
-    const int64_t n = std::min(kBlock, end - at);
+  float sum[kSumBlock];
+  for (int64_t at = begin; at < end; at += kSumBlock) {
+    const int64_t n = std::min(kSumBlock, end - at);
     std::copy_n(arrays[0] + at, n, sum);
     for (const float* array : arrays.subspan(1)) AddTo(array + at, n, sum);
     Scale(1.f / float(arrays.size()), n, sum);

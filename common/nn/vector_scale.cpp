@@ -11,7 +11,7 @@
 namespace shoal::nn {
 namespace {
 
-constexpr float kEpsilon = 1e-8f;
+constexpr float kScaleEpsilon = 1e-8f;
 
 std::vector<float> ReadVector(const TensorMap& tensors, const std::string& name, int size,
                               const std::string& source) {
@@ -31,7 +31,7 @@ std::vector<float> ReadVector(const TensorMap& tensors, const std::string& name,
 VectorScale::VectorScale(std::span<const float> mean, std::span<const float> variance)
     : mean_(mean.begin(), mean.end()) {
   CHECK(mean.size() == variance.size() && !mean.empty());
-  for (const float v : variance) factor_.push_back(1 / std::sqrt(v + kEpsilon));
+  for (const float v : variance) factor_.push_back(1 / std::sqrt(v + kScaleEpsilon));
 }
 
 void VectorScale::Apply(const float* x, std::span<float> y) const {

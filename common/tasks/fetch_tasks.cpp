@@ -5,7 +5,7 @@
 namespace shoal::tasks {
 namespace {
 
-constexpr int kEpisodeLength = 50;
+constexpr int kFetchEpisodeLength = 50;
 constexpr double kDistanceThreshold = 0.05;
 
 using Components = std::vector<Component>;
@@ -78,7 +78,7 @@ Task FetchTask(const Family& family, RewardKind reward) {
   Task::Description description;
   description.name = family.world + std::string(reward == RewardKind::kDense ? "Dense" : "");
   description.world = family.world;
-  description.episode_length = kEpisodeLength;
+  description.episode_length = kFetchEpisodeLength;
   description.action = Action(shut);
   description.observation = family.has_object ? ObjectObservation(shut) : ReachObservation();
   description.achieved_goal = {"achieved_goal",

@@ -53,14 +53,14 @@ int Peek(const PeekOptions& options) {
   return 0;
 }
 
-struct ExportOptions {
+struct EpisodesOptions {
   std::string source, output;
   uint64_t episodes = 0;
   bool last = false;
 };
 
 // A ring belongs to the run in whose folder it lies: the run's configuration says what it holds.
-EpisodeExport Subject(const ExportOptions& options) {
+EpisodeExport ExportSubject(const EpisodesOptions& options) {
   std::error_code error;
   const bool is_ring = fs::is_regular_file(options.source, error);
   const fs::path run = is_ring ? fs::absolute(options.source).parent_path()
@@ -77,8 +77,8 @@ EpisodeExport Subject(const ExportOptions& options) {
   return subject;
 }
 
-int Export(const ExportOptions& options) {
-  const EpisodeExport subject = Subject(options);
+int RunExport(const EpisodesOptions& options) {
+  const EpisodeExport subject = ExportSubject(options);
   const ExportedEpisodes exported = ExportEpisodes(subject);
   fmt::print("{}: {} episodes, {} steps of {} ({:.2f} MB)\n", options.output, exported.episodes,
              exported.steps, subject.run.spec.task, 1e-6 * static_cast<double>(exported.bytes));
@@ -112,7 +112,7 @@ void AddExport(CLI::App* replay, Action* chosen) {
       "export",
       "Write whole episodes as a dataset that Minari loads: an HDF5 file and metadata.json beside "
       "it.");
-  const auto options = std::make_shared<ExportOptions>();
+  const auto options = std::make_shared<EpisodesOptions>();
   command->add_option("run", options->source, "Run: name or folder; or its replay.ring")
       ->required();
   command
@@ -123,7 +123,7 @@ void AddExport(CLI::App* replay, Action* chosen) {
           ->check(CLI::PositiveNumber);
   command->add_flag("--last", options->last, "Those that ended last, not those that ended first")
       ->needs(episodes);
-  command->callback([=] { *chosen = [=] { return Export(*options); }; });
+  command->callback([=] { *chosen = [=] { return RunExport(*options); }; });
 }
 
 }  // namespace

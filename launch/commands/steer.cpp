@@ -22,25 +22,27 @@ using std::chrono::seconds;
 
 constexpr seconds kInForce{10};  // for the processes to use a changed value
 constexpr seconds kScaled{60};   // for actors to start, or to flush what they have and leave
-constexpr seconds kSilence{15};  // of a coordinator: as long as its processes wait for it
-constexpr std::chrono::milliseconds kLook{500};  // at the silence
+constexpr seconds kCoordinatorSilence{
+    15};  // of a coordinator: as long as its processes wait for it
+constexpr std::chrono::milliseconds kLookAtSilence{500};  // at the silence
 constexpr seconds kLeaves{10};     // for the coordinator to leave, once it has said all
 constexpr seconds kStopped{3600};  // for a run that had begun its last evaluation
 
 // Looks at views until `done` says so; false: not within `most`, or a stop signal. Throws Error
-// when the coordinator has been silent for kSilence: it died, and no view will ever come.
+// when the coordinator has been silent for kCoordinatorSilence: it died, and no view will ever
+// come.
 bool WatchUntil(RunClient& client, seconds most,
                 const std::function<bool(const RunViewMessage&)>& done) {
   const SteadyTime deadline = Now() + most;
   Silence silence(Now());
   while (!StopRequested() && Now() < deadline) {
-    const auto view = client.WaitForView(std::min(deadline, Now() + kLook));
+    const auto view = client.WaitForView(std::min(deadline, Now() + kLookAtSilence));
     if (view) silence.Heard(Now());
     if (view && done(*view)) return true;
-    if (silence.Look(Now()) > kSilence) {
+    if (silence.Look(Now()) > kCoordinatorSilence) {
       throw RuntimeError(
           "accepted, but the run's coordinator has been silent for {} s: see shoal runs",
-          kSilence.count());
+          kCoordinatorSilence.count());
     }
   }
   return false;

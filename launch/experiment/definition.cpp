@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-constexpr char kSchema[] = "shoal-experiment-definition-1";
+constexpr char kDefinitionSchema[] = "shoal-experiment-definition-1";
 constexpr char kKind[] = "experiments";
 
 // What a run of an experiment is called, where it lies and how it is judged is the experiment's.
@@ -164,8 +164,8 @@ json Nested(const ordered_json& set, const std::string& source) {
 Definition ParseDefinition(const ordered_json& object, const std::string& source,
                            const std::string& stem) {
   Members members(object, source);
-  if (members.Text("schema", "") != kSchema) {
-    throw UsageError("{}: expected an object of schema '{}'", source, kSchema);
+  if (members.Text("schema", "") != kDefinitionSchema) {
+    throw UsageError("{}: expected an object of schema '{}'", source, kDefinitionSchema);
   }
   Definition definition;
   definition.name = members.Text("name", stem);
@@ -206,7 +206,8 @@ Definition ReadDefinition(const fs::path& file) {
 ordered_json ToJson(const Definition& definition) {
   ordered_json arms = ordered_json::array();
   for (const Arm& arm : definition.arms) arms.push_back({{"name", arm.name}, {"set", arm.set}});
-  ordered_json object{{"schema", kSchema}, {"name", definition.name}, {"base", definition.base}};
+  ordered_json object{
+      {"schema", kDefinitionSchema}, {"name", definition.name}, {"base", definition.base}};
   if (!definition.question.empty()) object["question"] = definition.question;
   object["set"] = definition.set;
   object["arms"] = arms;

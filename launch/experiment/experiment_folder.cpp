@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 using std::chrono::milliseconds;
 
-constexpr char kSchema[] = "shoal-experiment-folder-1";
+constexpr char kFolderSchema[] = "shoal-experiment-folder-1";
 constexpr char kFile[] = "experiment.json";
 constexpr char kLockFile[] = ".lock";
 // That a task waits for the command which has submitted it.
@@ -81,7 +81,7 @@ FileLock LockOrThrow(const fs::path& folder, Holding holding, milliseconds deadl
 }
 
 void Write(const StoredExperiment& experiment) {
-  const ordered_json object{{"schema", kSchema},
+  const ordered_json object{{"schema", kFolderSchema},
                             {"definition", ToJson(experiment.definition)},
                             {"base", ToJson(experiment.base)},
                             {"created", experiment.created},
@@ -171,9 +171,9 @@ StoredExperiment ReadExperiment(const fs::path& folder) {
   const std::string text = ReadFile(path);
   ParseStrictJson(text, path);  // refuses broken text and duplicate keys
   const auto object = ParseBoundedJson<ordered_json>(text);
-  if (!object.is_object() || object.value("schema", ordered_json()) != kSchema ||
+  if (!object.is_object() || object.value("schema", ordered_json()) != kFolderSchema ||
       !object.contains("definition") || !object.contains("base")) {
-    throw RuntimeError("{}: expected an object of schema '{}'", path.string(), kSchema);
+    throw RuntimeError("{}: expected an object of schema '{}'", path.string(), kFolderSchema);
   }
   StoredExperiment experiment{.folder = fs::weakly_canonical(folder)};
   experiment.definition = ParseDefinition(object["definition"], path, "");

@@ -19,7 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
-constexpr char kSchema[] = "shoal-slurm-array-1";
+constexpr char kArraySchema[] = "shoal-slurm-array-1";
 constexpr std::chrono::seconds kSlurmAnswers{60};
 
 struct Answer {
@@ -45,9 +45,9 @@ ordered_json LastArray(const fs::path& file) {
   std::error_code error;
   if (!fs::exists(file, error)) return nullptr;
   auto array = ParseBoundedJson<ordered_json>(ReadFile(file));
-  if (!array.is_object() || array.value("schema", "") != kSchema || !array.contains("job") ||
+  if (!array.is_object() || array.value("schema", "") != kArraySchema || !array.contains("job") ||
       !array["job"].is_string()) {
-    throw RuntimeError("{}: expected an object of schema '{}'", file.string(), kSchema);
+    throw RuntimeError("{}: expected an object of schema '{}'", file.string(), kArraySchema);
   }
   return array;
 }
@@ -126,7 +126,7 @@ SlurmArray SubmitArray(const StoredExperiment& experiment, const std::vector<Exp
   if (!answer.good) throw RuntimeError("sbatch {}: {}", array.script.string(), answer.said);
   array.job = answer.said.substr(0, answer.said.find(';'));  // JOB or JOB;CLUSTER
   ordered_json note = ToJson(array);
-  note["schema"] = kSchema;
+  note["schema"] = kArraySchema;
   note["submitted"] = UtcTimestamp();
   WriteFileAtomically(experiment.folder / "slurm.json", note.dump(2) + "\n");
   return array;

@@ -19,7 +19,8 @@ namespace shoal::launch {
 namespace {
 
 constexpr int kPollMs = 100;
-constexpr std::chrono::seconds kReap{30};  // of a child that has closed its end, which exit does
+constexpr std::chrono::seconds kReapChild{
+    30};  // of a child that has closed its end, which exit does
 
 int Redirect(const char* file, int flags, int to) {
   const int fd = open(file, flags | O_CLOEXEC, 0600);
@@ -70,7 +71,7 @@ int Detachment::WaitForChild(int from_child) {
 }
 
 int Detachment::Reap() const {
-  const SteadyTime deadline = Now() + kReap;
+  const SteadyTime deadline = Now() + kReapChild;
   int status = 0;
   while (waitpid(child_, &status, WNOHANG) != child_) {
     if (Now() > deadline) return 1;

@@ -11,8 +11,8 @@ namespace {
 using std::chrono::milliseconds;
 
 constexpr milliseconds kPoll{50};
-constexpr milliseconds kAtOnce{1000};  // between SIGTERM and SIGKILL when hurried
-constexpr milliseconds kReap{5000};    // after SIGKILL: longer only in uninterruptible I/O
+constexpr milliseconds kAtOnce{1000};      // between SIGTERM and SIGKILL when hurried
+constexpr milliseconds kReapKilled{5000};  // after SIGKILL: longer only in uninterruptible I/O
 
 // Waits until no process of the role is left. False at the deadline, or when hurried and `patient`.
 bool WaitForExit(Supervisor& supervisor, std::string_view role, milliseconds deadline,
@@ -40,7 +40,7 @@ void EndRole(Supervisor& supervisor, std::string_view role, milliseconds deadlin
   const milliseconds terminate = hurried ? kAtOnce : deadlines.terminate;
   if (WaitForExit(supervisor, role, terminate, hooks, /*patient=*/!hurried)) return;
   supervisor.Signal(role, SIGKILL);
-  WaitForExit(supervisor, role, kReap, hooks, /*patient=*/false);
+  WaitForExit(supervisor, role, kReapKilled, hooks, /*patient=*/false);
 }
 
 void WaitUntilSettled(Supervisor& supervisor, milliseconds deadline, const StopHooks& hooks) {

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::chrono::milliseconds kPoll{100};
+constexpr std::chrono::milliseconds kLookAgain{100};
 
 // The temporary names of files.h, checkpoints, `best`, the ring and the accounting.
 bool IsUnfinished(const std::string& name) {
@@ -50,7 +50,7 @@ void WaitForFormerProcesses(const fs::path& run, std::chrono::seconds deadline,
                       *pid, deadline.count()));
       said = true;
     }
-    std::this_thread::sleep_for(kPoll);
+    std::this_thread::sleep_for(kLookAgain);
   }
 }
 

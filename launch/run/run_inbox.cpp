@@ -6,13 +6,13 @@ namespace shoal::launch {
 namespace {
 
 constexpr size_t kMessages = 10'000;
-constexpr size_t kEvaluations = 64;  // of a megabyte each, where they are nonsense
+constexpr size_t kMostEvaluations = 64;  // of a megabyte each, where they are nonsense
 
 }  // namespace
 
 RunInbox::RunInbox(dds::Bus& bus)
     : reports_(kMessages),
-      evaluations_(kEvaluations),
+      evaluations_(kMostEvaluations),
       replay_words_(kMessages),
       learner_words_(kMessages),
       actor_reports_(bus, ReportsOf<ActorMetrics>("actor")),

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kBlockPeriod{500};
 constexpr std::chrono::seconds kLinePeriod{5};
-constexpr double kHeld = 0.05;  // share of time from which somebody counts as waiting
+constexpr double kShownAsWaiting = 0.05;  // share of time from which somebody counts as waiting
 
 std::string Number(const std::optional<double>& value, const char* format = "{:.0f}") {
   return value ? fmt::format(fmt::runtime(format), *value) : "-";
@@ -24,10 +24,10 @@ std::string Percent(const std::optional<double>& value) {
 
 // Who waits for whom at the limiter.
 std::string LimiterState(const ProgressFigures& f) {
-  if (f.actors_wait.value_or(0) > kHeld) {
+  if (f.actors_wait.value_or(0) > kShownAsWaiting) {
     return "actors wait for the learner " + Percent(f.actors_wait);
   }
-  if (f.learner_waits.value_or(0) > kHeld) {
+  if (f.learner_waits.value_or(0) > kShownAsWaiting) {
     return "learner waits for the actors " + Percent(f.learner_waits);
   }
   return f.actors_wait || f.learner_waits ? "nobody waits" : "-";

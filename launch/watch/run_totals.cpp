@@ -7,13 +7,13 @@
 namespace shoal::launch {
 namespace {
 
-constexpr std::string_view kRoles[] = {"actor", "replay", "learner", "eval"};
+constexpr std::string_view kTotalledRoles[] = {"actor", "replay", "learner", "eval"};
 
 }  // namespace
 
 RunTotals TotalsOf(const MetricsView& view) {
   RunTotals totals;
-  for (const std::string_view role : kRoles) {
+  for (const std::string_view role : kTotalledRoles) {
     RoleTotals all{.processes = view.Processes(role), .seconds = view.Seconds(role)};
     if (all.seconds <= 0) continue;
     all.cpu_seconds = view.Total(role, "cpu_seconds");

@@ -30,10 +30,9 @@ namespace {
 
 namespace fs = std::filesystem;
 using std::chrono::milliseconds;
-using std::chrono::seconds;
 
 constexpr milliseconds kPoll{5};
-constexpr seconds kFound{120}, kEnd{120};
+constexpr std::chrono::seconds kFound{120}, kEnd{120};
 
 // Frames of one camera of 84x84, without physics.
 RunConfig FakeRun(int actors) {
@@ -185,7 +184,8 @@ void MeasureSpan(const ManyActorsOptions& options, pid_t replay,
                  ManyActorsFigures* figures) {
   const auto next_report = [&] {
     const double before = bystander->StoredNow().records;
-    bystander->Until([&] { return bystander->StoredNow().records > before; }, seconds(10));
+    bystander->Until([&] { return bystander->StoredNow().records > before; },
+                     std::chrono::seconds(10));
   };
   next_report();
   const SteadyTime begin = Now();

@@ -9,14 +9,14 @@
 namespace shoal::bench {
 namespace {
 
-constexpr int kPlanes = 6, kSize = 84, kImages = 64, kPad = 4;
+constexpr int kPlanes = 6, kSize = 84, kImages = 64, kBorder = 4;
 constexpr int kImageBytes = kPlanes * kSize * kSize;
 
 struct Images {
   std::vector<uint8_t> in = std::vector<uint8_t>(size_t{kImages} * kImageBytes);
   std::vector<uint8_t> out = std::vector<uint8_t>(in.size());
   std::vector<uint8_t> padded =
-      std::vector<uint8_t>(size_t{kPlanes} * (kSize + 2 * kPad) * (kSize + 2 * kPad));
+      std::vector<uint8_t>(size_t{kPlanes} * (kSize + 2 * kBorder) * (kSize + 2 * kBorder));
   Random random{1};
 
   Images() {
@@ -27,18 +27,20 @@ struct Images {
 // As the published code does it: pad, then crop.
 void PadAndCrop(const uint8_t* in, replay::Shift shift, std::vector<uint8_t>& padded,
                 uint8_t* out) {
-  constexpr int kWide = kSize + 2 * kPad;
+  constexpr int kWide = kSize + 2 * kBorder;
   for (int p = 0; p < kPlanes; ++p) {
     for (int i = 0; i < kWide; ++i) {
       for (int j = 0; j < kWide; ++j) {
-        const int y = std::clamp(i - kPad, 0, kSize - 1), x = std::clamp(j - kPad, 0, kSize - 1);
+        const int y = std::clamp(i - kBorder, 0, kSize - 1),
+                  x = std::clamp(j - kBorder, 0, kSize - 1);
         padded[size_t(p * kWide + i) * kWide + j] = in[(p * kSize + y) * kSize + x];
       }
     }
     for (int i = 0; i < kSize; ++i) {
-      std::memcpy(out + (p * kSize + i) * kSize,
-                  &padded[size_t(p * kWide + i + kPad + shift.dy) * kWide + (kPad + shift.dx)],
-                  kSize);
+      std::memcpy(
+          out + (p * kSize + i) * kSize,
+          &padded[size_t(p * kWide + i + kBorder + shift.dy) * kWide + (kBorder + shift.dx)],
+          kSize);
     }
   }
 }
@@ -51,7 +53,7 @@ std::vector<Pairing> ReplayPairings() {
     return [images, act] {
       for (int n = 0; n < kImages; ++n) {
         const size_t at = size_t(n) * kImageBytes;
-        act(&images->in[at], replay::DrawShift(kPad, &images->random), &images->out[at]);
+        act(&images->in[at], replay::DrawShift(kBorder, &images->random), &images->out[at]);
       }
     };
   };

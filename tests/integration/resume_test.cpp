@@ -94,9 +94,9 @@ TEST(Evaluation, OfARunIsOfTheCheckpointThatItIsJudgedBy) {
   const TrainingRun run;
   const ProgramResult first = run.Train({{"env_steps", "1500"}, {"eval.interval", "500"}});
   ASSERT_EQ(ExitCode(first), 0) << first.out << first.err;
-  const auto evaluate = [&](const std::string& json) {
+  const auto evaluate = [&](const std::string& file) {
     return RunProgram(
-        {"shoal", "eval", "--checkpoint", run.path(), "--episodes", "2", "--json", json},
+        {"shoal", "eval", "--checkpoint", run.path(), "--episodes", "2", "--json", file},
         std::chrono::seconds(60));
   };
   const ProgramResult good = evaluate(run.parent() / "x.json");

@@ -24,8 +24,8 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-constexpr const char* kHomes[] = {"common/run_folder/run_file_names.h",
-                                  "common/checkpoint/checkpoint_files.h"};
+constexpr const char* kHomesOfNames[] = {"common/run_folder/run_file_names.h",
+                                         "common/checkpoint/checkpoint_files.h"};
 
 std::string TextOf(const fs::path& file) {
   std::ifstream in(file);
@@ -98,7 +98,7 @@ std::vector<std::string> FindSpelled(const fs::path& root, const std::vector<std
       const std::string file = entry.path().lexically_relative(root);
       const std::string extension = entry.path().extension();
       if (extension != ".h" && extension != ".cpp") continue;
-      if (std::ranges::find(kHomes, file) != std::end(kHomes)) continue;
+      if (std::ranges::find(kHomesOfNames, file) != std::end(kHomesOfNames)) continue;
       std::ifstream in(entry.path());
       int number = 0;
       for (std::string line; std::getline(in, line);) {
@@ -118,7 +118,7 @@ std::vector<std::string> FindSpelled(const fs::path& root, const std::vector<std
 
 std::vector<std::string> NamesOfThisTree() {
   std::vector<std::string> names;
-  for (const char* home : kHomes)
+  for (const char* home : kHomesOfNames)
     std::ranges::copy(NamesIn(SourcePath(home)), back_inserter(names));
   // An experiment's folder has a lock of its own kind.
   std::erase(names, ".lock");
@@ -159,7 +159,7 @@ TEST(RunFileNames, ThePageOfMonitoringHasThem) {
   const size_t start = page.find("## The files of a run\n");
   ASSERT_NE(start, std::string::npos);
   const std::string section = page.substr(start, page.find("\n## ", start + 1) - start);
-  for (const std::string& name : NamesIn(SourcePath(kHomes[0]))) {
+  for (const std::string& name : NamesIn(SourcePath(kHomesOfNames[0]))) {
     EXPECT_THAT(section, HasSubstr(name));
   }
 }

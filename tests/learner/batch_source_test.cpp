@@ -20,14 +20,14 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr uint64_t kSession = 5;
+constexpr uint64_t kLearnerSession = 5;
 constexpr milliseconds kLong{20'000};  // never waited for in a test that passes
 
 class BatchSourceTest : public testing::Test {
  protected:
   BatchSource& Make(uint64_t first_request = 1, milliseconds resend_after = kLong) {
     source_.emplace(
-        run_, kSession, first_request,
+        run_, kLearnerSession, first_request,
         [this](const SampleRequest& request) {
           requests_.push_back(request);
           return accepting_;
@@ -44,7 +44,7 @@ class BatchSourceTest : public testing::Test {
     for (float& reward : schema.View(data).reward) reward = static_cast<float>(request);
     BatchPart part;
     part.spec_hash = spec_hash_;
-    part.learner_session = kSession;
+    part.learner_session = kLearnerSession;
     part.request = request;
     part.parts = 1;
     part.total_bytes = schema.total_bytes();
@@ -64,7 +64,7 @@ class BatchSourceTest : public testing::Test {
     source_->OnSlot(word);
     return word;
   }
-  SlotWriter Replay(uint64_t session = kSession) const {
+  SlotWriter Replay(uint64_t session = kLearnerSession) const {
     return {spec_hash_, session, BatchSchemaOf(run_).total_bytes(), 3};
   }
 
@@ -86,7 +86,7 @@ TEST_F(BatchSourceTest, KeepsItsCreditsOutstanding) {
   EXPECT_FALSE(source.Next(Now()));
   EXPECT_EQ(Asked(), (std::vector<uint64_t>{1, 2}));
   EXPECT_EQ(requests_[0].spec_hash, run_.spec.Hash());
-  EXPECT_EQ(requests_[0].learner_session, kSession);
+  EXPECT_EQ(requests_[0].learner_session, kLearnerSession);
   EXPECT_EQ(requests_[0].batch, 4u);
   EXPECT_EQ(requests_[0].after_steps, 0u);
   Answer(1);
@@ -136,7 +136,7 @@ TEST_F(BatchSourceTest, SendsTheSameRequestAgainWhenNothingComes) {
   std::map<uint64_t, int> times;
   for (const SampleRequest& request : requests_) {
     ++times[request.request];
-    EXPECT_EQ(request.learner_session, kSession);
+    EXPECT_EQ(request.learner_session, kLearnerSession);
     EXPECT_EQ(request.batch, 4u);
   }
   EXPECT_EQ(times.size(), 2u);
@@ -257,7 +257,7 @@ TEST_F(BatchSourceTest, AsksOverTheNetworkForWhatItCannotOpen) {
 TEST_F(BatchSourceTest, AReplaysSuccessorMayAnswerInItsOwnMemory) {
   BatchSource& source = Make();
   source.Next(Now());
-  std::optional<SlotWriter> replay(std::in_place, spec_hash_, kSession,
+  std::optional<SlotWriter> replay(std::in_place, spec_hash_, kLearnerSession,
                                    BatchSchemaOf(run_).total_bytes(), 3);
   AnswerInSlot(*replay, 1);
   ASSERT_TRUE(source.Next(Now()));
@@ -275,7 +275,7 @@ TEST_F(BatchSourceTest, AReplaysSuccessorMayAnswerInItsOwnMemory) {
 
 TEST_F(BatchSourceTest, WordsOfSlotsThatNobodyWaitsForAreCounted) {
   BatchSource& source = Make();
-  SlotWriter replay = Replay(), former = Replay(kSession - 1);
+  SlotWriter replay = Replay(), former = Replay(kLearnerSession - 1);
   source.Next(Now());
   AnswerInSlot(former, 1);
   AnswerInSlot(replay, 9);
@@ -318,7 +318,7 @@ TEST_F(BatchSourceTest, ReadsBatchesWhileAReceiveThreadFillsOthers) {
   std::condition_variable asked;
   std::deque<uint64_t> queue;
   source_.emplace(
-      run_, kSession, 1,
+      run_, kLearnerSession, 1,
       [&](const SampleRequest& request) {
         const std::lock_guard lock(mutex);
         queue.push_back(request.request);

@@ -18,7 +18,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr uint64_t kSpec = 0xfeedfacecafebeef;
+constexpr uint64_t kSpecHash = 0xfeedfacecafebeef;
 
 nn::TensorMap Tensors(const std::string& name, size_t bytes, uint8_t first) {
   nn::NamedTensor tensor{"F32", {static_cast<int64_t>(bytes / 4)}, {}};
@@ -50,7 +50,7 @@ class CheckpointTest : public testing::Test {
   }
 
   // The message of the Error with which the checkpoint is refused.
-  std::string Refusal(uint64_t spec = kSpec) {
+  std::string Refusal(uint64_t spec = kSpecHash) {
     return ErrorMessage([&] { ReadCheckpoint(folder_, spec); });
   }
 
@@ -68,7 +68,7 @@ class CheckpointTest : public testing::Test {
                                .request = 2001,
                                .learner_session = 1'700'000'000'123'456'789,
                                .config_hash = 0xffffffffffffffff,
-                               .spec_hash = kSpec,
+                               .spec_hash = kSpecHash,
                                .precision = "bf16",
                                .algorithm = "td3"};
   const fs::path folder_ = parent_.path() / "step_000002000";
@@ -76,7 +76,7 @@ class CheckpointTest : public testing::Test {
 
 TEST_F(CheckpointTest, ReadsBackWhatWasWritten) {
   Write();
-  const Checkpoint checkpoint = ReadCheckpoint(folder_, kSpec);
+  const Checkpoint checkpoint = ReadCheckpoint(folder_, kSpecHash);
   EXPECT_EQ(checkpoint.state, state_);
   EXPECT_EQ(checkpoint.folder, folder_);
   ASSERT_TRUE(checkpoint.tensors.contains("critic"));
@@ -101,7 +101,7 @@ TEST_F(CheckpointTest, HoldsTheFilesThatOthersRead) {
 TEST_F(CheckpointTest, TakesThePlaceOfOneOfTheSameName) {
   Write(1);
   Write(9);
-  EXPECT_EQ(ReadCheckpoint(folder_, kSpec).tensors.at("critic").data[0], 9);
+  EXPECT_EQ(ReadCheckpoint(folder_, kSpecHash).tensors.at("critic").data[0], 9);
   EXPECT_EQ(EntriesOfParent(), 1u);
 }
 
@@ -175,7 +175,7 @@ TEST_F(CheckpointTest, AFullDiskLeavesNothingHalfWritten) {
   EXPECT_NE(message.find("learner.safetensors"), std::string::npos) << message;
   EXPECT_EQ(message.find('\n'), std::string::npos) << message;
   EXPECT_EQ(EntriesOfParent(), 1u);
-  EXPECT_EQ(ReadCheckpoint(folder_, kSpec).tensors.at("critic").data[0], 1) << "the former one";
+  EXPECT_EQ(ReadCheckpoint(folder_, kSpecHash).tensors.at("critic").data[0], 1) << "the former one";
 }
 
 TEST(CheckPrecision, AnotherOneIsRefusedUnlessAskedFor) {

@@ -11,9 +11,7 @@
 namespace shoal::learner {
 namespace {
 
-using Verdict = SlotBatches::Verdict;
-
-constexpr uint64_t kSession = 7, kBatchBytes = 640;
+constexpr uint64_t kSlotSession = 7, kBatchBytes = 640;
 
 class SlotBatchesTest : public testing::Test {
  protected:
@@ -24,14 +22,14 @@ class SlotBatchesTest : public testing::Test {
     return writer.Fill(request, request + 10, request + 9);
   }
 
-  std::optional<SlotWriter> replay_{std::in_place, 1, kSession, kBatchBytes, 3};
-  SlotBatches batches_{kSession, kBatchBytes};
+  std::optional<SlotWriter> replay_{std::in_place, 1, kSlotSession, kBatchBytes, 3};
+  SlotBatches batches_{kSlotSession, kBatchBytes};
 };
 
 TEST_F(SlotBatchesTest, ABatchIsReadInItsSlot) {
   EXPECT_FALSE(batches_.Has(4));
-  EXPECT_EQ(batches_.Add(Fill(*replay_, 4, 0x44)), Verdict::kTaken);
-  EXPECT_EQ(batches_.Add(Fill(*replay_, 5, 0x55)), Verdict::kTaken);
+  EXPECT_EQ(batches_.Add(Fill(*replay_, 4, 0x44)), SlotBatches::Verdict::kTaken);
+  EXPECT_EQ(batches_.Add(Fill(*replay_, 5, 0x55)), SlotBatches::Verdict::kTaken);
   ASSERT_TRUE(batches_.Has(4));
   EXPECT_EQ(batches_.stored_records(4), 14u);
   EXPECT_EQ(batches_.stored_steps(4), 13u);
@@ -43,15 +41,15 @@ TEST_F(SlotBatchesTest, ABatchIsReadInItsSlot) {
 
 TEST_F(SlotBatchesTest, TheSameWordTwiceIsOneBatch) {
   const BatchSlot word = Fill(*replay_, 4, 1);
-  EXPECT_EQ(batches_.Add(word), Verdict::kTaken);
-  EXPECT_EQ(batches_.Add(word), Verdict::kDuplicate);
+  EXPECT_EQ(batches_.Add(word), SlotBatches::Verdict::kTaken);
+  EXPECT_EQ(batches_.Add(word), SlotBatches::Verdict::kDuplicate);
 }
 
 TEST_F(SlotBatchesTest, ANewReplaysAnswerTakesTheFormersPlace) {
   batches_.Add(Fill(*replay_, 4, 0x11));
   batches_.Add(Fill(*replay_, 5, 0x22));
-  SlotWriter successor(1, kSession, kBatchBytes, 3);
-  EXPECT_EQ(batches_.Add(Fill(successor, 5, 0x55)), Verdict::kStartedOver);
+  SlotWriter successor(1, kSlotSession, kBatchBytes, 3);
+  EXPECT_EQ(batches_.Add(Fill(successor, 5, 0x55)), SlotBatches::Verdict::kStartedOver);
   EXPECT_EQ(batches_.Open(4)[0], 0x11);
   EXPECT_EQ(batches_.Open(5)[0], 0x55);
 }
@@ -61,7 +59,7 @@ TEST_F(SlotBatchesTest, WhatIsOpenOutlivesItsReplay) {
   batches_.Add(Fill(*replay_, 5, 0x22));
   batches_.Open(4);
   replay_.reset();
-  SlotWriter successor(1, kSession, kBatchBytes, 3);
+  SlotWriter successor(1, kSlotSession, kBatchBytes, 3);
   batches_.Add(Fill(successor, 6, 0x66));
   EXPECT_EQ(batches_.Open(6)[0], 0x66);
   batches_.Release(4);
@@ -79,10 +77,11 @@ TEST_F(SlotBatchesTest, WhatCannotBeOpenedIsRefusedAsAWhole) {
   EXPECT_EQ(batches_.Refuse(4), (std::vector<uint64_t>{4, 5}));
   EXPECT_EQ(batches_.refused_token(), first.address.token[0]);
   EXPECT_FALSE(batches_.Has(5));
-  EXPECT_EQ(batches_.Add(third), Verdict::kRefused);
+  EXPECT_EQ(batches_.Add(third), SlotBatches::Verdict::kRefused);
   EXPECT_FALSE(batches_.Has(6));
-  SlotWriter successor(1, kSession, kBatchBytes, 3);
-  EXPECT_EQ(batches_.Add(Fill(successor, 6, 0x66)), Verdict::kTaken) << "this one may do";
+  SlotWriter successor(1, kSlotSession, kBatchBytes, 3);
+  EXPECT_EQ(batches_.Add(Fill(successor, 6, 0x66)), SlotBatches::Verdict::kTaken)
+      << "this one may do";
   EXPECT_EQ(batches_.Open(6)[0], 0x66);
 }
 

@@ -22,7 +22,7 @@
 
 namespace shoal::learner {
 
-inline constexpr uint64_t kSession = 77;
+inline constexpr uint64_t kTrainingSession = 77;
 
 // An agent whose updates last longer than the second between two reports.
 class SlowAgent final : public Agent {
@@ -51,7 +51,7 @@ class TrainingLoopTest : public testing::Test {
   TrainingLoop::End Train(uint64_t stop_after,
                           const std::function<void(PlayedBatches&)>& script = {}) {
     outlet_.spec_hash = run_.spec.Hash();
-    outlet_.session = kSession;
+    outlet_.session = kTrainingSession;
     std::unique_ptr<Agent> agent = MakeAgent(run_.config, run_.spec, precision_);
     if (slow_) agent = std::make_unique<SlowAgent>(std::move(agent));
     CheckpointStore checkpoints(folder_.path(), run_);
@@ -69,7 +69,7 @@ class TrainingLoopTest : public testing::Test {
     UpdatePage page(folder_.path(), agent->updates());
     TrainingLoop loop({.run = run_,
                        .precision = precision_,
-                       .session = kSession,
+                       .session = kTrainingSession,
                        .agent = *agent,
                        .batches = batches,
                        .outlet = outlet_,

@@ -36,8 +36,8 @@ TEST_F(TrainingLoopTest, SendsBf16WeightsWhenThatIsThePrecision) {
   // The products' precision does not matter to the loop; ask the agent for what any CPU has.
   const auto agent = MakeAgent(run_.config, run_.spec, nn::Precision::kF32);
   outlet_.spec_hash = run_.spec.Hash();
-  outlet_.session = kSession;
-  WeightsSender(run_, nn::Precision::kBf16, kSession, *agent, outlet_).Send(0);
+  outlet_.session = kTrainingSession;
+  WeightsSender(run_, nn::Precision::kBf16, kTrainingSession, *agent, outlet_).Send(0);
   ASSERT_EQ(outlet_.weights.size(), 1u);
   for (const auto& [name, t] : nn::ReadSafetensors(outlet_.weights[0].payload, "weights")) {
     EXPECT_EQ(t.dtype, "BF16") << name;
@@ -142,7 +142,7 @@ TEST_F(TrainingLoopTest, WritesCheckpointsEveryPeriodAndAtTheEnd) {
   EXPECT_EQ(state.updates, 9u);
   EXPECT_EQ(state.env_steps, 90u);
   EXPECT_EQ(state.request, 9u);
-  EXPECT_EQ(state.learner_session, kSession);
+  EXPECT_EQ(state.learner_session, kTrainingSession);
   EXPECT_EQ(state.precision, "f32");
 }
 
@@ -238,7 +238,7 @@ TEST_F(TrainingLoopTest, TellsItsProgressWithTheEvaluationsItAskedFor) {
   Train(5);
   ASSERT_FALSE(outlet_.progress.empty());
   const LearnerProgress& last = outlet_.progress.back();
-  EXPECT_EQ(last.session, kSession);
+  EXPECT_EQ(last.session, kTrainingSession);
   EXPECT_EQ(last.updates, 5u);
   EXPECT_EQ(last.env_steps, 50u);
   EXPECT_FALSE(last.drained);

@@ -22,7 +22,7 @@ using nlohmann::json;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr milliseconds kPoll{50};
+constexpr milliseconds kLookAgain{50};
 constexpr seconds kStart{60};
 // What counts as going on: more than what was under way when the fault struck.
 constexpr double kMoreSteps = 200, kMoreUpdates = 5;
@@ -57,7 +57,7 @@ RunUnderTest::RunUnderTest(const RunOptions& options)
   while (TakeProgress().updates < kMoreUpdates) {
     CheckAlive();
     if (Now() - start > kStart) throw Broken("no training within 60 s of the start: " + Output());
-    std::this_thread::sleep_for(kPoll);
+    std::this_thread::sleep_for(kLookAgain);
   }
 }
 
@@ -100,7 +100,7 @@ void RunUnderTest::KillCoordinator(seconds deadline) {
   const SteadyTime end = Now() + deadline;
   while (!coordinator_.Poll()) {
     if (Now() > end) throw Broken("the coordinator outlived SIGKILL");
-    std::this_thread::sleep_for(kPoll);
+    std::this_thread::sleep_for(kLookAgain);
   }
   // This process adopts orphans (main.cpp).
   for (const pid_t pid : ChildrenOf(getpid())) {
@@ -108,7 +108,7 @@ void RunUnderTest::KillCoordinator(seconds deadline) {
     int status = 0;
     while (waitpid(pid, &status, WNOHANG) == 0) {
       if (Now() > end) throw Broken(name + " did not leave after its coordinator's death");
-      std::this_thread::sleep_for(kPoll);
+      std::this_thread::sleep_for(kLookAgain);
     }
     if (WIFSIGNALED(status)) {
       throw Broken(fmt::format("{}, left alone, ended by signal {}", name, WTERMSIG(status)));
@@ -194,7 +194,7 @@ void RunUnderTest::AwaitRecovery(const std::string& process, pid_t former, const
           deadline.count(), process, reported, before.stored_steps, now.stored_steps, least_updates,
           now.updates));
     }
-    std::this_thread::sleep_for(kPoll);
+    std::this_thread::sleep_for(kLookAgain);
   }
 }
 
@@ -228,7 +228,7 @@ json RunUnderTest::End(seconds deadline) {
       break;
     }
     if (Now() - start > deadline) throw Broken("the run did not stop in time: " + Output());
-    std::this_thread::sleep_for(kPoll);
+    std::this_thread::sleep_for(kLookAgain);
   }
   TakeProgress();
   json meta = json::parse(ReadFile(path_ / "meta.json"));

@@ -11,11 +11,11 @@
 namespace shoal::worlds {
 namespace {
 
-constexpr int kLargestSide = 4096;
+constexpr int kLongestSide = 4096;
 
 void CheckSide(const char* name, int side) {
-  if (side >= 1 && side <= kLargestSide) return;
-  throw UsageError("{} is {}; expected 1 to {}", name, side, kLargestSide);
+  if (side >= 1 && side <= kLongestSide) return;
+  throw UsageError("{} is {}; expected 1 to {}", name, side, kLongestSide);
 }
 
 }  // namespace

@@ -15,10 +15,10 @@
 namespace shoal::worlds {
 namespace {
 
-constexpr const char* kVersion = "3.3.8";
+constexpr const char* kReplayedVersion = "3.3.8";
 // Pictures of the originals, which lie beside the trajectories (frame_parity_test reads them).
 constexpr const char* kPicturesFormat = "vrl-frames-1";
-constexpr double kTolerance = 1e-3, kDriftTolerance = 3e-3, kFoldingTolerance = 1.5e-2;
+constexpr double kStateTolerance = 1e-3, kDriftTolerance = 3e-3, kFoldingTolerance = 1.5e-2;
 
 ReplayReport ReplaySequence(const std::filesystem::path& path, const CrossVersionSequence& sequence,
                             const std::string& physics) {
@@ -48,7 +48,7 @@ ReplayReport ReplaySequence(const std::filesystem::path& path, const CrossVersio
 double CrossVersionTolerance(const std::string& task, const std::string& sequence) {
   if (sequence == "const_y") return kFoldingTolerance;
   const bool aloft = task == "FetchReach" || task == "FetchPickAndPlace";
-  return sequence == "zero" && aloft ? kDriftTolerance : kTolerance;
+  return sequence == "zero" && aloft ? kDriftTolerance : kStateTolerance;
 }
 
 std::vector<ReplayReport> ReplayFile(const std::filesystem::path& path,
@@ -73,7 +73,7 @@ std::vector<ReplayReport> ReplayFile(const std::filesystem::path& path,
                      path.string());
   }
   const std::string physics = options.physics.empty() ? "mujoco3" : options.physics;
-  const CrossVersionFile file = ReadCrossVersions(path, kVersion);
+  const CrossVersionFile file = ReadCrossVersions(path, kReplayedVersion);
   for (const std::string& name : file.left_out) {
     log::Warning("{}: {} skipped: no trajectory beside the file tells its actions", path.string(),
                  name);

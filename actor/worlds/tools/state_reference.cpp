@@ -11,7 +11,7 @@
 namespace shoal::worlds {
 namespace {
 
-constexpr size_t kMostSteps = 100'000;
+constexpr size_t kMostStates = 100'000;
 
 struct Shape {
   const char* environment;
@@ -90,7 +90,7 @@ StateTrajectory ReadStateReference(const std::filesystem::path& path) {
   if (trajectory.environment == "reacher_easy") trajectory.target = root.Numbers<2>("target_xy");
   trajectory.reset = ReadSnapshot(root.Object("reset"), *shape);
   const nlohmann::json& steps = root.At("trajectory");
-  if (!steps.is_array() || steps.empty() || steps.size() > kMostSteps) {
+  if (!steps.is_array() || steps.empty() || steps.size() > kMostStates) {
     throw root.Fault("key 'trajectory'", "is not a list of steps");
   }
   for (size_t i = 0; i < steps.size(); ++i) {

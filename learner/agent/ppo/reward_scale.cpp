@@ -9,7 +9,7 @@
 namespace shoal::learner {
 namespace {
 
-constexpr double kEpsilon = 1e-8, kLimit = 10;
+constexpr double kVarianceEpsilon = 1e-8, kLimit = 10;
 
 }  // namespace
 
@@ -23,7 +23,7 @@ std::vector<float> RewardScale::Scale(std::span<const float> reward, std::span<c
     if (ends[t] != 0) running = 0;
   }
   returns_.Add(returns);
-  const double factor = 1 / std::sqrt(double{returns_.Variance()[0]} + kEpsilon);
+  const double factor = 1 / std::sqrt(double{returns_.Variance()[0]} + kVarianceEpsilon);
   std::ranges::transform(reward, returns.begin(), [&](float r) {
     return static_cast<float>(std::clamp(double{r} * factor, -kLimit, kLimit));
   });

@@ -21,7 +21,7 @@ using testing::HasSubstr;
 using testing::Le;
 
 constexpr int kSample = 20'000;
-constexpr float kMean = 0.1F, kLogStd = -1.5F;
+constexpr float kPolicyMean = 0.1F, kLogStd = -1.5F;
 
 Config ConfigOf(const std::string& kind, Schedule sigma = Schedule::Constant(0.2)) {
   Config config;
@@ -39,13 +39,14 @@ class Player {
   Exploration& exploration() { return *exploration_; }
   float Act() {
     float action = 0;
-    exploration_->Act(0, {std::span(&kMean, 1), std::span(&kLogStd, 1)}, stream_, {&action, 1});
+    exploration_->Act(0, {std::span(&kPolicyMean, 1), std::span(&kLogStd, 1)}, stream_,
+                      {&action, 1});
     return action;
   }
   void Begin() { exploration_->BeginEpisode(0); }
 
   // What is added to the action of the mean.
-  double Noise() { return double{Act()} - double{std::tanh(kMean)}; }
+  double Noise() { return double{Act()} - double{std::tanh(kPolicyMean)}; }
   std::vector<double> Noises() {
     std::vector<double> noises(kSample);
     for (double& noise : noises) noise = Noise();
@@ -94,7 +95,8 @@ TEST(SquashedGaussian, IsEquationFourBitForBit) {
   Player player(ConfigOf("squashed_gaussian"));
   Random same(17);
   for (int i = 0; i < 1000; ++i) {
-    const float expected = std::tanh(kMean + std::exp(kLogStd) * static_cast<float>(same.Normal()));
+    const float expected =
+        std::tanh(kPolicyMean + std::exp(kLogStd) * static_cast<float>(same.Normal()));
     ASSERT_EQ(player.Act(), expected) << i;
   }
   EXPECT_EQ(player.stream().state(), same.state()) << "one draw a component";
@@ -103,11 +105,11 @@ TEST(SquashedGaussian, IsEquationFourBitForBit) {
 TEST(SquashedGaussian, HasThePolicysMeanAndDeviation) {
   const std::vector<double> sample = Player(ConfigOf("squashed_gaussian")).Unsquashed();
   const double sigma = std::exp(kLogStd);
-  EXPECT_TRUE(LooksNormal(sample, kMean, sigma));
+  EXPECT_TRUE(LooksNormal(sample, kPolicyMean, sigma));
   // The same judgement tells what is wrong.
-  EXPECT_FALSE(LooksNormal(Scaled(sample, kMean, 0), kMean, sigma));
-  EXPECT_FALSE(LooksNormal(Scaled(sample, kMean, 1.1), kMean, sigma));
-  EXPECT_FALSE(LooksNormal(sample, kMean + 0.02, sigma));
+  EXPECT_FALSE(LooksNormal(Scaled(sample, kPolicyMean, 0), kPolicyMean, sigma));
+  EXPECT_FALSE(LooksNormal(Scaled(sample, kPolicyMean, 1.1), kPolicyMean, sigma));
+  EXPECT_FALSE(LooksNormal(sample, kPolicyMean + 0.02, sigma));
 }
 
 TEST(ExplorationKind, AutoIsWhatTheAlgorithmWants) {
@@ -145,7 +147,7 @@ TEST(GaussianNoise, FollowsItsScheduleOverTheRunsEnvSteps) {
 
 TEST(NoiseFactorOf, MultipliesTheNoiseOfEveryKind) {
   EXPECT_TRUE(LooksNormal(Player(ConfigOf("gaussian"), 0.5).Noises(), 0, 0.1));
-  EXPECT_TRUE(LooksNormal(Player(ConfigOf("squashed_gaussian"), 0.5).Unsquashed(), kMean,
+  EXPECT_TRUE(LooksNormal(Player(ConfigOf("squashed_gaussian"), 0.5).Unsquashed(), kPolicyMean,
                           0.5 * std::exp(kLogStd)));
   Player whole(ConfigOf("ou")), half(ConfigOf("ou"), 0.5);
   for (int i = 0; i < 10; ++i) EXPECT_NEAR(half.Noise(), 0.5 * whole.Noise(), 1e-6);

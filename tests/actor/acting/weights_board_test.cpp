@@ -15,15 +15,15 @@ namespace {
 using testing::AllOf;
 using testing::HasSubstr;
 
-constexpr uint64_t kSpec = 5;
+constexpr uint64_t kBoardSpec = 5;
 
 ReceivedWeights Weights(uint64_t update, std::string payload) {
   return {.version = {7, update}, .env_steps = 10 * update, .checkpoint = {}, .payload = payload};
 }
 
 TEST(WeightsBoard, ANeighbourReadsTheNewestOnce) {
-  WeightsBoard board(kSpec);
-  WeightsBoardReader reader(board.address(), kSpec);
+  WeightsBoard board(kBoardSpec);
+  WeightsBoardReader reader(board.address(), kBoardSpec);
   EXPECT_FALSE(reader.TryTake());
   board.Post(Weights(1, "a"));
   board.Post(Weights(2, "bc"));
@@ -36,19 +36,19 @@ TEST(WeightsBoard, ANeighbourReadsTheNewestOnce) {
 }
 
 TEST(WeightsBoard, EachNeighbourReadsForItself) {
-  WeightsBoard board(kSpec);
+  WeightsBoard board(kBoardSpec);
   board.Post(Weights(1, "a"));
-  WeightsBoardReader early(board.address(), kSpec);
+  WeightsBoardReader early(board.address(), kBoardSpec);
   EXPECT_EQ(early.TryTake()->payload.view(), "a");
   board.Post(Weights(2, std::string(3'000'000, 'x')));
-  WeightsBoardReader late(board.address(), kSpec);
+  WeightsBoardReader late(board.address(), kBoardSpec);
   EXPECT_EQ(early.TryTake()->payload.view(), std::string(3'000'000, 'x'));
   EXPECT_EQ(late.TryTake()->payload.view(), std::string(3'000'000, 'x'));
 }
 
 TEST(WeightsBoard, OldVersionsLeaveTheMemory) {
-  WeightsBoard board(kSpec);
-  WeightsBoardReader reader(board.address(), kSpec);
+  WeightsBoard board(kBoardSpec);
+  WeightsBoardReader reader(board.address(), kBoardSpec);
   struct rlimit descriptors {};
   ASSERT_EQ(getrlimit(RLIMIT_NOFILE, &descriptors), 0);
   struct rlimit few = descriptors;
@@ -65,8 +65,8 @@ TEST(WeightsBoard, OldVersionsLeaveTheMemory) {
 }
 
 TEST(WeightsBoard, WithoutMemoryItIsClosedAndSaysSo) {
-  WeightsBoard board(kSpec);
-  WeightsBoardReader reader(board.address(), kSpec);
+  WeightsBoard board(kBoardSpec);
+  WeightsBoardReader reader(board.address(), kBoardSpec);
   struct rlimit before {};
   ASSERT_EQ(getrlimit(RLIMIT_FSIZE, &before), 0);
   struct rlimit small = before;
@@ -82,22 +82,25 @@ TEST(WeightsBoard, WithoutMemoryItIsClosedAndSaysSo) {
 }
 
 TEST(WeightsBoard, WhatIsNoBoardOfTheRunIsRefused) {
-  const WeightsBoard board(kSpec);
+  const WeightsBoard board(kBoardSpec);
   BoardAddress address = board.address();
-  EXPECT_THAT(ErrorMessage([&] { WeightsBoardReader(address, kSpec + 1); }),
+  EXPECT_THAT(ErrorMessage([&] { WeightsBoardReader(address, kBoardSpec + 1); }),
               AllOf(HasSubstr("0000000000000005"), HasSubstr("0000000000000006")));
   address.token[1] ^= 1;
-  EXPECT_THAT(ErrorMessage([&] { WeightsBoardReader(address, kSpec); }), HasSubstr("no board"));
+  EXPECT_THAT(ErrorMessage([&] { WeightsBoardReader(address, kBoardSpec); }),
+              HasSubstr("no board"));
   const SharedMemory other = SharedMemory::Make("test", 4096);
   address.descriptor = other.descriptor();
-  EXPECT_THAT(ErrorMessage([&] { WeightsBoardReader(address, kSpec); }), HasSubstr("no board"));
+  EXPECT_THAT(ErrorMessage([&] { WeightsBoardReader(address, kBoardSpec); }),
+              HasSubstr("no board"));
   address.pid = 0x7fffffff;
-  EXPECT_THAT(ErrorMessage([&] { WeightsBoardReader(address, kSpec); }), HasSubstr("cannot open"));
+  EXPECT_THAT(ErrorMessage([&] { WeightsBoardReader(address, kBoardSpec); }),
+              HasSubstr("cannot open"));
 }
 
 TEST(WeightsBoard, AVersionThatWentWithItsProcessIsNotRead) {
-  auto board = std::make_unique<WeightsBoard>(kSpec);
-  WeightsBoardReader reader(board->address(), kSpec);
+  auto board = std::make_unique<WeightsBoard>(kBoardSpec);
+  WeightsBoardReader reader(board->address(), kBoardSpec);
   board->Post(Weights(1, "a"));
   EXPECT_TRUE(reader.TryTake());
   EXPECT_FALSE(reader.failed());

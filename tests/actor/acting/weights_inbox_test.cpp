@@ -8,10 +8,10 @@
 namespace shoal::actor {
 namespace {
 
-constexpr uint64_t kSpec = 5;
+constexpr uint64_t kInboxSpec = 5;
 
 void Deliver(WeightsInbox& inbox, uint64_t session, uint64_t update, const std::string& payload,
-             uint64_t spec = kSpec, uint32_t crc_error = 0) {
+             uint64_t spec = kInboxSpec, uint32_t crc_error = 0) {
   WeightsMessage weights;
   weights.spec_hash = spec;
   weights.version = {session, update};
@@ -24,7 +24,7 @@ void Deliver(WeightsInbox& inbox, uint64_t session, uint64_t update, const std::
 }
 
 TEST(WeightsInbox, KeepsOnlyTheNewest) {
-  WeightsInbox inbox(kSpec);
+  WeightsInbox inbox(kInboxSpec);
   EXPECT_FALSE(inbox.TryTake());
   Deliver(inbox, 1, 10, "a");
   Deliver(inbox, 1, 30, "c");
@@ -37,7 +37,7 @@ TEST(WeightsInbox, KeepsOnlyTheNewest) {
 }
 
 TEST(WeightsInbox, ANewerLearnerSessionWinsWhateverItsUpdate) {
-  WeightsInbox inbox(kSpec);
+  WeightsInbox inbox(kInboxSpec);
   Deliver(inbox, 1, 500, "old");
   ASSERT_TRUE(inbox.TryTake());
   Deliver(inbox, 2, 400, "restored");
@@ -47,15 +47,15 @@ TEST(WeightsInbox, ANewerLearnerSessionWinsWhateverItsUpdate) {
 }
 
 TEST(WeightsInbox, RefusesForeignAndDamagedWeights) {
-  WeightsInbox inbox(kSpec);
-  Deliver(inbox, 1, 1, "x", kSpec + 1);
-  Deliver(inbox, 1, 1, "x", kSpec, /*crc_error=*/1);
+  WeightsInbox inbox(kInboxSpec);
+  Deliver(inbox, 1, 1, "x", kInboxSpec + 1);
+  Deliver(inbox, 1, 1, "x", kInboxSpec, /*crc_error=*/1);
   EXPECT_FALSE(inbox.TryTake());
   EXPECT_EQ(inbox.refused(), 2u);
 }
 
 TEST(WeightsInbox, CountsWhatWasOvertakenBeforeItWasTaken) {
-  WeightsInbox inbox(kSpec);
+  WeightsInbox inbox(kInboxSpec);
   Deliver(inbox, 1, 10, "a");
   ASSERT_TRUE(inbox.TryTake());
   Deliver(inbox, 1, 20, "b");
@@ -69,7 +69,7 @@ TEST(WeightsInbox, CountsWhatWasOvertakenBeforeItWasTaken) {
 TEST(WeightsInbox, PutsAVersionOfManyPartsTogether) {
   std::string large(3 * kBulkPartBytes + 5, 'x');
   large.back() = 'y';
-  WeightsInbox inbox(kSpec);
+  WeightsInbox inbox(kInboxSpec);
   Deliver(inbox, 1, 10, large);
   const auto weights = inbox.TryTake();
   ASSERT_TRUE(weights);
@@ -77,7 +77,7 @@ TEST(WeightsInbox, PutsAVersionOfManyPartsTogether) {
 }
 
 TEST(WeightsInbox, TakeWaitsForTheReceiveThread) {
-  WeightsInbox inbox(kSpec);
+  WeightsInbox inbox(kInboxSpec);
   std::thread receive([&] { Deliver(inbox, 1, 1, "x"); });
   EXPECT_TRUE(inbox.Take(Now() + std::chrono::seconds(10)));
   receive.join();

@@ -15,14 +15,14 @@ using std::chrono::seconds;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-bool Never() { return false; }
+bool NeverStopped() { return false; }
 
 TEST(ActorLock, RefusesASecondProcessOfAnActorByName) {
   const TemporaryFolder run;
-  const ActorLock first(run.path(), 3, seconds(0), Never);
-  const ActorLock other(run.path(), 4, seconds(0), Never);
+  const ActorLock first(run.path(), 3, seconds(0), NeverStopped);
+  const ActorLock other(run.path(), 4, seconds(0), NeverStopped);
   try {
-    const ActorLock second(run.path(), 3, seconds(0), Never);
+    const ActorLock second(run.path(), 3, seconds(0), NeverStopped);
     FAIL() << "two actors 3";
   } catch (const Error& e) {
     EXPECT_THAT(e.what(), AllOf(HasSubstr("actor 3"), HasSubstr("made/actor-3.lock")));
@@ -31,7 +31,7 @@ TEST(ActorLock, RefusesASecondProcessOfAnActorByName) {
 
 TEST(ActorLock, WaitsForAPredecessorThatLeaves) {
   const TemporaryFolder run;
-  std::optional<ActorLock> first(std::in_place, run.path(), 0, seconds(0), Never);
+  std::optional<ActorLock> first(std::in_place, run.path(), 0, seconds(0), NeverStopped);
   const ActorLock second(run.path(), 0, seconds(10), [&] {
     first.reset();
     return false;
@@ -41,7 +41,7 @@ TEST(ActorLock, WaitsForAPredecessorThatLeaves) {
 
 TEST(ActorLock, GivesUpWhenAskedToStop) {
   const TemporaryFolder run;
-  const ActorLock first(run.path(), 0, seconds(0), Never);
+  const ActorLock first(run.path(), 0, seconds(0), NeverStopped);
   EXPECT_THROW(ActorLock(run.path(), 0, seconds(100), [] { return true; }), Error);
 }
 

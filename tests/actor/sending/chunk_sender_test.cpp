@@ -14,7 +14,7 @@ using std::chrono::seconds;
 using testing::AllOf;
 using testing::HasSubstr;
 
-constexpr uint64_t kSpec = 9, kSession = 77;
+constexpr uint64_t kSpec = 9, kChunkSession = 77;
 
 class ChunkSenderTest : public testing::Test {
  protected:
@@ -27,7 +27,7 @@ class ChunkSenderTest : public testing::Test {
   void Grant(uint64_t stored, uint64_t allowed, uint64_t replay = 1, uint64_t spec = kSpec) {
     link_.credits.push_back({.replay_session = replay,
                              .actor = 0,
-                             .session = kSession,
+                             .session = kChunkSession,
                              .stored = stored,
                              .allowed = allowed,
                              .spec_hash = spec});
@@ -40,7 +40,7 @@ class ChunkSenderTest : public testing::Test {
   FakeClock clock_;
   FakeLink link_{clock_};
   ChunkWindow window_{{.spec_hash = kSpec,
-                       .session = kSession,
+                       .session = kChunkSession,
                        .record_bytes = 16,
                        .chunk_records = 4,
                        .chunks = 4,
@@ -149,12 +149,12 @@ TEST_F(ChunkSenderTest, InSilenceItSaysWhereItStands) {
 
 TEST_F(ChunkSenderTest, AProcessWithTheSameNumberThatBeganLaterEndsThisOne) {
   Grant(0, 0);
-  link_.credits.back().superseded_by = kSession + 5;
+  link_.credits.back().superseded_by = kChunkSession + 5;
   try {
     sender_.Exchange(clock_.now);
     FAIL() << "went on";
   } catch (const SupersededError& e) {
-    EXPECT_EQ(e.session(), kSession + 5);
+    EXPECT_EQ(e.session(), kChunkSession + 5);
     EXPECT_THAT(e.what(), AllOf(HasSubstr("actor 0"), HasSubstr("82")));
   }
 }

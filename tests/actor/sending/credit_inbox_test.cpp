@@ -7,18 +7,20 @@
 namespace shoal::actor {
 namespace {
 
-constexpr uint32_t kActor = 3;
-constexpr uint64_t kSession = 7;
+constexpr uint32_t kCreditedActor = 3;
+constexpr uint64_t kCreditSession = 7;
 
 Credit To(uint32_t actor, uint64_t session, uint64_t allowed) {
   return {.actor = actor, .session = session, .allowed = allowed};
 }
 
 TEST(CreditInbox, KeepsTheNewestWordToThisSessionOnly) {
-  CreditInbox inbox(kActor, kSession);
+  CreditInbox inbox(kCreditedActor, kCreditSession);
   EXPECT_FALSE(inbox.Take(Now()));
-  inbox.OnMessage({{To(kActor, kSession, 10), To(kActor, kSession, 20)}});
-  inbox.OnMessage({{To(kActor + 1, kSession, 30), To(kActor, kSession - 1, 40)}});
+  inbox.OnMessage(
+      {{To(kCreditedActor, kCreditSession, 10), To(kCreditedActor, kCreditSession, 20)}});
+  inbox.OnMessage(
+      {{To(kCreditedActor + 1, kCreditSession, 30), To(kCreditedActor, kCreditSession - 1, 40)}});
   const auto credit = inbox.Take(Now());
   ASSERT_TRUE(credit);
   EXPECT_EQ(credit->allowed, 20u);
@@ -26,17 +28,17 @@ TEST(CreditInbox, KeepsTheNewestWordToThisSessionOnly) {
 }
 
 TEST(CreditInbox, WaitsUntilTheDeadlineForAWord) {
-  CreditInbox inbox(kActor, kSession);
+  CreditInbox inbox(kCreditedActor, kCreditSession);
   const SteadyTime start = Now();
   EXPECT_FALSE(inbox.Take(start + std::chrono::milliseconds(20)));
   EXPECT_GE(Now() - start, std::chrono::milliseconds(20));
 }
 
 TEST(CreditInbox, AWordFromAnotherThreadWakesTheWaitingOne) {
-  CreditInbox inbox(kActor, kSession);
+  CreditInbox inbox(kCreditedActor, kCreditSession);
   std::jthread sender([&] {
     for (uint64_t allowed = 1; allowed <= 1000; ++allowed) {
-      inbox.OnMessage({{To(kActor, kSession, allowed)}});
+      inbox.OnMessage({{To(kCreditedActor, kCreditSession, allowed)}});
     }
   });
   uint64_t newest = 0;

@@ -25,7 +25,7 @@ void FillGradient(ParameterSet& set, uint64_t key) {
   for (int64_t i = 0; i < kSize; ++i) gradient[i] = float(random.Normal());
 }
 
-std::vector<float> Values(ParameterSet& set) {
+std::vector<float> WeightsOf(ParameterSet& set) {
   const float* value = set.Find("w").value();
   return {value, value + kSize};
 }
@@ -46,7 +46,7 @@ TEST(Adam, FollowsTheFormulaOverSeveralSteps) {
     }
     adam.Step();
   }
-  const std::vector<float> values = Values(set);
+  const std::vector<float> values = WeightsOf(set);
   for (size_t i = 0; i < values.size(); ++i) ASSERT_NEAR(values[i], w[i], 1e-6) << i;
   EXPECT_EQ(adam.steps(), 5u);
 }
@@ -68,13 +68,13 @@ TEST(Adam, UndoTakesAStepBackExactly) {
   adam.Step();
   TensorMap before, after;
   adam.Export("g", &before);
-  const std::vector<float> values = Values(set);
+  const std::vector<float> values = WeightsOf(set);
   FillGradient(set, 2);
   adam.Step();
-  EXPECT_NE(Values(set), values);
+  EXPECT_NE(WeightsOf(set), values);
   adam.Undo();
   adam.Export("g", &after);
-  EXPECT_EQ(Values(set), values);
+  EXPECT_EQ(WeightsOf(set), values);
   for (const auto& [name, tensor] : before) EXPECT_EQ(tensor.data, after.at(name).data) << name;
 }
 
@@ -86,7 +86,7 @@ TEST(Adam, StepIsTheSameForAnyNumberOfThreads) {
     Adam adam({&set}, {.rate = kRate});
     FillGradient(set, 1);
     adam.Step();
-    results.push_back(Values(set));
+    results.push_back(WeightsOf(set));
   }
   EXPECT_EQ(results[0], results[1]);
 }
@@ -106,7 +106,7 @@ TEST(Adam, ImportContinuesWhereExportLeftOff) {
   FillGradient(b, 2);
   adam_a.Step();
   adam_b.Step();
-  EXPECT_EQ(Values(a), Values(b));
+  EXPECT_EQ(WeightsOf(a), WeightsOf(b));
 }
 
 TEST(Adam, ImportRefusesAMissingMoment) {
@@ -133,12 +133,12 @@ TEST(Adam, StepsSeveralSetsAsItWouldOne) {
     both.Step();
   }
   EXPECT_DOUBLE_EQ(both.GradientSquares(), 2 * alone.GradientSquares());
-  EXPECT_EQ(Values(a), Values(one));
-  EXPECT_EQ(std::vector<float>(b.values(), b.values() + kSize), Values(one));
+  EXPECT_EQ(WeightsOf(a), WeightsOf(one));
+  EXPECT_EQ(std::vector<float>(b.values(), b.values() + kSize), WeightsOf(one));
   both.Undo();
   EXPECT_EQ(both.steps(), 1u);
-  EXPECT_EQ(std::vector<float>(b.values(), b.values() + kSize), Values(a));
-  EXPECT_NE(Values(a), Values(one));
+  EXPECT_EQ(std::vector<float>(b.values(), b.values() + kSize), WeightsOf(a));
+  EXPECT_NE(WeightsOf(a), WeightsOf(one));
 }
 
 TEST(Adam, EpsilonAndRateAreThoseAskedFor) {

@@ -12,7 +12,7 @@ namespace {
 
 using reference::Values;
 
-constexpr int kBatch = 3;
+constexpr int kEncoded = 3;
 
 // Pixels (2, 13, 11), a stem, a block around which its input goes as it is, one around which it is
 // convolved, averages of 2x3.
@@ -59,17 +59,17 @@ class ResidualEncoderTest : public LayerTest {
     TensorMap tensors;
     parameters_.Export(&tensors);
     exact_ = reference::ToParameters(tensors);
-    encoder_ = std::make_unique<Encoder>(Context(parameters_, kBatch), plan_);
+    encoder_ = std::make_unique<Encoder>(Context(parameters_, kEncoded), plan_);
     encoder_->Refresh();
   }
 
   Values Exact(Statistics statistics) const {
-    return reference::Features(plan_, exact_, kBatch, frames_.data(), statistics);
+    return reference::Features(plan_, exact_, kEncoded, frames_.data(), statistics);
   }
 
   const NetworkPlan plan_ = ResidualPlan();
   ParameterSet parameters_{plan_.Parameters(), ParameterSet::Use::kTraining};
-  std::vector<uint8_t> frames_ = std::vector<uint8_t>(size_t{kBatch} * 2 * 13 * 11);
+  std::vector<uint8_t> frames_ = std::vector<uint8_t>(size_t{kEncoded} * 2 * 13 * 11);
   reference::Parameters exact_;
   std::unique_ptr<Encoder> encoder_;
 };

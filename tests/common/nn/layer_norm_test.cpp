@@ -10,11 +10,11 @@ using reference::Values;
 
 constexpr double kF32 = 2e-5;
 
-struct Case {
+struct RowsCase {
   int rows, columns;
 };
 
-class LayerNormTest : public testing::TestWithParam<Case> {
+class LayerNormTest : public testing::TestWithParam<RowsCase> {
  protected:
   const int rows_ = GetParam().rows, columns_ = GetParam().columns;
   const size_t size_ = size_t(rows_ * columns_);
@@ -56,7 +56,8 @@ TEST_P(LayerNormTest, ResultIsTheSameForAnyNumberOfThreads) {
 
 // The last case is large enough to be split over threads.
 INSTANTIATE_TEST_SUITE_P(Sizes, LayerNormTest,
-                         testing::Values(Case{3, 7}, Case{5, 50}, Case{1, 17}, Case{513, 257}),
+                         testing::Values(RowsCase{3, 7}, RowsCase{5, 50}, RowsCase{1, 17},
+                                         RowsCase{513, 257}),
                          [](const auto& test) {
                            return std::to_string(test.param.rows) + "x" +
                                   std::to_string(test.param.columns);

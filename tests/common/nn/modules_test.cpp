@@ -15,13 +15,13 @@ namespace {
 using reference::Values;
 using Use = Module::Use;
 
-constexpr int kBatch = 3;
+constexpr int kRows = 3;
 
 class ModulesTest : public LayerTest {
  protected:
   void SetUp() override {
     LayerTest::SetUp();
-    frames_ = RandomFrames(spec_, kBatch, 5);
+    frames_ = RandomFrames(spec_, kRows, 5);
   }
 
   // Off the special values that initialisation gives biases and norms.
@@ -42,9 +42,8 @@ class ModulesTest : public LayerTest {
 
   // What the actor's MLP gives for its observation.
   Values Raw(const reference::Network& network) const {
-    const Values features = network.Features(kBatch, frames_.data());
-    return network.Mlp("actor.mlp", kBatch,
-                       network.Observation("actor", kBatch, features, vector_));
+    const Values features = network.Features(kRows, frames_.data());
+    return network.Mlp("actor.mlp", kRows, network.Observation("actor", kRows, features, vector_));
   }
 
   // Gradients of a few elements of each parameter of `module` against differences of `loss`.
@@ -66,8 +65,8 @@ class ModulesTest : public LayerTest {
 
   const NetworkConfig network_ = OddNetwork();
   const ObservationSpec spec_ = OddSpec(/*pixels=*/true);
-  const ModuleContext context_{GetParam(), kBatch, 1};
-  const Values vector_ = RandomValues(kBatch * 5, 3), action_ = RandomValues(kBatch * 3, 4);
+  const ModuleContext context_{GetParam(), kRows, 1};
+  const Values vector_ = RandomValues(kRows * 5, 3), action_ = RandomValues(kRows * 3, 4);
   std::vector<uint8_t> frames_;
 };
 
@@ -81,11 +80,11 @@ TEST_P(ModulesTest, ADeterministicActorIsTheTanhOfItsMlpAndMayTrainItsOwnEncoder
   const auto [mean, log_std, action] = actor.Forward(ToFloats(vector_).data());
   EXPECT_EQ(log_std, nullptr);
   reference::Network network = Reference({&encoder, &actor});
-  EXPECT_LT(RelativeError({mean, kBatch * 3}, Raw(network)), 2 * Tolerance(GetParam()));
-  EXPECT_LT(RelativeError({action, kBatch * 3}, reference::Tanh(Raw(network))),
+  EXPECT_LT(RelativeError({mean, kRows * 3}, Raw(network)), 2 * Tolerance(GetParam()));
+  EXPECT_LT(RelativeError({action, kRows * 3}, reference::Tanh(Raw(network))),
             2 * Tolerance(GetParam()));
 
-  const Values daction = RandomValues(kBatch * 3, 6);
+  const Values daction = RandomValues(kRows * 3, 6);
   actor.Backward(ToFloats(daction).data());
   encoder.Backward();
   if (GetParam() != Precision::kF32) return;
@@ -113,16 +112,16 @@ TEST_P(ModulesTest, AClampedDeviationHasNoGradientBeyondItsRange) {
   const auto clamped = [&] {
     Values result;
     const Values raw = Raw(network);
-    for (size_t b = 0; b < kBatch; ++b) {
+    for (size_t b = 0; b < kRows; ++b) {
       for (size_t j = 3; j < 6; ++j) result.push_back(std::clamp(raw[b * 6 + j], -20.0, 2.0));
     }
     return result;
   };
-  EXPECT_LT(RelativeError({log_std, kBatch * 3}, clamped()), 2 * Tolerance(GetParam()));
+  EXPECT_LT(RelativeError({log_std, kRows * 3}, clamped()), 2 * Tolerance(GetParam()));
   EXPECT_EQ(log_std[1], 2.f);
   EXPECT_EQ(log_std[2], -20.f);
 
-  const Values dmean = RandomValues(kBatch * 3, 6), dlog_std = RandomValues(kBatch * 3, 7);
+  const Values dmean = RandomValues(kRows * 3, 6), dlog_std = RandomValues(kRows * 3, 7);
   actor.Backward(ToFloats(dmean).data(), ToFloats(dlog_std).data());
   EXPECT_EQ(GradientOf(actor.parameters(), "actor.mlp.output.bias")[4], 0.f);
   EXPECT_EQ(GradientOf(actor.parameters(), "actor.mlp.output.bias")[5], 0.f);
@@ -130,7 +129,7 @@ TEST_P(ModulesTest, AClampedDeviationHasNoGradientBeyondItsRange) {
   ExpectGradients(&actor, &network, [&] {
     Values means;
     const Values raw = Raw(network);
-    for (size_t b = 0; b < kBatch; ++b) {
+    for (size_t b = 0; b < kRows; ++b) {
       means.insert(means.end(), raw.begin() + long(b) * 6, raw.begin() + long(b) * 6 + 3);
     }
     return Dot(dmean, means) + Dot(dlog_std, clamped());
@@ -150,20 +149,20 @@ TEST_P(ModulesTest, ACriticOfAnyNumberOfFunctionsTrainsTheEncoderByThoseInTheLos
     critic.ForwardAction(ToFloats(action_).data());
     reference::Network network = Reference({&encoder, &critic});
     const auto q = [&](int i, const Values& action) {
-      const Values features = network.Features(kBatch, frames_.data());
-      const Values observation = network.Observation("critic", kBatch, features, vector_);
-      return network.Mlp("critic.q" + std::to_string(i + 1), kBatch,
-                         reference::Beside(kBatch, observation, action));
+      const Values features = network.Features(kRows, frames_.data());
+      const Values observation = network.Observation("critic", kRows, features, vector_);
+      return network.Mlp("critic.q" + std::to_string(i + 1), kRows,
+                         reference::Beside(kRows, observation, action));
     };
     for (int i = 0; i < count; ++i) {
-      EXPECT_LT(RelativeError({critic.q(i), kBatch}, q(i, action_)), 2 * Tolerance(GetParam()));
+      EXPECT_LT(RelativeError({critic.q(i), kRows}, q(i, action_)), 2 * Tolerance(GetParam()));
     }
 
     // The last function alone is in the loss.
-    const Values dq = RandomValues(kBatch, 6);
+    const Values dq = RandomValues(kRows, 6);
     std::vector<std::vector<float>> gradients(static_cast<size_t>(count));
     gradients.back() = ToFloats(dq);
-    std::vector<float> daction(kBatch * 3);
+    std::vector<float> daction(kRows * 3);
     critic.BackwardAction(gradients, daction.data());
     critic.Backward(gradients);
     encoder.Backward();

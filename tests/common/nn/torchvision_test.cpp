@@ -18,7 +18,7 @@
 namespace shoal::nn {
 namespace {
 
-constexpr int kBatch = 4;
+constexpr int kImages = 4;
 constexpr size_t kFeatures = 256, kOthers = 48;  // entries that are recorded at most
 const std::string kPrefix = "encoder.";
 
@@ -87,7 +87,7 @@ class TorchvisionTest : public testing::TestWithParam<Case> {
   std::vector<float> Forward(const std::string& name, Statistics statistics) {
     const auto& [kind, channels, height, width] = GetParam();
     std::vector<uint8_t> images;
-    for (const double u : SharedUniform(name, size_t(kBatch) * channels * height * width)) {
+    for (const double u : SharedUniform(name, size_t(kImages) * channels * height * width)) {
       images.push_back(uint8_t(u * 256));
     }
     encoder_.Forward(images.data(), statistics);
@@ -122,7 +122,7 @@ class TorchvisionTest : public testing::TestWithParam<Case> {
   }
 
   const TensorMap recorded_;
-  const ModuleContext context_{Precision::kF32, kBatch, 1};
+  const ModuleContext context_{Precision::kF32, kImages, 1};
   EncoderModule encoder_;
   std::vector<std::string> names_;
 };

@@ -9,7 +9,7 @@ namespace {
 
 using testing::HasSubstr;
 
-OnnxModel SmallModel() {
+OnnxModel ModelWithConstant() {
   return {.inputs = {{.name = "pixels", .type = OnnxPort::Type::kU8, .shape = {3, 5, 7}},
                      {.name = "grip", .shape = {4}}},
           .output = {.name = "action", .shape = {2}},
@@ -34,8 +34,8 @@ std::string Refusal(std::string_view bytes) {
 }
 
 TEST(OnnxModel, IsReadBackAsItWasWritten) {
-  EXPECT_EQ(ReadOnnx(WriteOnnx(SmallModel()), "test"), SmallModel());
-  EXPECT_EQ(WriteOnnx(SmallModel()), WriteOnnx(SmallModel()));
+  EXPECT_EQ(ReadOnnx(WriteOnnx(ModelWithConstant()), "test"), ModelWithConstant());
+  EXPECT_EQ(WriteOnnx(ModelWithConstant()), WriteOnnx(ModelWithConstant()));
 }
 
 // Field numbers, held to the published format by its bytes: field << 3 | wire type.
@@ -69,9 +69,9 @@ TEST(OnnxModel, HasTheFormatsFieldNumbers) {
 TEST(OnnxModel, WhatIsNoneIsRefused) {
   EXPECT_THAT(Refusal("not a model"), HasSubstr("policy.onnx: not an ONNX file"));
   EXPECT_THAT(Refusal(""), HasSubstr("policy.onnx: the operator set: expected version 17 alone"));
-  const std::string good = WriteOnnx(SmallModel());
+  const std::string good = WriteOnnx(ModelWithConstant());
   EXPECT_THAT(Refusal(std::string_view(good).substr(0, good.size() - 1)), HasSubstr("policy.onnx"));
-  OnnxModel short_constant = SmallModel();
+  OnnxModel short_constant = ModelWithConstant();
   short_constant.constants["w"].values.pop_back();
   EXPECT_THAT(Refusal(WriteOnnx(short_constant)),
               HasSubstr("policy.onnx: w: expected as many bytes as its shape"));

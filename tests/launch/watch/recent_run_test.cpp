@@ -5,9 +5,9 @@
 namespace shoal::launch {
 namespace {
 
-RunTotals LearnerTotals(double seconds, double backward) {
+RunTotals LearnerTotals(double busy, double backward) {
   RunTotals totals;
-  totals["learner"] = {.processes = 1, .seconds = seconds, .stages = {{"backward", backward}}};
+  totals["learner"] = {.processes = 1, .seconds = busy, .stages = {{"backward", backward}}};
   return totals;
 }
 

@@ -13,14 +13,14 @@ using nn::RandomValues;
 using nn::ToFloats;
 using nn::reference::Values;
 
-constexpr int kBatch = 3, kActions = 2;
-constexpr size_t kSize = kBatch * kActions;
+constexpr int kDraws = 3, kEntries = 2;
+constexpr size_t kSize = kDraws * kEntries;
 
 // Straight from the definition: Gaussian density divided by the slope of tanh.
 double LogProb(const Values& mean, const Values& log_std, const Values& noise, int b) {
   double sum = 0;
-  for (int j = 0; j < kActions; ++j) {
-    const size_t i = size_t(b) * kActions + j;
+  for (int j = 0; j < kEntries; ++j) {
+    const size_t i = size_t(b) * kEntries + j;
     const double sigma = std::exp(log_std[i]), u = mean[i] + sigma * noise[i];
     const double z = (u - mean[i]) / sigma;
     sum += -0.5 * z * z - std::log(sigma * std::sqrt(2 * std::numbers::pi));
@@ -37,15 +37,15 @@ class SquashedGaussianTest : public testing::Test {
  protected:
   Values mean_ = RandomValues(kSize, 1), log_std_ = RandomValues(kSize, 2);
   const Values noise_ = RandomValues(kSize, 3);
-  SquashedGaussian gaussian_{kBatch, kActions};
+  SquashedGaussian gaussian_{kDraws, kEntries};
 };
 
 TEST_F(SquashedGaussianTest, ActionAndLogProbabilityFollowTheDefinition) {
   gaussian_.Transform(ToFloats(mean_).data(), ToFloats(log_std_).data(), ToFloats(noise_).data());
   double entropy = 0;
-  for (int b = 0; b < kBatch; ++b) {
+  for (int b = 0; b < kDraws; ++b) {
     EXPECT_NEAR(gaussian_.log_prob()[b], LogProb(mean_, log_std_, noise_, b), 1e-5);
-    entropy -= LogProb(mean_, log_std_, noise_, b) / kBatch;
+    entropy -= LogProb(mean_, log_std_, noise_, b) / kDraws;
   }
   for (size_t i = 0; i < kSize; ++i) {
     EXPECT_NEAR(gaussian_.action()[i], Action(mean_, log_std_, noise_, i), 1e-6);
@@ -61,7 +61,7 @@ TEST_F(SquashedGaussianTest, GradientsAreCentralDifferences) {
     for (size_t i = 0; i < kSize; ++i) {
       sum += action_weight[i] * Action(mean_, log_std_, noise_, i);
     }
-    for (int b = 0; b < kBatch; ++b) sum += log_prob_weight * LogProb(mean_, log_std_, noise_, b);
+    for (int b = 0; b < kDraws; ++b) sum += log_prob_weight * LogProb(mean_, log_std_, noise_, b);
     return sum;
   };
   gaussian_.Transform(ToFloats(mean_).data(), ToFloats(log_std_).data(), ToFloats(noise_).data());
