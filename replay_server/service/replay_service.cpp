@@ -158,7 +158,8 @@ class ReplayService {
   }
 
   void TellChangedCredits(SteadyTime now) {
-    credits_wait_ = !core_.CreditsUrgent() && now - last_told_ < kCreditSpacing;
+    const auto spacing = CreditSpacing(core_.sessions().newest().size());
+    credits_wait_ = !core_.CreditsUrgent() && now - last_told_ < spacing;
     if (credits_wait_) return;
     last_told_ = now;
     Publish(core_.TakeCredits(/*changed_only=*/true));

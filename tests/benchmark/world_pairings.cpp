@@ -37,11 +37,12 @@ void ShrinkByArea(std::span<const uint8_t> in, int channels, int from, int to,
 class Stepper {
  public:
   Stepper(const std::string& task, const std::vector<std::string>& cameras,
-          const std::string& quality, int size = kSize)
+          const std::string& quality, int size = kSize, const std::string& goal_mode = "desired")
       : size_(size) {
     const bool pixels = !cameras.empty();
     Config config;
     config.task = task;
+    config.observation.goal_mode = goal_mode;
     config.observation.pixels = pixels;
     config.observation.cameras = cameras;
     config.observation.quality = quality;
@@ -107,6 +108,18 @@ std::vector<Pairing> WorldPairings() {
                         .against = "physics alone",
                         .ours = make(task, {camera}, "fast"),
                         .other = make(task, {}, "fast")});
+  }
+  for (const std::string task : {"FetchReach", "FetchPush"}) {
+    const auto with_goals = [&](const char* goal_mode) {
+      const std::vector<std::string> cameras{"front", "side"};
+      const auto stepper = std::make_shared<Stepper>(task, cameras, "fast", kSize, goal_mode);
+      return [stepper] { stepper->Step(); };
+    };
+    pairings.push_back({.stage = task + " with two 84x84 cameras and a goal picture an episode",
+                        .unit = "env steps/s",
+                        .against = "without goal pictures",
+                        .ours = with_goals("image"),
+                        .other = with_goals("desired")});
   }
   pairings.push_back({.stage = "FetchReach with two 84x84 cameras, fast",
                       .unit = "env steps/s",

@@ -36,7 +36,8 @@ struct Oracle {
     for (uint64_t id = all.size(); id > 0 && prev == 0 && !begins; --id) {
       const Stored& s = all[id - 1];
       const bool same = s.actor == actor && s.session == session && s.header().env == h.env &&
-                        s.header().episode == h.episode && Precedes(s.header(), h);
+                        s.header().episode == h.episode && Precedes(s.header(), h) &&
+                        !overwritten_ends.contains(id);
       if (same) prev = id;
     }
     if (!begins && prev == 0) {
@@ -60,6 +61,15 @@ struct Oracle {
   void Cut(uint32_t actor, uint64_t session, uint32_t env) {
     const uint64_t id = newest.contains(env) ? newest[env] : 0;
     if (id != 0 && all[id - 1].actor == actor && all[id - 1].session == session) ended.insert(id);
+  }
+
+  // A server that reads the ring anew knows what is stored there: ends by their flag or by the
+  // environment's next episode, and which episode to go on with by its newest record.
+  void ReadAnew() {
+    for (const auto& [env, id] : newest) {
+      if ((all[id - 1].header().flags & (kTerminated | kTruncated)) == 0) ended.erase(id);
+      if (!Holds(id)) overwritten_ends.insert(id);
+    }
   }
 
   // Records of the episode of `id`, oldest first, whether or not the ring holds them.
@@ -114,6 +124,7 @@ struct Oracle {
   std::vector<Stored> all{};              // id = position + 1
   std::map<uint32_t, uint64_t> newest{};  // by env
   std::set<uint64_t> ended{};             // newest records of episodes that have ended
+  std::set<uint64_t> overwritten_ends{};  // newest records that a server did not find
 };
 
 }  // namespace shoal::replay

@@ -15,6 +15,7 @@
 #include "replay_server/core/uniform_selector.h"
 #include "tests/replay_server/oracle.h"
 #include "tests/replay_server/record_script.h"
+#include "tests/support/temporary_folder.h"
 
 namespace shoal::replay {
 namespace {
@@ -57,19 +58,31 @@ class KeptSelector final : public Selector {
   std::set<uint64_t> ids;
 };
 
-// Drives a ring, its index and intake with what actors do and what goes wrong on the way.
+// What a replay server has of a ring in a file.
+struct Server {
+  Server(const ObservationSpec& spec, const RingOptions& ring_options, const IndexOptions& options)
+      : ring(spec, ring_options),
+        sessions(ring.sessions()),
+        index(ring, options),
+        intake(spec.Hash(), &ring, &sessions, &index) {}
+
+  Ring ring;
+  SessionTable sessions;
+  EpisodeIndex index;
+  Intake intake;
+};
+
+// Drives a server with what actors do and what goes wrong on the way.
 class History {
  public:
   History(const Case& kind, uint64_t capacity, uint64_t seed)
       : spec_(SpecOf(kind)),
         layout_(spec_),
-        ring_(spec_, {.file = {}, .capacity = capacity, .run = "history"}),
-        sessions_(ring_.sessions()),
-        index_(ring_, {.stack = kind.stack,
+        ring_options_{.file = folder_.path() / "ring", .capacity = capacity, .run = "history"},
+        index_options_{.stack = kind.stack,
                        .n_step = kind.n_step,
                        .whole_episodes = kind.hindsight.has_value(),
-                       .goal_pictures = kind.goal_pictures}),
-        intake_(std::in_place, spec_.Hash(), &ring_, &sessions_, &index_),
+                       .goal_pictures = kind.goal_pictures},
         oracle_{.capacity = capacity,
                 .stack = kind.stack,
                 .n_step = kind.n_step,
@@ -78,7 +91,7 @@ class History {
         privileged_(kind.goal_pictures ? Names{"desired_goal"} : Names{}),
         hindsight_(kind.hindsight),
         random_(seed) {
-    index_.SetSelector(&kept_);
+    StartServer();
     for (uint32_t actor = 0; actor < 3; ++actor) StartSession(actor);
   }
 
@@ -89,6 +102,7 @@ class History {
     if (kind == 0) return StartSession(actor.script->actor());
     if (kind == 1) return LoseSome(&actor, count);
     if (kind == 2) actor.script->Spoil(actor.next + random_.Below(count));
+    if (kind == 3) RestartServer();
     // Now and then from before what is stored already: duplicates.
     const uint64_t back = kind < 8 ? random_.Below(actor.next) : 0;
     Deliver(&actor, actor.next - back, count + static_cast<uint32_t>(back));
@@ -97,23 +111,24 @@ class History {
   void Check() {
     uint64_t sampleable = 0;
     for (uint64_t id = 1; id <= oracle_.all.size(); ++id) {
-      ASSERT_EQ(index_.Sampleable(id), oracle_.Sampleable(id)) << "record " << id;
+      ASSERT_EQ(server_->index.Sampleable(id), oracle_.Sampleable(id)) << "record " << id;
       sampleable += oracle_.Sampleable(id) ? 1 : 0;
       without_goal_ += LacksItsGoalAlone(id) ? 1 : 0;
       ASSERT_EQ(kept_.ids.contains(id), oracle_.Sampleable(id)) << "told of record " << id;
     }
-    ASSERT_EQ(index_.sampleable(), sampleable);
-    ASSERT_EQ(ring_.last_id(), oracle_.all.size());
+    ASSERT_EQ(server_->index.sampleable(), sampleable);
+    ASSERT_EQ(server_->ring.last_id(), oracle_.all.size());
     for (const Actor& actor : actors_) CheckCounters(actor);
   }
 
   // Every element of a batch is what the oracle says its step looks like.
   void CheckBatch() {
-    if (index_.sampleable() == 0) return;
+    if (server_->index.sampleable() == 0) return;
     constexpr int kBatch = 16;
-    UniformSelector selector(ring_, index_);
+    UniformSelector selector(server_->ring, server_->index);
     std::optional<HindsightRelabeller> relabeller;
-    if (hindsight_) relabeller.emplace(ring_, index_, *hindsight_, /*goals_per_sample=*/4);
+    if (hindsight_)
+      relabeller.emplace(server_->ring, server_->index, *hindsight_, /*goals_per_sample=*/4);
     const auto plan =
         DrawPlan({.batch = kBatch}, &selector, relabeller ? &*relabeller : nullptr, &random_);
     ASSERT_TRUE(plan.has_value());
@@ -121,8 +136,8 @@ class History {
     const std::unique_ptr<void, decltype(&std::free)> memory(
         std::aligned_alloc(64, schema.total_bytes()), &std::free);
     const BatchView view = schema.View(static_cast<uint8_t*>(memory.get()));
-    BatchGather(ring_, index_, spec_, {.steps = oracle_.n_step, .discount = kDiscount}, &goals_,
-                privileged_)
+    BatchGather(server_->ring, server_->index, spec_,
+                {.steps = oracle_.n_step, .discount = kDiscount}, &goals_, privileged_)
         .Gather(*plan, view);
     for (size_t b = 0; b < kBatch; ++b) CheckElement(plan->elements[b], b, view);
   }
@@ -137,6 +152,7 @@ class History {
   uint64_t goals_before() const { return goals_before_; }
   // Steps that are stored with all that they need but their episode's goal record.
   uint64_t without_goal() const { return without_goal_; }
+  uint64_t restarts() const { return restarts_; }
 
  private:
   using Names = std::vector<std::string>;
@@ -148,6 +164,20 @@ class History {
     Oracle::Counts counts{};
   };
 
+  void StartServer() {
+    server_ = std::make_unique<Server>(spec_, ring_options_, index_options_);
+    kept_.ids.clear();
+    server_->index.SetSelector(&kept_);
+  }
+
+  // Another server goes on with the file.
+  void RestartServer() {
+    server_.reset();
+    StartServer();
+    oracle_.ReadAnew();
+    ++restarts_;
+  }
+
   void StartSession(uint32_t actor) {
     auto script = std::make_unique<RecordScript>(spec_, actor, ++last_session_);
     if (actor == actors_.size()) actors_.emplace_back();
@@ -155,7 +185,7 @@ class History {
   }
 
   void Deliver(Actor* actor, uint64_t first, uint32_t count) {
-    const ChunkResult result = intake_->Take(actor->script->Chunk(first, count));
+    const ChunkResult result = server_->intake.Take(actor->script->Chunk(first, count));
     ASSERT_EQ(result.fate, ChunkFate::kDealtWith);
     ASSERT_EQ(result.duplicates, std::min<uint64_t>(count, actor->next - first));
     for (; actor->next < first + count; ++actor->next) {
@@ -164,25 +194,25 @@ class History {
     }
   }
 
-  // Another server takes over, and the actor keeps `count` records no more that it does not know.
+  // A server takes over, and the actor keeps `count` records no more that it does not know.
   void LoseSome(Actor* actor, uint32_t count) {
     const uint64_t first = actor->next + count;
-    intake_.emplace(spec_.Hash(), &ring_, &sessions_, &index_);
-    ASSERT_EQ(intake_->Take(actor->script->Chunk(first, 3)).fate, ChunkFate::kAhead);
+    RestartServer();
+    ASSERT_EQ(server_->intake.Take(actor->script->Chunk(first, 3)).fate, ChunkFate::kAhead);
     TransitionChunk position = actor->script->Chunk(first, 1);
     position.count = 0;
     position.payload = {};
-    ASSERT_EQ(intake_->Take(position).lost, count);
+    ASSERT_EQ(server_->intake.Take(position).lost, count);
     actor->next = first;
     actor->lost += count;
     Deliver(actor, first, 3);
   }
 
   void CheckCounters(const Actor& actor) {
-    const auto i = sessions_.Find(actor.script->actor(), actor.script->session());
+    const auto i = server_->sessions.Find(actor.script->actor(), actor.script->session());
     ASSERT_EQ(i.has_value(), actor.next > 1);
     if (!i) return;
-    const SessionCounters& counters = sessions_.at(*i);
+    const SessionCounters& counters = server_->sessions.at(*i);
     ASSERT_EQ(counters.highest, actor.next - 1);
     ASSERT_EQ(counters.stored(), actor.counts.stored);
     ASSERT_EQ(counters.rejected, actor.counts.rejected);
@@ -293,20 +323,20 @@ class History {
 
   const ObservationSpec spec_;
   const RecordLayout layout_;
-  Ring ring_;
-  SessionTable sessions_;
-  EpisodeIndex index_;
-  std::optional<Intake> intake_;
+  const TemporaryFolder folder_;
+  const RingOptions ring_options_;
+  const IndexOptions index_options_;
   Oracle oracle_;
   const Names privileged_;
   const GoalChange goals_{spec_, TinyTask(), privileged_};
   const std::optional<HindsightGoal> hindsight_;
   KeptSelector kept_;
+  std::unique_ptr<Server> server_;
   Random random_;
   std::vector<Actor> actors_;  // the newest session of each
   uint64_t last_session_ = 0;
   uint64_t first_frame_repeats_ = 0, short_samples_ = 0, relabelled_ = 0, goals_before_ = 0,
-           without_goal_ = 0;
+           without_goal_ = 0, restarts_ = 0;
 };
 
 class ReplayProperty : public testing::TestWithParam<Case> {};
@@ -326,6 +356,7 @@ TEST_P(ReplayProperty, AgreesWithAnOracleThatKeepsEverything) {
     EXPECT_EQ(history.relabelled() > 0, GetParam().hindsight.has_value());
     EXPECT_EQ(history.goals_before() > 0, GetParam().hindsight == HindsightGoal::kEpisode);
     EXPECT_EQ(history.without_goal() > 0, GetParam().goal_pictures);
+    EXPECT_GT(history.restarts(), 2u);
   }
 }
 
