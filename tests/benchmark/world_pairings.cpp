@@ -37,7 +37,7 @@ void ShrinkByArea(std::span<const uint8_t> in, int channels, int from, int to,
 class Stepper {
  public:
   Stepper(const std::string& task, const std::vector<std::string>& cameras,
-          const std::string& quality, int size = kSize, const std::string& goal_mode = "desired")
+          const std::string& quality, int size = kSize, const std::string& goal_mode = "none")
       : size_(size) {
     const bool pixels = !cameras.empty();
     Config config;
@@ -119,7 +119,7 @@ std::vector<Pairing> WorldPairings() {
                         .unit = "env steps/s",
                         .against = "without goal pictures",
                         .ours = with_goals("image"),
-                        .other = with_goals("desired")});
+                        .other = with_goals("none")});
   }
   pairings.push_back({.stage = "FetchReach with two 84x84 cameras, fast",
                       .unit = "env steps/s",
