@@ -89,8 +89,8 @@ void Prepare(const Surroundings& surroundings) {
   for (const char* name : {"reach-three-way", "reach-algorithms", "reach-ppo", "reach-recipe"}) {
     surroundings.Link(std::string("experiments/") + name, "batches");
   }
-  for (const char* name :
-       {"pixels-drq-s0", "preset-s11", "preset-s12", "faster-s11", "faster-s12"}) {
+  for (const char* name : {"pixels-drq-s0", "preset-s11", "preset-s12", "preset-s13", "faster-s11",
+                           "faster-s12", "faster-s13"}) {
     surroundings.Link(std::string("experiments/batches/runs/") + name, "../../../runs/pixels");
   }
 }
