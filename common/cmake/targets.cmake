@@ -4,8 +4,8 @@ if(SHOAL_WARNINGS_AS_ERRORS)
   list(APPEND SHOAL_WARNINGS -Werror)
 endif()
 
-# For builds without a compiler cache: eight sources of a target are compiled as one, which takes half
-# the time. Every source is complete and compiles alone all the same: builds with a cache see to that.
+# For builds without a compiler cache: eight sources of a target are compiled as one, which takes 0.6
+# of the time. Every source is complete and compiles alone all the same: builds with a cache see to that.
 option(SHOAL_UNITY "Compile sources in groups of eight" OFF)
 if(SHOAL_UNITY)
   set(CMAKE_UNITY_BUILD ON)

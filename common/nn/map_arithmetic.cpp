@@ -1,6 +1,5 @@
 #include "common/nn/map_arithmetic.h"
 
-#include <algorithm>
 #include <bit>
 
 #include "common/base/check.h"
@@ -11,8 +10,6 @@
 
 namespace shoal::nn {
 namespace {
-
-constexpr int64_t kBlock = 1 << 14;  // values per unit of parallel work
 
 inline float ToFloat(float value) { return value; }
 inline float ToFloat(uint16_t value) { return std::bit_cast<float>(uint32_t{value} << 16); }
@@ -57,14 +54,6 @@ SHOAL_CPU_CLONES void AddReluRange(const uint16_t* __restrict x, int64_t n,
   AddReluLoop(x, n, y);
 }
 
-template <class Kernel>
-void ForBlocks(int64_t n, const Kernel& kernel) {
-  ParallelFor(int((n + kBlock - 1) / kBlock), [&](int begin, int end) {
-    const int64_t first = begin * kBlock;
-    kernel(first, std::min(n, end * kBlock) - first);
-  });
-}
-
 // Calls body(values of y, values of x, number of values) in the type that both have.
 template <class Body>
 void WithArrays(const dnnl::memory& x, const dnnl::memory& y, const Body& body) {
@@ -84,20 +73,21 @@ void WithArrays(const dnnl::memory& x, const dnnl::memory& y, const Body& body) 
 
 void Relu(const dnnl::memory& y) {
   WithArrays(y, y, [](const auto*, int64_t n, auto* values) {
-    ForBlocks(n, [&](int64_t first, int64_t count) { ReluRange(count, values + first); });
+    ParallelForValues(n, [&](int64_t first, int64_t count) { ReluRange(count, values + first); });
   });
 }
 
 void Add(const dnnl::memory& x, const dnnl::memory& y) {
   WithArrays(x, y, [](const auto* from, int64_t n, auto* to) {
-    ForBlocks(n, [&](int64_t first, int64_t count) { AddRange(from + first, count, to + first); });
+    ParallelForValues(
+        n, [&](int64_t first, int64_t count) { AddRange(from + first, count, to + first); });
   });
 }
 
 void AddThenRelu(const dnnl::memory& x, const dnnl::memory& y) {
   WithArrays(x, y, [](const auto* from, int64_t n, auto* to) {
-    ForBlocks(n,
-              [&](int64_t first, int64_t count) { AddReluRange(from + first, count, to + first); });
+    ParallelForValues(
+        n, [&](int64_t first, int64_t count) { AddReluRange(from + first, count, to + first); });
   });
 }
 

@@ -1,6 +1,8 @@
 // Loops on the threads that oneDNN's primitives use (GNU OpenMP's pool).
 #pragma once
 
+#include <algorithm>
+#include <cstdint>
 #include <functional>
 
 namespace shoal::nn {
@@ -25,5 +27,15 @@ class ThreadScope {
 // on each; returns when all are done. Ranges depend on n and the number of threads only. The body
 // must not throw.
 void ParallelFor(int n, const std::function<void(int begin, int end)>& body);
+
+// The same over an array of n values, in blocks that are worth a thread: body(first, count).
+template <class Body>
+void ParallelForValues(int64_t n, const Body& body) {
+  constexpr int64_t kBlock = 1 << 14;
+  ParallelFor(int((n + kBlock - 1) / kBlock), [&](int begin, int end) {
+    const int64_t first = begin * kBlock;
+    body(first, std::min(n, end * kBlock) - first);
+  });
+}
 
 }  // namespace shoal::nn

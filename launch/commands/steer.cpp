@@ -22,8 +22,7 @@ using std::chrono::seconds;
 
 constexpr seconds kInForce{10};  // for the processes to use a changed value
 constexpr seconds kScaled{60};   // for actors to start, or to flush what they have and leave
-constexpr seconds kCoordinatorSilence{
-    15};  // of a coordinator: as long as its processes wait for it
+constexpr seconds kCoordinatorSilence{15};                // as long as its processes wait for it
 constexpr std::chrono::milliseconds kLookAtSilence{500};  // at the silence
 constexpr seconds kLeaves{10};     // for the coordinator to leave, once it has said all
 constexpr seconds kStopped{3600};  // for a run that had begun its last evaluation

@@ -28,7 +28,6 @@ using std::chrono::seconds;
 
 constexpr milliseconds kPoll{200};
 constexpr seconds kProgressPeriod{60};
-constexpr seconds kOthersWrite{60};
 
 void Say(const std::string& line) {
   fmt::print(stderr, "{}\n", line);

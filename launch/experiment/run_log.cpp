@@ -20,8 +20,6 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-constexpr std::chrono::seconds kOthersAppend{60};
-
 std::string Line(const ordered_json& object) {
   return object.dump(-1, ' ', /*ensure_ascii=*/false, ordered_json::error_handler_t::replace);
 }
@@ -67,7 +65,7 @@ void RunLog::Write(const RunEnding& ending) const {
 
 // A line that a kill cut short is ended first: it must not swallow this one.
 void RunLog::Append(const std::string& line) const {
-  const auto lock = FileLock::Take(file_, Holding::kAlone, kOthersAppend);
+  const auto lock = FileLock::Take(file_, Holding::kAlone, kOthersWrite);
   if (!lock) throw RuntimeError("cannot write '{}': others hold it", file_.string());
   const Descriptor file(open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC, 0600));
   if (file.get() < 0) {

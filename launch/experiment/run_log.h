@@ -10,6 +10,7 @@
 // file.
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <map>
 #include <optional>
@@ -17,6 +18,9 @@
 #include <vector>
 
 namespace shoal::launch {
+
+// For others to leave a file of the experiment that both write.
+inline constexpr std::chrono::seconds kOthersWrite{60};
 
 struct RunStart {
   std::string run{};         // ARM-sSEED

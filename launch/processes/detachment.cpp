@@ -19,8 +19,8 @@ namespace shoal::launch {
 namespace {
 
 constexpr int kPollMs = 100;
-constexpr std::chrono::seconds kReapChild{
-    30};  // of a child that has closed its end, which exit does
+// Of a child that has closed its end, which exit does.
+constexpr std::chrono::seconds kReapChild{30};
 
 int Redirect(const char* file, int flags, int to) {
   const int fd = open(file, flags | O_CLOEXEC, 0600);

@@ -17,7 +17,6 @@ using nlohmann::ordered_json;
 
 constexpr double kLeastShown = 0.005;
 
-constexpr std::string_view kRoles[] = {"actor", "replay", "learner", "eval"};
 // Stages that run beside the others, on a thread of their own.
 constexpr std::string_view kBeside[] = {"sending"};
 
@@ -52,7 +51,7 @@ double RunSeconds(const RunTotals& totals, const RoleTotals& role) {
 
 Bottleneck FindBottleneck(const RunTotals& totals, const RunResources& resources) {
   Bottleneck result{.usable = resources.usable_cores};
-  for (const std::string_view role : kRoles) {
+  for (const std::string_view role : kCountedRoles) {
     const auto of_role = totals.find(role);
     if (of_role == totals.end()) continue;
     const double run_seconds = RunSeconds(totals, of_role->second);

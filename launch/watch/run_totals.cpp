@@ -1,19 +1,11 @@
 #include "launch/watch/run_totals.h"
 
-#include <string_view>
-
 #include "common/wire/metric_names.h"
 
 namespace shoal::launch {
-namespace {
-
-constexpr std::string_view kTotalledRoles[] = {"actor", "replay", "learner", "eval"};
-
-}  // namespace
-
 RunTotals TotalsOf(const MetricsView& view) {
   RunTotals totals;
-  for (const std::string_view role : kTotalledRoles) {
+  for (const std::string_view role : kCountedRoles) {
     RoleTotals all{.processes = view.Processes(role), .seconds = view.Seconds(role)};
     if (all.seconds <= 0) continue;
     all.cpu_seconds = view.Total(role, "cpu_seconds");

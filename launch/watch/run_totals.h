@@ -5,10 +5,13 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <string_view>
 
 #include "launch/watch/metrics_view.h"
 
 namespace shoal::launch {
+
+inline constexpr std::string_view kCountedRoles[] = {"actor", "replay", "learner", "eval"};
 
 // All processes of a role together, ended ones included.
 struct RoleTotals {

@@ -19,16 +19,16 @@ SessionLedger LedgerOf(const AccountBefore& before) {
   return ledger;
 }
 
-SendingWindow WindowOf(const RunConfig& run) {
-  return SendingWindowOf(run.config, RecordLayout(run.spec).record_bytes());
-}
-
 template <class T>
 void Append(std::span<const T> values, std::vector<T>* to) {
   to->insert(to->end(), values.begin(), values.end());
 }
 
 }  // namespace
+
+SendingWindow WindowOf(const RunConfig& run) {
+  return SendingWindowOf(run.config, RecordLayout(run.spec).record_bytes());
+}
 
 void RolloutCore::Rollout::Clear() {
   version = {};

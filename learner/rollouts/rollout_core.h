@@ -23,6 +23,7 @@
 #include <vector>
 
 #include "common/config/run_files.h"
+#include "common/config/sending_window.h"
 #include "common/intake/accounting_file.h"
 #include "common/intake/chunk_intake.h"
 #include "common/intake/credit_book.h"
@@ -38,6 +39,9 @@ struct RolloutCounters {
   IntakeCounters intake;
   uint64_t dropped_rollouts = 0;  // whole and begun ones that no update was made of
 };
+
+// What an actor of the run may have under way.
+SendingWindow WindowOf(const RunConfig& run);
 
 class RolloutCore final : private RecordTaker {
  public:

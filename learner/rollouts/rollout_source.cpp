@@ -18,10 +18,6 @@ constexpr size_t kAlignment = 64;
 
 int RecordBytes(const RunConfig& run) { return RecordLayout(run.spec).record_bytes(); }
 
-SendingWindow SourceWindow(const RunConfig& run) {
-  return SendingWindowOf(run.config, RecordBytes(run));
-}
-
 }  // namespace
 
 RolloutSource::RolloutSource(const RunConfig& run, const std::filesystem::path& folder,
@@ -31,7 +27,7 @@ RolloutSource::RolloutSource(const RunConfig& run, const std::filesystem::path& 
       learner_session_(learner_session),
       send_(std::move(send)),
       deadline_(run.config.ppo.rollout_deadline),
-      pool_(run.spec.Hash(), ChunkBytes(SourceWindow(run), RecordBytes(run)),
+      pool_(run.spec.Hash(), ChunkBytes(WindowOf(run), RecordBytes(run)),
             MaxChunks(run.config.actors)),
       core_(run, learner_session, ReadAccountBefore(folder)),
       updates_(updates),
@@ -55,7 +51,7 @@ RolloutSource::~RolloutSource() {
 }
 
 size_t RolloutSource::MaxChunks(int actors) const {
-  return MostChunks(SourceWindow(run_), static_cast<size_t>(std::max(actors, 1)));
+  return MostChunks(WindowOf(run_), static_cast<size_t>(std::max(actors, 1)));
 }
 
 void RolloutSource::OnChunk(const TransitionChunk& chunk) {
