@@ -67,6 +67,7 @@ struct ReplayConfig {
   int n_step = 1;                  // steps whose rewards are summed before the next value
   std::string hindsight = "none";  // none | future | final | episode: goals of an episode's own
   int hindsight_goals = 4;         // N: a share N / (N + 1) of the samples is relabelled
+  double movement_share = 0;       // of the samples, drawn by how far what is achieved still moves
   int window_chunks = 4;           // chunks an actor may have unacknowledged
 };
 

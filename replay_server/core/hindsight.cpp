@@ -44,6 +44,12 @@ tasks::Task TaskOf(const RunConfig& run) {
 void CheckHindsight(const RunConfig& run) {
   const Config& config = run.config;
   const std::string& kind = config.replay.hindsight;
+  if (kind == "none" && config.replay.movement_share > 0) {
+    throw UsageError(
+        "replay.movement_share = {} with replay.hindsight = none: how far something still moves is "
+        "known of whole episodes; expected future, final or episode, or a share of 0",
+        config.replay.movement_share);
+  }
   if (kind == "none") return;
   const tasks::Task& task = tasks::FindTask(run.spec.task);
   if (task.goal_size() == 0) {

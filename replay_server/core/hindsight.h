@@ -46,7 +46,8 @@ tasks::Task TaskOf(const RunConfig& run);
 // Throws Error (kUsage) where replay.hindsight cannot serve the run: a task without goals, actions
 // that are repeated (their rewards are sums, which another goal cannot be told from), a policy that
 // is not told the desired goal, a ring too small for the episodes under way, lockstep that would
-// wait for a sample before there is one. That pictures do not show a goal is the actor's business.
+// wait for a sample before there is one; and where replay.movement_share has no hindsight. That
+// pictures do not show a goal is the actor's business.
 void CheckHindsight(const RunConfig& run);
 
 }  // namespace shoal::replay

@@ -4,6 +4,7 @@
 
 #include "common/config/privileged_blocks.h"
 #include "replay_server/core/hindsight.h"
+#include "replay_server/core/movement_selector.h"
 #include "replay_server/core/uniform_selector.h"
 
 namespace shoal::replay {
@@ -28,6 +29,10 @@ ReplayPolicies MakePolicies(const RunConfig& run, const Ring& ring, const Episod
                                                               config.hindsight_goals);
   policies.goals = std::make_unique<GoalChange>(
       run.spec, TaskOf(run), PrivilegedBlocksOf(run.config.learner, run.spec).all);
+  if (config.movement_share > 0) {
+    policies.selector = std::make_unique<MovementSelector>(ring, index, *policies.goals,
+                                                           config.movement_share);
+  }
   return policies;
 }
 

@@ -15,9 +15,9 @@
 namespace shoal::replay {
 
 struct ReplayPolicies {
-  std::unique_ptr<Selector> selector;
   std::unique_ptr<Relabeller> relabeller;  // null: every sample keeps its goal
   std::unique_ptr<GoalChange> goals;       // there with a relabeller
+  std::unique_ptr<Selector> selector;      // may borrow goals
 };
 
 // They borrow ring and index. Throws Error as CheckHindsight.

@@ -2,14 +2,17 @@
 
 #include "common/config/batch_options.h"
 #include "replay_server/core/episode_index.h"
+#include "replay_server/core/movement_selector.h"
 #include "replay_server/core/ring_format.h"
 
 namespace shoal::replay {
 
 StorageNeeds StorageNeedsOf(const RunConfig& run) {
   const RingGeometry geometry(run.spec, static_cast<uint64_t>(run.config.replay.capacity));
+  uint64_t memory = EpisodeIndex::Bytes(geometry.capacity);
+  if (run.config.replay.movement_share > 0) memory += MovementSelector::Bytes(geometry.capacity);
   return {.ring_bytes = geometry.total_bytes(),
-          .memory_bytes = EpisodeIndex::Bytes(geometry.capacity),
+          .memory_bytes = memory,
           .batch_bytes = BatchSchemaOf(run).total_bytes()};
 }
 

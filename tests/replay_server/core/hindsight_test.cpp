@@ -236,6 +236,11 @@ TEST_F(HindsightTest, WhatItCannotServeIsRefusedByName) {
                 r.config.replay.min_size = 99;
               }),
               HasSubstr("in lockstep: after replay.min_size = 99"));
+  EXPECT_THAT(Refusal([](RunConfig& r) {
+                r.config.replay.hindsight = "none";
+                r.config.replay.movement_share = 0.5;
+              }),
+              HasSubstr("replay.movement_share = 0.5 with replay.hindsight = none"));
 }
 
 TEST_F(HindsightTest, TheRunsThresholdHolds) {

@@ -1,0 +1,65 @@
+// Samples after which something still happens: a share of them is drawn in proportion to how far
+// what is achieved still moves in its episode, the others uniformly.
+//
+//   movement(s) = sum over the steps k = s, ..., T of the episode of |achieved_k - achieved_(k-1)|
+//
+// Where an object is to be moved most steps of an unskilled policy leave it alone, and every goal of
+// hindsight is reached before it begins. The idea of preferring episodes by what moved is that of
+// energy-based prioritisation (Zhao and Tresp 2018, arXiv:1810.01363), whose weight is an episode's
+// energy; this one is a step's, looks ahead, and needs no mass and no time.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "replay_server/core/episode_index.h"
+#include "replay_server/core/goal_change.h"
+#include "replay_server/core/ring.h"
+#include "replay_server/core/selector.h"
+#include "replay_server/core/uniform_selector.h"
+#include "replay_server/core/weight_tree.h"
+
+namespace shoal::replay {
+
+// Episodes must have ended: EpisodeIndex with whole_episodes. Movement is counted in whole
+// micrometres and depends on nothing that is older than the step, so that a server that starts
+// again with the same ring draws the same samples. Where nothing moves all are drawn uniformly.
+class MovementSelector final : public Selector {
+ public:
+  // Borrows all; share in [0, 1].
+  MovementSelector(const Ring& ring, const EpisodeIndex& index, const GoalChange& goals,
+                   double share);
+
+  // Memory it takes for a ring of that many records.
+  static constexpr uint64_t Bytes(uint64_t capacity) {
+    return WeightTree::Bytes(capacity) + capacity * sizeof(Movement);
+  }
+
+  void Added(uint64_t id) override;
+  void Removed(uint64_t id) override;
+  void UpdatePriority(uint64_t, double) override {}
+  std::optional<Selection> Draw(Random* random) override;
+  uint64_t redraws() const override { return uniform_.redraws(); }
+
+ private:
+  struct Movement {
+    uint64_t id = 0;          // of the step whose it is
+    uint64_t micrometres = 0;  // from it to its episode's end
+  };
+
+  size_t Slot(uint64_t id) const { return static_cast<size_t>(id % ring_.capacity()); }
+  // Of a step of an ended episode, whose predecessor is there.
+  uint64_t MovementFrom(uint64_t id);
+  uint64_t MovementOf(uint64_t id) const;  // of this step alone
+
+  const Ring& ring_;
+  const EpisodeIndex& index_;
+  const GoalChange& goals_;
+  const double share_;
+  UniformSelector uniform_;
+  WeightTree weights_;               // by slot; 0 = cannot be drawn
+  std::vector<Movement> movements_;  // by slot; of another id = not known yet
+  std::vector<uint64_t> unknown_;    // steps at hand
+};
+
+}  // namespace shoal::replay
