@@ -107,9 +107,10 @@ std::vector<Key> ReplayKeys() {
           "the step, at its end, or anywhere; for tasks with goals"),
       SHOAL_SAME(replay.hindsight_goals, (IntegerRange{0, 1000}),
                  "N: a share N / (N + 1) of the samples gets another goal"),
-      SHOAL_SAME(replay.movement_share, (RealRange{0, 1}),
-                 "with hindsight: share of the samples that are drawn in proportion to how far what "
-                 "is achieved still moves in its episode, the others uniformly"),
+      SHOAL_SAME(
+          replay.movement_share, (RealRange{0, 1}),
+          "with hindsight: share of the samples that are drawn in proportion to how far what "
+          "is achieved still moves in its episode, the others uniformly"),
       SHOAL_SAME(replay.window_chunks, (IntegerRange{2, 1024}),
                  "chunks an actor may have unacknowledged"),
   };

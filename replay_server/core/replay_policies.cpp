@@ -30,8 +30,8 @@ ReplayPolicies MakePolicies(const RunConfig& run, const Ring& ring, const Episod
   policies.goals = std::make_unique<GoalChange>(
       run.spec, TaskOf(run), PrivilegedBlocksOf(run.config.learner, run.spec).all);
   if (config.movement_share > 0) {
-    policies.selector = std::make_unique<MovementSelector>(ring, index, *policies.goals,
-                                                           config.movement_share);
+    policies.selector =
+        std::make_unique<MovementSelector>(ring, index, *policies.goals, config.movement_share);
   }
   return policies;
 }
