@@ -3,10 +3,10 @@
 //
 //   movement(s) = sum over the steps k = s, ..., T of the episode of |achieved_k - achieved_(k-1)|
 //
-// Where an object is to be moved most steps of an unskilled policy leave it alone, and every goal of
-// hindsight is reached before it begins. The idea of preferring episodes by what moved is that of
-// energy-based prioritisation (Zhao and Tresp 2018, arXiv:1810.01363), whose weight is an episode's
-// energy; this one is a step's, looks ahead, and needs no mass and no time.
+// Where an object is to be moved most steps of an unskilled policy leave it alone, and every goal
+// of hindsight is reached before it begins. The idea of preferring episodes by what moved is that
+// of energy-based prioritisation (Zhao and Tresp 2018, arXiv:1810.01363), whose weight is an
+// episode's energy; this one is a step's, looks ahead, and needs no mass and no time.
 #pragma once
 
 #include <cstdint>
@@ -43,7 +43,7 @@ class MovementSelector final : public Selector {
 
  private:
   struct Movement {
-    uint64_t id = 0;          // of the step whose it is
+    uint64_t id = 0;           // of the step whose it is
     uint64_t micrometres = 0;  // from it to its episode's end
   };
 

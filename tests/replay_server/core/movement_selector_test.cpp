@@ -161,8 +161,8 @@ TEST_F(MovementSelectorTest, WhatIsNoNumberCountsAsTenMetres) {
   Random random(1);
   std::map<uint64_t, int> counts;
   for (int i = 0; i < 6000; ++i) ++counts[stored.selector.Draw(&random).value().id];
-  // Steps 1 and 2 of the first episode (inf - inf in step 3 counts as well) and step 1 of the other:
-  // 20, 20, 10 and 10 metres to come.
+  // Steps 1 and 2 of the first episode (inf - inf in step 3 counts as well) and step 1 of the
+  // other: 20, 20, 10 and 10 metres to come.
   EXPECT_EQ(counts.size(), 4u);
   EXPECT_NEAR(counts[2], 2000, 200);
   EXPECT_NEAR(counts[6], 1000, 150);
