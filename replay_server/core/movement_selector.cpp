@@ -1,7 +1,6 @@
 #include "replay_server/core/movement_selector.h"
 
 #include <cmath>
-#include <ranges>
 #include <span>
 
 #include "common/base/check.h"
@@ -55,9 +54,9 @@ uint64_t MovementSelector::MovementFrom(uint64_t id) {
     unknown_.push_back(next);
   }
   uint64_t movement = next == 0 ? 0 : movements_[Slot(next)].micrometres;
-  for (const uint64_t step : unknown_ | std::views::reverse) {
-    movement += MovementOf(step);
-    movements_[Slot(step)] = {step, movement};
+  for (auto step = unknown_.rbegin(); step != unknown_.rend(); ++step) {
+    movement += MovementOf(*step);
+    movements_[Slot(*step)] = {*step, movement};
   }
   return movement;
 }
