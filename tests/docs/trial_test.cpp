@@ -26,8 +26,8 @@ class Surroundings {
   Surroundings() {
     for (const char* folder :
          {"docs/images", "docs/results/experiments/pick-and-place-movement",
-          "docs/results/experiments/push-her", "docs/results/experiments/reach-recipe",
-          "docs/results/original-environment", "home"}) {
+          "docs/results/experiments/push-her", "docs/results/experiments/push-pixels",
+          "docs/results/experiments/reach-recipe", "docs/results/original-environment", "home"}) {
       fs::create_directories(folder_.path() / folder);
     }
     Link("tests", SourcePath("tests"));
@@ -89,11 +89,11 @@ void Prepare(const Surroundings& surroundings) {
   surroundings.Link("runs/source", "plain");
   surroundings.Link("runs/reach-sb3", "../experiments/batches/runs/a-s0");
   for (const char* name : {"reach-three-way", "reach-algorithms", "reach-ppo", "reach-recipe",
-                           "push-her", "pick-and-place-movement"}) {
+                           "push-her", "pick-and-place-movement", "push-pixels"}) {
     surroundings.Link(std::string("experiments/") + name, "batches");
   }
   for (const char* name : {"pixels-drq-s0", "preset-s11", "preset-s12", "preset-s13", "faster-s11",
-                           "faster-s12", "faster-s13"}) {
+                           "faster-s12", "faster-s13", "asymmetric-s0"}) {
     surroundings.Link(std::string("experiments/batches/runs/") + name, "../../../runs/pixels");
   }
   for (const char* name : {"her-s1", "her-s2", "movement-s0"}) {
