@@ -75,7 +75,7 @@ struct LearnerConfig {
   std::string algorithm = "sac";  // learner/agent/algorithms.h
   int batch = 128;
   std::string precision = "auto";  // auto | f32 | bf16
-  int threads = 0;                 // 0 = half the cores this process may use, at least 1
+  int threads = 0;                 // 0 = chosen: common/config/learner_threads.h
   double learning_rate = 5e-4;
   // Of one of them alone; 0 = learning_rate.
   double actor_learning_rate = 0, critic_learning_rate = 0, temperature_learning_rate = 0;

@@ -34,6 +34,16 @@ TEST(LearnerThreads, AreHalfTheCoresAsFarAsTheyShareTheBatch) {
   EXPECT_EQ(LearnerThreads(Of(0, 8), 64), 1);
 }
 
+TEST(LearnerThreads, AreOnAllCoresWithAnUpdateForEachStep) {
+  Config config = Of(0, 128);
+  config.replay.samples_per_insert = 127;
+  EXPECT_EQ(LearnerThreads(config, 2), 1);
+  config.replay.samples_per_insert = 128;
+  EXPECT_EQ(LearnerThreads(config, 1), 1);
+  EXPECT_EQ(LearnerThreads(config, 2), 2);
+  EXPECT_EQ(LearnerThreads(config, 64), 8) << "of 16 rows each";
+}
+
 TEST(LearnerThreads, IsOneWithoutPixels) {
   Config config = Of(0, 128);
   config.observation.pixels = false;
