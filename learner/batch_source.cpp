@@ -232,18 +232,16 @@ std::optional<Batch> BatchSource::FindBatch(uint64_t request) {
   if (slots_.Has(request)) return OpenSlot(request);
   const auto assembled = assembler_.TryGet(request);
   if (!assembled) return std::nullopt;
-  return Batch{.view = schema_.View(assembled->data),
+  return Batch{.view = schema_.View(assembled->data, assembled->stored_steps),
                .request = request,
-               .stored_records = assembled->stored_records,
-               .stored_steps = assembled->stored_steps};
+               .stored_records = assembled->stored_records};
 }
 
 std::optional<Batch> BatchSource::OpenSlot(uint64_t request) {
   try {
-    return Batch{.view = schema_.View(slots_.Open(request)),
+    return Batch{.view = schema_.View(slots_.Open(request), slots_.stored_steps(request)),
                  .request = request,
-                 .stored_records = slots_.stored_records(request),
-                 .stored_steps = slots_.stored_steps(request)};
+                 .stored_records = slots_.stored_records(request)};
   } catch (const Error& e) {
     SayRefusal(e.what());
     for (const uint64_t refused : slots_.Refuse(request)) {

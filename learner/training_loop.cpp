@@ -105,7 +105,7 @@ UpdateOutcome TrainingLoop::Update(const BatchView& batch) {
 
 void TrainingLoop::AfterUpdate(const Batch& batch, const UpdateFigures& figures) {
   const uint64_t updates = parts_.agent.updates();
-  env_steps_ = batch.stored_steps;
+  env_steps_ = batch.view.stored_steps;
   request_ = batch.request;
   report_.OnUpdate(figures, batch, updates);
   if (on_policy_) {

@@ -79,6 +79,7 @@ struct LearnerConfig {
   double learning_rate = 5e-4;
   // Of one of them alone; 0 = learning_rate.
   double actor_learning_rate = 0, critic_learning_rate = 0, temperature_learning_rate = 0;
+  Schedule rate_factor = Schedule::Constant(1);  // on all of these
   double max_grad_norm = 0;  // of the actor's gradients and of the critic's; 0 = not clipped
   double discount = 0.9;
   double reward_scale = 10;
@@ -111,13 +112,12 @@ struct PpoConfig {
   double entropy_weight = 0;                // of the policy's entropy in the loss
   double value_weight = 0.5;                // of the squared value error in the loss
   double target_kl = 0;                     // an update ends beyond 1.5 of it; 0 = never
-  Schedule rate_factor = Schedule::Constant(1);  // on learner.learning_rate
-  bool normalise_advantages = true;              // in each minibatch
-  bool normalise_rewards = false;                // by the running deviation of returns
-  std::string networks = "separate";             // separate | shared: of policy and value
-  double initial_log_std = 0;                    // of the policy, before the first update
-  int versions_ahead = 0;                        // rollouts begun before the awaited weights
-  double rollout_deadline = 30;                  // s, for those that are late
+  bool normalise_advantages = true;         // in each minibatch
+  bool normalise_rewards = false;           // by the running deviation of returns
+  std::string networks = "separate";        // separate | shared: of policy and value
+  double initial_log_std = 0;               // of the policy, before the first update
+  int versions_ahead = 0;                   // rollouts begun before the awaited weights
+  double rollout_deadline = 30;             // s, for those that are late
 };
 
 // What training actors play beyond what their policy says (actor/acting/exploration.h).

@@ -139,6 +139,8 @@ std::vector<Key> LearnerKeys() {
                  "that of critic and encoder alone; 0 = learner.learning_rate"),
       SHOAL_SAME(learner.temperature_learning_rate, (RealRange{0, 1}),
                  "that of the temperature alone; 0 = learner.learning_rate"),
+      SHOAL_SAME(learner.rate_factor, (RealRange{0, 1}),
+                 "on all of these rates, over the run's env steps"),
       SHOAL_SAME(learner.max_grad_norm, (RealRange{0, 1e6}),
                  "gradients of the actor, and those of critic and encoder, are scaled down to this "
                  "Euclidean norm; 0 = never"),
@@ -198,8 +200,6 @@ std::vector<Key> PpoKeys() {
       SHOAL_SAME(
           ppo.target_kl, (RealRange{0, 1e6}),
           "an update ends when the policy has moved by 1.5 times this divergence; 0 = never"),
-      SHOAL_SAME(ppo.rate_factor, (RealRange{0, 1}),
-                 "on learner.learning_rate, over the run's env steps"),
       SHOAL_SAME(ppo.normalise_advantages, AnyValue{},
                  "advantages of a minibatch get mean 0 and deviation 1"),
       SHOAL_SAME(ppo.normalise_rewards, AnyValue{},

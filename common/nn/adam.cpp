@@ -106,7 +106,7 @@ void Adam::Step() {
   if (max_norm_ > 0) ClipGradients();
   ++steps_;
   const double t = double(steps_);
-  const StepSize step{float(rate_ / (1 - std::pow(kBeta1, t))),
+  const StepSize step{float(rate() / (1 - std::pow(kBeta1, t))),
                       float(1 / std::sqrt(1 - std::pow(kBeta2, t))), float(epsilon_)};
   for (Moments& moments : moments_) {
     ParameterSet& set = *moments.set;

@@ -30,8 +30,9 @@ class Adam {
 
   // What it steps.
   std::vector<ParameterSet*> sets() const;
-  // For the steps from now on.
-  void set_rate(double rate) { rate_ = rate; }
+  // For the steps from now on: factor * Options::rate.
+  void set_rate_factor(double factor) { rate_factor_ = factor; }
+  double rate() const { return rate_ * rate_factor_; }
 
   // Sum of the squares of all gradients.
   double GradientSquares() const;
@@ -61,6 +62,7 @@ class Adam {
   void ClipGradients();
 
   double rate_, epsilon_, max_norm_;
+  double rate_factor_ = 1;
   uint64_t steps_ = 0;
 };
 

@@ -123,8 +123,9 @@ template std::span<uint8_t> BatchSchema::Array(std::string_view, uint8_t*) const
 template std::span<float> BatchSchema::Array(std::string_view, uint8_t*) const;
 template std::span<uint64_t> BatchSchema::Array(std::string_view, uint8_t*) const;
 
-BatchView BatchSchema::View(uint8_t* data) const {
+BatchView BatchSchema::View(uint8_t* data, uint64_t stored_steps) const {
   BatchView view;
+  view.stored_steps = stored_steps;
   view.schema = this;
   view.data = data;
   if (Has("obs_frames")) {

@@ -87,7 +87,7 @@ class BatchSchema {
   // is uint8_t, float or uint64_t. CHECK: there is such an array, and it is of that type.
   template <class T>
   std::span<T> Array(std::string_view name, uint8_t* data) const;
-  BatchView View(uint8_t* data) const;
+  BatchView View(uint8_t* data, uint64_t stored_steps = 0) const;
 
  private:
   void Add(const std::string& name, ArrayType type, std::vector<int> shape = {});
@@ -108,6 +108,7 @@ struct BatchView {
   std::span<float> obs_privileged, next_obs_privileged;
   std::span<uint64_t> weights_update, id;
   std::span<float> drawn_action, log_prob, ends, continues;  // of a rollout
+  uint64_t stored_steps = 0;  // the run's env steps when it was drawn; what schedules go by
 
   // Any array by its name: see BatchSchema::Array.
   template <class T>

@@ -32,7 +32,8 @@ BatchView PartOf(const BatchView& batch, int index, int parts) {
           .drawn_action = part(batch.drawn_action),
           .log_prob = part(batch.log_prob),
           .ends = part(batch.ends),
-          .continues = part(batch.continues)};
+          .continues = part(batch.continues),
+          .stored_steps = batch.stored_steps};
 }
 
 }  // namespace shoal::learner

@@ -56,6 +56,8 @@ inline constexpr Figure kActorLoss{.name = "actor_loss",
                                    .known_as = ""};
 inline constexpr Figure kQMean{"q_mean", "", "predicted scaled return", false, ""};
 inline constexpr Figure kTargetMean{"target_mean", "", "what Q is pulled to", false, ""};
+inline constexpr Figure kLearningRate{"learning_rate", "", "in force; of several the critic's",
+                                      false, ""};
 inline constexpr Figure kActionSaturation{"action_saturation", "",
                                           "share of action components beyond 0.99", false, ""};
 inline constexpr Figure kCriticGradNorm{"critic_grad_norm", "", "norm of the critic's gradient",

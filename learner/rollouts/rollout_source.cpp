@@ -156,10 +156,9 @@ Batch RolloutSource::HandOut() {
   core_.TakeReady(*schema_, memory_.get());
   handed_out_ = true;
   first_ready_.reset();
-  return {.view = schema_->View(memory_.get()),
+  return {.view = schema_->View(memory_.get(), core_.stored_steps()),
           .request = updates_ + 1,
-          .stored_records = core_.used_records(),
-          .stored_steps = core_.stored_steps()};
+          .stored_records = core_.used_records()};
 }
 
 std::optional<Batch> RolloutSource::Next(SteadyTime deadline) {

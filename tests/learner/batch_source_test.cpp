@@ -103,7 +103,7 @@ TEST_F(BatchSourceTest, HandsOutBatchesInTheOrderOfRequests) {
   const auto first = source.Next(Now());
   ASSERT_TRUE(first);
   EXPECT_EQ(first->request, 1u);
-  EXPECT_EQ(first->stored_steps, 70u);
+  EXPECT_EQ(first->view.stored_steps, 70u);
   EXPECT_EQ(first->stored_records, 72u);
   EXPECT_EQ(first->view.reward[3], 1.0f);
   const auto second = source.Next(Now());
@@ -211,7 +211,7 @@ TEST_F(BatchSourceTest, ReadsABatchInSharedMemoryWhereItLies) {
   const auto batch = source.Next(Now());
   ASSERT_TRUE(batch);
   EXPECT_EQ(batch->request, 1u);
-  EXPECT_EQ(batch->stored_steps, 70u);
+  EXPECT_EQ(batch->view.stored_steps, 70u);
   EXPECT_EQ(batch->stored_records, 72u);
   EXPECT_EQ(batch->view.reward[3], 1.0f);
   EXPECT_EQ(source.counters().shared, true);

@@ -38,8 +38,8 @@ class PlayedBatches final : public BatchStream {
     for (uint64_t& update : view.weights_update) update = 0;
     if (next_ == poisoned_request) view.reward[0] = std::numeric_limits<float>::quiet_NaN();
     const uint64_t steps = stored_steps(next_);
-    return Batch{
-        .view = view, .request = next_++, .stored_records = steps + 1, .stored_steps = steps};
+    view.stored_steps = steps;
+    return Batch{.view = view, .request = next_++, .stored_records = steps + 1};
   }
   BatchCounters counters() const override { return {}; }
   uint64_t given() const { return next_ - 1; }

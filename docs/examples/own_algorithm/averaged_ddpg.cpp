@@ -67,6 +67,9 @@ class AveragedDdpgAgent final : public Agent {
     const nn::ThreadScope scope(context_.threads);
     UpdateOutcome outcome{.figures = {}, .finite = AllFinite(batch)};
     if (!outcome.finite) return outcome;
+    const double rate_factor = learner_.rate_factor.At(batch.stored_steps);
+    critic_optimiser_.set_rate_factor(rate_factor);
+    actor_optimiser_.set_rate_factor(rate_factor);
     ComputeTargets(batch);
     on_stage_end(UpdateStage::kForward);
     outcome.finite = UpdateCritic(batch, &outcome.figures);

@@ -242,6 +242,9 @@ UpdateOutcome DeterministicAgent::Update(const BatchView& drawn, const OnStageEn
   if (!outcome.finite) return outcome;
   const BatchView batch = PartOf(standard_.Seen(drawn), replica_->rank(), replica_->count());
   Random random(StreamKey(uint64_t(config_.seed), StreamRole::kLearnerUpdate, updates_));
+  const double rate_factor = config_.learner.rate_factor.At(drawn.stored_steps);
+  critic_optimiser_.set_rate_factor(rate_factor);
+  actor_optimiser_.set_rate_factor(rate_factor);
   ComputeTargets(batch, &random, on_stage_end);
   outcome.finite = UpdateCritic(batch, on_stage_end, &outcome.figures);
   if (!outcome.finite) return outcome;
@@ -255,6 +258,7 @@ UpdateOutcome DeterministicAgent::Update(const BatchView& drawn, const OnStageEn
   standard_.Add(drawn);
   on_stage_end(UpdateStage::kOptimiser);
   ++updates_;
+  outcome.figures.Set(kLearningRate, critic_optimiser_.rate());
   return outcome;
 }
 

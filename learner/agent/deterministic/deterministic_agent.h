@@ -35,9 +35,10 @@ struct DeterministicOptions {
 // In the order of an update; the actor's only where the update moves the actor. The last two need a
 // second critic.
 inline constexpr const Figure* kTwinFigures[] = {
-    &kCriticLoss,       &kQMean,  &kTargetMean, &kCriticGradNorm, &kActorLoss, &kActorGradNorm,
-    &kActionSaturation, &kQ1Mean, &kQ1Std,      &kQMinMean,       &kQMinStd,   &kQMinMin,
-    &kQMinMax,          &kQ2Mean, &kQ2Std};
+    &kCriticLoss, &kQMean,         &kTargetMean,       &kCriticGradNorm,
+    &kActorLoss,  &kActorGradNorm, &kActionSaturation, &kLearningRate,
+    &kQ1Mean,     &kQ1Std,         &kQMinMean,         &kQMinStd,
+    &kQMinMin,    &kQMinMax,       &kQ2Mean,           &kQ2Std};
 inline constexpr std::span<const Figure* const> kSingleCriticFigures =
     std::span(kTwinFigures).first(std::size(kTwinFigures) - 2);
 

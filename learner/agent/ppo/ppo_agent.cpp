@@ -85,7 +85,7 @@ class PpoAgent final : public Agent {
   RewardScale rewards_;
   uint64_t updates_ = 0;
   uint64_t env_steps_ = 0;  // learned from: what schedules go by
-  double clip_ = 0, rate_ = 0;
+  double clip_ = 0;
   AgentState state_;
 
   // A minibatch's rows.
@@ -283,7 +283,7 @@ void PpoAgent::SetFigures(const BatchView& batch, const Prepared& prepared, cons
   figures->Set(kGradNorm, sums.grad_norm / steps);
   figures->Set(kDeviation, deviation);
   figures->Set(kClipRange, clip_);
-  figures->Set(kRate, rate_);
+  figures->Set(kLearningRate, optimiser_.rate());
   figures->Set(kMinibatches, sums.steps);
   figures->Set(kRolloutSteps, prepared.rows);
   figures->Set(kRolloutLag, lag);
@@ -301,8 +301,7 @@ UpdateOutcome PpoAgent::Update(const BatchView& batch, const OnStageEnd& on_stag
   const nn::TensorMap former = AllTensors();
   const int rows = int(batch.reward.size());
   clip_ = config_.ppo.clip.At(StepsWith(rows));
-  rate_ = config_.learner.learning_rate * config_.ppo.rate_factor.At(StepsWith(rows));
-  optimiser_.set_rate(rate_);
+  optimiser_.set_rate_factor(config_.learner.rate_factor.At(StepsWith(rows)));
   const BatchView seen = standard_.Seen(batch);
   const Prepared prepared = Prepare(seen);
   on_stage_end(UpdateStage::kForward);

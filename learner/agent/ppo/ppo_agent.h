@@ -41,7 +41,6 @@ inline constexpr Figure kDeviation{"deviation", "", "of the policy, mean over ac
 inline constexpr Figure kGradNorm{"grad_norm", "", "norm of all gradients, before it is cut", false,
                                   ""};
 inline constexpr Figure kClipRange{"clip_range", "", "ppo.clip in force", false, ""};
-inline constexpr Figure kRate{"learning_rate", "", "in force", false, ""};
 inline constexpr Figure kMinibatches{"minibatches", "", "steps of the optimiser", false, ""};
 inline constexpr Figure kRolloutSteps{"rollout_steps", "env steps", "the update was made of", false,
                                       ""};
@@ -49,8 +48,8 @@ inline constexpr Figure kRolloutLag{"rollout_lag", "updates",
                                     "by which the policy that acted was behind", false, ""};
 
 inline constexpr const Figure* kPpoFigures[] = {
-    &kActorLoss,    &kValueLoss,  &kEntropy,          &kApproxKl, &kClipFraction,
-    &kGradNorm,     &kDeviation,  &kClipRange,        &kRate,     &kMinibatches,
+    &kActorLoss,    &kValueLoss,  &kEntropy,          &kApproxKl,     &kClipFraction,
+    &kGradNorm,     &kDeviation,  &kClipRange,        &kLearningRate, &kMinibatches,
     &kRolloutSteps, &kRolloutLag, &kExplainedVariance};
 
 // The order in which an epoch goes through `rows` rows.

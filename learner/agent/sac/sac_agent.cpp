@@ -211,6 +211,7 @@ UpdateOutcome SacAgent::Update(const BatchView& drawn, const OnStageEnd& on_stag
   const Seen seen{PartOf(drawn, rank, count), batch, critic_vectors_.Of(batch)};
 
   Random random(StreamKey(uint64_t(config_.seed), StreamRole::kLearnerUpdate, updates_));
+  networks_.SetRateFactor(config_.learner.rate_factor.At(drawn.stored_steps));
   const float temperature = networks_.Temperature();
   ComputeTargets(seen, temperature, &random, on_stage_end);
   outcome.finite = UpdateCritic(seen, on_stage_end, &outcome.figures);
@@ -229,6 +230,7 @@ UpdateOutcome SacAgent::Update(const BatchView& drawn, const OnStageEnd& on_stag
   on_stage_end(UpdateStage::kOptimiser);
   ++updates_;
   outcome.figures.Set(kTemperature, networks_.Temperature());
+  outcome.figures.Set(kLearningRate, networks_.CriticRate());
   return outcome;
 }
 

@@ -19,14 +19,14 @@ inline constexpr Figure kTemperatureLoss{
 inline constexpr Figure kAuxError{"aux_error", "m",
                                   "root mean square error of what learner.aux tells", false, ""};
 
-// In the order of an update. Temperature: after it; the actor's and those after it only where the
-// update moves the actor; the error where an update trains the encoder and learner.aux is set.
+// In the order of an update. Temperature: after it; learning rate: of it; the actor's and those
+// after it only where the update moves the actor; the error where an update trains the encoder and
+// learner.aux is set.
 inline constexpr const Figure* kSacFigures[] = {
-    &kCriticLoss,    &kQMean,           &kTargetMean, &kCriticGradNorm,
-    &kActorLoss,     &kTemperatureLoss, &kEntropy,    &kActionSaturation,
-    &kActorGradNorm, &kTemperature,     &kAuxError,   &kQ1Mean,
-    &kQ1Std,         &kQ2Mean,          &kQ2Std,      &kQMinMean,
-    &kQMinStd,       &kQMinMin,         &kQMinMax};
+    &kCriticLoss,      &kQMean,    &kTargetMean,       &kCriticGradNorm, &kActorLoss,
+    &kTemperatureLoss, &kEntropy,  &kActionSaturation, &kActorGradNorm,  &kTemperature,
+    &kLearningRate,    &kAuxError, &kQ1Mean,           &kQ1Std,          &kQ2Mean,
+    &kQ2Std,           &kQMinMean, &kQMinStd,          &kQMinMin,        &kQMinMax};
 
 // As Algorithm::make_replica.
 std::unique_ptr<Agent> MakeSacAgent(const Config& config, const ObservationSpec& spec,

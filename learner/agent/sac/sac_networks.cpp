@@ -159,6 +159,12 @@ void SacNetworks::RefreshCritic() {
   if (Aux(Head::kCritic)) aux_->readout().Refresh();
 }
 
+void SacNetworks::SetRateFactor(double factor) {
+  for (nn::Adam* optimiser : {&critic_optimiser_, &actor_optimiser_, &temperature_optimiser_}) {
+    optimiser->set_rate_factor(factor);
+  }
+}
+
 void SacNetworks::StepCritic() {
   critic_optimiser_.Step();
   RefreshCritic();

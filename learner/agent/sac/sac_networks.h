@@ -90,6 +90,9 @@ class SacNetworks {
   // latest ForwardActor. Returns the sum of their squares.
   double BackwardActor(const float* mean_gradient, const float* log_std_gradient);
 
+  // On the learning rates of all parts, for the steps from now on.
+  void SetRateFactor(double factor);
+  double CriticRate() const { return critic_optimiser_.rate(); }
   // One optimiser step with the latest gradients. Features stay those of before.
   void StepCritic();
   // Takes the latest StepCritic back exactly.

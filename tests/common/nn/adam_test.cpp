@@ -148,7 +148,7 @@ TEST(Adam, EpsilonAndRateAreThoseAskedFor) {
   adam.Step();
   EXPECT_NEAR(set.values()[0], -kRate * 0.25 / 0.75, 1e-7);
   adam.Undo();
-  adam.set_rate(2 * kRate);
+  adam.set_rate_factor(2);
   adam.Step();
   EXPECT_NEAR(set.values()[0], -2 * kRate * 0.25 / 0.75, 1e-7);
 }

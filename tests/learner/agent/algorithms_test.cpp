@@ -60,6 +60,31 @@ TEST_P(EachAlgorithm, ReportsItsFiguresAndNoOthers) {
   EXPECT_EQ(reported, declared);
 }
 
+TEST_P(EachAlgorithm, TakesItsLearningRateFromTheRunsEnvSteps) {
+  config_.learner.rate_factor = {.start = 1, .end = 0, .env_steps = 1'000};
+  const auto agent = MakeAgent(config_, SmallSpec(), nn::Precision::kF32);
+  const auto update = [&](uint64_t key, uint64_t stored_steps) {
+    const RandomBatch batch = Batch(key);
+    BatchView view = batch.View();
+    view.stored_steps = stored_steps;
+    const UpdateOutcome outcome = agent->Update(view);
+    EXPECT_TRUE(outcome.finite);
+    return Get(outcome, kLearningRate) / config_.learner.learning_rate;
+  };
+  if (LearnsOnPolicy(config_)) {  // by the steps it learned from: 6 a rollout
+    EXPECT_NEAR(update(1, 0), 0.994, 1e-9);
+    EXPECT_NEAR(update(2, 0), 0.988, 1e-9);
+    for (uint64_t u = 2; u < 166; ++u) update(u, 0);
+  } else {
+    EXPECT_NEAR(update(1, 0), 1, 1e-9);
+    EXPECT_NEAR(update(2, 250), 0.75, 1e-9);
+  }
+  const nn::TensorMap before = agent->PolicyTensors();
+  EXPECT_EQ(update(3, 1'000), 0);
+  EXPECT_EQ(update(4, 1'001), 0);
+  EXPECT_THAT(Differences(before, agent->PolicyTensors()), testing::IsEmpty());
+}
+
 TEST_P(EachAlgorithm, EndsEveryStageOfAnUpdate) {
   const auto agent = MakeAgent(config_, SmallSpec(), nn::Precision::kF32);
   const RandomBatch batch = Batch(1);

@@ -9,7 +9,8 @@ namespace {
 
 TEST(PartOf, PartsInARowAreTheBatch) {
   const RandomBatch random(SmallSpec(), BatchOptions{.batch = 6, .rollout = true}, 3);
-  const BatchView whole = random.View();
+  BatchView whole = random.View();
+  whole.stored_steps = 70;
   for (const int parts : {1, 2, 3}) {
     for (int i = 0; i < parts; ++i) {
       const BatchView part = PartOf(whole, i, parts);
@@ -33,6 +34,7 @@ TEST(PartOf, PartsInARowAreTheBatch) {
       expect_part(&BatchView::log_prob);
       expect_part(&BatchView::ends);
       expect_part(&BatchView::continues);
+      EXPECT_EQ(part.stored_steps, 70u);
     }
   }
 }

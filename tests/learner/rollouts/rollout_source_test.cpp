@@ -96,7 +96,7 @@ TEST_F(RolloutSourceTest, HandsARolloutOfEveryEnvironmentOutAndAwaitsTheNextVers
   ASSERT_TRUE(batch);
   EXPECT_EQ(batch->view.reward.size(), 6u);
   EXPECT_EQ(batch->request, 1u);
-  EXPECT_EQ(batch->stored_steps, 6u);
+  EXPECT_EQ(batch->view.stored_steps, 6u);
   EXPECT_FALSE(source_->Next(Now() + milliseconds(20)));
   a_.PlayThree(0, 1, {100, 1});
   b_.PlayThree(1, 1, {100, 1});
