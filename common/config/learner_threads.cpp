@@ -15,10 +15,12 @@ constexpr int kLeastRows = 16;
 // Transitions of a batch, each with its copies.
 int Groups(const Config& config) { return config.learner.batch / config.replay.copies; }
 
-// An update of pixels takes the time of some tens of env steps: where there is one for each step,
-// actors leave nearly all of their cores idle.
-bool UpdatesWithEachStep(const Config& config) {
-  return config.replay.samples_per_insert >= config.learner.batch;
+// An update of pixels takes the time of some tens of env steps: where there is one for so many of
+// them or fewer, actors leave half of the cores idle or more.
+constexpr int kFewSteps = 8;
+
+bool ActorsMostlyWait(const Config& config) {
+  return config.replay.samples_per_insert * kFewSteps >= config.learner.batch;
 }
 
 // The largest number up to `most` >= 1 that divides `groups`.
@@ -35,7 +37,7 @@ int LearnerThreads(const Config& config, int cores) {
   const int half = std::max(1, cores / 2);
   if (LearnsOnPolicy(config)) return half;
   if (!config.observation.pixels) return 1;
-  const int most = UpdatesWithEachStep(config) ? cores : half;
+  const int most = ActorsMostlyWait(config) ? cores : half;
   const int useful = std::max(1, config.learner.batch / kLeastRows);
   return LargestDivisor(Groups(config), std::min(most, useful));
 }

@@ -7,6 +7,7 @@
 #include "common/nn/map_arithmetic.h"
 #include "common/nn/max_pool.h"
 #include "common/nn/primitive_descs.h"
+#include "common/nn/spatial_softmax.h"
 
 namespace shoal::nn {
 
@@ -58,6 +59,9 @@ void Encoder::Build(const LayerContext& context, const NetworkPlan& plan) {
         break;
       case LayerPlan::Kind::kAveragePool:
         built = std::make_unique<AveragePool>(context, layer, source.values, source.gradient);
+        break;
+      case LayerPlan::Kind::kSpatialSoftmax:
+        built = std::make_unique<SpatialSoftmax>(context, layer, source.values, source.gradient);
         break;
       default:
         CHECK(false) << layer.name << " is no layer of maps";

@@ -144,6 +144,16 @@ int NetworkPlan::Add(const AveragePool& pool) {
                  .source = int(layers_.size()) - 1});
 }
 
+int NetworkPlan::Add(const SpatialSoftmax& softmax) {
+  return Append({.kind = LayerPlan::Kind::kSpatialSoftmax,
+                 .name = softmax.name,
+                 .key = softmax.key,
+                 .input = output(),
+                 .output = {output().channels, 1, 2},
+                 .source = int(layers_.size()) - 1,
+                 .sharpness = softmax.sharpness});
+}
+
 int NetworkPlan::Add(const Linear& linear) {
   const int64_t inputs = output().size();
   if (inputs > std::numeric_limits<int>::max()) {

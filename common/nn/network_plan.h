@@ -8,6 +8,7 @@
 //   convolution   (C, H, W) -> (N, (H + 2p - k)/s + 1, ...)     weight (N, C, k, k), bias (N)
 //   max pool      (C, H, W) -> (C, (H + 2p - k)/s + 1, ...)     largest of k x k
 //   average pool  (C, H, W) -> (C, h, w) whatever H and W are
+//   spatial softmax  (C, H, W) -> (C, 1, 2)   where each channel is large: spatial_softmax.h
 //   linear        all numbers of its input in row-major order -> (O)     weight (O, I), bias (O)
 //
 // then LayerNorm over a linear layer's outputs (norm.weight, norm.bias), or batch normalisation of
@@ -63,7 +64,7 @@ enum class PixelRange { kCentred, kUnit };
 inline constexpr int kPreviousLayer = -1, kNoLayer = -1;
 
 struct LayerPlan {
-  enum class Kind { kPixels, kConvolution, kMaxPool, kAveragePool, kLinear };
+  enum class Kind { kPixels, kConvolution, kMaxPool, kAveragePool, kSpatialSoftmax, kLinear };
 
   Kind kind = Kind::kLinear;
   std::string name;       // of its parameters: NAME.weight, NAME.bias, NAME.norm.*
@@ -72,6 +73,7 @@ struct LayerPlan {
   MapShape output = {};   // linear: (O, 1, 1)
   int source = kNoLayer;  // the layer that it reads; none: the network's input
   int kernel = 1, stride = 1, padding = 0;
+  double sharpness = 1;                     // of a spatial softmax
   PixelRange range = PixelRange::kCentred;  // of pixels
   bool bias = true;
   bool layer_norm = false;
@@ -114,6 +116,11 @@ class NetworkPlan {
     int height, width;  // of its output
   };
   int Add(const AveragePool& pool);
+  struct SpatialSoftmax {
+    std::string name, key;
+    double sharpness;
+  };
+  int Add(const SpatialSoftmax& softmax);
   struct Linear {
     std::string name, key;
     int outputs;

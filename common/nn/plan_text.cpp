@@ -15,6 +15,8 @@ const char* ToString(LayerPlan::Kind kind) {
       return "max pool";
     case LayerPlan::Kind::kAveragePool:
       return "average pool";
+    case LayerPlan::Kind::kSpatialSoftmax:
+      return "spatial softmax";
     case LayerPlan::Kind::kLinear:
       return "linear";
   }
@@ -51,6 +53,9 @@ std::string PlanLine(const LayerPlan& layer) {
   if (HasWindow(layer.kind)) {
     line += fmt::format(", kernel {}, stride {}, padding {}", layer.kernel, layer.stride,
                         layer.padding);
+  }
+  if (layer.kind == LayerPlan::Kind::kSpatialSoftmax) {
+    line += fmt::format(", sharpness {}", layer.sharpness);
   }
   if (layer.kind == LayerPlan::Kind::kPixels) {
     line += layer.range == PixelRange::kUnit ? ", in [0, 1]" : ", in [-0.5, 0.5]";

@@ -47,6 +47,10 @@ OnnxTensor Tanh(const OnnxNode&, OnnxArguments in) {
   return MapValues(*in[0], [](float x) { return std::tanh(x); });
 }
 
+OnnxTensor Exp(const OnnxNode&, OnnxArguments in) {
+  return MapValues(*in[0], [](float x) { return std::exp(x); });
+}
+
 OnnxTensor Clip(const OnnxNode& node, OnnxArguments in) {
   Expect(in.size() == 3 && in[1]->values.size() == 1 && in[2]->values.size() == 1, node,
          "a lower and an upper bound");
@@ -78,6 +82,9 @@ OnnxTensor Sub(const OnnxNode& node, OnnxArguments in) {
 }
 OnnxTensor Mul(const OnnxNode& node, OnnxArguments in) {
   return Combine(node, in, [](float a, float b) { return a * b; });
+}
+OnnxTensor Div(const OnnxNode& node, OnnxArguments in) {
+  return Combine(node, in, [](float a, float b) { return a / b; });
 }
 
 // ---- shapes ----
@@ -229,6 +236,17 @@ OnnxTensor MaxPool(const OnnxNode& node, OnnxArguments in) {
   });
 }
 
+OnnxTensor GlobalMaxPool(const OnnxNode& node, OnnxArguments in) {
+  const OnnxTensor& x = *in[0];
+  Expect(x.shape.size() == 4 && x.shape[2] * x.shape[3] > 0, node, "a map (N, C, H, W)");
+  OnnxTensor y{.shape = {x.shape[0], x.shape[1], 1, 1}};
+  const int64_t plane = x.shape[2] * x.shape[3];
+  for (auto at = x.values.begin(); at != x.values.end(); at += plane) {
+    y.values.push_back(*std::max_element(at, at + plane));
+  }
+  return y;
+}
+
 // x (N, C, H, W), W (O, C, k, k), b (O) or nothing. Outside the map is 0.
 OnnxTensor Conv(const OnnxNode& node, OnnxArguments in) {
   const Window window(node, in[0]->shape);
@@ -309,8 +327,11 @@ constexpr std::pair<std::string_view, OnnxOperator> kOperators[] = {
     {"Clip", Clip},
     {"Concat", Concat},
     {"Conv", Conv},
+    {"Div", Div},
+    {"Exp", Exp},
     {"Flatten", Flatten},
     {"Gemm", Gemm},
+    {"GlobalMaxPool", GlobalMaxPool},
     {"MatMul", MatMul},
     {"MaxPool", MaxPool},
     {"Mul", Mul},

@@ -45,6 +45,26 @@ std::vector<float> Transposed(const std::vector<float>& matrix, int rows, int co
   return result;
 }
 
+using Shape = std::vector<int64_t>;
+
+std::vector<float> Ones(int64_t n) { return std::vector<float>(size_t(n), 1.f); }
+
+// Of nn::SpatialSoftmax along one side.
+std::vector<float> Coordinates(int64_t side) {
+  std::vector<float> coordinates(size_t(side), 0.f);
+  for (int64_t i = 0; i < side && side > 1; ++i) {
+    coordinates[size_t(i)] = 2 * float(i) / float(side - 1) - 1;
+  }
+  return coordinates;
+}
+
+// A matrix of two columns, of which `values` are the second or the first and the other is 0.
+std::vector<float> Interleaved(const std::vector<float>& values, bool second) {
+  std::vector<float> matrix(values.size() * 2, 0.f);
+  for (size_t i = 0; i < values.size(); ++i) matrix[2 * i + size_t(second)] = values[i];
+  return matrix;
+}
+
 // Appends nodes to a model. Values are known by their names; each function returns its output's.
 class GraphWriter {
  public:
@@ -103,6 +123,8 @@ class GraphWriter {
         return Add("MaxPool", {source}, Window(layer));
       case LayerPlan::Kind::kAveragePool:
         return AddAveragePool(layer, source);
+      case LayerPlan::Kind::kSpatialSoftmax:
+        return AddSpatialSoftmax(layer, source);
       case LayerPlan::Kind::kLinear:
         return AddLinear(layer, source);
     }
@@ -153,6 +175,34 @@ class GraphWriter {
                  {{to.height, from.height},
                   Transposed(PoolShares(from.height, to.height), from.height, to.height)});
     return Add("MatMul", {rows, Add("MatMul", {source, columns})});
+  }
+
+  // nn::SpatialSoftmax by products from either side, which keep a map's planes apart: e = exp(s x -
+  // its plane's largest), then both means of coordinates at once, (N, C, 1, 2).
+  std::string AddSpatialSoftmax(const LayerPlan& layer, const std::string& source) {
+    const int64_t height = layer.input.height, width = layer.input.width;
+    const auto constant = [&](const char* part, const Shape& shape, std::vector<float> values) {
+      return Constant(layer.name + "." + part, {shape, std::move(values)});
+    };
+    const auto between = [&](const std::string& rows, const std::string& value,
+                             const std::string& columns) {
+      return Add("MatMul", {rows, Add("MatMul", {value, columns})});
+    };
+    const std::string scaled =
+        Add("Mul", {source, Number(layer.name + ".sharpness", float(layer.sharpness))});
+    const std::string largest =
+        between(constant("height", {height, 1}, Ones(height)), Add("GlobalMaxPool", {scaled}),
+                constant("width", {1, width}, Ones(width)));
+    const std::string weights = Add("Exp", {Add("Sub", {scaled, largest})});
+    const std::string rows = constant("rows", {1, height}, Ones(height));
+    const std::string sum =
+        between(rows, weights, constant("columns", {width, 2}, Ones(2 * width)));
+    const std::string across = between(
+        rows, weights, constant("across", {width, 2}, Interleaved(Coordinates(width), false)));
+    const std::string down =
+        between(constant("down", {1, height}, Coordinates(height)), weights,
+                constant("second", {width, 2}, Interleaved(Ones(width), true)));
+    return Add("Div", {Add("Add", {across, down}), sum});
   }
 
   std::string AddLinear(const LayerPlan& layer, const std::string& source) {

@@ -29,7 +29,7 @@ class PlayedBatches final : public BatchStream {
     if (before) before(next_);
     if (next_ > last_request) return std::nullopt;
     uint8_t* data = space_.data() + (64 - reinterpret_cast<uintptr_t>(space_.data()) % 64) % 64;
-    const BatchView view = schema_.View(data);
+    BatchView view = schema_.View(data);
     Random random(HashWords({next_}));
     for (const auto& values : {view.obs_vector, view.next_obs_vector, view.action, view.reward}) {
       for (float& value : values) value = static_cast<float>(random.Uniform(-1, 1));

@@ -38,6 +38,8 @@ void AddNature(const NetworkConfig& network, const std::string& prefix, NetworkP
 void AddResnet18(const NetworkConfig& network, const std::string& prefix, NetworkPlan* plan);
 // Krizhevsky 2014, arXiv:1404.5997, as torchvision's alexnet without its classifier.
 void AddAlexnet(const NetworkConfig& network, const std::string& prefix, NetworkPlan* plan);
+// Two convolutions of images of half the size, then points: common/nn/spatial_softmax.h.
+void AddSpatialSoftmax(const NetworkConfig& network, const std::string& prefix, NetworkPlan* plan);
 
 inline constexpr EncoderKind kEncoderKinds[] = {
     {.name = "compact", .add = AddCompact},
@@ -46,6 +48,7 @@ inline constexpr EncoderKind kEncoderKinds[] = {
     {.name = "nature", .add = AddNature, .features = 512, .relu_trunk = true},
     {.name = "resnet18", .add = AddResnet18},
     {.name = "alexnet", .add = AddAlexnet},
+    {.name = "spatial_softmax", .add = AddSpatialSoftmax},
 };
 
 // Throws Error (kUsage) naming an unknown kind and those there are.

@@ -16,6 +16,7 @@ Config Of(int threads, int batch, int copies = 1) {
   config.learner.threads = threads;
   config.learner.batch = batch;
   config.replay.copies = copies;
+  config.replay.samples_per_insert = 8;
   return config;
 }
 
@@ -34,11 +35,11 @@ TEST(LearnerThreads, AreHalfTheCoresAsFarAsTheyShareTheBatch) {
   EXPECT_EQ(LearnerThreads(Of(0, 8), 64), 1);
 }
 
-TEST(LearnerThreads, AreOnAllCoresWithAnUpdateForEachStep) {
+TEST(LearnerThreads, AreOnAllCoresWithAnUpdateForEachEighthStep) {
   Config config = Of(0, 128);
-  config.replay.samples_per_insert = 127;
+  config.replay.samples_per_insert = 15;
   EXPECT_EQ(LearnerThreads(config, 2), 1);
-  config.replay.samples_per_insert = 128;
+  config.replay.samples_per_insert = 16;
   EXPECT_EQ(LearnerThreads(config, 1), 1);
   EXPECT_EQ(LearnerThreads(config, 2), 2);
   EXPECT_EQ(LearnerThreads(config, 64), 8) << "of 16 rows each";

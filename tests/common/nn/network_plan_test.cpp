@@ -193,8 +193,9 @@ TEST(EncoderKinds, AreTheWordsThatTheKeyTakes) {
   }
   EXPECT_THAT(
       [] { FindEncoderKind("resnet"); },
-      ThrowsMessage<Error>(AllOf(HasSubstr("network.encoder = resnet"),
-                                 HasSubstr("compact | drq | mrq | nature | resnet18 | alexnet"))));
+      ThrowsMessage<Error>(
+          AllOf(HasSubstr("network.encoder = resnet"),
+                HasSubstr("compact | drq | mrq | nature | resnet18 | alexnet | spatial_softmax"))));
 }
 
 TEST(EncoderKinds, EachFitsThePresetForPixels) {

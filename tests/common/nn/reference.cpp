@@ -174,6 +174,28 @@ Values AveragePoolBackward(const AveragePoolShape& s, const Values& dy) {
   return dx;
 }
 
+Values Points(const PointsShape& s, const Values& x) {
+  const auto coordinate = [](int at, int side) {
+    return side == 1 ? 0. : -1 + 2. * at / (side - 1);
+  };
+  const int plane = s.height * s.width;
+  Values points;
+  for (int p = 0; p < s.planes; ++p) {
+    const auto first = x.begin() + p * plane;
+    const double largest = *std::max_element(first, first + plane);
+    double sum = 0, across = 0, down = 0;
+    for (int i = 0; i < plane; ++i) {
+      const double weight = std::exp(s.sharpness * (first[i] - largest));
+      sum += weight;
+      across += weight * coordinate(i % s.width, s.width);
+      down += weight * coordinate(i / s.width, s.height);
+    }
+    points.push_back(across / sum);
+    points.push_back(down / sum);
+  }
+  return points;
+}
+
 Values LinearForward(int batch, const Values& x, const Values& weight, const Values& bias) {
   const size_t outputs = bias.size(), inputs = weight.size() / outputs;
   Values y(size_t(batch) * outputs);

@@ -54,6 +54,14 @@ struct AveragePoolShape {
 Values AveragePoolForward(const AveragePoolShape& shape, const Values& x);
 Values AveragePoolBackward(const AveragePoolShape& shape, const Values& dy);
 
+// P planes of (height, width) to (P, 2): mean column and row, each in [-1, 1], of a softmax over the
+// plane.
+struct PointsShape {
+  int planes, height, width;
+  double sharpness;
+};
+Values Points(const PointsShape& shape, const Values& x);
+
 // x (B, I), weight (O, I), bias (O) -> (B, O).
 Values LinearForward(int batch, const Values& x, const Values& weight, const Values& bias);
 Gradient LinearBackward(int batch, const Values& x, const Values& weight, const Values& dy);

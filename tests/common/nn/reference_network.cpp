@@ -61,6 +61,10 @@ class MapNetwork {
       return {AveragePoolForward({batch_ * x.channels, x.height, x.width, height, width}, x.values),
               x.channels, height, width};
     }
+    if (plan.kind == LayerPlan::Kind::kSpatialSoftmax) {
+      return {Points({batch_ * x.channels, x.height, x.width, plan.sharpness}, x.values),
+              x.channels, 1, 2};
+    }
     return Convolution(plan, x);
   }
 

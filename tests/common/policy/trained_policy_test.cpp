@@ -59,7 +59,8 @@ TEST_P(EncoderTest, PlaysWhatTheActorPlays) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Every, EncoderTest,
-                         testing::Values("compact", "drq", "mrq", "nature", "resnet18", "alexnet"),
+                         testing::Values("compact", "drq", "mrq", "nature", "resnet18", "alexnet",
+                                         "spatial_softmax"),
                          [](const auto& name) { return std::string(name.param); });
 
 class SmallPolicyTest : public testing::Test {

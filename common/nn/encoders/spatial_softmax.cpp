@@ -1,0 +1,36 @@
+#include "common/base/error.h"
+#include "common/nn/encoders/encoder_kind.h"
+
+namespace shoal::nn {
+namespace {
+
+constexpr int kPool = 2, kFilters = 32, kKernel = 3;
+// Of maps as they are at first, nearly flat: without, their points hardly leave the middle, and
+// little can be learned from them.
+constexpr double kSharpness = 10;
+
+}  // namespace
+
+void AddSpatialSoftmax(const NetworkConfig& network, const std::string& prefix, NetworkPlan* plan) {
+  constexpr const char* kKey = "network.encoder";
+  const MapShape& images = plan->input();
+  if (images.height % kPool != 0 || images.width % kPool != 0) {
+    throw UsageError("network.encoder = spatial_softmax: expected images of even sides, not {}x{}",
+                     images.height, images.width);
+  }
+  plan->AddPixels(kPool, kKey);
+  const auto add = [&](const char* name, int stride, Activation activation) {
+    plan->Add(NetworkPlan::Convolution{.name = prefix + name,
+                                       .key = kKey,
+                                       .filters = kFilters,
+                                       .kernel = kKernel,
+                                       .stride = stride,
+                                       .activation = activation,
+                                       .initialisation = InitialisationOf(network)});
+  };
+  add(".conv0", 2, Activation::kRelu);
+  add(".conv1", 1, Activation::kNone);
+  plan->Add(NetworkPlan::SpatialSoftmax{.name = "points", .key = kKey, .sharpness = kSharpness});
+}
+
+}  // namespace shoal::nn

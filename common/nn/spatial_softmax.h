@@ -1,0 +1,40 @@
+// Where in its map each channel is large, as a point: a softmax over the map's pixels and the mean
+// of their coordinates under it (Levine et al. 2016, arXiv:1504.00702; Finn et al. 2016,
+// arXiv:1509.06113).
+//
+//   p[b, c, i, j] = exp(s x[b, c, i, j]) / sum_{u,v} exp(s x[b, c, u, v])     s: the sharpness
+//   y[b, c, 0] = sum_{i,j} p[b, c, i, j] (2 j / (W-1) - 1)                    to the right
+//   y[b, c, 1] = sum_{i,j} p[b, c, i, j] (2 i / (H-1) - 1)                    down
+//
+// A side of one pixel has the coordinate 0.
+// Shapes: source (B, C, H, W), output (B, C, 1, 2) row-major, in the compute type; within, all is
+// f32.
+#pragma once
+
+#include <vector>
+
+#include "common/nn/map_layer.h"
+
+namespace shoal::nn {
+
+class SpatialSoftmax final : public MapLayer {
+ public:
+  // source_gradient: of the source's description, overwritten; may be empty.
+  SpatialSoftmax(const LayerContext& context, const LayerPlan& plan, const dnnl::memory& source,
+                 const dnnl::memory& source_gradient);
+
+  void Forward(Statistics statistics) override;
+  void Backward() override;
+
+ private:
+  int planes_, pixels_;                  // B C, H W
+  float sharpness_;                      // s
+  std::vector<float> across_, down_;     // coordinates of the pixels
+  Relayout source_, source_gradient_;    // row-major f32
+  dnnl::memory scaled_, probabilities_;  // s x; p
+  Op softmax_;
+  std::vector<float> points_;  // y (B, C, 2), not rounded
+  bool has_source_gradient_ = false;
+};
+
+}  // namespace shoal::nn
