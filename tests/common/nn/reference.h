@@ -54,8 +54,8 @@ struct AveragePoolShape {
 Values AveragePoolForward(const AveragePoolShape& shape, const Values& x);
 Values AveragePoolBackward(const AveragePoolShape& shape, const Values& dy);
 
-// P planes of (height, width) to (P, 2): mean column and row, each in [-1, 1], of a softmax over the
-// plane.
+// P planes of (height, width) to (P, 2): mean column and row, each in [-1, 1], of a softmax over
+// the plane.
 struct PointsShape {
   int planes, height, width;
   double sharpness;
