@@ -58,7 +58,7 @@ const std::vector<TrialRule>& TrialRules() {
       {"\\$\\(cpu\\)|^cpu\\(\\)|api/runs/RUN\\$part", kNotHere, "measures a page for a minute"},
 
       // Trainings are checked, not run: two small ones have been before.
-      {"\\./run train(\n|  |$)", kSmaller, "shoal train --preset fetch-reach-drq$1"},
+      {"\\./run train(\n|  |$)", kSmaller, "shoal train --preset fetch-reach-fast$1"},
       {"^\\./run ", kSmaller, "shoal "},
       {" --film\\b", kSmaller, ""},
       {"(shoal train [^;#\n]*[^;#\n ])", kSmaller, "$1 --dry-run"},

@@ -82,7 +82,7 @@ void Prepare(const Surroundings& surroundings) {
   surroundings.Write("batches.json", definition.dump());
   surroundings.Write("mine.json", "{}");
   ASSERT_EQ(surroundings.Run(kRuns), "");
-  for (const char* name : {"fetch-reach-drq-s1", "fetch-reach-drq-s2", "fetch-reach-drq-s3"}) {
+  for (const char* name : {"fetch-reach-drq-s1", "fetch-reach-drq-s2", "fetch-reach-drq-s3", "fetch-reach-fast-s1"}) {
     surroundings.Link(std::string("runs/") + name, "pixels");
   }
   surroundings.Link("runs/first", "reach");
