@@ -82,14 +82,17 @@ void Prepare(const Surroundings& surroundings) {
   surroundings.Write("batches.json", definition.dump());
   surroundings.Write("mine.json", "{}");
   ASSERT_EQ(surroundings.Run(kRuns), "");
-  for (const char* name : {"fetch-reach-drq-s1", "fetch-reach-drq-s2", "fetch-reach-drq-s3", "fetch-reach-fast-s1"}) {
+  for (const char* name :
+       {"fetch-reach-drq-s1", "fetch-reach-drq-s2", "fetch-reach-drq-s3", "fetch-reach-fast-s1",
+        "fetch-reach-fast-s111", "fetch-reach-fast-s112", "fetch-reach-fast-s113",
+        "fetch-reach-fast-s114", "fetch-reach-fast-s115"}) {
     surroundings.Link(std::string("runs/") + name, "pixels");
   }
   surroundings.Link("runs/first", "reach");
   surroundings.Link("runs/source", "plain");
   surroundings.Link("runs/reach-sb3", "../experiments/batches/runs/a-s0");
   for (const char* name : {"reach-three-way", "reach-algorithms", "reach-ppo", "reach-recipe",
-                           "push-her", "pick-and-place-movement", "push-pixels"}) {
+                           "reach-encoder", "push-her", "pick-and-place-movement", "push-pixels"}) {
     surroundings.Link(std::string("experiments/") + name, "batches");
   }
   for (const char* name : {"pixels-drq-s0", "preset-s11", "preset-s12", "preset-s13", "faster-s11",
