@@ -130,8 +130,8 @@ std::vector<Key> LearnerKeys() {
           learner.threads, (IntegerRange{0, 1024}),
           "threads of the learner, each with an equal part of the batch (ppo and encoders with "
           "batch normalisation: with a share of each layer); 0 = at most half the cores this "
-          "process may use, or all with an update for each eighth env step or more; without "
-          "pixels, but for ppo, 1"),
+          "process may use, or three quarters with an update for each eighth env step, all with "
+          "one for each; without pixels, but for ppo, 1"),
       SHOAL_SAME(learner.learning_rate, positive, "Adam step of actor, critic and temperature"),
       SHOAL_SAME(learner.actor_learning_rate, (RealRange{0, 1}),
                  "that of the actor alone; 0 = learner.learning_rate"),

@@ -15,12 +15,16 @@ constexpr int kLeastRows = 16;
 // Transitions of a batch, each with its copies.
 int Groups(const Config& config) { return config.learner.batch / config.replay.copies; }
 
-// An update of pixels takes the time of some tens of env steps: where there is one for so many of
-// them or fewer, actors leave half of the cores idle or more.
-constexpr int kFewSteps = 8;
+bool UpdatesEach(const Config& config, int env_steps) {
+  return config.replay.samples_per_insert * env_steps >= config.learner.batch;
+}
 
-bool ActorsMostlyWait(const Config& config) {
-  return config.replay.samples_per_insert * kFewSteps >= config.learner.batch;
+// An update of pixels takes the time of some tens of env steps: what actors leave idle. One for
+// each step leaves nearly all; one for each eighth step takes three times what the steps do.
+int MostCores(const Config& config, int cores) {
+  if (UpdatesEach(config, 1)) return cores;
+  if (UpdatesEach(config, 8)) return (3 * cores + 3) / 4;
+  return std::max(1, cores / 2);
 }
 
 // The largest number up to `most` >= 1 that divides `groups`.
@@ -34,10 +38,9 @@ int LargestDivisor(int groups, int most) {
 
 int LearnerThreads(const Config& config, int cores) {
   if (config.learner.threads > 0) return config.learner.threads;
-  const int half = std::max(1, cores / 2);
-  if (LearnsOnPolicy(config)) return half;
+  if (LearnsOnPolicy(config)) return std::max(1, cores / 2);
   if (!config.observation.pixels) return 1;
-  const int most = ActorsMostlyWait(config) ? cores : half;
+  const int most = MostCores(config, cores);
   const int useful = std::max(1, config.learner.batch / kLeastRows);
   return LargestDivisor(Groups(config), std::min(most, useful));
 }

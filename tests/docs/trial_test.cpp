@@ -168,7 +168,7 @@ TEST(DocsTrial, ACommandIsTriedAsItStandsOrSmaller) {
   EXPECT_EQ(Tried("shoal train --preset a   # why", &used),
             "shoal train --preset a --dry-run   # why");
   EXPECT_EQ(Tried("./run train   # why", &used),
-            "shoal train --preset fetch-reach-drq --dry-run   # why");
+            "shoal train --preset fetch-reach-fast --dry-run   # why");
   EXPECT_EQ(Tried("shoal eval --checkpoint a", &used), "shoal eval --episodes 1 --checkpoint a");
   EXPECT_EQ(Tried("ssh node4 rm x", &used), ":");
 }

@@ -35,14 +35,25 @@ TEST(LearnerThreads, AreHalfTheCoresAsFarAsTheyShareTheBatch) {
   EXPECT_EQ(LearnerThreads(Of(0, 8), 64), 1);
 }
 
-TEST(LearnerThreads, AreOnAllCoresWithAnUpdateForEachEighthStep) {
+TEST(LearnerThreads, AreOnAllCoresWithAnUpdateForEachStep) {
   Config config = Of(0, 128);
-  config.replay.samples_per_insert = 15;
-  EXPECT_EQ(LearnerThreads(config, 2), 1);
-  config.replay.samples_per_insert = 16;
+  config.replay.samples_per_insert = 128;
   EXPECT_EQ(LearnerThreads(config, 1), 1);
   EXPECT_EQ(LearnerThreads(config, 2), 2);
+  EXPECT_EQ(LearnerThreads(config, 8), 8);
   EXPECT_EQ(LearnerThreads(config, 64), 8) << "of 16 rows each";
+}
+
+TEST(LearnerThreads, LeaveAQuarterOfTheCoresWithAnUpdateForEachEighthStep) {
+  Config config = Of(0, 96);
+  config.replay.samples_per_insert = 11;
+  EXPECT_EQ(LearnerThreads(config, 2), 1);
+  EXPECT_EQ(LearnerThreads(config, 8), 4);
+  config.replay.samples_per_insert = 12;
+  EXPECT_EQ(LearnerThreads(config, 1), 1);
+  EXPECT_EQ(LearnerThreads(config, 2), 2) << "rounded up";
+  EXPECT_EQ(LearnerThreads(config, 4), 3);
+  EXPECT_EQ(LearnerThreads(config, 8), 6);
 }
 
 TEST(LearnerThreads, IsOneWithoutPixels) {

@@ -30,10 +30,7 @@ TEST(ResolveConfig, AppliesPresetThenFileThenSet) {
 
 TEST(ResolveConfig, FillsActorsAndThreadsForTheCores) {
   EXPECT_EQ(ResolveConfig({}, 8).actors, 4);
-  EXPECT_EQ(ResolveConfig({}, 8).learner.threads, 8);
-  TrainOptions few_updates;
-  few_updates.set = {"replay.samples_per_insert=8"};
-  EXPECT_EQ(ResolveConfig(few_updates, 8).learner.threads, 4);
+  EXPECT_EQ(ResolveConfig({}, 8).learner.threads, 4);
   EXPECT_EQ(ResolveConfig({}, 1).actors, 1);
   TrainOptions lockstep;
   lockstep.lockstep = true;
