@@ -222,6 +222,12 @@ TEST(EncoderKinds, ImagesTooSmallAreRefusedNamingTheSmallestThatFit) {
               ThrowsMessage<Error>(AllOf(HasSubstr("network.encoder = alexnet"), HasSubstr("62x84"),
                                          HasSubstr("at least 63x63"))));
   EXPECT_NO_THROW(Encoder("alexnet", 63, 63));
+  EXPECT_THAT([] { Encoder("spatial_softmax", 12, 84); },
+              ThrowsMessage<Error>(HasSubstr("at least 14x14")));
+  EXPECT_EQ(Encoder("spatial_softmax", 14, 14).output(), (MapShape{32, 1, 2}));
+  EXPECT_THAT([] { Encoder("spatial_softmax", 84, 63); },
+              ThrowsMessage<Error>(AllOf(HasSubstr("network.encoder = spatial_softmax"),
+                                         HasSubstr("even sides, not 84x63"))));
   EXPECT_NO_THROW(Encoder("resnet18", 8, 8));
 }
 
