@@ -12,16 +12,16 @@ constexpr double kSharpness = 10;
 }  // namespace
 
 void AddSpatialSoftmax(const NetworkConfig& network, const std::string& prefix, NetworkPlan* plan) {
-  constexpr const char* kKey = "network.encoder";
+  const char* const key = "network.encoder";
   const MapShape& images = plan->input();
   if (images.height % kPool != 0 || images.width % kPool != 0) {
     throw UsageError("network.encoder = spatial_softmax: expected images of even sides, not {}x{}",
                      images.height, images.width);
   }
-  plan->AddPixels(kPool, kKey);
+  plan->AddPixels(kPool, key);
   const auto add = [&](const char* name, int stride, Activation activation) {
     plan->Add(NetworkPlan::Convolution{.name = prefix + name,
-                                       .key = kKey,
+                                       .key = key,
                                        .filters = kFilters,
                                        .kernel = kKernel,
                                        .stride = stride,
@@ -30,7 +30,7 @@ void AddSpatialSoftmax(const NetworkConfig& network, const std::string& prefix, 
   };
   add(".conv0", 2, Activation::kRelu);
   add(".conv1", 1, Activation::kNone);
-  plan->Add(NetworkPlan::SpatialSoftmax{.name = "points", .key = kKey, .sharpness = kSharpness});
+  plan->Add(NetworkPlan::SpatialSoftmax{.name = "points", .key = key, .sharpness = kSharpness});
 }
 
 }  // namespace shoal::nn
