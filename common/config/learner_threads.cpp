@@ -19,12 +19,14 @@ bool UpdatesEach(const Config& config, int env_steps) {
   return config.replay.samples_per_insert * env_steps >= config.learner.batch;
 }
 
-// An update of pixels takes the time of some tens of env steps: what actors leave idle. One for
-// each step leaves nearly all; one for each eighth step takes three times what the steps do.
+int Half(int cores) { return std::max(1, cores / 2); }
+
+// An update of pixels takes the time of some tens of env steps, so that actors wait for it: with an
+// update for each step nearly always; one for each eighth takes three times what the steps take.
 int MostCores(const Config& config, int cores) {
   if (UpdatesEach(config, 1)) return cores;
   if (UpdatesEach(config, 8)) return (3 * cores + 3) / 4;
-  return std::max(1, cores / 2);
+  return Half(cores);
 }
 
 // The largest number up to `most` >= 1 that divides `groups`.
@@ -38,7 +40,7 @@ int LargestDivisor(int groups, int most) {
 
 int LearnerThreads(const Config& config, int cores) {
   if (config.learner.threads > 0) return config.learner.threads;
-  if (LearnsOnPolicy(config)) return std::max(1, cores / 2);
+  if (LearnsOnPolicy(config)) return Half(cores);
   if (!config.observation.pixels) return 1;
   const int most = MostCores(config, cores);
   const int useful = std::max(1, config.learner.batch / kLeastRows);

@@ -1,9 +1,6 @@
 #include "common/nn/spatial_softmax.h"
 
-#include <algorithm>
-
 #include "common/base/cpu_clones.h"
-#include "common/nn/bf16.h"
 #include "common/nn/parallel.h"
 #include "common/nn/primitive_descs.h"
 
@@ -43,25 +40,6 @@ SHOAL_CPU_CLONES void MeanPointBackward(const float* p, int n, const float* acro
   }
 }
 
-void Save(const std::vector<float>& values, const memory& out) {
-  if (TypeOf(out) == memory::data_type::bf16) {
-    FloatsToBf16(values.data(), int64_t(values.size()),
-                 static_cast<uint16_t*>(out.get_data_handle()));
-  } else {
-    std::ranges::copy(values, static_cast<float*>(out.get_data_handle()));
-  }
-}
-
-std::vector<float> Load(const memory& in, size_t n) {
-  std::vector<float> values(n);
-  if (TypeOf(in) == memory::data_type::bf16) {
-    Bf16ToFloats(static_cast<const uint16_t*>(in.get_data_handle()), int64_t(n), values.data());
-  } else {
-    std::copy_n(static_cast<const float*>(in.get_data_handle()), n, values.begin());
-  }
-  return values;
-}
-
 float* Floats(const memory& values) { return static_cast<float*>(values.get_data_handle()); }
 
 }  // namespace
@@ -70,8 +48,7 @@ SpatialSoftmax::SpatialSoftmax(const LayerContext& context, const LayerPlan& pla
                                const memory& source, const memory& source_gradient)
     : planes_(context.batch * plan.input.channels),
       pixels_(plan.input.height * plan.input.width),
-      sharpness_(float(plan.sharpness)),
-      points_(size_t(planes_) * 2) {
+      sharpness_(float(plan.sharpness)) {
   const MapShape& from = plan.input;
   for (int i = 0; i < from.height; ++i) {
     for (int j = 0; j < from.width; ++j) {
@@ -83,17 +60,22 @@ SpatialSoftmax::SpatialSoftmax(const LayerContext& context, const LayerPlan& pla
                          memory::data_type::f32, memory::format_tag::nchw);
   source_ = Relayout::Before(source, map, context.scratchpad);
   const memory::desc rows = PlainF32({planes_, pixels_});
-  scaled_ = MakeMemory(rows);
   probabilities_ = MakeMemory(rows);
   const auto kind =
       context.training ? dnnl::prop_kind::forward_training : dnnl::prop_kind::forward_inference;
-  softmax_ = Op(DescribeSoftmax(kind, rows, /*axis=*/1),
-                {{DNNL_ARG_SRC, scaled_}, {DNNL_ARG_DST, probabilities_}}, context.scratchpad);
-  const memory::desc points({context.batch, from.channels, 1, 2}, ComputeType(context.precision),
-                            memory::format_tag::nchw);
-  output_ = MakeMemory(points);
+  softmax_ =
+      Op(DescribeSoftmax(kind, rows, /*axis=*/1),
+         {{DNNL_ARG_SRC, probabilities_}, {DNNL_ARG_DST, probabilities_}}, context.scratchpad);
+  const auto points = [&](memory::data_type type) {
+    return memory::desc({context.batch, from.channels, 1, 2}, type, memory::format_tag::nchw);
+  };
+  const memory::desc compute = points(ComputeType(context.precision));
+  const memory::desc f32 = points(memory::data_type::f32);
+  output_ = MakeMemory(compute);
+  points_ = Relayout::After(f32, output_, context.scratchpad);
   if (!context.training) return;
-  output_gradient_ = MakeMemory(points);
+  output_gradient_ = MakeMemory(compute);
+  points_gradient_ = Relayout::Before(output_gradient_, f32, context.scratchpad);
   has_source_gradient_ = bool(source_gradient);
   if (!has_source_gradient_) return;
   source_gradient_ = Relayout::After(map, source_gradient, context.scratchpad);
@@ -102,32 +84,32 @@ SpatialSoftmax::SpatialSoftmax(const LayerContext& context, const LayerPlan& pla
 void SpatialSoftmax::Forward(Statistics) {
   source_.Run();
   const float* x = Floats(source_.memory());
-  float* scaled = Floats(scaled_);
+  float* p = Floats(probabilities_);
   ParallelFor(planes_, [&](int begin, int end) {
     const int64_t first = int64_t{begin} * pixels_;
-    Scale(x + first, (end - begin) * pixels_, sharpness_, scaled + first);
+    Scale(x + first, (end - begin) * pixels_, sharpness_, p + first);
   });
   softmax_.Run();
-  const float* p = Floats(probabilities_);
+  float* y = Floats(points_.memory());
   ParallelFor(planes_, [&](int begin, int end) {
     for (int plane = begin; plane < end; ++plane) {
       MeanPoint(p + int64_t{plane} * pixels_, pixels_, across_.data(), down_.data(),
-                &points_[size_t(plane) * 2]);
+                y + int64_t{plane} * 2);
     }
   });
-  Save(points_, output_);
+  points_.Run();
 }
 
 void SpatialSoftmax::Backward() {
   if (!has_source_gradient_) return;
-  const std::vector<float> dy = Load(output_gradient_, points_.size());
+  points_gradient_.Run();
   const float* p = Floats(probabilities_);
   float* dx = Floats(source_gradient_.memory());
   ParallelFor(planes_, [&](int begin, int end) {
     for (int plane = begin; plane < end; ++plane) {
-      const size_t at = size_t(plane) * 2;
-      const PointGradient gradient{dy[at], dy[at + 1],
-                                   dy[at] * points_[at] + dy[at + 1] * points_[at + 1]};
+      const float* y = Floats(points_.memory()) + int64_t{plane} * 2;
+      const float* dy = Floats(points_gradient_.memory()) + int64_t{plane} * 2;
+      const PointGradient gradient{dy[0], dy[1], dy[0] * y[0] + dy[1] * y[1]};
       const int64_t first = int64_t{plane} * pixels_;
       MeanPointBackward(p + first, pixels_, across_.data(), down_.data(), gradient, sharpness_,
                         dx + first);

@@ -27,13 +27,13 @@ class SpatialSoftmax final : public MapLayer {
   void Backward() override;
 
  private:
-  int planes_, pixels_;                  // B C, H W
-  float sharpness_;                      // s
-  std::vector<float> across_, down_;     // coordinates of the pixels
-  Relayout source_, source_gradient_;    // row-major f32
-  dnnl::memory scaled_, probabilities_;  // s x; p
+  int planes_, pixels_;                // B C, H W
+  float sharpness_;                    // s
+  std::vector<float> across_, down_;   // coordinates of the pixels
+  Relayout source_, source_gradient_;  // row-major f32
+  dnnl::memory probabilities_;         // s x, then p
   Op softmax_;
-  std::vector<float> points_;  // y (B, C, 2), not rounded
+  Relayout points_, points_gradient_;  // y and dL/dy in f32
   bool has_source_gradient_ = false;
 };
 

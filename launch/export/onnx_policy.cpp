@@ -59,7 +59,7 @@ std::vector<float> Coordinates(int64_t side) {
 }
 
 // A matrix of two columns, of which `values` are the second or the first and the other is 0.
-std::vector<float> Interleaved(const std::vector<float>& values, bool second) {
+std::vector<float> BesideZeros(const std::vector<float>& values, bool second) {
   std::vector<float> matrix(values.size() * 2, 0.f);
   for (size_t i = 0; i < values.size(); ++i) matrix[2 * i + size_t(second)] = values[i];
   return matrix;
@@ -198,10 +198,10 @@ class GraphWriter {
     const std::string sum =
         between(rows, weights, constant("columns", {width, 2}, Ones(2 * width)));
     const std::string across = between(
-        rows, weights, constant("across", {width, 2}, Interleaved(Coordinates(width), false)));
+        rows, weights, constant("across", {width, 2}, BesideZeros(Coordinates(width), false)));
     const std::string down =
         between(constant("down", {1, height}, Coordinates(height)), weights,
-                constant("second", {width, 2}, Interleaved(Ones(width), true)));
+                constant("second", {width, 2}, BesideZeros(Ones(width), true)));
     return Add("Div", {Add("Add", {across, down}), sum});
   }
 

@@ -5,8 +5,7 @@ namespace shoal::nn {
 namespace {
 
 constexpr int kPool = 2, kFilters = 32, kKernel = 3;
-// Of maps as they are at first, nearly flat: without, their points hardly leave the middle, and
-// little can be learned from them.
+// Of maps as flat as they start all points would lie near the middle.
 constexpr double kSharpness = 10;
 
 }  // namespace
