@@ -1,7 +1,5 @@
 #include "common/nn/bf16.h"
 
-#include <bit>
-
 #include "common/base/cpu_clones.h"
 
 namespace shoal::nn {
@@ -9,14 +7,15 @@ namespace shoal::nn {
 SHOAL_CPU_CLONES void FloatsToBf16(const float* in, int64_t n, uint16_t* out) {
   for (int64_t i = 0; i < n; ++i) {
     const uint32_t bits = std::bit_cast<uint32_t>(in[i]);
-    const uint32_t rounded = (bits + 0x7fffu + ((bits >> 16) & 1u)) >> 16;
+    uint16_t rounded;
+    Store(in[i], &rounded);
     const bool nan = (bits & 0x7fffffffu) > 0x7f800000u;  // rounding could carry it to infinity
     out[i] = uint16_t(nan ? (bits >> 16) | 0x40u : rounded);
   }
 }
 
 SHOAL_CPU_CLONES void Bf16ToFloats(const uint16_t* in, int64_t n, float* out) {
-  for (int64_t i = 0; i < n; ++i) out[i] = std::bit_cast<float>(uint32_t(in[i]) << 16);
+  for (int64_t i = 0; i < n; ++i) out[i] = ToFloat(in[i]);
 }
 
 }  // namespace shoal::nn

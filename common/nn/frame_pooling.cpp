@@ -1,13 +1,13 @@
 #include "common/nn/frame_pooling.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <vector>
 
 #include "common/base/check.h"
 #include "common/base/cpu_clones.h"
+#include "common/nn/bf16.h"
 #include "common/nn/parallel.h"
 
 namespace shoal::nn {
@@ -20,14 +20,6 @@ struct Scaling {
   float factor, shift;
 };
 
-float Rounded(float x, float) { return x; }
-
-// To the nearest bf16, ties to even. The values are finite, so NaN needs no care.
-uint16_t Rounded(float x, uint16_t) {
-  const uint32_t bits = std::bit_cast<uint32_t>(x);
-  return uint16_t((bits + 0x7fffu + ((bits >> 16) & 1u)) >> 16);
-}
-
 // Columns [j, j + n) of a row of 2x2 windows. A pair of neighbouring bytes is one 16-bit word,
 // which keeps the loop free of shuffles.
 template <class Out>
@@ -38,7 +30,7 @@ template <class Out>
     std::memcpy(&a, upper + 2 * j, sizeof(a));
     std::memcpy(&b, lower + 2 * j, sizeof(b));
     const int sum = (a & 0xff) + (a >> 8) + (b & 0xff) + (b >> 8);
-    out[j] = Rounded(float(sum) * scale.factor + scale.shift, Out());
+    Store(float(sum) * scale.factor + scale.shift, out + j);
   }
 }
 
@@ -76,8 +68,7 @@ SHOAL_CPU_CLONES void PoolByTwo(const uint8_t* in, int width, int rows, int colu
 template <class Out>
 [[gnu::always_inline]] inline void ScalePixels(const uint8_t* in, int64_t n, Scaling scale,
                                                Out* out) {
-  for (int64_t i = 0; i < n; ++i)
-    out[i] = Rounded(float(in[i]) * scale.factor + scale.shift, Out());
+  for (int64_t i = 0; i < n; ++i) Store(float(in[i]) * scale.factor + scale.shift, out + i);
 }
 
 SHOAL_CPU_CLONES void Scale(const uint8_t* __restrict in, int64_t n, Scaling scale,
@@ -107,7 +98,7 @@ template <class Out>
   for (int j = 0; j < columns; ++j) {
     int sum = 0;
     for (int x = 0; x < pool; ++x) sum += sums[j * pool + x];
-    out[j] = Rounded(float(sum) * scale.factor + scale.shift, Out());
+    Store(float(sum) * scale.factor + scale.shift, out + j);
   }
 }
 

@@ -1,25 +1,14 @@
 #include "common/nn/map_arithmetic.h"
 
-#include <bit>
-
 #include "common/base/check.h"
 #include "common/base/cpu_clones.h"
+#include "common/nn/bf16.h"
 #include "common/nn/parallel.h"
 #include "common/nn/primitive_descs.h"
 #include "common/nn/relu_mask.h"
 
 namespace shoal::nn {
 namespace {
-
-inline float ToFloat(float value) { return value; }
-inline float ToFloat(uint16_t value) { return std::bit_cast<float>(uint32_t{value} << 16); }
-inline void Store(float value, float* out) { *out = value; }
-// To the nearest bf16, ties to even. The sum of two bf16 that is NaN has bits to spare below: it
-// stays one.
-inline void Store(float value, uint16_t* out) {
-  const auto bits = std::bit_cast<uint32_t>(value);
-  *out = uint16_t((bits + 0x7fffu + ((bits >> 16) & 1u)) >> 16);
-}
 
 inline float Positive(float value) { return value < 0 ? 0.f : value; }
 

@@ -112,19 +112,6 @@ inline dnnl::batch_normalization_backward::primitive_desc DescribeNormalizationB
 #endif
 }
 
-// rows: the description of source and output alike.
-inline dnnl::softmax_forward::primitive_desc DescribeSoftmax(dnnl::prop_kind kind,
-                                                             const dnnl::memory::desc& rows,
-                                                             int axis) {
-  using Operation = dnnl::softmax_forward;
-#if DNNL_VERSION_MAJOR >= 3
-  return DescribeForward<Operation>(Attributes(), kind, dnnl::algorithm::softmax_accurate, rows,
-                                    rows, axis);
-#else
-  return DescribeForward<Operation>(Attributes(), kind, rows, axis);
-#endif
-}
-
 // The attributes of a primitive that ends with a ReLU.
 inline dnnl::primitive_attr AttributesWithRelu() {
   constexpr auto kRelu = dnnl::algorithm::eltwise_relu;

@@ -1,6 +1,11 @@
+// Maps lie in blocks of channels, nChw16c in oneDNN's words, as its convolutions leave them on CPUs
+// with AVX-512: a pixel of sixteen channels is one vector, whose lanes are the channels.
 #include "common/nn/spatial_softmax.h"
 
+#include <bit>
+
 #include "common/base/cpu_clones.h"
+#include "common/nn/bf16.h"
 #include "common/nn/parallel.h"
 #include "common/nn/primitive_descs.h"
 
@@ -9,46 +14,132 @@ namespace {
 
 using dnnl::memory;
 
+constexpr int kLanes = 16;
+
 float Coordinate(int at, int side) { return side == 1 ? 0.f : 2 * float(at) / float(side - 1) - 1; }
 
-SHOAL_CPU_CLONES void Scale(const float* x, int n, float by, float* y) {
-  for (int i = 0; i < n; ++i) y[i] = by * x[i];
+// exp(x) for x <= 0, to 3e-7 of it; where it would be below 2^-100, 2^-100: a sum of which one term
+// is 1 does not feel it, and no product of it is so small that CPUs take their time.
+[[gnu::always_inline]] inline float ExpOfNegative(float x) {
+  constexpr float kLog2E = 1.44269504f, kLeast = -100;
+  constexpr float kRound = 12'582'912;  // 1.5 * 2^23: added, it leaves no bits of a fraction
+  const float t = x * kLog2E < kLeast ? kLeast : x * kLog2E;
+  const float rounded = t + kRound;
+  const float f = t - (rounded - kRound);  // in [-1/2, 1/2]
+  // The series of 2^f.
+  float power = 1.5403530e-4f;
+  power = power * f + 1.3333558e-3f;
+  power = power * f + 9.6181291e-3f;
+  power = power * f + 5.5504109e-2f;
+  power = power * f + 2.4022651e-1f;
+  power = power * f + 6.9314718e-1f;
+  power = power * f + 1.f;
+  const uint32_t exponent = std::bit_cast<uint32_t>(rounded) - std::bit_cast<uint32_t>(kRound);
+  return power * std::bit_cast<float>((exponent + 127u) << 23);
 }
 
-// The means of two coordinates.
-SHOAL_CPU_CLONES void MeanPoint(const float* p, int n, const float* across, const float* down,
-                                float* point) {
-  float x = 0, y = 0;
-#pragma omp simd reduction(+ : x, y)
-  for (int i = 0; i < n; ++i) {
-    x += p[i] * across[i];
-    y += p[i] * down[i];
+// What all maps of a layer share.
+struct Grid {
+  int pixels;
+  const float *across, *down;  // (pixels)
+  float sharpness;
+};
+
+// A block of maps: x (pixels, lanes), the others (lanes).
+template <class T>
+[[gnu::always_inline]] inline void PointsOfBlock(const Grid& grid, const T* __restrict x,
+                                                 float* __restrict largest, float* __restrict total,
+                                                 float* __restrict px, float* __restrict py) {
+  float top[kLanes], sum[kLanes] = {}, right[kLanes] = {}, below[kLanes] = {};
+  for (int l = 0; l < kLanes; ++l) top[l] = ToFloat(x[l]);
+  for (int i = 1; i < grid.pixels; ++i) {
+#pragma omp simd
+    for (int l = 0; l < kLanes; ++l) {
+      const float value = ToFloat(x[i * kLanes + l]);
+      top[l] = value < top[l] ? top[l] : value;
+    }
   }
-  point[0] = x;
-  point[1] = y;
+  for (int i = 0; i < grid.pixels; ++i) {
+    const float across = grid.across[i], down = grid.down[i];
+#pragma omp simd
+    for (int l = 0; l < kLanes; ++l) {
+      const float e = ExpOfNegative(grid.sharpness * (ToFloat(x[i * kLanes + l]) - top[l]));
+      sum[l] += e;
+      right[l] += e * across;
+      below[l] += e * down;
+    }
+  }
+  for (int l = 0; l < kLanes; ++l) {
+    largest[l] = top[l];
+    total[l] = sum[l];
+    px[l] = right[l] / sum[l];
+    py[l] = below[l] / sum[l];
+  }
 }
+
+// Gradients along the coordinates of a block's points, and of both with the points themselves:
+// (lanes).
+struct BlockGradient {
+  float across[kLanes], down[kLanes], mean[kLanes];
+};
 
 // dx = s p (g - mean of g), g the gradient along a pixel's coordinates.
-struct PointGradient {
-  float across, down, mean;  // dy[0], dy[1], and of both with the point itself
-};
-SHOAL_CPU_CLONES void MeanPointBackward(const float* p, int n, const float* across,
-                                        const float* down, const PointGradient& dy, float sharpness,
-                                        float* dx) {
-  for (int i = 0; i < n; ++i) {
-    dx[i] = sharpness * p[i] * (dy.across * across[i] + dy.down * down[i] - dy.mean);
+template <class T>
+[[gnu::always_inline]] inline void PointsOfBlockBackward(const Grid& grid, const T* __restrict x,
+                                                         const float* __restrict largest,
+                                                         const float* __restrict total,
+                                                         const BlockGradient& dy,
+                                                         T* __restrict dx) {
+  float top[kLanes], factor[kLanes];
+  for (int l = 0; l < kLanes; ++l) {
+    top[l] = largest[l];
+    factor[l] = grid.sharpness / total[l];
+  }
+  for (int i = 0; i < grid.pixels; ++i) {
+    const float across = grid.across[i], down = grid.down[i];
+#pragma omp simd
+    for (int l = 0; l < kLanes; ++l) {
+      const float e = ExpOfNegative(grid.sharpness * (ToFloat(x[i * kLanes + l]) - top[l]));
+      const float g = dy.across[l] * across + dy.down[l] * down - dy.mean[l];
+      Store(factor[l] * e * g, dx + i * kLanes + l);
+    }
   }
 }
 
-float* Floats(const memory& values) { return static_cast<float*>(values.get_data_handle()); }
+SHOAL_CPU_CLONES void Points(const Grid& grid, const float* x, float* largest, float* total,
+                             float* px, float* py) {
+  PointsOfBlock(grid, x, largest, total, px, py);
+}
+SHOAL_CPU_CLONES void Points(const Grid& grid, const uint16_t* x, float* largest, float* total,
+                             float* px, float* py) {
+  PointsOfBlock(grid, x, largest, total, px, py);
+}
+SHOAL_CPU_CLONES void PointsBackward(const Grid& grid, const float* x, const float* largest,
+                                     const float* total, const BlockGradient& dy, float* dx) {
+  PointsOfBlockBackward(grid, x, largest, total, dy, dx);
+}
+SHOAL_CPU_CLONES void PointsBackward(const Grid& grid, const uint16_t* x, const float* largest,
+                                     const float* total, const BlockGradient& dy, uint16_t* dx) {
+  PointsOfBlockBackward(grid, x, largest, total, dy, dx);
+}
+
+template <class T>
+T* Values(const memory& values) {
+  return static_cast<T*>(values.get_data_handle());
+}
 
 }  // namespace
 
 SpatialSoftmax::SpatialSoftmax(const LayerContext& context, const LayerPlan& plan,
                                const memory& source, const memory& source_gradient)
-    : planes_(context.batch * plan.input.channels),
+    : bf16_(context.precision == Precision::kBf16),
+      images_(context.batch),
+      channels_(plan.input.channels),
+      blocks_((channels_ + kLanes - 1) / kLanes),
       pixels_(plan.input.height * plan.input.width),
-      sharpness_(float(plan.sharpness)) {
+      sharpness_(float(plan.sharpness)),
+      largest_(size_t(images_) * size_t(blocks_) * kLanes),
+      total_(largest_) {
   const MapShape& from = plan.input;
   for (int i = 0; i < from.height; ++i) {
     for (int j = 0; j < from.width; ++j) {
@@ -56,65 +147,87 @@ SpatialSoftmax::SpatialSoftmax(const LayerContext& context, const LayerPlan& pla
       down_.push_back(Coordinate(i, from.height));
     }
   }
-  const memory::desc map({context.batch, from.channels, from.height, from.width},
-                         memory::data_type::f32, memory::format_tag::nchw);
+  const memory::data_type compute = ComputeType(context.precision);
+  const memory::desc map({images_, channels_, from.height, from.width}, compute,
+                         memory::format_tag::nChw16c);
   source_ = Relayout::Before(source, map, context.scratchpad);
-  const memory::desc rows = PlainF32({planes_, pixels_});
-  probabilities_ = MakeMemory(rows);
-  const auto kind =
-      context.training ? dnnl::prop_kind::forward_training : dnnl::prop_kind::forward_inference;
-  softmax_ =
-      Op(DescribeSoftmax(kind, rows, /*axis=*/1),
-         {{DNNL_ARG_SRC, probabilities_}, {DNNL_ARG_DST, probabilities_}}, context.scratchpad);
   const auto points = [&](memory::data_type type) {
-    return memory::desc({context.batch, from.channels, 1, 2}, type, memory::format_tag::nchw);
+    return memory::desc({images_, channels_, 1, 2}, type, memory::format_tag::nchw);
   };
-  const memory::desc compute = points(ComputeType(context.precision));
   const memory::desc f32 = points(memory::data_type::f32);
-  output_ = MakeMemory(compute);
+  output_ = MakeMemory(points(compute));
   points_ = Relayout::After(f32, output_, context.scratchpad);
   if (!context.training) return;
-  output_gradient_ = MakeMemory(compute);
+  output_gradient_ = MakeMemory(points(compute));
   points_gradient_ = Relayout::Before(output_gradient_, f32, context.scratchpad);
   has_source_gradient_ = bool(source_gradient);
   if (!has_source_gradient_) return;
   source_gradient_ = Relayout::After(map, source_gradient, context.scratchpad);
 }
 
-void SpatialSoftmax::Forward(Statistics) {
-  source_.Run();
-  const float* x = Floats(source_.memory());
-  float* p = Floats(probabilities_);
-  ParallelFor(planes_, [&](int begin, int end) {
-    const int64_t first = int64_t{begin} * pixels_;
-    Scale(x + first, (end - begin) * pixels_, sharpness_, p + first);
-  });
-  softmax_.Run();
-  float* y = Floats(points_.memory());
-  ParallelFor(planes_, [&](int begin, int end) {
-    for (int plane = begin; plane < end; ++plane) {
-      MeanPoint(p + int64_t{plane} * pixels_, pixels_, across_.data(), down_.data(),
-                y + int64_t{plane} * 2);
+template <class T>
+void SpatialSoftmax::ForwardMaps() {
+  const Grid grid{pixels_, across_.data(), down_.data(), sharpness_};
+  const T* x = Values<T>(source_.memory());
+  float* y = Values<float>(points_.memory());
+  ParallelFor(images_ * blocks_, [&](int begin, int end) {
+    float across[kLanes], down[kLanes];
+    for (int block = begin; block < end; ++block) {
+      const int64_t lanes = int64_t{block} * kLanes;
+      Points(grid, x + lanes * pixels_, &largest_[size_t(lanes)], &total_[size_t(lanes)], across,
+             down);
+      const int image = block / blocks_, first = block % blocks_ * kLanes;
+      for (int l = 0; l < kLanes && first + l < channels_; ++l) {
+        float* point = y + (int64_t{image} * channels_ + first + l) * 2;
+        point[0] = across[l];
+        point[1] = down[l];
+      }
     }
   });
+}
+
+template <class T>
+void SpatialSoftmax::BackwardMaps() {
+  const Grid grid{pixels_, across_.data(), down_.data(), sharpness_};
+  const T* x = Values<T>(source_.memory());
+  T* dx = Values<T>(source_gradient_.memory());
+  ParallelFor(images_ * blocks_, [&](int begin, int end) {
+    for (int block = begin; block < end; ++block) {
+      const int image = block / blocks_, first = block % blocks_ * kLanes;
+      BlockGradient gradient{};  // 0 for the lanes that fill up the last block
+      for (int l = 0; l < kLanes && first + l < channels_; ++l) {
+        const int64_t point = (int64_t{image} * channels_ + first + l) * 2;
+        const float* y = Values<float>(points_.memory()) + point;
+        const float* dy = Values<float>(points_gradient_.memory()) + point;
+        gradient.across[l] = dy[0];
+        gradient.down[l] = dy[1];
+        gradient.mean[l] = dy[0] * y[0] + dy[1] * y[1];
+      }
+      const int64_t lanes = int64_t{block} * kLanes;
+      PointsBackward(grid, x + lanes * pixels_, &largest_[size_t(lanes)], &total_[size_t(lanes)],
+                     gradient, dx + lanes * pixels_);
+    }
+  });
+}
+
+void SpatialSoftmax::Forward(Statistics) {
+  source_.Run();
+  if (bf16_) {
+    ForwardMaps<uint16_t>();
+  } else {
+    ForwardMaps<float>();
+  }
   points_.Run();
 }
 
 void SpatialSoftmax::Backward() {
   if (!has_source_gradient_) return;
   points_gradient_.Run();
-  const float* p = Floats(probabilities_);
-  float* dx = Floats(source_gradient_.memory());
-  ParallelFor(planes_, [&](int begin, int end) {
-    for (int plane = begin; plane < end; ++plane) {
-      const float* y = Floats(points_.memory()) + int64_t{plane} * 2;
-      const float* dy = Floats(points_gradient_.memory()) + int64_t{plane} * 2;
-      const PointGradient gradient{dy[0], dy[1], dy[0] * y[0] + dy[1] * y[1]};
-      const int64_t first = int64_t{plane} * pixels_;
-      MeanPointBackward(p + first, pixels_, across_.data(), down_.data(), gradient, sharpness_,
-                        dx + first);
-    }
-  });
+  if (bf16_) {
+    BackwardMaps<uint16_t>();
+  } else {
+    BackwardMaps<float>();
+  }
   source_gradient_.Run();
 }
 

@@ -8,7 +8,8 @@
 //
 // A side of one pixel has the coordinate 0.
 // Shapes: source (B, C, H, W), output (B, C, 1, 2) row-major, in the compute type; within, all is
-// f32.
+// f32. The map is read twice forward and once backward, where p is computed anew: that is cheaper
+// than to keep it.
 #pragma once
 
 #include <vector>
@@ -27,13 +28,19 @@ class SpatialSoftmax final : public MapLayer {
   void Backward() override;
 
  private:
-  int planes_, pixels_;                // B C, H W
-  float sharpness_;                    // s
-  std::vector<float> across_, down_;   // coordinates of the pixels
-  Relayout source_, source_gradient_;  // row-major f32
-  dnnl::memory probabilities_;         // s x, then p
-  Op softmax_;
-  Relayout points_, points_gradient_;  // y and dL/dy in f32
+  // In the compute type, as float or as the bits of a bf16.
+  template <class T>
+  void ForwardMaps();
+  template <class T>
+  void BackwardMaps();
+
+  const bool bf16_;
+  const int images_, channels_, blocks_, pixels_;  // B, C, C in blocks of lanes, H W
+  const float sharpness_;                          // s
+  std::vector<float> across_, down_;               // coordinates of the pixels
+  Relayout source_, source_gradient_;              // in blocks of channels
+  std::vector<float> largest_, total_;  // of s x, of exp(s x - largest): by image, block and lane
+  Relayout points_, points_gradient_;   // y and dL/dy in f32
   bool has_source_gradient_ = false;
 };
 
