@@ -10,7 +10,11 @@ for none: then only our own rows are printed. Exit code 1 when a peer could not 
 Each peer is a process of its own (this file again, `bench_peers.py worker KIND ...`) that measures
 for so many seconds when it is told to, and sleeps meanwhile. PyTorch computes an update with the
 networks and passes of docs/algorithm.md; every variant of eager or compiled, f32 or bf16 (autocast),
-channels last or not is tried once, and the best of them is the peer.
+channels last or not is tried once for an encoder and a number of threads, with the smaller batch, and
+the best of them is the peer. Two threads are compared for `compact` alone. The other encoders are held
+to 2.5 times the peer or 0.8 of the rate of their convolutions alone, whichever is lower; both are rows.
+
+What fails ends the measurement; the rows so far are printed, and the exit code is 1.
 """
 
 import argparse
@@ -27,7 +31,9 @@ ENCODERS = ("compact", "drq", "mrq", "nature")
 BATCHES = (128, 256)
 VARIANTS = ["+".join(v) for v in itertools.product(("eager", "compiled"), ("f32", "bf16"),
                                                    ("plain", "channels-last"))]
-UPDATE_TARGET, SB3_TARGET, SB3_SHARED_TARGET, SB3_F32_TARGET = 2.5, 4, 10, 1.5
+UPDATE_TARGET, CONVOLUTIONS_TARGET = 2.5, 0.8
+CONVOLUTIONS = "its convolutions alone"
+SB3_TARGET, SB3_SHARED_TARGET, SB3_F32_TARGET = 4, 10, 1.5
 FAST_TARGET, REFERENCE_TARGET = 10, 1.5
 
 
@@ -253,6 +259,10 @@ class PeerError(Exception):
     pass
 
 
+class OwnError(Exception):
+    pass
+
+
 class Worker:
     def __init__(self, python, *arguments):
         environment = dict(os.environ, MUJOCO_GL="osmesa", PYOPENGL_PLATFORM="osmesa")
@@ -292,13 +302,15 @@ class Worker:
 
 def ours(options, program, stage, arguments=()):
     """The rows of that stage, as `program` writes them."""
+    seconds = options.seconds if program == "shoal-bench" else max(1, options.seconds)
     command = [os.path.join(options.programs, program), "--repetitions", "1", "--seconds",
-               str(options.seconds), *arguments]
+               str(seconds), *arguments]
     if program == "shoal-bench":
         command += ["--only", stage]
     done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
     if done.returncode != 0:
-        sys.exit(f"bench: {program} failed: {done.stderr.strip().splitlines()[-1:]}")
+        said = done.stderr.strip().splitlines() or [f"exit code {done.returncode}"]
+        raise OwnError(f"{program} failed: {said[-1]}")
     report = json.loads(done.stdout)
     options.commit, options.machine = report["commit"], report["machine"]
     return [row for row in report["rows"] if stage in row["stage"]]
@@ -352,24 +364,48 @@ class Peers:
         self.whole = False
         return [(measure(), None) for _ in range(repetitions)]
 
-    def updates(self, threads, encoder, batch):
-        name = f"SAC update, {encoder}, batch {batch}"
-        stage = f"{name} of (6, 84, 84), auto"
-        if threads == 2:
-            stage = f"SAC update by two threads, {encoder}, batch {batch}, idle cores"
-        if not self.wanted(stage):
-            return
-        options, chosen, rates = self.options, "PyTorch", {}
+    def updates(self, threads, encoder):
+        """Of all batches; the peer is the variant that is the best with the first of them."""
+        options, variant, rates = self.options, None, {}
+        for batch in BATCHES:
+            stage = f"SAC update, {encoder}, batch {batch} of (6, 84, 84), auto"
+            if threads == 2:
+                stage = f"SAC update by two threads, {encoder}, batch {batch}, idle cores"
+            if not self.wanted(stage):
+                continue
 
-        def start():
-            nonlocal chosen, rates
-            variant, rates = best_variant(options, threads, encoder, batch)
-            chosen = f"PyTorch, {variant.replace('+', ', ')}, on {threads} thread(s)"
-            return Worker(options.python, "update", threads, encoder, batch, variant)
+            def start():
+                nonlocal variant, rates
+                if variant is None:
+                    variant, rates = best_variant(options, threads, encoder, batch)
+                return Worker(options.python, "update", threads, encoder, batch, variant)
 
-        pairs = self.in_turn("PyTorch", start,
-                             lambda: ours(options, "shoal-bench", stage)[0]["figure"])
-        self.add(stage, "updates/s", chosen, pairs, UPDATE_TARGET, variants=rates)
+            def measure():
+                return {row["against"]: row for row in ours(options, "shoal-bench", stage)}
+
+            pairs = self.in_turn("PyTorch", start, measure)
+            target = UPDATE_TARGET
+            if encoder != "compact":
+                alone = [rows[CONVOLUTIONS] for rows, _ in pairs]
+                self.add(stage, "updates/s", CONVOLUTIONS,
+                         [(row["figure"], row["against_figure"]) for row in alone], None)
+                peers = [rate for _, rate in pairs if rate]
+                if peers:
+                    target = min(target, CONVOLUTIONS_TARGET * statistics.median(
+                        row["against_figure"] for row in alone) / statistics.median(peers))
+            against = "PyTorch"
+            if variant:
+                against += f", {variant.replace('+', ', ')}, on {threads} thread(s)"
+            self.add(stage, "updates/s", against,
+                     [(next(iter(rows.values()))["figure"], rate) for rows, rate in pairs], target,
+                     variants=rates)
+
+    def measure(self):
+        for encoder in ENCODERS:
+            self.updates(1, encoder)
+        self.updates(2, "compact")
+        self.stable_baselines()
+        self.environments()
 
     def stable_baselines(self):
         options = self.options
@@ -422,11 +458,16 @@ def main():
     options = parser.parse_args()
     if not set(options.variants.split(",")) <= set(VARIANTS):
         parser.error(f"--variants are among {','.join(VARIANTS)}")
+    if options.repetitions < 1:
+        parser.error(f"--repetitions {options.repetitions}: expected at least 1")
     peers = Peers(options)
-    for threads, encoder, batch in itertools.product((1, 2), ENCODERS, BATCHES):
-        peers.updates(threads, encoder, batch)
-    peers.stable_baselines()
-    peers.environments()
+    try:
+        peers.measure()
+    except OwnError as error:
+        print(f"bench: {error}", file=sys.stderr)
+        peers.whole = False
+        if not peers.rows:
+            return 1
     if not peers.rows:
         parser.error(f"no row has '{options.only}'")
     print(json.dumps({"schema": "shoal-bench-1", "commit": options.commit,
