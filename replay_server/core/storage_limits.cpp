@@ -76,8 +76,8 @@ MemoryRoom AvailableMemory(const fs::path& root) {
   return room;
 }
 
-void CheckMemoryRoom(uint64_t bytes, std::string_view remedy) {
-  const MemoryRoom room = AvailableMemory();
+void CheckMemoryRoom(uint64_t bytes, std::string_view remedy, const fs::path& root) {
+  const MemoryRoom room = AvailableMemory(root);
   if (bytes <= room.bytes) return;
   throw RuntimeError(
       "the replay needs {:.0f} MB of memory and {:.0f} MB are available ({}): lower "

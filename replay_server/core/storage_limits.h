@@ -19,8 +19,9 @@ struct MemoryRoom {
 MemoryRoom AvailableMemory(const std::filesystem::path& root = "/");
 
 // Throw Error naming the bytes needed and there, and what to change; `remedy` is one that the
-// caller knows beside a smaller ring.
-void CheckMemoryRoom(uint64_t bytes, std::string_view remedy = "set replay.storage=file");
+// caller knows beside a smaller ring, `root` as above.
+void CheckMemoryRoom(uint64_t bytes, std::string_view remedy = "set replay.storage=file",
+                     const std::filesystem::path& root = "/");
 // `folder` will hold a file of `bytes`. Checks the file size limit, the file system's free space,
 // and memory where the file system lives in memory.
 void CheckDiskRoom(const std::filesystem::path& folder, uint64_t bytes);

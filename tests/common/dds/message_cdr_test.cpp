@@ -1,9 +1,13 @@
 #include "common/dds/message_cdr.h"
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <span>
+#include <string>
 
 #include "tests/common/dds/encode_cdr.h"
 #include "tests/common/dds/example_messages.h"
@@ -65,22 +69,36 @@ TYPED_TEST(EveryMessage, IsRefusedWhenItIsCutShort) {
   }
 }
 
+// What is read from `cdr` where it lies among bytes of `neighbour`.
+template <class M>
+std::string ReadAmong(uint8_t neighbour, const Bytes& cdr) {
+  constexpr size_t kMargin = 64;
+  Bytes memory(cdr.size() + 2 * kMargin, neighbour);
+  std::ranges::copy(cdr, memory.begin() + kMargin);
+  M back{};
+  const bool taken = ParseCdr(std::span(memory).subspan(kMargin, cdr.size()), &back);
+  return taken ? Describe(back) : "refused";
+}
+
 // Also with sizes that fit: fields at the end are then absent, or cut in two. Nothing outside of
-// the bytes may be read, which AddressSanitizer watches.
+// the bytes decides what is read of them.
 TYPED_TEST(EveryMessage, CanHaveAnyNumberAnywhere) {
+  const auto expect_own_bytes_alone = [](const Bytes& cdr, const std::string& what) {
+    ASSERT_EQ(ReadAmong<TypeParam>(0x00, cdr), ReadAmong<TypeParam>(0xff, cdr)) << what;
+    TypeParam back;
+    ParseCdr(cdr, &back);  // without neighbours: AddressSanitizer watches
+  };
   const Bytes whole = EncodeCdr(this->message_);
   for (size_t body = 0; body < whole.size() - 8; ++body) {
     Bytes cut = whole;
     Resize(&cut, body);
-    TypeParam back;
-    ParseCdr(Bytes(cut), &back);
+    expect_own_bytes_alone(cut, fmt::format("{} bytes", body));
   }
   for (size_t offset = 4; offset + 4 <= whole.size(); ++offset) {
     for (const uint32_t value : {0u, 1u, 3u, 0x20000000u, 0x7fffffffu, 0xffffffffu}) {
       Bytes altered = whole;
       Set(&altered, offset, value);
-      TypeParam back;
-      ParseCdr(altered, &back);
+      expect_own_bytes_alone(altered, fmt::format("{} at byte {}", value, offset));
     }
   }
 }

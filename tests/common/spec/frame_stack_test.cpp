@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <span>
 #include <vector>
 
 namespace shoal {
@@ -23,10 +24,13 @@ TEST(FrameStack, RepeatsTheFirstFrameThenKeepsTheLastOldestFirst) {
   EXPECT_EQ(memory, (Bytes{9, 9, 9, 9, 9, 9}));
 }
 
-TEST(FrameStack, WithoutPixelsDoesNothing) {
-  FrameStack stack({}, 0);
-  stack.Reset({});
-  stack.Push({});
+// As in a batch without pixels, whose slices have no bytes.
+TEST(FrameStack, OfNoFramesLeavesItsNeighboursAlone) {
+  Bytes memory{1, 2, 3, 4};
+  FrameStack stack(std::span<uint8_t>(memory).subspan(2, 0), 1);
+  stack.Reset(Bytes{9});
+  stack.Push(Bytes{9});
+  EXPECT_EQ(memory, (Bytes{1, 2, 3, 4}));
 }
 
 }  // namespace
