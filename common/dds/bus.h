@@ -27,8 +27,8 @@ enum class Role { kCoordinator, kLearner, kReplay, kActor, kEval, kClient };
 // kMain: domain D. kBatch: domain D+1. kOperate: domain D+1 without a tag.
 enum class Plane { kMain, kBatch, kOperate };
 
-// Sets malloc options that keep megabyte samples out of mmap (facts: 5x throughput). Call first in
-// main, before threads.
+// Sets malloc options that keep megabyte samples out of mmap, whose page faults would be most of a
+// receiver's time. Call first in main, before threads.
 void TuneMalloc();
 
 class Bus {

@@ -135,8 +135,9 @@ struct MetricsMessage {
   uint32_t id = 0;
   std::string host;
   int32_t pid = 0;
-  std::string state;  // "starting" | "running" | "blocked" | "idle" | "draining" | "stopping"
-  double time = 0;    // seconds since 1970
+  // "starting" | "running" | "blocked" | "idle" | "evaluating" | "draining" | "stopping"
+  std::string state;
+  double time = 0;  // seconds since 1970
   std::vector<std::string> names;
   std::vector<double> values;
 };
