@@ -47,8 +47,9 @@ class Bus {
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;
 
-  // For tests of faults: drops everything that arrives (deaf) and that is sent (mute), in both
-  // domains, and ends both after `reset_after`.
+  // Drops everything that arrives (deaf) and that is sent (mute), in both domains, and ends both
+  // after `reset_after`. No program calls it: it is how tests cut a network, which from outside
+  // would take root.
   void SetDeafMute(bool deaf, bool mute, std::chrono::milliseconds reset_after);
 
   // Messages that could not be read, by topic, since the bus was made; every topic that a

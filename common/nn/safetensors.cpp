@@ -208,18 +208,4 @@ TensorMap ToBf16(const TensorMap& tensors) {
   return result;
 }
 
-TensorMap ToF32(const TensorMap& tensors) {
-  TensorMap result = tensors;
-  for (auto& [name, tensor] : result) {
-    if (tensor.dtype != "BF16") continue;
-    const NamedTensor& from = tensors.at(name);
-    const size_t count = from.data.size() / sizeof(uint16_t);
-    tensor.dtype = "F32";
-    tensor.data.resize(count * sizeof(float));
-    Bf16ToFloats(reinterpret_cast<const uint16_t*>(from.data.data()), int64_t(count),
-                 reinterpret_cast<float*>(tensor.data.data()));
-  }
-  return result;
-}
-
 }  // namespace shoal::nn

@@ -22,8 +22,6 @@ class MetricsReport {
 
   // Empties the report, ends the interval; then Add each figure once.
   void Begin(const std::string& state);
-  // Seconds of the interval that ended at Begin.
-  double interval_seconds() const { return interval_seconds_; }
 
   void Add(const std::string& name, double value);
   // NAME_p50, NAME_p90 and NAME_p99; nothing where the window is empty. Empties it.
@@ -49,7 +47,7 @@ class MetricsReport {
   MetricsMessage message_;
   const SteadyTime start_;
   SteadyTime last_due_, last_begin_;
-  double interval_seconds_ = 0;
+  double interval_seconds_ = 0;  // of the interval that ended at Begin
   std::map<std::string, double> totals_;  // of AddRate, at the last Begin
 };
 
