@@ -72,7 +72,7 @@ struct ReplayConfig {
 };
 
 struct LearnerConfig {
-  std::string algorithm = "sac";  // learner/agent/algorithms.h
+  std::string algorithm = "sac";  // common/config/algorithm_kind.h
   int batch = 128;
   std::string precision = "auto";  // auto | f32 | bf16
   int threads = 0;                 // 0 = chosen: common/config/learner_threads.h

@@ -5,6 +5,8 @@
 
 #include <limits>
 
+#include "common/config/algorithm_kind.h"
+
 namespace shoal::internal {
 namespace {
 
@@ -116,11 +118,16 @@ std::vector<Key> ReplayKeys() {
   };
 }
 
+Choices AlgorithmChoices() {
+  Choices choices;
+  for (const AlgorithmKind& kind : AlgorithmKinds()) choices.words.push_back(kind.name);
+  return choices;
+}
+
 std::vector<Key> LearnerKeys() {
   const RealRange positive{0, 1, true};
   return {
-      SHOAL_SAME(learner.algorithm, (Choices{{"sac", "td3", "ddpg", "ppo"}}),
-                 "what learns: docs/algorithm.md"),
+      SHOAL_SAME(learner.algorithm, AlgorithmChoices(), "what learns: docs/algorithm.md"),
       SHOAL_SAME(learner.batch, (IntegerRange{1, 65'536}),
                  "transitions per update; ppo: per minibatch"),
       SHOAL_SAME(learner.precision, (Choices{{"auto", "f32", "bf16"}}),

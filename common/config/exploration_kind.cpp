@@ -1,11 +1,12 @@
 #include "common/config/exploration_kind.h"
 
 #include "common/base/check.h"
+#include "common/config/algorithm_kind.h"
 #include "common/config/on_policy.h"
 
 namespace shoal {
 
-bool LearnsDeviation(const Config& config) { return config.learner.algorithm == "sac"; }
+bool LearnsDeviation(const Config& config) { return AlgorithmKindOf(config).squashed_gaussian; }
 
 ExplorationKind ExplorationKindOf(const Config& config) {
   const std::string& kind = config.exploration.kind;

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "common/base/error.h"
+#include "common/config/algorithm_kind.h"
 #include "common/config/config_io.h"
 
 namespace shoal {
@@ -59,6 +60,10 @@ std::string FirstChanged(std::string_view path, const ordered_json& asked,
   return ValueAt(asked, key) == ValueAt(usual, key) ? "" : key;
 }
 
+std::string OffPolicyAlgorithms() {
+  return AlgorithmsThat([](const auto& kind) { return !kind.on_policy; });
+}
+
 void RefuseOffPolicyKeys(const Config& config) {
   const ordered_json asked = ToJson(config), usual = ToJson(Config());
   for (const std::string_view path : kOffPolicyKeys) {
@@ -66,16 +71,21 @@ void RefuseOffPolicyKeys(const Config& config) {
     if (key.empty()) continue;
     throw UsageError(
         "{} = {}: learner.algorithm = {} learns from rollouts, past the replay; expected it unset "
-        "({}), or learner.algorithm = sac | td3 | ddpg",
-        key, ValueAt(asked, key).dump(), config.learner.algorithm, ValueAt(usual, key).dump());
+        "({}), or learner.algorithm = {}",
+        key, ValueAt(asked, key).dump(), config.learner.algorithm, ValueAt(usual, key).dump(),
+        OffPolicyAlgorithms());
   }
 }
 
-void RefuseOnPolicyKeys(const Config& config) {
-  const std::string key = FirstChanged("ppo.", ToJson(config), ToJson(Config()));
-  if (key.empty()) return;
-  throw UsageError("{} belongs to learner.algorithm = ppo: expected not to be set beside {}", key,
-                   config.learner.algorithm);
+void RefuseKeysOfOthers(const Config& config) {
+  const ordered_json asked = ToJson(config), usual = ToJson(Config());
+  for (const AlgorithmKind& other : AlgorithmKinds()) {
+    if (other.own_section.empty() || other.name == config.learner.algorithm) continue;
+    const std::string key = FirstChanged(other.own_section, asked, usual);
+    if (key.empty()) continue;
+    throw UsageError("{} belongs to learner.algorithm = {}: expected not to be set beside {}", key,
+                     other.name, config.learner.algorithm);
+  }
 }
 
 void ValidateRollout(const Config& config) {
@@ -100,16 +110,17 @@ void ValidateRollout(const Config& config) {
 
 }  // namespace
 
-bool LearnsOnPolicy(const Config& config) { return config.learner.algorithm == "ppo"; }
+bool LearnsOnPolicy(const Config& config) { return AlgorithmKindOf(config).on_policy; }
 
 void ValidateOnPolicy(const Config& config) {
-  if (!LearnsOnPolicy(config)) return RefuseOnPolicyKeys(config);
+  RefuseKeysOfOthers(config);
+  if (!LearnsOnPolicy(config)) return;
   RefuseOffPolicyKeys(config);
   if (config.observation.goal_mode == "image") {
     throw UsageError(
         "observation.goal_mode = image: rollouts of learner.algorithm = {} carry no goal pictures; "
-        "expected none, desired or both, or learner.algorithm = sac | td3 | ddpg",
-        config.learner.algorithm);
+        "expected none, desired or both, or learner.algorithm = {}",
+        config.learner.algorithm, OffPolicyAlgorithms());
   }
   ValidateRollout(config);
   if (config.lockstep && config.ppo.versions_ahead > 0) {

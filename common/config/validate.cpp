@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "common/base/error.h"
+#include "common/config/algorithm_kind.h"
 #include "common/config/config_io.h"
 #include "common/config/exploration_kind.h"
 #include "common/config/on_policy.h"
@@ -106,9 +107,10 @@ void ValidateEncoders(const Config& config) {
       {"network.target_encoder", config.network.target_encoder != usual.target_encoder}};
   for (const auto& [key, is_set] : keys) {
     if (!is_set) continue;
-    if (config.learner.algorithm != "sac") {
-      throw UsageError("{}: learner.algorithm = {} has one encoder; expected it unset, or sac", key,
-                       config.learner.algorithm);
+    if (!AlgorithmKindOf(config).encoder_options) {
+      throw UsageError("{}: learner.algorithm = {} has one encoder; expected it unset, or {}", key,
+                       config.learner.algorithm,
+                       AlgorithmsThat([](const auto& kind) { return kind.encoder_options; }));
     }
     if (!config.observation.pixels) {
       throw UsageError("{}: nothing is encoded without observation.pixels; expected it unset", key);
@@ -124,9 +126,10 @@ void ValidatePrivileged(const Config& config) {
                     : learner.aux_weight != Config().learner.aux_weight ? "learner.aux_weight"
                                                                         : nullptr;
   if (key == nullptr) return;
-  if (learner.algorithm != "sac") {
-    throw UsageError("{}: learner.algorithm = {} does not take it; expected it unset, or sac", key,
-                     learner.algorithm);
+  if (!AlgorithmKindOf(config).privileged) {
+    throw UsageError("{}: learner.algorithm = {} does not take it; expected it unset, or {}", key,
+                     learner.algorithm,
+                     AlgorithmsThat([](const auto& kind) { return kind.privileged; }));
   }
   if (!learner.aux.empty() && !config.observation.pixels) {
     throw UsageError(

@@ -2,8 +2,10 @@
 
 #include <fmt/ranges.h>
 
-#include <algorithm>
+#include <string>
+#include <string_view>
 #include <utility>
+#include <vector>
 
 #include "common/base/check.h"
 #include "common/base/error.h"
@@ -12,36 +14,47 @@
 #include "common/nn/vector_scale.h"
 #include "launch/export/torch_file.h"
 #include "launch/export/zip_archive.h"
+#include "learner/agent/algorithms.h"
 
 namespace shoal::launch {
 namespace {
 
 using nn::ActorOutput;
 
-// One algorithm's names there.
+// What the parameters of a policy with this output are called there.
 struct Sb3Names {
-  std::string_view algorithm, model;
   std::vector<std::string> extractors;
   std::string mlp;           // before a hidden layer's number
   std::string output_layer;  // of the action; empty: the MLP's next number
 };
 
-const Sb3Names& NamesOf(const std::string& algorithm) {
-  static const std::vector<Sb3Names> all = [] {
-    const std::string actors = "actor.features_extractor";
-    return std::vector<Sb3Names>{{"sac", "SAC", {actors}, "actor.latent_pi.", "actor.mu"},
-                                 {"td3", "TD3", {actors}, "actor.mu.", ""},
-                                 {"ddpg", "DDPG", {actors}, "actor.mu.", ""},
-                                 {"ppo",
-                                  "PPO",
-                                  {"features_extractor", "pi_features_extractor"},
-                                  "mlp_extractor.policy_net.",
-                                  "action_net"}};
-  }();
-  const auto at = std::ranges::find(all, algorithm, &Sb3Names::algorithm);
-  if (at != all.end()) return *at;
+const Sb3Names& NamesOf(ActorOutput output) {
+  static const std::vector<std::string> actors{"actor.features_extractor"};
+  static const Sb3Names gaussian{actors, "actor.latent_pi.", "actor.mu"};
+  static const Sb3Names deterministic{actors, "actor.mu.", ""};
+  static const Sb3Names unsquashed{
+      {"features_extractor", "pi_features_extractor"}, "mlp_extractor.policy_net.", "action_net"};
+  switch (output) {
+    case ActorOutput::kGaussian:
+      return gaussian;
+    case ActorOutput::kDeterministic:
+      return deterministic;
+    case ActorOutput::kUnsquashed:
+      break;
+  }
+  return unsquashed;
+}
+
+// The class whose policy it is.
+std::string_view ModelClassOf(const std::string& algorithm) {
+  std::vector<std::string_view> known;
+  for (const learner::Algorithm& candidate : learner::Algorithms()) {
+    if (candidate.sb3.empty()) continue;
+    if (candidate.name == algorithm) return candidate.sb3;
+    known.push_back(candidate.name);
+  }
   throw UsageError("learner.algorithm = {} has no counterpart in Stable-Baselines3: expected {}",
-                   algorithm, "sac, td3, ddpg or ppo");
+                   algorithm, fmt::join(known, " | "));
 }
 
 void RefuseWithoutCounterpart(const policy::PolicyDescription& policy, const nn::ActorPlan& actor) {
@@ -89,7 +102,7 @@ class Renamer {
 };
 
 std::string ModelOf(const policy::PolicyDescription& policy, const nn::ActorPlan& actor,
-                    const Sb3Names& names) {
+                    std::string_view model_class) {
   const NetworkConfig& network = policy.network;
   std::string arguments =
       fmt::format("net_arch=[{}], activation_fn=torch.nn.{}", fmt::join(network.hidden, ", "),
@@ -98,7 +111,7 @@ std::string ModelOf(const policy::PolicyDescription& policy, const nn::ActorPlan
     arguments +=
         fmt::format(", features_extractor_kwargs=dict(features_dim={})", actor.trunk_columns());
   }
-  return fmt::format("{}(\"{}Policy\", env, policy_kwargs=dict({}))", names.model,
+  return fmt::format("{}(\"{}Policy\", env, policy_kwargs=dict({}))", model_class,
                      policy.spec.HasPixels() ? "Cnn" : "Mlp", arguments);
 }
 
@@ -137,7 +150,8 @@ void AddDeviation(const nn::ActorPlan& actor, Renamer* renamer, Sb3File* file) {
 
 Sb3File WriteSb3(const policy::CheckpointPolicy& policy) {
   const policy::PolicyDescription& description = policy.description;
-  const Sb3Names& names = NamesOf(description.algorithm);
+  const std::string_view model_class = ModelClassOf(description.algorithm);
+  const Sb3Names& names = NamesOf(description.output);
   const nn::NetworkPlan encoder = description.Encoder();
   const nn::ActorPlan actor = description.Actor();
   RefuseWithoutCounterpart(description, actor);
@@ -146,7 +160,7 @@ Sb3File WriteSb3(const policy::CheckpointPolicy& policy) {
   nn::ParameterSet set(specs, nn::ParameterSet::Use::kInference);
   set.Import(policy.tensors, "", kPolicyFile, set.values());
 
-  Sb3File file{.bytes = {}, .model = ModelOf(description, actor, names), .notes = {}};
+  Sb3File file{.bytes = {}, .model = ModelOf(description, actor, model_class), .notes = {}};
   nn::TensorMap theirs;
   Renamer renamer(&set, &theirs);
   if (!actor.trunk.layers().empty()) AddExtractors(encoder, actor, names, &renamer);

@@ -1,7 +1,8 @@
 // A policy as Stable-Baselines3 keeps one: a zip archive whose policy.pth holds the state_dict of
 // the algorithm's MlpPolicy or CnnPolicy, for MODEL.set_parameters(FILE, exact_match=False).
 //
-//   ours                    SAC                       TD3, DDPG                 PPO
+//                           of a squashed Gaussian    deterministic             unsquashed
+//   ours                    (SAC)                     (TD3, DDPG)               (PPO)
 //   encoder.conv{i}         X.cnn.{2i}                X.cnn.{2i}                X.cnn.{2i}
 //   actor.trunk             X.linear.0                X.linear.0                X.linear.0
 //   actor.mlp.layer{i}      actor.latent_pi.{2i}      actor.mu.{2i} mlp_extractor.policy_net.{2i}

@@ -21,10 +21,22 @@ namespace shoal::learner {
 namespace {
 
 constexpr Algorithm kAlgorithms[] = {
-    {.name = "sac", .figures = kSacFigures, .make_replica = MakeSacAgent},
-    {.name = "td3", .figures = kTwinFigures, .make_replica = MakeTd3Agent},
-    {.name = "ddpg", .figures = kSingleCriticFigures, .make_replica = MakeDdpgAgent},
-    {.name = "ppo", .figures = kPpoFigures, .make = MakePpoAgent},
+    {.name = "sac",
+     .figures = kSacFigures,
+     .critics = 2,
+     .sb3 = "SAC",
+     .make_replica = MakeSacAgent},
+    {.name = "td3",
+     .figures = kTwinFigures,
+     .critics = 2,
+     .sb3 = "TD3",
+     .make_replica = MakeTd3Agent},
+    {.name = "ddpg",
+     .figures = kSingleCriticFigures,
+     .critics = 1,
+     .sb3 = "DDPG",
+     .make_replica = MakeDdpgAgent},
+    {.name = "ppo", .figures = kPpoFigures, .sb3 = "PPO", .make = MakePpoAgent},
 };
 
 std::vector<const Figure*> CollectFigures() {
@@ -40,7 +52,11 @@ std::vector<const Figure*> CollectFigures() {
   return all;
 }
 
-const Algorithm& Find(const std::string& name) {
+}  // namespace
+
+std::span<const Algorithm> Algorithms() { return kAlgorithms; }
+
+const Algorithm& FindAlgorithm(std::string_view name) {
   const auto algorithm = std::ranges::find(kAlgorithms, name, &Algorithm::name);
   if (algorithm != std::end(kAlgorithms)) return *algorithm;
   std::vector<std::string_view> names;
@@ -48,12 +64,8 @@ const Algorithm& Find(const std::string& name) {
   throw UsageError("learner.algorithm = \"{}\": expected {}", name, fmt::join(names, " | "));
 }
 
-}  // namespace
-
-std::span<const Algorithm> Algorithms() { return kAlgorithms; }
-
 int ReplicasOf(const Config& config, const ObservationSpec& spec, int threads) {
-  if (threads == 1 || Find(config.learner.algorithm).make_replica == nullptr) return 1;
+  if (threads == 1 || FindAlgorithm(config.learner.algorithm).make_replica == nullptr) return 1;
   if (NormalisesOverBatch(config.network, spec)) return 1;
   CheckReplicas(config, threads);
   return threads;
@@ -66,7 +78,7 @@ std::string DescribeThreads(const Config& config, const ObservationSpec& spec, i
   if (ReplicasOf(config, spec, threads) > 1) {
     return fmt::format("{} threads, a replica each{}", threads, more);
   }
-  const bool unknown = Find(config.learner.algorithm).make_replica == nullptr;
+  const bool unknown = FindAlgorithm(config.learner.algorithm).make_replica == nullptr;
   return fmt::format("{} threads that share each layer: {}{}", threads,
                      unknown ? config.learner.algorithm + " knows no replicas"
                              : config.network.encoder + " normalises over the batch",
@@ -75,7 +87,7 @@ std::string DescribeThreads(const Config& config, const ObservationSpec& spec, i
 
 std::unique_ptr<Agent> MakeAgent(const Config& config, const ObservationSpec& spec,
                                  nn::Precision precision) {
-  const Algorithm& algorithm = Find(config.learner.algorithm);
+  const Algorithm& algorithm = FindAlgorithm(config.learner.algorithm);
   if (algorithm.make != nullptr) return algorithm.make(config, spec, precision);
   const MakeReplica make = [&](nn::Replica* replica) {
     return algorithm.make_replica(config, spec, precision, replica);

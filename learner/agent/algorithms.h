@@ -1,4 +1,5 @@
-// The one list of algorithms: what learner.algorithm chooses from.
+// The algorithms, as the learner knows them: what learner.algorithm chooses from. What keys, actors
+// and launch know of each is in common/config/algorithm_kind.h, in the same order.
 #pragma once
 
 #include <memory>
@@ -18,6 +19,9 @@ struct Algorithm {
   std::string_view name;  // of learner.algorithm
   // What its updates report, in this order; each in at least every update that computes it.
   std::span<const Figure* const> figures;
+  int critics = 0;  // Q functions that an update moves, each with a target; on policy none
+  // Class of Stable-Baselines3 with the same policy network; empty: none.
+  std::string_view sb3 = "";
   // Either of the two. Initialises the networks from config.seed. Throws Error where the
   // configuration does not fit.
   //
@@ -30,6 +34,8 @@ struct Algorithm {
 };
 
 std::span<const Algorithm> Algorithms();
+// Throws Error (kUsage) naming those there are when there is none of that name.
+const Algorithm& FindAlgorithm(std::string_view name);
 
 // In how many replicas (common/nn/replica.h) `threads` threads learn: one a thread; a single one,
 // whose passes they share, where the algorithm knows no replicas or the encoder has batch
@@ -41,8 +47,7 @@ int ReplicasOf(const Config& config, const ObservationSpec& spec, int threads);
 std::string DescribeThreads(const Config& config, const ObservationSpec& spec, int threads,
                             int cores);
 
-// The agent of config.learner.algorithm, for nn::Threads. Throws Error (kUsage) naming the
-// algorithms there are when there is none of that name.
+// The agent of config.learner.algorithm, for nn::Threads. Throws as FindAlgorithm.
 std::unique_ptr<Agent> MakeAgent(const Config& config, const ObservationSpec& spec,
                                  nn::Precision precision);
 

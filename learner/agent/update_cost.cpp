@@ -2,8 +2,10 @@
 
 #include <algorithm>
 
+#include "common/config/exploration_kind.h"
 #include "common/config/on_policy.h"
 #include "common/nn/actor_critic_plan.h"
+#include "learner/agent/algorithms.h"
 #include "learner/agent/critic_vectors.h"
 
 namespace shoal::learner {
@@ -41,8 +43,10 @@ int64_t ParameterCount(const nn::NetworkPlan& plan) {
 
 // Multiply-adds of an update; `of_encoder`: of one sample.
 double OffPolicy(const Config& config, const ObservationSpec& spec, double of_encoder) {
-  const int critics = config.learner.algorithm == "ddpg" ? 1 : 2;
-  const double of_actor = MultiplyAdds(nn::PlanActor(config.network, spec));
+  const int critics = FindAlgorithm(config.learner.algorithm).critics;
+  const double of_actor = MultiplyAdds(nn::PlanActor(
+      config.network, spec,
+      LearnsDeviation(config) ? nn::ActorOutput::kGaussian : nn::ActorOutput::kDeterministic));
   const double of_critics = MultiplyAdds(
       nn::PlanCritic(config.network, CriticSpec(config.learner, spec), "critic", critics));
   const bool separate = config.network.encoders == "separate";

@@ -29,6 +29,19 @@ TEST(OwnAlgorithm, ReportsItsFiguresInTheirOrder) {
   EXPECT_GT(Get(outcome, kCriticSpread), 0);
 }
 
+// The line that the page adds to kAlgorithms.
+TEST(OwnAlgorithm, ItsLineSaysWhatItIs) {
+  constexpr Algorithm kLine = {.name = "averaged_ddpg",
+                               .figures = kAveragedDdpgFigures,
+                               .critics = 3,
+                               .make = MakeAveragedDdpgAgent};
+  const auto tensors = kLine.make(SmallConfig(), SmallSpec(), Precision::kF32)->AllTensors();
+  for (int i = 1; i <= kLine.critics; ++i) {
+    EXPECT_TRUE(tensors.contains("critic.q" + std::to_string(i) + ".output.weight")) << i;
+  }
+  EXPECT_FALSE(tensors.contains("critic.q4.output.weight"));
+}
+
 TEST(OwnAlgorithm, GoesOnByteForByteFromWhatItLeft) {
   const auto agent = SmallAgent(), other = SmallAgent();
   for (uint64_t u = 0; u < 3; ++u) UpdateWith(agent.get(), u);

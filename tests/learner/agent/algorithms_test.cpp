@@ -1,6 +1,7 @@
 // What holds for every algorithm of the list.
 #include "learner/agent/algorithms.h"
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 
 #include <algorithm>
@@ -8,6 +9,7 @@
 #include <set>
 
 #include "common/base/error.h"
+#include "common/config/algorithm_kind.h"
 #include "common/config/config_io.h"
 #include "common/config/on_policy.h"
 #include "tests/learner/agent/agent_fixture.h"
@@ -101,6 +103,22 @@ TEST_P(EachAlgorithm, IsAValueOfTheKey) {
   Config config;
   ApplyAssignments({"learner.algorithm=" + GetParam()}, &config);
   EXPECT_EQ(config.learner.algorithm, GetParam());
+}
+
+// By the parameters it keeps.
+TEST_P(EachAlgorithm, HasTheCriticsThatItsLineSays) {
+  const auto tensors = MakeAgent(config_, SmallSpec(), nn::Precision::kF32)->AllTensors();
+  int critics = 0;
+  while (tensors.contains(fmt::format("critic.q{}.output.weight", critics + 1))) ++critics;
+  EXPECT_EQ(algorithm().critics, critics);
+  EXPECT_EQ(critics == 0, AlgorithmKindOf(config_).on_policy);
+}
+
+// Adding one is a line here and a line there.
+TEST(Algorithms, AreThoseThatTheConfigurationKnows) {
+  std::vector<std::string> known;
+  for (const AlgorithmKind& kind : AlgorithmKinds()) known.emplace_back(kind.name);
+  EXPECT_EQ(Names(), known);
 }
 
 TEST(Algorithms, OthersAreRefusedNamingThem) {

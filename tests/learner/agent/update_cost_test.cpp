@@ -29,6 +29,10 @@ TEST(UpdateCost, CountsTheProductsOfAllPasses) {
   const UpdateCost cost = CostOfUpdate(SmallNetworks("sac"), State());
   EXPECT_EQ(cost.encoder_parameters, 0);
   EXPECT_DOUBLE_EQ(cost.flop, 2 * 10 * (4 * critics + actor + (3 * actor + 2 * critics) / 2));
+  // DDPG's have one Q and no deviation.
+  const double mean = 3 * 8 + 8 * 2, critic = critics / 2;
+  EXPECT_DOUBLE_EQ(CostOfUpdate(SmallNetworks("ddpg"), State()).flop,
+                   2 * 10 * (4 * critic + mean + (3 * mean + 2 * critic) / 2));
 }
 
 // Actor 3 x 8 + 8 x 2, value 3 x 8 + 8 x 1, for 6 steps of 2 x 5 environments in 4 epochs.

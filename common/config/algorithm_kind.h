@@ -1,0 +1,36 @@
+// What a run asks of its algorithm before and beside learning: which keys fit, whether there is a
+// replay, how actors explore. What learning takes is in learner/agent/algorithms.cpp.
+//
+// A further algorithm is a line in both lists; the choices of learner.algorithm follow from this
+// one.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "common/config/config.h"
+
+namespace shoal {
+
+struct AlgorithmKind {
+  std::string_view name;  // of learner.algorithm
+  // From rollouts that go to the learner, by an unsquashed Gaussian; else from a replay.
+  bool on_policy = false;
+  // Its policy is a Gaussian that is squashed by tanh, whose entropy a temperature weighs:
+  // learner.*temperature*, learner.target_entropy, network.log_std. Else, off policy,
+  // deterministic.
+  bool squashed_gaussian = false;
+  bool encoder_options = false;  // takes network.encoders, network.target_encoder
+  bool privileged = false;       // takes learner.critic_blocks, learner.aux, learner.aux_weight
+  std::string_view own_section = "";  // keys that no other algorithm takes: "ppo."
+};
+
+std::span<const AlgorithmKind> AlgorithmKinds();
+// The run's. CHECK: there is one, which the key's choices see to.
+const AlgorithmKind& AlgorithmKindOf(const Config& config);
+
+// Those of which `fits` is true, for messages: "sac | td3 | ddpg".
+std::string AlgorithmsThat(bool (*fits)(const AlgorithmKind& kind));
+
+}  // namespace shoal
