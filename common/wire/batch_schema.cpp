@@ -128,29 +128,9 @@ BatchView BatchSchema::View(uint8_t* data, uint64_t stored_steps) const {
   view.stored_steps = stored_steps;
   view.schema = this;
   view.data = data;
-  if (Has("obs_frames")) {
-    view.obs_frames = Array<uint8_t>("obs_frames", data);
-    view.next_obs_frames = Array<uint8_t>("next_obs_frames", data);
-  }
-  if (Has("obs_vector")) {
-    view.obs_vector = Array<float>("obs_vector", data);
-    view.next_obs_vector = Array<float>("next_obs_vector", data);
-  }
-  if (Has("obs_privileged")) {
-    view.obs_privileged = Array<float>("obs_privileged", data);
-    view.next_obs_privileged = Array<float>("next_obs_privileged", data);
-  }
-  view.action = Array<float>("action", data);
-  view.reward = Array<float>("reward", data);
-  view.bootstrap = Array<float>("bootstrap", data);
-  view.weights_update = Array<uint64_t>("weights_update", data);
-  view.id = Array<uint64_t>("id", data);
-  if (options_.rollout) {
-    view.drawn_action = Array<float>("drawn_action", data);
-    view.log_prob = Array<float>("log_prob", data);
-    view.ends = Array<float>("ends", data);
-    view.continues = Array<float>("continues", data);
-  }
+  VisitArrays(view, [&]<class T>(const char* name, std::span<T>& member) {
+    if (Has(name)) member = Array<T>(name, data);
+  });
   return view;
 }
 

@@ -27,10 +27,11 @@
 //
 // K*C channels: stack K, frame channels C; P floats of BatchOptions::privileged. What a spec or the
 // options do not have (pixels, vectors, privileged blocks) has no array. An algorithm or a way of
-// sampling that needs more (importance weights, sequences with a length of their own as the first
-// dimension) adds an option and its arrays.
+// sampling that needs more (importance weights, elements that are sequences, with their length as
+// the first dimension) adds an option and its arrays. Rows are the first dimension of all arrays.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -100,8 +101,8 @@ class BatchSchema {
   uint64_t total_bytes_ = 0;
 };
 
-// The arrays that most algorithms use, by member; empty where the batch has none. Borrows schema
-// and memory.
+// The arrays that most algorithms use, by member; empty where the batch has none. All rows of a
+// batch, or of a part of it. Borrows schema and memory.
 struct BatchView {
   std::span<uint8_t> obs_frames, next_obs_frames;
   std::span<float> obs_vector, next_obs_vector, action, reward, bootstrap;
@@ -110,14 +111,39 @@ struct BatchView {
   std::span<float> drawn_action, log_prob, ends, continues;  // of a rollout
   uint64_t stored_steps = 0;  // the run's env steps when it was drawn; what schedules go by
 
-  // Any array by its name: see BatchSchema::Array.
+  size_t rows() const { return reward.size(); }
+
+  // These rows of any array by its name, as the batch holds it: see BatchSchema::Array.
   template <class T>
   std::span<T> Array(std::string_view name) const {
-    return schema->Array<T>(name, data);
+    const std::span<T> all = schema->Array<T>(name, data);
+    const size_t row = all.size() / static_cast<size_t>(schema->batch());
+    return all.subspan(first_row * row, rows() * row);
   }
 
   const BatchSchema* schema = nullptr;
   uint8_t* data = nullptr;
+  size_t first_row = 0;  // in the batch at `data`
 };
+
+// Calls visit(name, member) for each array of `view`, which is a BatchView or const.
+template <class View, class Visit>
+void VisitArrays(View& view, Visit visit) {
+  visit("obs_frames", view.obs_frames);
+  visit("next_obs_frames", view.next_obs_frames);
+  visit("obs_vector", view.obs_vector);
+  visit("next_obs_vector", view.next_obs_vector);
+  visit("obs_privileged", view.obs_privileged);
+  visit("next_obs_privileged", view.next_obs_privileged);
+  visit("action", view.action);
+  visit("reward", view.reward);
+  visit("bootstrap", view.bootstrap);
+  visit("weights_update", view.weights_update);
+  visit("id", view.id);
+  visit("drawn_action", view.drawn_action);
+  visit("log_prob", view.log_prob);
+  visit("ends", view.ends);
+  visit("continues", view.continues);
+}
 
 }  // namespace shoal

@@ -2,41 +2,73 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+#include <span>
+#include <string>
+
 #include "tests/learner/agent/agent_fixture.h"
 
 namespace shoal::learner {
 namespace {
 
+const BatchOptions kOptions{.batch = 6, .rollout = true, .privileged = {"hidden"}};
+
+ObservationSpec PrivilegedSpec() {
+  ObservationSpec spec = SmallSpec();
+  spec.blocks.push_back({"hidden", 3, /*observed=*/false});
+  return spec;
+}
+
+template <class T>
+void ExpectRowsByName(const BatchView& whole, const std::string& name) {
+  const std::span<T> all = whole.Array<T>(name);
+  for (int i = 0; i < 3; ++i) {
+    const std::span<T> part = PartOf(whole, i, 3).Array<T>(name);
+    EXPECT_EQ(part.size(), all.size() / 3) << name;
+    EXPECT_EQ(part.data(), all.data() + part.size() * size_t(i)) << name;
+  }
+}
+
 TEST(PartOf, PartsInARowAreTheBatch) {
-  const RandomBatch random(SmallSpec(), BatchOptions{.batch = 6, .rollout = true}, 3);
+  const RandomBatch random(PrivilegedSpec(), kOptions, 3);
   BatchView whole = random.View();
   whole.stored_steps = 70;
   for (const int parts : {1, 2, 3}) {
     for (int i = 0; i < parts; ++i) {
-      const BatchView part = PartOf(whole, i, parts);
-      const auto expect_part = [&](auto member) {
-        const auto all = whole.*member, own = part.*member;
-        EXPECT_EQ(own.size(), all.size() / size_t(parts));
-        EXPECT_EQ(own.data(), all.data() + own.size() * size_t(i));
-      };
-      expect_part(&BatchView::obs_frames);
-      expect_part(&BatchView::next_obs_frames);
-      expect_part(&BatchView::obs_vector);
-      expect_part(&BatchView::next_obs_vector);
-      expect_part(&BatchView::action);
-      expect_part(&BatchView::reward);
-      expect_part(&BatchView::bootstrap);
-      expect_part(&BatchView::obs_privileged);
-      expect_part(&BatchView::next_obs_privileged);
-      expect_part(&BatchView::weights_update);
-      expect_part(&BatchView::id);
-      expect_part(&BatchView::drawn_action);
-      expect_part(&BatchView::log_prob);
-      expect_part(&BatchView::ends);
-      expect_part(&BatchView::continues);
+      BatchView part = PartOf(whole, i, parts);
       EXPECT_EQ(part.stored_steps, 70u);
+      std::map<std::string, const void*> own;
+      VisitArrays(part, [&](const char* name, const auto& array) { own[name] = array.data(); });
+      VisitArrays(whole, [&](const char* name, const auto& all) {
+        ASSERT_FALSE(all.empty()) << name;
+        EXPECT_EQ(own.at(name), all.data() + all.size() / size_t(parts) * size_t(i)) << name;
+      });
+      VisitArrays(part, [&](const char* name, const auto& array) {
+        EXPECT_EQ(array.size() % part.rows(), 0u) << name;
+      });
+      EXPECT_EQ(part.rows(), 6u / size_t(parts));
     }
   }
+}
+
+// Also one that has no member.
+TEST(PartOf, HasItsRowsOfAnyArrayByName) {
+  const RandomBatch random(PrivilegedSpec(), kOptions, 3);
+  const BatchView whole = random.View();
+  ASSERT_GT(whole.schema->arrays().size(), 10u);
+  for (const BatchArray& array : whole.schema->arrays()) {
+    if (array.type == ArrayType::kF32) ExpectRowsByName<float>(whole, array.name);
+    if (array.type == ArrayType::kU8) ExpectRowsByName<uint8_t>(whole, array.name);
+    if (array.type == ArrayType::kU64) ExpectRowsByName<uint64_t>(whole, array.name);
+  }
+}
+
+TEST(PartOf, OfAPartIsAPart) {
+  const RandomBatch random(PrivilegedSpec(), kOptions, 3);
+  const BatchView whole = random.View(), part = PartOf(PartOf(whole, 1, 2), 2, 3);
+  EXPECT_EQ(part.Array<uint64_t>("id").data(), &whole.id[5]);
+  EXPECT_EQ(part.Array<uint64_t>("id").size(), 1u);
+  EXPECT_EQ(part.id.data(), &whole.id[5]);
 }
 
 }  // namespace
