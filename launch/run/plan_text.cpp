@@ -4,7 +4,10 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <optional>
 
+#include "common/base/error.h"
+#include "common/config/config_io.h"
 #include "common/config/on_policy.h"
 #include "common/config/privileged_blocks.h"
 #include "common/nn/precision.h"
@@ -89,17 +92,31 @@ std::string StackText(const RunConfig& run) {
   return "  observation.stack = 1: the policy sees no velocity; 3 is usual for this task\n";
 }
 
-// Without a preset, keys that nobody set are right for one task.
+// What the run's configuration started from; empty where its preset is gone by now, or no longer
+// valid, which is no reason to refuse a run that has what it needs.
+std::optional<Config> StartOf(const Config& config) {
+  if (config.preset.empty()) return Config();
+  try {
+    return LoadPreset(config.preset);
+  } catch (const Error&) {
+    return std::nullopt;
+  }
+}
+
+// Keys that nobody set are right for the task of the preset, or of the defaults.
 std::string DefaultsText(const Config& config) {
-  const Config defaults;
+  const std::optional<Config> start = StartOf(config);
+  if (!start || config.task == start->task) return "";
   std::string kept;
-  const auto keep = [&](const char* key, double value, double of_default) {
-    if (value == of_default) kept += fmt::format("{}{} = {}", kept.empty() ? "" : ", ", key, value);
+  const auto keep = [&](const char* key, double value, double at_start) {
+    if (value == at_start) kept += fmt::format("{}{} = {}", kept.empty() ? "" : ", ", key, value);
   };
-  keep("learner.discount", config.learner.discount, defaults.learner.discount);
-  keep("learner.reward_scale", config.learner.reward_scale, defaults.learner.reward_scale);
-  if (!config.preset.empty() || config.task == defaults.task || kept.empty()) return "";
-  return fmt::format("  no preset: {} as {} needs it\n", kept, defaults.task);
+  keep("learner.discount", config.learner.discount, start->learner.discount);
+  keep("learner.reward_scale", config.learner.reward_scale, start->learner.reward_scale);
+  if (kept.empty()) return "";
+  return fmt::format("  {}: {} as {} needs it\n",
+                     config.preset.empty() ? "no preset" : "preset " + config.preset, kept,
+                     start->task);
 }
 
 }  // namespace

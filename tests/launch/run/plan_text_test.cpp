@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/config/config_io.h"
+
 namespace shoal::launch {
 namespace {
 
@@ -77,6 +79,22 @@ TEST(PlanText, OneFrameOfATaskOfMotionIsSaidToShowNoVelocity) {
   EXPECT_THAT(PlanText(run, 1), Not(said));
 }
 
+TEST(PlanText, WhatAPresetSaysForAnotherTaskIsNamed) {
+  RunConfig run;
+  run.config = LoadPreset("fetch-reach-drq");
+  run.config.observation.pixels = false;
+  run.spec.action_size = 6;
+  run.spec.blocks = {{"velocity", 9}};
+  EXPECT_THAT(PlanText(run, 0), Not(HasSubstr("needs it")));
+  run.config.task = "walker_walk";
+  EXPECT_THAT(PlanText(run, 0), HasSubstr("  preset fetch-reach-drq: learner.discount = 0.6, "
+                                          "learner.reward_scale = 10 as FetchReachDense needs "
+                                          "it\n"));
+  run.config.learner.discount = 0.99;
+  EXPECT_THAT(PlanText(run, 0),
+              HasSubstr("fetch-reach-drq: learner.reward_scale = 10 as FetchReachDense"));
+}
+
 TEST(PlanText, WithoutAPresetDefaultsOfAnotherTaskAreNamed) {
   RunConfig run;
   run.config.task = "walker_walk";
@@ -89,7 +107,7 @@ TEST(PlanText, WithoutAPresetDefaultsOfAnotherTaskAreNamed) {
   run.config.learner.discount = 0.99;
   EXPECT_THAT(PlanText(run, 0), HasSubstr("no preset: learner.reward_scale = 10 as"));
   run.config.preset = "of-ours";
-  EXPECT_THAT(PlanText(run, 0), Not(HasSubstr("no preset")));
+  EXPECT_THAT(PlanText(run, 0), Not(HasSubstr("needs it"))) << "nor can it be looked up";
 }
 
 }  // namespace
