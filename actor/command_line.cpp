@@ -26,6 +26,9 @@ void AddOptions(CLI::App& app, Options* options) {
   app.add_option("--episodes", options->evaluation.episodes, "episodes of --evaluate")
       ->check(CLI::PositiveNumber);
   app.add_option("--seed", options->evaluation.seed, "seed of --evaluate");
+  app.add_flag("--partial", options->evaluation.partial,
+               "asked to stop, write the result of the episodes that were played by then")
+      ->needs(evaluate);
   auto* frames = app.add_option("--frames", options->frames.file,
                                 "file or pipe for what --evaluate shows, step by step")
                      ->needs(evaluate);

@@ -69,7 +69,7 @@ class EvalActor {
       Report("evaluating");
       return StopRequested() || control_.state() == RunState::kStopping;
     });
-    if (episodes.empty()) return;  // stopped half-way
+    if (std::cmp_less(episodes.size(), run_.config.eval.episodes)) return;  // stopped half-way
     const EvaluationLabel label{.policy = "checkpoint",
                                 .checkpoint = weights.checkpoint,
                                 .version = weights.version,

@@ -116,10 +116,14 @@ std::vector<EpisodeResult> Evaluator::Play(int episodes, const EpisodeStream& st
                                            const std::function<bool()>& stop) {
   for (Player& player : players_) player.seat.Abandon();  // of a call that was stopped
   std::vector<EpisodeResult> results(static_cast<size_t>(episodes));
+  std::vector<bool> ended(results.size());
   const int envs = static_cast<int>(players_.size());
   int begun = 0, done = 0;
   while (done < episodes) {
-    if (stop()) return {};
+    if (stop()) {
+      results.resize(static_cast<size_t>(std::ranges::find(ended, false) - ended.begin()));
+      return results;
+    }
     for (int e = 0; e < envs && begun < episodes; ++e) {
       if (!players_[size_t(e)].seat.running()) Begin(e, begun++, stream);
     }
@@ -132,6 +136,7 @@ std::vector<EpisodeResult> Evaluator::Play(int episodes, const EpisodeStream& st
       if (seat.running()) continue;
       EpisodeResult& result = results[static_cast<size_t>(episode)];
       result = {.seed = episode, .figures = seat.figures()};
+      ended[static_cast<size_t>(episode)] = true;
       ++done;
       if (!facts.applies()) continue;
       result.desired = facts.desired();
@@ -193,8 +198,12 @@ ordered_json EvaluateCheckpoint(const std::filesystem::path& run_folder,
   const EpisodeStream stream{evaluation.seed, StreamRole::kFinalEnvironment, 0};
   const std::vector<EpisodeResult> results =
       evaluator.Play(evaluation.episodes, stream, StopRequested);
-  if (results.empty()) throw RuntimeError("evaluation of '{}' interrupted", checkpoint.string());
+  const bool whole = results.size() == static_cast<size_t>(evaluation.episodes);
+  if (!whole && (!evaluation.partial || results.empty())) {
+    throw RuntimeError("evaluation of '{}' interrupted", checkpoint.string());
+  }
   ordered_json result = EvaluationJson(run, label, stream, results);
+  if (!whole) result["episodes_asked"] = evaluation.episodes;
   if (!evaluation.task.empty()) result["trained_task"] = trained.config.task;
   return result;
 }

@@ -61,7 +61,8 @@ class Evaluator {
   void Listen(SeatListener* listener);
 
   // Plays `episodes` whole episodes, actions by the mean of the policy (or uniform random before
-  // any weights). Empty when `stop`, asked after each step, said so before they were done.
+  // any weights). When `stop`, asked after each step, says so before they are done: those of the
+  // first that are, up to one that is not, so that short episodes are not preferred.
   std::vector<EpisodeResult> Play(int episodes, const EpisodeStream& stream,
                                   const std::function<bool()>& stop);
 
@@ -99,9 +100,12 @@ struct CheckpointEvaluation {
   std::string task = "";
   // Where frames go, if anywhere; the episodes are then played one after the other.
   std::optional<FrameRecorder::Options> frames = {};
+  // Asked to stop: the result of the episodes that were played, with `episodes_asked`, if there are
+  // any.
+  bool partial = false;
 };
 // Plays fresh episodes (final stream of the seed) with the policy of a checkpoint folder of the
-// run.
+// run. Throws Error when it is asked to stop, but for `partial`.
 nlohmann::ordered_json EvaluateCheckpoint(const std::filesystem::path& run,
                                           const std::filesystem::path& checkpoint,
                                           const CheckpointEvaluation& evaluation);

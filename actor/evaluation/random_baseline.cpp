@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <utility>
 
 #include "actor/evaluation/evaluation.h"
 #include "common/base/error.h"
@@ -52,8 +53,9 @@ ordered_json PlayRandom(const RandomRequest& request, const std::function<bool()
   Evaluator evaluator(run, noop);  // its policy never gets weights: uniform random actions
   const EpisodeStream stream{request.seed, StreamRole::kFinalEnvironment, 0};
   const std::vector<EpisodeResult> episodes = evaluator.Play(request.episodes, stream, stop);
-  if (episodes.empty())
+  if (std::cmp_less(episodes.size(), request.episodes)) {
     throw RuntimeError("{} episodes of {} interrupted", request.policy, request.task);
+  }
   ordered_json result = EvaluationJson(run, {.policy = request.policy}, stream, episodes);
   result["success_by_threshold"] = SuccessByThreshold(task, episodes);
   return result;

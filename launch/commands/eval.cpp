@@ -89,20 +89,25 @@ int Evaluate(const EvalOptions& options) {
   if (!options.json.empty()) CheckWritable(options.json);
   InstallStopSignals();
   const ScratchFolder scratch;
-  const fs::path json =
-      options.json.empty() ? scratch.path() / "eval.json" : fs::path(options.json);
+  const fs::path json = scratch.path() / "eval.json";
   const auto point = EvaluateByActor({.run = run,
                                       .checkpoint = folder,
                                       .episodes = options.episodes,
                                       .seed = options.seed,
                                       .task = options.task,
-                                      .json = json},
+                                      .json = json,
+                                      .partial = true},
                                      StopRequested);
   if (!point) return Interrupted("nothing was evaluated");
-  fmt::print("{} episodes (seed {}) of {}: {} ({} env steps, {} updates)\n", options.episodes,
+  fmt::print("{} episodes (seed {}) of {}: {} ({} env steps, {} updates)\n", point->episodes,
              options.seed, folder.string(), FormatScore(*point), point->env_steps, point->updates);
   if (const std::string failures = FailuresText(json); !failures.empty()) {
     fmt::print("{}\n", failures);
+  }
+  if (!options.json.empty()) WriteFileAtomically(options.json, ReadFile(json));
+  if (std::cmp_less(point->episodes, options.episodes)) {
+    return Interrupted(fmt::format("partial, the first {} of {} episodes: as --episodes {} plays",
+                                   point->episodes, options.episodes, point->episodes));
   }
   Config played = ReadRunConfig(run).config;
   if (!options.task.empty()) {  // played without the run's model file
@@ -121,7 +126,9 @@ int Evaluate(const EvalOptions& options) {
 
 void AddEvalCommand(CLI::App& app, Action* chosen) {
   CLI::App* command = app.add_subcommand(
-      "eval", "Evaluate a checkpoint on fresh episodes, with the policy's mean actions.");
+      "eval",
+      "Evaluate a checkpoint on fresh episodes, with the policy's mean actions. Ctrl-C ends it "
+      "with the result of those that were played.");
   const auto options = std::make_shared<EvalOptions>();
   command
       ->add_option("--checkpoint", options->checkpoint,

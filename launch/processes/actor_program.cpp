@@ -67,6 +67,7 @@ std::optional<EvaluationPoint> EvaluateByActor(const EvaluationOrder& order,
                                   "--seed", std::to_string(order.seed), "--json", json.string()},
                                  1);
   if (!order.task.empty()) spec.command.insert(spec.command.end(), {"--task", order.task});
+  if (order.partial) spec.command.emplace_back("--partial");
   const bool shown = !order.frames.stream.empty();
   if (shown) {
     const std::string side = std::to_string(order.frames.side);
@@ -77,7 +78,10 @@ std::optional<EvaluationPoint> EvaluateByActor(const EvaluationOrder& order,
   const std::chrono::seconds deadline =
       kStartDeadline + order.episodes * (shown ? kShownEpisodeDeadline : kEpisodeDeadline);
   const auto status = RunToEnd(spec, deadline, stop);
-  if (!status && stop()) return std::nullopt;
+  if (!status && stop()) {
+    if (!order.partial || !fs::exists(json)) return std::nullopt;
+    return ParseEvaluation(ReadFile(json), json);
+  }
   if (!status) {
     throw RuntimeError("evaluation of '{}' took more than {} s", order.checkpoint.string(),
                        deadline.count());

@@ -35,10 +35,12 @@ struct EvaluationOrder {
   std::filesystem::path json = {};  // where the result goes; empty = nowhere
   ShownFrames frames = {};
   bool own_run = false;  // of whoever holds the run: temporary files go into its folder
+  bool partial = false;  // stopped, what was played by then counts
 };
 
 // `shoal-actor --evaluate`: fresh episodes of the final stream with a checkpoint. Throws Error when
-// it fails; empty when `stop` ended it.
+// it fails; empty when `stop` ended it, but for `partial` once an episode was played: of fewer
+// episodes, then, the first ones of those that were asked for. `json` must not exist, then.
 std::optional<EvaluationPoint> EvaluateByActor(const EvaluationOrder& order,
                                                const std::function<bool()>& stop);
 

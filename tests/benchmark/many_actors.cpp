@@ -1,11 +1,9 @@
 #include "tests/benchmark/many_actors.h"
 
 #include <fmt/core.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <csignal>
-#include <fstream>
 #include <map>
 #include <mutex>
 #include <set>
@@ -24,6 +22,7 @@
 #include "common/wire/weights_parts.h"
 #include "launch/processes/child_process.h"
 #include "launch/record/accounting.h"
+#include "tests/support/processes.h"
 
 namespace shoal::bench {
 namespace {
@@ -49,22 +48,6 @@ RunConfig FakeRun(int actors) {
   run.spec.action_size = 4;
   run.spec.model_fingerprint = "none";
   return run;
-}
-
-// User and system time of a process.
-double CpuSeconds(pid_t pid) {
-  std::ifstream in("/proc/" + std::to_string(pid) + "/stat");
-  std::string text;
-  std::getline(in, text);
-  const size_t name_end = text.rfind(')');
-  if (name_end == std::string::npos) return 0;
-  std::istringstream fields(text.substr(name_end + 2));
-  std::string field;
-  double ticks = 0;
-  for (int i = 3; i <= 15 && fields >> field; ++i) {  // 14 and 15: utime, stime
-    if (i >= 14) ticks += std::stod(field);
-  }
-  return ticks / static_cast<double>(sysconf(_SC_CLK_TCK));
 }
 
 // The coordinator of the run, as far as its processes notice, and what the replay says.
@@ -164,9 +147,9 @@ launch::ProcessSpec Spec(const ManyActorsOptions& options, const std::string& pr
   return spec;
 }
 
-double CpuSeconds(const std::vector<launch::ChildProcess>& processes) {
+double SecondsOfAll(const std::vector<launch::ChildProcess>& processes) {
   double sum = 0;
-  for (const launch::ChildProcess& process : processes) sum += CpuSeconds(process.pid());
+  for (const launch::ChildProcess& process : processes) sum += ProcessorSeconds(process.pid());
   return sum;
 }
 
@@ -190,7 +173,7 @@ void MeasureSpan(const ManyActorsOptions& options, pid_t replay,
   next_report();
   const SteadyTime begin = Now();
   const Bystander::Stored stored = bystander->StoredNow();
-  const double replay_cpu = CpuSeconds(replay), actor_cpu = CpuSeconds(actors);
+  const double replay_cpu = ProcessorSeconds(replay), actor_cpu = SecondsOfAll(actors);
   bystander->Until([&] { return SecondsSince(begin) > options.seconds; }, kFound);
   next_report();
   const double span = SecondsSince(begin);
@@ -198,8 +181,8 @@ void MeasureSpan(const ManyActorsOptions& options, pid_t replay,
   if (transitions <= 0) throw RuntimeError("nothing was stored in {:.0f} s", span);
   figures->transitions_per_second = transitions / span;
   figures->env_steps_per_second = (bystander->StoredNow().steps - stored.steps) / span;
-  figures->replay_us_per_transition = 1e6 * (CpuSeconds(replay) - replay_cpu) / transitions;
-  figures->actor_us_per_transition = 1e6 * (CpuSeconds(actors) - actor_cpu) / transitions;
+  figures->replay_us_per_transition = 1e6 * (ProcessorSeconds(replay) - replay_cpu) / transitions;
+  figures->actor_us_per_transition = 1e6 * (SecondsOfAll(actors) - actor_cpu) / transitions;
 }
 
 void RequireEnd(Bystander* bystander, std::vector<launch::ChildProcess>* processes,

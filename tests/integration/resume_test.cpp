@@ -1,10 +1,17 @@
 // --resume: goes on where the run was, and says what it could not keep.
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <csignal>
 #include <map>
 #include <string>
+#include <thread>
 
+#include "common/base/clock.h"
+#include "common/base/stop.h"
 #include "tests/support/event_files.h"
+#include "tests/support/processes.h"
 #include "tests/support/training_run.h"
 
 namespace shoal {
@@ -109,6 +116,45 @@ TEST(Evaluation, OfARunIsOfTheCheckpointThatItIsJudgedBy) {
   EXPECT_EQ(ExitCode(nowhere), 1);
   EXPECT_NE(nowhere.err.find("'/absent/x.json'"), std::string::npos) << nowhere.err;
   EXPECT_EQ(nowhere.out, "") << "found out before anything was played";
+}
+
+TEST(Evaluation, InterruptedKeepsWhatWasPlayed) {
+  const TrainingRun run;
+  const ProgramResult first = run.Train({{"env_steps", "1500"}, {"eval.interval", "500"}});
+  ASSERT_EQ(ExitCode(first), 0) << first.out << first.err;
+  const std::filesystem::path file = run.parent() / "x.json";
+  launch::ProcessSpec spec;
+  spec.role = "test";
+  spec.command = {ProgramPath("shoal"), "eval",   "--checkpoint", run.path(),
+                  "--episodes",         "100000", "--json",       file};
+  spec.output = run.parent() / "out";
+  launch::ChildProcess eval(spec);
+  const SteadyTime deadline = Now() + std::chrono::seconds(60);
+  // Its actor has computed for longer than it takes to start: some episodes are over.
+  const auto plays = [&] {
+    return std::ranges::any_of(ChildrenOf(eval.pid()),
+                               [](pid_t actor) { return ProcessorSeconds(actor) > 2; });
+  };
+  while (!plays() && !eval.Poll() && Now() < deadline) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  eval.Signal(SIGINT);
+  while (!eval.Poll() && Now() < deadline) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+  ASSERT_TRUE(eval.Poll());
+  const std::string said = ReadFile(spec.output);
+  EXPECT_EQ(eval.Poll()->Describe(), fmt::format("exit code {}", kInterruptedExit)) << said;
+  const auto written = nlohmann::json::parse(ReadFile(file));
+  EXPECT_EQ(written.at("episodes_asked"), 100'000);
+  const size_t played = written.at("episodes").size();
+  EXPECT_GT(played, 0u);
+  EXPECT_LT(played, 100'000u);
+  EXPECT_NE(said.find(fmt::format("{} episodes (seed 1000) of ", played)), std::string::npos)
+      << said;
+  EXPECT_NE(said.find(fmt::format("partial, the first {} of 100000 episodes", played)),
+            std::string::npos)
+      << said;
 }
 
 }  // namespace

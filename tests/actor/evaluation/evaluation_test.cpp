@@ -3,9 +3,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <span>
+#include <vector>
 
 #include "common/base/files.h"
 #include "common/checkpoint/checkpoint_files.h"
@@ -111,6 +114,38 @@ TEST(EvaluationJson, HoldsTheMassesDrawnForEachEpisode) {
   }
   EXPECT_NE(thighs[0], thighs[1]);
   EXPECT_NE(thighs[1], thighs[2]);
+}
+
+// Four environments at once, whose episodes of falling robots end at different steps.
+TEST(Evaluator, StoppedItHasTheFirstEpisodesAsIfNoMoreHadBeenAsked) {
+  RunConfig run = RunOf("Hopper-v5");
+  run.config.observation.pixels = false;
+  run.config.observation.proprioception = true;
+  run.config.eval.envs = 4;
+  run.config.network.hidden = {8};
+  run.spec = worlds::MakeEnvironment(run.config, nullptr)->spec();
+  Evaluator evaluator(run);
+  const EpisodeStream stream{7, StreamRole::kFinalEnvironment, 0};
+  const auto lengths = [&](int episodes, int most_steps) {
+    int steps = 0;
+    std::vector<int64_t> result;
+    for (const auto& episode :
+         evaluator.Play(episodes, stream, [&] { return steps++ == most_steps; })) {
+      EXPECT_EQ(episode.seed, int64_t(result.size()));
+      result.push_back(episode.figures.length);
+    }
+    return result;
+  };
+  const std::vector<int64_t> whole = lengths(20, 1'000'000);
+  ASSERT_EQ(whole.size(), 20u);
+  size_t partial = 0;
+  for (int most_steps = 0; most_steps < 100; most_steps += 7) {
+    const std::vector<int64_t> some = lengths(20, most_steps);
+    ASSERT_LE(some.size(), whole.size());
+    EXPECT_TRUE(std::ranges::equal(some, std::span(whole).first(some.size()))) << most_steps;
+    partial += !some.empty() && some.size() < whole.size();
+  }
+  EXPECT_GT(partial, 3u);
 }
 
 // A checkpoint whose policy nobody could load: it must be refused before that is tried.
