@@ -10,6 +10,7 @@
 #include <cstring>
 #include <string>
 
+#include "common/base/descriptor.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/run_folder/run_file_names.h"
@@ -86,14 +87,13 @@ MadePage::MadePage(const std::filesystem::path& run, uint32_t actor, uint64_t se
       run / kMadeFolder / fmt::format("actor-{}-{}.page", actor, session);
   std::error_code error_code;
   if (!std::filesystem::exists(path, error_code)) WritePage(path, page);
-  const int fd = open(path.c_str(), O_RDWR | O_CLOEXEC);
+  const Descriptor file(open(path.c_str(), O_RDWR | O_CLOEXEC));
   bytes_ = sizeof page.header + 4 * size_t{env_count};
-  void* mapped =
-      fd < 0 ? MAP_FAILED : mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_SHARED, fd, 0);
-  const int error = errno;
-  if (fd >= 0) close(fd);
+  void* mapped = file.get() < 0
+                     ? MAP_FAILED
+                     : mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_SHARED, file.get(), 0);
   if (mapped == MAP_FAILED) {
-    throw RuntimeError("cannot map '{}': {}", path.string(), std::strerror(error));
+    throw RuntimeError("cannot map '{}': {}", path.string(), std::strerror(errno));
   }
   header_ = static_cast<MadePageHeader*>(mapped);
   next_episode_ = reinterpret_cast<uint32_t*>(header_ + 1);

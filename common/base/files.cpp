@@ -11,6 +11,7 @@
 #include <sstream>
 #include <system_error>
 
+#include "common/base/descriptor.h"
 #include "common/base/error.h"
 
 namespace shoal {
@@ -57,7 +58,7 @@ void WriteFileAtomically(const std::filesystem::path& path, std::string_view con
   const int fd = open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
   if (fd < 0) Fail("cannot write", path, errno);
   int error = WriteAll(fd, content);
-  if (close(fd) != 0 && error == 0) error = errno;
+  if (close(fd) != 0 && error == 0) error = errno;  // by hand: here its result counts
   if (error == 0 && rename(temporary.c_str(), path.c_str()) != 0) error = errno;
   if (error != 0) {
     unlink(temporary.c_str());
@@ -94,11 +95,9 @@ void CheckWritable(const std::filesystem::path& path) {
 }
 
 void SyncFolder(const std::filesystem::path& folder) {
-  const int fd = open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (fd < 0) Fail("cannot open folder", folder, errno);
-  const int error = fsync(fd) == 0 ? 0 : errno;
-  close(fd);
-  if (error != 0) Fail("cannot sync folder", folder, error);
+  const Descriptor opened(open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (opened.get() < 0) Fail("cannot open folder", folder, errno);
+  if (fsync(opened.get()) != 0) Fail("cannot sync folder", folder, errno);
 }
 
 void MakeFolders(const std::filesystem::path& folder) {

@@ -4,6 +4,8 @@
 
 #include <thread>
 
+#include "common/base/pipe.h"
+
 namespace shoal {
 
 // Reads standard input, and discards it, on a thread of its own; calls RequestStop (stop.h) at its
@@ -19,7 +21,7 @@ class StopWithInput {
  private:
   void Watch() const;
 
-  int wake_read_ = -1, wake_write_ = -1;  // closing the latter ends the thread
+  Pipe wake_;  // closing its write end ends the thread
   std::thread thread_;
 };
 

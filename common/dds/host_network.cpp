@@ -12,6 +12,7 @@
 #include <memory>
 #include <set>
 
+#include "common/base/descriptor.h"
 #include "common/base/error.h"
 #include "common/dds/bus.h"
 
@@ -42,15 +43,13 @@ AddressList Resolve(const std::string& host, const std::string& port) {
 }  // namespace
 
 bool UdpPortFree(int port) {
-  const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
-  if (fd < 0) throw RuntimeError("cannot open a socket: {}", std::strerror(errno));
+  const Descriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
+  if (socket.get() < 0) throw RuntimeError("cannot open a socket: {}", std::strerror(errno));
   sockaddr_in address{};
   address.sin_family = AF_INET;
   address.sin_addr.s_addr = htonl(INADDR_ANY);
   address.sin_port = htons(static_cast<uint16_t>(port));
-  const bool bound = bind(fd, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
-  close(fd);
-  return bound;
+  return bind(socket.get(), reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0;
 }
 
 bool InterfaceExists(const std::string& name) {
@@ -95,14 +94,13 @@ std::string InterfaceTowards(const std::string& host) {
   const AddressList found = Resolve(host, "9");
   if (found == nullptr) throw RuntimeError("host \"{}\" does not resolve to an IPv4 address", host);
   // Connecting a datagram socket sends nothing: it only asks the routing table.
-  const int fd = socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  const Descriptor socket(::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0));
   sockaddr_in own{};
   socklen_t size = sizeof(own);
-  const bool routed = fd >= 0 && connect(fd, found->ai_addr, found->ai_addrlen) == 0 &&
-                      getsockname(fd, reinterpret_cast<sockaddr*>(&own), &size) == 0;
-  const int reason = errno;
-  if (fd >= 0) close(fd);
-  if (!routed) throw RuntimeError("no way to host \"{}\": {}", host, std::strerror(reason));
+  const bool routed = socket.get() >= 0 &&
+                      connect(socket.get(), found->ai_addr, found->ai_addrlen) == 0 &&
+                      getsockname(socket.get(), reinterpret_cast<sockaddr*>(&own), &size) == 0;
+  if (!routed) throw RuntimeError("no way to host \"{}\": {}", host, std::strerror(errno));
   char text[INET_ADDRSTRLEN] = "";
   inet_ntop(AF_INET, &own.sin_addr, text, sizeof(text));
   return text;

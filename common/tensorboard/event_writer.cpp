@@ -68,8 +68,10 @@ proto::HyperParameter ToProto(const HyperParameter& value) {
 
 EventWriter::EventWriter(const std::filesystem::path& folder) : path_(folder / FileName()) {
   MakeFolders(folder);
-  fd_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0644);
-  if (fd_ < 0) throw RuntimeError("cannot create '{}': {}", path_.string(), std::strerror(errno));
+  file_ = Descriptor(open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0644));
+  if (file_.get() < 0) {
+    throw RuntimeError("cannot create '{}': {}", path_.string(), std::strerror(errno));
+  }
   proto::Event event = EventOfNow();
   event.set_file_version("brain.Event:2");
   Append(event.SerializeAsString());
@@ -81,7 +83,6 @@ EventWriter::~EventWriter() {
   } catch (const Error& e) {
     log::Failure("{}", e.what());
   }
-  close(fd_);
 }
 
 void EventWriter::Scalar(const std::string& tag, int64_t step, double value) {
@@ -125,7 +126,7 @@ void EventWriter::Append(const std::string& event) {
 void EventWriter::Flush() {
   size_t done = 0;
   while (done < pending_.size()) {
-    const ssize_t n = write(fd_, pending_.data() + done, pending_.size() - done);
+    const ssize_t n = write(file_.get(), pending_.data() + done, pending_.size() - done);
     if (n < 0 && errno == EINTR) continue;
     if (n < 0) {
       const int error = errno;

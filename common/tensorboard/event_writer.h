@@ -15,6 +15,8 @@
 #include <string>
 #include <variant>
 
+#include "common/base/descriptor.h"
+
 namespace shoal::tensorboard {
 
 using HyperParameter = std::variant<bool, double, std::string>;
@@ -43,7 +45,7 @@ class EventWriter {
   void Append(const std::string& event);
 
   std::filesystem::path path_;
-  int fd_;
+  Descriptor file_;
   std::string pending_;
 };
 

@@ -6,7 +6,6 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
 #include <cerrno>
 #include <csignal>
 #include <cstring>
@@ -15,6 +14,7 @@
 
 #include "common/base/clock.h"
 #include "common/base/error.h"
+#include "common/base/pipe.h"
 #include "launch/processes/suspension.h"
 
 namespace shoal::launch {
@@ -36,16 +36,6 @@ Descriptor Open(const std::filesystem::path& path, int flags) {
 Descriptor OpenForAppending(const std::filesystem::path& path) {
   return Open(path, O_WRONLY | O_CREAT | O_APPEND);
 }
-
-struct Pipe {
-  Pipe() {
-    std::array<int, 2> ends{};
-    if (pipe2(ends.data(), O_CLOEXEC) != 0) throw RuntimeError("pipe: {}", std::strerror(errno));
-    read = Descriptor(ends[0]);
-    write = Descriptor(ends[1]);
-  }
-  Descriptor read, write;
-};
 
 // What the child reads from; `held` gets our end of it where there is one.
 Descriptor OpenInput(const ProcessSpec& spec, Descriptor* held) {

@@ -10,9 +10,11 @@
 #include <cstdio>
 #include <cstring>
 #include <thread>
+#include <utility>
 
 #include "common/base/clock.h"
 #include "common/base/error.h"
+#include "common/base/pipe.h"
 #include "common/base/stop.h"
 
 namespace shoal::launch {
@@ -23,34 +25,25 @@ constexpr int kPollMs = 100;
 constexpr std::chrono::seconds kReapChild{30};
 
 int Redirect(const char* file, int flags, int to) {
-  const int fd = open(file, flags | O_CLOEXEC, 0600);
-  if (fd < 0) throw RuntimeError("cannot open '{}': {}", file, std::strerror(errno));
-  const int result = dup2(fd, to);
-  close(fd);
-  return result;
+  const Descriptor opened(open(file, flags | O_CLOEXEC, 0600));
+  if (opened.get() < 0) throw RuntimeError("cannot open '{}': {}", file, std::strerror(errno));
+  return dup2(opened.get(), to);
 }
 
 }  // namespace
 
 Detachment::Detachment(std::chrono::seconds deadline) : deadline_(deadline) {
-  int ends[2];
-  if (pipe2(ends, O_CLOEXEC) != 0) throw RuntimeError("pipe: {}", std::strerror(errno));
+  Pipe pipe;
   std::fflush(nullptr);  // or both would write it
   child_ = fork();
   if (child_ < 0) throw RuntimeError("cannot detach: fork: {}", std::strerror(errno));
   if (child_ == 0) {
-    close(ends[0]);
-    to_parent_ = ends[1];
+    to_parent_ = std::move(pipe.write);
     setsid();  // no terminal: neither its Ctrl-C nor its end reaches this process any more
     return;
   }
-  close(ends[1]);
-  exit_code_ = WaitForChild(ends[0]);
-  close(ends[0]);
-}
-
-Detachment::~Detachment() {
-  if (to_parent_ >= 0) close(to_parent_);
+  pipe.write.Close();  // the child's alone says whether it lives
+  exit_code_ = WaitForChild(pipe.read.get());
 }
 
 int Detachment::WaitForChild(int from_child) {
@@ -86,9 +79,9 @@ void Detachment::Started(const std::filesystem::path& log) {
   Redirect(log.c_str(), O_WRONLY | O_CREAT | O_APPEND, STDERR_FILENO);
   Redirect("/dev/null", O_RDONLY, STDIN_FILENO);
   const char word = 1;
-  [[maybe_unused]] const ssize_t written = write(to_parent_, &word, 1);  // or the parent is gone
-  close(to_parent_);
-  to_parent_ = -1;
+  [[maybe_unused]] const ssize_t written =
+      write(to_parent_.get(), &word, 1);  // or the parent is gone
+  to_parent_.Close();
 }
 
 }  // namespace shoal::launch

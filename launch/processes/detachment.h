@@ -4,6 +4,8 @@
 #include <chrono>
 #include <filesystem>
 
+#include "common/base/descriptor.h"
+
 namespace shoal::launch {
 
 // Splits this process in two before it has threads: the child goes on in a session of its own, the
@@ -14,7 +16,6 @@ class Detachment {
   // deadline, which leaves the child alone. Until then the parent hands SIGINT and SIGTERM on to
   // the child. Throws Error.
   explicit Detachment(std::chrono::seconds deadline = kStartDeadline);
-  ~Detachment();
   Detachment(const Detachment&) = delete;
   Detachment& operator=(const Detachment&) = delete;
 
@@ -33,8 +34,8 @@ class Detachment {
   int Reap() const;
 
   const std::chrono::seconds deadline_;
-  int child_ = 0;       // process id; 0 in the child
-  int to_parent_ = -1;  // the child's end of the pipe
+  int child_ = 0;         // process id; 0 in the child
+  Descriptor to_parent_;  // the child's end of the pipe
   int exit_code_ = 0;
 };
 
