@@ -19,11 +19,8 @@ BatchAssembler::BatchAssembler(uint64_t spec_hash, uint64_t learner_session, uin
       learner_session_(learner_session),
       batch_bytes_(batch_bytes),
       slots_(static_cast<size_t>(buffers)) {
-  CHECK(batch_bytes > 0 && batch_bytes % 64 == 0) << batch_bytes;
-  for (Slot& slot : slots_) {
-    slot.data.reset(static_cast<uint8_t*>(std::aligned_alloc(64, batch_bytes)));
-    CHECK(slot.data != nullptr) << "no memory for a batch of " << batch_bytes << " bytes";
-  }
+  CHECK(batch_bytes > 0 && batch_bytes % AlignedBytes::kAlignment == 0) << batch_bytes;
+  for (Slot& slot : slots_) slot.memory = AlignedBytes(batch_bytes);
 }
 
 bool BatchAssembler::Expect(uint64_t request) {
@@ -57,7 +54,7 @@ BatchAssembler::Verdict BatchAssembler::Add(const BatchPart& part) {
   }
   Piece& piece = slot->pieces[part.part];
   if (piece.bytes > 0) return Verdict::kDuplicate;
-  std::memcpy(slot->data.get() + part.offset, part.payload.data(), part.payload.size());
+  std::memcpy(slot->memory.data() + part.offset, part.payload.data(), part.payload.size());
   piece = {part.offset, part.payload.size()};
   if (--slot->missing == 0) {
     slot->whole = Tiled(*slot);
@@ -72,7 +69,7 @@ std::optional<BatchAssembler::Assembled> BatchAssembler::TryGet(uint64_t request
   Slot* slot = Find(request);
   CHECK(slot != nullptr) << request;
   if (!slot->whole) return std::nullopt;
-  return Assembled{slot->data.get(), slot->stored_records, slot->stored_steps};
+  return Assembled{slot->memory.data(), slot->stored_records, slot->stored_steps};
 }
 
 void BatchAssembler::Release(uint64_t request) {

@@ -11,11 +11,10 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdlib>
-#include <memory>
 #include <optional>
 #include <vector>
 
+#include "common/base/aligned_bytes.h"
 #include "common/wire/messages.h"
 
 namespace shoal::learner {
@@ -50,15 +49,12 @@ class BatchAssembler {
   void Release(uint64_t request);
 
  private:
-  struct Free {
-    void operator()(uint8_t* data) const { std::free(data); }
-  };
   struct Piece {
     uint64_t offset = 0, bytes = 0;  // bytes 0: not here yet
   };
   struct Slot {
     uint64_t request = 0;  // 0: free
-    std::unique_ptr<uint8_t, Free> data;
+    AlignedBytes memory;
     bool whole = false;
     uint64_t stored_records = 0, stored_steps = 0;  // tell answers apart
     std::vector<Piece> pieces;                      // per part

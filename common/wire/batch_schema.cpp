@@ -6,13 +6,14 @@
 #include <type_traits>
 #include <utility>
 
+#include "common/base/aligned_bytes.h"
 #include "common/base/check.h"
 #include "common/base/random.h"
 
 namespace shoal {
 namespace {
 
-constexpr uint64_t kAlignment = 64;
+constexpr uint64_t kAlignment = AlignedBytes::kAlignment;
 
 uint64_t BytesOf(ArrayType type) {
   switch (type) {

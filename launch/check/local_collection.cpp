@@ -33,10 +33,7 @@ LocalCollection::LocalCollection(const RunConfig& run, const std::filesystem::pa
       rollout_({.seed = run_.config.seed}, run_.spec,
                actor::MakeEnvironments(run_, run_.config.envs_per_actor), made_, window_,
                selector_),
-      batch_(static_cast<uint8_t*>(std::aligned_alloc(64, core_.batch_schema().total_bytes())),
-             &std::free) {
-  if (batch_ == nullptr) throw RuntimeError("no memory for a batch");
-}
+      batch_(core_.batch_schema().total_bytes()) {}
 
 void LocalCollection::Collect(uint64_t env_steps) {
   const uint64_t until = rollout_.env_steps() + env_steps;
@@ -71,11 +68,11 @@ BatchView LocalCollection::Draw() {
                      .batch = static_cast<uint32_t>(run_.config.learner.batch),
                      .after_steps = 0,
                      .schema_hash = core_.batch_schema().Hash()});
-  if (!core_.TryAnswer(batch_.get())) {
+  if (!core_.TryAnswer(batch_.data())) {
     throw RuntimeError("the replay gives no batch with {} records",
                        core_.counters().intake.records);
   }
-  return core_.batch_schema().View(batch_.get());
+  return core_.batch_schema().View(batch_.data());
 }
 
 }  // namespace shoal::launch

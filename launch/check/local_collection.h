@@ -4,14 +4,13 @@
 #pragma once
 
 #include <cstdint>
-#include <cstdlib>
 #include <filesystem>
-#include <memory>
 
 #include "actor/acting/action_selector.h"
 #include "actor/loop/rollout.h"
 #include "actor/sending/chunk_window.h"
 #include "actor/sending/made_page.h"
+#include "common/base/aligned_bytes.h"
 #include "common/config/run_files.h"
 #include "common/wire/batch_schema.h"
 #include "replay_server/core/replay_core.h"
@@ -44,7 +43,7 @@ class LocalCollection {
   actor::ChunkWindow window_;
   actor::ActionSelector selector_;
   actor::Rollout rollout_;
-  std::unique_ptr<uint8_t, decltype(&std::free)> batch_;
+  AlignedBytes batch_;
   uint64_t requests_ = 0;
 };
 

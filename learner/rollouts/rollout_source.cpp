@@ -14,8 +14,6 @@
 namespace shoal::learner {
 namespace {
 
-constexpr size_t kAlignment = 64;
-
 int RecordBytes(const RunConfig& run) { return RecordLayout(run.spec).record_bytes(); }
 
 }  // namespace
@@ -150,13 +148,12 @@ Batch RolloutSource::HandOut() {
   schema_.emplace(core_.ReadySchema());
   if (memory_bytes_ < schema_->total_bytes()) {
     memory_bytes_ = schema_->total_bytes();
-    memory_.reset(static_cast<uint8_t*>(std::aligned_alloc(kAlignment, memory_bytes_)));
-    CHECK(memory_ != nullptr) << "no memory for a rollout of " << memory_bytes_ << " bytes";
+    memory_ = AlignedBytes(memory_bytes_);
   }
-  core_.TakeReady(*schema_, memory_.get());
+  core_.TakeReady(*schema_, memory_.data());
   handed_out_ = true;
   first_ready_.reset();
-  return {.view = schema_->View(memory_.get(), core_.stored_steps()),
+  return {.view = schema_->View(memory_.data(), core_.stored_steps()),
           .request = updates_ + 1,
           .stored_records = core_.used_records()};
 }

@@ -13,7 +13,6 @@
 #pragma once
 
 #include <chrono>
-#include <cstdlib>
 #include <deque>
 #include <filesystem>
 #include <functional>
@@ -21,6 +20,7 @@
 #include <optional>
 #include <thread>
 
+#include "common/base/aligned_bytes.h"
 #include "common/base/mutex.h"
 #include "common/intake/chunk_pool.h"
 #include "common/intake/intake_problems.h"
@@ -55,10 +55,6 @@ class RolloutSource final : public BatchStream {
   void SayFarewell();
 
  private:
-  struct Free {
-    void operator()(uint8_t* data) const { std::free(data); }
-  };
-
   void Serve();
   // What has come since the last call, waiting for it a moment.
   std::deque<std::unique_ptr<PooledChunk>> Arrivals() SHOAL_EXCLUDES(inbox_mutex_);
@@ -94,7 +90,7 @@ class RolloutSource final : public BatchStream {
 
   // Of the batch that is handed out; the loop's thread.
   std::optional<BatchSchema> schema_;
-  std::unique_ptr<uint8_t, Free> memory_;
+  AlignedBytes memory_;
   uint64_t memory_bytes_ = 0;
 
   std::thread thread_;  // last: it uses the others

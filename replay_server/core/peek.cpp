@@ -1,13 +1,11 @@
 #include "replay_server/core/peek.h"
 
 #include <algorithm>
-#include <cstdlib>
-#include <memory>
-#include <new>
 #include <optional>
 #include <span>
 #include <type_traits>
 
+#include "common/base/aligned_bytes.h"
 #include "common/base/error.h"
 #include "common/base/random.h"
 #include "common/config/run_files.h"
@@ -25,21 +23,14 @@ namespace {
 constexpr int kBorder = 2;     // pixels between images
 constexpr int kAttempts = 20;  // while a server overwrites what was drawn
 
-struct FreeBatch {
-  void operator()(uint8_t* data) const { std::free(data); }
-};
-
 // A batch of its own memory.
 struct Batch {
   Batch(const ObservationSpec& spec, int size)
-      : schema(spec, {.batch = size}),
-        data(static_cast<uint8_t*>(std::aligned_alloc(64, schema.total_bytes()))) {
-    if (!data) throw std::bad_alloc();
-  }
-  BatchView View() const { return schema.View(data.get()); }
+      : schema(spec, {.batch = size}), memory(schema.total_bytes()) {}
+  BatchView View() const { return schema.View(memory.data()); }
 
   BatchSchema schema;
-  std::unique_ptr<uint8_t[], FreeBatch> data;
+  AlignedBytes memory;
 };
 
 BatchPlan WithoutShift(BatchPlan plan) {

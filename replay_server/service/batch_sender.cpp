@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <exception>
-#include <new>
 
 #include "common/base/check.h"
 #include "common/base/clock.h"
@@ -25,11 +24,10 @@ BatchSender::BatchSender(uint64_t spec_hash, uint64_t batch_bytes, int buffers, 
       batch_bytes_(batch_bytes),
       writer_(*writer),
       on_free_(std::move(on_free)) {
-  CHECK(buffers > 0 && batch_bytes % 64 == 0);
+  CHECK(buffers > 0 && batch_bytes % AlignedBytes::kAlignment == 0);
   for (int i = 0; i < buffers; ++i) {
-    memory_.emplace_back(static_cast<uint8_t*>(std::aligned_alloc(64, batch_bytes)));
-    if (!memory_.back()) throw std::bad_alloc();
-    free_.push_back(memory_.back().get());
+    memory_.emplace_back(batch_bytes);
+    free_.push_back(memory_.back().data());
   }
   thread_ = std::thread([this] { Run(); });
 }

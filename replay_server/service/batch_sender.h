@@ -11,16 +11,15 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
-#include <cstdlib>
 #include <deque>
 #include <functional>
-#include <memory>
 #include <optional>
 #include <string>
 #include <thread>
 #include <variant>
 #include <vector>
 
+#include "common/base/aligned_bytes.h"
 #include "common/base/mutex.h"
 #include "common/wire/messages.h"
 #include "replay_server/core/replay_core.h"
@@ -68,9 +67,6 @@ class BatchSender {
   double sending_seconds() const { return sending_seconds_; }
 
  private:
-  struct FreeBytes {
-    void operator()(uint8_t* data) const { std::free(data); }
-  };
   // Either of them.
   struct BufferedBatch {
     DrawnBatch batch;
@@ -93,7 +89,7 @@ class BatchSender {
   const uint64_t spec_hash_, batch_bytes_;
   PartWriter& writer_;
   const std::function<void()> on_free_;
-  std::vector<std::unique_ptr<uint8_t[], FreeBytes>> memory_;
+  std::vector<AlignedBytes> memory_;
   Mutex mutex_;
   ConditionVariable changed_;
   std::vector<uint8_t*> free_ SHOAL_GUARDED_BY(mutex_);

@@ -1,10 +1,9 @@
 // A batch of noise that agents of the default task learn from.
 #pragma once
 
-#include <cstdlib>
-#include <memory>
 #include <type_traits>
 
+#include "common/base/aligned_bytes.h"
 #include "common/base/random.h"
 #include "common/config/config.h"
 #include "common/spec/observation_spec.h"
@@ -25,10 +24,6 @@ inline ObservationSpec PixelSpec(int channels = 6) {
 
 // Not movable: the schema is borrowed.
 struct NoiseBatch {
-  struct Free {
-    void operator()(uint8_t* p) const { std::free(p); }
-  };
-
   NoiseBatch(const Config& config, const ObservationSpec& spec)
       : schema(spec, {.batch = config.learner.batch}) {
     Random random(1);
@@ -50,9 +45,8 @@ struct NoiseBatch {
   NoiseBatch& operator=(const NoiseBatch&) = delete;
 
   BatchSchema schema;
-  std::unique_ptr<uint8_t, Free> memory{
-      static_cast<uint8_t*>(std::aligned_alloc(64, schema.total_bytes()))};
-  BatchView batch = schema.View(memory.get());
+  AlignedBytes memory{schema.total_bytes()};
+  BatchView batch = schema.View(memory.data());
 };
 
 }  // namespace shoal::bench

@@ -3,17 +3,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <functional>
-#include <memory>
 #include <set>
+
+#include "common/base/aligned_bytes.h"
 
 namespace shoal {
 namespace {
-
-struct Free {
-  void operator()(uint8_t* p) const { std::free(p); }
-};
 
 ObservationSpec Spec() {
   ObservationSpec spec;
@@ -26,18 +22,12 @@ ObservationSpec Spec() {
   return spec;
 }
 
-class BatchSchemaTest : public testing::Test {
- protected:
-  std::unique_ptr<uint8_t, Free> Memory(const BatchSchema& schema) {
-    return std::unique_ptr<uint8_t, Free>(
-        static_cast<uint8_t*>(std::aligned_alloc(64, schema.total_bytes())));
-  }
-};
+AlignedBytes Memory(const BatchSchema& schema) { return AlignedBytes(schema.total_bytes()); }
 
-TEST_F(BatchSchemaTest, ArraysAreAlignedDisjointAndInside) {
+TEST(BatchSchema, ArraysAreAlignedDisjointAndInside) {
   const BatchSchema schema(Spec(), {.batch = 3});
   const auto memory = Memory(schema);
-  const BatchView view = schema.View(memory.get());
+  const BatchView view = schema.View(memory.data());
   EXPECT_EQ(view.obs_frames.size(), 3u * 210);
   EXPECT_EQ(view.next_obs_frames.size(), 3u * 210);
   EXPECT_EQ(view.obs_vector.size(), 9u);
@@ -46,10 +36,10 @@ TEST_F(BatchSchemaTest, ArraysAreAlignedDisjointAndInside) {
   EXPECT_EQ(view.weights_update.size(), 3u);
   EXPECT_EQ(view.id.size(), 3u);
 
-  const uint8_t* end = memory.get();
+  const uint8_t* end = memory.data();
   const auto check = [&](const auto& array) {
     const auto* begin = reinterpret_cast<const uint8_t*>(array.data());
-    EXPECT_EQ((begin - memory.get()) % 64, 0);
+    EXPECT_EQ((begin - memory.data()) % 64, 0);
     EXPECT_GE(begin, end);
     end = begin + array.size_bytes();
   };
@@ -62,13 +52,13 @@ TEST_F(BatchSchemaTest, ArraysAreAlignedDisjointAndInside) {
   check(view.bootstrap);
   check(view.weights_update);
   check(view.id);
-  EXPECT_LE(end, memory.get() + schema.total_bytes());
+  EXPECT_LE(end, memory.data() + schema.total_bytes());
 }
 
-TEST_F(BatchSchemaTest, GivesArraysByNameAndType) {
+TEST(BatchSchema, GivesArraysByNameAndType) {
   const BatchSchema schema(Spec(), {.batch = 3});
   const auto memory = Memory(schema);
-  const BatchView view = schema.View(memory.get());
+  const BatchView view = schema.View(memory.data());
   EXPECT_EQ(view.Array<float>("action").data(), view.action.data());
   EXPECT_EQ(view.Array<uint64_t>("id").data(), view.id.data());
   EXPECT_EQ(view.Array<uint8_t>("obs_frames").size(), 3u * 210);
@@ -77,22 +67,22 @@ TEST_F(BatchSchemaTest, GivesArraysByNameAndType) {
   EXPECT_DEATH(view.Array<float>("id"), "array 'id' is u64");
 }
 
-TEST_F(BatchSchemaTest, HasNoArraysForWhatTheSpecDoesNotHave) {
+TEST(BatchSchema, HasNoArraysForWhatTheSpecDoesNotHave) {
   ObservationSpec spec = Spec();
   spec.channels = spec.height = spec.width = 0;
   const BatchSchema state(spec, {.batch = 3});
   EXPECT_FALSE(state.Has("obs_frames"));
   EXPECT_TRUE(state.Has("obs_vector"));
   const auto memory = Memory(state);
-  EXPECT_TRUE(state.View(memory.get()).obs_frames.empty());
+  EXPECT_TRUE(state.View(memory.data()).obs_frames.empty());
   spec = Spec();
   spec.blocks.clear();
   const BatchSchema pixels(spec, {.batch = 3});
   EXPECT_FALSE(pixels.Has("next_obs_vector"));
-  EXPECT_EQ(pixels.Array<float>("action", Memory(pixels).get()).size(), 12u);
+  EXPECT_EQ(pixels.Array<float>("action", Memory(pixels).data()).size(), 12u);
 }
 
-TEST_F(BatchSchemaTest, TheHashTellsWhateverDiffers) {
+TEST(BatchSchema, TheHashTellsWhateverDiffers) {
   const BatchOptions options{.batch = 3, .copies = 1, .n_step = 2, .discount = 0.9};
   std::set<uint64_t> hashes{BatchSchema(Spec(), options).Hash()};
   const auto add_options = [&](const std::function<void(BatchOptions&)>& change) {
@@ -118,7 +108,7 @@ TEST_F(BatchSchemaTest, TheHashTellsWhateverDiffers) {
   EXPECT_EQ(BatchSchema(Spec(), options).Hash(), BatchSchema(Spec(), options).Hash());
 }
 
-TEST_F(BatchSchemaTest, SaysWhatABatchIsInOneLine) {
+TEST(BatchSchema, SaysWhatABatchIsInOneLine) {
   EXPECT_EQ(BatchSchema(Spec(), {.batch = 3, .discount = 0.9}).Summary(),
             "batch 3, copies 1, n_step 1, discount 0.9: obs_frames u8 6x5x7, next_obs_frames u8 "
             "6x5x7, obs_vector f32 3, next_obs_vector f32 3, action f32 4, reward f32, bootstrap "

@@ -4,13 +4,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "common/base/aligned_bytes.h"
 #include "common/base/random.h"
 #include "common/nn/policy.h"
 #include "common/nn/precision.h"
@@ -24,9 +24,8 @@ class RandomBatch {
   RandomBatch(const ObservationSpec& spec, int batch, uint64_t key, bool rollout = false)
       : RandomBatch(spec, BatchOptions{.batch = batch, .rollout = rollout}, key) {}
   RandomBatch(const ObservationSpec& spec, const BatchOptions& options, uint64_t key)
-      : schema_(spec, options),
-        memory_(static_cast<uint8_t*>(std::aligned_alloc(64, schema_.total_bytes())), &std::free) {
-    std::memset(memory_.get(), 0, schema_.total_bytes());
+      : schema_(spec, options), memory_(schema_.total_bytes()) {
+    std::memset(memory_.data(), 0, schema_.total_bytes());
     Random random(key);
     const BatchView view = View();
     for (uint8_t& pixel : view.obs_frames) pixel = uint8_t(random.Next());
@@ -46,11 +45,11 @@ class RandomBatch {
     }
   }
 
-  BatchView View() const { return schema_.View(memory_.get()); }
+  BatchView View() const { return schema_.View(memory_.data()); }
 
  private:
   BatchSchema schema_;
-  std::unique_ptr<uint8_t, decltype(&std::free)> memory_;
+  AlignedBytes memory_;
 };
 
 // 18x16 grey frames in stacks of 2 beside a vector of 2, 2 actions.

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 
+#include "common/base/aligned_bytes.h"
 #include "common/base/files.h"
 #include "learner/agent/ppo/advantages.h"
 #include "learner/agent/ppo/ppo_agent.h"
@@ -57,8 +58,8 @@ class Sb3PpoTest : public testing::TestWithParam<Case> {
     config_.network.layer_norm = false;
     config_.network.activation = "tanh";
     schema_.emplace(spec_, BatchOptions{.batch = kRows, .rollout = true});
-    memory_.reset(static_cast<uint8_t*>(std::aligned_alloc(64, schema_->total_bytes())));
-    std::memset(memory_.get(), 0, schema_->total_bytes());
+    memory_ = AlignedBytes(schema_->total_bytes());
+    std::memset(memory_.data(), 0, schema_->total_bytes());
     agent_ = MakePpoAgent(config_, spec_, nn::Precision::kF32, [this](int, Random*) {
       const std::vector<float> rows = Recorded("permutation." + std::to_string(epoch_++));
       // Theirs count row by row of the flattened buffer: environment by environment, as ours.
@@ -122,13 +123,13 @@ class Sb3PpoTest : public testing::TestWithParam<Case> {
     }
   }
 
-  BatchView View() const { return schema_->View(memory_.get()); }
+  BatchView View() const { return schema_->View(memory_.data()); }
 
   const nn::TensorMap recorded_;
   ObservationSpec spec_;
   Config config_;
   std::optional<BatchSchema> schema_;
-  std::unique_ptr<uint8_t, decltype(&std::free)> memory_{nullptr, &std::free};
+  AlignedBytes memory_;
   std::unique_ptr<Agent> agent_;
   int epoch_ = 0;
 };

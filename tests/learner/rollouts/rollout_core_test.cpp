@@ -2,10 +2,10 @@
 
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <cstring>
 #include <memory>
 
+#include "common/base/aligned_bytes.h"
 #include "tests/learner/rollouts/actor_script.h"
 
 namespace shoal::learner {
@@ -21,9 +21,9 @@ class RolloutCoreTest : public testing::Test {
   }
   BatchView TakeReady() {
     schema_.emplace(core_->ReadySchema());
-    memory_.reset(static_cast<uint8_t*>(std::aligned_alloc(64, schema_->total_bytes())));
-    core_->TakeReady(*schema_, memory_.get());
-    return schema_->View(memory_.get());
+    memory_ = AlignedBytes(schema_->total_bytes());
+    core_->TakeReady(*schema_, memory_.data());
+    return schema_->View(memory_.data());
   }
   SessionCounters Counters(uint32_t actor, uint64_t session) const {
     return core_->sessions().at(*core_->sessions().Find(actor, session));
@@ -32,7 +32,7 @@ class RolloutCoreTest : public testing::Test {
   RunConfig run_ = PpoRun(2);
   std::unique_ptr<RolloutCore> core_;
   std::optional<BatchSchema> schema_;
-  std::unique_ptr<uint8_t, decltype(&std::free)> memory_{nullptr, &std::free};
+  AlignedBytes memory_;
   ActorScript a_{PpoSpec(), 0, 10}, b_{PpoSpec(), 1, 11};
 };
 
