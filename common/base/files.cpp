@@ -1,6 +1,7 @@
 #include "common/base/files.h"
 
 #include <fcntl.h>
+#include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -104,6 +105,13 @@ void MakeFolders(const std::filesystem::path& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) Fail("cannot create folder", folder, error.value());
+}
+
+std::filesystem::path MakeFreshFolder(const std::string& prefix,
+                                      const std::filesystem::path& parent) {
+  std::string name = (parent / (prefix + "XXXXXX")).string();
+  if (mkdtemp(name.data()) == nullptr) Fail("cannot create folder", name, errno);
+  return name;
 }
 
 }  // namespace shoal

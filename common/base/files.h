@@ -34,5 +34,10 @@ void SyncFolder(const std::filesystem::path& folder);
 
 // Creates a folder and its parents. Throws Error naming the path.
 void MakeFolders(const std::filesystem::path& folder);
+// Creates a folder that was not there, its user's own: `prefix` and six characters, in `parent`.
+// Throws Error naming the path.
+std::filesystem::path MakeFreshFolder(
+    const std::string& prefix = "shoal-",
+    const std::filesystem::path& parent = std::filesystem::temp_directory_path());
 
 }  // namespace shoal

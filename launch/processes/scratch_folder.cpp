@@ -1,6 +1,5 @@
 #include "launch/processes/scratch_folder.h"
 
-#include <stdlib.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
@@ -8,16 +7,12 @@
 #include <cstring>
 
 #include "common/base/error.h"
+#include "common/base/files.h"
 
 namespace shoal::launch {
 
-ScratchFolder::ScratchFolder(const std::filesystem::path& parent) {
-  std::string name = (parent / "shoal-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) {
-    throw RuntimeError("cannot create folder '{}': {}", name, std::strerror(errno));
-  }
-  path_ = name;
-}
+ScratchFolder::ScratchFolder(const std::filesystem::path& parent)
+    : path_(MakeFreshFolder("shoal-", parent)) {}
 
 ScratchFolder ScratchFolder::WithinRun(const std::filesystem::path& run) {
   const std::filesystem::path path = run / fmt::format(".scratch.tmp-{}", getpid());

@@ -19,6 +19,7 @@ class ScratchFolder {
     std::error_code error;
     const fs::path parent = fs::is_directory(memory, error) ? memory : fs::temp_directory_path();
     std::string name = parent / "shoal-fuzz-XXXXXX";
+    // An Error (MakeFreshFolder) would pass for a refusal of the bytes.
     CHECK(mkdtemp(name.data()) != nullptr) << name;
     path_ = name;
   }

@@ -28,12 +28,6 @@ struct Options {
   std::string json;
 };
 
-std::filesystem::path FreshFolder() {
-  std::string name = (std::filesystem::temp_directory_path() / "shoal-soak-XXXXXX").string();
-  if (mkdtemp(name.data()) == nullptr) throw shoal::RuntimeError("cannot create '{}'", name);
-  return name;
-}
-
 // An interrupted soak: its run's processes, which this one has adopted, and its files go away.
 void LeaveNothing(const std::filesystem::path& folder) {
   for (const pid_t pid : shoal::ChildrenOf(getpid())) kill(pid, SIGKILL);
@@ -73,7 +67,7 @@ int Run(int argc, char** argv) {
   prctl(PR_SET_CHILD_SUBREAPER, 1);  // what a run leaves behind becomes a child of ours
   options.soak.programs = shoal::launch::ProgramFolder();
   shoal::InstallStopSignals();
-  options.soak.folder = FreshFolder();
+  options.soak.folder = shoal::MakeFreshFolder("shoal-soak-");
   try {
     const auto result = options.steady_minutes > 0
                             ? shoal::soak::SoakSteadily(options.soak, options.steady_minutes)

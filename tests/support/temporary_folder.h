@@ -2,19 +2,16 @@
 #pragma once
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
 #include <filesystem>
-#include <string>
+
+#include "common/base/files.h"
 
 namespace shoal {
 
 class TemporaryFolder {
  public:
-  TemporaryFolder() {
-    std::string pattern = (std::filesystem::temp_directory_path() / "shoal-XXXXXX").string();
-    path_ = mkdtemp(pattern.data());
-  }
+  TemporaryFolder() : path_(MakeFreshFolder()) {}
   ~TemporaryFolder() { std::filesystem::remove_all(path_); }
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;

@@ -9,6 +9,7 @@
 #include <csignal>
 
 #include "common/base/error.h"
+#include "tests/support/error_message.h"
 #include "tests/support/temporary_folder.h"
 
 namespace shoal {
@@ -25,6 +26,19 @@ TEST(Files, WritesAndReplacesWhole) {
   WriteFileAtomically(path, "two!");
   EXPECT_EQ(ReadFile(path), "two!");
   EXPECT_EQ(FilesIn(folder.path()), 1);
+}
+
+TEST(Files, AFreshFolderIsNewAndItsUsersOwn) {
+  const TemporaryFolder folder;
+  const auto one = MakeFreshFolder("run-", folder.path());
+  const auto other = MakeFreshFolder("run-", folder.path());
+  EXPECT_NE(one, other);
+  EXPECT_EQ(one.parent_path(), folder.path());
+  EXPECT_EQ(one.filename().string().substr(0, 4), "run-");
+  EXPECT_EQ(std::filesystem::status(one).permissions(), std::filesystem::perms::owner_all);
+  const auto nowhere = folder.path() / "absent";
+  EXPECT_NE(ErrorMessage([&] { MakeFreshFolder("run-", nowhere); }).find(nowhere.string()),
+            std::string::npos);
 }
 
 TEST(Files, AreTheUsersOwnUnlessTheyAreForOthers) {
