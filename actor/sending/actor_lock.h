@@ -6,6 +6,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
+
+#include "common/base/file_lock.h"
 
 namespace shoal::actor {
 
@@ -16,12 +19,9 @@ class ActorLock {
   // Throws Error naming the lock when it is not had.
   ActorLock(const std::filesystem::path& run, uint32_t actor, std::chrono::seconds deadline,
             const std::function<bool()>& stop);
-  ~ActorLock();
-  ActorLock(const ActorLock&) = delete;
-  ActorLock& operator=(const ActorLock&) = delete;
 
  private:
-  int fd_ = -1;
+  std::optional<FileLock> lock_;
 };
 
 }  // namespace shoal::actor

@@ -9,20 +9,20 @@
 #include <filesystem>
 #include <optional>
 
+#include "common/base/descriptor.h"
+
 namespace shoal {
 
-// Held for as long as the process works on the run. One per process: closing any descriptor of the
-// file would drop the lock.
+// Held for as long as the process works on the run. A lock of the process (F_SETLK), not one of the
+// open file as FileLock's: of those the kernel does not say who holds them, and AnyMember names a
+// process. So it is one per process: closing any descriptor of the file would drop the lock.
 class RunMembership {
  public:
   // Throws Error when the file cannot be written.
   explicit RunMembership(const std::filesystem::path& run);
-  ~RunMembership();
-  RunMembership(const RunMembership&) = delete;
-  RunMembership& operator=(const RunMembership&) = delete;
 
  private:
-  int fd_;
+  Descriptor file_;
 };
 
 // A process that is a member of the run; none when there is none. Not to be asked by a member.

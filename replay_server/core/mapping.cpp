@@ -25,9 +25,8 @@ uint8_t* Map(int fd, uint64_t bytes, Access access) {
   return data == MAP_FAILED ? nullptr : static_cast<uint8_t*>(data);
 }
 
-// Closes and removes a file that could not be made, then throws.
-[[noreturn]] void FailNewFile(int fd, const fs::path& path, uint64_t bytes, int error) {
-  close(fd);
+// Removes a file that could not be made, then throws.
+[[noreturn]] void FailNewFile(const fs::path& path, uint64_t bytes, int error) {
   unlink(path.c_str());
   throw RuntimeError("cannot reserve {} bytes for the replay file '{}': {}", bytes, path.string(),
                      std::strerror(error));
@@ -37,13 +36,12 @@ uint8_t* Map(int fd, uint64_t bytes, Access access) {
 
 Mapping::~Mapping() {
   if (data_ != nullptr) munmap(data_, size_);
-  if (fd_ >= 0) close(fd_);
 }
 
 Mapping& Mapping::operator=(Mapping&& other) noexcept {
   std::swap(data_, other.data_);
   std::swap(size_, other.size_);
-  std::swap(fd_, other.fd_);
+  std::swap(file_, other.file_);
   return *this;
 }
 
@@ -67,37 +65,38 @@ Mapping Mapping::NewFile(const fs::path& path, uint64_t bytes) {
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   CheckDiskRoom(folder, bytes);
   Mapping mapping;
-  const int fd = open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600);
+  mapping.file_ = Descriptor(open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
+  const int fd = mapping.file_.get();
   if (fd < 0) {
     throw RuntimeError("cannot create the replay file '{}': {}", path.string(),
                        std::strerror(errno));
   }
   const int error = posix_fallocate(fd, 0, static_cast<off_t>(bytes));
-  if (error != 0) FailNewFile(fd, path, bytes, error);
-  if (flock(fd, LOCK_EX | LOCK_NB) != 0) FailNewFile(fd, path, bytes, errno);
+  if (error != 0) FailNewFile(path, bytes, error);
+  if (flock(fd, LOCK_EX | LOCK_NB) != 0) FailNewFile(path, bytes, errno);
   mapping.data_ = Map(fd, bytes, Access::kReadWrite);
-  if (mapping.data_ == nullptr) FailNewFile(fd, path, bytes, errno);
+  if (mapping.data_ == nullptr) FailNewFile(path, bytes, errno);
   mapping.size_ = bytes;
-  mapping.fd_ = fd;
   return mapping;
 }
 
 Mapping Mapping::OpenFile(const fs::path& path, Access access) {
   const bool writable = access == Access::kReadWrite;
   Mapping mapping;
-  mapping.fd_ = open(path.c_str(), (writable ? O_RDWR : O_RDONLY) | O_CLOEXEC);
-  if (mapping.fd_ < 0) {
+  mapping.file_ = Descriptor(open(path.c_str(), (writable ? O_RDWR : O_RDONLY) | O_CLOEXEC));
+  const int fd = mapping.file_.get();
+  if (fd < 0) {
     throw RuntimeError("cannot open the replay file '{}': {}", path.string(), std::strerror(errno));
   }
-  if (writable && flock(mapping.fd_, LOCK_EX | LOCK_NB) != 0) {
+  if (writable && flock(fd, LOCK_EX | LOCK_NB) != 0) {
     throw RuntimeError("the replay file '{}' is in use by another replay server", path.string());
   }
   struct stat status {};
-  if (fstat(mapping.fd_, &status) != 0 || status.st_size <= 0) {
+  if (fstat(fd, &status) != 0 || status.st_size <= 0) {
     throw RuntimeError("the replay file '{}' is empty", path.string());
   }
   const uint64_t bytes = static_cast<uint64_t>(status.st_size);
-  mapping.data_ = Map(mapping.fd_, bytes, access);
+  mapping.data_ = Map(fd, bytes, access);
   if (mapping.data_ == nullptr) {
     throw RuntimeError("cannot map the replay file '{}': {}", path.string(), std::strerror(errno));
   }

@@ -5,11 +5,15 @@
 #include <filesystem>
 #include <utility>
 
+#include "common/base/descriptor.h"
+
 namespace shoal::replay {
 
 enum class Access { kReadOnly, kReadWrite };
 
-// Owns the mapping and, for a file, its descriptor with an exclusive lock when writable. Move-only.
+// Owns the mapping and, for a file, its descriptor with an exclusive lock when writable: of the
+// very descriptor that is mapped (flock), where FileLock would lock whatever the path names by
+// then. Move-only.
 class Mapping {
  public:
   Mapping() = default;
@@ -32,7 +36,7 @@ class Mapping {
  private:
   uint8_t* data_ = nullptr;
   uint64_t size_ = 0;
-  int fd_ = -1;
+  Descriptor file_;
 };
 
 }  // namespace shoal::replay
