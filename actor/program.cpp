@@ -19,6 +19,7 @@
 #include "common/config/config_io.h"
 #include "common/config/run_files.h"
 #include "common/nn/precision.h"
+#include "common/wire/process_name.h"
 
 namespace shoal::actor {
 namespace {
@@ -82,10 +83,10 @@ int RunActor(const Options& options) {
   std::optional<StopWithInput> stop_with_input;
   if (options.stop_with_input) stop_with_input.emplace();
   if (options.role == "eval") {
-    log::Start("eval-0", "");
+    log::Start(ProcessName::Evaluation().Text(), "");
     return RunEvalActor(options.run, options.reach);
   }
-  log::Start(fmt::format("actor-{}", options.id), "");
+  log::Start(ProcessName::Actor(options.id).Text(), "");
   return RunTrainingActor(options.run, options.id, options.reach);
 }
 

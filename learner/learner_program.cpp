@@ -15,6 +15,7 @@
 #include "common/dds/subscriber.h"
 #include "common/nn/encoder_weights.h"
 #include "common/run_folder/run_file_names.h"
+#include "common/wire/process_name.h"
 #include "learner/agent/algorithms.h"
 #include "learner/agent/encoder_start.h"
 #include "learner/agent/network_start.h"
@@ -35,7 +36,7 @@ class Learner {
       : folder_(folder),
         member_(folder),
         run_(run),
-        session_(NextSession(folder, "learner-0", WallTimeNs())),
+        session_(NextSession(folder, ProcessName::Learner().Text(), WallTimeNs())),
         precision_(nn::ChoosePrecision(run.config.learner.precision, run.spec.HasPixels())),
         agent_(MakeAgent(run.config, run.spec, precision_)),
         checkpoints_(folder, run),

@@ -2,6 +2,7 @@
 
 #include "common/base/log.h"
 #include "common/config/on_policy.h"
+#include "common/wire/process_name.h"
 #include "learner/agent/frame_figures.h"
 #include "learner/agent/sample_figures.h"
 
@@ -11,7 +12,7 @@ LearnerReport::LearnerReport(const RunConfig& run)
     : spec_(run.spec),
       shift_pad_(LearnsOnPolicy(run.config) ? 0 : run.config.replay.shift_pad),
       guard_(run.config),
-      report_("learner", 0) {}
+      report_(ProcessName::Learner()) {}
 
 void LearnerReport::OnUpdate(const UpdateFigures& figures, const Batch& batch, uint64_t updates) {
   UpdateFigures all = figures;

@@ -8,6 +8,7 @@
 #include "common/config/run_files.h"
 #include "common/dds/bus.h"
 #include "common/tasks/task_library.h"
+#include "common/wire/process_name.h"
 #include "learner/command_line.h"
 #include "learner/learner_program.h"
 
@@ -17,7 +18,7 @@ int Run(int argc, char** argv) {
   shoal::learner::Options options;
   const auto app = shoal::learner::MakeCommandLine(&options);
   if (const auto exit_code = shoal::ParseCommandLine(app.get(), argc, argv)) return *exit_code;
-  shoal::log::Start("learner-0", "");
+  shoal::log::Start(shoal::ProcessName::Learner().Text(), "");
   shoal::InstallStopSignals();
   shoal::tasks::LoadTaskLibrary(shoal::ReadRunConfig(options.run).config.task_library);
   return shoal::learner::RunLearner(options.run, options.reach, argv);

@@ -8,6 +8,7 @@
 #include "common/config/run_files.h"
 #include "common/dds/bus.h"
 #include "common/tasks/task_library.h"
+#include "common/wire/process_name.h"
 #include "replay_server/service/command_line.h"
 #include "replay_server/service/replay_service.h"
 
@@ -18,7 +19,7 @@ int Run(int argc, char** argv) {
   const auto app = shoal::replay::MakeCommandLine(&options);
   if (const auto exit_code = shoal::ParseCommandLine(app.get(), argc, argv)) return *exit_code;
   shoal::InstallStopSignals();
-  shoal::log::Start("replay-0", "");
+  shoal::log::Start(shoal::ProcessName::Replay(0).Text(), "");
   shoal::tasks::LoadTaskLibrary(shoal::ReadRunConfig(options.run).config.task_library);
   return shoal::replay::RunReplayService(options.run, options.reach);
 }

@@ -14,6 +14,7 @@
 #include "common/dds/subscriber.h"
 #include "common/wire/control_state.h"
 #include "common/wire/metrics_report.h"
+#include "common/wire/process_name.h"
 
 namespace shoal::actor {
 namespace {
@@ -31,7 +32,7 @@ class EvalActor {
       : member_(folder),
         run_(ReadRunConfig(folder)),
         evaluator_(run_),
-        report_("eval", 0),
+        report_(ProcessName::Evaluation()),
         weights_(run_.spec.Hash()),
         control_(Now()),
         bus_(dds::FindPlace(folder, run_.config.transport, reach), dds::Role::kEval),

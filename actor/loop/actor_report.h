@@ -8,6 +8,7 @@
 #include "actor/loop/rollout.h"
 #include "common/tasks/task.h"
 #include "common/wire/metrics_report.h"
+#include "common/wire/process_name.h"
 
 namespace shoal::actor {
 
@@ -22,7 +23,7 @@ class ActorReport {
     const ActorLoop& loop;
     tasks::Task task;
   };
-  ActorReport(uint32_t id, const Parts& parts) : parts_(parts), report_("actor", id) {}
+  ActorReport(uint32_t id, const Parts& parts) : parts_(parts), report_(ProcessName::Actor(id)) {}
 
   bool Due(SteadyTime now) { return report_.Due(now); }
   // Valid until the next call.

@@ -10,6 +10,7 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/run_folder/run_file_names.h"
+#include "common/wire/process_name.h"
 
 namespace shoal::actor {
 namespace {
@@ -18,7 +19,7 @@ namespace fs = std::filesystem;
 using nlohmann::ordered_json;
 
 fs::path FileOf(const fs::path& run, uint32_t actor) {
-  return run / kMadeFolder / fmt::format("actor-{}.rollout", actor);
+  return run / kMadeFolder / (ProcessName::Actor(actor).Text() + ".rollout");
 }
 
 uint32_t Crc(const std::string& text) {

@@ -15,6 +15,7 @@
 #include "common/config/session_number.h"
 #include "common/dds/metrics_publisher.h"
 #include "common/tasks/task_registry.h"
+#include "common/wire/process_name.h"
 
 namespace shoal::actor {
 namespace {
@@ -57,7 +58,7 @@ class TrainingActor {
         id_(id),
         resumed_(GoesOnExactly(run_.config) ? TakeRolloutState(folder, id) : std::nullopt),
         session_(resumed_ ? resumed_->session
-                          : NextSession(folder, fmt::format("actor-{}", id), WallTimeNs())),
+                          : NextSession(folder, ProcessName::Actor(id).Text(), WallTimeNs())),
         first_env_(id * static_cast<uint32_t>(run_.config.envs_per_actor)),
         made_(folder, id, session_, first_env_, static_cast<uint32_t>(run_.config.envs_per_actor)),
         window_(WindowOptions(run_, id, session_, resumed_ ? resumed_->made : 0)),
@@ -107,7 +108,7 @@ class TrainingActor {
       });
     } catch (const SupersededError& e) {
       // Our successor's session must come after that one.
-      NextSession(folder_, fmt::format("actor-{}", id_),
+      NextSession(folder_, ProcessName::Actor(id_).Text(),
                   static_cast<int64_t>(std::min<uint64_t>(e.session(), INT64_MAX)));
       throw;
     }

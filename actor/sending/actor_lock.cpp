@@ -8,13 +8,15 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/run_folder/run_file_names.h"
+#include "common/wire/process_name.h"
 
 namespace shoal::actor {
 
 ActorLock::ActorLock(const std::filesystem::path& run, uint32_t actor,
                      std::chrono::seconds deadline, const std::function<bool()>& stop) {
   MakeFolders(run / kMadeFolder);
-  const std::filesystem::path path = run / kMadeFolder / fmt::format("actor-{}.lock", actor);
+  const std::filesystem::path path =
+      run / kMadeFolder / (ProcessName::Actor(actor).Text() + ".lock");
   const SteadyTime end = Now() + deadline;
   while (!(lock_ = FileLock::Take(path))) {
     if (Now() >= end || stop()) {

@@ -14,6 +14,7 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/run_folder/run_file_names.h"
+#include "common/wire/process_name.h"
 
 namespace shoal::actor {
 namespace {
@@ -84,7 +85,7 @@ MadePage::MadePage(const std::filesystem::path& run, uint32_t actor, uint64_t se
   }
   MakeFolders(run / kMadeFolder);
   const std::filesystem::path path =
-      run / kMadeFolder / fmt::format("actor-{}-{}.page", actor, session);
+      run / kMadeFolder / fmt::format("{}-{}.page", ProcessName::Actor(actor).Text(), session);
   std::error_code error_code;
   if (!std::filesystem::exists(path, error_code)) WritePage(path, page);
   const Descriptor file(open(path.c_str(), O_RDWR | O_CLOEXEC));

@@ -12,10 +12,10 @@
 
 namespace shoal {
 
-MetricsReport::MetricsReport(const std::string& role, uint32_t id)
+MetricsReport::MetricsReport(const ProcessName& process)
     : start_(Now()), last_due_(start_), last_begin_(start_) {
-  message_.role = role;
-  message_.id = id;
+  message_.role = process.role;
+  message_.id = process.index;
   message_.host = HostName();
   message_.pid = getpid();
 }

@@ -8,6 +8,7 @@
 
 #include "common/base/clock.h"
 #include "common/wire/messages.h"
+#include "common/wire/process_name.h"
 #include "common/wire/quantile_window.h"
 
 namespace shoal {
@@ -15,7 +16,7 @@ namespace shoal {
 // One thread.
 class MetricsReport {
  public:
-  MetricsReport(const std::string& role, uint32_t id);
+  explicit MetricsReport(const ProcessName& process);
 
   // True once a second; then, or at any other time, Begin.
   bool Due(SteadyTime now);
@@ -47,7 +48,7 @@ class MetricsReport {
   MetricsMessage message_;
   const SteadyTime start_;
   SteadyTime last_due_, last_begin_;
-  double interval_seconds_ = 0;  // of the interval that ended at Begin
+  double interval_seconds_ = 0;           // of the interval that ended at Begin
   std::map<std::string, double> totals_;  // of AddRate, at the last Begin
 };
 

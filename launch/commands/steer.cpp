@@ -8,6 +8,7 @@
 #include "common/base/error.h"
 #include "common/base/silence.h"
 #include "common/base/stop.h"
+#include "common/wire/process_name.h"
 #include "launch/commands/commands.h"
 #include "launch/commands/target_options.h"
 #include "launch/record/run_folder.h"
@@ -65,12 +66,13 @@ std::string InForce(const RunViewMessage& message, const LiveKey& live, double v
     for (const MetricsMessage& process : message.processes) {
       if (process.role != use.role) continue;
       any = true;
-      const auto used = view.Get(use.role, process.id, use.metric);
+      const ProcessName name{.role = use.role, .index = process.id};
+      const auto used = view.Get(name, use.metric);
       if (used != value) return "";
-      text += fmt::format("{}{}-{} {}", text.empty() ? "" : ", ", use.role, process.id, *used);
+      text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name.Text(), *used);
     }
     // A run that learns on policy has no replay.
-    if (!any && use.role != "replay") return "";
+    if (!any && use.role != ProcessName::Replay(0).role) return "";
   }
   return text;
 }

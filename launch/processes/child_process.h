@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/base/descriptor.h"
+#include "common/wire/process_name.h"
 
 namespace shoal::launch {
 
@@ -28,7 +29,9 @@ struct ProcessSpec {
   bool elsewhere = false;        // a remote shell: its exit code 255 is a lost connection
   std::vector<int> cores = {};   // CPUs it may run on; empty = those that we may
 
-  std::string Name() const { return role + "-" + std::to_string(id); }
+  std::string Name() const {
+    return ProcessName{.role = role, .index = static_cast<uint32_t>(id)}.Text();
+  }
 };
 
 struct ExitStatus {

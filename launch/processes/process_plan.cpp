@@ -4,6 +4,7 @@
 
 #include "common/base/error.h"
 #include "common/config/on_policy.h"
+#include "common/wire/process_name.h"
 #include "launch/record/run_folder.h"
 
 namespace shoal::launch {
@@ -28,13 +29,13 @@ ProcessSpec ProgramSpec(const std::string& program, std::vector<std::string> arg
 
 namespace {
 
-ProcessSpec PlanProcess(const std::filesystem::path& run, const std::string& role, int id,
+ProcessSpec PlanProcess(const std::filesystem::path& run, const ProcessName& name,
                         const std::string& program, std::vector<std::string> arguments,
                         int threads) {
   arguments.insert(arguments.begin(), {"--run", run.string()});
   ProcessSpec spec = ProgramSpec(program, std::move(arguments), threads);
-  spec.role = role;
-  spec.id = id;
+  spec.role = name.role;
+  spec.id = static_cast<int>(name.index);
   spec.output = LogFile(run, spec.Name());
   return spec;
 }
@@ -42,7 +43,8 @@ ProcessSpec PlanProcess(const std::filesystem::path& run, const std::string& rol
 }  // namespace
 
 ProcessSpec ActorProcess(const std::filesystem::path& run, int id) {
-  return PlanProcess(run, "actor", id, "shoal-actor", {"--id", std::to_string(id)}, 1);
+  return PlanProcess(run, ProcessName::Actor(static_cast<uint32_t>(id)), "shoal-actor",
+                     {"--id", std::to_string(id)}, 1);
 }
 
 ActorRange ActorsOf(const Config& config, const std::vector<RemoteHost>& hosts, size_t index) {
@@ -59,10 +61,11 @@ std::vector<ProcessSpec> PlanProcesses(const Config& config, const std::filesyst
   // the replay, or on policy the learner, leaves by itself when the heartbeat has been missing and
   // nothing comes any more.
   if (!on_policy) {
-    plan.push_back(PlanProcess(run, "replay", 0, "shoal-replay", {}, 1));
+    plan.push_back(PlanProcess(run, ProcessName::Replay(0), "shoal-replay", {}, 1));
     plan.back().outlives_parent = true;
   }
-  plan.push_back(PlanProcess(run, "learner", 0, "shoal-learner", {}, config.learner.threads));
+  plan.push_back(
+      PlanProcess(run, ProcessName::Learner(), "shoal-learner", {}, config.learner.threads));
   plan.back().outlives_parent = on_policy;
   const int actors_here = hosts.empty() ? config.actors : ActorsOf(config, hosts, 0).first;
   for (int i = 0; i < actors_here; ++i) plan.push_back(ActorProcess(run, i));
@@ -72,7 +75,7 @@ std::vector<ProcessSpec> PlanProcesses(const Config& config, const std::filesyst
       plan.push_back(RemoteActor(hosts[host], i, run));
     }
   }
-  plan.push_back(PlanProcess(run, "eval", 0, "shoal-actor", {"--role", "eval"}, 1));
+  plan.push_back(PlanProcess(run, ProcessName::Evaluation(), "shoal-actor", {"--role", "eval"}, 1));
   return plan;
 }
 

@@ -8,6 +8,7 @@
 #include "common/config/run_files.h"
 #include "common/credentials/credentials.h"
 #include "common/run_folder/run_file_names.h"
+#include "common/wire/process_name.h"
 #include "launch/processes/scratch_folder.h"
 #include "launch/record/run_folder.h"
 
@@ -54,7 +55,8 @@ void RunOrThrow(const std::string& what, const std::vector<std::string>& command
 bool IsPageOf(const fs::path& file, const ActorRange& actors) {
   for (int id = actors.first; id < actors.first + actors.count; ++id) {
     if (file.extension() == ".page" &&
-        file.filename().string().starts_with(fmt::format("actor-{}-", id))) {
+        file.filename().string().starts_with(ProcessName::Actor(static_cast<uint32_t>(id)).Text() +
+                                             "-")) {
       return true;
     }
   }
@@ -175,7 +177,7 @@ ProcessSpec RemoteActor(const RemoteHost& host, int id, const fs::path& run) {
   words.insert(words.end(), actor.begin(), actor.end());
   if (!host.secure.empty()) words.insert(words.end(), {"--secure", host.secure});
   ProcessSpec spec;
-  spec.role = "actor";
+  spec.role = ProcessName::Actor(0).role;
   spec.id = id;
   spec.command = Through(host, ShellLine(words));
   spec.output = LogFile(run, spec.Name());

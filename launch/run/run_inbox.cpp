@@ -1,6 +1,7 @@
 #include "launch/run/run_inbox.h"
 
 #include "common/config/config.h"
+#include "common/wire/process_name.h"
 
 namespace shoal::launch {
 namespace {
@@ -15,13 +16,13 @@ RunInbox::RunInbox(dds::Bus& bus)
       evaluations_(kMostEvaluations),
       replay_words_(kMessages),
       learner_words_(kMessages),
-      actor_reports_(bus, ReportsOf<ActorMetrics>("actor")),
-      eval_reports_(bus, ReportsOf<EvalMetrics>("eval")),
-      replay_reports_(bus, ReportsOf<ReplayMetrics>("replay")),
-      learner_reports_(bus, ReportsOf<LearnerMetrics>("learner")),
+      actor_reports_(bus, ReportsOf<ActorMetrics>(ProcessName::Actor(0).role)),
+      eval_reports_(bus, ReportsOf<EvalMetrics>(ProcessName::Evaluation().role)),
+      replay_reports_(bus, ReportsOf<ReplayMetrics>(ProcessName::Replay(0).role)),
+      learner_reports_(bus, ReportsOf<LearnerMetrics>(ProcessName::Learner().role)),
       replay_progress_(bus,
                        [this](const ReplayProgress& word) {
-                         if (word.replay == 0) {
+                         if (word.replay == ProcessName::Replay(0).index) {
                            replay_words_.Put(word);
                          } else {
                            ++refused_;
@@ -31,8 +32,8 @@ RunInbox::RunInbox(dds::Bus& bus)
       evaluation_subscriber_(bus, [this](const EvalMessage& m) { evaluations_.Put(m); }) {}
 
 template <class M>
-std::function<void(const M&)> RunInbox::ReportsOf(const std::string& role) {
-  const uint32_t ids = role == "actor" ? kMostActors : 1;
+std::function<void(const M&)> RunInbox::ReportsOf(std::string_view role) {
+  const uint32_t ids = role == ProcessName::Actor(0).role ? kMostActors : 1;
   return [this, role, ids](const M& report) {
     if (report.role == role && report.id < ids) {
       reports_.Put(report);

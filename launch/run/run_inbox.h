@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "common/dds/bus.h"
@@ -36,7 +37,7 @@ class RunInbox {
  private:
   // Holds the reports of a topic that only this role may write.
   template <class M>
-  std::function<void(const M&)> ReportsOf(const std::string& role);
+  std::function<void(const M&)> ReportsOf(std::string_view role);
 
   MessageInbox<MetricsMessage> reports_;
   MessageInbox<EvalMessage> evaluations_;

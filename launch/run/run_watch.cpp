@@ -6,6 +6,7 @@
 
 #include "common/dds/metrics_publisher.h"
 #include "common/run_folder/run_file_names.h"
+#include "common/wire/process_name.h"
 #include "launch/watch/run_totals.h"
 
 namespace shoal::launch {
@@ -15,7 +16,7 @@ RunWatch::RunWatch(const std::filesystem::path& run, const dds::Bus& bus,
     : bus_(bus),
       say_(std::move(say)),
       log_(run / kMetricsFile, MetricsLogLimits()),
-      own_report_("coordinator", 0) {}
+      own_report_(ProcessName::Coordinator()) {}
 
 void RunWatch::OnReport(const MetricsMessage& report, SteadyTime now) {
   view_.OnMessage(report, now);
@@ -27,7 +28,7 @@ void RunWatch::OnReport(const MetricsMessage& report, SteadyTime now) {
 void RunWatch::LookBack(double seconds, uint64_t env_steps, const RunResources& resources) {
   recent_.Add({.seconds = seconds,
                .env_steps = static_cast<double>(env_steps),
-               .updates = view_.Get("learner", 0, "updates")},
+               .updates = view_.Get(ProcessName::Learner(), "updates")},
               TotalsOf(view_));
   lately_ = FindBottleneck(recent_.Totals(), resources);
 }

@@ -45,9 +45,8 @@ void MetricsView::ForRole(std::string_view role, Visit visit) const {
   }
 }
 
-std::optional<double> MetricsView::Get(std::string_view role, uint32_t id,
-                                       std::string_view name) const {
-  const auto it = processes_.find({std::string(role), id});
+std::optional<double> MetricsView::Get(const ProcessName& process, std::string_view name) const {
+  const auto it = processes_.find({std::string(process.role), process.index});
   return it == processes_.end() ? std::nullopt : Find(it->second.values, name);
 }
 

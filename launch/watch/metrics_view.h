@@ -11,6 +11,7 @@
 
 #include "common/base/clock.h"
 #include "common/wire/messages.h"
+#include "common/wire/process_name.h"
 
 namespace shoal::launch {
 
@@ -22,8 +23,8 @@ class MetricsView {
   // with a shorter uptime, is of a successor.
   void OnMessage(const MetricsMessage& message, SteadyTime now);
 
-  // The figure in the newest report of the role's process `id`; empty when it has none.
-  std::optional<double> Get(std::string_view role, uint32_t id, std::string_view name) const;
+  // The figure in the newest report of the process; empty when it has none.
+  std::optional<double> Get(const ProcessName& process, std::string_view name) const;
   // Sum over the role's processes that reported within kFresh; empty when none has the figure.
   std::optional<double> Sum(std::string_view role, std::string_view name, SteadyTime now) const;
   // Mean over them, weighted by the figure `weight`.

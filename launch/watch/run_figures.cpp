@@ -7,6 +7,7 @@
 
 #include "common/base/saturating_cast.h"
 #include "common/wire/metric_names.h"
+#include "common/wire/process_name.h"
 #include "launch/watch/advice.h"
 #include "learner/agent/algorithms.h"
 
@@ -15,15 +16,15 @@ namespace shoal::launch {
 ProgressFigures CollectFigures(const MetricsView& view, SteadyTime now) {
   ProgressFigures figures;
   figures.env_steps_per_second = view.Sum("actor", "env_steps_per_second", now);
-  figures.updates = view.Get("learner", 0, "updates");
+  figures.updates = view.Get(ProcessName::Learner(), "updates");
   figures.updates_per_second = view.Sum("learner", "updates_per_second", now);
   for (const learner::Figure* figure : learner::AllFigures()) {
-    const auto value = view.Get("learner", 0, std::string(figure->name));
+    const auto value = view.Get(ProcessName::Learner(), std::string(figure->name));
     if (figure->headline && value) figures.update_figures.emplace_back(figure->name, *value);
   }
-  figures.policy_lag = view.Get("replay", 0, "policy_lag_p50");
-  if (!figures.policy_lag) figures.policy_lag = view.Get("learner", 0, "rollout_lag");
-  figures.data_age = view.Get("learner", 0, "data_age_updates_p50");
+  figures.policy_lag = view.Get(ProcessName::Replay(0), "policy_lag_p50");
+  if (!figures.policy_lag) figures.policy_lag = view.Get(ProcessName::Learner(), "rollout_lag");
+  figures.data_age = view.Get(ProcessName::Learner(), "data_age_updates_p50");
   figures.rollout_success = view.Mean("actor", "rollout_success", "episodes", now);
   figures.rollout_return = view.Mean("actor", "rollout_return", "episodes", now);
   figures.rollout_length = view.Mean("actor", "rollout_length", "episodes", now);
@@ -54,7 +55,9 @@ void AddEvaluation(const std::string& prefix, const std::optional<EvaluationPoin
 }
 
 std::optional<EvaluationPoint> FindEvaluation(const MetricsView& view, const std::string& prefix) {
-  const auto get = [&](const char* name) { return view.Get("coordinator", 0, prefix + name); };
+  const auto get = [&](const char* name) {
+    return view.Get(ProcessName::Coordinator(), prefix + name);
+  };
   if (!get("_return")) return std::nullopt;
   EvaluationPoint point;
   point.success = get("_success");
@@ -121,7 +124,9 @@ std::string AdviceOfView(const RunViewMessage& message) {
   if (message.state != "running") return "The run is ending: its processes store what they have.";
   MetricsView view;
   for (const MetricsMessage& process : message.processes) view.OnMessage(process, Now());
-  const auto own = [&](const std::string& name) { return view.Get("coordinator", 0, name); };
+  const auto own = [&](const std::string& name) {
+    return view.Get(ProcessName::Coordinator(), name);
+  };
   Bottleneck lately{.cores = own("recent_cores").value_or(0),
                     .usable = own("usable_cores").value_or(0)};
   lately.limited = own("limiter_blocked_insert_share").has_value();
@@ -144,7 +149,7 @@ std::string AdviceOfView(const RunViewMessage& message) {
 ProgressFigures FiguresOfView(const RunViewMessage& message, SteadyTime now) {
   MetricsView view;
   for (const MetricsMessage& process : message.processes) view.OnMessage(process, now);
-  const auto own = [&](const char* name) { return view.Get("coordinator", 0, name); };
+  const auto own = [&](const char* name) { return view.Get(ProcessName::Coordinator(), name); };
   ProgressFigures figures = CollectFigures(view, now);
   figures.run = message.run;
   figures.state = message.state;

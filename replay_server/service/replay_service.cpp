@@ -24,6 +24,7 @@
 #include "common/run_folder/run_file_names.h"
 #include "common/wire/control_state.h"
 #include "common/wire/metrics_report.h"
+#include "common/wire/process_name.h"
 #include "common/wire/scoped_seconds.h"
 #include "replay_server/core/replay_core.h"
 #include "replay_server/service/batch_sender.h"
@@ -39,7 +40,7 @@ namespace {
 
 using std::chrono::milliseconds;
 
-constexpr uint32_t kReplayNumber = 0;
+constexpr ProcessName kProcess = ProcessName::Replay(0);
 constexpr milliseconds kPoll{100};  // between looks at control and stop requests
 constexpr int kBatchBuffers = 2;    // one being filled, one being sent
 constexpr milliseconds kProgressSpacing{200};
@@ -55,7 +56,7 @@ class ReplayService {
         bus_(dds::FindPlace(folder, run_.config.transport, reach), dds::Role::kReplay),
         metrics_publisher_(bus_),
         before_(ReadAccountBefore(folder)),
-        core_(run_, folder, NextSession(folder, "replay-0", WallTimeNs()),
+        core_(run_, folder, NextSession(folder, kProcess.Text(), WallTimeNs()),
               {before_.stored_steps, before_.sessions}, [this] { ReportStarting(); }),
         control_(Now()),
         inbox_(SpecHash(), ChunkBytes(Window(), core_.ring().layout().record_bytes()), MaxChunks()),
@@ -167,7 +168,7 @@ class ReplayService {
 
   // What the coordinator counts the run's env steps by.
   void TellProgress(SteadyTime now, bool at_once = false) {
-    const ReplayProgress progress{.replay = kReplayNumber,
+    const ReplayProgress progress{.replay = kProcess.index,
                                   .session = core_.replay_session(),
                                   .stored_steps = core_.ring().stored_steps(),
                                   .stored_records = core_.ring().last_id()};
@@ -308,7 +309,7 @@ class ReplayService {
   const RunConfig run_;
   dds::Bus bus_;
   dds::MetricsPublisher<ReplayMetrics> metrics_publisher_;
-  MetricsReport starting_report_{"replay", 0};
+  MetricsReport starting_report_{kProcess};
   const AccountBefore before_;
   ReplayCore core_;
   ControlState control_;

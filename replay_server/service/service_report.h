@@ -7,6 +7,7 @@
 
 #include "common/base/clock.h"
 #include "common/wire/metrics_report.h"
+#include "common/wire/process_name.h"
 #include "replay_server/core/replay_core.h"
 #include "replay_server/service/batch_sender.h"
 #include "replay_server/service/flow_ages.h"
@@ -29,7 +30,11 @@ class ServiceReport {
   // Borrows all of them.
   ServiceReport(const ReplayCore& core, const ServiceInbox& inbox, const BatchSender& sender,
                 const LearnerSlots& slots)
-      : core_(core), inbox_(inbox), sender_(sender), slots_(slots), report_("replay", 0) {}
+      : core_(core),
+        inbox_(inbox),
+        sender_(sender),
+        slots_(slots),
+        report_(ProcessName::Replay(0)) {}
 
   // A chunk waited this long in the inbox.
   void NoteQueueAge(double seconds) { queue_age_seconds_ = std::max(queue_age_seconds_, seconds); }

@@ -15,6 +15,7 @@
 #include "common/base/stop.h"
 #include "common/dds/bus.h"
 #include "common/nn/precision.h"
+#include "common/wire/process_name.h"
 
 namespace {
 
@@ -72,7 +73,7 @@ int Run(int argc, char** argv) {
   if (const auto exit_code = shoal::ParseCommandLine(&app, argc, argv)) return *exit_code;
   shoal::nn::SetThreads(1);
   shoal::InstallStopSignals();
-  shoal::log::Start(fmt::format("actor-{}", id), "");
+  shoal::log::Start(shoal::ProcessName::Actor(id).Text(), "");
   const auto make = [&](const shoal::RunConfig& config, int count) {
     std::vector<std::unique_ptr<shoal::worlds::Environment>> environments;
     environments.reserve(count);

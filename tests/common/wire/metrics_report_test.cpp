@@ -7,6 +7,7 @@
 #include <thread>
 #include <vector>
 
+#include "common/wire/process_name.h"
 #include "common/wire/scoped_seconds.h"
 
 namespace shoal {
@@ -28,7 +29,7 @@ void WaitUntilSince(SteadyTime start, double seconds) {
 
 TEST(MetricsReport, IsDueOnceASecond) {
   const SteadyTime start = Now();
-  MetricsReport report("actor", 3);
+  MetricsReport report(ProcessName::Actor(3));
   EXPECT_FALSE(report.Due(start + std::chrono::milliseconds(500)));
   EXPECT_TRUE(report.Due(start + std::chrono::milliseconds(1500)));
   EXPECT_FALSE(report.Due(start + std::chrono::milliseconds(1600)));
@@ -36,7 +37,7 @@ TEST(MetricsReport, IsDueOnceASecond) {
 }
 
 TEST(MetricsReport, SaysWhoReports) {
-  MetricsReport report("actor", 3);
+  MetricsReport report(ProcessName::Actor(3));
   report.Begin("blocked");
   EXPECT_EQ(report.message().role, "actor");
   EXPECT_EQ(report.message().id, 3u);
@@ -48,7 +49,7 @@ TEST(MetricsReport, SaysWhoReports) {
 
 TEST(MetricsReport, SharesAndRatesAreOfTheIntervalThatEnded) {
   const SteadyTime start = Now();
-  MetricsReport report("actor", 0);
+  MetricsReport report(ProcessName::Actor(0));
   WaitUntilSince(start, 0.12);
   report.Begin("running");
   const double until_first = SecondsSince(start);
@@ -73,7 +74,7 @@ TEST(MetricsReport, SharesAndRatesAreOfTheIntervalThatEnded) {
 
 TEST(MetricsReport, AShareIsNeverMoreThanTheWhole) {
   const SteadyTime start = Now();
-  MetricsReport report("replay", 0);
+  MetricsReport report(ProcessName::Replay(0));
   WaitUntilSince(start, 0.12);
   report.Begin("running");
   report.AddSeconds("sending", 3.5);  // a send that has waited since long before
@@ -82,7 +83,7 @@ TEST(MetricsReport, AShareIsNeverMoreThanTheWhole) {
 }
 
 TEST(MetricsReport, AnIntervalTooShortHasNoShares) {
-  MetricsReport report("actor", 0);
+  MetricsReport report(ProcessName::Actor(0));
   report.Begin("running");
   report.AddSeconds("physics", 0.03);
   EXPECT_EQ(Figures(report).count("share_physics"), 0u);
@@ -90,7 +91,7 @@ TEST(MetricsReport, AnIntervalTooShortHasNoShares) {
 }
 
 TEST(MetricsReport, QuantilesOfNothingAreLeftOut) {
-  MetricsReport report("actor", 0);
+  MetricsReport report(ProcessName::Actor(0));
   QuantileWindow window;
   report.Begin("running");
   report.AddQuantiles("lag", &window);

@@ -13,7 +13,7 @@ const SteadyTime kNow = SteadyTime() + seconds(1000);
 
 TEST(MetricsView, MissingFiguresAreEmpty) {
   MetricsView view;
-  EXPECT_FALSE(view.Get("learner", 0, "updates"));
+  EXPECT_FALSE(view.Get(ProcessName::Learner(), "updates"));
   EXPECT_FALSE(view.Sum("actor", "env_steps", kNow));
   EXPECT_FALSE(view.Mean("actor", "rollout_success", "episodes", kNow));
   EXPECT_EQ(view.Total("actor", "resends"), 0);
@@ -23,7 +23,7 @@ TEST(MetricsView, KeepsTheLastReportThoughTheClockWasSetBack) {
   MetricsView view;
   view.OnMessage(Report("learner", 0, 7, 5000, {{"updates", 10}}), kNow);
   view.OnMessage(Report("learner", 0, 7, 1401, {{"updates", 20}}), kNow);
-  EXPECT_EQ(view.Get("learner", 0, "updates"), 20);
+  EXPECT_EQ(view.Get(ProcessName::Learner(), "updates"), 20);
 }
 
 TEST(MetricsView, SumsAndWeighsFreshProcessesOnly) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "common/wire/metric_names.h"
+#include "common/wire/process_name.h"
 #include "tests/launch/watch/report_message.h"
 
 namespace shoal::launch {
@@ -28,7 +29,7 @@ Bottleneck Lately() {
 RunViewMessage ViewOf(const ProgressFigures& figures, const Bottleneck& lately) {
   Config config;
   config.env_steps = 4000;
-  MetricsReport report("coordinator", 0);
+  MetricsReport report(ProcessName::Coordinator());
   report.Begin(figures.state);
   AddRunFigures(figures, &report);
   AddOrders(config, {.usable_cores = 4, .actors = 2}, &report);

@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 
+#include "common/wire/process_name.h"
 #include "tests/replay_server/record_script.h"
 
 namespace shoal::replay {
@@ -38,7 +39,7 @@ class FlowAgesTest : public ::testing::Test {
     ages_.OnChunk(chunk, kNow);
   }
   std::map<std::string, double> Report() {
-    MetricsReport report("replay", 0);
+    MetricsReport report(ProcessName::Replay(0));
     report.Begin("running");
     ages_.Report(&report);
     std::map<std::string, double> figures;
