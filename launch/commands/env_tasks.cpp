@@ -9,10 +9,16 @@
 #include "actor/worlds/tools/reward_check.h"
 #include "actor/worlds/tools/task_description.h"
 #include "actor/worlds/tools/task_table.h"
+#include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/stop.h"
+#include "common/config/config_io.h"
+#include "common/config/run_files.h"
 #include "common/run_folder/run_file_names.h"
 #include "launch/observability/observability.h"
+#include "launch/processes/actor_program.h"
+#include "launch/record/run_folder.h"
+#include "launch/record/run_inputs.h"
 
 namespace shoal::launch {
 namespace {
@@ -28,6 +34,25 @@ int Describe(const worlds::DescribeRequest& request, const std::string& json) {
   const worlds::TaskDescription description = worlds::DescribeTask(request);
   if (!json.empty()) WriteFileAtomically(json, worlds::ToJson(description).dump(2) + "\n");
   std::cout << worlds::ToText(description) << std::flush;
+  return 0;
+}
+
+// Whose inputs are asked for: a run's, or those that a preset's runs would have.
+struct InputsRequest {
+  std::string run, run_dir = "runs", preset;
+};
+
+RunConfig ConfigOf(const InputsRequest& request) {
+  if (!request.run.empty()) return ReadRunConfig(FindNamed(request.run, RunsIn(request.run_dir)));
+  const Config config = LoadPreset(request.preset);
+  return {config, DescribeObservations(config).spec};
+}
+
+int PrintInputs(const InputsRequest& request, const std::string& json) {
+  if (!json.empty()) CheckWritable(json);
+  const RunConfig run = ConfigOf(request);
+  if (!json.empty()) WriteFileAtomically(json, InputsJson(run).dump(2) + "\n");
+  std::cout << DescribeInputs(run) << std::flush;
   return 0;
 }
 
@@ -85,11 +110,23 @@ void AddDescribe(CLI::App& env, Action* chosen) {
   CLI::App* command = env.add_subcommand(
       "describe",
       "A task's observations (shape, unit, meaning, bounds, measured range), what each action axis "
-      "does when moved alone, its reward and cameras.");
+      "does when moved alone, its reward and cameras. Of a run: what its policy gets, and what "
+      "training alone is told.");
   const auto request = std::make_shared<worlds::DescribeRequest>();
+  const auto inputs = std::make_shared<InputsRequest>();
   const auto json = std::make_shared<std::string>();
-  AddTask(command, &request->task, &request->model);
-  AddJson(command, "shoal-env-1", json.get());
+  // One of three says what is described, and the options of a task go with a task alone.
+  CLI::Option* task = command->add_option("task", request->task, "Task, e.g. FetchReachDense");
+  CLI::Option* run =
+      command->add_option("--run", inputs->run, "Run in place of a task: name or folder");
+  run->excludes(task);
+  command->add_option("--run-dir", inputs->run_dir, "Folder that holds the runs")
+      ->capture_default_str();
+  CLI::Option* preset = command->add_option(
+      "--preset", inputs->preset, "Preset in place of a task: what a run of it would get");
+  preset->excludes(task)->excludes(run);
+  command->add_option("--model", request->model, "Another MJCF file for the task")->needs(task);
+  AddJson(command, "shoal-env-1, of a run or a preset shoal-inputs-1", json.get());
   command->add_option("--probe-steps", request->probe_env_steps, "Env steps of one command")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
@@ -97,7 +134,15 @@ void AddDescribe(CLI::App& env, Action* chosen) {
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
   AddSeed(command, &request->seed);
-  command->callback([=] { *chosen = [=] { return Describe(*request, *json); }; });
+  command->callback([=] {
+    if (task->count() + run->count() + preset->count() == 0) {
+      throw UsageError(
+          "env describe: nothing is named; expected a task, --run RUN or --preset NAME");
+    }
+    *chosen = [=] {
+      return task->count() > 0 ? Describe(*request, *json) : PrintInputs(*inputs, *json);
+    };
+  });
 }
 
 void AddRewardCheck(CLI::App& env, Action* chosen) {

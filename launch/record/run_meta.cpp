@@ -8,7 +8,6 @@
 #include "common/base/files.h"
 #include "common/base/or_null.h"
 #include "common/config/config_io.h"
-#include "common/config/privileged_blocks.h"
 #include "common/nn/precision.h"
 #include "common/run_folder/run_file_names.h"
 #include "launch/record/machine.h"
@@ -83,19 +82,6 @@ ordered_json Versions() {
 
 }  // namespace
 
-PolicyInputs PolicyInputsOf(const ObservationSpec& spec) {
-  PolicyInputs inputs{.cameras = spec.cameras, .goal_picture = spec.goal_picture};
-  for (const BlockSpec& block : spec.blocks) {
-    if (block.observed) inputs.blocks.push_back(block.name);
-  }
-  return inputs;
-}
-
-PrivilegedInputs PrivilegedInputsOf(const Config& config, const ObservationSpec& spec) {
-  return {.critic_blocks = PrivilegedBlocksOf(config.learner, spec).critic,
-          .labels = config.learner.aux};
-}
-
 void WriteRunMeta(const std::filesystem::path& run, const Config& config, const RunMeta& meta) {
   const ordered_json object{
       {"schema", kMetaSchema},
@@ -109,13 +95,8 @@ void WriteRunMeta(const std::filesystem::path& run, const Config& config, const 
       {"machine", DescribeMachine()},
       {"precision",
        nn::ToString(nn::ChoosePrecision(config.learner.precision, config.observation.pixels))},
-      {"policy_inputs",
-       {{"blocks", meta.policy_inputs.blocks},
-        {"cameras", meta.policy_inputs.cameras},
-        {"goal_picture", meta.policy_inputs.goal_picture}}},
-      {"privileged_inputs",
-       {{"critic_blocks", meta.privileged_inputs.critic_blocks},
-        {"labels", meta.privileged_inputs.labels}}},
+      {"policy_inputs", ToJson(meta.policy_inputs)},
+      {"privileged_inputs", ToJson(meta.privileged_inputs)},
       {"started", meta.started},
       {"finished", meta.finished.empty() ? ordered_json(nullptr) : ordered_json(meta.finished)},
       {"env_steps", meta.env_steps},

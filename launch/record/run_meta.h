@@ -7,27 +7,12 @@
 #include <vector>
 
 #include "common/config/config.h"
-#include "common/spec/observation_spec.h"
 #include "launch/record/accounting.h"
 #include "launch/record/evaluation_point.h"
+#include "launch/record/run_inputs.h"
 #include "launch/record/setting_change.h"
 
 namespace shoal::launch {
-
-// What the policy sees.
-struct PolicyInputs {
-  std::vector<std::string> blocks{};   // in the order of its vector
-  std::vector<std::string> cameras{};  // empty: no pixels
-  bool goal_picture = false;           // of each camera, beside its frames
-};
-PolicyInputs PolicyInputsOf(const ObservationSpec& spec);
-
-// What learning was told beside it (common/config/privileged_blocks.h).
-struct PrivilegedInputs {
-  std::vector<std::string> critic_blocks{};  // in place of the pixels
-  std::vector<std::string> labels{};         // as learner.aux names them
-};
-PrivilegedInputs PrivilegedInputsOf(const Config& config, const ObservationSpec& spec);
 
 struct RunMeta {
   std::vector<std::string> commits;  // builds that took part before this one, the first one first

@@ -1,9 +1,10 @@
-// `shoal-actor --describe` for every kind of observation.
+// `shoal-actor --describe` for every kind of observation, and `shoal env describe` of runs.
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
 #include "common/config/config_io.h"
+#include "common/config/run_files.h"
 #include "tests/support/program.h"
 
 namespace shoal {
@@ -49,6 +50,36 @@ TEST(Describe, SaysWhatEachKindOfObservationConsistsOf) {
       }
     }
   }
+}
+
+// What a run of the preset would get is what its actors say; of a run it stands in its folder.
+TEST(Describe, ListsWhatThePolicyOfAPresetOrARunGets) {
+  const TemporaryFolder folder;
+  const auto describe = [&](const std::string& option, const std::string& name) {
+    const std::string file = folder.path() / "inputs.json";
+    const ProgramResult result = RunProgram({"shoal", "env", "describe", option, name, "--run-dir",
+                                             folder.path().string(), "--json", file},
+                                            std::chrono::seconds(30));
+    EXPECT_EQ(ExitCode(result), 0) << result.err;
+    return std::pair(result.out, nlohmann::json::parse(ReadFile(file)));
+  };
+  const auto [text, inputs] = describe("--preset", "fetch-push-pixels");
+  EXPECT_NE(text.find("FetchPush: what the policy gets, in training and at test time:\n"
+                      "  pictures  front, side at 64x64, 1 frame(s), the goal's marker hidden\n"
+                      "  numbers   grip (3), fingers (2), grip_velocity (3), "
+                      "finger_velocities (2), desired_goal (3)\n"),
+            std::string::npos)
+      << text;
+  EXPECT_EQ(inputs.at("privileged_inputs").at("labels"), nlohmann::json({"object-grip"}));
+
+  RunConfig run;
+  run.spec.task = "FetchPush";
+  run.spec.blocks = {{"grip", 3}, {"object", 3}};
+  run.spec.action_size = 4;
+  std::filesystem::create_directory(folder.path() / "mine");
+  WriteRunConfig(folder.path() / "mine", run);
+  EXPECT_NE(describe("--run", "mine").first.find("numbers   grip (3), object (3)\n"),
+            std::string::npos);
 }
 
 }  // namespace

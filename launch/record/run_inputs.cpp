@@ -1,0 +1,118 @@
+#include "launch/record/run_inputs.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "common/config/privileged_blocks.h"
+
+namespace shoal::launch {
+namespace {
+
+using nlohmann::ordered_json;
+
+// "grip (3), fingers (2)", or "nothing".
+std::string Listed(const ObservationSpec& spec, const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) {
+    text += fmt::format("{}{} ({})", text.empty() ? "" : ", ", name, spec.Recorded(name)->size);
+  }
+  return text.empty() ? "nothing" : text;
+}
+
+// Nothing where no goal is drawn.
+std::string MarkerText(const RunConfig& run) {
+  if (!run.spec.Recorded("desired_goal")) return "";
+  const bool hidden = run.config.replay.hindsight != "none" || run.spec.goal_picture;
+  return hidden ? ", the goal's marker hidden" : ", with the goal's marker";
+}
+
+std::string PicturesText(const RunConfig& run) {
+  const ObservationSpec& spec = run.spec;
+  if (!spec.HasPixels()) return "none";
+  return fmt::format("{} at {}x{}{}, {} frame(s){}{}", fmt::join(spec.cameras, ", "), spec.height,
+                     spec.width, run.config.observation.grey ? " grey" : "", spec.stack,
+                     spec.goal_picture ? " and a picture of the goal reached" : "",
+                     MarkerText(run));
+}
+
+// Blocks of the record that neither the policy nor learning gets, rewards of hindsight apart.
+std::vector<std::string> Unused(const RunConfig& run) {
+  const std::vector<std::string> told = PrivilegedBlocksOf(run.config.learner, run.spec).all;
+  std::vector<std::string> unused;
+  for (const BlockSpec& block : run.spec.blocks) {
+    if (!block.observed && std::ranges::count(told, block.name) == 0) unused.push_back(block.name);
+  }
+  return unused;
+}
+
+std::string PrivilegedLines(const PrivilegedInputs& inputs, const ObservationSpec& spec) {
+  if (inputs.critic_blocks.empty() && inputs.labels.empty()) {
+    return "privileged, in training alone: nothing\n";
+  }
+  std::string text = "privileged, in training alone:\n";
+  if (!inputs.critic_blocks.empty()) {
+    text += fmt::format("  the critic sees        {}{}\n", Listed(spec, inputs.critic_blocks),
+                        spec.HasPixels() ? ", in place of pixels" : "");
+  }
+  if (!inputs.labels.empty()) {
+    text += fmt::format("  the encoder is taught  {}\n", fmt::join(inputs.labels, ", "));
+  }
+  return text;
+}
+
+}  // namespace
+
+PolicyInputs PolicyInputsOf(const ObservationSpec& spec) {
+  PolicyInputs inputs{.cameras = spec.cameras, .goal_picture = spec.goal_picture};
+  for (const BlockSpec& block : spec.blocks) {
+    if (block.observed) inputs.blocks.push_back(block.name);
+  }
+  return inputs;
+}
+
+PrivilegedInputs PrivilegedInputsOf(const Config& config, const ObservationSpec& spec) {
+  return {.critic_blocks = PrivilegedBlocksOf(config.learner, spec).critic,
+          .labels = config.learner.aux};
+}
+
+ordered_json ToJson(const PolicyInputs& inputs) {
+  return {{"blocks", inputs.blocks},
+          {"cameras", inputs.cameras},
+          {"goal_picture", inputs.goal_picture}};
+}
+
+ordered_json ToJson(const PrivilegedInputs& inputs) {
+  return {{"critic_blocks", inputs.critic_blocks}, {"labels", inputs.labels}};
+}
+
+std::string DescribeInputs(const RunConfig& run) {
+  const PolicyInputs policy = PolicyInputsOf(run.spec);
+  std::string text = fmt::format(
+      "{}: what the policy gets, in training and at test time:\n"
+      "  pictures  {}\n"
+      "  numbers   {}\n",
+      run.spec.task, PicturesText(run), Listed(run.spec, policy.blocks));
+  text += PrivilegedLines(PrivilegedInputsOf(run.config, run.spec), run.spec);
+  return text + fmt::format("recorded besides: {}\n", Listed(run.spec, Unused(run)));
+}
+
+ordered_json InputsJson(const RunConfig& run) {
+  const ObservationSpec& spec = run.spec;
+  ordered_json recorded = ordered_json::array();
+  for (const BlockSpec& block : spec.blocks) {
+    recorded.push_back({{"name", block.name}, {"size", block.size}});
+  }
+  return {{"schema", "shoal-inputs-1"},
+          {"task", spec.task},
+          {"height", spec.height},
+          {"width", spec.width},
+          {"stack", spec.stack},
+          {"policy_inputs", ToJson(PolicyInputsOf(spec))},
+          {"privileged_inputs", ToJson(PrivilegedInputsOf(run.config, spec))},
+          {"recorded_blocks", recorded}};
+}
+
+}  // namespace shoal::launch

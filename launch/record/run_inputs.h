@@ -1,0 +1,40 @@
+// What a run's policy is given, in training and at test time alike, and what learning alone is told
+// besides: for the run's first lines, for meta.json and for `shoal env describe --run`.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <vector>
+
+#include "common/config/config.h"
+#include "common/config/run_files.h"
+#include "common/spec/observation_spec.h"
+
+namespace shoal::launch {
+
+// What the policy sees.
+struct PolicyInputs {
+  std::vector<std::string> blocks{};   // in the order of its vector
+  std::vector<std::string> cameras{};  // empty: no pixels
+  bool goal_picture = false;           // of each camera, beside its frames
+};
+PolicyInputs PolicyInputsOf(const ObservationSpec& spec);
+
+// What learning was told beside it (common/config/privileged_blocks.h).
+struct PrivilegedInputs {
+  std::vector<std::string> critic_blocks{};  // in place of the pixels
+  std::vector<std::string> labels{};         // as learner.aux names them
+};
+// Throws Error (usage) as PrivilegedBlocksOf.
+PrivilegedInputs PrivilegedInputsOf(const Config& config, const ObservationSpec& spec);
+
+// As meta.json has them.
+nlohmann::ordered_json ToJson(const PolicyInputs& inputs);
+nlohmann::ordered_json ToJson(const PrivilegedInputs& inputs);
+
+// All of it for people: lines, each ended.
+std::string DescribeInputs(const RunConfig& run);
+// The same for programs, schema shoal-inputs-1.
+nlohmann::ordered_json InputsJson(const RunConfig& run);
+
+}  // namespace shoal::launch

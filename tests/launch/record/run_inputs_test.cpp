@@ -1,0 +1,82 @@
+#include "launch/record/run_inputs.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+namespace shoal::launch {
+namespace {
+
+using testing::HasSubstr;
+using testing::Not;
+
+// FetchPush from pixels with what the gripper feels and the goal's position.
+RunConfig PushRun() {
+  RunConfig run;
+  run.spec.task = "FetchPush";
+  run.spec.cameras = {"front", "side"};
+  run.spec.channels = 6;
+  run.spec.height = run.spec.width = 64;
+  run.spec.action_size = 4;
+  run.spec.blocks = {{"grip", 3},
+                     {"object", 3, /*observed=*/false},
+                     {"object_velocity_from_grip", 3, /*observed=*/false},
+                     {"achieved_goal", 3, /*observed=*/false},
+                     {"desired_goal", 3}};
+  run.config.replay.hindsight = "future";
+  run.config.learner.critic_blocks = StateBlocks(std::vector<std::string>{"object"});
+  run.config.learner.aux = {"object-grip"};
+  return run;
+}
+
+TEST(RunInputs, SayWhatThePolicyGetsAndWhatTrainingAloneIsTold) {
+  EXPECT_EQ(DescribeInputs(PushRun()),
+            "FetchPush: what the policy gets, in training and at test time:\n"
+            "  pictures  front, side at 64x64, 1 frame(s), the goal's marker hidden\n"
+            "  numbers   grip (3), desired_goal (3)\n"
+            "privileged, in training alone:\n"
+            "  the critic sees        object (3), in place of pixels\n"
+            "  the encoder is taught  object-grip\n"
+            "recorded besides: object_velocity_from_grip (3), achieved_goal (3)\n");
+}
+
+TEST(RunInputs, NothingIsSaidToBeNothing) {
+  RunConfig run;
+  run.spec.task = "walker_walk";
+  run.spec.blocks = {{"velocity", 9}};
+  EXPECT_EQ(DescribeInputs(run),
+            "walker_walk: what the policy gets, in training and at test time:\n"
+            "  pictures  none\n"
+            "  numbers   velocity (9)\n"
+            "privileged, in training alone: nothing\n"
+            "recorded besides: nothing\n");
+}
+
+TEST(RunInputs, TheGoalsMarkerIsInPicturesUnlessItIsHidden) {
+  RunConfig run = PushRun();
+  run.config.replay.hindsight = "none";
+  EXPECT_THAT(DescribeInputs(run), HasSubstr("1 frame(s), with the goal's marker\n"));
+  run.spec.goal_picture = true;
+  run.config.learner.critic_blocks = false;
+  EXPECT_THAT(
+      DescribeInputs(run),
+      HasSubstr("1 frame(s) and a picture of the goal reached, the goal's marker hidden\n"));
+  run.spec.blocks.resize(3);
+  EXPECT_THAT(DescribeInputs(run), Not(HasSubstr("marker")));
+}
+
+TEST(RunInputs, ProgramsGetTheSame) {
+  EXPECT_EQ(nlohmann::json(InputsJson(PushRun())), nlohmann::json::parse(R"({
+    "schema": "shoal-inputs-1", "task": "FetchPush", "height": 64, "width": 64, "stack": 1,
+    "policy_inputs": {"blocks": ["grip", "desired_goal"],
+                      "cameras": ["front", "side"], "goal_picture": false},
+    "privileged_inputs": {"critic_blocks": ["object"], "labels": ["object-grip"]},
+    "recorded_blocks": [{"name": "grip", "size": 3}, {"name": "object", "size": 3},
+                        {"name": "object_velocity_from_grip", "size": 3},
+                        {"name": "achieved_goal", "size": 3}, {"name": "desired_goal", "size": 3}]
+  })"));
+}
+
+}  // namespace
+}  // namespace shoal::launch
