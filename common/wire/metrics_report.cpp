@@ -55,6 +55,12 @@ void MetricsReport::AddRate(const std::string& name, double total, double most) 
   Add(name, std::min(most, (total - before) / interval_seconds_));
 }
 
+void MetricsReport::AddShare(const std::string& name, double part, double whole) {
+  const auto before = std::exchange(parts_[name], {part, whole});
+  if (whole <= before.second) return;
+  Add(name, (part - before.first) / (whole - before.second));
+}
+
 void MetricsReport::AddSeconds(const std::string& stage, double total) {
   Add("seconds_" + stage, total);
   AddRate("share_" + stage, total, 1);

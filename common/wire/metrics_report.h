@@ -5,6 +5,7 @@
 #include <limits>
 #include <map>
 #include <string>
+#include <utility>
 
 #include "common/base/clock.h"
 #include "common/wire/messages.h"
@@ -32,6 +33,9 @@ class MetricsReport {
   // short to tell; at most `most`.
   void AddRate(const std::string& name, double total,
                double most = std::numeric_limits<double>::infinity());
+  // `part` and `whole` grow: the share that the one has of the other in what they grew by in the
+  // interval that ended, nothing where `whole` did not grow.
+  void AddShare(const std::string& name, double part, double whole);
   // Time spent in a stage, of seconds since the start: seconds_STAGE and share_STAGE, the share of
   // the interval that ended. Seconds are counted when a stage ends: one that began before the
   // interval, as a send that found nobody to take it, has all of it, and not more.
@@ -48,8 +52,10 @@ class MetricsReport {
   MetricsMessage message_;
   const SteadyTime start_;
   SteadyTime last_due_, last_begin_;
-  double interval_seconds_ = 0;           // of the interval that ended at Begin
-  std::map<std::string, double> totals_;  // of AddRate, at the last Begin
+  double interval_seconds_ = 0;  // of the interval that ended at Begin
+  // At the last Begin, by name.
+  std::map<std::string, double> totals_;                    // of AddRate
+  std::map<std::string, std::pair<double, double>> parts_;  // of AddShare: part and whole
 };
 
 // Resident memory of this process.

@@ -7,16 +7,12 @@ namespace shoal::replay {
 const MetricsMessage& ServiceReport::Make(const std::string& state, const ServiceSeconds& seconds,
                                           FlowAges* ages) {
   const CoreCounters& counters = core_.counters();
-  const uint64_t batch = static_cast<uint64_t>(core_.batch_schema().batch());
   report_.Begin(state);
   Add("stored_records", core_.ring().last_id());
   Add("stored_steps", core_.ring().stored_steps());
   report_.AddRate("stored_records_per_second", static_cast<double>(counters.intake.records));
   Add("sampleable", core_.index().sampleable());
-  Add("sampled", counters.batches * batch);
-  Add("relabelled", counters.relabelled);
-  Add("zero_rewards", counters.zero_rewards);
-  report_.AddRate("samples_per_second", static_cast<double>(counters.batches * batch));
+  AddSamples();
   report_.Add("limiter_samples_per_insert", core_.limiter().samples_per_insert());
   report_.Add("limiter_cursor", core_.limiter().cursor());
   report_.Add("limiter_band", core_.limiter().band());
@@ -32,6 +28,19 @@ const MetricsMessage& ServiceReport::Make(const std::string& state, const Servic
   ages->Report(&report_);
   report_.AddResources();
   return report_.message();
+}
+
+void ServiceReport::AddSamples() {
+  const CoreCounters& counters = core_.counters();
+  const uint64_t sampled = counters.batches * static_cast<uint64_t>(core_.batch_schema().batch());
+  const auto add_part = [&](const std::string& count, const std::string& share, uint64_t part) {
+    Add(count, part);
+    report_.AddShare(share, static_cast<double>(part), static_cast<double>(sampled));
+  };
+  Add("sampled", sampled);
+  report_.AddRate("samples_per_second", static_cast<double>(sampled));
+  add_part("relabelled", "relabelled_share", counters.relabelled);
+  add_part("zero_rewards", "zero_reward_share", counters.zero_rewards);
 }
 
 void ServiceReport::AddTroubles() {

@@ -49,6 +49,7 @@ class ServiceReport {
   void Add(const std::string& name, uint64_t value) {
     report_.Add(name, static_cast<double>(value));
   }
+  void AddSamples();
   void AddTimes(const ServiceSeconds& seconds);
   void AddTroubles();
 

@@ -72,6 +72,20 @@ TEST(MetricsReport, SharesAndRatesAreOfTheIntervalThatEnded) {
   EXPECT_NEAR(Figures(report).at("share_physics"), 0.06 / second, 1e-9);
 }
 
+TEST(MetricsReport, ASharesPartAndWholeAreThoseOfTheIntervalThatEnded) {
+  MetricsReport report(ProcessName::Replay(0));
+  report.Begin("running");
+  report.AddShare("relabelled_share", 0, 0);
+  EXPECT_TRUE(report.message().names.empty()) << "of nothing there is no share";
+  report.AddShare("relabelled_share", 30, 40);
+  EXPECT_EQ(Figures(report).at("relabelled_share"), 0.75);
+  report.Begin("running");
+  report.AddShare("relabelled_share", 40, 80);
+  report.AddShare("zero_reward_share", 8, 80);
+  EXPECT_EQ(Figures(report).at("relabelled_share"), 0.25);
+  EXPECT_EQ(Figures(report).at("zero_reward_share"), 0.1);
+}
+
 TEST(MetricsReport, AShareIsNeverMoreThanTheWhole) {
   const SteadyTime start = Now();
   MetricsReport report(ProcessName::Replay(0));
