@@ -13,6 +13,8 @@ namespace {
 
 using nlohmann::ordered_json;
 
+bool NamesAnObject(const BlockSpec& block) { return block.name.starts_with("object"); }
+
 // "grip (3), fingers (2)", or "nothing".
 std::string Listed(const ObservationSpec& spec, const std::vector<std::string>& names) {
   std::string text;
@@ -67,8 +69,13 @@ std::string PrivilegedLines(const PrivilegedInputs& inputs, const ObservationSpe
 
 PolicyInputs PolicyInputsOf(const ObservationSpec& spec) {
   PolicyInputs inputs{.cameras = spec.cameras, .goal_picture = spec.goal_picture};
+  const bool has_object = std::ranges::any_of(spec.blocks, NamesAnObject);
   for (const BlockSpec& block : spec.blocks) {
-    if (block.observed) inputs.blocks.push_back(block.name);
+    if (!block.observed) continue;
+    inputs.blocks.push_back(block.name);
+    if (NamesAnObject(block) || (has_object && block.name == "achieved_goal")) {
+      inputs.object_blocks.push_back(block.name);
+    }
   }
   return inputs;
 }
@@ -80,6 +87,7 @@ PrivilegedInputs PrivilegedInputsOf(const Config& config, const ObservationSpec&
 
 ordered_json ToJson(const PolicyInputs& inputs) {
   return {{"blocks", inputs.blocks},
+          {"object_blocks", inputs.object_blocks},
           {"cameras", inputs.cameras},
           {"goal_picture", inputs.goal_picture}};
 }
@@ -95,6 +103,10 @@ std::string DescribeInputs(const RunConfig& run) {
       "  pictures  {}\n"
       "  numbers   {}\n",
       run.spec.task, PicturesText(run), Listed(run.spec, policy.blocks));
+  if (!policy.object_blocks.empty()) {
+    text +=
+        fmt::format("  of these tell of the object: {}\n", fmt::join(policy.object_blocks, ", "));
+  }
   text += PrivilegedLines(PrivilegedInputsOf(run.config, run.spec), run.spec);
   return text + fmt::format("recorded besides: {}\n", Listed(run.spec, Unused(run)));
 }

@@ -14,10 +14,15 @@ namespace shoal::launch {
 
 // What the policy sees.
 struct PolicyInputs {
-  std::vector<std::string> blocks{};   // in the order of its vector
+  std::vector<std::string> blocks{};  // in the order of its vector
+  // Of these, those that tell of an object: where the policy has pictures, to see the object in
+  // them is half of the task, and a figure of such a run has to say what it was told in numbers.
+  std::vector<std::string> object_blocks{};
   std::vector<std::string> cameras{};  // empty: no pixels
   bool goal_picture = false;           // of each camera, beside its frames
 };
+// An object's blocks are known by their names: those that begin with "object", and `achieved_goal`
+// where one of those is recorded, for then the object is what has to get to the goal.
 PolicyInputs PolicyInputsOf(const ObservationSpec& spec);
 
 // What learning was told beside it (common/config/privileged_blocks.h).

@@ -12,6 +12,7 @@
 #include "common/config/privileged_blocks.h"
 #include "common/nn/precision.h"
 #include "common/tasks/task_registry.h"
+#include "launch/record/run_inputs.h"
 #include "learner/agent/update_cost.h"
 #include "replay_server/core/storage_needs.h"
 
@@ -79,6 +80,16 @@ std::string PrivilegedText(const RunConfig& run) {
   return fmt::format("  privileged, in training alone: {}\n", told);
 }
 
+// "From pixels" leads one to think that the policy finds the object in its pictures: where it is
+// told of it in numbers, a figure of such a run has to say so, too.
+std::string ObjectText(const ObservationSpec& spec) {
+  const std::vector<std::string> told = PolicyInputsOf(spec).object_blocks;
+  if (!spec.HasPixels() || told.empty()) return "";
+  return fmt::format(
+      "  the policy itself is told of the object beside its pictures, also at test time: {}\n",
+      fmt::join(told, ", "));
+}
+
 // One frame shows no velocity; where there is a goal to reach, success is possible without.
 std::string StackText(const RunConfig& run) {
   const auto tells_velocity = [](const BlockSpec& block) {
@@ -122,9 +133,9 @@ std::string DefaultsText(const Config& config) {
 }  // namespace
 
 std::string PlanText(const RunConfig& run, double frame_microseconds) {
-  return fmt::format("  {}; {}\n  {}; {}\n{}{}{}", PicturesText(run, frame_microseconds),
+  return fmt::format("  {}; {}\n  {}; {}\n{}{}{}{}", PicturesText(run, frame_microseconds),
                      ReplayText(run), PaceText(run.config), UpdateText(run), PrivilegedText(run),
-                     StackText(run), DefaultsText(run.config));
+                     ObjectText(run.spec), StackText(run), DefaultsText(run.config));
 }
 
 }  // namespace shoal::launch

@@ -8,8 +8,9 @@
 namespace shoal::launch {
 
 // Lines, each ended: pictures and what drawing them takes, what the replay takes or how long
-// rollouts are, updates per env step, arithmetic, encoder and work of an update. Throws Error where
-// the CPU lacks the asked precision.
+// rollouts are, updates per env step, arithmetic, encoder and work of an update; what learning is
+// told that the policy is not, and what the policy is told that its pictures show. Throws Error
+// where the CPU lacks the asked precision.
 std::string PlanText(const RunConfig& run, double frame_microseconds);
 
 }  // namespace shoal::launch

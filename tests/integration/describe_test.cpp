@@ -70,6 +70,7 @@ TEST(Describe, ListsWhatThePolicyOfAPresetOrARunGets) {
                       "finger_velocities (2), desired_goal (3)\n"),
             std::string::npos)
       << text;
+  EXPECT_EQ(inputs.at("policy_inputs").at("object_blocks"), nlohmann::json::array());
   EXPECT_EQ(inputs.at("privileged_inputs").at("labels"), nlohmann::json({"object-grip"}));
 
   RunConfig run;

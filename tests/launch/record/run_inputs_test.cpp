@@ -8,7 +8,9 @@
 namespace shoal::launch {
 namespace {
 
+using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::IsEmpty;
 using testing::Not;
 
 // FetchPush from pixels with what the gripper feels and the goal's position.
@@ -66,10 +68,25 @@ TEST(RunInputs, TheGoalsMarkerIsInPicturesUnlessItIsHidden) {
   EXPECT_THAT(DescribeInputs(run), Not(HasSubstr("marker")));
 }
 
+TEST(RunInputs, BlocksThatTellOfTheObjectAreNamed) {
+  ObservationSpec spec = PushRun().spec;
+  EXPECT_THAT(PolicyInputsOf(spec).object_blocks, IsEmpty());
+  for (BlockSpec& block : spec.blocks) block.observed = true;
+  EXPECT_THAT(PolicyInputsOf(spec).object_blocks,
+              ElementsAre("object", "object_velocity_from_grip", "achieved_goal"));
+  RunConfig run = PushRun();
+  run.spec = spec;
+  EXPECT_THAT(DescribeInputs(run), HasSubstr("  of these tell of the object: object, "));
+  // What is achieved by a gripper alone tells of the gripper.
+  std::erase_if(spec.blocks,
+                [](const BlockSpec& block) { return block.name.starts_with("object"); });
+  EXPECT_THAT(PolicyInputsOf(spec).object_blocks, IsEmpty());
+}
+
 TEST(RunInputs, ProgramsGetTheSame) {
   EXPECT_EQ(nlohmann::json(InputsJson(PushRun())), nlohmann::json::parse(R"({
     "schema": "shoal-inputs-1", "task": "FetchPush", "height": 64, "width": 64, "stack": 1,
-    "policy_inputs": {"blocks": ["grip", "desired_goal"],
+    "policy_inputs": {"blocks": ["grip", "desired_goal"], "object_blocks": [],
                       "cameras": ["front", "side"], "goal_picture": false},
     "privileged_inputs": {"critic_blocks": ["object"], "labels": ["object-grip"]},
     "recorded_blocks": [{"name": "grip", "size": 3}, {"name": "object", "size": 3},

@@ -56,12 +56,17 @@ TEST(RunMeta, SaysWhatThePolicySeesAndHowOftenItWasUpdated) {
     WriteRunMeta(run.path(), Config(), meta);
     return nlohmann::json::parse(ReadFile(run.path() / "meta.json"));
   };
-  EXPECT_EQ(written().at("policy_inputs"), nlohmann::json({{"blocks", {"grip", "desired_goal"}},
-                                                           {"cameras", {"front"}},
-                                                           {"goal_picture", false}}));
+  EXPECT_EQ(written().at("policy_inputs"),
+            nlohmann::json({{"blocks", {"grip", "desired_goal"}},
+                            {"object_blocks", nlohmann::json::array()},
+                            {"cameras", {"front"}},
+                            {"goal_picture", false}}));
   EXPECT_EQ(written().at("privileged_inputs"),
             nlohmann::json(
                 {{"critic_blocks", nlohmann::json::array()}, {"labels", nlohmann::json::array()}}));
+  spec.blocks.push_back({"object", 3});  // a policy that does not have to find it
+  meta.policy_inputs = PolicyInputsOf(spec);
+  EXPECT_EQ(written().at("policy_inputs").at("object_blocks"), nlohmann::json({"object"}));
   Config config;
   config.learner.critic_blocks = true;
   config.learner.aux = {"achieved_goal-desired_goal"};

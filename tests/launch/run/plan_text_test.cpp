@@ -59,6 +59,30 @@ TEST(PlanText, WhatOnlyTrainingIsToldIsSaid) {
                         "pixels, the encoder is taught object-grip\n"));
 }
 
+TEST(PlanText, APolicyThatIsToldOfTheObjectBesidePicturesIsNamed) {
+  RunConfig run;
+  run.spec.cameras = {"front"};
+  run.spec.channels = 3;
+  run.spec.height = run.spec.width = 84;
+  run.spec.action_size = 2;
+  run.spec.blocks = {{"grip", 3},
+                     {"object", 3, /*observed=*/false},
+                     {"achieved_goal", 3, /*observed=*/false},
+                     {"desired_goal", 3}};
+  const auto said = HasSubstr("the policy itself is told of the object");
+  EXPECT_THAT(PlanText(run, 1), Not(said));
+  run.spec.blocks[1].observed = true;  // observation.proprioception
+  EXPECT_THAT(PlanText(run, 1), HasSubstr("  the policy itself is told of the object beside its "
+                                          "pictures, also at test time: object\n"));
+  run.spec.blocks[1].observed = false;
+  run.spec.blocks[2].observed = true;  // observation.goal_mode = both
+  EXPECT_THAT(PlanText(run, 1), HasSubstr("also at test time: achieved_goal\n"));
+  run.spec.cameras = {};  // from state nobody thinks otherwise
+  run.spec.channels = run.spec.height = run.spec.width = 0;
+  run.config.observation.pixels = false;
+  EXPECT_THAT(PlanText(run, 0), Not(said));
+}
+
 TEST(PlanText, OneFrameOfATaskOfMotionIsSaidToShowNoVelocity) {
   RunConfig run;
   run.config.task = "walker_walk";
