@@ -173,6 +173,8 @@ ordered_json EvaluationJson(const RunConfig& run, const EvaluationLabel& label,
       {"aggregate", Aggregate(episodes, has_success)},
       {"commit", BuildCommit()},
       {"created", UtcTimestamp()}};
+  // A goal that has to be reached once is another than one to be held until the end.
+  if (run.config.end_on_success) object["end_on_success"] = true;
   if (causes.applies()) object["failures"] = FailureCounts(causes.causes(), episodes);
   return object;
 }

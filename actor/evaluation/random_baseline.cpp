@@ -47,6 +47,7 @@ ordered_json PlayRandom(const RandomRequest& request, const std::function<bool()
   run.config.distance_threshold = request.distance_threshold;
   run.config.action_repeat = request.action_repeat;
   run.config.physics = request.physics;
+  run.config.end_on_success = request.end_on_success;
   run.config.observation.pixels = false;
   run.config.observation.proprioception = true;
   run.spec = worlds::MakeEnvironment(run.config, nullptr)->spec();

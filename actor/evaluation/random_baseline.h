@@ -18,6 +18,7 @@ struct RandomRequest {
   double distance_threshold = 0;  // m; 0 = the task's own
   int action_repeat = 0;          // 0 = the task's own
   std::string physics = "mujoco2";
+  bool end_on_success = false;
 };
 
 // Whole episodes of the final stream, as `shoal eval` plays them. Schema shoal-eval-1 with policy

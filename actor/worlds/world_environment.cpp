@@ -48,9 +48,14 @@ WorldEnvironment::WorldEnvironment(const tasks::Task& task, std::unique_ptr<Worl
                                    const Config& config, std::shared_ptr<RenderContext> render)
     : task_(task),
       action_repeat_(task.ActionRepeat(config.action_repeat)),
+      end_on_success_(config.end_on_success),
       world_(std::move(world)),
       masses_(*world_, config.randomization.body_mass),
       render_(std::move(render)) {
+  if (end_on_success_ && task.goal_size() == 0) {
+    throw UsageError("end_on_success is true, but task {} has no goals; expected false",
+                     task.name());
+  }
   Size(task.observation(), &observation_.exact, &observation_.numbers);
   Size(task.achieved_goal(), &achieved_goal_.exact, &achieved_goal_.numbers);
   Size(task.desired_goal(), &desired_goal_.exact, &desired_goal_.numbers);
@@ -207,8 +212,6 @@ void WorldEnvironment::StepWorld(StepResult* result) {
   ++control_step_;
   ReadWorld();
   const double distance = Distance();
-  result->terminated = outcome.terminated;
-  result->truncated = !outcome.terminated && control_step_ == task_.episode_length();
   result->distance = static_cast<float>(distance);
   if (task_.goal_size() == 0) {
     result->reward += static_cast<float>(outcome.reward);
@@ -216,6 +219,8 @@ void WorldEnvironment::StepWorld(StepResult* result) {
     result->reward += task_.Reward(distance);
     result->success = task_.Success(distance);
   }
+  result->terminated = outcome.terminated || (end_on_success_ && result->success);
+  result->truncated = !result->terminated && control_step_ == task_.episode_length();
   if (!std::isfinite(result->reward)) {
     throw NonFiniteError("task {}: the reward is {} after {} control steps: not a finite float32",
                          task_.name(), result->reward, control_step_);

@@ -19,8 +19,9 @@ namespace shoal::worlds {
 class WorldEnvironment final : public Environment {
  public:
   // `render` null = no pixels, whatever the configuration says of
-  // cameras. Of `config` it takes observation, randomization, action_repeat and whether
-  // there is hindsight. Throws Error (kUsage) on a camera, goal mode or body that does not exist.
+  // cameras. Of `config` it takes observation, randomization, action_repeat, end_on_success and
+  // whether there is hindsight. Throws Error (kUsage) on a camera, goal mode or body that does not
+  // exist, and on episodes that are to end on a success which the task does not have.
   WorldEnvironment(const tasks::Task& task, std::unique_ptr<World> world, const Config& config,
                    std::shared_ptr<RenderContext> render);
 
@@ -57,6 +58,7 @@ class WorldEnvironment final : public Environment {
 
   const tasks::Task task_;
   const int action_repeat_;
+  const bool end_on_success_;
   std::unique_ptr<World> world_;
   MassRandomization masses_;
   std::shared_ptr<RenderContext> render_;

@@ -184,6 +184,7 @@ struct Config {
   std::string model;                // path of another MJCF file for the task; empty = our own
   std::string physics = "mujoco2";  // mujoco2 | mujoco3: whose version of the Fetch weld
   int action_repeat = 0;            // control steps per env step; 0 = the task's own
+  bool end_on_success = false;      // an episode ends, terminated, with the step that succeeds
   ObservationConfig observation;
   RandomizationConfig randomization;
   ReplayConfig replay;

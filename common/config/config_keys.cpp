@@ -47,6 +47,10 @@ std::vector<Key> RunKeys() {
           action_repeat, (IntegerRange{0, 100}),
           "control steps for which an env step repeats its action, rewards added up; 0 = the "
           "task's own"),
+      SHOAL_SAME(
+          end_on_success, AnyValue{},
+          "tasks with goals: an episode ends with the step that reaches its goal, and nothing "
+          "is expected after it; in training and evaluation"),
   };
 }
 

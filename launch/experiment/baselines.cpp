@@ -48,7 +48,8 @@ std::string FormatFloor(const EvaluationFigures& figures) {
 
 bool ShareBaselines(const Config& a, const Config& b) {
   return a.task == b.task && a.distance_threshold == b.distance_threshold && a.model == b.model &&
-         a.physics == b.physics && a.action_repeat == b.action_repeat;
+         a.physics == b.physics && a.action_repeat == b.action_repeat &&
+         a.end_on_success == b.end_on_success;
 }
 
 fs::path BaselineFolder() {
@@ -60,9 +61,10 @@ fs::path BaselineFolder() {
 
 fs::path BaselineCache::FileOf(const Config& config, const std::string& policy) const {
   const std::string model = config.model.empty() ? "" : ReadFile(config.model);
-  const std::string key =
+  std::string key =
       fmt::format("{} {} {} {} {} {}", config.task, config.distance_threshold, config.physics,
                   config.action_repeat, episodes_, HashBytes(model.data(), model.size()));
+  if (config.end_on_success) key += " end_on_success";  // else as builds without the key named it
   return folder_ /
          fmt::format("{}-{}-{:016x}.json", config.task, policy, HashBytes(key.data(), key.size()));
 }
@@ -97,7 +99,8 @@ std::optional<Baselines> BaselineCache::Measure(
                              .policy = policy,
                              .distance_threshold = config.distance_threshold,
                              .action_repeat = config.action_repeat,
-                             .physics = config.physics},
+                             .physics = config.physics,
+                             .end_on_success = config.end_on_success},
                             stop);
       WriteFileAtomically(file, result.dump() + "\n");
     } catch (const Error&) {

@@ -18,8 +18,9 @@ struct Baselines {
   EvaluationFigures noop{}, random{};
 };
 
-// Whether two configurations have the same baselines: equal in task, threshold, model file, physics
-// and action repeat. Everything else that they say is the policy's.
+// Whether two configurations have the same baselines: equal in task, threshold, model file,
+// physics, action repeat and whether episodes end on success. Everything else that they say is the
+// policy's.
 bool ShareBaselines(const Config& a, const Config& b);
 
 // $XDG_CACHE_HOME/shoal/baselines, or ~/.cache/shoal/baselines; in /tmp where there is no home.
@@ -32,9 +33,9 @@ class BaselineCache {
   explicit BaselineCache(std::filesystem::path folder = BaselineFolder(), int episodes = kEpisodes)
       : folder_(std::move(folder)), episodes_(episodes) {}
 
-  // Those of the configuration's task with its threshold, model file (its content), physics and
-  // action repeat, without pictures and randomization; empty where they have not been measured, or
-  // where the model file is gone since.
+  // Those of the configuration's task with its threshold, model file (its content), physics, action
+  // repeat and end of episodes, without pictures and randomization; empty where they have not been
+  // measured, or where the model file is gone since.
   std::optional<Baselines> Find(const Config& config) const;
   // The same, measured where they have not been: whole episodes, some seconds to a minute. `say`
   // gets a line before. Empty when `stop` said so. Throws Error.

@@ -66,11 +66,14 @@ BatchGather::Returns BatchGather::SumRewards(uint64_t first, std::span<const flo
   const auto earned = [&](uint64_t id) {
     return goal.empty() ? ring_.Header(id).reward : goals_->Reward(ring_.Record(id), goal);
   };
-  const auto terminated = [this](uint64_t id) {
-    return (ring_.Header(id).flags & kTerminated) != 0;
+  const auto terminated = [&](uint64_t id) {
+    return goal.empty() ? (ring_.Header(id).flags & kTerminated) != 0
+                        : goals_->Terminated(ring_.Record(id), goal);
   };
   uint64_t last = first;
   double reward = earned(first), discount = 1;
+  // An episode that success ended may go on under another goal, but nothing of it is stored: then
+  // its last samples have fewer than n steps, and the value after these.
   for (int k = 1; k < n_step_.steps && !terminated(last) && index_.Next(last) != 0; ++k) {
     last = index_.Next(last);
     discount *= n_step_.discount;

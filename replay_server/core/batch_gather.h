@@ -14,8 +14,10 @@
 // With goal pictures both observations end with one more frame, that of the episode's goal record,
 // shifted like the stack before it: what is apart in the two stays as far apart.
 //
-// Under another goal (goal_change.h) rewards and the desired goal of both observations are those of
-// that goal, whose picture is the frame of the record that achieved it.
+// Under another goal (goal_change.h) rewards, terminations and the desired goal of both
+// observations are those of that goal, whose picture is the frame of the record that achieved it.
+// Where episodes end on success the sample ends with the step that reaches it; and where the
+// episode ended before n steps because it reached its own, with the episode, m < n, and bootstraps.
 //
 // K stack, C channels of a frame, H W pixels, B batch.
 #pragma once

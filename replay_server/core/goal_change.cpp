@@ -8,8 +8,11 @@
 namespace shoal::replay {
 
 GoalChange::GoalChange(const ObservationSpec& spec, tasks::Task task,
-                       std::span<const std::string> privileged)
-    : layout_(spec), task_(std::move(task)), desired_(spec.Observed(task_.desired_goal().name)) {
+                       std::span<const std::string> privileged, bool end_on_success)
+    : layout_(spec),
+      task_(std::move(task)),
+      end_on_success_(end_on_success),
+      desired_(spec.Observed(task_.desired_goal().name)) {
   const auto achieved = spec.Recorded(task_.achieved_goal().name);
   CHECK(task_.goal_size() > 0 && achieved && (desired_ || spec.goal_picture)) << spec.Summary();
   CHECK(achieved->size == task_.goal_size() && (!desired_ || desired_->size == task_.goal_size()));
@@ -28,6 +31,15 @@ std::span<const float> GoalChange::Achieved(const uint8_t* record) const {
 
 float GoalChange::Reward(const uint8_t* record, std::span<const float> goal) const {
   return task_.Reward(task_.Distance(Achieved(record), goal));
+}
+
+bool GoalChange::Terminated(const uint8_t* record, std::span<const float> goal) const {
+  const uint8_t flags = RecordLayout::Header(record).flags;
+  const bool terminated = (flags & kTerminated) != 0;
+  if (!end_on_success_) return terminated;
+  // A robot that fell has fallen under every goal; what only success ended would have gone on.
+  const bool by_the_world = terminated && (flags & kSuccess) == 0;
+  return by_the_world || task_.Success(task_.Distance(Achieved(record), goal));
 }
 
 void GoalChange::WriteGoal(std::span<const float> goal, std::span<float> observed,

@@ -76,9 +76,14 @@ void CheckHindsight(const RunConfig& run) {
   }
   // Ended episodes enough, and two of every environment: one that just ended, one under way.
   const int64_t envs = int64_t{config.envs_per_actor} * std::max(1, config.actors);
+  const int64_t beside = run.spec.goal_picture ? 2 : 1;  // records of an episode that are no steps
   const int64_t ended = (config.replay.min_size + usable - 1) / usable;
-  const int64_t records = steps + (run.spec.goal_picture ? 2 : 1);  // of an episode
-  const int64_t least = (ended + 2 * envs) * records;
+  int64_t sample_records = ended * (steps + beside);
+  // At worst each of them succeeds with its first step.
+  if (config.end_on_success) {
+    sample_records = std::max(sample_records, config.replay.min_size * (1 + beside));
+  }
+  const int64_t least = sample_records + 2 * envs * (steps + beside);
   if (config.replay.capacity < least) {
     throw UsageError(
         "replay.hindsight = {}: replay.capacity = {} does not hold replay.min_size = {} "

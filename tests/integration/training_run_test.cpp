@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <numeric>
+#include <sstream>
+
 namespace shoal {
 namespace {
 
@@ -70,6 +73,46 @@ TEST(TrainingRun, EvaluationOfACheckpointRepeats) {
   EXPECT_EQ(first.size(), 6u);
   EXPECT_EQ(first, evaluate("7"));
   EXPECT_NE(first, evaluate("8"));
+}
+
+// Shares of what was drawn in an interval, of every report of the replay that has one.
+std::vector<double> Shares(const TrainingRun& run, const std::string& name) {
+  std::vector<double> shares;
+  std::istringstream lines(ReadFile(run.path() / "metrics.jsonl"));
+  for (std::string line; std::getline(lines, line);) {
+    const auto report = nlohmann::json::parse(line);
+    if (report.at("role") == "replay" && report.contains(name)) shares.push_back(report.at(name));
+  }
+  return shares;
+}
+
+TEST(TrainingRun, HindsightLearnsFromEpisodesThatEndOnSuccess) {
+  const TrainingRun run;
+  const ProgramResult result = run.Train({{"distance_threshold", "0.15"},
+                                          {"end_on_success", "true"},
+                                          {"eval.interval", "1000"},
+                                          {"replay.n_step", "3"}},
+                                         {"--preset", "fetch-reach-her"});
+  ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
+  ExpectBalanced(run.Json("meta.json"));
+  const auto final = run.Json("eval/final.json");
+  EXPECT_EQ(final.at("end_on_success"), true);
+  int succeeded = 0;
+  for (const auto& episode : final.at("episodes")) {
+    const bool success = episode.at("success");
+    const int length = episode.at("length");
+    EXPECT_TRUE(success || length == 50) << length;
+    succeeded += success && length < 50 ? 1 : 0;
+  }
+  EXPECT_GT(succeeded, 0);
+  const std::vector<double> relabelled = Shares(run, "relabelled_share");
+  ASSERT_FALSE(relabelled.empty());
+  const double sum = std::accumulate(relabelled.begin(), relabelled.end(), 0.0);
+  EXPECT_NEAR(sum / static_cast<double>(relabelled.size()), 0.8, 0.05) << "4 to 1";
+  const std::vector<double> zero_rewards = Shares(run, "zero_reward_share");
+  EXPECT_EQ(zero_rewards.size(), relabelled.size());
+  EXPECT_GT(zero_rewards.back(), 0.05);
+  EXPECT_LT(zero_rewards.back(), 0.95);
 }
 
 TEST(TrainingRun, AnExistingRunIsNotOverwritten) {

@@ -91,8 +91,8 @@ inline std::vector<uint8_t> MakeGoalRecord(const ObservationSpec& spec, uint32_t
 }
 
 // What an actor session publishes: `envs` environments step in turn, episodes of random length end
-// terminated or truncated, and begin with a goal record where the spec has a goal picture.
-// Sequences run from 1; the same arguments give the same records.
+// terminated, half of these by success, or truncated, and begin with a goal record where the spec
+// has a goal picture. Sequences run from 1; the same arguments give the same records.
 class RecordScript {
  public:
   RecordScript(const ObservationSpec& spec, uint32_t actor, uint64_t session, uint32_t envs = 2,
@@ -145,6 +145,8 @@ class RecordScript {
     uint8_t flags = 0;
     if (where.index > 0 && random_.Below(static_cast<uint64_t>(mean_length_)) == 0) {
       flags = static_cast<uint8_t>(1 + random_.Below(3));
+      const bool success = (flags & kTerminated) != 0 && sequence % 2 == 0;
+      flags = static_cast<uint8_t>(flags | (success ? kSuccess : 0));
       where.ended = true;
     }
     // Session in the episode number: episodes are never used again within a run.

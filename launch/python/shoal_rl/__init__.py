@@ -34,7 +34,7 @@ def make(task, *, render_mode=None, **keys):
 
     keys: those of a configuration that an environment has, observation.* by their last name: pixels,
     cameras, grey, height, width, stack, goal_mode, proprioception, quality, custom_cameras;
-    task_library, model, physics, action_repeat, distance_threshold, body_mass. Without cameras: the
+    task_library, model, physics, action_repeat, end_on_success, distance_threshold, body_mass. Without cameras: the
     task's first. With pixels=False: state and goals, unless proprioception or goal_mode say what of
     them. task_library: NAME.so of tasks of one's own (docs/own_task.md), which tasks() then has, too.
     render_mode: None or "rgb_array", the latest frame, cameras side by side.

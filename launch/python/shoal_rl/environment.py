@@ -22,7 +22,14 @@ _SECTIONS = {
         "custom_cameras",
     ),
     "randomization": ("body_mass",),
-    None: ("task_library", "model", "physics", "action_repeat", "distance_threshold"),
+    None: (
+        "task_library",
+        "model",
+        "physics",
+        "action_repeat",
+        "end_on_success",
+        "distance_threshold",
+    ),
 }
 
 

@@ -91,6 +91,16 @@ TEST(RandomBaseline, AThresholdOfOnesOwnJudgesTheEpisodes) {
   EXPECT_EQ(wide.at("aggregate").at("success_rate"), 1.0);
 }
 
+TEST(RandomBaseline, EpisodesEndOnSuccessWhereTheyDoInTraining) {
+  const ordered_json result = PlayRandom(
+      {.task = "FetchReach", .episodes = 5, .distance_threshold = 10, .end_on_success = true},
+      Never);
+  EXPECT_EQ(result.at("aggregate").at("length_mean"), 1.0);
+  EXPECT_EQ(result.at("aggregate").at("success_rate"), 1.0);
+  EXPECT_EQ(result.at("end_on_success"), true);
+  EXPECT_FALSE(PlayRandom({.task = "FetchReach", .episodes = 1}, Never).contains("end_on_success"));
+}
+
 TEST(RandomBaseline, AStopOrAnUnknownTaskIsAnError) {
   EXPECT_THROW(PlayRandom({.task = "FetchReach"}, [] { return true; }), Error);
   try {

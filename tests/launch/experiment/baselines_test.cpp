@@ -95,6 +95,7 @@ TEST(ShareBaselines, IsAboutTheWorldNotThePolicy) {
   EXPECT_TRUE(differs([](Config& c) { c.model = "mine.xml"; }));
   EXPECT_TRUE(differs([](Config& c) { c.physics = "mujoco3"; }));
   EXPECT_TRUE(differs([](Config& c) { c.action_repeat = 4; }));
+  EXPECT_TRUE(differs([](Config& c) { c.end_on_success = true; }));
 }
 
 }  // namespace

@@ -141,6 +141,45 @@ TEST_F(HindsightTest, RelabelledRewardsAreThoseOfTheTaskForTheGoalThatIsShown) {
   EXPECT_GE(core_->counters().zero_rewards, static_cast<uint64_t>(reached));
 }
 
+// Own goals are out of reach of the script, so what ends an episode early is a goal of hindsight.
+TEST_F(HindsightTest, WhereEpisodesEndOnSuccessTheStepThatReachesTheGoalEndsTheSample) {
+  for (const bool end_on_success : {false, true}) {
+    run_.config.end_on_success = end_on_success;
+    run_.config.replay.n_step = 8;
+    next_ = allowed_ = 1;
+    request_ = 0;
+    Start();
+    Send(2 * 3 * (kEpisode + 1));
+    const Ring& ring = core_->ring();
+    const tasks::Task task = TaskOf(run_);
+    int ended = 0;
+    for (int i = 0; i < 20; ++i) {
+      const auto view = Draw();
+      ASSERT_TRUE(view);
+      for (size_t b = 0; b < view->reward.size(); ++b) {
+        const auto& element = core_->last_plan().elements[b];
+        if (element.goal == 0) continue;
+        const auto achieved = [&](uint64_t id) {
+          return ring.layout().Vector(ring.Record(id)).subspan(3, 3);
+        };
+        // Environments step in turn: the next step of an episode is two records on.
+        uint64_t last = element.id;
+        const auto reached = [&] {
+          return task.Success(task.Distance(achieved(last), achieved(element.goal)));
+        };
+        int steps = 1;
+        for (; steps < 8 && !(end_on_success && reached()); ++steps) last += 2;
+        const bool ends = end_on_success && reached();
+        ended += ends ? 1 : 0;
+        const double discount = run_.config.learner.discount;
+        ASSERT_FLOAT_EQ(view->bootstrap[b], ends ? 0 : float(std::pow(discount, steps - 1)));
+        ASSERT_EQ(view->next_obs_vector[b * 6], ring.layout().Vector(ring.Record(last))[0]);
+      }
+    }
+    EXPECT_EQ(ended > 10, end_on_success);
+  }
+}
+
 TEST_F(HindsightTest, AShareOfTheSamplesIsRelabelled) {
   for (const int goals : {0, 1, 4}) {
     run_.config.replay.hindsight_goals = goals;
@@ -229,6 +268,12 @@ TEST_F(HindsightTest, WhatItCannotServeIsRefusedByName) {
                 r.config.replay.n_step = 10;
               }),
               HasSubstr("expected at least 357"));
+  // Where episodes end on success each may have one step and its reset: 2 x 100 and 4 whole ones.
+  EXPECT_THAT(Refusal([](RunConfig& r) {
+                r.config.end_on_success = true;
+                r.config.replay.capacity = 403;
+              }),
+              HasSubstr("expected at least 404"));
   EXPECT_THAT(Refusal([](RunConfig& r) { r.config.replay.n_step = 51; }),
               HasSubstr("replay.n_step = 51: an episode of FetchPush has 50 steps"));
   EXPECT_THAT(Refusal([](RunConfig& r) {

@@ -27,6 +27,7 @@ struct Case {
   int stack, n_step;
   std::optional<HindsightGoal> hindsight{};
   bool goal_pictures = false;
+  bool end_on_success = false;
 };
 
 // Goals are points of the plane; the script's are spread over [-2, 2].
@@ -89,6 +90,7 @@ class History {
                 .whole_episodes = kind.hindsight.has_value(),
                 .goal_pictures = kind.goal_pictures},
         privileged_(kind.goal_pictures ? Names{"desired_goal"} : Names{}),
+        end_on_success_(kind.end_on_success),
         hindsight_(kind.hindsight),
         random_(seed) {
     StartServer();
@@ -153,6 +155,10 @@ class History {
   // Steps that are stored with all that they need but their episode's goal record.
   uint64_t without_goal() const { return without_goal_; }
   uint64_t restarts() const { return restarts_; }
+  // Samples with a goal of hindsight that a step ended because it reached that goal, and steps that
+  // ended their episode but not under that goal.
+  uint64_t ended_by_goal() const { return ended_by_goal_; }
+  uint64_t went_on() const { return went_on_; }
 
  private:
   using Names = std::vector<std::string>;
@@ -226,7 +232,8 @@ class History {
     const uint64_t id = element.id;
     if (element.goal != 0) CheckGoal(element);
     ASSERT_TRUE(oracle_.Sampleable(id)) << "record " << id;
-    const std::vector<uint64_t> steps = *oracle_.Steps(id);
+    std::vector<uint64_t> steps = *oracle_.Steps(id);
+    const bool terminated = EndUnderGoal(&steps, element.goal);
     const Oracle::Stored &first = oracle_.all[id - 1], &last = oracle_.all[steps.back() - 1];
     const Oracle::Stored& before = oracle_.all[first.prev - 1];
     double reward = 0;
@@ -243,7 +250,6 @@ class History {
     ASSERT_FLOAT_EQ(view.reward[b], static_cast<float>(reward));
     ASSERT_EQ(view.weights_update[b], first.header().weights_update);
     ASSERT_EQ(view.id[b], id);
-    const bool terminated = (last.header().flags & kTerminated) != 0;
     const double bootstrap = terminated ? 0 : std::pow(kDiscount, steps.size() - 1);
     ASSERT_FLOAT_EQ(view.bootstrap[b], static_cast<float>(bootstrap));
     ExpectFloats(layout_.Action(first.bytes.data()), view.action, b);
@@ -252,6 +258,27 @@ class History {
     if (!spec_.goal_picture) return;
     ExpectFloats(Wanted(before, element.goal), view.obs_privileged, b);
     ExpectFloats(Wanted(last, element.goal), view.next_obs_privileged, b);
+  }
+
+  // Cuts a sample off behind the first step that ends the episode under the goal; whether one does.
+  bool EndUnderGoal(std::vector<uint64_t>* steps, uint64_t goal) {
+    for (size_t k = 0; k < steps->size(); ++k) {
+      const Oracle::Stored& step = oracle_.all[(*steps)[k] - 1];
+      const bool ended = (step.header().flags & kTerminated) != 0;
+      const bool ends = goal == 0 || !end_on_success_ ? ended : EndsUnderGoal(step, goal);
+      went_on_ += ended && !ends ? 1 : 0;
+      if (!ends) continue;
+      ended_by_goal_ += ended ? 0 : 1;
+      steps->resize(k + 1);
+      return true;
+    }
+    return false;
+  }
+
+  // What the world itself ended has ended under every goal.
+  bool EndsUnderGoal(const Oracle::Stored& step, uint64_t goal) const {
+    return (step.header().flags & (kTerminated | kSuccess)) == kTerminated ||
+           Distance(step, goal) < kThreshold;
   }
 
   bool LacksItsGoalAlone(uint64_t id) const {
@@ -273,10 +300,13 @@ class History {
   // Sparse, against the goal of record `goal`, if that is one.
   float Earned(const Oracle::Stored& step, uint64_t goal) const {
     if (goal == 0) return step.header().reward;
+    return Distance(step, goal) > kThreshold ? -1.0f : 0.0f;
+  }
+  double Distance(const Oracle::Stored& step, uint64_t goal) const {
     const auto achieved = layout_.Vector(step.bytes.data()).subspan(2, 2);
     const auto wanted = layout_.Vector(oracle_.all[goal - 1].bytes.data()).subspan(2, 2);
     const double x = double{achieved[0]} - wanted[0], y = double{achieved[1]} - wanted[1];
-    return std::sqrt(x * x + y * y) > kThreshold ? -1.0f : 0.0f;
+    return std::sqrt(x * x + y * y);
   }
 
   // Of the script's three blocks of 2 numbers the second, what was achieved, is recorded only; so
@@ -328,7 +358,8 @@ class History {
   const IndexOptions index_options_;
   Oracle oracle_;
   const Names privileged_;
-  const GoalChange goals_{spec_, TinyTask(), privileged_};
+  const bool end_on_success_;
+  const GoalChange goals_{spec_, TinyTask(), privileged_, end_on_success_};
   const std::optional<HindsightGoal> hindsight_;
   KeptSelector kept_;
   std::unique_ptr<Server> server_;
@@ -336,7 +367,7 @@ class History {
   std::vector<Actor> actors_;  // the newest session of each
   uint64_t last_session_ = 0;
   uint64_t first_frame_repeats_ = 0, short_samples_ = 0, relabelled_ = 0, goals_before_ = 0,
-           without_goal_ = 0, restarts_ = 0;
+           without_goal_ = 0, restarts_ = 0, ended_by_goal_ = 0, went_on_ = 0;
 };
 
 class ReplayProperty : public testing::TestWithParam<Case> {};
@@ -356,16 +387,20 @@ TEST_P(ReplayProperty, AgreesWithAnOracleThatKeepsEverything) {
     EXPECT_EQ(history.relabelled() > 0, GetParam().hindsight.has_value());
     EXPECT_EQ(history.goals_before() > 0, GetParam().hindsight == HindsightGoal::kEpisode);
     EXPECT_EQ(history.without_goal() > 0, GetParam().goal_pictures);
+    EXPECT_EQ(history.ended_by_goal() > 0, GetParam().end_on_success);
+    // A goal that lies ahead is reached in the sample that has the episode's last step.
+    EXPECT_EQ(history.went_on() > 0,
+              GetParam().end_on_success && GetParam().hindsight == HindsightGoal::kEpisode);
     EXPECT_GT(history.restarts(), 2u);
   }
 }
 
 std::string CaseName(const testing::TestParamInfo<Case>& info) {
   static constexpr const char* kNames[] = {"Future", "Final", "Episode"};
-  const auto& [stack, n_step, hindsight, goal_pictures] = info.param;
+  const auto& [stack, n_step, hindsight, goal_pictures, end_on_success] = info.param;
   return "Stack" + std::to_string(stack) + "NStep" + std::to_string(n_step) +
          (hindsight ? kNames[static_cast<int>(*hindsight)] : "") +
-         (goal_pictures ? "GoalPictures" : "");
+         (goal_pictures ? "GoalPictures" : "") + (end_on_success ? "EndOnSuccess" : "");
 }
 
 INSTANTIATE_TEST_SUITE_P(StacksAndSteps, ReplayProperty,
@@ -376,7 +411,12 @@ INSTANTIATE_TEST_SUITE_P(StacksAndSteps, ReplayProperty,
                                          Case{3, 1, HindsightGoal::kEpisode}, Case{1, 1, {}, true},
                                          Case{3, 2, {}, true},
                                          Case{1, 1, HindsightGoal::kFuture, true},
-                                         Case{2, 3, HindsightGoal::kEpisode, true}),
+                                         Case{2, 3, HindsightGoal::kEpisode, true},
+                                         Case{1, 1, HindsightGoal::kFuture, false, true},
+                                         Case{2, 3, HindsightGoal::kFuture, false, true},
+                                         Case{1, 2, HindsightGoal::kFinal, false, true},
+                                         Case{2, 1, HindsightGoal::kEpisode, false, true},
+                                         Case{1, 4, HindsightGoal::kEpisode, true, true}),
                          CaseName);
 
 }  // namespace
