@@ -11,16 +11,19 @@ namespace {
 
 struct Kind {
   const char *encoder, *algorithm;
+  const char* side;  // of a frame
 };
 
 TrainingRun::Keys KeysOf(const Kind& kind) {
   return TrainingRun::FromPixels({{"network.encoder", kind.encoder},
                                   {"learner.algorithm", kind.algorithm},
-                                  {"env_steps", "240"},
+                                  {"env_steps", "200"},
                                   {"learner.batch", "4"},
                                   {"learner.checkpoint_period", "50"},
                                   {"observation.cameras", R"(["front"])"},
                                   {"observation.grey", "true"},
+                                  {"observation.height", kind.side},
+                                  {"observation.width", kind.side},
                                   {"observation.stack", "4"}});
 }
 
@@ -63,8 +66,8 @@ TEST_P(EncoderTraining, UpdatesCheckpointsEvaluatesAndStartsAnother) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, EncoderTraining,
-                         testing::Values(Kind{"resnet18", "sac"}, Kind{"alexnet", "td3"},
-                                         Kind{"resnet18", "ddpg"}),
+                         testing::Values(Kind{"resnet18", "sac", "36"}, Kind{"alexnet", "td3", "84"},
+                                         Kind{"resnet18", "ddpg", "36"}),
                          [](const auto& kind) {
                            return std::string(kind.param.encoder) + "_" + kind.param.algorithm;
                          });

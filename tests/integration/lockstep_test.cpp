@@ -76,7 +76,7 @@ TEST(Lockstep, RunningStatisticsRepeatAndGoOnBitForBit) {
   const TrainingRun whole;
   ExpectGoesOnBitForBit(whole,
                         TrainingRun::FromPixels({{"actors", "1"},
-                                                 {"env_steps", "352"},
+                                                 {"env_steps", "256"},
                                                  {"learner.batch", "4"},
                                                  {"network.encoder", "resnet18"},
                                                  {"observation.cameras", R"(["front"])"},
