@@ -39,6 +39,16 @@ double Schedule::At(uint64_t run_env_steps) const {
   return start + part * (end - start);
 }
 
+double Schedule::Mean(uint64_t from, uint64_t to) const {
+  CHECK(from <= to) << from << " " << to;
+  if (constant()) return start;
+  if (from == to) return At(from);
+  const auto bend = static_cast<uint64_t>(env_steps);
+  const uint64_t f = std::min(from, bend), t = std::min(to, bend);
+  const auto line = static_cast<double>(t - f), flat = static_cast<double>(to - from - (t - f));
+  return (line * (At(f) + At(t)) / 2 + flat * end) / (line + flat);
+}
+
 std::optional<Schedule> ParseSchedule(std::string_view text) {
   if (!text.starts_with(kLinear)) return std::nullopt;
   text.remove_prefix(kLinear.size());

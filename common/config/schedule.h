@@ -4,6 +4,7 @@
 // As a configuration value: a JSON number, or the text "linear(START,END,ENV_STEPS)".
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -18,6 +19,22 @@ struct Schedule {
   static Schedule Constant(double value) { return {value, value, 0}; }
   bool constant() const { return env_steps == 0; }
   double At(uint64_t run_env_steps) const;
+  // The least and the largest value it ever has.
+  double Least() const { return std::min(start, end); }
+  double Most() const { return std::max(start, end); }
+
+  // Mean over the env steps from `from` to `to` >= `from`, At(from) where they are equal:
+  //
+  //   mean = integral of At(x) dx from `from` to `to`  /  (to - from)
+  //        = ((t - f) (At(f) + At(t)) / 2  +  (to - from - (t - f)) end) / (to - from)
+  //   f = min(from, env_steps),  t = min(to, env_steps)
+  //
+  // A constant's is `start`, to the bit. Else exact but for rounding.
+  double Mean(uint64_t from, uint64_t to) const;
+  // The integral itself, Mean * (to - from): of a number per env step, what these steps come to.
+  double Integral(uint64_t from, uint64_t to) const {
+    return Mean(from, to) * static_cast<double>(to - from);
+  }
 
   bool operator==(const Schedule&) const = default;
 };

@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/error.h"
+#include "common/base/random.h"
 #include "common/config/config_io.h"
 
 namespace shoal {
@@ -20,6 +21,46 @@ TEST(Schedule, AConstantStaysAndALineEndsAtItsEnd) {
   EXPECT_DOUBLE_EQ(line.At(999), 0.2008);
   EXPECT_EQ(line.At(1000), 0.2);
   EXPECT_EQ(line.At(uint64_t{1} << 63), 0.2);
+}
+
+TEST(Schedule, AMeanIsThatOfTheLineAndOfWhatFollowsIt) {
+  const Schedule line{2, 1, 100};
+  EXPECT_DOUBLE_EQ(line.Mean(0, 100), 1.5);
+  EXPECT_DOUBLE_EQ(line.Mean(50, 150), (50 * 1.25 + 50 * 1) / 100);
+  EXPECT_DOUBLE_EQ(line.Integral(50, 150), 112.5);
+  EXPECT_EQ(line.Mean(100, 300), 1);
+  EXPECT_EQ(line.Mean(200, 300), 1);
+  EXPECT_EQ(line.Mean(50, 50), 1.5);
+  EXPECT_EQ(line.Integral(50, 50), 0);
+  EXPECT_EQ(line.Least(), 1);
+  EXPECT_EQ(line.Most(), 2);
+}
+
+// What is granted for steps that come in pieces is what they come to together.
+TEST(Schedule, AnIntegralIsTheSumOverItsEnvSteps) {
+  Random random(3);
+  for (int trial = 0; trial < 200; ++trial) {
+    const Schedule line{random.Uniform(-2, 2), random.Uniform(-2, 2),
+                        1 + static_cast<int64_t>(random.Below(400))};
+    uint64_t at = random.Below(300);
+    const uint64_t first = at;
+    double sum = 0, pieces = 0;
+    for (int piece = 0; piece < 20; ++piece) {
+      const uint64_t to = at + random.Below(30);
+      pieces += line.Integral(at, to);
+      for (; at < to; ++at) sum += (line.At(at) + line.At(at + 1)) / 2;
+    }
+    ASSERT_NEAR(pieces, sum, 1e-9) << ScheduleText(line) << " from " << first << " to " << at;
+    ASSERT_NEAR(line.Integral(first, at), sum, 1e-9) << ScheduleText(line);
+  }
+}
+
+TEST(Schedule, AConstantsMeanIsItToTheBit) {
+  const Schedule constant = Schedule::Constant(0.1);
+  for (const uint64_t steps : {uint64_t{0}, uint64_t{3}, uint64_t{49}, uint64_t{1} << 60}) {
+    EXPECT_EQ(constant.Mean(7, 7 + steps), 0.1) << steps;
+    EXPECT_EQ(constant.Integral(7, 7 + steps), 0.1 * static_cast<double>(steps)) << steps;
+  }
 }
 
 TEST(Schedule, TextIsReadStrictly) {
