@@ -18,12 +18,12 @@ RunState ControlState::state() const {
   return state_;
 }
 
-double ControlState::SettingOr(std::string_view key, double configured) const {
+std::optional<double> ControlState::Setting(std::string_view key) const {
   const MutexLock lock(mutex_);
   for (size_t i = 0; i < setting_names_.size() && i < setting_values_.size(); ++i) {
     if (setting_names_[i] == key) return setting_values_[i];
   }
-  return configured;
+  return std::nullopt;
 }
 
 bool ControlState::CoordinatorLost(SteadyTime now) {

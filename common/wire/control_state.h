@@ -3,6 +3,7 @@
 #pragma once
 
 #include <chrono>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -23,8 +24,12 @@ class ControlState {
   void OnMessage(const ControlMessage& message, SteadyTime now);
 
   RunState state() const;
-  // The present value of a configuration key: `configured` unless it was changed in this run.
-  double SettingOr(std::string_view key, double configured) const;
+  // The present value of a configuration key, where it was changed in this run.
+  std::optional<double> Setting(std::string_view key) const;
+  // The same, else `configured`.
+  double SettingOr(std::string_view key, double configured) const {
+    return Setting(key).value_or(configured);
+  }
   // No heartbeat for kLease (kFirstLease before the first one): the coordinator is gone. To be
   // asked several times a second: time in which this process itself did not run is not counted.
   bool CoordinatorLost(SteadyTime now);

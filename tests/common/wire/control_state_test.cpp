@@ -30,11 +30,13 @@ TEST(ControlState, SettingsOfTheNewestEpochReplaceConfiguredValues) {
   const SteadyTime start = Now();
   ControlState control(start);
   EXPECT_EQ(control.SettingOr("eval.interval", 100), 100);
+  EXPECT_FALSE(control.Setting("eval.interval"));
   ControlMessage message = Message(2, RunState::kRunning);
   message.setting_names = {"actors", "eval.interval"};
   message.setting_values = {3, 50};
   control.OnMessage(message, start);
   EXPECT_EQ(control.SettingOr("eval.interval", 100), 50);
+  EXPECT_EQ(control.Setting("eval.interval"), 50);
   EXPECT_EQ(control.SettingOr("eval", 100), 100);
   control.OnMessage(Message(1, RunState::kRunning), start);
   EXPECT_EQ(control.SettingOr("eval.interval", 100), 50);
