@@ -201,8 +201,8 @@ bool TrainingLoop::DrainingIsOver() const {
 }
 
 double TrainingLoop::GrantedSamples() const {
-  const auto steps = static_cast<double>(env_steps_) - static_cast<double>(granted_from_steps_);
-  return granted_before_ + samples_per_insert_ * std::max(steps, 0.0);
+  const uint64_t steps = std::max(env_steps_, granted_from_steps_);
+  return granted_before_ + samples_per_insert_.Integral(granted_from_steps_, steps);
 }
 
 bool TrainingLoop::RatioReached() const {
@@ -220,12 +220,13 @@ void TrainingLoop::ApplySettings() {
   evaluations_.SetInterval(
       CountInForce(control, "eval.interval", static_cast<uint64_t>(config_.eval.interval)),
       env_steps_);
-  const double ratio =
-      control.SettingOr("replay.samples_per_insert", config_.replay.samples_per_insert);
-  if (ratio == samples_per_insert_) return;
+  // What is set while the run goes on is a number, which then holds in place of the schedule.
+  const std::optional<double> set = control.Setting("replay.samples_per_insert");
+  const Schedule samples = set ? Schedule::Constant(*set) : config_.replay.samples_per_insert;
+  if (samples == samples_per_insert_) return;
   granted_before_ = GrantedSamples();
   granted_from_steps_ = std::max(env_steps_, granted_from_steps_);
-  samples_per_insert_ = ratio;
+  samples_per_insert_ = samples;
 }
 
 void TrainingLoop::Report(bool now) {
@@ -239,7 +240,7 @@ void TrainingLoop::Report(bool now) {
                                .checkpoints = checkpoints_written_,
                                .eval_updates = evaluations_.last_updates(),
                                .drained = drained_,
-                               .samples_per_insert = samples_per_insert_,
+                               .samples_per_insert = samples_per_insert_.At(env_steps_),
                                .eval_interval = static_cast<double>(evaluations_.interval()),
                                .weights_period = static_cast<double>(weights_.period()),
                                .budget = static_cast<double>(budget_),

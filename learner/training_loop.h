@@ -77,8 +77,8 @@ class TrainingLoop {
   // Draining: goes on training until it is over, then makes the last evaluation point, once.
   void Drain();
   bool DrainingIsOver() const;
-  // Batch elements that samples_per_insert grants for the steps stored, each value of it for the
-  // steps it was in force for, as far as this process knows.
+  // Batch elements that samples_per_insert grants for the steps stored: its integral over them, of
+  // each value set meanwhile for the steps it was in force for, as far as this process knows.
   double GrantedSamples() const;
   // Whether the updates done are those granted.
   bool RatioReached() const;
@@ -101,7 +101,7 @@ class TrainingLoop {
   const bool on_policy_;
   uint64_t budget_;                        // env steps, in force
   std::optional<uint64_t> given_weights_;  // on policy: the update of those given last
-  double samples_per_insert_;              // in force
+  Schedule samples_per_insert_;            // in force
   double granted_before_ = 0;              // samples, up to granted_from_steps_
   uint64_t granted_from_steps_;            // env steps from which samples_per_insert_ counts
   uint64_t env_steps_ = 0;                 // stored when the last batch was drawn

@@ -55,9 +55,10 @@ struct RandomizationConfig {
 };
 
 struct ReplayConfig {
-  int64_t capacity = 100'000;      // records
-  int64_t min_size = 1'000;        // sampleable transitions before the first batch
-  double samples_per_insert = 64;  // batch elements sampled per sampleable transition; 0 = no limit
+  int64_t capacity = 100'000;  // records
+  int64_t min_size = 1'000;    // sampleable transitions before the first batch
+  // Batch elements sampled per sampleable transition, over the run's env steps; 0 = no limit.
+  Schedule samples_per_insert = Schedule::Constant(64);
   double band = 0;                 // width of the limiter's band in samples; 0 = computed
   std::string storage = "file";    // file | memory
   int shift_pad = 4;               // DrQ shift in pixels, 0 = none

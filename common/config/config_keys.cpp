@@ -90,7 +90,8 @@ std::vector<Key> ReplayKeys() {
       SHOAL_SAME(replay.min_size, (IntegerRange{1, 1'000'000'000}),
                  "sampleable transitions before the first batch"),
       SHOAL_SAME(replay.samples_per_insert, (RealRange{0, 1e6}),
-                 "batch elements sampled per sampleable transition; 0 = no limit"),
+                 "batch elements sampled per sampleable transition, over the run's env steps; as a "
+                 "number 0 = no limit"),
       SHOAL_SAME(replay.band, (RealRange{0, 1e12}),
                  "width of the limiter's band in samples; 0 = computed"),
       SHOAL_SAME(replay.storage, (Choices{{"file", "memory"}}),

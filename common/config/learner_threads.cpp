@@ -15,8 +15,10 @@ constexpr int kLeastRows = 16;
 // Transitions of a batch, each with its copies.
 int Groups(const Config& config) { return config.learner.batch / config.replay.copies; }
 
+// An update follows every `env_steps` env steps, in the mean over the run.
 bool UpdatesEach(const Config& config, int env_steps) {
-  return config.replay.samples_per_insert * env_steps >= config.learner.batch;
+  const auto budget = static_cast<uint64_t>(config.env_steps);
+  return config.replay.samples_per_insert.Mean(0, budget) * env_steps >= config.learner.batch;
 }
 
 int Half(int cores) { return std::max(1, cores / 2); }

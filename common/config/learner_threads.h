@@ -7,9 +7,10 @@ namespace shoal {
 
 // learner.threads, or where it is 0 half of `cores`, at least 1; off policy three quarters, rounded
 // up, where an update follows every eighth env step or more often, and all where it follows each:
-// then actors mostly wait. Off policy, where
-// threads are replicas as a rule: the largest number up to there that leaves each an equal part of
-// the batch of at least 16 rows; without pixels 1, as updates are too short to wait for each other.
+// then actors mostly wait. How often that is goes by the mean of replay.samples_per_insert over the
+// budget of env steps. Off policy, where threads are replicas as a rule: the largest number up to
+// there that leaves each an equal part of the batch of at least 16 rows; without pixels 1, as
+// updates are too short to wait for each other.
 int LearnerThreads(const Config& config, int cores);
 
 // Throws Error (kUsage) naming the numbers that would fit unless so many replicas can share

@@ -10,9 +10,17 @@ namespace {
 // Keeps a product such as 3 * (1 / 3.0) from being floored to one update less.
 constexpr double kRoundingSlack = 1e-6;
 
-double UpdatesPerPhase(const Config& config) {
-  const double ratio = config.replay.samples_per_insert;
-  if (ratio <= 0) return 1;
+uint64_t EnvStepsAtPhaseEnd(const Config& config, int64_t phase) {
+  return static_cast<uint64_t>(LockstepVectorStepsAtPhaseEnd(config, phase) *
+                               config.envs_per_actor);
+}
+
+// In the mean of the phases 1 to `phase`.
+double UpdatesPerPhase(const Config& config, int64_t phase) {
+  const Schedule& samples = config.replay.samples_per_insert;
+  if (samples.Most() <= 0) return 1;
+  const double ratio =
+      samples.Mean(EnvStepsAtPhaseEnd(config, 0), EnvStepsAtPhaseEnd(config, phase));
   return ratio * config.lockstep_steps * config.envs_per_actor / config.learner.batch;
 }
 
@@ -36,23 +44,27 @@ int64_t LockstepVectorStepsAtPhaseEnd(const Config& config, int64_t phase) {
 
 uint64_t LockstepUpdatesAtPhaseEnd(const Config& config, int64_t phase) {
   CHECK(phase >= 0) << phase;
-  const double updates = static_cast<double>(phase) * UpdatesPerPhase(config);
+  const double updates = static_cast<double>(phase) * UpdatesPerPhase(config, phase);
   return static_cast<uint64_t>(std::floor(updates + kRoundingSlack));
 }
 
 uint64_t LockstepStepsBeforeUpdate(const Config& config, uint64_t update) {
   CHECK(update >= 1);
-  // The first phase that ends with at least `update` updates; the estimate is off by rounding only.
-  auto phase = static_cast<int64_t>(static_cast<double>(update) / UpdatesPerPhase(config));
-  while (phase > 0 && LockstepUpdatesAtPhaseEnd(config, phase - 1) >= update) --phase;
-  while (LockstepUpdatesAtPhaseEnd(config, phase) < update) ++phase;
-  return static_cast<uint64_t>(LockstepVectorStepsAtPhaseEnd(config, phase) *
-                               config.envs_per_actor);
+  // The first phase that ends with at least `update` updates is `high` or between: `low` has fewer.
+  int64_t low = 0, high = 1;
+  while (LockstepUpdatesAtPhaseEnd(config, high) < update) {
+    low = high;
+    high *= 2;
+  }
+  while (high - low > 1) {
+    const int64_t middle = low + (high - low) / 2;
+    (LockstepUpdatesAtPhaseEnd(config, middle) < update ? low : high) = middle;
+  }
+  return EnvStepsAtPhaseEnd(config, high);
 }
 
 uint64_t LockstepEnvSteps(const Config& config) {
-  const int64_t vector_steps = LockstepVectorStepsAtPhaseEnd(config, LastPhase(config));
-  return static_cast<uint64_t>(vector_steps * config.envs_per_actor);
+  return EnvStepsAtPhaseEnd(config, LastPhase(config));
 }
 
 uint64_t LockstepLastUpdate(const Config& config) {

@@ -26,8 +26,9 @@ namespace shoal {
 int64_t LockstepVectorStepsAtPhaseEnd(const Config& config, int64_t phase);
 
 // Updates the learner has done when phase `phase` ends: floor(phase * r), with
-// r = samples_per_insert * L * E / B updates per phase (1 without a limit). Rounded over the whole
-// run and not per phase, so that samples per insert is kept for any L, E and B.
+// r = s * L * E / B updates per phase (1 without a limit), s the mean of samples_per_insert over
+// the env steps from the end of phase 0 to that of this one. Rounded over the whole run and not per
+// phase, so that samples per insert is kept for any L, E and B.
 uint64_t LockstepUpdatesAtPhaseEnd(const Config& config, int64_t phase);
 
 // Step records that must be stored before the batch of update `update` >= 1 is drawn.

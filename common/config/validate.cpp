@@ -164,7 +164,17 @@ void ValidateShifts(const Config& config) {
   }
 }
 
+// A schedule that comes to 0 would say "no limit" of the one moment at which all should stop.
+void ValidateSamplesPerInsert(const Schedule& samples) {
+  if (samples.constant() || samples.Least() > 0) return;
+  throw UsageError(
+      "replay.samples_per_insert = {}: expected both ends of a schedule above 0 (0 alone = no "
+      "limit)",
+      ScheduleText(samples));
+}
+
 void ValidateReplay(const Config& config) {
+  ValidateSamplesPerInsert(config.replay.samples_per_insert);
   if (config.replay.min_size > config.replay.capacity / 2) {
     throw UsageError("replay.min_size = {}: expected at most half of replay.capacity = {}",
                      config.replay.min_size, config.replay.capacity);

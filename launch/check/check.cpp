@@ -30,7 +30,9 @@ Needs NeedsOf(const Config& config) {
   Needs needs;
   needs.ring_bytes = replay.ring_bytes;
   // Batches go through memory; every record crosses once.
-  const double records_per_update = config.learner.batch / config.replay.samples_per_insert;
+  const Schedule& samples = config.replay.samples_per_insert;
+  const double records_per_update =
+      config.learner.batch / samples.Mean(0, static_cast<uint64_t>(config.env_steps));
   needs.loopback_rate = kUpdatesPerSecond * records_per_update *
                         static_cast<double>(replay.ring_bytes) /
                         static_cast<double>(config.replay.capacity);

@@ -28,7 +28,7 @@ RunConfig SmallRun(Config config) {
   config.replay.storage = "memory";
   config.replay.capacity = kCapacity;
   config.replay.min_size = 64;
-  config.replay.samples_per_insert = 0;
+  config.replay.samples_per_insert = Schedule::Constant(0);
   std::shared_ptr<worlds::RenderContext> render;
   if (config.observation.pixels) render = worlds::MakeRenderContext(config.observation);
   return {config, worlds::MakeEnvironment(config, render)->spec()};

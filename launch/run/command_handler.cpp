@@ -46,7 +46,7 @@ void CommandHandler::Execute(const CommandMessage& command, ReplyMessage* reply)
   }
   if (!effects_.running()) throw RuntimeError("the run is stopping: nothing is changed any more");
   if (command.verb == "set") {
-    const SettingChange change = settings_.Assign(OnlyArgument(command));
+    const SettingChange change = settings_.Assign(OnlyArgument(command), effects_.env_steps());
     effects_.note(change);
     Tell(change, reply);
     return;

@@ -2,6 +2,7 @@
 // DDS.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <string>
 
@@ -15,6 +16,7 @@ class CommandHandler {
  public:
   struct Effects {
     std::function<bool()> running;            // no: it is on its way to the end
+    std::function<uint64_t()> env_steps;      // of the run so far
     std::function<void()> stop;               // ends the run in order
     std::function<void(int, int)> scale;      // actors: from, to; may throw Error
     std::function<void(SettingChange)> note;  // a change was made: record it, tell the processes

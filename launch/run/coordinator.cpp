@@ -82,6 +82,7 @@ struct Coordinator::Impl {
 
   CommandHandler::Effects Effects() {
     return {.running = [this] { return order.state == RunState::kRunning && !stop_asked; },
+            .env_steps = [this] { return EnvSteps(); },
             .stop = [this] { stop_asked = true; },
             .scale = [this](int from, int to) { Scale(from, to); },
             .note = [this](const SettingChange& change) { Note(change); }};

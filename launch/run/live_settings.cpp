@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <optional>
 
+#include "common/base/check.h"
 #include "common/base/error.h"
 #include "common/config/config_io.h"
 
@@ -33,9 +35,19 @@ bool IsLive(std::string_view key) {
   return std::ranges::find(kKeys, key, &LiveKey::key) != std::end(kKeys);
 }
 
-double ValueOf(const Config& config, std::string key) {
+// A number, or the text of a schedule.
+nlohmann::ordered_json JsonOf(const Config& config, std::string key) {
   std::ranges::replace(key, '.', '/');
-  return ToJson(config).at(nlohmann::ordered_json::json_pointer("/" + key)).get<double>();
+  return ToJson(config).at(nlohmann::ordered_json::json_pointer("/" + key));
+}
+
+// The number in force once the run has done so many env steps.
+double ValueOf(const Config& config, const std::string& key, uint64_t env_steps) {
+  const nlohmann::ordered_json value = JsonOf(config, key);
+  if (!value.is_string()) return value.get<double>();
+  const std::optional<Schedule> schedule = ParseSchedule(value.get<std::string>());
+  CHECK(schedule) << key;
+  return schedule->At(env_steps);
 }
 
 }  // namespace
@@ -51,18 +63,19 @@ std::string LiveKeyNames() {
   return names;
 }
 
-SettingChange LiveSettings::Assign(const std::string& assignment) {
+SettingChange LiveSettings::Assign(const std::string& assignment, uint64_t env_steps) {
   const std::string key = assignment.substr(0, assignment.find('='));
   if (key == kActorsKey) throw UsageError("{}: use shoal scale --actors N", assignment);
-  return Apply(key, assignment);
+  return Apply(key, assignment, env_steps);
 }
 
 SettingChange LiveSettings::SetActors(const std::string& count) {
   if (count == "0") throw UsageError("actors=0: a run needs at least one actor");
-  return Apply(std::string(kActorsKey), fmt::format("{}={}", kActorsKey, count));
+  return Apply(std::string(kActorsKey), fmt::format("{}={}", kActorsKey, count), 0);
 }
 
-SettingChange LiveSettings::Apply(const std::string& key, const std::string& assignment) {
+SettingChange LiveSettings::Apply(const std::string& key, const std::string& assignment,
+                                  uint64_t env_steps) {
   Config changed = config_;
   ApplyAssignments({assignment}, &changed);  // refuses keys and values that do not exist
   if (!IsLive(key)) {
@@ -73,10 +86,13 @@ SettingChange LiveSettings::Apply(const std::string& key, const std::string& ass
                      key);
   }
   Validate(changed);
+  if (JsonOf(changed, key).is_string()) {
+    throw UsageError("{}: a run that goes on takes a number, which holds from now on", assignment);
+  }
   SettingChange change;
   change.key = key;
-  change.from = ValueOf(config_, key);
-  change.to = ValueOf(changed, key);
+  change.from = ValueOf(config_, key, env_steps);
+  change.to = ValueOf(changed, key, env_steps);
   config_ = changed;
   if (std::ranges::find(changed_, key) == changed_.end()) changed_.push_back(key);
   return change;
@@ -84,14 +100,16 @@ SettingChange LiveSettings::Apply(const std::string& key, const std::string& ass
 
 void LiveSettings::Restore(std::span<const SettingChange> changes) {
   for (const SettingChange& change : changes) {
-    Apply(change.key, fmt::format("{}={}", change.key, change.to));
+    Apply(change.key, fmt::format("{}={}", change.key, change.to), change.env_steps);
   }
 }
 
 void LiveSettings::AddTo(ControlMessage* message) const {
   message->setting_names = changed_;
   message->setting_values.clear();
-  for (const std::string& key : changed_) message->setting_values.push_back(ValueOf(config_, key));
+  for (const std::string& key : changed_) {
+    message->setting_values.push_back(JsonOf(config_, key).get<double>());
+  }
 }
 
 }  // namespace shoal::launch

@@ -33,10 +33,11 @@ class LiveSettings {
   // As config.json has them. In lockstep nothing may be changed.
   explicit LiveSettings(const Config& config) : config_(config) {}
 
-  // "KEY=VALUE". Returns key, former and new value; nothing has changed when it throws Error
-  // (kUsage): a key that does not exist or is fixed for the run, a value that it does not take,
-  // lockstep.
-  SettingChange Assign(const std::string& assignment);
+  // "KEY=VALUE". Returns key, former and new value; of a schedule the former value is that at
+  // `env_steps`, those of the run so far. Nothing has changed when it throws Error (kUsage): a key
+  // that does not exist or is fixed for the run, a value that it does not take, a schedule (only
+  // its numbers can be told to processes), lockstep.
+  SettingChange Assign(const std::string& assignment, uint64_t env_steps);
   SettingChange SetActors(const std::string& count);
   // What was changed before the run was interrupted.
   void Restore(std::span<const SettingChange> changes);
@@ -47,7 +48,7 @@ class LiveSettings {
   void AddTo(ControlMessage* message) const;
 
  private:
-  SettingChange Apply(const std::string& key, const std::string& assignment);
+  SettingChange Apply(const std::string& key, const std::string& assignment, uint64_t env_steps);
 
   Config config_;
   std::vector<std::string> changed_;  // keys, each once

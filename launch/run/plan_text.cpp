@@ -45,9 +45,13 @@ std::string PaceText(const Config& config) {
     return fmt::format("an update per {} env steps",
                        int64_t{config.ppo.rollout_steps} * config.actors * config.envs_per_actor);
   }
-  if (config.replay.samples_per_insert <= 0) return "updates as fast as the learner can";
-  return fmt::format("{:.3g} updates per env step",
-                     config.replay.samples_per_insert / config.learner.batch);
+  const Schedule& samples = config.replay.samples_per_insert;
+  const double first = samples.start / config.learner.batch;
+  const double last = samples.end / config.learner.batch;
+  if (samples.Most() <= 0) return "updates as fast as the learner can";
+  if (samples.constant()) return fmt::format("{:.3g} updates per env step", first);
+  return fmt::format("{:.3g} updates per env step at the start, {:.3g} from {} env steps on", first,
+                     last, samples.env_steps);
 }
 
 std::string UpdateText(const RunConfig& run) {

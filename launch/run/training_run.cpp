@@ -109,7 +109,7 @@ void NoteResumeOptions(const TrainOptions& options, const Config& before, RunMet
   settings.Restore(meta->changes);
   for (const std::string& assignment : options.set) {
     if (SetsPrecision(assignment)) continue;  // no setting of a running run; config.json has it
-    SettingChange change = settings.Assign(assignment);
+    SettingChange change = settings.Assign(assignment, meta->env_steps);
     change.time = UtcTimestamp();
     change.env_steps = meta->env_steps;
     change.updates = meta->updates;

@@ -7,13 +7,12 @@
 namespace shoal::replay {
 
 RateLimiter::RateLimiter(const LimiterOptions& options) : options_(options) {
-  CHECK(options.samples_per_insert >= 0 && options.batch > 0 && options.credits > 0);
+  CHECK(options.samples_per_insert.Least() >= 0 && options.batch > 0 && options.credits > 0);
   Rebuild();
 }
 
 double RateLimiter::LeastBand(const LimiterOptions& options, int sessions) {
-  return 2 * (options.samples_per_insert * Unasked(options) * sessions +
-              static_cast<double>(options.credits) * options.batch);
+  return 2 * (Unasked(options, sessions) + static_cast<double>(options.credits) * options.batch);
 }
 
 void RateLimiter::Rebuild() {
@@ -27,16 +26,17 @@ void RateLimiter::SetSessions(int sessions) {
   Rebuild();
 }
 
-void RateLimiter::SetSamplesPerInsert(double samples_per_insert) {
-  CHECK(samples_per_insert >= 0);
+void RateLimiter::SetSamplesPerInsert(const Schedule& samples_per_insert) {
+  CHECK(samples_per_insert.Least() >= 0);
   options_.samples_per_insert = samples_per_insert;
   Rebuild();
 }
 
-void RateLimiter::Inserted(uint64_t count, uint64_t sampleable) {
+void RateLimiter::Inserted(uint64_t count, uint64_t sampleable, uint64_t env_steps) {
   if (!Limits() || sampleable <= options_.min_size) return;
   const uint64_t counted = std::min(count, sampleable - options_.min_size);
-  cursor_ += options_.samples_per_insert * static_cast<double>(counted);
+  CHECK(counted <= env_steps) << counted << " " << env_steps;
+  cursor_ += options_.samples_per_insert.Integral(env_steps - counted, env_steps);
   cursor_ = std::min(cursor_, band_ / 2);
 }
 
@@ -47,7 +47,7 @@ void RateLimiter::Sampled() {
 
 bool RateLimiter::MayInsert(uint64_t sampleable) const {
   if (!Limits() || draining_ || sampleable < options_.min_size) return true;
-  return cursor_ <= band_ / 2 - options_.samples_per_insert * Unasked(options_) * sessions_;
+  return cursor_ <= band_ / 2 - Unasked(options_, sessions_);
 }
 
 bool RateLimiter::MaySample(uint64_t sampleable) const {

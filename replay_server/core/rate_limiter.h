@@ -1,19 +1,24 @@
 // Samples per insert as a bounded cursor.
 //
-//   cursor = SPI * (steps that became sampleable) - (batch elements sampled),  0 when min_size is
-//            first reached; kept in [-band/2, +band/2]
-//   band   = 2 * (SPI * W + credits * B) at least,  W = steps that may become sampleable unasked:
-//            the records of the windows of all actor sessions, and stored steps that become so
-//            with a later record; B = batch
+//   cursor = (samples granted to steps that became sampleable) - (batch elements sampled),  0 when
+//            min_size is first reached; kept in [-band/2, +band/2]
+//   n steps that became sampleable when the run had stored x env steps are granted the integral of
+//   SPI from x - n to x: SPI * n where it is constant
+//   band   = 2 * (SPI_most * W + credits * B) at least,  SPI_most the largest value of SPI,
+//            W = steps that may become sampleable unasked: the records of the windows of all actor
+//            sessions, and stored steps that become so with a later record; B = batch
 //
-//   sample iff  cursor - B >= -band/2             and min_size steps are sampleable
-//   insert iff  cursor     <= band/2 - SPI * W    or  min_size steps are not
+//   sample iff  cursor - B >= -band/2                  and min_size steps are sampleable
+//   insert iff  cursor     <= band/2 - SPI_most * W    or  min_size steps are not
 //
-// Why one side can always move: a batch is held back only while cursor < B - band/2 <= -SPI * W,
-// and credit only while cursor > band/2 - SPI * W >= credits * B; never both. Credit once given
-// cannot be taken back, so up to W more steps count after "no": SPI * W above the threshold, still
-// within the band. Inserts that do not become sampleable do not move the cursor and are not held
-// back for it.
+// Why one side can always move: a batch is held back only while cursor < B - band/2 <=
+// -SPI_most * W, and credit only while cursor > band/2 - SPI_most * W >= credits * B; never both.
+// Credit once given cannot be taken back, so up to W more steps count after "no": at most
+// SPI_most * W above the threshold, still within the band. Inserts that do not become sampleable do
+// not move the cursor and are not held back for it.
+//
+// Where each step becomes sampleable as it is stored, the integrals of a run lie end to end. Steps
+// that wait for a later record are granted what the newest env steps are, at most W too late.
 //
 // It acts on credit and on requests; nothing that has come is ever refused. Knows no clock; one
 // owner.
@@ -21,17 +26,19 @@
 
 #include <cstdint>
 
+#include "common/config/schedule.h"
+
 namespace shoal::replay {
 
 struct LimiterOptions {
-  double samples_per_insert = 0;  // SPI; 0 = no limit but min_size
-  uint64_t min_size = 1;          // sampleable steps before the first batch
-  int batch = 1;                  // B
-  int credits = 1;                // batches the learner asks for ahead
-  uint64_t window_records = 0;    // per actor session
-  uint64_t waiting_steps = 0;     // per actor session: stored, sampleable with a later record
-  double band = 0;                // 0 = computed; a smaller one than computed counts as computed
-  bool lockstep = false;          // actor and learner take turns by themselves: no limit at all
+  Schedule samples_per_insert;  // SPI, over the run's env steps; 0 = no limit but min_size
+  uint64_t min_size = 1;        // sampleable steps before the first batch
+  int batch = 1;                // B
+  int credits = 1;              // batches the learner asks for ahead
+  uint64_t window_records = 0;  // per actor session
+  uint64_t waiting_steps = 0;   // per actor session: stored, sampleable with a later record
+  double band = 0;              // 0 = computed; a smaller one than computed counts as computed
+  bool lockstep = false;        // actor and learner take turns by themselves: no limit at all
 };
 
 class RateLimiter {
@@ -43,12 +50,13 @@ class RateLimiter {
 
   // Any of these recomputes the band and brings the cursor back into it.
   void SetSessions(int sessions);
-  void SetSamplesPerInsert(double samples_per_insert);
+  void SetSamplesPerInsert(const Schedule& samples_per_insert);
   // Draining: the actors flush and leave, the learner finishes; nothing is held back.
   void SetDraining(bool draining) { draining_ = draining; }
 
   // `count` steps became sampleable; `sampleable` are so now. Those up to min_size do not count.
-  void Inserted(uint64_t count, uint64_t sampleable);
+  // `env_steps`: stored over the whole run, with those of servers before this one.
+  void Inserted(uint64_t count, uint64_t sampleable, uint64_t env_steps);
   // A batch was drawn.
   void Sampled();
 
@@ -57,14 +65,15 @@ class RateLimiter {
 
   double cursor() const { return cursor_; }
   double band() const { return band_; }
-  double samples_per_insert() const { return options_.samples_per_insert; }
+  const Schedule& samples_per_insert() const { return options_.samples_per_insert; }
 
  private:
-  // W for one actor session.
-  static double Unasked(const LimiterOptions& options) {
-    return static_cast<double>(options.window_records + options.waiting_steps);
+  // SPI_most * W for so many actor sessions.
+  static double Unasked(const LimiterOptions& options, int sessions) {
+    return options.samples_per_insert.Most() *
+           static_cast<double>(options.window_records + options.waiting_steps) * sessions;
   }
-  bool Limits() const { return options_.samples_per_insert > 0 && !options_.lockstep; }
+  bool Limits() const { return options_.samples_per_insert.Most() > 0 && !options_.lockstep; }
   void Rebuild();
 
   LimiterOptions options_;

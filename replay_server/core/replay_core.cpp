@@ -132,7 +132,8 @@ ChunkResult ReplayCore::TakeChunk(const TransitionChunk& chunk, uint64_t latest_
   const ChunkResult result = intake_.Take(chunk, latest_session);
   counters_.intake.Count(result);
   limiter_.SetSessions(static_cast<int>(sessions_.newest().size()));
-  limiter_.Inserted(index_.became_sampleable() - became_before, index_.sampleable());
+  limiter_.Inserted(index_.became_sampleable() - became_before, index_.sampleable(),
+                    ring_.stored_steps());
   return result;
 }
 

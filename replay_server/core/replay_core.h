@@ -99,7 +99,7 @@ class ReplayCore {
   // The run's env steps from now on (before: the configured ones): with them stored no actor gets
   // credit any more. Draining and lockstep, which ends by its own rule, know no budget.
   void SetBudget(uint64_t env_steps) { budget_ = env_steps; }
-  void SetSamplesPerInsert(double value) { limiter_.SetSamplesPerInsert(value); }
+  void SetSamplesPerInsert(const Schedule& samples) { limiter_.SetSamplesPerInsert(samples); }
 
   // Who waits for whom, now.
   bool InsertsBlocked() const;  // an actor gets less than its window

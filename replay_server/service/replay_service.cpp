@@ -184,11 +184,11 @@ class ReplayService {
         control_.SettingOr("env_steps", static_cast<double>(Settings().env_steps)));
     if (budget != core_.budget()) log::Info("env_steps is now {}", budget);
     core_.SetBudget(budget);
-    const double ratio =
-        control_.SettingOr("replay.samples_per_insert", Settings().replay.samples_per_insert);
-    if (ratio == core_.limiter().samples_per_insert()) return;
-    log::Info("replay.samples_per_insert is now {}", ratio);
-    core_.SetSamplesPerInsert(ratio);
+    const std::optional<double> set = control_.Setting("replay.samples_per_insert");
+    const Schedule samples = set ? Schedule::Constant(*set) : Settings().replay.samples_per_insert;
+    if (samples == core_.limiter().samples_per_insert()) return;
+    log::Info("replay.samples_per_insert is now {}", samples.At(core_.ring().stored_steps()));
+    core_.SetSamplesPerInsert(samples);
   }
 
   ServiceInbox::Arrivals WaitForArrivals(SteadyTime deadline) {

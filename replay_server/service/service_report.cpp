@@ -13,7 +13,8 @@ const MetricsMessage& ServiceReport::Make(const std::string& state, const Servic
   report_.AddRate("stored_records_per_second", static_cast<double>(counters.intake.records));
   Add("sampleable", core_.index().sampleable());
   AddSamples();
-  report_.Add("limiter_samples_per_insert", core_.limiter().samples_per_insert());
+  report_.Add("limiter_samples_per_insert",
+              core_.limiter().samples_per_insert().At(core_.ring().stored_steps()));
   report_.Add("limiter_cursor", core_.limiter().cursor());
   report_.Add("limiter_band", core_.limiter().band());
   Add("budget_env_steps", core_.budget());

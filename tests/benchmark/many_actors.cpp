@@ -224,7 +224,7 @@ RunConfig UnlearnedRun(int actors) {
   run.config.actors = actors;
   run.config.replay.capacity = 2000;
   run.config.replay.min_size = 100;
-  run.config.replay.samples_per_insert = 0;
+  run.config.replay.samples_per_insert = Schedule::Constant(0);
   return run;
 }
 

@@ -141,6 +141,7 @@ void Use(const RunViewMessage& message) {
 void Use(const CommandMessage& message) {
   launch::LiveSettings settings{Config()};
   launch::CommandHandler handler(settings, {.running = [] { return true; },
+                                            .env_steps = [] { return uint64_t{0}; },
                                             .stop = [] {},
                                             .scale = [](int, int) {},
                                             .note = [](const launch::SettingChange&) {}});

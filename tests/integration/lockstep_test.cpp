@@ -1,6 +1,9 @@
 // In lockstep a whole run through the real processes repeats bit for bit.
+#include "common/config/lockstep.h"
+
 #include <gtest/gtest.h>
 
+#include "common/config/run_files.h"
 #include "tests/support/running_training.h"
 #include "tests/support/training_run.h"
 
@@ -84,6 +87,28 @@ TEST(Lockstep, RunningStatisticsRepeatAndGoOnBitForBit) {
                                                  {"observation.width", "24"}}),
                         {"--lockstep"}, {130});
   EXPECT_NE(LearnerOf(whole).find("encoder.bn1.running_mean"), std::string::npos);
+}
+
+// The updates of the whole run are those of a sum over each env step behind phase 0.
+TEST(Lockstep, AScheduleOfSamplesGoesOnBitForBitAndEndsWhereItShould) {
+  const TrainingRun whole;
+  ExpectGoesOnBitForBit(whole,
+                        {{"env_steps", "6000"},
+                         {"actors", "1"},
+                         {"eval.interval", "2000"},
+                         {"replay.samples_per_insert", "linear(8,64,4000)"}},
+                        {"--lockstep"}, {1400, 3000});
+  const Config config = ReadRunConfig(whole.path()).config;
+  const auto samples_at = [](double x) { return x < 4000 ? 8 + 56 * x / 4000 : 64; };
+  const auto meta = whole.Json("meta.json");
+  const int64_t end = meta.at("env_steps").get<int64_t>();
+  const int64_t envs = config.envs_per_actor, phase = config.lockstep_steps * envs;
+  int64_t step = (config.replay.min_size + phase - 1) / phase * phase;
+  double granted = 0;
+  for (; step < end; ++step) granted += samples_at(static_cast<double>(step) + 0.5);
+  EXPECT_EQ(meta.at("updates").get<int64_t>(),
+            static_cast<int64_t>(granted / config.learner.batch + 1e-6));
+  EXPECT_EQ(meta.at("updates").get<uint64_t>(), LockstepLastUpdate(config));
 }
 
 // Goal pictures are records of their own, and relabelled goals are frames of stored episodes. Steps

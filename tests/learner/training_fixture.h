@@ -21,7 +21,7 @@ inline RunConfig SmallRun() {
   config.learner.weights_period = 5;
   config.learner.checkpoint_period = 1'000'000;
   config.replay.min_size = 8;
-  config.replay.samples_per_insert = 1;
+  config.replay.samples_per_insert = Schedule::Constant(1);
   config.eval.interval = 1'000'000;
   run.spec.task = "Test";
   run.spec.blocks = {{"observation", 3}};

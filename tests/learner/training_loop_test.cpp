@@ -185,6 +185,61 @@ TEST_F(TrainingLoopTest, DrainingEndsWithTheUpdatesThatTheStoredStepsGrant) {
   EXPECT_TRUE(Checkpoints().contains("step_000000010"));
 }
 
+// Steps 8 to 48 of a line from 3 at step 0 to 1 at step 40: 32 (2.6 + 1) / 2 + 8 = 65.6 samples are
+// granted, 17 batches of 4.
+TEST_F(TrainingLoopTest, DrainingEndsWithTheUpdatesThatAScheduleGrants) {
+  run_.config.replay.samples_per_insert = Schedule{3, 1, 40};
+  outlet_.on_evaluation = [this] { Say(RunState::kStopping); };
+  Train(1000, [&](PlayedBatches& batches) {
+    batches.stored_steps = [](uint64_t request) { return request < 3 ? 12 * request : 48; };
+    batches.before = [this](uint64_t request) {
+      if (request == 3) Say(RunState::kDraining);
+    };
+  });
+  EXPECT_EQ(updates_, 17u);
+  EXPECT_EQ(Figure("samples_per_insert"), 1);
+}
+
+TEST_F(TrainingLoopTest, AResumedLearnerDrainsByTheWholeSchedule) {
+  run_.config.replay.samples_per_insert = Schedule{3, 1, 40};
+  const auto stored = [](uint64_t request) { return std::min<uint64_t>(6 * request, 48); };
+  Train(4, [&](PlayedBatches& batches) { batches.stored_steps = stored; });
+  ASSERT_EQ(updates_, 4u);
+  outlet_.on_evaluation = [this] { Say(RunState::kStopping); };
+  Say(RunState::kRunning);
+  Train(1000, [&](PlayedBatches& batches) {
+    batches.stored_steps = stored;
+    batches.before = [this](uint64_t request) {
+      if (request == 9) Say(RunState::kDraining);
+    };
+  });
+  EXPECT_EQ(updates_, 17u);
+}
+
+// At step 28 the number 0.6 takes the schedule's place: 20 (2.6 + 1.6) / 2 + 20 * 0.6 = 54 samples.
+TEST_F(TrainingLoopTest, WhatIsSetTakesTheSchedulesPlaceFromThereOn) {
+  run_.config.replay.samples_per_insert = Schedule{3, 1, 40};
+  outlet_.on_evaluation = [this] { Say(RunState::kStopping); };
+  const auto say = [this](RunState state) {
+    control_.OnMessage({.epoch = ++epoch_,
+                        .state = state,
+                        .time = 0,
+                        .setting_names = {"replay.samples_per_insert"},
+                        .setting_values = {0.6}},
+                       Now());
+  };
+  Train(1000, [&](PlayedBatches& batches) {
+    batches.stored_steps = [](uint64_t request) {
+      return request < 4 ? std::min<uint64_t>(14 * request, 28) : 48;
+    };
+    batches.before = [&](uint64_t request) {
+      if (request == 3) say(RunState::kRunning);
+      if (request == 5) say(RunState::kDraining);
+    };
+  });
+  EXPECT_EQ(updates_, 14u);
+}
+
 TEST_F(TrainingLoopTest, DrainingEndsWhenNoMoreBatchesCome) {
   outlet_.on_evaluation = [this] { Say(RunState::kStopping); };
   Train(6, [&](PlayedBatches& batches) {
@@ -196,8 +251,9 @@ TEST_F(TrainingLoopTest, DrainingEndsWhenNoMoreBatchesCome) {
 }
 
 TEST_F(TrainingLoopTest, ADrainedLearnerTrainsNoMoreAndSaysSo) {
-  run_.config.replay.samples_per_insert = 0;  // no limit: three more batches tell what is stored
-  outlet_.reject_evaluations = 2;             // sent in the second pass after draining was over
+  run_.config.replay.samples_per_insert =
+      Schedule::Constant(0);       // no limit: three more batches tell what is stored
+  outlet_.reject_evaluations = 2;  // sent in the second pass after draining was over
   outlet_.on_evaluation = [this] { Say(RunState::kStopping); };
   Train(1000, [&](PlayedBatches& batches) {
     batches.before = [this](uint64_t request) {

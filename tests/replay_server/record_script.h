@@ -45,7 +45,7 @@ inline RunConfig TinyRun(int stack, int64_t capacity) {
   run.config.replay.storage = "memory";
   run.config.replay.capacity = capacity;
   run.config.replay.min_size = 4;
-  run.config.replay.samples_per_insert = 0;
+  run.config.replay.samples_per_insert = Schedule::Constant(0);
   run.config.replay.shift_pad = 0;
   run.config.replay.window_chunks = 2;
   run.config.learner.batch = 8;

@@ -224,7 +224,7 @@ Config Lockstep() {
   config.lockstep_steps = 2;
   config.env_steps = 1000;
   config.replay.min_size = 8;
-  config.replay.samples_per_insert = 0;
+  config.replay.samples_per_insert = Schedule::Constant(0);
   return config;
 }
 

@@ -20,7 +20,7 @@ Config LockstepConfig() {
   config.envs_per_actor = 3;
   config.env_steps = 21;
   config.replay.min_size = 12;
-  config.replay.samples_per_insert = 0;
+  config.replay.samples_per_insert = Schedule::Constant(0);
   return config;
 }
 

@@ -16,7 +16,7 @@ Config Of(int threads, int batch, int copies = 1) {
   config.learner.threads = threads;
   config.learner.batch = batch;
   config.replay.copies = copies;
-  config.replay.samples_per_insert = 8;
+  config.replay.samples_per_insert = Schedule::Constant(8);
   return config;
 }
 
@@ -37,7 +37,7 @@ TEST(LearnerThreads, AreHalfTheCoresAsFarAsTheyShareTheBatch) {
 
 TEST(LearnerThreads, AreOnAllCoresWithAnUpdateForEachStep) {
   Config config = Of(0, 128);
-  config.replay.samples_per_insert = 128;
+  config.replay.samples_per_insert = Schedule::Constant(128);
   EXPECT_EQ(LearnerThreads(config, 1), 1);
   EXPECT_EQ(LearnerThreads(config, 2), 2);
   EXPECT_EQ(LearnerThreads(config, 8), 8);
@@ -46,14 +46,23 @@ TEST(LearnerThreads, AreOnAllCoresWithAnUpdateForEachStep) {
 
 TEST(LearnerThreads, LeaveAQuarterOfTheCoresWithAnUpdateForEachEighthStep) {
   Config config = Of(0, 96);
-  config.replay.samples_per_insert = 11;
+  config.replay.samples_per_insert = Schedule::Constant(11);
   EXPECT_EQ(LearnerThreads(config, 2), 1);
   EXPECT_EQ(LearnerThreads(config, 8), 4);
-  config.replay.samples_per_insert = 12;
+  config.replay.samples_per_insert = Schedule::Constant(12);
   EXPECT_EQ(LearnerThreads(config, 1), 1);
   EXPECT_EQ(LearnerThreads(config, 2), 2) << "rounded up";
   EXPECT_EQ(LearnerThreads(config, 4), 3);
   EXPECT_EQ(LearnerThreads(config, 8), 6);
+}
+
+TEST(LearnerThreads, OfAScheduleGoByItsMeanOverTheBudget) {
+  Config config = Of(0, 96);
+  config.replay.samples_per_insert = Schedule{24, 4, 1000};
+  config.env_steps = 1000;  // 14 in the mean: an update for each seventh step
+  EXPECT_EQ(LearnerThreads(config, 8), 6);
+  config.env_steps = 4000;  // 6.5
+  EXPECT_EQ(LearnerThreads(config, 8), 4);
 }
 
 TEST(LearnerThreads, IsOneWithoutPixels) {

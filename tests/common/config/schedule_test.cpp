@@ -127,6 +127,23 @@ TEST(ScheduleKey, EveryNumberOfItIsHeldToTheRange) {
   }
 }
 
+TEST(ScheduleKey, SamplesPerInsertIsANumberOrAScheduleAboveZero) {
+  Config config;
+  EXPECT_EQ(ToJson(config)["replay"]["samples_per_insert"].dump(), "64.0");
+  const uint64_t usual = ConfigHash(config);
+  ApplyAssignments({"replay.samples_per_insert=0"}, &config);
+  Validate(config);  // no limit
+  ApplyAssignments({"replay.samples_per_insert=linear(64,8,5000)"}, &config);
+  Validate(config);
+  EXPECT_EQ(config.replay.samples_per_insert, (Schedule{64, 8, 5000}));
+  EXPECT_EQ(ToJson(config)["replay"]["samples_per_insert"], "linear(64,8,5000)");
+  EXPECT_NE(ConfigHash(config), usual);
+  Config again;
+  ApplyJson(ToJson(config), "its own JSON", &again);
+  EXPECT_EQ(again.replay.samples_per_insert, config.replay.samples_per_insert);
+  EXPECT_THROW(ApplyAssignments({"replay.samples_per_insert=linear(64,-1,5000)"}, &again), Error);
+}
+
 TEST(ExplorationKeys, AreCheckedTogether) {
   Config config;
   config.exploration.theta = 100;

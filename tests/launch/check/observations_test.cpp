@@ -41,7 +41,7 @@ Config ConfigOf(const Kind& kind) {
   observation.proprioception = kind.proprioception;
   config.replay.capacity = 128;
   config.replay.min_size = 8;
-  config.replay.samples_per_insert = 0;
+  config.replay.samples_per_insert = Schedule::Constant(0);
   config.replay.shift_pad = 2;
   config.learner.batch = 4;
   config.network.filters = {4};

@@ -31,6 +31,7 @@ class CommandHandlerTest : public ::testing::Test {
   CommandHandler handler_{
       settings_,
       {.running = [this] { return running_; },
+       .env_steps = [] { return uint64_t{500}; },
        .stop = [this] { done_.push_back("stop"); },
        .scale = [this](int from, int to) { done_.push_back(fmt::format("{}->{}", from, to)); },
        .note = [this](const SettingChange& c) { done_.push_back("note " + c.key); }}};
@@ -46,6 +47,14 @@ TEST_F(CommandHandlerTest, AChangeIsNotedAndAnsweredWithBothValues) {
   EXPECT_EQ(reply.client, 7u);
   EXPECT_EQ(reply.request, 3u);
   EXPECT_THAT(done_, ElementsAre("note eval.interval"));
+}
+
+TEST_F(CommandHandlerTest, OfAScheduleTheFormerValueIsThatOfTheEnvStepsSoFar) {
+  Config config = Running();
+  config.replay.samples_per_insert = Schedule{64, 16, 1000};
+  settings_ = LiveSettings(config);
+  EXPECT_EQ(Handle("set", {"replay.samples_per_insert=8"}).text,
+            "replay.samples_per_insert: 40 -> 8");
 }
 
 TEST_F(CommandHandlerTest, ScalingStartsOrEndsActorsAndIsNoted) {
@@ -69,6 +78,7 @@ TEST_F(CommandHandlerTest, WhatIsRefusedChangesNothingAndSaysWhy) {
 TEST_F(CommandHandlerTest, AScaleThatFailsChangesNothing) {
   CommandHandler handler(settings_,
                          {.running = [] { return true; },
+                          .env_steps = [] { return uint64_t{0}; },
                           .stop = [] {},
                           .scale = [](int, int) { throw RuntimeError("no room"); },
                           .note = [this](const SettingChange&) { done_.push_back("note"); }});

@@ -20,7 +20,7 @@ Config Running() {
 
 std::string Refusal(LiveSettings& settings, const std::string& assignment) {
   try {
-    settings.Assign(assignment);
+    settings.Assign(assignment, 0);
     return "taken";
   } catch (const Error& e) {
     EXPECT_EQ(e.exit_code(), 2) << e.what();
@@ -30,11 +30,31 @@ std::string Refusal(LiveSettings& settings, const std::string& assignment) {
 
 TEST(LiveSettings, AChangeNamesBothValuesAndHolds) {
   LiveSettings settings(Running());
-  const SettingChange change = settings.Assign("replay.samples_per_insert=32.5");
+  const SettingChange change = settings.Assign("replay.samples_per_insert=32.5", 0);
   EXPECT_EQ(change.key, "replay.samples_per_insert");
   EXPECT_EQ(change.from, 64);
   EXPECT_EQ(change.to, 32.5);
-  EXPECT_EQ(settings.config().replay.samples_per_insert, 32.5);
+  EXPECT_EQ(settings.config().replay.samples_per_insert, Schedule::Constant(32.5));
+}
+
+// What is set takes the schedule's place; what it said then is the former value.
+TEST(LiveSettings, ANumberTakesTheSchedulesPlaceAndAScheduleIsRefused) {
+  Config config = Running();
+  config.replay.samples_per_insert = Schedule{64, 16, 1000};
+  LiveSettings settings(config);
+  EXPECT_EQ(Refusal(settings, "replay.samples_per_insert=linear(64,8,1000)"),
+            "replay.samples_per_insert=linear(64,8,1000): a run that goes on takes a number, which "
+            "holds from now on");
+  const SettingChange change = settings.Assign("replay.samples_per_insert=32", 250);
+  EXPECT_EQ(change.from, 52);
+  EXPECT_EQ(change.to, 32);
+  EXPECT_EQ(settings.config().replay.samples_per_insert, Schedule::Constant(32));
+  ControlMessage message;
+  settings.AddTo(&message);
+  EXPECT_THAT(message.setting_values, ElementsAre(32));
+  LiveSettings resumed(config);
+  resumed.Restore({{change}});
+  EXPECT_EQ(resumed.config().replay.samples_per_insert, Schedule::Constant(32));
 }
 
 TEST(LiveSettings, EveryLiveKeyCanBeChanged) {
@@ -42,7 +62,7 @@ TEST(LiveSettings, EveryLiveKeyCanBeChanged) {
   for (const LiveKey& live : LiveKeys()) {
     EXPECT_FALSE(live.uses.empty()) << live.key;
     if (live.key == "actors") continue;
-    EXPECT_EQ(settings.Assign(std::string(live.key) + "=1").to, 1) << live.key;
+    EXPECT_EQ(settings.Assign(std::string(live.key) + "=1", 0).to, 1) << live.key;
   }
   EXPECT_EQ(settings.SetActors("5").from, 2);
   EXPECT_EQ(settings.config().actors, 5);
@@ -75,9 +95,9 @@ TEST(LiveSettings, InLockstepNothingCanBeChanged) {
 
 TEST(LiveSettings, ProcessesAreToldThePresentValueOfEachChangedKeyOnce) {
   LiveSettings settings(Running());
-  settings.Assign("eval.interval=100");
+  settings.Assign("eval.interval=100", 0);
   settings.SetActors("3");
-  settings.Assign("eval.interval=200");
+  settings.Assign("eval.interval=200", 0);
   ControlMessage message;
   settings.AddTo(&message);
   EXPECT_THAT(message.setting_names, ElementsAre("eval.interval", "actors"));
@@ -86,8 +106,8 @@ TEST(LiveSettings, ProcessesAreToldThePresentValueOfEachChangedKeyOnce) {
 
 TEST(LiveSettings, AResumedRunGoesOnWithWhatWasChanged) {
   LiveSettings before(Running());
-  std::vector<SettingChange> changes{before.Assign("stop.success=0.5"), before.SetActors("4"),
-                                     before.Assign("stop.success=0.75")};
+  std::vector<SettingChange> changes{before.Assign("stop.success=0.5", 0), before.SetActors("4"),
+                                     before.Assign("stop.success=0.75", 0)};
   LiveSettings after(Running());
   after.Restore(changes);
   EXPECT_EQ(after.config().stop.success, 0.75);

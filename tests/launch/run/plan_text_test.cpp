@@ -16,7 +16,7 @@ TEST(PlanText, FromStateThereAreNoPicturesAndNoEncoder) {
   RunConfig run;
   run.config.observation.pixels = false;
   run.config.replay.capacity = 2000;
-  run.config.replay.samples_per_insert = 64;
+  run.config.replay.samples_per_insert = Schedule::Constant(64);
   run.config.learner.batch = 256;
   run.spec.blocks = {{"position", 3, true}};
   run.spec.action_size = 2;
@@ -26,10 +26,21 @@ TEST(PlanText, FromStateThereAreNoPicturesAndNoEncoder) {
                     Not(HasSubstr("encoder"))));
 }
 
+TEST(PlanText, AScheduleOfUpdatesIsSaidWithBothEnds) {
+  RunConfig run;
+  run.config.observation.pixels = false;
+  run.config.replay.samples_per_insert = Schedule{64, 16, 50'000};
+  run.config.learner.batch = 256;
+  run.spec.blocks = {{"position", 3, true}};
+  run.spec.action_size = 2;
+  EXPECT_THAT(PlanText(run, 0), HasSubstr("  0.25 updates per env step at the start, 0.0625 from "
+                                          "50000 env steps on; sac in f32"));
+}
+
 TEST(PlanText, PicturesSayWhatTheyCost) {
   RunConfig run;
   run.config.observation.quality = "reference";
-  run.config.replay.samples_per_insert = 0;
+  run.config.replay.samples_per_insert = Schedule::Constant(0);
   run.config.replay.storage = "memory";
   run.config.learner.precision = "f32";
   run.config.network.encoder = "nature";

@@ -33,7 +33,7 @@ RunConfig PushRun() {
   run.config.envs_per_actor = 2;
   run.config.replay.hindsight = "future";
   run.config.replay.min_size = 100;
-  run.config.replay.samples_per_insert = 4;
+  run.config.replay.samples_per_insert = Schedule::Constant(4);
   run.config.learner.batch = 16;
   return run;
 }
@@ -183,7 +183,7 @@ TEST_F(HindsightTest, WhereEpisodesEndOnSuccessTheStepThatReachesTheGoalEndsTheS
 TEST_F(HindsightTest, AShareOfTheSamplesIsRelabelled) {
   for (const int goals : {0, 1, 4}) {
     run_.config.replay.hindsight_goals = goals;
-    run_.config.replay.samples_per_insert = 0;
+    run_.config.replay.samples_per_insert = Schedule::Constant(0);
     next_ = allowed_ = 1;
     request_ = 0;
     Start();

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "common/base/random.h"
@@ -11,7 +12,7 @@ namespace shoal::replay {
 namespace {
 
 LimiterOptions Options() {
-  return {.samples_per_insert = 2,
+  return {.samples_per_insert = Schedule::Constant(2),
           .min_size = 10,
           .batch = 8,
           .credits = 2,
@@ -28,10 +29,10 @@ TEST(RateLimiter, TheCursorAfterEachCall) {
   EXPECT_EQ(limiter.band(), 56);
   EXPECT_FALSE(limiter.MaySample(9));
   EXPECT_TRUE(limiter.MayInsert(9));
-  limiter.Inserted(10, 10);
+  limiter.Inserted(10, 10, 10);
   EXPECT_EQ(limiter.cursor(), 0) << "up to min size nothing counts";
   EXPECT_TRUE(limiter.MaySample(10)) << "the learner begins at once";
-  limiter.Inserted(3, 13);
+  limiter.Inserted(3, 13, 13);
   EXPECT_EQ(limiter.cursor(), 6);
   limiter.Sampled();
   EXPECT_EQ(limiter.cursor(), -2);
@@ -42,13 +43,13 @@ TEST(RateLimiter, TheCursorAfterEachCall) {
   limiter.Sampled();
   EXPECT_EQ(limiter.cursor(), -26);
   EXPECT_FALSE(limiter.MaySample(13)) << "-26 - 8 is below -28";
-  limiter.Inserted(3, 16);
+  limiter.Inserted(3, 16, 16);
   EXPECT_EQ(limiter.cursor(), -20);
   EXPECT_TRUE(limiter.MaySample(16));
-  limiter.Inserted(18, 34);
+  limiter.Inserted(18, 34, 34);
   EXPECT_EQ(limiter.cursor(), 16);
   EXPECT_TRUE(limiter.MayInsert(34));
-  limiter.Inserted(1, 35);
+  limiter.Inserted(1, 35, 35);
   EXPECT_EQ(limiter.cursor(), 18);
   EXPECT_FALSE(limiter.MayInsert(35));
   limiter.Sampled();
@@ -59,14 +60,14 @@ TEST(RateLimiter, TheCursorAfterEachCall) {
 TEST(RateLimiter, InsertsThatCrossMinSizeCountFromThere) {
   RateLimiter limiter(Options());
   limiter.SetSessions(1);
-  limiter.Inserted(12, 12);
+  limiter.Inserted(12, 12, 12);
   EXPECT_EQ(limiter.cursor(), 4);
 }
 
 TEST(RateLimiter, InsertsAreNeverWithheldBelowMinSize) {
   RateLimiter limiter(Options());
   limiter.SetSessions(1);
-  limiter.Inserted(40, 50);
+  limiter.Inserted(40, 50, 50);
   ASSERT_FALSE(limiter.MayInsert(50));
   EXPECT_TRUE(limiter.MayInsert(9)) << "the ring has overwritten what was sampleable";
 }
@@ -75,11 +76,11 @@ TEST(RateLimiter, TheBandFollowsSessionsAndRatioAndTheCursorStaysInIt) {
   RateLimiter limiter(Options());
   limiter.SetSessions(4);
   EXPECT_EQ(limiter.band(), 2 * (2 * 24 + 16));
-  limiter.Inserted(32, 100);
+  limiter.Inserted(32, 100, 100);
   EXPECT_EQ(limiter.cursor(), 64);
   limiter.SetSessions(1);
   EXPECT_EQ(limiter.cursor(), 28);
-  limiter.SetSamplesPerInsert(10);
+  limiter.SetSamplesPerInsert(Schedule::Constant(10));
   EXPECT_EQ(limiter.band(), 2 * (60 + 16));
 }
 
@@ -105,13 +106,13 @@ TEST(RateLimiter, TheBandHasRoomForStepsThatWaitForALaterRecord) {
 
 TEST(RateLimiter, NoLimitMeansMinSizeOnly) {
   LimiterOptions options = Options();
-  options.samples_per_insert = 0;
+  options.samples_per_insert = Schedule::Constant(0);
   RateLimiter limiter(options);
   limiter.SetSessions(1);
   for (int i = 0; i < 1000; ++i) limiter.Sampled();
   EXPECT_TRUE(limiter.MaySample(10));
   EXPECT_FALSE(limiter.MaySample(9));
-  limiter.Inserted(100'000, 100'000);
+  limiter.Inserted(100'000, 100'000, 100'000);
   EXPECT_TRUE(limiter.MayInsert(100'000));
 }
 
@@ -120,7 +121,7 @@ TEST(RateLimiter, LockstepAndDrainingHoldNothingBack) {
   options.lockstep = true;
   RateLimiter lockstep(options);
   lockstep.SetSessions(1);
-  lockstep.Inserted(1000, 1000);
+  lockstep.Inserted(1000, 1000, 1000);
   EXPECT_TRUE(lockstep.MayInsert(1000));
   EXPECT_TRUE(lockstep.MaySample(1));
   EXPECT_FALSE(lockstep.MaySample(0));
@@ -131,10 +132,66 @@ TEST(RateLimiter, LockstepAndDrainingHoldNothingBack) {
   ASSERT_FALSE(draining.MaySample(50));
   draining.SetDraining(true);
   EXPECT_TRUE(draining.MaySample(50));
-  draining.Inserted(500, 550);
+  draining.Inserted(500, 550, 550);
   EXPECT_TRUE(draining.MayInsert(550));
   draining.SetDraining(false);
   EXPECT_FALSE(draining.MayInsert(550));
+}
+
+TEST(RateLimiter, AScheduleGrantsByTheEnvStepsStored) {
+  LimiterOptions options = Options();
+  options.samples_per_insert = {4, 2, 100};
+  RateLimiter limiter(options);
+  limiter.SetSessions(1);
+  EXPECT_EQ(limiter.band(), 2 * (4 * 6 + 2 * 8));
+  limiter.Inserted(14, 14, 20);
+  EXPECT_DOUBLE_EQ(limiter.cursor(), 4 * (3.68 + 3.6) / 2)
+      << "the last four of them, steps 16 to 20";
+  for (int i = 0; i < 4; ++i) limiter.Sampled();
+  const double before = limiter.cursor();
+  limiter.Inserted(10, 24, 105);
+  EXPECT_DOUBLE_EQ(limiter.cursor() - before, 5 * (2.1 + 2) / 2 + 5 * 2);
+}
+
+TEST(RateLimiter, AScheduleHasTheBandOfItsLargestValueWhereverThatIs) {
+  LimiterOptions falling = Options(), rising = Options();
+  falling.samples_per_insert = {4, 2, 100};
+  rising.samples_per_insert = {2, 4, 100};
+  EXPECT_EQ(RateLimiter::LeastBand(falling, 3), 2 * (3 * 4 * 6 + 2 * 8));
+  EXPECT_EQ(RateLimiter::LeastBand(rising, 3), RateLimiter::LeastBand(falling, 3));
+}
+
+// Steps come in pieces, batches are drawn whenever they may be: what was drawn is what a sum over
+// each single step says, within the band.
+TEST(RateLimiterProperty, SamplesPerInsertFollowAScheduleWithinTheBand) {
+  for (uint64_t seed = 1; seed <= 30; ++seed) {
+    Random random(seed);
+    LimiterOptions options = Options();
+    options.samples_per_insert = {random.Uniform(0.1, 40), random.Uniform(0.1, 40),
+                                  1 + static_cast<int64_t>(random.Below(5000))};
+    const Schedule& samples = options.samples_per_insert;
+    RateLimiter limiter(options);
+    limiter.SetSessions(1);
+    uint64_t steps = 0, drawn = 0;
+    double granted = 0;
+    while (steps < 6000) {
+      if (random.Below(2) == 0 && limiter.MayInsert(steps)) {
+        const uint64_t count = 1 + random.Below(options.window_records);
+        for (uint64_t i = 0; i < count; ++i, ++steps) {
+          if (steps >= options.min_size) granted += (samples.At(steps) + samples.At(steps + 1)) / 2;
+        }
+        limiter.Inserted(count, steps, steps);
+      } else if (limiter.MaySample(steps)) {
+        limiter.Sampled();
+        drawn += static_cast<uint64_t>(options.batch);
+      }
+      // As exact as sums of doubles are, and nothing was cut off at an end of the band.
+      ASSERT_NEAR(limiter.cursor(), granted - static_cast<double>(drawn), 1e-6)
+          << "seed " << seed << ", step " << steps;
+      ASSERT_LE(std::abs(granted - static_cast<double>(drawn)), limiter.band() / 2);
+    }
+    EXPECT_GT(drawn, 500u) << "seed " << seed;
+  }
 }
 
 // Actors with windows and a learner that wants more always, around one limiter. Not every record
@@ -152,7 +209,9 @@ class World {
     if (kind < 95) return TrySample();
     if (kind == 95) return Scale(1 + random_.Below(5));
     if (kind == 96) return Kill();
-    if (kind == 97) limiter_.SetSamplesPerInsert(static_cast<double>(1 + random_.Below(64)));
+    if (kind == 97) {
+      limiter_.SetSamplesPerInsert(Schedule::Constant(static_cast<double>(1 + random_.Below(64))));
+    }
     if (kind == 98) sampleable_ -= std::min(sampleable_, random_.Below(200));  // overwritten
     if (kind == 99) limiter_ = Restarted();
   }
@@ -192,7 +251,7 @@ class World {
     actor.credit -= records;
     records_ += records;
     sampleable_ = std::min<uint64_t>(sampleable_ + useful, 5000);
-    limiter_.Inserted(useful, sampleable_);
+    limiter_.Inserted(useful, sampleable_, records_);
   }
 
   void TrySample() {
@@ -225,11 +284,19 @@ class World {
   uint64_t sampleable_ = 0, batches_ = 0, records_ = 0;
 };
 
+// Constant for even seeds, else a line that goes up or down.
+Schedule SomeSchedule(Random* random, uint64_t seed) {
+  const double start = static_cast<double>(random->Below(100)) / 4;
+  if (seed % 2 == 0) return Schedule::Constant(start);
+  return {0.1 + start, 0.1 + static_cast<double>(random->Below(400)) / 4,
+          1 + static_cast<int64_t>(random->Below(20'000))};
+}
+
 TEST(RateLimiterProperty, OneSideCanAlwaysMove) {
-  for (uint64_t seed = 1; seed <= 60; ++seed) {
+  for (uint64_t seed = 1; seed <= 120; ++seed) {
     LimiterOptions options = Options();
     Random random(seed);
-    options.samples_per_insert = static_cast<double>(random.Below(100)) / 4;
+    options.samples_per_insert = SomeSchedule(&random, seed);
     options.min_size = 1 + random.Below(300);
     options.batch = 1 + static_cast<int>(random.Below(512));
     options.credits = 1 + static_cast<int>(random.Below(4));

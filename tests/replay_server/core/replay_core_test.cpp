@@ -123,7 +123,7 @@ TEST_F(ReplayCoreTest, ABatchWaitsForItsStepsAndTellsWhatWasStored) {
 }
 
 TEST_F(ReplayCoreTest, TheLimiterWithholdsCreditAndBatchesAndOneOfThemAlwaysMoves) {
-  run_.config.replay.samples_per_insert = 2;
+  run_.config.replay.samples_per_insert = Schedule::Constant(2);
   run_.config.replay.min_size = 8;
   Start();
   uint64_t next = 1, request = 1;
@@ -184,7 +184,7 @@ TEST_F(ReplayCoreTest, TheBudgetIsReachedAndOverspentByLessThanOneChunkPerActor)
 }
 
 TEST_F(ReplayCoreTest, AResentRequestIsNotChargedToTheLimiter) {
-  run_.config.replay.samples_per_insert = 2;
+  run_.config.replay.samples_per_insert = Schedule::Constant(2);
   Start();
   Store(&actor_, 1, 8);
   Ask(1);
@@ -205,7 +205,7 @@ TEST_F(ReplayCoreTest, AResentRequestIsNotChargedToTheLimiter) {
 }
 
 TEST_F(ReplayCoreTest, DrainingLetsTheLearnerFinishAndTheActorsFlush) {
-  run_.config.replay.samples_per_insert = 0.5;
+  run_.config.replay.samples_per_insert = Schedule::Constant(0.5);
   Start();
   Store(&actor_, 1, 12);
   for (uint64_t request = 1; request < 100; ++request) {
@@ -219,7 +219,7 @@ TEST_F(ReplayCoreTest, DrainingLetsTheLearnerFinishAndTheActorsFlush) {
 
 TEST_F(ReplayCoreTest, ARestartedServerKnowsItsActorsAndRebuildsTheCursor) {
   run_.config.replay.storage = "file";
-  run_.config.replay.samples_per_insert = 2;
+  run_.config.replay.samples_per_insert = Schedule::Constant(2);
   Start();
   Store(&actor_, 1, 30);
   ASSERT_NE(core_->limiter().cursor(), 0);
@@ -234,6 +234,25 @@ TEST_F(ReplayCoreTest, ARestartedServerKnowsItsActorsAndRebuildsTheCursor) {
   EXPECT_EQ(credits[0].stored, 30u);
   EXPECT_EQ(credits[0].allowed, 38u);
   EXPECT_EQ(Store(&actor_, 29, 4).stored, 2u) << "episodes go on across the restart";
+}
+
+// The env steps of a run go on over restarts, also those that the ring has forgotten.
+TEST_F(ReplayCoreTest, ARestartedServerGoesOnWithAScheduleWhereTheRunStands) {
+  run_.config.replay.storage = "file";
+  run_.config.replay.samples_per_insert = Schedule{8, 1, 200};
+  Start();
+  Store(&actor_, 1, 60);
+  Store(&actor_, 61, 60);
+  const uint64_t stored = core_->ring().stored_steps();
+  core_.reset();
+  Start();
+  const uint64_t became_before = core_->index().became_sampleable();
+  Store(&actor_, 121, 8);
+  const uint64_t became = core_->index().became_sampleable() - became_before;
+  ASSERT_EQ(became, core_->ring().stored_steps() - stored) << "each as it is stored";
+  ASSERT_GT(became, 2u);
+  EXPECT_DOUBLE_EQ(core_->limiter().cursor(),
+                   run_.config.replay.samples_per_insert.Integral(stored, stored + became));
 }
 
 TEST_F(ReplayCoreTest, AnActorOfAnotherSpecIsToldOurs) {
@@ -291,7 +310,7 @@ TEST_F(ReplayCoreTest, ARingThatNeverHoldsEnoughSamplesIsRefusedBeforehand) {
 }
 
 TEST_F(ReplayCoreTest, RefusesABandInWhichBothCouldWait) {
-  run_.config.replay.samples_per_insert = 2;
+  run_.config.replay.samples_per_insert = Schedule::Constant(2);
   run_.config.replay.band = 10;
   try {
     Start();
