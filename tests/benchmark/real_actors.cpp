@@ -53,23 +53,35 @@ double SecondsPerCall(double seconds, const std::function<void()>& act) {
   return SecondsSince(start) / calls;
 }
 
-// Physics and rendering of an env step, resets included; nothing else. Actions are drawn, for one
-// action all the time drives the arm where a policy's does not and costs another amount.
+struct Played {
+  std::unique_ptr<worlds::Environment> environment;
+  bool running = false;
+};
+
+// Physics and rendering of an env step, resets included; nothing else. Of as many environments in
+// turn as an actor has: their models and data do not fit a core's caches together. Actions are
+// drawn, for one action all the time drives the arm where a policy's does not and costs another
+// amount.
 double StepSeconds(const RunConfig& run, double seconds) {
-  const auto environment =
-      worlds::MakeEnvironment(run.config, worlds::MakeRenderContext(run.config.observation));
+  const auto render = worlds::MakeRenderContext(run.config.observation);
+  std::vector<Played> all(static_cast<size_t>(run.config.envs_per_actor));
+  for (Played& played : all) played.environment = worlds::MakeEnvironment(run.config, render);
   std::vector<uint8_t> frame(static_cast<size_t>(run.spec.FrameBytes()));
   std::vector<float> vector(static_cast<size_t>(run.spec.RecordedVectorSize()));
   std::vector<float> action(static_cast<size_t>(run.spec.action_size));
   Random random(1);
   uint64_t episode = 0;
-  bool running = false;
-  return SecondsPerCall(seconds, [&] {
-    if (!running) environment->Reset(++episode, {frame, vector});
+  const auto step = [&](Played* played) {
+    if (!played->running) played->environment->Reset(++episode, {frame, vector});
     for (float& a : action) a = static_cast<float>(random.Uniform(-1, 1));
-    const worlds::StepResult result = environment->Step(action, {frame, vector});
-    running = !result.truncated && !result.terminated;
-  });
+    const worlds::StepResult result = played->environment->Step(action, {frame, vector});
+    played->running = !result.truncated && !result.terminated;
+  };
+  return SecondsPerCall(seconds,
+                        [&] {
+                          for (Played& played : all) step(&played);
+                        }) /
+         static_cast<double>(all.size());
 }
 
 // An action of one environment, of all that an actor has at once.
