@@ -96,10 +96,10 @@ TEST(Lockstep, AScheduleOfSamplesGoesOnBitForBitAndEndsWhereItShould) {
                         {{"env_steps", "6000"},
                          {"actors", "1"},
                          {"eval.interval", "2000"},
-                         {"replay.samples_per_insert", "linear(8,64,4000)"}},
-                        {"--lockstep"}, {1400, 3000});
+                         {"replay.samples_per_insert", "linear(8,32,4000)"}},
+                        {"--lockstep"}, {2000});
   const Config config = ReadRunConfig(whole.path()).config;
-  const auto samples_at = [](double x) { return x < 4000 ? 8 + 56 * x / 4000 : 64; };
+  const auto samples_at = [](double x) { return x < 4000 ? 8 + 24 * x / 4000 : 32; };
   const auto meta = whole.Json("meta.json");
   const int64_t end = meta.at("env_steps").get<int64_t>();
   const int64_t envs = config.envs_per_actor, phase = config.lockstep_steps * envs;
