@@ -66,7 +66,8 @@ TEST_P(EncoderTraining, UpdatesCheckpointsEvaluatesAndStartsAnother) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, EncoderTraining,
-                         testing::Values(Kind{"resnet18", "sac", "36"}, Kind{"alexnet", "td3", "84"},
+                         testing::Values(Kind{"resnet18", "sac", "36"},
+                                         Kind{"alexnet", "td3", "84"},
                                          Kind{"resnet18", "ddpg", "36"}),
                          [](const auto& kind) {
                            return std::string(kind.param.encoder) + "_" + kind.param.algorithm;
