@@ -1,5 +1,7 @@
 #include "learner/weights_sender.h"
 
+#include <utility>
+
 #include "common/config/lockstep.h"
 #include "common/config/on_policy.h"
 #include "common/nn/safetensors.h"
@@ -25,9 +27,7 @@ void WeightsSender::AfterUpdate(uint64_t env_steps) {
 }
 
 void WeightsSender::Send(uint64_t env_steps) {
-  nn::TensorMap tensors = agent_.PolicyTensors();
-  if (precision_ == nn::Precision::kBf16) tensors = nn::ToBf16(tensors);
-  const std::string bytes = nn::WriteSafetensors(tensors, {});
+  const std::string bytes = Serialised();
   WeightsMessage message;
   message.spec_hash = spec_hash_;
   message.version = {session_, agent_.updates()};
@@ -36,6 +36,12 @@ void WeightsSender::Send(uint64_t env_steps) {
   due_ = !outlet_.Publish(message);
   ++(due_ ? unsent_ : sent_);
   last_sent_ = Now();
+}
+
+std::string WeightsSender::Serialised() const {
+  nn::TensorMap tensors = agent_.PolicyTensors();
+  if (precision_ == nn::Precision::kBf16) tensors = nn::ToBf16(std::move(tensors));
+  return nn::WriteSafetensors(tensors, {});
 }
 
 bool WeightsSender::Due(uint64_t updates) {

@@ -9,6 +9,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <string>
 
 #include "common/base/clock.h"
 #include "common/config/run_files.h"
@@ -45,6 +46,9 @@ class WeightsSender {
   static constexpr std::chrono::milliseconds kPatience{500};
 
  private:
+  // Weights are copied three times: out of the agent, into these bytes, by the transport; never
+  // more than two of them are there at once.
+  std::string Serialised() const;
   bool Due(uint64_t updates);
 
   const Config config_;

@@ -192,20 +192,19 @@ TensorMap ReadSafetensors(std::string_view bytes, const std::string& source) {
   return tensors;
 }
 
-TensorMap ToBf16(const TensorMap& tensors) {
-  TensorMap result = tensors;
-  for (auto& [name, tensor] : result) {
+TensorMap ToBf16(TensorMap tensors) {
+  for (auto& [name, tensor] : tensors) {
     const bool statistic = name.ends_with(kRunningMean) || name.ends_with(kRunningVariance) ||
                            name.starts_with("observation.");
     if (tensor.dtype != "F32" || statistic) continue;
-    const NamedTensor& from = tensors.at(name);
-    const size_t count = from.data.size() / sizeof(float);
+    const size_t count = tensor.data.size() / sizeof(float);
+    std::vector<uint8_t> rounded(count * sizeof(uint16_t));
+    FloatsToBf16(reinterpret_cast<const float*>(tensor.data.data()), int64_t(count),
+                 reinterpret_cast<uint16_t*>(rounded.data()));
     tensor.dtype = "BF16";
-    tensor.data.resize(count * sizeof(uint16_t));
-    FloatsToBf16(reinterpret_cast<const float*>(from.data.data()), int64_t(count),
-                 reinterpret_cast<uint16_t*>(tensor.data.data()));
+    tensor.data = std::move(rounded);
   }
-  return result;
+  return tensors;
 }
 
 }  // namespace shoal::nn

@@ -27,6 +27,6 @@ TensorMap ReadSafetensors(std::string_view bytes, const std::string& source);
 
 // Every F32 tensor rounded to BF16 (nearest even), for the wire, but running statistics, those of
 // observation.* too: a mean far from zero would lose what the deviation around it is measured in.
-TensorMap ToBf16(const TensorMap& tensors);
+TensorMap ToBf16(TensorMap tensors);
 
 }  // namespace shoal::nn
