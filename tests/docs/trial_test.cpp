@@ -84,8 +84,8 @@ void Prepare(const Surroundings& surroundings) {
   ASSERT_EQ(surroundings.Run(kRuns), "");
   for (const char* name :
        {"fetch-reach-drq-s1", "fetch-reach-drq-s2", "fetch-reach-drq-s3", "fetch-reach-fast-s1",
-        "fetch-reach-fast-s111", "fetch-reach-fast-s112", "fetch-reach-fast-s113",
-        "fetch-reach-fast-s114", "fetch-reach-fast-s115"}) {
+        "fetch-reach-fast-s131", "fetch-reach-fast-s132", "fetch-reach-fast-s133",
+        "fetch-reach-fast-s134", "fetch-reach-fast-s135"}) {
     surroundings.Link(std::string("runs/") + name, "pixels");
   }
   surroundings.Link("runs/first", "reach");
