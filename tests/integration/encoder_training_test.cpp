@@ -17,7 +17,7 @@ struct Kind {
 TrainingRun::Keys KeysOf(const Kind& kind) {
   return TrainingRun::FromPixels({{"network.encoder", kind.encoder},
                                   {"learner.algorithm", kind.algorithm},
-                                  {"env_steps", "200"},
+                                  {"env_steps", "170"},
                                   {"learner.batch", "4"},
                                   {"learner.checkpoint_period", "50"},
                                   {"observation.cameras", R"(["front"])"},
