@@ -136,7 +136,13 @@ std::vector<Row> RealActorRows(const ManyActorsOptions& options, int repetitions
     const double step = StepSeconds(*fast.run, options.seconds / 2);
     const double infer = InferSeconds(*fast.run, fast.weights, options.seconds / 2);
     const double send = 1e-6 * Measure(sending, 1).actor_us_per_transition;
-    const double one = Measure(fast, 1).env_steps_per_second;
+    const ManyActorsFigures alone = Measure(fast, 1);
+    const double one = alone.env_steps_per_second;
+    // Less CPU than wall time is waiting; more of it than the parts take is work beside them.
+    fmt::print(stderr,
+               "one actor: {:.0f} us an env step, {:.0f} us of CPU a transition; alone: step and "
+               "render {:.0f} us, infer {:.0f} us, send {:.0f} us\n",
+               1e6 / one, alone.actor_us_per_transition, 1e6 * step, 1e6 * infer, 1e6 * send);
     parts.figures.push_back(one);
     parts.against.push_back(1 / (step + infer + send));
     all.figures.push_back(Measure(fast, cores).env_steps_per_second);

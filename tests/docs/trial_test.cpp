@@ -91,8 +91,9 @@ void Prepare(const Surroundings& surroundings) {
   surroundings.Link("runs/first", "reach");
   surroundings.Link("runs/source", "plain");
   surroundings.Link("runs/reach-sb3", "../experiments/batches/runs/a-s0");
-  for (const char* name : {"reach-three-way", "reach-algorithms", "reach-ppo", "reach-recipe",
-                           "reach-encoder", "push-her", "pick-and-place-movement", "push-pixels"}) {
+  for (const char* name :
+       {"reach-three-way", "reach-algorithms", "reach-ppo", "reach-recipe", "reach-encoder",
+        "reach-precision", "push-her", "pick-and-place-movement", "push-pixels"}) {
     surroundings.Link(std::string("experiments/") + name, "batches");
   }
   for (const char* name : {"pixels-drq-s0", "preset-s11", "preset-s12", "preset-s13", "faster-s11",
