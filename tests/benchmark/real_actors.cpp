@@ -3,13 +3,13 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <chrono>
 #include <functional>
 #include <memory>
 
 #include "actor/acting/action_selector.h"
 #include "actor/worlds/environment.h"
 #include "common/base/clock.h"
-#include "common/base/random.h"
 #include "common/base/usable_cores.h"
 #include "common/nn/actor_critic_plan.h"
 #include "common/nn/parameter_set.h"
@@ -58,39 +58,50 @@ struct Played {
   bool running = false;
 };
 
+std::unique_ptr<actor::ActionSelector> MakeSelector(const RunConfig& run,
+                                                    const std::string& weights) {
+  auto selector =
+      std::make_unique<actor::ActionSelector>(run.config, run.spec, run.config.envs_per_actor);
+  selector->Load({{/*session=*/1, /*update=*/1}, 0, "", weights});
+  for (int e = 0; e < run.config.envs_per_actor; ++e) {
+    selector->BeginEpisode(e, static_cast<uint64_t>(e));
+  }
+  return selector;
+}
+
 // Physics and rendering of an env step, resets included; nothing else. Of as many environments in
-// turn as an actor has: their models and data do not fit a core's caches together. Actions are
-// drawn, for one action all the time drives the arm where a policy's does not and costs another
-// amount.
-double StepSeconds(const RunConfig& run, double seconds) {
+// turn as an actor has: their models and data do not fit a core's caches together. By the actions
+// of the policy that the actor has: where others drive the arm physics costs another amount.
+double StepSeconds(const RunConfig& run, const std::string& weights, double seconds) {
   const auto render = worlds::MakeRenderContext(run.config.observation);
+  const auto selector = MakeSelector(run, weights);
   std::vector<Played> all(static_cast<size_t>(run.config.envs_per_actor));
   for (Played& played : all) played.environment = worlds::MakeEnvironment(run.config, render);
   std::vector<uint8_t> frame(static_cast<size_t>(run.spec.FrameBytes()));
   std::vector<float> vector(static_cast<size_t>(run.spec.RecordedVectorSize()));
-  std::vector<float> action(static_cast<size_t>(run.spec.action_size));
-  Random random(1);
-  uint64_t episode = 0;
-  const auto step = [&](Played* played) {
-    if (!played->running) played->environment->Reset(++episode, {frame, vector});
-    for (float& a : action) a = static_cast<float>(random.Uniform(-1, 1));
-    const worlds::StepResult result = played->environment->Step(action, {frame, vector});
-    played->running = !result.truncated && !result.terminated;
-  };
-  return SecondsPerCall(seconds,
-                        [&] {
-                          for (Played& played : all) step(&played);
-                        }) /
-         static_cast<double>(all.size());
+  uint64_t episode = 0, steps = 0;
+  SteadyTime::duration stepping{};
+  while (stepping < std::chrono::duration<double>(seconds)) {
+    selector->Select(actor::Acting::kExplore);
+    const SteadyTime start = Now();
+    for (size_t e = 0; e < all.size(); ++e) {
+      Played& played = all[e];
+      if (!played.running) played.environment->Reset(++episode, {frame, vector});
+      const worlds::StepResult result =
+          played.environment->Step(selector->ActionOf(static_cast<int>(e)), {frame, vector});
+      played.running = !result.truncated && !result.terminated;
+    }
+    stepping += Now() - start;
+    steps += all.size();
+  }
+  return std::chrono::duration<double>(stepping).count() / static_cast<double>(steps);
 }
 
 // An action of one environment, of all that an actor has at once.
 double InferSeconds(const RunConfig& run, const std::string& weights, double seconds) {
-  const int envs = run.config.envs_per_actor;
-  actor::ActionSelector selector(run.config, run.spec, envs);
-  selector.Load({{/*session=*/1, /*update=*/1}, 0, "", weights});
-  for (int e = 0; e < envs; ++e) selector.BeginEpisode(e, static_cast<uint64_t>(e));
-  return SecondsPerCall(seconds, [&] { selector.Select(actor::Acting::kExplore); }) / envs;
+  const auto selector = MakeSelector(run, weights);
+  return SecondsPerCall(seconds, [&] { selector->Select(actor::Acting::kExplore); }) /
+         run.config.envs_per_actor;
 }
 
 ManyActorsFigures Measure(ManyActorsOptions options, int actors) {
@@ -133,7 +144,7 @@ std::vector<Row> RealActorRows(const ManyActorsOptions& options, int repetitions
   const int cores = UsableCores();
   Pairs parts, all, slow;
   for (int i = 0; i < repetitions; ++i) {
-    const double step = StepSeconds(*fast.run, options.seconds / 2);
+    const double step = StepSeconds(*fast.run, fast.weights, options.seconds / 2);
     const double infer = InferSeconds(*fast.run, fast.weights, options.seconds / 2);
     const double send = 1e-6 * Measure(sending, 1).actor_us_per_transition;
     const ManyActorsFigures alone = Measure(fast, 1);
