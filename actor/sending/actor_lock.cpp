@@ -1,7 +1,5 @@
 #include "actor/sending/actor_lock.h"
 
-#include <fmt/core.h>
-
 #include <thread>
 
 #include "common/base/clock.h"

@@ -14,64 +14,18 @@
 #include "actor/worlds/world_registry.h"
 #include "common/base/error.h"
 #include "common/tasks/task_registry.h"
+#include "tests/actor/worlds/played_environment.h"
 #include "tests/support/error_message.h"
 #include "tests/support/paths.h"
 
 namespace shoal::worlds {
 namespace {
 
-Config StateOnly(const std::string& task = "FetchReachDense") {
-  Config config;
-  config.task = task;
-  config.observation.pixels = false;
-  config.observation.goal_mode = "both";
-  return config;
-}
-
 Config Pixels() {
   Config config;
   config.task = "FetchReachDense";
   return config;
 }
-
-std::unique_ptr<Environment> Make(const Config& config) {
-  return MakeEnvironment(config, config.observation.pixels ? MakeRenderContext(config.observation)
-                                                           : std::shared_ptr<RenderContext>());
-}
-
-// An environment with room for its observations and the actions of one stream.
-struct Player {
-  explicit Player(std::unique_ptr<Environment> made)
-      : environment(std::move(made)),
-        frame(static_cast<size_t>(environment->spec().FrameBytes())),
-        vector(static_cast<size_t>(environment->spec().RecordedVectorSize())) {}
-
-  float Reset(uint64_t key) {
-    actions = Random(key + 1);
-    return environment->Reset(key, {frame, vector});
-  }
-  StepResult Step() {
-    std::array<float, 4> action{};
-    for (float& component : action) component = static_cast<float>(actions.Uniform(-1, 1));
-    return environment->Step(action, {frame, vector});
-  }
-  // Frames and vectors of the reset and `steps` steps.
-  std::pair<std::vector<uint8_t>, std::vector<float>> Play(uint64_t key, int steps) {
-    Reset(key);
-    auto seen = std::pair(frame, vector);
-    for (int i = 0; i < steps; ++i) {
-      Step();
-      seen.first.insert(seen.first.end(), frame.begin(), frame.end());
-      seen.second.insert(seen.second.end(), vector.begin(), vector.end());
-    }
-    return seen;
-  }
-
-  std::unique_ptr<Environment> environment;
-  std::vector<uint8_t> frame;
-  std::vector<float> vector;
-  Random actions{0};
-};
 
 // Of the observed blocks.
 std::vector<std::string> BlockNames(const Config& config) {
@@ -395,86 +349,6 @@ TEST(WorldEnvironmentDeathTest, AStepNeedsAnEpisode) {
   player.Reset(1);
   for (int i = 0; i < 50; ++i) player.Step();
   EXPECT_DEATH(player.Step(), "step 50");
-}
-
-TEST(WorldEnvironment, AnEpisodeEndsOnSuccessWhereItIsAsked) {
-  Config config = StateOnly("FetchReach");
-  config.distance_threshold = 1000;  // every step succeeds
-  Player goes_on(Make(config));
-  goes_on.Reset(3);
-  for (int i = 1; i <= 50; ++i) {
-    const StepResult result = goes_on.Step();
-    EXPECT_TRUE(result.success);
-    EXPECT_FALSE(result.terminated);
-    EXPECT_EQ(result.truncated, i == 50);
-  }
-  config.end_on_success = true;
-  Player ends(Make(config));
-  ends.Reset(3);
-  const StepResult first = ends.Step();
-  EXPECT_TRUE(first.success);
-  EXPECT_TRUE(first.terminated);
-  EXPECT_FALSE(first.truncated);
-  config.action_repeat = 3;  // of which the first control step ends it
-  Player repeats(Make(config));
-  repeats.Reset(3);
-  EXPECT_TRUE(repeats.Step().terminated);
-  EXPECT_EQ(repeats.vector, ends.vector);
-}
-
-// The goal is approached slowly, so that some episodes first reach it with their last step.
-TEST(WorldEnvironment, ASuccessInTheLastStepIsNoTimeLimit) {
-  const std::array<float, 4> action{0.05f, 0, 0, 0};
-  Config config = StateOnly("FetchReach");
-  const auto distances = [&](uint64_t key) {
-    Player player(Make(config));
-    player.Reset(key);
-    std::array<float, 50> all{};
-    for (float& distance : all) {
-      distance = player.environment->Step(action, {{}, player.vector}).distance;
-    }
-    return all;
-  };
-  uint64_t key = 0;
-  float last = 1, nearest = 0;
-  while (last >= nearest && key < 50) {
-    const auto all = distances(++key);
-    last = all.back();
-    nearest = *std::min_element(all.begin(), all.end() - 1);
-  }
-  ASSERT_LT(last, nearest);
-  config.distance_threshold = (double{last} + double{nearest}) / 2;
-  config.end_on_success = true;
-  Player player(Make(config));
-  player.Reset(key);
-  StepResult result;
-  for (int i = 1; i <= 50; ++i) {
-    EXPECT_FALSE(result.terminated) << i;
-    result = player.environment->Step(action, {{}, player.vector});
-  }
-  EXPECT_TRUE(result.terminated);
-  EXPECT_FALSE(result.truncated);
-}
-
-TEST(WorldEnvironment, WithoutSuccessAnEpisodeHasItsWholeLength) {
-  Config config = StateOnly("FetchReach");
-  config.distance_threshold = 1e-9;
-  config.end_on_success = true;
-  Player player(Make(config));
-  player.Reset(3);
-  for (int i = 1; i <= 50; ++i) {
-    const StepResult result = player.Step();
-    EXPECT_FALSE(result.terminated);
-    EXPECT_EQ(result.truncated, i == 50);
-  }
-}
-
-TEST(WorldEnvironment, ASuccessThatATaskDoesNotHaveEndsNoEpisode) {
-  Config config = StateOnly("Hopper-v4");
-  config.observation.goal_mode = "none";
-  config.end_on_success = true;
-  EXPECT_THAT(UsageMessage([&] { Make(config); }),
-              testing::HasSubstr("end_on_success is true, but task Hopper-v4 has no goals"));
 }
 
 TEST(WorldEnvironment, ActionRepeatOfATaskWithGoalsAddsTheRewardsOfItsControlSteps) {
