@@ -4,12 +4,13 @@ if(SHOAL_WARNINGS_AS_ERRORS)
   list(APPEND SHOAL_WARNINGS -Werror)
 endif()
 
-# For builds without a compiler cache: eight sources of a target are compiled as one, which takes 0.6
-# of the time. Every source is complete and compiles alone all the same: builds with a cache see to that.
-option(SHOAL_UNITY "Compile sources in groups of eight" OFF)
+# For builds without a compiler cache: sources of a target are compiled in groups, as one each, which takes
+# 0.6 of the time. Every source is complete and compiles alone all the same: builds with a cache see to that.
+option(SHOAL_UNITY "Compile sources in groups" OFF)
+set(SHOAL_UNITY_GROUP 8 CACHE STRING "Sources in a group")
 if(SHOAL_UNITY)
   set(CMAKE_UNITY_BUILD ON)
-  set(CMAKE_UNITY_BUILD_BATCH_SIZE 8)
+  set(CMAKE_UNITY_BUILD_BATCH_SIZE ${SHOAL_UNITY_GROUP})
   if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)  # which takes an anonymous namespace for a header's
     list(APPEND SHOAL_WARNINGS -Wno-subobject-linkage)
   endif()

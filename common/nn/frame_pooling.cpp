@@ -13,7 +13,7 @@
 namespace shoal::nn {
 namespace {
 
-constexpr int kLanes = 16;
+constexpr int kColumnsAtOnce = 16;
 constexpr int kMaxPool = 257;  // 257 * 255 is the largest sum that 16 bits hold
 
 struct Scaling {
@@ -43,13 +43,13 @@ template <class Out>
     const uint8_t* upper = in + int64_t(2 * i) * width;
     const uint8_t* lower = upper + width;
     Out* row = out + int64_t(i) * columns;
-    if (columns < kLanes) {
+    if (columns < kColumnsAtOnce) {
       PoolPairs(upper, lower, columns, scale, row);
       continue;
     }
-    for (int j = 0; j < columns; j += kLanes) {
-      const int first = std::min(j, columns - kLanes);
-      PoolPairs(upper + 2 * first, lower + 2 * first, kLanes, scale, row + first);
+    for (int j = 0; j < columns; j += kColumnsAtOnce) {
+      const int first = std::min(j, columns - kColumnsAtOnce);
+      PoolPairs(upper + 2 * first, lower + 2 * first, kColumnsAtOnce, scale, row + first);
     }
   }
 }

@@ -14,7 +14,7 @@ constexpr std::chrono::milliseconds kBlockPeriod{500};
 constexpr std::chrono::seconds kLinePeriod{5};
 constexpr double kShownAsWaiting = 0.05;  // share of time from which somebody counts as waiting
 
-std::string Number(const std::optional<double>& value, const char* format = "{:.0f}") {
+std::string NumberText(const std::optional<double>& value, const char* format = "{:.0f}") {
   return value ? fmt::format(fmt::runtime(format), *value) : "-";
 }
 
@@ -56,7 +56,7 @@ std::string Rollouts(const ProgressFigures& f) {
   const std::string success =
       f.rollout_success ? "success " + Percent(f.rollout_success) + ", " : "";
   return fmt::format("{}return {:.3f}, length {}; their last 100 episodes", success,
-                     *f.rollout_return, Number(f.rollout_length));
+                     *f.rollout_return, NumberText(f.rollout_length));
 }
 
 // "2500/10000 env steps"; a run may be past its budget, as after `shoal set env_steps`.
@@ -93,10 +93,11 @@ std::string FormatDuration(std::optional<double> seconds) {
 std::string FormatProgressLine(const ProgressFigures& f) {
   return fmt::format(
       "{} {} | {}, {}/s | {} updates, {}/s | eval {} | actors {} | {} | lag {} | {} | left {}",
-      FormatDuration(f.elapsed_seconds), f.state, StepsOfBudget(f), Number(f.env_steps_per_second),
-      Number(f.updates), Number(f.updates_per_second, "{:.1f}"), ShortScore(f.last_evaluation),
+      FormatDuration(f.elapsed_seconds), f.state, StepsOfBudget(f),
+      NumberText(f.env_steps_per_second), NumberText(f.updates),
+      NumberText(f.updates_per_second, "{:.1f}"), ShortScore(f.last_evaluation),
       ShortScore(f.rollout_success, f.rollout_return, f.rollout_length), Headlines(f, " "),
-      Number(f.policy_lag), LimiterState(f), FormatDuration(f.seconds_left));
+      NumberText(f.policy_lag), LimiterState(f), FormatDuration(f.seconds_left));
 }
 
 std::vector<std::string> FormatProgressBlock(const ProgressFigures& f, int width) {
@@ -109,15 +110,15 @@ std::vector<std::string> FormatProgressBlock(const ProgressFigures& f, int width
                   FormatDuration(f.elapsed_seconds), FormatDuration(f.seconds_left), f.processes,
                   f.restarts),
       fmt::format("  env steps  {} of {}  {:.0f} %  [{}]  {}/s", f.env_steps, f.budget, 100 * share,
-                  Bar(share, 20), Number(f.env_steps_per_second)),
-      fmt::format("  updates    {}  {}/s", Number(f.updates),
-                  Number(f.updates_per_second, "{:.1f}")),
+                  Bar(share, 20), NumberText(f.env_steps_per_second)),
+      fmt::format("  updates    {}  {}/s", NumberText(f.updates),
+                  NumberText(f.updates_per_second, "{:.1f}")),
       fmt::format("  last eval  {}", Evaluation(f.last_evaluation)),
       fmt::format("  best       {}", Evaluation(f.best)),
       fmt::format("  actors     {}", Rollouts(f)),
       fmt::format("  figures    {}", Headlines(f, "  ")),
-      fmt::format("  age        policy lag {} updates, data {} updates old", Number(f.policy_lag),
-                  Number(f.data_age)),
+      fmt::format("  age        policy lag {} updates, data {} updates old",
+                  NumberText(f.policy_lag), NumberText(f.data_age)),
       fmt::format("  flow       {}", LimiterState(f)),
   };
   for (std::string& line : lines) line = CutToColumns(std::move(line), static_cast<size_t>(width));

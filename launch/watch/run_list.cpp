@@ -71,9 +71,9 @@ std::string PeerOf(const std::filesystem::path& run) try {
   return "";
 }
 
-using Row = std::array<std::string, 8>;
+using RunRow = std::array<std::string, 8>;
 
-std::string Rendered(const Row& row, const std::array<size_t, 8>& widths) {
+std::string Rendered(const RunRow& row, const std::array<size_t, 8>& widths) {
   std::string line;
   for (size_t i = 0; i < row.size(); ++i) {
     const bool number = i >= 2 && i <= 6;
@@ -129,7 +129,7 @@ std::vector<RunListing> ListRunStatus(const std::filesystem::path& dir) {
 }
 
 std::vector<std::string> FormatRunList(const std::vector<RunListing>& runs) {
-  std::vector<Row> rows{
+  std::vector<RunRow> rows{
       {"RUN", "STATUS", "ENV STEPS", "UPDATES", "BEST", "FINAL", "WALL", "STARTED (UTC)"}};
   for (const RunListing& run : runs) {
     rows.push_back({run.name, ToString(run.status), std::to_string(run.env_steps),
@@ -137,7 +137,7 @@ std::vector<std::string> FormatRunList(const std::vector<RunListing>& runs) {
                     FormatDuration(run.wall_seconds), ToTheMinute(run.started)});
   }
   std::array<size_t, 8> widths{};
-  for (const Row& row : rows) {
+  for (const RunRow& row : rows) {
     for (size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
   }
   std::vector<std::string> lines{Rendered(rows[0], widths)};

@@ -8,7 +8,7 @@
 namespace shoal::bench {
 namespace {
 
-constexpr int kSize = 84, kLargeSize = 480;
+constexpr int kPictureSize = 84, kLargeSize = 480;
 
 // Each pixel the mean of those that it covers, also in part: channels of `from` squared pixels to
 // `to` squared ones.
@@ -37,7 +37,8 @@ void ShrinkByArea(std::span<const uint8_t> in, int channels, int from, int to,
 class Stepper {
  public:
   Stepper(const std::string& task, const std::vector<std::string>& cameras,
-          const std::string& quality, int size = kSize, const std::string& goal_mode = "none")
+          const std::string& quality, int size = kPictureSize,
+          const std::string& goal_mode = "none")
       : size_(size) {
     const bool pixels = !cameras.empty();
     Config config;
@@ -60,8 +61,8 @@ class Stepper {
     if (!running_) environment_->Reset(++episode_, {frame_, vector_});
     const worlds::StepResult result = environment_->Step(action_, {frame_, vector_});
     running_ = !result.truncated && !result.terminated;
-    if (size_ != kSize) {
-      ShrinkByArea(frame_, environment_->spec().channels, size_, kSize, &shrunk_);
+    if (size_ != kPictureSize) {
+      ShrinkByArea(frame_, environment_->spec().channels, size_, kPictureSize, &shrunk_);
     }
   }
 
@@ -78,7 +79,7 @@ class Stepper {
 
 std::vector<Pairing> WorldPairings() {
   const auto make = [](const std::string& task, const std::vector<std::string>& cameras,
-                       const char* quality, int size = kSize) {
+                       const char* quality, int size = kPictureSize) {
     const auto stepper = std::make_shared<Stepper>(task, cameras, quality, size);
     return [stepper] { stepper->Step(); };
   };
@@ -112,7 +113,8 @@ std::vector<Pairing> WorldPairings() {
   for (const std::string task : {"FetchReach", "FetchPush"}) {
     const auto with_goals = [&](const char* goal_mode) {
       const std::vector<std::string> cameras{"front", "side"};
-      const auto stepper = std::make_shared<Stepper>(task, cameras, "fast", kSize, goal_mode);
+      const auto stepper =
+          std::make_shared<Stepper>(task, cameras, "fast", kPictureSize, goal_mode);
       return [stepper] { stepper->Step(); };
     };
     pairings.push_back({.stage = task + " with two 84x84 cameras and a goal picture an episode",

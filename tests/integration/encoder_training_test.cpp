@@ -9,12 +9,12 @@
 namespace shoal {
 namespace {
 
-struct Kind {
+struct EncoderKind {
   const char *encoder, *algorithm;
   const char* side;  // of a frame
 };
 
-TrainingRun::Keys KeysOf(const Kind& kind) {
+TrainingRun::Keys KeysOf(const EncoderKind& kind) {
   return TrainingRun::FromPixels({{"network.encoder", kind.encoder},
                                   {"learner.algorithm", kind.algorithm},
                                   {"env_steps", "170"},
@@ -27,10 +27,10 @@ TrainingRun::Keys KeysOf(const Kind& kind) {
                                   {"observation.stack", "4"}});
 }
 
-class EncoderTraining : public testing::TestWithParam<Kind> {};
+class EncoderTraining : public testing::TestWithParam<EncoderKind> {};
 
 TEST_P(EncoderTraining, UpdatesCheckpointsEvaluatesAndStartsAnother) {
-  const Kind& kind = GetParam();
+  const EncoderKind& kind = GetParam();
   const TrainingRun run;
   const ProgramResult result = run.Train(KeysOf(kind));
   ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
@@ -66,9 +66,9 @@ TEST_P(EncoderTraining, UpdatesCheckpointsEvaluatesAndStartsAnother) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, EncoderTraining,
-                         testing::Values(Kind{"resnet18", "sac", "36"},
-                                         Kind{"alexnet", "td3", "84"},
-                                         Kind{"resnet18", "ddpg", "36"}),
+                         testing::Values(EncoderKind{"resnet18", "sac", "36"},
+                                         EncoderKind{"alexnet", "td3", "84"},
+                                         EncoderKind{"resnet18", "ddpg", "36"}),
                          [](const auto& kind) {
                            return std::string(kind.param.encoder) + "_" + kind.param.algorithm;
                          });

@@ -14,7 +14,7 @@ using std::chrono::seconds;
 
 constexpr int kActors = 3;
 
-TrainingRun::Keys Keys() {
+TrainingRun::Keys WeightsKeys() {
   return {{"actors", std::to_string(kActors)},
           {"env_steps", "2000000"},
           {"eval.final_episodes", "0"},
@@ -48,7 +48,7 @@ pid_t PidOf(RunningTraining* training, int actor) {
 
 class HostWeightsOfARun : public testing::Test {
  protected:
-  HostWeightsOfARun() : training_(run_, run_.Command(Keys())) {}
+  HostWeightsOfARun() : training_(run_, run_.Command(WeightsKeys())) {}
   void TearDown() override {
     training_.Interrupt();
     EXPECT_EQ(training_.End(seconds(60)), kInterruptedExit) << training_.Output();

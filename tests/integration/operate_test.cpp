@@ -24,12 +24,12 @@ using std::chrono::seconds;
 using ::testing::HasSubstr;
 
 // Goes on until it is stopped.
-const TrainingRun::Keys kLong{
+const TrainingRun::Keys kLongRun{
     {"env_steps", "10000000"}, {"actors", "1"}, {"eval.interval", "5000"}};
 
 TEST(Operate, TopShowsEveryProcessUntilTheRunEnds) {
   const TrainingRun run;
-  RunningTraining training(run, run.Command(kLong));
+  RunningTraining training(run, run.Command(kLongRun));
   const json view = WaitForView(run, Learns);
   ASSERT_TRUE(view.is_object());
   EXPECT_EQ(view.at("schema"), "shoal-top-1");
@@ -71,7 +71,7 @@ TEST(Operate, TopShowsEveryProcessUntilTheRunEnds) {
 
 TEST(Operate, ATerminalThatCannotMoveItsCursorGetsLines) {
   const TrainingRun run;
-  RunningTraining training(run, run.Command(kLong));
+  RunningTraining training(run, run.Command(kLongRun));
   ASSERT_TRUE(WaitForView(run, Learns).is_object());
   for (const char* command : {"top", "attach"}) {
     TerminalProgram watcher({"shoal", command, "--run-dir", run.parent().string()}, "dumb");
@@ -87,7 +87,7 @@ TEST(Operate, ATerminalThatCannotMoveItsCursorGetsLines) {
 
 TEST(Operate, TopOnATerminalIsALiveTableAndLeavesTheTerminalAsItWas) {
   const TrainingRun run;
-  RunningTraining training(run, run.Command(kLong));
+  RunningTraining training(run, run.Command(kLongRun));
   ASSERT_TRUE(WaitForView(run, Learns).is_object());
   const std::vector<std::string> top{"shoal", "top", "--run", run.path().string()};
   {
@@ -137,7 +137,7 @@ ProgramResult RunStockClient(const std::string& output) {
 
 TEST(Operate, AStockDdsClientReadsWhatTheDocumentationDescribes) {
   const TrainingRun run;
-  RunningTraining training(run, run.Command(kLong));
+  RunningTraining training(run, run.Command(kLongRun));
   ASSERT_TRUE(WaitForView(run, Learns).is_object());
   const ProgramResult client = RunStockClient(training.Output());
   EXPECT_EQ(ExitCode(client), 0) << client.err;
@@ -152,7 +152,7 @@ TEST(Operate, AStockDdsClientReadsWhatTheDocumentationDescribes) {
 
 TEST(Operate, ARunIsSteeredWhileItGoesOnAndItsRecordSaysSo) {
   const TrainingRun run;
-  RunningTraining training(run, run.Command(kLong));
+  RunningTraining training(run, run.Command(kLongRun));
   ASSERT_TRUE(WaitForView(run, Learns).is_object());
 
   const ProgramResult set = RunShoal(run, {"set", "replay.samples_per_insert=16"});
@@ -196,7 +196,7 @@ TEST(Operate, ARunIsSteeredWhileItGoesOnAndItsRecordSaysSo) {
 
 TEST(Operate, ADetachedRunIsAttachedToAndStopped) {
   const TrainingRun run;
-  const ProgramResult train = RunProgram(run.Command(kLong, {"--detach"}), seconds(90));
+  const ProgramResult train = RunProgram(run.Command(kLongRun, {"--detach"}), seconds(90));
   ASSERT_EQ(ExitCode(train), 0) << train.out << train.err;
   EXPECT_THAT(train.out, HasSubstr("shoal attach --run"));
   const ProgramResult runs = RunShoal(run, {"runs", "--json"});

@@ -8,7 +8,7 @@
 namespace shoal {
 namespace {
 
-struct Kind {
+struct PictureKind {
   const char* name;
   const char* goal_mode;
   bool proprioception, grey;
@@ -19,7 +19,7 @@ struct Kind {
   int target_shifts = 0, critic_shifts = 0;
 };
 
-const Kind kKinds[] = {
+const PictureKind kKinds[] = {
     {"rgb", "none", false, false, 1, R"(["front"])", 3, 84, 84, 1, 1},
     {"grey_stack_of_four", "desired", true, true, 4, R"(["front","side"])", 2, 64, 64, 2, 1, 2, 1},
     {"three_cameras", "both", false, false, 2, R"(["front","side","close"])", 9, 100, 100, 1, 3},
@@ -27,10 +27,10 @@ const Kind kKinds[] = {
     {"wide", "both", true, true, 3, R"(["gymnasium"])", 1, 64, 100, 2, 5, 1, 2},
 };
 
-class PicturesTraining : public testing::TestWithParam<Kind> {};
+class PicturesTraining : public testing::TestWithParam<PictureKind> {};
 
 TEST_P(PicturesTraining, UpdatesAndEvaluates) {
-  const Kind& kind = GetParam();
+  const PictureKind& kind = GetParam();
   const auto text = [](bool value) { return std::string(value ? "true" : "false"); };
   const TrainingRun run;
   const ProgramResult result = run.Train(

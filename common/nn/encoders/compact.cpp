@@ -6,13 +6,13 @@
 namespace shoal::nn {
 namespace {
 
-constexpr int kKernel = 3;
-constexpr int kPool = 2;
+constexpr int kCompactKernel = 3;
+constexpr int kDefaultPool = 2;
 
 }  // namespace
 
 void AddCompact(const NetworkConfig& network, const std::string& prefix, NetworkPlan* plan) {
-  const int pool = network.pool == 0 ? kPool : network.pool;
+  const int pool = network.pool == 0 ? kDefaultPool : network.pool;
   const std::vector<int> filters =
       network.filters.empty() ? std::vector{32, 32, 32} : network.filters;
   const std::vector<int> strides = network.strides.empty() ? std::vector{2, 1, 2} : network.strides;
@@ -30,7 +30,7 @@ void AddCompact(const NetworkConfig& network, const std::string& prefix, Network
     plan->Add(NetworkPlan::Convolution{.name = prefix + ".conv" + std::to_string(i),
                                        .key = "network.filters",
                                        .filters = filters[i],
-                                       .kernel = kKernel,
+                                       .kernel = kCompactKernel,
                                        .stride = strides[i],
                                        .initialisation = InitialisationOf(network)});
   }

@@ -17,15 +17,15 @@ using testing::Each;
 using testing::ElementsAreArray;
 using testing::HasSubstr;
 
-constexpr int kEnvs = 2, kActions = 3;
+constexpr int kSelectorEnvs = 2, kActions = 3;
 constexpr float kMean = 0.3F;
 
 // In the first episode of each environment.
 class Selector : public ActionSelector {
  public:
   Selector(const Config& config, const ObservationSpec& spec)
-      : ActionSelector(config, spec, kEnvs) {
-    for (int e = 0; e < kEnvs; ++e) BeginEpisode(e, static_cast<uint64_t>(100 + e));
+      : ActionSelector(config, spec, kSelectorEnvs) {
+    for (int e = 0; e < kSelectorEnvs; ++e) BeginEpisode(e, static_cast<uint64_t>(100 + e));
   }
 };
 
@@ -44,7 +44,7 @@ class ActionSelectorTest : public testing::Test {
   }
   static std::vector<float> Actions(const ActionSelector& selector) {
     std::vector<float> actions;
-    for (int e = 0; e < kEnvs; ++e) {
+    for (int e = 0; e < kSelectorEnvs; ++e) {
       const auto action = selector.ActionOf(e);
       actions.insert(actions.end(), action.begin(), action.end());
     }
@@ -125,7 +125,7 @@ TEST_F(ActionSelectorTest, GoesOnFromAnothersNoise) {
   selector.Load(Weights());
   successor.Load(Weights());
   for (int i = 0; i < 3; ++i) selector.Select(Acting::kExplore);
-  for (int e = 0; e < kEnvs; ++e) successor.SetNoise(e, selector.NoiseOf(e));
+  for (int e = 0; e < kSelectorEnvs; ++e) successor.SetNoise(e, selector.NoiseOf(e));
   selector.Select(Acting::kExplore);
   successor.Select(Acting::kExplore);
   EXPECT_THAT(Actions(successor), ElementsAreArray(Actions(selector)));

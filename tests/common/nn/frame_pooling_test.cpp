@@ -11,7 +11,7 @@
 namespace shoal::nn {
 namespace {
 
-struct Case {
+struct PoolingCase {
   FrameShape shape;
   int pool;
 };
@@ -41,7 +41,7 @@ reference::Values NaivePooling(const std::vector<uint8_t>& in, const FrameShape&
   return out;
 }
 
-class FramePoolingTest : public testing::TestWithParam<Case> {};
+class FramePoolingTest : public testing::TestWithParam<PoolingCase> {};
 
 TEST_P(FramePoolingTest, AgreesWithTheNaiveMeanInBothTypes) {
   const auto& [shape, pool] = GetParam();
@@ -58,12 +58,12 @@ TEST_P(FramePoolingTest, AgreesWithTheNaiveMeanInBothTypes) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Shapes, FramePoolingTest,
-                         testing::Values(Case{{3, 84, 84}, 2}, Case{{2, 9, 11}, 2},
-                                         Case{{2, 33, 35}, 2}, Case{{1, 2, 2}, 2},
-                                         Case{{3, 7, 5}, 1}, Case{{2, 84, 84}, 1},
-                                         Case{{2, 10, 13}, 3}, Case{{2, 84, 85}, 3},
-                                         Case{{2, 42, 83}, 4}, Case{{2, 35, 64}, 5},
-                                         Case{{1, 33, 50}, 16}),
+                         testing::Values(PoolingCase{{3, 84, 84}, 2}, PoolingCase{{2, 9, 11}, 2},
+                                         PoolingCase{{2, 33, 35}, 2}, PoolingCase{{1, 2, 2}, 2},
+                                         PoolingCase{{3, 7, 5}, 1}, PoolingCase{{2, 84, 84}, 1},
+                                         PoolingCase{{2, 10, 13}, 3}, PoolingCase{{2, 84, 85}, 3},
+                                         PoolingCase{{2, 42, 83}, 4}, PoolingCase{{2, 35, 64}, 5},
+                                         PoolingCase{{1, 33, 50}, 16}),
                          [](const auto& test) {
                            return std::to_string(test.param.shape.height) + "x" +
                                   std::to_string(test.param.shape.width) + "by" +

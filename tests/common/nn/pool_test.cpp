@@ -8,12 +8,12 @@ namespace {
 
 using reference::Values;
 
-constexpr int kBatch = 2, kChannels = 5;
+constexpr int kPoolImages = 2, kPoolChannels = 5;
 
 class PoolTest : public LayerTest {
  protected:
   static dnnl::memory Map(const MapShape& shape) {
-    return MakeMemory(dnnl::memory::desc({kBatch, shape.channels, shape.height, shape.width},
+    return MakeMemory(dnnl::memory::desc({kPoolImages, shape.channels, shape.height, shape.width},
                                          ComputeType(GetParam()), dnnl::memory::format_tag::nchw));
   }
 
@@ -25,18 +25,19 @@ class PoolTest : public LayerTest {
   }
 
   void CompareMax(int height, int width, int kernel, int stride, int padding) {
-    NetworkPlan plan({kChannels, height, width});
+    NetworkPlan plan({kPoolChannels, height, width});
     plan.Add(NetworkPlan::MaxPool{
         .name = "pool", .key = "k", .kernel = kernel, .stride = stride, .padding = padding});
     const dnnl::memory source = Map(plan.input()), gradient = Map(plan.input());
     ParameterSet none({}, ParameterSet::Use::kTraining);
-    MaxPool pool(Context(none, kBatch), plan.layers()[0], source, gradient);
-    const reference::PoolShape shape{kBatch * kChannels, height, width, kernel, stride, padding};
+    MaxPool pool(Context(none, kPoolImages), plan.layers()[0], source, gradient);
+    const reference::PoolShape shape{
+        kPoolImages * kPoolChannels, height, width, kernel, stride, padding};
     // Below zero alone: what lies outside of the map is no zero.
     Values x = Levels(size_t(shape.planes * height * width), 1);
     for (double& value : x) value -= 4;
     FillMemory(x, source);
-    pool.Forward(Statistics::kBatch);
+    pool.Forward(Statistics::kPoolImages);
     EXPECT_EQ(ToDoubles(ReadMemory(pool.output())), reference::MaxPoolForward(shape, x));
 
     const Values dy =
@@ -48,17 +49,17 @@ class PoolTest : public LayerTest {
   }
 
   void CompareAverage(int height, int width, int out_height, int out_width) {
-    NetworkPlan plan({kChannels, height, width});
+    NetworkPlan plan({kPoolChannels, height, width});
     plan.Add(NetworkPlan::AveragePool{
         .name = "pool", .key = "k", .height = out_height, .width = out_width});
     const dnnl::memory source = Map(plan.input()), gradient = Map(plan.input());
     ParameterSet none({}, ParameterSet::Use::kTraining);
-    AveragePool pool(Context(none, kBatch), plan.layers()[0], source, gradient);
-    const reference::AveragePoolShape shape{kBatch * kChannels, height, width, out_height,
+    AveragePool pool(Context(none, kPoolImages), plan.layers()[0], source, gradient);
+    const reference::AveragePoolShape shape{kPoolImages * kPoolChannels, height, width, out_height,
                                             out_width};
     const Values x = RandomValues(size_t(shape.planes * height * width), 1);
     FillMemory(x, source);
-    pool.Forward(Statistics::kBatch);
+    pool.Forward(Statistics::kPoolImages);
     EXPECT_LT(RelativeError(ReadMemory(pool.output()), reference::AveragePoolForward(shape, x)),
               Tolerance(GetParam()));
 

@@ -22,14 +22,16 @@ constexpr int kImages = 4;
 constexpr size_t kFeatures = 256, kOthers = 48;  // entries that are recorded at most
 const std::string kPrefix = "encoder.";
 
-struct Case {
+struct EncoderCase {
   const char* kind;
   int channels, height, width;
 };
 
-void PrintTo(const Case& each, std::ostream* out) { *out << each.kind << " " << each.channels; }
+void PrintTo(const EncoderCase& each, std::ostream* out) {
+  *out << each.kind << " " << each.channels;
+}
 
-class TorchvisionTest : public testing::TestWithParam<Case> {
+class TorchvisionTest : public testing::TestWithParam<EncoderCase> {
  protected:
   TorchvisionTest() : recorded_(Recording()), encoder_(Plan(), Module::Use::kTraining, context_) {
     for (const ParameterSpec& parameter : Plan().Parameters()) names_.push_back(parameter.name);
@@ -155,15 +157,15 @@ TEST_P(TorchvisionTest, FeaturesGradientsStepsAndRunningStatisticsAreTheirs) {
                2e-5);
 }
 
-INSTANTIATE_TEST_SUITE_P(Of, TorchvisionTest,
-                         testing::Values(Case{"resnet18", 1, 84, 84}, Case{"resnet18", 3, 70, 61},
-                                         Case{"resnet18", 4, 84, 84}, Case{"resnet18", 9, 84, 84},
-                                         Case{"alexnet", 1, 70, 255}, Case{"alexnet", 3, 84, 84},
-                                         Case{"alexnet", 4, 84, 84}, Case{"alexnet", 9, 97, 130}),
-                         [](const auto& each) {
-                           return std::string(each.param.kind) +
-                                  std::to_string(each.param.channels);
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    Of, TorchvisionTest,
+    testing::Values(EncoderCase{"resnet18", 1, 84, 84}, EncoderCase{"resnet18", 3, 70, 61},
+                    EncoderCase{"resnet18", 4, 84, 84}, EncoderCase{"resnet18", 9, 84, 84},
+                    EncoderCase{"alexnet", 1, 70, 255}, EncoderCase{"alexnet", 3, 84, 84},
+                    EncoderCase{"alexnet", 4, 84, 84}, EncoderCase{"alexnet", 9, 97, 130}),
+    [](const auto& each) {
+      return std::string(each.param.kind) + std::to_string(each.param.channels);
+    });
 
 }  // namespace
 }  // namespace shoal::nn

@@ -57,10 +57,10 @@ class OrderedStop : public ::testing::Test {
 };
 
 constexpr StopDeadlines kPatient{};
-constexpr StopDeadlines kQuick{.drain = milliseconds(100),
-                               .settle = milliseconds(100),
-                               .finish = milliseconds(100),
-                               .terminate = milliseconds(200)};
+constexpr StopDeadlines kQuickStop{.drain = milliseconds(100),
+                                   .settle = milliseconds(100),
+                                   .finish = milliseconds(100),
+                                   .terminate = milliseconds(200)};
 
 TEST_F(OrderedStop, ActorsLeaveBeforeAnybodyElseIsTold) {
   StartObedient("replay", "stopping");
@@ -78,7 +78,7 @@ TEST_F(OrderedStop, ActorsLeaveBeforeAnybodyElseIsTold) {
 
 TEST_F(OrderedStop, OverdueProcessesGetSigterm) {
   Start("actor", "exec sleep 60");
-  StopInOrder(supervisor_, kQuick, Hooks());
+  StopInOrder(supervisor_, kQuickStop, Hooks());
   EXPECT_EQ(supervisor_.Running(""), 0);
   EXPECT_THAT(said_, ElementsAre(HasSubstr("SIGTERM"), HasSubstr("actor-0: killed by SIGTERM")));
 }
@@ -87,7 +87,7 @@ TEST_F(OrderedStop, ThoseThatIgnoreItGetSigkill) {
   const auto armed = folder_.path() / "armed";
   Start("learner", "trap '' TERM; touch " + armed.string() + "; while true; do sleep 0.05; done");
   ASSERT_TRUE(WaitUntil([&] { return std::filesystem::exists(armed); }));
-  StopInOrder(supervisor_, kQuick, Hooks());
+  StopInOrder(supervisor_, kQuickStop, Hooks());
   EXPECT_EQ(supervisor_.Running(""), 0);
   EXPECT_THAT(supervisor_.unclean_exits(), ElementsAre(HasSubstr("killed by SIGKILL")));
 }

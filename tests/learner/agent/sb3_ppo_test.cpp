@@ -17,7 +17,8 @@
 namespace shoal::learner {
 namespace {
 
-constexpr int kSteps = 8, kEnvs = 2, kRows = kSteps * kEnvs, kBatch = 4, kActions = 3, kVector = 5;
+constexpr int kSteps = 8, kEnvs = 2, kRows = kSteps * kEnvs, kPpoBatch = 4, kPpoActions = 3,
+              kPpoVector = 5;
 
 // Parameter names of ours and theirs.
 const std::map<std::string, std::string> kNames{{"actor.mlp.layer0", "mlp_extractor.policy_net.0"},
@@ -27,25 +28,25 @@ const std::map<std::string, std::string> kNames{{"actor.mlp.layer0", "mlp_extrac
                                                 {"value.mlp.layer1", "mlp_extractor.value_net.2"},
                                                 {"value.mlp.output", "value_net"}};
 
-struct Case {
+struct RecordedPpo {
   const char* name;
   double clip, value_clip, entropy_weight;
 };
 
-void PrintTo(const Case& each, std::ostream* out) { *out << each.name; }
+void PrintTo(const RecordedPpo& each, std::ostream* out) { *out << each.name; }
 
-class Sb3PpoTest : public testing::TestWithParam<Case> {
+class Sb3PpoTest : public testing::TestWithParam<RecordedPpo> {
  protected:
   Sb3PpoTest()
       : recorded_(nn::ReadSafetensors(
             ReadFile(GoldenPath(std::string("sb3/") + GetParam().name + ".safetensors")),
             GetParam().name)) {
     spec_.task = "test";
-    spec_.blocks = {{"observation", kVector}};
-    spec_.action_size = kActions;
+    spec_.blocks = {{"observation", kPpoVector}};
+    spec_.action_size = kPpoActions;
     spec_.drawn_actions = true;
     config_.learner.algorithm = "ppo";
-    config_.learner.batch = kBatch;
+    config_.learner.batch = kPpoBatch;
     config_.learner.learning_rate = 1e-3;
     config_.learner.max_grad_norm = 0.5;
     config_.learner.discount = 0.9;
@@ -97,8 +98,9 @@ class Sb3PpoTest : public testing::TestWithParam<Case> {
   // Theirs are (steps, envs, ...), ours environment by environment.
   void FillRollout() {
     const BatchView batch = View();
-    std::vector<float> obs(size_t(kSteps + 1) * kEnvs * kVector), reward(kRows), final(kVector);
-    std::vector<float> drawn(size_t(kRows) * kActions);
+    std::vector<float> obs(size_t(kSteps + 1) * kEnvs * kPpoVector), reward(kRows),
+        final(kPpoVector);
+    std::vector<float> drawn(size_t(kRows) * kPpoActions);
     FillSymmetric("obs", 1.5, obs);
     FillSymmetric("drawn", 1.5, drawn);
     FillSymmetric("reward", 2.0, reward);
@@ -107,18 +109,19 @@ class Sb3PpoTest : public testing::TestWithParam<Case> {
     for (int e = 0; e < kEnvs; ++e) {
       for (int t = 0; t < kSteps; ++t) {
         const size_t row = size_t(e * kSteps + t), theirs = size_t(t * kEnvs + e);
-        std::copy_n(obs.data() + theirs * kVector, kVector, &batch.obs_vector[row * kVector]);
-        std::copy_n(drawn.data() + theirs * kActions, kActions,
-                    &batch.drawn_action[row * kActions]);
+        std::copy_n(obs.data() + theirs * kPpoVector, kPpoVector,
+                    &batch.obs_vector[row * kPpoVector]);
+        std::copy_n(drawn.data() + theirs * kPpoActions, kPpoActions,
+                    &batch.drawn_action[row * kPpoActions]);
         batch.reward[row] = reward[theirs];
         batch.log_prob[row] = log_prob[row];
         const bool terminated = e == 0 && t == 2, truncated = e == 1 && t == 4;
         batch.bootstrap[row] = terminated ? 0 : 1;
         batch.ends[row] = terminated || truncated ? 1 : 0;
         batch.continues[row] = terminated || truncated || t + 1 == kSteps ? 0 : 1;
-        const float* next = obs.data() + (theirs + kEnvs) * kVector;
-        std::copy_n(truncated ? final.data() : next, kVector,
-                    &batch.next_obs_vector[row * kVector]);
+        const float* next = obs.data() + (theirs + kEnvs) * kPpoVector;
+        std::copy_n(truncated ? final.data() : next, kPpoVector,
+                    &batch.next_obs_vector[row * kPpoVector]);
       }
     }
   }
@@ -157,12 +160,12 @@ TEST_P(Sb3PpoTest, AdvantagesAreTheirs) {
 TEST_P(Sb3PpoTest, TwoEpochsEndWithTheirParameters) {
   const UpdateOutcome outcome = agent_->Update(View());
   ASSERT_TRUE(outcome.finite);
-  EXPECT_EQ(Get(outcome, kMinibatches), 2 * kRows / kBatch);
+  EXPECT_EQ(Get(outcome, kMinibatches), 2 * kRows / kPpoBatch);
   EXPECT_NEAR(Get(outcome, kActorLoss), Recorded("policy_loss")[0], 2e-6);
   EXPECT_NEAR(Get(outcome, kValueLoss), Recorded("value_loss")[0], 2e-5);
   EXPECT_NEAR(Get(outcome, kClipFraction), Recorded("clip_fraction")[0], 1e-6);
   EXPECT_GT(Get(outcome, kClipFraction), 0) << "no ratio is clipped: the case is too easy";
-  const std::string last = std::to_string(2 * kRows / kBatch - 1) + ".after.";
+  const std::string last = std::to_string(2 * kRows / kPpoBatch - 1) + ".after.";
   const nn::TensorMap tensors = agent_->AllTensors();
   int compared = 0;
   for (const auto& [name, tensor] : tensors) {
@@ -180,7 +183,7 @@ TEST_P(Sb3PpoTest, GradientsAreTheirs) {
   config_.ppo.epochs = 1;
   const std::vector<float> order = Recorded("permutation.0");
   agent_ = MakePpoAgent(config_, spec_, nn::Precision::kF32, [&](int, Random*) {
-    return std::vector<int>(order.begin(), order.begin() + kBatch);
+    return std::vector<int>(order.begin(), order.begin() + kPpoBatch);
   });
   agent_->Restore(WithTheirWeights(agent_->AllTensors()), "test");
   ASSERT_TRUE(agent_->Update(View()).finite);
@@ -201,8 +204,8 @@ TEST_P(Sb3PpoTest, GradientsAreTheirs) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Recorded, Sb3PpoTest,
-                         testing::Values(Case{"ppo", 0.2, 0, 0},
-                                         Case{"ppo_clipped", 0.1, 0.05, 0.01}));
+                         testing::Values(RecordedPpo{"ppo", 0.2, 0, 0},
+                                         RecordedPpo{"ppo_clipped", 0.1, 0.05, 0.01}));
 
 }  // namespace
 }  // namespace shoal::learner

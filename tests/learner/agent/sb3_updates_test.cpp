@@ -12,15 +12,15 @@ namespace {
 
 constexpr int kBatch = 8, kActions = 3, kVector = 11;
 
-struct Case {
+struct RecordedUpdates {
   const char* name;
   DeterministicOptions options;
   int period;  // of actor and targets
 };
 
-void PrintTo(const Case& each, std::ostream* out) { *out << each.name; }
+void PrintTo(const RecordedUpdates& each, std::ostream* out) { *out << each.name; }
 
-class Sb3UpdatesTest : public testing::TestWithParam<Case> {
+class Sb3UpdatesTest : public testing::TestWithParam<RecordedUpdates> {
  protected:
   Sb3UpdatesTest() : recording_(GetParam().name) {
     spec_.task = "test";
@@ -74,8 +74,8 @@ TEST_P(Sb3UpdatesTest, LossesGradientsParametersAndTargetsAreTheirs) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, Sb3UpdatesTest,
-                         testing::Values(Case{"td3", {.critics = 2}, 2},
-                                         Case{"ddpg", {.critics = 1}, 1}),
+                         testing::Values(RecordedUpdates{"td3", {.critics = 2}, 2},
+                                         RecordedUpdates{"ddpg", {.critics = 1}, 1}),
                          [](const auto& each) { return std::string(each.param.name); });
 
 // The preset's networks and rates, in small: SAC of CnnPolicy.

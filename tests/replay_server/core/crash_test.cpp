@@ -18,7 +18,7 @@
 namespace shoal::replay {
 namespace {
 
-constexpr uint64_t kCapacity = 128;
+constexpr uint64_t kCrashCapacity = 128;
 constexpr uint32_t kActors = 2;
 constexpr int kRounds = 25;
 constexpr uint64_t kPerRound = 300;  // records of an actor at most
@@ -32,7 +32,7 @@ static_assert(std::atomic<uint64_t>::is_always_lock_free);
 
 class CrashTest : public testing::Test {
  protected:
-  CrashTest() : run_(TinyRun(2, kCapacity)) {
+  CrashTest() : run_(TinyRun(2, kCrashCapacity)) {
     run_.spec = TinySpec(2, 40, 50);  // larger records: more instants inside a copy
     run_.config.replay.storage = "file";
     void* shared = mmap(nullptr, sizeof(Acknowledged), PROT_READ | PROT_WRITE,
@@ -118,7 +118,7 @@ class CrashTest : public testing::Test {
                 scripts_[ring.Slot(id).actor].At(ring.Header(id).sequence));
       steps += core.index().Sampleable(id) ? 1 : 0;
     }
-    ASSERT_GE(ring.last_id() - ring.oldest_id() + 1, std::min(ring.last_id(), kCapacity - 1));
+    ASSERT_GE(ring.last_id() - ring.oldest_id() + 1, std::min(ring.last_id(), kCrashCapacity - 1));
     ASSERT_EQ(core.index().sampleable(), steps);
   }
 
