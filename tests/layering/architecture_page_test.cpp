@@ -52,7 +52,7 @@ TEST(ArchitecturePage, EveryFileThatItNamesIsThere) {
 TEST(ArchitecturePage, EveryRoomHasItsLine) {
   const fs::path root = SourcePath("");
   const std::string page = Page(root);
-  for (const std::string top : {"common", "actor", "launch"}) {
+  for (const std::string top : {"common", "actor", "replay_server", "learner", "launch"}) {
     for (const auto& entry : fs::directory_iterator(root / top)) {
       const std::string name = entry.path().filename();
       if (!entry.is_directory() || !HasSources(entry.path())) continue;

@@ -2,11 +2,12 @@
 //
 // - common < actor, replay_server, learner < launch < tests: a folder uses itself and those before
 //   it; the three in the middle do not use each other.
-// - Inside common, a folder uses those before it in the order of common/CMakeLists.txt; inside
-//   actor, worlds < acting < sending < loop < evaluation; inside launch, record < processes < film
-//   < watch < run < experiment < report < project < check < commands < manual. A new room gets its
-//   place in include_rules.cpp.
-// - replay_server/core knows neither its service nor the transport, no clock and no threads.
+// - Inside common, a folder uses those before it in the order of common/CMakeLists.txt; inside the
+//   others, a room uses those before it in the order of include_rules.cpp (worlds < acting <
+//   sending < ... of actor), where a new room gets its place. What lies in the top folder itself
+//   puts its rooms together and is used by none of them.
+// - replay_server/core knows neither its service nor the transport, no clock and no threads;
+//   learner/agent no transport, clock, lock or file, and no threads but those of replicas.
 // - A third-party library with a home (DDS, oneDNN, MuJoCo, ...) is included there and in that
 //   folder's tests alone; and in tests/stock_client, a program as others would write it.
 // - Headers begin with #pragma once after their comment; no file is called utils, helpers, ...

@@ -113,23 +113,66 @@ TEST(Layering, TheReplayCoreKnowsNoServiceTransportClockOrThread) {
 
 TEST(Layering, AnAgentKnowsNoTransportClockFileOrThread) {
   const PlantedTree tree;
+  tree.Write("learner/agent/replicated_agent.cpp",
+             "#include \"common/nn/team.h\"\n#include \"common/base/clock.h\"\n");
   tree.Write("learner/agent/sac/a.cpp",
              "#include <fstream>\n"
              "#include <thread>\n"
              "#include \"common/base/clock.h\"\n"
              "#include \"common/dds/bus.h\"\n"
-             "#include \"common/nn/x.h\"\n"
-             "#include \"learner/checkpoint.h\"\n");
-  tree.Write("learner/a.cpp",
-             "#include \"common/base/clock.h\"\n#include \"learner/checkpoint.h\"\n");
+             "#include \"common/nn/team.h\"\n"
+             "#include \"common/nn/x.h\"\n");
+  tree.Write("learner/a.cpp", "#include <fstream>\n#include \"common/base/clock.h\"\n");
   const std::string start = "learner/agent/sac/a.cpp:", room = ": learner/agent may not use ";
   const std::string files = ": an agent is in memory: checkpoints are kept for it";
+  EXPECT_THAT(
+      tree.Breaches(),
+      ElementsAre(
+          "learner/agent/replicated_agent.cpp:2" + room + "common/base/clock.h: no clock here",
+          start + "1" + room + "fstream" + files, start + "2" + room + "thread: no threads here",
+          start + "3" + room + "common/base/clock.h: no clock here",
+          start + "4" + room + "common/dds/bus.h: no transport here",
+          start + "5" + room + "common/nn/team.h: its threads are those of replicas"));
+}
+
+TEST(Layering, TheRoomsOfTheLearnerPointOneWay) {
+  const PlantedTree tree;
+  tree.Write("learner/a.cpp",
+             "#include \"learner/agent/x.h\"\n"
+             "#include \"learner/batch_stream.h\"\n"
+             "#include \"learner/rollouts/x.h\"\n");
+  tree.Write("learner/agent/sac/a.cpp",
+             "#include \"learner/agent/x.h\"\n"
+             "#include \"learner/batch_stream.h\"\n"
+             "#include \"learner/checkpoint.h\"\n"
+             "#include \"learner/rollouts/x.h\"\n");
+  tree.Write("learner/batch_stream.h",
+             "#pragma once\n#include \"learner/agent/x.h\"\n#include \"learner/x.h\"\n");
+  tree.Write("learner/rollouts/a.cpp",
+             "#include \"learner/batch_stream.h\"\n"
+             "#include \"learner/rollouts/x.h\"\n"
+             "#include \"learner/training_loop.h\"\n");
+  const std::string agent = "learner/agent/sac/a.cpp:", no = ": learner/agent may not use ";
   EXPECT_THAT(tree.Breaches(),
-              ElementsAre(start + "1" + room + "fstream" + files,
-                          start + "2" + room + "thread: no threads here",
-                          start + "3" + room + "common/base/clock.h: no clock here",
-                          start + "4" + room + "common/dds/bus.h: no transport here",
-                          start + "6" + room + "learner/checkpoint.h" + files));
+              ElementsAre(agent + "2" + no + "learner/batch_stream.h",
+                          agent + "3" + no + "learner/checkpoint.h",
+                          agent + "4" + no + "learner/rollouts/x.h",
+                          "learner/batch_stream.h:3: learner may not use learner/x.h",
+                          "learner/rollouts/a.cpp:3: learner/rollouts may not use "
+                          "learner/training_loop.h"));
+}
+
+TEST(Layering, TheRoomsOfTheReplayServerPointOneWay) {
+  const PlantedTree tree;
+  tree.Write("replay_server/core/a.cpp", "#include \"replay_server/x.h\"\n");
+  tree.Write("replay_server/main.cpp", "#include \"replay_server/service/x.h\"\n");
+  tree.Write("replay_server/service/a.cpp",
+             "#include \"replay_server/core/x.h\"\n#include \"replay_server/x.h\"\n");
+  EXPECT_THAT(tree.Breaches(),
+              ElementsAre("replay_server/core/a.cpp:1: replay_server/core may not use "
+                          "replay_server/x.h",
+                          "replay_server/service/a.cpp:2: replay_server/service may not use "
+                          "replay_server/x.h"));
 }
 
 TEST(Layering, TheRoomsOfTheActorPointOneWayAndWorldsUseNone) {
