@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <memory>
 
-#include "common/config/run_files.h"
+#include "common/config/run_config.h"
 #include "common/dds/bus.h"
 #include "learner/batch_stream.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "common/checkpoint/checkpoint_files.h"
-#include "common/config/run_files.h"
+#include "common/config/run_config.h"
 #include "common/nn/precision.h"
 #include "common/nn/safetensors.h"
 

@@ -9,7 +9,7 @@
 #include <set>
 #include <string>
 
-#include "common/config/run_files.h"
+#include "common/config/run_config.h"
 #include "learner/checkpoint.h"
 
 namespace shoal::learner {

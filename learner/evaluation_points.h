@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "common/config/run_files.h"
+#include "common/config/run_config.h"
 #include "common/wire/messages.h"
 #include "learner/agent/agent.h"
 #include "learner/outlet.h"

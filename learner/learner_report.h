@@ -17,7 +17,7 @@
 #include <cstdint>
 #include <string>
 
-#include "common/config/run_files.h"
+#include "common/config/run_config.h"
 #include "common/wire/metrics_report.h"
 #include "learner/agent/agent.h"
 #include "learner/batch_stream.h"

@@ -21,7 +21,7 @@
 #include <vector>
 
 #include "common/base/clock.h"
-#include "common/config/run_files.h"
+#include "common/config/run_config.h"
 #include "common/run_folder/update_page.h"
 #include "common/wire/control_state.h"
 #include "learner/agent/agent.h"

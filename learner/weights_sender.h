@@ -12,7 +12,7 @@
 #include <string>
 
 #include "common/base/clock.h"
-#include "common/config/run_files.h"
+#include "common/config/run_config.h"
 #include "common/nn/precision.h"
 #include "learner/agent/agent.h"
 #include "learner/outlet.h"

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "actor/worlds/environment.h"
-#include "common/config/run_files.h"
+#include "common/config/run_config.h"
 
 namespace shoal::actor {
 

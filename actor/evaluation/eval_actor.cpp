@@ -8,6 +8,7 @@
 #include "common/base/error.h"
 #include "common/base/log.h"
 #include "common/base/stop.h"
+#include "common/config/run_files.h"
 #include "common/config/run_membership.h"
 #include "common/dds/metrics_publisher.h"
 #include "common/dds/publisher.h"

@@ -12,6 +12,7 @@
 #include "common/base/error.h"
 #include "common/base/stop.h"
 #include "common/checkpoint/checkpoint_files.h"
+#include "common/config/run_files.h"
 #include "common/run_folder/run_file_names.h"
 #include "common/tasks/task_registry.h"
 

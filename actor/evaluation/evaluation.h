@@ -15,7 +15,7 @@
 #include "actor/evaluation/failure_cause.h"
 #include "actor/evaluation/frame_recorder.h"
 #include "actor/worlds/environment.h"
-#include "common/config/run_files.h"
+#include "common/config/run_config.h"
 
 namespace shoal::actor {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "actor/acting/seat.h"
-#include "common/config/run_files.h"
+#include "common/config/run_config.h"
 #include "common/image/frame_stream.h"
 
 namespace shoal::actor {

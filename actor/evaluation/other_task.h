@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "common/config/run_files.h"
+#include "common/config/run_config.h"
 
 namespace shoal::actor {
 

@@ -10,6 +10,7 @@
 #include "common/base/host_name.h"
 #include "common/base/log.h"
 #include "common/config/on_policy.h"
+#include "common/config/run_files.h"
 #include "common/config/run_membership.h"
 #include "common/config/sending_window.h"
 #include "common/config/session_number.h"

@@ -1,7 +1,7 @@
 // What learner and replay make of the configuration of a run to agree on its batches.
 #pragma once
 
-#include "common/config/run_files.h"
+#include "common/config/run_config.h"
 #include "common/wire/batch_schema.h"
 
 namespace shoal {

@@ -6,15 +6,9 @@
 #include <filesystem>
 #include <string>
 
-#include "common/config/config.h"
-#include "common/spec/observation_spec.h"
+#include "common/config/run_config.h"
 
 namespace shoal {
-
-struct RunConfig {
-  Config config;
-  ObservationSpec spec;
-};
 
 void WriteRunConfig(const std::filesystem::path& run, const RunConfig& config);
 // Throws Error on a missing, malformed or inconsistent file (spec and stored hash differ).

@@ -11,7 +11,7 @@
 #include "actor/sending/chunk_window.h"
 #include "actor/sending/made_page.h"
 #include "common/base/aligned_bytes.h"
-#include "common/config/run_files.h"
+#include "common/config/run_config.h"
 #include "common/wire/batch_schema.h"
 #include "replay_server/core/replay_core.h"
 

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 
-#include "common/config/run_files.h"
+#include "common/config/run_config.h"
 
 namespace shoal::launch {
 

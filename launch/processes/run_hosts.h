@@ -6,7 +6,6 @@
 #include <string>
 
 #include "common/config/config.h"
-#include "common/config/run_files.h"
 #include "launch/processes/hosts_file.h"
 #include "launch/processes/remote_host.h"
 

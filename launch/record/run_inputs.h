@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/config/config.h"
-#include "common/config/run_files.h"
+#include "common/config/run_config.h"
 #include "common/spec/observation_spec.h"
 
 namespace shoal::launch {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "common/config/run_files.h"
+#include "common/config/run_config.h"
 #include "common/dds/bus.h"
 #include "launch/processes/remote_host.h"
 #include "launch/record/run_meta.h"

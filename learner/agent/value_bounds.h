@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "common/config/config.h"
-#include "common/config/run_files.h"
+#include "common/config/run_config.h"
 
 namespace shoal::learner {
 

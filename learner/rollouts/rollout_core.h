@@ -22,7 +22,7 @@
 #include <optional>
 #include <vector>
 
-#include "common/config/run_files.h"
+#include "common/config/run_config.h"
 #include "common/config/sending_window.h"
 #include "common/intake/accounting_file.h"
 #include "common/intake/chunk_intake.h"

@@ -14,7 +14,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/config/run_files.h"
+#include "common/config/run_config.h"
 #include "common/tasks/task.h"
 #include "replay_server/core/episode_index.h"
 #include "replay_server/core/relabeller.h"

@@ -20,7 +20,7 @@
 #include <string>
 #include <vector>
 
-#include "common/config/run_files.h"
+#include "common/config/run_config.h"
 #include "common/intake/credit_book.h"
 #include "common/intake/intake_counters.h"
 #include "common/wire/batch_schema.h"

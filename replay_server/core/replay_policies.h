@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "common/config/run_files.h"
+#include "common/config/run_config.h"
 #include "replay_server/core/episode_index.h"
 #include "replay_server/core/goal_change.h"
 #include "replay_server/core/relabeller.h"

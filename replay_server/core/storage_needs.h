@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "common/config/run_files.h"
+#include "common/config/run_config.h"
 
 namespace shoal::replay {
 

@@ -6,7 +6,7 @@
 #include <optional>
 #include <string>
 
-#include "common/config/run_files.h"
+#include "common/config/run_config.h"
 
 namespace shoal::bench {
 

@@ -51,7 +51,11 @@ struct Ban {
 const std::vector<Ban> kBans = [] {
   std::vector<Ban> bans = {
       {"replay_server/core", "replay_server/service/", "the core knows nothing of its service"}};
-  for (const char* files : {"common/base/files.h", "filesystem", "fstream"}) {
+  for (const char* files :
+       {"common/base/descriptor.h", "common/base/file_lock.h", "common/base/files.h",
+        "common/base/shared_memory.h", "common/checkpoint/", "common/config/config_io.h",
+        "common/config/run_files.h", "common/run_folder/", "cstdio", "fcntl.h", "filesystem",
+        "fstream", "stdio.h", "sys/mman.h", "sys/stat.h", "unistd.h"}) {
     bans.push_back({"learner/agent", files, "an agent is in memory: checkpoints are kept for it"});
   }
   bans.push_back({"learner/agent", "common/nn/team.h", "its threads are those of replicas",

@@ -121,8 +121,16 @@ TEST(Layering, AnAgentKnowsNoTransportClockFileOrThread) {
              "#include \"common/base/clock.h\"\n"
              "#include \"common/dds/bus.h\"\n"
              "#include \"common/nn/team.h\"\n"
-             "#include \"common/nn/x.h\"\n");
-  tree.Write("learner/a.cpp", "#include <fstream>\n#include \"common/base/clock.h\"\n");
+             "#include \"common/nn/x.h\"\n"
+             "#include <fcntl.h>\n"
+             "#include \"common/checkpoint/x.h\"\n"
+             "#include \"common/config/run_config.h\"\n"
+             "#include \"common/config/run_files.h\"\n"
+             "#include \"common/run_folder/x.h\"\n");
+  tree.Write("learner/a.cpp",
+             "#include <fstream>\n"
+             "#include \"common/base/clock.h\"\n"
+             "#include \"common/run_folder/x.h\"\n");
   const std::string start = "learner/agent/sac/a.cpp:", room = ": learner/agent may not use ";
   const std::string files = ": an agent is in memory: checkpoints are kept for it";
   EXPECT_THAT(
@@ -132,7 +140,11 @@ TEST(Layering, AnAgentKnowsNoTransportClockFileOrThread) {
           start + "1" + room + "fstream" + files, start + "2" + room + "thread: no threads here",
           start + "3" + room + "common/base/clock.h: no clock here",
           start + "4" + room + "common/dds/bus.h: no transport here",
-          start + "5" + room + "common/nn/team.h: its threads are those of replicas"));
+          start + "5" + room + "common/nn/team.h: its threads are those of replicas",
+          start + "7" + room + "fcntl.h" + files,
+          start + "8" + room + "common/checkpoint/x.h" + files,
+          start + "10" + room + "common/config/run_files.h" + files,
+          start + "11" + room + "common/run_folder/x.h" + files));
 }
 
 TEST(Layering, TheRoomsOfTheLearnerPointOneWay) {

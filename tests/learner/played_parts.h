@@ -13,7 +13,7 @@
 #include "common/base/random.h"
 #include "common/config/batch_options.h"
 #include "common/config/on_policy.h"
-#include "common/config/run_files.h"
+#include "common/config/run_config.h"
 #include "learner/batch_stream.h"
 #include "learner/outlet.h"
 

@@ -1,7 +1,7 @@
 // A run without pixels that is small enough to train on in a unit test.
 #pragma once
 
-#include "common/config/run_files.h"
+#include "common/config/run_config.h"
 
 namespace shoal::learner {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "common/base/random.h"
-#include "common/config/run_files.h"
+#include "common/config/run_config.h"
 #include "common/spec/record.h"
 #include "common/wire/messages.h"
 

@@ -12,6 +12,7 @@
 
 #include "common/base/files.h"
 #include "common/checkpoint/checkpoint_files.h"
+#include "common/config/run_files.h"
 #include "tests/support/error_message.h"
 #include "tests/support/temporary_folder.h"
 

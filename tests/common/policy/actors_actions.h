@@ -8,7 +8,7 @@
 #include "actor/acting/action_selector.h"
 #include "common/base/files.h"
 #include "common/checkpoint/checkpoint_files.h"
-#include "common/config/run_files.h"
+#include "common/config/run_config.h"
 #include "tests/common/policy/checkpoint_fixture.h"
 
 namespace shoal::policy {

@@ -8,7 +8,7 @@
 
 #include "common/base/random.h"
 #include "common/config/batch_options.h"
-#include "common/config/run_files.h"
+#include "common/config/run_config.h"
 #include "common/nn/parameter_set.h"
 #include "learner/agent/algorithms.h"
 #include "learner/checkpoint.h"

@@ -7,6 +7,7 @@
 #include "common/base/build_info.h"
 #include "common/base/crc32.h"
 #include "common/base/files.h"
+#include "common/config/run_files.h"
 #include "common/policy/trained_policy.h"
 #include "tests/common/policy/checkpoint_fixture.h"
 #include "tests/support/error_message.h"

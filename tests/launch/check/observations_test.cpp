@@ -7,6 +7,7 @@
 
 #include "actor/worlds/environment.h"
 #include "common/config/config_io.h"
+#include "common/config/run_files.h"
 #include "launch/check/local_collection.h"
 #include "learner/agent/algorithms.h"
 #include "replay_server/core/peek.h"

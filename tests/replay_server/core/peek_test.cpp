@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "common/config/run_files.h"
 #include "replay_server/core/replay_core.h"
 #include "tests/replay_server/record_script.h"
 #include "tests/support/error_message.h"
