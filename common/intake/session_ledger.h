@@ -8,23 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "common/run_folder/accounting_file.h"
+
 namespace shoal {
-
-// What became of the records of one (actor, session). Sequences 1..highest were dealt with; each is
-// counted once:  highest = stored + rejected + after_gap + lost + discarded.
-struct SessionCounters {
-  uint32_t actor = 0;
-  uint64_t session = 0;
-  uint64_t highest = 0;
-  uint64_t rejected = 0;    // malformed
-  uint64_t after_gap = 0;   // its predecessor in the episode is not stored
-  uint64_t lost = 0;        // stored by an earlier receiver whose memory is gone
-  uint64_t discarded = 0;   // of a rollout that no update was made of
-  uint64_t duplicates = 0;  // came again; not part of the sum
-
-  uint64_t stored() const { return highest - rejected - after_gap - lost - discarded; }
-  bool operator==(const SessionCounters&) const = default;
-};
 
 // In memory. One owner.
 class SessionLedger {
@@ -34,6 +20,7 @@ class SessionLedger {
   virtual ~SessionLedger() = default;
 
   int size() const { return static_cast<int>(sessions_.size()); }
+  const std::vector<SessionCounters>& all() const { return sessions_; }
   const SessionCounters& at(int i) const { return sessions_[static_cast<size_t>(i)]; }
   std::optional<int> Find(uint32_t actor, uint64_t session) const;
   // The actor's session that started last; nothing for an unknown actor.

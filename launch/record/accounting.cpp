@@ -1,24 +1,21 @@
 #include "launch/record/accounting.h"
 
+#include <fmt/core.h>
+
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
-
-#include "common/base/error.h"
-#include "common/base/files.h"
-#include "common/config/config_io.h"
-#include "common/run_folder/run_file_names.h"
 
 namespace shoal::launch {
 namespace {
 
 using Session = std::pair<uint32_t, uint64_t>;  // actor, session
 
-void AddSession(const Session& name, uint64_t made, const SeenRecords& seen, bool outlives_replay,
-                Accounting* sums) {
+void AddSession(const Session& name, uint64_t made, const SessionCounters& seen,
+                bool outlives_replay, Accounting* sums) {
   sums->made += made;
-  sums->stored += seen.stored;
+  sums->stored += seen.stored();
   sums->lost_with_replay += seen.lost;
   sums->rejected += seen.rejected;
   sums->after_gap += seen.after_gap;
@@ -36,23 +33,15 @@ void AddSession(const Session& name, uint64_t made, const SeenRecords& seen, boo
     fault(fmt::format("{} records were reported stored in the replay file, but are not there",
                       seen.lost));
   }
-  const uint64_t dealt = seen.stored + seen.rejected + seen.after_gap + seen.lost + seen.discarded;
-  if (dealt != seen.highest) {
-    fault(
-        fmt::format("stored {} + rejected {} + after a gap {} + lost {} + discarded {} = {}, but "
-                    "sequences up to {} were dealt with",
-                    seen.stored, seen.rejected, seen.after_gap, seen.lost, seen.discarded, dealt,
-                    seen.highest));
-  }
 }
 
 }  // namespace
 
-Accounting Account(std::span<const MadeRecords> made, const SeenByReplay& seen,
+Accounting Account(std::span<const MadeRecords> made, const RunAccount& seen,
                    const AccountTerms& terms) {
   struct Counts {
     std::optional<uint64_t> made;
-    SeenRecords seen;
+    SessionCounters seen;
   };
   std::map<Session, Counts> sessions;
   for (const MadeRecords& m : made) {
@@ -60,8 +49,8 @@ Accounting Account(std::span<const MadeRecords> made, const SeenByReplay& seen,
     count = count.value_or(0) + m.made;
   }
   Accounting sums;
-  for (const SeenRecords& s : seen.sessions) {
-    SeenRecords& entry = sessions[{s.actor, s.session}].seen;
+  for (const SessionCounters& s : seen.sessions) {
+    SessionCounters& entry = sessions[{s.actor, s.session}].seen;
     if (entry.session != 0) {
       sums.faults.push_back(
           fmt::format("actor {} session {}: listed twice by the replay", s.actor, s.session));
@@ -96,35 +85,6 @@ std::string Accounting::Line() const {
       "duplicates {}, resends {}{}",
       made, Balances() ? '=' : '?', stored, lost_with_process, lost_with_replay, rejected,
       after_gap, discarded, duplicates, resends, unknown);
-}
-
-SeenByReplay ReadSeenByReplay(const std::filesystem::path& run) {
-  const std::filesystem::path path = run / kAccountingFile;
-  const nlohmann::json object = ParseStrictJson(ReadFile(path), path);
-  SeenByReplay seen;
-  try {
-    if (object.at("schema") != kAccountingSchema) {
-      throw RuntimeError("{}: expected schema '{}'", path.string(), kAccountingSchema);
-    }
-    object.at("stored_records").get_to(seen.stored_records);
-    seen.ring_replaced = object.value("ring_replaced", false);
-    for (const auto& session : object.at("sessions")) {
-      SeenRecords s;
-      session.at("actor").get_to(s.actor);
-      session.at("session").get_to(s.session);
-      session.at("highest").get_to(s.highest);
-      session.at("stored").get_to(s.stored);
-      session.at("rejected").get_to(s.rejected);
-      session.at("after_gap").get_to(s.after_gap);
-      session.at("lost").get_to(s.lost);
-      s.discarded = session.value("discarded", uint64_t{0});  // runs of earlier versions lack it
-      session.at("duplicates").get_to(s.duplicates);
-      seen.sessions.push_back(s);
-    }
-  } catch (const nlohmann::json::exception& e) {
-    throw RuntimeError("{}: {}", path.string(), e.what());
-  }
-  return seen;
 }
 
 nlohmann::ordered_json ToJson(const Accounting& a) {

@@ -13,11 +13,12 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 #include <vector>
+
+#include "common/run_folder/accounting_file.h"
 
 namespace shoal::launch {
 
@@ -26,20 +27,6 @@ struct MadeRecords {
   uint32_t actor = 0;
   uint64_t session = 0;
   uint64_t made = 0;
-};
-
-// The same by the replay's count.
-struct SeenRecords {
-  uint32_t actor = 0;
-  uint64_t session = 0;
-  uint64_t highest = 0;  // sequences 1..highest were dealt with
-  uint64_t stored = 0, rejected = 0, after_gap = 0, lost = 0, discarded = 0, duplicates = 0;
-};
-
-struct SeenByReplay {
-  uint64_t stored_records = 0;  // the ring's count of what was ever put in
-  bool ring_replaced = false;   // at some time a ring was gone with what it held
-  std::vector<SeenRecords> sessions;
 };
 
 struct Accounting {
@@ -63,11 +50,10 @@ struct AccountTerms {
   bool outlives_replay = true;  // what is stored is in a file
 };
 
-Accounting Account(std::span<const MadeRecords> made, const SeenByReplay& seen,
+// `seen`: by the replay's count, or by the learner's in a run without one; each session's counts
+// add up (ReadAccount).
+Accounting Account(std::span<const MadeRecords> made, const RunAccount& seen,
                    const AccountTerms& terms);
-
-// accounting.json of a run (shoal-accounting-1), written by the replay. Throws Error.
-SeenByReplay ReadSeenByReplay(const std::filesystem::path& run);
 
 nlohmann::ordered_json ToJson(const Accounting& accounting);
 

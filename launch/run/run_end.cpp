@@ -28,7 +28,7 @@ std::optional<Accounting> AccountRun(const fs::path& run, const Config& config, 
     made.push_back({page.actor, page.session, page.made});
   }
   if (made.empty() && !fs::exists(run / kAccountingFile)) return std::nullopt;
-  return Account(made, ReadSeenByReplay(run),
+  return Account(made, ReadAccount(run),
                  {.resends = resends,
                   .own_actors = static_cast<uint32_t>(ActorsHere(run, config)),
                   .outlives_replay = !LearnsOnPolicy(config) && config.replay.storage == "file"});

@@ -11,7 +11,7 @@
 namespace shoal::learner {
 namespace {
 
-SessionLedger LedgerOf(const AccountBefore& before) {
+SessionLedger LedgerOf(const RunAccount& before) {
   SessionLedger ledger(RolloutCore::kMostSessions);
   for (const SessionCounters& counters : before.sessions) {
     if (const auto i = ledger.Add(counters.actor, counters.session)) ledger.Update(*i, counters);
@@ -41,8 +41,7 @@ void RolloutCore::Rollout::Clear() {
   }
 }
 
-RolloutCore::RolloutCore(const RunConfig& run, uint64_t receiver_session,
-                         const AccountBefore& before)
+RolloutCore::RolloutCore(const RunConfig& run, uint64_t receiver_session, const RunAccount& before)
     : run_(run),
       layout_(run.spec),
       observed_(BlockPicker::Observed(run.spec)),

@@ -24,11 +24,11 @@
 
 #include "common/config/run_config.h"
 #include "common/config/sending_window.h"
-#include "common/intake/accounting_file.h"
 #include "common/intake/chunk_intake.h"
 #include "common/intake/credit_book.h"
 #include "common/intake/intake_counters.h"
 #include "common/intake/session_ledger.h"
+#include "common/run_folder/accounting_file.h"
 #include "common/spec/record.h"
 #include "common/wire/batch_schema.h"
 
@@ -49,7 +49,7 @@ class RolloutCore final : private RecordTaker {
   static constexpr size_t kMostSessions = 4096;
 
   // `receiver_session`: this process's. `before`: what a former learner of the run left.
-  RolloutCore(const RunConfig& run, uint64_t receiver_session, const AccountBefore& before);
+  RolloutCore(const RunConfig& run, uint64_t receiver_session, const RunAccount& before);
   RolloutCore(const RolloutCore&) = delete;
   RolloutCore& operator=(const RolloutCore&) = delete;
 
@@ -80,8 +80,10 @@ class RolloutCore final : private RecordTaker {
   uint64_t used_records() const { return used_records_; }
   const SessionLedger& sessions() const { return sessions_; }
   const RolloutCounters& counters() const { return counters_; }
-  AccountTotals Totals() const {
-    return {.stored_steps = stored_steps_, .stored_records = used_records_};
+  RunAccount Account() const {
+    return {.stored_steps = stored_steps_,
+            .stored_records = used_records_,
+            .sessions = sessions_.all()};
   }
 
  private:

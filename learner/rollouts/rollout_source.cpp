@@ -5,11 +5,9 @@
 
 #include "common/base/check.h"
 #include "common/base/error.h"
-#include "common/base/files.h"
 #include "common/base/log.h"
 #include "common/config/sending_window.h"
 #include "common/intake/receiver_terms.h"
-#include "common/run_folder/run_file_names.h"
 
 namespace shoal::learner {
 namespace {
@@ -109,7 +107,7 @@ void RolloutSource::TakeChunks(std::deque<std::unique_ptr<PooledChunk>> chunks) 
 
 bool RolloutSource::WriteAccount() {
   try {
-    ReplaceFile(folder_ / kAccountingFile, AccountingJson(core_.sessions(), core_.Totals()));
+    ReplaceAccount(folder_, core_.Account());
     return true;
   } catch (const Error& e) {
     log::Warning("nothing is acknowledged: {}", e.what());

@@ -7,7 +7,6 @@
 
 #include "common/base/clock.h"
 #include "common/base/error.h"
-#include "common/base/files.h"
 #include "common/base/log.h"
 #include "common/base/saturating_cast.h"
 #include "common/base/stop.h"
@@ -19,9 +18,8 @@
 #include "common/dds/metrics_publisher.h"
 #include "common/dds/publisher.h"
 #include "common/dds/subscriber.h"
-#include "common/intake/accounting_file.h"
 #include "common/intake/receiver_terms.h"
-#include "common/run_folder/run_file_names.h"
+#include "common/run_folder/accounting_file.h"
 #include "common/wire/control_state.h"
 #include "common/wire/metrics_report.h"
 #include "common/wire/process_name.h"
@@ -268,18 +266,18 @@ class ReplayService {
     metrics_publisher_.Write(report_.Make(state, seconds_, &ages_));
     problems_.Report(Now(), core_.counters(), inbox_.DroppedChunks());
     try {
-      ReplaceFile(folder_ / kAccountingFile, AccountNow());
+      ReplaceAccount(folder_, AccountNow());
     } catch (const Error& e) {
       // The run goes on; the next second tries again, and Finish() insists.
       log::Warning("{}", e.what());
     }
   }
 
-  std::string AccountNow() const {
-    return AccountingJson(core_.sessions(),
-                          {.stored_steps = core_.ring().stored_steps(),
-                           .stored_records = core_.ring().last_id(),
-                           .ring_replaced = before_.ring_replaced || core_.ring_replaced()});
+  RunAccount AccountNow() const {
+    return {.stored_steps = core_.ring().stored_steps(),
+            .stored_records = core_.ring().last_id(),
+            .ring_replaced = before_.ring_replaced || core_.ring_replaced(),
+            .sessions = core_.sessions().all()};
   }
 
   // The actors notice the coordinator's end too, and send what they have: it is stored.
@@ -297,7 +295,7 @@ class ReplayService {
     Publish(core_.TakeCredits(/*changed_only=*/false));
     TellProgress(Now(), /*at_once=*/true);
     metrics_publisher_.Write(report_.Make("stopping", seconds_, &ages_));
-    WriteFileAtomically(folder_ / kAccountingFile, AccountNow());
+    StoreAccount(folder_, AccountNow());
     metrics_publisher_.WaitForAcks(milliseconds(500));
     credit_publisher_.WaitForAcks(milliseconds(500));
     log::Info("stopped: {} records of the run stored, {} batches drawn", core_.ring().last_id(),
@@ -310,7 +308,7 @@ class ReplayService {
   dds::Bus bus_;
   dds::MetricsPublisher<ReplayMetrics> metrics_publisher_;
   MetricsReport starting_report_{kProcess};
-  const AccountBefore before_;
+  const RunAccount before_;
   ReplayCore core_;
   ControlState control_;
   ServiceInbox inbox_;

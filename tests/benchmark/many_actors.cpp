@@ -209,7 +209,7 @@ void TakeAccount(const fs::path& run, ManyActorsFigures* figures) {
     made.push_back({page.actor, page.session, page.made});
   }
   const launch::Accounting account = launch::Account(
-      made, launch::ReadSeenByReplay(run), {.own_actors = static_cast<uint32_t>(figures->actors)});
+      made, ReadAccount(run), {.own_actors = static_cast<uint32_t>(figures->actors)});
   if (!account.Balances()) throw RuntimeError("{}: {}", account.faults[0], account.Line());
   figures->made = account.made;
   figures->stored = account.stored;

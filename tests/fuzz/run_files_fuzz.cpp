@@ -30,7 +30,7 @@ void Read(uint8_t which, const std::string& bytes) {
     }
     case 2:
       fuzz::WriteScratch(run / "accounting.json", bytes);
-      launch::Account({}, launch::ReadSeenByReplay(run), {.own_actors = 1});
+      launch::Account({}, ReadAccount(run), {.own_actors = 1});
       break;
     case 3:
       fuzz::WriteScratch(run / "made" / "actor-0-1.page", bytes);

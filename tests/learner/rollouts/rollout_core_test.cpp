@@ -14,7 +14,7 @@ namespace {
 class RolloutCoreTest : public testing::Test {
  protected:
   RolloutCoreTest() { Restart(100); }
-  void Restart(uint64_t session, const AccountBefore& before = {}) {
+  void Restart(uint64_t session, const RunAccount& before = {}) {
     core_ = std::make_unique<RolloutCore>(run_, session, before);
     core_->SetActors(2);
     core_->Await({session, 0});
@@ -180,10 +180,7 @@ TEST_F(RolloutCoreTest, ARestartedLearnerCountsWhatItsPredecessorHadNotUsedAsDis
   TakeReady();
   b_.PlayThree(1, 0);
   core_->TakeChunk(b_.Chunk());
-  AccountBefore before{.stored_steps = core_->stored_steps(), .sessions = {}};
-  for (int i = 0; i < core_->sessions().size(); ++i) {
-    before.sessions.push_back(core_->sessions().at(i));
-  }
+  const RunAccount before = core_->Account();
   Restart(200, before);
   EXPECT_EQ(core_->Ready(), 0);
   EXPECT_EQ(core_->used_records(), 4u);

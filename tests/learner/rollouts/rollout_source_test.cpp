@@ -26,7 +26,7 @@ class RolloutSourceTest : public testing::Test {
   }
   // Runs on the serving thread: what the account says when a word goes out.
   void Keep(const CreditsMessage& message) {
-    const AccountBefore account = ReadAccountBefore(folder_.path() / "run");
+    const RunAccount account = ReadAccountBefore(folder_.path() / "run");
     const MutexLock lock(mutex_);
     for (const Credit& credit : message.credits) {
       told_[credit.actor] = credit.stored;
@@ -141,7 +141,7 @@ TEST_F(RolloutSourceTest, LeavesATrueAccount) {
   a_.PlayThree(0, 1);
   source_->OnChunk(a_.Chunk());
   source_.reset();
-  const AccountBefore account = ReadAccountBefore(folder_.path() / "run");
+  const RunAccount account = ReadAccountBefore(folder_.path() / "run");
   EXPECT_EQ(account.stored_steps, 9u);
   ASSERT_EQ(account.sessions.size(), 2u);
   EXPECT_EQ(account.sessions[0].highest, 8u);

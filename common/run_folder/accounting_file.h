@@ -1,0 +1,54 @@
+// accounting.json of a run (schema shoal-accounting-1): what became of every record, per actor
+// session. Written by who receives records, replay or learner; read by its successor, which goes on
+// counting, and by the coordinator, which holds it against what the actors made.
+//
+//   {schema, stored_steps, stored_records, ring_replaced, sessions: [{actor, session, highest,
+//    stored, rejected, after_gap, lost, discarded, duplicates}]}
+//
+// Files of earlier versions lack ring_replaced and discarded: false and 0.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <vector>
+
+namespace shoal {
+
+// What became of the records of one (actor, session). Sequences 1..highest were dealt with; each is
+// counted once:  highest = stored + rejected + after_gap + lost + discarded.
+struct SessionCounters {
+  uint32_t actor = 0;
+  uint64_t session = 0;
+  uint64_t highest = 0;
+  uint64_t rejected = 0;    // malformed
+  uint64_t after_gap = 0;   // its predecessor in the episode is not stored
+  uint64_t lost = 0;        // stored by an earlier receiver whose memory is gone
+  uint64_t discarded = 0;   // of a rollout that no update was made of
+  uint64_t duplicates = 0;  // came again; not part of the sum
+
+  uint64_t stored() const { return highest - rejected - after_gap - lost - discarded; }
+  bool operator==(const SessionCounters&) const = default;
+};
+
+struct RunAccount {
+  uint64_t stored_steps = 0;
+  uint64_t stored_records = 0;  // the receiver's own count of what was ever put in, or learned from
+  // At some time in the run a ring was gone with what it held, and another one begun.
+  bool ring_replaced = false;
+  std::vector<SessionCounters> sessions{};
+};
+
+// The file of a run. Throws Error naming the file and the member: missing, of another type, or a
+// session whose `stored` is not what its other counts leave.
+RunAccount ReadAccount(const std::filesystem::path& run);
+
+// The same; zeros where no receiver has come yet.
+RunAccount ReadAccountBefore(const std::filesystem::path& run);
+
+// Replaces the file of a run: readers see the old one or the new one. Not synced, so that a busy
+// disk does not hold up the caller. Throws Error.
+void ReplaceAccount(const std::filesystem::path& run, const RunAccount& account);
+// The same for the last one: on the disk when it returns.
+void StoreAccount(const std::filesystem::path& run, const RunAccount& account);
+
+}  // namespace shoal
