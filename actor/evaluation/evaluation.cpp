@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <span>
+#include <string>
 #include <utility>
 
 #include "actor/acting/environments.h"
@@ -13,7 +16,6 @@
 #include "common/base/stop.h"
 #include "common/checkpoint/checkpoint_files.h"
 #include "common/config/run_files.h"
-#include "common/run_folder/run_file_names.h"
 #include "common/tasks/task_registry.h"
 
 namespace shoal::actor {
@@ -25,30 +27,26 @@ tasks::Task PlayedTask(const Config& config) {
   return tasks::FindTask(config.task, config.distance_threshold);
 }
 
-ordered_json NumberOrNull(double value) {
-  return std::isfinite(value) ? ordered_json(value) : ordered_json(nullptr);
-}
-
-ordered_json EpisodeJson(const EpisodeResult& result, bool has_success, bool has_causes) {
-  const EpisodeFigures& episode = result.figures;
-  ordered_json object{{"seed", result.seed},
-                      {"success", has_success ? ordered_json(episode.success) : nullptr},
-                      {"return", episode.episode_return},
-                      {"length", episode.length},
-                      {"final_distance", NumberOrNull(episode.final_distance)},
-                      {"action_smoothness", episode.action_smoothness}};
+EvaluatedEpisode EpisodeOf(const EpisodeResult& result, bool has_success, bool has_causes) {
+  const EpisodeFigures& figures = result.figures;
+  EvaluatedEpisode episode{.seed = result.seed,
+                           .success = has_success ? std::optional(figures.success) : std::nullopt,
+                           .episode_return = figures.episode_return,
+                           .length = figures.length,
+                           .final_distance = figures.final_distance,
+                           .action_smoothness = figures.action_smoothness};
   if (has_causes) {
-    object["desired_goal"] = result.desired;
-    object["achieved_goal"] = result.achieved;
-    object["failure"] = result.failure ? ordered_json(NameOf(*result.failure)) : nullptr;
+    episode.goal = {.desired = result.desired,
+                    .achieved = result.achieved,
+                    .failure = std::string(result.failure ? NameOf(*result.failure) : "")};
   }
-  for (const worlds::DrawnMass& drawn : episode.drawn_masses) {
-    object["body_mass"][drawn.body] = drawn.mass_kg;
+  for (const worlds::DrawnMass& drawn : figures.drawn_masses) {
+    episode.body_mass_kg.emplace_back(drawn.body, drawn.mass_kg);
   }
-  return object;
+  return episode;
 }
 
-ordered_json Aggregate(const std::vector<EpisodeResult>& episodes, bool has_success) {
+EvaluationAggregate Aggregate(const std::vector<EpisodeResult>& episodes, bool has_success) {
   const double n = static_cast<double>(episodes.size());
   double successes = 0, mean = 0, length = 0, distance = 0, variance = 0;
   for (const EpisodeResult& result : episodes) {
@@ -61,21 +59,22 @@ ordered_json Aggregate(const std::vector<EpisodeResult>& episodes, bool has_succ
   for (const EpisodeResult& result : episodes) {
     variance += std::pow(result.figures.episode_return - mean, 2) / n;
   }
-  return {{"episodes", episodes.size()},
-          {"success_rate", has_success ? ordered_json(successes / n) : nullptr},
-          {"return_mean", mean},
-          {"return_std", std::sqrt(variance)},
-          {"length_mean", length},
-          {"final_distance_mean", NumberOrNull(distance)}};
+  EvaluationAggregate aggregate{.episodes = episodes.size(),
+                                .return_mean = mean,
+                                .return_std = std::sqrt(variance),
+                                .length_mean = length};
+  if (has_success) aggregate.success_rate = successes / n;
+  if (std::isfinite(distance)) aggregate.final_distance_mean = distance;
+  return aggregate;
 }
 
-// By name, in the order in which they are asked; empty for a task without.
-ordered_json FailureCounts(std::span<const FailureCause> causes,
-                           const std::vector<EpisodeResult>& episodes) {
-  ordered_json counts = ordered_json::object();
+// In the order in which they are asked.
+std::vector<std::pair<std::string, size_t>> FailureCounts(
+    std::span<const FailureCause> causes, const std::vector<EpisodeResult>& episodes) {
+  std::vector<std::pair<std::string, size_t>> counts;
   for (const FailureCause cause : causes) {
-    counts[std::string(NameOf(cause))] =
-        std::ranges::count(episodes, std::optional(cause), &EpisodeResult::failure);
+    const auto count = std::ranges::count(episodes, std::optional(cause), &EpisodeResult::failure);
+    counts.emplace_back(NameOf(cause), static_cast<size_t>(count));
   }
   return counts;
 }
@@ -148,36 +147,38 @@ std::vector<EpisodeResult> Evaluator::Play(int episodes, const EpisodeStream& st
   return results;
 }
 
+EvaluationFile MakeEvaluation(const RunConfig& run, const EvaluationLabel& label,
+                              const EpisodeStream& stream,
+                              const std::vector<EpisodeResult>& episodes) {
+  const bool has_success = tasks::FindTask(run.config.task).has_success();
+  const FailureFacts causes(run.spec, PlayedTask(run.config));
+  EvaluationFile file{.summary = {.task = run.config.task,
+                                  .env_steps = label.env_steps,
+                                  .aggregate = Aggregate(episodes, has_success)},
+                      .policy = label.policy,
+                      .deterministic = label.policy != "random",
+                      .cameras = run.spec.cameras,
+                      .seed = stream.seed,
+                      .stream_role = static_cast<uint64_t>(stream.role),
+                      .stream_group = stream.group,
+                      .commit = BuildCommit(),
+                      .created = UtcTimestamp(),
+                      .end_on_success = run.config.end_on_success};
+  if (label.policy == "checkpoint") {
+    file.summary.checkpoint = label.checkpoint;
+    file.summary.version = {label.version.session, label.version.update};
+  }
+  for (const EpisodeResult& episode : episodes) {
+    file.episodes.push_back(EpisodeOf(episode, has_success, causes.applies()));
+  }
+  if (causes.applies()) file.failures = FailureCounts(causes.causes(), episodes);
+  return file;
+}
+
 ordered_json EvaluationJson(const RunConfig& run, const EvaluationLabel& label,
                             const EpisodeStream& stream,
                             const std::vector<EpisodeResult>& episodes) {
-  const bool has_success = tasks::FindTask(run.config.task).has_success();
-  const FailureFacts causes(run.spec, PlayedTask(run.config));
-  ordered_json list = ordered_json::array();
-  for (const EpisodeResult& episode : episodes) {
-    list.push_back(EpisodeJson(episode, has_success, causes.applies()));
-  }
-  const bool baseline = label.policy != "checkpoint";
-  const ordered_json version{{"session", label.version.session}, {"update", label.version.update}};
-  ordered_json object{
-      {"schema", kEvaluationSchema},
-      {"task", run.config.task},
-      {"policy", label.policy},
-      {"checkpoint", baseline ? ordered_json(nullptr) : ordered_json(label.checkpoint)},
-      {"weights_version", baseline ? ordered_json(nullptr) : version},
-      {"env_steps", label.env_steps},
-      {"deterministic", label.policy != "random"},
-      {"cameras", run.spec.cameras},
-      {"seeds", {stream.seed}},
-      {"stream", {{"role", static_cast<uint64_t>(stream.role)}, {"group", stream.group}}},
-      {"episodes", list},
-      {"aggregate", Aggregate(episodes, has_success)},
-      {"commit", BuildCommit()},
-      {"created", UtcTimestamp()}};
-  // A goal that has to be reached once is another than one to be held until the end.
-  if (run.config.end_on_success) object["end_on_success"] = true;
-  if (causes.applies()) object["failures"] = FailureCounts(causes.causes(), episodes);
-  return object;
+  return ToJson(MakeEvaluation(run, label, stream, episodes));
 }
 
 ordered_json EvaluateCheckpoint(const std::filesystem::path& run_folder,
@@ -205,10 +206,10 @@ ordered_json EvaluateCheckpoint(const std::filesystem::path& run_folder,
   if (!whole && (!evaluation.partial || results.empty())) {
     throw RuntimeError("evaluation of '{}' interrupted", checkpoint.string());
   }
-  ordered_json result = EvaluationJson(run, label, stream, results);
-  if (!whole) result["episodes_asked"] = evaluation.episodes;
-  if (!evaluation.task.empty()) result["trained_task"] = trained.config.task;
-  return result;
+  EvaluationFile file = MakeEvaluation(run, label, stream, results);
+  if (!whole) file.episodes_asked = evaluation.episodes;
+  if (!evaluation.task.empty()) file.trained_task = trained.config.task;
+  return ToJson(file);
 }
 
 }  // namespace shoal::actor

@@ -16,6 +16,7 @@
 #include "actor/evaluation/frame_recorder.h"
 #include "actor/worlds/environment.h"
 #include "common/config/run_config.h"
+#include "common/run_folder/evaluation_file.h"
 
 namespace shoal::actor {
 
@@ -84,10 +85,11 @@ class Evaluator {
   std::vector<float> vector_;
 };
 
-// The object of eval/*.json, schema shoal-eval-1. Where the task has causes of failure, `failure`
-// of each episode is one of them, null for a success, and `failures` counts them, all that there
-// are; else neither is there. success, success_rate, final_distance and its mean are null where the
-// task has no such thing; body_mass (body -> kg) is there for randomized episodes.
+// What eval/*.json says of these episodes (common/run_folder/evaluation_file.h).
+EvaluationFile MakeEvaluation(const RunConfig& run, const EvaluationLabel& label,
+                              const EpisodeStream& stream,
+                              const std::vector<EpisodeResult>& episodes);
+// ToJson of it.
 nlohmann::ordered_json EvaluationJson(const RunConfig& run, const EvaluationLabel& label,
                                       const EpisodeStream& stream,
                                       const std::vector<EpisodeResult>& episodes);

@@ -63,19 +63,17 @@ ordered_json PlayRandom(const RandomRequest& request, const std::function<bool()
 }
 
 std::string RandomText(const ordered_json& result) {
-  const ordered_json& all = result.at("aggregate");
-  const ordered_json& rate = all.at("success_rate");  // null for tasks without success
+  const EvaluationSummary summary = SummaryOf(result, "baseline");
+  const EvaluationAggregate& all = summary.aggregate;
   const std::string success =
-      rate.is_null() ? "" : fmt::format("success {:.1f} %, ", 100 * rate.get<double>());
-  std::string text = fmt::format(
-      "{}: {} {} episodes, {}return {:.3f} +- {:.3f}, length {:.1f}\n",
-      result.at("task").get<std::string>(), all.at("episodes").get<int>(),
-      result.at("policy").get<std::string>(), success, all.at("return_mean").get<double>(),
-      all.at("return_std").get<double>(), all.at("length_mean").get<double>());
+      all.success_rate ? fmt::format("success {:.1f} %, ", 100 * *all.success_rate) : "";
+  std::string text = fmt::format("{}: {} {} episodes, {}return {:.3f} +- {:.3f}, length {:.1f}\n",
+                                 summary.task, all.episodes, result.at("policy").get<std::string>(),
+                                 success, all.return_mean, all.return_std.value(), all.length_mean);
   const ordered_json& curve = result.at("success_by_threshold");
   if (curve.is_null()) return text;
   text += fmt::format("  final distance {:.4f} m; success by threshold:\n",
-                      all.at("final_distance_mean").get<double>());
+                      all.final_distance_mean.value());
   for (const ordered_json& point : curve) {
     text += fmt::format("    {:.3f} m {:6.1f} %\n", point.at("threshold").get<double>(),
                         100 * point.at("success_rate").get<double>());

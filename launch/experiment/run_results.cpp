@@ -7,6 +7,7 @@
 #include "common/base/files.h"
 #include "common/config/config_io.h"
 #include "common/config/run_files.h"
+#include "common/run_folder/evaluation_file.h"
 #include "common/run_folder/run_file_names.h"
 #include "launch/record/json_fields.h"
 #include "launch/record/run_folder.h"
@@ -17,22 +18,19 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-EvaluationFigures FiguresOf(const json& object) {
-  EvaluationFigures figures;
-  const json& aggregate = object.at("aggregate");
-  object.at("env_steps").get_to(figures.env_steps);
-  if (const json& version = object.at("weights_version"); version.is_object()) {
-    version.at("update").get_to(figures.updates);
-  }
-  figures.wall_seconds = object.value("wall_seconds", 0.0);
-  figures.task = TextOrEmpty(object, "task");
-  figures.checkpoint = TextOrEmpty(object, "checkpoint");
-  figures.episodes = object.at("episodes").size();
-  figures.success = NumberOrNothing(aggregate.at("success_rate"));
-  aggregate.at("return_mean").get_to(figures.return_mean);
-  aggregate.at("return_std").get_to(figures.return_std);
-  figures.final_distance_mean = NumberOrNothing(aggregate.at("final_distance_mean"));
-  return figures;
+EvaluationFigures FiguresOf(const EvaluationSummary& summary, const std::string& source) {
+  const EvaluationAggregate& aggregate = summary.aggregate;
+  if (!aggregate.return_std) throw RuntimeError("{}: no 'aggregate.return_std'", source);
+  return {.env_steps = summary.env_steps,
+          .updates = summary.version ? summary.version->update : 0,
+          .wall_seconds = summary.wall_seconds,
+          .task = summary.task,
+          .checkpoint = summary.checkpoint.value_or(""),
+          .episodes = aggregate.episodes,
+          .success = aggregate.success_rate,
+          .return_mean = aggregate.return_mean,
+          .return_std = *aggregate.return_std,
+          .final_distance_mean = aggregate.final_distance_mean};
 }
 
 void ReadMeta(const json& meta, RunResults* results) {
@@ -77,15 +75,7 @@ uint64_t EvaluationFigures::Successes() const {
 }
 
 EvaluationFigures ReadEvaluationFigures(const fs::path& file) {
-  const json object = ParseStrictJson(ReadFile(file), file);
-  if (!object.is_object() || object.value("schema", json()) != kEvaluationSchema) {
-    throw RuntimeError("{}: expected an object of schema '{}'", file.string(), kEvaluationSchema);
-  }
-  try {
-    return FiguresOf(object);
-  } catch (const json::exception& e) {
-    throw RuntimeError("{}: {}", file.string(), e.what());
-  }
+  return FiguresOf(SummaryOf(ParseEvaluationObject(ReadFile(file), file), file), file);
 }
 
 fs::path NamedFolder(const fs::path& folder) {

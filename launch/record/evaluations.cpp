@@ -1,19 +1,12 @@
 #include "launch/record/evaluations.h"
 
-#include <fcntl.h>
-#include <unistd.h>
-
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
-#include <cstdio>
-#include <cstring>
 #include <nlohmann/json.hpp>
 
-#include "common/base/bounded_json.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
-#include "common/checkpoint/checkpoint_files.h"
+#include "common/run_folder/evaluation_file.h"
 #include "common/run_folder/run_file_names.h"
 
 namespace shoal::launch {
@@ -21,14 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::ordered_json;
-
-ordered_json ParseObject(const std::string& text, const std::string& source) {
-  ordered_json object = ParseBoundedJson<ordered_json>(text);
-  if (!object.is_object() || !object.contains("schema") || object["schema"] != kEvaluationSchema) {
-    throw RuntimeError("{}: expected an object of schema '{}'", source, kEvaluationSchema);
-  }
-  return object;
-}
 
 // It becomes a path below "checkpoints"; the text came over the network.
 bool IsPlainName(const std::string& name) {
@@ -48,26 +33,20 @@ void CheckFigures(const EvaluationPoint& point, const std::string& source) {
 }
 
 EvaluationPoint PointOf(const ordered_json& object, const std::string& source) {
-  EvaluationPoint point;
-  try {
-    const ordered_json& aggregate = object.at("aggregate");
-    object.at("env_steps").get_to(point.env_steps);
-    object.at("weights_version").at("session").get_to(point.learner_session);
-    object.at("weights_version").at("update").get_to(point.updates);
-    object.at("checkpoint").get_to(point.checkpoint);
-    aggregate.at("return_mean").get_to(point.mean_return);
-    aggregate.at("length_mean").get_to(point.mean_length);
-    if (const auto std = aggregate.find("return_std"); std != aggregate.end()) {
-      point.return_std = std->get<double>();
-    }
-    if (const ordered_json& success = aggregate.at("success_rate"); !success.is_null()) {
-      point.success = success.get<double>();
-    }
-    point.episodes = object.at("episodes").size();
-    point.wall_seconds = object.value("wall_seconds", 0.0);
-  } catch (const nlohmann::json::exception& e) {
-    throw RuntimeError("{}: {}", source, e.what());
+  const EvaluationSummary summary = SummaryOf(object, source);
+  if (!summary.checkpoint || !summary.version) {
+    throw RuntimeError("{}: expected a checkpoint and its weights_version", source);
   }
+  const EvaluationPoint point{.env_steps = summary.env_steps,
+                              .updates = summary.version->update,
+                              .wall_seconds = summary.wall_seconds,
+                              .success = summary.aggregate.success_rate,
+                              .mean_return = summary.aggregate.return_mean,
+                              .return_std = summary.aggregate.return_std,
+                              .mean_length = summary.aggregate.length_mean,
+                              .checkpoint = *summary.checkpoint,
+                              .episodes = summary.aggregate.episodes,
+                              .learner_session = summary.version->session};
   if (!IsPlainName(point.checkpoint)) {
     throw RuntimeError("{}: checkpoint '{}': expected a folder's name without a path", source,
                        point.checkpoint);
@@ -83,12 +62,12 @@ std::string SourceOf(const EvalMessage& message) {
 }  // namespace
 
 EvaluationPoint ParseEvaluation(const std::string& json, const std::string& source) {
-  return PointOf(ParseObject(json, source), source);
+  return PointOf(ParseEvaluationObject(json, source), source);
 }
 
 EvaluationPoint ParseEvaluation(const EvalMessage& message) {
   const std::string source = SourceOf(message);
-  EvaluationPoint point = PointOf(ParseObject(message.json, source), source);
+  EvaluationPoint point = PointOf(ParseEvaluationObject(message.json, source), source);
   if (point.env_steps != message.env_steps || point.updates != message.version.update ||
       point.learner_session != message.version.session || point.checkpoint != message.checkpoint) {
     throw RuntimeError("{}: its JSON tells of another one, at {} env steps, update {}", source,
@@ -100,8 +79,8 @@ EvaluationPoint ParseEvaluation(const EvalMessage& message) {
 EvaluationPoint StoreEvaluation(const fs::path& run, const EvalMessage& message,
                                 double wall_seconds) {
   const std::string source = SourceOf(message);
-  ordered_json object = ParseObject(message.json, source);
-  object["wall_seconds"] = wall_seconds;
+  ordered_json object = ParseEvaluationObject(message.json, source);
+  SetWallSeconds(wall_seconds, &object);
   EvaluationPoint point = PointOf(object, source);
   const std::string name = fmt::format("{}{:010}_updates_{:010}.json", kEvaluationPrefix,
                                        point.env_steps, point.updates);

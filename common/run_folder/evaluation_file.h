@@ -1,0 +1,98 @@
+// eval/*.json of a run (schema shoal-eval-1): one evaluation of a policy, episode by episode.
+// Written by who plays it; the coordinator adds wall_seconds to those of a run as they arrive. Read
+// by the coordinator when a run goes on, by reports and experiments.
+//
+//   {schema, task, policy, checkpoint, weights_version: {session, update}, env_steps,
+//   deterministic,
+//    cameras, seeds: [seed], stream: {role, group},
+//    episodes: [{seed, success, return, length, final_distance, action_smoothness, desired_goal,
+//                achieved_goal, failure, body_mass: {body: kg}}],
+//    aggregate: {episodes, success_rate, return_mean, return_std, length_mean,
+//    final_distance_mean}, commit, created, end_on_success, failures: {cause: episodes},
+//    episodes_asked, trained_task, wall_seconds}
+//
+// Null is what a task does not have (success, distances) and, of a policy without parameters,
+// checkpoint and weights_version. desired_goal to failure, and failures, are there where the task
+// has causes of failure; `failure` is null for a success. body_mass is there for randomized
+// episodes, end_on_success where it is so, episodes_asked where fewer were played, trained_task
+// where another task was played than the run's.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace shoal {
+
+struct EvaluatedEpisode {
+  int64_t seed = 0;  // number of the episode in its stream
+  std::optional<bool> success{};
+  double episode_return = 0;
+  int64_t length = 0;         // env steps
+  double final_distance = 0;  // m; not finite: the task has none
+  double action_smoothness = 0;
+  // Of tasks that have causes of failure: the goal and what was achieved at the end, in m.
+  struct Goal {
+    std::vector<double> desired, achieved;
+    std::string failure{};  // empty = none
+  };
+  std::optional<Goal> goal{};
+  std::vector<std::pair<std::string, double>> body_mass_kg{};
+};
+
+struct EvaluationAggregate {
+  size_t episodes = 0;
+  std::optional<double> success_rate{};
+  double return_mean = 0;
+  std::optional<double> return_std{};           // files of early versions have none
+  double length_mean = 0;                       // env steps
+  std::optional<double> final_distance_mean{};  // m
+};
+
+// What programs read of an evaluation.
+struct EvaluationSummary {
+  std::string task{};
+  // Of a checkpoint's policy alone: the folder's name and whose parameters it has.
+  struct Version {
+    uint64_t session = 0, update = 0;
+  };
+  std::optional<std::string> checkpoint{};
+  std::optional<Version> version{};
+  uint64_t env_steps = 0;
+  double wall_seconds = 0;  // since the run's start; 0 = not said
+  EvaluationAggregate aggregate{};
+};
+
+// The whole file.
+struct EvaluationFile {
+  EvaluationSummary summary{};
+  std::string policy{};  // "checkpoint" | "random" | "noop"
+  bool deterministic = true;
+  std::vector<std::string> cameras{};
+  int64_t seed = 0;
+  uint64_t stream_role = 0, stream_group = 0;
+  std::vector<EvaluatedEpisode> episodes{};
+  std::string commit{}, created{};
+  bool end_on_success = false;
+  // By cause, in the order in which they are asked; none for a task without causes.
+  std::optional<std::vector<std::pair<std::string, size_t>>> failures{};
+  std::optional<int> episodes_asked{};
+  std::optional<std::string> trained_task{};
+};
+
+nlohmann::ordered_json ToJson(const EvaluationFile& file);
+
+// The object of a text; `source` names it in errors. Throws Error unless it is one of this schema.
+nlohmann::ordered_json ParseEvaluationObject(const std::string& text, const std::string& source);
+
+// Throws Error naming `source` and the member: missing or of another type. Whether the figures can
+// be is not looked at.
+EvaluationSummary SummaryOf(const nlohmann::ordered_json& evaluation, const std::string& source);
+
+void SetWallSeconds(double wall_seconds, nlohmann::ordered_json* evaluation);
+
+}  // namespace shoal
