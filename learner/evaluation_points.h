@@ -32,7 +32,6 @@ class EvaluationPoints {
   // take at once is sent by Retry; a newer point takes the place of an unsent one.
   void Send(const std::string& checkpoint, uint64_t env_steps);
   void Retry();
-  bool AllSent() const { return !unsent_; }
 
   // Updates of the point handed out last; 0 = none yet.
   uint64_t last_updates() const { return last_updates_; }

@@ -34,7 +34,6 @@ void Start(const std::string& name, const std::string& file) {
   Logger()->flush_on(spdlog::level::info);
 }
 
-void WriteDebug(const std::string& line) { Logger()->debug(line); }
 void WriteInfo(const std::string& line) { Logger()->info(line); }
 void WriteWarning(const std::string& line) { Logger()->warn(line); }
 void WriteError(const std::string& line) { Logger()->error(line); }

@@ -12,15 +12,10 @@ namespace shoal::log {
 // A file that cannot be opened throws Error.
 void Start(const std::string& name, const std::string& file);
 
-void WriteDebug(const std::string& line);
 void WriteInfo(const std::string& line);
 void WriteWarning(const std::string& line);
 void WriteError(const std::string& line);
 
-template <class... Args>
-void Debug(fmt::format_string<Args...> format, Args&&... args) {
-  WriteDebug(fmt::format(format, std::forward<Args>(args)...));
-}
 template <class... Args>
 void Info(fmt::format_string<Args...> format, Args&&... args) {
   WriteInfo(fmt::format(format, std::forward<Args>(args)...));

@@ -3,7 +3,6 @@
 #include <charconv>
 #include <utility>
 
-#include "common/base/check.h"
 #include "common/base/error.h"
 #include "common/dds/dds_log.h"
 #include "common/dds/domain_xml.h"
@@ -103,15 +102,6 @@ Bus::Bus(const ClusterAddress& address, const TransportConfig& asked, Role role)
 }
 
 Bus::~Bus() = default;
-
-void Bus::SetDeafMute(bool deaf, bool mute, std::chrono::milliseconds reset_after) {
-  const dds_duration_t reset = DDS_MSECS(reset_after.count());
-  for (const Entity* domain : {&impl_->main_domain, &impl_->batch_domain, &impl_->operate_domain}) {
-    if (!*domain) continue;
-    const dds_return_t result = dds_domain_set_deafmute(domain->get(), deaf, mute, reset);
-    CHECK(result == DDS_RETCODE_OK) << dds_strretcode(-result);
-  }
-}
 
 std::map<std::string, uint64_t> Bus::Malformed() const {
   const MutexLock lock(impl_->mutex);

@@ -8,7 +8,6 @@
 // address.
 #pragma once
 
-#include <chrono>
 #include <cstdint>
 #include <map>
 #include <memory>
@@ -46,11 +45,6 @@ class Bus {
   ~Bus();
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;
-
-  // Drops everything that arrives (deaf) and that is sent (mute), in both domains, and ends both
-  // after `reset_after`. No program calls it: it is how tests cut a network, which from outside
-  // would take root.
-  void SetDeafMute(bool deaf, bool mute, std::chrono::milliseconds reset_after);
 
   // Messages that could not be read, by topic, since the bus was made; every topic that a
   // subscriber read at some time. Any thread.
