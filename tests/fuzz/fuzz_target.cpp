@@ -1,37 +1,27 @@
 #include "tests/fuzz/fuzz_target.h"
 
-#include <stdlib.h>
-
 #include <fstream>
 
 #include "common/base/check.h"
 #include "common/base/error.h"
+#include "tests/support/temporary_folder.h"
 
 namespace shoal::fuzz {
 namespace {
 
 namespace fs = std::filesystem;
 
-class ScratchFolder {
- public:
-  ScratchFolder() {
-    const fs::path memory = "/dev/shm";
-    std::error_code error;
-    const fs::path parent = fs::is_directory(memory, error) ? memory : fs::temp_directory_path();
-    std::string name = parent / "shoal-fuzz-XXXXXX";
-    // An Error (MakeFreshFolder) would pass for a refusal of the bytes.
-    CHECK(mkdtemp(name.data()) != nullptr) << name;
-    path_ = name;
-  }
-  ~ScratchFolder() {
-    std::error_code error;
-    fs::remove_all(path_, error);
-  }
-  const fs::path& path() const { return path_; }
+fs::path InMemory() {
+  const fs::path memory = "/dev/shm";
+  std::error_code error;
+  return fs::is_directory(memory, error) ? memory : fs::temp_directory_path();
+}
 
- private:
-  fs::path path_;
-};
+// An Error would pass for a refusal of the bytes: it ends the program.
+const TemporaryFolder& ScratchFolder() noexcept {
+  static const TemporaryFolder folder("shoal-fuzz-", InMemory());
+  return folder;
+}
 
 }  // namespace
 
@@ -51,10 +41,7 @@ int Try(const uint8_t* data, size_t size,
   return 0;
 }
 
-const fs::path& Scratch() {
-  static const ScratchFolder scratch;
-  return scratch.path();
-}
+const fs::path& Scratch() { return ScratchFolder().path(); }
 
 void WriteScratch(const fs::path& file, std::string_view content) {
   std::ofstream out(file, std::ios::binary | std::ios::trunc);

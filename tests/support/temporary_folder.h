@@ -1,9 +1,8 @@
 // A fresh folder that is removed with everything in it at the end of the test.
 #pragma once
 
-#include <gtest/gtest.h>
-
 #include <filesystem>
+#include <string>
 
 #include "common/base/files.h"
 
@@ -12,6 +11,8 @@ namespace shoal {
 class TemporaryFolder {
  public:
   TemporaryFolder() : path_(MakeFreshFolder()) {}
+  TemporaryFolder(const std::string& prefix, const std::filesystem::path& parent)
+      : path_(MakeFreshFolder(prefix, parent)) {}
   ~TemporaryFolder() { std::filesystem::remove_all(path_); }
   TemporaryFolder(const TemporaryFolder&) = delete;
   TemporaryFolder& operator=(const TemporaryFolder&) = delete;

@@ -4,13 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <deque>
-#include <memory>
 #include <set>
 #include <utility>
 #include <vector>
 
+#include "common/base/aligned_bytes.h"
 #include "tests/replay_server/record_script.h"
 
 namespace shoal::replay {
@@ -52,8 +51,8 @@ class BatchGatherTest : public testing::Test {
                    std::vector<std::string> privileged = {}) {
     schema_.emplace(spec_, BatchOptions{.batch = static_cast<int>(plan.elements.size()),
                                         .privileged = std::move(privileged)});
-    memory_.reset(static_cast<uint8_t*>(std::aligned_alloc(64, schema_->total_bytes())));
-    const BatchView view = schema_->View(memory_.get());
+    memory_ = AlignedBytes(schema_->total_bytes());
+    const BatchView view = schema_->View(memory_.data());
     const EpisodeIndex index(*ring_, {.stack = spec_.stack, .n_step = n_step.steps});
     BatchGather(*ring_, index, spec_, n_step, nullptr, schema_->options().privileged)
         .Gather(plan, view);
@@ -84,14 +83,11 @@ class BatchGatherTest : public testing::Test {
     return {bytes.begin(), bytes.end()};
   }
 
-  struct FreeBytes {
-    void operator()(uint8_t* data) const { std::free(data); }
-  };
   ObservationSpec spec_;
   std::optional<Ring> ring_;
   std::vector<std::vector<uint8_t>> records_;
   std::optional<BatchSchema> schema_;
-  std::unique_ptr<uint8_t[], FreeBytes> memory_;
+  AlignedBytes memory_;
 };
 
 TEST_F(BatchGatherTest, AStackAtAnEpisodesStartRepeatsTheFirstFrame) {
@@ -291,10 +287,10 @@ TEST_F(BatchGatherTest, APlanIsWholeOrNothing) {
 TEST_F(BatchGatherTest, ChecksTheShapeOfTheOutput) {
   Fill(TinySpec(1), 0);
   schema_.emplace(spec_, BatchOptions{.batch = 2});
-  memory_.reset(static_cast<uint8_t*>(std::aligned_alloc(64, schema_->total_bytes())));
+  memory_ = AlignedBytes(schema_->total_bytes());
   const BatchPlan plan{.elements = {{.id = 4, .obs = {}, .next_obs = {}}}};
   const EpisodeIndex index(*ring_, {});
-  EXPECT_DEATH(BatchGather(*ring_, index, spec_).Gather(plan, schema_->View(memory_.get())),
+  EXPECT_DEATH(BatchGather(*ring_, index, spec_).Gather(plan, schema_->View(memory_.data())),
                "a batch of 2 for a plan of 1");
 }
 

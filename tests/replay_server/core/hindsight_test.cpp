@@ -4,11 +4,10 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <functional>
 #include <map>
-#include <memory>
 
+#include "common/base/aligned_bytes.h"
 #include "common/tasks/task_registry.h"
 #include "replay_server/core/replay_core.h"
 #include "tests/replay_server/record_script.h"
@@ -90,18 +89,17 @@ class HindsightTest : public testing::Test {
                           .schema_hash = schema.Hash()});
     }
     asked_ = true;
-    memory_.reset(std::aligned_alloc(64, schema.total_bytes()));
-    auto* data = static_cast<uint8_t*>(memory_.get());
-    if (!core_->TryAnswer(data)) return std::nullopt;
+    memory_ = AlignedBytes(schema.total_bytes());
+    if (!core_->TryAnswer(memory_.data())) return std::nullopt;
     asked_ = false;
-    return schema.View(data);
+    return schema.View(memory_.data());
   }
 
   RunConfig run_ = PushRun();
   std::optional<ReplayCore> core_;
   uint64_t next_ = 1, allowed_ = 1, request_ = 0;
   bool asked_ = false;
-  std::unique_ptr<void, decltype(&std::free)> memory_{nullptr, &std::free};
+  AlignedBytes memory_;
 };
 
 TEST_F(HindsightTest, NothingIsSampledBeforeAnEpisodeHasEnded) {

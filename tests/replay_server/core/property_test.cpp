@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <map>
 #include <memory>
 #include <optional>
@@ -10,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "common/base/aligned_bytes.h"
 #include "replay_server/core/hindsight.h"
 #include "replay_server/core/replay_core.h"
 #include "replay_server/core/uniform_selector.h"
@@ -135,9 +135,8 @@ class History {
         DrawPlan({.batch = kBatch}, &selector, relabeller ? &*relabeller : nullptr, &random_);
     ASSERT_TRUE(plan.has_value());
     const BatchSchema schema(spec_, {.batch = kBatch, .privileged = privileged_});
-    const std::unique_ptr<void, decltype(&std::free)> memory(
-        std::aligned_alloc(64, schema.total_bytes()), &std::free);
-    const BatchView view = schema.View(static_cast<uint8_t*>(memory.get()));
+    const AlignedBytes memory(schema.total_bytes());
+    const BatchView view = schema.View(memory.data());
     BatchGather(server_->ring, server_->index, spec_,
                 {.steps = oracle_.n_step, .discount = kDiscount}, &goals_, privileged_)
         .Gather(*plan, view);

@@ -3,8 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
+#include <cstring>
 
+#include "common/base/aligned_bytes.h"
 #include "common/base/error.h"
 #include "common/config/batch_options.h"
 #include "tests/replay_server/record_script.h"
@@ -34,13 +35,11 @@ class ReplayCoreTest : public testing::Test {
   // The next batch's bytes; empty when nothing is answered.
   std::vector<uint8_t> Answer() {
     const uint64_t bytes = core_->batch_schema().total_bytes();
-    const std::unique_ptr<void, decltype(&std::free)> data(std::aligned_alloc(64, bytes),
-                                                           &std::free);
-    std::memset(data.get(), 0, bytes);
-    drawn_ = core_->TryAnswer(static_cast<uint8_t*>(data.get()));
+    const AlignedBytes memory(bytes);
+    std::memset(memory.data(), 0, bytes);
+    drawn_ = core_->TryAnswer(memory.data());
     if (!drawn_) return {};
-    const auto* begin = static_cast<const uint8_t*>(data.get());
-    return {begin, begin + bytes};
+    return {memory.data(), memory.data() + bytes};
   }
 
   RunConfig run_;

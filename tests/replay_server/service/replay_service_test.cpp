@@ -4,10 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
+#include <cstring>
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "common/base/aligned_bytes.h"
 #include "common/config/batch_options.h"
 #include "common/run_folder/run_file_names.h"
 #include "replay_server/core/replay_core.h"
@@ -66,10 +67,9 @@ class ReplayServiceTest : public testing::Test {
     }
     const BatchSchema schema = BatchSchemaOf(run_);
     ASSERT_EQ(batch.size(), schema.total_bytes());
-    const std::unique_ptr<void, decltype(&std::free)> memory(std::aligned_alloc(64, batch.size()),
-                                                             &std::free);
-    std::memcpy(memory.get(), batch.data(), batch.size());
-    const BatchView view = schema.View(static_cast<uint8_t*>(memory.get()));
+    const AlignedBytes memory(batch.size());
+    std::memcpy(memory.data(), batch.data(), batch.size());
+    const BatchView view = schema.View(memory.data());
     const size_t frame_bytes = static_cast<size_t>(layout.frame_bytes());
     for (const auto& stacks : {view.obs_frames, view.next_obs_frames}) {
       for (size_t offset = 0; offset < stacks.size(); offset += frame_bytes) {
