@@ -160,7 +160,7 @@ void BindPolicy(py::module_& module) {
           "What it was trained for: 'FetchReachDense'.")
       .def_property_readonly(
           "algorithm", [](const TrainedPolicy& policy) { return policy.description().algorithm; },
-          "What trained it: 'sac'.")
+          "What trained it: a value of learner.algorithm.")
       .def_property_readonly(
           "action_size", [](const TrainedPolicy& policy) { return policy.spec().action_size; },
           "A, the numbers of an action.")
