@@ -18,4 +18,19 @@ ExplorationKind ExplorationKindOf(const Config& config) {
   return LearnsDeviation(config) ? ExplorationKind::kSquashedGaussian : ExplorationKind::kGaussian;
 }
 
+std::string_view NameOf(ExplorationKind kind) {
+  switch (kind) {
+    case ExplorationKind::kSquashedGaussian:
+      return "squashed_gaussian";
+    case ExplorationKind::kGaussian:
+      return "gaussian";
+    case ExplorationKind::kOrnsteinUhlenbeck:
+      return "ou";
+    case ExplorationKind::kPolicy:
+      return "policy";
+  }
+  CHECK(false) << "an exploration without a name";
+  return "";
+}
+
 }  // namespace shoal

@@ -1,6 +1,8 @@
 // How a run's actors explore.
 #pragma once
 
+#include <string_view>
+
 #include "common/config/config.h"
 
 namespace shoal {
@@ -15,5 +17,8 @@ bool LearnsDeviation(const Config& config);
 // What exploration.kind says; `auto` is what the run's algorithm wants: its own Gaussian, or
 // Gaussian noise beside a deterministic policy.
 ExplorationKind ExplorationKindOf(const Config& config);
+
+// As exploration.kind has it; of kPolicy, which no key names, "policy".
+std::string_view NameOf(ExplorationKind kind);
 
 }  // namespace shoal

@@ -53,6 +53,30 @@ void ValidateVectors(const Config& config) {
   }
 }
 
+// Noise that the run's exploration does not add.
+void RefuseNoiseKeys(const Config& config) {
+  const ExplorationConfig &exploration = config.exploration, usual;
+  const ExplorationKind kind = ExplorationKindOf(config);
+  const bool is_ou = kind == ExplorationKind::kOrnsteinUhlenbeck;
+  const bool adds_noise = is_ou || kind == ExplorationKind::kGaussian;
+  struct NoiseKey {
+    const char* name;
+    bool is_set, fits;
+    const char* kinds;  // that take it
+  };
+  const NoiseKey keys[] = {
+      {"exploration.sigma", exploration.sigma != usual.sigma, adds_noise, "gaussian | ou"},
+      {"exploration.theta", exploration.theta != usual.theta, is_ou, "ou"},
+      {"exploration.dt", exploration.dt != usual.dt, is_ou, "ou"}};
+  for (const auto& [name, is_set, fits, kinds] : keys) {
+    if (!is_set || fits) continue;
+    throw UsageError(
+        "{}: actors explore by {} (exploration.kind = {}, learner.algorithm = {}), which does not "
+        "take it; expected it unset, or exploration.kind = {}",
+        name, NameOf(kind), exploration.kind, config.learner.algorithm, kinds);
+  }
+}
+
 void ValidateExploration(const Config& config) {
   const ExplorationConfig& exploration = config.exploration;
   if (exploration.kind == "squashed_gaussian" && !LearnsDeviation(config)) {
@@ -61,6 +85,7 @@ void ValidateExploration(const Config& config) {
         "deviation of its own; expected auto | gaussian | ou",
         config.learner.algorithm);
   }
+  RefuseNoiseKeys(config);
   if (exploration.theta * exploration.dt > 1) {
     throw UsageError(
         "exploration.theta = {}, exploration.dt = {}: expected a product of at most 1, else the "
@@ -97,6 +122,18 @@ void ValidateEntropy(const Config& config) {
                        key, learner.algorithm);
     }
   }
+}
+
+// Keys that another encoder would ignore.
+void ValidateCompact(const NetworkConfig& network) {
+  if (network.encoder == "compact") return;
+  const char* key = network.pool != 0          ? "network.pool"
+                    : !network.filters.empty() ? "network.filters"
+                    : !network.strides.empty() ? "network.strides"
+                                               : nullptr;
+  if (key == nullptr) return;
+  throw UsageError("{} belongs to network.encoder = compact: expected not to be set beside {}", key,
+                   network.encoder);
 }
 
 // The keys of encoders besides the critic's.
@@ -200,6 +237,7 @@ void Validate(const Config& config) {
   ValidateOnPolicy(config);
   ValidateVectors(config);
   ValidateExploration(config);
+  ValidateCompact(config.network);
   if (!LearnsOnPolicy(config)) ValidateEntropy(config);
   if (config.run_dir.empty()) throw UsageError("run_dir = \"\": expected a folder");
   if (config.transport.interface.empty()) {

@@ -10,17 +10,6 @@ namespace {
 
 constexpr int kMostSide = 1024;  // of an image: the range of observation.height
 
-// Keys that another encoder would ignore.
-void RefuseCompactKeys(const NetworkConfig& network) {
-  const char* key = network.pool != 0          ? "network.pool"
-                    : !network.filters.empty() ? "network.filters"
-                    : !network.strides.empty() ? "network.strides"
-                                               : nullptr;
-  if (key == nullptr) return;
-  throw UsageError("{} belongs to network.encoder = compact: expected not to be set beside {}", key,
-                   network.encoder);
-}
-
 NetworkPlan BuildEncoder(const EncoderKind& kind, const NetworkConfig& network,
                          const MapShape& images, const std::string& name) {
   NetworkPlan plan(images);
@@ -89,7 +78,6 @@ NetworkPlan PlanEncoder(const NetworkConfig& network, const ObservationSpec& spe
                         const std::string& name) {
   if (!spec.HasPixels()) return {};
   const EncoderKind& kind = FindEncoderKind(network.encoder);
-  if (kind.name != "compact") RefuseCompactKeys(network);
   const MapShape images{spec.InputChannels(), spec.height, spec.width};
   try {
     return BuildEncoder(kind, network, images, name);

@@ -146,6 +146,7 @@ TEST(ScheduleKey, SamplesPerInsertIsANumberOrAScheduleAboveZero) {
 
 TEST(ExplorationKeys, AreCheckedTogether) {
   Config config;
+  config.exploration.kind = "ou";
   config.exploration.theta = 100;
   config.exploration.dt = 0.01;
   Validate(config);

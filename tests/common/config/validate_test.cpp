@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <string>
+#include <string_view>
 
 #include "common/config/config_io.h"
 #include "tests/support/error_message.h"
@@ -32,6 +33,55 @@ TEST(Validate, AnImageGoalNeedsPixelsAndAReplay) {
                 config->learner.batch = 64;
               }),
               HasSubstr("carry no goal pictures"));
+}
+
+// Whether or not there are pixels that it would encode.
+TEST(Validate, KeysOfTheCompactEncoderAreRefusedBesideAnother) {
+  for (const bool pixels : {true, false}) {
+    for (const char* assignment :
+         {"network.pool=2", "network.filters=[32]", "network.strides=[2,1,2]"}) {
+      const auto refusal = [&](const char* encoder) {
+        return Refusal([&](Config* c) {
+          c->observation.pixels = pixels;
+          c->observation.proprioception = !pixels;
+          ApplyAssignments({std::string("network.encoder=") + encoder, assignment}, c);
+        });
+      };
+      const std::string key(assignment, std::string_view(assignment).find('='));
+      EXPECT_EQ(refusal("compact"), "") << key;
+      EXPECT_EQ(refusal("drq"), key +
+                                    " belongs to network.encoder = compact: expected not to be "
+                                    "set beside drq");
+    }
+  }
+}
+
+TEST(Validate, NoiseThatTheExplorationDoesNotAddIsRefused) {
+  const auto refusal = [](const char* algorithm, const char* kind, const char* noise) {
+    return Refusal([&](Config* c) {
+      c->learner.algorithm = algorithm;
+      c->exploration.kind = kind;
+      ApplyAssignments({noise}, c);
+    });
+  };
+  EXPECT_EQ(refusal("sac", "auto", "exploration.sigma=0.3"),
+            "exploration.sigma: actors explore by squashed_gaussian (exploration.kind = auto, "
+            "learner.algorithm = sac), which does not take it; expected it unset, or "
+            "exploration.kind = gaussian | ou");
+  EXPECT_EQ(refusal("td3", "auto", "exploration.theta=0.2"),
+            "exploration.theta: actors explore by gaussian (exploration.kind = auto, "
+            "learner.algorithm = td3), which does not take it; expected it unset, or "
+            "exploration.kind = ou");
+  EXPECT_THAT(refusal("sac", "squashed_gaussian", "exploration.sigma=linear(0.1,0,1000)"),
+              HasSubstr("exploration.sigma"));
+  EXPECT_THAT(refusal("ddpg", "gaussian", "exploration.dt=0.02"), HasSubstr("exploration.dt"));
+  EXPECT_THAT(refusal("sac", "gaussian", "exploration.theta=0.2"), HasSubstr("exploration.theta"));
+  EXPECT_EQ(refusal("td3", "auto", "exploration.sigma=0.3"), "");
+  EXPECT_EQ(refusal("sac", "gaussian", "exploration.sigma=0.3"), "");
+  for (const char* noise :
+       {"exploration.sigma=0.3", "exploration.theta=0.2", "exploration.dt=0.02"}) {
+    EXPECT_EQ(refusal("sac", "ou", noise), "");
+  }
 }
 
 TEST(Validate, APolicyWithoutEntropyTakesNoKeysOfIt) {

@@ -56,9 +56,11 @@ TEST(NetworkCheck, ArraysThatAnIntCannotCountAreRefusedNamingKeyLayerAndBatch) {
 
 TEST(NetworkCheck, AnEncoderThatDoesNotFitIsRefused) {
   NetworkConfig network;
-  network.encoder = "nature";
-  network.pool = 2;
-  EXPECT_THAT(Refusal(network), testing::HasSubstr("network.pool belongs to network.encoder"));
+  network.encoder = "spatial_softmax";
+  ObservationSpec odd = Pixels();
+  odd.width = 63;
+  EXPECT_THAT(UsageMessage([&] { CheckNetwork(network, odd, 1, kMost); }),
+              testing::HasSubstr("even sides, not 84x63"));
 }
 
 TEST(NetworkCheck, StatisticsOfOneValueAreRefusedNamingBatchAndLayer) {

@@ -231,18 +231,6 @@ TEST(EncoderKinds, ImagesTooSmallAreRefusedNamingTheSmallestThatFit) {
   EXPECT_NO_THROW(Encoder("resnet18", 8, 8));
 }
 
-TEST(EncoderKinds, KeysOfTheCompactEncoderAreRefusedBesideAnother) {
-  for (const char* assignment :
-       {"network.pool=2", "network.filters=[32]", "network.strides=[2,1,2]"}) {
-    Config config;
-    ApplyAssignments({"network.encoder=drq", assignment}, &config);
-    const std::string key(assignment, std::string_view(assignment).find('='));
-    EXPECT_THAT(
-        [&] { PlanEncoder(config.network, Images(84, 84)); },
-        ThrowsMessage<Error>(AllOf(HasSubstr(key), HasSubstr("compact"), HasSubstr("drq"))));
-  }
-}
-
 TEST(EncoderKinds, CompactTakesItsKeysAndChecksThem) {
   NetworkConfig network;
   network.filters = {8, 4};
