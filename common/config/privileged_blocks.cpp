@@ -1,6 +1,6 @@
 #include "common/config/privileged_blocks.h"
 
-#include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <set>
@@ -10,9 +10,12 @@
 namespace shoal {
 namespace {
 
-std::string BlocksOf(const ObservationSpec& spec) {
+enum class Which { kRecorded, kUnobserved };
+
+std::string BlocksOf(const ObservationSpec& spec, Which which) {
   std::string blocks;
   for (const BlockSpec& block : spec.blocks) {
+    if (which == Which::kUnobserved && block.observed) continue;
     blocks += fmt::format("{}{} ({})", blocks.empty() ? "" : ", ", block.name, block.size);
   }
   return blocks.empty() ? "none" : blocks;
@@ -22,7 +25,7 @@ int SizeOf(const char* key, const std::string& block, const ObservationSpec& spe
   const auto range = spec.Recorded(block);
   if (!range) {
     throw UsageError("{}: {} records no block '{}'; expected some of: {}", key, spec.task, block,
-                     BlocksOf(spec));
+                     BlocksOf(spec, Which::kRecorded));
   }
   return range->size;
 }
@@ -33,6 +36,15 @@ std::vector<std::string> CriticBlocks(const StateBlocks& asked, const Observatio
   for (const BlockSpec& block : spec.blocks) {
     const bool named = asked.all || std::ranges::count(asked.names, block.name) > 0;
     if (named && !block.observed) critic.push_back(block.name);
+  }
+  // Without pixels and without a block more than the policy has, it would judge blindly.
+  if (asked && critic.empty()) {
+    throw UsageError(
+        "learner.critic_blocks: the policy of {} observes all of {}, which leaves the critic "
+        "nothing in place of the pixels; expected some of those that it does not observe: {}",
+        spec.task,
+        asked.all ? "the recorded blocks" : fmt::format("{}", fmt::join(asked.names, ", ")),
+        BlocksOf(spec, Which::kUnobserved));
   }
   return critic;
 }

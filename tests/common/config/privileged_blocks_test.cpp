@@ -55,6 +55,21 @@ TEST(PrivilegedBlocks, ACriticWithoutPixelsIsToldTheGoalThatAPictureShows) {
               testing::HasSubstr("expected 'desired_goal' among them"));
 }
 
+TEST(PrivilegedBlocks, ACriticThatWouldSeeNothingInPlaceOfThePixelsIsRefused) {
+  EXPECT_EQ(UsageMessage([] {
+              PrivilegedBlocksOf(Asking(StateBlocks({"desired_goal", "grip"})), PushSpec());
+            }),
+            "learner.critic_blocks: the policy of FetchPush observes all of desired_goal, grip, "
+            "which leaves the critic nothing in place of the pixels; expected some of those that "
+            "it does not observe: object (3), object-like (3), fingers (2)");
+  ObservationSpec state = PushSpec();
+  for (BlockSpec& block : state.blocks) block.observed = true;
+  EXPECT_EQ(UsageMessage([&] { PrivilegedBlocksOf(Asking(true), state); }),
+            "learner.critic_blocks: the policy of FetchPush observes all of the recorded blocks, "
+            "which leaves the critic nothing in place of the pixels; expected some of those that "
+            "it does not observe: none");
+}
+
 TEST(PrivilegedBlocks, AreNoneUnlessAskedFor) {
   EXPECT_THAT(PrivilegedBlocksOf(Asking(false), PushSpec()).all, IsEmpty());
   EXPECT_THAT(PrivilegedBlocksOf(Asking(true), PushSpec()).all,
