@@ -149,6 +149,39 @@ TEST(Evaluator, StoppedItHasTheFirstEpisodesAsIfNoMoreHadBeenAsked) {
   EXPECT_GT(partial, 3u);
 }
 
+// What the policy sees first in each episode.
+class FirstPictures final : public SeatListener {
+ public:
+  void OnBegin(uint64_t, std::span<const uint8_t> stack) override {
+    seen.emplace_back(stack.begin(), stack.end());
+  }
+  void OnStep(const SeenStep&) override {}
+
+  std::vector<std::vector<uint8_t>> seen;
+};
+
+// The arm starts every episode in the same place: two first pictures differ by their goals alone.
+TEST(Evaluator, WithHindsightThePolicysPicturesDoNotShowTheGoal) {
+  for (const bool hindsight : {false, true}) {
+    RunConfig run = RunOf("FetchReach");
+    run.config.observation.goal_mode = "desired";
+    run.config.observation.height = run.config.observation.width = 48;
+    run.config.replay.hindsight = hindsight ? "future" : "none";
+    run.config.eval.envs = 1;
+    run.config.network.hidden = {8};
+    run.spec =
+        worlds::MakeEnvironment(run.config, worlds::MakeRenderContext(run.config.observation))
+            ->spec();
+    Evaluator evaluator(run, /*noop=*/true);
+    FirstPictures pictures;
+    evaluator.Listen(&pictures);
+    evaluator.Play(2, {7, StreamRole::kEvalEnvironment, 0},
+                   [&] { return pictures.seen.size() == 2; });
+    ASSERT_EQ(pictures.seen.size(), 2u);
+    EXPECT_EQ(pictures.seen[0] == pictures.seen[1], hindsight);
+  }
+}
+
 // A checkpoint whose policy nobody could load: it must be refused before that is tried.
 class EvaluateCheckpointTest : public testing::Test {
  protected:

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "actor/evaluation/evaluation.h"
 #include "common/base/error.h"
 #include "tests/support/temporary_folder.h"
 
@@ -98,6 +99,36 @@ TEST_F(FrameRecorderTest, HoldsThePolicysInputsAndALargerViewOfTheSameEpisode) {
     for (size_t channel = 0; channel < 3; ++channel) {
       ASSERT_EQ(frames[0].view[3 * pixel + channel], planes[channel * 40 * 60 + pixel]) << pixel;
     }
+  }
+}
+
+// As a film is made: the evaluation's own seat, and the view beside it.
+TEST_F(FrameRecorderTest, WithHindsightTheViewAloneShowsTheGoal) {
+  for (const bool hindsight : {false, true}) {
+    RunConfig run = run_;
+    run.config.observation.goal_mode = "desired";
+    run.config.observation.height = run.config.observation.width = 48;
+    run.config.replay.hindsight = hindsight ? "future" : "none";
+    run.config.eval.envs = 1;
+    run.config.network.hidden = {8};
+    run.spec =
+        worlds::MakeEnvironment(run.config, worlds::MakeRenderContext(run.config.observation))
+            ->spec();
+    Evaluator evaluator(run, /*noop=*/true);
+    {
+      FrameRecorder recorder(run, Options());
+      evaluator.Listen(&recorder);
+      int asked = 0;  // before each step: no more than the second episode's first one
+      evaluator.Play(2, {7, StreamRole::kFinalEnvironment, 0}, [&] { return asked++ == 51; });
+      evaluator.Listen(nullptr);
+    }
+    std::vector<image::ShownFrame> first;
+    for (image::ShownFrame& frame : Read()) {
+      if (frame.record.step == 0) first.push_back(std::move(frame));
+    }
+    ASSERT_EQ(first.size(), 2u);
+    EXPECT_NE(first[0].view, first[1].view) << "the goals are two";
+    EXPECT_EQ(first[0].input == first[1].input, hindsight);
   }
 }
 
