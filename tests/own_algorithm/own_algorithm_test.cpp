@@ -2,19 +2,25 @@
 #include <gmock/gmock.h>
 
 #include "averaged_ddpg.h"
-#include "common/base/error.h"
+#include "common/config/config_io.h"
+#include "common/config/exploration_kind.h"
+#include "common/config/run_files.h"
 #include "common/nn/policy.h"
 #include "strided_encoder.h"
 #include "tests/learner/agent/agent_fixture.h"
+#include "tests/support/temporary_folder.h"
 
 namespace shoal::learner {
 namespace {
 
 using nn::Precision;
 
-std::unique_ptr<Agent> SmallAgent() {
-  return MakeAveragedDdpgAgent(SmallConfig(), SmallSpec(), Precision::kF32);
+Config OwnConfig(Config config = SmallConfig()) {
+  ApplyAssignments({"learner.algorithm=averaged_ddpg"}, &config);
+  return config;
 }
+
+std::unique_ptr<Agent> SmallAgent() { return MakeAgent(OwnConfig(), SmallSpec(), Precision::kF32); }
 
 UpdateOutcome UpdateWith(Agent* agent, uint64_t key) {
   return agent->Update(RandomBatch(SmallSpec(), SmallConfig().learner.batch, key).View());
@@ -29,17 +35,28 @@ TEST(OwnAlgorithm, ReportsItsFiguresInTheirOrder) {
   EXPECT_GT(Get(outcome, kCriticSpread), 0);
 }
 
-// The line that the page adds to kAlgorithms.
 TEST(OwnAlgorithm, ItsLineSaysWhatItIs) {
-  constexpr Algorithm kLine = {.name = "averaged_ddpg",
-                               .figures = kAveragedDdpgFigures,
-                               .critics = 3,
-                               .make = MakeAveragedDdpgAgent};
-  const auto tensors = kLine.make(SmallConfig(), SmallSpec(), Precision::kF32)->AllTensors();
-  for (int i = 1; i <= kLine.critics; ++i) {
+  const Algorithm& line = FindAlgorithm("averaged_ddpg");
+  const auto tensors = SmallAgent()->AllTensors();
+  for (int i = 1; i <= line.critics; ++i) {
     EXPECT_TRUE(tensors.contains("critic.q" + std::to_string(i) + ".output.weight")) << i;
   }
   EXPECT_FALSE(tensors.contains("critic.q4.output.weight"));
+  EXPECT_EQ(FindFigure("critic_spread"), &kCriticSpread);
+}
+
+// As a learner gets it: from the configuration in a run's folder.
+TEST(OwnAlgorithm, ARunThatNamesItMakesIt) {
+  const TemporaryFolder folder;
+  RunConfig run{OwnConfig(), SmallSpec()};
+  ApplyAssignments({"network.encoder=strided", "network.filters=[]", "network.strides=[]"},
+                   &run.config);
+  WriteRunConfig(folder.path(), run);
+  const RunConfig read = ReadRunConfig(folder.path());
+  EXPECT_EQ(ExplorationKindOf(read.config), ExplorationKind::kGaussian) << "it has no deviation";
+  const auto tensors = MakeAgent(read.config, read.spec, Precision::kF32)->AllTensors();
+  EXPECT_TRUE(tensors.contains("critic.q3.output.weight"));
+  EXPECT_EQ(tensors.at("encoder.conv2.weight").shape, (std::vector<int64_t>{32, 32, 5, 5}));
 }
 
 TEST(OwnAlgorithm, GoesOnByteForByteFromWhatItLeft) {
@@ -65,7 +82,7 @@ TEST(OwnAlgorithm, AnUpdateThatIsNotFiniteChangesNothing) {
   EXPECT_THAT(Differences(before, agent->AllTensors()), ::testing::IsEmpty());
 }
 
-TEST(OwnAlgorithm, LearnsABandit) { EXPECT_LT(BanditError(Config(), MakeAveragedDdpgAgent), 0.08); }
+TEST(OwnAlgorithm, LearnsABandit) { EXPECT_LT(BanditError(OwnConfig(Config()), MakeAgent), 0.08); }
 
 TEST(OwnEncoder, IsAPlanFromWhichShapesAndParametersFollow) {
   nn::NetworkPlan plan(nn::MapShape{.channels = 9, .height = 84, .width = 84});
@@ -78,6 +95,64 @@ TEST(OwnEncoder, IsAPlanFromWhichShapesAndParametersFollow) {
   nn::NetworkPlan small(nn::MapShape{.channels = 3, .height = 1, .width = 1});
   nn::AddStrided(NetworkConfig(), "encoder", &small);
   EXPECT_EQ(small.output().height, 1) << "padding keeps what is small";
+}
+
+// A grey picture of 16x16 on which a bright bar stands at column x: place -1 is the left side, 1
+// the right one.
+constexpr int kSide = 16, kBar = 3;
+
+float DrawBar(int x, std::span<uint8_t> picture) {
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const int column = i % kSide;
+    picture[size_t(i)] = column >= x && column < x + kBar ? 230 : 20;
+  }
+  return 2 * float(x) / float(kSide - kBar) - 1;
+}
+
+ObservationSpec BarSpec() {
+  ObservationSpec spec;
+  spec.task = "bars";
+  spec.cameras = {"front"};
+  spec.channels = 1;
+  spec.height = spec.width = kSide;
+  spec.stack = 1;
+  spec.action_size = 1;
+  return spec;
+}
+
+// A bandit on pictures: reward -(a - place / 2)^2, every step terminal. A critic that does not see
+// where the bar stands is left with a loss of 25 (E[a^2] / 3 + 1 / 180) = 2.9 at best, three of
+// them with 8.7.
+TEST(OwnEncoder, LearnsABanditOnPictures) {
+  Config config = OwnConfig(Config());
+  ApplyAssignments(
+      {"network.encoder=strided", "network.hidden=[32]", "learner.batch=32",
+       "learner.learning_rate=2e-3", "learner.actor_learning_rate=1e-4", "learner.reward_scale=5"},
+      &config);
+  const auto agent = MakeAgent(config, BarSpec(), Precision::kF32);
+  const nn::TensorMap start = agent->PolicyTensors();
+  constexpr uint64_t kUpdates = 300, kWindow = 20;
+  double first = 0, last = 0;  // the loss, over a window
+  Random random(1);
+  for (uint64_t u = 0; u < kUpdates; ++u) {
+    const RandomBatch batch(BarSpec(), config.learner.batch, u);
+    const BatchView view = batch.View();
+    for (size_t b = 0; b < view.reward.size(); ++b) {
+      const auto picture = view.obs_frames.subspan(b * kSide * kSide, size_t{kSide} * kSide);
+      const float place = DrawBar(int(random.Next() % (kSide - kBar + 1)), picture);
+      const float error = view.action[b] - place / 2;
+      view.reward[b] = -error * error;
+      view.bootstrap[b] = 0;
+    }
+    const UpdateOutcome outcome = agent->Update(view);
+    ASSERT_TRUE(outcome.finite);
+    if (u < kWindow) first += Get(outcome, kCriticLoss) / kWindow;
+    if (u >= kUpdates - kWindow) last += Get(outcome, kCriticLoss) / kWindow;
+  }
+  EXPECT_GT(first, 8.7);
+  EXPECT_LT(last, 4);
+  // All of it is trained: weights and biases of three convolutions.
+  EXPECT_EQ(Differences(start, agent->PolicyTensors(), "encoder.").size(), 6u);
 }
 
 }  // namespace

@@ -8,6 +8,21 @@
 #include "common/base/error.h"
 
 namespace shoal::nn {
+namespace {
+
+constexpr EncoderKind kEncoderKinds[] = {
+    {.name = "compact", .add = AddCompact},
+    {.name = "drq", .add = AddDrq},
+    {.name = "mrq", .add = AddMrq},
+    {.name = "nature", .add = AddNature, .features = 512, .relu_trunk = true},
+    {.name = "resnet18", .add = AddResnet18},
+    {.name = "alexnet", .add = AddAlexnet},
+    {.name = "spatial_softmax", .add = AddSpatialSoftmax},
+};
+
+}  // namespace
+
+std::span<const EncoderKind> EncoderKinds() { return kEncoderKinds; }
 
 const EncoderKind& FindEncoderKind(std::string_view name) {
   std::vector<std::string_view> names;

@@ -1,7 +1,7 @@
 // Encoders: networks from pixels to a feature map, one kind a file. `network.encoder` names it.
 //
-// A further kind is a file beside these, a declaration and a line in the list below, and its word
-// in the key's choices (common/config/config_keys.cpp).
+// A further kind is a file beside these, a declaration, a line in the list of encoder_kind.cpp, and
+// its word in the key's choices (common/config/config_keys.cpp).
 #pragma once
 
 #include <initializer_list>
@@ -41,16 +41,7 @@ void AddAlexnet(const NetworkConfig& network, const std::string& prefix, Network
 // Two convolutions of images of half the size, then points: common/nn/spatial_softmax.h.
 void AddSpatialSoftmax(const NetworkConfig& network, const std::string& prefix, NetworkPlan* plan);
 
-inline constexpr EncoderKind kEncoderKinds[] = {
-    {.name = "compact", .add = AddCompact},
-    {.name = "drq", .add = AddDrq},
-    {.name = "mrq", .add = AddMrq},
-    {.name = "nature", .add = AddNature, .features = 512, .relu_trunk = true},
-    {.name = "resnet18", .add = AddResnet18},
-    {.name = "alexnet", .add = AddAlexnet},
-    {.name = "spatial_softmax", .add = AddSpatialSoftmax},
-};
-
+std::span<const EncoderKind> EncoderKinds();
 // Throws Error (kUsage) naming an unknown kind and those there are.
 const EncoderKind& FindEncoderKind(std::string_view name);
 

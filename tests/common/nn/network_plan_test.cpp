@@ -186,7 +186,7 @@ TEST(EncoderKinds, ResnetStartsAsTorchvisionsWithPyTorchsInitialisation) {
 }
 
 TEST(EncoderKinds, AreTheWordsThatTheKeyTakes) {
-  for (const EncoderKind& kind : kEncoderKinds) {
+  for (const EncoderKind& kind : EncoderKinds()) {
     Config config;
     ApplyAssignments({fmt::format("network.encoder={}", kind.name)}, &config);
     EXPECT_EQ(FindEncoderKind(config.network.encoder).name, kind.name);
@@ -199,7 +199,7 @@ TEST(EncoderKinds, AreTheWordsThatTheKeyTakes) {
 }
 
 TEST(EncoderKinds, EachFitsThePresetForPixels) {
-  for (const EncoderKind& kind : kEncoderKinds) {
+  for (const EncoderKind& kind : EncoderKinds()) {
     Config config = LoadPreset("fetch-reach-drq");
     ApplyAssignments({fmt::format("network.encoder={}", kind.name)}, &config);
     EXPECT_NO_THROW(PlanEncoder(config.network, Images(84, 84))) << kind.name;

@@ -17,7 +17,7 @@ using testing::HasSubstr;
 
 std::vector<PolicyKind> AllKinds() {
   std::vector<std::string> encoders{""};
-  for (const nn::EncoderKind& kind : nn::kEncoderKinds) encoders.emplace_back(kind.name);
+  for (const nn::EncoderKind& kind : nn::EncoderKinds()) encoders.emplace_back(kind.name);
   std::vector<PolicyKind> kinds;
   for (const std::string& encoder : encoders) {
     for (const ActorOutput output :

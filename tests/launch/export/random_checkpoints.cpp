@@ -51,7 +51,7 @@ int Main(const fs::path& folder, const std::string& text) {
     write(algorithm + "-state", policy::SmallRun(algorithm, /*pixels=*/false));
     write(algorithm + "-sb3-state", Sb3Run(algorithm, /*pixels=*/false));
     write(algorithm + "-sb3", Sb3Run(algorithm, /*pixels=*/true));
-    for (const nn::EncoderKind& kind : nn::kEncoderKinds) {
+    for (const nn::EncoderKind& kind : nn::EncoderKinds()) {
       RunConfig run = policy::SmallRun(algorithm, /*pixels=*/true);
       run.config.network.encoder = kind.name;
       run.config.network.filters.clear();
