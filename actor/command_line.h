@@ -18,6 +18,7 @@ struct Options {
   std::string run, role = "train", config_json, checkpoint, json;
   uint32_t id = 0;
   CheckpointEvaluation evaluation;
+  bool progress = false;
   FrameRecorder::Options frames;
   bool describe = false, stop_with_input = false;
   dds::Reach reach;

@@ -69,6 +69,11 @@ int Describe(const Options& options) {
 int Evaluate(const Options& options) {
   CheckpointEvaluation evaluation = options.evaluation;
   if (!options.frames.file.empty()) evaluation.frames = options.frames;
+  if (options.progress) {
+    evaluation.on_ended = [asked = evaluation.episodes](int ended) {
+      std::cout << ended << " of " << asked << " episodes" << std::endl;
+    };
+  }
   const std::string result =
       EvaluateCheckpoint(options.run, options.checkpoint, evaluation).dump(2);
   if (options.json.empty()) {

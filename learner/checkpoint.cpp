@@ -3,6 +3,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <utility>
 
 #include "common/base/error.h"
 #include "common/nn/policy.h"
@@ -26,19 +27,11 @@ void WriteCheckpoint(const std::filesystem::path& parent, const CheckpointState&
 }
 
 Checkpoint ReadCheckpoint(const std::filesystem::path& folder, uint64_t spec_hash) {
-  const CheckpointFiles files = ReadCheckpointFiles(folder, spec_hash);
+  CheckpointFiles files = ReadCheckpointFiles(folder, spec_hash);
   return {.state = files.state,
           .tensors = nn::ReadSafetensors(files.learner, (folder / kLearnerFile).string()),
+          .description = std::move(files.description),
           .folder = folder};
-}
-
-void CheckAlgorithm(const Checkpoint& checkpoint, const std::string& asked) {
-  const std::string& wrote = checkpoint.state.algorithm;
-  if (wrote == asked) return;
-  throw UsageError(
-      "{} was written by the algorithm \"{}\", learner.algorithm = \"{}\": go on with --set "
-      "learner.algorithm={}, or begin a new run",
-      checkpoint.folder.filename().string(), wrote, asked, wrote);
 }
 
 std::string CheckPrecision(const Checkpoint& checkpoint, const std::string& asked,

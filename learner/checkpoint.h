@@ -15,7 +15,8 @@ namespace shoal::learner {
 
 struct Checkpoint {
   CheckpointState state;
-  nn::TensorMap tensors;  // of learner.safetensors
+  nn::TensorMap tensors;    // of learner.safetensors
+  std::string description;  // policy.json; empty: it has none
   std::filesystem::path folder;
 };
 
@@ -26,10 +27,6 @@ void WriteCheckpoint(const std::filesystem::path& parent, const CheckpointState&
 
 // As ReadCheckpointFiles.
 Checkpoint ReadCheckpoint(const std::filesystem::path& folder, uint64_t spec_hash);
-
-// A checkpoint goes on with the algorithm that wrote it alone. Throws Error (kUsage) naming both
-// where `asked`, learner.algorithm, is another one.
-void CheckAlgorithm(const Checkpoint& checkpoint, const std::string& asked);
 
 // A run goes on exactly only in the precision it was computed in. `asked` is learner.precision,
 // `chosen` what became of it on this machine. Where they differ: throws Error (kUsage) saying what

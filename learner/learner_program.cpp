@@ -14,6 +14,7 @@
 #include "common/config/session_number.h"
 #include "common/dds/subscriber.h"
 #include "common/nn/encoder_weights.h"
+#include "common/policy/checkpoint_writer.h"
 #include "common/run_folder/run_file_names.h"
 #include "common/wire/process_name.h"
 #include "learner/agent/algorithms.h"
@@ -82,7 +83,8 @@ class Learner {
       StartFresh();
       return std::nullopt;
     }
-    CheckAlgorithm(*checkpoint, run_.config.learner.algorithm);
+    policy::CheckWriter(checkpoint->folder, checkpoint->state, checkpoint->description,
+                        run_.config);
     const std::string warning =
         CheckPrecision(*checkpoint, run_.config.learner.precision, precision_);
     if (!warning.empty()) log::Warning("{}", warning);

@@ -113,7 +113,8 @@ void Evaluator::Begin(int e, int64_t episode, const EpisodeStream& stream) {
 }
 
 std::vector<EpisodeResult> Evaluator::Play(int episodes, const EpisodeStream& stream,
-                                           const std::function<bool()>& stop) {
+                                           const std::function<bool()>& stop,
+                                           const std::function<void(int ended)>& on_ended) {
   for (Player& player : players_) player.seat.Abandon();  // of a call that was stopped
   std::vector<EpisodeResult> results(static_cast<size_t>(episodes));
   std::vector<bool> ended(results.size());
@@ -138,6 +139,7 @@ std::vector<EpisodeResult> Evaluator::Play(int episodes, const EpisodeStream& st
       result = {.seed = episode, .figures = seat.figures()};
       ended[static_cast<size_t>(episode)] = true;
       ++done;
+      if (on_ended) on_ended(done);
       if (!facts.applies()) continue;
       result.desired = facts.desired();
       result.achieved = facts.achieved();
@@ -201,7 +203,7 @@ ordered_json EvaluateCheckpoint(const std::filesystem::path& run_folder,
   if (evaluation.frames) evaluator.Listen(&recorder.emplace(run, *evaluation.frames));
   const EpisodeStream stream{evaluation.seed, StreamRole::kFinalEnvironment, 0};
   const std::vector<EpisodeResult> results =
-      evaluator.Play(evaluation.episodes, stream, StopRequested);
+      evaluator.Play(evaluation.episodes, stream, StopRequested, evaluation.on_ended);
   const bool whole = results.size() == static_cast<size_t>(evaluation.episodes);
   if (!whole && (!evaluation.partial || results.empty())) {
     throw RuntimeError("evaluation of '{}' interrupted", checkpoint.string());

@@ -63,9 +63,11 @@ class Evaluator {
 
   // Plays `episodes` whole episodes, actions by the mean of the policy (or uniform random before
   // any weights). When `stop`, asked after each step, says so before they are done: those of the
-  // first that are, up to one that is not, so that short episodes are not preferred.
+  // first that are, up to one that is not, so that short episodes are not preferred. `on_ended` is
+  // told after each episode how many have ended by then.
   std::vector<EpisodeResult> Play(int episodes, const EpisodeStream& stream,
-                                  const std::function<bool()>& stop);
+                                  const std::function<bool()>& stop,
+                                  const std::function<void(int ended)>& on_ended = {});
 
  private:
   struct Player {
@@ -105,6 +107,8 @@ struct CheckpointEvaluation {
   // Asked to stop: the result of the episodes that were played, with `episodes_asked`, if there are
   // any.
   bool partial = false;
+  // Told after each episode how many have ended by then.
+  std::function<void(int ended)> on_ended = {};
 };
 // Plays fresh episodes (final stream of the seed) with the policy of a checkpoint folder of the
 // run. Throws Error when it is asked to stop, but for `partial`.

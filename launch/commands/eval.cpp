@@ -90,17 +90,20 @@ int Evaluate(const EvalOptions& options) {
   InstallStopSignals();
   const ScratchFolder scratch;
   const fs::path json = scratch.path() / "eval.json";
-  const auto point = EvaluateByActor({.run = run,
-                                      .checkpoint = folder,
-                                      .episodes = options.episodes,
-                                      .seed = options.seed,
-                                      .task = options.task,
-                                      .json = json,
-                                      .partial = true},
-                                     StopRequested);
+  const auto point = EvaluateByActor(
+      {.run = run,
+       .checkpoint = folder,
+       .episodes = options.episodes,
+       .seed = options.seed,
+       .task = options.task,
+       .json = json,
+       .partial = true,
+       .progress = [](const std::string& line) { fmt::print(stderr, "played {}\n", line); }},
+      StopRequested);
   if (!point) return Interrupted("nothing was evaluated");
   fmt::print("{} episodes (seed {}) of {}: {} ({} env steps, {} updates)\n", point->episodes,
-             options.seed, folder.string(), FormatScore(*point), point->env_steps, point->updates);
+             options.seed, folder.string(), FormatWholeScore(*point), point->env_steps,
+             point->updates);
   if (const std::string failures = FailuresText(json); !failures.empty()) {
     fmt::print("{}\n", failures);
   }

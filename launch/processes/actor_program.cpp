@@ -1,7 +1,9 @@
 #include "launch/processes/actor_program.h"
 
 #include <nlohmann/json.hpp>
+#include <utility>
 
+#include "common/base/clock.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/stop.h"
@@ -17,6 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr char kProgram[] = "shoal-actor";
+constexpr std::chrono::seconds kProgressInterval{2};
 constexpr std::chrono::seconds kDescribeDeadline{60};
 constexpr std::chrono::seconds kStartDeadline{60}, kEpisodeDeadline{60};
 // A thousand larger pictures of the reference quality, drawn without a GPU and encoded.
@@ -32,6 +35,29 @@ Error FailureOf(const ExitStatus& status, const fs::path& errors) {
   return Error(usage ? ErrorKind::kUsage : ErrorKind::kRuntime,
                fmt::format("{}: {}", kProgram, line));
 }
+
+// What a program says of its progress in the file of its output.
+class ProgressWatch {
+ public:
+  // `tell` may be empty.
+  ProgressWatch(fs::path output, const std::function<void(const std::string&)>& tell)
+      : output_(std::move(output)), tell_(tell), due_(Now() + kProgressInterval) {}
+
+  void Look() {
+    if (!tell_ || Now() < due_) return;
+    due_ = Now() + kProgressInterval;
+    std::string line = LastLine(output_);
+    if (line.empty() || line == told_) return;
+    told_ = std::move(line);
+    tell_(told_);
+  }
+
+ private:
+  const fs::path output_;
+  const std::function<void(const std::string&)>& tell_;
+  SteadyTime due_;
+  std::string told_;
+};
 
 }  // namespace
 
@@ -74,10 +100,16 @@ std::optional<EvaluationPoint> EvaluateByActor(const EvaluationOrder& order,
     spec.command.insert(spec.command.end(), {"--frames", order.frames.stream.string(),
                                              "--view-height", side, "--view-width", side});
   }
+  if (order.progress) spec.command.emplace_back("--progress");
   spec.output = scratch.path() / "output";
+  spec.errors = scratch.path() / "errors";
+  ProgressWatch progress(spec.output, order.progress);
   const std::chrono::seconds deadline =
       kStartDeadline + order.episodes * (shown ? kShownEpisodeDeadline : kEpisodeDeadline);
-  const auto status = RunToEnd(spec, deadline, stop);
+  const auto status = RunToEnd(spec, deadline, [&] {
+    progress.Look();
+    return stop();
+  });
   if (!status && stop()) {
     if (!order.partial || !fs::exists(json)) return std::nullopt;
     return ParseEvaluation(ReadFile(json), json);
@@ -86,7 +118,7 @@ std::optional<EvaluationPoint> EvaluateByActor(const EvaluationOrder& order,
     throw RuntimeError("evaluation of '{}' took more than {} s", order.checkpoint.string(),
                        deadline.count());
   }
-  if (!status->Clean()) throw FailureOf(*status, spec.output);
+  if (!status->Clean()) throw FailureOf(*status, spec.errors);
   return ParseEvaluation(ReadFile(json), json);
 }
 

@@ -36,6 +36,8 @@ struct EvaluationOrder {
   ShownFrames frames = {};
   bool own_run = false;  // of whoever holds the run: temporary files go into its folder
   bool partial = false;  // stopped, what was played by then counts
+  // Told every few seconds how far it is, "37 of 100 episodes", if it is farther than before.
+  std::function<void(const std::string& line)> progress = {};
 };
 
 // `shoal-actor --evaluate`: fresh episodes of the final stream with a checkpoint. Throws Error when

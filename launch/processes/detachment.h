@@ -1,4 +1,4 @@
-// A process that goes on by itself after the command that started it has returned.
+// A process that goes on in the background after the command that started it has returned.
 #pragma once
 
 #include <chrono>

@@ -16,4 +16,14 @@ std::string FormatScore(const EvaluationPoint& point) {
   return mean;
 }
 
+std::string FormatWholeScore(const EvaluationPoint& point) {
+  std::string score = FormatScore(point);
+  if (point.success && point.mean_length > 0) {
+    score += fmt::format(", length {:.1f}", point.mean_length);
+  }
+  if (point.final_distance)
+    score += fmt::format(", final distance {:.3f} m", *point.final_distance);
+  return score;
+}
+
 }  // namespace shoal::launch

@@ -28,6 +28,9 @@ void CheckFigures(const EvaluationPoint& point, const std::string& source) {
   if (point.return_std && !std::isfinite(*point.return_std)) {
     throw RuntimeError("{}: return_std is no number", source);
   }
+  if (point.final_distance && !std::isfinite(*point.final_distance)) {
+    throw RuntimeError("{}: final_distance_mean is no number", source);
+  }
   if (!std::isfinite(point.mean_length)) throw RuntimeError("{}: length_mean is no number", source);
   if (point.episodes == 0) throw RuntimeError("{}: no episodes", source);
 }
@@ -44,6 +47,7 @@ EvaluationPoint PointOf(const ordered_json& object, const std::string& source) {
                               .mean_return = summary.aggregate.return_mean,
                               .return_std = summary.aggregate.return_std,
                               .mean_length = summary.aggregate.length_mean,
+                              .final_distance = summary.aggregate.final_distance_mean,
                               .checkpoint = *summary.checkpoint,
                               .episodes = summary.aggregate.episodes,
                               .learner_session = summary.version->session};

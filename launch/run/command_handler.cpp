@@ -38,7 +38,7 @@ void CommandHandler::Execute(const CommandMessage& command, ReplyMessage* reply)
     reply->text = "the run is stopping already";
     if (!effects_.running()) return;
     effects_.stop();
-    reply->text = "stopping in order";
+    reply->text = "stopping the run";
     return;
   }
   if (command.verb != "set" && command.verb != "scale") {

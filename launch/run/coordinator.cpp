@@ -261,12 +261,13 @@ void Coordinator::Impl::Note(SettingChange change) {
 
 void Coordinator::Impl::Stop() {
   if (stop_asked && meta.exit == "interrupted") {
-    progress.Say("stopping in order, as commanded");
+    progress.Say("stopping the run, as commanded");
   } else if (meta.exit == "interrupted") {
-    progress.Say("stopping in order; Ctrl-C again to stop at once");
+    progress.Say("stopping the run; Ctrl-C again to stop at once");
   }
-  if (meta.exit == "target") progress.Say("target reached: stopping in order");
-  if (meta.exit == "budget") progress.Say("budget of env steps spent: stopping in order");
+  if (meta.exit == "target")
+    progress.Say("the success asked for (stop.success) is reached: stopping the run");
+  if (meta.exit == "budget") progress.Say("the budget (env_steps) is spent: stopping the run");
   stops_before_end = StopRequests();
   StopDeadlines deadlines;
   // A run with a replay stores nothing without it.

@@ -20,7 +20,7 @@ struct TrainOptions {
   bool overwrite = false, lockstep = false;
   bool print_config = false, dry_run = false;
   bool film = false;       // of the judged checkpoint, once the run has been judged
-  bool detach = false;     // return once the run has started; it goes on by itself
+  bool detach = false;     // return once the run has started; it goes on in the background
   std::string prometheus;  // PORT or ADDRESS:PORT to serve metrics at; empty = none
 };
 

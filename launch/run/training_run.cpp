@@ -27,6 +27,7 @@
 #include "common/nn/encoder_weights.h"
 #include "common/nn/named_weights.h"
 #include "common/nn/network_check.h"
+#include "common/policy/checkpoint_writer.h"
 #include "common/run_folder/run_file_names.h"
 #include "common/spec/record.h"
 #include "common/tasks/task_library.h"
@@ -164,6 +165,33 @@ void CheckNetwork(const RunConfig& run) {
   learner::ReplicasOf(run.config, run.spec, run.config.learner.threads);
 }
 
+// Of another network, the learner would find it out with every process running. Damaged or of
+// another version, the checkpoint is the learner's to refuse: it may take an older one.
+void CheckResumedCheckpoint(const PreparedRun& run) {
+  const std::filesystem::path folder = NewestCheckpoint(run.folder.path());
+  if (folder.empty()) return;
+  CheckpointFiles files;
+  try {
+    files = ReadPolicyFiles(folder);
+  } catch (const Error&) {
+    return;
+  }
+  policy::CheckWriter(folder, files.state, files.description, run.config.config);
+}
+
+// Runs `read`, which takes weights from a file; where they do not fit and the file is a
+// checkpoint's, its refusal also says in what the networks differ.
+template <class Read>
+auto NamingBothNetworks(const std::string& file, const NetworkConfig& network, const Read& read) {
+  try {
+    return read();
+  } catch (const Error& error) {
+    const std::string difference = policy::DifferenceFromWriter(file, network);
+    if (difference.empty()) throw;
+    throw UsageError("{}; the networks differ: {}", error.what(), difference);
+  }
+}
+
 // What --init-from names, by our names; empty without. Refused here is what the learner would
 // refuse.
 nn::TensorMap ReadInitialWeights(const TrainOptions& options, const RunConfig& run) {
@@ -173,7 +201,8 @@ nn::TensorMap ReadInitialWeights(const TrainOptions& options, const RunConfig& r
   }
   nn::TensorMap weights = nn::ReadNamedWeights(options.init_from, options.name_map);
   const auto agent = learner::MakeAgent(run.config, run.spec, nn::Precision::kF32);
-  learner::StartTensors(weights, options.init_from, *agent);
+  NamingBothNetworks(options.init_from, run.config.network,
+                     [&] { return learner::StartTensors(weights, options.init_from, *agent); });
   return weights;
 }
 
@@ -271,7 +300,7 @@ void CheckRunCredentials(const std::string& secure) {
 void PrintDetached(const PreparedRun& run) {
   const std::string path = run.folder.path().string();
   fmt::print(
-      "started; it goes on by itself (coordinator pid {}): shoal attach --run {}, shoal stop "
+      "started in the background (coordinator pid {}): shoal attach --run {}, shoal stop "
       "--run {}\n",
       getpid(), path, path);
 }
@@ -335,6 +364,7 @@ int Train(const TrainOptions& options, Detachment* detachment) {
     if (options.print_config) fmt::print("{}\n", ToJson(run.config.config).dump(2));
     if (options.print_config) return 0;
     CheckNetwork(run.config);
+    CheckResumedCheckpoint(run);
     CheckReplay(run.config, /*exists=*/true);
     CheckHosts(run.hosts, StopRequested);
     if (options.dry_run) return 0;
@@ -360,7 +390,10 @@ int Train(const TrainOptions& options, Detachment* detachment) {
   config.spec = world.spec;
   PrivilegedBlocksOf(config.config.learner, config.spec);  // refused here
   CheckNetwork(config);
-  nn::ReadEncoderWeights(config.config.network, config.spec);  // the learner will; refused here
+  const NetworkConfig& network = config.config.network;
+  NamingBothNetworks(network.encoder_weights, network, [&] {  // the learner will; refused here
+    return nn::ReadEncoderWeights(network, config.spec);
+  });
   const nn::TensorMap initial = ReadInitialWeights(options, config);
   CheckReplay(config, /*exists=*/false);
   CheckHosts(hosts, StopRequested);

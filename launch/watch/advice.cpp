@@ -109,10 +109,11 @@ std::string AdviseLighterReplay(const Bottleneck& figures, const RunResources& r
 std::string DescribeBalance(const Bottleneck& figures) {
   const StageShare* stage =
       Largest(figures, "learner", {"forward", "backward", "optimiser", "weights", "checkpoint"});
-  if (stage == nullptr) return "Nobody waits, and the learner has not begun.";
+  if (stage == nullptr) return "No process waits for another, and the learner has not begun.";
   return fmt::format(
-      "Nobody waits: actors and learner are balanced; what takes most is the learner's {} ({:.0f} "
-      "% of its time).",
+      "No process waits for another: actors and learner are balanced. The learner spends most of "
+      "its "
+      "time on {} ({:.0f} %).",
       stage->stage, 100 * stage->share);
 }
 

@@ -53,7 +53,8 @@ void CheckHindsight(const RunConfig& run) {
   if (kind == "none") return;
   const tasks::Task& task = tasks::FindTask(run.spec.task);
   if (task.goal_size() == 0) {
-    throw UsageError("replay.hindsight = {}: task {} has no goals", kind, task.name());
+    throw UsageError("replay.hindsight = {}: task {} has no goals; expected none", kind,
+                     task.name());
   }
   const int repeat = task.ActionRepeat(config.action_repeat);
   if (repeat > 1) {

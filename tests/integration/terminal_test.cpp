@@ -48,7 +48,7 @@ TEST(Terminal, CtrlCLeavesNothingOfItsEchoInTheLinesThatFollow) {
   ASSERT_TRUE(training.WaitFor("  flow       ", seconds(60))) << training.shown();
   training.Type(kCtrlC);
   ASSERT_TRUE(training.WaitFor("^C\r", seconds(30))) << training.shown();
-  EXPECT_TRUE(training.WaitFor("\x1b[Jstopping in order", seconds(30))) << training.shown();
+  EXPECT_TRUE(training.WaitFor("\x1b[Jstopping the run", seconds(30))) << training.shown();
   EXPECT_EQ(training.End(seconds(120)), kInterruptedExit) << training.shown();
   EXPECT_TRUE(training.LeftAsItWas());
 }

@@ -21,7 +21,11 @@ inline EvalMessage EvaluationMessage(uint64_t env_steps, uint64_t updates, doubl
           {"checkpoint", "step_" + std::to_string(updates)},
           {"weights_version", {{"session", 1}, {"update", updates}}},
           {"episodes", std::vector<nlohmann::json>(2, nlohmann::json::object())},
-          {"aggregate", {{"success_rate", success}, {"return_mean", -2.5}, {"length_mean", 50}}},
+          {"aggregate",
+           {{"success_rate", success},
+            {"return_mean", -2.5},
+            {"length_mean", 50},
+            {"final_distance_mean", 0.25}}},
       }
           .dump();
   return message;

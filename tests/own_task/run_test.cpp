@@ -102,7 +102,7 @@ TEST(OwnTaskRun, LearnsFromPixelsAlone) {
     "learner": {"batch": 64, "threads": 1, "learning_rate": 1e-3, "discount": 0.8},
     "eval": {"episodes": 20, "final_episodes": 0, "interval": 2500},
     "stop": {"success": 0.5, "evaluations": 2})",
-                 std::chrono::seconds(240));
+                 std::chrono::seconds(180));
   ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
   const auto meta = nlohmann::json::parse(ReadFile(folder.path() / "point" / "meta.json"));
   EXPECT_EQ(meta.at("exit"), "target") << result.out;

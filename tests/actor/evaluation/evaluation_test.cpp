@@ -137,6 +137,10 @@ TEST(Evaluator, StoppedItHasTheFirstEpisodesAsIfNoMoreHadBeenAsked) {
     }
     return result;
   };
+  std::vector<int> told;
+  evaluator.Play(
+      3, stream, [] { return false; }, [&](int ended) { told.push_back(ended); });
+  EXPECT_THAT(told, testing::ElementsAre(1, 2, 3));
   const std::vector<int64_t> whole = lengths(20, 1'000'000);
   ASSERT_EQ(whole.size(), 20u);
   size_t partial = 0;

@@ -29,6 +29,7 @@ TEST_F(EvaluationsTest, StoreThenReadGivesThePointsInOrder) {
   EXPECT_EQ(stored.updates, 100u);
   EXPECT_EQ(stored.checkpoint, "step_100");
   EXPECT_EQ(stored.episodes, 2u);
+  EXPECT_EQ(stored.final_distance, 0.25);
   WriteFileAtomically(run_.path() / "eval" / "final.json", "not one of them");
   const auto points = ReadEvaluations(run_.path());
   ASSERT_EQ(points.size(), 2u);

@@ -107,6 +107,19 @@ TEST(FormatScore, LeavesOutASuccessThatIsNotThere) {
   EXPECT_EQ(FormatScore({.success = std::nullopt, .mean_return = 312.5}), "return 312.500");
 }
 
+TEST(FormatWholeScore, HasLengthAndDistanceOfATaskWithSuccess) {
+  EXPECT_EQ(FormatWholeScore({.success = 0.98,
+                              .mean_return = -0.97,
+                              .mean_length = 48.5,
+                              .final_distance = 0.0214,
+                              .episodes = 50}),
+            "success 98.0 % of 50 episodes, return -0.970, length 48.5, final distance 0.021 m");
+  EXPECT_EQ(
+      FormatWholeScore(
+          {.success = std::nullopt, .mean_return = 312.5, .mean_length = 740.2, .episodes = 20}),
+      "return 312.500, length 740.2, 20 episodes");
+}
+
 TEST(FormatScore, SaysHowSureItIs) {
   EXPECT_EQ(
       FormatScore({.success = 0.98, .mean_return = -0.97, .return_std = 0.12, .episodes = 50}),

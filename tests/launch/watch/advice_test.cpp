@@ -45,7 +45,7 @@ void SetShare(Bottleneck* figures, const std::string& role, const std::string& s
 
 TEST(Advice, BalancedRunsAreToldSoAndWhatTakesMost) {
   EXPECT_THAT(Advise(Balanced(), WithActors(2)),
-              AllOf(HasSubstr("Nobody waits"), HasSubstr("backward (60 %")));
+              AllOf(HasSubstr("No process waits for another"), HasSubstr("backward (60 %")));
 }
 
 TEST(Advice, ALearnerHeldByTheLimiterWantsActorsWhileThereAreCores) {
