@@ -9,6 +9,7 @@
 #include <csignal>
 #include <filesystem>
 #include <thread>
+#include <utility>
 #include <vector>
 
 #include "actor/acting/action_selector.h"
@@ -109,13 +110,15 @@ void Learn(const BroadcastOptions& options, const ClusterAddress& address, const
   }
 }
 
-// Acts by each version that comes, as far as loading it.
+// Loads each version that comes. It acts by the first one: only a policy that has acted has
+// layouts, into which a load then brings the weights, as in a run.
 void Act(const BroadcastOptions& options, const ClusterAddress& address,
          const std::filesystem::path& folder, const Pipe<int>& acting_by) {
   const RunConfig run = RunOf(options);
   actor::ActionSelector selector(run.config, run.spec, run.config.envs_per_actor);
   dds::Bus bus(address, run.config.transport, dds::Role::kActor);
   actor::HostWeights host_weights(folder, HostName(), run.spec.Hash(), actor::WeightsOver(bus));
+  bool acted = false;
   while (true) {
     const auto weights = host_weights.TryTake();
     if (!weights) {
@@ -123,6 +126,7 @@ void Act(const BroadcastOptions& options, const ClusterAddress& address,
       continue;
     }
     selector.Load(*weights);
+    if (!std::exchange(acted, true)) selector.Select(actor::Acting::kMean);
     acting_by.Write(static_cast<int>(weights->version.update));
   }
 }

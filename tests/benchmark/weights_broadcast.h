@@ -1,5 +1,6 @@
 // What it costs a host that its learner's weights reach its actors: real processes, the sender of
-// the learner and the inboxes of actors over DDS, and nothing else that these do.
+// the learner, the inboxes of actors over DDS and the loading into a policy that acts, layouts
+// included, and nothing else that these do.
 #pragma once
 
 #include <cstdint>
