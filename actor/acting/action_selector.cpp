@@ -22,7 +22,7 @@ ActionSelector::ActionSelector(const Config& config, const ObservationSpec& spec
 
 void ActionSelector::Load(const ReceivedWeights& weights) {
   const std::string source = fmt::format("weights of update {}", weights.version.update);
-  policy_.Load(nn::ReadSafetensors(weights.payload.view(), source), source);
+  policy_.Load(weights.payload, source);
   version_ = weights.version;
   run_env_steps_ = weights.env_steps;
   exploration_->OnEnvSteps(run_env_steps_);

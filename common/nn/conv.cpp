@@ -29,7 +29,6 @@ Conv::Conv(const LayerContext& context, const LayerPlan& plan, const memory& sou
       << plan.name << ": another source than planned";
   const memory::dims output_dims = {context.batch, plan.output.channels, plan.output.height,
                                     plan.output.width};
-  weight_values_ = memory(PlainF32(weight_dims), CpuEngine(), nullptr);
   if (has_bias_) {
     bias_ = context.parameters->Find(plan.name + ".bias");
     bias_values_ = memory(PlainF32({weight_dims[0]}), CpuEngine(), nullptr);
@@ -43,7 +42,7 @@ Conv::Conv(const LayerContext& context, const LayerPlan& plan, const memory& sou
       strides_, padding_, padding_);
   output_ = MakeMemory(forward.dst_desc());
   forward_source_ = Relayout::Before(source, forward.src_desc(), context.scratchpad);
-  forward_weight_ = Relayout::Before(weight_values_, forward.weights_desc(), context.scratchpad);
+  forward_weight_ = LaidOutWeight(weight_, forward.weights_desc(), context.scratchpad);
   forward_ = Op(forward,
                 {{DNNL_ARG_SRC, forward_source_.memory()},
                  {DNNL_ARG_WEIGHTS, forward_weight_.memory()},
@@ -90,7 +89,7 @@ void Conv::BuildBackwardData(const LayerContext& context, const memory& source_g
       padding_, padding_);
   data_output_gradient_ =
       Relayout::Before(output_gradient_, backward.diff_dst_desc(), context.scratchpad);
-  data_weight_ = Relayout::Before(weight_values_, backward.weights_desc(), context.scratchpad);
+  data_weight_ = LaidOutWeight(weight_, backward.weights_desc(), context.scratchpad);
   source_gradient_ = Relayout::After(backward.diff_src_desc(), source_gradient, context.scratchpad);
   backward_data_ = Op(backward,
                       {{DNNL_ARG_DIFF_DST, data_output_gradient_.memory()},
@@ -100,10 +99,9 @@ void Conv::BuildBackwardData(const LayerContext& context, const memory& source_g
 }
 
 void Conv::Refresh() {
-  weight_values_.set_data_handle(weight_.value());
   if (has_bias_) bias_values_.set_data_handle(bias_.value());
-  forward_weight_.Run();
-  if (has_source_gradient_) data_weight_.Run();
+  forward_weight_.Refresh();
+  if (has_source_gradient_) data_weight_.Refresh();
 }
 
 void Conv::Forward(Statistics) {

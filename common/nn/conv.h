@@ -9,6 +9,7 @@
 // oneDNN chooses the layouts in memory; neighbouring layers share them where it can.
 #pragma once
 
+#include "common/nn/laid_out_weight.h"
 #include "common/nn/map_layer.h"
 
 namespace shoal::nn {
@@ -33,12 +34,14 @@ class Conv final : public MapLayer {
   dnnl::memory::dims strides_, padding_;
   bool relu_, has_bias_;
   Parameter weight_, bias_;
-  dnnl::memory weight_values_, bias_values_;  // the parameters' arrays, row-major f32
-  Relayout forward_source_, forward_weight_;
+  dnnl::memory bias_values_;  // the parameter's array
+  Relayout forward_source_;
+  LaidOutWeight forward_weight_;
   Op forward_;
   Relayout weights_source_, weights_output_gradient_, weight_gradient_;
   Op backward_weights_;
-  Relayout data_output_gradient_, data_weight_, source_gradient_;
+  Relayout data_output_gradient_, source_gradient_;
+  LaidOutWeight data_weight_;
   Op backward_data_;
   bool has_source_gradient_ = false;
 };

@@ -22,7 +22,6 @@ Linear::Linear(const LayerContext& context, const std::string& name, const memor
       bias_(context.parameters->Find(name + ".bias")),
       output_gradient_(context.batch, outputs_, PrecisionOf(source)) {
   const memory::dims source_dims = DimsOf(source), weight_dims = weight_.shape();
-  weight_values_ = memory(PlainF32(weight_dims), CpuEngine(), nullptr);
   bias_values_ = memory(PlainF32({outputs_}), CpuEngine(), nullptr);
   output_ = MakeMemory(PlainF32({context.batch, outputs_}));
   CHECK(source_dims[1] == weight_dims[1])
@@ -32,7 +31,7 @@ Linear::Linear(const LayerContext& context, const std::string& name, const memor
       Attributes(), dnnl::prop_kind::forward_training, AnyLayout(source_dims, TypeOf(source)),
       AnyLayout(weight_dims, TypeOf(source)), bias_values_.get_desc(), output_.get_desc());
   forward_source_ = Relayout::Before(source, forward.src_desc(), context.scratchpad);
-  forward_weight_ = Relayout::Before(weight_values_, forward.weights_desc(), context.scratchpad);
+  forward_weight_ = LaidOutWeight(weight_, forward.weights_desc(), context.scratchpad);
   forward_ = Op(forward,
                 {{DNNL_ARG_SRC, forward_source_.memory()},
                  {DNNL_ARG_WEIGHTS, forward_weight_.memory()},
@@ -45,13 +44,12 @@ Linear::Linear(const LayerContext& context, const std::string& name, const memor
 void Linear::BuildBackward(const LayerContext& context, const memory& source,
                            const memory& source_gradient,
                            const dnnl::inner_product_forward::primitive_desc& forward) {
-  const memory::desc weight_desc = weight_values_.get_desc();
   const memory& gradient = output_gradient_.compute();
   const auto weights = DescribeBackward<dnnl::inner_product_backward_weights>(
       forward, AnyLayout(DimsOf(source), TypeOf(source)),
       AnyLayout(weight_.shape(), memory::data_type::f32), bias_values_.get_desc(),
       gradient.get_desc());
-  const memory weight_target(weight_desc, CpuEngine(), weight_.gradient());
+  const memory weight_target(PlainF32(weight_.shape()), CpuEngine(), weight_.gradient());
   const memory bias_target(bias_values_.get_desc(), CpuEngine(), bias_.gradient());
   backward_source_ = Relayout::Before(source, weights.src_desc(), context.scratchpad);
   weight_gradient_ =
@@ -67,7 +65,7 @@ void Linear::BuildBackward(const LayerContext& context, const memory& source,
   const auto data = DescribeBackward<dnnl::inner_product_backward_data>(
       forward, AnyLayout(DimsOf(source_gradient), TypeOf(source_gradient)),
       AnyLayout(weight_.shape(), TypeOf(source)), gradient.get_desc());
-  backward_weight_ = Relayout::Before(weight_values_, data.weights_desc(), context.scratchpad);
+  backward_weight_ = LaidOutWeight(weight_, data.weights_desc(), context.scratchpad);
   source_gradient_ = Relayout::After(data.diff_src_desc(), source_gradient, context.scratchpad);
   backward_data_ = Op(data,
                       {{DNNL_ARG_DIFF_DST, gradient},
@@ -77,10 +75,9 @@ void Linear::BuildBackward(const LayerContext& context, const memory& source,
 }
 
 void Linear::Refresh() {
-  weight_values_.set_data_handle(weight_.value());
   bias_values_.set_data_handle(bias_.value());
-  forward_weight_.Run();
-  if (has_source_gradient_) backward_weight_.Run();
+  forward_weight_.Refresh();
+  if (has_source_gradient_) backward_weight_.Refresh();
 }
 
 void Linear::Forward() {

@@ -7,6 +7,7 @@
 
 #include <string>
 
+#include "common/nn/laid_out_weight.h"
 #include "common/nn/layer_context.h"
 #include "common/nn/rows.h"
 
@@ -37,14 +38,16 @@ class Linear {
 
   int outputs_ = 0;
   Parameter weight_, bias_;
-  dnnl::memory weight_values_, bias_values_;  // the parameters' arrays, row-major f32
-  dnnl::memory output_;                       // (B, O) f32
+  dnnl::memory bias_values_;  // the parameter's array
+  dnnl::memory output_;       // (B, O) f32
   Rows output_gradient_;
-  Relayout forward_source_, forward_weight_;
+  Relayout forward_source_;
+  LaidOutWeight forward_weight_;
   Op forward_;
   Relayout backward_source_, weight_gradient_;
   Op backward_weights_;
-  Relayout backward_weight_, source_gradient_;
+  LaidOutWeight backward_weight_;
+  Relayout source_gradient_;
   Op backward_data_;
   bool has_source_gradient_ = false;
 };

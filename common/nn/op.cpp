@@ -21,10 +21,10 @@ const dnnl::engine& CpuEngine() {
   return engine;
 }
 
-dnnl::memory::desc PlainF32(const dnnl::memory::dims& dims) {
+dnnl::memory::desc Plain(const dnnl::memory::dims& dims, dnnl::memory::data_type type) {
   dnnl::memory::dims strides(dims.size(), 1);
   for (size_t i = dims.size() - 1; i > 0; --i) strides[i - 1] = strides[i] * dims[i];
-  return dnnl::memory::desc(dims, dnnl::memory::data_type::f32, strides);
+  return dnnl::memory::desc(dims, type, strides);
 }
 
 dnnl::memory::desc AnyLayout(const dnnl::memory::dims& dims, dnnl::memory::data_type type) {
@@ -71,6 +71,12 @@ Op::Op(dnnl::primitive primitive, const dnnl::memory::desc& scratch,
   }
 }
 
+bool Op::CanReorder(const dnnl::memory& from, const dnnl::memory& to) {
+  const dnnl::engine& engine = CpuEngine();
+  return bool(dnnl::reorder::primitive_desc(engine, from.get_desc(), engine, to.get_desc(),
+                                            Attributes(), /*allow_empty=*/true));
+}
+
 Op Op::Reorder(const dnnl::memory& from, const dnnl::memory& to,
                std::shared_ptr<Scratchpad> scratchpad) {
   const dnnl::reorder::primitive_desc desc(from, to, Attributes());
@@ -86,13 +92,18 @@ void Op::Run() {
 
 Relayout Relayout::Before(const dnnl::memory& source, const dnnl::memory::desc& wanted,
                           std::shared_ptr<Scratchpad> scratchpad) {
+  if (source.get_desc() != wanted) return Copying(source, wanted, std::move(scratchpad));
   Relayout result;
   result.memory_ = source;
-  if (source.get_desc() != wanted) {
-    result.memory_ = MakeMemory(wanted);
-    result.reorder_ = Op::Reorder(source, result.memory_, std::move(scratchpad));
-    result.needed_ = true;
-  }
+  return result;
+}
+
+Relayout Relayout::Copying(const dnnl::memory& source, const dnnl::memory::desc& wanted,
+                           std::shared_ptr<Scratchpad> scratchpad) {
+  Relayout result;
+  result.memory_ = MakeMemory(wanted);
+  result.reorder_ = Op::Reorder(source, result.memory_, std::move(scratchpad));
+  result.needed_ = true;
   return result;
 }
 

@@ -20,8 +20,11 @@ inline dnnl::memory::data_type ComputeType(Precision precision) {
                                        : dnnl::memory::data_type::f32;
 }
 
-// Row-major f32 description of `dims`.
-dnnl::memory::desc PlainF32(const dnnl::memory::dims& dims);
+// Row-major description of `dims`.
+dnnl::memory::desc Plain(const dnnl::memory::dims& dims, dnnl::memory::data_type type);
+inline dnnl::memory::desc PlainF32(const dnnl::memory::dims& dims) {
+  return Plain(dims, dnnl::memory::data_type::f32);
+}
 // Description that leaves the layout to the primitive.
 dnnl::memory::desc AnyLayout(const dnnl::memory::dims& dims, dnnl::memory::data_type type);
 // Zeroed memory, owned by the handle.
@@ -54,6 +57,7 @@ class Op {
      std::shared_ptr<Scratchpad> scratchpad)
       : Op(dnnl::primitive(desc.get()), desc.scratchpad_desc(), arguments, std::move(scratchpad)) {}
   // Copies `from` to `to`, changing layout and type.
+  static bool CanReorder(const dnnl::memory& from, const dnnl::memory& to);
   static Op Reorder(const dnnl::memory& from, const dnnl::memory& to,
                     std::shared_ptr<Scratchpad> scratchpad);
 
@@ -79,6 +83,9 @@ class Relayout {
   // Run() brings `source` into the layout `wanted`, before a primitive that reads memory().
   static Relayout Before(const dnnl::memory& source, const dnnl::memory::desc& wanted,
                          std::shared_ptr<Scratchpad> scratchpad);
+  // The same, into memory of its own even where the two agree.
+  static Relayout Copying(const dnnl::memory& source, const dnnl::memory::desc& wanted,
+                          std::shared_ptr<Scratchpad> scratchpad);
   // Run() brings memory(), written by a primitive in the layout `produced`, to `target`.
   static Relayout After(const dnnl::memory::desc& produced, const dnnl::memory& target,
                         std::shared_ptr<Scratchpad> scratchpad);

@@ -27,11 +27,11 @@ std::string Shape(const std::vector<int64_t>& shape) {
 }
 
 // The tensor of this name, of a parameter's shape and a type that Import takes.
-const NamedTensor& Fitting(const ParameterSpec& parameter, const TensorMap& tensors,
-                           const std::string& name, const std::string& source) {
-  const auto found = tensors.find(name);
-  if (found == tensors.end()) throw RuntimeError("{}: tensor {} is missing", source, name);
-  const NamedTensor& tensor = found->second;
+const TensorView& Fitting(const ParameterSpec& parameter, const TensorViews& tensors,
+                          const std::string& name, const std::string& source) {
+  const TensorView* found = tensors.Find(name);
+  if (found == nullptr) throw RuntimeError("{}: tensor {} is missing", source, name);
+  const TensorView& tensor = *found;
   if (tensor.shape != parameter.shape) {
     throw RuntimeError("{}: tensor {} has shape {}, expected {}", source, name, Shape(tensor.shape),
                        Shape(parameter.shape));
@@ -75,9 +75,39 @@ void InitialiseOne(const ParameterSpec& parameter, uint64_t seed, float* values)
   }
 }
 
+PlainValues PlainOf(const TensorView& tensor) {
+  const bool bf16 = tensor.dtype == "BF16";
+  const auto address = reinterpret_cast<uintptr_t>(tensor.data.data());
+  return {.data = tensor.data.data(),
+          .bf16 = bf16,
+          .aligned = address % (bf16 ? alignof(uint16_t) : alignof(float)) == 0};
+}
+
 }  // namespace
 
-float* Parameter::value() const { return set_->values() + offset_; }
+void Widen(const PlainValues& from, int64_t count, float* to) {
+  if (!from.bf16) {
+    std::memcpy(to, from.data, static_cast<size_t>(count) * sizeof(float));
+  } else if (from.aligned) {
+    Bf16ToFloats(reinterpret_cast<const uint16_t*>(from.data), count, to);
+  } else {
+    std::vector<uint16_t> aligned(static_cast<size_t>(count));
+    std::memcpy(aligned.data(), from.data, aligned.size() * sizeof(uint16_t));
+    Bf16ToFloats(aligned.data(), count, to);
+  }
+}
+
+bool Parameter::borrowed() const { return set_->Borrows(*spec_); }
+
+float* Parameter::value() const {
+  CHECK(!borrowed()) << spec_->name << " lies in what was loaded";
+  return set_->values() + offset_;
+}
+
+PlainValues Parameter::plain() const {
+  if (borrowed()) return set_->BorrowedOf(*spec_);
+  return {.data = reinterpret_cast<const uint8_t*>(value())};
+}
 
 float* Parameter::next_value() const {
   return set_->next_values_.empty() ? nullptr : set_->next_values_.data() + offset_;
@@ -88,24 +118,36 @@ float* Parameter::gradient() const {
   return set_->gradients_.data() + offset_;
 }
 
-ParameterSet::ParameterSet(std::vector<ParameterSpec> specs, Use use) : specs_(std::move(specs)) {
+ParameterSet::ParameterSet(std::vector<ParameterSpec> specs, Use use)
+    : use_(use), specs_(std::move(specs)) {
   const auto statistics = std::stable_partition(
       specs_.begin(), specs_.end(), [](const ParameterSpec& spec) { return !spec.statistic; });
   trained_ = size_t(statistics - specs_.begin());
   int64_t size = 0;
   for (const ParameterSpec& parameter : specs_) {
     offsets_.push_back(size);
+    if (Borrows(parameter)) continue;
     size += (Count(parameter) + kAlignment - 1) / kAlignment * kAlignment;
     if (!parameter.statistic) trained_size_ = size;
   }
   values_.assign(size_t(size), 0.f);
+  if (use == Use::kBorrowing) borrowed_.resize(specs_.size());
   if (use == Use::kTraining) {
     next_values_.assign(size_t(size), 0.f);
     gradients_.assign(size_t(trained_size_), 0.f);
   }
 }
 
+bool ParameterSet::Borrows(const ParameterSpec& parameter) const {
+  return use_ == Use::kBorrowing && parameter.shape.size() > 1;
+}
+
+PlainValues& ParameterSet::BorrowedOf(const ParameterSpec& parameter) {
+  return borrowed_[size_t(&parameter - specs_.data())];
+}
+
 void ParameterSet::Initialise(uint64_t seed) {
+  CHECK(use_ != Use::kBorrowing);
   for (size_t i = 0; i < specs_.size(); ++i) {
     InitialiseOne(specs_[i], seed, values_.data() + offsets_[i]);
   }
@@ -140,18 +182,19 @@ void ParameterSet::ExportTrained(const float* array, const std::string& prefix,
   ExportFirst(trained_, array, prefix, tensors);
 }
 
-void ParameterSet::Import(const TensorMap& tensors, const std::string& prefix,
+void ParameterSet::Import(const TensorViews& tensors, const std::string& prefix,
                           const std::string& source, float* array) const {
   ImportFirst(specs_.size(), tensors, prefix, source, array);
 }
 
-void ParameterSet::ImportTrained(const TensorMap& tensors, const std::string& prefix,
+void ParameterSet::ImportTrained(const TensorViews& tensors, const std::string& prefix,
                                  const std::string& source, float* array) const {
   ImportFirst(trained_, tensors, prefix, source, array);
 }
 
 void ParameterSet::ExportFirst(size_t specs, const float* array, const std::string& prefix,
                                TensorMap* tensors) const {
+  CHECK(use_ != Use::kBorrowing);
   for (size_t i = 0; i < specs; ++i) {
     NamedTensor tensor{"F32", specs_[i].shape, {}};
     tensor.data.resize(size_t(Count(specs_[i])) * sizeof(float));
@@ -160,21 +203,28 @@ void ParameterSet::ExportFirst(size_t specs, const float* array, const std::stri
   }
 }
 
-void ParameterSet::ImportFirst(size_t specs, const TensorMap& tensors, const std::string& prefix,
+void ParameterSet::ImportFirst(size_t specs, const TensorViews& tensors, const std::string& prefix,
                                const std::string& source, float* array) const {
-  std::vector<const NamedTensor*> found;
+  CHECK(use_ != Use::kBorrowing);
+  std::vector<const TensorView*> found;
   for (size_t i = 0; i < specs; ++i) {
     found.push_back(&Fitting(specs_[i], tensors, prefix + specs_[i].name, source));
   }
   for (size_t i = 0; i < specs; ++i) {
-    float* out = array + offsets_[i];
-    const std::vector<uint8_t>& data = found[i]->data;
-    if (found[i]->dtype == "F32") {
-      std::memcpy(out, data.data(), data.size());
-    } else {
-      Bf16ToFloats(reinterpret_cast<const uint16_t*>(data.data()), Count(specs_[i]), out);
-    }
+    Widen(PlainOf(*found[i]), Count(specs_[i]), array + offsets_[i]);
   }
+}
+
+void ParameterSet::Borrow(const TensorViews& tensors, const std::string& source) {
+  CHECK(use_ == Use::kBorrowing);
+  std::vector<PlainValues> found;
+  for (const ParameterSpec& parameter : specs_) {
+    found.push_back(PlainOf(Fitting(parameter, tensors, parameter.name, source)));
+  }
+  for (size_t i = 0; i < specs_.size(); ++i) {
+    if (!Borrows(specs_[i])) Widen(found[i], Count(specs_[i]), values_.data() + offsets_[i]);
+  }
+  borrowed_ = std::move(found);
 }
 
 }  // namespace shoal::nn

@@ -14,7 +14,18 @@ namespace shoal::nn {
 
 class ParameterSet;
 
-// One parameter of a set: row-major f32. Borrows the set; copies refer to the same parameter.
+// Where the numbers of a parameter lie, row-major. Null: nowhere yet.
+struct PlainValues {
+  const uint8_t* data = nullptr;
+  bool bf16 = false;    // else f32
+  bool aligned = true;  // to its type
+};
+
+// `count` numbers, to f32, which is exact.
+void Widen(const PlainValues& from, int64_t count, float* to);
+
+// One parameter of a set: row-major f32, unless it is borrowed. Borrows the set; copies refer to
+// the same parameter.
 class Parameter {
  public:
   Parameter() = default;
@@ -22,8 +33,12 @@ class Parameter {
       : set_(set), offset_(offset), spec_(spec) {}
 
   const std::vector<int64_t>& shape() const { return spec_->shape; }
-  // Moves with every optimiser step: fetch it when it is needed.
+  // Its numbers are in the tensors that were loaded last, not in the set.
+  bool borrowed() const;
+  // Moves with every optimiser step: fetch it when it is needed. Not of a borrowed one.
   float* value() const;
+  // Of any: a borrowed one moves with every load.
+  PlainValues plain() const;
   // Where an optimiser's step writes: a statistic's value after it is written there by the forward
   // pass that measures it. Moves like value().
   float* next_value() const;
@@ -41,10 +56,15 @@ class Parameter {
 // trained: forward passes write them into the second array, so that a step and its undoing take
 // them along. Not movable: layers borrow it.
 //
-// Each parameter starts at a multiple of 16 floats; the gaps hold zeros in all arrays.
+// Each parameter starts at a multiple of 16 floats; the gaps hold zeros in all arrays. Those of
+// several dimensions have no place in a set that borrows them.
 class ParameterSet {
  public:
-  enum class Use { kTraining, kInference };  // kInference: no gradients, no second array
+  enum class Use {
+    kTraining,
+    kInference,  // no gradients, no second array
+    kBorrowing,  // the same, for layers alone: values come by Borrow, and are not exported
+  };
 
   ParameterSet(std::vector<ParameterSpec> specs, Use use);
   ParameterSet(const ParameterSet&) = delete;
@@ -75,26 +95,33 @@ class ParameterSet {
   void Export(TensorMap* tensors) const { Export(values(), "", tensors); }
   // Takes F32 and BF16. Throws Error naming a missing tensor or a wrong type or shape; `array` is
   // then as it was.
-  void Import(const TensorMap& tensors, const std::string& prefix, const std::string& source,
+  void Import(const TensorViews& tensors, const std::string& prefix, const std::string& source,
               float* array) const;
+  // Takes and throws what Import does, for kBorrowing: values of one dimension are copied, the
+  // others stay in `tensors`, whose bytes outlive the set or the next call.
+  void Borrow(const TensorViews& tensors, const std::string& source);
   // The same for an array of what is trained alone (Adam's moments).
   void ExportTrained(const float* array, const std::string& prefix, TensorMap* tensors) const;
-  void ImportTrained(const TensorMap& tensors, const std::string& prefix, const std::string& source,
-                     float* array) const;
+  void ImportTrained(const TensorViews& tensors, const std::string& prefix,
+                     const std::string& source, float* array) const;
 
  private:
   friend class Parameter;
 
   void ExportFirst(size_t specs, const float* array, const std::string& prefix,
                    TensorMap* tensors) const;
-  void ImportFirst(size_t specs, const TensorMap& tensors, const std::string& prefix,
+  void ImportFirst(size_t specs, const TensorViews& tensors, const std::string& prefix,
                    const std::string& source, float* array) const;
+  bool Borrows(const ParameterSpec& parameter) const;
+  PlainValues& BorrowedOf(const ParameterSpec& parameter);
 
+  const Use use_;
   std::vector<ParameterSpec> specs_;  // statistics last
   size_t trained_ = 0;                // specs that are no statistics
   int64_t trained_size_ = 0;
   std::vector<int64_t> offsets_;
   std::vector<float> values_, next_values_, gradients_;
+  std::vector<PlainValues> borrowed_;  // one for each spec; empty unless kBorrowing
 };
 
 }  // namespace shoal::nn

@@ -42,7 +42,7 @@ struct Built {
       : encoder(PlanEncoder(network, spec)),
         actor(PlanActor(network, spec, output)),
         precision(compute_precision),
-        parameters(Parameters(), ParameterSet::Use::kInference),
+        parameters(Parameters(), ParameterSet::Use::kBorrowing),
         scratchpad(std::make_shared<Scratchpad>()) {}
 
   std::vector<ParameterSpec> Parameters() const {
@@ -62,6 +62,7 @@ struct Built {
   const NetworkPlan encoder;
   const ActorPlan actor;
   const Precision precision;
+  std::shared_ptr<const void> loaded = nullptr;  // whose weights `parameters` borrow
   ParameterSet parameters;
   std::shared_ptr<Scratchpad> scratchpad;
   std::map<int, SizedNetwork> networks;
@@ -76,15 +77,18 @@ void MeanActions(const PolicyOutput& output, std::span<float> actions) {
   });
 }
 
-ActorOutput ActorOutputOf(const TensorMap& tensors, int action_size) {
-  if (tensors.contains("actor.log_std")) return ActorOutput::kUnsquashed;
-  const auto bias = tensors.find("actor.mlp.output.bias");
-  const bool deterministic =
-      bias != tensors.end() && bias->second.shape == std::vector<int64_t>{action_size};
+ActorOutput ActorOutputOf(const TensorViews& tensors, int action_size) {
+  if (tensors.Find("actor.log_std")) return ActorOutput::kUnsquashed;
+  const TensorView* bias = tensors.Find("actor.mlp.output.bias");
+  const bool deterministic = bias != nullptr && bias->shape == std::vector<int64_t>{action_size};
   return deterministic ? ActorOutput::kDeterministic : ActorOutput::kGaussian;
 }
 
 struct Policy::Impl {
+  // `owner` keeps what the views point into.
+  void Load(const TensorViews& tensors, std::shared_ptr<const void> owner,
+            const std::string& source);
+
   std::unique_ptr<Built> Build(ActorOutput output) const {
     return std::make_unique<Built>(network, spec, precision, output);
   }
@@ -108,18 +112,31 @@ Policy::Policy(const NetworkConfig& network, const ObservationSpec& spec, Precis
 
 Policy::~Policy() = default;
 
-void Policy::Load(const TensorMap& tensors, const std::string& source) {
-  const ThreadScope scope(impl_->threads);
-  const ActorOutput output = ActorOutputOf(tensors, impl_->spec.action_size);
+void Policy::Load(TensorMap tensors, const std::string& source) {
+  auto owner = std::make_shared<const TensorMap>(std::move(tensors));
+  const TensorViews views(*owner);
+  impl_->Load(views, std::move(owner), source);
+}
+
+void Policy::Load(const SharedBytes& file, const std::string& source) {
+  impl_->Load(ReadSafetensorsViews(file.view(), source), std::make_shared<SharedBytes>(file),
+              source);
+}
+
+void Policy::Impl::Load(const TensorViews& tensors, std::shared_ptr<const void> owner,
+                        const std::string& source) {
+  const ThreadScope scope(threads);
+  const ActorOutput output = ActorOutputOf(tensors, spec.action_size);
   std::unique_ptr<Built> other;
-  if (output != impl_->built->actor.output) other = impl_->Build(output);
-  Built& built = other ? *other : *impl_->built;
+  if (output != built->actor.output) other = Build(output);
+  Built& target = other ? *other : *built;
   // What throws comes first: the former weights stay.
-  std::optional<VectorScale> scale = ReadVectorScale(tensors, impl_->spec.VectorSize(), source);
-  built.parameters.Import(tensors, "", source, built.parameters.values());
-  for (auto& [batch, network] : built.networks) network.Refresh();
-  if (other) impl_->built = std::move(other);
-  impl_->scale = std::move(scale);
+  std::optional<VectorScale> read = ReadVectorScale(tensors, spec.VectorSize(), source);
+  target.parameters.Borrow(tensors, source);
+  target.loaded = std::move(owner);
+  for (auto& [batch, sized] : target.networks) sized.Refresh();
+  if (other) built = std::move(other);
+  scale = std::move(read);
 }
 
 PolicyOutput Policy::Forward(int batch, const uint8_t* frames, const float* vector) {

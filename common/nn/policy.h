@@ -6,6 +6,7 @@
 #include <memory>
 #include <span>
 
+#include "common/base/shared_bytes.h"
 #include "common/config/config.h"
 #include "common/nn/actor_critic_plan.h"
 #include "common/nn/precision.h"
@@ -28,7 +29,7 @@ void MeanActions(const PolicyOutput& output, std::span<float> actions);
 
 // What kind of policy its tensors are: one with a log deviation of its own is unsquashed, one whose
 // last layer has A outputs deterministic. A missing or misshaped tensor is Load's to refuse.
-ActorOutput ActorOutputOf(const TensorMap& tensors, int action_size);
+ActorOutput ActorOutputOf(const TensorViews& tensors, int action_size);
 
 class Policy {
  public:
@@ -37,10 +38,13 @@ class Policy {
   ~Policy();
 
   // Takes F32 or BF16 tensors by name; they say what kind of policy they are (ActorOutputOf).
-  // Vectors are normalised first where there are
-  // kObservationMean and kObservationVariance (actor_critic_plan.h). Throws Error naming a missing
-  // tensor or a wrong shape, and then keeps its former weights.
-  void Load(const TensorMap& tensors, const std::string& source);
+  // Vectors are normalised first where there are kObservationMean and kObservationVariance
+  // (actor_critic_plan.h). Keeps the tensors until the next ones: matrices and filters are not
+  // copied but into the layouts of the CPU. Throws Error naming a missing tensor or a wrong shape,
+  // and then keeps its former weights.
+  void Load(TensorMap tensors, const std::string& source);
+  // The same of a safetensors file's bytes, which are shared and not copied.
+  void Load(const SharedBytes& file, const std::string& source);
 
   // frames (B, K*C, H, W) u8 (unread without pixels), vector (B, V) f32 (unread when V = 0).
   // 0 < B <= max_batch. The result is valid until the next call.

@@ -58,16 +58,16 @@ json ParseHeader(std::string_view text, const std::string& source) {
 
 struct Entry {
   std::string name;
-  NamedTensor tensor;  // without data
+  TensorView tensor;  // without data
   uint64_t begin = 0, end = 0;
 };
 
 // Product of the shape and the element's size; throws where it does not fit 63 bits.
-uint64_t TensorBytes(const NamedTensor& tensor, const std::string& name,
-                     const std::string& source) {
+uint64_t TensorBytes(const std::string& dtype, const std::vector<int64_t>& shape,
+                     const std::string& name, const std::string& source) {
   constexpr uint64_t kLimit = uint64_t(std::numeric_limits<int64_t>::max());
-  uint64_t bytes = ElementBytes(tensor.dtype);
-  for (const int64_t size : tensor.shape) {
+  uint64_t bytes = ElementBytes(dtype);
+  for (const int64_t size : shape) {
     if (size != 0 && bytes > kLimit / uint64_t(size)) {
       throw RuntimeError("{}: tensor {} is too large", source, name);
     }
@@ -103,7 +103,8 @@ Entry ParseEntry(const std::string& name, const json& value, const std::string& 
   entry.begin = offsets[0].get<uint64_t>();
   entry.end = offsets[1].get<uint64_t>();
   if (entry.begin > entry.end ||
-      entry.end - entry.begin != TensorBytes(entry.tensor, name, source)) {
+      entry.end - entry.begin !=
+          TensorBytes(entry.tensor.dtype, entry.tensor.shape, name, source)) {
     throw fault("data_offsets do not fit the shape");
   }
   return entry;
@@ -135,6 +136,17 @@ void CheckCover(std::vector<Entry>* entries, uint64_t data_bytes, const std::str
 
 }  // namespace
 
+TensorViews::TensorViews(const TensorMap& tensors) {
+  for (const auto& [name, tensor] : tensors) {
+    views_.emplace(name, TensorView{tensor.dtype, tensor.shape, tensor.data});
+  }
+}
+
+const TensorView* TensorViews::Find(const std::string& name) const {
+  const auto found = views_.find(name);
+  return found == views_.end() ? nullptr : &found->second;
+}
+
 std::string WriteSafetensors(const TensorMap& tensors,
                              const std::map<std::string, std::string>& metadata) {
   json header = json::object();
@@ -142,7 +154,7 @@ std::string WriteSafetensors(const TensorMap& tensors,
   uint64_t offset = 0;
   for (const auto& [name, tensor] : tensors) {
     CHECK(ElementBytes(tensor.dtype) > 0) << name << " has dtype " << tensor.dtype;
-    CHECK(TensorBytes(tensor, name, "writer") == tensor.data.size())
+    CHECK(TensorBytes(tensor.dtype, tensor.shape, name, "writer") == tensor.data.size())
         << name << " has " << tensor.data.size() << " bytes";
     const uint64_t end = offset + tensor.data.size();
     header[name] = {
@@ -163,6 +175,15 @@ std::string WriteSafetensors(const TensorMap& tensors,
 }
 
 TensorMap ReadSafetensors(std::string_view bytes, const std::string& source) {
+  const TensorViews views = ReadSafetensorsViews(bytes, source);
+  TensorMap tensors;
+  for (const auto& [name, view] : views.all()) {
+    tensors[name] = {view.dtype, view.shape, {view.data.begin(), view.data.end()}};
+  }
+  return tensors;
+}
+
+TensorViews ReadSafetensorsViews(std::string_view bytes, const std::string& source) {
   if (bytes.size() < kLengthBytes) {
     throw RuntimeError("{}: {} bytes, too short for a safetensors file", source, bytes.size());
   }
@@ -184,10 +205,10 @@ TensorMap ReadSafetensors(std::string_view bytes, const std::string& source) {
     }
   }
   CheckCover(&entries, data.size(), source);
-  TensorMap tensors;
+  TensorViews tensors;
   for (Entry& entry : entries) {
-    entry.tensor.data.assign(first + entry.begin, first + entry.end);
-    tensors[entry.name] = std::move(entry.tensor);
+    entry.tensor.data = {first + entry.begin, first + entry.end};
+    tensors.views_.emplace(std::move(entry.name), std::move(entry.tensor));
   }
   return tensors;
 }

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -18,12 +19,38 @@ struct NamedTensor {
 
 using TensorMap = std::map<std::string, NamedTensor>;
 
+// A tensor whose bytes are somebody else's, row-major and aligned to nothing.
+struct TensorView {
+  std::string dtype;
+  std::vector<int64_t> shape;
+  std::span<const uint8_t> data;
+};
+
+// What functions that read tensors take: a TensorMap converts to it. Like a string_view it does not
+// keep what it refers to.
+class TensorViews {
+ public:
+  TensorViews() = default;
+  TensorViews(const TensorMap& tensors);
+
+  // Null where there is none of this name.
+  const TensorView* Find(const std::string& name) const;
+  const std::map<std::string, TensorView>& all() const& { return views_; }
+
+ private:
+  friend TensorViews ReadSafetensorsViews(std::string_view bytes, const std::string& source);
+
+  std::map<std::string, TensorView> views_;
+};
+
 // The bytes of a file holding `tensors` and the string pairs `metadata`.
 std::string WriteSafetensors(const TensorMap& tensors,
                              const std::map<std::string, std::string>& metadata);
 
 // `source` names the bytes in errors. Throws Error on anything but a well-formed file.
 TensorMap ReadSafetensors(std::string_view bytes, const std::string& source);
+// The same, as strict, without a copy of the data: the views point into `bytes`.
+TensorViews ReadSafetensorsViews(std::string_view bytes, const std::string& source);
 
 // Every F32 tensor rounded to BF16 (nearest even), for the wire, but running statistics, those of
 // observation.* too: a mean far from zero would lose what the deviation around it is measured in.

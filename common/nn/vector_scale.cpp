@@ -13,16 +13,15 @@ namespace {
 
 constexpr float kScaleEpsilon = 1e-8f;
 
-std::vector<float> ReadVector(const TensorMap& tensors, const std::string& name, int size,
+std::vector<float> ReadVector(const TensorViews& tensors, const std::string& name, int size,
                               const std::string& source) {
-  const auto at = tensors.find(name);
-  if (at == tensors.end()) throw RuntimeError("{}: no tensor '{}'", source, name);
-  const NamedTensor& tensor = at->second;
-  if (tensor.dtype != "F32" || tensor.shape != std::vector<int64_t>{size}) {
+  const TensorView* tensor = tensors.Find(name);
+  if (tensor == nullptr) throw RuntimeError("{}: no tensor '{}'", source, name);
+  if (tensor->dtype != "F32" || tensor->shape != std::vector<int64_t>{size}) {
     throw RuntimeError("{}: '{}' is not F32 of shape {}", source, name, size);
   }
   std::vector<float> values(static_cast<size_t>(size));
-  std::memcpy(values.data(), tensor.data.data(), values.size() * sizeof(float));
+  std::memcpy(values.data(), tensor->data.data(), values.size() * sizeof(float));
   return values;
 }
 
@@ -41,9 +40,9 @@ void VectorScale::Apply(const float* x, std::span<float> y) const {
   }
 }
 
-std::optional<VectorScale> ReadVectorScale(const TensorMap& tensors, int vector_size,
+std::optional<VectorScale> ReadVectorScale(const TensorViews& tensors, int vector_size,
                                            const std::string& source) {
-  if (!tensors.contains(kObservationMean) && !tensors.contains(kObservationVariance)) return {};
+  if (!tensors.Find(kObservationMean) && !tensors.Find(kObservationVariance)) return {};
   const std::vector<float> mean = ReadVector(tensors, kObservationMean, vector_size, source);
   const std::vector<float> variance =
       ReadVector(tensors, kObservationVariance, vector_size, source);

@@ -34,7 +34,7 @@ class VectorScale {
 
 // Of a policy's tensors (kObservationMean, kObservationVariance); nothing where it has none. Throws
 // Error naming a missing tensor or a wrong type or shape.
-std::optional<VectorScale> ReadVectorScale(const TensorMap& tensors, int vector_size,
+std::optional<VectorScale> ReadVectorScale(const TensorViews& tensors, int vector_size,
                                            const std::string& source);
 
 }  // namespace shoal::nn

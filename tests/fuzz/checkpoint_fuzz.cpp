@@ -4,7 +4,9 @@
 //      keep the input from the reader behind them
 //   2  the rest is a policy as an actor gets it over the wire
 //   3  the rest is policy.json
+#include <algorithm>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "common/base/check.h"
 #include "common/base/crc32.h"
@@ -55,9 +57,18 @@ void ReadWithLearner(const std::filesystem::path& folder, const std::string& lea
   for (const auto& [name, tensor] : again) CHECK(tensor.data == checkpoint.tensors.at(name).data);
 }
 
+// Views are what copies are, within the bytes; layers that were built read them.
 void LoadPolicy(const std::string& bytes) {
+  const nn::TensorViews views = nn::ReadSafetensorsViews(bytes, "weights");
+  const nn::TensorMap copies = nn::ReadSafetensors(bytes, "weights");
+  CHECK(views.all().size() == copies.size());
+  for (const auto& [name, view] : views.all())
+    CHECK(std::ranges::equal(view.data, copies.at(name).data));
   static nn::Policy policy(SmallConfig().network, SmallSpec(), nn::Precision::kF32, 1);
-  policy.Load(nn::ReadSafetensors(bytes, "weights"), "weights");
+  static const std::vector<uint8_t> frames(size_t(SmallSpec().InputBytes()));
+  static const std::vector<float> vector(size_t(SmallSpec().VectorSize()));
+  policy.Load(SharedBytes(bytes), "weights");
+  policy.Forward(1, frames.data(), vector.data());
 }
 
 void Read(uint8_t mode, const std::string& bytes) {

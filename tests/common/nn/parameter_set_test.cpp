@@ -129,6 +129,33 @@ TEST(ParameterSet, ImportTakesBf16) {
   }
 }
 
+TEST(ParameterSet, WhatIsBorrowedStaysInTheTensors) {
+  ParameterSet from = MakeSet();
+  from.Initialise(3);
+  TensorMap tensors;
+  from.Export(&tensors);
+  const TensorMap rounded = ToBf16(tensors);
+  ParameterSet set({{"a.weight", {3, 5}}, {"a.norm.weight", {3}}, {"b.bias", {7}}},
+                   ParameterSet::Use::kBorrowing);
+  EXPECT_EQ(set.size(), 32) << "of the vectors alone";
+  EXPECT_EQ(set.Find("a.weight").plain().data, nullptr) << "nothing yet";
+  for (const bool bf16 : {true, false}) {
+    const TensorMap& loaded = bf16 ? rounded : tensors;
+    set.Borrow(loaded, "test");
+    EXPECT_EQ(set.Find("a.weight").plain().data, loaded.at("a.weight").data.data());
+    EXPECT_EQ(set.Find("a.weight").plain().bf16, bf16);
+    EXPECT_EQ(set.Find("a.norm.weight").value()[2], 1.f);
+  }
+  EXPECT_TRUE(set.Find("a.weight").borrowed());
+  EXPECT_FALSE(set.Find("b.bias").borrowed());
+  TensorMap wrong = rounded;
+  wrong.at("a.norm.weight").data.assign(6, 0);
+  wrong.erase("b.bias");
+  EXPECT_THROW(set.Borrow(wrong, "test"), Error);
+  EXPECT_EQ(set.Find("a.weight").plain().data, tensors.at("a.weight").data.data());
+  EXPECT_EQ(set.Find("a.norm.weight").value()[0], 1.f);
+}
+
 TEST(ParameterSet, ImportNamesWhatIsMissingOrMisshaped) {
   ParameterSet set = MakeSet();
   TensorMap tensors;

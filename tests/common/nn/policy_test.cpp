@@ -86,6 +86,76 @@ TEST_P(PolicyTest, TakesWeightsRoundedForTheWire) {
             Tolerance(Precision::kBf16));
 }
 
+// One whose layers fill the blocks of the CPU's layouts; OddNetwork's do not.
+NetworkConfig EvenNetwork() {
+  NetworkConfig network;
+  network.filters = {32, 16};
+  network.strides = {2, 1};
+  network.features = 64;
+  network.hidden = {128, 64};
+  return network;
+}
+
+// To the last bit: of what came as bf16 nothing is lost, and nothing rounded twice.
+TEST_P(PolicyTest, ActsByRoundedWeightsAsByTheSameNumbersInF32) {
+  for (const NetworkConfig& network : {OddNetwork(), EvenNetwork()}) {
+    for (const bool pixels : {true, false}) {
+      Build(pixels, network);
+      const TensorMap rounded = ToBf16(Tensors());
+      // The layers as they are trained, of f32 parameters that were widened from bf16.
+      parameters_->Import(rounded, "", "test", parameters_->values());
+      const std::vector<float> vector = ToFloats(vector_);
+      if (encoder_) {
+        encoder_->Refresh();
+        encoder_->Forward(frames_.data(), Statistics::kBatch);
+      }
+      ActorHead actor(Context(*parameters_, kBatch), PlanActor(network_, spec_), features(), {});
+      actor.Refresh();
+      actor.Forward(vector.data());
+      const std::vector<float> mean(actor.mean(), actor.mean() + kBatch * 3);
+      const std::vector<float> log_std(actor.log_std(), actor.log_std() + kBatch * 3);
+
+      Policy of_rounded(network_, spec_, GetParam(), kBatch);
+      Policy of_widened(network_, spec_, GetParam(), kBatch);
+      of_rounded.Load(rounded, "test");
+      of_widened.Load(Tensors(), "test");
+      for (Policy* policy : {&of_rounded, &of_widened}) {
+        const Output output = Run(policy, kBatch);
+        EXPECT_EQ(output.mean, mean);
+        EXPECT_EQ(output.log_std, log_std);
+      }
+    }
+  }
+}
+
+TEST_P(PolicyTest, SharesAFilesBytesUntilTheNextOnes) {
+  Build(/*pixels=*/true);
+  Policy policy(network_, spec_, GetParam(), kBatch), fresh(network_, spec_, GetParam(), kBatch);
+  fresh.Load(ToBf16(Tensors()), "test");
+  auto file = std::make_shared<const std::string>(WriteSafetensors(ToBf16(Tensors()), {}));
+  const std::weak_ptr<const std::string> kept = file;
+  policy.Load(SharedBytes(file, *file), "test");
+  file.reset();
+  EXPECT_FALSE(kept.expired());
+  EXPECT_EQ(Run(&policy, kBatch).mean, Run(&fresh, kBatch).mean);
+  EXPECT_THROW(policy.Load(SharedBytes("no file"), "test"), Error);
+  EXPECT_EQ(Run(&policy, 2).mean, Run(&fresh, 2).mean) << "a batch size that is new";
+  policy.Load(Tensors(), "test");
+  EXPECT_TRUE(kept.expired());
+}
+
+// A file may lie anywhere, and its tensors anywhere in it.
+TEST_P(PolicyTest, TakesTensorsAtOddAddresses) {
+  Build(/*pixels=*/true);
+  for (const TensorMap& tensors : {Tensors(), ToBf16(Tensors())}) {
+    Policy policy(network_, spec_, GetParam(), kBatch), even(network_, spec_, GetParam(), kBatch);
+    even.Load(tensors, "test");
+    const auto shifted = std::make_shared<const std::string>("x" + WriteSafetensors(tensors, {}));
+    policy.Load(SharedBytes(shifted, std::string_view(*shifted).substr(1)), "test");
+    EXPECT_EQ(Run(&policy, kBatch).mean, Run(&even, kBatch).mean);
+  }
+}
+
 TEST_P(PolicyTest, KeepsItsWeightsWhenNewOnesAreRefused) {
   Build(/*pixels=*/true);
   Policy policy(network_, spec_, GetParam(), kBatch);

@@ -56,6 +56,31 @@ TEST(Safetensors, RoundTripKeepsEveryTensor) {
   }
 }
 
+TEST(Safetensors, ViewsPointIntoTheFile) {
+  const TensorMap tensors = Sample();
+  const std::string file = WriteSafetensors(tensors, {{"format", "pt"}});
+  const TensorViews views = ReadSafetensorsViews(file, "test");
+  ASSERT_EQ(views.all().size(), tensors.size());
+  for (const auto& [name, tensor] : tensors) {
+    const TensorView* view = views.Find(name);
+    ASSERT_NE(view, nullptr) << name;
+    EXPECT_EQ(view->dtype, tensor.dtype) << name;
+    EXPECT_EQ(view->shape, tensor.shape) << name;
+    EXPECT_EQ(std::vector<uint8_t>(view->data.begin(), view->data.end()), tensor.data) << name;
+    const auto* begin = reinterpret_cast<const uint8_t*>(file.data());
+    EXPECT_TRUE(view->data.data() >= begin && view->data.data() <= begin + file.size()) << name;
+  }
+  EXPECT_EQ(views.Find("b"), nullptr);
+}
+
+TEST(Safetensors, ViewsOfAMapAreItsBytes) {
+  const TensorMap tensors = Sample();
+  const TensorViews views = tensors;
+  EXPECT_EQ(views.all().size(), tensors.size());
+  EXPECT_EQ(views.Find("a")->data.data(), tensors.at("a").data.data());
+  EXPECT_EQ(views.Find("a")->shape, tensors.at("a").shape);
+}
+
 TEST(Safetensors, BytesAreThoseOfTheFormat) {
   TensorMap tensors;
   tensors["w"] = F32({1, 2}, {1.f, -2.f});
