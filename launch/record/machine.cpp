@@ -1,12 +1,14 @@
 #include "launch/record/machine.h"
 
+#include <fmt/core.h>
 #include <sys/utsname.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <nlohmann/json.hpp>
-#include <string>
 
 #include "common/base/usable_cores.h"
 #include "common/nn/precision.h"
@@ -14,25 +16,41 @@
 namespace shoal::launch {
 namespace {
 
-std::string CpuName() {
-  std::ifstream in("/proc/cpuinfo");
-  for (std::string line; std::getline(in, line);) {
+// Of the first line "KEY<tabs>: VALUE"; empty without one. "model" is not "model name".
+std::string_view ValueOf(std::string_view key, std::string_view cpuinfo) {
+  while (!cpuinfo.empty()) {
+    const std::string_view line = cpuinfo.substr(0, cpuinfo.find('\n'));
+    cpuinfo.remove_prefix(std::min(cpuinfo.size(), line.size() + 1));
     const size_t colon = line.find(": ");
-    if (line.starts_with("model name") && colon != std::string::npos) {
-      return line.substr(colon + 2);
-    }
+    if (colon == std::string_view::npos) continue;
+    const std::string_view name = line.substr(0, line.find_last_not_of("\t ", colon - 1) + 1);
+    if (name == key) return line.substr(colon + 2);
   }
-  return "unknown";
+  return {};
+}
+
+// Empty where there is none: files of /proc have no size to ask for.
+std::string CpuInfo() {
+  std::ifstream in("/proc/cpuinfo");
+  return {std::istreambuf_iterator<char>(in), {}};
 }
 
 }  // namespace
+
+std::string CpuName(std::string_view cpuinfo) {
+  const std::string_view name = ValueOf("model name", cpuinfo);
+  if (name.empty()) return "unknown";
+  const std::string_view family = ValueOf("cpu family", cpuinfo), model = ValueOf("model", cpuinfo);
+  if (family.empty() || model.empty()) return std::string(name);
+  return fmt::format("{} (family {}, model {})", name, family, model);
+}
 
 nlohmann::ordered_json DescribeMachine() {
   const double bytes =
       static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
   utsname system{};
   uname(&system);
-  return {{"cpu", CpuName()},
+  return {{"cpu", CpuName(CpuInfo())},
           {"cores", UsableCores()},
           {"memory_gb", std::round(bytes / 1e8) / 10},
           {"isa", nn::CpuIsa()},

@@ -2,11 +2,18 @@
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
+#include <string>
+#include <string_view>
 
 namespace shoal::launch {
 
 // {cpu, cores, memory_gb, isa, kernel}: cores that this process may use; isa is what the network
 // code found.
 nlohmann::ordered_json DescribeMachine();
+
+// Of the first processor in the text of /proc/cpuinfo: "NAME (family F, model M)", as virtual
+// machines give different CPUs one name; without the brackets where either is missing, "unknown"
+// without a name.
+std::string CpuName(std::string_view cpuinfo);
 
 }  // namespace shoal::launch
