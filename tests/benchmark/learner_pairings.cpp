@@ -105,6 +105,8 @@ std::vector<Pairing> LearnerPairings() {
                                              {"mrq", "mrq", 256},
                                              {"nature", "nature", 128},
                                              {"nature", "nature", 256},
+                                             {"spatial_softmax", "spatial_softmax", 128},
+                                             {"spatial_softmax", "spatial_softmax", 256},
                                              {"", "vectors alone", 128}}) {
     const auto get = [agents, encoder = std::string(encoder), batch = batch]() -> TwoAgents::Of& {
       return agents->Get(encoder, batch);

@@ -33,7 +33,7 @@ int Run(int argc, char** argv) {
   shoal::InstallStopSignals();  // an interrupted one takes its processes and files with it
 
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  bool whole = true;
+  bool whole = true, skipped = false;
   // A room at a time: what its rows hold is given back before the next.
   for (const auto make :
        {shoal::bench::ReplayPairings, shoal::bench::GatherPairings, shoal::bench::NetworkPairings,
@@ -41,6 +41,11 @@ int Run(int argc, char** argv) {
         shoal::bench::TransportPairings, shoal::bench::WorldPairings}) {
     for (const shoal::bench::Pairing& pairing : make()) {
       if (pairing.stage.find(only) == std::string::npos) continue;
+      if (!pairing.skipped.empty()) {
+        std::cerr << fmt::format("{}: skipped: {}\n", pairing.stage, pairing.skipped);
+        skipped = true;
+        continue;
+      }
       std::cerr << fmt::format("measuring {} ...\n", pairing.stage);
       try {
         const auto row = shoal::bench::TimePair(pairing, repetitions, seconds);
@@ -53,7 +58,8 @@ int Run(int argc, char** argv) {
       }
     }
   }
-  if (rows.empty() && whole) throw shoal::UsageError("no row's stage contains '{}'", only);
+  if (rows.empty() && whole && !skipped)
+    throw shoal::UsageError("no row's stage contains '{}'", only);
   const nlohmann::ordered_json report{{"schema", "shoal-bench-1"},
                                       {"commit", shoal::BuildCommit()},
                                       {"machine", shoal::launch::DescribeMachine()},

@@ -35,11 +35,12 @@ Row TimePair(const Pairing& pairing, int repetitions, double seconds) {
   const std::shared_ptr<void> held = pairing.meanwhile ? pairing.meanwhile() : nullptr;
   pairing.ours();
   if (pairing.other) pairing.other();
+  const double units = pairing.units ? pairing.units() : pairing.units_per_call;
   std::vector<double> ours, other, ratios;
   for (int i = 0; i < repetitions; ++i) {
     ours.push_back(CallsPerSecond(pairing.ours, seconds));
     other.push_back(pairing.other ? CallsPerSecond(pairing.other, seconds)
-                                  : pairing.other_rate / pairing.units_per_call);
+                                  : pairing.other_rate / units);
     ratios.push_back(ours.back() / other.back());
   }
   const auto [least, most] = std::minmax_element(ratios.begin(), ratios.end());
@@ -47,8 +48,8 @@ Row TimePair(const Pairing& pairing, int repetitions, double seconds) {
   row.stage = pairing.stage;
   row.unit = pairing.unit;
   row.against = pairing.against;
-  row.figure = Median(ours) * pairing.units_per_call;
-  row.against_figure = Median(other) * pairing.units_per_call;
+  row.figure = Median(ours) * units;
+  row.against_figure = Median(other) * units;
   row.ratio = Median(ratios);
   row.spread = (*most - *least) / row.ratio;
   row.target = pairing.target;

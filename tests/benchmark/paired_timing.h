@@ -25,10 +25,14 @@ struct Pairing {
   double units_per_call = 1;
   double target = 0;
   std::function<void()> ours, other;
+  // In place of units_per_call, where only a call shows how many there are: asked after the first.
+  std::function<double()> units{};
   // In place of `other`: a rate that is a limit by itself, in units per second.
   double other_rate = 0;
   // What goes on meanwhile, for as long as the result lives; empty: nothing.
   std::function<std::shared_ptr<void>()> meanwhile{};
+  // Why it cannot be measured on this machine, which is no fault; empty where it can.
+  std::string skipped{};
 };
 
 // Each side runs for about `seconds` per repetition; the first, uncounted call of each warms up.

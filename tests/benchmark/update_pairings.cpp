@@ -1,8 +1,9 @@
 // An update beside the oneDNN primitives that it consists of, run alone back to back: what the
 // update costs beyond them is ours. Beside its convolutions alone: how near it is to what the
-// network itself takes.
+// network itself takes. These beside what a core can do at most in bf16: what the machine allows.
 #include <fmt/core.h>
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -10,6 +11,7 @@
 #include "common/nn/parallel.h"
 #include "common/nn/precision.h"
 #include "learner/agent/algorithms.h"
+#include "tests/benchmark/bf16_peak.h"
 #include "tests/benchmark/noise_batch.h"
 #include "tests/benchmark/paired_timing.h"
 #include "tests/common/nn/primitive_trace.h"
@@ -59,29 +61,65 @@ class LatestTraced {
   std::unique_ptr<Traced> traced_;
 };
 
+constexpr const char* kPeak = "bf16 peak of one core";
+
+// "SAC update, ENCODER, batch B of (C, H, W), PRECISION".
+std::string StageOf(const std::string& encoder, int batch) {
+  return fmt::format("SAC update, {}, batch {} of (6, 84, 84), auto", encoder, batch);
+}
+
+std::string WhyNoPeak() { return HasBf16Peak() ? "" : "this CPU has no AVX-512 bf16"; }
+
+Pairing PeakPairing() {
+  constexpr double kOperations = 1e8;
+  return {.stage = kPeak,
+          .unit = "GFLOP/s",
+          .against = "f32 multiply-adds of the same width",
+          .units_per_call = 1e-9 * kOperations,
+          .ours = [] { RunAtBf16Peak(kOperations); },
+          .other = [] { RunAtF32Peak(kOperations); },
+          .skipped = WhyNoPeak()};
+}
+
+// The convolutions' arithmetic beside as much of it at the peak.
+Pairing ConvolutionsPairing(const std::string& stage, const std::function<Traced&()>& get) {
+  return {.stage = "convolutions of a " + stage,
+          .unit = "GFLOP/s",
+          .against = kPeak,
+          .ours = [get] { get().trace->Run(nn::PrimitiveTrace::Part::kConvolutions); },
+          .other = [get] { RunAtBf16Peak(get().trace->ConvolutionOperations()); },
+          .units = [get] { return 1e-9 * get().trace->ConvolutionOperations(); },
+          .skipped = WhyNoPeak()};
+}
+
 }  // namespace
 
 std::vector<Pairing> UpdatePairings() {
   if (nn::Threads() > 1) return {};  // replicas on threads: their primitives never run alone
-  std::vector<Pairing> pairings;
+  std::vector<Pairing> pairings{PeakPairing()};
   const auto latest = std::make_shared<LatestTraced>();
   for (const std::string encoder : {"compact", "drq", "mrq", "nature", "spatial_softmax"}) {
     for (const int batch : {128, 256}) {
       const auto get = [=]() -> Traced& { return latest->Get(encoder, batch); };
-      Pairing pairing{
-          .stage = fmt::format("SAC update, {}, batch {} of (6, 84, 84), auto", encoder, batch),
-          .unit = "updates/s",
-          .against = "its primitives alone",
-          .units_per_call = kUpdates,
-          .target = kPrimitivesTarget,
-          .ours = [get] { get().Update(); },
-          .other = [get] { get().trace->Run(); }};
+      Pairing pairing{.stage = StageOf(encoder, batch),
+                      .unit = "updates/s",
+                      .against = "its primitives alone",
+                      .units_per_call = kUpdates,
+                      .target = kPrimitivesTarget,
+                      .ours = [get] { get().Update(); },
+                      .other = [get] { get().trace->Run(); }};
       pairings.push_back(pairing);
       pairing.against = "its convolutions alone";
       pairing.target = 0;  // a limit beside a peer's rate alone: tests/comparison/bench_peers.py
       pairing.other = [get] { get().trace->Run(nn::PrimitiveTrace::Part::kConvolutions); };
       pairings.push_back(pairing);
+      pairings.push_back(ConvolutionsPairing(pairing.stage, get));
       if (encoder == "compact" && batch == 128) {
+        pairing.against = fmt::format("its convolutions at the {}", kPeak);
+        pairing.other = [get] { RunAtBf16Peak(get().trace->ConvolutionOperations()); };
+        pairing.skipped = WhyNoPeak();
+        pairings.push_back(pairing);
+        pairing.skipped.clear();
         pairing.against = fmt::format("one in {:.0f} ms", 1e3 * kCompactSeconds);
         pairing.target = 1;
         pairing.other = {};

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/base/check.h"
+#include "common/nn/primitive_descs.h"
 
 namespace {
 
@@ -17,6 +18,30 @@ bool IsConvolution(const_dnnl_primitive_t primitive) {
   CHECK(dnnl_primitive_get_primitive_desc(primitive, &desc) == dnnl_success);
   CHECK(dnnl_primitive_desc_query(desc, dnnl_query_primitive_kind, 0, &kind) == dnnl_success);
   return kind == dnnl_convolution;
+}
+
+// The dimensions of the first of two arguments that there is: values or gradients.
+dnnl::memory::dims DimsOfArgument(const Execution& execution, int values, int gradients) {
+  for (const int index : {values, gradients}) {
+    const auto found = std::ranges::find(execution.arguments, index, &dnnl_exec_arg_t::arg);
+    if (found != execution.arguments.end()) {
+      return shoal::nn::DimsOf(dnnl::memory(found->memory, /*weak=*/true));
+    }
+  }
+  CHECK(false) << "a convolution without argument " << values;
+  return {};
+}
+
+// Each of (B, N, h, w) outputs, or its gradient, meets the (C, u, v) weights of its filter once.
+double OperationsOf(const Execution& execution) {
+  double operations = 2;
+  for (const int64_t size : DimsOfArgument(execution, DNNL_ARG_DST, DNNL_ARG_DIFF_DST)) {
+    operations *= double(size);
+  }
+  const dnnl::memory::dims weights =
+      DimsOfArgument(execution, DNNL_ARG_WEIGHTS, DNNL_ARG_DIFF_WEIGHTS);
+  for (size_t i = 1; i < weights.size(); ++i) operations *= double(weights[i]);
+  return operations;
 }
 
 }  // namespace
@@ -55,6 +80,14 @@ void PrimitiveTrace::Run(Part part) const {
 size_t PrimitiveTrace::Count(Part part) const {
   if (part == Part::kAll) return executions_.size();
   return static_cast<size_t>(std::ranges::count_if(executions_, &Execution::convolution));
+}
+
+double PrimitiveTrace::ConvolutionOperations() const {
+  double operations = 0;
+  for (const Execution& execution : executions_) {
+    if (execution.convolution) operations += OperationsOf(execution);
+  }
+  return operations;
 }
 
 }  // namespace shoal::nn

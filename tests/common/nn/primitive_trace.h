@@ -23,6 +23,8 @@ class PrimitiveTrace {
   // Runs them in this thread, one after another, over memory as the work left it.
   void Run(Part part = Part::kAll) const;
   size_t Count(Part part = Part::kAll) const;
+  // Multiplications and additions of the convolutions, forward and backward, padding included.
+  double ConvolutionOperations() const;
 
   // One execution. For the wrapped function.
   struct Execution {

@@ -48,6 +48,13 @@ TEST_F(PrimitiveTraceTest, HoldsWhatTheWorkRuns) {
   EXPECT_EQ(twice.Count(), 2 * once.Count());
 }
 
+TEST_F(PrimitiveTraceTest, CountsWhatConvolutionsCompute) {
+  const PrimitiveTrace trace([&] { policy_.Forward(1, dark_.data(), nullptr); });
+  // 4 filters of 3 x 3 over 3 channels of 10 x 10 (pooled) to maps of 4 x 4, then over 4 channels
+  // to a map of 1 x 1.
+  EXPECT_EQ(trace.ConvolutionOperations(), 2 * (16 * 4 * 27 + 4 * 36));
+}
+
 TEST_F(PrimitiveTraceTest, RunsThemAgainAndNotesNothing) {
   const PrimitiveTrace trace([&] { policy_.Forward(1, dark_.data(), nullptr); });
   const PrimitiveTrace of_a_run([&] { trace.Run(); });
