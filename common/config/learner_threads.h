@@ -17,4 +17,8 @@ int LearnerThreads(const Config& config, int cores);
 // learner.batch: in equal parts that split no replay.copies of one transition.
 void CheckReplicas(const Config& config, int replicas);
 
+// Throws Error (kUsage) unless `threads` have a core each: threads of one update wait for each
+// other, so that more of them learn more slowly than `cores` do. `cores` are the learner's host's.
+void CheckCores(int threads, int cores);
+
 }  // namespace shoal

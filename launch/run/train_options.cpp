@@ -64,11 +64,11 @@ Config ResolveConfig(const TrainOptions& options, int cores) {
   return config;
 }
 
-bool SetsPrecision(const std::string& assignment) {
-  return assignment.starts_with("learner.precision=");
+bool SetsForMachine(const std::string& assignment) {
+  return assignment.starts_with("learner.precision=") || assignment.starts_with("learner.threads=");
 }
 
-void ApplyResumeOptions(const TrainOptions& options, Config* config) {
+void ApplyResumeOptions(const TrainOptions& options, int cores, Config* config) {
   const std::pair<bool, const char*> refused[] = {
       {!options.preset.empty(), "--preset"},       {!options.config_file.empty(), "--config"},
       {!options.run_name.empty(), "--run-name"},   {options.overwrite, "--overwrite"},
@@ -78,12 +78,15 @@ void ApplyResumeOptions(const TrainOptions& options, Config* config) {
   }
   for (const std::string& assignment : options.set) {
     if (!assignment.starts_with("env_steps=") && !assignment.starts_with("stop.") &&
-        !SetsPrecision(assignment)) {
-      throw UsageError("--set {}: a resumed run takes env_steps, stop.* and learner.precision only",
-                       assignment);
+        !SetsForMachine(assignment)) {
+      throw UsageError(
+          "--set {}: a resumed run takes env_steps, stop.*, learner.precision and learner.threads "
+          "only",
+          assignment);
     }
   }
   ApplyAssignments(options.set, config);
+  config->learner.threads = LearnerThreads(*config, cores);
   Validate(*config);
 }
 

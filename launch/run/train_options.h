@@ -29,9 +29,10 @@ struct TrainOptions {
 Config ResolveConfig(const TrainOptions& options, int cores);
 
 // A resumed run keeps its configuration; only env_steps, stop.* and, for another machine,
-// learner.precision may be set. Throws Error (usage) for other keys or options.
-void ApplyResumeOptions(const TrainOptions& options, Config* config);
-// Whether KEY=VALUE is about learner.precision.
-bool SetsPrecision(const std::string& assignment);
+// learner.precision and learner.threads (0: filled in for `cores`) may be set. Throws Error (usage)
+// for other keys or options.
+void ApplyResumeOptions(const TrainOptions& options, int cores, Config* config);
+// Whether KEY=VALUE is one of those for another machine.
+bool SetsForMachine(const std::string& assignment);
 
 }  // namespace shoal::launch

@@ -16,6 +16,7 @@
 #include "common/base/stop.h"
 #include "common/base/usable_cores.h"
 #include "common/config/config_io.h"
+#include "common/config/learner_threads.h"
 #include "common/config/on_policy.h"
 #include "common/config/privileged_blocks.h"
 #include "common/config/run_files.h"
@@ -109,7 +110,7 @@ void NoteResumeOptions(const TrainOptions& options, const Config& before, RunMet
   LiveSettings settings(before);
   settings.Restore(meta->changes);
   for (const std::string& assignment : options.set) {
-    if (SetsPrecision(assignment)) continue;  // no setting of a running run; config.json has it
+    if (SetsForMachine(assignment)) continue;  // no setting of a running run; config.json has it
     SettingChange change = settings.Assign(assignment, meta->env_steps);
     change.time = UtcTimestamp();
     change.env_steps = meta->env_steps;
@@ -139,7 +140,7 @@ PreparedRun PrepareResumed(const TrainOptions& options) {
   RefuseFinished(folder.path(), meta, before, options);
   meta.exit = "running";
   meta.final_return.reset();
-  ApplyResumeOptions(options, &config.config);
+  ApplyResumeOptions(options, UsableCores(), &config.config);
   tasks::LoadTaskLibrary(config.config.task_library);
   const ObservedWorld now = DescribeObservations(config.config);
   if (now.spec != config.spec) {
@@ -158,11 +159,13 @@ PreparedRun PrepareResumed(const TrainOptions& options) {
   return {std::move(folder), std::move(config), meta, std::move(hosts), now.frame_microseconds};
 }
 
-// What a receiver of weights takes, and what the learner's threads can share.
+// What a receiver of weights takes, what the learner's threads can share, and that each has a core:
+// the learner runs on this host.
 void CheckNetwork(const RunConfig& run) {
   nn::CheckNetwork(run.config.network, run.spec, run.config.learner.batch,
                    int64_t{kMaxWeightsBytes});
   learner::ReplicasOf(run.config, run.spec, run.config.learner.threads);
+  CheckCores(run.config.learner.threads, UsableCores());
 }
 
 // Of another network, the learner would find it out with every process running. Damaged or of

@@ -77,6 +77,14 @@ TEST(LearnerThreads, OfAnOnPolicyRunAreHalfTheCores) {
   EXPECT_EQ(LearnerThreads(config, 6), 3);
 }
 
+TEST(CheckCores, RefusesMoreThreadsThanCoresAndSaysWhatFits) {
+  EXPECT_NO_THROW(CheckCores(2, 2));
+  EXPECT_THAT([] { CheckCores(3, 2); },
+              ThrowsMessage<Error>(AllOf(HasSubstr("learner.threads = 3"), HasSubstr("2 cores"),
+                                         HasSubstr("--set learner.threads=N"))));
+  EXPECT_THAT([] { CheckCores(2, 1); }, ThrowsMessage<Error>(HasSubstr("1 core,")));
+}
+
 TEST(CheckReplicas, RefusesWhatWouldSplitUnequallyAndSaysWhatFits) {
   EXPECT_NO_THROW(CheckReplicas(Of(0, 128), 4));
   EXPECT_NO_THROW(CheckReplicas(Of(0, 6, 2), 3));

@@ -78,18 +78,27 @@ TEST(ApplyResumeOptions, TakesOnlyHowLongToGoOn) {
   Config config;
   TrainOptions options;
   options.set = {"env_steps=7", "stop.success=2"};
-  ApplyResumeOptions(options, &config);
+  config.learner.threads = 3;
+  ApplyResumeOptions(options, /*cores=*/2, &config);
   EXPECT_EQ(config.env_steps, 7);
+  EXPECT_EQ(config.learner.threads, 3);
   EXPECT_EQ(config.stop.success, 2);
   options.set = {"learner.precision=f32"};  // for a machine that lacks the other
-  ApplyResumeOptions(options, &config);
+  ApplyResumeOptions(options, /*cores=*/2, &config);
   EXPECT_EQ(config.learner.precision, "f32");
+  options.set = {"learner.threads=2"};  // for a machine that has fewer
+  ApplyResumeOptions(options, /*cores=*/2, &config);
+  EXPECT_EQ(config.learner.threads, 2);
+  options.set = {"learner.threads=0"};
+  ApplyResumeOptions(options, /*cores=*/8, &config);
+  EXPECT_EQ(config.learner.threads, 4);
   options.set = {"learner.batch=7"};
-  EXPECT_THAT(UsageMessage([&] { ApplyResumeOptions(options, &config); }),
+  EXPECT_THAT(UsageMessage([&] { ApplyResumeOptions(options, 2, &config); }),
               HasSubstr("learner.batch=7"));
   options.set = {};
   options.preset = "fetch-reach-drq";
-  EXPECT_THAT(UsageMessage([&] { ApplyResumeOptions(options, &config); }), HasSubstr("--preset"));
+  EXPECT_THAT(UsageMessage([&] { ApplyResumeOptions(options, 2, &config); }),
+              HasSubstr("--preset"));
 }
 
 }  // namespace
