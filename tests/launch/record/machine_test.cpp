@@ -14,6 +14,7 @@ TEST(CpuName, TellsCpusOfOneNameApart) {
       "model name\t: AMD EPYC\n\nprocessor\t: 1\ncpu family\t: 26\nmodel\t\t: 2\n"
       "model name\t: another\n";
   EXPECT_EQ(CpuName(first), "AMD EPYC (family 25, model 17)");
+  EXPECT_EQ(CpuName("model name\t: X\nmodel\t\t: 17\ncpu family\t: 6\n"), "X (family 6, model 17)");
 }
 
 TEST(CpuName, IsTheNameAloneWhereThatIsAllThereIs) {
