@@ -65,7 +65,8 @@ void CheckReplicas(const Config& config, int replicas) {
 void CheckCores(int threads, int cores) {
   if (threads <= cores) return;
   throw UsageError(
-      "learner.threads = {}: this process may use {} core{}, expected at most as many threads (--set "
+      "learner.threads = {}: this process may use {} core{}, expected at most as many threads "
+      "(--set "
       "learner.threads=N; 0 takes what suits the cores)",
       threads, cores, cores == 1 ? "" : "s");
 }

@@ -6,6 +6,7 @@
 #include "common/base/files.h"
 #include "common/checkpoint/checkpoint_files.h"
 #include "common/config/config_io.h"
+#include "common/config/run_config.h"
 #include "common/nn/actor_critic_plan.h"
 #include "common/nn/parameter_set.h"
 #include "common/policy/policy_description.h"

@@ -16,7 +16,7 @@ struct PoolingCase {
   int pool;
 };
 
-std::vector<uint8_t> RandomFrames(size_t n) {
+std::vector<uint8_t> RandomPixels(size_t n) {
   Random random(7);
   std::vector<uint8_t> frames(n);
   for (uint8_t& pixel : frames) pixel = uint8_t(random.Next());
@@ -45,7 +45,7 @@ class FramePoolingTest : public testing::TestWithParam<PoolingCase> {};
 
 TEST_P(FramePoolingTest, AgreesWithTheNaiveMeanInBothTypes) {
   const auto& [shape, pool] = GetParam();
-  const std::vector<uint8_t> in = RandomFrames(size_t(shape.planes) * shape.height * shape.width);
+  const std::vector<uint8_t> in = RandomPixels(size_t(shape.planes) * shape.height * shape.width);
   const reference::Values exact = NaivePooling(in, shape, pool);
   std::vector<float> out(exact.size());
   PoolFrames(in.data(), shape, pool, -0.5f, out.data());
@@ -91,7 +91,7 @@ TEST(FramePooling, WithoutAShiftBlackIsZeroAndWhiteOne) {
 }
 
 TEST(FramePooling, IsTheSameForAnyNumberOfThreads) {
-  const std::vector<uint8_t> in = RandomFrames(5 * 84 * 84);
+  const std::vector<uint8_t> in = RandomPixels(5 * 84 * 84);
   std::vector<float> one(5 * 42 * 42), three(one.size());
   {
     const ThreadScope scope(1);

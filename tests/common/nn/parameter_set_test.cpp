@@ -53,35 +53,37 @@ TEST(ParameterSet, InitialisesAsEachStartSaysByNameAndSeed) {
 }
 
 TEST(ParameterSet, AUniformStartFillsItsIntervalAndNoMore) {
-  constexpr int kCount = 10'000;
-  ParameterSet set({{"w", {kCount}, {Start::Kind::kUniform, 0.25}}}, ParameterSet::Use::kInference);
+  constexpr int kSamples = 10'000;
+  ParameterSet set({{"w", {kSamples}, {Start::Kind::kUniform, 0.25}}},
+                   ParameterSet::Use::kInference);
   set.Initialise(4);
   const float* w = set.values();
-  const auto [low, high] = std::minmax_element(w, w + kCount);
+  const auto [low, high] = std::minmax_element(w, w + kSamples);
   EXPECT_GE(*low, -0.25f);
   EXPECT_LE(*high, 0.25f);
   double sum = 0, squares = 0;
-  for (int i = 0; i < kCount; ++i) {
+  for (int i = 0; i < kSamples; ++i) {
     sum += w[i];
     squares += double(w[i]) * w[i];
   }
   // Mean 0, variance 0.25^2 / 3; five standard errors.
-  EXPECT_NEAR(sum / kCount, 0, 5 * 0.25 / std::sqrt(3.0 * kCount));
-  EXPECT_NEAR(squares / kCount, 0.0625 / 3, 5 * 0.0625 * std::sqrt(4.0 / 45 / kCount));
+  EXPECT_NEAR(sum / kSamples, 0, 5 * 0.25 / std::sqrt(3.0 * kSamples));
+  EXPECT_NEAR(squares / kSamples, 0.0625 / 3, 5 * 0.0625 * std::sqrt(4.0 / 45 / kSamples));
 }
 
 TEST(ParameterSet, ANormalStartHasItsDeviation) {
-  constexpr int kCount = 10'000;
-  ParameterSet set({{"w", {kCount}, {Start::Kind::kNormal, 0.25}}}, ParameterSet::Use::kInference);
+  constexpr int kSamples = 10'000;
+  ParameterSet set({{"w", {kSamples}, {Start::Kind::kNormal, 0.25}}},
+                   ParameterSet::Use::kInference);
   set.Initialise(4);
   double sum = 0, squares = 0;
-  for (int i = 0; i < kCount; ++i) {
+  for (int i = 0; i < kSamples; ++i) {
     sum += set.values()[i];
     squares += double(set.values()[i]) * set.values()[i];
   }
   // Five standard errors; the square of a normal number has variance 2.
-  EXPECT_NEAR(sum / kCount, 0, 5 * 0.25 / std::sqrt(double(kCount)));
-  EXPECT_NEAR(squares / kCount, 0.0625, 5 * 0.0625 * std::sqrt(2.0 / kCount));
+  EXPECT_NEAR(sum / kSamples, 0, 5 * 0.25 / std::sqrt(double(kSamples)));
+  EXPECT_NEAR(squares / kSamples, 0.0625, 5 * 0.0625 * std::sqrt(2.0 / kSamples));
 }
 
 TEST(ParameterSet, StatisticsLieBehindWhatIsTrainedAndHaveNoGradient) {

@@ -37,7 +37,7 @@ class PoolTest : public LayerTest {
     Values x = Levels(size_t(shape.planes * height * width), 1);
     for (double& value : x) value -= 4;
     FillMemory(x, source);
-    pool.Forward(Statistics::kPoolImages);
+    pool.Forward(Statistics::kBatch);
     EXPECT_EQ(ToDoubles(ReadMemory(pool.output())), reference::MaxPoolForward(shape, x));
 
     const Values dy =
@@ -59,7 +59,7 @@ class PoolTest : public LayerTest {
                                             out_width};
     const Values x = RandomValues(size_t(shape.planes * height * width), 1);
     FillMemory(x, source);
-    pool.Forward(Statistics::kPoolImages);
+    pool.Forward(Statistics::kBatch);
     EXPECT_LT(RelativeError(ReadMemory(pool.output()), reference::AveragePoolForward(shape, x)),
               Tolerance(GetParam()));
 
