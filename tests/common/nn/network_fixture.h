@@ -63,6 +63,7 @@ class NetworkTest : public LayerTest {
   void Build(const ObservationSpec& spec, const NetworkConfig& network) {
     network_ = network;
     spec_ = spec;
+    encoder_.reset();  // reads the parameters before
     parameters_ = std::make_unique<ParameterSet>(AllParameters(network_, spec_),
                                                  ParameterSet::Use::kTraining);
     // Initialised, then moved off the special values of biases and norms.
