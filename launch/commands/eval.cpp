@@ -62,7 +62,7 @@ struct RunCheckpoint {
 };
 
 // RUN/checkpoints/NAME, or RUN for the checkpoint that it is judged by.
-RunCheckpoint FindCheckpoint(const std::string& asked) {
+RunCheckpoint FindRunCheckpoint(const std::string& asked) {
   fs::path path = fs::absolute(asked).lexically_normal();
   if (!path.has_filename()) path = path.parent_path();  // "best/" -> "best"
   if (!fs::is_directory(path)) throw UsageError("no checkpoint folder '{}'", asked);
@@ -85,7 +85,7 @@ int Interrupted(const std::string& what) {
 }
 
 int Evaluate(const EvalOptions& options) {
-  const auto [run, folder] = FindCheckpoint(options.checkpoint);
+  const auto [run, folder] = FindRunCheckpoint(options.checkpoint);
   if (!options.json.empty()) CheckWritable(options.json);
   InstallStopSignals();
   const ScratchFolder scratch;

@@ -7,20 +7,20 @@
 namespace shoal::learner {
 namespace {
 
-bool AllFinite(std::span<const float> values) {
+bool AreFinite(std::span<const float> values) {
   return std::all_of(values.begin(), values.end(), [](float x) { return std::isfinite(x); });
 }
 
 }  // namespace
 
 bool AllFinite(const BatchView& batch) {
-  return AllFinite(std::span<const float>(batch.obs_vector)) &&
-         AllFinite(std::span<const float>(batch.next_obs_vector)) &&
-         AllFinite(std::span<const float>(batch.obs_privileged)) &&
-         AllFinite(std::span<const float>(batch.next_obs_privileged)) &&
-         AllFinite(std::span<const float>(batch.action)) &&
-         AllFinite(std::span<const float>(batch.reward)) &&
-         AllFinite(std::span<const float>(batch.bootstrap));
+  return AreFinite(std::span<const float>(batch.obs_vector)) &&
+         AreFinite(std::span<const float>(batch.next_obs_vector)) &&
+         AreFinite(std::span<const float>(batch.obs_privileged)) &&
+         AreFinite(std::span<const float>(batch.next_obs_privileged)) &&
+         AreFinite(std::span<const float>(batch.action)) &&
+         AreFinite(std::span<const float>(batch.reward)) &&
+         AreFinite(std::span<const float>(batch.bootstrap));
 }
 
 bool Usable(float loss, double gradient_squares) {

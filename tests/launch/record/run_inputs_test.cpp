@@ -76,6 +76,7 @@ TEST(RunInputs, BlocksThatTellOfTheObjectAreNamed) {
               ElementsAre("object", "object_velocity_from_grip", "achieved_goal"));
   RunConfig run = PushRun();
   run.spec = spec;
+  run.config.learner.critic_blocks = false;  // which leaves nothing to a critic of its own
   EXPECT_THAT(DescribeInputs(run), HasSubstr("  of these tell of the object: object, "));
   // What is achieved by a gripper alone tells of the gripper.
   std::erase_if(spec.blocks,
