@@ -26,8 +26,9 @@ class Surroundings {
   Surroundings() {
     for (const char* folder :
          {"docs/images", "docs/results/experiments/pick-and-place-movement",
-          "docs/results/experiments/push-her", "docs/results/experiments/push-pixels",
-          "docs/results/experiments/reach-recipe", "docs/results/original-environment", "home"}) {
+          "docs/results/experiments/pick-and-place-pixels", "docs/results/experiments/push-her",
+          "docs/results/experiments/push-pixels", "docs/results/experiments/reach-recipe",
+          "docs/results/original-environment", "home"}) {
       fs::create_directories(folder_.path() / folder);
     }
     Link("tests", SourcePath("tests"));
@@ -91,9 +92,9 @@ void Prepare(const Surroundings& surroundings) {
   surroundings.Link("runs/first", "reach");
   surroundings.Link("runs/source", "plain");
   surroundings.Link("runs/reach-sb3", "../experiments/batches/runs/a-s0");
-  for (const char* name :
-       {"reach-three-way", "reach-algorithms", "reach-ppo", "reach-recipe", "reach-encoder",
-        "reach-precision", "push-her", "pick-and-place-movement", "push-pixels"}) {
+  for (const char* name : {"reach-three-way", "reach-algorithms", "reach-ppo", "reach-recipe",
+                           "reach-encoder", "reach-precision", "push-her",
+                           "pick-and-place-movement", "pick-and-place-pixels", "push-pixels"}) {
     surroundings.Link(std::string("experiments/") + name, "batches");
   }
   for (const char* name : {"pixels-drq-s0", "preset-s11", "preset-s12", "preset-s13", "faster-s11",
