@@ -175,10 +175,10 @@ SHOAL_CPU_CLONES Moments MomentsOf(const uint8_t* in, int n) {
 }
 
 double StandardDeviation(const uint8_t* in, int bytes) {
-  constexpr int kBlock = 32'768;
+  constexpr int kSummedTogether = 32'768;
   Moments total;
-  for (int begin = 0; begin < bytes; begin += kBlock) {
-    const Moments block = MomentsOf(in + begin, std::min(kBlock, bytes - begin));
+  for (int begin = 0; begin < bytes; begin += kSummedTogether) {
+    const Moments block = MomentsOf(in + begin, std::min(kSummedTogether, bytes - begin));
     total.sum += block.sum;
     total.squares += block.squares;
   }
