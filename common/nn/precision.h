@@ -7,9 +7,9 @@ namespace shoal::nn {
 
 enum class Precision { kF32, kBf16 };
 
-// "auto" -> bf16 for networks that see pixels where the CPU has it natively, else f32: what is
-// large in a network without pixels is too small to gain from bf16. "bf16" on a CPU without it
-// throws Error.
+// "auto" -> bf16 for networks that see pixels where the CPU has it natively, else f32: without
+// pixels bf16 is faster, too, but is asked for, as it rounds hidden layers. "bf16" on a CPU without
+// it throws Error.
 Precision ChoosePrecision(const std::string& asked, bool pixels);
 const char* ToString(Precision precision);
 // Sets the threads that the primitives of this process use.
