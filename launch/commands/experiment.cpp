@@ -24,10 +24,11 @@ int Summary(const std::string& name, bool json) {
   return 0;
 }
 
-void CheckSeeds(const std::vector<int64_t>& seeds) {
-  for (size_t i = 0; i < seeds.size(); ++i) {
-    if (std::count(seeds.begin(), seeds.end(), seeds[i]) > 1) {
-      throw UsageError("--seeds: {} is given twice", seeds[i]);
+template <class T>
+void CheckUnique(const char* option, const std::vector<T>& values) {
+  for (const T& value : values) {
+    if (std::ranges::count(values, value) > 1) {
+      throw UsageError("{}: {} is given twice", option, value);
     }
   }
 }
@@ -45,6 +46,7 @@ void AddRun(CLI::App& experiment, Action* chosen) {
   command->add_option("--seeds", options->seeds, "Seeds instead of the definition's: 0,1,2")
       ->delimiter(',')
       ->check(CLI::NonNegativeNumber);
+  command->add_option("--arms", options->arms, "Arms instead of all: NAME,NAME")->delimiter(',');
   command
       ->add_option("--jobs", options->jobs,
                    "Runs side by side, each on cores of its own; their wall times are marked (1). "
@@ -61,7 +63,8 @@ void AddRun(CLI::App& experiment, Action* chosen) {
                    "repeated")
       ->needs(slurm);
   command->callback([=] {
-    CheckSeeds(options->seeds);
+    CheckUnique("--seeds", options->seeds);
+    CheckUnique("--arms", options->arms);
     *chosen = [=] { return RunExperiment(*options); };
   });
 }

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <thread>
@@ -122,6 +123,32 @@ ExperimentRun RunNamed(const StoredExperiment& experiment, const std::string& na
                    experiment.folder.string(), name, fmt::join(names, ", "));
 }
 
+// Throws Error (usage): an arm that the definition does not have.
+void CheckArms(const Definition& definition, const std::vector<std::string>& asked) {
+  std::vector<std::string> names;
+  for (const Arm& arm : definition.arms) names.push_back(arm.name);
+  for (const std::string& name : asked) {
+    if (std::ranges::count(names, name) == 0) {
+      throw UsageError("--arms: experiment '{}' has no arm '{}', expected some of {}",
+                       definition.name, name, fmt::join(names, ", "));
+    }
+  }
+}
+
+// Those of the arms and seeds that were asked for.
+std::vector<ExperimentRun> RunsAskedFor(const StoredExperiment& experiment,
+                                        const ExperimentOptions& options) {
+  const Definition& definition = experiment.definition;
+  std::vector<ExperimentRun> runs =
+      experiment.Runs(options.seeds.empty() ? definition.seeds : options.seeds);
+  if (!options.arms.empty()) {
+    std::erase_if(runs, [&](const ExperimentRun& run) {
+      return std::ranges::count(options.arms, definition.arms[run.arm].name) == 0;
+    });
+  }
+  return runs;
+}
+
 int ExitCode(const ExperimentOutcome& outcome, const std::vector<ExperimentRun>& runs) {
   if (StopRequests() > 0) return kInterruptedExit;
   for (const ExperimentRun& run : runs) {
@@ -175,6 +202,7 @@ int RunExperiment(const ExperimentOptions& options) {
   InstallStopSignals();
   const fs::path source = FindDefinition(options.definition);
   const Definition definition = ReadDefinition(source);
+  CheckArms(definition, options.arms);
   const fs::path folder =
       options.out.empty() ? ExperimentsIn().dir / definition.name : fs::path(options.out);
   const int jobs = options.jobs.value_or(1);
@@ -182,14 +210,14 @@ int RunExperiment(const ExperimentOptions& options) {
   const ExperimentPlan plan = PlanExperiment(folder, definition, source);
   CheckObservations(plan);
   if (options.dry_run) {
-    Say(fmt::format("{}: {} arm(s) x {} seed(s) are good", definition.name, definition.arms.size(),
+    Say(fmt::format("{}: {} arm(s) x {} seed(s) are good", definition.name,
+                    options.arms.empty() ? definition.arms.size() : options.arms.size(),
                     (options.seeds.empty() ? definition.seeds : options.seeds).size()));
     return 0;
   }
   const ExperimentFolder held(plan);
   const StoredExperiment& experiment = held.experiment();
-  const std::vector<ExperimentRun> runs =
-      experiment.Runs(options.seeds.empty() ? definition.seeds : options.seeds);
+  const std::vector<ExperimentRun> runs = RunsAskedFor(experiment, options);
   Say(fmt::format("experiment {} in {}: {} runs; what each says: {}/logs", definition.name,
                   experiment.folder.string(), runs.size(), experiment.folder.string()));
   if (!MeasureBaselines(experiment)) {

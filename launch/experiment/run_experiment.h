@@ -9,8 +9,9 @@
 namespace shoal::launch {
 
 struct ExperimentOptions {
-  std::string definition;      // file, or name of one in launch/experiments
-  std::vector<int64_t> seeds;  // empty = the definition's
+  std::string definition;         // file, or name of one in launch/experiments
+  std::vector<int64_t> seeds;     // empty = the definition's
+  std::vector<std::string> arms;  // by name; empty = all
   // Runs side by side, each with cores of its own (default 1); of an array, tasks at a time
   // (default: all).
   std::optional<int> jobs;

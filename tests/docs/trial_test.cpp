@@ -80,6 +80,8 @@ shoal experiment run batches.json
 void Prepare(const Surroundings& surroundings) {
   nlohmann::json definition = TinyExperiment(nlohmann::json::object(), 600);
   definition["set"]["network.layer_norm"] = false;  // as Stable-Baselines3 has it
+  definition["arms"][0]["name"] = "batch-256";
+  definition["arms"][1]["name"] = "batch-64";
   surroundings.Write("batches.json", definition.dump());
   surroundings.Write("mine.json", "{}");
   ASSERT_EQ(surroundings.Run(kRuns), "");
@@ -91,7 +93,7 @@ void Prepare(const Surroundings& surroundings) {
   }
   surroundings.Link("runs/first", "reach");
   surroundings.Link("runs/source", "plain");
-  surroundings.Link("runs/reach-sb3", "../experiments/batches/runs/a-s0");
+  surroundings.Link("runs/reach-sb3", "../experiments/batches/runs/batch-256-s0");
   for (const char* name : {"reach-three-way", "reach-algorithms", "reach-ppo", "reach-recipe",
                            "reach-encoder", "reach-precision", "push-her",
                            "pick-and-place-movement", "pick-and-place-pixels", "push-pixels"}) {
@@ -101,7 +103,7 @@ void Prepare(const Surroundings& surroundings) {
                            "faster-s12", "faster-s13", "asymmetric-s0"}) {
     surroundings.Link(std::string("experiments/batches/runs/") + name, "../../../runs/pixels");
   }
-  for (const char* name : {"her-s1", "her-s2", "movement-s0"}) {
+  for (const char* name : {"her-s0", "her-s1", "her-s2", "movement-s0"}) {
     surroundings.Link(std::string("experiments/batches/runs/") + name, "../../../runs/reach");
   }
 }

@@ -89,6 +89,10 @@ std::vector<json> JsonLines(const std::string& text) {
 
 TEST_F(ExperimentTest, WhatIsFinishedIsNotRepeated) {
   Define({{"transfer", {"FetchReach"}}});
+  const ProgramResult one = Run({"--arms", "b"});
+  ASSERT_EQ(ExitCode(one), 0) << one.out << one.err;
+  ASSERT_EQ(JsonLines(one.out).size(), 1u);
+  EXPECT_THAT(Statuses(), ElementsAre("missing", "finished"));
   const ProgramResult first = Run();
   ASSERT_EQ(ExitCode(first), 0) << first.out << first.err;
   const std::vector<json> lines = JsonLines(first.out);
@@ -282,7 +286,9 @@ INSTANTIATE_TEST_SUITE_P(
                 2,
                 {"arm 'a'", "/absent.xml"}},
         Mistake{"TooManyJobs", json::object(), {"--jobs", "1000"}, 2, {"--jobs 1000"}},
-        Mistake{"SeedTwice", json::object(), {"--seeds", "1,1"}, 2, {"--seeds"}}),
+        Mistake{"SeedTwice", json::object(), {"--seeds", "1,1"}, 2, {"--seeds"}},
+        Mistake{"ArmTwice", json::object(), {"--arms", "a,a"}, 2, {"--arms"}},
+        Mistake{"UnknownArm", json::object(), {"--arms", "nope"}, 2, {"--arms", "nope", "a"}}),
     [](const auto& test) { return test.param.name; });
 
 }  // namespace
