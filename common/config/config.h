@@ -121,6 +121,13 @@ struct PpoConfig {
   double rollout_deadline = 30;             // s, for those that are late
 };
 
+// Noise on a target's action, in units of the action's range of -1 to 1; the source's values
+// (Fujimoto et al. 2018, arXiv:1802.09477, table 3).
+struct Td3Config {
+  double target_noise = 0.2;       // standard deviation; 0 = none
+  double target_noise_clip = 0.5;  // it is cut off at
+};
+
 // What training actors play beyond what their policy says (actor/acting/exploration.h).
 struct ExplorationConfig {
   std::string kind = "auto";                 // auto | squashed_gaussian | gaussian | ou
@@ -191,6 +198,7 @@ struct Config {
   ReplayConfig replay;
   LearnerConfig learner;
   PpoConfig ppo;
+  Td3Config td3;
   ExplorationConfig exploration;
   NetworkConfig network;
   EvalConfig eval;

@@ -230,6 +230,15 @@ std::vector<Key> PpoKeys() {
   };
 }
 
+std::vector<Key> Td3Keys() {
+  return {
+      SHOAL_SAME(td3.target_noise, (RealRange{0, 2}),
+                 "standard deviation of the noise on a target's action; 0 = none"),
+      SHOAL_SAME(td3.target_noise_clip, (RealRange{0, 2}),
+                 "what that noise is clipped to, up and down"),
+  };
+}
+
 std::vector<Key> ExplorationKeys() {
   return {
       SHOAL_SAME(exploration.kind, (Choices{{"auto", "squashed_gaussian", "gaussian", "ou"}}),
@@ -321,7 +330,7 @@ std::vector<Key> AllKeys() {
   std::vector<Key> all;
   for (const auto& section :
        {RunKeys(), ObservationKeys(), RandomizationKeys(), ReplayKeys(), LearnerKeys(), PpoKeys(),
-        ExplorationKeys(), NetworkKeys(), EvalKeys(), TransportKeys()}) {
+        Td3Keys(), ExplorationKeys(), NetworkKeys(), EvalKeys(), TransportKeys()}) {
     all.insert(all.end(), section.begin(), section.end());
   }
   return all;

@@ -4,10 +4,11 @@ namespace shoal::learner {
 
 std::unique_ptr<Agent> MakeTd3Agent(const Config& config, const ObservationSpec& spec,
                                     nn::Precision precision, nn::Replica* replica) {
-  return MakeDeterministicAgent(
-      config, spec, precision,
-      {.critics = 2, .target_noise = kTd3TargetNoise, .target_noise_clip = kTd3TargetNoiseClip},
-      replica);
+  return MakeDeterministicAgent(config, spec, precision,
+                                {.critics = 2,
+                                 .target_noise = config.td3.target_noise,
+                                 .target_noise_clip = config.td3.target_noise_clip},
+                                replica);
 }
 
 }  // namespace shoal::learner

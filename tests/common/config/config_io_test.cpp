@@ -175,7 +175,7 @@ TEST(ToJson, ListsSectionsInTheOrderOfTheStruct) {
   for (const auto& [name, value] : object.items()) {
     if (value.is_object()) names.push_back(name);
   }
-  EXPECT_THAT(names, ElementsAre("observation", "randomization", "replay", "learner", "ppo",
+  EXPECT_THAT(names, ElementsAre("observation", "randomization", "replay", "learner", "ppo", "td3",
                                  "exploration", "network", "eval", "stop", "transport"));
 }
 
@@ -254,6 +254,10 @@ TEST(Validate, RefusesWhatOnPolicyLearningHasNoUseForByName) {
   ApplyAssignments({"ppo.epochs=3"}, &config);
   EXPECT_THAT(UsageMessage([&] { Validate(config); }),
               HasSubstr("ppo.epochs belongs to learner.algorithm = ppo: expected not to be set"));
+  config = Config();
+  ApplyAssignments({"td3.target_noise=0.1"}, &config);
+  EXPECT_THAT(UsageMessage([&] { Validate(config); }),
+              HasSubstr("td3.target_noise belongs to learner.algorithm = td3"));
 }
 
 TEST(ApplyJson, TakesAKeyByItsFormerName) {

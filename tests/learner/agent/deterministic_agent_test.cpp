@@ -11,7 +11,6 @@
 
 #include "common/base/error.h"
 #include "common/nn/policy.h"
-#include "learner/agent/td3/td3_agent.h"
 #include "tests/common/nn/reference_network.h"
 #include "tests/learner/agent/adam_moments.h"
 #include "tests/learner/agent/agent_fixture.h"
@@ -36,6 +35,7 @@ Config ConfigOf(const Case& each) {
   Config config = SmallConfig();
   config.learner.algorithm = each.algorithm;
   config.learner.actor_period = config.learner.target_period = 1;
+  if (each.smooth) config.td3 = {.target_noise = 0.3, .target_noise_clip = 0.4};
   return config;
 }
 
@@ -71,7 +71,7 @@ class DeterministicAgentTest : public testing::TestWithParam<Case> {
     const Values vector = ToDoubles(view.next_obs_vector);
     Values action = Action(network, "target_actor", features, vector);
     if (GetParam().smooth) {
-      const double sigma = kTd3TargetNoise, most = kTd3TargetNoiseClip;
+      const double sigma = config_.td3.target_noise, most = config_.td3.target_noise_clip;
       for (double& a : action) {
         a = std::clamp(a + std::clamp(sigma * random->Normal(), -most, most), -1.0, 1.0);
       }
