@@ -8,7 +8,7 @@
 namespace shoal {
 namespace {
 
-// Below, what does not shrink with the rows (steps of the optimiser, weights in the layouts of the
+// Below, what does not shrink with the rows (targets that follow, weights in the layouts of the
 // CPU) takes most of a replica's time, and each holds parameters of its own.
 constexpr int kLeastRows = 16;
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 #include "common/base/check.h"
 #include "common/base/cpu_clones.h"
@@ -61,76 +62,131 @@ SHOAL_CPU_CLONES void ScaleRange(float factor, int64_t n, float* values) {
   for (int64_t i = 0; i < n; ++i) values[i] *= factor;
 }
 
+SHOAL_CPU_CLONES void AddToSum(const float* values, int64_t n, float* sum) {
+  for (int64_t i = 0; i < n; ++i) sum[i] += values[i];
+}
+
 int Blocks(int64_t n) { return int((n + kBlock - 1) / kBlock); }
+
+// The mean of `arrays`, summed in their order, to mean[0..n), which may be one of them.
+void Average(std::span<const float* const> arrays, int64_t n, float* mean) {
+  float sum[kBlock];
+  for (int64_t at = 0; at < n; at += kBlock) {
+    const int64_t block = std::min<int64_t>(kBlock, n - at);
+    std::copy_n(arrays[0] + at, block, sum);
+    for (const float* array : arrays.subspan(1)) AddToSum(array + at, block, sum);
+    ScaleRange(1.f / float(arrays.size()), block, sum);
+    std::copy_n(sum, block, mean + at);
+  }
+}
 
 }  // namespace
 
-Adam::Adam(std::vector<ParameterSet*> sets, const Options& options)
-    : rate_(options.rate), epsilon_(options.epsilon), max_norm_(options.max_norm) {
-  for (ParameterSet* set : sets) {
-    const std::vector<float> zeros(size_t(set->trained_size()), 0.f);
-    moments_.push_back({set, zeros, zeros, zeros, zeros});
+Adam::Adam(const std::vector<ParameterSet*>& sets, const Options& options, Replica* replica)
+    : sets_(sets),
+      replica_(replica != nullptr ? replica : &alone_),
+      moments_(sets.size()),
+      rate_(options.rate),
+      epsilon_(options.epsilon),
+      max_norm_(options.max_norm) {
+  if (!KeepsMoments()) return;
+  for (size_t s = 0; s < sets_.size(); ++s) {
+    const std::vector<float> zeros(size_t(sets_[s]->trained_size()), 0.f);
+    moments_[s] = {zeros, zeros, zeros, zeros};
   }
 }
 
-void Adam::Moments::Exchange() {
-  set->Exchange();
-  m.swap(next_m);
-  v.swap(next_v);
+const std::vector<Adam*>& Adam::Peers() {
+  if (peers_.empty()) peers_ = replica_->Peers(this);
+  return peers_;
 }
 
-std::vector<ParameterSet*> Adam::sets() const {
-  std::vector<ParameterSet*> sets;
-  for (const Moments& moments : moments_) sets.push_back(moments.set);
-  return sets;
+// Each to its own gradients, from those of all.
+void Adam::AverageShares() {
+  const std::vector<Adam*>& peers = Peers();
+  replica_->Meet();
+  std::vector<const float*> arrays(peers.size());
+  for (size_t s = 0; s < sets_.size(); ++s) {
+    const Replica::Share share = ShareOf(*sets_[s]);
+    for (size_t r = 0; r < peers.size(); ++r) {
+      arrays[r] = peers[r]->sets_[s]->gradients() + share.begin;
+    }
+    Average(arrays, share.end - share.begin, sets_[s]->gradients() + share.begin);
+  }
 }
 
-double Adam::GradientSquares() const {
+double Adam::GatherGradients() {
+  if (replica_->count() > 1) AverageShares();
   double squares = 0;
-  for (const Moments& moments : moments_) {
-    const ParameterSet& set = *moments.set;
-    squares += SumOfSquares(set.gradients(), set.trained_size());
+  for (const ParameterSet* set : sets_) {
+    const Replica::Share share = ShareOf(*set);
+    squares += SumOfSquares(set->gradients() + share.begin, share.end - share.begin);
   }
-  return squares;
+  squares_ = replica_->Means({squares})[0] * replica_->count();
+  return *squares_;
 }
 
 void Adam::ClipGradients() {
-  const double factor = max_norm_ / (std::sqrt(GradientSquares()) + 1e-6);
+  const double factor = max_norm_ / (std::sqrt(*squares_) + 1e-6);
   if (factor >= 1) return;
-  for (const Moments& moments : moments_) {
-    ScaleRange(float(factor), moments.set->trained_size(), moments.set->gradients());
+  for (ParameterSet* set : sets_) {
+    const Replica::Share share = ShareOf(*set);
+    ScaleRange(float(factor), share.end - share.begin, set->gradients() + share.begin);
   }
 }
 
-void Adam::Step() {
-  if (max_norm_ > 0) ClipGradients();
-  ++steps_;
+// What was stepped goes to the other replicas while it is in the cache.
+void Adam::StepShare(size_t s) {
   const double t = double(steps_);
   const StepSize step{float(rate() / (1 - std::pow(kBeta1, t))),
                       float(1 / std::sqrt(1 - std::pow(kBeta2, t))), float(epsilon_)};
+  ParameterSet& set = *sets_[s];
+  Moments& moments = Peers()[0]->moments_[s];
+  const AdamArrays arrays{set.gradients(),  moments.m.data(),      moments.v.data(),
+                          set.values(),     moments.next_m.data(), moments.next_v.data(),
+                          set.next_values()};
+  const Replica::Share share = ShareOf(set);
+  ParallelFor(Blocks(share.end - share.begin), [&](int begin, int end) {
+    for (int block = begin; block < end; ++block) {
+      const int64_t first = share.begin + int64_t(block) * kBlock;
+      const int64_t last = std::min(share.end, first + kBlock);
+      AdamRange(arrays, first, last, step);
+      for (const Adam* peer : Peers()) {
+        float* next = peer->sets_[s]->next_values();
+        if (peer != this) std::copy_n(arrays.next_value + first, last - first, next + first);
+      }
+    }
+  });
+}
+
+void Adam::Step() {
+  if (!squares_ && (replica_->count() > 1 || max_norm_ > 0)) GatherGradients();
+  if (max_norm_ > 0) ClipGradients();
+  ++steps_;
+  for (size_t s = 0; s < sets_.size(); ++s) StepShare(s);
+  replica_->Meet();
+  squares_.reset();
+  Exchange();
+}
+
+void Adam::Exchange() {
+  for (ParameterSet* set : sets_) set->Exchange();
   for (Moments& moments : moments_) {
-    ParameterSet& set = *moments.set;
-    const AdamArrays arrays{set.gradients(),  moments.m.data(),      moments.v.data(),
-                            set.values(),     moments.next_m.data(), moments.next_v.data(),
-                            set.next_values()};
-    const int64_t size = set.trained_size();
-    ParallelFor(Blocks(size), [&](int begin, int end) {
-      AdamRange(arrays, int64_t(begin) * kBlock, std::min(size, int64_t(end) * kBlock), step);
-    });
-    moments.Exchange();
+    moments.m.swap(moments.next_m);
+    moments.v.swap(moments.next_v);
   }
 }
 
 void Adam::Undo() {
   CHECK(steps_ > 0);
   --steps_;
-  for (Moments& moments : moments_) moments.Exchange();
+  Exchange();
 }
 
 void Adam::Export(const std::string& group, TensorMap* tensors) const {
-  for (const Moments& moments : moments_) {
-    moments.set->ExportTrained(moments.m.data(), "adam.m.", tensors);
-    moments.set->ExportTrained(moments.v.data(), "adam.v.", tensors);
+  for (size_t s = 0; KeepsMoments() && s < sets_.size(); ++s) {
+    sets_[s]->ExportTrained(moments_[s].m.data(), "adam.m.", tensors);
+    sets_[s]->ExportTrained(moments_[s].v.data(), "adam.v.", tensors);
   }
   ExportCounter("adam.steps." + group, steps_, tensors);
 }
@@ -138,15 +194,16 @@ void Adam::Export(const std::string& group, TensorMap* tensors) const {
 // Into the arrays that the next step would write, so that a refusal leaves the others as they are.
 void Adam::Import(const TensorMap& tensors, const std::string& group, const std::string& source) {
   const uint64_t steps = ImportCounter(tensors, "adam.steps." + group, source);
-  for (Moments& moments : moments_) {
-    moments.set->ImportTrained(tensors, "adam.m.", source, moments.next_m.data());
-    moments.set->ImportTrained(tensors, "adam.v.", source, moments.next_v.data());
+  for (size_t s = 0; KeepsMoments() && s < sets_.size(); ++s) {
+    sets_[s]->ImportTrained(tensors, "adam.m.", source, moments_[s].next_m.data());
+    sets_[s]->ImportTrained(tensors, "adam.v.", source, moments_[s].next_v.data());
   }
   for (Moments& moments : moments_) {
     moments.m = moments.next_m;
     moments.v = moments.next_v;
   }
   steps_ = steps;
+  squares_.reset();
 }
 
 void MoveTowards(float tau, const float* online, int64_t n, float* target) {

@@ -6,18 +6,25 @@
 //   w' = w - rate * (m' / (1 - b1^t)) / (sqrt(v' / (1 - b2^t)) + eps)
 //
 // Source: Kingma and Ba 2014, arXiv:1412.6980, algorithm 1.
+//
+// Of N replicas each steps a share of the parameters (1/N), in the sets of all: gradients of the
+// share are averaged over replicas, moments are kept once, by the first replica.
+//
 // Threads: each pass is split over the current ThreadScope; results do not depend on its size.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/nn/parameter_set.h"
+#include "common/nn/replica.h"
 
 namespace shoal::nn {
 
-// Optimiser of parameter sets that are trained by one loss. Borrows them.
+// Optimiser of parameter sets that are trained by one loss. Borrows them. Of a replica: that of
+// every other one has the same sets and calls the same functions in the same order.
 class Adam {
  public:
   struct Options {
@@ -26,16 +33,19 @@ class Adam {
     double max_norm = 0;  // a step scales gradients of a larger Euclidean norm down to it; 0: none
   };
 
-  Adam(std::vector<ParameterSet*> sets, const Options& options);
+  // Borrows the replica; null: alone.
+  Adam(const std::vector<ParameterSet*>& sets, const Options& options, Replica* replica = nullptr);
+  Adam(const Adam&) = delete;
+  Adam& operator=(const Adam&) = delete;
 
-  // What it steps.
-  std::vector<ParameterSet*> sets() const;
   // For the steps from now on: factor * Options::rate.
   void set_rate_factor(double factor) { rate_factor_ = factor; }
   double rate() const { return rate_ * rate_factor_; }
 
-  // Sum of the squares of all gradients.
-  double GradientSquares() const;
+  // Averages the gradients over replicas, each of them in its own share (the rest stays its own),
+  // and returns the sum of the squares of all. Once for each backward pass, also where no step came
+  // of the last one; a Step does it where nobody has since the last Step.
+  double GatherGradients();
   // Applies the sets' gradients, where they are to be clipped by max_norm / (norm + 1e-6), and the
   // statistics that the forward passes of these gradients measured.
   void Step();
@@ -43,23 +53,35 @@ class Adam {
   void Undo();
   uint64_t steps() const { return steps_; }
 
-  // Tensors "adam.m.NAME", "adam.v.NAME" of every parameter and "adam.steps.`group`".
+  // Tensors "adam.m.NAME", "adam.v.NAME" of every parameter (of replicas, only the first one's) and
+  // "adam.steps.`group`".
   void Export(const std::string& group, TensorMap* tensors) const;
   // Throws Error; nothing has changed then.
   void Import(const TensorMap& tensors, const std::string& group, const std::string& source);
 
  private:
-  // Of one set, in its layout.
+  // Of one set, in its layout; empty but for the first replica's.
   struct Moments {
-    ParameterSet* set;
     std::vector<float> m, v;
     std::vector<float> next_m, next_v;  // where a step writes, then exchanged
-
-    void Exchange();
   };
 
-  std::vector<Moments> moments_;
+  bool KeepsMoments() const { return replica_->rank() == 0; }
+  Replica::Share ShareOf(const ParameterSet& set) const {
+    return replica_->ShareOf(set.trained_size());
+  }
+  const std::vector<Adam*>& Peers();
+  void AverageShares();
   void ClipGradients();
+  void StepShare(size_t set);
+  void Exchange();
+
+  const std::vector<ParameterSet*> sets_;
+  Replica alone_;
+  Replica* const replica_;
+  std::vector<Adam*> peers_;       // by rank; empty until they are needed
+  std::vector<Moments> moments_;   // one for each set
+  std::optional<double> squares_;  // of the gradients that were gathered for the next step
 
   double rate_, epsilon_, max_norm_;
   double rate_factor_ = 1;

@@ -26,9 +26,18 @@ void CopyParameters(const ParameterSet& online, ParameterSet* average) {
 }
 
 void MoveTowards(float tau, const ParameterSet& online, ParameterSet* average) {
+  MoveTowards(tau, online, average, Replica());
+}
+
+// Statistics are the first replica's share: there are none where there are several.
+void MoveTowards(float tau, const ParameterSet& online, ParameterSet* average,
+                 const Replica& replica) {
   CHECK(online.size() == average->size()) << online.size() << " and " << average->size();
   const int64_t trained = online.trained_size();
-  MoveTowards(tau, online.values(), trained, average->values());
+  const Replica::Share share = replica.ShareOf(trained);
+  MoveTowards(tau, online.values() + share.begin, share.end - share.begin,
+              average->values() + share.begin);
+  if (replica.rank() > 0) return;
   std::copy_n(online.values() + trained, online.size() - trained, average->values() + trained);
 }
 

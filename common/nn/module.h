@@ -12,6 +12,7 @@
 #include "common/nn/network_plan.h"
 #include "common/nn/parameter_set.h"
 #include "common/nn/precision.h"
+#include "common/nn/replica.h"
 
 namespace shoal::nn {
 
@@ -60,5 +61,8 @@ void MoveTowards(float tau, const Module& online, Module* target);
 // The same for a plain set: a moving average that no module computes.
 void CopyParameters(const ParameterSet& online, ParameterSet* average);
 void MoveTowards(float tau, const ParameterSet& online, ParameterSet* average);
+// This replica's share of that; another one of the same average may move its own meanwhile.
+void MoveTowards(float tau, const ParameterSet& online, ParameterSet* average,
+                 const Replica& replica);
 
 }  // namespace shoal::nn

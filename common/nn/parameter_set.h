@@ -73,6 +73,7 @@ class ParameterSet {
   // As each parameter's Start says; its random stream is keyed by seed and name.
   void Initialise(uint64_t seed);
 
+  const std::vector<ParameterSpec>& specs() const { return specs_; }
   bool Has(std::string_view name) const;
   // CHECKs that there is one.
   Parameter Find(std::string_view name);

@@ -1,22 +1,23 @@
 // Learning in replicas: N copies of the same networks, each on a thread of its own with 1/N of the
-// batch, which stay equal bit for bit because each takes the same steps by the same gradients.
+// batch, which stay equal bit for bit because all take the same steps: each rank's optimiser
+// (adam.h) steps a share of the parameters, for all of them.
 //
-// Nothing is shared but what is exchanged here, so code of a replica reads as if it were alone:
-// losses and their gradients are means over its own rows; what has to be of the whole batch (the
-// gradients before a step, figures, whether all is finite) passes through one of the functions
-// below. All replicas call the same ones in the same order. Sums are made in the order of ranks:
-// results depend on N, not on timing.
+// Nothing else is shared but the policy's average (learner/agent/policy_average.h) and what is
+// exchanged here, so code of a replica reads as if it were alone: losses and their gradients are
+// means over its own rows; what has to be of the whole batch (figures, whether all is finite)
+// passes through one of the functions below. All replicas call the same ones in the same order.
+// Sums are made in the order of ranks: results depend on N, not on timing.
 //
 // Dimensions: B batch, b = B/N rows of a replica.
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <initializer_list>
 #include <span>
 #include <vector>
 
 #include "common/base/random.h"
-#include "common/nn/parameter_set.h"
 #include "common/nn/team.h"
 
 namespace shoal::nn {
@@ -33,7 +34,7 @@ class Exchange {
 
   // What a replica shows to the others.
   struct Offer {
-    std::span<ParameterSet* const> sets;
+    void* object = nullptr;
     std::vector<std::vector<float>> arrays;
     std::vector<double> numbers;
   };
@@ -59,8 +60,21 @@ class Replica {
   // Its rows of a batch of so many. CHECKs that N divides it.
   int Rows(int batch) const;
 
-  // Gradients of each set become the mean over replicas, in all of them.
-  void AverageGradients(std::span<ParameterSet* const> sets);
+  // The part of an array of so many floats, a multiple of 16, that this one works on where all
+  // divide the work: a multiple of 16, too. Alone: all.
+  struct Share {
+    int64_t begin, end;
+  };
+  Share ShareOf(int64_t floats) const;
+  // The same object of every replica, by rank.
+  template <class T>
+  std::vector<T*> Peers(T* own) {
+    std::vector<T*> peers;
+    for (void* object : Objects(own)) peers.push_back(static_cast<T*>(object));
+    return peers;
+  }
+  // Waits until all are here: what each wrote before, all read after.
+  void Meet();
   // Arrays of each replica's rows to those of the whole batch, rank after rank.
   std::vector<std::vector<float>> Whole(std::span<const std::span<const float>> own);
   // The mean over replicas of each number.
@@ -72,6 +86,7 @@ class Replica {
   std::vector<double> Normals(int rows, int per_row, Random* random) const;
 
  private:
+  std::vector<void*> Objects(void* own);
   // Shows an offer and waits until all have shown theirs, which come back by rank and stay until
   // the next but one.
   std::span<const Exchange::Offer> Show(Exchange::Offer offer);

@@ -28,7 +28,8 @@ struct Algorithm {
   // An agent that knows no replicas: nn::Threads share each pass of its networks.
   std::unique_ptr<Agent> (*make)(const Config& config, const ObservationSpec& spec,
                                  nn::Precision precision) = nullptr;
-  // One of replicas, or the only one: replicated_agent.h. Borrows the replica.
+  // One of replicas, or the only one: replicated_agent.h. Borrows the replica. Only the first one's
+  // AllTensors and AveragedPolicyTensors are asked for.
   std::unique_ptr<Agent> (*make_replica)(const Config& config, const ObservationSpec& spec,
                                          nn::Precision precision, nn::Replica* replica) = nullptr;
 };

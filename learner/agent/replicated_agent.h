@@ -1,5 +1,6 @@
 // An agent of N replicas (common/nn/replica.h), which is one agent to everybody else: its tensors
-// are those of any of them, and of no number of replicas.
+// are those of the first, which alone has moments and the policy's average, and of no number of
+// replicas.
 #pragma once
 
 #include <functional>

@@ -142,7 +142,7 @@ class AveragedDdpgAgent final : public Agent {
     }
     critic_.Backward(q_gradients_);
     if (encoder_) encoder_->Backward();
-    const double squares = critic_optimiser_.GradientSquares();
+    const double squares = critic_optimiser_.GatherGradients();
     figures->Set(kCriticGradNorm, std::sqrt(squares));
     if (!Usable(loss.loss, squares)) return false;
     critic_optimiser_.Step();
@@ -162,7 +162,7 @@ class AveragedDdpgAgent final : public Agent {
     gradients[0].assign(size_t(learner_.batch), -1.f / float(learner_.batch));
     critic_.BackwardAction(gradients, action_gradient_.data());
     actor_.Backward(action_gradient_.data());
-    if (!Usable(loss, actor_optimiser_.GradientSquares())) return false;
+    if (!Usable(loss, actor_optimiser_.GatherGradients())) return false;
     actor_optimiser_.Step();
     actor_.Refresh();
     return true;

@@ -20,6 +20,7 @@
 #include "learner/agent/critic_figures.h"
 #include "learner/agent/encoder_and_head.h"
 #include "learner/agent/losses.h"
+#include "learner/agent/policy_average.h"
 #include "learner/agent/sample_figures.h"
 #include "learner/agent/step_sizes.h"
 #include "learner/agent/vector_standard.h"
@@ -69,7 +70,7 @@ class DeterministicAgent final : public Agent {
   const nn::Features* const features_;
   nn::ActorModule actor_, target_actor_;
   nn::CriticModule critic_, target_critic_;
-  nn::ParameterSet encoder_average_, actor_average_;
+  PolicyAverage average_;
   nn::Adam critic_optimiser_, actor_optimiser_;
   VectorStandard standard_;
   uint64_t updates_ = 0;
@@ -101,10 +102,9 @@ DeterministicAgent::DeterministicAgent(const Config& config, const ObservationSp
               /*trains_encoder=*/true, Use::kTraining, context_),
       target_critic_(nn::PlanCritic(config.network, spec, "target", options.critics), features_,
                      /*trains_encoder=*/false, Use::kInference, context_),
-      encoder_average_(nn::PlanEncoder(config.network, spec).Parameters(), Use::kInference),
-      actor_average_(PlanActor(config, spec, "actor").Parameters(), Use::kInference),
-      critic_optimiser_(SetsOf(encoder_.get(), &critic_), CriticStep(config.learner)),
-      actor_optimiser_({&actor_.parameters()}, ActorStep(config.learner)),
+      average_(SetsOf(encoder_.get(), &actor_), replica),
+      critic_optimiser_(SetsOf(encoder_.get(), &critic_), CriticStep(config.learner), replica),
+      actor_optimiser_({&actor_.parameters()}, ActorStep(config.learner), replica),
       standard_(config.learner.normalise_vectors, spec.VectorSize()),
       target_action_(size_t(rows_) * size_t(action_size_)),
       targets_(size_t(rows_)),
@@ -113,9 +113,7 @@ DeterministicAgent::DeterministicAgent(const Config& config, const ObservationSp
   const auto seed = uint64_t(config.seed);
   if (encoder_) {
     encoder_->parameters().Initialise(seed);
-    nn::CopyParameters(encoder_->parameters(), &encoder_average_);
     state_.Add(encoder_.get());
-    state_.Add(&encoder_average_, "average");
   }
   actor_.parameters().Initialise(seed);
   critic_.parameters().Initialise(seed);
@@ -123,12 +121,12 @@ DeterministicAgent::DeterministicAgent(const Config& config, const ObservationSp
   RefreshCritic();
   nn::CopyParameters(actor_, &target_actor_);
   nn::CopyParameters(critic_, &target_critic_);
-  nn::CopyParameters(actor_.parameters(), &actor_average_);
+  average_.Copy();
   state_.Add(&actor_);
   state_.Add(&target_actor_);
   state_.Add(&critic_);
   state_.Add(&target_critic_);
-  state_.Add(&actor_average_, "average");
+  average_.AddTo(&state_);
   state_.Add(&actor_optimiser_, "actor");
   state_.Add(&critic_optimiser_, "critic");
   state_.Add(&updates_, "agent.updates");
@@ -181,8 +179,7 @@ bool DeterministicAgent::UpdateCritic(const BatchView& batch, const OnStageEnd& 
   }
   critic_.Backward(q_gradients_);
   if (encoder_) encoder_->Backward();
-  replica_->AverageGradients(critic_optimiser_.sets());
-  const double squares = critic_optimiser_.GradientSquares();
+  const double squares = critic_optimiser_.GatherGradients();
   const float loss = SetCriticFigures(replica_, Values(critic_), targets_, squares, figures);
   on_stage_end(UpdateStage::kBackward);
   if (!Usable(loss, squares)) return false;
@@ -209,8 +206,7 @@ bool DeterministicAgent::UpdateActor(const BatchView& batch, const OnStageEnd& o
   gradients[0].assign(size_t(rows_), -1.f / float(rows_));
   critic_.BackwardAction(gradients, action_gradient_.data());
   actor_.Backward(action_gradient_.data());
-  replica_->AverageGradients(actor_optimiser_.sets());
-  const double squares = actor_optimiser_.GradientSquares();
+  const double squares = actor_optimiser_.GatherGradients();
   const std::vector<double> means =
       replica_->Means({own_loss, double(saturated) / double(action_gradient_.size())});
   const auto loss = float(means[0]);
@@ -230,9 +226,7 @@ void DeterministicAgent::MoveTargetsAndAverage() {
     nn::MoveTowards(float(config_.learner.tau), critic_, &target_critic_);
     nn::MoveTowards(float(config_.learner.tau), actor_, &target_actor_);
   }
-  const auto rate = float(config_.learner.average_rate);
-  nn::MoveTowards(rate, actor_.parameters(), &actor_average_);
-  if (encoder_) nn::MoveTowards(rate, encoder_->parameters(), &encoder_average_);
+  average_.Move(float(config_.learner.average_rate));
 }
 
 UpdateOutcome DeterministicAgent::Update(const BatchView& drawn, const OnStageEnd& on_stage_end) {
@@ -271,9 +265,7 @@ nn::TensorMap DeterministicAgent::PolicyTensors() const {
 }
 
 nn::TensorMap DeterministicAgent::AveragedPolicyTensors() const {
-  nn::TensorMap policy;
-  encoder_average_.Export(&policy);  // nothing without pixels
-  actor_average_.Export(&policy);
+  nn::TensorMap policy = average_.Tensors();
   standard_.ExportTo(&policy);
   return policy;
 }

@@ -236,7 +236,7 @@ bool PpoAgent::Minibatch(const BatchView& batch, const Prepared& prepared,
   *over = target_kl > 0 && loss.approx_kl > kKlMargin * target_kl;
   if (*over) return true;
   networks_.Backward();
-  const double squares = optimiser_.GradientSquares();
+  const double squares = optimiser_.GatherGradients();
   on_stage_end(UpdateStage::kBackward);
   if (!Usable(float(loss.total), squares)) return false;
   sums->grad_norm += std::sqrt(squares);

@@ -33,8 +33,7 @@ nn::HeadPlan CriticPlan(const Config& config, const ObservationSpec& spec, const
 
 SacNetworks::SacNetworks(const Config& config, const ObservationSpec& spec, nn::Precision precision,
                          nn::Replica* replica)
-    : replica_(replica),
-      context_(precision, replica->Rows(config.learner.batch), replica->threads()),
+    : context_(precision, replica->Rows(config.learner.batch), replica->threads()),
       asymmetric_(bool(config.learner.critic_blocks)),
       encoder_(MakeEncoder(config.network, spec, Module::Use::kTraining, context_)),
       critic_encoder_(Separate(config) ? MakeEncoder(config.network, spec, Module::Use::kTraining,
@@ -55,12 +54,9 @@ SacNetworks::SacNetworks(const Config& config, const ObservationSpec& spec, nn::
                          ActorTrains() ? actor_.trunk_features() : critic_.trunk_features(),
                          context_)),
       temperature_({{kLogTemperature, {1}}}, ParameterSet::Use::kTraining),
-      encoder_average_(nn::PlanEncoder(config.network, spec).Parameters(),
-                       ParameterSet::Use::kInference),
-      actor_average_(nn::PlanActor(config.network, spec).Parameters(),
-                     ParameterSet::Use::kInference),
-      critic_optimiser_(CriticSets(), CriticStep(config.learner)),
-      actor_optimiser_(ActorSets(), ActorStep(config.learner)),
+      average_(SetsOf(encoder_.get(), &actor_), replica),
+      critic_optimiser_(CriticSets(), CriticStep(config.learner), replica),
+      actor_optimiser_(ActorSets(), ActorStep(config.learner), replica),
       temperature_optimiser_({&temperature_}, {.rate = TemperatureRate(config.learner)}) {
   const auto seed = static_cast<uint64_t>(config.seed);
   for (EncoderModule* encoder : {encoder_.get(), critic_encoder_.get()}) {
@@ -68,7 +64,6 @@ SacNetworks::SacNetworks(const Config& config, const ObservationSpec& spec, nn::
     encoder->parameters().Initialise(seed);
     encoder->Refresh();
   }
-  if (encoder_) nn::CopyParameters(encoder_->parameters(), &encoder_average_);
   if (target_encoder_) nn::CopyParameters(*CriticEncoder(), target_encoder_.get());
   critic_.parameters().Initialise(seed);
   actor_.parameters().Initialise(seed);
@@ -76,7 +71,7 @@ SacNetworks::SacNetworks(const Config& config, const ObservationSpec& spec, nn::
   RefreshCritic();
   actor_.Refresh();
   nn::CopyParameters(critic_, &target_);
-  nn::CopyParameters(actor_.parameters(), &actor_average_);
+  average_.Copy();
 }
 
 EncoderModule* SacNetworks::CriticEncoder() {
@@ -138,8 +133,7 @@ double SacNetworks::ForwardBackwardAux(const BatchView& drawn) {
 double SacNetworks::BackwardCritic(const QGradients& q_gradients) {
   critic_.Backward(q_gradients);
   if (CriticEncoder() != nullptr) CriticEncoder()->Backward();
-  replica_->AverageGradients(critic_optimiser_.sets());
-  return critic_optimiser_.GradientSquares();
+  return critic_optimiser_.GatherGradients();
 }
 
 void SacNetworks::BackwardAction(const QGradients& q_gradients, float* action_gradient) {
@@ -149,8 +143,7 @@ void SacNetworks::BackwardAction(const QGradients& q_gradients, float* action_gr
 double SacNetworks::BackwardActor(const float* mean_gradient, const float* log_std_gradient) {
   actor_.Backward(mean_gradient, log_std_gradient);
   if (ActorTrains()) encoder_->Backward();
-  replica_->AverageGradients(actor_optimiser_.sets());
-  return actor_optimiser_.GradientSquares();
+  return actor_optimiser_.GatherGradients();
 }
 
 void SacNetworks::RefreshCritic() {
@@ -196,22 +189,10 @@ void SacNetworks::MoveTarget(float tau) {
   if (target_encoder_) nn::MoveTowards(tau, *CriticEncoder(), target_encoder_.get());
 }
 
-void SacNetworks::MovePolicyAverage(float rate) {
-  if (encoder_) nn::MoveTowards(rate, encoder_->parameters(), &encoder_average_);
-  nn::MoveTowards(rate, actor_.parameters(), &actor_average_);
-}
-
 nn::TensorMap SacNetworks::PolicyTensors() const {
   nn::TensorMap policy;
   if (encoder_) encoder_->parameters().Export(&policy);
   actor_.parameters().Export(&policy);
-  return policy;
-}
-
-nn::TensorMap SacNetworks::AveragedPolicyTensors() const {
-  nn::TensorMap policy;
-  encoder_average_.Export(&policy);
-  actor_average_.Export(&policy);
   return policy;
 }
 
@@ -224,8 +205,7 @@ void SacNetworks::AddTo(AgentState* state) {
   }
   if (aux_) state->Add(&aux_->readout());
   state->Add(&temperature_, "");
-  state->Add(&encoder_average_, "average");
-  state->Add(&actor_average_, "average");
+  average_.AddTo(state);
   state->Add(&critic_optimiser_, "critic");
   state->Add(&actor_optimiser_, "actor");
   state->Add(&temperature_optimiser_, "temperature");

@@ -36,6 +36,7 @@
 #include "common/spec/observation_spec.h"
 #include "learner/agent/agent_state.h"
 #include "learner/agent/aux_loss.h"
+#include "learner/agent/policy_average.h"
 
 namespace shoal::learner {
 
@@ -103,13 +104,12 @@ class SacNetworks {
   void StepTemperature(float gradient, double least);
   // target += tau * (critic - target), a target encoder included (Eq. 9).
   void MoveTarget(float tau);
-  // average += rate * (policy - average), encoder and actor (Eq. 12); the encoder's running
-  // statistics whole.
-  void MovePolicyAverage(float rate);
+  // average += rate * (policy - average), encoder and actor (Eq. 12).
+  void MovePolicyAverage(float rate) { average_.Move(rate); }
 
-  // encoder.* and actor.*, F32: the newest ones, and their moving average.
+  // encoder.* and actor.*, F32: the newest ones, and their moving average (PolicyAverage::Tensors).
   nn::TensorMap PolicyTensors() const;
-  nn::TensorMap AveragedPolicyTensors() const;
+  nn::TensorMap AveragedPolicyTensors() const { return average_.Tensors(); }
   // Parameters, targets, averages and optimisers; `state` borrows them.
   void AddTo(AgentState* state);
 
@@ -121,7 +121,6 @@ class SacNetworks {
   std::vector<nn::ParameterSet*> ActorSets();
   void RefreshCritic();
 
-  nn::Replica* const replica_;
   const nn::ModuleContext context_;
   const bool asymmetric_;  // the critic sees no pixels
   // Null without pixels: the policy's, which is the critic's, too, unless that has its own.
@@ -132,7 +131,7 @@ class SacNetworks {
   nn::ActorModule actor_;
   const std::unique_ptr<AuxLoss> aux_;  // null without learner.aux
   nn::ParameterSet temperature_;
-  nn::ParameterSet encoder_average_, actor_average_;
+  PolicyAverage average_;
   nn::Adam critic_optimiser_, actor_optimiser_, temperature_optimiser_;
 };
 

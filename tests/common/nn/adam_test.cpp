@@ -132,7 +132,7 @@ TEST(Adam, StepsSeveralSetsAsItWouldOne) {
     alone.Step();
     both.Step();
   }
-  EXPECT_DOUBLE_EQ(both.GradientSquares(), 2 * alone.GradientSquares());
+  EXPECT_DOUBLE_EQ(both.GatherGradients(), 2 * alone.GatherGradients());
   EXPECT_EQ(WeightsOf(a), WeightsOf(one));
   EXPECT_EQ(std::vector<float>(b.values(), b.values() + kSize), WeightsOf(one));
   both.Undo();

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <memory>
-
 #include "common/nn/parallel.h"
 
 namespace shoal::nn {
@@ -26,44 +24,34 @@ class ReplicaTest : public testing::TestWithParam<int> {
   std::vector<Replica> replicas_;
 };
 
-TEST_P(ReplicaTest, GradientsBecomeTheirMeanInTheOrderOfRanks) {
-  const int count = GetParam();
-  // One set of fewer floats than there are to divide among ranks, one of several blocks.
-  const std::vector<std::vector<int64_t>> shapes = {{3}, {70, 41}};
-  std::vector<std::vector<std::unique_ptr<ParameterSet>>> sets(static_cast<size_t>(count));
-  std::vector<std::vector<float>> mean(shapes.size());
-  for (size_t s = 0; s < shapes.size(); ++s) {
-    for (auto& of_rank : sets) {
-      of_rank.push_back(std::make_unique<ParameterSet>(std::vector<ParameterSpec>{{"w", shapes[s]}},
-                                                       ParameterSet::Use::kTraining));
+TEST_P(ReplicaTest, SharesCoverAnArrayOnceInWholeCacheLines) {
+  for (const int64_t floats : {0, 16, 32, 48, 4096}) {
+    int64_t end = 0;
+    for (const Replica& replica : replicas_) {
+      const Replica::Share share = replica.ShareOf(floats);
+      EXPECT_EQ(share.begin, end);
+      EXPECT_EQ(share.begin % 16, 0);
+      end = share.end;
     }
-    mean[s].resize(size_t(sets[0][s]->trained_size()));
+    EXPECT_EQ(end, floats);
   }
-  for (uint64_t round = 0; round < 3; ++round) {
-    Random random(round);
-    for (size_t s = 0; s < shapes.size(); ++s) {
-      for (size_t i = 0; i < mean[s].size(); ++i) {
-        float sum = 0;
-        for (const auto& of_rank : sets) {
-          const auto value = float(random.Normal());
-          of_rank[s]->gradients()[i] = value;
-          sum += value;
-        }
-        mean[s][i] = sum * (1.f / float(count));
-      }
+}
+
+TEST_P(ReplicaTest, PeersAreKnownByRankAndWhatWasWrittenBeforeAMeetingIsReadAfter) {
+  const auto count = size_t(GetParam());
+  std::vector<int> written(count), sums(count);
+  Run([&](Replica* replica) {
+    int* own = &written[size_t(replica->rank())];
+    const std::vector<int*> peers = replica->Peers(own);
+    for (int round = 1; round <= 50; ++round) {
+      *own = round;
+      replica->Meet();
+      for (const int* peer : peers) sums[size_t(replica->rank())] += *peer;
+      replica->Meet();
     }
-    Run([&](Replica* replica) {
-      const auto& own = sets[size_t(replica->rank())];
-      replica->AverageGradients(std::vector<ParameterSet*>{own[0].get(), own[1].get()});
-    });
-    for (const auto& of_rank : sets) {
-      for (size_t s = 0; s < shapes.size(); ++s) {
-        const std::vector<float> got(of_rank[s]->gradients(),
-                                     of_rank[s]->gradients() + mean[s].size());
-        EXPECT_EQ(got, mean[s]) << "bit for bit";
-      }
-    }
-  }
+    if (peers[size_t(replica->rank())] != own) sums[size_t(replica->rank())] = -1;
+  });
+  EXPECT_EQ(sums, std::vector<int>(count, int(count) * 50 * 51 / 2));
 }
 
 TEST_P(ReplicaTest, ArraysAndNumbersAreThoseOfTheWholeBatchForAll) {
@@ -111,6 +99,8 @@ TEST(Replica, AloneGivesBackWhatItGot) {
   Replica alone;
   EXPECT_EQ(alone.Rows(7), 7);
   EXPECT_EQ(alone.threads(), Threads());
+  EXPECT_EQ(alone.ShareOf(7).end, 7);
+  EXPECT_EQ(alone.Peers(&alone), std::vector{&alone});
   const std::vector<float> values = {1, 2, 3};
   const std::span<const float> own[] = {values};
   EXPECT_EQ(alone.Whole(own), std::vector<std::vector<float>>{values});

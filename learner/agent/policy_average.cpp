@@ -1,0 +1,38 @@
+#include "learner/agent/policy_average.h"
+
+#include "common/nn/module.h"
+
+namespace shoal::learner {
+
+PolicyAverage::PolicyAverage(const std::vector<nn::ParameterSet*>& policy, nn::Replica* replica)
+    : policy_(policy), replica_(replica) {
+  if (replica_->rank() > 0) return;
+  for (const nn::ParameterSet* set : policy_) {
+    averages_.emplace_back(set->specs(), nn::ParameterSet::Use::kInference);
+  }
+}
+
+void PolicyAverage::Copy() {
+  for (size_t p = 0; p < averages_.size(); ++p) {
+    nn::CopyParameters(*policy_[p], &averages_[p]);
+  }
+}
+
+void PolicyAverage::Move(float rate) {
+  if (kept_ == nullptr) kept_ = replica_->Peers(this)[0];
+  for (size_t p = 0; p < policy_.size(); ++p) {
+    nn::MoveTowards(rate, *policy_[p], &kept_->averages_[p], *replica_);
+  }
+}
+
+nn::TensorMap PolicyAverage::Tensors() const {
+  nn::TensorMap tensors;
+  for (const nn::ParameterSet& average : averages_) average.Export(&tensors);
+  return tensors;
+}
+
+void PolicyAverage::AddTo(AgentState* state) {
+  for (nn::ParameterSet& average : averages_) state->Add(&average, "average");
+}
+
+}  // namespace shoal::learner

@@ -1,0 +1,43 @@
+// The moving average of a policy's parameters (Eq. 12 of docs/algorithm.md), which no network is
+// computed with.
+//
+// Of replicas the first keeps it, and each moves a share of it: nobody reads it before the update
+// that moved it has ended for all.
+#pragma once
+
+#include <deque>
+#include <vector>
+
+#include "common/nn/parameter_set.h"
+#include "common/nn/replica.h"
+#include "common/nn/safetensors.h"
+#include "learner/agent/agent_state.h"
+
+namespace shoal::learner {
+
+// Not movable. One thread, its replica's.
+class PolicyAverage {
+ public:
+  // Borrows sets and replica.
+  PolicyAverage(const std::vector<nn::ParameterSet*>& policy, nn::Replica* replica);
+  PolicyAverage(const PolicyAverage&) = delete;
+  PolicyAverage& operator=(const PolicyAverage&) = delete;
+
+  // Becomes the policy.
+  void Copy();
+  // average += rate * (policy - average); running statistics are copied whole.
+  void Move(float rate);
+
+  // Of the first replica; of others none. Under the policy's own names.
+  nn::TensorMap Tensors() const;
+  // As "average.NAME".
+  void AddTo(AgentState* state);
+
+ private:
+  const std::vector<nn::ParameterSet*> policy_;
+  nn::Replica* const replica_;
+  std::deque<nn::ParameterSet> averages_;  // one for each set, or, but for the first replica, none
+  PolicyAverage* kept_ = nullptr;          // the first replica's, once it is needed
+};
+
+}  // namespace shoal::learner
