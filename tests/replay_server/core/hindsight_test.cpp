@@ -210,7 +210,7 @@ TEST_F(HindsightTest, SamplesPerInsertComeOutAsAsked) {
       static_cast<double>(core_->counters().batches - drawn_before) * run_.config.learner.batch;
   const auto became = static_cast<double>(core_->index().became_sampleable() - became_before);
   EXPECT_GT(became, 10'000);
-  EXPECT_NEAR(drawn / became, 4, 4 * 0.02 + core_->limiter().band() / became);
+  EXPECT_NEAR(drawn / became, 4, 4 * 0.02);
 }
 
 TEST_F(HindsightTest, FutureGoalsAreSpreadOverWhatIsLeftOfTheEpisode) {
