@@ -66,8 +66,7 @@ TEST_P(EncoderTraining, UpdatesCheckpointsEvaluatesAndStartsAnother) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Kinds, EncoderTraining,
-                         testing::Values(EncoderKind{"resnet18", "sac", "36"},
-                                         EncoderKind{"alexnet", "td3", "84"},
+                         testing::Values(EncoderKind{"alexnet", "td3", "84"},
                                          EncoderKind{"resnet18", "ddpg", "36"}),
                          [](const auto& kind) {
                            return std::string(kind.param.encoder) + "_" + kind.param.algorithm;
