@@ -22,7 +22,8 @@ class SharedBytes {
   size_t size() const { return bytes_.size(); }
 
  private:
-  explicit SharedBytes(std::shared_ptr<const std::string> owner) : owner_(owner), bytes_(*owner) {}
+  explicit SharedBytes(const std::shared_ptr<const std::string>& owner)
+      : owner_(owner), bytes_(*owner) {}
 
   std::shared_ptr<const void> owner_;
   std::string_view bytes_;

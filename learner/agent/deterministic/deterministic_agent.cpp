@@ -140,6 +140,7 @@ void DeterministicAgent::RefreshCritic() {
 
 std::vector<const float*> DeterministicAgent::Values(const nn::CriticModule& critic) const {
   std::vector<const float*> q;
+  q.reserve(size_t(critic.count()));
   for (int i = 0; i < critic.count(); ++i) q.push_back(critic.q(i));
   return q;
 }
