@@ -100,7 +100,7 @@ void Prepare(const Surroundings& surroundings) {
     surroundings.Link(std::string("experiments/") + name, "batches");
   }
   for (const char* name : {"pixels-drq-s0", "preset-s11", "preset-s12", "preset-s13", "faster-s11",
-                           "faster-s12", "faster-s13", "asymmetric-s0"}) {
+                           "faster-s12", "faster-s13", "asymmetric-s0", "symmetric-s0"}) {
     surroundings.Link(std::string("experiments/batches/runs/") + name, "../../../runs/pixels");
   }
   for (const char* name : {"her-s0", "her-s1", "her-s2", "movement-s0"}) {
