@@ -9,7 +9,7 @@ cd "$(dirname "$(readlink -f "$0")")/.."
 
 # Reason, tab, test; one line per skip.
 skips() {
-  awk '/^[0-9]+\/[0-9]+ Testing: / { test = $0; sub(/^[^:]*: /, "", test); sub(/  # .*/, "", test) }
+  awk '/^\[ RUN      \] / { test = $0; sub(/^[^\]]*\] /, "", test) }
        /: Skipped$/ { getline; print $0 "\t" test }' "$@"
 }
 

@@ -21,7 +21,7 @@ const std::vector<TrialRule>& TrialRules() {
        "builds everything once more; a stage of its own"},
       {"^\\./run bench", kNotHere, "measures for minutes"},
       {"^build/release/bin/shoal-bench\\b", kNotHere, "measures for minutes"},
-      {"^ctest\\b", kNotHere, "runs the tests from a test"},
+      {"^\\./run test\\b", kNotHere, "runs the tests from a test"},
       {"^cmake --install build/release --prefix ~", kElsewhere,
        "NewProject.AnInstallationHasItsPartsWhereTheyBelong"},
       {"^cmake --install .* --component policy", kElsewhere,

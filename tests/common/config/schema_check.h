@@ -35,7 +35,8 @@ class SchemaCheck {
   }
 
   static std::string MembersFault(const json& value, const json& schema, const std::string& path) {
-    const json known = schema.value("properties", json::object());
+    static const json kNone = json::object();
+    const json& known = schema.contains("properties") ? schema["properties"] : kNone;
     for (const auto& [name, member] : value.items()) {
       const std::string at = path + "/" + name;
       if (known.contains(name)) {

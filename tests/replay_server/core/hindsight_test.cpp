@@ -198,7 +198,7 @@ TEST_F(HindsightTest, AShareOfTheSamplesIsRelabelled) {
 TEST_F(HindsightTest, SamplesPerInsertComeOutAsAsked) {
   Start();
   uint64_t drawn_before = 0, became_before = 0;
-  for (int turn = 0; turn < 20'000; ++turn) {
+  for (int turn = 0; turn < 6'000; ++turn) {
     Send(1 + static_cast<uint64_t>(turn) % 7);
     if (turn % 2 == 0) Draw();
     if (turn == 200) {
