@@ -35,10 +35,10 @@ TEST(ControlLearning, CartpoleSwingsUpFromState) {
   EXPECT_GE(aggregate.at("return_mean").get<double>(), 800) << aggregate.dump();
 }
 
-// From the 20 points that random actions earn to at least 200.
+// From the 20 points that random actions earn to at least 150.
 TEST(ControlLearning, HopperStaysUpFromState) {
-  const nlohmann::json aggregate = TrainWith("hopper-state", 20000);
-  EXPECT_GE(aggregate.at("return_mean").get<double>(), 200) << aggregate.dump();
+  const nlohmann::json aggregate = TrainWith("hopper-state", 12000);
+  EXPECT_GE(aggregate.at("return_mean").get<double>(), 150) << aggregate.dump();
 }
 
 }  // namespace
