@@ -1,4 +1,4 @@
-// CRC-32 (IEEE 802.3, zlib's) of bytes, for weights on the wire and files.
+// CRC-32 (IEEE 802.3, that of zlib) of bytes, for weights on the wire and files.
 #pragma once
 
 #include <cstdint>

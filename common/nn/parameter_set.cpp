@@ -196,10 +196,9 @@ void ParameterSet::ExportFirst(size_t specs, const float* array, const std::stri
                                TensorMap* tensors) const {
   CHECK(use_ != Use::kBorrowing);
   for (size_t i = 0; i < specs; ++i) {
-    NamedTensor tensor{"F32", specs_[i].shape, {}};
-    tensor.data.resize(size_t(Count(specs_[i])) * sizeof(float));
-    std::memcpy(tensor.data.data(), array + offsets_[i], tensor.data.size());
-    (*tensors)[prefix + specs_[i].name] = std::move(tensor);
+    const auto* first = reinterpret_cast<const uint8_t*>(array + offsets_[i]);
+    (*tensors)[prefix + specs_[i].name] = {
+        "F32", specs_[i].shape, {first, first + size_t(Count(specs_[i])) * sizeof(float)}};
   }
 }
 
