@@ -7,6 +7,7 @@
 
 #include "common/base/error.h"
 #include "common/base/random.h"
+#include "common/nn/bf16.h"
 
 namespace shoal::nn {
 namespace {
@@ -200,6 +201,18 @@ TEST(Safetensors, Bf16CopyHoldsTheRoundedValuesAndLeavesOtherTypesAlone) {
     EXPECT_EQ(half.at(name).dtype, whole.at(name).dtype);
     EXPECT_EQ(half.at(name).data, whole.at(name).data);
   }
+}
+
+// Many more values than are rounded at once.
+TEST(Safetensors, Bf16CopyOfALargeTensorIsRoundedThroughout) {
+  std::vector<float> values(10'001);
+  for (size_t i = 0; i < values.size(); ++i) values[i] = 0.1f * float(i);
+  const TensorMap half = ToBf16({{"w", F32({int64_t(values.size())}, values)}});
+  ASSERT_EQ(half.at("w").data.size(), 2 * values.size());
+  std::vector<uint16_t> expected(values.size()), rounded(values.size());
+  FloatsToBf16(values.data(), int64_t(values.size()), expected.data());
+  std::memcpy(rounded.data(), half.at("w").data.data(), half.at("w").data.size());
+  EXPECT_EQ(rounded, expected);
 }
 
 TEST(Safetensors, RunningStatisticsAreNotRounded) {
