@@ -40,9 +40,12 @@ std::string PicturesText(const RunConfig& run) {
                      MarkerText(run));
 }
 
-// Blocks of the record that neither the policy nor learning gets, rewards of hindsight apart.
+// Blocks of the record that neither the policy nor learning gets.
 std::vector<std::string> Unused(const RunConfig& run) {
-  const std::vector<std::string> told = PrivilegedBlocksOf(run.config.learner, run.spec).all;
+  std::vector<std::string> told = PrivilegedBlocksOf(run.config.learner, run.spec).all;
+  for (std::string& name : PrivilegedInputsOf(run.config, run.spec).replay_blocks) {
+    told.push_back(std::move(name));
+  }
   std::vector<std::string> unused;
   for (const BlockSpec& block : run.spec.blocks) {
     if (!block.observed && std::ranges::count(told, block.name) == 0) unused.push_back(block.name);
@@ -50,8 +53,10 @@ std::vector<std::string> Unused(const RunConfig& run) {
   return unused;
 }
 
-std::string PrivilegedLines(const PrivilegedInputs& inputs, const ObservationSpec& spec) {
-  if (inputs.critic_blocks.empty() && inputs.labels.empty()) {
+std::string PrivilegedLines(const RunConfig& run) {
+  const ObservationSpec& spec = run.spec;
+  const PrivilegedInputs inputs = PrivilegedInputsOf(run.config, spec);
+  if (inputs.critic_blocks.empty() && inputs.labels.empty() && inputs.replay_blocks.empty()) {
     return "privileged, in training alone: nothing\n";
   }
   std::string text = "privileged, in training alone:\n";
@@ -61,6 +66,9 @@ std::string PrivilegedLines(const PrivilegedInputs& inputs, const ObservationSpe
   }
   if (!inputs.labels.empty()) {
     text += fmt::format("  the encoder is taught  {}\n", fmt::join(inputs.labels, ", "));
+  }
+  if (!inputs.replay_blocks.empty()) {
+    text += fmt::format("  the replay             {}\n", HindsightText(run));
   }
   return text;
 }
@@ -82,7 +90,21 @@ PolicyInputs PolicyInputsOf(const ObservationSpec& spec) {
 
 PrivilegedInputs PrivilegedInputsOf(const Config& config, const ObservationSpec& spec) {
   return {.critic_blocks = PrivilegedBlocksOf(config.learner, spec).critic,
-          .labels = config.learner.aux};
+          .labels = config.learner.aux,
+          .replay_blocks = spec.HasPixels() && config.replay.hindsight != "none"
+                               ? std::vector<std::string>{"achieved_goal"}
+                               : std::vector<std::string>{}};
+}
+
+std::string HindsightText(const RunConfig& run) {
+  const std::vector<std::string> blocks = PrivilegedInputsOf(run.config, run.spec).replay_blocks;
+  if (blocks.empty()) return "";
+  const double share = run.config.replay.movement_share;
+  return fmt::format(
+      "relabels goals with {}{}", fmt::join(blocks, ", "),
+      share > 0 ? fmt::format(" and draws {:.3g} % of the samples by how far it still moves",
+                              100 * share)
+                : "");
 }
 
 ordered_json ToJson(const PolicyInputs& inputs) {
@@ -93,7 +115,9 @@ ordered_json ToJson(const PolicyInputs& inputs) {
 }
 
 ordered_json ToJson(const PrivilegedInputs& inputs) {
-  return {{"critic_blocks", inputs.critic_blocks}, {"labels", inputs.labels}};
+  return {{"critic_blocks", inputs.critic_blocks},
+          {"labels", inputs.labels},
+          {"replay_blocks", inputs.replay_blocks}};
 }
 
 std::string DescribeInputs(const RunConfig& run) {
@@ -107,7 +131,7 @@ std::string DescribeInputs(const RunConfig& run) {
     text +=
         fmt::format("  of these tell of the object: {}\n", fmt::join(policy.object_blocks, ", "));
   }
-  text += PrivilegedLines(PrivilegedInputsOf(run.config, run.spec), run.spec);
+  text += PrivilegedLines(run);
   return text + fmt::format("recorded besides: {}\n", Listed(run.spec, Unused(run)));
 }
 

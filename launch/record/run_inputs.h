@@ -29,6 +29,8 @@ PolicyInputs PolicyInputsOf(const ObservationSpec& spec);
 struct PrivilegedInputs {
   std::vector<std::string> critic_blocks{};  // in place of the pixels
   std::vector<std::string> labels{};         // as learner.aux names them
+  // By which the replay relabels goals and draws samples, where there are pictures to see it in.
+  std::vector<std::string> replay_blocks{};
 };
 // Throws Error (usage) as PrivilegedBlocksOf.
 PrivilegedInputs PrivilegedInputsOf(const Config& config, const ObservationSpec& spec);
@@ -36,6 +38,10 @@ PrivilegedInputs PrivilegedInputsOf(const Config& config, const ObservationSpec&
 // As meta.json has them.
 nlohmann::ordered_json ToJson(const PolicyInputs& inputs);
 nlohmann::ordered_json ToJson(const PrivilegedInputs& inputs);
+
+// "relabels goals with achieved_goal and draws 50 % of the samples by how far it still moves"; empty
+// where the replay goes by nothing that is privileged.
+std::string HindsightText(const RunConfig& run);
 
 // All of it for people: lines, each ended.
 std::string DescribeInputs(const RunConfig& run);

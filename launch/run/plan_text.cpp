@@ -9,7 +9,6 @@
 #include "common/base/error.h"
 #include "common/config/config_io.h"
 #include "common/config/on_policy.h"
-#include "common/config/privileged_blocks.h"
 #include "common/nn/precision.h"
 #include "common/tasks/task_registry.h"
 #include "launch/record/run_inputs.h"
@@ -69,19 +68,18 @@ std::string UpdateText(const RunConfig& run) {
 
 // What learning is told that the policy is not: a figure of such a run has to say so.
 std::string PrivilegedText(const RunConfig& run) {
-  const LearnerConfig& learner = run.config.learner;
-  if (!learner.critic_blocks && learner.aux.empty()) return "";
-  const PrivilegedBlocks blocks = PrivilegedBlocksOf(learner, run.spec);
-  std::string told;
-  if (learner.critic_blocks) {
-    told = fmt::format("the critic sees {}{}", fmt::join(blocks.critic, ", "),
-                       run.spec.HasPixels() ? " in place of pixels" : "");
+  const PrivilegedInputs inputs = PrivilegedInputsOf(run.config, run.spec);
+  std::vector<std::string> told;
+  if (!inputs.critic_blocks.empty()) {
+    told.push_back(fmt::format("the critic sees {}{}", fmt::join(inputs.critic_blocks, ", "),
+                               run.spec.HasPixels() ? " in place of pixels" : ""));
   }
-  if (!learner.aux.empty()) {
-    told += fmt::format("{}the encoder is taught {}", told.empty() ? "" : ", ",
-                        fmt::join(learner.aux, ", "));
+  if (!inputs.labels.empty()) {
+    told.push_back(fmt::format("the encoder is taught {}", fmt::join(inputs.labels, ", ")));
   }
-  return fmt::format("  privileged, in training alone: {}\n", told);
+  if (!inputs.replay_blocks.empty()) told.push_back("the replay " + HindsightText(run));
+  if (told.empty()) return "";
+  return fmt::format("  privileged, in training alone: {}\n", fmt::join(told, ", "));
 }
 
 // "From pixels" leads one to think that the policy finds the object in its pictures: where it is

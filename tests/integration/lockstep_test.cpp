@@ -124,6 +124,7 @@ TEST(Lockstep, HindsightWithPicturesOfGoalsGoesOnBitForBit) {
                                                  {"observation.height", "36"},
                                                  {"observation.width", "36"},
                                                  {"replay.min_size", "200"},
+                                                 {"replay.movement_share", "0.5"},
                                                  {"replay.samples_per_insert", "16"}}),
                         {"--preset", "fetch-reach-her", "--lockstep"}, {450});
 }

@@ -40,7 +40,33 @@ TEST(RunInputs, SayWhatThePolicyGetsAndWhatTrainingAloneIsTold) {
             "privileged, in training alone:\n"
             "  the critic sees        object (3), in place of pixels\n"
             "  the encoder is taught  object-grip\n"
-            "recorded besides: object_velocity_from_grip (3), achieved_goal (3)\n");
+            "  the replay             relabels goals with achieved_goal\n"
+            "recorded besides: object_velocity_from_grip (3)\n");
+}
+
+// Neither network is told of the object, and the samples are chosen by it all the same.
+TEST(RunInputs, WhatTheReplayGoesByIsPrivilegedToo) {
+  RunConfig run = PushRun();
+  run.config.learner.critic_blocks = false;
+  run.config.learner.aux = {};
+  run.config.replay.movement_share = 0.5;
+  EXPECT_THAT(DescribeInputs(run),
+              HasSubstr("privileged, in training alone:\n"
+                        "  the replay             relabels goals with achieved_goal and draws 50 % "
+                        "of the samples by how far it still moves\n"));
+  run.config.replay.hindsight = "none";
+  run.config.replay.movement_share = 0;
+  EXPECT_THAT(DescribeInputs(run), HasSubstr("privileged, in training alone: nothing\n"));
+}
+
+// What is achieved can be had from the numbers that the policy gets.
+TEST(RunInputs, NothingOfWhatTheReplayGoesByIsPrivilegedWithoutPixels) {
+  RunConfig run = PushRun();
+  run.config.learner.critic_blocks = false;
+  run.config.learner.aux = {};
+  run.spec.cameras.clear();
+  run.spec.channels = 0;
+  EXPECT_THAT(DescribeInputs(run), HasSubstr("privileged, in training alone: nothing\n"));
 }
 
 TEST(RunInputs, NothingIsSaidToBeNothing) {
@@ -89,7 +115,8 @@ TEST(RunInputs, ProgramsGetTheSame) {
     "schema": "shoal-inputs-1", "task": "FetchPush", "height": 64, "width": 64, "stack": 1,
     "policy_inputs": {"blocks": ["grip", "desired_goal"], "object_blocks": [],
                       "cameras": ["front", "side"], "goal_picture": false},
-    "privileged_inputs": {"critic_blocks": ["object"], "labels": ["object-grip"]},
+    "privileged_inputs": {"critic_blocks": ["object"], "labels": ["object-grip"],
+                          "replay_blocks": ["achieved_goal"]},
     "recorded_blocks": [{"name": "grip", "size": 3}, {"name": "object", "size": 3},
                         {"name": "object_velocity_from_grip", "size": 3},
                         {"name": "achieved_goal", "size": 3}, {"name": "desired_goal", "size": 3}]

@@ -62,8 +62,9 @@ TEST(RunMeta, SaysWhatThePolicySeesAndHowOftenItWasUpdated) {
                             {"cameras", {"front"}},
                             {"goal_picture", false}}));
   EXPECT_EQ(written().at("privileged_inputs"),
-            nlohmann::json(
-                {{"critic_blocks", nlohmann::json::array()}, {"labels", nlohmann::json::array()}}));
+            nlohmann::json({{"critic_blocks", nlohmann::json::array()},
+                            {"labels", nlohmann::json::array()},
+                            {"replay_blocks", nlohmann::json::array()}}));
   spec.blocks.push_back({"object", 3});  // a policy that does not have to find it
   meta.policy_inputs = PolicyInputsOf(spec);
   EXPECT_EQ(written().at("policy_inputs").at("object_blocks"), nlohmann::json({"object"}));
@@ -73,7 +74,8 @@ TEST(RunMeta, SaysWhatThePolicySeesAndHowOftenItWasUpdated) {
   meta.privileged_inputs = PrivilegedInputsOf(config, spec);
   EXPECT_EQ(written().at("privileged_inputs"),
             nlohmann::json({{"critic_blocks", {"achieved_goal"}},
-                            {"labels", {"achieved_goal-desired_goal"}}}));
+                            {"labels", {"achieved_goal-desired_goal"}},
+                            {"replay_blocks", nlohmann::json::array()}}));
   EXPECT_TRUE(written().at("updates_per_env_step").is_null());
   meta.env_steps = 200;
   meta.updates = 100;

@@ -68,6 +68,11 @@ TEST(PlanText, WhatOnlyTrainingIsToldIsSaid) {
   EXPECT_THAT(PlanText(run, 1),
               HasSubstr("  privileged, in training alone: the critic sees object in place of "
                         "pixels, the encoder is taught object-grip\n"));
+  run.config.replay.hindsight = "future";
+  run.config.replay.movement_share = 0.25;
+  EXPECT_THAT(PlanText(run, 1),
+              HasSubstr("is taught object-grip, the replay relabels goals with achieved_goal and "
+                        "draws 25 % of the samples by how far it still moves\n"));
 }
 
 TEST(PlanText, APolicyThatIsToldOfTheObjectBesidePicturesIsNamed) {

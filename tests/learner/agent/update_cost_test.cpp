@@ -49,27 +49,63 @@ TEST(UpdateCost, OnPolicyItIsThatOfAWholeRollout) {
   EXPECT_DOUBLE_EQ(CostOfUpdate(config, State()).flop, 2 * 60 * (both + 4 * 3 * both));
 }
 
-TEST(UpdateCost, PicturesCostTheEncodersMaps) {
-  Config config = SmallNetworks("sac");
-  config.network.encoder = "nature";
+ObservationSpec StateAndPictures() {
   ObservationSpec spec = State();
   spec.cameras = {"front"};
   spec.channels = 3;
   spec.height = spec.width = 84;
   spec.stack = 1;
+  return spec;
+}
+
+Config NatureEncoder(const std::string& algorithm) {
+  Config config = SmallNetworks(algorithm);
+  config.network.encoder = "nature";
+  config.network.features = 6;
+  return config;
+}
+
+// Mnih et al. 2015: 8x8/4, 4x4/2, 3x3/1 of 32, 64, 64 filters; maps of 20, 9 and 7 pixels' side.
+constexpr double kNatureWeights[] = {3 * 64 * 32, 32 * 16 * 64, 64 * 9 * 64};
+constexpr double kFirstMap = 400 * kNatureWeights[0];
+constexpr double kForward = kFirstMap + 81 * kNatureWeights[1] + 49 * kNatureWeights[2];
+// Gradients of weights and of maps; the first layer reads pixels, whose gradient nothing wants.
+constexpr double kBackward = 2 * kForward - kFirstMap;
+constexpr double kTrunk = 64 * 49 * 6;
+
+TEST(UpdateCost, PicturesCostTheEncodersMaps) {
+  Config config = NatureEncoder("sac");
+  const ObservationSpec spec = StateAndPictures();
   const UpdateCost cost = CostOfUpdate(config, spec);
-  // Mnih et al. 2015: 8x8/4, 4x4/2, 3x3/1 of 32, 64, 64 filters; maps of 20, 9 and 7 pixels' side.
-  const double weights[] = {3 * 64 * 32, 32 * 16 * 64, 64 * 9 * 64};
   EXPECT_EQ(static_cast<double>(cost.encoder_parameters),
-            weights[0] + weights[1] + weights[2] + 32 + 64 + 64);
-  const double maps = 400 * weights[0] + 81 * weights[1] + 49 * weights[2];
-  EXPECT_GT(cost.flop, 2 * 10 * 4 * maps);
-  EXPECT_LT(cost.flop, 2 * 10 * 4 * maps * 1.5) << "trunks and heads are small beside it";
+            kNatureWeights[0] + kNatureWeights[1] + kNatureWeights[2] + 32 + 64 + 64);
+  const double actor = kTrunk + (6 + 3) * 8 + 8 * 4, critics = kTrunk + 2 * ((6 + 5) * 8 + 8);
+  // A step of the actor computes no gradient of the features: neither by its trunk, as the critic
+  // trains the encoder, nor by the critics' trunk, below which there is no action.
+  const double actor_step = 3 * actor - kTrunk + 2 * critics - kTrunk;
+  EXPECT_DOUBLE_EQ(cost.flop,
+                   2 * 10 * (2 * kForward + kBackward + 4 * critics + actor + actor_step / 2));
   config.network.target_encoder = true;
-  EXPECT_DOUBLE_EQ(CostOfUpdate(config, spec).flop - cost.flop, 2 * 10 * maps);
-  // In every second update: there and back for the actor, there for the critic.
+  EXPECT_DOUBLE_EQ(CostOfUpdate(config, spec).flop - cost.flop, 2 * 10 * kForward);
+  // In every second update: there and back for the actor and its trunk, there for the critic.
   config.network.encoders = "separate";
-  EXPECT_DOUBLE_EQ(CostOfUpdate(config, spec).flop - cost.flop, 2 * 10 * (1 + 4 / 2.0) * maps);
+  EXPECT_DOUBLE_EQ(CostOfUpdate(config, spec).flop - cost.flop,
+                   2 * 10 * (kForward + (2 * kForward + kBackward + kTrunk) / 2));
+}
+
+TEST(UpdateCost, OnPolicyPicturesCostTheEncodersMapsInEachEpoch) {
+  Config config = NatureEncoder("ppo");
+  config.actors = config.envs_per_actor = 1;
+  config.ppo.rollout_steps = 6;
+  config.ppo.epochs = 4;
+  const double actor = kTrunk + (6 + 3) * 8 + 8 * 2, value = kTrunk + (6 + 3) * 8 + 8;
+  EXPECT_DOUBLE_EQ(
+      CostOfUpdate(config, StateAndPictures()).flop,
+      2 * 6 * (kForward + value + 4 * (2 * kForward + 2 * kBackward + 3 * (actor + value))));
+  config.ppo.networks = "shared";
+  const double both = kTrunk + (6 + 3) * 8 + 8 * 3;
+  EXPECT_DOUBLE_EQ(CostOfUpdate(config, StateAndPictures()).flop,
+                   2 * 6 * (kForward + both + 4 * (kForward + kBackward + 3 * both)));
 }
 
 }  // namespace

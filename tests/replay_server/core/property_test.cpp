@@ -11,6 +11,7 @@
 
 #include "common/base/aligned_bytes.h"
 #include "replay_server/core/hindsight.h"
+#include "replay_server/core/movement_selector.h"
 #include "replay_server/core/replay_core.h"
 #include "replay_server/core/uniform_selector.h"
 #include "tests/replay_server/oracle.h"
@@ -28,6 +29,7 @@ struct Case {
   std::optional<HindsightGoal> hindsight{};
   bool goal_pictures = false;
   bool end_on_success = false;
+  std::optional<double> movement_share{};  // of the samples, drawn by what still moves
 };
 
 // Goals are points of the plane; the script's are spread over [-2, 2].
@@ -47,16 +49,23 @@ ObservationSpec SpecOf(const Case& kind) {
   return kind.goal_pictures ? WithGoalPicture(spec) : spec;
 }
 
-// Knows what it has been told of.
+// Knows what it has been told of, and tells another.
 class KeptSelector final : public Selector {
  public:
-  void Added(uint64_t id) override { EXPECT_TRUE(ids.insert(id).second) << id; }
-  void Removed(uint64_t id) override { EXPECT_EQ(ids.erase(id), 1u) << id; }
+  void Added(uint64_t id) override {
+    EXPECT_TRUE(ids.insert(id).second) << id;
+    if (other) other->Added(id);
+  }
+  void Removed(uint64_t id) override {
+    EXPECT_EQ(ids.erase(id), 1u) << id;
+    if (other) other->Removed(id);
+  }
   void UpdatePriority(uint64_t, double) override {}
   std::optional<Selection> Draw(Random*) override { return std::nullopt; }
   uint64_t redraws() const override { return 0; }
 
   std::set<uint64_t> ids;
+  Selector* other = nullptr;
 };
 
 // What a replay server has of a ring in a file.
@@ -92,6 +101,7 @@ class History {
         privileged_(kind.goal_pictures ? Names{"desired_goal"} : Names{}),
         end_on_success_(kind.end_on_success),
         hindsight_(kind.hindsight),
+        movement_share_(kind.movement_share),
         random_(seed) {
     StartServer();
     for (uint32_t actor = 0; actor < 3; ++actor) StartSession(actor);
@@ -127,12 +137,13 @@ class History {
   void CheckBatch() {
     if (server_->index.sampleable() == 0) return;
     constexpr int kBatch = 16;
-    UniformSelector selector(server_->ring, server_->index);
+    UniformSelector uniform(server_->ring, server_->index);
+    Selector* selector = movement_ ? static_cast<Selector*>(&*movement_) : &uniform;
     std::optional<HindsightRelabeller> relabeller;
     if (hindsight_)
       relabeller.emplace(server_->ring, server_->index, *hindsight_, /*goals_per_sample=*/4);
     const auto plan =
-        DrawPlan({.batch = kBatch}, &selector, relabeller ? &*relabeller : nullptr, &random_);
+        DrawPlan({.batch = kBatch}, selector, relabeller ? &*relabeller : nullptr, &random_);
     ASSERT_TRUE(plan.has_value());
     const BatchSchema schema(spec_, {.batch = kBatch, .privileged = privileged_});
     const AlignedBytes memory(schema.total_bytes());
@@ -141,6 +152,7 @@ class History {
                 {.steps = oracle_.n_step, .discount = kDiscount}, &goals_, privileged_)
         .Gather(*plan, view);
     for (size_t b = 0; b < kBatch; ++b) CheckElement(plan->elements[b], b, view);
+    if (movement_share_) CheckProbabilities(*plan);
   }
 
   const RecordHeader& HeaderOf(uint64_t id) const { return oracle_.all[id - 1].header(); }
@@ -171,7 +183,11 @@ class History {
 
   void StartServer() {
     server_ = std::make_unique<Server>(spec_, ring_options_, index_options_);
-    kept_.ids.clear();
+    kept_ = {};
+    if (movement_share_) {
+      movement_.emplace(server_->ring, server_->index, goals_, *movement_share_);
+      kept_.other = &*movement_;
+    }
     server_->index.SetSelector(&kept_);
   }
 
@@ -280,6 +296,32 @@ class History {
            Distance(step, goal) < kThreshold;
   }
 
+  // Whatever was overwritten, cut off or read anew: half by what still moves, half uniformly.
+  void CheckProbabilities(const BatchPlan& plan) {
+    std::map<uint64_t, double> movements;
+    double all = 0;
+    for (const uint64_t id : kept_.ids) all += movements[id] = Movement(id);
+    ASSERT_GT(all, 0);
+    for (const BatchPlan::Element& element : plan.elements) {
+      const double expected = (1 - *movement_share_) / static_cast<double>(movements.size()) +
+                              *movement_share_ * movements.at(element.id) / all;
+      ASSERT_NEAR(element.probability, expected, 1e-5 * expected) << "record " << element.id;
+    }
+  }
+
+  // Of what is achieved, from that step to its episode's end.
+  double Movement(uint64_t id) const {
+    double movement = 0;
+    for (const uint64_t step : oracle_.Episode(id)) {
+      if (step < id) continue;
+      const auto after = layout_.Vector(oracle_.all[step - 1].bytes.data()).subspan(2, 2);
+      const auto before =
+          layout_.Vector(oracle_.all[oracle_.all[step - 1].prev - 1].bytes.data()).subspan(2, 2);
+      movement += std::hypot(double{after[0]} - before[0], double{after[1]} - before[1]);
+    }
+    return movement;
+  }
+
   bool LacksItsGoalAlone(uint64_t id) const {
     return spec_.goal_picture && oracle_.Steps(id) && !oracle_.Holds(oracle_.Episode(id).front()) &&
            oracle_.Stack(oracle_.all[id - 1].prev);
@@ -360,8 +402,10 @@ class History {
   const bool end_on_success_;
   const GoalChange goals_{spec_, TinyTask(), privileged_, end_on_success_};
   const std::optional<HindsightGoal> hindsight_;
+  const std::optional<double> movement_share_;
   KeptSelector kept_;
   std::unique_ptr<Server> server_;
+  std::optional<MovementSelector> movement_;  // over the server's ring
   Random random_;
   std::vector<Actor> actors_;  // the newest session of each
   uint64_t last_session_ = 0;
@@ -396,10 +440,12 @@ TEST_P(ReplayProperty, AgreesWithAnOracleThatKeepsEverything) {
 
 std::string CaseName(const testing::TestParamInfo<Case>& info) {
   static constexpr const char* kNames[] = {"Future", "Final", "Episode"};
-  const auto& [stack, n_step, hindsight, goal_pictures, end_on_success] = info.param;
+  const auto& [stack, n_step, hindsight, goal_pictures, end_on_success, movement_share] =
+      info.param;
   return "Stack" + std::to_string(stack) + "NStep" + std::to_string(n_step) +
          (hindsight ? kNames[static_cast<int>(*hindsight)] : "") +
-         (goal_pictures ? "GoalPictures" : "") + (end_on_success ? "EndOnSuccess" : "");
+         (goal_pictures ? "GoalPictures" : "") + (end_on_success ? "EndOnSuccess" : "") +
+         (movement_share ? "Movement" : "");
 }
 
 INSTANTIATE_TEST_SUITE_P(StacksAndSteps, ReplayProperty,
@@ -415,7 +461,9 @@ INSTANTIATE_TEST_SUITE_P(StacksAndSteps, ReplayProperty,
                                          Case{2, 3, HindsightGoal::kFuture, false, true},
                                          Case{1, 2, HindsightGoal::kFinal, false, true},
                                          Case{2, 1, HindsightGoal::kEpisode, false, true},
-                                         Case{1, 4, HindsightGoal::kEpisode, true, true}),
+                                         Case{1, 4, HindsightGoal::kEpisode, true, true},
+                                         Case{1, 1, HindsightGoal::kFuture, false, false, 0.5},
+                                         Case{2, 3, HindsightGoal::kFinal, true, true, 1}),
                          CaseName);
 
 }  // namespace
