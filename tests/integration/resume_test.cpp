@@ -3,11 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <csignal>
+#include <filesystem>
 #include <map>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
 
 #include "common/base/clock.h"
+#include "common/base/files.h"
 #include "common/base/stop.h"
 #include "tests/support/event_files.h"
 #include "tests/support/training_run.h"
@@ -42,12 +45,26 @@ void ExpectScalars(const std::filesystem::path& run, size_t starts) {
   }
 }
 
+// Rewrites what the run's files say of the build that made them.
+void MakeOfAnotherBuild(const std::filesystem::path& run) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(run)) {
+    if (entry.path().extension() != ".json" || !entry.is_regular_file()) continue;
+    auto file = nlohmann::json::parse(ReadFile(entry.path()));
+    if (!file.is_object() || !file.contains("commit")) continue;
+    file["commit"] = "0123456789ab";
+    if (file.contains("commits")) file["commits"] = {"0123456789ab"};
+    WriteFileAtomically(entry.path(), file.dump(1));
+  }
+}
+
+// A newer build goes on with a run, and the run says so.
 TEST(Resume, WithAFileTheReplayGoesOnWithItsContent) {
   const TrainingRun run;
   const ProgramResult first = run.Train({{"env_steps", "2500"}, {"eval.final_episodes", "0"}});
   ASSERT_EQ(ExitCode(first), 0) << first.out << first.err;
   ExpectScalars(run.path(), 1);
   const auto before = run.Json("meta.json");
+  MakeOfAnotherBuild(run.path());
   const ProgramResult resumed = Resume(run, "4000");
   ASSERT_EQ(ExitCode(resumed), 0) << resumed.out << resumed.err;
   ExpectScalars(run.path(), 2);
@@ -57,6 +74,8 @@ TEST(Resume, WithAFileTheReplayGoesOnWithItsContent) {
   EXPECT_GE(meta.at("env_steps").get<int64_t>(), 4000);
   EXPECT_GT(meta.at("updates").get<int64_t>(), before.at("updates").get<int64_t>());
   EXPECT_EQ(resumed.out.find("refilled"), std::string::npos) << resumed.out;
+  EXPECT_EQ(meta.at("commits"), nlohmann::json({"0123456789ab", before.at("commit")}));
+  EXPECT_EQ(meta.at("commit"), before.at("commit"));
 }
 
 TEST(Resume, WithMemoryTheReplayIsRefilledAndSaysSo) {

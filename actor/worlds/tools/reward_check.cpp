@@ -69,7 +69,7 @@ void CheckGoals(const Task& task, const std::vector<RewardSample>& samples, Rewa
 }
 
 // Each step's goal becomes what a later step of its episode (or itself) achieved; all rewards in
-// one call, as when sampling.
+// one call, which is to give what the replay computes one by one.
 void CheckRelabelled(const Task& task, const std::vector<RewardSample>& samples, int relabels,
                      int64_t seed, RewardCheck* check) {
   Random draw(StreamKey(static_cast<uint64_t>(seed), StreamRole::kReplaySampler));
