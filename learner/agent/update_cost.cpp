@@ -12,16 +12,20 @@ namespace shoal::learner {
 namespace {
 
 // Of one sample.
+double MultiplyAdds(const nn::LayerPlan& layer) {
+  double count = 0;
+  for (const nn::ParameterSpec& parameter : layer.Parameters()) {
+    if (parameter.shape.size() < 2) continue;  // a bias, a norm
+    double weights = 1;
+    for (const int64_t size : parameter.shape) weights *= static_cast<double>(size);
+    count += weights * layer.output.height * layer.output.width;
+  }
+  return count;
+}
+
 double MultiplyAdds(const nn::NetworkPlan& plan) {
   double count = 0;
-  for (const nn::LayerPlan& layer : plan.layers()) {
-    for (const nn::ParameterSpec& parameter : layer.Parameters()) {
-      if (parameter.shape.size() < 2) continue;  // a bias, a norm
-      double weights = 1;
-      for (const int64_t size : parameter.shape) weights *= static_cast<double>(size);
-      count += weights * layer.output.height * layer.output.width;
-    }
-  }
+  for (const nn::LayerPlan& layer : plan.layers()) count += MultiplyAdds(layer);
   return count;
 }
 
@@ -29,6 +33,25 @@ double MultiplyAdds(const nn::HeadPlan& head) {
   double count = MultiplyAdds(head.trunk);
   for (const nn::NetworkPlan& mlp : head.mlps) count += MultiplyAdds(mlp);
   return count;
+}
+
+// Multiply-adds of an encoder, of one sample.
+struct EncoderPasses {
+  double forward = 0, backward = 0;
+};
+
+EncoderPasses PassesOf(const nn::NetworkPlan& encoder) {
+  EncoderPasses passes;
+  for (const nn::LayerPlan& layer : encoder.layers()) {
+    const double count = MultiplyAdds(layer);
+    passes.forward += count;
+    // The gradients of its weights and of what it reads; nothing below the pixels wants theirs.
+    const bool reads_pixels =
+        layer.source != nn::kNoLayer &&
+        encoder.layers()[size_t(layer.source)].kind == nn::LayerPlan::Kind::kPixels;
+    passes.backward += reads_pixels ? count : 2 * count;
+  }
+  return passes;
 }
 
 int64_t ParameterCount(const nn::NetworkPlan& plan) {
@@ -41,44 +64,55 @@ int64_t ParameterCount(const nn::NetworkPlan& plan) {
   return count;
 }
 
-// Multiply-adds of an update; `of_encoder`: of one sample.
-double OffPolicy(const Config& config, const ObservationSpec& spec, double of_encoder) {
-  const int critics = FindAlgorithm(config.learner.algorithm).critics;
-  const double of_actor = MultiplyAdds(nn::PlanActor(
+// Multiply-adds of an update.
+double OffPolicy(const Config& config, const ObservationSpec& spec, const EncoderPasses& encoder) {
+  const int critic_count = FindAlgorithm(config.learner.algorithm).critics;
+  const nn::ActorPlan actor = nn::PlanActor(
       config.network, spec,
-      LearnsDeviation(config) ? nn::ActorOutput::kGaussian : nn::ActorOutput::kDeterministic));
-  const double of_critics = MultiplyAdds(
-      nn::PlanCritic(config.network, CriticSpec(config.learner, spec), "critic", critics));
+      LearnsDeviation(config) ? nn::ActorOutput::kGaussian : nn::ActorOutput::kDeterministic);
+  const nn::HeadPlan critics =
+      nn::PlanCritic(config.network, CriticSpec(config.learner, spec), "critic", critic_count);
+  const double of_actor = MultiplyAdds(actor), of_critics = MultiplyAdds(critics);
   const bool separate = config.network.encoders == "separate";
   const bool asymmetric = bool(config.learner.critic_blocks);
+  const bool actor_trains = separate || asymmetric;
   const int next_encoders = separate || config.network.target_encoder ? 2 : 1;
-  const int critic_encoders = next_encoders + (asymmetric ? 0 : 3);
-  const int actor_encoders = separate ? 4 : asymmetric ? 3 : 0;
-  const double critic_step = critic_encoders * of_encoder + 4 * of_critics + of_actor;
-  const double actor_step = actor_encoders * of_encoder + 3 * of_actor + 2 * of_critics;
+
+  double critic_step = next_encoders * encoder.forward + 4 * of_critics + of_actor;
+  if (!asymmetric) critic_step += encoder.forward + encoder.backward;
+  // Back through the critics' MLPs to the action, not through their trunk.
+  double actor_step = 3 * of_actor + 2 * of_critics - MultiplyAdds(critics.trunk);
+  if (separate) actor_step += encoder.forward;  // the critic's
+  if (actor_trains) {
+    actor_step += encoder.forward + encoder.backward;
+  } else {
+    actor_step -= MultiplyAdds(actor.trunk);  // the gradient of features that are the critic's
+  }
   return config.learner.batch *
          (critic_step + actor_step / std::max(1, config.learner.actor_period));
 }
 
-double OnPolicy(const Config& config, const ObservationSpec& spec, double of_encoder) {
+double OnPolicy(const Config& config, const ObservationSpec& spec, const EncoderPasses& encoder) {
   const bool shared = config.ppo.networks == "shared";
   const auto head = [&](const char* name, int outputs) {
     return MultiplyAdds(nn::PlanObservationHead(config.network, spec, name, outputs, 1));
   };
-  const double of_actor = of_encoder + head("actor", spec.action_size + (shared ? 1 : 0));
-  const double of_value = shared ? of_actor : of_encoder + head("value", 1);
-  const double of_both = shared ? of_actor : of_actor + of_value;
+  const double of_actor = head("actor", spec.action_size + (shared ? 1 : 0));
+  const double of_value = shared ? of_actor : head("value", 1);
+  const double of_heads = shared ? of_actor : of_actor + of_value;
+  const int encoders = shared ? 1 : 2;
+  const double of_epoch = encoders * (encoder.forward + encoder.backward) + 3 * of_heads;
   const double rows = double(config.ppo.rollout_steps) * config.actors * config.envs_per_actor;
-  return rows * (of_value + 3 * config.ppo.epochs * of_both);
+  return rows * (encoder.forward + of_value + config.ppo.epochs * of_epoch);
 }
 
 }  // namespace
 
 UpdateCost CostOfUpdate(const Config& config, const ObservationSpec& spec) {
   const nn::NetworkPlan encoder = nn::PlanEncoder(config.network, spec);
-  const double of_encoder = MultiplyAdds(encoder);
-  const double multiply_adds = LearnsOnPolicy(config) ? OnPolicy(config, spec, of_encoder)
-                                                      : OffPolicy(config, spec, of_encoder);
+  const EncoderPasses passes = PassesOf(encoder);
+  const double multiply_adds =
+      LearnsOnPolicy(config) ? OnPolicy(config, spec, passes) : OffPolicy(config, spec, passes);
   return {.encoder_parameters = ParameterCount(encoder), .flop = 2 * multiply_adds};
 }
 

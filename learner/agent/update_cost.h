@@ -11,7 +11,8 @@ namespace shoal::learner {
 struct UpdateCost {
   int64_t encoder_parameters = 0;  // 0 without pixels
   // Floating-point operations of the matrix products, 2 a multiply-add; a backward pass is twice a
-  // forward pass. Activations, norms and optimisers are left out.
+  // forward pass, less the gradients that are never computed: of the pixels and, in a step of the
+  // actor, of features that it does not train. Activations, norms and optimisers are left out.
   //
   // Off policy, on average over updates with and without a step of the actor: encoder on
   // observations and next observations, critics on both (targets on the next), actor likewise, and
