@@ -26,65 +26,96 @@ using shoal::bench::Row;
 
 constexpr double kFoundSeconds = 2;  // meant for all actors to be found in
 
-// The replay's cost of a transition, as a rate: beside that under 16 actors, or under the fewest.
-Row CostRow(const ManyActorsFigures& figures, const ManyActorsFigures& few) {
-  const auto rate = [](const ManyActorsFigures& of) { return 1e6 / of.replay_us_per_transition; };
-  return {.stage = fmt::format("replay server under {} actor processes", figures.actors),
-          .unit = "transitions per CPU second",
-          .against = fmt::format("{} actor processes", few.actors),
-          .figure = rate(figures),
-          .against_figure = rate(few),
-          .ratio = rate(figures) / rate(few),
-          .target = figures.actors > few.actors ? 1.0 : 0.0,
-          .repetitions = 1};
+// Of one number of actors, repetition by repetition.
+using Repetitions = std::vector<ManyActorsFigures>;
+
+double MedianOf(const Repetitions& of, double ManyActorsFigures::*figure) {
+  std::vector<double> values;
+  for (const ManyActorsFigures& figures : of) values.push_back(figures.*figure);
+  return shoal::bench::Median(values);
 }
 
-nlohmann::ordered_json WithDetails(const Row& row, const ManyActorsFigures& figures) {
+uint64_t SumOf(const Repetitions& of, uint64_t ManyActorsFigures::*count) {
+  uint64_t sum = 0;
+  for (const ManyActorsFigures& figures : of) sum += figures.*count;
+  return sum;
+}
+
+// The replay's cost of a transition, as a rate: beside that under 16 actors, or under the first
+// number of them.
+Row CostRow(const Repetitions& of, const Repetitions& few) {
+  std::vector<double> rates, few_rates, ratios;
+  for (size_t i = 0; i < of.size(); ++i) {
+    rates.push_back(1e6 / of[i].replay_us_per_transition);
+    few_rates.push_back(1e6 / few[i].replay_us_per_transition);
+    ratios.push_back(rates.back() / few_rates.back());
+  }
+  const auto [least, most] = std::ranges::minmax(ratios);
+  const double ratio = shoal::bench::Median(ratios);
+  return {.stage = fmt::format("replay server under {} actor processes", of[0].actors),
+          .unit = "transitions per CPU second",
+          .against = fmt::format("{} actor processes", few[0].actors),
+          .figure = shoal::bench::Median(rates),
+          .against_figure = shoal::bench::Median(few_rates),
+          .ratio = ratio,
+          .spread = (most - least) / ratio,
+          .target = of[0].actors > few[0].actors ? 1.0 : 0.0,
+          .repetitions = static_cast<int>(of.size())};
+}
+
+// Medians, and the account of all repetitions together.
+nlohmann::ordered_json WithDetails(const Row& row, const Repetitions& of) {
   nlohmann::ordered_json json = ToJson(row);
-  json["transitions_per_second"] = figures.transitions_per_second;
-  json["replay_us_per_transition"] = figures.replay_us_per_transition;
-  json["actor_us_per_transition"] = figures.actor_us_per_transition;
-  json["start_seconds"] = figures.start_seconds;
-  json["made"] = figures.made;
-  json["stored"] = figures.stored;
-  json["lost_with_process"] = figures.lost;
+  json["transitions_per_second"] = MedianOf(of, &ManyActorsFigures::transitions_per_second);
+  json["replay_us_per_transition"] = MedianOf(of, &ManyActorsFigures::replay_us_per_transition);
+  json["actor_us_per_transition"] = MedianOf(of, &ManyActorsFigures::actor_us_per_transition);
+  json["start_seconds"] = MedianOf(of, &ManyActorsFigures::start_seconds);
+  json["made"] = SumOf(of, &ManyActorsFigures::made);
+  json["stored"] = SumOf(of, &ManyActorsFigures::stored);
+  json["lost_with_process"] = SumOf(of, &ManyActorsFigures::lost);
   return json;
 }
 
-nlohmann::ordered_json FoundRow(const ManyActorsFigures& figures) {
-  return {{"stage", fmt::format("the last of {} actor processes is found", figures.actors)},
-          {"figure", figures.found_seconds},
+nlohmann::ordered_json FoundRow(const Repetitions& of) {
+  return {{"stage", fmt::format("the last of {} actor processes is found", of[0].actors)},
+          {"figure", MedianOf(of, &ManyActorsFigures::found_seconds)},
           {"unit", "s after its start"},
           {"against", "nothing"},
           {"against_figure", nullptr},
           {"ratio", nullptr},
           {"target", nullptr},
           {"at_most", kFoundSeconds},
-          {"repetitions", 1},
+          {"repetitions", of.size()},
           {"spread", nullptr}};
 }
 
-// Adds both rows of each number of actors.
-void MeasureCounts(const std::vector<int>& counts, ManyActorsOptions options,
+ManyActorsFigures Measure(ManyActorsOptions options) {
+  const shoal::launch::ScratchFolder folder;
+  options.folder = folder.path();
+  const ManyActorsFigures figures = shoal::bench::MeasureManyActors(options);
+  std::cerr << fmt::format(
+      "{} actors: started in {:.2f} s, all found {:.2f} s later; {:.0f} transitions/s, {:.1f} us "
+      "of the replay each, {:.1f} us of an actor\n",
+      figures.actors, figures.start_seconds, figures.found_seconds, figures.transitions_per_second,
+      figures.replay_us_per_transition, figures.actor_us_per_transition);
+  return figures;
+}
+
+// Adds both rows of each number of actors, which are measured in turn.
+void MeasureCounts(const std::vector<int>& counts, int repetitions, ManyActorsOptions options,
                    nlohmann::ordered_json* rows) {
-  std::vector<ManyActorsFigures> all;
-  for (const int actors : counts) {
-    const shoal::launch::ScratchFolder folder;
-    options.folder = folder.path();
-    options.actors = actors;
-    all.push_back(shoal::bench::MeasureManyActors(options));
-    const ManyActorsFigures& figures = all.back();
-    std::cerr << fmt::format(
-        "{} actors: started in {:.2f} s, all found {:.2f} s later; {:.0f} transitions/s, {:.1f} us "
-        "of the replay each, {:.1f} us of an actor\n",
-        actors, figures.start_seconds, figures.found_seconds, figures.transitions_per_second,
-        figures.replay_us_per_transition, figures.actor_us_per_transition);
+  std::vector<Repetitions> all(counts.size());
+  for (int r = 0; r < repetitions; ++r) {
+    for (size_t i = 0; i < counts.size(); ++i) {
+      options.actors = counts[i];
+      all[i].push_back(Measure(options));
+    }
   }
-  const auto sixteen = std::ranges::find(all, 16, &ManyActorsFigures::actors);
-  const ManyActorsFigures& few = sixteen == all.end() ? all[0] : *sixteen;
-  for (const ManyActorsFigures& figures : all) {
-    rows->push_back(WithDetails(CostRow(figures, few), figures));
-    rows->push_back(FoundRow(figures));
+  const auto sixteen = std::ranges::find(counts, 16);
+  const Repetitions& few = all[sixteen == counts.end() ? 0 : size_t(sixteen - counts.begin())];
+  for (const Repetitions& of : all) {
+    rows->push_back(WithDetails(CostRow(of, few), of));
+    rows->push_back(FoundRow(of));
   }
 }
 
@@ -99,9 +130,9 @@ int Run(int argc, char** argv) {
   app.add_option("--actors", counts, "numbers of actor processes")->check(CLI::Range(1, 1024));
   app.add_option("--steps-per-second", options.steps_per_second, "of each actor")
       ->check(CLI::Range(1.0, 1e5));
-  app.add_option("--seconds", options.seconds, "measured for each number")
+  app.add_option("--seconds", options.seconds, "measured for each number and repetition")
       ->check(CLI::Range(1.0, 600.0));
-  app.add_option("--repetitions", repetitions, "of what real actors are held to; the median counts")
+  app.add_option("--repetitions", repetitions, "of all; the median counts")
       ->check(CLI::Range(1, 100));
   auto* only_real = app.add_flag("--real", real, "real actors alone");
   app.add_flag("--fake", fake, "actors that cost nothing but time alone")->excludes(only_real);
@@ -110,7 +141,7 @@ int Run(int argc, char** argv) {
   shoal::InstallStopSignals();  // an interrupted one takes its processes and files with it
 
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  if (!real) MeasureCounts(counts, options, &rows);
+  if (!real) MeasureCounts(counts, repetitions, options, &rows);
   if (!fake) {
     for (const Row& row : shoal::bench::RealActorRows(options, repetitions)) {
       rows.push_back(ToJson(row));
