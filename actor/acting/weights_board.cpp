@@ -77,27 +77,25 @@ void WeightsBoard::Post(const ReceivedWeights& weights) {
   if (number_ == kClosed) return;
   ++number_;
   const uint64_t bytes = sizeof(Version) + weights.payload.size();
-  std::optional<SharedMemory>& memory = versions_[number_ % 2];
-  try {
-    memory.reset();
-    memory.emplace(SharedMemory::Make("shoal-weights", bytes));
-  } catch (const Error&) {
-    number_ = kClosed;
-    Word(board.newest).store(kClosed, std::memory_order_release);
-    throw;
-  }
   const Version version{.magic = kVersionMagic,
                         .token = {address_.token[0], address_.token[1]},
                         .number = number_,
                         .session = weights.version.session,
                         .update = weights.version.update,
                         .env_steps = weights.env_steps};
-  std::memcpy(memory->data(), &version, sizeof version);
-  std::memcpy(memory->data() + sizeof version, weights.payload.view().data(),
-              weights.payload.size());
+  Descriptor& memory = versions_[number_ % 2];
+  try {
+    memory.Close();
+    memory = SharedMemory::MakeOf(
+        "shoal-weights",
+        {{reinterpret_cast<const char*>(&version), sizeof version}, weights.payload.view()});
+  } catch (const Error&) {
+    number_ = kClosed;
+    Word(board.newest).store(kClosed, std::memory_order_release);
+    throw;
+  }
   Place& place = board.places[number_ % 2];
-  Word(place.descriptor)
-      .store(static_cast<uint64_t>(memory->descriptor()), std::memory_order_relaxed);
+  Word(place.descriptor).store(static_cast<uint64_t>(memory.get()), std::memory_order_relaxed);
   Word(place.bytes).store(bytes, std::memory_order_relaxed);
   Word(board.newest).store(number_, std::memory_order_release);
 }

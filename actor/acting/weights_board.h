@@ -49,7 +49,7 @@ class WeightsBoard {
   const SharedMemory memory_;
   BoardAddress address_;
   uint64_t number_ = 0;
-  std::array<std::optional<SharedMemory>, 2> versions_;
+  std::array<Descriptor, 2> versions_;
 };
 
 // A neighbour's side. One thread.

@@ -25,6 +25,15 @@ void CheckFileSizeLimit(uint64_t bytes) {
                      limit.rlim_cur);
 }
 
+bool WriteWhole(int descriptor, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = write(descriptor, bytes.data(), bytes.size());
+    if (written < 0 && errno != EINTR) return false;
+    if (written > 0) bytes.remove_prefix(static_cast<size_t>(written));
+  }
+  return true;
+}
+
 uint8_t* Map(int descriptor, uint64_t bytes, int protection, int flags) {
   void* data = mmap(nullptr, bytes, protection, MAP_SHARED | flags, descriptor, 0);
   if (data == MAP_FAILED) {
@@ -52,6 +61,22 @@ SharedMemory SharedMemory::Make(const std::string& label, uint64_t bytes) {
   }
   uint8_t* data = Map(fd, bytes, PROT_READ | PROT_WRITE, MAP_POPULATE);
   return {std::move(descriptor), data, bytes};
+}
+
+Descriptor SharedMemory::MakeOf(const std::string& label,
+                                std::initializer_list<std::string_view> pieces) {
+  uint64_t bytes = 0;
+  for (const std::string_view piece : pieces) bytes += piece.size();
+  CheckFileSizeLimit(bytes);
+  Descriptor descriptor(memfd_create(label.c_str(), MFD_CLOEXEC | MFD_ALLOW_SEALING));
+  const int fd = descriptor.get();
+  // A page is there once it is written: none can be missing later, which would be a SIGBUS.
+  bool made = fd >= 0 && fchmod(fd, S_IRUSR | S_IWUSR) == 0;
+  for (const std::string_view piece : pieces) made = made && WriteWhole(fd, piece);
+  if (!made || fcntl(fd, F_ADD_SEALS, kSeals | F_SEAL_WRITE) != 0) {
+    throw RuntimeError("cannot make {} bytes of shared memory: {}", bytes, std::strerror(errno));
+  }
+  return descriptor;
 }
 
 SharedMemory SharedMemory::Open(int32_t pid, int32_t descriptor, uint64_t bytes) {

@@ -47,6 +47,21 @@ TEST(SharedMemory, NobodyMakesItSmallerUnderAnother) {
   EXPECT_EQ(errno, EPERM);
 }
 
+TEST(SharedMemory, WhatIsMadeOfPiecesIsReadWholeAndNobodyChangesIt) {
+  const std::string large(3'000'000, 'x');
+  const Descriptor made = SharedMemory::MakeOf("test", {"ab", "", large});
+  const SharedMemory opened = SharedMemory::Open(getpid(), made.get(), 2 + large.size());
+  const std::string_view read(reinterpret_cast<const char*>(opened.data()), opened.bytes());
+  EXPECT_EQ(read.substr(0, 2), "ab");
+  EXPECT_EQ(read.substr(2), large);
+  EXPECT_EQ(pwrite(made.get(), "c", 1, 0), -1);
+  EXPECT_EQ(errno, EPERM);
+  EXPECT_EQ(ftruncate(made.get(), 1), -1);
+  struct stat status {};
+  ASSERT_EQ(fstat(made.get(), &status), 0);
+  EXPECT_EQ(status.st_mode & 0777, 0600u);
+}
+
 TEST(SharedMemory, ItIsItsUsersOwn) {
   const SharedMemory made = SharedMemory::Make("test", kBytes);
   struct stat status {};
@@ -99,9 +114,14 @@ TEST(SharedMemory, ALimitOnFilesIsNamed) {
   struct rlimit small = before;
   small.rlim_cur = kBytes - 1;
   ASSERT_EQ(setrlimit(RLIMIT_FSIZE, &small), 0);
-  const std::string message = ErrorMessage([] { SharedMemory::Make("test", kBytes); });
+  const std::string large(kBytes, 'x');
+  const std::string of_zeros = ErrorMessage([] { SharedMemory::Make("test", kBytes); });
+  const std::string of_pieces = ErrorMessage([&] { SharedMemory::MakeOf("test", {large}); });
   setrlimit(RLIMIT_FSIZE, &before);
-  EXPECT_THAT(message, AllOf(HasSubstr("10000 bytes"), HasSubstr("9999"), HasSubstr("ulimit -f")));
+  for (const std::string& message : {of_zeros, of_pieces}) {
+    EXPECT_THAT(message,
+                AllOf(HasSubstr("10000 bytes"), HasSubstr("9999"), HasSubstr("ulimit -f")));
+  }
 }
 
 TEST(SharedMemory, ItOutlivesAKilledMakerInItsReaderAndNowhereElse) {
