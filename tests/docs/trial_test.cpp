@@ -27,7 +27,8 @@ class Surroundings {
     for (const char* folder :
          {"docs/images", "docs/results/experiments/pick-and-place-movement",
           "docs/results/experiments/pick-and-place-pixels", "docs/results/experiments/push-her",
-          "docs/results/experiments/push-pixels", "docs/results/experiments/reach-recipe",
+          "docs/results/experiments/push-image-goals", "docs/results/experiments/push-pixels",
+          "docs/results/experiments/reach-recipe",
           "docs/results/original-environment", "home"}) {
       fs::create_directories(folder_.path() / folder);
     }
