@@ -28,8 +28,7 @@ class Surroundings {
          {"docs/images", "docs/results/experiments/pick-and-place-movement",
           "docs/results/experiments/pick-and-place-pixels", "docs/results/experiments/push-her",
           "docs/results/experiments/push-image-goals", "docs/results/experiments/push-pixels",
-          "docs/results/experiments/reach-recipe",
-          "docs/results/original-environment", "home"}) {
+          "docs/results/experiments/reach-recipe", "docs/results/original-environment", "home"}) {
       fs::create_directories(folder_.path() / folder);
     }
     Link("tests", SourcePath("tests"));
@@ -95,15 +94,15 @@ void Prepare(const Surroundings& surroundings) {
   surroundings.Link("runs/first", "reach");
   surroundings.Link("runs/source", "plain");
   surroundings.Link("runs/reach-sb3", "../experiments/batches/runs/batch-256-s0");
-  for (const char* name : {"reach-three-way", "reach-algorithms", "reach-ppo", "reach-recipe",
-                           "reach-encoder", "reach-precision", "push-her",
-                           "pick-and-place-movement", "pick-and-place-pixels", "push-pixels",
-                           "push-image-goals"}) {
+  for (const char* name :
+       {"reach-three-way", "reach-algorithms", "reach-ppo", "reach-recipe", "reach-encoder",
+        "reach-precision", "push-her", "pick-and-place-movement", "pick-and-place-pixels",
+        "push-pixels", "push-image-goals"}) {
     surroundings.Link(std::string("experiments/") + name, "batches");
   }
-  for (const char* name : {"pixels-drq-s0", "preset-s11", "preset-s12", "preset-s13", "faster-s11",
-                           "faster-s12", "faster-s13", "asymmetric-s0", "symmetric-s0",
-                           "image-goals-s0"}) {
+  for (const char* name :
+       {"pixels-drq-s0", "preset-s11", "preset-s12", "preset-s13", "faster-s11", "faster-s12",
+        "faster-s13", "asymmetric-s0", "symmetric-s0", "image-goals-s0"}) {
     surroundings.Link(std::string("experiments/batches/runs/") + name, "../../../runs/pixels");
   }
   for (const char* name : {"her-s0", "her-s1", "her-s2", "movement-s0"}) {
