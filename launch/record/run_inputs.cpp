@@ -102,9 +102,9 @@ std::string HindsightText(const RunConfig& run) {
   const double share = run.config.replay.movement_share;
   return fmt::format(
       "relabels goals with {}{}", fmt::join(blocks, ", "),
-      share > 0 ? fmt::format(" and draws {:.3g} % of the samples by how far it still moves",
-                              100 * share)
-                : "");
+      share > 0
+          ? fmt::format(" and draws {:.3g} % of the samples by how far it still moves", 100 * share)
+          : "");
 }
 
 ordered_json ToJson(const PolicyInputs& inputs) {

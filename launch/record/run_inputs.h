@@ -39,8 +39,8 @@ PrivilegedInputs PrivilegedInputsOf(const Config& config, const ObservationSpec&
 nlohmann::ordered_json ToJson(const PolicyInputs& inputs);
 nlohmann::ordered_json ToJson(const PrivilegedInputs& inputs);
 
-// "relabels goals with achieved_goal and draws 50 % of the samples by how far it still moves"; empty
-// where the replay goes by nothing that is privileged.
+// "relabels goals with achieved_goal and draws 50 % of the samples by how far it still moves";
+// empty where the replay goes by nothing that is privileged.
 std::string HindsightText(const RunConfig& run);
 
 // All of it for people: lines, each ended.
