@@ -89,11 +89,12 @@ PolicyInputs PolicyInputsOf(const ObservationSpec& spec) {
 }
 
 PrivilegedInputs PrivilegedInputsOf(const Config& config, const ObservationSpec& spec) {
-  return {.critic_blocks = PrivilegedBlocksOf(config.learner, spec).critic,
-          .labels = config.learner.aux,
-          .replay_blocks = spec.HasPixels() && config.replay.hindsight != "none"
-                               ? std::vector<std::string>{"achieved_goal"}
-                               : std::vector<std::string>{}};
+  PrivilegedInputs inputs{.critic_blocks = PrivilegedBlocksOf(config.learner, spec).critic,
+                          .labels = config.learner.aux};
+  const auto achieved = std::ranges::find(spec.blocks, "achieved_goal", &BlockSpec::name);
+  const bool to_be_seen = spec.HasPixels() && achieved != spec.blocks.end() && !achieved->observed;
+  if (to_be_seen && config.replay.hindsight != "none") inputs.replay_blocks = {achieved->name};
+  return inputs;
 }
 
 std::string HindsightText(const RunConfig& run) {

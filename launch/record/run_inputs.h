@@ -29,7 +29,8 @@ PolicyInputs PolicyInputsOf(const ObservationSpec& spec);
 struct PrivilegedInputs {
   std::vector<std::string> critic_blocks{};  // in place of the pixels
   std::vector<std::string> labels{};         // as learner.aux names them
-  // By which the replay relabels goals and draws samples, where there are pictures to see it in.
+  // By which the replay relabels goals and draws samples, where the policy has to see it in
+  // pictures.
   std::vector<std::string> replay_blocks{};
 };
 // Throws Error (usage) as PrivilegedBlocksOf.

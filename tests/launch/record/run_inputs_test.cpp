@@ -59,11 +59,13 @@ TEST(RunInputs, WhatTheReplayGoesByIsPrivilegedToo) {
   EXPECT_THAT(DescribeInputs(run), HasSubstr("privileged, in training alone: nothing\n"));
 }
 
-// What is achieved can be had from the numbers that the policy gets.
-TEST(RunInputs, NothingOfWhatTheReplayGoesByIsPrivilegedWithoutPixels) {
+TEST(RunInputs, WhatThePolicyIsToldInNumbersIsNotPrivilegedInTheReplay) {
   RunConfig run = PushRun();
   run.config.learner.critic_blocks = false;
   run.config.learner.aux = {};
+  run.spec.blocks[3].observed = true;  // observation.goal_mode = both
+  EXPECT_THAT(DescribeInputs(run), HasSubstr("privileged, in training alone: nothing\n"));
+  run.spec.blocks[3].observed = false;
   run.spec.cameras.clear();
   run.spec.channels = 0;
   EXPECT_THAT(DescribeInputs(run), HasSubstr("privileged, in training alone: nothing\n"));

@@ -68,6 +68,7 @@ TEST(PlanText, WhatOnlyTrainingIsToldIsSaid) {
   EXPECT_THAT(PlanText(run, 1),
               HasSubstr("  privileged, in training alone: the critic sees object in place of "
                         "pixels, the encoder is taught object-grip\n"));
+  run.spec.blocks.push_back({"achieved_goal", 3, /*observed=*/false});
   run.config.replay.hindsight = "future";
   run.config.replay.movement_share = 0.25;
   EXPECT_THAT(PlanText(run, 1),
