@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/program.h"
 #include "common/base/main_guard.h"
 #include "common/dds/bus.h"

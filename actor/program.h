@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // shoal-actor: one program, four uses: training actor, evaluation actor, evaluation of a
 // checkpoint, description of what the actors of a configuration observe.
 #pragma once

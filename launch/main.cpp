@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // shoal: the command line. See launch/commands.
 #include <CLI/CLI.hpp>
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Puts the parts of batches together in buffers of its own. Pure: no DDS, threads or clocks.
 //
 // A batch is asked for with a request id; the answer is a set of parts that tile its bytes

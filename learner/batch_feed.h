@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where a learner's batches come from, over DDS: drawn by a replay, or rollouts of the actors
 // themselves.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Batches pulled from the replay: keeps learner.request_credits requests outstanding and sends one
 // again when nothing of its answer has arrived for a while (the replay has restarted, or its
 // limiter holds it back: sending it again is harmless). Knows nothing of DDS: requests go out

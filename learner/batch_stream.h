@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the training loop gets its batches from.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A checkpoint as the learner sees it: its files (common/checkpoint) with the tensors in them.
 #pragma once
 

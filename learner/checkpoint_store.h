@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The checkpoints of a run: RUN/checkpoints. Keeps the newest three and those that an evaluation is
 // still waited for; `best`, which is the coordinator's, and everything of another name stay.
 //

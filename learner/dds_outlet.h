@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The outlet over DDS.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "learner/evaluation_points.h"
 
 #include "common/base/log.h"

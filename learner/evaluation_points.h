@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Says when the run has reached an evaluation point, a multiple of eval.interval env steps, and
 // hands the evaluation actor the F32 parameters of the checkpoint made there.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The learner of a run, put together: networks, batches and weights over DDS, checkpoints.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the learner tells about itself once a second: metrics and warnings.
 //
 // Metrics (role "learner", id 0), means over the last interval with updates in it unless said

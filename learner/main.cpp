@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // shoal-learner: the learner process of a run.
 #include <CLI/CLI.hpp>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "learner/openmp_environment.h"
 
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // OpenMP's settings, which libgomp reads when it is loaded, long before main.
 #pragma once
 

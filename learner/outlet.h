@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the training loop sends what others need of it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "learner/pending_evaluations.h"
 
 namespace shoal::learner {

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which checkpoints an evaluation is still waited for, or may just be being kept as the best: they
 // are not removed. An evaluation says that the ones before it were done or passed over.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Batches that lie in the replay's shared memory: which slot was said to hold which request's, and
 // where it is mapped. Memory of a replay that has ended stays readable while a batch in it is
 // waited for or handed out.

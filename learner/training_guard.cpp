@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "learner/training_guard.h"
 
 #include <fmt/core.h>

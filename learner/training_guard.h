@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Watches an agent's figures for training that runs but does not learn, and says so with numbers.
 // Pure: the caller gives the figures and the time, and logs what comes back.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The learner's loop: batch, update, and what follows from it (weights, evaluation points,
 // checkpoints, reports), until the run drains or stops.
 //

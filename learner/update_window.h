@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The updates of one report interval: means of their figures and the age of the data they used.
 #pragma once
 

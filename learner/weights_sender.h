@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Sends the policy's parameters to the actors as the updates go by: at the first update, then every
 // learner.weights_period; in lockstep at the end of each phase; on policy after each one. BF16 when
 // the precision is, else F32.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // shoal-replay: the replay server of a run.
 #include <CLI/CLI.hpp>
 

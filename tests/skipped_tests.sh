@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # tests/skipped_tests.sh LOG...: lists the tests that were skipped in these logs of ctest
 # (BUILD/Testing/Temporary/LastTest.log), by reason, and says of each reason whether these
 # surroundings explain it: the CPU, the user's rights, the installed programs. Exit code 1 when they

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Chooses the actions of E environments at once: uniform random until the first weights, then what
 // the policy says, with or without exploration.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Figures of one episode, and of the episodes that ended lately, for metrics.
 #pragma once
 

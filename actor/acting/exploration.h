@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From what a policy says to the action that is played: exploration, apart from the policy and from
 // the pace. All draws of an episode come from that episode's own stream.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/acting/host_weights.h"
 
 #include <fmt/core.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where a training actor gets its weights from: one process of a host receives them and posts them
 // on a board (weights_board.h), the others read them there. So a version crosses the network, and
 // is unpacked, once per host and not once per actor.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One environment and what belongs to the episode it plays: the pictures (the frame stack, then the
 // goal picture where the policy sees one) and the vector that the policy reads next, the episode's
 // figures, whether it still runs. Rollouts and evaluations are made of seats.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Weights that one process of a host has received, in shared memory (common/base/shared_memory.h)
 // for its neighbours: a board of fixed size, and memory of its own for each version, written once
 // before the board names it. The board names the newest two, so that a reader that was late by one

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The newest weights received, handed from the DDS receive thread to the acting loop.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/evaluation/eval_actor.h"
 
 #include <nlohmann/json.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The evaluation actor process: plays whole episodes with each checkpoint the learner offers, on
 // random streams of its own, and reports them to the coordinator. It never touches the replay.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Deterministic evaluation of a policy over whole episodes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Why an episode failed, told from what its records hold: where the object was, where it should be.
 //
 //   p_0, p_t, p_T   achieved goal at the start, after step t, at the end      g   desired goal

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Records what one seat's policy sees and does, and a larger view of it, into a stream of frames
 // (common/image/frame_stream.h): for films.
 #pragma once

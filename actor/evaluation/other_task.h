@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A policy on a task that it was not trained for, as from one simulation to another.
 #pragma once
 

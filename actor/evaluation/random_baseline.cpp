@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/evaluation/random_baseline.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What uniform random actions earn, and what doing nothing earns: the floors that a policy must
 // beat.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The training actor's loop: steps its rollout at the pace it is given, exchanges records and
 // credits, takes weights, reports; and at the end has everything stored.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/loop/actor_report.h"
 
 namespace shoal::actor {

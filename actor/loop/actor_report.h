@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A training actor's 1 Hz report (docs/monitoring.md): what it did and what it waited for.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The training actor's seams over DDS and this process's signals: each is an inbox, the subscriber
 // that fills it and what is written beside it. Destruction ends the receive threads' callbacks
 // before the inboxes they write to.

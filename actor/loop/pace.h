@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // When an actor may step: the turns that its loop takes between vector steps (one step of each of
 // its environments) and weights versions.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // E environments stepped together: reset, act, step, and one record each time.
 //
 // Resets take longer than steps, and all environments wait for one. Where all of them begin an

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where an actor in lockstep was when its run stopped, so that a resumed run goes on bit for bit:
 // the running episodes are named by their actions, from which they are played again, since physics
 // follows from the episode's stream and the actions alone.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What tells an actor's loop to end.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/loop/training_actor.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A training actor process: steps environments, publishes their records on credit, takes the newest
 // weights between steps.
 #pragma once

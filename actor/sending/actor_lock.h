@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One process per actor of a run: its number names its environments, and two that hosted the same
 // would play the same episodes.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The connection of an actor session to whoever stores its records: credits in, chunks out.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps a chunk window and a link going: hears credits, closes partial chunks in time, sends what
 // may be sent, sends again what was not reported stored for too long.
 #pragma once

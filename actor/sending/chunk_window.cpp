@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/sending/chunk_window.h"
 
 #include <algorithm>

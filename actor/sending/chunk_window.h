@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The sending side of credited transitions: records are written into chunks, chunks are sent inside
 // the window the replay allows, kept until it reports them stored, and sent again to a new replay
 // session or when nothing was reported for a while. Duplicates are the replay's to drop. What is

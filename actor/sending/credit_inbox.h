@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The replay's newest word to this actor session, handed from the DDS receive thread to the loop.
 #pragma once
 

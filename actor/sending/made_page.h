@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The *made* counter of an actor session and the next unused episode of each of its environments,
 // in a mapped file that survives SIGKILL of the actor (not power loss): what it says was made and
 // is not stored was lost with the process.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where a rollout's records go: memory for each, in order, as far as the receiver allows.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/worlds/ball_in_cup_catch.h"
 
 #include <mujoco/mujoco.h>

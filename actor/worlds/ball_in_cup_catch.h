@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Physics half of ball_in_cup_catch: swing a ball on a string into the cup.
 //
 //   reward = 1 while the ball is inside the cup's target box, else 0

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cameras of a task as configuration data: views of the engine's free camera, and the model's own.
 #pragma once
 

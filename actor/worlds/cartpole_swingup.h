@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Physics half of cartpole_swingup: swing the pole up from hanging and balance it near the middle.
 //
 //   reward = upright * small_control * small_velocity * centered, each in [0, 1]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Physics half of cheetah_run: run forward.
 //
 //   reward = torso's forward speed / (10 m/s), at least 0, at most 1

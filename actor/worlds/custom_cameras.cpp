@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/worlds/custom_cameras.h"
 
 #include "actor/worlds/mounted_view.h"

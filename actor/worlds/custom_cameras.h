@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cameras of the user's beside those of a task.
 #pragma once
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Writes a C++ source that holds text files:
 #   cmake -DOUTPUT=models.cpp "-DINPUTS=a.xml;b.xml" -P embed_text.cmake
 # Each file becomes a raw string literal, so none may contain the delimiter )mjcf" itself.

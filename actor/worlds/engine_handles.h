@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ownership of MuJoCo's objects without MuJoCo's headers.
 #pragma once
 

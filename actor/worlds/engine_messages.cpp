@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/worlds/engine_messages.h"
 
 #include <mujoco/mujoco.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // MuJoCo's error and warning callbacks, one pair per process.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One environment of a task, as the actor loop sees it: reset, step, observe. The physics half of a
 // task lives behind it; only this folder knows MuJoCo.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The robot that all Fetch tasks share: how it is set up, how an action moves it, what it senses.
 //
 // The arm has no motors: a weld pulls the gripper towards a mocap body, and an action places the

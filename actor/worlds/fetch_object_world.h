@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Physics half of FetchPush, FetchSlide and FetchPickAndPlace: bring an object to a goal. The three
 // differ in model and numbers only.
 #pragma once

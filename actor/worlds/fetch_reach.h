@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Physics half of FetchReach: bring the grip site to a goal above the table.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The weld that pulls the gripper towards the mocap body, as MuJoCo 2 or as MuJoCo 3 solves it.
 //
 // Every version before 3.0 gives a weld's three rotation rows the body's translational inverse

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the physics halves of all Fetch tasks share: the arm, the goal and its marker, the order of
 // engine calls in reset and step.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Physics half of finger_spin: keep a hinged body spinning by flicking it.
 //
 //   reward = 1 while the spinner turns at 15 rad/s or faster, in the negative sense, else 0

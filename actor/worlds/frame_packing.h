@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From the renderer's pixels to a frame.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Physics half of the Hopper tasks: a planar one-legged robot that is paid for moving forward.
 //
 // Behaviour of Gymnasium's Hopper-v4 and v5, and of the "custom hopper" pair used for sim-to-sim

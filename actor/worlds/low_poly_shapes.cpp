@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/worlds/low_poly_shapes.h"
 
 #include <GL/gl.h>

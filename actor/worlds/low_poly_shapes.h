@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cylinders and capsules of few triangles, for the engine to draw in place of its own.
 //
 // The engine divides every side along its axis and every cap along its radius, as finely as a

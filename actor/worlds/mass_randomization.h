@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Uniform domain randomization: masses of bodies drawn anew for each episode.
 //
 //   mass_b ~ Uniform[low_b, high_b], body by body in alphabetical order

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The cameras that a model brings itself: fixed, following a body (track, trackcom) or turning to
 // it (targetbody).
 #pragma once

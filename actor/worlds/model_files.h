@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The MJCF files of models/, embedded in the program at build time.
 #pragma once
 

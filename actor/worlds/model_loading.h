@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Models: from our embedded files or from a user's, and what identifies one.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Refuses models of users that a task cannot drive.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A model from MJCF text in the program: for tasks that bring their own.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Views that move with a body of the model.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tasks of one's own with both halves: common/tasks/task_library.h.
 #pragma once
 

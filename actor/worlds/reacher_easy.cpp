@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/worlds/reacher_easy.h"
 
 #include <mujoco/mujoco.h>

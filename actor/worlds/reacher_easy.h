@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Physics half of reacher_easy: bring the fingertip to a target in the plane.
 //
 //   reward = 1 while finger and target overlap, else 0

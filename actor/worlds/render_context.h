@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Off-screen rendering with OSMesa, at the size of a frame.
 //
 // One context draws one model: environments of one process hold copies of it. One thread.

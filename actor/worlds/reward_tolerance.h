@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The Control Suite's building block of rewards: 1 inside an interval, falling off outside.
 //
 //   Tolerance(x) = 1                 for low <= x <= high

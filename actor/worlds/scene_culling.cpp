@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/worlds/scene_culling.h"
 
 #include <mujoco/mujoco.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Leaves out of a scene what its camera cannot see.
 #pragma once
 

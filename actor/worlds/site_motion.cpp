@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/worlds/site_motion.h"
 
 #include <mujoco/mujoco.h>

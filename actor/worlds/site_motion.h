@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a site moves and how it is turned.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/worlds/walker_walk.h"
 
 #include <mujoco/mujoco.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Physics half of walker_walk: walk forward upright.
 //
 //   reward = (3 standing + upright) / 4 * (5 move + 1) / 6, each in [0, 1]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The physics half of a task: a model, its state, and what reset and step do to them. Knows nothing
 // of pixels' layout, rewards for goals or episode lengths.
 //

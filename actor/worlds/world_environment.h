@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An Environment out of a task's two halves: the physics half moves, the goal half judges, the
 // render context draws.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Memory of a batch's arrays, which begin at multiples of 64 bytes (common/wire/batch_schema.h).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // JSON that came from outside: files and messages. The library parses any depth, but copies,
 // compares and writes a value by recursion, so that a text nested some 100,000 deep ends a program
 // by its stack. Nothing of ours is nested more than ten deep.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The control groups (version 1 or 2) around this process, as folders of limits. Limits of all of
 // them hold at once.
 #pragma once

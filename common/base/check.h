@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // CHECK(condition) << context: aborts on what only a bug can cause. On in every build.
 #pragma once
 

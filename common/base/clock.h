@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Clocks. Deadlines use the steady clock; records and files carry wall time.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How every program of ours takes its command line: --version, and one line for what is wrong.
 #pragma once
 

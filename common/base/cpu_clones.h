@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // SHOAL_CPU_CLONES before a function: the compiler builds it for several generations of x86-64 CPUs
 // and the loader picks one, so that plain loops are as wide as the machine. Not for templates.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // CRC-32 (IEEE 802.3, that of zlib) of bytes, for weights on the wire and files.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The one exception type. Thrown only for what the outside world can cause at start-up or at a
 // boundary: files, configuration, DDS, child processes, malformed messages. Caught once per process
 // (see main_guard.h), where it becomes one line on stderr and the exit code.

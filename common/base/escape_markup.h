@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Text as it may stand in XML and HTML, in elements and in quoted attributes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A lock on a file, which ends with its holder: at destruction, or with the process.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // This host's name, as it calls itself; "unknown" where it does not.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How many lines of a kind a log takes, so that whoever causes them from outside cannot fill a
 // disk: the first kLines of each kSpan. What was left out is counted and told with the next line.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Logging: one line per event to stderr and, when asked, to a file. Thread-safe.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A mutex, a scoped lock and a condition variable that clang's -Wthread-safety understands: what a
 // mutex guards is written at the member, and the clang preset refuses to build a use without the
 // lock. Thin over the standard ones, whose Debian build carries no annotations.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What there may not be, in JSON: its value, or null.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A pipe whose ends close themselves, and at the start of another program.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Counter-keyed random streams: a stream is named by what it is for, never by who draws from it, so
 // results do not depend on how environments are spread over processes.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bytes that nobody can guess, from the kernel: for tokens.
 #pragma once
 

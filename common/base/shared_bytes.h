@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bytes that nobody changes any more, and whatever keeps them: a string that was moved in, or
 // memory that is mapped. Copies share both. Copies may be used on different threads.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Memory that processes of one user on one host share. It has no name in any file system: when its
 // maker and whoever has it mapped are gone, however they ended, nothing of it is left; nobody meets
 // that of another run by accident; and the size of /dev/shm does not matter.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How long nothing was heard of somebody, as far as this process was there to hear it.
 //
 // A process that was itself stopped, swapped out or busy for long finds an old "last heard" when it

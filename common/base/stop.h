@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One process-wide request to stop, set by SIGINT / SIGTERM / SIGHUP (the terminal's or the
 // parent's end). Polled by every loop; never un-set.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/base/stop_with_input.h"
 
 #include <poll.h>

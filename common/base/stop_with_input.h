@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Stops a process when whoever holds the other end of its standard input is gone. A remote shell
 // closes it when its client dies, where no signal and no parent's death would be seen.
 #pragma once

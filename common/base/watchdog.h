@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Ends the process when something that cannot be interrupted takes too long: a hang becomes a line
 // in the log and an exit that the supervisor sees.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The files of one checkpoint, as bytes: a folder step_UPDATES (nine digits) with
 //
 //   learner.safetensors  everything an exact resume needs

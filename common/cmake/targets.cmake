@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 set(SHOAL_WARNINGS -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
     -Wnon-virtual-dtor -Woverloaded-virtual)
 if(SHOAL_WARNINGS_AS_ERRORS)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # shoal_task_library(NAME FOLDER): NAME.so of FOLDER/goal.cpp and NAME_physics.so of the folder's
 # other sources, which may look inside the engine (docs/own_task.md); NAME_python.so and
 # NAME_python_physics.so, the same for the Python package. Used by Shoal's own build and, installed,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a run asks of its algorithm before and beside learning: which keys fit, whether there is a
 // replay, how actors explore. What learning takes is in learner/agent/algorithms.cpp.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What learner and replay make of the configuration of a run to agree on its batches.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The resolved configuration of a run: every key with its default. One struct per section; the
 // JSON key of a member is its dotted path ("learner.batch"). config_keys.cpp lists every key with
 // its range and meaning; docs/configuration.md is made from that list.

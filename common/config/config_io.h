@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Configuration from presets, files and --set; to JSON; checks.
 //
 // Every unknown, duplicate, ill-typed or out-of-range key is refused with Error (kUsage) naming the

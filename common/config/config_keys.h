@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The one table of configuration keys. Parsing, printing, --set and the documentation all walk it,
 // so a key exists everywhere or nowhere. Internal to common/config.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The configuration as a JSON Schema (2020-12), for editors and for programs that write presets:
 // types, ranges, choices, defaults and meanings, from the table that the parser walks.
 //

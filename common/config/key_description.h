@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Each configuration key in words, for tables, manuals and completions.
 #pragma once
 

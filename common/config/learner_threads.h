@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How many threads learn, and whether the batch can be shared among them.
 #pragma once
 

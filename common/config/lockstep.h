@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lockstep: one actor and the learner take turns, so that a run repeats bit for bit.
 //
 // With E environments, L = lockstep_steps and B = learner.batch, phase p (0, 1, ...) is

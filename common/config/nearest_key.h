@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Spelling help for unknown configuration keys.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs that learn on policy: without a replay, from rollouts that go to the learner.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What learning knows and acting does not: blocks of the record that are no part of the policy's
 // observation.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a run folder tells its processes: config.json (schema shoal-config-1: every key, the
 // observation spec and its hash) and cluster.json (schema shoal-cluster-1: where to meet).
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/config/run_membership.h"
 
 #include <fcntl.h>

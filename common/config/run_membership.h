@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which processes belong to a run, known to the kernel: each holds a shared lock on RUN/.members,
 // which goes with the process however it ends. Two coordinators cannot run one run (RunFolder);
 // this tells the second one of processes that the first, killed, has left behind and that are still

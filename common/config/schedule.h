@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A number that may change while a run goes on: constant, or linear from `start` at 0 env steps of
 // the run to `end` at `env_steps`, and `end` from then on.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How many records an actor may have unacknowledged, and in chunks of which size: arithmetic that
 // actors and replay must agree on.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The number of a process's session: wall-clock nanoseconds at its start, but always above those of
 // its predecessors in the run. Peers take the higher number for the newer process, so a clock that
 // was set back must not make a restarted process look like an old one.

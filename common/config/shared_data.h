@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Presets and experiments: JSON files, one a name, that lie in a folder of their kind.
 //
 // Looked for, first match wins, in

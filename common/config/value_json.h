@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Values of keys that are more than a number, a text or a list, in JSON. Internal to common/config.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The files with which the processes of secured runs prove who they are (DDS Security 1.1).
 //
 // A folder, open to its owner alone (0700, files 0600), holds

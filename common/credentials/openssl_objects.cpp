@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/credentials/openssl_objects.h"
 
 #include <openssl/err.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/credentials/permission_documents.h"
 
 #include <fmt/chrono.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The XML documents of DDS Security 1.1: sections 9.4.1.2 (governance) and 9.4.1.3 (permissions).
 // Internal to common/credentials.
 #pragma once

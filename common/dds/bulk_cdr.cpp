@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/dds/bulk_cdr.h"
 
 #include "common/base/one_line.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parses the bulk messages from serialised CDR as it lies in a receive buffer, without copying the
 // payload. Everything is bounds-checked: the bytes come from the network.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One process's place on the run's DDS domains: star discovery, unicast, no multicast.
 //
 // Coordinator, learner and replay sit at fixed participant indices (0, 1, 2); actors have none and

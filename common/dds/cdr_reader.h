@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Takes serialised CDR apart, every step bounds-checked: the bytes come from the network. Internal.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/dds/claim_domain.h"
 
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which domains a run may claim. Internal; the claim itself is ClaimDomain in bus.h.
 #pragma once
 

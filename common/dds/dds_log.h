@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cyclone DDS's own log lines, led into ours.
 #pragma once
 

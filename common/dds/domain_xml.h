@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The Cyclone DDS configuration of one process in one domain, as XML.
 //
 // It is a template with placeholders. The built-in one can be replaced as a whole by the file that

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What Publisher and Subscriber share: the topic and the refusal to stay silent about a peer of the
 // other side whose quality of service does not match. Internal.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Owner of one DDS entity. Internal: include dds headers last, they redefine `restrict` in C++.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Questions about this host's network, asked before DDS is, for errors that name the culprit.
 #pragma once
 

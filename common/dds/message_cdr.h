@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parses the messages that are not bulk from serialised CDR. Not left to the DDS library: 0.10.2
 // reads past the end of a sample whose numbers of eight bytes are cut short
 // (docs/decisions/0006-messages-are-parsed-here.md).

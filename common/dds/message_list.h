@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every message that crosses the network, one line each: from it follow topics, writers, readers
 // and the rights of roles. A new message is its struct (common/wire/messages.h), its type
 // (shoal.idl), the way there (wire_types.h) and back (message_cdr.h or bulk_cdr.h), and a line

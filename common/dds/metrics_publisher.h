@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A process's reports, with what the transport itself counts: malformed_TOPIC, the messages that
 // this process could not read.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Typed writers. M is a message of common/wire/messages.h; topic, domain and QoS follow from M
 // (docs/wire_format.md).
 #pragma once

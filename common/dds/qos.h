@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Quality of service of a topic in the terms that differ between ours. Internal.
 #pragma once
 

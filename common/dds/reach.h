@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a process reaches its run from another host, or by hand: what its options put in the place of
 // the run folder's word.
 #pragma once

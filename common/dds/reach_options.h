@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The options that every program of a run takes for its Reach.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which role writes and reads which topic: what secured runs permit (common/credentials).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The part of a DDS configuration that turns DDS Security on. Internal to common/dds.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes the DDS library's timed waits immune to the wall clock being set. Internal.
 //
 // Cyclone DDS 0.10.2 waits on condition variables until a wall-clock time. Its event thread

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Typed readers that call back from a DDS receive thread.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // For each message of message_list.h its name, generated type and quality of service. Internal.
 #pragma once
 

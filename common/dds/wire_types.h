@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From the plain structs of common/wire to the C structs that idlc generates; the way back is
 // bulk_cdr.h and message_cdr.h. Internal.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/image/frame_stream.h"
 
 #include <cerrno>

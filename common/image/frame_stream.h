@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Episodes as one process shows them to another, step by step: what a policy saw and did, what it
 // earned, and a larger view of the scene. `shoal-actor --evaluate ... --frames FILE` writes such a
 // stream into a file or a pipe.

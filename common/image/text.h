@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Small text in pictures: labels of contact sheets. Needs no font files.
 #pragma once
 

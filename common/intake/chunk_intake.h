@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From chunks to records in order: duplicates and gaps are sorted out and counted here, whoever
 // takes the records. Per (actor, session) every sequence up to the highest is dealt with exactly
 // once.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Buffers for chunks on their way from DDS receive threads to the thread that deals with them,
 // reused, their number bounded.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/intake/credit_book.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What each actor may send: the newest session of every actor, its window, and what was last said
 // about it.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What became of the chunks that a receiver took, over its process's life.
 #pragma once
 

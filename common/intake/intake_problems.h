@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a receiver of records refused or lost, logged once per interval as one line each, with its
 // number and an example.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The terms on which a process receives records, whoever it is: replay server or learner.
 #pragma once
 

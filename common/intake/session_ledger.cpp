@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/intake/session_ledger.h"
 
 #include "common/base/check.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Accounting per actor session: what became of every record that an actor sent, whoever receives
 // them.
 #pragma once

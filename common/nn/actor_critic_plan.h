@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plans of encoder, actor and critic as the configuration asks for them: the one place that knows
 // the names of parameters. Checkpoints, weights on the wire and layers use these names.
 //

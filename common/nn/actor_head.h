@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The policy above the encoder: trunk and MLP to a Gaussian over actions before tanh, or to the
 // action itself (Eq. 4 of docs/algorithm.md).
 //

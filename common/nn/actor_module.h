@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An actor: features and vector to a Gaussian over actions before tanh, or to one action (Eq. 4 of
 // docs/algorithm.md).
 #pragma once

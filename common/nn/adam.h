@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Adam and the moving average of target networks, each one pass over whole parameter sets (Eq. 10
 // and 9 of docs/algorithm.md).
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Average pooling to a map of a given size, whatever the size of its source: PyTorch's
 // AdaptiveAvgPool2d.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Batch normalisation of a map's channels, then a skip connection and ReLU where the plan has them.
 //
 //   y[b, c, i, j] = max(0, weight_c (x[b, c, i, j] - mean_c) / sqrt(var_c + 1e-5) + bias_c

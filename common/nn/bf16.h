@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // bf16: the upper 16 bits of an IEEE float32.
 #pragma once
 

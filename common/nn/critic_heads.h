@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The critic above the encoder: one trunk, one or more Q functions.
 //
 //   q_i(s, a) = MLP_i([ trunk(features) | vector | a ]),  i = 1, 2, ...

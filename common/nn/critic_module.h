@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A critic: one trunk and one or more Q functions of features, vector and action.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Linear layer, optional LayerNorm, activation.
 //
 //   y = act(LN(weight x + bias))

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Frames to feature map: the layers of an encoder's plan (Eq. 2 of docs/algorithm.md).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An encoder: stacks of frames to features, which heads read where they lie.
 #pragma once
 

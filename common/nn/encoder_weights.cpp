@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/nn/encoder_weights.h"
 
 #include <algorithm>

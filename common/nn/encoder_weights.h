@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What network.encoder_weights names: a safetensors file that an encoder starts from.
 //
 // Tensors are looked for under Shoal's names, encoder.NAME, as in a checkpoint's

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an encoder hands to the heads above it, in the form its engine computes with. Only
 // common/nn looks inside.
 #pragma once

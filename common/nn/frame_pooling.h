@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From uint8 frames to the network's input: average pooling, scaling to a range of 1 and conversion
 // in one pass.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/nn/laid_out_weight.h"
 
 #include "common/nn/primitive_descs.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A layer's weights in the layout and the type in which one primitive reads them.
 #pragma once
 

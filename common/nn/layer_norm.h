@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // LayerNorm over the columns of each row, and the activations that follow it.
 //
 //   mean_b = sum_j x[b, j] / N,   var_b = sum_j (x[b, j] - mean_b)^2 / N

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Linear layer.
 //
 //   y[b, o] = sum_i weight[o, i] x[b, i] + bias[o]

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Element by element over whole maps of one layout, f32 or bf16. What a layout fills up with zeros
 // stays zero. NaN stays NaN. Splits the work over the current ThreadScope.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One layer of an encoder: maps in, maps out. A layer is built on the memory that it reads and owns
 // what it writes.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/nn/max_pool.h"
 
 #include "common/nn/primitive_descs.h"

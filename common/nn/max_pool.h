@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Max pooling; its gradient goes to the largest value of a window, the first of equal ones.
 //
 //   y[b, c, i, j] = max_{u,v} x[b, c, i*s+u-p, j*s+v-p]   over what lies within the map

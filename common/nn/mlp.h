@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Multi-layer perceptron: hidden layers (linear, LayerNorm where configured, ReLU), linear output.
 // The first layer is computed in the type of its input, the inner ones in the network's precision,
 // the output layer in f32.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Modules: networks with parameters of their own, behind plain float arrays. What computes them is
 // out of sight; which modules, targets and optimisers make an algorithm is said where the algorithm
 // is (learner/agent).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A safetensors file of others under our names: what `shoal train --init-from` starts networks
 // from.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a configuration's networks ask of memory and of messages: refused by name before anything is
 // built or started.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A network as a value: its layers in order, each with geometry, normalisation, activation and the
 // way its parameters start. Shapes are computed here and nowhere else; parameters, layers, the size
 // of a policy and the checks of the configuration follow from the plan.

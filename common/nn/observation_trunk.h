@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the MLPs of a head see of an observation: the trunk's features beside the vector (Eq. 3 of
 // docs/algorithm.md).
 //

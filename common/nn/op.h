@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A oneDNN primitive bound to its memories. Only common/nn includes this header.
 #pragma once
 

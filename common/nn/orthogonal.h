@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Orthogonal initialisation.
 //
 //   Q R = G,  G (m, n) ~ N(0, 1),  W = gain * Q diag(sign R)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Loops on the threads that oneDNN's primitives use (GNU OpenMP's pool).
 #pragma once
 

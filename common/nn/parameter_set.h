@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parameters that are trained together, in one array, so that an optimiser step is one pass; behind
 // them the running statistics that belong to them.
 #pragma once

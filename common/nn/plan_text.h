@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a policy computes, in words: one line per layer, of all that its result depends on but the
 // parameters. Equal lines mean equal networks; how parameters start is left out. Written beside a
 // policy's parameters, so that a program whose network of the same name computes something else

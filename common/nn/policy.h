@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The policy as an actor uses it: encoder, trunk and actor MLP, forward only, and the action
 // without exploration. What exploration makes of the output is the actor's.
 #pragma once

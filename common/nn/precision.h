@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which arithmetic the networks' large products use.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What oneDNN 2 and 3 declare differently, in one way for both: Debian 12 has 2.6, Debian 13 3.7.
 //
 // 2 first describes an operation, then asks an engine for a primitive that does it; 3 does both in

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A readout: linear functions of a trunk's outputs, which tell something that the trunk and the
 // encoder below it are trained to know (Eq. 27 of docs/algorithm.md). No part of a policy.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Backward pass of a ReLU over arrays of any layout: dx = dy where y > 0, else 0, in place.
 #pragma once
 

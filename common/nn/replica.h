@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Learning in replicas: N copies of the same networks, each on a thread of its own with 1/N of the
 // batch, which stay equal bit for bit because all take the same steps: each rank's optimiser
 // (adam.h) steps a share of the parameters, for all of them.

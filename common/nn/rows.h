@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A (B, N) array of f32, with a copy in the type of the large products.
 #pragma once
 

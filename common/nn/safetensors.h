@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // safetensors files: u64 LE header length, JSON header, raw little-endian row-major data.
 // Format: github.com/huggingface/safetensors; a reader checks every offset against shape and size.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Maps lie in blocks of channels, nChw16c in oneDNN's words, as its convolutions leave them on CPUs
 // with AVX-512: a pixel of sixteen channels is one vector, whose lanes are the channels.
 #include "common/nn/spatial_softmax.h"

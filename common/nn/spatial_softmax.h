@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where in its map each channel is large, as a point: a softmax over the map's pixels and the mean
 // of their coordinates under it (Levine et al. 2016, arXiv:1504.00702; Finn et al. 2016,
 // arXiv:1509.06113).

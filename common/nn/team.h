@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Threads that do one thing side by side, each its part of it, and meet on the way.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whole numbers, or the bits of doubles, among tensors: U64 of shape {n}; a counter is one of them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Observations of a policy at about mean 0 and deviation 1.
 //
 //   y_j = clip((x_j - mean_j) / sqrt(variance_j + 1e-8), -10, 10)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A checkpoint's policy as values: what it observes, its network and its parameters. For acting
 // (trained_policy.h) and for export to other formats.
 #pragma once

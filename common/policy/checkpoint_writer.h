@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Who wrote a checkpoint, against what a run is configured with: training goes on with the
 // algorithm and the network of the checkpoint alone. Refusals name both sides.
 #pragma once

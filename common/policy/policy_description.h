@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // policy.json of a checkpoint, schema shoal-policy-1: everything but parameters that acting by its
 // policy takes, so that the folder is complete in itself.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* Acts by a policy that Shoal has trained: a C library without DDS, MuJoCo or OSMesa.
  *
  *   shoal_policy* policy;

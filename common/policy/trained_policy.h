@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Acts by a checkpoint's policy, without exploration: the action of a batch of observations is what
 // an evaluation actor would play.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/run_folder/accounting_file.h"
 
 #include <cerrno>

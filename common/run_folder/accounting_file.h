@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // accounting.json of a run (schema shoal-accounting-1): what became of every record, per actor
 // session. Written by who receives records, replay or learner; read by its successor, which goes on
 // counting, and by the coordinator, which holds it against what the actors made.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // eval/*.json of a run (schema shoal-eval-1): one evaluation of a policy, episode by episode.
 // Written by who plays it; the coordinator adds wall_seconds to those of a run as they arrive. Read
 // by the coordinator when a run goes on, by reports and experiments.

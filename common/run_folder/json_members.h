@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Members of a JSON object of a run's file. What is missing or of another type is an Error that
 // names the file and the member: "'eval/final.json': 'aggregate.return_mean': expected a number".
 #pragma once

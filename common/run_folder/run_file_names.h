@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What lies in a run's folder, each name and each schema once: who writes it, who reads it. Further
 // readers are people, and programs of theirs. What a checkpoint consists of is said in
 // common/checkpoint/checkpoint_files.h. The table of docs/monitoring.md ("The files of a run") has

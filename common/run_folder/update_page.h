@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How many updates a run's learners have done and how many of these were lost, in a mapped file
 // that survives SIGKILL of the learner (not power loss): what a page says was done and no
 // checkpoint has was lost with the process, its last update included.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The last K frames of one environment, oldest first, as the network wants them: (K*C, H, W) uint8.
 // At an episode's start the first frame is repeated.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an actor publishes and a policy sees: computed once by `shoal-actor --describe`, stored in
 // config.json, compared by hash by every process and carried by every message.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A record: what an actor publishes about one environment at one instant. The same bytes travel in
 // chunks over DDS and lie in the replay's ring.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/tasks/control_tasks.h"
 
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Goal halves of six tasks of the DeepMind Control Suite, those of the PlaNet benchmark.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The goal half of a task: what an observation consists of, what earns reward, when a goal is
 // reached, how long an episode lasts. Pure data and arithmetic, no physics: the actor computes step
 // rewards with it, and the replay can recompute them for other goals. The physics half of the same

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/tasks/task_registry.h"
 
 #include <fmt/ranges.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Tasks by name. A new task registers its goal half in task_registry.cpp and its physics half in
 // actor/worlds/world_registry.cpp.
 #pragma once

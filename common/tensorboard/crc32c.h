@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // CRC-32C (Castagnoli, polynomial 0x1EDC6F41 reflected): the checksum of TFRecord files.
 #pragma once
 

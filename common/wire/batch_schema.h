@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a batch consists of: named arrays, each with a type and a shape, one after another, each
 // starting at a multiple of 64 bytes. Learner and replay make the schema from the same observation
 // spec and options; its hash travels with every request, so that neither reads what the other did

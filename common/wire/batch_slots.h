@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whole batches in shared memory (common/base/shared_memory.h): the replay writes them into slots,
 // the learner reads them where they lie. Which slot is full, and which is free again, is said in
 // messages (BatchSlot, SampleRequest::released).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the coordinator last asked for, and whether it is still there. Written by a DDS receive
 // thread, read by the process's loop.
 #pragma once

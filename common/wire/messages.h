@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The messages processes exchange, as plain structs. common/dds carries them; nothing here knows
 // DDS. docs/wire_format.md gives topics, QoS and byte layout.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The one table of metrics: what each is called, who reports it, in what unit and what it means.
 // The figures of updates are their algorithm's to name; launch/watch/run_metrics.h has both.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/wire/metrics_report.h"
 
 #include <sys/resource.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A process's 1 Hz report: says when it is due and fills in who reports. Every name that a process
 // adds is in the table of metric_names.h.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a process of a run is called, everywhere: in reports, logs, RUN/sessions, the supervisor.
 //
 // Of most roles a run has one process. Where code means that one, it says Replay(0) or Learner(): a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Quantiles of the values of one report interval, in bounded memory.
 #pragma once
 

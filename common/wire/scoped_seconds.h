@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Adds the seconds of its scope to a total.
 #pragma once
 

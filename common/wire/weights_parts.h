@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Weights travel in parts, so that no sample is larger than the transport carries well, whatever
 // the size of the policy: part k holds the bytes from k * kBulkPartBytes on. A version is
 // complete when all its parts are there; what is incomplete when a newer one begins is dropped.

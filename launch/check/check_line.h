@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One line of `shoal check`: what was looked at, what was found, what to do about it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "launch/check/local_collection.h"
 
 #include "actor/acting/environments.h"

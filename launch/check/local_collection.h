@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Actor and replay of a run in one process, without DDS: environments play random actions, records
 // go through the actor's chunk window into a replay core, batches come out as the learner gets
 // them.

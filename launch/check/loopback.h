@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How fast DDS moves megabyte chunks between two processes of this machine, through common/dds and
 // with the credits of a run.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the machine offers: arithmetic, cores, room on disk and in memory.
 #pragma once
 

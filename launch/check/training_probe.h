@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Does learning work here? A few updates on batches of real frames, then a checkpoint that is
 // written, read again and compared.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The command line of `shoal`, whole: what main parses and what the manual is made from.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The commands of `shoal`, one file each. A command adds itself to the command line; when it is the
 // one given, it stores what to do in `*chosen`, which main runs: its value is the exit code.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "launch/commands/env_tasks.h"
 
 #include <CLI/CLI.hpp>

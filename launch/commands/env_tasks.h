@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What tasks are and earn: env list, env describe, env random, env reward-check.
 #pragma once
 

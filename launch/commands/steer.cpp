@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // shoal set, scale, stop: orders to a running run.
 #include <CLI/CLI.hpp>
 #include <algorithm>

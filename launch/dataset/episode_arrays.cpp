@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "launch/dataset/episode_arrays.h"
 
 #include <fmt/core.h>

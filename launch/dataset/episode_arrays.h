@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One episode as Minari lays it out in an HDF5 file: T steps, T + 1 observations.
 //
 //   episode_N/                  attributes id = N, total_steps = T; env, episode: which one of the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Episodes out of a run's replay ring as a dataset of Minari's.
 #pragma once
 

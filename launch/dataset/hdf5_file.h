@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes an HDF5 file: arrays in groups, whole numbers as attributes of groups.
 #pragma once
 

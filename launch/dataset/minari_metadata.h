@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // metadata.json of a dataset as Minari keeps it, beside the HDF5 file with the episodes.
 //
 // Source: Minari 0.5.4, https://minari.farama.org (dataset_standards): what minari.MinariDataset

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What mkdocs has to know of our pages beyond its configuration."""
 
 import html.parser

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What doing nothing and what uniform random actions earn on a task: the floors that stand beside
 // every success rate. Measured once per task, threshold and model, then kept.
 #pragma once

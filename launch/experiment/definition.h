@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an experiment is: arms (named differences from a base preset) x seeds, from one JSON file
 // (schema shoal-experiment-definition-1):
 //

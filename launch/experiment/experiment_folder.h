@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The folder of an experiment:
 //
 //   experiment.json   the definition and the base as it was resolved at the first run: both hold

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `shoal experiment run`, status and summary.
 #pragma once
 

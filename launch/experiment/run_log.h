@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // runs.jsonl of an experiment: a line when something is started for a run - its training, going on
 // with it, or the first evaluation on a further task that is still missing - and one when that has
 // ended, with the evaluations that followed. So an end that the run's own folder cannot tell of (it

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The order in which the runs of an experiment are done: what is finished is skipped, what was
 // interrupted goes on, past what failed the next one begins. Knows no processes and no files: they
 // are behind RunKeeper.

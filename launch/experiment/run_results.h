@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a run's folder says about it once it has ended, or so far: the figures that comparisons,
 // plots and reports are made of. Reads config.json, meta.json and eval/ alone, so that a committed
 // copy without checkpoints serves as well.

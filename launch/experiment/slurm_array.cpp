@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "launch/experiment/slurm_array.h"
 
 #include <fmt/core.h>

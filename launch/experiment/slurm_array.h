@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The runs of an experiment as a Slurm job array, one run a task: Slurm places them, each does
 // `shoal experiment task`.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Intervals and ratios of experiments. Pure. Seeds are the unit: the episodes of one training are
 // no independent evidence about the method.
 #pragma once

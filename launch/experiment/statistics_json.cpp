@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "launch/experiment/statistics_json.h"
 
 #include <fmt/core.h>

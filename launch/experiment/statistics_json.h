@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Intervals and ratios as summaries and comparisons write and say them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an experiment has shown so far: summary.json (schema shoal-experiment-1) and the table of
 // `shoal experiment summary`. docs/experiments.md explains each member.
 #pragma once

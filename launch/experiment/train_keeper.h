@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Does the runs of an experiment: a process tree of `shoal train` for each, and the evaluations on
 // further tasks after it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Observations that two computations of one policy are compared on.
 #pragma once
 

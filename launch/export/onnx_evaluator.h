@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs an ONNX model by the plain operators of onnx_operators.h, node by node: slow, and simple
 // enough to be believed. Export holds the policy against it before a file leaves.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From a checkpoint's policy to the bytes of an ONNX file that has been seen to act as it does.
 #pragma once
 

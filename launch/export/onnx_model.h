@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An ONNX file as a value: what of the format a policy needs, and its bytes.
 //
 // Constants are f32. Inputs and the output have the batch as their first dimension, N, which

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The operators of ONNX that an exported policy uses, as plain loops: what the file means, computed
 // by none of the code that the policy is computed by.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A policy as an ONNX model: what an actor does with an observation, from raw pixels and vectors to
 // the action that is played without exploration.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The actions of one policy, (N, A) in [-1, 1], computed by Shoal and by what was exported.
 #pragma once
 

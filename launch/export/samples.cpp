@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "launch/export/samples.h"
 
 #include "common/nn/safetensors.h"

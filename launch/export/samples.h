@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Observations and the actions that our own networks answer them with, for other runtimes to be
 // held to.
 #pragma once

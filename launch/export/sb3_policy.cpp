@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "launch/export/sb3_policy.h"
 
 #include <fmt/ranges.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A policy as Stable-Baselines3 keeps one: a zip archive whose policy.pth holds the state_dict of
 // the algorithm's MlpPolicy or CnnPolicy, for MODEL.set_parameters(FILE, exact_match=False).
 //

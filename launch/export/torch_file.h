@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Files that torch.load reads: an ordered dictionary of f32 tensors by name, as torch.save writes a
 // state_dict.
 //

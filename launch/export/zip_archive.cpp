@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "launch/export/zip_archive.h"
 
 #include <cstdint>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `shoal film`: episodes that a run's checkpoints play, as an MP4 file.
 #pragma once
 

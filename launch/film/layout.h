@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where things are in a film's picture, in pixels from the top left:
 //
 //   +----------------------------------------+

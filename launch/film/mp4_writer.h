@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes pictures as an MP4 file that browsers play: H.264 in yuv420p, its index at the start.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draws one picture of a film: the policy's input, the larger view, and what they are in words.
 #pragma once
 

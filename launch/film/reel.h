@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes a film of streams of frames, one after the other.
 #pragma once
 

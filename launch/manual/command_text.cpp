@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "launch/manual/command_text.h"
 
 #include <CLI/CLI.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A command line as plain text: what --help says, as values that man pages and completions are
 // written from.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Completion of command lines in three shells. Each script has one table: what may stand where,
 // with its meaning; and a few lines of the shell that look into it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a completion script is besides its table: @TABLE@, @LEVELS@ and @PROGRAMS@ are put in.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // shoal-manual FOLDER: writes manual pages, completions and the configuration's schema. Part of the
 // build, not installed.
 #include <CLI/CLI.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Manual pages in man(7)'s language, from what --help and the configuration's table say.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "launch/observability/frame_regression.h"
 
 #include <algorithm>

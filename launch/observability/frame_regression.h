@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How well a network of a run's kind tells numbers from frames: an encoder, a trunk and linear
 // functions of it, as learner.aux trains them, by Adam on the mean square; each frame shifted anew.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Frames of a task with numbers that are to be told from them, from random play.
 //
 // Dimensions: S samples, L labels, C channels of a frame (all cameras), H, W.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What of a task can be told from which cameras: `shoal env observability`. Cameras are chosen by
 // this, not by how a picture looks to people.
 #pragma once

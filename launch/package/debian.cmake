@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # cpack -G DEB: a package of each component (./run package).
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME shoal)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "launch/processes/actor_program.h"
 
 #include <nlohmann/json.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What launch asks of the actor program outside a run's processes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One program running as a child of this process.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A process that goes on in the background after the command that started it has returned.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The hosts of a run (schema shoal-hosts-1), as `shoal train --hosts FILE` reads them and the run
 // folder keeps them in hosts.json. docs/cluster.md explains each key.
 #pragma once

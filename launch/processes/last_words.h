@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Why a process ended, as far as its own output says so.
 #pragma once
 

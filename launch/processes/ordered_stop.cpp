@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "launch/processes/ordered_stop.h"
 
 #include <fmt/core.h>

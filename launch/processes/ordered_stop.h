@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The order in which a run ends: actors flush until everything is stored and leave; then learner,
 // replay and evaluation actor finish what they are at, write what they must and leave.
 #pragma once

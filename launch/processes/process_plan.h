@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which programs a run consists of and how each is started.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is done on another host, all of it through its ssh command: is the program there, bring what
 // an actor needs, run an actor, fetch what it leaves. No shared file system is needed.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether and when a process that died is started again. Pure: the caller brings the time.
 #pragma once
 

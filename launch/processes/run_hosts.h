@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The other hosts of a run, from the command line to the fetched counters.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What processes of a run that were killed leave behind: processes of theirs that still store what
 // they have, and files they were writing.
 #pragma once

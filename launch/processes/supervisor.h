@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps a run's processes alive: starts them, restarts what dies within limits, says why it died.
 // A process that is there but says nothing any more - stopped, deadlocked, thrashing - is killed
 // and counts as dead from then on.

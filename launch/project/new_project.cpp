@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "launch/project/new_project.h"
 
 #include <unistd.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A project of the user's, made from the template that lies among the shared data: a task of one's
 // own (docs/examples/point_reach), a preset, an experiment, and how to build them.
 #pragma once

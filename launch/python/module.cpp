@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // shoal_rl._native: what the Python package shoal-rl has of C++.
 //
 // Threads: every call holds Python's lock, so that there is one at a time in a process;

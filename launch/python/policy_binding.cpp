@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "launch/python/policy_binding.h"
 
 #include <pybind11/numpy.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // shoal_rl.Policy: a checkpoint's policy that acts on NumPy arrays.
 #pragma once
 

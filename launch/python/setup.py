@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Says of the package, all else of which is in pyproject.toml, that it has compiled code."""
 
 from setuptools import Distribution, setup

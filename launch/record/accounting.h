@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where every record went: what the actors made against what the replay dealt with.
 //
 //   made = stored + lost_with_process + lost_with_replay + rejected + after_gap + discarded,

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "launch/record/evaluation_point.h"
 
 #include <fmt/core.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The figures of one evaluation, as meta.json, the stop rule and the display use them.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // eval/*.json of a run: written as evaluations arrive, read back when a run goes on.
 #pragma once
 

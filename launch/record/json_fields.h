@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Fields of the files of runs that may be absent, null, or of an older build.
 #pragma once
 

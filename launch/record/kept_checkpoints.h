@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checkpoints that outlive the learner's own pruning: that of the best evaluation, and of those
 // that later ones may make the best.
 //

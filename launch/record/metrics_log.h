@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // metrics.jsonl: {t, role, id, host, pid, state, NAME: value, ...} per line. A line per process and
 // second for the first minutes; then each process gets one as often as keeps the file within its
 // hourly budget, whatever the number of processes. The first report of a process and its last words

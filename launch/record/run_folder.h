@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A run's folder: named, created or re-opened, and held against a second coordinator.
 #pragma once
 

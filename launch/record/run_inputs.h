@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a run's policy is given, in training and at test time alike, and what learning alone is told
 // besides: for the run's first lines, for meta.json and for `shoal env describe --run`.
 #pragma once

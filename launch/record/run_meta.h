@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // meta.json of a run (shoal-run-1): what ran where, how far it came, how it ended.
 #pragma once
 

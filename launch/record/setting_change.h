@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A configuration key that was changed while a run went on.
 #pragma once
 

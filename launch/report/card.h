@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `shoal card`: a run as a folder that model hubs take: README.md with their metadata,
 // results.json, config.json, policy.safetensors, replay.mp4 where the run has a film.
 #pragma once

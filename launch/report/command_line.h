@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Commands that people copy out of reports and cards.
 #pragma once
 

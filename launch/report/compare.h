@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `shoal compare`: groups of runs side by side. Seeds are the unit (statistics.h).
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `shoal plot`: learning curves with bands over seeds, drawn by gnuplot.
 #pragma once
 

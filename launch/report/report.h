@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `shoal report`: one HTML page that needs nothing but itself: what was asked, figures with
 // intervals, curves, films, configuration, machine, builds, the commands that repeat it.
 #pragma once

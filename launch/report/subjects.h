@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What comparisons, plots and reports are about: runs and experiments, by name or folder.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which evaluation a run's best checkpoint is of. Pure.
 #pragma once
 

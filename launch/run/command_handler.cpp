@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "launch/run/command_handler.h"
 
 #include "common/base/error.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the commands of people who steer a run do to it, and what they are told. Knows nothing of
 // DDS.
 #pragma once

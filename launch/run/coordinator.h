@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs a run: starts its processes, keeps them alive, hears them, shows what they do, decides when
 // to stop, stops them in order.
 #pragma once

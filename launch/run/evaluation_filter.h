@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which evaluations count: each one once, in the order of the parameters they are of. The transport
 // delivers what it keeps again to a reader that it takes for new (after a pause longer than its
 // lease), and a restarted evaluation actor plays the newest parameters again; a run that counted

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "launch/run/evaluation_intake.h"
 
 #include <fmt/core.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which of the evaluations that come a run counts: those that can be, of parameters that the
 // learner handed out, each once. The rest is refused or left out, counted and said; nothing that is
 // sent can end the run. Pure.

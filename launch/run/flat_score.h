@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A run whose evaluations do not get better: "runs but does not learn", seen from outside. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The configuration keys that may be changed while a run goes on: their present values, and what
 // has been changed. Pure.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where a run meets those who watch and steer it: shows the whole run once a second on a DDS topic
 // of its own, hands their commands over and answers them (docs/monitoring.md).
 #pragma once

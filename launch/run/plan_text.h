@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a run is going to cost, as it is told when it starts.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What is done once a run's processes have left: the records' accounting, a last evaluation on
 // fresh episodes, meta.json and the summary.
 #pragma once

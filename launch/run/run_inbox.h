@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the processes of a run say to its coordinator, received and held until its loop takes it.
 #pragma once
 

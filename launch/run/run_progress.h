@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How far a run is, by the typed word of replay and learner: what its budget, its draining and its
 // end are decided by, and which evaluations it has asked for. Reports (MetricsMessage) are shown
 // and filed, and decide nothing. Pure.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the processes of a run say, put together: their newest reports, the figures of late, the
 // lines of metrics.jsonl and what is shown to who watches. The coordinator's own report is made
 // here: it watches itself as it does the others.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // When a run has reached what it was started for. Pure.
 #pragma once
 

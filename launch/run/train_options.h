@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The options of `shoal train` and the configuration they resolve to.
 #pragma once
 

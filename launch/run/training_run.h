@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `shoal train`: from options to the summary of a finished run.
 #pragma once
 

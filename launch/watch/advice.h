@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One sentence: what to do about where a run's time goes. Pure.
 #pragma once
 

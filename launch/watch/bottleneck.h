@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where the time of a run goes, and what to do about it: per role the share of each stage, who was
 // held back by the limiter, and one sentence of advice. Pure.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An IPv4 address and a port of this host that a page is served at.
 #pragma once
 

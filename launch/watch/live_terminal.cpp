@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "launch/watch/live_terminal.h"
 
 #include <poll.h>

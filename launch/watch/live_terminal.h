@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A screen of lines that is drawn again and again, and keys as they are pressed.
 #pragma once
 

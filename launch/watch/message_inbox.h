@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hands messages from a DDS receive thread to the coordinator's loop.
 #pragma once
 

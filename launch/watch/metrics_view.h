@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The newest figures of every process of a run, and what their counters have come to.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the user sees of a running run: a live block on a terminal, plain lines elsewhere.
 #pragma once
 

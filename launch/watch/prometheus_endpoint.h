@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The run's view as a page that Prometheus scrapes: http://ADDRESS:PORT/metrics.
 //
 //   shoal_NAME{run, role, id, host}    every figure of docs/monitoring.md

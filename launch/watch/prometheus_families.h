@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From a run's view to what Prometheus's client library serialises. Pure.
 #pragma once
 

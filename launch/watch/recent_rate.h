@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How fast a count has grown lately, for people: the rate of the last second alone jumps between 0
 // and a chunk's worth where records come in chunks.
 #pragma once

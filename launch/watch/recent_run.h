@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a run did lately, for people: how fast it goes, how long it still takes and where its time
 // goes. The figures of the last second alone jump, those since its start say what has long changed.
 #pragma once

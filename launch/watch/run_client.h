@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A program's line to a running run: hears the views that its coordinator shows, sends it commands.
 #pragma once
 

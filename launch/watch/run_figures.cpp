@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "launch/watch/run_figures.h"
 
 #include <fmt/core.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which reported figures make up the progress display, in the coordinator and far from it.
 #pragma once
 

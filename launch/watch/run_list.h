@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every run of a folder with how it stands: what `shoal runs` shows.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every metric that a run can report: what its processes report of themselves
 // (common/wire/metric_names.h) and the figures of the updates, as the algorithms name them
 // (learner/agent/algorithms.h). docs/monitoring.md and the help texts of the Prometheus endpoint

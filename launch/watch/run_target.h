@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which running run a command is about: by name, by address, or the only one there is.
 #pragma once
 

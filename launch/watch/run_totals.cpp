@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "launch/watch/run_totals.h"
 
 #include "common/wire/metric_names.h"

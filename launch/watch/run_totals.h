@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the processes of a run have counted, by role. The difference of two moments says where the
 // time between them went. Pure.
 #pragma once

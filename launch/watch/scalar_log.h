@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The run's TensorBoard scalars, x = env steps: training, rollouts and evaluations. The coordinator
 // is the only process that writes them, so that TensorBoard has one file to follow per start of the
 // run; what the learner has to say comes with its reports.

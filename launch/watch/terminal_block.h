@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lines on the terminal that are drawn again and again in place.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `shoal top` as text: one row per process, sorted by any column; or one line. Pure.
 #pragma once
 

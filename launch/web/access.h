@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Who may see and do what at the page. Pure, but for the making of a token.
 //
 // To look: on loopback anybody of this host, under a name of this host (a page elsewhere whose name

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // cpp-httplib's server with a bound on everything that somebody outside decides: how long a request
 // takes to come and an answer to go, how long a request is, how many connections there are. One
 // request per connection.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which part of a file a request is about: what films need for jumping to and fro. Pure.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What cpp-httplib 0.11 and 0.18 declare differently, in one way for both: Debian 12 has the one,
 // Debian 13 the other.
 #pragma once

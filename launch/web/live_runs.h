@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Lines to the running runs that somebody looks at. A run's network is joined when it is first
 // asked for, and left when it has not been asked for in a while: a run that nobody looks at is not
 // touched.

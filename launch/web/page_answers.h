@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the page's programs get: JSON of what others have found out. Pure. Text of the network and
 // of files that is not UTF-8 is replaced.
 #pragma once

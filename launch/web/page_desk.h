@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Finds the answers to the page's requests: the runs there are, their curves, lines to those that
 // run, episodes that are played.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "launch/web/page_parts.h"
 
 #include "common/base/error.h"

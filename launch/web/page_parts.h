@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The page itself: what is built into the program, and the library that draws its curves.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a request asks for, from its method and path. Pure.
 //
 //   GET   /                             the page

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The files of launch/web/pages, built in.
 #pragma once
 

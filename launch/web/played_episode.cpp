@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "launch/web/played_episode.h"
 
 #include <sys/resource.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An episode that a run's newest checkpoint plays for who looks, as a film: what the policy sees
 // beside a larger view. Made by the evaluation's own program, beside the run and at a lower
 // priority, when it is asked for; kept in memory's stead in a scratch folder, not in the run's.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A run's curves over env steps, read from its files as they grow: metrics.jsonl and eval/.
 #pragma once
 

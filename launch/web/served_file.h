@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The files of a run's folder that the page hands out: films, reports and pictures, by their kinds;
 // nothing else of the folder, and nothing outside of it.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An algorithm as the learner's loop sees it: networks, targets and optimisers behind one update of
 // a batch. Loop, checkpoints, weights, reports and guards know no algorithm but through this.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a checkpoint keeps of an agent, listed once: written out and read back from the same list.
 #pragma once
 

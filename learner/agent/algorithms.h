@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The algorithms, as the learner knows them: what learner.algorithm chooses from. What keys, actors
 // and launch know of each is in common/config/algorithm_kind.h, in the same order.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The auxiliary loss of learner.aux: linear functions of the trunk's outputs are to tell recorded
 // blocks or differences of two, so that the encoder learns where things are before the critic
 // knows what is worth anything (Eq. 27 of docs/algorithm.md). The policy has no part of it.

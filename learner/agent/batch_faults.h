@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // When an update must not be applied.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "learner/agent/batch_part.h"
 
 #include "common/base/check.h"

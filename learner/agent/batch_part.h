@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The rows of a batch that one of several replicas learns from.
 #pragma once
 

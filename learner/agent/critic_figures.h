@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a critic's loss says about a whole batch, of which a replica has seen its rows.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a critic sees of a batch's vectors: the policy's and, of an asymmetric one
 // (learner.critic_blocks), privileged blocks beside them.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "learner/agent/encoder_and_head.h"
 
 #include "common/nn/actor_critic_plan.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What algorithms build networks of: an encoder, where there are pixels, and a head above it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An agent whose encoder starts from given weights instead of random ones.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "learner/agent/frame_figures.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the pictures of a batch say of the cameras, whatever the algorithm.
 #pragma once
 

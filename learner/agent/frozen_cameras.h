@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Cameras that see nothing change: their newest frames in a random sample of the replay are the
 // same picture. Frames come randomly shifted, so two of them are compared at every relative offset
 // that two shifts can have, where neither shows padding.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Losses that algorithms share, and those of SAC, with their gradients with respect to the
 // networks' outputs.
 // Equations are those of docs/algorithm.md. Dimensions: B batch; all arrays (B) f32.

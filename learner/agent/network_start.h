@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An agent whose networks start from given weights instead of random ones.
 //
 // Taken over are networks (encoder.*, actor.*, critic.*, value.*, their targets and averages) and

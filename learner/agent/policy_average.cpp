@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "learner/agent/policy_average.h"
 
 #include "common/nn/module.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The moving average of a policy's parameters (Eq. 12 of docs/algorithm.md), which no network is
 // computed with.
 //

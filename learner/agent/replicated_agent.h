@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An agent of N replicas (common/nn/replica.h), which is one agent to everybody else: its tensors
 // are those of the first, which alone has moments and the policy's average, and of no number of
 // replicas.

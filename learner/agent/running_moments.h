@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Mean and variance of all vectors seen so far, taken over batch by batch.
 //
 // Source: Chan et al. 1983, "Algorithms for computing the sample variance".

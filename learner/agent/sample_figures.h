@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the transitions of a batch say, whatever the algorithm, and what critics make of them: the
 // figures that TensorBoard shows below replay/.
 #pragma once

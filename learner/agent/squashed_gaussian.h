@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Actions of a Gaussian squashed by tanh, their log-probabilities and the gradients of both (Eq. 4
 // of docs/algorithm.md).
 //

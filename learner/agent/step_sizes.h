@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How far the optimisers of an agent step: learning rates of its parts, clipping of their
 // gradients.
 #pragma once

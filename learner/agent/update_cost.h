@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What one update computes, counted from the plans of its networks.
 #pragma once
 

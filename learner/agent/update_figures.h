@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What an update says about itself: an ordered list of named figures.
 //
 // A figure is declared once, with its meaning: by the algorithm that alone computes it, in the

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a value can be where every reward is -1 or 0 (sparse goals): between -1 / (1 - discount) and
 // 0, times the reward's scale. A target cut off there cannot run away (Eq. 20 of
 // docs/algorithm.md).

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Vectors as an algorithm's networks see them with learner.normalise_vectors: at about mean 0 and
 // deviation 1, by the moments of all vectors of earlier updates. Those of the observation belong to
 // the policy: actors and evaluations scale by those that came with their weights

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rollouts put together from records, without threads, clocks and network: chunks in, credits out;
 // whole rollouts of one environment each, and batches of them.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rollouts pulled from actors, as batches of the training loop: a thread of its own takes chunks,
 // keeps the account and acknowledges, while the loop learns.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A sign of life from long work at start: reading a cold ring of many gigabytes takes minutes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From chosen steps to a batch of the schema of common/wire/batch_schema.h: stacks and next
 // observations are put together here, out of frames that are stored once.
 //

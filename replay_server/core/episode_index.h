@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which record follows which, and which steps can be sampled.
 //
 //   A sample is known by its first step s: it begins at the observation before s, a stack of the K

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The check word of a stored frame: any single flipped bit changes it, because each step is one to
 // one in its word and in its lane; other damage goes unnoticed about once in 2^64. Not
 // cryptographic. Four interleaved lanes, so that it runs at memory speed: a frame is checked each

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What becomes of a transition under another goal: the desired goal of both observations, wherever
 // it stands among their numbers, and the reward, computed by the task's goal half as the actor did,
 // to the last bit. Whether the episode was terminated stays as it was, unless episodes end on

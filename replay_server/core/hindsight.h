@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Hindsight: a sample is given a goal that its own episode achieved, as if it had been meant.
 //
 // With N = replay.hindsight_goals a share N / (N + 1) of the samples is relabelled. The goal of a

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The records of an intake (common/intake/chunk_intake.h) into the ring, each behind its
 // predecessor in the episode.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A stretch of mapped memory: a file of its own or anonymous.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Samples after which something still happens: a share of them is drawn in proportion to how far
 // what is achieved still moves in its episode, the others uniformly.
 //

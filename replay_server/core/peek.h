@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A look into the ring of a run: what the learner would be given. For `shoal replay peek` as a
 // picture, with and without the random shift; for `shoal export` the observations alone.
 #pragma once

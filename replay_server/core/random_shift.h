@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // DrQ random shift: pads each image by replicating its border, then crops back at a random offset.
 // Fused with the copy out of the ring: padding and crop are one read of each pixel.
 //

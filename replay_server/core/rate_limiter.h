@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Samples per insert as a bounded cursor.
 //
 //   cursor = (samples granted to steps that became sampleable) - (batch elements sampled),  0 when

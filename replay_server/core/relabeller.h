@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Gives samples other goals: hindsight.h. What another goal changes is goal_change.h.
 #pragma once
 

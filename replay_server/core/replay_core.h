@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The replay server without threads, clocks and network: chunks in, credits out; requests in,
 // batches out. Everything below belongs to one owner.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which samples a batch consists of and with which goals, as the configuration has it. A new way of
 // selecting or relabelling is a file of its own, its keys, and a line here.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Batch requests of the learner, answered in the order of their ids.
 //
 // Bounded by the learner's credits. A new learner session discards the old one's requests. A

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The frame ring: the newest `capacity` records in one mapping, each stored once, as it came.
 // ring_format.h has the layout and what survives what.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The ring file, version 3. All little-endian.
 //
 //   RingHeader, padded to 4096 bytes

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reading what an earlier process left in a ring file.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Chooses the samples that make up a batch, by the step that each begins with (episode_index.h).
 //
 // The index tells a selector what there is: each sample once when it can be drawn and once when it

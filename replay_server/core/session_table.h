@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Accounting per actor session, kept in the ring's mapping so that it outlives the process.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Is there room for the ring? Asked once at start, because afterwards it is too late: a full disk
 // under a mapping is a SIGBUS, a full cgroup a SIGKILL.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How much a replay of a configuration takes, for those who look whether there is room.
 #pragma once
 

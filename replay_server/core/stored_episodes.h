@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whole episodes in a ring: from the reset to the record that ended them. For `shoal replay
 // export`.
 #pragma once

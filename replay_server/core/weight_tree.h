@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Weights by number, one of which can be drawn in proportion to its weight: a Fenwick tree (Fenwick
 // 1994, "A new data structure for cumulative frequency tables"). Whole numbers, so that sums are
 // exact and do not depend on the order in which weights came and went.

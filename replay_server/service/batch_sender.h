@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The bulk writes of batches, on a thread of their own: a slow network holds up batches, not
 // intake.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a BatchSender writes to, on the network.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "replay_server/service/flow_ages.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How old things are as they pass through the replay: how far behind the learner the policy was
 // that acted, how long a record took to be stored, how old the steps of a batch are.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The shared memory in which the present learner session gets its batches: none where the learner
 // takes none, could not open it, or there is no room; its batches then go over the network. Which
 // it is, and why, is logged once per session.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Losses and refusals, logged once per interval as one line each, with their numbers.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The replay server process: the core, owned by the thread that calls Run(), between DDS receive
 // threads (service_inbox.h) and the batch sender's thread (batch_sender.h).
 #pragma once

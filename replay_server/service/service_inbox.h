@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // From the DDS receive threads to the service thread: chunks copied into pooled buffers, and batch
 // requests. Everything is bounded; what does not fit is dropped and counted, and its sender sends
 // it again.

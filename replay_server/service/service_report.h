@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The replay's 1 Hz report. Counts are since the process started; stored_records and stored_steps
 // are of the whole run.
 #pragma once

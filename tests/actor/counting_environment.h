@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An environment without physics: every number it observes says which episode and step it is of.
 #pragma once
 

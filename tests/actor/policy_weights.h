@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Weights of a policy whose output does not depend on what it sees.
 #pragma once
 

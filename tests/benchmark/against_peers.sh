@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # ./run bench --against peers [--venv DIR] [--repetitions N] [--seconds S] [--only TEXT]
 #             [--variants V,V]
 #

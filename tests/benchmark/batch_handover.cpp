@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/benchmark/batch_handover.h"
 
 #include <sys/wait.h>

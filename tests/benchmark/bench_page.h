@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Pages whose tables are made from files of measurements, so that the whole page can be made anew.
 #pragma once
 

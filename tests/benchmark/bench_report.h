@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Reads files of schema shoal-bench-1 and makes of them what people read: tables, and how two
 // commits compare. Pure functions of texts.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/benchmark/bf16_peak.h"
 
 #include <immintrin.h>

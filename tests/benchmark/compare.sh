@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # ./run bench --compare COMMIT [--repetitions N] [--only TEXT] [--seconds S] [--threads N]
 #
 # Builds another commit in a worktree outside of this tree and runs shoal-bench of both in turn, N

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // shoal-fake-actor: the real training actor over environments that cost nothing but time: frames
 // are written, not rendered, and each step takes a fixed span, slept. For measuring what many
 // actors cost the others.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/benchmark/forked_processes.h"
 
 #include <sys/prctl.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Processes of one measurement, forked from one that has no threads yet: pipes between them, the
 // DDS domain where they meet, and the run that they play.
 #pragma once

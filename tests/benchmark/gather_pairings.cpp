@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Drawing a batch from a ring: beside a plain copy of as many random frames, from a large ring
 // beside a small one, from a ring in a file beside one in memory.
 #include <fmt/core.h>

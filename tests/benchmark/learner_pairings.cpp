@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether a second thread of the learner pays: on idle cores, and beside a program that keeps all
 // cores but one busy.
 #include <fmt/core.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // shoal-bench: ratios of one run, as JSON (schema shoal-bench-1) on stdout. `./run bench`.
 #include <CLI/CLI.hpp>
 #include <iostream>

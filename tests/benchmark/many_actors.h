@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Many actor processes on one replay server: how soon all are found, what a transition costs.
 #pragma once
 

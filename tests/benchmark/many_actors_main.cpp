@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // shoal-bench-actors: one replay server under 4, 16, 64 and 256 actor processes, and how fast real
 // actors are, as JSON (schema shoal-bench-1) on stdout. `./run bench-actors`.
 #include <fmt/core.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A batch of noise that agents of the default task learn from.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Times two ways of doing one thing in turn, A B A B …, so that a machine whose speed drifts does
 // not favour either.
 #pragma once

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # `./run bench --against peers` where PyPI cannot be reached, in a folder of the test's own whose
 # `run` builds nothing: it says so in one line, prints our own rows and ends with 1.
 #

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One action of a trained policy outside of training, as libshoal-policy computes it: what checks
 // and blocks by name cost beside the network itself.
 #include <fmt/core.h>

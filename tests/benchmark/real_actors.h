@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Env steps a second of real actor processes that act from pixels and send to a real replay server.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // shoal-bench-report: what people read of files of schema shoal-bench-1.
 #include <fmt/core.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What one replay server, one learner and one link carry, by arithmetic from measured rows: the
 // tables of docs/scale.md.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Transport: chunks of records from an actor to a replay in another process, secured and plain.
 #include <fmt/core.h>
 

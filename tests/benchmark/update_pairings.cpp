@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An update beside the oneDNN primitives that it consists of, run alone back to back: what the
 // update costs beyond them is ours. Beside its convolutions alone: how near it is to what the
 // network itself takes. These beside what a core can do at most in bf16: what the machine allows.

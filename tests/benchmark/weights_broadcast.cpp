@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/benchmark/weights_broadcast.h"
 
 #include <sys/wait.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What it costs a host that its learner's weights reach its actors: real processes, the sender of
 // the learner, the inboxes of actors over DDS and the loading into a policy that acts, layouts
 // included, and nothing else that these do.

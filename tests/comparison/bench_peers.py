@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Rates of Shoal beside those of its peers, measured in turn: PyTorch, Stable-Baselines3,
 Gymnasium-Robotics. JSON (schema shoal-bench-1) on stdout.
 

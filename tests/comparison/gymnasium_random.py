@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Plays random actions in an original environment and writes what they earn.
 
 usage: gymnasium_random.py ENVIRONMENT EPISODES SEED FILE

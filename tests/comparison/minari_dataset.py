@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Loads a dataset of `shoal replay export` with Minari and holds it to what Minari itself writes.
 
 usage: minari_dataset.py FOLDER

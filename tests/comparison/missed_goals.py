@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Where the missed goals of FetchReach lie, of files that `shoal eval --json` wrote.
 
 Goals are drawn evenly from a cube of 30 cm, their marker is a sphere of 2 cm radius. In the table: the

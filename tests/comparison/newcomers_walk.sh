@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # tests/comparison/newcomers_walk.sh ROOT PACKAGE|CLONE [TRAIN-ARGUMENTS...]: what a newcomer does in a
 # bare Debian: install the package, or take a clone and build its programs; check, train, film,
 # report; then purge the package. Each step is shown with its time and the seconds of CPU that it

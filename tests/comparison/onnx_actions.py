@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Holds ONNX Runtime to the actions of Shoal's own networks, on files that `shoal export` writes.
 
 usage: onnx_actions.py SHOAL CHECKPOINT...

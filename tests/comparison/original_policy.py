@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Plays a policy that Shoal trained in the original environment: its physics, its renderer.
 
 usage: original_policy.py POLICY.onnx DESCRIPTION.json ENVIRONMENT EPISODES SEED FILE

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Env steps per second of PPO, Shoal's beside Stable-Baselines3's with SubprocVecEnv.
 
 usage: ppo_rates.py SHOAL [hopper] [reach] [reach-pixels]

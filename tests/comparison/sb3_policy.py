@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Holds Stable-Baselines3 to the actions of Shoal's own networks, on files of `shoal export --sb3`.
 
 usage: sb3_policy.py SHOAL CHECKPOINT...

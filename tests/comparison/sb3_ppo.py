@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Records what an update of PPO computes in Stable-Baselines3, for a test of ours to be held to.
 
 usage: sb3_ppo.py FOLDER

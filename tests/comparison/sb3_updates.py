@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Records what a few updates of Stable-Baselines3 compute, for a test of ours to be held to.
 
 usage: sb3_updates.py FOLDER

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Numbers that both sides of a comparison compute for themselves, so that recordings need not hold
 them. tests/support/shared_numbers.h has the same."""
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How often the stop rule errs: the table of docs/algorithm.md, "When a run stops".
 
     python3 tests/comparison/stop_rule_errors.py

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Records what torchvision's resnet18 and alexnet compute, for a test of ours to be held to.
 
 usage: torchvision_encoders.py FOLDER

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # tests/comparison/web_by_ssh.sh PROGRAM RUN_DIR: looks at the page of `shoal web` and steers through
 # `ssh -L` at another port, as from another host, and says what was answered. The ssh server is one of
 # its own on loopback, with keys of its own. Needs sshd (Debian's openssh-server), ssh and curl, and

@@ -1,4 +1,5 @@
 #!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
 # tests/comparison/web_page.sh PROGRAM RUN_DIR RUN OUTPUT: opens the page of `shoal web` on a running
 # run in headless Chromium (Debian's package) and says whether each figure of each process that the
 # page shows is the one of `shoal top --once --json` at the same moment. Screenshots, light and dark,

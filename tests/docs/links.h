@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Links between the pages, and from them to files of the tree.
 #pragma once
 

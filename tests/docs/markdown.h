@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The parts of a page in Markdown that tests look at. Knows what the pages here use: fenced blocks,
 // also within lists, spans of code, headings with #, links and images in one line.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How an example command of the pages is tried: as it stands, unless a rule says otherwise.
 #pragma once
 

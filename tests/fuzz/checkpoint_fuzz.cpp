@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checkpoints: any bytes are refused with Error or are whole. First byte:
 //   0  the rest is state.json beside two files of a real checkpoint
 //   1  the rest is learner.safetensors; state.json is made to fit it, so that the checksums do not

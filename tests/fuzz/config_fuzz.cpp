@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Configuration: any text is refused with Error or gives a configuration that survives being
 // written and read again. First byte: 0 = a JSON file, else --set assignments, one per line.
 #include <nlohmann/json.hpp>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Bulk messages: any bytes are refused or taken apart within their bounds, and what they carry is
 // sorted out by those who get it. First byte: which message; the rest is serialised CDR.
 #include <cstring>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The smoke run: a fuzz target over the files of its corpus, without libFuzzer. A finding is fixed
 // with its input added there.
 #include <algorithm>

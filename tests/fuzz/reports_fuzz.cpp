@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The messages that are not bulk: any bytes are refused or taken apart within their bounds, and
 // those who get the message bear with what it says. First byte: which message; the rest is
 // serialised CDR.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Replay files: any bytes are refused with Error, or everything a server does with its ring works
 // on them. First byte: 0 = the rest is the file as it is; else the checks of header, sessions and
 // slots are made to fit first, so that they do not keep the input from the code behind them. The

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The small files and JSON messages of a run: any bytes are refused with Error or make sense. First
 // byte: which one.
 #include <nlohmann/json.hpp>

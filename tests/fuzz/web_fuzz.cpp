@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the page takes from whoever connects: any bytes are refused or make sense. First byte: which
 // part.
 #include <algorithm>

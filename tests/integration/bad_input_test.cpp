@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every wrong thing a user can say gets one clear line that names it, and the right exit code.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The wall clock is set back and forth under a run in which processes die: it goes on.
 #include <gtest/gtest.h>
 #include <signal.h>

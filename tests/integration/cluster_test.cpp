@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A run on two hosts: an actor behind a link of its own trains, through a lossy network, a cut and
 // the death of its remote shell, and the account of its records stays exact.
 #include <gtest/gtest.h>

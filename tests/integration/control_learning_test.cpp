@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // State-based SAC on tasks without goals, through the real processes.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // SIGKILL of the coordinator: its processes store what they have, leave a checkpoint and go; the
 // run goes on with --resume, and its account still balances.
 #include <gtest/gtest.h>

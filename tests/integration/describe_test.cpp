@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `shoal-actor --describe` for every kind of observation, and `shoal env describe` of runs.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Short trainings of the real programs with the encoders of torchvision, and from weights of a
 // file.
 #include <gmock/gmock.h>

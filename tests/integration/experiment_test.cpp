@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `shoal experiment run` with real, tiny runs: to the end, past a failure, after kills, in order on
 // Ctrl-C.
 #include <gmock/gmock.h>

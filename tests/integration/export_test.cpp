@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `shoal export` of a real run's checkpoint, other programs held to what it writes, and a run that
 // starts from it.
 #include <gmock/gmock.h>

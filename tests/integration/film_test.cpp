@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `shoal film` of a short run from pixels, played by the real programs.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What three short lockstep runs of the real programs learn, held to what they learned before:
 // a change that is meant to change no behaviour leaves every bit of the policy as it was.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A process that is there but does nothing any more: noticed, killed, replaced; the account
 // balances.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The weights of a run through the real processes: one actor of the host receives them, and when it
 // is killed or stopped the others do not stay behind.
 #include <gtest/gtest.h>

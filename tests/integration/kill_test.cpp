@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // SIGKILL of each role while training: the run goes on, nothing acknowledged is lost, the account
 // balances exactly.
 #include <gtest/gtest.h>

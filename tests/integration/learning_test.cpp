@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // State-based SAC on FetchReachDense through the real processes reaches 90 % success within five
 // minutes.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // In lockstep a whole run through the real processes repeats bit for bit.
 #include "common/config/lockstep.h"
 

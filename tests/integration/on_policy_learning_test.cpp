@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // PPO from state, through the real processes, until nine of ten episodes succeed.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs of PPO through the real programs: no replay, rollouts to the learner, an exact account.
 #include <gtest/gtest.h>
 #include <signal.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A running run as those see it who watch it and steer it.
 #include <fmt/core.h>
 #include <gmock/gmock.h>

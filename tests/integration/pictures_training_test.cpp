@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Short trainings of the real programs on every kind of observation with pictures: goal modes,
 // proprioception, colours, stacks, numbers of cameras and sizes, copies, their shifts and n-step
 // returns, each value with others at least once.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the transport delivers again, and what makes no sense, does not count.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

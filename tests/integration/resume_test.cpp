@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // --resume: goes on where the run was, and says what it could not keep.
 #include <fmt/core.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Batches between the real replay and the real learner in shared memory: they go that way on one
 // host, and over the network where they cannot, and it is said; neither's death leaves anything.
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // launch/slurm/train.sbatch and `shoal experiment run --slurm` under a Slurm of the test's own:
 // controller, node and authentication on this machine, in a scratch folder.
 #include <fmt/core.h>

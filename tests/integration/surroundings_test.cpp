@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the machine can do to a run: no room, no permission, no port, little memory. Each gets one
 // clear line, and what was whole before stays whole.
 #include <arpa/inet.h>

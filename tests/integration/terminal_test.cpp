@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A run on the terminal that it was started on: what its keys do.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

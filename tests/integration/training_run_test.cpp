@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The real programs, from `shoal train` to the summary.
 #include "tests/support/training_run.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `--version` of every program.
 #include <fmt/format.h>
 #include <gtest/gtest.h>

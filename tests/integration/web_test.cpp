@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // `shoal web` beside a real run: the page's figures are those of `shoal top`, and who has the token
 // steers.
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An algorithm is a folder of learner/agent, a line in each of two lists and keys of its own: its
 // name stands nowhere else in the product (docs/decisions/0008).
 #include <fmt/core.h>

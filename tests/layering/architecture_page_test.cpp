@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What docs/architecture.md says there is, there is.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which folder may include what, read off the source tree.
 //
 // - common < actor, replay_server, learner < launch < tests: a folder uses itself and those before

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What lies in a run's folder is named in common/run_folder/run_file_names.h and nowhere else in
 // the product, and docs/monitoring.md has the same names.
 #include <fmt/core.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The training loop where rollouts take the place of batches.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The training loop's surroundings, played: batches made up, messages kept.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A run without pixels that is small enough to train on in a unit test.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The loop with a real, small agent; batches, readers and the coordinator are played by the test.
 #pragma once
 

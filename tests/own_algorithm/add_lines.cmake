@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # Writes COPY: SOURCE with the line that docs/own_algorithm.md, PAGE, has for it, at the beginning of
 # the list that the page names.
 file(READ ${PAGE} page)

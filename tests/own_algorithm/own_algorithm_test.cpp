@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The worked example of docs/own_algorithm.md does what its page says.
 #include <gmock/gmock.h>
 

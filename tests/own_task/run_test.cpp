@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The programs with the worked example of docs/own_task.md, as its page has it.
 #include <gtest/gtest.h>
 

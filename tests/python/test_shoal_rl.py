@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The package shoal-rl as it is installed. `./run python` says where these lie:
 
 SHOAL_CHECKPOINTS     checkpoints that random-checkpoints has written

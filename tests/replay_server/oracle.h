@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keeps everything and searches: what the replay must agree with.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Records whose every byte follows from who made them, so that tests can tell them apart.
 #pragma once
 

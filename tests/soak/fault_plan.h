@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which process of a run is struck when, and how: drawn from a seed.
 #pragma once
 

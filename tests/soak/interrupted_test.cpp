@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a soak or a benchmark leaves that is told to stop: nothing.
 #include <gtest/gtest.h>
 

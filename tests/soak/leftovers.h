@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a run must not leave behind.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // shoal-soak: strikes a training run's processes at random moments and checks that nothing is lost
 // and nothing is left; or leaves the run alone and checks that nothing grows.
 #include <sys/prctl.h>

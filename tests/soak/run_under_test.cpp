@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/soak/run_under_test.h"
 
 #include <fmt/core.h>

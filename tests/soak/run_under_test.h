@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A cheap training run of the real programs, from outside: its processes, what they report, its
 // end.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A run that is left alone: do memory, open files, threads, queues and files on disk stay as they
 // are?
 #pragma once

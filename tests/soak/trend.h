@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether a figure that is looked at again and again grows.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A client that knows nothing of Shoal but docs/monitoring.md: prints the next view of a run, one
 // line per process with its metrics, and leaves. The network is configured by CYCLONEDDS_URI.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What TensorBoard would read from a folder of event files.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Puts the test's own process, and what it starts, into surroundings of their own: mounts, network,
 // a memory limit. Each function answers "" or the reason why it cannot be done here, for
 // GTEST_SKIP. For tests that run in a process of their own each, as ctest starts them.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Two hosts on one machine: ours and a network namespace beside it, joined by a veth pair. The far
 // side has its own addresses, ports and loopback, so that nothing reaches it but over the link.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Asks the server of `shoal web`, on loopback, as a browser would.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Where tests find the source tree and the built programs. Compiled in once (paths.cpp), so that no
 // test's own object depends on where the tree lies.
 #pragma once

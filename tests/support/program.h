@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs one of the built programs to its end and reads what it said.
 #pragma once
 

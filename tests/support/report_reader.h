@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Follows a run's metrics.jsonl: the newest report of each process.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What `shoal` says about the run of a test to those who watch or steer it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A training run of the real programs that goes on while the test does something to it.
 #pragma once
 

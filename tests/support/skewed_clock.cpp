@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Preloaded into programs under test: their wall clock runs beside the machine's by what the file
 // named by SHOAL_CLOCK_SKEW says (a decimal count of seconds; looked at once per call). The steady
 // clocks are left alone, as a clock that is set leaves them.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A fresh folder that is removed with everything in it at the end of the test.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs one of the built programs on a terminal of its own, as a user would see it.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An experiment of two arms and one seed whose runs take seconds.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A small state-based training run of the real programs in a folder of its own, for integration
 // tests.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every task as every camera sees it, in both qualities, in one picture with labels.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Grip positions of the original Fetch models in newer versions of MuJoCo: format vrl-xversion-1.
 //
 // The file holds no actions and no starts. Those of the sequences const_* and zero follow from

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/worlds/tools/measurement_reader.h"
 
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // JSON files of measurements, read strictly: what is missing or ill-typed is named by the path of
 // keys that leads to it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/worlds/tools/open_environment.h"
 
 #include "common/base/random.h"

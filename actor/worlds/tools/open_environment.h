@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An environment that shows every number of its task and no pixels: what the tools look into.
 #pragma once
 

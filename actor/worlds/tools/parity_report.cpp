@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/worlds/tools/parity_report.h"
 
 #include <fmt/core.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How far our physics is from a measurement: what a replay found, for people and programs.
 #pragma once
 

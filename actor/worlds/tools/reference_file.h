@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A recorded trajectory of the original Fetch environments, to compare our physics with: what the
 // format vrl-ref-1 holds of it.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parity with the original environments: replays a recorded trajectory's start, goal and actions in
 // our physics and says how far apart the two get.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Parity of the environments without goals: writes a recorded trajectory's initial state, replays
 // its actions and compares the state, the observation, the reward and whether the episode
 // terminates.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Are the rewards of a task what they are said to be? Plays random actions and compares, number by
 // number: the reward of each step, what the goal half computes for the goals of its record, and the
 // written formula; then the last two again for goals that were put in later, as hindsight does.

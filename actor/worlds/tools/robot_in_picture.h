@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Is the robot in the picture, or does a broken renderer draw an empty one? Draws the same scene
 // with the robot's geoms and without them and compares.
 #pragma once

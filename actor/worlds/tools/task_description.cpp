@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/worlds/tools/task_description.h"
 
 #include <mujoco/mujoco.h>

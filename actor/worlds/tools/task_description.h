@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a task is, for people and programs: its numbers with units, meaning and bounds, what its
 // actions do, what it rewards, where its cameras stand. Declared facts come from the task's goal
 // half; ranges and effects of actions are measured in its physics half.

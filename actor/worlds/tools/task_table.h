@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The registered tasks at a glance. Reads the goal halves only: no physics is loaded.
 #pragma once
 

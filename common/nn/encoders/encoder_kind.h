@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Encoders: networks from pixels to a feature map, one kind a file. `network.encoder` names it.
 //
 // A further kind is a file beside these, a declaration, a line in the list of encoder_kind.cpp, and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/nn/encoders/encoder_kind.h"
 
 namespace shoal::nn {

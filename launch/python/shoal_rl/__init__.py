@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Policies, environments and runs of Shoal.
 
 Policy(path).act(observation)   acts by a checkpoint

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Shoal's worlds and renderer as a Gymnasium environment."""
 
 import json

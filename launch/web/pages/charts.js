@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A run's curves, drawn by dygraphs: a small chart each, all over env steps.
 
 const drawn = new Map();  // id of a chart -> {chart, graph, labels, box}

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The page: asks the server for what it shows, as often as it changes, while somebody looks.
 
 import { forgetCharts, showCharts } from "./charts.js";

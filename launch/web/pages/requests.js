@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Requests to the server that the page came from. Each has a deadline.
 
 const deadlineMs = 10000;

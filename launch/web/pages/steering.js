@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Orders to a run: set, scale, stop. Shown to who came with the token.
 
 import { mayAct, post, runPath } from "./requests.js";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // DDPG: one critic, targets as the target actor gives them (Lillicrap et al. 2015,
 // arXiv:1509.02971). Everything else: deterministic/deterministic_agent.h.
 #pragma once

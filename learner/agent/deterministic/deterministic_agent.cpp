@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "learner/agent/deterministic/deterministic_agent.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What TD3 and DDPG share: a deterministic actor that climbs its critic, targets of both, and one
 // update of a batch. Equations are numbered in docs/algorithm.md.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Generalised advantages of a rollout.
 //
 //   delta_t = r_t + discount b_t V(s'_t) - V(s_t)                        Eq. 23

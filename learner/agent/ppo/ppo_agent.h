@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Proximal policy optimisation: one update learns from a whole rollout, in several passes over it
 // by minibatches. Equations are numbered in docs/algorithm.md.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The loss of a minibatch and its gradients with respect to the networks' outputs.
 //
 //   log pi(u|s) = sum_j -((u_j - mean_j) / sigma_j)^2 / 2 - log sigma_j - log(2 pi) / 2     Eq. 22

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The policy and the value function of PPO: two networks, each with an encoder of its own where
 // there are pixels, or one with both as outputs (ppo.networks).
 //

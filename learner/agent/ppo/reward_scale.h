@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rewards at about the deviation of the discounted returns that they add up to.
 //
 // Source: VecNormalize of Stable-Baselines3, common/vec_env/vec_normalize.py.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One update, in order (equations of docs/algorithm.md):
 //
 //   1. targets     next_obs -> encoders -> actor, target heads -> y                (Eq. 5, 15)

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // SAC with DrQ: networks, targets, optimisers and one update. Equations are numbered in
 // docs/algorithm.md.
 #pragma once

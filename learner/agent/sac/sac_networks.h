@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which networks SAC trains, and what follows them. Names are those of its tensors:
 //
 //   encoder.*, critic.*    trained by the critic's loss, one optimiser

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // TD3: two critics, smoothed targets, an actor that moves less often than they do (Fujimoto et al.
 // 2018, arXiv:1802.09477). Everything else: deterministic/deterministic_agent.h.
 #pragma once

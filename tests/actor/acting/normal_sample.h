@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Is a sample from a normal distribution of given mean and deviation? Judged by its mean and its
 // deviation, each within five standard errors.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/evaluation/other_task.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A rollout over environments without physics, and what it borrows.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/sending/actor_lock.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/sending/credit_inbox.h"
 
 #include <gtest/gtest.h>

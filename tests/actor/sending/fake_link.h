@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A link to a replay that a test plays, and the clock of both: time passes only while a credit is
 // waited for.
 #pragma once

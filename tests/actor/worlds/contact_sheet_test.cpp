@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/worlds/tools/contact_sheet.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The six tasks of the Control Suite: models, starts, episodes, rewards.
 #include <gtest/gtest.h>
 #include <mujoco/mujoco.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // end_on_success: episodes that end with the step that reaches the goal.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

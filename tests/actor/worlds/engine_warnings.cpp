@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/actor/worlds/engine_warnings.h"
 
 #include <gtest/gtest.h>

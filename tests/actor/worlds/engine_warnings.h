@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A warning of the engine fails the test in which it comes: engine_warnings.cpp listens to every
 // test of this program.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/worlds/fetch_arm.h"
 
 #include <gmock/gmock.h>

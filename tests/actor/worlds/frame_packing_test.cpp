@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/worlds/frame_packing.h"
 
 #include <gtest/gtest.h>

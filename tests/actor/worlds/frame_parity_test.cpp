@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Frames of ours beside frames of the original environments with their own meshes.
 #include <fmt/core.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether the pixels-only preset can be solved at all: its two cameras show every goal.
 #include <gtest/gtest.h>
 

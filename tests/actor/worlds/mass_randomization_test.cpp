@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/worlds/mass_randomization.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/worlds/model_loading.h"
 
 #include <gmock/gmock.h>

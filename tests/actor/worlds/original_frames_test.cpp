@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Our pictures of Hopper and the Control Suite beside those of the original models: camera 0,
 // 84x84.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/worlds/reward_tolerance.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "actor/worlds/tools/robot_in_picture.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Episode k of environment i is the same bytes however environments are spread over actors and
 // processes, as long as actions come from streams of their own.
 #include <gtest/gtest.h>

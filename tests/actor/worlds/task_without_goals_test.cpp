@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A world of seven control steps, whose physics half pays the action itself.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

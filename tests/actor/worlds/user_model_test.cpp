@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // MJCF files of users in place of ours.
 #include <fmt/core.h>
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Whether a JSON value keeps to a JSON Schema: the keywords that ConfigSchema uses, and no others.
 #pragma once
 

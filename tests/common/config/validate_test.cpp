@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Keys that make no sense beside each other.
 #include <gmock/gmock.h>
 

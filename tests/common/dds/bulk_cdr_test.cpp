@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/dds/bulk_cdr.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The other process of the DDS tests: joins a domain in a role and does what it reads from stdin,
 // one answer line on stdout per command. T is the name of a message type.
 //

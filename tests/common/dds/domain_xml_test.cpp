@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/dds/domain_xml.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A message as Cyclone serialises it.
 #pragma once
 

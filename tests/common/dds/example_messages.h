@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Example messages numbered n, the same in every process, for tests that compare what was sent with
 // what arrived. Every field has a value of its own that depends on n.
 #pragma once

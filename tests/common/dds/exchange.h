@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A message of each kind from one process to another.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Processes killed, stopped, cut off and shouted at.
 #include <arpa/inet.h>
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A dds_peer in a process of its own, driven over pipes.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Secured domains: each role does what it must and no more, strangers neither join nor read.
 #include <arpa/inet.h>
 #include <gmock/gmock.h>

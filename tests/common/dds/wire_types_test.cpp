@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/dds/wire_types.h"
 
 #include <gtest/gtest.h>

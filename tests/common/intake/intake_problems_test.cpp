@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/intake/intake_problems.h"
 
 #include <gmock/gmock.h>

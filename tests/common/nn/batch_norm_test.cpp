@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/nn/batch_norm.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Encoders whose layers have several readers: skips and pools together, against their doubles in
 // double.
 #include "common/nn/encoder.h"

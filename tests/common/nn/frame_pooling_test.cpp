@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/nn/frame_pooling.h"
 
 #include <gmock/gmock.h>

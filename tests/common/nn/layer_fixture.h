@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What tests of single layers share: memories filled from and read into plain arrays, parameters
 // with random values, both precisions.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/nn/layer_norm.h"
 
 #include "common/nn/parallel.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/nn/linear.h"
 
 #include "tests/common/nn/layer_fixture.h"

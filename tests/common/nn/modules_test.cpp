@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Encoder, actor and critic as algorithms use them: options of the heads, which loss trains an
 // encoder, targets, against the double in double.
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A small network with odd sizes, random parameters and inputs, and its double in double.
 #pragma once
 

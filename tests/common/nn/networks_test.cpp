@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Encoder, actor and critic against their doubles in double: outputs, and gradients by central
 // differences.
 #include "common/nn/actor_head.h"

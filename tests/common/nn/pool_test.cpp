@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Max and average pooling of maps.
 #include "common/nn/average_pool.h"
 #include "common/nn/max_pool.h"

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Which oneDNN primitives a piece of work runs, to run them again without what lies between them:
 // the least time that the work can take with these primitives.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Naive layers in double, for comparison with the fast ones. Written from the formulas in the
 // layers' headers, loop by loop; speed is no concern. Arrays are row-major.
 #pragma once

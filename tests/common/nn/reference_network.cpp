@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "tests/common/nn/reference_network.h"
 
 #include <cmath>

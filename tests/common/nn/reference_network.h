@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The networks of the agent in double, evaluated from named tensors.
 #pragma once
 

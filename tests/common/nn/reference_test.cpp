@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The naive reference itself: its gradients against central differences.
 #include "tests/common/nn/reference.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Points of maps and their gradients.
 #include "common/nn/spatial_softmax.h"
 

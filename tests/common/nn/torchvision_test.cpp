@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // resnet18 and alexnet, held to what torchvision computes from the same weights and images:
 // tests/comparison/torchvision_encoders.py recorded it and says what the files hold.
 #include <gmock/gmock.h>

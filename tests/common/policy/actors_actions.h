@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the actor makes of a checkpoint's policy: what acting outside of training is compared with.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Checkpoints of small agents, written as the learner writes them.
 #pragma once
 

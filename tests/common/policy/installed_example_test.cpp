@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The library as a user has it: installed, found by CMake, without what only training needs.
 #include <gmock/gmock.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/run_folder/evaluation_file.h"
 
 #include <fmt/core.h>

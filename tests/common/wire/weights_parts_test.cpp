@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "common/wire/weights_parts.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Every kind of observation, from the configuration to a batch that a network takes: spec, records
 // of a short random rollout, ring, batch, one update, `shoal replay peek`.
 #include <gtest/gtest.h>

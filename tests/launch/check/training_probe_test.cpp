@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "launch/check/training_probe.h"
 
 #include <gmock/gmock.h>

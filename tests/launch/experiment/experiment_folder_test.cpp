@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "launch/experiment/experiment_folder.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The folder of a run as its programs would have left it, without them.
 #pragma once
 

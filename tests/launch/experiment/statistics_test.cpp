@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Expected values are scipy 1.10's (stats.t, binomtest(...).proportion_ci(method='wilson')) where
 // no other source is given.
 #include "launch/experiment/statistics.h"

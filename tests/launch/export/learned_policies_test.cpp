@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the learner writes of networks that hold more than a policy: the policy alone leaves.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes a checkpoint of every algorithm and encoder, trained for three updates on random numbers,
 // for scripts that hold other programs to what `shoal export` makes of them
 // (tests/comparison/onnx_actions.py, sb3_policy.py).

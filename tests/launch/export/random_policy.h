@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Policies of every kind with parameters that belong to no training.
 #pragma once
 

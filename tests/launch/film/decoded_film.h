@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Plays an MP4 file with libav, for tests.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "launch/film/mp4_writer.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The completions that the build made, run by the shells they are for, against --help of the built
 // programs.
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What the built programs' --help says, read off their output: what man pages and completions are
 // compared with. Knows nothing of how those are made.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The pages that the build made, against --help of the built programs.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "launch/processes/remote_host.h"
 
 #include <gmock/gmock.h>

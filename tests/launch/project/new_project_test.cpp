@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // An installation in a folder of its own, and a user's project that is made, built and trained with
 // it from another folder.
 #include <gmock/gmock.h>

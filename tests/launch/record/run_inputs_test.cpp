@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "launch/record/run_inputs.h"
 
 #include <gmock/gmock.h>

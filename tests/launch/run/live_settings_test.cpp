@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "launch/run/live_settings.h"
 
 #include <gmock/gmock.h>

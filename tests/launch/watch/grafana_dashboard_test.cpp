@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The ready dashboard asks for metrics that exist, with the labels that they have.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A process's report, as it comes from the network.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "launch/web/byte_range.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "launch/web/page_route.h"
 
 #include <gtest/gtest.h>

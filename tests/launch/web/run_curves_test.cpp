@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "launch/web/run_curves.h"
 
 #include <gmock/gmock.h>

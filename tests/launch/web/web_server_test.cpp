@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The real server before clients of every kind, on loopback.
 #include "launch/web/web_server.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Gradients of one update, read off Adam's first moment, which was 0 before: m = (1 - 0.9) g.
 #pragma once
 

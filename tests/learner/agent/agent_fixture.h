@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A small agent and batches for it.
 #pragma once
 

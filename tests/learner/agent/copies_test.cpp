@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Rows of one transition in a batch (Eq. 15): which of them its target is made of, and what they
 // weigh in the losses.
 #include <gmock/gmock.h>

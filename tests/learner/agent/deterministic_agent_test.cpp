@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What TD3 and DDPG share. One update against a double in double: losses, and every gradient by
 // central differences.
 //

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "learner/agent/frozen_cameras.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Learning that is told more than the policy: asymmetric critics and the auxiliary loss, against a
 // double in double as in sac_gradient_test.cpp.
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Several replicas are the agent that one would be, within rounding, and the same bits each time.
 #include "learner/agent/replicated_agent.h"
 

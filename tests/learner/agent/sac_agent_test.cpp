@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "learner/agent/sac/sac_agent.h"
 
 #include <gmock/gmock.h>

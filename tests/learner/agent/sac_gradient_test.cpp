@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // One whole update against a double in double: losses, and every gradient by central differences.
 //
 // The gradients are read off Adam's first moment, which was 0 before: m = (1 - 0.9) g. Targets and

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Two epochs of PPO, held to what Stable-Baselines3 computes from the same weights and rollout:
 // tests/comparison/sb3_ppo.py recorded it and says what the files hold.
 #include <gtest/gtest.h>

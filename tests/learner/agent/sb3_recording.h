@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Updates that Stable-Baselines3 made, and an agent that starts from the same weights:
 // tests/comparison/sb3_updates.py recorded them and says what a file holds.
 #pragma once

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Four updates of TD3 and DDPG, held to what Stable-Baselines3 computes from the same weights and
 // batches. Without noise on the target's action: both sides' random numbers are their own.
 #include <fmt/core.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "learner/agent/value_bounds.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "learner/agent/vector_standard.h"
 
 #include <gtest/gtest.h>

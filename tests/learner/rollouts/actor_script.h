@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Records of an actor on policy, by hand.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "learner/rollouts/rollout_source.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The server is killed at random instants: what it acknowledged is there, and everything else goes
 // on as if it had never been interrupted.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "replay_server/core/peek.h"
 
 #include <gmock/gmock.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Random histories of several actors against an oracle that keeps everything.
 #include <gtest/gtest.h>
 

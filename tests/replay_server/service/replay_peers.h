@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The rest of a run around a replay server: coordinator, actors and learner, all on one bus.
 #pragma once
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // shoal-replay in a process of its own, with its stderr in a file.
 #pragma once
 

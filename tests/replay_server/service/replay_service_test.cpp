@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // shoal-replay as a process, over DDS.
 #include "replay_server/service/replay_service.h"
 
