@@ -6,7 +6,7 @@
 namespace shoal::nn {
 namespace {
 
-const char* ToString(LayerPlan::Kind kind) {
+const char* KindName(LayerPlan::Kind kind) {
   switch (kind) {
     case LayerPlan::Kind::kPixels:
       return "pixels";
@@ -24,7 +24,7 @@ const char* ToString(LayerPlan::Kind kind) {
   return "";
 }
 
-const char* ToString(Activation activation) {
+const char* ActivationName(Activation activation) {
   switch (activation) {
     case Activation::kNone:
       return "";
@@ -36,7 +36,7 @@ const char* ToString(Activation activation) {
   return "";
 }
 
-std::string Shape(const MapShape& shape) {
+std::string MapShapeText(const MapShape& shape) {
   return fmt::format("{}x{}x{}", shape.channels, shape.height, shape.width);
 }
 
@@ -48,9 +48,9 @@ bool HasWindow(LayerPlan::Kind kind) {
 }  // namespace
 
 std::string PlanLine(const LayerPlan& layer) {
-  std::string line = fmt::format("{}: {}", layer.name, ToString(layer.kind));
+  std::string line = fmt::format("{}: {}", layer.name, KindName(layer.kind));
   if (layer.source != kNoLayer) line += fmt::format(" of layer {}", layer.source);
-  line += fmt::format(", {} to {}", Shape(layer.input), Shape(layer.output));
+  line += fmt::format(", {} to {}", MapShapeText(layer.input), MapShapeText(layer.output));
   if (HasWindow(layer.kind)) {
     line += fmt::format(", kernel {}, stride {}, padding {}", layer.kernel, layer.stride,
                         layer.padding);
@@ -66,7 +66,7 @@ std::string PlanLine(const LayerPlan& layer) {
   if (layer.layer_norm) line += ", layer norm";
   if (!layer.batch_norm.empty()) line += ", batch norm " + layer.batch_norm;
   if (layer.skip != kNoLayer) line += fmt::format(", plus layer {}", layer.skip);
-  return line + ToString(layer.activation);
+  return line + ActivationName(layer.activation);
 }
 
 std::vector<std::string> PlanLines(const NetworkPlan& encoder, const ActorPlan& actor) {

@@ -137,11 +137,11 @@ void CheckCover(std::vector<Entry>* entries, uint64_t data_bytes, const std::str
 
 // Floats become half as many bytes in the same memory: fresh pages cost more than the rounding.
 void RoundInPlace(std::vector<uint8_t>* data) {
-  constexpr size_t kBlock = 4096;
-  uint16_t rounded[kBlock];
+  constexpr size_t kFloatsAtOnce = 4096;
+  uint16_t rounded[kFloatsAtOnce];
   const size_t count = data->size() / sizeof(float);
-  for (size_t first = 0; first < count; first += kBlock) {
-    const size_t n = std::min(kBlock, count - first);
+  for (size_t first = 0; first < count; first += kFloatsAtOnce) {
+    const size_t n = std::min(kFloatsAtOnce, count - first);
     FloatsToBf16(reinterpret_cast<const float*>(data->data()) + first, int64_t(n), rounded);
     std::memcpy(data->data() + first * sizeof(uint16_t), rounded, n * sizeof(uint16_t));
   }

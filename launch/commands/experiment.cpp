@@ -70,7 +70,7 @@ void AddRun(CLI::App& experiment, Action* chosen) {
   });
 }
 
-void AddTask(CLI::App& experiment, Action* chosen) {
+void AddSlurmTask(CLI::App& experiment, Action* chosen) {
   CLI::App* command = experiment.add_subcommand(
       "task", "Do one run of an experiment: what a task of a job array calls.");
   const auto task = std::make_shared<ExperimentTask>();
@@ -109,7 +109,7 @@ void AddExperimentCommand(CLI::App& app, Action* chosen) {
       app.add_subcommand("experiment", "Arms x seeds from one file (docs/experiments.md).");
   experiment->require_subcommand(1);
   AddRun(*experiment, chosen);
-  AddTask(*experiment, chosen);
+  AddSlurmTask(*experiment, chosen);
   AddStatus(*experiment, chosen);
   AddSummary(*experiment, chosen);
 }

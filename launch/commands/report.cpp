@@ -40,7 +40,7 @@ void AddSubjects(CLI::App* command, SubjectOptions* subjects) {
       ->capture_default_str();
 }
 
-int Compare(const CompareOptions& options) {
+int CompareSubjects(const CompareOptions& options) {
   if (!options.json.empty()) CheckWritable(options.json);
   const Comparison comparison =
       launch::Compare(ReadSubjects(options.subjects).groups, options.target);
@@ -140,7 +140,7 @@ void AddCompareCommand(CLI::App& app, Action* chosen) {
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
   command->add_option("--json", options->json, "File for the same (schema shoal-comparison-1)");
-  command->callback([=] { *chosen = [=] { return Compare(*options); }; });
+  command->callback([=] { *chosen = [=] { return CompareSubjects(*options); }; });
 }
 
 void AddPlotCommand(CLI::App& app, Action* chosen) {

@@ -21,6 +21,7 @@
 #include "common/base/random.h"
 #include "common/config/config_io.h"
 #include "common/tasks/task_registry.h"
+#include "launch/python/observation_properties.h"
 
 namespace py = pybind11;
 
@@ -150,20 +151,6 @@ class PlayedEnvironment {
   bool running_ = false;        // between a reset and the end of its episode
 };
 
-py::object PixelShape(const PlayedEnvironment& environment) {
-  const ObservationSpec& spec = environment.spec();
-  if (!spec.HasPixels()) return py::none();
-  return py::make_tuple(spec.InputChannels(), spec.height, spec.width);
-}
-
-py::dict Blocks(const PlayedEnvironment& environment) {
-  py::dict blocks;
-  for (const BlockSpec& block : environment.spec().blocks) {
-    if (block.observed) blocks[py::str(block.name)] = block.size;
-  }
-  return blocks;
-}
-
 }  // namespace
 
 void BindEnvironment(py::module_& module) {
@@ -172,8 +159,8 @@ void BindEnvironment(py::module_& module) {
       .def(py::init<const std::string&, const std::string&>(), py::arg("task"), py::arg("keys"))
       .def("reset", &Played::Reset, py::arg("seed"), py::arg("episode"))
       .def("step", &Played::Step, py::arg("action"))
-      .def_property_readonly("pixels", &PixelShape)
-      .def_property_readonly("blocks", &Blocks)
+      .def_property_readonly("pixels", [](const Played& e) { return PixelShape(e.spec()); })
+      .def_property_readonly("blocks", [](const Played& e) { return ObservedBlocks(e.spec()); })
       .def_property_readonly("stack", [](const Played& e) { return e.spec().stack; })
       .def_property_readonly("goal_picture", [](const Played& e) { return e.spec().goal_picture; })
       .def_property_readonly("cameras", [](const Played& e) { return e.spec().cameras; })

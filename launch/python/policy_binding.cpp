@@ -14,6 +14,7 @@
 
 #include "common/base/error.h"
 #include "common/policy/trained_policy.h"
+#include "launch/python/observation_properties.h"
 
 namespace py = pybind11;
 
@@ -120,20 +121,6 @@ py::array_t<float> Act(policy::TrainedPolicy& policy, const py::dict& observatio
   return actions;
 }
 
-py::dict Blocks(const policy::TrainedPolicy& policy) {
-  py::dict blocks;
-  for (const BlockSpec& block : policy.spec().blocks) {
-    if (block.observed) blocks[py::str(block.name)] = block.size;
-  }
-  return blocks;
-}
-
-py::object PixelShape(const policy::TrainedPolicy& policy) {
-  const ObservationSpec& spec = policy.spec();
-  if (!spec.HasPixels()) return py::none();
-  return py::make_tuple(spec.InputChannels(), spec.height, spec.width);
-}
-
 std::string Summary(const policy::TrainedPolicy& policy) {
   return fmt::format("<shoal_rl.Policy {} {}>", policy.description().algorithm,
                      policy.spec().Summary());
@@ -165,9 +152,10 @@ void BindPolicy(py::module_& module) {
       .def_property_readonly(
           "action_size", [](const TrainedPolicy& policy) { return policy.spec().action_size; },
           "A, the numbers of an action.")
-      .def_property_readonly("pixels", &PixelShape,
-                             "(K*C, H, W) of one observation, with a goal picture "
-                             "((K+1)*C, H, W); None without pixels.")
+      .def_property_readonly(
+          "pixels", [](const TrainedPolicy& policy) { return PixelShape(policy.spec()); },
+          "(K*C, H, W) of one observation, with a goal picture "
+          "((K+1)*C, H, W); None without pixels.")
       .def_property_readonly(
           "goal_picture", [](const TrainedPolicy& policy) { return policy.spec().goal_picture; },
           "Whether a picture of the goal reached follows the stack in the pixels.")
@@ -177,8 +165,9 @@ void BindPolicy(py::module_& module) {
       .def_property_readonly(
           "cameras", [](const TrainedPolicy& policy) { return policy.spec().cameras; },
           "Names, in the order of a frame's channels.")
-      .def_property_readonly("blocks", &Blocks,
-                             "Name and size of each vector that it observes beside the pixels.")
+      .def_property_readonly(
+          "blocks", [](const TrainedPolicy& policy) { return ObservedBlocks(policy.spec()); },
+          "Name and size of each vector that it observes beside the pixels.")
       .def("__repr__", &Summary);
 }
 

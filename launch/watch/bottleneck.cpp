@@ -22,14 +22,14 @@ constexpr double kLeastShown = 0.005;
 constexpr std::string_view kBeside[] = {"sending"};
 
 // A stage is counted where it ends, so that a long one may be more than the time that is looked at.
-double Share(double seconds, double of) { return std::min(1.0, seconds / of); }
+double ShareOf(double seconds, double of) { return std::min(1.0, seconds / of); }
 
 // `run_seconds`: for which the run was looked at.
 ProcessTimes TimesOf(const std::string& role, const RoleTotals& totals, double run_seconds) {
   ProcessTimes times{.role = role, .processes = totals.processes, .seconds = totals.seconds};
   double named = 0;
   for (const auto& [stage, seconds] : totals.stages) {
-    const double share = Share(seconds, totals.seconds);
+    const double share = ShareOf(seconds, totals.seconds);
     if (share < kLeastShown) continue;
     times.stages.push_back({stage, share});
     if (std::ranges::find(kBeside, stage) == std::end(kBeside)) named += share;
@@ -62,8 +62,8 @@ Bottleneck FindBottleneck(const RunTotals& totals, const RunResources& resources
   const auto replay = totals.find("replay");
   result.limited = replay != totals.end();
   if (result.limited) {
-    result.inserts_blocked = Share(replay->second.inserts_blocked, replay->second.seconds);
-    result.samples_blocked = Share(replay->second.samples_blocked, replay->second.seconds);
+    result.inserts_blocked = ShareOf(replay->second.inserts_blocked, replay->second.seconds);
+    result.samples_blocked = ShareOf(replay->second.samples_blocked, replay->second.seconds);
   }
   result.advice = Advise(result, resources);
   return result;

@@ -9,7 +9,7 @@ namespace {
 constexpr std::string_view kUptime = "uptime_seconds";
 
 template <class Values>
-std::optional<double> Find(const Values& values, std::string_view name) {
+std::optional<double> FindValue(const Values& values, std::string_view name) {
   const auto it = values.find(name);
   return it == values.end() ? std::nullopt : std::optional(it->second);
 }
@@ -22,7 +22,7 @@ bool MetricsView::IsSuccessor(const MetricsMessage& message, const Process& befo
   if (message.pid != before.newest.pid || message.host != before.newest.host) return true;
   const auto uptime = std::ranges::find(message.names, kUptime);
   const auto i = static_cast<size_t>(uptime - message.names.begin());
-  const auto uptime_before = Find(before.values, kUptime);
+  const auto uptime_before = FindValue(before.values, kUptime);
   return i < message.values.size() && uptime_before && message.values[i] < *uptime_before;
 }
 
@@ -48,14 +48,14 @@ void MetricsView::ForRole(std::string_view role, Visit visit) const {
 
 std::optional<double> MetricsView::Get(const ProcessName& process, std::string_view name) const {
   const auto it = processes_.find({std::string(process.role), process.index});
-  return it == processes_.end() ? std::nullopt : Find(it->second.values, name);
+  return it == processes_.end() ? std::nullopt : FindValue(it->second.values, name);
 }
 
 std::optional<double> MetricsView::Sum(std::string_view role, std::string_view name,
                                        SteadyTime now) const {
   std::optional<double> sum;
   ForRole(role, [&](const Process& process) {
-    const auto value = Find(process.values, name);
+    const auto value = FindValue(process.values, name);
     if (value && now - process.heard <= kFresh) sum = sum.value_or(0) + *value;
   });
   return sum;
@@ -65,7 +65,7 @@ std::optional<double> MetricsView::Mean(std::string_view role, std::string_view 
                                         std::string_view weight, SteadyTime now) const {
   double sum = 0, weights = 0;
   ForRole(role, [&](const Process& process) {
-    const auto value = Find(process.values, name), w = Find(process.values, weight);
+    const auto value = FindValue(process.values, name), w = FindValue(process.values, weight);
     if (!value || !w || now - process.heard > kFresh) return;
     sum += *value * *w;
     weights += *w;
@@ -76,7 +76,8 @@ std::optional<double> MetricsView::Mean(std::string_view role, std::string_view 
 double MetricsView::Total(std::string_view role, std::string_view name) const {
   double total = 0;
   ForRole(role, [&](const Process& process) {
-    total += Find(process.values, name).value_or(0) + Find(process.ended, name).value_or(0);
+    total +=
+        FindValue(process.values, name).value_or(0) + FindValue(process.ended, name).value_or(0);
   });
   return total;
 }

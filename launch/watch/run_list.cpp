@@ -74,7 +74,7 @@ std::string PeerOf(const std::filesystem::path& run) try {
 
 using RunRow = std::array<std::string, 8>;
 
-std::string Rendered(const RunRow& row, const std::array<size_t, 8>& widths) {
+std::string RenderedRow(const RunRow& row, const std::array<size_t, 8>& widths) {
   std::string line;
   for (size_t i = 0; i < row.size(); ++i) {
     const bool number = i >= 2 && i <= 6;
@@ -141,9 +141,9 @@ std::vector<std::string> FormatRunList(const std::vector<RunListing>& runs) {
   for (const RunRow& row : rows) {
     for (size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
   }
-  std::vector<std::string> lines{Rendered(rows[0], widths)};
+  std::vector<std::string> lines{RenderedRow(rows[0], widths)};
   for (size_t i = 0; i < runs.size(); ++i) {
-    lines.push_back(Rendered(rows[i + 1], widths));
+    lines.push_back(RenderedRow(rows[i + 1], widths));
     if (!runs[i].problem.empty()) lines.push_back("  " + runs[i].problem);
   }
   return lines;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::chrono::seconds kRolloutPeriod{5};
 
-std::optional<double> Find(const MetricsMessage& report, std::string_view name) {
+std::optional<double> FindScalar(const MetricsMessage& report, std::string_view name) {
   const auto at = std::ranges::find(report.names, name);
   const auto i = static_cast<size_t>(at - report.names.begin());
   return i < report.values.size() ? std::optional(report.values[i]) : std::nullopt;
@@ -92,7 +92,7 @@ void ScalarLog::WriteRollouts(const MetricsView& view, const ProgressFigures& fi
 }
 
 void ScalarLog::WriteTraining(const MetricsMessage& report, SteadyTime now) {
-  const auto updates = Find(report, "updates"), env_steps = Find(report, "env_steps");
+  const auto updates = FindScalar(report, "updates"), env_steps = FindScalar(report, "env_steps");
   if (report.role != "learner" || !updates || !env_steps) return;
   const auto x = static_cast<int64_t>(*env_steps);
   bool any = false;

@@ -21,7 +21,7 @@ using std::chrono::seconds;
 // moment for a loaded machine.
 constexpr seconds kLeave = ControlState::kLease + seconds(15);
 
-std::vector<std::string> Resume(const TrainingRun& run) {
+std::vector<std::string> ResumeCommand(const TrainingRun& run) {
   return {"shoal", "train", "--resume", run.path().string(), "--set", "env_steps=9000"};
 }
 
@@ -57,7 +57,7 @@ TEST(CoordinatorKill, ProcessesLeaveInOrderAndResumeGoesOn) {
   EXPECT_NE(ReadFile(run.path() / "logs" / "replay-0.log").find("coordinator is gone"),
             std::string::npos);
 
-  RunningTraining resumed(run, Resume(run));
+  RunningTraining resumed(run, ResumeCommand(run));
   ASSERT_EQ(resumed.End(seconds(240)), 0) << resumed.Output();
   const json meta = run.Json("meta.json");
   ExpectBalanced(meta);
@@ -131,7 +131,7 @@ TEST(CoordinatorKill, AResumeAtOnceWaitsForTheFormerProcesses) {
     ASSERT_EQ(kill(training.pid(), SIGKILL), 0);
     EXPECT_EQ(training.End(seconds(5)), -1);
   }
-  RunningTraining resumed(run, Resume(run));
+  RunningTraining resumed(run, ResumeCommand(run));
   ASSERT_EQ(resumed.End(seconds(240)), 0) << resumed.Output();
   EXPECT_NE(resumed.Output().find("waiting up to 60 s"), std::string::npos) << resumed.Output();
   ExpectBalanced(run.Json("meta.json"));

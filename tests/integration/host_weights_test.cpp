@@ -43,7 +43,7 @@ double NewestUpdate(RunningTraining* training) {
   return training->reports().Await("learner").at("updates").get<double>();
 }
 
-pid_t PidOf(RunningTraining* training, int actor) {
+pid_t PidOfActor(RunningTraining* training, int actor) {
   return training->reports().Await("actor", actor).at("pid").get<pid_t>();
 }
 
@@ -63,7 +63,7 @@ class HostWeightsOfARun : public testing::Test {
 TEST_F(HostWeightsOfARun, OneActorReceivesAlsoWhenTheOneThatDidIsKilled) {
   const std::vector<int> receivers = ReceiversAfter(&training_, 0);
   ASSERT_EQ(receivers.size(), 1u) << training_.Output();
-  const pid_t receiver = PidOf(&training_, receivers[0]);
+  const pid_t receiver = PidOfActor(&training_, receivers[0]);
   ASSERT_EQ(kill(receiver, SIGKILL), 0);
   ASSERT_FALSE(training_.reports()
                    .WaitFor(
@@ -76,7 +76,7 @@ TEST_F(HostWeightsOfARun, OneActorReceivesAlsoWhenTheOneThatDidIsKilled) {
 TEST_F(HostWeightsOfARun, TheOthersActOnWhileTheReceiverIsStopped) {
   const std::vector<int> receivers = ReceiversAfter(&training_, 0);
   ASSERT_EQ(receivers.size(), 1u) << training_.Output();
-  const pid_t receiver = PidOf(&training_, receivers[0]);
+  const pid_t receiver = PidOfActor(&training_, receivers[0]);
   ASSERT_EQ(kill(receiver, SIGSTOP), 0);
   for (int actor = 0; actor < kActors; ++actor) {
     if (actor == receivers[0]) continue;

@@ -38,7 +38,7 @@ StateSnapshot ReadSnapshot(const MeasurementReader& from, const Shape& shape) {
           .contacts = static_cast<int>(from.Number("ncon"))};
 }
 
-StateStep ReadStep(const MeasurementReader& from, const Shape& shape, bool hopper) {
+StateStep ReadStateStep(const MeasurementReader& from, const Shape& shape, bool hopper) {
   StateStep step;
   step.action = from.Numbers("action", shape.action);
   for (const double component : step.action) {
@@ -96,7 +96,7 @@ StateTrajectory ReadStateReference(const std::filesystem::path& path) {
   }
   for (size_t i = 0; i < steps.size(); ++i) {
     const MeasurementReader step(path, steps[i], fmt::format("trajectory[{}]", i));
-    trajectory.steps.push_back(ReadStep(step, *shape, hopper));
+    trajectory.steps.push_back(ReadStateStep(step, *shape, hopper));
   }
   return trajectory;
 }

@@ -36,7 +36,7 @@ ordered_json NumberOrNull(double number) {
   return std::isfinite(number) ? ordered_json(number) : ordered_json(nullptr);
 }
 
-ordered_json ToJson(const Component& component) {
+ordered_json ComponentJson(const Component& component) {
   return {{"name", component.name},
           {"unit", component.unit},
           {"meaning", component.meaning},
@@ -44,10 +44,10 @@ ordered_json ToJson(const Component& component) {
           {"high", NumberOrNull(component.high)}};
 }
 
-ordered_json ToJson(const Block& block, const std::vector<MeasuredRange>& ranges) {
+ordered_json BlockJson(const Block& block, const std::vector<MeasuredRange>& ranges) {
   ordered_json components = ordered_json::array();
   for (size_t i = 0; i < ranges.size(); ++i) {
-    components.push_back(ToJson(block.components[i]));
+    components.push_back(ComponentJson(block.components[i]));
     components.back()["measured_low"] = ranges[i].low;
     components.back()["measured_high"] = ranges[i].high;
   }
@@ -57,7 +57,7 @@ ordered_json ToJson(const Block& block, const std::vector<MeasuredRange>& ranges
           {"components", components}};
 }
 
-ordered_json ToJson(const CameraView& camera) {
+ordered_json CameraJson(const CameraView& camera) {
   if (camera.model_camera >= 0) {
     return {{"name", camera.name}, {"model_camera", camera.model_camera}};
   }
@@ -68,7 +68,7 @@ ordered_json ToJson(const CameraView& camera) {
           {"elevation", camera.elevation_degrees}};
 }
 
-ordered_json ToJson(const AxisProbe& probe, const Task& task) {
+ordered_json ProbeJson(const AxisProbe& probe, const Task& task) {
   ordered_json change = ordered_json::object();
   for (size_t i = 0; i < probe.change.size(); ++i) {
     change[task.observation().components[i].name] = probe.change[i];
@@ -147,15 +147,15 @@ std::string ActionText(const TaskDescription& description) {
 ordered_json ToJson(const TaskDescription& description) {
   const Task& task = *description.task;
   ordered_json action = ordered_json::array(), probes = ordered_json::array();
-  for (const Component& axis : task.action()) action.push_back(ToJson(axis));
-  for (const AxisProbe& probe : description.probes) probes.push_back(ToJson(probe, task));
+  for (const Component& axis : task.action()) action.push_back(ComponentJson(axis));
+  for (const AxisProbe& probe : description.probes) probes.push_back(ProbeJson(probe, task));
   ordered_json blocks = ordered_json::array(), cameras = ordered_json::array();
-  blocks.push_back(ToJson(task.observation(), description.observation));
+  blocks.push_back(BlockJson(task.observation(), description.observation));
   if (task.goal_size() > 0) {
-    blocks.push_back(ToJson(task.achieved_goal(), description.achieved_goal));
-    blocks.push_back(ToJson(task.desired_goal(), description.desired_goal));
+    blocks.push_back(BlockJson(task.achieved_goal(), description.achieved_goal));
+    blocks.push_back(BlockJson(task.desired_goal(), description.desired_goal));
   }
-  for (const CameraView& camera : description.cameras) cameras.push_back(ToJson(camera));
+  for (const CameraView& camera : description.cameras) cameras.push_back(CameraJson(camera));
   ordered_json state_blocks = ordered_json::array();
   for (const Block& block : task.state_blocks()) {
     state_blocks.push_back({{"name", block.name}, {"size", block.size()}});

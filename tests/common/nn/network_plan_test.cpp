@@ -38,7 +38,7 @@ std::vector<std::string> Texts(const std::vector<ParameterSpec>& parameters) {
   return texts;
 }
 
-NetworkPlan Encoder(const std::string& kind, int height = 84, int width = 84) {
+NetworkPlan EncoderPlan(const std::string& kind, int height = 84, int width = 84) {
   NetworkConfig network;
   network.encoder = kind;
   return PlanEncoder(network, Images(height, width));
@@ -143,11 +143,11 @@ TEST(NetworkPlan, PyTorchsBoundsAreOneOverTheRootOfAnOutputsInputs) {
 }
 
 TEST(EncoderKinds, HaveTheMapsOfTheirPapers) {
-  EXPECT_EQ(Encoder("compact").output(), (MapShape{32, 8, 8}));
-  EXPECT_EQ(Encoder("drq").output(), (MapShape{32, 35, 35}));
-  EXPECT_EQ(Encoder("mrq").output(), (MapShape{32, 7, 7}));
-  EXPECT_EQ(Encoder("nature").output(), (MapShape{64, 7, 7}));
-  EXPECT_THAT(Texts(Encoder("nature").Parameters()),
+  EXPECT_EQ(EncoderPlan("compact").output(), (MapShape{32, 8, 8}));
+  EXPECT_EQ(EncoderPlan("drq").output(), (MapShape{32, 35, 35}));
+  EXPECT_EQ(EncoderPlan("mrq").output(), (MapShape{32, 7, 7}));
+  EXPECT_EQ(EncoderPlan("nature").output(), (MapShape{64, 7, 7}));
+  EXPECT_THAT(Texts(EncoderPlan("nature").Parameters()),
               ElementsAre("encoder.conv0.weight 32 6 8 8", "encoder.conv0.bias 32",
                           "encoder.conv1.weight 64 32 4 4", "encoder.conv1.bias 64",
                           "encoder.conv2.weight 64 64 3 3", "encoder.conv2.bias 64"));
@@ -172,7 +172,7 @@ TEST(EncoderKinds, TorchvisionsHaveItsSizes) {
   network.encoder = "alexnet";
   EXPECT_EQ(PlanEncoder(network, spec).output(), (MapShape{256, 6, 6}));
   EXPECT_EQ(trained(PlanEncoder(network, spec)), 2'469'696);
-  EXPECT_EQ(Encoder("alexnet", 84, 84).output(), (MapShape{256, 6, 6}));
+  EXPECT_EQ(EncoderPlan("alexnet", 84, 84).output(), (MapShape{256, 6, 6}));
 }
 
 TEST(EncoderKinds, ResnetStartsAsTorchvisionsWithPyTorchsInitialisation) {
@@ -208,28 +208,30 @@ TEST(EncoderKinds, EachFitsThePresetForPixels) {
 }
 
 TEST(EncoderKinds, ImagesTooSmallAreRefusedNamingTheSmallestThatFit) {
-  EXPECT_THAT([] { Encoder("nature", 35, 84); },
+  EXPECT_THAT([] { EncoderPlan("nature", 35, 84); },
               ThrowsMessage<Error>(AllOf(HasSubstr("network.encoder = nature"), HasSubstr("35x84"),
                                          HasSubstr("at least 36x36"))));
-  EXPECT_NO_THROW(Encoder("nature", 36, 36));
-  EXPECT_THAT([] { Encoder("drq", 14, 14); }, ThrowsMessage<Error>(HasSubstr("at least 15x15")));
-  EXPECT_NO_THROW(Encoder("drq", 15, 15));
-  EXPECT_THAT([] { Encoder("mrq", 30, 84); }, ThrowsMessage<Error>(HasSubstr("at least 31x31")));
-  EXPECT_NO_THROW(Encoder("mrq", 31, 31));
-  EXPECT_THAT([] { Encoder("compact", 20, 20); },
+  EXPECT_NO_THROW(EncoderPlan("nature", 36, 36));
+  EXPECT_THAT([] { EncoderPlan("drq", 14, 14); },
+              ThrowsMessage<Error>(HasSubstr("at least 15x15")));
+  EXPECT_NO_THROW(EncoderPlan("drq", 15, 15));
+  EXPECT_THAT([] { EncoderPlan("mrq", 30, 84); },
+              ThrowsMessage<Error>(HasSubstr("at least 31x31")));
+  EXPECT_NO_THROW(EncoderPlan("mrq", 31, 31));
+  EXPECT_THAT([] { EncoderPlan("compact", 20, 20); },
               ThrowsMessage<Error>(HasSubstr("at least 22x22")));
-  EXPECT_NO_THROW(Encoder("compact", 22, 22));
-  EXPECT_THAT([] { Encoder("alexnet", 62, 84); },
+  EXPECT_NO_THROW(EncoderPlan("compact", 22, 22));
+  EXPECT_THAT([] { EncoderPlan("alexnet", 62, 84); },
               ThrowsMessage<Error>(AllOf(HasSubstr("network.encoder = alexnet"), HasSubstr("62x84"),
                                          HasSubstr("at least 63x63"))));
-  EXPECT_NO_THROW(Encoder("alexnet", 63, 63));
-  EXPECT_THAT([] { Encoder("spatial_softmax", 12, 84); },
+  EXPECT_NO_THROW(EncoderPlan("alexnet", 63, 63));
+  EXPECT_THAT([] { EncoderPlan("spatial_softmax", 12, 84); },
               ThrowsMessage<Error>(HasSubstr("at least 14x14")));
-  EXPECT_EQ(Encoder("spatial_softmax", 14, 14).output(), (MapShape{32, 1, 2}));
-  EXPECT_THAT([] { Encoder("spatial_softmax", 84, 63); },
+  EXPECT_EQ(EncoderPlan("spatial_softmax", 14, 14).output(), (MapShape{32, 1, 2}));
+  EXPECT_THAT([] { EncoderPlan("spatial_softmax", 84, 63); },
               ThrowsMessage<Error>(AllOf(HasSubstr("network.encoder = spatial_softmax"),
                                          HasSubstr("even sides, not 84x63"))));
-  EXPECT_NO_THROW(Encoder("resnet18", 8, 8));
+  EXPECT_NO_THROW(EncoderPlan("resnet18", 8, 8));
 }
 
 TEST(EncoderKinds, CompactTakesItsKeysAndChecksThem) {

@@ -25,7 +25,7 @@ OnnxModel ModelWithConstant() {
           .metadata = {{"task", "FetchReach"}}};
 }
 
-std::string Refusal(std::string_view bytes) {
+std::string TextRefusal(std::string_view bytes) {
   try {
     ReadOnnx(bytes, "policy.onnx");
   } catch (const Error& error) {
@@ -68,13 +68,15 @@ TEST(OnnxModel, HasTheFormatsFieldNumbers) {
 }
 
 TEST(OnnxModel, WhatIsNoneIsRefused) {
-  EXPECT_THAT(Refusal("not a model"), HasSubstr("policy.onnx: not an ONNX file"));
-  EXPECT_THAT(Refusal(""), HasSubstr("policy.onnx: the operator set: expected version 17 alone"));
+  EXPECT_THAT(TextRefusal("not a model"), HasSubstr("policy.onnx: not an ONNX file"));
+  EXPECT_THAT(TextRefusal(""),
+              HasSubstr("policy.onnx: the operator set: expected version 17 alone"));
   const std::string good = WriteOnnx(ModelWithConstant());
-  EXPECT_THAT(Refusal(std::string_view(good).substr(0, good.size() - 1)), HasSubstr("policy.onnx"));
+  EXPECT_THAT(TextRefusal(std::string_view(good).substr(0, good.size() - 1)),
+              HasSubstr("policy.onnx"));
   OnnxModel short_constant = ModelWithConstant();
   short_constant.constants["w"].values.pop_back();
-  EXPECT_THAT(Refusal(WriteOnnx(short_constant)),
+  EXPECT_THAT(TextRefusal(WriteOnnx(short_constant)),
               HasSubstr("policy.onnx: w: expected as many bytes as its shape"));
 }
 

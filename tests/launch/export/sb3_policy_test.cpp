@@ -28,7 +28,7 @@ policy::CheckpointPolicy Counterpart(PolicyKind kind) {
   return policy;
 }
 
-std::string Refusal(const policy::CheckpointPolicy& policy) {
+std::string ExportRefusal(const policy::CheckpointPolicy& policy) {
   return UsageMessage([&] { WriteSb3(policy); });
 }
 
@@ -72,17 +72,17 @@ TEST(Sb3Policy, WhatTheModelDoesNotTakeIsSaid) {
 }
 
 TEST(Sb3Policy, WhatHasNoCounterpartIsRefusedByName) {
-  EXPECT_THAT(Refusal(RandomPolicy({""})), HasSubstr("network.layer_norm = true"));
+  EXPECT_THAT(ExportRefusal(RandomPolicy({""})), HasSubstr("network.layer_norm = true"));
   policy::CheckpointPolicy policy = Counterpart({""});
   policy.description.algorithm = "averaged_ddpg";
-  EXPECT_THAT(Refusal(policy), HasSubstr("learner.algorithm = averaged_ddpg"));
-  EXPECT_THAT(Refusal(Counterpart({"drq"})), HasSubstr("network.encoder = drq"));
+  EXPECT_THAT(ExportRefusal(policy), HasSubstr("learner.algorithm = averaged_ddpg"));
+  EXPECT_THAT(ExportRefusal(Counterpart({"drq"})), HasSubstr("network.encoder = drq"));
   policy = Counterpart({"nature"});
   policy.description.network.trunk = "tanh";
-  EXPECT_THAT(Refusal(policy), HasSubstr("network.trunk = tanh"));
+  EXPECT_THAT(ExportRefusal(policy), HasSubstr("network.trunk = tanh"));
   policy = Counterpart({"nature"});
   policy.description.spec.blocks[0].observed = true;
-  EXPECT_THAT(Refusal(policy), HasSubstr("pixels beside a vector of 4"));
+  EXPECT_THAT(ExportRefusal(policy), HasSubstr("pixels beside a vector of 4"));
 }
 
 }  // namespace

@@ -6,7 +6,7 @@
 namespace shoal::launch {
 namespace {
 
-EvaluationPoint Point(uint64_t env_steps, uint64_t session, uint64_t updates) {
+EvaluationPoint PointAt(uint64_t env_steps, uint64_t session, uint64_t updates) {
   EvaluationPoint point;
   point.env_steps = env_steps;
   point.updates = updates;
@@ -16,32 +16,32 @@ EvaluationPoint Point(uint64_t env_steps, uint64_t session, uint64_t updates) {
 
 TEST(EvaluationFilter, CountsEachPointOnce) {
   EvaluationFilter filter;
-  EXPECT_TRUE(filter.Accept(Point(1000, 7, 100)));
-  EXPECT_FALSE(filter.Accept(Point(1000, 7, 100)));
-  EXPECT_TRUE(filter.Accept(Point(2000, 7, 200)));
+  EXPECT_TRUE(filter.Accept(PointAt(1000, 7, 100)));
+  EXPECT_FALSE(filter.Accept(PointAt(1000, 7, 100)));
+  EXPECT_TRUE(filter.Accept(PointAt(2000, 7, 200)));
   EXPECT_EQ(filter.repeated(), 1u);
 }
 
 // What the transport kept comes again from its beginning, after newer ones were counted.
 TEST(EvaluationFilter, WhatComesAgainInItsOldOrderDoesNotCount) {
   EvaluationFilter filter;
-  for (uint64_t i = 1; i <= 4; ++i) EXPECT_TRUE(filter.Accept(Point(1000 * i, 7, 100 * i)));
-  for (uint64_t i = 1; i <= 4; ++i) EXPECT_FALSE(filter.Accept(Point(1000 * i, 7, 100 * i)));
-  EXPECT_TRUE(filter.Accept(Point(5000, 7, 500)));
+  for (uint64_t i = 1; i <= 4; ++i) EXPECT_TRUE(filter.Accept(PointAt(1000 * i, 7, 100 * i)));
+  for (uint64_t i = 1; i <= 4; ++i) EXPECT_FALSE(filter.Accept(PointAt(1000 * i, 7, 100 * i)));
+  EXPECT_TRUE(filter.Accept(PointAt(5000, 7, 500)));
 }
 
 TEST(EvaluationFilter, ARestartedLearnerStartsFromFewerUpdatesAndCounts) {
   EvaluationFilter filter;
-  EXPECT_TRUE(filter.Accept(Point(3000, 7, 300)));
-  EXPECT_TRUE(filter.Accept(Point(4000, 8, 250)));
-  EXPECT_FALSE(filter.Accept(Point(3500, 7, 350))) << "late, of the learner that is gone";
+  EXPECT_TRUE(filter.Accept(PointAt(3000, 7, 300)));
+  EXPECT_TRUE(filter.Accept(PointAt(4000, 8, 250)));
+  EXPECT_FALSE(filter.Accept(PointAt(3500, 7, 350))) << "late, of the learner that is gone";
 }
 
 TEST(EvaluationFilter, TheSameCheckpointHandedOutAgainByAResumedLearnerDoesNotCount) {
   EvaluationFilter filter;
-  EXPECT_TRUE(filter.Accept(Point(3000, 7, 300)));
-  EXPECT_FALSE(filter.Accept(Point(3000, 8, 300)));
-  EXPECT_TRUE(filter.Accept(Point(3000, 8, 310))) << "the same env steps, other parameters";
+  EXPECT_TRUE(filter.Accept(PointAt(3000, 7, 300)));
+  EXPECT_FALSE(filter.Accept(PointAt(3000, 8, 300)));
+  EXPECT_TRUE(filter.Accept(PointAt(3000, 8, 310))) << "the same env steps, other parameters";
 }
 
 }  // namespace

@@ -70,22 +70,23 @@ TEST(CriticLoss, IsTheSumOverHeadsOfTheMeanSquare) {
 }
 
 TEST(CriticLoss, GradientIsTheCentralDifference) {
-  constexpr int kBatch = 5;
-  Values q0 = RandomValues(kBatch, 1);
-  const Values q1 = RandomValues(kBatch, 2), y = RandomValues(kBatch, 3);
+  constexpr int kSamples = 5;
+  Values q0 = RandomValues(kSamples, 1);
+  const Values q1 = RandomValues(kSamples, 2), y = RandomValues(kSamples, 3);
   const auto loss = [&] {
     double sum = 0;
-    for (size_t b = 0; b < kBatch; ++b) {
+    for (size_t b = 0; b < kSamples; ++b) {
       sum += (q0[b] - y[b]) * (q0[b] - y[b]) + (q1[b] - y[b]) * (q1[b] - y[b]);
     }
-    return sum / kBatch;
+    return sum / kSamples;
   };
   EXPECT_NEAR(
-      CriticLossForward(kBatch, ToFloats(q0).data(), ToFloats(q1).data(), ToFloats(y).data()).loss,
+      CriticLossForward(kSamples, ToFloats(q0).data(), ToFloats(q1).data(), ToFloats(y).data())
+          .loss,
       loss(), 1e-6);
-  std::vector<float> gradient(kBatch);
-  CriticLossBackward(kBatch, ToFloats(q0).data(), ToFloats(y).data(), gradient.data());
-  for (size_t b = 0; b < kBatch; ++b) {
+  std::vector<float> gradient(kSamples);
+  CriticLossBackward(kSamples, ToFloats(q0).data(), ToFloats(y).data(), gradient.data());
+  for (size_t b = 0; b < kSamples; ++b) {
     EXPECT_NEAR(gradient[b], CentralDifference(&q0[b], loss), 1e-6);
   }
 }

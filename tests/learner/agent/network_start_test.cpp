@@ -14,7 +14,7 @@ namespace {
 
 using testing::HasSubstr;
 
-Config ConfigOf(const std::string& algorithm, uint64_t seed) {
+Config ConfigFor(const std::string& algorithm, uint64_t seed) {
   Config config = SmallConfig();
   config.learner.algorithm = algorithm;
   config.seed = int64_t(seed);
@@ -24,7 +24,7 @@ Config ConfigOf(const std::string& algorithm, uint64_t seed) {
 class NetworkStartTest : public testing::Test {
  protected:
   static std::unique_ptr<Agent> Make(const std::string& algorithm, uint64_t seed) {
-    return MakeAgent(ConfigOf(algorithm, seed), SmallSpec(), nn::Precision::kF32);
+    return MakeAgent(ConfigFor(algorithm, seed), SmallSpec(), nn::Precision::kF32);
   }
   std::string Refusal(const nn::TensorMap& weights) const {
     return UsageMessage([&] { StartTensors(weights, "file", *agent_); });

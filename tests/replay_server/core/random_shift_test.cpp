@@ -10,7 +10,7 @@
 namespace shoal::replay {
 namespace {
 
-std::vector<uint8_t> Noise(size_t size, uint64_t seed) {
+std::vector<uint8_t> ImageNoise(size_t size, uint64_t seed) {
   Random random(seed);
   std::vector<uint8_t> pixels(size);
   for (uint8_t& pixel : pixels) pixel = static_cast<uint8_t>(random.Next());
@@ -50,7 +50,7 @@ TEST(RandomShift, IsPaddingByReplicationAndACropAtEveryOffset) {
   for (const Size& s :
        {Size{1, 1, 1, 0}, Size{2, 5, 7, 4}, Size{3, 9, 5, 4}, Size{1, 84, 84, 4},
         Size{6, 17, 33, 2}, Size{2, 3, 64, 2}, Size{2, 20, 30, 9}, Size{2, 9, 8, 7}}) {
-    const auto in = Noise(static_cast<size_t>(s.planes) * s.height * s.width, 3);
+    const auto in = ImageNoise(static_cast<size_t>(s.planes) * s.height * s.width, 3);
     for (int dy = -s.pad; dy <= s.pad; ++dy) {
       for (int dx = -s.pad; dx <= s.pad; ++dx) {
         // A guard byte on either side: nothing is written outside.

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// Names that collide where the compiler gets several sources of a target as one
+// (docs/decisions/0016): a build with a compiler cache compiles each source alone and does not see
+// them. Checks all sources of a target against each other, as groups have different sizes and
+// change with every new source.
+//
+// Two sources of a target collide in a name of one scope if
+// - both declare it with internal linkage, overloads included; aliases, using-declarations and
+//   macros that say the same are no collision, nor are overloaded operators;
+// - both define a type of that name, with or without an unnamed namespace;
+// - one declares it in an unnamed namespace, and the other, or a header that the other includes and
+//   the first does not, in the namespace around;
+// - one declares the constant kName and the other a local constant kName (-Wshadow).
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace shoal {
+
+// Target -> its sources that may be compiled in groups, from the root of the tree.
+using GroupedSources = std::map<std::string, std::vector<std::string>>;
+
+// Reads lines "TARGET SOURCE", which CMake writes (common/cmake/grouped_sources.cmake).
+GroupedSources ReadGroupedSources(const std::filesystem::path& file);
+
+// "TARGET: NAME in FILE:LINE and FILE:LINE", one per name and pair of files, each pair once.
+std::vector<std::string> FindCollisions(const std::filesystem::path& root,
+                                        const GroupedSources& targets);
+
+}  // namespace shoal
