@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/base/usable_cores.h"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <sched.h>
 #include <unistd.h>
 
@@ -9,8 +11,10 @@
 #include <fstream>
 #include <limits>
 #include <string>
+#include <vector>
 
 #include "common/base/cgroup.h"
+#include "common/base/openmp_binding.h"
 
 namespace shoal {
 namespace {
@@ -66,5 +70,24 @@ int UsableCores(const CoreLimits& limits) {
 }
 
 int UsableCores() { return UsableCores(ReadCoreLimits()); }
+
+std::string DescribeLimits(const CoreLimits& limits) {
+  std::string text;
+  if (limits.affinity < limits.online) {
+    text = fmt::format("{} of {} by its CPU affinity mask", limits.affinity, limits.online);
+    const std::vector<std::string> bindings = IgnoredOpenMpBindings();
+    text += bindings.empty()
+                ? " (set by taskset, a scheduler or the program that started it)"
+                : fmt::format(
+                      " (set by taskset, a scheduler or the program that started it, which {} may "
+                      "have bound)",
+                      fmt::join(bindings, " "));
+  }
+  if (std::ceil(limits.quota) < std::min(limits.affinity, limits.online)) {
+    text +=
+        fmt::format("{}{:.4g} by its cgroup's CPU quota", text.empty() ? "" : ", ", limits.quota);
+  }
+  return text;
+}
 
 }  // namespace shoal

@@ -73,6 +73,7 @@ endfunction()
 function(shoal_program name)
   add_executable(${name} ${ARGN})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(${name} PRIVATE shoal_program_start)  # common/base/openmp_binding.h
   shoal_warnings(${name})
   if(SHOAL_COLD)
     target_compile_options(${name} PRIVATE ${SHOAL_COLD_OPTIONS})

@@ -63,13 +63,14 @@ void CheckReplicas(const Config& config, int replicas) {
       more > groups ? fmt::format("{}", fewer) : fmt::format("{} or {}", fewer, more));
 }
 
-void CheckCores(int threads, int cores) {
+void CheckCores(int threads, const CoreLimits& limits) {
+  const int cores = UsableCores(limits);
   if (threads <= cores) return;
+  const std::string why = DescribeLimits(limits);
   throw UsageError(
-      "learner.threads = {}: this process may use {} core{}, expected at most as many threads "
-      "(--set "
-      "learner.threads=N; 0 takes what suits the cores)",
-      threads, cores, cores == 1 ? "" : "s");
+      "learner.threads = {}: this process may use {} core{}{}, expected at most as many threads "
+      "(--set learner.threads=N; 0 takes what suits the cores)",
+      threads, cores, cores == 1 ? "" : "s", why.empty() ? "" : ": " + why);
 }
 
 }  // namespace shoal

@@ -2,6 +2,7 @@
 // How many threads learn, and whether the batch can be shared among them.
 #pragma once
 
+#include "common/base/usable_cores.h"
 #include "common/config/config.h"
 
 namespace shoal {
@@ -19,7 +20,8 @@ int LearnerThreads(const Config& config, int cores);
 void CheckReplicas(const Config& config, int replicas);
 
 // Throws Error (kUsage) unless `threads` have a core each: threads of one update wait for each
-// other, so that more of them learn more slowly than `cores` do. `cores` are the learner's host's.
-void CheckCores(int threads, int cores);
+// other, so that more of them learn more slowly than one per core. The error says what limits the
+// cores. `limits` are the learner's host's.
+void CheckCores(int threads, const CoreLimits& limits);
 
 }  // namespace shoal

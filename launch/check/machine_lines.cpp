@@ -9,6 +9,7 @@
 #include <cstring>
 
 #include "common/base/error.h"
+#include "common/base/openmp_binding.h"
 #include "replay_server/core/storage_limits.h"
 
 namespace shoal::launch {
@@ -50,9 +51,15 @@ CheckLine JudgeCores(const CoreLimits& limits) {
                  fmt::format("{} usable of {} online (affinity {}, {})", usable, limits.online,
                              limits.affinity, quota),
                  ""};
+  for (const std::string& binding : IgnoredOpenMpBindings()) {
+    line.finding += fmt::format("; {} is ignored", binding);
+  }
   if (usable < 2) {
     line.verdict = Verdict::kWarn;
-    line.advice = "learner and actors share one core and take turns; give the process two or more";
+    const std::string why = DescribeLimits(limits);
+    line.advice = fmt::format(
+        "learner and actors share one core and take turns{}; give the process two or more",
+        why.empty() ? "" : ": " + why);
   }
   return line;
 }

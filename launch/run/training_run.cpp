@@ -14,6 +14,7 @@
 #include "common/base/clock.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/base/openmp_binding.h"
 #include "common/base/stop.h"
 #include "common/base/usable_cores.h"
 #include "common/config/config_io.h"
@@ -166,7 +167,7 @@ void CheckNetwork(const RunConfig& run) {
   nn::CheckNetwork(run.config.network, run.spec, run.config.learner.batch,
                    int64_t{kMaxWeightsBytes});
   learner::ReplicasOf(run.config, run.spec, run.config.learner.threads);
-  CheckCores(run.config.learner.threads, UsableCores());
+  CheckCores(run.config.learner.threads, ReadCoreLimits());
 }
 
 // Of another network, the learner would find it out with every process running. Damaged or of
@@ -270,6 +271,9 @@ void PrintStart(const PreparedRun& run, const ClusterAddress& address) {
     text +=
         fmt::format("  goes on at {} env steps, {}\n", run.meta.env_steps,
                     checkpoint.empty() ? "without a checkpoint" : "from " + checkpoint.string());
+  }
+  for (const std::string& binding : IgnoredOpenMpBindings()) {
+    text += fmt::format("  {} is ignored: it would bind every process to the same core\n", binding);
   }
   text += PlanText(run.config, run.frame_microseconds);
   for (const RemoteHost& host : run.hosts.hosts) {

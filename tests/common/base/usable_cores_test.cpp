@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/base/usable_cores.h"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -64,6 +65,19 @@ TEST(UsableCores, AreTheAffinityCutToTheQuotaRoundedUp) {
   EXPECT_EQ(cores(8, 0.1), 1);
   EXPECT_GE(UsableCores(), 1);
   EXPECT_LE(UsableCores(), sysconf(_SC_NPROCESSORS_ONLN));
+}
+
+TEST(DescribeLimits, NamesWhatLeavesFewerCoresThanThereAre) {
+  EXPECT_EQ(DescribeLimits({.online = 8, .affinity = 8, .quota = INFINITY}), "");
+  EXPECT_EQ(DescribeLimits({.online = 8, .affinity = 8, .quota = 16}), "");
+  EXPECT_EQ(DescribeLimits({.online = 8, .affinity = 1, .quota = INFINITY}),
+            "1 of 8 by its CPU affinity mask (set by taskset, a scheduler or the program that "
+            "started it)");
+  EXPECT_EQ(DescribeLimits({.online = 8, .affinity = 8, .quota = 2.5}),
+            "2.5 by its cgroup's CPU quota");
+  const std::string both = DescribeLimits({.online = 8, .affinity = 4, .quota = 1});
+  EXPECT_THAT(both, ::testing::HasSubstr("4 of 8 by its CPU affinity mask"));
+  EXPECT_THAT(both, ::testing::HasSubstr(", 1 by its cgroup's CPU quota"));
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 
 #include <gmock/gmock.h>
 
+#include <cmath>
+
 #include "common/base/error.h"
 
 namespace shoal {
@@ -78,12 +80,18 @@ TEST(LearnerThreads, OfAnOnPolicyRunAreHalfTheCores) {
   EXPECT_EQ(LearnerThreads(config, 6), 3);
 }
 
-TEST(CheckCores, RefusesMoreThreadsThanCoresAndSaysWhatFits) {
-  EXPECT_NO_THROW(CheckCores(2, 2));
-  EXPECT_THAT([] { CheckCores(3, 2); },
-              ThrowsMessage<Error>(AllOf(HasSubstr("learner.threads = 3"), HasSubstr("2 cores"),
+TEST(CheckCores, RefusesMoreThreadsThanCoresAndSaysWhatFitsAndWhatLimitsThem) {
+  const auto refuse = [](int threads, const CoreLimits& limits) {
+    return [=] { CheckCores(threads, limits); };
+  };
+  EXPECT_NO_THROW(CheckCores(2, {.online = 2, .affinity = 2, .quota = INFINITY}));
+  EXPECT_THAT(refuse(3, {.online = 2, .affinity = 2, .quota = INFINITY}),
+              ThrowsMessage<Error>(AllOf(HasSubstr("learner.threads = 3"), HasSubstr("2 cores,"),
                                          HasSubstr("--set learner.threads=N"))));
-  EXPECT_THAT([] { CheckCores(2, 1); }, ThrowsMessage<Error>(HasSubstr("1 core,")));
+  EXPECT_THAT(refuse(2, {.online = 2, .affinity = 1, .quota = INFINITY}),
+              ThrowsMessage<Error>(HasSubstr("1 core: 1 of 2 by its CPU affinity mask")));
+  EXPECT_THAT(refuse(3, {.online = 8, .affinity = 8, .quota = 1.5}),
+              ThrowsMessage<Error>(HasSubstr("2 cores: 1.5 by its cgroup's CPU quota")));
 }
 
 TEST(CheckReplicas, RefusesWhatWouldSplitUnequallyAndSaysWhatFits) {

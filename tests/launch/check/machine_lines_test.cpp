@@ -36,6 +36,8 @@ TEST(MachineLines, CoresAreTheLeastOfAffinityAndQuota) {
   EXPECT_EQ(line(2, INFINITY).verdict, Verdict::kOk);
   EXPECT_EQ(line(1, INFINITY).verdict, Verdict::kWarn);
   EXPECT_EQ(line(8, 0.5).verdict, Verdict::kWarn);
+  EXPECT_THAT(line(1, INFINITY).advice, HasSubstr("1 of 8 by its CPU affinity mask"));
+  EXPECT_THAT(line(8, 0.5).advice, HasSubstr("0.5 by its cgroup's CPU quota"));
 }
 
 TEST(MachineLines, TheRingMustFitOnTheDiskOfTheRunFolder) {
