@@ -355,6 +355,101 @@ def test_task_libraries_that_do_not_load_are_refused(tmp_path):
     assert "task_library" in refusal(shoal_rl.make, "FetchReach", task_library=3)
 
 
+# --- threads
+
+# The first calls of a process, from two threads: they must not wait for each other. The barrier
+# brings them together; `kind` says what they call.
+FIRST_CALLS = """
+import sys, threading
+import shoal_rl
+kind, checkpoint = sys.argv[1:]
+barrier = threading.Barrier(4)
+answers = []
+
+def call(number):
+    if kind == "act":
+        policy = shoal_rl.Policy(checkpoint)
+        observation = {name: [0.5] * size for name, size in policy.blocks.items()}
+        barrier.wait()
+        answers.append(policy.act(observation).shape == (policy.action_size,))
+    else:
+        env = shoal_rl.make("FetchReach", pixels=False)
+        barrier.wait()
+        observation, _ = env.reset(seed=number)
+        answers.append(all(array.size > 0 for array in observation.values()))
+
+threads = [threading.Thread(target=call, args=(number,), daemon=True) for number in range(4)]
+for thread in threads:
+    thread.start()
+for thread in threads:
+    thread.join(30)
+    if thread.is_alive():
+        print("a first call hangs", flush=True)
+        import os
+        os._exit(1)
+print(answers)
+"""
+
+
+@pytest.mark.parametrize("kind", ["act", "reset"])
+@pytest.mark.parametrize("attempt", range(5))
+def test_first_calls_from_several_threads_answer(kind, attempt):
+    assert in_fresh_python(FIRST_CALLS, kind, str(checkpoint("sac-state"))) == f"{[True] * 4}\n"
+
+
+# --- cores
+
+
+def cores_in_fresh_python(program, **environment):
+    done = subprocess.run(
+        [sys.executable, "-c", "import os\nbefore = os.sched_getaffinity(0)\n" + program],
+        env=os.environ | environment, capture_output=True, text=True,
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout.strip(), done.stderr
+
+
+@pytest.mark.skipif(len(os.sched_getaffinity(0)) < 2, reason="needs two cores")
+@pytest.mark.parametrize(
+    "binding", [{"OMP_PROC_BIND": "true"}, {"OMP_PLACES": "cores"}, {"GOMP_CPU_AFFINITY": "0"}]
+)
+def test_openmp_variables_bind_neither_the_importing_thread_nor_those_that_call(binding):
+    program = """
+import threading
+import shoal_rl
+masks = [os.sched_getaffinity(0)]
+
+def call(folder):
+    policy = shoal_rl.Policy(folder)
+    import numpy
+    policy.act({name: numpy.zeros(size) for name, size in policy.blocks.items()})
+    masks.append(os.sched_getaffinity(0))
+
+thread = threading.Thread(target=call, args=(%r,))
+thread.start()
+thread.join()
+print(len(masks) == 2 and all(mask == before for mask in masks))
+"""
+    out, err = cores_in_fresh_python(program % str(checkpoint("sac-state")), **binding)
+    assert out == "True" and not err
+
+
+@pytest.mark.skipif(len(os.sched_getaffinity(0)) < 2, reason="needs two cores")
+def test_a_thread_that_was_bound_before_the_import_stays_so_with_a_warning():
+    bind = "one = {min(before)}\nos.sched_setaffinity(0, one)\n"
+    program = bind + "import shoal_rl\nprint(os.sched_getaffinity(0) == one)"
+    out, err = cores_in_fresh_python(program, OMP_PROC_BIND="true")
+    assert out == "True" and err.count("RuntimeWarning") == 1
+    assert "may use 1 of" in err and "OMP_PROC_BIND=true" in err
+    # One's own choice, without such a variable, is no reason for a warning.
+    quiet = {name: value for name, value in os.environ.items() if name != "OMP_PROC_BIND"}
+    done = subprocess.run(
+        [sys.executable, "-c", "import os\nbefore = os.sched_getaffinity(0)\n" + program],
+        env=quiet, capture_output=True, text=True,
+    )
+    assert done.stdout.strip() == "True" and not done.stderr
+
+
 # --- runs
 
 

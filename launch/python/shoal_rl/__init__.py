@@ -20,8 +20,43 @@ def _why_not_native():
     return f"{folder} has {built}, this is {python}: use the Python that its wheel was built for"
 
 
+def _warn_of_one_core(mask):
+    """Says so once if an OpenMP library seems to have bound this thread before this import."""
+    import os
+    import warnings
+
+    names = ("OMP_PROC_BIND", "OMP_PLACES", "GOMP_CPU_AFFINITY", "KMP_AFFINITY")
+    found = " ".join(f"{name}={os.environ[name]}" for name in names if name in os.environ)
+    if found and len(mask) == 1 and (os.cpu_count() or 1) > 1:
+        warnings.warn(
+            f"this thread may use 1 of {os.cpu_count()} cores, and so may threads and processes that it "
+            f"starts, those of make_vec among them: an OpenMP library may have bound it, as {found} says",
+            RuntimeWarning,
+            stacklevel=4,
+        )
+
+
+class _KeepCores:
+    """Loading _native loads libgomp, which binds the importing thread to one core if OMP_PROC_BIND,
+    OMP_PLACES or GOMP_CPU_AFFINITY say so. Threads and processes started later would inherit that core.
+    Gives the thread back the cores that it had."""
+
+    def __enter__(self):
+        import os
+
+        self._mask = os.sched_getaffinity(0)
+
+    def __exit__(self, *_):
+        import os
+
+        if os.sched_getaffinity(0) != self._mask:
+            os.sched_setaffinity(0, self._mask)
+        _warn_of_one_core(self._mask)
+
+
 try:
-    from shoal_rl._native import Error, Policy, __version__, tasks
+    with _KeepCores():
+        from shoal_rl._native import Error, Policy, __version__, tasks
 except ModuleNotFoundError as error:
     # pip refuses the wheel under another Python, PYTHONPATH and copied folders do not.
     raise ImportError(_why_not_native()) from error
