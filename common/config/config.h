@@ -166,6 +166,7 @@ struct EvalConfig {
 struct StopConfig {
   double success = 0.98;  // stop at this pooled rate of the newest `evaluations`; > 1 = never
   int evaluations = 2;
+  int without_actors = 300;  // s without a working training actor, after which the run ends
 };
 
 struct TransportConfig {

@@ -227,7 +227,7 @@ std::vector<Key> PpoKeys() {
                  "rollout meanwhile"),
       SHOAL_SAME(ppo.rollout_deadline, (RealRange{0.1, 60}),
                  "seconds after the first rollout of an update is there, after which the update is "
-                 "made of those there are, at least half"),
+                 "made of those there are, at least half; after three times as long of any number"),
   };
 }
 
@@ -308,6 +308,8 @@ std::vector<Key> EvalKeys() {
       SHOAL_SAME(stop.success, (RealRange{0, 2}), "stop at this success rate; above 1 = never"),
       SHOAL_SAME(stop.evaluations, (IntegerRange{1, 1000}),
                  "newest evaluations whose episodes, pooled, must reach stop.success"),
+      SHOAL_SAME(stop.without_actors, (IntegerRange{20, 1'000'000}),
+                 "the run ends when no training actor has worked for this many seconds"),
   };
 }
 

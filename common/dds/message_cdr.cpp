@@ -221,6 +221,7 @@ bool ParseCdr(std::span<const uint8_t> cdr, RunViewMessage* message) {
       good = good && MakesSense(message->processes.back());
     });
     reader.ReadCollection([&] { message->events.push_back(ReadEvent(&reader)); });
+    message->trouble = Text(&reader);
   });
   return reader.Finished() && good && !message->schema.empty() && std::isfinite(message->time);
 }

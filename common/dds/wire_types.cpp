@@ -145,7 +145,8 @@ shoal_idl_RunView ToWire(const RunViewMessage& message, WireBuffers* buffers) {
           message.env_steps,
           message.updates,
           {processes, processes, buffers->processes.data(), false},
-          {events, events, buffers->events.data(), false}};
+          {events, events, buffers->events.data(), false},
+          Borrow(message.trouble)};
 }
 
 shoal_idl_Command ToWire(const CommandMessage& message, WireBuffers* buffers) {

@@ -216,6 +216,7 @@ struct RunViewMessage {
   uint64_t env_steps = 0, updates = 0;
   std::vector<MetricsMessage> processes{};  // by role and id
   std::vector<RunEvent> events{};           // the last ones, oldest first
+  std::string trouble{};  // which actors do not work and why, as a line; empty when all do
 };
 
 // A client -> coordinator: an order. Sent again unchanged until its reply comes; carried out once.

@@ -55,6 +55,8 @@ constexpr Metric kMetrics[] = {
     {"coordinator", "best_evaluation_env_steps", kGauge, "env steps", ""},
     {"coordinator", "processes", kGauge, "", "that run or are being restarted"},
     {"coordinator", "restarts", kCounter, "", "of processes, over the whole run"},
+    {"coordinator", "actors_working", kGauge, "",
+     "training actors that are not down after a death"},
     {"coordinator", "messages_dropped", kCounter, "",
      "reports that came faster than they were read"},
     {"coordinator", "metrics_lines_left_out", kCounter, "",

@@ -28,6 +28,7 @@ struct ProcessSpec {
   bool outlives_parent = false;  // gets no SIGHUP when this process dies
   bool holds_input = false;      // stdin is a pipe that closes when this process lets go of it
   bool elsewhere = false;        // a remote shell: its exit code 255 is a lost connection
+  bool expendable = false;       // the run goes on without it (supervisor.h)
   std::vector<int> cores = {};   // CPUs it may run on; empty = those that we may
 
   std::string Name() const {

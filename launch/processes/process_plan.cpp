@@ -44,8 +44,10 @@ ProcessSpec PlanProcess(const std::filesystem::path& run, const ProcessName& nam
 }  // namespace
 
 ProcessSpec ActorProcess(const std::filesystem::path& run, int id) {
-  return PlanProcess(run, ProcessName::Actor(static_cast<uint32_t>(id)), "shoal-actor",
-                     {"--id", std::to_string(id)}, 1);
+  ProcessSpec spec = PlanProcess(run, ProcessName::Actor(static_cast<uint32_t>(id)), "shoal-actor",
+                                 {"--id", std::to_string(id)}, 1);
+  spec.expendable = true;
+  return spec;
 }
 
 ActorRange ActorsOf(const Config& config, const std::vector<RemoteHost>& hosts, size_t index) {
@@ -68,6 +70,7 @@ std::vector<ProcessSpec> PlanProcesses(const Config& config, const std::filesyst
   plan.push_back(
       PlanProcess(run, ProcessName::Learner(), "shoal-learner", {}, config.learner.threads));
   plan.back().outlives_parent = on_policy;
+  const size_t first_expendable = plan.size();
   const int actors_here = hosts.empty() ? config.actors : ActorsOf(config, hosts, 0).first;
   for (int i = 0; i < actors_here; ++i) plan.push_back(ActorProcess(run, i));
   for (size_t host = 0; host < hosts.size(); ++host) {
@@ -77,6 +80,8 @@ std::vector<ProcessSpec> PlanProcesses(const Config& config, const std::filesyst
     }
   }
   plan.push_back(PlanProcess(run, ProcessName::Evaluation(), "shoal-actor", {"--role", "eval"}, 1));
+  // A run in lockstep repeats bit for bit: it does not go on without one of its processes.
+  for (size_t i = first_expendable; i < plan.size(); ++i) plan[i].expendable = !config.lockstep;
   return plan;
 }
 

@@ -29,7 +29,7 @@ std::vector<ProcessSpec> PlanProcesses(const Config& config, const std::filesyst
 // of this host. config.actors counts them all.
 ActorRange ActorsOf(const Config& config, const std::vector<RemoteHost>& hosts, size_t index);
 
-// One actor of this host.
+// One training actor of this host, expendable.
 ProcessSpec ActorProcess(const std::filesystem::path& run, int id);
 
 }  // namespace shoal::launch

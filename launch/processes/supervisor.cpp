@@ -20,9 +20,11 @@ namespace {
 constexpr int kDisconnected = 255;
 
 // A host that cannot be reached may come back: tried for as long as the run lasts.
+constexpr std::chrono::seconds kReconnect{10};  // at most, between two attempts
+
 RestartLimits ConnectionLimits(RestartLimits limits) {
   limits.restarts = std::numeric_limits<int>::max();
-  limits.longest_delay = std::chrono::seconds(10);
+  limits.longest_delay = kReconnect;
   return limits;
 }
 
@@ -30,16 +32,31 @@ bool Is(std::string_view role, const ProcessSpec& spec) {
   return role.empty() || role == spec.role;
 }
 
-// What starting again cannot cure: a refused configuration, numbers that are not finite any more.
-bool Hopeless(const ExitStatus& status) {
-  return !status.by_signal && (status.code == static_cast<int>(ErrorKind::kUsage) ||
-                               status.code == static_cast<int>(ErrorKind::kNonFinite));
+bool IsNonFinite(const ExitStatus& status) {
+  return !status.by_signal && status.code == static_cast<int>(ErrorKind::kNonFinite);
 }
 
-std::string Describe(const ProcessSpec& spec, const ExitStatus& status,
-                     const std::string& last_words) {
-  return fmt::format("{}: {}{}{}", spec.Name(), status.Describe(), last_words.empty() ? "" : ": ",
-                     last_words);
+// What starting again cannot cure: a refused configuration, numbers that are not finite any more.
+bool Hopeless(const ExitStatus& status) {
+  return IsNonFinite(status) ||
+         (!status.by_signal && status.code == static_cast<int>(ErrorKind::kUsage));
+}
+
+bool IsDisconnected(const ProcessSpec& spec, const ExitStatus& status) {
+  return spec.elsewhere && !status.by_signal && status.code == kDisconnected;
+}
+
+std::string TooOften(const RestartLimits& limits) {
+  return fmt::format(" (died more than {} times within {} s)", limits.restarts,
+                     limits.window.count());
+}
+
+std::string Describe(const ExitStatus& status, const std::string& last_words) {
+  return fmt::format("{}{}{}", status.Describe(), last_words.empty() ? "" : ": ", last_words);
+}
+
+double Seconds(std::chrono::milliseconds delay) {
+  return static_cast<double>(delay.count()) / 1000;
 }
 
 }  // namespace
@@ -66,7 +83,9 @@ void Supervisor::Start(const ProcessSpec& spec) {
               .connection = RestartPolicy(ConnectionLimits(limits_)),
               .process = std::nullopt,
               .silence = Silence(now),
+              .heard_since = std::nullopt,
               .restart_at = std::nullopt,
+              .down = {},
               .leave_by = std::nullopt,
               .successor = std::nullopt};
   Launch(child, now);
@@ -92,7 +111,8 @@ void Supervisor::Launch(Child& child, SteadyTime now) {
   child.output_before = none ? 0 : before;
   child.process.emplace(child.spec);
   child.silence = Silence(now);
-  child.heard = child.hung = false;
+  child.heard_since.reset();
+  child.hung = false;
 }
 
 void Supervisor::Heard(std::string_view role, int id, pid_t pid, SteadyTime now) {
@@ -100,7 +120,7 @@ void Supervisor::Heard(std::string_view role, int id, pid_t pid, SteadyTime now)
     if (child.spec.role != role || child.spec.id != id) continue;
     if (!child.process || (child.process->pid() != pid && !child.spec.elsewhere)) continue;
     child.silence.Heard(now);
-    child.heard = true;
+    if (!child.heard_since) child.heard_since = now;
   }
 }
 
@@ -135,7 +155,7 @@ void Supervisor::KillIfOverdue(Child& child, SteadyTime now) {
 // Processes that were told to leave are the ordered stop's, which has deadlines of its own.
 void Supervisor::KillIfHung(Child& child, SteadyTime now) {
   if (child.exit_expected || child.hung) return;
-  const std::chrono::seconds limit = child.heard ? hang_limits_.report : hang_limits_.start;
+  const std::chrono::seconds limit = child.heard_since ? hang_limits_.report : hang_limits_.start;
   if (child.silence.Look(now) <= limit) return;
   child.hung = true;
   say_(fmt::format("{} (pid {}) hangs: no report for {} s; killed", child.spec.Name(),
@@ -156,19 +176,81 @@ std::optional<std::string> Supervisor::OnExit(Child& child, const ExitStatus& st
     }
     return std::nullopt;
   }
-  const std::string death =
-      Describe(child.spec, status, LastWords(child.spec.output, child.output_before));
-  if (Hopeless(status)) return death;
-  const bool disconnected =
-      child.spec.elsewhere && !status.by_signal && status.code == kDisconnected;
-  const auto delay = (disconnected ? child.connection : child.policy).OnDeath(now);
-  if (!delay) {
-    return fmt::format("{} (died more than {} times within {} s)", death, limits_.restarts,
-                       limits_.window.count());
+  const std::string reason = Describe(status, LastWords(child.spec.output, child.output_before));
+  const std::string death = fmt::format("{}: {}", child.spec.Name(), reason);
+  if (child.spec.expendable && !IsNonFinite(status)) {
+    BackOff(child, status, reason, now);
+    return std::nullopt;
   }
-  say_(fmt::format("{}; restart in {:.1f} s", death, static_cast<double>(delay->count()) / 1000));
+  if (Hopeless(status)) return death;
+  const auto delay =
+      (IsDisconnected(child.spec, status) ? child.connection : child.policy).OnDeath(now);
+  if (!delay) return death + TooOften(limits_);
+  say_(fmt::format("{}; restart in {:.1f} s", death, Seconds(*delay)));
   child.restart_at = now + *delay;
   return std::nullopt;
+}
+
+void Supervisor::BackOff(Child& child, const ExitStatus& status, const std::string& reason,
+                         SteadyTime now) {
+  const auto worked = child.heard_since ? now - *child.heard_since : SteadyTime::duration::zero();
+  const bool settled = worked >= kSettled;
+  RestartBackoff::Restart restart =
+      child.backoff.OnDeath(std::chrono::duration_cast<std::chrono::milliseconds>(worked));
+  if (settled) child.down.hopeless.clear();
+  if (IsDisconnected(child.spec, status)) {
+    restart.delay = std::min<std::chrono::milliseconds>(restart.delay, kReconnect);
+  } else if (Hopeless(status)) {
+    child.down.hopeless = reason;
+  } else if (!child.policy.OnDeath(now)) {
+    child.down.hopeless = reason + TooOften(limits_);
+  }
+  child.down.name = child.spec.Name();
+  child.down.reason = reason;
+  child.down.deaths = restart.deaths;
+  ++child.deaths;
+  child.restart_at = now + restart.delay;
+  if (!restart.announce) return;
+  std::string line =
+      fmt::format("{}: {}; restart in {:.1f} s", child.down.name, reason, Seconds(restart.delay));
+  if (restart.deaths > 1) {
+    line += fmt::format(" (death {} in a row; the next line is at {})", restart.deaths,
+                        2 * restart.deaths);
+  }
+  say_(line);
+}
+
+RoleStanding Supervisor::Standing(std::string_view role, SteadyTime now) const {
+  RoleStanding standing;
+  for (const Child& child : children_) {
+    if (child.spec.role != role || !child.spec.expendable || child.exit_expected) continue;
+    ++standing.processes;
+    if (child.process && child.heard_since && now - *child.heard_since >= kSettled) {
+      ++standing.working;
+    } else if (child.down.deaths > 0) {
+      standing.down.push_back(child.down);
+      if (!child.restart_at) continue;
+      standing.down.back().restart_in = std::chrono::ceil<std::chrono::seconds>(
+          std::max(*child.restart_at - now, SteadyTime::duration::zero()));
+    }
+  }
+  return standing;
+}
+
+std::string Supervisor::DescribeDeaths() const {
+  constexpr size_t kNamed = 5;
+  std::vector<const Child*> died;
+  for (const Child& child : children_) {
+    if (child.deaths > 0) died.push_back(&child);
+  }
+  std::ranges::stable_sort(died, std::ranges::greater(), &Child::deaths);
+  std::string text;
+  for (size_t i = 0; i < std::min(died.size(), kNamed); ++i) {
+    text += fmt::format("{}{} {} time{} (last: {})", i == 0 ? "" : "; ", died[i]->spec.Name(),
+                        died[i]->deaths, died[i]->deaths == 1 ? "" : "s", died[i]->down.reason);
+  }
+  if (died.size() > kNamed) text += fmt::format("; and {} more", died.size() - kNamed);
+  return text;
 }
 
 void Supervisor::OnExpectedExit(Child& child, const ExitStatus& status) {
@@ -176,9 +258,9 @@ void Supervisor::OnExpectedExit(Child& child, const ExitStatus& status) {
   // Having obeyed a signal of ours is as asked; SIGKILL came only after everything else was
   // ignored.
   const bool obeyed = status.by_signal && status.code == child.signalled;
-  std::string line =
-      Describe(child.spec, status, obeyed ? "" : LastWords(child.spec.output, child.output_before));
-  line += " while stopping";
+  const std::string reason =
+      Describe(status, obeyed ? "" : LastWords(child.spec.output, child.output_before));
+  std::string line = fmt::format("{}: {} while stopping", child.spec.Name(), reason);
   say_(line);
   unclean_exits_.push_back(std::move(line));
 }

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps a run's processes alive: starts them, restarts what dies within limits, says why it died.
-// A process that is there but says nothing any more - stopped, deadlocked, thrashing - is killed
-// and counts as dead from then on.
+// Keeps a run's processes alive: starts them, restarts what dies, says why it died. A process that
+// is there but says nothing any more - stopped, deadlocked, thrashing - is killed and counts as
+// dead from then on.
+//
+// A process that the run needs is restarted within RestartLimits; the run fails beyond them. An
+// expendable process is restarted at growing intervals (RestartBackoff) for as long as the run
+// lasts, and whether the run goes on without it is the caller's decision (working_actors.h).
 #pragma once
 
 #include <cstdint>
@@ -13,6 +17,7 @@
 
 #include "common/base/silence.h"
 #include "launch/processes/child_process.h"
+#include "launch/processes/restart_backoff.h"
 #include "launch/processes/restart_policy.h"
 
 namespace shoal::launch {
@@ -22,6 +27,24 @@ namespace shoal::launch {
 struct HangLimits {
   std::chrono::seconds start{120};  // before its first report
   std::chrono::seconds report{30};  // since its last one
+};
+
+// An expendable process that has died and does not work again yet.
+struct DownProcess {
+  std::string name;    // "actor-1"
+  std::string reason;  // of its last death: "exit code 1: no way to host ..."
+  int deaths = 0;      // in a row
+  std::optional<std::chrono::seconds> restart_in;  // empty while it is being tried
+  // Why restarts seem to be in vain: it died more often than RestartLimits allow, or refused its
+  // configuration. Empty otherwise.
+  std::string hopeless;
+};
+
+// The expendable processes of a role that are wanted.
+struct RoleStanding {
+  int processes = 0;
+  int working = 0;                // have reported for kSettled since their last start
+  std::vector<DownProcess> down;  // those that never died are neither working nor down at first
 };
 
 // Knows nothing of DDS. One thread, which must live as long as the children (child_process.h).
@@ -42,9 +65,9 @@ class Supervisor {
   // elsewhere our child is the remote shell, whose pid nobody reports.
   void Heard(std::string_view role, int id, pid_t pid, SteadyTime now);
 
-  // Kills the hung, reaps the dead and starts what is due again. When the run cannot go on - a
-  // process died too often, refused its configuration (exit 2) or met a non-finite number (exit 3)
-  // - one line saying which and why.
+  // Kills the hung, reaps the dead and starts what is due again. When the run cannot go on, returns
+  // one line saying which process ended it and why: a process met a non-finite number (exit 3), or
+  // one that is not expendable died too often or refused its configuration (exit 2).
   std::optional<std::string> Poll(SteadyTime now);
 
   // From now on processes of the role ("" = all) may exit and are not restarted.
@@ -53,13 +76,23 @@ class Supervisor {
   // Processes of the role ("" = all) that run or wait for their restart.
   int Running(std::string_view role) const;
 
+  // The role's expendable processes; empty when it has none.
+  RoleStanding Standing(std::string_view role, SteadyTime now) const;
+
   // The running process's; 0 when there is none.
   pid_t Pid(std::string_view role, int id) const;
 
   int restarts() const { return restarts_; }
 
+  // Unexpected deaths of expendable processes: "actor-1 12 times (last: exit code 1: no way to
+  // host)", the most frequent ones first. Empty when there was none.
+  std::string DescribeDeaths() const;
+
   // What a retired actor needs to flush what it has, and more.
   static constexpr std::chrono::seconds kRetire{40};
+
+  // A restarted process counts as working after it has reported for so long.
+  static constexpr std::chrono::seconds kSettled{10};
 
   // Expected exits that were not clean, each as one line.
   const std::vector<std::string>& unclean_exits() const { return unclean_exits_; }
@@ -70,11 +103,14 @@ class Supervisor {
     RestartPolicy policy;
     RestartPolicy connection;  // for lost connections to a process elsewhere
     std::optional<ChildProcess> process;
-    uintmax_t output_before = 0;  // bytes in its output when `process` was started
-    Silence silence;              // of `process`
-    bool heard = false;
-    bool hung = false;  // and killed for it
+    uintmax_t output_before = 0;            // bytes in its output when `process` was started
+    Silence silence;                        // of `process`
+    std::optional<SteadyTime> heard_since;  // first report of `process`
+    bool hung = false;                      // and killed for it
     std::optional<SteadyTime> restart_at;
+    RestartBackoff backoff{BackoffLimits()};  // of an expendable process
+    DownProcess down;                         // of an expendable process that has died
+    int deaths = 0;                           // of an expendable process, over the whole run
     bool exit_expected = false;
     std::optional<SteadyTime> leave_by;    // retired: SIGKILL then
     std::optional<ProcessSpec> successor;  // to be started once it has left
@@ -85,6 +121,8 @@ class Supervisor {
   void KillIfHung(Child& child, SteadyTime now);
   void KillIfOverdue(Child& child, SteadyTime now);
   std::optional<std::string> OnExit(Child& child, const ExitStatus& status, SteadyTime now);
+  // Plans the restart of an expendable process that died of `reason`.
+  void BackOff(Child& child, const ExitStatus& status, const std::string& reason, SteadyTime now);
   void OnExpectedExit(Child& child, const ExitStatus& status);
 
   const RestartLimits limits_;

@@ -24,6 +24,7 @@
 #include "launch/run/run_inbox.h"
 #include "launch/run/run_progress.h"
 #include "launch/run/run_watch.h"
+#include "launch/run/working_actors.h"
 #include "launch/watch/scalar_log.h"
 
 namespace shoal::launch {
@@ -108,6 +109,8 @@ struct Coordinator::Impl {
   std::string WaitForEnd(const std::function<void()>& on_started);
   // Every process of the run has reported.
   bool Started() const;
+  // Ends the run where it cannot go on without the actors that are down.
+  void LookAtActors(SteadyTime now);
   bool HasReplay() const;
   void TakeCommands();
   void Scale(int from, int to);
@@ -150,6 +153,8 @@ struct Coordinator::Impl {
   RunWatch watch;
   ScalarLog scalars;
   Supervisor supervisor;
+  WorkingActors working_actors{Now()};
+  RoleStanding actors, evaluation_actor;  // as they were looked at last
   dds::Publisher<ControlMessage> control;
   RunInbox inbox;
 
@@ -157,6 +162,7 @@ struct Coordinator::Impl {
   SteadyTime start = AwakeNow();
   std::optional<SteadyTime> heartbeat, meta_stored;
   bool stop_asked = false;  // by a command
+  bool evaluated = false;   // an evaluation was delivered
   bool meta_due = false;    // something happened that it records
   const int usable_cores = UsableCores();
   int suspensions_said = Suspensions(), refusals_said = RefusedSuspensions();
@@ -190,6 +196,7 @@ RunResult Coordinator::Impl::Run(const std::function<void()>& on_started) {
   scalars.WriteEnd(meta.exit != "failed");
   return {.meta = meta,
           .clean = supervisor.unclean_exits().empty(),
+          .deaths = supervisor.DescribeDeaths(),
           .bottleneck = FindBottleneck(TotalsOf(watch.view()), Resources())};
 }
 
@@ -202,6 +209,7 @@ std::string Coordinator::Impl::WaitForEnd(const std::function<void()>& on_starte
       started = true;
     }
     if (const auto failure = supervisor.Poll(Now())) Fail(*failure);
+    LookAtActors(Now());
     if (!meta.error.empty()) return "failed";
     if (StopRequested() || stop_asked) return "interrupted";
     if (rule.TargetReached()) return "target";
@@ -212,9 +220,22 @@ std::string Coordinator::Impl::WaitForEnd(const std::function<void()>& on_starte
 
 bool Coordinator::Impl::Started() const {
   return std::ranges::all_of(plan, [this](const ProcessSpec& spec) {
+    if (watch.view().Heard(spec.role, static_cast<uint32_t>(spec.id))) return true;
     const bool retired = spec.role == "actor" && spec.id >= settings.config().actors;
-    return retired || watch.view().Heard(spec.role, static_cast<uint32_t>(spec.id));
+    // Others work, so that the run has started without it.
+    const bool down =
+        actors.working > 0 &&
+        std::ranges::find(actors.down, spec.Name(), &DownProcess::name) != actors.down.end();
+    return retired || down;
   });
+}
+
+void Coordinator::Impl::LookAtActors(SteadyTime now) {
+  actors = supervisor.Standing("actor", now);
+  evaluation_actor = supervisor.Standing("eval", now);
+  const std::chrono::seconds patience(config.stop.without_actors);
+  if (const auto why = working_actors.Look(actors, patience, now)) Fail(*why);
+  if (const auto why = MissingEvaluations(evaluation_actor, evaluated)) Fail(*why);
 }
 
 bool Coordinator::Impl::HasReplay() const {
@@ -261,6 +282,7 @@ void Coordinator::Impl::Note(SettingChange change) {
 }
 
 void Coordinator::Impl::Stop() {
+  actors = evaluation_actor = {};  // whoever is down from now on is not missed
   if (stop_asked && meta.exit == "interrupted") {
     progress.Say("stopping the run, as commanded");
   } else if (meta.exit == "interrupted") {
@@ -341,6 +363,8 @@ ProgressFigures Coordinator::Impl::Figures(SteadyTime now) const {
   figures.best = meta.best;
   figures.processes = supervisor.Running("");
   figures.restarts = meta.restarts + supervisor.restarts();
+  figures.actors_working = settings.config().actors - static_cast<int>(actors.down.size());
+  figures.trouble = DescribeTrouble(actors, evaluation_actor);
   return figures;
 }
 
@@ -353,6 +377,7 @@ void Coordinator::Impl::ShowView(const ProgressFigures& figures, SteadyTime now)
   shown.state = figures.state;
   shown.env_steps = figures.env_steps;
   shown.updates = meta.updates;
+  shown.trouble = figures.trouble;
   shown.processes = watch.Reports(figures, settings.config(), Resources(), counts, now);
   desk.Show(std::move(shown), now);
 }
@@ -380,6 +405,7 @@ void Coordinator::Impl::TakeMessages(SteadyTime now) {
 }
 
 void Coordinator::Impl::TakeEvaluation(const EvalMessage& message) {
+  evaluated = true;
   const EvaluationPoint point = StoreEvaluation(run, message, Elapsed());
   const auto warning = Count(point);
   const bool best = bests.newest_is_best();

@@ -21,7 +21,8 @@ namespace shoal::launch {
 
 struct RunResult {
   RunMeta meta;
-  bool clean = true;  // every process left by itself with code 0
+  bool clean = true;   // every process left by itself with code 0
+  std::string deaths;  // Supervisor::DescribeDeaths
   Bottleneck bottleneck;
 };
 

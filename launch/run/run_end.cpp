@@ -123,6 +123,7 @@ void PrintSummary(const fs::path& run, const Config& config, const RunResult& re
                     run.string()));
   }
   if (meta.accounting) progress.Say("  " + meta.accounting->Line());
+  if (!result.deaths.empty()) progress.Say("  deaths: " + result.deaths);
   if (meta.updates_lost > 0) {
     progress.Say(fmt::format("  updates lost with a learner: {}", meta.updates_lost));
   }

@@ -92,13 +92,14 @@ std::string FormatDuration(std::optional<double> seconds) {
 }
 
 std::string FormatProgressLine(const ProgressFigures& f) {
-  return fmt::format(
+  const std::string line = fmt::format(
       "{} {} | {}, {}/s | {} updates, {}/s | eval {} | actors {} | {} | lag {} | {} | left {}",
       FormatDuration(f.elapsed_seconds), f.state, StepsOfBudget(f),
       NumberText(f.env_steps_per_second), NumberText(f.updates),
       NumberText(f.updates_per_second, "{:.1f}"), ShortScore(f.last_evaluation),
       ShortScore(f.rollout_success, f.rollout_return, f.rollout_length), Headlines(f, " "),
       NumberText(f.policy_lag), LimiterState(f), FormatDuration(f.seconds_left));
+  return f.trouble.empty() ? line : line + " | " + f.trouble;
 }
 
 std::vector<std::string> FormatProgressBlock(const ProgressFigures& f, int width) {
@@ -122,6 +123,7 @@ std::vector<std::string> FormatProgressBlock(const ProgressFigures& f, int width
                   NumberText(f.policy_lag), NumberText(f.data_age)),
       fmt::format("  flow       {}", LimiterState(f)),
   };
+  if (!f.trouble.empty()) lines.push_back("  trouble    " + f.trouble);
   for (std::string& line : lines) line = CutToColumns(std::move(line), static_cast<size_t>(width));
   return lines;
 }

@@ -34,6 +34,9 @@ struct ProgressFigures {
   std::optional<double> learner_waits;  // the same for the learner
   std::optional<EvaluationPoint> last_evaluation, best;
   int processes = 0, restarts = 0;
+  // Training actors that are not down after a death; in lockstep, all.
+  int actors_working = 0;
+  std::string trouble;  // which actors do not work and why, as a line; empty when all do
 };
 
 // "12:05" or "1:02:03"; "-" when unknown.

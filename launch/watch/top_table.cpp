@@ -305,7 +305,7 @@ std::string TopJson(const RunViewMessage& view) {
   const nlohmann::ordered_json object{{"schema", view.schema},       {"run", view.run},
                                       {"time", view.time},           {"state", view.state},
                                       {"env_steps", view.env_steps}, {"updates", view.updates},
-                                      {"processes", processes}};
+                                      {"processes", processes},      {"trouble", view.trouble}};
   // Names come over the network: what is not UTF-8 in them is replaced.
   return object.dump(2, ' ', /*ensure_ascii=*/false,
                      nlohmann::ordered_json::error_handler_t::replace);

@@ -46,7 +46,8 @@ ordered_json ProgressJson(const ProgressFigures& f) {
           {"rollout_length", OrNull(f.rollout_length)},
           {"last_evaluation", EvaluationJson(f.last_evaluation)},
           {"best", EvaluationJson(f.best)},
-          {"restarts", f.restarts}};
+          {"restarts", f.restarts},
+          {"trouble", f.trouble}};
 }
 
 const char* ToString(PlayedEpisode::State state) {

@@ -128,6 +128,7 @@ void RolloutCore::TakeReset(const uint8_t* record, Lane* lane) {
   lane->index = 0;
   lane->open = true;
   ++lane->building.records;
+  lane->missed = 0;
 }
 
 bool RolloutCore::TakeStep(const uint8_t* record, Lane* lane) {
@@ -142,6 +143,7 @@ bool RolloutCore::TakeStep(const uint8_t* record, Lane* lane) {
   AddRow(record, lane);
   ++building.records;
   ++lane->index;
+  lane->missed = 0;
   if (building.rows < steps_) return true;
   building.session = lane->session;
   lane->whole.push_back(std::exchange(building, {}));
@@ -222,9 +224,18 @@ void RolloutCore::SetActors(int actors) {
 int RolloutCore::Ready() const {
   int ready = 0;
   for (const auto& [env, lane] : lanes_) {
-    ready += env < static_cast<uint32_t>(expected()) && !lane.whole.empty();
+    ready += env < static_cast<uint32_t>(Environments()) && !lane.whole.empty();
   }
   return ready;
+}
+
+int RolloutCore::Absent() const {
+  int absent = 0;
+  for (const auto& [env, lane] : lanes_) {
+    absent += env < static_cast<uint32_t>(Environments()) && lane.missed >= kAbsentAfter &&
+              lane.whole.empty();
+  }
+  return absent;
 }
 
 BatchSchema RolloutCore::ReadySchema() const {
@@ -236,8 +247,13 @@ void RolloutCore::TakeReady(const BatchSchema& schema, uint8_t* data) {
   std::memset(data, 0, schema.total_bytes());
   const BatchView batch = schema.View(data);
   int row = 0;
-  for (auto& [env, lane] : lanes_) {
-    if (env >= static_cast<uint32_t>(expected()) || lane.whole.empty()) continue;
+  for (int i = 0; i < Environments(); ++i) {
+    const auto env = static_cast<uint32_t>(i);
+    Lane& lane = *FindLane(static_cast<uint32_t>(i / envs_per_actor_), env);
+    if (lane.whole.empty()) {
+      ++lane.missed;
+      continue;
+    }
     Rollout rollout = std::move(lane.whole.front());
     lane.whole.pop_front();
     CopyRows(batch, row, env, rollout);

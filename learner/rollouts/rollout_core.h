@@ -67,9 +67,14 @@ class RolloutCore final : private RecordTaker {
   // How many actors the next update waits for; more only from the next Await on.
   void SetActors(int actors);
 
-  // Environments whose rollouts the next update waits for, and of these those that have one.
-  int expected() const { return expected_actors_ * envs_per_actor_; }
+  // Environments whose rollouts the next update waits for: those of the run's actors but the absent
+  // ones. Absent is an environment of which nothing came while the last kAbsentAfter updates were
+  // made without it, until a record of it comes.
+  int Expected() const { return Environments() - Absent(); }
+  int Absent() const;
+  // Environments that have a rollout for the next update.
   int Ready() const;
+  static constexpr int kAbsentAfter = 3;
   // The schema of a batch of the rollouts that are ready: at least one.
   BatchSchema ReadySchema() const;
   // Fills `data`, of ReadySchema(), aligned to 64, and takes the rollouts off, in the order of
@@ -112,12 +117,14 @@ class RolloutCore final : private RecordTaker {
     std::vector<float> vector;   // (V)
     Rollout building;
     std::deque<Rollout> whole;  // oldest first
+    int missed = 0;             // updates made without it since its last record
   };
 
   bool Take(const SessionCounters& session, const uint8_t* record) override;
   void OnGap(const SessionCounters& session, uint32_t env) override;
   // The lane of an environment that this actor may host; null for any other.
   Lane* FindLane(uint32_t actor, uint32_t env);
+  int Environments() const { return expected_actors_ * envs_per_actor_; }
   void TakeReset(const uint8_t* record, Lane* lane);
   bool TakeStep(const uint8_t* record, Lane* lane);
   void AddRow(const uint8_t* record, Lane* lane);

@@ -13,6 +13,8 @@
 namespace shoal::learner {
 namespace {
 
+constexpr int kAnyNumber = 3;  // deadlines after which less than half of the rollouts suffice
+
 int RecordBytes(const RunConfig& run) { return RecordLayout(run.spec).record_bytes(); }
 
 }  // namespace
@@ -128,15 +130,28 @@ void RolloutSource::Tell(bool all) {
 }
 
 bool RolloutSource::Complete(SteadyTime now) {
-  const int ready = core_.Ready(), expected = core_.expected();
+  const int ready = core_.Ready(), expected = core_.Expected();
   if (ready == 0) return false;
   if (!first_ready_) first_ready_ = now;
+  if (int64_t{ready} * run_.config.ppo.rollout_steps < run_.config.learner.batch) return false;
   if (ready >= expected) return true;
-  return now - *first_ready_ >= deadline_ && 2 * ready >= expected;
+  const std::chrono::duration<double> waited = now - *first_ready_;
+  return waited >= deadline_ && (2 * ready >= expected || waited >= kAnyNumber * deadline_);
+}
+
+void RolloutSource::SayAbsent() {
+  const int absent = core_.Absent();
+  if (absent > absent_said_) {
+    log::Warning(
+        "{} environments have sent nothing for {} updates: updates do not wait for them until they "
+        "send again",
+        absent, RolloutCore::kAbsentAfter);
+  }
+  absent_said_ = absent;
 }
 
 Batch RolloutSource::HandOut() {
-  const int ready = core_.Ready(), expected = core_.expected();
+  const int ready = core_.Ready(), expected = core_.Expected();
   if (ready < expected) {
     late_rollouts_ += static_cast<uint64_t>(expected - ready);
     log::Warning(
@@ -150,6 +165,7 @@ Batch RolloutSource::HandOut() {
     memory_ = AlignedBytes(memory_bytes_);
   }
   core_.TakeReady(*schema_, memory_.data());
+  SayAbsent();
   handed_out_ = true;
   first_ready_.reset();
   return {.view = schema_->View(memory_.data(), core_.stored_steps()),
@@ -176,7 +192,7 @@ void RolloutSource::SetActors(int actors) {
 BatchCounters RolloutSource::counters() const {
   const MutexLock lock(mutex_);
   const RolloutCounters& counters = core_.counters();
-  return {.rollouts = BatchCounters::Rollouts{.expected = uint64_t(core_.expected()),
+  return {.rollouts = BatchCounters::Rollouts{.expected = uint64_t(core_.Expected()),
                                               .ready = uint64_t(core_.Ready()),
                                               .late = late_rollouts_,
                                               .dropped = counters.dropped_rollouts,

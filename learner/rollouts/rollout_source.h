@@ -6,8 +6,10 @@
 // true account, and its successor goes on from it. Knows nothing of DDS: chunks come in through
 // OnChunk, words go out through `send`.
 //
-// A batch is whole when every environment that the update waits for has its rollout, or, once
-// ppo.rollout_deadline has passed since the first one was there, when at least half of them have.
+// A batch is complete when every environment that the update waits for has its rollout. Once
+// ppo.rollout_deadline has passed since the first rollout was there, at least half of them suffice,
+// and after three times as long any number. A batch holds at least one minibatch (learner.batch).
+// Updates stop waiting for environments that send nothing any more (RolloutCore::Expected).
 //
 // Threads: OnChunk from receive threads; Next, SetActors, counters from one other. Memory: two
 // rollouts of every environment, more with ppo.versions_ahead.
@@ -65,6 +67,8 @@ class RolloutSource final : public BatchStream {
   bool WriteAccount() SHOAL_REQUIRES(mutex_);
   bool Complete(SteadyTime now) SHOAL_REQUIRES(mutex_);
   Batch HandOut() SHOAL_REQUIRES(mutex_);
+  // Says when more environments are not waited for any more.
+  void SayAbsent() SHOAL_REQUIRES(mutex_);
   size_t MaxChunks(int actors) const;
 
   const RunConfig run_;
@@ -86,6 +90,7 @@ class RolloutSource final : public BatchStream {
   bool handed_out_ SHOAL_GUARDED_BY(mutex_) = false;
   std::optional<SteadyTime> first_ready_ SHOAL_GUARDED_BY(mutex_);
   uint64_t late_rollouts_ SHOAL_GUARDED_BY(mutex_) = 0;
+  int absent_said_ SHOAL_GUARDED_BY(mutex_) = 0;
   SteadyTime last_chunk_ SHOAL_GUARDED_BY(mutex_);
   IntakeProblems problems_ SHOAL_GUARDED_BY(mutex_);
 

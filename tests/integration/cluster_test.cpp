@@ -191,6 +191,31 @@ TEST_F(Cluster, AnActorWhoseRemoteShellDiedLeavesAndAnotherTakesItsPlace) {
   EndWithNothingLost(training);
 }
 
+// Its shell still answers: each new actor there starts and finds no way to the coordinator.
+TEST_F(Cluster, AHostThatIsCutOffIsTriedOnWhileTheOthersTrain) {
+  RunningTraining training = Start(net_.Shell());
+  const json first = training.reports().WaitFor("actor", Always, seconds(60), kFarActor);
+  ASSERT_FALSE(first.is_null()) << training.Output();
+  ASSERT_TRUE(net_.Cut());
+  const json tried = training.reports().WaitFor(
+      "coordinator", [](const json& r) { return r.value("restarts", 0.0) >= 7; }, seconds(150));
+  ASSERT_FALSE(tried.is_null()) << "six deaths do not end the run: " << training.Output();
+  EXPECT_EQ(tried.value("actors_working", 0.0), 1);
+  ASSERT_TRUE(training.WaitForMoreSteps(1000)) << training.Output();
+  EXPECT_NE(training.Output().find("actors 1 of 2: actor-1: exit code 1: "), std::string::npos)
+      << training.Output();
+
+  ASSERT_TRUE(net_.Join());
+  const json successor = training.reports().WaitFor(
+      "actor", [&](const json& r) { return r.at("pid") != first.at("pid"); }, seconds(90),
+      kFarActor);
+  ASSERT_FALSE(successor.is_null()) << training.Output();
+  EXPECT_FALSE(WaitForFarRecords(training, successor, 200).is_null());
+  ASSERT_EQ(kill(training.pid(), SIGINT), 0);
+  ASSERT_EQ(training.End(seconds(100)), kInterruptedExit) << training.Output();
+  ExpectBalanced(run_.Json("meta.json"));
+}
+
 TEST_F(Cluster, AHostThatCannotRunActorsIsNamedBeforeTheRunBegins) {
   const ProgramResult result =
       run_.Train(Keys("6000"), Hosts({"sh", "-c", "echo no route to host >&2; exit 255"}));

@@ -129,6 +129,8 @@ function showProcesses(answer) {
 
 function showTop(answer) {
   showProgress(answer.progress);
+  $("trouble").textContent = answer.progress.trouble;
+  $("trouble").hidden = answer.progress.trouble === "";
   $("advice").textContent = answer.advice;
   showProcesses(answer);
   $("events").replaceChildren(...answer.events.slice(-12).reverse().map(([time, text]) => {

@@ -133,6 +133,7 @@ inline void Fill(uint64_t n, RunViewMessage* m) {
   m->processes[1].values.clear();
   m->events = {{.number = n, .time = 1.5, .text = "first"},
                {.number = n + 1, .time = 2, .text = ""}};
+  m->trouble = "actors 1 of 2";
 }
 inline void Fill(uint64_t n, CommandMessage* m) {
   *m = {.client = 7, .request = n, .verb = "set", .arguments = {"eval.interval=5", ""}};
@@ -228,6 +229,7 @@ inline std::string Describe(const RunViewMessage& m) {
       fmt::format("{} {} {} {} {} {}", m.schema, m.run, m.time, m.state, m.env_steps, m.updates);
   for (const MetricsMessage& process : m.processes) text += " (" + Describe(process) + ")";
   for (const RunEvent& e : m.events) text += fmt::format(" ({} {} {})", e.number, e.time, e.text);
+  text += " " + m.trouble;
   return text;
 }
 inline std::string Describe(const CommandMessage& m) {

@@ -19,6 +19,7 @@ TEST(PlanProcesses, StartsServersBeforeActorsAndOneProcessPerActor) {
   for (const ProcessSpec& spec : PlanProcesses(config, "runs/a")) {
     names.push_back(spec.Name());
     EXPECT_EQ(spec.outlives_parent, spec.role == "replay");
+    EXPECT_EQ(spec.expendable, spec.role == "actor" || spec.role == "eval");
     EXPECT_EQ(spec.output, "runs/a/logs/" + spec.Name() + ".log");
     EXPECT_THAT(spec.environment, Contains(Pair("OMP_WAIT_POLICY", "passive")));
     EXPECT_THAT(spec.environment, Contains(Pair("LP_NUM_THREADS", "0")));
@@ -26,6 +27,15 @@ TEST(PlanProcesses, StartsServersBeforeActorsAndOneProcessPerActor) {
                 Contains(Pair("OMP_NUM_THREADS", spec.role == "learner" ? "3" : "1")));
   }
   EXPECT_THAT(names, ElementsAre("replay-0", "learner-0", "actor-0", "actor-1", "eval-0"));
+}
+
+TEST(PlanProcesses, InLockstepTheRunNeedsEveryProcess) {
+  Config config;
+  config.actors = 1;
+  config.lockstep = true;
+  for (const ProcessSpec& spec : PlanProcesses(config, "runs/a")) {
+    EXPECT_FALSE(spec.expendable) << spec.Name();
+  }
 }
 
 TEST(PlanProcesses, GivesEachProgramItsArguments) {

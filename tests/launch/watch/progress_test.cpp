@@ -48,6 +48,15 @@ TEST(FormatProgressLine, HoldsEveryFigureAndADashForMissingOnes) {
               AllOf(HasSubstr("-/s"), HasSubstr("no update yet"), HasSubstr("lag -")));
 }
 
+TEST(FormatProgressLine, EndsWithTheActorsThatDoNotWork) {
+  ProgressFigures f = Sample();
+  f.trouble = "actors 1 of 2: actor-1: exit code 1";
+  EXPECT_THAT(FormatProgressLine(f), ::testing::EndsWith("left 01:40 | " + f.trouble));
+  EXPECT_THAT(FormatProgressBlock(f, 100),
+              ::testing::Contains("  trouble    actors 1 of 2: actor-1: exit code 1"));
+  EXPECT_THAT(FormatProgressBlock(Sample(), 100), ::testing::Each(Not(HasSubstr("trouble"))));
+}
+
 TEST(FormatProgressLine, ShowsTheReturnWhereThereIsNoSuccess) {
   ProgressFigures f = Sample();
   f.last_evaluation->success.reset();

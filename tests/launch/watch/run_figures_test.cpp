@@ -36,8 +36,11 @@ RunViewMessage ViewOf(const ProgressFigures& figures, const Bottleneck& lately) 
   AddOrders(config, {.usable_cores = 4, .actors = 2}, &report);
   MetricsMessage own = report.message();
   AddShares(lately, &own);
-  return {
-      .run = "reach", .state = figures.state, .env_steps = figures.env_steps, .processes = {own}};
+  return {.run = "reach",
+          .state = figures.state,
+          .env_steps = figures.env_steps,
+          .processes = {own},
+          .trouble = figures.trouble};
 }
 
 ProgressFigures Figures() {
@@ -67,6 +70,17 @@ TEST(RunFigures, AViewShowsWhatTheCoordinatorShows) {
   EXPECT_EQ(seen.actors_wait, 0);
   ASSERT_TRUE(seen.last_evaluation);
   EXPECT_EQ(FormatScore(*seen.last_evaluation), FormatScore(*figures.last_evaluation));
+}
+
+TEST(RunFigures, AViewShowsWhichActorsDoNotWork) {
+  ProgressFigures figures = Figures();
+  figures.actors_working = 1;
+  figures.trouble = "actors 1 of 2: actor-1: exit code 1";
+  RunViewMessage view = ViewOf(figures, Lately());
+  EXPECT_EQ(FiguresOfView(view, Now()).actors_working, 1);
+  EXPECT_EQ(FiguresOfView(view, Now()).trouble, figures.trouble);
+  view.state = "evaluating";
+  EXPECT_EQ(FiguresOfView(view, Now()).trouble, "") << "no actor is wanted any more";
 }
 
 TEST(RunFigures, AViewGivesTheAdviceOfWhatWasLately) {

@@ -53,6 +53,15 @@ TEST(PageAnswers, TheViewIsThatOfShoalTop) {
   EXPECT_EQ(progress.at("seconds_left"), 20);
   EXPECT_EQ(progress.at("last_evaluation").at("success"), 0.25);
   EXPECT_TRUE(progress.at("best").is_null());
+  EXPECT_EQ(progress.at("trouble"), "");
+}
+
+TEST(PageAnswers, SayWhichActorsDoNotWork) {
+  RunViewMessage view = View();
+  view.trouble = "actors 1 of 2: actor-1: exit code 1";
+  const json answer = json::parse(TopAnswer(view));
+  EXPECT_EQ(answer.at("progress").at("trouble"), view.trouble);
+  EXPECT_EQ(answer.at("view").at("trouble"), view.trouble);
 }
 
 TEST(PageAnswers, WhatIsNotUtf8IsReplaced) {

@@ -88,7 +88,7 @@ inline ObservationSpec PpoSpec() {
 inline RunConfig PpoRun(int actors) {
   RunConfig run = SmallRun();
   run.config.learner.algorithm = "ppo";
-  run.config.ppo.rollout_steps = 3;
+  run.config.ppo.rollout_steps = run.config.learner.batch = 3;
   run.config.actors = actors;
   run.config.envs_per_actor = 1;
   run.spec = PpoSpec();

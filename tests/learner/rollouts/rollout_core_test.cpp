@@ -43,7 +43,7 @@ TEST_F(RolloutCoreTest, ARolloutHasWhatWasSeenDoneAndEarned) {
   EXPECT_EQ(core_->TakeChunk(b_.Chunk()).stored, 4u);
   EXPECT_EQ(core_->Ready(), 1);
   core_->TakeChunk(a_.Chunk());
-  ASSERT_EQ(core_->Ready(), core_->expected());
+  ASSERT_EQ(core_->Ready(), core_->Expected());
   const BatchView batch = TakeReady();
   ASSERT_EQ(batch.reward.size(), 6u);
   for (size_t t = 0; t < 6; ++t) {
@@ -192,11 +192,31 @@ TEST_F(RolloutCoreTest, ARestartedLearnerCountsWhatItsPredecessorHadNotUsedAsDis
 
 TEST_F(RolloutCoreTest, MoreActorsAreWaitedForFromTheNextUpdateFewerAtOnce) {
   core_->SetActors(3);
-  EXPECT_EQ(core_->expected(), 2);
+  EXPECT_EQ(core_->Expected(), 2);
   core_->Await({100, 1});
-  EXPECT_EQ(core_->expected(), 3);
+  EXPECT_EQ(core_->Expected(), 3);
   core_->SetActors(1);
-  EXPECT_EQ(core_->expected(), 1);
+  EXPECT_EQ(core_->Expected(), 1);
+}
+
+TEST_F(RolloutCoreTest, UpdatesStopWaitingForAnEnvironmentThatSendsNothingUntilItSendsAgain) {
+  a_.Reset(0, 0, 1);
+  for (uint64_t update = 0; update < 3; ++update) {
+    EXPECT_EQ(core_->Expected(), 2) << update;
+    for (uint32_t i = 1; i <= 3; ++i) {
+      a_.Step(0, 0, static_cast<uint32_t>(3 * update) + i, 1, {100, update});
+    }
+    core_->TakeChunk(a_.Chunk());
+    ASSERT_EQ(core_->Ready(), 1);
+    EXPECT_EQ(TakeReady().reward.size(), 3u);
+    core_->Await({100, update + 1});
+  }
+  EXPECT_EQ(core_->Expected(), 1);
+  EXPECT_EQ(core_->Absent(), 1);
+  b_.Reset(1, 0, 1);
+  core_->TakeChunk(b_.Chunk());
+  EXPECT_EQ(core_->Expected(), 2) << "it is there again, however slow it is";
+  EXPECT_EQ(core_->Absent(), 0);
 }
 
 TEST_F(RolloutCoreTest, EnvironmentsThatTheActorDoesNotHostAreRefused) {

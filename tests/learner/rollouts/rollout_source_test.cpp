@@ -122,8 +122,35 @@ TEST_F(RolloutSourceTest, AfterTheDeadlineHalfOfTheRolloutsDoAndAreSaidToBeLate)
   EXPECT_EQ(source_->counters().rollouts->late, 1u);
 }
 
+TEST_F(RolloutSourceTest, LessThanHalfAreWaitedForThreeTimesAsLong) {
+  Make(3, 0.2);
+  a_.PlayThree(0, 0);
+  source_->OnChunk(a_.Chunk());
+  const SteadyTime start = Now();
+  std::optional<Batch> batch;
+  while (!batch && Now() - start < seconds(20)) batch = source_->Next(Now() + milliseconds(20));
+  ASSERT_TRUE(batch);
+  EXPECT_GE(Now() - start, milliseconds(550));
+  EXPECT_EQ(batch->view.reward.size(), 3u);
+}
+
+TEST_F(RolloutSourceTest, RolloutsThatMakeNoMinibatchAreNotHandedOut) {
+  RunConfig run = PpoRun(2);
+  run.config.ppo.rollout_deadline = 0.1;
+  run.config.learner.batch = 6;
+  source_.emplace(run, folder_.path() / "run", kFirst.session, kFirst.update,
+                  [this](const CreditsMessage& message) { Keep(message); });
+  a_.PlayThree(0, 0);
+  source_->OnChunk(a_.Chunk());
+  ASSERT_TRUE(WaitUntilTold(0, 4, seconds(20)));
+  EXPECT_FALSE(source_->Next(Now() + milliseconds(600)));
+  b_.PlayThree(1, 0);
+  source_->OnChunk(b_.Chunk());
+  EXPECT_TRUE(source_->Next(Now() + seconds(20)));
+}
+
 TEST_F(RolloutSourceTest, LessThanHalfAreWaitedForBeyondTheDeadline) {
-  Make(3, 0.1);
+  Make(3, 10);
   a_.PlayThree(0, 0);
   source_->OnChunk(a_.Chunk());
   ASSERT_TRUE(WaitUntilTold(0, 4, seconds(20)));

@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+// Whether a run can go on with the expendable processes that work, and what it says of the others
+// (docs/failures.md). Pure: the caller supplies standings and times.
+#pragma once
+
+#include <chrono>
+#include <optional>
+#include <string>
+
+#include "common/base/clock.h"
+#include "common/base/silence.h"
+#include "launch/processes/supervisor.h"
+
+namespace shoal::launch {
+
+// The training actors of a run. Look several times a second (silence.h).
+class WorkingActors {
+ public:
+  explicit WorkingActors(SteadyTime start) : without_(start) {}
+
+  // Returns why the run must end, or nothing while it can go on. It must end
+  // - as soon as restarts of all actors seem to be in vain, unless one worked before: the
+  //   configuration is wrong;
+  // - when no actor has worked for `patience`.
+  std::optional<std::string> Look(const RoleStanding& actors, std::chrono::seconds patience,
+                                  SteadyTime now);
+
+ private:
+  bool ever_ = false;  // one worked
+  Silence without_;    // a working actor
+};
+
+// Why a run must end whose evaluation actor has not delivered an evaluation since the run was
+// started or resumed: its restarts seem to be in vain. Nothing while it can go on.
+std::optional<std::string> MissingEvaluations(const RoleStanding& evaluation, bool delivered);
+
+// One line that says which actors do not work and why: "actors 1 of 2: actor-1: exit code 1: no way
+// to host ... (death 8, next try in 25 s)". Empty when all work.
+std::string DescribeTrouble(const RoleStanding& actors, const RoleStanding& evaluation);
+
+}  // namespace shoal::launch
