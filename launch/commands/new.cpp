@@ -11,16 +11,14 @@ namespace shoal::launch {
 void AddNewCommand(CLI::App& app, Action* chosen) {
   CLI::App* command = app.add_subcommand(
       "new",
-      "A project of one's own: a task, a preset and an experiment that build against the installed "
-      "Shoal, to be changed.");
+      "A project of one's own: a task, a preset and an experiment that build against this Shoal, "
+      "to be changed.");
   const auto folder = std::make_shared<std::string>();
   command->add_option("folder", *folder, "Folder to make; an existing one is refused")->required();
   command->callback([=] {
     *chosen = [=] {
       NewProject(*folder);
-      std::cout << *folder << ": next: cd " << *folder
-                << " && cmake -B build && cmake --build build && shoal train --preset point-reach\n"
-                << std::flush;
+      std::cout << *folder << ": " << NextSteps(*folder) << "\n" << std::flush;
       return 0;
     };
   });

@@ -6,6 +6,7 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/config/shared_data.h"
+#include "launch/report/command_line.h"
 
 namespace shoal::launch {
 namespace {
@@ -37,7 +38,28 @@ void CopyTree(const fs::path& from, const fs::path& to) {
   }
 }
 
+// PREFIX of PREFIX/share/shoal/template: an installation's, or the build folder.
+fs::path Prefix() {
+  return fs::weakly_canonical(Template()).parent_path().parent_path().parent_path();
+}
+
 }  // namespace
+
+std::string NextSteps(const fs::path& folder) {
+  const fs::path prefix = Prefix();
+  if (!fs::exists(prefix / SHOAL_CMAKE_PACKAGE)) {
+    return fmt::format(
+        "building it needs Shoal's CMake package, and there is no '{}': install "
+        "libshoal-dev (./run package makes it)",
+        (prefix / SHOAL_CMAKE_PACKAGE).string());
+  }
+  const bool usual = prefix == "/usr" || prefix == "/usr/local";
+  const std::string where =
+      usual ? "" : " " + CommandLine({"-DCMAKE_PREFIX_PATH=" + prefix.string()});
+  return fmt::format(
+      "next: {} && cmake -B build{} && cmake --build build && shoal train --preset point-reach",
+      CommandLine({"cd", folder.string()}), where);
+}
 
 void NewProject(const fs::path& given) {
   // "robot/" is the folder robot, whose parent is not robot itself.

@@ -34,4 +34,9 @@ string(REPLACE "${list}" "${list}${line}, " text "${text}")
 if(header)
   set(text "#include \"${header}\"\n${text}")
 endif()
+# The page says which header the list needs; here the header lies among the documentation's examples.
+if(name STREQUAL algorithms.cpp AND
+    NOT page MATCHES "`#include \"learner/agent/averaged_ddpg/averaged_ddpg.h\"`")
+  message(FATAL_ERROR "${PAGE} does not say which header algorithms.cpp includes")
+endif()
 file(WRITE ${COPY} "${text}")

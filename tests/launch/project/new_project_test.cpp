@@ -92,6 +92,18 @@ TEST_F(NewProject, BuildsAndTrainsAgainstTheInstallation) {
   EXPECT_GT(meta.at("updates").get<int64_t>(), 10);
 }
 
+// As in a clone, where nothing is installed: the printed command line is run as it is.
+TEST_F(NewProject, ItsPrintedCommandsBuildAgainstTheBuildFolder) {
+  const std::string shoal = ProgramPath("shoal").string();
+  const ProgramResult made = RunIn(Folder(), shoal + " new 'my robot'");
+  Expect(made);
+  const std::string next = made.out.substr(made.out.find("next: ") + 6);
+  EXPECT_THAT(next, HasSubstr("-DCMAKE_PREFIX_PATH="));
+  const std::string build = next.substr(0, next.find(" && shoal train"));
+  Expect(RunIn(Folder(), build));
+  EXPECT_TRUE(fs::exists(Folder() / "my robot/build/tasks_physics.so"));
+}
+
 TEST_F(NewProject, RefusesAFolderThatIsThereOrHasNoParent) {
   fs::create_directory(Folder() / "taken");
   const ProgramResult taken = RunIn(Folder(), Shoal() + " new taken/");
