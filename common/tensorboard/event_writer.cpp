@@ -104,6 +104,19 @@ void EventWriter::Text(const std::string& tag, const std::string& markdown) {
   Append(event.SerializeAsString());
 }
 
+void EventWriter::Image(const std::string& tag, int64_t step, int width, int height,
+                        const std::string& png) {
+  constexpr int kRgb = 3;
+  proto::Event event = EventOfNow(step);
+  proto::Summary::Value* value = event.mutable_summary()->add_value();
+  value->set_tag(tag);
+  value->mutable_image()->set_width(width);
+  value->mutable_image()->set_height(height);
+  value->mutable_image()->set_colorspace(kRgb);
+  value->mutable_image()->set_encoded_image_string(png);
+  Append(event.SerializeAsString());
+}
+
 void EventWriter::BeginSession(const std::map<std::string, HyperParameter>& settings) {
   proto::HParamsPluginData data;
   proto::SessionStartInfo* start = data.mutable_session_start_info();

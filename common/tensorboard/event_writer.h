@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Scalars, texts and hyper-parameters as a TensorBoard event file.
+// Scalars, texts, images and hyper-parameters as a TensorBoard event file.
 //
 // The file is FOLDER/events.out.tfevents.SECONDS.HOST.PID.NUMBER, a sequence of TFRecords of Event
 // messages. TensorBoard follows the newest file of a folder only, so one process at a time writes
@@ -35,6 +35,8 @@ class EventWriter {
   void Scalar(const std::string& tag, int64_t step, double value);
   // A text in markdown, for the text tab.
   void Text(const std::string& tag, const std::string& markdown);
+  // An RGB image of `width` x `height` pixels as a PNG file's bytes, for the images tab.
+  void Image(const std::string& tag, int64_t step, int width, int height, const std::string& png);
   // Begins what the hparams tab shows as one line: the settings by name.
   void BeginSession(const std::map<std::string, HyperParameter>& settings);
   void EndSession(bool success);

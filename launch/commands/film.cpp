@@ -7,6 +7,8 @@
 
 #include "common/base/error.h"
 #include "common/base/stop.h"
+#include "common/run_folder/run_file_names.h"
+#include "common/tensorboard/event_writer.h"
 #include "launch/commands/commands.h"
 #include "launch/film/film_checkpoints.h"
 #include "launch/record/run_folder.h"
@@ -18,7 +20,7 @@ namespace fs = std::filesystem;
 
 struct FilmOptions {
   std::string run, run_dir = "runs", checkpoint, output;
-  bool across = false;
+  bool across = false, tensorboard = false;
   int episodes = 0;  // 0: kEpisodes, or kEpisodesAcross of each checkpoint
   int64_t seed = 1;
 };
@@ -43,7 +45,20 @@ FilmOrder OrderOf(const FilmOptions& options) {
         FilmPath(order.run, options.across ? "across" : order.checkpoints[0].filename().string());
   }
   CheckFilmOutput(order.run, order.output);
+  order.strips = options.tensorboard;
   return order;
+}
+
+// A folder of its own: TensorBoard follows the newest file of a folder, and the run's may still
+// grow.
+void WriteStrips(const fs::path& run, const std::vector<CheckpointStrip>& strips) {
+  tensorboard::EventWriter events(run / kTensorBoardFolder / "film");
+  for (const CheckpointStrip& strip : strips) {
+    events.Image("film/episode", int64_t(strip.env_steps), strip.image.width, strip.image.height,
+                 strip.image.png);
+  }
+  events.Flush();
+  fmt::print("{}\n", events.path().string());
 }
 
 int Film(const FilmOptions& options) {
@@ -57,6 +72,7 @@ int Film(const FilmOptions& options) {
   }
   fmt::print("{}: {:.1f} s, {} frames, {:.2f} MB\n", order.output.string(), film->seconds,
              film->frames, 1e-6 * static_cast<double>(film->bytes));
+  if (options.tensorboard) WriteStrips(order.run, film->strips);
   if (film->bytes > kLargestInReport) {
     fmt::print(stderr, "reports leave out films above 2 MB: fewer --episodes make a smaller one\n");
   }
@@ -86,6 +102,8 @@ void AddFilmCommand(CLI::App& app, Action* chosen) {
                    fmt::format("Episodes to play; default {}, {} of each checkpoint across them",
                                kEpisodes, kEpisodesAcross))
       ->check(CLI::Range(1, 1000));
+  command->add_flag("--tensorboard", options->tensorboard,
+                    "Also shows pictures of each checkpoint's first episode in TensorBoard");
   command->add_option("--seed", options->seed, "Names the episodes: equal seeds, equal episodes")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "launch/report/report.h"
 
+#include <fmt/core.h>
+
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
@@ -18,6 +20,8 @@ namespace shoal::launch {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr char kDefaultPlot[] = "curves.png";
 
 struct CompareOptions {
   SubjectOptions subjects;
@@ -64,13 +68,16 @@ std::string TitleOf(const PlotOptions& options, const Subjects& subjects) {
 
 int DrawPlot(const PlotOptions& options) {
   InstallStopSignals();
-  const Subjects subjects = ReadSubjects(options.subjects);
+  Subjects subjects = ReadSubjects(options.subjects);
   if (subjects.named.size() > 1) CheckOneTask(subjects.groups);
+  ReadRollouts(&subjects.groups);
   Plot plot{
       .title = TitleOf(options, subjects), .axis = ParsePlotAxis(options.axis), .figures = {}};
   for (const std::string& word : options.figures) plot.figures.push_back(ParsePlotFigure(word));
   if (plot.figures.empty()) plot.figures = FiguresThereAre(subjects.groups);
-  for (const std::string& output : options.outputs) {
+  const std::vector<std::string> outputs =
+      options.outputs.empty() ? std::vector<std::string>{kDefaultPlot} : options.outputs;
+  for (const std::string& output : outputs) {
     Draw(plot, subjects.groups, output);
     std::cout << output << "\n";
   }
@@ -153,9 +160,11 @@ void AddPlotCommand(CLI::App& app, Action* chosen) {
       ->add_option("--y", options->figures,
                    "success | return | distance; may be repeated; all there are by default")
       ->allow_extra_args(false);
-  command->add_option("--output", options->outputs, "File to write, .png or .svg; may be repeated")
-      ->allow_extra_args(false)
-      ->required();
+  command
+      ->add_option(
+          "--output", options->outputs,
+          fmt::format("File to write, .png or .svg; may be repeated; {} by default", kDefaultPlot))
+      ->allow_extra_args(false);
   command->add_option("--title", options->title, "Above the curves");
   command->callback([=] { *chosen = [=] { return DrawPlot(*options); }; });
 }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "common/config/config.h"
+#include "launch/record/rollout_curve.h"
 
 namespace shoal::launch {
 
@@ -40,6 +41,7 @@ struct RunResults {
   std::string name{};
   Config config{};
   std::vector<EvaluationFigures> curve{};     // while training, by env steps
+  std::vector<RolloutPoint> rollouts{};       // empty until ReadRollouts (launch/report/curves.h)
   std::optional<EvaluationFigures> final{};   // eval/final.json
   std::vector<EvaluationFigures> transfer{};  // eval/on-TASK.json: on other tasks, by task
   // meta.json; empty before the run has written it.

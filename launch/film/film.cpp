@@ -68,19 +68,18 @@ class PipeReading {
 };
 
 // "best, 11297 updates, 181764 env steps"
-std::string LabelOf(const fs::path& checkpoint, const ObservationSpec& spec) {
-  const CheckpointState state = ReadCheckpointFiles(checkpoint, spec.Hash()).state;
+std::string LabelOf(const fs::path& checkpoint, const CheckpointState& state) {
   return fmt::format("{}, {} updates, {} env steps", checkpoint.filename().string(), state.updates,
                      state.env_steps);
 }
 
 // One checkpoint's episodes. False when `stop` ended it.
 bool FilmCheckpoint(const FilmOrder& order, const fs::path& checkpoint, const std::string& label,
-                    FilmReel* reel, const std::function<bool()>& stop) {
+                    FilmReel* reel, FilmStrip* strip, const std::function<bool()>& stop) {
   const ScratchFolder scratch;
   const fs::path stream = scratch.path() / "frames";
   PipeReading reading(stream, [&](const fs::path& path) {
-    reel->Add(path, label, static_cast<uint32_t>(order.episodes));
+    reel->Add(path, label, static_cast<uint32_t>(order.episodes), strip);
   });
   try {
     const auto played = EvaluateByActor({.run = order.run,
@@ -119,13 +118,19 @@ std::optional<FilmMade> MakeFilm(const FilmOrder& order, const std::function<boo
                                  const std::function<void(const std::string&)>& say) {
   const RunConfig run = ReadRunConfig(order.run);
   FilmReel reel(run.spec, order.output);
+  std::vector<CheckpointStrip> strips;
   for (const fs::path& checkpoint : order.checkpoints) {
-    const std::string label = LabelOf(checkpoint, run.spec);
+    const CheckpointState state = ReadCheckpointFiles(checkpoint, run.spec.Hash()).state;
+    const std::string label = LabelOf(checkpoint, state);
     say(fmt::format("filming {} episodes of {}", order.episodes, label));
-    if (!FilmCheckpoint(order, checkpoint, label, &reel, stop)) return std::nullopt;
+    FilmStrip strip;
+    if (!FilmCheckpoint(order, checkpoint, label, &reel, order.strips ? &strip : nullptr, stop)) {
+      return std::nullopt;
+    }
+    if (order.strips) strips.push_back({state.env_steps, strip.Image()});
   }
   reel.Finish();
-  return FilmMade{reel.frames(), reel.seconds(), fs::file_size(order.output)};
+  return FilmMade{reel.frames(), reel.seconds(), fs::file_size(order.output), std::move(strips)};
 }
 
 }  // namespace shoal::launch

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "launch/film/film_strip.h"
+
 namespace shoal::launch {
 
 struct FilmOrder {
@@ -17,12 +19,20 @@ struct FilmOrder {
   int episodes = 0;                                // of each checkpoint
   int64_t seed = 0;  // of the episodes: those of a final evaluation with this seed
   std::filesystem::path output;
+  bool strips = false;  // makes a strip of each checkpoint's first episode as well
+};
+
+// Pictures of an episode side by side (film_strip.h).
+struct CheckpointStrip {
+  uint64_t env_steps = 0;  // of the checkpoint
+  StripImage image;
 };
 
 struct FilmMade {
   uint64_t frames = 0;
   double seconds = 0;
   uintmax_t bytes = 0;
+  std::vector<CheckpointStrip> strips{};  // in the order of the checkpoints
 };
 
 // RUN/videos/NAME.mp4

@@ -86,7 +86,8 @@ void FilmReel::Begin(const image::FrameStreamHeader& header) {
   file_.emplace(output_, layout.width, layout.height, picture_microseconds_);
 }
 
-void FilmReel::Add(const fs::path& stream, const std::string& subtitle, uint32_t episodes) {
+void FilmReel::Add(const fs::path& stream, const std::string& subtitle, uint32_t episodes,
+                   FilmStrip* strip) {
   image::FrameStreamReader reader(stream);
   CheckHeader(reader.header(), spec_, stream);
   Begin(reader.header());
@@ -95,12 +96,12 @@ void FilmReel::Add(const fs::path& stream, const std::string& subtitle, uint32_t
   EpisodeOrder order(stream, episodes);
   while (const auto frame = reader.Next()) {
     order.Next(frame->record);
-    Show(*frame);
+    Show(*frame, frame->record.episode == 0 ? strip : nullptr);
   }
   order.End();
 }
 
-void FilmReel::Show(const image::ShownFrame& frame) {
+void FilmReel::Show(const image::ShownFrame& frame, FilmStrip* strip) {
   const image::FrameRecordHeader& record = frame.record;
   const bool reset = record.step == 0, end = (record.flags & image::kShownEnd) != 0;
   text_.episode = record.episode + 1;
@@ -110,6 +111,10 @@ void FilmReel::Show(const image::ShownFrame& frame) {
   text_.success = (record.flags & image::kShownSuccess) != 0;
   if (!end && record.step % stride_ != 0) return;
   picture_.Draw(text_, frame.input, frame.view);
+  if (strip != nullptr) {
+    const FilmLayout& layout = picture_.layout();
+    strip->Add({layout.width, layout.height, picture_.stride(), picture_.pixels()});
+  }
   const uint32_t times = end ? std::max(1U, kLastPicture / picture_microseconds_) : 1;
   for (uint32_t i = 0; i < times; ++i) file_->Add(picture_.pixels(), picture_.stride());
 }

@@ -8,6 +8,7 @@
 
 #include "common/image/frame_stream.h"
 #include "common/spec/observation_spec.h"
+#include "launch/film/film_strip.h"
 #include "launch/film/mp4_writer.h"
 #include "launch/film/picture.h"
 
@@ -23,7 +24,9 @@ class FilmReel {
 
   // Adds a stream of `episodes` whole episodes, read to its end from a file or pipe. Throws Error
   // where it is broken, ends early, or is of other sizes than those of the spec and of kFilmView.
-  void Add(const std::filesystem::path& stream, const std::string& subtitle, uint32_t episodes);
+  // The pictures of its first episode also go into `strip`, unless that is null.
+  void Add(const std::filesystem::path& stream, const std::string& subtitle, uint32_t episodes,
+           FilmStrip* strip = nullptr);
   // Completes the file, after at least one stream.
   void Finish();
 
@@ -32,7 +35,7 @@ class FilmReel {
 
  private:
   void Begin(const image::FrameStreamHeader& header);
-  void Show(const image::ShownFrame& frame);
+  void Show(const image::ShownFrame& frame, FilmStrip* strip);
 
   const ObservationSpec spec_;
   const std::filesystem::path output_;

@@ -13,7 +13,6 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/stop.h"
-#include "launch/experiment/statistics_json.h"
 #include "launch/processes/child_process.h"
 #include "launch/processes/scratch_folder.h"
 
@@ -28,55 +27,6 @@ constexpr int kWidth = 900, kPanelHeight = 330;
 // Told apart by people with any colour vision, and on paper (Wong 2011, Nature Methods 8:441).
 constexpr std::array kColours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
                                  "#E69F00", "#56B4E9", "#000000"};
-
-struct Sample {
-  double x, y;
-};
-
-double Along(PlotAxis axis, const EvaluationFigures& point) {
-  switch (axis) {
-    case PlotAxis::kEnvSteps:
-      return static_cast<double>(point.env_steps);
-    case PlotAxis::kUpdates:
-      return static_cast<double>(point.updates);
-    case PlotAxis::kWallMinutes:
-      return point.wall_seconds / 60;
-  }
-  return 0;
-}
-
-std::optional<double> Value(PlotFigure figure, const EvaluationFigures& point) {
-  switch (figure) {
-    case PlotFigure::kSuccess:
-      if (!point.success) return std::nullopt;
-      return 100 * *point.success;
-    case PlotFigure::kReturn:
-      return point.return_mean;
-    case PlotFigure::kFinalDistance:
-      if (!point.final_distance_mean) return std::nullopt;
-      return Centimetres(*point.final_distance_mean);
-  }
-  return std::nullopt;
-}
-
-std::vector<Sample> SamplesOf(const RunResults& run, PlotAxis axis, PlotFigure figure) {
-  std::vector<Sample> samples;
-  for (const EvaluationFigures& point : run.curve) {
-    const auto value = Value(figure, point);
-    if (value && std::isfinite(*value)) samples.push_back({Along(axis, point), *value});
-  }
-  std::ranges::stable_sort(samples, {}, &Sample::x);
-  return samples;
-}
-
-// Linear between samples; empty outside of them.
-std::optional<double> At(const std::vector<Sample>& samples, double x) {
-  if (samples.empty() || x < samples.front().x || x > samples.back().x) return std::nullopt;
-  const auto above = std::ranges::lower_bound(samples, x, {}, &Sample::x);
-  if (above->x == x) return above->y;
-  const auto below = above - 1;
-  return below->y + (above->y - below->y) * (x - below->x) / (above->x - below->x);
-}
 
 const char* AxisLabel(PlotAxis axis) {
   switch (axis) {
@@ -118,6 +68,10 @@ std::string BlockName(size_t group, size_t figure) {
   return fmt::format("$curve_{}_{}", group, figure);
 }
 
+std::string RolloutBlockName(size_t group, size_t figure) {
+  return fmt::format("$rollouts_{}_{}", group, figure);
+}
+
 std::string DataBlock(const std::string& name, const std::vector<CurvePoint>& curve) {
   std::string block = name + " << EOD\n";
   for (const CurvePoint& p : curve) {
@@ -131,22 +85,35 @@ std::string SeedsOf(const RunGroup& group) {
                      group.runs.size() == 1 ? "" : "s");
 }
 
-// Bands first: no line is hidden by another group's band.
+// Which curves of a group a panel has.
+struct Drawn {
+  bool evaluations = false, rollouts = false;
+};
+
+// Bands first and the actors' thin lines next: no curve of evaluations is hidden by them.
 std::string PanelCommands(const std::vector<RunGroup>& groups, size_t figure,
-                          const std::vector<bool>& drawn, bool legend) {
+                          const std::vector<Drawn>& drawn, bool legend) {
   std::vector<std::string> parts;
   for (size_t g = 0; g < groups.size(); ++g) {
-    if (!drawn[g] || groups[g].runs.size() < 2) continue;
+    if (!drawn[g].evaluations || groups[g].runs.size() < 2) continue;
     parts.push_back(
         fmt::format("{} using 1:3:4 with filledcurves fc rgb '{}' fs transparent solid "
                     "0.18 noborder notitle",
                     BlockName(g, figure), kColours[g % kColours.size()]));
   }
   for (size_t g = 0; g < groups.size(); ++g) {
-    if (!drawn[g]) continue;
+    if (!drawn[g].rollouts) continue;
+    parts.push_back(fmt::format("{} using 1:2 with lines lw 1 lc rgb '{}' notitle",
+                                RolloutBlockName(g, figure), kColours[g % kColours.size()]));
+  }
+  for (size_t g = 0; g < groups.size(); ++g) {
+    if (!drawn[g].evaluations) continue;
     parts.push_back(fmt::format("{} using 1:2 with linespoints lw 2 pt 7 ps 0.35 lc rgb '{}' {}",
                                 BlockName(g, figure), kColours[g % kColours.size()],
                                 legend ? "title " + Quoted(SeedsOf(groups[g])) : "notitle"));
+  }
+  if (legend && std::ranges::any_of(drawn, &Drawn::rollouts)) {
+    parts.push_back("NaN with lines lw 1 lc rgb '#666666' title 'thin: episodes of the actors'");
   }
   std::string commands = "plot ";
   for (size_t i = 0; i < parts.size(); ++i) commands += (i == 0 ? "" : ", \\\n  ") + parts[i];
@@ -178,48 +145,6 @@ PlotFigure ParsePlotFigure(const std::string& word) {
   throw UsageError("figure '{}': expected success | return | distance", word);
 }
 
-std::vector<CurvePoint> CurveOf(const RunGroup& group, PlotAxis axis, PlotFigure figure,
-                                size_t points) {
-  std::vector<std::vector<Sample>> seeds;
-  std::vector<double> xs;
-  for (const RunResults& run : group.runs) {
-    seeds.push_back(SamplesOf(run, axis, figure));
-    for (const Sample& sample : seeds.back()) xs.push_back(sample.x);
-  }
-  std::ranges::sort(xs);
-  xs.erase(std::unique(xs.begin(), xs.end()), xs.end());
-  const size_t stride = std::max<size_t>(1, (xs.size() + points - 1) / points);
-  std::vector<CurvePoint> curve;
-  for (size_t i = 0; i < xs.size(); ++i) {
-    if (i % stride != 0 && i + 1 != xs.size()) continue;  // the last one always
-    CurvePoint point{.x = xs[i]};
-    for (const auto& samples : seeds) {
-      const auto value = At(samples, xs[i]);
-      if (!value) continue;
-      point.low = point.seeds == 0 ? *value : std::min(point.low, *value);
-      point.high = point.seeds == 0 ? *value : std::max(point.high, *value);
-      point.mean += *value;
-      ++point.seeds;
-    }
-    if (point.seeds == 0) continue;
-    point.mean /= static_cast<double>(point.seeds);
-    curve.push_back(point);
-  }
-  return curve;
-}
-
-std::vector<PlotFigure> FiguresThereAre(const std::vector<RunGroup>& groups) {
-  std::vector<PlotFigure> figures;
-  for (const PlotFigure figure :
-       {PlotFigure::kSuccess, PlotFigure::kReturn, PlotFigure::kFinalDistance}) {
-    const bool any = std::ranges::any_of(groups, [&](const RunGroup& group) {
-      return !CurveOf(group, PlotAxis::kEnvSteps, figure).empty();
-    });
-    if (any) figures.push_back(figure);
-  }
-  return figures;
-}
-
 std::string PlotScript(const Plot& plot, const std::vector<RunGroup>& groups,
                        const fs::path& output) {
   const std::string ending = output.extension();
@@ -237,14 +162,16 @@ std::string PlotScript(const Plot& plot, const std::vector<RunGroup>& groups,
                 "background rgb 'white'\n",
                 kWidth, height);
   script += "set output " + Quoted(output) + "\nset encoding utf8\n";
-  std::vector<std::vector<bool>> drawn(panels, std::vector<bool>(groups.size()));
+  std::vector<std::vector<Drawn>> drawn(panels, std::vector<Drawn>(groups.size()));
   for (size_t f = 0; f < panels; ++f) {
     bool any = false;
     for (size_t g = 0; g < groups.size(); ++g) {
       const auto curve = CurveOf(groups[g], plot.axis, plot.figures[f]);
-      drawn[f][g] = !curve.empty();
-      any |= drawn[f][g];
-      if (drawn[f][g]) script += DataBlock(BlockName(g, f), curve);
+      const auto rollouts = RolloutCurveOf(groups[g], plot.axis, plot.figures[f]);
+      drawn[f][g] = {.evaluations = !curve.empty(), .rollouts = !rollouts.empty()};
+      any |= drawn[f][g].evaluations;
+      if (!curve.empty()) script += DataBlock(BlockName(g, f), curve);
+      if (!rollouts.empty()) script += DataBlock(RolloutBlockName(g, f), rollouts);
     }
     if (!any) {
       throw UsageError("no run has evaluations with {} to draw", FigureLabel(plot.figures[f]));
@@ -252,7 +179,8 @@ std::string PlotScript(const Plot& plot, const std::vector<RunGroup>& groups,
   }
   script += fmt::format(
       "set border 3 lc rgb '#666666'\nset tics nomirror out textcolor rgb '#333333'\n"
-      "set grid lc rgb '#dddddd' lt 1\nset autoscale xfixmax\nset format x '%.10g'\nset "
+      "set grid lc rgb '#dddddd' lt 1\nset xrange [0:*]\nset autoscale xfixmax\nset format x "
+      "'%.10g'\nset "
       "decimalsign '.'\n"
       "set lmargin 10\nset rmargin 4\n"
       "set key outside top center horizontal noenhanced samplen 2\n"

@@ -301,6 +301,7 @@ ReportContent GatherReport(const SubjectOptions& options) {
     }
   }
   content.comparison = Gather(content.groups, target);
+  ReadRollouts(&content.groups);
   content.curves = DrawCurves(content.comparison.task, content.groups);
   return content;
 }
@@ -322,10 +323,11 @@ std::string ReportHtml(const ReportContent& content) {
   if (!content.curves.empty()) {
     std::string drawings;
     for (const std::string& drawing : content.curves) drawings += SvgElement(drawing);
-    html += Section("Evaluations while training",
+    html += Section("Learning curves",
                     drawings +
                         "<p class=\"note\">Mean over seeds; the band reaches from the smallest to "
-                        "the largest seed.</p>\n");
+                        "the largest seed. Thin lines: the actors' latest episodes, which "
+                        "explore.</p>\n");
   }
   html += Section("Films", FilmsHtml(content.groups));
   html += Section("Runs", RunsHtml(content.groups));

@@ -9,6 +9,7 @@
 #include "common/base/saturating_cast.h"
 #include "common/base/stop.h"
 #include "common/base/usable_cores.h"
+#include "common/config/on_policy.h"
 #include "common/dds/publisher.h"
 #include "common/run_folder/update_page.h"
 #include "launch/processes/ordered_stop.h"
@@ -96,7 +97,10 @@ struct Coordinator::Impl {
   RunResources Resources() const {
     return {.usable_cores = static_cast<double>(usable_cores),
             .actors = settings.config().actors,
-            .actors_elsewhere = !hosts.empty()};
+            .actors_elsewhere = !hosts.empty(),
+            .learner_threads = settings.config().learner.threads,
+            .may_play_ahead =
+                LearnsOnPolicy(settings.config()) && settings.config().ppo.versions_ahead == 0};
   }
   uint64_t EnvSteps() const { return std::max(meta.env_steps, run_progress.stored_steps()); }
 

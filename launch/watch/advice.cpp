@@ -2,23 +2,28 @@
 #include "launch/watch/advice.h"
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include <algorithm>
-#include <initializer_list>
+#include <cmath>
+#include <span>
 #include <string_view>
-#include <vector>
 
 namespace shoal::launch {
 namespace {
 
-// From these shares on somebody counts as held back, or as busy all the time.
+// Shares of the time from which on a process counts as held back, or as busy all the time.
 constexpr double kHeld = 0.2, kBusy = 0.8;
-constexpr double kAllCores = 0.9;  // of the usable ones in use: there is none to spare
+constexpr double kAllCores = 0.9;   // share of the usable cores in use: there is none to spare
+constexpr double kWholeCore = 0.9;  // cores; with less unused a further thread would not run
+constexpr double kHeadroom = 1.1;   // actors kept beyond those that are busy
 
-// The largest of the stages, for saying what the process does all the time.
+constexpr std::string_view kActing[] = {"physics", "rendering", "inference"};
+constexpr std::string_view kLearning[] = {"forward", "backward", "optimiser", "weights",
+                                          "checkpoint"};
+
+// The largest of the stages; nullptr: the role has none of them.
 const StageShare* Largest(const Bottleneck& figures, std::string_view role,
-                          std::initializer_list<std::string_view> stages) {
+                          std::span<const std::string_view> stages) {
   const StageShare* largest = nullptr;
   for (const ProcessTimes& times : figures.roles) {
     if (times.role != role) continue;
@@ -49,84 +54,92 @@ std::string MoreActing(const Bottleneck& figures, const RunResources& resources)
 }
 
 std::string AdviseMoreActing(const Bottleneck& figures, const RunResources& resources) {
-  const StageShare* stage = Largest(figures, "actor", {"physics", "rendering", "inference"});
+  const StageShare* stage = Largest(figures, "actor", kActing);
   const std::string most = stage == nullptr
                                ? ""
                                : fmt::format(" (which spend {:.0f} % of their time in {})",
                                              100 * stage->share, stage->stage);
-  return fmt::format(
-      "The learner waits for the actors {:.0f} % of the time{}: {}. A higher "
-      "replay.samples_per_insert would learn more from each env step meanwhile.",
-      100 * figures.samples_blocked, most, MoreActing(figures, resources));
+  return fmt::format("The learner waits for the actors {:.0f} % of the time{}: {}.",
+                     100 * figures.samples_blocked, most, MoreActing(figures, resources));
 }
 
-// On policy actors and learner take turns; who waits more says whose part is the longer one.
+// On policy actors and learner take turns. The side that waits less has the longer part.
 std::string AdviseOnPolicy(const Bottleneck& figures, const RunResources& resources) {
   const double learner_waits = ShareOf(figures, "learner", "waiting_data");
   const double actors_wait = ShareOf(figures, "actor", "weights");
-  if (learner_waits >= actors_wait) {
-    return fmt::format(
-        "The learner waits for rollouts {:.0f} % of the time, the actors for weights {:.0f} %: {}.",
-        100 * learner_waits, 100 * actors_wait, MoreActing(figures, resources));
-  }
-  return fmt::format(
-      "The actors wait for weights {:.0f} % of the time, the learner for rollouts {:.0f} %: let "
-      "them play meanwhile (ppo.versions_ahead), or learn less of each rollout (ppo.epochs).",
-      100 * actors_wait, 100 * learner_waits);
+  const std::string waits = fmt::format(
+      "The learner waits for rollouts {:.0f} % of the time, the actors for weights "
+      "{:.0f} %",
+      100 * learner_waits, 100 * actors_wait);
+  if (learner_waits >= actors_wait) return waits + ": " + MoreActing(figures, resources) + ".";
+  if (!resources.may_play_ahead) return waits + ".";
+  return waits +
+         ": the actors could play meanwhile (--set ppo.versions_ahead=1 at the next start).";
 }
 
-// That actors wait is as it should be where a run learns often from each step.
+// The larger number of learner threads that the idle cores allow, with as many actors as the
+// learner keeps busy; the present numbers if no whole core is idle.
+struct Split {
+  int actors = 0, threads = 0;
+};
+Split BetterSplit(const Bottleneck& figures, const RunResources& resources) {
+  const Split now{resources.actors, resources.learner_threads};
+  const double idle = figures.usable - figures.cores;
+  if (now.threads == 0 || idle < kWholeCore || resources.actors_elsewhere) return now;
+  const double busy = now.actors * (1 - figures.inserts_blocked);
+  const int actors = std::clamp(int(std::ceil(kHeadroom * busy)), 1, std::max(1, now.actors));
+  const int threads =
+      std::min(now.threads + int(idle + 1 - kWholeCore), int(figures.usable) - actors);
+  return threads > now.threads ? Split{actors, threads} : now;
+}
+
 std::string AdviseMoreLearning(const Bottleneck& figures, const RunResources& resources) {
-  const StageShare* stage =
-      Largest(figures, "learner", {"forward", "backward", "optimiser", "weights", "checkpoint"});
+  const StageShare* stage = Largest(figures, "learner", kLearning);
   const std::string most = stage == nullptr
                                ? ""
                                : fmt::format(" (which spends {:.0f} % of its time in {})",
                                              100 * stage->share, stage->stage);
-  std::vector<std::string> ways;
-  if (NoCoreToSpare(figures)) {
-    ways.push_back(fmt::format("all {:.0f} cores are busy", figures.usable));
-  } else {
-    ways.push_back("more threads may speed it up (learner.threads)");
+  std::string advice =
+      fmt::format("The learner sets the pace, the actors wait for it {:.0f} % of the time{}",
+                  100 * figures.inserts_blocked, most);
+  const Split better = BetterSplit(figures, resources);
+  if (better.threads > resources.learner_threads) {
+    advice += fmt::format(
+        ": {:.0f} of {:.0f} cores are idle, use them with --set "
+        "learner.threads={} --set actors={} at the next start",
+        figures.usable - figures.cores, figures.usable, better.threads, better.actors);
+  } else if (NoCoreToSpare(figures)) {
+    advice += fmt::format("; all {:.0f} cores are busy", figures.usable);
   }
-  if (resources.actors > 1 && !resources.actors_elsewhere) {
-    ways.push_back(
-        fmt::format("fewer actors would do (shoal scale --actors {})", resources.actors - 1));
-  }
-  return fmt::format(
-      "The learner sets the pace, the actors wait for it {:.0f} % of the time{}: {}. A lower "
-      "replay.samples_per_insert would make fewer updates of each env step.",
-      100 * figures.inserts_blocked, most, fmt::join(ways, ", and "));
+  return advice + ".";
 }
 
-std::string AdviseLighterReplay(const Bottleneck& figures, const RunResources& resources) {
+std::string DescribeBusyReplay(const Bottleneck& figures) {
   return fmt::format(
       "The replay server is busy all the time ({:.0f} % inserting, {:.0f} % sampling, {:.0f} % "
-      "sending): use smaller batches (learner.batch){}.",
+      "sending) and sets the pace.",
       100 * ShareOf(figures, "replay", "inserting"), 100 * ShareOf(figures, "replay", "sampling"),
-      100 * ShareOf(figures, "replay", "sending"), resources.actors > 1 ? " or fewer actors" : "");
+      100 * ShareOf(figures, "replay", "sending"));
 }
 
 std::string DescribeBalance(const Bottleneck& figures) {
-  const StageShare* stage =
-      Largest(figures, "learner", {"forward", "backward", "optimiser", "weights", "checkpoint"});
-  if (stage == nullptr) return "No process waits for another, and the learner has not begun.";
+  const StageShare* stage = Largest(figures, "learner", kLearning);
   return fmt::format(
       "No process waits for another: actors and learner are balanced. The learner spends most of "
-      "its "
-      "time on {} ({:.0f} %).",
+      "its time on {} ({:.0f} %).",
       stage->stage, 100 * stage->share);
 }
 
 }  // namespace
 
 std::string Advise(const Bottleneck& figures, const RunResources& resources) {
-  if (figures.roles.empty()) return "Nothing has been measured yet.";
+  const bool learning = Largest(figures, "learner", kLearning) != nullptr;
+  if (!learning || figures.seconds < kLeastSeconds) return "";
   if (!figures.limited) return AdviseOnPolicy(figures, resources);
   const double replay_works =
       ShareOf(figures, "replay", "inserting") + ShareOf(figures, "replay", "sampling");
   if (replay_works >= kBusy || ShareOf(figures, "replay", "sending") >= kBusy) {
-    return AdviseLighterReplay(figures, resources);
+    return DescribeBusyReplay(figures);
   }
   if (figures.samples_blocked >= kHeld && figures.samples_blocked >= figures.inserts_blocked) {
     return AdviseMoreActing(figures, resources);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One sentence: what to do about where a run's time goes. Pure.
+// One sentence about where a run's time goes and, if there is one, the change that would make it
+// faster. Pure.
 #pragma once
 
 #include <string>
@@ -8,9 +9,15 @@
 
 namespace shoal::launch {
 
-// Names what would make the run faster, and nothing that cannot be had: no more actors than the
-// host has cores, no fewer than one. What the run was asked for, as its updates per env step, is
-// named as a choice.
+// Empty before the learner has worked and kLeastSeconds have been measured: the shares of a run's
+// beginning say nothing about the rest.
+//
+// A change is named only if the programs accept it: no more actors or learner threads than the host
+// has cores, no command that a run on several hosts refuses. Keys that the preset chooses on
+// purpose (replay.samples_per_insert, learner.batch, ppo.epochs) are never among the changes: they
+// decide what is learned.
 std::string Advise(const Bottleneck& figures, const RunResources& resources);
+
+inline constexpr double kLeastSeconds = 10;
 
 }  // namespace shoal::launch

@@ -56,6 +56,7 @@ Bottleneck FindBottleneck(const RunTotals& totals, const RunResources& resources
     const auto of_role = totals.find(role);
     if (of_role == totals.end()) continue;
     const double run_seconds = RunSeconds(totals, of_role->second);
+    result.seconds = std::max(result.seconds, run_seconds);
     result.roles.push_back(TimesOf(of_role->first, of_role->second, run_seconds));
     result.cores += result.roles.back().cores;
   }
@@ -96,7 +97,7 @@ std::vector<std::string> FormatBottleneck(const Bottleneck& bottleneck) {
         fmt::format("limiter: held the actors {:.0f} %, the learner {:.0f} % of the time",
                     100 * bottleneck.inserts_blocked, 100 * bottleneck.samples_blocked));
   }
-  lines.push_back(bottleneck.advice);
+  if (!bottleneck.advice.empty()) lines.push_back(bottleneck.advice);
   return lines;
 }
 

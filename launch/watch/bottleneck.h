@@ -29,13 +29,14 @@ struct ProcessTimes {
 };
 
 struct Bottleneck {
+  double seconds = 0;          // the run's time that was looked at
   double inserts_blocked = 0;  // share of time in which the limiter held actors back
   double samples_blocked = 0;  // ... the learner
   bool limited = true;         // there is a limiter: the run has a replay
   std::vector<ProcessTimes> roles{};
   double cores = 0;      // processors used by all processes
   double usable = 0;     // processors there are
-  std::string advice{};  // one sentence
+  std::string advice{};  // one sentence; empty: too early for one (advice.h)
 };
 
 // What a run may take.
@@ -43,6 +44,8 @@ struct RunResources {
   double usable_cores = 0;        // of the coordinator's host
   int actors = 0;                 // asked for
   bool actors_elsewhere = false;  // on other hosts: it has those that were named at its start
+  int learner_threads = 0;        // 0: not known
+  bool may_play_ahead = false;    // on policy with ppo.versions_ahead = 0
 };
 
 // Of all that was counted; empty roles where nothing was.

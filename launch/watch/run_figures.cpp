@@ -77,10 +77,12 @@ void AddRunFigures(const ProgressFigures& figures, MetricsReport* report) {
     if (value) report->Add(name, *value);
   };
   report->Add("elapsed_seconds", figures.elapsed_seconds);
+  report->Add("env_steps", static_cast<double>(figures.env_steps));
   add("env_steps_per_second", figures.env_steps_per_second);
   add("updates_per_second", figures.updates_per_second);
   add("seconds_left", figures.seconds_left);
   add("rollout_success", figures.rollout_success);
+  add("rollout_return", figures.rollout_return);
   add("limiter_blocked_insert_share", figures.actors_wait);
   add("limiter_blocked_sample_share", figures.learner_waits);
   AddEvaluation("last_evaluation", figures.last_evaluation, report);
@@ -98,11 +100,14 @@ void AddOrders(const Config& config, const RunResources& resources, MetricsRepor
   report->Add("stop_success", config.stop.success);
   report->Add("stop_evaluations", config.stop.evaluations);
   report->Add("usable_cores", resources.usable_cores);
+  report->Add("learner_threads", resources.learner_threads);
+  report->Add("may_play_ahead", resources.may_play_ahead ? 1 : 0);
 }
 
 namespace {
 
 constexpr std::string_view kRecent = "recent";
+constexpr double kLookedAt = 30;  // seconds that the shares of a view are of
 
 }  // namespace
 
@@ -129,7 +134,8 @@ std::string AdviceOfView(const RunViewMessage& message) {
   const auto own = [&](const std::string& name) {
     return view.Get(ProcessName::Coordinator(), name);
   };
-  Bottleneck lately{.cores = own("recent_cores").value_or(0),
+  Bottleneck lately{.seconds = std::min(kLookedAt, own("elapsed_seconds").value_or(0)),
+                    .cores = own("recent_cores").value_or(0),
                     .usable = own("usable_cores").value_or(0)};
   lately.limited = own("limiter_blocked_insert_share").has_value();
   lately.inserts_blocked = own("limiter_blocked_insert_share").value_or(0);
@@ -143,9 +149,13 @@ std::string AdviceOfView(const RunViewMessage& message) {
     }
     lately.roles.back().stages.push_back({std::string(metric.name), *share});
   }
-  return Advise(lately, {.usable_cores = lately.usable,
-                         .actors = SaturatingCast<int>(own("actors").value_or(0)),
-                         .actors_elsewhere = own("actors_elsewhere").value_or(0) > 0});
+  const std::string advice =
+      Advise(lately, {.usable_cores = lately.usable,
+                      .actors = SaturatingCast<int>(own("actors").value_or(0)),
+                      .actors_elsewhere = own("actors_elsewhere").value_or(0) > 0,
+                      .learner_threads = SaturatingCast<int>(own("learner_threads").value_or(0)),
+                      .may_play_ahead = own("may_play_ahead").value_or(0) > 0});
+  return advice.empty() ? "Too early to say where the time goes." : advice;
 }
 
 ProgressFigures FiguresOfView(const RunViewMessage& message, SteadyTime now) {
@@ -171,6 +181,7 @@ ProgressFigures FiguresOfView(const RunViewMessage& message, SteadyTime now) {
   figures.updates_per_second = own("updates_per_second");
   figures.seconds_left = own("seconds_left");
   figures.rollout_success = own("rollout_success");
+  figures.rollout_return = own("rollout_return");
   figures.actors_wait = own("limiter_blocked_insert_share");
   figures.learner_waits = own("limiter_blocked_sample_share");
   return figures;

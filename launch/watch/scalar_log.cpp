@@ -100,12 +100,7 @@ void ScalarLog::WriteTraining(const MetricsMessage& report, SteadyTime now) {
     const learner::Figure* figure = learner::FindFigure(report.names[i]);
     if (figure == nullptr) continue;
     if (*updates == updates_written_) return;  // the figures are those of the report before
-    writer_.Scalar(fmt::format("train/{}", figure->name), x, report.values[i]);
-    if (!figure->known_as.empty()) {
-      const bool has_group = figure->known_as.find('/') != std::string_view::npos;
-      writer_.Scalar(fmt::format("{}{}", has_group ? "" : "train/", figure->known_as), x,
-                     report.values[i]);
-    }
+    writer_.Scalar(figure->Tag(), x, report.values[i]);
     any = true;
   }
   if (!any) return;  // the process has made no update yet

@@ -31,10 +31,10 @@ class ScalarLog {
   // rollout/ep_rew_mean, rollout/success_rate, rollout/ep_len_mean; every 5 s, from
   // the first finished episode on.
   void WriteRollouts(const MetricsView& view, const ProgressFigures& figures, SteadyTime now);
-  // train/NAME of each figure of the updates, and train/OTHER where people know it by another name
-  // (learner/agent/update_figures.h), train/n_updates and time/fps, the mean since this session's
-  // first update; of each report of the learner that has made updates since the one before. Reports
-  // of others are ignored.
+  // Writes each figure of the updates under its tag (learner/agent/update_figures.h),
+  // train/n_updates and time/fps, the mean since this session's first update. A report of the
+  // learner is written if the learner has made updates since the report before. Reports of other
+  // roles are ignored.
   void WriteTraining(const MetricsMessage& report, SteadyTime now);
 
  private:

@@ -20,14 +20,14 @@ namespace {
 using nlohmann::json;
 using nlohmann::ordered_json;
 
-constexpr char kSuccess[] = "rollout_success", kEnvSteps[] = "env_steps_per_second",
-               kUpdates[] = "updates_per_second";
+constexpr char kSuccess[] = "rollout_success", kReturn[] = "rollout_return",
+               kEnvSteps[] = "env_steps_per_second", kUpdates[] = "updates_per_second";
 // Of one line: a process says about a hundred figures.
 constexpr size_t kLongestLine = 64'000;
 
 // From whose lines a metric is taken.
 bool Wanted(std::string_view role, std::string_view name) {
-  if (role == "coordinator") return name == kSuccess || name == kEnvSteps;
+  if (role == "coordinator") return name == kSuccess || name == kReturn || name == kEnvSteps;
   if (name == kUpdates) return true;
   for (const learner::Figure* figure : learner::AllFigures()) {
     if (figure->name == name) return figure->headline;
@@ -101,13 +101,15 @@ void RunCurves::OnLine(const std::string& line) {
   }
   const json object = ParseBoundedJson<json>(line);
   if (!object.is_object()) return;
-  if (const auto steps = object.find("env_steps");
-      learner && steps != object.end() && steps->is_number()) {
-    env_steps_ = steps->get<double>();
+  // The learner's figures are those of the batch it drew last, the coordinator's those of now.
+  double env_steps = env_steps_;
+  if (const auto steps = object.find("env_steps"); steps != object.end() && steps->is_number()) {
+    env_steps = steps->get<double>();
+    if (learner) env_steps_ = env_steps;
   }
   for (const auto& [name, value] : object.items()) {
     if (!value.is_number() || !Wanted(learner ? "learner" : "coordinator", name)) continue;
-    curves_[name].Add(env_steps_, value.get<double>());
+    curves_[name].Add(env_steps, value.get<double>());
   }
 }
 
@@ -146,7 +148,8 @@ std::string RunCurves::Json() const {
   }
   add("success", "Success rate", "of whole episodes",
       {{"evaluations", success}, {"actors", ToJson(points_of(kSuccess))}});
-  add("return", "Return", "mean of an evaluation's episodes", {{"evaluations", returns}});
+  add("return", "Return", "mean of whole episodes, unscaled",
+      {{"evaluations", returns}, {"actors", ToJson(points_of(kReturn))}});
   for (const learner::Figure* figure : learner::AllFigures()) {
     if (!figure->headline) continue;
     const std::string name(figure->name);

@@ -53,7 +53,7 @@ class RunCurves {
   const std::filesystem::path run_;
   uint64_t read_bytes_ = 0, inode_ = 0;
   bool complete_ = false;
-  double env_steps_ = 0;                        // as the learner said last
+  double env_steps_ = 0;                        // of the learner's newest line
   std::map<std::string, ThinnedCurve> curves_;  // by metric
   std::filesystem::file_time_type evaluations_of_{};
   std::vector<EvaluationPoint> evaluations_;

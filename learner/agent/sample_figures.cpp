@@ -8,8 +8,8 @@
 namespace shoal::learner {
 namespace {
 
-constexpr double kPositiveReward = -0.5;  // of a sparse task: its goal is reached
-constexpr double kWithin = 0.05;          // m
+constexpr double kMinusHalf = -0.5;  // between the two rewards of a sparse task, -1 and 0
+constexpr double kWithin = 0.05;     // m
 
 struct Summary {
   double mean = 0, deviation = 0, least = 0, most = 0;
@@ -54,8 +54,8 @@ void AddSampleFigures(const BatchView& batch, const ObservationSpec& spec, Updat
   figures->Set(kRewardStd, reward.deviation);
   figures->Set(kRewardMin, reward.least);
   figures->Set(kRewardMax, reward.most);
-  figures->Set(kRewardPositive,
-               Share(batch.reward, [](float value) { return value > kPositiveReward; }));
+  figures->Set(kRewardAboveMinusHalf,
+               Share(batch.reward, [](float value) { return value > kMinusHalf; }));
   const std::vector<float> distances = GoalDistances(batch, spec);
   if (distances.empty()) return;
   const Summary distance = Summarise(distances);

@@ -18,9 +18,10 @@ inline constexpr Figure kRewardStd{"reward_std", "", "their standard deviation",
                                    "replay/reward_std"};
 inline constexpr Figure kRewardMin{"reward_min", "", "the smallest", false, "replay/reward_min"};
 inline constexpr Figure kRewardMax{"reward_max", "", "the largest", false, "replay/reward_max"};
-inline constexpr Figure kRewardPositive{"reward_positive", "",
-                                        "share of sampled rewards above -0.5", false,
-                                        "replay/reward_positive_frac"};
+inline constexpr Figure kRewardAboveMinusHalf{
+    "reward_above_minus_half", "",
+    "share of sampled rewards above -0.5: of a sparse task, of samples at the goal", false,
+    "replay/reward_above_minus_half"};
 // Where the policy sees both goals.
 inline constexpr Figure kGoalDistanceMean{"goal_distance_mean", "m",
                                           "between sampled goals; observation.goal_mode = both",
@@ -34,8 +35,9 @@ inline constexpr Figure kGoalDistanceMax{"goal_distance_max", "m", "the largest"
 inline constexpr Figure kGoalWithin{"goal_within", "", "share of them below 0.05 m", false,
                                     "replay/goal_within_threshold"};
 inline constexpr const Figure* kSampleFigures[] = {
-    &kRewardMean,       &kRewardStd,       &kRewardMin,       &kRewardMax,       &kRewardPositive,
-    &kGoalDistanceMean, &kGoalDistanceStd, &kGoalDistanceMin, &kGoalDistanceMax, &kGoalWithin};
+    &kRewardMean,           &kRewardStd,        &kRewardMin,       &kRewardMax,
+    &kRewardAboveMinusHalf, &kGoalDistanceMean, &kGoalDistanceStd, &kGoalDistanceMin,
+    &kGoalDistanceMax,      &kGoalWithin};
 
 // Appends those that the batch, as it was drawn, has; nothing of a rollout.
 void AddSampleFigures(const BatchView& batch, const ObservationSpec& spec, UpdateFigures* figures);

@@ -7,6 +7,12 @@
 
 namespace shoal::learner {
 
+std::string Figure::Tag() const {
+  if (known_as.empty()) return "train/" + std::string(name);
+  const bool whole = known_as.find('/') != std::string_view::npos;
+  return (whole ? "" : "train/") + std::string(known_as);
+}
+
 // Figures are told apart by name: a constant of a header may have several addresses.
 UpdateFigures::Entry* UpdateFigures::Find(const Figure& figure) {
   const auto at = std::ranges::find_if(

@@ -8,18 +8,22 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
 namespace shoal::learner {
 
 struct Figure {
-  std::string_view name;      // in metrics.jsonl; train/NAME, shoal_NAME
-  std::string_view unit;      // empty: a plain number
-  std::string_view meaning;   // one line
-  bool headline = false;      // the progress display shows it
-  std::string_view known_as;  // TensorBoard writes train/KNOWN_AS as well, or, with a slash in
-                              // it, KNOWN_AS; empty: nothing more
+  std::string_view name;     // in metrics.jsonl and, as shoal_NAME, in Prometheus
+  std::string_view unit;     // empty: a plain number
+  std::string_view meaning;  // one line
+  bool headline = false;     // the progress display shows it
+  // The figure's tag in TensorBoard: with a slash the whole tag, without one train/KNOWN_AS, empty
+  // train/NAME. Figures that other programs have made known keep the tag that people look for.
+  std::string_view known_as;
+
+  std::string Tag() const;
 };
 
 class UpdateFigures {

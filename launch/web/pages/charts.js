@@ -4,13 +4,15 @@
 const drawn = new Map();  // id of a chart -> {chart, graph, labels, box}
 
 const compact = new Intl.NumberFormat("en", { notation: "compact", maximumSignificantDigits: 4 });
-const exact = new Intl.NumberFormat("en", { maximumSignificantDigits: 6 });
+const exact = new Intl.NumberFormat("en", { maximumSignificantDigits: 4 });
+const steps = new Intl.NumberFormat("en", { maximumFractionDigits: 0 });
 
 const colour = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
 // Rows [x, y of the first series, y of the second, ...]; null where a series has no point at x.
-function rowsOf(series) {
-  const rows = new Map();
+// The rows at 0 and at `end` have no points: they give all charts of a run the same x axis.
+function rowsOf(series, end) {
+  const rows = new Map([0, end].map((x) => [x, [x, ...series.map(() => null)]]));
   series.forEach((one, i) => {
     for (const [x, y] of one.points) {
       if (!rows.has(x)) rows.set(x, [x, ...series.map(() => null)]);
@@ -26,7 +28,7 @@ const text = (chart, y) => chart.id === "success" ? Math.round(1000 * y) / 10 + 
 // says: text alone.
 function legendOf(chart, data) {
   const parts = document.createDocumentFragment();
-  if (data.x !== undefined) parts.append("at " + exact.format(data.x) + " env steps: ");
+  if (data.x !== undefined) parts.append("at " + steps.format(data.x) + " env steps: ");
   data.series.forEach((one, i) => {
     const points = chart().series[i].points;
     const y = data.x === undefined ? points[points.length - 1][1] : one.y;
@@ -88,12 +90,12 @@ function makeBox(chart) {
 function describe(chart) {
   return chart.title + ": " + chart.series.map((one) => {
     const [x, y] = one.points[one.points.length - 1];
-    return one.name + " " + exact.format(y) + " at " + exact.format(x) + " env steps";
+    return one.name + " " + exact.format(y) + " at " + steps.format(x) + " env steps";
   }).join(", ");
 }
 
-function draw(chart, parent) {
-  const rows = rowsOf(chart.series);
+function draw(chart, end, parent) {
+  const rows = rowsOf(chart.series, end);
   let known = drawn.get(chart.id);
   if (!known) {
     const box = makeBox(chart);
@@ -120,7 +122,9 @@ export function showCharts(charts, parent) {
     if (charts.some((chart) => chart.id === id)) continue;
     forget(id, known);
   }
-  for (const chart of charts) draw(chart, parent);
+  const ends = charts.flatMap((chart) => chart.series.map((one) => one.points.at(-1)[0]));
+  const end = ends.reduce((most, x) => Math.max(most, x), 0);
+  for (const chart of charts) draw(chart, end, parent);
 }
 
 function forget(id, known) {

@@ -11,6 +11,7 @@ const periodMs = { runs: 5000, top: 1000, curves: 5000, run: 5000 };
 let shown = null;     // name of the run that is shown; null: the list
 let runs = [], keys = [];
 let episodeOf = "";   // checkpoint and seed of the film that is shown
+let filmOf = "";      // the film beside the result
 let lastPlayed = "";  // checkpoint that an episode was asked of
 const next = { runs: 0, top: 0, curves: 0, run: 0 };  // when each is asked for again
 
@@ -104,6 +105,34 @@ function showProgress(progress) {
       score(progress.rollout_success, progress.rollout_return),
       "in their last episodes, of " + number(progress.rollout_length) + " env steps"),
     tile("Restarts", number(progress.restarts)));
+}
+
+// What a run that has ended came to.
+function showResult(listing) {
+  const ended = listing !== undefined && !["running", "unreadable"].includes(listing.status);
+  $("result").hidden = !ended;
+  if (!ended) return;
+  $("result-tiles").replaceChildren(
+    tile(unknown(listing.final_success_rate) ? "Final return" : "Final success",
+      score(listing.final_success_rate, listing.final_return_mean),
+      !unknown(listing.final_success_rate) && !unknown(listing.final_return_mean)
+        ? "return " + listing.final_return_mean.toFixed(1) : ""),
+    tile("Best while training", score(listing.best_success_rate, listing.best_return_mean)),
+    tile("Env steps", number(listing.env_steps)),
+    tile("Updates", number(listing.updates)),
+    tile("Wall time", duration(listing.wall_seconds)),
+    tile("Started (UTC)", (listing.started ?? "–").replace("T", " ").slice(0, 16)));
+}
+
+// The newest film of a run that has ended, ready to be played.
+function offerFilm(files) {
+  const films = files.filter((file) => file.path.endsWith(".mp4"))
+    .sort((a, b) => a.modified - b.modified);
+  const href = films.length === 0 ? "" : "files/" + encodeURIComponent(shown) + "/" + films.at(-1).path;
+  if (href === filmOf) return;
+  filmOf = href;
+  $("result-film").hidden = href === "";
+  if (href) $("result-film").src = href;
 }
 
 function showProcesses(answer) {
@@ -237,6 +266,7 @@ const questions = {
     const answer = await get(runPath(run));
     if (run !== shown) return;
     showFiles(answer.files);
+    offerFilm(answer.files);
     showEpisode(answer);
   },
 };
@@ -248,6 +278,7 @@ function showHead() {
   $("run-what").textContent = listing ? [listing.task, listing.preset].filter(Boolean).join(", ") : "";
   $("problem").hidden = !listing?.problem;
   $("problem").textContent = listing?.problem ?? "";
+  showResult(listing);
 }
 
 function say(text, bad) {
@@ -276,9 +307,9 @@ async function look() {
 function choose() {
   const name = decodeURIComponent(location.hash.slice(1));
   shown = name === "" ? null : name;
-  episodeOf = lastPlayed = "";
+  episodeOf = lastPlayed = filmOf = "";
   forgetCharts();
-  for (const id of ["episode", "film"]) {
+  for (const id of ["episode", "film", "result-film"]) {
     $(id).removeAttribute("src");
     $(id).hidden = true;
   }

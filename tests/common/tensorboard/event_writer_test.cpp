@@ -114,5 +114,20 @@ TEST_F(EventWriterTest, NamesAFolderThatCannotBeMade) {
   }
 }
 
+TEST_F(EventWriterTest, AnImageIsItsSizeAndItsFilesBytes) {
+  EventWriter writer(folder_);
+  writer.Image("film/episode", 7, 20, 10, "png bytes");
+  writer.Flush();
+  proto::Event event;
+  ASSERT_TRUE(event.ParseFromString(Payloads(ReadFile(writer.path())).at(1)));
+  EXPECT_EQ(event.step(), 7);
+  const proto::Summary::Value& value = event.summary().value(0);
+  EXPECT_EQ(value.tag(), "film/episode");
+  EXPECT_EQ(value.image().width(), 20);
+  EXPECT_EQ(value.image().height(), 10);
+  EXPECT_EQ(value.image().colorspace(), 3);
+  EXPECT_EQ(value.image().encoded_image_string(), "png bytes");
+}
+
 }  // namespace
 }  // namespace shoal::tensorboard

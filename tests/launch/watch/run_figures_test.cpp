@@ -46,6 +46,7 @@ RunViewMessage ViewOf(const ProgressFigures& figures, const Bottleneck& lately) 
 ProgressFigures Figures() {
   ProgressFigures figures;
   figures.state = "running";
+  figures.elapsed_seconds = 60;
   figures.env_steps = 1000;
   figures.budget = 4000;
   figures.env_steps_per_second = 75;

@@ -57,6 +57,14 @@ TEST_F(RunCurvesTest, FiguresAreOverTheLearnersEnvSteps) {
   EXPECT_TRUE(Points("q_mean").is_null()) << "no headline";
 }
 
+TEST_F(RunCurvesTest, TheActorsEpisodesAreOverTheRunsEnvSteps) {
+  Append(LearnerLine(100, 0.5) + "\n" +
+         R"({"t":2,"role":"coordinator","id":0,"env_steps":150,"rollout_return":-7})" + "\n");
+  curves_.ReadOn();
+  EXPECT_EQ(Points("return"), json::array({{150.0, -7.0}}));
+  EXPECT_EQ(Points("critic_loss"), json::array({{100.0, 0.5}}));
+}
+
 TEST_F(RunCurvesTest, WhatIsAppendedIsReadOnceItsLineIsWhole) {
   const std::string second = LearnerLine(200, 0.25);
   Append(LearnerLine(100, 0.5) + "\n" + second.substr(0, 30));

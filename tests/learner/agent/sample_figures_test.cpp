@@ -30,7 +30,7 @@ TEST(SampleFigures, SayWhatRewardsABatchHas) {
   EXPECT_NEAR(*figures.Get(kRewardStd), std::sqrt(0.5), 1e-12);
   EXPECT_EQ(figures.Get(kRewardMin), -2);
   EXPECT_EQ(figures.Get(kRewardMax), 0);
-  EXPECT_EQ(figures.Get(kRewardPositive), 0.25);
+  EXPECT_EQ(figures.Get(kRewardAboveMinusHalf), 0.25);
   EXPECT_FALSE(figures.Get(kGoalDistanceMean));
 }
 
