@@ -22,7 +22,8 @@ class RunProgress {
   void OnReplay(const ReplayProgress& progress);
   void OnLearner(const LearnerProgress& progress);
 
-  // Of all replays together; in a run without one, the learner's count. 0 before any has spoken.
+  // Of all replays together; in a run without one, the learner's count. 0 before any has reported.
+  // Never falls: a replay that lost its memory may know a second less than its predecessor said.
   uint64_t stored_steps() const;
   std::optional<uint64_t> updates() const;
   // The learner has done what the stored steps allow.
@@ -34,6 +35,7 @@ class RunProgress {
 
  private:
   std::map<uint32_t, ReplayProgress> replays_;
+  uint64_t env_steps_ = 0;  // the most that `replays_` came to
   LearnerProgress learner_;
   // By learner session and update, over all sessions.
   std::map<std::pair<uint64_t, uint64_t>, EvaluationRequest> asked_;
