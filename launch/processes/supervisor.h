@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -61,7 +62,9 @@ class Supervisor {
   // What a retired actor needs to flush what it has, and more.
   static constexpr std::chrono::seconds kRetire{40};
 
-  // Expected exits that were not clean, each as one line.
+  // Processes that left as expected, but could not write all of their results (kUnwrittenExit).
+  const std::set<std::string>& unwritten_exits() const { return unwritten_exits_; }
+  // Other expected exits that were not clean, each as one line.
   const std::vector<std::string>& unclean_exits() const { return unclean_exits_; }
 
  private:
@@ -92,6 +95,7 @@ class Supervisor {
   std::function<void(const std::string&)> say_;
   std::vector<Child> children_;
   int restarts_ = 0;
+  std::set<std::string> unwritten_exits_;
   std::vector<std::string> unclean_exits_;
 };
 
