@@ -398,7 +398,14 @@ void Coordinator::Impl::TakeMessages(SteadyTime now) {
     supervisor.Heard(message.role, static_cast<int>(message.id), message.pid, now);
     scalars.WriteTraining(message, now);
   }
-  for (const ReplayProgress& word : inbox.TakeReplayProgress()) run_progress.OnReplay(word);
+  for (const ReplayProgress& word : inbox.TakeReplayProgress()) {
+    if (!run_progress.OnReplay(word)) continue;
+    progress.Say(
+        fmt::format("replay-{} starts empty, env steps go on from {}; training goes on once it has "
+                    "been refilled "
+                    "to {} sampleable transitions (replay.min_size)",
+                    word.replay, EnvSteps(), config.replay.min_size));
+  }
   for (const LearnerProgress& word : inbox.TakeLearnerProgress()) {
     run_progress.OnLearner(word);
     meta.updates = *run_progress.updates();

@@ -299,4 +299,9 @@ RunMeta ReadMetaToGoOn(const fs::path& run, std::vector<std::string>* lines) {
   return meta;
 }
 
+RunCheck CheckRunFiles(const fs::path& run, const RunConfig& config, const RunMeta& meta,
+                       uint32_t own_actors) {
+  return Examination(run, config, meta, own_actors).Run();
+}
+
 }  // namespace shoal::launch

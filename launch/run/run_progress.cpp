@@ -5,12 +5,15 @@
 
 namespace shoal::launch {
 
-void RunProgress::OnReplay(const ReplayProgress& progress) {
+bool RunProgress::OnReplay(const ReplayProgress& progress) {
   ReplayProgress& known = replays_[progress.replay];
+  const bool emptied =
+      progress.session > known.session && progress.stored_records < known.stored_records;
   if (progress.session >= known.session) known = progress;
   uint64_t steps = 0;
   for (const auto& [replay, newest] : replays_) steps += newest.stored_steps;
   env_steps_ = std::max(env_steps_, steps);
+  return emptied;
 }
 
 void RunProgress::OnLearner(const LearnerProgress& progress) {

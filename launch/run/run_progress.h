@@ -18,8 +18,8 @@ namespace shoal::launch {
 class RunProgress {
  public:
   // The newest session of each replay, and of the learner, has the word; a late one of a process
-  // that is gone changes nothing.
-  void OnReplay(const ReplayProgress& progress);
+  // that is gone changes nothing. Of a replay: whether it began without what its predecessor held.
+  bool OnReplay(const ReplayProgress& progress);
   void OnLearner(const LearnerProgress& progress);
 
   // Of all replays together; in a run without one, the learner's count. 0 before any has reported.

@@ -2,6 +2,7 @@
 #include "launch/watch/progress.h"
 
 #include <fcntl.h>
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <utility>
