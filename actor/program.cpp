@@ -86,6 +86,7 @@ int Evaluate(const Options& options) {
 }
 
 int RunActor(const Options& options) {
+  KeepSecuredRunPrivate(options.run);
   std::optional<StopWithInput> stop_with_input;
   if (options.stop_with_input) stop_with_input.emplace();
   if (options.role == "eval") {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <functional>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "common/base/build_info.h"
 #include "common/base/clock.h"
@@ -21,7 +22,10 @@ namespace fs = std::filesystem;
 }  // namespace
 
 CheckpointStore::CheckpointStore(const fs::path& run_folder, const RunConfig& run)
-    : folder_(run_folder / kCheckpointFolder), run_(run), config_hash_(ConfigHash(run.config)) {
+    : folder_(run_folder / kCheckpointFolder),
+      run_(run),
+      config_hash_(ConfigHash(run.config)),
+      faults_([](const std::string& line) { log::Warning("{}", line); }) {
   MakeFolders(folder_);
   std::error_code ignored;
   for (const auto& entry : fs::directory_iterator(folder_)) {
@@ -54,27 +58,66 @@ std::optional<Checkpoint> CheckpointStore::RestoreNewest() {
     }
   }
   if (refused.empty()) return std::nullopt;
-  throw RuntimeError("none of {} checkpoint(s) can be used; the newest: {}", refused.size(),
-                     newest_fault);
+  throw UsageError(
+      "none of {} checkpoint(s) can be used; the newest: {}; restore one, or move '{}' away to "
+      "learn "
+      "anew with the replay that is there",
+      refused.size(), newest_fault, folder_.string());
 }
 
-std::string CheckpointStore::Write(const CheckpointState& state, const nn::TensorMap& learner,
-                                   const nn::TensorMap& policy,
-                                   const std::set<std::string>& wanted) {
-  WriteCheckpoint(folder_, state, learner, policy, run_, Meta(state));
+std::string CheckpointStore::Write(const CheckpointState& state, nn::TensorMap learner,
+                                   nn::TensorMap policy, const std::set<std::string>& wanted) {
+  unwritten_.push_back({state, std::move(learner), std::move(policy)});
+  if (unwritten_.size() > kMostUnwritten) {
+    log::Warning("{} was never written and is given up for a newer one",
+                 CheckpointName(unwritten_.front().state.updates));
+    unwritten_.pop_front();
+  }
+  WriteKept(wanted);
+  return CheckpointName(state.updates);
+}
+
+void CheckpointStore::Retry(const std::set<std::string>& wanted, bool now) {
+  if (unwritten_.empty() || (!now && Now() - tried_ < kRetryPeriod)) return;
+  WriteKept(wanted);
+}
+
+void CheckpointStore::WriteKept(const std::set<std::string>& wanted) {
+  tried_ = Now();
+  faults_.Try("checkpoint", [&] {
+    while (!unwritten_.empty()) {
+      const Unwritten& next = unwritten_.front();
+      WriteCheckpoint(folder_, next.state, next.learner, next.policy, run_, Meta(next.state));
+      unwritten_.pop_front();
+    }
+    Prune(wanted);
+  });
+}
+
+std::optional<uint64_t> CheckpointStore::UnwrittenUpdates() const {
+  if (unwritten_.empty()) return std::nullopt;
+  return unwritten_.back().state.updates;
+}
+
+std::optional<uint64_t> CheckpointStore::WrittenUpdates() const {
+  const std::vector<uint64_t> existing = Existing();
+  return existing.empty() ? std::nullopt : std::optional(existing.front());
+}
+
+void CheckpointStore::Prune(const std::set<std::string>& wanted) {
   const std::vector<uint64_t> existing = Existing();
   for (size_t i = kKept; i < existing.size(); ++i) {
     const std::string name = CheckpointName(existing[i]);
     if (!wanted.contains(name)) Remove(name);
   }
-  return CheckpointName(state.updates);
 }
 
 std::vector<uint64_t> CheckpointStore::Existing() const {
   std::vector<uint64_t> existing;
-  for (const auto& entry : fs::directory_iterator(folder_)) {
-    const auto updates = CheckpointUpdates(entry.path().filename());
-    if (updates && entry.is_directory()) existing.push_back(*updates);
+  std::error_code error;  // the folder may have been moved away
+  for (fs::directory_iterator it(folder_, error), end; !error && it != end; it.increment(error)) {
+    const auto updates = CheckpointUpdates(it->path().filename());
+    if (updates && it->is_directory(error)) existing.push_back(*updates);
   }
   std::ranges::sort(existing, std::greater());
   return existing;

@@ -5,11 +5,15 @@
 // One thread, one learner per run.
 #pragma once
 
+#include <chrono>
+#include <deque>
 #include <filesystem>
 #include <optional>
 #include <set>
 #include <string>
 
+#include "common/base/clock.h"
+#include "common/base/write_faults.h"
 #include "common/config/run_config.h"
 #include "learner/checkpoint.h"
 
@@ -29,13 +33,30 @@ class CheckpointStore {
   std::optional<Checkpoint> RestoreNewest();
 
   // Writes one and removes those not kept any more, except the names in `wanted`. Returns its name.
-  // Throws Error (WriteCheckpoint); the earlier checkpoints are then all still there.
-  std::string Write(const CheckpointState& state, const nn::TensorMap& learner,
-                    const nn::TensorMap& policy, const std::set<std::string>& wanted);
+  // One that cannot be written is reported, kept in memory and written by a later call of this
+  // or of Retry; the earlier checkpoints are then all still there. Of those in memory the newest
+  // kMostUnwritten stay.
+  std::string Write(const CheckpointState& state, nn::TensorMap learner, nn::TensorMap policy,
+                    const std::set<std::string>& wanted);
+  // Tries again; at most every kRetryPeriod, unless `now`.
+  void Retry(const std::set<std::string>& wanted, bool now = false);
+  size_t unwritten() const { return unwritten_.size(); }
+  // Of the newest one; empty when all are written.
+  std::optional<uint64_t> UnwrittenUpdates() const;
+  // Of the newest one on the disk.
+  std::optional<uint64_t> WrittenUpdates() const;
 
-  static constexpr size_t kKept = 3;
+  static constexpr size_t kKept = 3, kMostUnwritten = 2;
+  static constexpr std::chrono::seconds kRetryPeriod{10};
 
  private:
+  struct Unwritten {
+    CheckpointState state;
+    nn::TensorMap learner, policy;
+  };
+
+  void WriteKept(const std::set<std::string>& wanted);
+  void Prune(const std::set<std::string>& wanted);
   std::vector<uint64_t> Existing() const;  // updates, newest first
   void Remove(const std::string& name);
   nlohmann::ordered_json Meta(const CheckpointState& state) const;
@@ -43,6 +64,9 @@ class CheckpointStore {
   const std::filesystem::path folder_;
   const RunConfig run_;
   const uint64_t config_hash_;
+  WriteFaults faults_;
+  std::deque<Unwritten> unwritten_;  // oldest first
+  SteadyTime tried_{};
 };
 
 }  // namespace shoal::learner

@@ -9,6 +9,7 @@
 #include "common/base/files.h"
 #include "common/base/log.h"
 #include "common/base/usable_cores.h"
+#include "common/base/write_faults.h"
 #include "common/config/learner_threads.h"
 #include "common/config/run_files.h"
 #include "common/config/run_membership.h"
@@ -71,8 +72,16 @@ class Learner {
                        .control = control_,
                        .update_page = update_page_},
                       restored_);
-    if (loop.Run() == TrainingLoop::End::kStopped) return 0;
-    log::Failure("the coordinator is gone: no heartbeat; a checkpoint was written; leaving");
+    const TrainingLoop::End end = loop.Run();
+    const auto unwritten = checkpoints_.UnwrittenUpdates();
+    if (unwritten) {
+      const auto written = checkpoints_.WrittenUpdates();
+      log::Failure("{} could not be written and is lost; the newest one on the disk: {}",
+                   CheckpointName(*unwritten), written ? CheckpointName(*written) : "none");
+    }
+    if (end == TrainingLoop::End::kStopped) return unwritten ? kUnwrittenExit : 0;
+    log::Failure("the coordinator is gone: no heartbeat; {}; leaving",
+                 unwritten ? "no checkpoint" : "a checkpoint was written");
     batches_->SayFarewell();
     return 1;
   }
@@ -136,6 +145,7 @@ class Learner {
 }  // namespace
 
 int RunLearner(const std::filesystem::path& folder, const dds::Reach& reach, char** argv) {
+  KeepSecuredRunPrivate(folder);
   const RunConfig run = ReadRunConfig(folder);
   const int threads = LearnerThreads(run.config, UsableCores());
   EnsurePassiveOpenMp(threads, argv);

@@ -58,6 +58,7 @@ const MetricsMessage& LearnerReport::Make(const LearnerFigures& figures) {
   add("weights_unsent", figures.weights_unsent);
   add("evaluations_overtaken", figures.evaluations_overtaken);
   add("checkpoints", figures.checkpoints);
+  add("checkpoints_unwritten", figures.checkpoints_unwritten);
   add("eval_updates", figures.eval_updates);
   add("drained", figures.drained);
   add("warnings", guard_.warnings());

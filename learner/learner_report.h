@@ -40,6 +40,7 @@ struct LearnerFigures {
   uint64_t updates = 0, env_steps = 0;
   uint64_t weights_sent = 0, weights_unsent = 0, evaluations_overtaken = 0;
   uint64_t checkpoints = 0;  // written
+  size_t checkpoints_unwritten = 0;
   uint64_t eval_updates = 0;
   bool drained = false;
   double samples_per_insert = 0, eval_interval = 0, weights_period = 0;

@@ -45,7 +45,7 @@ TrainingLoop::TrainingLoop(const Parts& parts, const std::optional<CheckpointSta
   if (!restored) return;
   env_steps_ = restored->env_steps;
   request_ = restored->request;
-  saved_updates_ = restored->updates;
+  checkpoint_of_ = restored->updates;
 }
 
 TrainingLoop::End TrainingLoop::Run() {
@@ -60,12 +60,14 @@ TrainingLoop::End TrainingLoop::Run() {
       TryTrain();
     }
     evaluations_.Retry();
+    RetryCheckpoint();
     Report();
     lost = parts_.control.CoordinatorLost(Now());
   }
   stopping_ = true;
   Report(/*now=*/true);
   if (parts_.agent.updates() > 0) WriteCheckpoint();
+  RetryCheckpoint(/*now=*/true);
   Report(/*now=*/true);
   log::Info("stopped after {} updates, {} env steps", parts_.agent.updates(), env_steps_);
   return lost ? End::kCoordinatorLost : End::kStopped;
@@ -80,9 +82,10 @@ bool TrainingLoop::TryTrain() {
   if (!batch) return false;
   const UpdateOutcome outcome = Update(batch->view);
   if (!outcome.finite) {
+    const std::optional<uint64_t> saved = parts_.checkpoints.WrittenUpdates();
     throw NonFiniteError("{}; last good checkpoint: {}",
                          DescribeNonFinite(outcome.figures, parts_.agent.updates()),
-                         saved_updates_ ? CheckpointName(*saved_updates_) : "none");
+                         saved ? CheckpointName(*saved) : "none");
   }
   parts_.update_page.SetDone(parts_.agent.updates());
   AfterUpdate(*batch, outcome.figures);
@@ -154,7 +157,7 @@ void TrainingLoop::TellProgress() {
 
 std::string TrainingLoop::WriteCheckpoint() {
   const uint64_t updates = parts_.agent.updates();
-  if (saved_updates_ == updates) return CheckpointName(updates);
+  if (checkpoint_of_ == updates) return CheckpointName(updates);
   const ScopedSeconds timed(seconds_.checkpoint);
   const CheckpointState state{.updates = updates,
                               .env_steps = env_steps_,
@@ -167,9 +170,14 @@ std::string TrainingLoop::WriteCheckpoint() {
   std::string name = parts_.checkpoints.Write(state, parts_.agent.AllTensors(),
                                               parts_.agent.AveragedPolicyTensors(),
                                               parts_.pending_evaluations.Names());
-  saved_updates_ = updates;
-  ++checkpoints_written_;
+  checkpoint_of_ = updates;
+  if (parts_.checkpoints.unwritten() == 0) ++checkpoints_written_;
   return name;
+}
+
+void TrainingLoop::RetryCheckpoint(bool now) {
+  const ScopedSeconds timed(seconds_.checkpoint);
+  parts_.checkpoints.Retry(parts_.pending_evaluations.Names(), now);
 }
 
 void TrainingLoop::Drain() {
@@ -239,6 +247,7 @@ void TrainingLoop::Report(bool now) {
                                .weights_unsent = weights_.unsent(),
                                .evaluations_overtaken = evaluations_.overtaken(),
                                .checkpoints = checkpoints_written_,
+                               .checkpoints_unwritten = parts_.checkpoints.unwritten(),
                                .eval_updates = evaluations_.last_updates(),
                                .drained = drained_,
                                .samples_per_insert = samples_per_insert_.At(env_steps_),

@@ -37,8 +37,9 @@
 namespace shoal::learner {
 
 // Borrows what Parts refers to. One thread.
-// Errors: Error (kNonFinite) when an update is not finite; Error when a file cannot be written, or
-// batches are of another spec; the checkpoints written before stay as they are.
+// Errors: Error (kNonFinite) when an update is not finite; Error when batches are of another spec;
+// the checkpoints written before stay as they are. A checkpoint that cannot be written is kept and
+// tried again (CheckpointStore): at the end the caller asks for what is still unwritten.
 class TrainingLoop {
  public:
   struct Parts {
@@ -75,6 +76,8 @@ class TrainingLoop {
   void MakeEvaluationPoint();
   // Writes a checkpoint of the agent as it is, unless the newest one is that. Returns its name.
   std::string WriteCheckpoint();
+  // Writes what could not be written, once in a while.
+  void RetryCheckpoint(bool now = false);
   // Draining: goes on training until it is over, then makes the last evaluation point, once.
   void Drain();
   bool DrainingIsOver() const;
@@ -108,7 +111,7 @@ class TrainingLoop {
   uint64_t env_steps_ = 0;                 // stored when the last batch was drawn
   uint64_t request_ = 0;                   // of that batch
   uint64_t checkpoints_written_ = 0;
-  std::optional<uint64_t> saved_updates_;  // of the newest checkpoint
+  std::optional<uint64_t> checkpoint_of_;  // updates at which one was asked for last
   SteadyTime waiting_since_;               // the last batch, or the start
   std::optional<SteadyTime> drain_start_;
   int drain_batches_ = 0;  // used while draining

@@ -90,12 +90,23 @@ void WriteRolloutState(const fs::path& run, uint32_t actor, const RolloutState& 
   WriteFileAtomically(FileOf(run, actor), json.dump() + "\n");
 }
 
-std::optional<RolloutState> TakeRolloutState(const fs::path& run, uint32_t actor) {
+std::optional<RolloutState> ReadRolloutState(const fs::path& run, uint32_t actor) {
   const fs::path file = FileOf(run, actor);
   std::error_code error;
   if (!fs::exists(file, error)) return std::nullopt;
-  RolloutState state = Parse(ReadFile(file), file.string());
-  if (!fs::remove(file, error)) {
+  try {
+    return Parse(ReadFile(file), file.string());
+  } catch (const Error& e) {
+    throw UsageError("{}; remove it, and the run goes on, but does not repeat bit for bit",
+                     e.what());
+  }
+}
+
+std::optional<RolloutState> TakeRolloutState(const fs::path& run, uint32_t actor) {
+  std::optional<RolloutState> state = ReadRolloutState(run, actor);
+  const fs::path file = FileOf(run, actor);
+  std::error_code error;
+  if (state && !fs::remove(file, error)) {
     throw RuntimeError("cannot remove '{}': {}", file.string(), error.message());
   }
   return state;

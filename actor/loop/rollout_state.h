@@ -38,7 +38,10 @@ struct RolloutState {
 // Throws Error when it cannot be written.
 void WriteRolloutState(const std::filesystem::path& run, uint32_t actor, const RolloutState& state);
 
-// The state a predecessor left, once; none when there is none. Throws Error naming a damaged file.
+// The state a predecessor left; none when there is none. Throws Error (usage) naming a damaged
+// file.
+std::optional<RolloutState> ReadRolloutState(const std::filesystem::path& run, uint32_t actor);
+// The same, once: removes the file.
 std::optional<RolloutState> TakeRolloutState(const std::filesystem::path& run, uint32_t actor);
 
 }  // namespace shoal::actor

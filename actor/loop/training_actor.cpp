@@ -10,6 +10,7 @@
 #include "common/base/error.h"
 #include "common/base/host_name.h"
 #include "common/base/log.h"
+#include "common/base/write_faults.h"
 #include "common/config/on_policy.h"
 #include "common/config/run_files.h"
 #include "common/config/run_membership.h"
@@ -98,8 +99,8 @@ class TrainingActor {
     const ActorLoop::End end = RunLoop(loop, report);
     metrics_.WaitForAcks(kLastReportDeadline);
     const bool stored = end == ActorLoop::End::kAllStored;
-    if (stored && GoesOnExactly(run_.config)) Leave();
-    return stored ? 0 : 1;
+    if (!stored) return 1;
+    return GoesOnExactly(run_.config) && !Leave() ? kUnwrittenExit : 0;
   }
 
  private:
@@ -126,12 +127,18 @@ class TrainingActor {
     log::Info("lockstep: goes on after {} env steps", rollout_.env_steps());
   }
 
-  // In lockstep: for the process that goes on.
-  void Leave() {
+  // In lockstep: for the process that goes on. False when it could not be written.
+  bool Leave() {
     RolloutState state = rollout_.State();
     state.session = session_;
     state.made = made_.made();
-    WriteRolloutState(folder_, id_, state);
+    try {
+      WriteRolloutState(folder_, id_, state);
+      return true;
+    } catch (const Error& e) {
+      log::Failure("{}; the run will go on, but not repeat bit for bit", e.what());
+      return false;
+    }
   }
 
   const RunMembership member_;

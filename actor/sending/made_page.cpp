@@ -8,12 +8,14 @@
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <string>
 
 #include "common/base/descriptor.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/base/saturating_cast.h"
 #include "common/run_folder/run_file_names.h"
 #include "common/wire/process_name.h"
 
@@ -21,6 +23,11 @@ namespace shoal::actor {
 namespace {
 
 constexpr char kMagic[9] = "SHOALMD1";
+
+// In MadePageHeader::rebuilt: no count of an actor's own.
+constexpr uint32_t kRebuilt = 1;
+// More episodes than an actor can have begun beyond what the receiver of its records has seen.
+constexpr uint32_t kUnseenEpisodes = 100'000;
 
 struct PageContent {
   MadePageHeader header;
@@ -34,8 +41,9 @@ PageContent ReadPage(const std::filesystem::path& path) {
   if (has_header) std::memcpy(&page.header, bytes.data(), sizeof page.header);
   if (!has_header || std::memcmp(page.header.magic, kMagic, 8) != 0 || page.header.env_count == 0 ||
       bytes.size() != sizeof page.header + 4 * size_t{page.header.env_count}) {
-    throw RuntimeError(
-        "'{}' is not a counter page of an actor (expected {}, one env or more and a u32 for each)",
+    throw UsageError(
+        "'{}' is damaged: it is not a counter page of an actor (expected {}, one env or more and a "
+        "u32 for each)",
         path.string(), kMagic);
   }
   page.next_episode.resize(page.header.env_count);
@@ -44,17 +52,32 @@ PageContent ReadPage(const std::filesystem::path& path) {
   return page;
 }
 
-std::vector<PageContent> ReadPages(const std::filesystem::path& run) {
+std::vector<std::filesystem::path> PagesOf(const std::filesystem::path& run) {
   std::vector<std::filesystem::path> paths;
   std::error_code error;
-  for (const auto& entry : std::filesystem::directory_iterator(run / kMadeFolder, error)) {
-    if (entry.path().extension() == ".page") paths.push_back(entry.path());
+  for (std::filesystem::directory_iterator it(run / kMadeFolder, error), end; !error && it != end;
+       it.increment(error)) {
+    if (it->path().extension() == ".page") paths.push_back(it->path());
   }
   std::sort(paths.begin(), paths.end());
+  return paths;
+}
+
+std::vector<PageContent> ReadPages(const std::filesystem::path& run) {
   std::vector<PageContent> pages;
-  pages.reserve(paths.size());
-  for (const auto& path : paths) pages.push_back(ReadPage(path));
+  for (const auto& path : PagesOf(run)) pages.push_back(ReadPage(path));
   return pages;
+}
+
+// The episodes of `page` follow those of another session with the same environments.
+void GoOnAfter(const PageContent& old, PageContent* page) {
+  const uint32_t first = page->header.first_env, count = page->header.env_count;
+  for (uint32_t i = 0; i < old.header.env_count; ++i) {
+    const uint32_t env = old.header.first_env + i;
+    if (env < first || env >= first + count) continue;
+    uint32_t& next = page->next_episode[env - first];
+    next = std::max(next, old.next_episode[i]);
+  }
 }
 
 // A complete page appears under its name or none: written beside, then renamed.
@@ -67,6 +90,11 @@ void WritePage(const std::filesystem::path& path, const PageContent& page) {
 
 }  // namespace
 
+std::filesystem::path MadePageFile(const std::filesystem::path& run, uint32_t actor,
+                                   uint64_t session) {
+  return run / kMadeFolder / fmt::format("{}-{}.page", ProcessName::Actor(actor).Text(), session);
+}
+
 MadePage::MadePage(const std::filesystem::path& run, uint32_t actor, uint64_t session,
                    uint32_t first_env, uint32_t env_count) {
   PageContent page{};
@@ -76,24 +104,14 @@ MadePage::MadePage(const std::filesystem::path& run, uint32_t actor, uint64_t se
   page.header.first_env = first_env;
   page.header.session = session;
   page.next_episode.resize(env_count);
-  for (const PageContent& old : ReadPages(run)) {
-    for (uint32_t i = 0; i < old.header.env_count; ++i) {
-      const uint32_t env = old.header.first_env + i;
-      if (env < first_env || env >= first_env + env_count) continue;
-      uint32_t& next = page.next_episode[env - first_env];
-      next = std::max(next, old.next_episode[i]);
-    }
-  }
+  for (const PageContent& old : ReadPages(run)) GoOnAfter(old, &page);
   MakeFolders(run / kMadeFolder);
-  const std::filesystem::path path =
-      run / kMadeFolder / fmt::format("{}-{}.page", ProcessName::Actor(actor).Text(), session);
+  const std::filesystem::path path = MadePageFile(run, actor, session);
   std::error_code error_code;
   if (!std::filesystem::exists(path, error_code)) WritePage(path, page);
-  const Descriptor file(open(path.c_str(), O_RDWR | O_CLOEXEC));
+  const Descriptor file = OpenRegular(path, O_RDWR);
   bytes_ = sizeof page.header + 4 * size_t{env_count};
-  void* mapped = file.get() < 0
-                     ? MAP_FAILED
-                     : mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_SHARED, file.get(), 0);
+  void* mapped = mmap(nullptr, bytes_, PROT_READ | PROT_WRITE, MAP_SHARED, file.get(), 0);
   if (mapped == MAP_FAILED) {
     throw RuntimeError("cannot map '{}': {}", path.string(), std::strerror(errno));
   }
@@ -114,9 +132,54 @@ uint32_t MadePage::TakeEpisode(uint32_t e) {
 std::vector<MadeCount> ReadMadePages(const std::filesystem::path& run) {
   std::vector<MadeCount> counts;
   for (const PageContent& page : ReadPages(run)) {
-    counts.push_back({page.header.actor, page.header.session, page.header.made});
+    counts.push_back({page.header.actor, page.header.session, page.header.made,
+                      page.header.rebuilt == kRebuilt});
   }
   return counts;
+}
+
+std::vector<DamagedPage> FindDamagedPages(const std::filesystem::path& run) {
+  std::vector<DamagedPage> damaged;
+  for (const auto& path : PagesOf(run)) {
+    DamagedPage page{.path = path};
+    const std::string name = path.filename();
+    const bool named =
+        std::sscanf(name.c_str(), "actor-%u-%lu.page", &page.actor, &page.session) == 2 &&
+        MadePageFile(run, page.actor, page.session) == path;
+    try {
+      const MadePageHeader header = ReadPage(path).header;
+      if (named && header.actor == page.actor && header.session == page.session) continue;
+    } catch (const Error&) {
+    }
+    if (!named) {
+      throw UsageError("'{}' is no counter page of an actor of this run: remove it", path.string());
+    }
+    damaged.push_back(page);
+  }
+  return damaged;
+}
+
+void RebuildMadePage(const std::filesystem::path& run, uint32_t actor, uint64_t session,
+                     uint32_t env_count, uint64_t made) {
+  PageContent page{};
+  std::memcpy(page.header.magic, kMagic, 8);
+  page.header.actor = actor;
+  page.header.env_count = env_count;
+  page.header.first_env = actor * env_count;
+  page.header.rebuilt = kRebuilt;
+  page.header.session = session;
+  page.header.made = made;
+  page.next_episode.resize(env_count);
+  for (const auto& path : PagesOf(run)) {
+    try {
+      GoOnAfter(ReadPage(path), &page);
+    } catch (const Error&) {  // another damaged one, which is rebuilt as well
+    }
+  }
+  // Each episode has a record or more, so that none of these numbers has been used.
+  const double begun = static_cast<double>(made) + kUnseenEpisodes;
+  for (uint32_t& next : page.next_episode) next = SaturatingCast<uint32_t>(next + begun);
+  WritePage(MadePageFile(run, actor, session), page);
 }
 
 }  // namespace shoal::actor

@@ -17,7 +17,7 @@ struct MadePageHeader {
   uint32_t actor;
   uint32_t env_count;
   uint32_t first_env;
-  uint32_t reserved;
+  uint32_t rebuilt;  // 1: by RebuildMadePage
   uint64_t session;
   uint64_t made;  // records given a sequence
 };
@@ -28,7 +28,7 @@ class MadePage {
  public:
   // Creates the page of this session, or goes on with it where the session goes on (lockstep); its
   // episodes go on where earlier sessions hosting the same environments stopped. Throws Error when
-  // the folder cannot be written or an older page is broken.
+  // the folder cannot be written, and Error (usage) when an older page is broken.
   MadePage(const std::filesystem::path& run, uint32_t actor, uint64_t session, uint32_t first_env,
            uint32_t env_count);
   ~MadePage();
@@ -51,10 +51,28 @@ struct MadeCount {
   uint32_t actor = 0;
   uint64_t session = 0;
   uint64_t made = 0;
+  bool rebuilt = false;  // `made` is only what the receiver of the records had seen
 };
 
 // The counters of all sessions of a run, by file name; empty when there are none. Throws Error
-// naming a broken page.
+// (usage) naming a broken page.
 std::vector<MadeCount> ReadMadePages(const std::filesystem::path& run);
+
+std::filesystem::path MadePageFile(const std::filesystem::path& run, uint32_t actor,
+                                   uint64_t session);
+
+// A page that cannot be read, and whose it is by its name.
+struct DamagedPage {
+  std::filesystem::path path;
+  uint32_t actor = 0;
+  uint64_t session = 0;
+};
+// By file name. Throws Error (usage) naming a page of nobody.
+std::vector<DamagedPage> FindDamagedPages(const std::filesystem::path& run);
+
+// Writes a page in place of a damaged or missing one: `made` is what the receiver of the records
+// has seen, and the episodes go on at numbers that the session cannot have reached. Throws Error.
+void RebuildMadePage(const std::filesystem::path& run, uint32_t actor, uint64_t session,
+                     uint32_t env_count, uint64_t made);
 
 }  // namespace shoal::actor

@@ -9,6 +9,7 @@
 
 #include "common/base/clock.h"
 #include "common/base/error.h"
+#include "common/base/files.h"
 
 namespace shoal {
 namespace {
@@ -25,10 +26,7 @@ struct flock WholeFile(Holding holding) {
 }  // namespace
 
 std::optional<FileLock> FileLock::Take(const std::filesystem::path& path, Holding holding) {
-  Descriptor file(open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644));
-  if (file.get() < 0) {
-    throw RuntimeError("cannot write '{}': {}", path.string(), std::strerror(errno));
-  }
+  Descriptor file = OpenRegular(path, O_RDWR | O_CREAT);
   struct flock lock = WholeFile(holding);
   if (fcntl(file.get(), F_OFD_SETLK, &lock) == 0) return FileLock(std::move(file));
   if (errno == EAGAIN || errno == EACCES) return std::nullopt;
@@ -46,7 +44,7 @@ std::optional<FileLock> FileLock::Take(const std::filesystem::path& path, Holdin
 }
 
 bool IsLocked(const std::filesystem::path& path) {
-  const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  const Descriptor file(open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
   if (file.get() < 0) return false;
   struct flock lock = WholeFile(Holding::kAlone);
   return fcntl(file.get(), F_OFD_GETLK, &lock) == 0 && lock.l_type != F_UNLCK;

@@ -21,7 +21,7 @@ enum class Holding {
 class FileLock {
  public:
   // Makes the file where it is not there (its permissions as the umask allows). Empty: somebody
-  // else holds it. Throws Error naming the file where it cannot be written.
+  // else holds it. Throws Error naming the file where it cannot be written or is no file.
   static std::optional<FileLock> Take(const std::filesystem::path& file,
                                       Holding holding = Holding::kAlone);
   // Asks again until the deadline.

@@ -6,11 +6,11 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
-#include <fstream>
 #include <optional>
-#include <sstream>
+#include <string>
 #include <system_error>
 
 #include "common/base/descriptor.h"
@@ -21,7 +21,7 @@ namespace {
 
 constexpr mode_t kPrivate = 0077;
 
-// The umask that KeepFilesPrivate found.
+// What NoteUmask found.
 std::optional<mode_t>& FoundMask() {
   static std::optional<mode_t> mask;
   return mask;
@@ -29,6 +29,43 @@ std::optional<mode_t>& FoundMask() {
 
 [[noreturn]] void Fail(const char* what, const std::filesystem::path& path, int error) {
   throw RuntimeError("{} '{}': {}", what, path.string(), std::strerror(error));
+}
+
+const char* VerbOf(int flags) {
+  return (flags & O_ACCMODE) == O_RDONLY ? "cannot read" : "cannot write";
+}
+
+[[noreturn]] void RefuseKind(int flags, const std::filesystem::path& path) {
+  throw RuntimeError("{} '{}': it is a pipe, a socket or a device; expected a file", VerbOf(flags),
+                     path.string());
+}
+
+// Opens without waiting for the other end of a FIFO, and fills `status`.
+Descriptor OpenNow(const std::filesystem::path& path, int flags, mode_t mode, struct stat* status) {
+  Descriptor file(open(path.c_str(), flags | O_CLOEXEC | O_NONBLOCK | O_NOCTTY, mode));
+  if (file.get() < 0 && errno == ENXIO) RefuseKind(flags, path);  // a FIFO without a reader
+  if (file.get() < 0 || fstat(file.get(), status) != 0) Fail(VerbOf(flags), path, errno);
+  if (S_ISDIR(status->st_mode)) Fail(VerbOf(flags), path, EISDIR);
+  return file;
+}
+
+// Paths under which a user names an open pipe.
+bool MayBePipe(const std::filesystem::path& path) {
+  const std::string& name = path.native();
+  return name.starts_with("/dev/") || name.starts_with("/proc/");
+}
+
+std::string ReadAll(int fd, const std::filesystem::path& path, size_t expected) {
+  std::string content;
+  content.reserve(expected);
+  char block[1 << 16];
+  while (true) {
+    const ssize_t n = read(fd, block, sizeof block);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) Fail("cannot read", path, errno);
+    if (n == 0) return content;
+    content.append(block, static_cast<size_t>(n));
+  }
 }
 
 // Writes everything or returns the errno.
@@ -39,34 +76,64 @@ int WriteAll(int fd, std::string_view content) {
     if (n < 0) return errno;
     content.remove_prefix(static_cast<size_t>(n));
   }
-  return fsync(fd) == 0 ? 0 : errno;
+  return 0;
 }
 
-}  // namespace
+enum class Sync { kNo, kYes };
 
-std::string ReadFile(const std::filesystem::path& path) {
-  std::error_code error;
-  if (std::filesystem::is_directory(path, error)) Fail("cannot read", path, EISDIR);
-  std::ifstream in(path, std::ios::binary);
-  if (!in) Fail("cannot read", path, errno);
-  std::ostringstream content;
-  content << in.rdbuf();
-  if (in.bad()) Fail("cannot read", path, errno);
-  return std::move(content).str();
-}
-
-void WriteFileAtomically(const std::filesystem::path& path, std::string_view content) {
-  const std::filesystem::path temporary = path.string() + ".tmp-" + std::to_string(getpid());
-  const int fd = open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0600);
+// Writes `temporary` and renames it over `path`.
+void Replace(const std::filesystem::path& temporary, const std::filesystem::path& path,
+             std::string_view content, mode_t mode, Sync sync) {
+  std::error_code ignored;
+  std::filesystem::remove(temporary, ignored);  // left by a process that was killed
+  const int fd =
+      open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, mode);
   if (fd < 0) Fail("cannot write", path, errno);
   int error = WriteAll(fd, content);
+  if (error == 0 && sync == Sync::kYes && fsync(fd) != 0) error = errno;
   if (close(fd) != 0 && error == 0) error = errno;  // by hand: here its result counts
   if (error == 0 && rename(temporary.c_str(), path.c_str()) != 0) error = errno;
   if (error != 0) {
     unlink(temporary.c_str());
     Fail("cannot write", path, error);
   }
-  SyncFolder(path.has_parent_path() ? path.parent_path() : ".");
+  if (sync == Sync::kYes) SyncFolder(path.has_parent_path() ? path.parent_path() : ".");
+}
+
+std::filesystem::path OwnTemporary(const std::filesystem::path& path) {
+  return path.string() + ".tmp-" + std::to_string(getpid());
+}
+
+}  // namespace
+
+Descriptor OpenRegular(const std::filesystem::path& path, int flags, mode_t mode) {
+  struct stat status {};
+  Descriptor file = OpenNow(path, flags, mode, &status);
+  if (!S_ISREG(status.st_mode)) RefuseKind(flags, path);
+  fcntl(file.get(), F_SETFL, flags & O_APPEND);  // a child process may inherit it
+  return file;
+}
+
+std::string ReadFile(const std::filesystem::path& path) {
+  struct stat status {};
+  const Descriptor file = OpenNow(path, O_RDONLY, 0, &status);
+  if (!S_ISREG(status.st_mode)) {
+    if (!MayBePipe(path)) RefuseKind(O_RDONLY, path);
+    fcntl(file.get(), F_SETFL, O_RDONLY);  // waits for what the other end writes
+  }
+  return ReadAll(file.get(), path, static_cast<size_t>(std::max<off_t>(0, status.st_size)));
+}
+
+void WriteFileAtomically(const std::filesystem::path& path, std::string_view content) {
+  Replace(OwnTemporary(path), path, content, 0666, Sync::kYes);
+}
+
+void WriteFilePrivately(const std::filesystem::path& path, std::string_view content) {
+  Replace(OwnTemporary(path), path, content, 0600, Sync::kYes);
+}
+
+void ReplaceFile(const std::filesystem::path& path, std::string_view content) {
+  Replace(path.string() + ".new", path, content, 0666, Sync::kNo);
 }
 
 void WriteFileForOthers(const std::filesystem::path& path, std::string_view content) {
@@ -80,6 +147,12 @@ void OpenToOthers(const std::filesystem::path& path) {
   if (chmod(path.c_str(), all & ~FoundMask().value_or(kPrivate)) != 0) {
     Fail("cannot open to others", path, errno);
   }
+}
+
+void NoteUmask() {
+  const mode_t found = umask(kPrivate);
+  umask(found);
+  if (!FoundMask()) FoundMask() = found;
 }
 
 void KeepFilesPrivate() {

@@ -23,7 +23,7 @@ void PrintError(const char* program, const char* reason) {
 }  // namespace
 
 int GuardMain(const char* program, const std::function<int()>& body) {
-  KeepFilesPrivate();  // what a program writes is its user's own
+  NoteUmask();
   try {
     return body();
   } catch (const Error& e) {

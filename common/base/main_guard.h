@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The frame of every main: files that the program makes belong to its user alone (umask 077), and
-// exceptions end here: runs `body`, maps its result to an exit code and an Error to one line on
-// stderr.
+// The frame of every main: exceptions end here. Runs `body`, maps its result to an exit code and an
+// Error to one line on stderr.
 #pragma once
 
 #include <functional>

@@ -62,6 +62,7 @@ struct ReplayConfig {
   Schedule samples_per_insert = Schedule::Constant(64);
   double band = 0;                 // width of the limiter's band in samples; 0 = computed
   std::string storage = "file";    // file | memory
+  bool keep = false;               // the file stays when the run has finished
   int shift_pad = 4;               // DrQ shift in pixels, 0 = none
   int copies = 1;                  // batch elements per drawn transition, each shifted anew
   int target_shifts = 0;           // K: of them, with a next frame of their own; 0 = all

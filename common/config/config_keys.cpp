@@ -97,6 +97,9 @@ std::vector<Key> ReplayKeys() {
                  "width of the limiter's band in samples; 0 = computed"),
       SHOAL_SAME(replay.storage, (Choices{{"file", "memory"}}),
                  "file = ring in the run folder, survives the process; memory = anonymous"),
+      SHOAL_SAME(replay.keep, AnyValue{},
+                 "keep replay.ring when the run has finished; a run that was interrupted or failed "
+                 "keeps it in any case"),
       SHOAL_SAME(replay.shift_pad, (IntegerRange{0, 32}), "DrQ random shift in pixels; 0 = none"),
       SHOAL_SAME(
           replay.copies, (IntegerRange{1, 16}),

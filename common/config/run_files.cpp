@@ -84,4 +84,9 @@ ClusterAddress ReadClusterAddress(const std::filesystem::path& run) {
   return address;
 }
 
+void KeepSecuredRunPrivate(const std::filesystem::path& run) {
+  if (!std::filesystem::exists(run / kClusterFile)) return;
+  if (!ReadClusterAddress(run).secure.empty()) KeepFilesPrivate();
+}
+
 }  // namespace shoal

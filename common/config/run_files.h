@@ -26,4 +26,9 @@ struct ClusterAddress {
 void WriteClusterAddress(const std::filesystem::path& run, const ClusterAddress& address);
 ClusterAddress ReadClusterAddress(const std::filesystem::path& run);
 
+// In a secured run, what this process makes belongs to its user alone. `shoal train` sees to it for
+// the processes that it starts; this is for those that are started by hand. Before there are
+// threads. Throws Error.
+void KeepSecuredRunPrivate(const std::filesystem::path& run);
+
 }  // namespace shoal

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "common/base/error.h"
+#include "common/base/files.h"
 #include "common/run_folder/run_file_names.h"
 
 namespace shoal {
@@ -22,15 +23,15 @@ struct flock WholeFile(short type) {
 }  // namespace
 
 RunMembership::RunMembership(const std::filesystem::path& run)
-    : file_(open((run / kMembersFile).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0600)) {
+    : file_(OpenRegular(run / kMembersFile, O_RDWR | O_CREAT)) {
   struct flock shared = WholeFile(F_RDLCK);
-  if (file_.get() >= 0 && fcntl(file_.get(), F_SETLK, &shared) == 0) return;
+  if (fcntl(file_.get(), F_SETLK, &shared) == 0) return;
   throw RuntimeError("cannot lock '{}': {}", (run / kMembersFile).string(), std::strerror(errno));
 }
 
 std::optional<pid_t> AnyMember(const std::filesystem::path& run) {
   const std::filesystem::path file = run / kMembersFile;
-  const Descriptor opened(open(file.c_str(), O_RDWR | O_CLOEXEC));
+  const Descriptor opened(open(file.c_str(), O_RDWR | O_CLOEXEC | O_NONBLOCK));
   if (opened.get() < 0) {
     if (errno == ENOENT) return std::nullopt;
     throw RuntimeError("cannot open '{}': {}", file.string(), std::strerror(errno));

@@ -7,6 +7,7 @@
 
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/base/log.h"
 #include "common/run_folder/run_file_names.h"
 
 namespace shoal {
@@ -23,8 +24,8 @@ uint64_t LastSession(const fs::path& file) {
   uint64_t last = 0;
   const auto [parsed, fault] = std::from_chars(text.data(), end, last);
   if (fault != std::errc() || std::string_view(parsed, end) != "\n") {
-    throw RuntimeError("'{}' does not hold a session number; remove it to begin with the clock's",
-                       file.string());
+    throw UsageError("'{}' does not hold a session number; remove it to begin with the clock's",
+                     file.string());
   }
   return last;
 }
@@ -33,10 +34,15 @@ uint64_t LastSession(const fs::path& file) {
 
 uint64_t NextSession(const fs::path& run, const std::string& process, int64_t wall_time_ns) {
   const fs::path file = run / kSessionFolder / process;
-  MakeFolders(file.parent_path());
   const auto clock = static_cast<uint64_t>(std::max<int64_t>(1, wall_time_ns));
   const uint64_t session = std::max(clock, LastSession(file) + 1);
-  WriteFileAtomically(file, std::to_string(session) + "\n");
+  try {
+    MakeFolders(file.parent_path());
+    WriteFileAtomically(file, std::to_string(session) + "\n");
+  } catch (const Error& e) {
+    // Missed only where the clock is set back before this process has a successor.
+    log::Warning("{}; going on with the clock's number", e.what());
+  }
   return session;
 }
 

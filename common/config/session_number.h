@@ -11,7 +11,8 @@
 namespace shoal {
 
 // The next session of `process` ("actor-3"); RUN/sessions/PROCESS remembers it. `wall_time_ns` is
-// the clock's word. Throws Error when the file is not a number or cannot be written.
+// the clock's word. Throws Error (usage) when the file is not a number; one that cannot be written
+// is a warning.
 uint64_t NextSession(const std::filesystem::path& run, const std::string& process,
                      int64_t wall_time_ns);
 

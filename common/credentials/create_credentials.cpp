@@ -85,8 +85,8 @@ void WriteIdentity(const Identity& identity, const fs::path& folder, const std::
               PEM_write_bio_PrivateKey(key.get(), identity.key.get(), nullptr, nullptr, 0, nullptr,
                                        nullptr) == 1,
           "write a key and its certificate");
-  WriteFileAtomically(folder / (name + ".pem"), Content(certificate));
-  WriteFileAtomically(folder / (name + ".key"), Content(key));
+  WriteFilePrivately(folder / (name + ".pem"), Content(certificate));
+  WriteFilePrivately(folder / (name + ".key"), Content(key));
 }
 
 // The document in S/MIME, signed by the authority.
@@ -98,7 +98,7 @@ void WriteSigned(const std::string& document, const Identity& authority, const f
   Require(signature != nullptr, "sign a document");
   Require(SMIME_write_PKCS7(result.get(), signature.get(), text.get(), flags) == 1,
           "write a signed document");
-  WriteFileAtomically(file, Content(result));
+  WriteFilePrivately(file, Content(result));
 }
 
 // Made under a name beside its own; gets that when it is complete.

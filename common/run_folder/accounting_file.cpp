@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/run_folder/accounting_file.h"
 
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -83,23 +80,16 @@ RunAccount ReadAccount(const fs::path& run) {
 
 RunAccount ReadAccountBefore(const fs::path& run) {
   std::error_code error;
-  return fs::exists(run / kAccountingFile, error) ? ReadAccount(run) : RunAccount();
+  if (!fs::exists(run / kAccountingFile, error)) return {};
+  try {
+    return ReadAccount(run);
+  } catch (const Error& e) {
+    throw UsageError("{}", e.what());  // a restart would read the same
+  }
 }
 
 void ReplaceAccount(const fs::path& run, const RunAccount& account) {
-  const fs::path path = run / kAccountingFile;
-  const fs::path temporary = path.string() + ".new";
-  std::ofstream out(temporary, std::ios::binary | std::ios::trunc);
-  out << AccountingJson(account);
-  out.close();
-  std::error_code error;
-  if (!out) {
-    const int reason = errno;
-    fs::remove(temporary, error);
-    throw RuntimeError("cannot write '{}': {}", path.string(), std::strerror(reason));
-  }
-  fs::rename(temporary, path, error);
-  if (error) throw RuntimeError("cannot write '{}': {}", path.string(), error.message());
+  ReplaceFile(run / kAccountingFile, AccountingJson(account));
 }
 
 void StoreAccount(const fs::path& run, const RunAccount& account) {

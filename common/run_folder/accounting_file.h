@@ -43,7 +43,7 @@ struct RunAccount {
 // session whose `stored` is not what its other counts leave.
 RunAccount ReadAccount(const std::filesystem::path& run);
 
-// The same; zeros where no receiver has come yet.
+// The same; zeros where no receiver has come yet. Throws Error (usage).
 RunAccount ReadAccountBefore(const std::filesystem::path& run);
 
 // Replaces the file of a run: readers see the old one or the new one. Not synced, so that a busy

@@ -38,6 +38,9 @@ class UpdatePage {
   UpdatePageContent* content_ = nullptr;
 };
 
+// In place of a damaged page: what else is known.
+void RebuildUpdatePage(const std::filesystem::path& run, uint64_t done, uint64_t lost);
+
 // Updates lost in a run so far; 0 where no learner has come yet. Throws Error when the file is no
 // such page.
 uint64_t ReadLostUpdates(const std::filesystem::path& run);

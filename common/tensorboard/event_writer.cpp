@@ -20,8 +20,6 @@
 namespace shoal::tensorboard {
 namespace {
 
-constexpr size_t kPendingBytes = 64 * 1024;
-
 std::string FileName() {
   // Tells apart the files that one process makes within one second.
   static std::atomic<int> files{0};
@@ -69,7 +67,7 @@ proto::HyperParameter ToProto(const HyperParameter& value) {
 
 EventWriter::EventWriter(const std::filesystem::path& folder) : path_(folder / FileName()) {
   MakeFolders(folder);
-  file_ = Descriptor(open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0644));
+  file_ = Descriptor(open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC, 0666));
   if (file_.get() < 0) {
     throw RuntimeError("cannot create '{}': {}", path_.string(), std::strerror(errno));
   }
@@ -133,8 +131,7 @@ void EventWriter::EndSession(bool success) {
 }
 
 void EventWriter::Append(const std::string& event) {
-  AppendTfRecord(event, &pending_);
-  if (pending_.size() >= kPendingBytes) Flush();
+  if (pending_.size() + event.size() <= kMostPending) AppendTfRecord(event, &pending_);
 }
 
 void EventWriter::Flush() {

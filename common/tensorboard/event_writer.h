@@ -5,9 +5,9 @@
 // messages. TensorBoard follows the newest file of a folder only, so one process at a time writes
 // there.
 //
-// What is written is kept in memory until Flush, at least every 64 kB. A file always ends at a
-// record's end, unless the process dies within a write; readers ignore such a tail. Threads: one at
-// a time. Errors: Error naming the file when it cannot be made or written.
+// What is written is kept in memory until Flush. A file always ends at a record's end, unless the
+// process dies within a write or the disk is full; readers ignore such a tail. Threads: one at a
+// time. Errors: Error naming the file when it cannot be made or flushed.
 #pragma once
 
 #include <cstdint>
@@ -40,7 +40,11 @@ class EventWriter {
   // Begins what the hparams tab shows as one line: the settings by name.
   void BeginSession(const std::map<std::string, HyperParameter>& settings);
   void EndSession(bool success);
+  // Throws Error when the file cannot be written now; a later call goes on where this one failed.
+  // Events beyond kMostPending bytes are dropped meanwhile.
   void Flush();
+
+  static constexpr size_t kMostPending = 32 * 1024 * 1024;
 
   const std::filesystem::path& path() const { return path_; }
 

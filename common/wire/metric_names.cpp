@@ -191,6 +191,7 @@ constexpr Metric kMetrics[] = {
     {"learner", "weights_unsent", kCounter, "", "that the network did not take"},
     {"learner", "evaluations_overtaken", kCounter, "", "points replaced before they were sent"},
     {"learner", "checkpoints", kCounter, "", "written"},
+    {"learner", "checkpoints_unwritten", kGauge, "", "that could not be written and are tried again"},
     {"learner", "eval_updates", kGauge, "updates", "of the last evaluation point"},
     {"learner", "drained", kGauge, "", "1 once draining is over"},
     {"learner", "resent_requests", kCounter, "", "asked again"},

@@ -23,6 +23,7 @@ std::unique_ptr<CLI::App> MakeCommandLine(Action* chosen) {
   AddFilmCommand(*app, chosen);
   AddTopCommand(*app, chosen);
   AddRunsCommand(*app, chosen);
+  AddCleanCommand(*app, chosen);
   AddWebCommand(*app, chosen);
   AddSteerCommands(*app, chosen);
   AddAttachCommand(*app, chosen);

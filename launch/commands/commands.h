@@ -29,6 +29,7 @@ void AddNewCommand(CLI::App& app, Action* chosen);
 void AddCheckCommand(CLI::App& app, Action* chosen);
 void AddSecureCommand(CLI::App& app, Action* chosen);  // secure init
 void AddRunsCommand(CLI::App& app, Action* chosen);
+void AddCleanCommand(CLI::App& app, Action* chosen);
 void AddWebCommand(CLI::App& app, Action* chosen);
 void AddSteerCommands(CLI::App& app, Action* chosen);  // set, scale, stop
 void AddAttachCommand(CLI::App& app, Action* chosen);

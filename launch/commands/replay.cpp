@@ -75,6 +75,7 @@ EpisodeExport ExportSubject(const EpisodesOptions& options) {
     throw UsageError("the run in '{}' keeps its replay in memory (replay.storage): no episodes",
                      run.string());
   }
+  replay::CheckRingIsThere(subject.ring);
   return subject;
 }
 

@@ -63,7 +63,7 @@ std::optional<ObservationSet> RecordedObservations(const fs::path& checkpoint,
     return std::nullopt;
   }
   if (!fs::exists(run / kRingFile)) {
-    *why = fmt::format("there is no '{}'", (run / kRingFile).string());
+    *why = replay::DescribeMissingRing(run / kRingFile);
     return std::nullopt;
   }
   try {

@@ -15,6 +15,7 @@
 
 #include "common/base/clock.h"
 #include "common/base/error.h"
+#include "common/base/files.h"
 #include "common/base/pipe.h"
 #include "launch/processes/suspension.h"
 
@@ -27,20 +28,19 @@ constexpr milliseconds kTerminate{5000};  // between SIGTERM and SIGKILL
 // After SIGKILL: longer only in uninterruptible I/O; whom it leaves behind init reaps.
 constexpr milliseconds kReap{5000};
 
-Descriptor Open(const std::filesystem::path& path, int flags) {
-  const int fd = open(path.c_str(), flags | O_CLOEXEC, 0644);
+Descriptor OpenForReading(const std::filesystem::path& path) {
+  const int fd = open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (fd >= 0) return Descriptor(fd);
-  throw RuntimeError("cannot {} '{}': {}", (flags & O_CREAT) != 0 ? "write" : "read", path.string(),
-                     std::strerror(errno));
+  throw RuntimeError("cannot read '{}': {}", path.string(), std::strerror(errno));
 }
 
 Descriptor OpenForAppending(const std::filesystem::path& path) {
-  return Open(path, O_WRONLY | O_CREAT | O_APPEND);
+  return OpenRegular(path, O_WRONLY | O_CREAT | O_APPEND);
 }
 
 // What the child reads from; `held` gets our end of it where there is one.
 Descriptor OpenInput(const ProcessSpec& spec, Descriptor* held) {
-  if (!spec.holds_input) return Open(spec.input.empty() ? "/dev/null" : spec.input, O_RDONLY);
+  if (!spec.holds_input) return OpenForReading(spec.input.empty() ? "/dev/null" : spec.input);
   Pipe pipe;
   *held = std::move(pipe.write);
   return std::move(pipe.read);

@@ -125,7 +125,7 @@ void PushRun(const fs::path& run, const ActorRange& actors, RemoteHost* host,
     MakeFolders(scratch.path() / kSecureCopy);
     pack.insert(pack.end(), {"-C", scratch.path(), kSecureCopy});
     for (const fs::path& file : CredentialFiles(secure, kActorRole)) {
-      WriteFileAtomically(scratch.path() / kSecureCopy / file.filename(), ReadFile(file));
+      WriteFilePrivately(scratch.path() / kSecureCopy / file.filename(), ReadFile(file));
     }
     host->secure = kSecureCopy;  // in the run's folder there
   }

@@ -11,6 +11,7 @@
 
 #include "common/base/check.h"
 #include "common/base/error.h"
+#include "common/base/write_faults.h"
 #include "launch/processes/last_words.h"
 
 namespace shoal::launch {
@@ -262,6 +263,10 @@ void Supervisor::OnExpectedExit(Child& child, const ExitStatus& status) {
       Describe(status, obeyed ? "" : LastWords(child.spec.output, child.output_before));
   std::string line = fmt::format("{}: {} while stopping", child.spec.Name(), reason);
   say_(line);
+  if (!status.by_signal && status.code == kUnwrittenExit) {
+    unwritten_exits_.insert(child.spec.Name());
+    return;
+  }
   unclean_exits_.push_back(std::move(line));
 }
 

@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -94,7 +95,9 @@ class Supervisor {
   // A restarted process counts as working after it has reported for so long.
   static constexpr std::chrono::seconds kSettled{10};
 
-  // Expected exits that were not clean, each as one line.
+  // Processes that left as expected, but could not write all of their results (kUnwrittenExit).
+  const std::set<std::string>& unwritten_exits() const { return unwritten_exits_; }
+  // Other expected exits that were not clean, each as one line.
   const std::vector<std::string>& unclean_exits() const { return unclean_exits_; }
 
  private:
@@ -130,6 +133,7 @@ class Supervisor {
   std::function<void(const std::string&)> say_;
   std::vector<Child> children_;
   int restarts_ = 0;
+  std::set<std::string> unwritten_exits_;
   std::vector<std::string> unclean_exits_;
 };
 

@@ -6,6 +6,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
 #include <utility>
 
 namespace shoal::launch {
@@ -45,9 +46,11 @@ Accounting Account(std::span<const MadeRecords> made, const RunAccount& seen,
     SessionCounters seen;
   };
   std::map<Session, Counts> sessions;
+  std::set<Session> lost_pages;
   for (const MadeRecords& m : made) {
     auto& count = sessions[{m.actor, m.session}].made;
     count = count.value_or(0) + m.made;
+    if (!m.known) lost_pages.insert({m.actor, m.session});
   }
   Accounting sums;
   for (const SessionCounters& s : seen.sessions) {
@@ -59,7 +62,8 @@ Accounting Account(std::span<const MadeRecords> made, const RunAccount& seen,
     entry = s;
   }
   for (const auto& [name, counts] : sessions) {
-    const bool unknown = !counts.made && name.first >= terms.own_actors;
+    const bool unknown =
+        (!counts.made && name.first >= terms.own_actors) || lost_pages.contains(name);
     if (unknown) ++sums.sessions_without_page;
     AddSession(name, unknown ? counts.seen.highest : counts.made.value_or(0), counts.seen,
                terms.outlives_replay && !seen.ring_replaced, &sums);

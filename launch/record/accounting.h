@@ -28,14 +28,15 @@ struct MadeRecords {
   uint32_t actor = 0;
   uint64_t session = 0;
   uint64_t made = 0;
+  bool known = true;  // false: the page was lost, and `made` is what the replay had seen
 };
 
 struct Accounting {
   uint64_t made = 0, stored = 0, lost_with_process = 0, lost_with_replay = 0;
   uint64_t rejected = 0, after_gap = 0, discarded = 0;
   uint64_t duplicates = 0, resends = 0;
-  // Of actors started by hand, or on a host that cannot be reached any more: what the replay saw
-  // counts as made, what they made beyond it is unknown.
+  // Of actors started by hand, on a host that cannot be reached any more, or whose page was lost:
+  // what the replay saw counts as made, what they made beyond it is unknown.
   uint64_t sessions_without_page = 0;
   std::vector<std::string> faults;  // one line for each thing that does not balance
 

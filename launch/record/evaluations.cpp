@@ -81,16 +81,33 @@ EvaluationPoint ParseEvaluation(const EvalMessage& message) {
   return point;
 }
 
-EvaluationPoint StoreEvaluation(const fs::path& run, const EvalMessage& message,
-                                double wall_seconds) {
+EvaluationRecord RecordOf(const EvalMessage& message, double wall_seconds) {
   const std::string source = SourceOf(message);
   ordered_json object = ParseEvaluationObject(message.json, source);
   SetWallSeconds(wall_seconds, &object);
-  EvaluationPoint point = PointOf(object, source);
-  const std::string name = fmt::format("{}{:010}_updates_{:010}.json", kEvaluationPrefix,
-                                       point.env_steps, point.updates);
-  WriteFileAtomically(run / kEvaluationFolder / name, object.dump(2) + "\n");
-  return point;
+  EvaluationRecord record;
+  record.point = PointOf(object, source);
+  record.name = fmt::format("{}{:010}_updates_{:010}.json", kEvaluationPrefix,
+                            record.point.env_steps, record.point.updates);
+  record.text = object.dump(2) + "\n";
+  return record;
+}
+
+void EvaluationStore::Write(EvaluationRecord record) {
+  kept_.push_back(std::move(record));
+  if (kept_.size() > kMostKept) kept_.pop_front();
+  Retry();
+}
+
+void EvaluationStore::Retry() {
+  if (kept_.empty()) return;
+  faults_.Try(kEvaluationFolder, [this] {
+    while (!kept_.empty()) {
+      const EvaluationRecord& record = kept_.front();
+      WriteFileAtomically(run_ / kEvaluationFolder / record.name, record.text);
+      kept_.pop_front();
+    }
+  });
 }
 
 std::vector<EvaluationPoint> ReadEvaluations(const fs::path& run) {

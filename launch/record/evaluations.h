@@ -2,9 +2,13 @@
 // eval/*.json of a run: written as evaluations arrive, read back when a run goes on.
 #pragma once
 
+#include <deque>
 #include <filesystem>
+#include <string>
+#include <utility>
 #include <vector>
 
+#include "common/base/write_faults.h"
 #include "common/wire/messages.h"
 #include "launch/record/evaluation_point.h"
 
@@ -18,12 +22,36 @@ EvaluationPoint ParseEvaluation(const std::string& json, const std::string& sour
 // The figures of a message, whose own fields must say what its JSON says. Throws Error.
 EvaluationPoint ParseEvaluation(const EvalMessage& message);
 
-// Stores the message's JSON, with `wall_seconds` added, as eval/STEPS_UPDATES.json and returns its
-// figures. Throws Error when it is not an evaluation or cannot be written.
-EvaluationPoint StoreEvaluation(const std::filesystem::path& run, const EvalMessage& message,
-                                double wall_seconds);
+// An evaluation as a run keeps it.
+struct EvaluationRecord {
+  EvaluationPoint point;
+  std::string name;  // in eval/: STEPS_UPDATES.json
+  std::string text;  // the message's JSON, with `wall_seconds` added
+};
+// Throws Error when the message is not an evaluation.
+EvaluationRecord RecordOf(const EvalMessage& message, double wall_seconds);
 
-// What StoreEvaluation wrote, by env steps. Throws Error naming a broken file.
+// Writes evaluations into a run's folder. Files that cannot be written are kept in memory, up to
+// kMostKept of them, for Retry. One thread.
+class EvaluationStore {
+ public:
+  // Borrows `faults`, which reports and counts them as eval.
+  EvaluationStore(std::filesystem::path run, WriteFaults* faults)
+      : run_(std::move(run)), faults_(*faults) {}
+
+  void Write(EvaluationRecord record);
+  // Writes what is kept, oldest first.
+  void Retry();
+
+  static constexpr size_t kMostKept = 1000;
+
+ private:
+  const std::filesystem::path run_;
+  WriteFaults& faults_;
+  std::deque<EvaluationRecord> kept_;
+};
+
+// What an EvaluationStore wrote, by env steps. Throws Error naming a broken file.
 std::vector<EvaluationPoint> ReadEvaluations(const std::filesystem::path& run);
 
 }  // namespace shoal::launch

@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "launch/record/metrics_log.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <cerrno>
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
 
 #include "common/base/error.h"
+#include "common/base/files.h"
 
 namespace shoal::launch {
 namespace {
@@ -38,9 +42,14 @@ std::string Line(const MetricsMessage& message) {
 }  // namespace
 
 MetricsLog::MetricsLog(const std::filesystem::path& file, const MetricsLogLimits& limits)
-    : out_(file, std::ios::app | std::ios::binary), limits_(limits) {
-  if (!out_) throw RuntimeError("cannot write '{}': {}", file.string(), std::strerror(errno));
+    : path_(file), file_(OpenRegular(file, O_RDWR | O_CREAT | O_APPEND)), limits_(limits) {
   bytes_ = std::filesystem::file_size(file);
+  char last = '\n';
+  // A power failure or a full disk may have cut off the last line.
+  if (bytes_ > 0 && pread(file_.get(), &last, 1, static_cast<off_t>(bytes_ - 1)) == 1 &&
+      last != '\n') {
+    kept_ = "\n";
+  }
 }
 
 // A clock that was set back must not silence a process until it has caught up.
@@ -56,21 +65,44 @@ bool MetricsLog::Due(const MetricsMessage& message, const Last& last) const {
   return since < 0 || since >= interval;
 }
 
-bool MetricsLog::Write(const MetricsMessage& message) {
+void MetricsLog::Write(const MetricsMessage& message) {
   Last& last = last_[{message.role, message.id}];
   if (!Due(message, last)) {
     ++left_out_;
-    return true;
+    return;
   }
   const std::string text = Line(message);
-  const bool room = bytes_ + text.size() <= limits_.most_bytes;
-  if (room && out_ << text << std::flush) {
-    bytes_ += text.size();
-    last = {message.time, message.pid, text.size()};
-    return true;
+  if (bytes_ + kept_.size() + text.size() > limits_.most_bytes) {
+    ++left_out_;
+    full_ = true;
+    return;
   }
+  kept_ += text;
+  last = {message.time, message.pid, text.size()};
+  while (kept_.size() > limits_.kept_bytes) DropOldest();
+}
+
+void MetricsLog::DropOldest() {
+  const size_t from = begun_ ? kept_.find('\n') + 1 : 0;
+  const size_t end = kept_.find('\n', from);
+  kept_.erase(from, end == std::string::npos ? end : end + 1 - from);
   ++left_out_;
-  return std::exchange(failed_, true);
+}
+
+void MetricsLog::Flush() {
+  size_t done = 0;
+  int error = 0;
+  while (done < kept_.size() && error == 0) {
+    const ssize_t n = write(file_.get(), kept_.data() + done, kept_.size() - done);
+    if (n >= 0) done += static_cast<size_t>(n);
+    if (n < 0 && errno != EINTR) error = errno;
+  }
+  if (done > 0) begun_ = kept_[done - 1] != '\n';
+  bytes_ += done;
+  kept_.erase(0, done);
+  if (error != 0) {
+    throw RuntimeError("cannot write '{}': {}", path_.string(), std::strerror(error));
+  }
 }
 
 }  // namespace shoal::launch

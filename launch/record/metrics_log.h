@@ -8,10 +8,11 @@
 #include <chrono>
 #include <cstdint>
 #include <filesystem>
-#include <fstream>
 #include <map>
+#include <string>
 #include <utility>
 
+#include "common/base/descriptor.h"
 #include "common/wire/messages.h"
 
 namespace shoal::launch {
@@ -20,25 +21,35 @@ struct MetricsLogLimits {
   uint64_t burst_bytes = 1'500'000;     // every report is written until here
   uint64_t bytes_per_hour = 3'000'000;  // beyond
   uint64_t most_bytes = 256'000'000;    // nothing is written beyond this
+  size_t kept_bytes = 4'000'000;        // of lines that wait for room on the disk
 };
 
-// Appends to the file, so that a resumed run goes on in it. One thread.
+// Appends to the file, so that a resumed run goes on in it. Lines that cannot be written are kept,
+// the newest kept_bytes of them. One thread.
 class MetricsLog {
  public:
   // Throws Error when the file cannot be opened.
   MetricsLog(const std::filesystem::path& file, const MetricsLogLimits& limits);
 
-  // Figures that are not finite are written as null. False when the line could not be written, for
-  // the first time: a full disk or the size limit.
-  bool Write(const MetricsMessage& message);
+  // Adds a line for the next Flush. Figures that are not finite are written as null.
+  void Write(const MetricsMessage& message);
+  // Throws Error when the file cannot be written now; a later call goes on where this one failed.
+  void Flush();
+  // The file has reached its size limit.
+  bool full() const { return full_; }
   uint64_t lines_left_out() const { return left_out_; }
 
  private:
-  std::ofstream out_;
+  void DropOldest();
+
+  const std::filesystem::path path_;
+  Descriptor file_;
   const MetricsLogLimits limits_;
   uint64_t bytes_ = 0, left_out_ = 0;
-  bool failed_ = false;
-  struct Last {  // line of a process
+  bool full_ = false;
+  std::string kept_;    // lines for the file; of the first one a part may be there already
+  bool begun_ = false;  // so it is: the file ends within a line
+  struct Last {         // line of a process
     double time = 0;
     int32_t pid = 0;
     size_t bytes = 0;

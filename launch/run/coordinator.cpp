@@ -2,6 +2,7 @@
 #include "launch/run/coordinator.h"
 
 #include <algorithm>
+#include <set>
 #include <thread>
 #include <utility>
 
@@ -9,14 +10,18 @@
 #include "common/base/saturating_cast.h"
 #include "common/base/stop.h"
 #include "common/base/usable_cores.h"
+#include "common/base/write_faults.h"
 #include "common/config/on_policy.h"
 #include "common/dds/publisher.h"
+#include "common/run_folder/run_file_names.h"
 #include "common/run_folder/update_page.h"
+#include "common/wire/process_name.h"
 #include "launch/processes/ordered_stop.h"
 #include "launch/processes/process_plan.h"
 #include "launch/processes/suspension.h"
 #include "launch/record/evaluations.h"
 #include "launch/record/kept_checkpoints.h"
+#include "launch/record/run_folder.h"
 #include "launch/run/best_evaluation.h"
 #include "launch/run/command_handler.h"
 #include "launch/run/evaluation_intake.h"
@@ -67,7 +72,8 @@ struct Coordinator::Impl {
         rule(config),
         evaluations(config.eval.episodes, run_progress,
                     [this](const std::string& line) { progress.Say(line); }),
-        watch(folder, bus, [this](const std::string& line) { progress.Say(line); }),
+        watch(
+            folder, bus, [this](const std::string& line) { progress.Say(line); }, &faults),
         scalars(run),
         supervisor(RestartLimits(), HangLimits(),
                    [this](const std::string& line) { progress.Say(line); }),
@@ -122,6 +128,8 @@ struct Coordinator::Impl {
   void Stop();
   // Heartbeat, messages, display. What fails in it is remembered as the run's failure.
   void Tick(bool last = false);
+  // Says that the learner cannot write its checkpoints, and that it can again.
+  void SayUnwrittenCheckpoints();
   // Says that the run was suspended, or why it was not.
   void SaySuspensions();
   ProgressFigures Figures(SteadyTime now) const;
@@ -130,6 +138,8 @@ struct Coordinator::Impl {
   void TakeMessages(SteadyTime now);
   void TakeEvaluation(const EvalMessage& message);
   void KeepCandidates();
+  // Tries again what could not be written.
+  void RetryWrites();
   // Returns a warning where the run gets no better.
   std::optional<std::string> Count(const EvaluationPoint& point);
   void Fail(const std::string& why);
@@ -146,6 +156,8 @@ struct Coordinator::Impl {
   CommandHandler handler;
   OperatorDesk& desk;
   Progress& progress;
+  WriteFaults faults{[this](const std::string& line) { progress.Say(line); }};
+  EvaluationStore evaluation_store{run, &faults};
   RunMeta meta;  // wall_seconds: of the sessions before this one, until the end
   StopRule rule;
   RunProgress run_progress;
@@ -165,9 +177,11 @@ struct Coordinator::Impl {
   ControlMessage order{.epoch = 1};
   SteadyTime start = AwakeNow();
   std::optional<SteadyTime> heartbeat, meta_stored;
-  bool stop_asked = false;  // by a command
-  bool evaluated = false;   // an evaluation was delivered
-  bool meta_due = false;    // something happened that it records
+  bool stop_asked = false;        // by a command
+  bool evaluated = false;         // an evaluation was delivered
+  bool meta_due = false;          // something happened that it records
+  bool checkpoints_fail = false;  // of the learner, by its last report
+  bool candidates_due = false;    // not all of them could be kept
   const int usable_cores = UsableCores();
   int suspensions_said = Suspensions(), refusals_said = RefusedSuspensions();
   int stops_before_end = 0;  // Ctrl-C's that had been answered when the ordered stop began
@@ -198,9 +212,13 @@ RunResult Coordinator::Impl::Run(const std::function<void()>& on_started) {
   meta.resends += Resends();
   if (!meta.error.empty()) meta.exit = "failed";
   scalars.WriteEnd(meta.exit != "failed");
+  RetryWrites();
+  std::set<std::string> unwritten = faults.failing();
+  unwritten.merge(std::set<std::string>(supervisor.unwritten_exits()));
   return {.meta = meta,
           .clean = supervisor.unclean_exits().empty(),
           .deaths = supervisor.DescribeDeaths(),
+          .unwritten = std::move(unwritten),
           .bottleneck = FindBottleneck(TotalsOf(watch.view()), Resources())};
 }
 
@@ -321,24 +339,35 @@ void Coordinator::Impl::Tick(bool last) {
   SaySuspensions();
   try {
     TakeMessages(now);
+    SayUnwrittenCheckpoints();
     TakeCommands();
-    if (meta_due || !meta_stored || now - *meta_stored > kMetaPeriod) StoreMeta();
   } catch (const Error& e) {
     Fail(e.what());
   }
+  const bool periodic = !meta_stored || now - *meta_stored > kMetaPeriod;
+  if (periodic) RetryWrites();
+  if (periodic || meta_due) StoreMeta();
   const bool view_due = last || desk.Due(now);
   if (view_due) {
     watch.LookBack(Elapsed(), EnvSteps(), Resources());
   }
   const ProgressFigures figures = Figures(now);
-  try {
-    scalars.WriteRollouts(watch.view(), figures, now);
-  } catch (const Error& e) {
-    Fail(e.what());
-  }
+  scalars.WriteRollouts(watch.view(), figures, now);
+  faults.Try(kTensorBoardFolder, [this] { scalars.Flush(); });
   // The last view is in metrics.jsonl whenever it comes: it alone may know the last evaluation.
   if (view_due) ShowView(figures, now);
   progress.Show(figures, now);
+}
+
+void Coordinator::Impl::SayUnwrittenCheckpoints() {
+  const double unwritten =
+      watch.view().Get(ProcessName::Learner(), "checkpoints_unwritten").value_or(0);
+  if ((unwritten > 0) == checkpoints_fail) return;
+  checkpoints_fail = unwritten > 0;
+  progress.Say(checkpoints_fail ? fmt::format("learner-0 cannot write its checkpoints: it keeps "
+                                              "them and tries again; why: {}",
+                                              LogFile(run, ProcessName::Learner().Text()).string())
+                                : "learner-0 has written its checkpoints");
 }
 
 void Coordinator::Impl::SaySuspensions() {
@@ -398,7 +427,14 @@ void Coordinator::Impl::TakeMessages(SteadyTime now) {
     supervisor.Heard(message.role, static_cast<int>(message.id), message.pid, now);
     scalars.WriteTraining(message, now);
   }
-  for (const ReplayProgress& word : inbox.TakeReplayProgress()) run_progress.OnReplay(word);
+  for (const ReplayProgress& word : inbox.TakeReplayProgress()) {
+    if (!run_progress.OnReplay(word)) continue;
+    progress.Say(
+        fmt::format("replay-{} starts empty, env steps go on from {}; training goes on once it has "
+                    "been refilled "
+                    "to {} sampleable transitions (replay.min_size)",
+                    word.replay, EnvSteps(), config.replay.min_size));
+  }
   for (const LearnerProgress& word : inbox.TakeLearnerProgress()) {
     run_progress.OnLearner(word);
     meta.updates = *run_progress.updates();
@@ -410,7 +446,9 @@ void Coordinator::Impl::TakeMessages(SteadyTime now) {
 
 void Coordinator::Impl::TakeEvaluation(const EvalMessage& message) {
   evaluated = true;
-  const EvaluationPoint point = StoreEvaluation(run, message, Elapsed());
+  EvaluationRecord record = RecordOf(message, Elapsed());
+  const EvaluationPoint point = record.point;
+  evaluation_store.Write(std::move(record));
   const auto warning = Count(point);
   const bool best = bests.newest_is_best();
   progress.Say(fmt::format("evaluation at {} env steps, {} updates: {}{}", point.env_steps,
@@ -425,11 +463,15 @@ void Coordinator::Impl::KeepCandidates() {
   std::vector<std::string> names;
   for (const EvaluationPoint& candidate : bests.candidates()) names.push_back(candidate.checkpoint);
   if (names.empty() || std::ranges::find(names, "") != names.end()) return;
-  try {
-    KeepCheckpoints(run, names, bests.best()->checkpoint);
-  } catch (const Error& e) {
-    progress.Say(e.what());  // the run goes on: the former best is still whole
-  }
+  // Where this fails the former best is still whole.
+  candidates_due = !faults.Try(fmt::format("{}/{}", kCheckpointFolder, kBestCheckpoint),
+                               [&] { KeepCheckpoints(run, names, bests.best()->checkpoint); });
+}
+
+void Coordinator::Impl::RetryWrites() {
+  evaluation_store.Retry();
+  if (candidates_due) KeepCandidates();
+  faults.Try(kTensorBoardFolder, [this] { scalars.Flush(); });
 }
 
 std::optional<std::string> Coordinator::Impl::Count(const EvaluationPoint& point) {
@@ -455,8 +497,10 @@ void Coordinator::Impl::StoreMeta() {
   now.wall_seconds = Elapsed();
   now.restarts += supervisor.restarts();
   now.resends += Resends();
-  now.updates_lost = ReadLostUpdates(run);
-  WriteRunMeta(run, config, now);
+  faults.Try(kMetaFile, [&] {
+    now.updates_lost = ReadLostUpdates(run);
+    WriteRunMeta(run, config, now);
+  });
 }
 
 bool Coordinator::Impl::Settled() const {

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -21,8 +22,9 @@ namespace shoal::launch {
 
 struct RunResult {
   RunMeta meta;
-  bool clean = true;   // every process left by itself with code 0
-  std::string deaths;  // Supervisor::DescribeDeaths
+  bool clean = true;                // every process left by itself with code 0, or kUnwrittenExit
+  std::string deaths;               // Supervisor::DescribeDeaths
+  std::set<std::string> unwritten;  // files, or processes, that could not write what they have
   Bottleneck bottleneck;
 };
 

@@ -1,21 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "launch/run/run_end.h"
 
-#include <fmt/core.h>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <functional>
+#include <set>
+#include <utility>
 
 #include "actor/sending/made_page.h"
 #include "common/base/clock.h"
 #include "common/base/error.h"
 #include "common/base/stop.h"
+#include "common/base/write_faults.h"
 #include "common/config/on_policy.h"
 #include "common/run_folder/run_file_names.h"
 #include "common/run_folder/update_page.h"
+#include "common/wire/process_name.h"
 #include "launch/film/film.h"
 #include "launch/processes/actor_program.h"
 #include "launch/processes/run_hosts.h"
 #include "launch/processes/run_leftovers.h"
 #include "launch/record/accounting.h"
 #include "launch/record/run_folder.h"
+#include "launch/record/run_size.h"
 
 namespace shoal::launch {
 namespace {
@@ -26,13 +34,18 @@ namespace fs = std::filesystem;
 std::optional<Accounting> AccountRun(const fs::path& run, const Config& config, uint64_t resends) {
   std::vector<MadeRecords> made;
   for (const actor::MadeCount& page : actor::ReadMadePages(run)) {
-    made.push_back({page.actor, page.session, page.made});
+    made.push_back({page.actor, page.session, page.made, /*known=*/!page.rebuilt});
   }
   if (made.empty() && !fs::exists(run / kAccountingFile)) return std::nullopt;
   return Account(made, ReadAccount(run),
                  {.resends = resends,
                   .own_actors = static_cast<uint32_t>(ActorsHere(run, config)),
                   .outlives_replay = !LearnsOnPolicy(config) && config.replay.storage == "file"});
+}
+
+// Who keeps the account of the records.
+ProcessName ReceiverOf(const Config& config) {
+  return LearnsOnPolicy(config) ? ProcessName::Learner() : ProcessName::Replay(0);
 }
 
 // Whoever asked for a stop wants the terminal back; a run that has ended by itself is judged.
@@ -86,7 +99,8 @@ fs::path FilmAtEnd(const fs::path& run, const Config& config, OperatorDesk& desk
 // A film wants a checkpoint, curves and a page an evaluation.
 void PrintWhatToLookAt(const fs::path& run, bool filmed, Progress& progress) {
   std::string commands;
-  if (!fs::is_empty(run / kEvaluationFolder)) {
+  std::error_code error;
+  if (!fs::is_empty(run / kEvaluationFolder, error) && !error) {
     commands += fmt::format("; curves: shoal plot {0}; page: shoal report {0}", run.string());
   }
   if (!filmed && !NewestCheckpoint(run).empty()) {
@@ -128,12 +142,88 @@ void PrintSummary(const fs::path& run, const Config& config, const RunResult& re
     progress.Say(fmt::format("  updates lost with a learner: {}", meta.updates_lost));
   }
   for (const std::string& line : FormatBottleneck(result.bottleneck)) progress.Say("  " + line);
+  std::error_code error;
   for (const char* name : {kMetaFile, kBottleneckFile, kMetricsFile, kEvaluationFolder,
                            kCheckpointFolder, kTensorBoardFolder}) {
-    if (fs::exists(run / name)) progress.Say(fmt::format("  {}", (run / name).string()));
+    if (fs::exists(run / name, error)) progress.Say(fmt::format("  {}", (run / name).string()));
   }
   if (!film.empty()) progress.Say(fmt::format("  {}", film.string()));
   PrintWhatToLookAt(run, !film.empty(), progress);
+}
+
+// Whether the run ended by its own rule, so that nothing is left to do.
+bool Finished(const RunMeta& meta) { return meta.exit == "target" || meta.exit == "budget"; }
+
+// A finished run has no use for its replay, which is by far its largest file.
+void RemoveRing(const fs::path& run, const Config& config, Progress& progress) {
+  const fs::path ring = run / kRingFile;
+  std::error_code error;
+  const uintmax_t bytes = fs::file_size(ring, error);
+  if (error || config.replay.keep || !fs::remove(ring, error)) return;
+  progress.Say(fmt::format("  {} removed: {} free again (replay.keep = true keeps it)",
+                           ring.string(), FormatBytes(bytes)));
+}
+
+// The exit code of a run that was not all written.
+int ReportUnwritten(const fs::path& run, const std::set<std::string>& unwritten,
+                    Progress& progress) {
+  progress.Say(fmt::format(
+      "error: could not be written to the end: {}; the run itself went on. Make room, then shoal "
+      "train --resume {}",
+      fmt::join(unwritten, ", "), run.string()));
+  return kUnwrittenExit;
+}
+
+using Fail = std::function<void(const std::string&)>;
+
+void TakeAccount(const fs::path& run, const Config& config, const std::set<std::string>& unwritten,
+                 Progress& progress, const Fail& fail, RunMeta* meta) {
+  try {
+    // Who receives the records could not write the last account, so that this one is an old one.
+    const std::string receiver = ReceiverOf(config).Text();
+    if (unwritten.contains(receiver)) {
+      throw RuntimeError("{} could not write {}", receiver, kAccountingFile);
+    }
+    meta->accounting = AccountRun(run, config, meta->resends);
+    if (!meta->accounting) return;
+    for (const std::string& fault : meta->accounting->faults) {
+      fail("records do not balance: " + fault);
+    }
+  } catch (const Error& e) {
+    const std::string why = fmt::format("records cannot be accounted for: {}", e.what());
+    unwritten.empty() ? fail(why) : progress.Say(why);
+  }
+}
+
+// Empty when it was left out or not asked for.
+std::optional<EvaluationPoint> Judge(const fs::path& run, const Config& config, OperatorDesk& desk,
+                                     Progress& progress, const Fail& fail, RunMeta* meta) {
+  std::optional<EvaluationPoint> evaluation;
+  try {
+    meta->updates_lost = ReadLostUpdates(run);
+    if (WantsFinalEvaluation(*meta)) evaluation = EvaluateAtEnd(run, config, desk, progress);
+  } catch (const Error& e) {
+    fail(e.what());
+  }
+  if (evaluation) {
+    meta->final_success = evaluation->success;
+    meta->final_return = evaluation->mean_return;
+  }
+  return evaluation;
+}
+
+// Adds meta.json to `unwritten`, or takes it off: this time counts.
+void WriteLastMeta(const fs::path& run, const Config& config, Progress& progress,
+                   std::set<std::string>* unwritten, RunMeta* meta) {
+  meta->finished = UtcTimestamp();
+  unwritten->erase(kMetaFile);
+  if (!unwritten->empty() && meta->error.empty()) {
+    meta->error = fmt::format("could not be written: {}", fmt::join(*unwritten, ", "));
+  }
+  WriteFaults faults([&](const std::string& line) { progress.Say(line); });
+  if (!faults.Try(kMetaFile, [&] { WriteRunMeta(run, config, *meta); })) {
+    unwritten->insert(kMetaFile);
+  }
 }
 
 }  // namespace
@@ -141,37 +231,22 @@ void PrintSummary(const fs::path& run, const Config& config, const RunResult& re
 int EndRun(const fs::path& run, const Config& config, RunResult result, bool film,
            OperatorDesk& desk, Progress& progress) {
   RunMeta& meta = result.meta;
+  std::set<std::string>& unwritten = result.unwritten;
   bool good = result.clean && meta.exit != "failed";
   RemoveUnfinishedFiles(run);
-  const auto fail = [&](const std::string& why) {
+  const Fail fail = [&](const std::string& why) {
     good = false;
     if (meta.error.empty()) meta.error = why;
     progress.Say("error: " + why);
   };
-  try {
-    meta.accounting = AccountRun(run, config, meta.resends);
-    if (meta.accounting) {
-      for (const std::string& fault : meta.accounting->faults) {
-        fail("records do not balance: " + fault);
-      }
-    }
-  } catch (const Error& e) {
-    fail(fmt::format("records cannot be accounted for: {}", e.what()));
+  TakeAccount(run, config, unwritten, progress, fail, &meta);
+  WriteFaults faults([&](const std::string& line) { progress.Say(line); });
+  if (!faults.Try(kBottleneckFile, [&] { WriteBottleneck(run, result.bottleneck); })) {
+    unwritten.insert(kBottleneckFile);
   }
-  std::optional<EvaluationPoint> final_evaluation;
-  try {
-    meta.updates_lost = ReadLostUpdates(run);
-    WriteBottleneck(run, result.bottleneck);
-    if (WantsFinalEvaluation(meta)) final_evaluation = EvaluateAtEnd(run, config, desk, progress);
-    if (final_evaluation) {
-      meta.final_success = final_evaluation->success;
-      meta.final_return = final_evaluation->mean_return;
-    }
-  } catch (const Error& e) {
-    fail(e.what());
-  }
-  meta.finished = UtcTimestamp();
-  WriteRunMeta(run, config, meta);
+  if (!unwritten.empty() && Finished(meta)) meta.exit = "interrupted";  // --resume ends it
+  const auto final_evaluation = Judge(run, config, desk, progress, fail, &meta);
+  WriteLastMeta(run, config, progress, &unwritten, &meta);
   fs::path filmed;
   try {
     if (film && WantsFinalEvaluation(meta)) filmed = FilmAtEnd(run, config, desk, progress);
@@ -181,6 +256,8 @@ int EndRun(const fs::path& run, const Config& config, RunResult result, bool fil
   }
   PrintSummary(run, config, result, final_evaluation, filmed, progress);
   if (!good) return 1;
+  if (!unwritten.empty()) return ReportUnwritten(run, unwritten, progress);
+  if (Finished(meta)) RemoveRing(run, config, progress);
   return meta.exit == "interrupted" && StopRequested() ? kInterruptedExit : 0;
 }
 

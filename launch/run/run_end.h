@@ -10,9 +10,10 @@
 
 namespace shoal::launch {
 
-// With `film`, a run that is judged is filmed too. Prints the summary and returns the run's exit
-// code: 1 when it failed, a process left with an error, the records do not balance, or there is no
-// film that was asked for.
+// With `film`, a run that is judged is filmed too. Removes the ring of a finished run, unless
+// replay.keep. Prints the summary and returns the run's exit code: 1 when it failed, a process left
+// with an error, the records do not balance, or there is no film that was asked for; else
+// kUnwrittenExit when something of it could not be written.
 int EndRun(const std::filesystem::path& run, const Config& config, RunResult result, bool film,
            OperatorDesk& desk, Progress& progress);
 

@@ -1,11 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "launch/run/run_progress.h"
 
+#include <algorithm>
+
 namespace shoal::launch {
 
-void RunProgress::OnReplay(const ReplayProgress& progress) {
+bool RunProgress::OnReplay(const ReplayProgress& progress) {
   ReplayProgress& known = replays_[progress.replay];
+  const bool emptied =
+      progress.session > known.session && progress.stored_records < known.stored_records;
   if (progress.session >= known.session) known = progress;
+  uint64_t steps = 0;
+  for (const auto& [replay, newest] : replays_) steps += newest.stored_steps;
+  env_steps_ = std::max(env_steps_, steps);
+  return emptied;
 }
 
 void RunProgress::OnLearner(const LearnerProgress& progress) {
@@ -17,10 +25,7 @@ void RunProgress::OnLearner(const LearnerProgress& progress) {
 }
 
 uint64_t RunProgress::stored_steps() const {
-  if (replays_.empty()) return learner_.env_steps;
-  uint64_t steps = 0;
-  for (const auto& [replay, progress] : replays_) steps += progress.stored_steps;
-  return steps;
+  return replays_.empty() ? learner_.env_steps : env_steps_;
 }
 
 std::optional<uint64_t> RunProgress::updates() const {

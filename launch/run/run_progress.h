@@ -18,11 +18,12 @@ namespace shoal::launch {
 class RunProgress {
  public:
   // The newest session of each replay, and of the learner, has the word; a late one of a process
-  // that is gone changes nothing.
-  void OnReplay(const ReplayProgress& progress);
+  // that is gone changes nothing. Of a replay: whether it began without what its predecessor held.
+  bool OnReplay(const ReplayProgress& progress);
   void OnLearner(const LearnerProgress& progress);
 
-  // Of all replays together; in a run without one, the learner's count. 0 before any has spoken.
+  // Of all replays together; in a run without one, the learner's count. 0 before any has reported.
+  // Never falls: a replay that lost its memory may know a second less than its predecessor said.
   uint64_t stored_steps() const;
   std::optional<uint64_t> updates() const;
   // The learner has done what the stored steps allow.
@@ -34,6 +35,7 @@ class RunProgress {
 
  private:
   std::map<uint32_t, ReplayProgress> replays_;
+  uint64_t env_steps_ = 0;  // the most that `replays_` came to
   LearnerProgress learner_;
   // By learner session and update, over all sessions.
   std::map<std::pair<uint64_t, uint64_t>, EvaluationRequest> asked_;

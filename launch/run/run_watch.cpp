@@ -13,17 +13,23 @@
 namespace shoal::launch {
 
 RunWatch::RunWatch(const std::filesystem::path& run, const dds::Bus& bus,
-                   std::function<void(const std::string&)> say)
+                   std::function<void(const std::string&)> say, WriteFaults* faults)
     : bus_(bus),
       say_(std::move(say)),
+      faults_(*faults),
       log_(run / kMetricsFile, MetricsLogLimits()),
       own_report_(ProcessName::Coordinator()) {}
 
 void RunWatch::OnReport(const MetricsMessage& report, SteadyTime now) {
   view_.OnMessage(report, now);
-  if (!log_.Write(report)) {
-    say_(fmt::format("{} cannot be written any more (disk full or size limit)", kMetricsFile));
-  }
+  WriteLine(report);
+}
+
+void RunWatch::WriteLine(const MetricsMessage& report) {
+  log_.Write(report);
+  faults_.Try(kMetricsFile, [this] { log_.Flush(); });
+  if (!log_.full() || std::exchange(full_said_, true)) return;
+  say_(fmt::format("{} has reached its size limit: it gets no more lines", kMetricsFile));
 }
 
 void RunWatch::LookBack(double seconds, uint64_t env_steps, const RunResources& resources) {
@@ -55,7 +61,7 @@ std::vector<MetricsMessage> RunWatch::Reports(const ProgressFigures& figures, co
   }
   MetricsMessage own = own_report_.message();
   dds::AddMalformed(bus_, &own);
-  log_.Write(own);
+  WriteLine(own);
   AddShares(lately_, &own);  // for who watches; the file has what they are made of
   view_.OnMessage(own, now);
   return view_.Reports(now);

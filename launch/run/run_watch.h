@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "common/base/write_faults.h"
 #include "common/dds/bus.h"
 #include "launch/record/metrics_log.h"
 #include "launch/watch/metrics_view.h"
@@ -26,9 +27,9 @@ struct CoordinatorCounts {
 // One thread.
 class RunWatch {
  public:
-  // Borrows the bus. `say` shows a line to who looks at the run.
+  // Borrows the bus and `faults`. `say` shows a line to who looks at the run.
   RunWatch(const std::filesystem::path& run, const dds::Bus& bus,
-           std::function<void(const std::string&)> say);
+           std::function<void(const std::string&)> say, WriteFaults* faults);
 
   // The newest report of each process.
   const MetricsView& view() const { return view_; }
@@ -51,14 +52,18 @@ class RunWatch {
                                       const CoordinatorCounts& counts, SteadyTime now);
 
  private:
+  void WriteLine(const MetricsMessage& report);
+
   const dds::Bus& bus_;
   const std::function<void(const std::string&)> say_;
+  WriteFaults& faults_;
   MetricsView view_;
   RecentRun recent_;
   Bottleneck lately_;
   MetricsLog log_;
   MetricsReport own_report_;
   uint64_t dropped_said_ = 0;
+  bool full_said_ = false;
 };
 
 }  // namespace shoal::launch

@@ -66,7 +66,8 @@ Config ResolveConfig(const TrainOptions& options, int cores) {
 }
 
 bool SetsForMachine(const std::string& assignment) {
-  return assignment.starts_with("learner.precision=") || assignment.starts_with("learner.threads=");
+  return assignment.starts_with("learner.precision=") ||
+         assignment.starts_with("learner.threads=") || assignment.starts_with("replay.keep=");
 }
 
 void ApplyResumeOptions(const TrainOptions& options, int cores, Config* config) {
@@ -81,8 +82,8 @@ void ApplyResumeOptions(const TrainOptions& options, int cores, Config* config) 
     if (!assignment.starts_with("env_steps=") && !assignment.starts_with("stop.") &&
         !SetsForMachine(assignment)) {
       throw UsageError(
-          "--set {}: a resumed run takes env_steps, stop.*, learner.precision and learner.threads "
-          "only",
+          "--set {}: a resumed run takes env_steps, stop.*, learner.precision, learner.threads and "
+          "replay.keep only",
           assignment);
     }
   }

@@ -30,10 +30,10 @@ struct TrainOptions {
 Config ResolveConfig(const TrainOptions& options, int cores);
 
 // A resumed run keeps its configuration; only env_steps, stop.* and, for another machine,
-// learner.precision and learner.threads (0: filled in for `cores`) may be set. Throws Error (usage)
-// for other keys or options.
+// learner.precision, replay.keep and learner.threads (0: filled in for `cores`) may be set. Throws
+// Error (usage) for other keys or options.
 void ApplyResumeOptions(const TrainOptions& options, int cores, Config* config);
-// Whether KEY=VALUE is one of those for another machine.
+// Whether KEY=VALUE is one of those that are no settings of a running run.
 bool SetsForMachine(const std::string& assignment);
 
 }  // namespace shoal::launch

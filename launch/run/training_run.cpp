@@ -5,6 +5,7 @@
 #include <sys/resource.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <ctime>
@@ -45,6 +46,7 @@
 #include "launch/run/live_settings.h"
 #include "launch/run/operator_desk.h"
 #include "launch/run/plan_text.h"
+#include "launch/run/run_check.h"
 #include "launch/run/run_end.h"
 #include "launch/watch/prometheus_endpoint.h"
 #include "launch/watch/terminal_block.h"
@@ -133,12 +135,45 @@ void RefuseFinished(const std::filesystem::path& run, const RunMeta& meta, const
       run.string(), meta.exit, meta.env_steps);
 }
 
+// Actors below this number run on this host.
+uint32_t OwnActors(const TrainOptions& options, const std::filesystem::path& run, int actors) {
+  if (!std::filesystem::exists(HostsFile(run))) return static_cast<uint32_t>(actors);
+  int elsewhere = 0;
+  Refusing("give --hosts FILE for others in their place", [&] {
+    elsewhere = ReadHostsFile(options.hosts.empty() ? HostsFile(run).string() : options.hosts)
+                    .RemoteActors();
+  });
+  return static_cast<uint32_t>(std::max(0, actors - elsewhere));
+}
+
+// What is damaged or missing is rebuilt, unless nothing is to be done.
+void CheckFiles(const std::filesystem::path& run, const RunConfig& config, const RunMeta& meta,
+                uint32_t own_actors, std::vector<std::string> lines, bool repair) {
+  const RunCheck check = CheckRunFiles(run, config, meta, own_actors);
+  lines.insert(lines.end(), check.lines.begin(), check.lines.end());
+  for (const std::string& line : lines) fmt::print("{}\n", line);
+  std::fflush(stdout);
+  if (!repair) return;
+  for (const auto& repaired : check.repairs) repaired();
+}
+
+RunConfig ReadConfigToGoOn(const std::filesystem::path& run) {
+  RunConfig config;
+  Refusing("a run cannot go on without it: restore it from a copy",
+           [&] { config = ReadRunConfig(run); });
+  return config;
+}
+
 PreparedRun PrepareResumed(const TrainOptions& options) {
   RunFolder folder = RunFolder::Reopen(options.run_dir.empty() ? Config().run_dir : options.run_dir,
                                        options.resume);
-  RunConfig config = ReadRunConfig(folder.path());
+  const bool only_shows = options.dry_run || options.print_config;
+  if (!only_shows) WaitUntilNobodyWorksOn(folder.path());
+  CheckKindsOfFiles(folder.path());
+  RunConfig config = ReadConfigToGoOn(folder.path());
   const Config before = config.config;
-  RunMeta meta = ReadRunMeta(folder.path());
+  std::vector<std::string> lines;
+  RunMeta meta = ReadMetaToGoOn(folder.path(), &lines);
   RefuseFinished(folder.path(), meta, before, options);
   meta.exit = "running";
   meta.final_return.reset();
@@ -151,11 +186,10 @@ PreparedRun PrepareResumed(const TrainOptions& options) {
   }
   if (meta.started.empty()) meta.started = UtcTimestamp();
   NoteResumeOptions(options, before, &meta);
-  if (config.config.replay.storage == "memory" && meta.env_steps > 0) {
-    fmt::print(
-        "replay.storage=memory: what was stored is gone; training goes on once the replay has been "
-        "refilled to {} sampleable transitions (replay.min_size)\n",
-        config.config.replay.min_size);
+  if (!options.print_config) {
+    CheckFiles(folder.path(), config, meta, OwnActors(options, folder.path(), config.config.actors),
+               std::move(lines),
+               /*repair=*/!only_shows);
   }
   Hosts hosts = ResumedHosts(options, folder.path(), config.config);
   return {std::move(folder), std::move(config), meta, std::move(hosts), now.frame_microseconds};
@@ -226,12 +260,12 @@ std::filesystem::path CheckFolder(const Config& config) {
   return folder;
 }
 
-// Asked before anything is made or started. A run that exists has its ring.
-void CheckReplay(const RunConfig& run, bool exists) {
+// Asked before anything is made or started. `folder`: of a run that exists; empty for a new one.
+void CheckReplay(const RunConfig& run, const std::filesystem::path& folder) {
   const Config& config = run.config;
   CheckSendingWindow(config, RecordLayout(run.spec).record_bytes());
   if (LearnsOnPolicy(config)) {  // it has none
-    if (!exists) CheckFolder(config);
+    if (folder.empty()) CheckFolder(config);
     return;
   }
   replay::CheckHindsight(run);
@@ -243,8 +277,11 @@ void CheckReplay(const RunConfig& run, bool exists) {
     return;
   }
   replay::CheckMemoryRoom(needs.memory_bytes, "stop other programs");  // it is never in the file
-  if (exists) return;
-  replay::CheckDiskRoom(CheckFolder(config), needs.ring_bytes);
+  if (folder.empty()) {
+    replay::CheckDiskRoom(CheckFolder(config), needs.ring_bytes);
+  } else if (!std::filesystem::exists(folder / kRingFile)) {
+    replay::CheckDiskRoom(folder, needs.ring_bytes);
+  }
 }
 
 // Wrapped on a terminal.
@@ -293,6 +330,15 @@ std::string ServersHost(const Hosts& hosts) {
 std::string SecureFolder(const TrainOptions& options) {
   if (options.secure.empty()) return "";
   return std::filesystem::absolute(options.secure).lexically_normal();
+}
+
+// Whether, and by which credentials, the run was secured.
+std::string FormerSecurity(const std::filesystem::path& run) {
+  if (!std::filesystem::exists(run / kClusterFile)) return "";  // killed before it was started
+  std::string secure;
+  Refusing("give --secure FOLDER where the run is secured, else remove the file",
+           [&] { secure = ReadClusterAddress(run).secure; });
+  return secure;
 }
 
 // Of every process that will be started: asked before any is.
@@ -373,13 +419,14 @@ int Train(const TrainOptions& options, Detachment* detachment) {
     if (options.print_config) return 0;
     CheckNetwork(run.config);
     CheckResumedCheckpoint(run);
-    CheckReplay(run.config, /*exists=*/true);
+    CheckReplay(run.config, run.folder.path());
     CheckHosts(run.hosts, StopRequested);
     if (options.dry_run) return 0;
     address.host = ServersHost(run.hosts);
-    address.secure = options.secure.empty() ? ReadClusterAddress(run.folder.path()).secure
-                                            : SecureFolder(options);
+    address.secure =
+        options.secure.empty() ? FormerSecurity(run.folder.path()) : SecureFolder(options);
     CheckRunCredentials(address.secure);
+    if (!address.secure.empty()) KeepFilesPrivate();
     auto bus = dds::ClaimDomain(run.config.config.transport, &address);
     return Start(std::move(run), options, std::move(bus), address, detachment);
   }
@@ -403,11 +450,12 @@ int Train(const TrainOptions& options, Detachment* detachment) {
     return nn::ReadEncoderWeights(network, config.spec);
   });
   const nn::TensorMap initial = ReadInitialWeights(options, config);
-  CheckReplay(config, /*exists=*/false);
+  CheckReplay(config, {});
   CheckHosts(hosts, StopRequested);
   address.host = ServersHost(hosts);
   address.secure = SecureFolder(options);
   CheckRunCredentials(address.secure);
+  if (!address.secure.empty()) KeepFilesPrivate();
   if (!options.prometheus.empty()) PrometheusEndpoint::Check(options.prometheus);
   // Claimed before the folder is made, so that a failure leaves nothing half-written.
   auto bus = dds::ClaimDomain(config.config.transport, &address);

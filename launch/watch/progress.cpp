@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "launch/watch/progress.h"
 
+#include <fcntl.h>
+#include <fmt/core.h>
+
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
 #include <utility>
 
-#include "common/base/error.h"
+#include "common/base/files.h"
 
 namespace shoal::launch {
 namespace {
@@ -132,8 +133,8 @@ Progress::Progress(const std::string& log_file, std::function<void(const std::st
                    bool plain)
     : terminal_(!plain && DrawsInPlace()), on_say_(std::move(on_say)) {
   if (log_file.empty()) return;
+  OpenRegular(log_file, O_WRONLY | O_CREAT | O_APPEND);  // throws where it cannot be written
   log_.open(log_file, std::ios::app);
-  if (!log_) throw RuntimeError("cannot write '{}': {}", log_file, std::strerror(errno));
 }
 
 Progress::~Progress() {
@@ -159,7 +160,10 @@ void Progress::Say(const std::string& line) {
   if (terminal_) block_.Erase();
   for (const std::string& row : LinesOnTerminal(line)) std::printf("%s\n", row.c_str());
   std::fflush(stdout);
-  if (log_.is_open()) log_ << UtcTimestamp() << ' ' << line << std::endl;
+  if (log_.is_open()) {
+    log_.clear();  // after a write that failed: the disk may have room again
+    log_ << UtcTimestamp() << ' ' << line << std::endl;
+  }
   if (on_say_) on_say_(line);
 }
 

@@ -72,12 +72,13 @@ std::string PeerOf(const std::filesystem::path& run) try {
   return "";
 }
 
-using RunRow = std::array<std::string, 8>;
+using RunRow = std::array<std::string, 9>;
 
-std::string RenderedRow(const RunRow& row, const std::array<size_t, 8>& widths) {
+std::string RenderedRow(const RunRow& row,
+                        const std::array<size_t, std::tuple_size_v<RunRow>>& widths) {
   std::string line;
   for (size_t i = 0; i < row.size(); ++i) {
-    const bool number = i >= 2 && i <= 6;
+    const bool number = i >= 2 && i <= 7;
     line += number ? fmt::format("{:>{}}  ", row[i], widths[i])
                    : fmt::format("{:<{}}  ", row[i], widths[i]);
   }
@@ -125,19 +126,23 @@ RunListing RunStatusOf(const std::filesystem::path& run) {
 
 std::vector<RunListing> ListRunStatus(const std::filesystem::path& dir) {
   std::vector<RunListing> runs;
-  for (const std::filesystem::path& run : ListRuns(dir)) runs.push_back(RunStatusOf(run));
+  for (const std::filesystem::path& run : ListRuns(dir)) {
+    runs.push_back(RunStatusOf(run));
+    runs.back().size = SizeOfRun(run);
+  }
   return runs;
 }
 
 std::vector<std::string> FormatRunList(const std::vector<RunListing>& runs) {
   std::vector<RunRow> rows{
-      {"RUN", "STATUS", "ENV STEPS", "UPDATES", "BEST", "FINAL", "WALL", "STARTED (UTC)"}};
+      {"RUN", "STATUS", "ENV STEPS", "UPDATES", "BEST", "FINAL", "WALL", "SIZE", "STARTED (UTC)"}};
   for (const RunListing& run : runs) {
     rows.push_back({run.name, ToString(run.status), std::to_string(run.env_steps),
                     std::to_string(run.updates), Format(run.best), Format(run.final),
-                    FormatDuration(run.wall_seconds), ToTheMinute(run.started)});
+                    FormatDuration(run.wall_seconds), run.size ? FormatBytes(run.size->total) : "-",
+                    ToTheMinute(run.started)});
   }
-  std::array<size_t, 8> widths{};
+  std::array<size_t, std::tuple_size_v<RunRow>> widths{};
   for (const RunRow& row : rows) {
     for (size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], row[i].size());
   }
@@ -158,20 +163,23 @@ std::string RunListJson(const std::filesystem::path& dir, const std::vector<RunL
   };
   ordered_json list = ordered_json::array();
   for (const RunListing& run : runs) {
-    list.push_back({{"name", run.name},
-                    {"status", ToString(run.status)},
-                    {"preset", text_or_null(run.preset)},
-                    {"task", text_or_null(run.task)},
-                    {"env_steps", run.env_steps},
-                    {"updates", run.updates},
-                    {"best_success_rate", or_null(run.best.success)},
-                    {"best_return_mean", or_null(run.best.mean_return)},
-                    {"final_success_rate", or_null(run.final.success)},
-                    {"final_return_mean", or_null(run.final.mean_return)},
-                    {"wall_seconds", run.wall_seconds},
-                    {"started", text_or_null(run.started)},
-                    {"peer", text_or_null(run.peer)},
-                    {"problem", text_or_null(run.problem)}});
+    list.push_back(
+        {{"name", run.name},
+         {"status", ToString(run.status)},
+         {"preset", text_or_null(run.preset)},
+         {"task", text_or_null(run.task)},
+         {"env_steps", run.env_steps},
+         {"updates", run.updates},
+         {"best_success_rate", or_null(run.best.success)},
+         {"best_return_mean", or_null(run.best.mean_return)},
+         {"final_success_rate", or_null(run.final.success)},
+         {"final_return_mean", or_null(run.final.mean_return)},
+         {"wall_seconds", run.wall_seconds},
+         {"disk_bytes", run.size ? ordered_json(run.size->total) : ordered_json(nullptr)},
+         {"replay_bytes", run.size ? ordered_json(run.size->replay) : ordered_json(nullptr)},
+         {"started", text_or_null(run.started)},
+         {"peer", text_or_null(run.peer)},
+         {"problem", text_or_null(run.problem)}});
   }
   const ordered_json object{{"schema", "shoal-runs-1"}, {"run_dir", dir.string()}, {"runs", list}};
   // Names of folders and texts of files: what is not UTF-8 in them is replaced.

@@ -7,6 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "launch/record/run_size.h"
+
 namespace shoal::launch {
 
 enum class RunStatus {
@@ -33,11 +35,13 @@ struct RunListing {
   uint64_t env_steps = 0, updates = 0;
   double wall_seconds = 0;
   RunScore best, final;
+  std::optional<RunSize> size;  // on the disk, where it was asked for
 };
 
 // Of one run's folder. Never throws for what is in it: a broken run is listed as such.
 RunListing RunStatusOf(const std::filesystem::path& run);
-// By name. Never throws for what is in the folder: a broken run is listed as such.
+// By name, with their sizes. Never throws for what is in the folder: a broken run is listed as
+// such.
 std::vector<RunListing> ListRunStatus(const std::filesystem::path& dir);
 
 // A table with one row per run; a problem is on a line of its own below its run.

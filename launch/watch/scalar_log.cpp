@@ -9,6 +9,7 @@
 
 #include "common/config/config_io.h"
 #include "common/run_folder/run_file_names.h"
+#include "common/tensorboard/last_steps.h"
 #include "learner/agent/algorithms.h"
 
 namespace shoal::launch {
@@ -49,7 +50,16 @@ Settings SettingsOf(const Config& config) {
 
 }  // namespace
 
-ScalarLog::ScalarLog(const std::filesystem::path& run) : writer_(run / kTensorBoardFolder) {}
+ScalarLog::ScalarLog(const std::filesystem::path& run)
+    : last_steps_(tensorboard::LastSteps(run / kTensorBoardFolder)),
+      writer_(run / kTensorBoardFolder) {}
+
+void ScalarLog::Scalar(const std::string& tag, int64_t step, double value) {
+  const auto [it, added] = last_steps_.try_emplace(tag, step);
+  if (!added && step <= it->second) return;
+  it->second = step;
+  writer_.Scalar(tag, step, value);
+}
 
 void ScalarLog::WriteConfig(const Config& config) {
   std::map<std::string, tensorboard::HyperParameter> settings;
@@ -61,20 +71,15 @@ void ScalarLog::WriteConfig(const Config& config) {
   }
   writer_.Text("configuration", table);
   writer_.BeginSession(settings);
-  writer_.Flush();
 }
 
-void ScalarLog::WriteEnd(bool success) {
-  writer_.EndSession(success);
-  writer_.Flush();
-}
+void ScalarLog::WriteEnd(bool success) { writer_.EndSession(success); }
 
 void ScalarLog::WriteEvaluation(const EvaluationPoint& point) {
   const auto step = static_cast<int64_t>(point.env_steps);
-  writer_.Scalar("eval/mean_reward", step, point.mean_return);
-  writer_.Scalar("eval/mean_ep_length", step, point.mean_length);
-  if (point.success) writer_.Scalar("eval/success_rate", step, *point.success);
-  writer_.Flush();
+  Scalar("eval/mean_reward", step, point.mean_return);
+  Scalar("eval/mean_ep_length", step, point.mean_length);
+  if (point.success) Scalar("eval/success_rate", step, *point.success);
 }
 
 void ScalarLog::WriteRollouts(const MetricsView& view, const ProgressFigures& figures,
@@ -82,13 +87,12 @@ void ScalarLog::WriteRollouts(const MetricsView& view, const ProgressFigures& fi
   if (rollouts_written_ && now - *rollouts_written_ < kRolloutPeriod) return;
   const auto write = [&](const char* tag, const std::optional<double>& value) {
     if (!value) return;
-    writer_.Scalar(tag, static_cast<int64_t>(figures.env_steps), *value);
+    Scalar(tag, static_cast<int64_t>(figures.env_steps), *value);
     rollouts_written_ = now;
   };
   write("rollout/ep_rew_mean", view.Mean("actor", "rollout_return", "episodes", now));
   write("rollout/success_rate", figures.rollout_success);
   write("rollout/ep_len_mean", view.Mean("actor", "rollout_length", "episodes", now));
-  writer_.Flush();
 }
 
 void ScalarLog::WriteTraining(const MetricsMessage& report, SteadyTime now) {
@@ -100,17 +104,16 @@ void ScalarLog::WriteTraining(const MetricsMessage& report, SteadyTime now) {
     const learner::Figure* figure = learner::FindFigure(report.names[i]);
     if (figure == nullptr) continue;
     if (*updates == updates_written_) return;  // the figures are those of the report before
-    writer_.Scalar(figure->Tag(), x, report.values[i]);
+    Scalar(figure->Tag(), x, report.values[i]);
     any = true;
   }
   if (!any) return;  // the process has made no update yet
   updates_written_ = *updates;
-  writer_.Scalar("train/n_updates", x, *updates);
+  Scalar("train/n_updates", x, *updates);
   if (!training_start_) training_start_ = {now, *env_steps};
   const double seconds = std::chrono::duration<double>(now - training_start_->time).count();
   const double steps = *env_steps - training_start_->env_steps;
-  if (seconds > 0 && steps > 0) writer_.Scalar("time/fps", x, steps / seconds);
-  writer_.Flush();
+  if (seconds > 0 && steps > 0) Scalar("time/fps", x, steps / seconds);
 }
 
 }  // namespace shoal::launch

@@ -6,7 +6,9 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <optional>
+#include <string>
 
 #include "common/config/config.h"
 #include "common/tensorboard/event_writer.h"
@@ -16,10 +18,14 @@
 
 namespace shoal::launch {
 
-// Writes to a new file in RUN/tensorboard. One thread. Errors: Error on a full disk.
+// Writes to a new file in RUN/tensorboard. A tag gets each step once, over all starts of the run:
+// points at a step that it has reached already are left out. One thread.
 class ScalarLog {
  public:
   explicit ScalarLog(const std::filesystem::path& run);  // throws Error
+
+  // Writes what was added since the last call. Throws Error when that cannot be; it is kept then.
+  void Flush() { writer_.Flush(); }
 
   // What the text tab and the hparams tab show of the run: all keys.
   void WriteConfig(const Config& config);
@@ -44,6 +50,9 @@ class ScalarLog {
     double env_steps = 0;
   };
 
+  void Scalar(const std::string& tag, int64_t step, double value);
+
+  std::map<std::string, int64_t> last_steps_;  // by tag
   tensorboard::EventWriter writer_;
   std::optional<SteadyTime> rollouts_written_;
   double updates_written_ = 0;

@@ -70,7 +70,7 @@ void RunCurves::ReadMetrics(uint64_t most_bytes) {
   const std::filesystem::path file = run_ / kMetricsFile;
   struct stat status {};
   complete_ = true;
-  if (stat(file.c_str(), &status) != 0) return;
+  if (stat(file.c_str(), &status) != 0 || !S_ISREG(status.st_mode)) return;
   const auto size = static_cast<uint64_t>(status.st_size);
   if (status.st_ino != inode_ || size < read_bytes_) {
     inode_ = status.st_ino;

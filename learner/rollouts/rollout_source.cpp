@@ -9,6 +9,7 @@
 #include "common/base/log.h"
 #include "common/config/sending_window.h"
 #include "common/intake/receiver_terms.h"
+#include "common/run_folder/run_file_names.h"
 
 namespace shoal::learner {
 namespace {
@@ -108,14 +109,9 @@ void RolloutSource::TakeChunks(std::deque<std::unique_ptr<PooledChunk>> chunks) 
   if (!refusals.empty()) send_({refusals});
 }
 
-bool RolloutSource::WriteAccount() {
-  try {
-    ReplaceAccount(folder_, core_.Account());
-    return true;
-  } catch (const Error& e) {
-    log::Warning("nothing is acknowledged: {}", e.what());
-    return false;
-  }
+void RolloutSource::WriteAccount() {
+  const RunAccount account = core_.Account();
+  faults_.Try(kAccountingFile, [&] { ReplaceAccount(folder_, account); });
 }
 
 void RolloutSource::Tell(bool all) {
@@ -124,7 +120,7 @@ void RolloutSource::Tell(bool all) {
     const MutexLock lock(mutex_);
     credits = core_.TakeCredits(/*changed_only=*/!all);
     if (credits.empty() && !all) return;
-    if (!WriteAccount()) return;  // said again with the next repetition
+    WriteAccount();
   }
   if (!credits.empty()) send_({credits});
 }

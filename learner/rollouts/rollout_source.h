@@ -2,9 +2,10 @@
 // Rollouts pulled from actors, as batches of the training loop: a thread of its own takes chunks,
 // keeps the account and acknowledges, while the loop learns.
 //
-// Nothing is acknowledged that RUN/accounting.json does not say: a learner that is killed leaves a
-// true account, and its successor goes on from it. Knows nothing of DDS: chunks come in through
-// OnChunk, words go out through `send`.
+// RUN/accounting.json says what is acknowledged before it is: a learner that is killed leaves a
+// true account, and its successor goes on from it. While that file cannot be written (a full disk)
+// training goes on, and the account is true again with the next one that is written. Knows nothing
+// of DDS: chunks come in through OnChunk, words go out through `send`.
 //
 // A batch is complete when every environment that the update waits for has its rollout. Once
 // ppo.rollout_deadline has passed since the first rollout was there, at least half of them suffice,
@@ -24,7 +25,9 @@
 #include <thread>
 
 #include "common/base/aligned_bytes.h"
+#include "common/base/log.h"
 #include "common/base/mutex.h"
+#include "common/base/write_faults.h"
 #include "common/intake/chunk_pool.h"
 #include "common/intake/intake_problems.h"
 #include "learner/batch_stream.h"
@@ -62,9 +65,9 @@ class RolloutSource final : public BatchStream {
   // What has come since the last call, waiting for it a moment.
   std::deque<std::unique_ptr<PooledChunk>> Arrivals() SHOAL_EXCLUDES(inbox_mutex_);
   void TakeChunks(std::deque<std::unique_ptr<PooledChunk>> chunks) SHOAL_EXCLUDES(mutex_);
-  // Writes the account and, where that worked, acknowledges.
+  // Writes the account, then acknowledges.
   void Tell(bool all) SHOAL_EXCLUDES(mutex_);
-  bool WriteAccount() SHOAL_REQUIRES(mutex_);
+  void WriteAccount() SHOAL_REQUIRES(mutex_);
   bool Complete(SteadyTime now) SHOAL_REQUIRES(mutex_);
   Batch HandOut() SHOAL_REQUIRES(mutex_);
   // Says when more environments are not waited for any more.
@@ -93,6 +96,8 @@ class RolloutSource final : public BatchStream {
   int absent_said_ SHOAL_GUARDED_BY(mutex_) = 0;
   SteadyTime last_chunk_ SHOAL_GUARDED_BY(mutex_);
   IntakeProblems problems_ SHOAL_GUARDED_BY(mutex_);
+  WriteFaults faults_ SHOAL_GUARDED_BY(mutex_){
+      [](const std::string& line) { log::Warning("{}", line); }};
 
   // Of the batch that is handed out; the loop's thread.
   std::optional<BatchSchema> schema_;

@@ -11,6 +11,7 @@
 #include <cstring>
 
 #include "common/base/error.h"
+#include "common/base/files.h"
 #include "replay_server/core/storage_limits.h"
 
 namespace shoal::replay {
@@ -66,7 +67,7 @@ Mapping Mapping::NewFile(const fs::path& path, uint64_t bytes) {
   const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
   CheckDiskRoom(folder, bytes);
   Mapping mapping;
-  mapping.file_ = Descriptor(open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0600));
+  mapping.file_ = Descriptor(open(path.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
   const int fd = mapping.file_.get();
   if (fd < 0) {
     throw RuntimeError("cannot create the replay file '{}': {}", path.string(),
@@ -84,11 +85,8 @@ Mapping Mapping::NewFile(const fs::path& path, uint64_t bytes) {
 Mapping Mapping::OpenFile(const fs::path& path, Access access) {
   const bool writable = access == Access::kReadWrite;
   Mapping mapping;
-  mapping.file_ = Descriptor(open(path.c_str(), (writable ? O_RDWR : O_RDONLY) | O_CLOEXEC));
+  mapping.file_ = OpenRegular(path, writable ? O_RDWR : O_RDONLY);
   const int fd = mapping.file_.get();
-  if (fd < 0) {
-    throw RuntimeError("cannot open the replay file '{}': {}", path.string(), std::strerror(errno));
-  }
   if (writable && flock(fd, LOCK_EX | LOCK_NB) != 0) {
     throw RuntimeError("the replay file '{}' is in use by another replay server", path.string());
   }

@@ -24,7 +24,7 @@ class Mapping {
 
   // Zeroed memory of this process. Throws Error when there is no room (storage_limits.h).
   static Mapping Anonymous(uint64_t bytes);
-  // A new file of zeros, mode 0600, every block reserved, so that a later write cannot fail. Throws
+  // A new file of zeros, every block reserved, so that a later write cannot fail. Throws
   // Error, and leaves no file, when there is no room. A file of that name is replaced.
   static Mapping NewFile(const std::filesystem::path& path, uint64_t bytes);
   // All of an existing file. Throws Error when it cannot be opened, is empty, or, for kReadWrite,

@@ -153,6 +153,7 @@ auto LookIntoRing(const RunConfig& run, const std::filesystem::path& folder, int
     throw UsageError("the run in '{}' keeps its replay in memory (replay.storage): nothing to see",
                      folder.string());
   }
+  CheckRingIsThere(folder / kRingFile);
   Random random(StreamKey(seed, StreamRole::kReplaySampler));
   for (int attempt = 0; attempt < kAttempts; ++attempt) {
     if (auto seen = TryLook(run, folder / kRingFile, batch, look, &random)) {
@@ -184,6 +185,17 @@ Peek Paint(const RunConfig& run, int batch, const Draw& draw) {
 }
 
 }  // namespace
+
+std::string DescribeMissingRing(const std::filesystem::path& file) {
+  return fmt::format(
+      "there is no '{}': a run that has finished keeps its replay with --set replay.keep=true only",
+      file.string());
+}
+
+void CheckRingIsThere(const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::exists(file, error)) throw UsageError("{}", DescribeMissingRing(file));
+}
 
 Peek PeekBatch(const std::filesystem::path& folder, int batch, uint64_t seed) {
   const RunConfig run = ReadRunConfig(folder);

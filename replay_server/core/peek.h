@@ -10,6 +10,11 @@
 
 namespace shoal::replay {
 
+// "there is no 'FILE': ...", with how to keep it.
+std::string DescribeMissingRing(const std::filesystem::path& file);
+// Throws Error (usage) with that text.
+void CheckRingIsThere(const std::filesystem::path& file);
+
 struct Peek {
   uint64_t records = 0;     // in the ring now
   uint64_t sampleable = 0;  // steps of these that can be sampled

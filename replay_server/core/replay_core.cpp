@@ -20,7 +20,7 @@ RingOptions OptionsOfRing(const Config& config, const std::filesystem::path& fol
   if (config.replay.storage == "file") options.file = folder / kRingFile;
   options.capacity = static_cast<uint64_t>(config.replay.capacity);
   options.run = config.run_name;
-  if (config.replay.storage == "memory") options.steps_before = steps_before;
+  options.steps_before = steps_before;
   return options;
 }
 
@@ -55,10 +55,9 @@ LimiterOptions OptionsOfLimiter(const RunConfig& run) {
   return options;
 }
 
-// A ring without a session is new.
 SessionTable SessionsOf(Ring& ring, const FormerServer& former) {
   SessionTable sessions(ring.sessions());
-  if (sessions.size() == 0) sessions.Inherit(former);
+  sessions.TakeOver(former);
   return sessions;
 }
 
@@ -111,9 +110,7 @@ ReplayCore::ReplayCore(const RunConfig& run, const std::filesystem::path& folder
       budget_(static_cast<uint64_t>(run.config.env_steps)) {
   index_.SetSelector(policies_.selector.get());
   limiter_.SetSessions(static_cast<int>(sessions_.newest().size()));
-  const bool stored_before = std::ranges::any_of(
-      former.sessions, [](const SessionCounters& counters) { return counters.stored() > 0; });
-  ring_replaced_ = stored_before && ring_.last_id() == 0;
+  ring_replaced_ = sessions_.StoresLessThan(former);
 }
 
 uint64_t ReplayCore::window_records() const { return WindowRecords(run_); }

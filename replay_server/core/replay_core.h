@@ -64,7 +64,8 @@ struct CoreCounters {
 class ReplayCore {
  public:
   // Opens or makes the ring in `folder` (or in memory, as configured). `replay_session` must grow
-  // from start to start. `former`: what the server before left; counts only where the ring is new.
+  // from start to start. `former`: what the server before said; counts only where it knew more than
+  // the ring does.
   // `alive` is called often while a ring that is there is read. Throws Error: no room, a ring that
   // does not fit, a band that is too small.
   ReplayCore(const RunConfig& run, const std::filesystem::path& folder, uint64_t replay_session,
@@ -113,7 +114,7 @@ class ReplayCore {
   const Ring& ring() const { return ring_; }
   const EpisodeIndex& index() const { return index_; }
   const SessionTable& sessions() const { return sessions_; }
-  // The ring was new although an earlier server had stored something: that is lost.
+  // An earlier server had stored records that are not in the ring: they are lost.
   bool ring_replaced() const { return ring_replaced_; }
   const RateLimiter& limiter() const { return limiter_; }
   const RequestQueue& requests() const { return requests_; }

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "replay_server/core/ring.h"
 
+#include <algorithm>
 #include <atomic>
 #include <cerrno>
 #include <cstring>
+#include <functional>
 
 #include "common/base/check.h"
 #include "common/base/error.h"
@@ -44,6 +46,24 @@ bool Exists(const fs::path& file) {
   return there;
 }
 
+void CheckHeader(const Mapping& mapping, const ObservationSpec& spec, const RingOptions& options) {
+  const std::string name = options.file.string();
+  const uint64_t capacity = CheckRingHeader(mapping, spec, name);
+  if (capacity != options.capacity) {
+    throw RuntimeError("replay file '{}' has room for {} records, replay.capacity is {}", name,
+                       capacity, options.capacity);
+  }
+}
+
+// A start with the same file fails again: says what to do about it.
+void WithRemedy(const std::function<void()>& read) {
+  try {
+    read();
+  } catch (const Error& e) {
+    throw UsageError("{}; {}", e.what(), kRingRemedy);
+  }
+}
+
 std::atomic_ref<uint64_t> CommitWord(SlotHeader* slot) {
   return std::atomic_ref<uint64_t>(slot->commit);
 }
@@ -56,23 +76,24 @@ Ring::Ring(const ObservationSpec& spec, uint64_t capacity, Mapping mapping)
 Ring::Ring(const ObservationSpec& spec, const RingOptions& options)
     : layout_(spec), geometry_(spec, options.capacity) {
   CHECK(options.capacity > 0);
-  CHECK(options.steps_before == 0 || options.file.empty());
   if (!Exists(options.file)) {
     mapping_ = MakeRing(spec, options);
     stored_steps_ = options.steps_before;
     return;
   }
-  const std::string name = options.file.string();
   mapping_ = Mapping::OpenFile(options.file, Access::kReadWrite);
-  const uint64_t capacity = CheckRingHeader(mapping_, spec, name);
-  if (capacity != options.capacity) {
-    throw RuntimeError("replay file '{}' has room for {} records, replay.capacity is {}", name,
-                       capacity, options.capacity);
-  }
-  const RingExtent extent = ScanRing(mapping_, geometry_, name, options.alive);
-  oldest_id_ = extent.oldest_id;
-  last_id_ = extent.last_id;
-  stored_steps_ = extent.stored_steps;
+  WithRemedy([&] {
+    CheckHeader(mapping_, spec, options);
+    const RingExtent extent = ScanRing(mapping_, geometry_, options.file.string(), options.alive);
+    oldest_id_ = extent.oldest_id;
+    last_id_ = extent.last_id;
+    stored_steps_ = std::max(extent.stored_steps, options.steps_before);
+  });
+}
+
+void Ring::CheckFile(const ObservationSpec& spec, const RingOptions& options) {
+  WithRemedy(
+      [&] { CheckHeader(Mapping::OpenFile(options.file, Access::kReadOnly), spec, options); });
 }
 
 Ring Ring::OpenSnapshot(const ObservationSpec& spec, const fs::path& file) {

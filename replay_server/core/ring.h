@@ -21,8 +21,8 @@ struct RingOptions {
   std::filesystem::path file;  // empty: anonymous memory, nothing survives
   uint64_t capacity = 0;       // records
   std::string run;             // stored in the file for people
-  // Step records that earlier servers of the run stored, in memory that is gone; not for a file,
-  // which tells.
+  // Step records that earlier servers of the run have acknowledged. The count goes on from here
+  // where the ring itself knows of fewer: it is new, or an older copy.
   uint64_t steps_before = 0;
   Alive alive = {};  // called while a file that is there is read; may be empty
 };
@@ -30,9 +30,14 @@ struct RingOptions {
 class Ring {
  public:
   // Opens the file when it is there, else makes it (under another name, renamed when complete).
-  // Throws Error when there is no room, or when the file is of another spec, version or capacity,
-  // truncated or damaged: then nothing of it is used and the message says what differs.
+  // Throws Error when there is no room, or (usage) when the file is of another spec, version or
+  // capacity, truncated or damaged: then nothing of it is used and the message says what differs,
+  // and what to do.
   Ring(const ObservationSpec& spec, const RingOptions& options);
+
+  // Throws Error (usage) as the constructor would for the file's header and size, without reading
+  // its records.
+  static void CheckFile(const ObservationSpec& spec, const RingOptions& options);
 
   // Read-only view of a file that a server may be writing to. Records may vanish under the reader:
   // ask Intact() after reading them. Throws Error like the constructor.
@@ -47,7 +52,7 @@ class Ring {
   uint64_t oldest_id() const { return oldest_id_; }
   uint64_t last_id() const { return last_id_; }
   bool Holds(uint64_t id) const { return id >= oldest_id_ && id <= last_id_; }
-  // Step records stored over the whole run.
+  // Step records stored over the whole run, those included that went with a former ring.
   uint64_t stored_steps() const { return stored_steps_; }
 
   // Stores a copy of a record of layout().record_bytes() as the successor of record `prev` (0 for a

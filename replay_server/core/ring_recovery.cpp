@@ -19,8 +19,7 @@ const SlotHeader& SlotAt(const Mapping& mapping, const RingGeometry& geometry, u
 
 // A slot that no whole record lies in is either unused yet or was being written.
 Error Damaged(const std::string& name, uint64_t slot, const std::string& what) {
-  return RuntimeError("replay file '{}' is damaged: slot {} {}; remove the file to start afresh",
-                      name, slot, what);
+  return RuntimeError("replay file '{}' is damaged: slot {} {}", name, slot, what);
 }
 
 uint64_t NewestId(const Mapping& mapping, const RingGeometry& geometry, const Alive& alive = {}) {

@@ -12,6 +12,10 @@
 
 namespace shoal::replay {
 
+// What to do about a ring that cannot be used.
+inline constexpr char kRingRemedy[] =
+    "remove it, and the run goes on with an empty replay and its count of env steps";
+
 // Throws Error saying what differs unless the file is a whole ring of version kRingVersion for
 // `spec`. Returns its capacity.
 uint64_t CheckRingHeader(const Mapping& mapping, const ObservationSpec& spec,

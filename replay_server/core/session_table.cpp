@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "replay_server/core/session_table.h"
 
+#include <algorithm>
 #include <atomic>
+#include <optional>
 
 #include "common/base/check.h"
 #include "common/base/error.h"
 #include "common/base/random.h"
+#include "replay_server/core/ring_recovery.h"
 
 namespace shoal::replay {
 namespace {
@@ -50,8 +53,7 @@ SessionTable::SessionTable(std::span<StoredSession> storage)
     if (copy == nullptr) {
       // Free, or being added when the writer died: then only the first copy was touched.
       if (NeverWritten(stored.copies[0])) break;
-      throw RuntimeError("the replay file's session {} is damaged; remove the file to start afresh",
-                         size());
+      throw UsageError("the replay file's session {} is damaged; {}", size(), kRingRemedy);
     }
     versions_.push_back(copy->version);
     Load(FromCopy(*copy));
@@ -78,14 +80,23 @@ void SessionTable::OnUpdate(int i, const SessionCounters& counters) {
   check.store(CheckWord(copy), std::memory_order_release);
 }
 
-void SessionTable::Inherit(const FormerServer& former) {
-  CHECK(size() == 0);
+void SessionTable::TakeOver(const FormerServer& former) {
   for (SessionCounters counters : former.sessions) {
-    const std::optional<int> i = Add(counters.actor, counters.session);
+    std::optional<int> i = Find(counters.actor, counters.session);
+    if (i && at(*i).highest >= counters.highest) continue;
+    const uint64_t ours = i ? at(*i).stored() : 0;
+    if (!i) i = Add(counters.actor, counters.session);
     if (!i) return;  // a table as full as the former one's was: the next chunk will say so
-    counters.lost += counters.stored();
+    if (counters.stored() > ours) counters.lost += counters.stored() - ours;
     Update(*i, counters);
   }
+}
+
+bool SessionTable::StoresLessThan(const FormerServer& former) const {
+  return std::ranges::any_of(former.sessions, [this](const SessionCounters& counters) {
+    const std::optional<int> i = Find(counters.actor, counters.session);
+    return counters.stored() > (i ? at(*i).stored() : 0);
+  });
 }
 
 }  // namespace shoal::replay

@@ -11,7 +11,7 @@
 
 namespace shoal::replay {
 
-// What an earlier server of the run left when its ring is gone.
+// What an earlier server of the run said in the account.
 struct FormerServer {
   uint64_t stored_steps = 0;
   std::vector<SessionCounters> sessions;
@@ -23,8 +23,11 @@ class SessionTable final : public SessionLedger {
   // `storage` is borrowed. Sessions found there are loaded. Throws Error when one is damaged.
   explicit SessionTable(std::span<StoredSession> storage);
 
-  // Into an empty table: the sessions of a server whose ring is gone. What it had stored is lost.
-  void Inherit(const FormerServer& former);
+  // Adds what an earlier server knew beyond this table, because its ring is gone or this ring is an
+  // older copy of it. The records that it had stored beyond ours are lost.
+  void TakeOver(const FormerServer& former);
+  // An earlier server had stored records that are not stored here.
+  bool StoresLessThan(const FormerServer& former) const;
 
  private:
   void OnUpdate(int i, const SessionCounters& counters) override;

@@ -11,6 +11,7 @@
 #include "common/base/log.h"
 #include "common/base/saturating_cast.h"
 #include "common/base/stop.h"
+#include "common/base/write_faults.h"
 #include "common/config/run_files.h"
 #include "common/config/run_membership.h"
 #include "common/config/sending_window.h"
@@ -21,6 +22,7 @@
 #include "common/dds/subscriber.h"
 #include "common/intake/receiver_terms.h"
 #include "common/run_folder/accounting_file.h"
+#include "common/run_folder/run_file_names.h"
 #include "common/wire/control_state.h"
 #include "common/wire/metrics_report.h"
 #include "common/wire/process_name.h"
@@ -82,11 +84,12 @@ class ReplayService {
               ring.last_id(), core_.index().sampleable());
     if (core_.ring_replaced()) {
       log::Warning(
-          "the {} env steps stored by earlier servers are gone ({}); refilling to {} sampleable "
-          "transitions (replay.min_size) before training goes on",
-          before_.stored_steps,
-          Settings().replay.storage == "memory" ? "replay.storage=memory" : "the file is new",
-          Settings().replay.min_size);
+          "records that earlier servers had stored are gone ({}); env steps go on from {}; "
+          "refilling "
+          "to {} sampleable transitions (replay.min_size) before training goes on",
+          Settings().replay.storage == "memory" ? "replay.storage=memory"
+                                                : "the file is another one",
+          ring.stored_steps(), Settings().replay.min_size);
     }
     last_turn_ = Now();
     int exit_code = 0;
@@ -101,9 +104,9 @@ class ReplayService {
       Turn();
       if (core_.counters().intake.table_full_chunks > 0) break;
     }
-    Finish();
+    const bool written = Finish();
     if (core_.counters().intake.table_full_chunks > 0) RefuseMoreSessions();
-    return exit_code;
+    return exit_code == 0 && !written ? kUnwrittenExit : exit_code;
   }
 
  private:
@@ -266,12 +269,7 @@ class ReplayService {
   void Report(const char* state) {
     metrics_publisher_.Write(report_.Make(state, seconds_, &ages_));
     problems_.Report(Now(), core_.counters(), inbox_.DroppedChunks());
-    try {
-      ReplaceAccount(folder_, AccountNow());
-    } catch (const Error& e) {
-      // The run goes on; the next second tries again, and Finish() insists.
-      log::Warning("{}", e.what());
-    }
+    faults_.Try(kAccountingFile, [this] { ReplaceAccount(folder_, AccountNow()); });
   }
 
   RunAccount AccountNow() const {
@@ -291,16 +289,19 @@ class ReplayService {
     }
   }
 
-  void Finish() {
+  // False when the account could not be written.
+  bool Finish() {
     Take(inbox_.Wait(Now()));
     Publish(core_.TakeCredits(/*changed_only=*/false));
     TellProgress(Now(), /*at_once=*/true);
     metrics_publisher_.Write(report_.Make("stopping", seconds_, &ages_));
-    StoreAccount(folder_, AccountNow());
+    const bool written =
+        faults_.Try(kAccountingFile, [this] { StoreAccount(folder_, AccountNow()); });
     metrics_publisher_.WaitForAcks(milliseconds(500));
     credit_publisher_.WaitForAcks(milliseconds(500));
     log::Info("stopped: {} records of the run stored, {} batches drawn", core_.ring().last_id(),
               core_.counters().batches);
+    return written;
   }
 
   const std::filesystem::path folder_;
@@ -325,6 +326,7 @@ class ReplayService {
   dds::Subscriber<SampleRequest> request_subscriber_;
   dds::Subscriber<TransitionChunk> chunk_subscriber_;
 
+  WriteFaults faults_{[](const std::string& line) { log::Warning("{}", line); }};
   ServiceSeconds seconds_;
   SteadyTime last_turn_{}, last_credits_{}, last_chunk_{};
   SteadyTime last_told_{};
@@ -337,6 +339,7 @@ class ReplayService {
 }  // namespace
 
 int RunReplayService(const std::filesystem::path& folder, const dds::Reach& reach) {
+  KeepSecuredRunPrivate(folder);
   return ReplayService(folder, reach).Run();
 }
 

@@ -9,7 +9,7 @@ Then Minari writes the same episodes into a dataset of its own, and the two file
 names, shapes, types, values. Prints a line and exits with 1 where anything differs. Wants
 minari[hdf5] and pillow from PyPI; nothing of Shoal needs Python. For example:
 
-  shoal replay export reach --output dataset/main_data.hdf5
+  shoal replay export reach-kept --output dataset/main_data.hdf5
   minari_dataset.py dataset
 """
 

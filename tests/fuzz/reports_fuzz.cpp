@@ -93,7 +93,9 @@ void Use(const MetricsMessage& message) {
   CHECK(view.Reports(now).size() == 1);
   const std::filesystem::path file = fuzz::Scratch() / "metrics.jsonl";
   fuzz::WriteScratch(file, "");
-  CHECK(launch::MetricsLog(file, {}).Write(message));
+  launch::MetricsLog log(file, {});
+  log.Write(message);
+  log.Flush();
   const std::string line = ReadFile(file);
   CHECK(line.ends_with('\n'));
   CHECK(nlohmann::json::parse(line).at("role").is_string());

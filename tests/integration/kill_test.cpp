@@ -61,6 +61,8 @@ TEST(Kill, WithTheReplayInMemoryTheRunGoesOnAndTheAccountIsExact) {
   ASSERT_TRUE(training.WaitForMoreSteps(1000)) << training.Output();
   training.Interrupt();
   ASSERT_EQ(training.End(seconds(120)), kInterruptedExit) << training.Output();
+  EXPECT_NE(training.Output().find("replay-0 starts empty, env steps go on from "),
+            std::string::npos);
   const json meta = run.Json("meta.json");
   ExpectBalanced(meta);
   const json& account = meta.at("accounting");

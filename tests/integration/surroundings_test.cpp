@@ -42,47 +42,6 @@ TEST(Surroundings, ARingThatDoesNotFitTheDiskIsRefusedWithBothSizes) {
   EXPECT_FALSE(fs::exists(run.path())) << "nothing half-written";
 }
 
-// Fills what is left of a disk while it lives.
-class Filler {
- public:
-  explicit Filler(const fs::path& file) : file_(file) {
-    std::ofstream out(file, std::ios::binary);
-    const std::string block(4096, 'x');
-    while (out.write(block.data(), std::streamsize(block.size())).flush()) {
-    }
-  }
-  ~Filler() { fs::remove(file_); }
-
- private:
-  const fs::path file_;
-};
-
-TEST(Surroundings, ADiskThatFillsUpEndsTheRunAndLeavesWhatIsThereUsable) {
-  SHOAL_NEEDS(OwnMounts());
-  const TrainingRun run;
-  const SmallDisk disk(run.parent(), "64m");
-  SHOAL_NEEDS(disk.why_not());
-  const TrainingRun::Keys keys{{"env_steps", "1000000"},
-                               {"actors", "1"},
-                               {"replay.capacity", "5000"},
-                               {"eval.final_episodes", "0"},
-                               {"learner.checkpoint_period", "200"}};
-  {
-    RunningTraining training(run, run.Command(keys));
-    ASSERT_TRUE(training.WaitForSteps(3000)) << training.Output();
-    const Filler filler(run.parent() / "filler");
-    ASSERT_EQ(training.End(seconds(120)), 1) << training.Output();
-  }
-  const std::string log = ReadFile(run.path() / "logs" / "learner-0.log");
-  EXPECT_NE(log.find("No space left on device"), std::string::npos) << log;
-  const ProgramResult resumed = RunProgram(
-      {"shoal", "train", "--resume", run.path().string(), "--set", "env_steps=6000"}, seconds(180));
-  ASSERT_EQ(ExitCode(resumed), 0) << resumed.out << resumed.err;
-  const auto meta = run.Json("meta.json");
-  ExpectBalanced(meta);
-  EXPECT_GE(meta.at("env_steps").get<int64_t>(), 6000);
-}
-
 // `shoal` as a user whom permissions hold back: root, who may do anything, runs it as nobody. From
 // a copy of the program and the presets, for nobody may not look into root's checkout.
 ProgramResult RunAsCommonUser(const fs::path& folder, std::vector<std::string> words) {

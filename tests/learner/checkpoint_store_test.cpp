@@ -127,5 +127,28 @@ TEST_F(CheckpointStoreTest, SaysWhereACheckpointComesFrom) {
   EXPECT_EQ(meta.at("seed"), 1);
 }
 
+// Nothing can be made in a folder that is no folder.
+TEST_F(CheckpointStoreTest, WhatCannotBeWrittenIsKeptAndWrittenLater) {
+  Open();
+  Write(1);
+  const fs::path elsewhere = run_folder_.path() / "moved";
+  fs::rename(folder_, elsewhere);
+  WriteFileAtomically(folder_, "in the way");
+  for (const uint64_t updates : {2, 3, 4}) Write(updates);
+  EXPECT_EQ(store_->UnwrittenUpdates(), 4u);
+  store_->Retry({}, /*now=*/true);
+  EXPECT_EQ(store_->UnwrittenUpdates(), 4u);
+  fs::remove(folder_);
+  fs::rename(elsewhere, folder_);
+  EXPECT_EQ(Names(), (Expected{"step_000000001"})) << "the last good one stays";
+  EXPECT_EQ(store_->WrittenUpdates(), 1u);
+  store_->Retry({});
+  EXPECT_EQ(store_->UnwrittenUpdates(), 4u) << "not at once again";
+  store_->Retry({}, /*now=*/true);
+  EXPECT_FALSE(store_->UnwrittenUpdates());
+  EXPECT_EQ(Names(), (Expected{"step_000000001", "step_000000003", "step_000000004"}))
+      << "as many as are kept in memory";
+}
+
 }  // namespace
 }  // namespace shoal::learner

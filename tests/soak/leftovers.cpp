@@ -30,9 +30,8 @@ void CheckFiles(const fs::path& run) {
         name.ends_with(".old")) {
       throw Broken(entry.path().string() + " is left");
     }
-    const fs::perms others = fs::perms::group_all | fs::perms::others_all;
-    if ((entry.status().permissions() & others) != fs::perms::none) {
-      throw Broken(entry.path().string() + " can be read by others");
+    if ((entry.status().permissions() & fs::perms::others_write) != fs::perms::none) {
+      throw Broken(entry.path().string() + " can be written by others");
     }
   }
 }

@@ -13,7 +13,7 @@ std::set<std::string> SharedMemoryObjects();
 
 // Throws Broken (run_under_test.h) naming what a run that has ended left: processes, UDP ports,
 // shared memory that is not in `before`, half-written or temporary files, files that others may
-// read.
+// write.
 void CheckNothingIsLeft(const std::filesystem::path& run,
                         const std::filesystem::path& temporary_files,
                         const std::set<std::string>& shared_memory_before);

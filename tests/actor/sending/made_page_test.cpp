@@ -69,5 +69,41 @@ TEST(MadePage, ABrokenPageIsRefusedByName) {
   }
 }
 
+TEST(MadePage, ADamagedPageIsRebuiltFromWhatTheReceiverSaw) {
+  const TemporaryFolder run;
+  { MadePage sound(run.path(), 1, 20, 2, 2); }
+  uint32_t begun = 0;
+  {
+    MadePage page(run.path(), 0, 10, 0, 2);
+    for (int i = 0; i < 30; ++i) page.CountRecord();
+    for (int i = 0; i < 7; ++i) begun = page.TakeEpisode(1);
+  }
+  EXPECT_TRUE(FindDamagedPages(run.path()).empty());
+  for (const int bytes : {0, 3, 44}) {
+    std::filesystem::resize_file(run.path() / "made" / "actor-0-10.page", bytes);
+    const auto damaged = FindDamagedPages(run.path());
+    ASSERT_EQ(damaged.size(), 1u) << bytes;
+    EXPECT_EQ(damaged[0].actor, 0u);
+    EXPECT_EQ(damaged[0].session, 10u);
+  }
+  RebuildMadePage(run.path(), 0, 10, 2, 25);
+  EXPECT_TRUE(FindDamagedPages(run.path()).empty());
+  const auto counts = ReadMadePages(run.path());
+  ASSERT_EQ(counts.size(), 2u);
+  EXPECT_EQ(counts[0].made, 25u);
+  EXPECT_TRUE(counts[0].rebuilt);
+  EXPECT_FALSE(counts[1].rebuilt);
+  MadePage next(run.path(), 0, 11, 0, 2);
+  EXPECT_GT(next.TakeEpisode(1), begun) << "no episode is played twice";
+}
+
+TEST(MadePage, APageUnderAForeignNameIsRefused) {
+  const TemporaryFolder run;
+  { MadePage page(run.path(), 0, 10, 0, 2); }
+  std::filesystem::rename(run.path() / "made" / "actor-0-10.page",
+                          run.path() / "made" / "mine.page");
+  EXPECT_THROW(FindDamagedPages(run.path()), Error);
+}
+
 }  // namespace
 }  // namespace shoal::actor

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/base/files.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -8,6 +9,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstring>
 
 #include "common/base/error.h"
 #include "tests/support/error_message.h"
@@ -42,12 +44,15 @@ TEST(Files, AFreshFolderIsNewAndItsUsersOwn) {
             std::string::npos);
 }
 
-TEST(Files, AreTheUsersOwnUnlessTheyAreForOthers) {
+TEST(Files, FollowTheUmaskUntilTheyAreKeptPrivate) {
   const TemporaryFolder folder;
   // KeepFilesPrivate is for a process's whole life.
   const pid_t child = fork();
   if (child == 0) {
     umask(022);
+    NoteUmask();
+    WriteFileAtomically(folder.path() / "shared", "run");
+    WriteFilePrivately(folder.path() / "secret", "key");
     KeepFilesPrivate();
     KeepFilesPrivate();  // the second time it finds its own
     WriteFileAtomically(folder.path() / "own", "key");
@@ -64,6 +69,8 @@ TEST(Files, AreTheUsersOwnUnlessTheyAreForOthers) {
     EXPECT_EQ(stat((folder.path() / name).c_str(), &found), 0);
     return found.st_mode & 0777;
   };
+  EXPECT_EQ(mode_of("shared"), 0644u);
+  EXPECT_EQ(mode_of("secret"), 0600u);
   EXPECT_EQ(mode_of("own"), 0600u);
   EXPECT_EQ(mode_of("report"), 0644u);
   EXPECT_EQ(mode_of("card"), 0755u);
@@ -124,6 +131,46 @@ TEST(Files, WhatCannotBeWrittenIsRefusedBeforehandAndNothingIsTouched) {
       EXPECT_NE(std::string(e.what()).find(bad.string()), std::string::npos) << e.what();
     }
   }
+}
+
+// Opening a FIFO would wait for its other end: with the check undone, this test hangs.
+TEST(Files, AFifoIsRefusedAtOnceUnlessTheUserNamesIt) {
+  const TemporaryFolder folder;
+  const auto fifo = folder.path() / "meta.json";
+  ASSERT_EQ(mkfifo(fifo.c_str(), 0600), 0);
+  for (const int flags : {O_RDONLY, O_WRONLY | O_CREAT | O_APPEND, O_RDWR}) {
+    EXPECT_NE(ErrorMessage([&] { OpenRegular(fifo, flags); }).find("it is a pipe"),
+              std::string::npos);
+  }
+  EXPECT_NE(ErrorMessage([&] { ReadFile(fifo); }).find(fifo.string()), std::string::npos);
+  int ends[2];
+  ASSERT_EQ(pipe(ends), 0);
+  ASSERT_EQ(write(ends[1], "{}", 2), 2);
+  close(ends[1]);
+  EXPECT_EQ(ReadFile("/dev/fd/" + std::to_string(ends[0])), "{}") << "a shell's <(...)";
+  close(ends[0]);
+}
+
+TEST(Files, OpenRegularMakesAndAppends) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "x";
+  for (const char* word : {"one ", "two"}) {
+    const Descriptor file = OpenRegular(path, O_WRONLY | O_CREAT | O_APPEND);
+    ASSERT_EQ(write(file.get(), word, std::strlen(word)), ssize_t(std::strlen(word)));
+  }
+  EXPECT_EQ(ReadFile(path), "one two");
+  EXPECT_THROW(OpenRegular(folder.path(), O_RDONLY), Error);
+  EXPECT_THROW(OpenRegular(folder.path() / "absent", O_RDONLY), Error);
+}
+
+TEST(Files, ReplaceFileSurvivesWhatAKilledProcessLeft) {
+  const TemporaryFolder folder;
+  const auto path = folder.path() / "accounting.json";
+  ReplaceFile(path, "old");
+  ASSERT_EQ(mkfifo((path.string() + ".new").c_str(), 0600), 0);
+  ReplaceFile(path, "new");
+  EXPECT_EQ(ReadFile(path), "new");
+  EXPECT_EQ(FilesIn(folder.path()), 1);
 }
 
 }  // namespace

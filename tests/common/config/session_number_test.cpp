@@ -44,5 +44,11 @@ TEST(SessionNumber, ADamagedFileIsRefusedByName) {
   }
 }
 
+TEST(SessionNumber, AFolderThatCannotBeWrittenIsNoReasonNotToStart) {
+  const TemporaryFolder run;
+  WriteFileAtomically(run.path() / "sessions", "no folder");
+  EXPECT_EQ(NextSession(run.path(), "actor-0", 5000), 5000u);
+}
+
 }  // namespace
 }  // namespace shoal

@@ -2,6 +2,7 @@
 #include "common/run_folder/update_page.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -65,6 +66,34 @@ TEST(UpdatePage, AnotherFileIsRefusedByName) {
       EXPECT_NE(std::string(e.what()).find("learner.page"), std::string::npos);
     }
   }
+}
+
+TEST(UpdatePage, ADamagedPageIsRebuilt) {
+  const TemporaryFolder run;
+  WriteFileAtomically(run.path() / "learner.page", "torn");
+  RebuildUpdatePage(run.path(), 120, 30);
+  EXPECT_EQ(ReadLostUpdates(run.path()), 30u);
+  EXPECT_EQ(UpdatePage(run.path(), 100).lost(), 50u);
+}
+
+// A limit on files' sizes stands in for a full disk.
+TEST(UpdatePage, GoesOnInItsPlaceOnAFullDisk) {
+  const TemporaryFolder run;
+  UpdatePage(run.path(), 0).SetDone(50);
+  const pid_t learner = fork();
+  if (learner == 0) {
+    signal(SIGXFSZ, SIG_IGN);
+    const rlimit limit{0, 0};
+    setrlimit(RLIMIT_FSIZE, &limit);
+    UpdatePage page(run.path(), 40);
+    page.SetDone(41);
+    _exit(static_cast<int>(page.lost()));
+  }
+  int status = 0;
+  waitpid(learner, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_EQ(WEXITSTATUS(status), 10);
+  EXPECT_EQ(UpdatePage(run.path(), 40).lost(), 11u);
 }
 
 }  // namespace

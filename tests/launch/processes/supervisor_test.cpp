@@ -374,6 +374,14 @@ TEST_F(SupervisorTest, RemembersUncleanExpectedExits) {
               ElementsAre(HasSubstr("actor-0: exit code 1: 3 records left")));
 }
 
+TEST_F(SupervisorTest, KnowsWhoCouldNotWriteAllOfItsResults) {
+  supervisor_.Start(Fake("learner", 0, "echo no room; exit 4"));
+  supervisor_.ExpectExit("");
+  EXPECT_TRUE(PollUntil([&] { return supervisor_.Running("") == 0; }));
+  EXPECT_THAT(supervisor_.unwritten_exits(), ElementsAre("learner-0"));
+  EXPECT_THAT(supervisor_.unclean_exits(), IsEmpty());
+}
+
 TEST_F(SupervisorTest, ForgetsAPendingRestartOfAnExpectedExit) {
   supervisor_.Start(Fake("actor", 0, "exit 1"));
   const SteadyTime late = Now() + std::chrono::hours(1);

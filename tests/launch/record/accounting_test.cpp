@@ -73,6 +73,19 @@ TEST(Account, WhatWasInARemovedReplayFileIsLostWithTheReplay) {
   EXPECT_EQ(a.lost_with_replay, 4u);
 }
 
+TEST(Account, OfALostPageTheReplaysCountIsTaken) {
+  const MadeRecords made[] = {{.actor = 0, .session = kFirst, .made = 7, .known = false},
+                              {.actor = 1, .session = kFirst, .made = 12}};
+  const RunAccount seen = Seen({{.actor = 0, .session = kFirst, .highest = 10},
+                                {.actor = 1, .session = kFirst, .highest = 10}});
+  const Accounting a = Account(made, seen, {.own_actors = 4});
+  EXPECT_TRUE(a.Balances());
+  EXPECT_EQ(a.made, 22u);
+  EXPECT_EQ(a.lost_with_process, 2u);
+  EXPECT_EQ(a.sessions_without_page, 1u);
+  EXPECT_THAT(a.Line(), HasSubstr("1 session(s) without a counter page"));
+}
+
 TEST(Account, HoldsTheSessionsAgainstTheRing) {
   const MadeRecords made[] = {{0, kFirst, 10}};
   RunAccount seen = Seen({{.actor = 0, .session = kFirst, .highest = 10}});

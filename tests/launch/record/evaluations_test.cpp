@@ -23,9 +23,12 @@ class EvaluationsTest : public ::testing::Test {
 };
 
 TEST_F(EvaluationsTest, StoreThenReadGivesThePointsInOrder) {
-  StoreEvaluation(run_.path(), EvaluationMessage(10'000, 900, 0.5), 12.5);
-  const EvaluationPoint stored =
-      StoreEvaluation(run_.path(), EvaluationMessage(2'500, 100, 0.25), 3.5);
+  WriteFaults faults([](const std::string&) {});
+  EvaluationStore store(run_.path(), &faults);
+  store.Write(RecordOf(EvaluationMessage(10'000, 900, 0.5), 12.5));
+  EvaluationRecord record = RecordOf(EvaluationMessage(2'500, 100, 0.25), 3.5);
+  const EvaluationPoint stored = record.point;
+  store.Write(std::move(record));
   EXPECT_EQ(stored.env_steps, 2'500u);
   EXPECT_EQ(stored.updates, 100u);
   EXPECT_EQ(stored.checkpoint, "step_100");
@@ -41,11 +44,31 @@ TEST_F(EvaluationsTest, StoreThenReadGivesThePointsInOrder) {
   EXPECT_EQ(points[1].env_steps, 10'000u);
 }
 
+// The run's folder was moved away for a while.
+TEST_F(EvaluationsTest, WhatCannotBeWrittenIsKeptAndWrittenLater) {
+  std::vector<std::string> said;
+  WriteFaults faults([&](const std::string& line) { said.push_back(line); });
+  EvaluationStore store(run_.path(), &faults);
+  const auto folder = run_.path() / "eval", elsewhere = run_.path() / "moved";
+  std::filesystem::rename(folder, elsewhere);
+  store.Write(RecordOf(EvaluationMessage(2'500, 100, 0.25), 3.5));
+  store.Write(RecordOf(EvaluationMessage(5'000, 200, 0.5), 7));
+  store.Retry();
+  EXPECT_THAT(faults.failing(), testing::ElementsAre("eval"));
+  ASSERT_EQ(said.size(), 1u) << "it is said once";
+  EXPECT_THAT(said[0], testing::HasSubstr("No such file or directory"));
+  std::filesystem::rename(elsewhere, folder);
+  store.Retry();
+  EXPECT_TRUE(faults.failing().empty());
+  EXPECT_EQ(said.size(), 2u);
+  EXPECT_EQ(ReadEvaluations(run_.path()).size(), 2u);
+}
+
 TEST_F(EvaluationsTest, RefusesWhatIsNotAnEvaluation) {
   for (const char* json : {"", "[]", "{}", R"({"schema": "shoal-eval-1"})", R"({"schema": 1})"}) {
     EvalMessage message = EvaluationMessage(1, 1, 1);
     message.json = json;
-    EXPECT_THROW(StoreEvaluation(run_.path(), message, 0), Error) << json;
+    EXPECT_THROW(RecordOf(message, 0), Error) << json;
   }
   EXPECT_TRUE(std::filesystem::is_empty(run_.path() / "eval"));
 }
@@ -79,7 +102,7 @@ TEST_F(EvaluationsTest, RefusesADeepNesting) {
   EvalMessage message = EvaluationMessage(1, 1, 1);
   const std::string deep = std::string(1'000'000, '[') + std::string(1'000'000, ']');
   message.json = R"({"x": )" + deep + "," + message.json.substr(1);
-  EXPECT_THROW(StoreEvaluation(run_.path(), message, 0), Error);
+  EXPECT_THROW(RecordOf(message, 0), Error);
 }
 
 TEST_F(EvaluationsTest, RefusesACheckpointOutsideOfTheRun) {
@@ -88,7 +111,7 @@ TEST_F(EvaluationsTest, RefusesACheckpointOutsideOfTheRun) {
     auto object = nlohmann::json::parse(message.json);
     object["checkpoint"] = name;
     message.json = object.dump();
-    EXPECT_THROW(StoreEvaluation(run_.path(), message, 0), Error) << name;
+    EXPECT_THROW(RecordOf(message, 0), Error) << name;
   }
   EXPECT_TRUE(std::filesystem::is_empty(run_.path() / "eval"));
 }

@@ -2,8 +2,13 @@
 #include "launch/record/metrics_log.h"
 
 #include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <array>
 #include <cmath>
+#include <csignal>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -36,8 +41,11 @@ std::vector<nlohmann::json> Lines(const std::filesystem::path& file) {
 TEST(MetricsLog, WritesOneObjectPerLineAndAppends) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "metrics.jsonl";
-  EXPECT_TRUE(MetricsLog(file, {}).Write(Report(1, 5)));
-  EXPECT_TRUE(MetricsLog(file, {}).Write(Report(2, NAN)));
+  for (const MetricsMessage& report : {Report(1, 5), Report(2, NAN)}) {
+    MetricsLog log(file, {});
+    log.Write(report);
+    log.Flush();
+  }
   const auto lines = Lines(file);
   ASSERT_EQ(lines.size(), 2u);
   EXPECT_EQ(lines[0]["t"], 1);
@@ -54,7 +62,9 @@ TEST(MetricsLog, ReplacesWhatIsNotUtf8) {
   MetricsMessage report = Report(1);
   report.host = "\xff";
   report.names = {"\xfe"};
-  EXPECT_TRUE(MetricsLog(file, {}).Write(report));
+  MetricsLog log(file, {});
+  log.Write(report);
+  log.Flush();
   EXPECT_EQ(Lines(file).at(0).at("host"), "\xef\xbf\xbd");
 }
 
@@ -65,6 +75,7 @@ TEST(MetricsLog, KeepsCountsExactAndRoundsOtherFigures) {
   log.Write(Report(1'795'252'995.7923207, 123'456'789'012));
   log.Write(Report(1'795'252'996.7923207, 9444.184449640406));
   log.Write(Report(1'795'252'997.7923207, -1.25e-9));
+  log.Flush();
   const auto lines = Lines(file);
   ASSERT_EQ(lines.size(), 3u);
   EXPECT_EQ(lines[0]["t"], 1'795'252'995.792);
@@ -82,7 +93,8 @@ uint64_t BytesAfter(double hours) {
     for (uint32_t id = 0; id < 3; ++id) {
       MetricsMessage report = Report(second);
       report.id = id;
-      EXPECT_TRUE(log.Write(report));
+      log.Write(report);
+      log.Flush();
     }
   }
   return std::filesystem::file_size(file);
@@ -104,23 +116,82 @@ TEST(MetricsLog, AlwaysWritesTheFirstReportOfAProcessAndItsLastWords) {
   log.Write(report);
   report.pid = 78;
   log.Write(report);
+  log.Flush();
   EXPECT_EQ(Lines(file).size(), 3u);
   EXPECT_EQ(log.lines_left_out(), 4u);
 }
 
-TEST(MetricsLog, StopsWhenFullAndComplainsOnce) {
+TEST(MetricsLog, StopsAtItsSizeLimit) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "metrics.jsonl";
   MetricsLog log(file, {.most_bytes = 400});
-  int complaints = 0;
-  for (int second = 0; second < 20; ++second) complaints += !log.Write(Report(second));
-  EXPECT_EQ(complaints, 1);
+  EXPECT_FALSE(log.full());
+  for (int second = 0; second < 20; ++second) {
+    log.Write(Report(second));
+    log.Flush();
+  }
+  EXPECT_TRUE(log.full());
   EXPECT_LE(std::filesystem::file_size(file), 400u);
   EXPECT_GE(Lines(file).size(), 3u);
 }
 
 TEST(MetricsLog, NamesAFileThatCannotBeOpened) {
   EXPECT_THROW(MetricsLog("/absent/metrics.jsonl", {}), Error);
+}
+
+// A limit on the file's size stands in for a full disk; it is lifted as if room had been made.
+TEST(MetricsLog, LinesThatDoNotFitTheDiskAreWrittenOnceThereIsRoom) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "metrics.jsonl";
+  const pid_t child = fork();
+  if (child == 0) {
+    signal(SIGXFSZ, SIG_IGN);
+    MetricsLog log(file, {});
+    log.Write(Report(0));
+    log.Flush();
+    setrlimit(RLIMIT_FSIZE, std::array<rlimit, 1>{{{200, RLIM_INFINITY}}}.data());
+    int failed = 0;
+    for (int second = 1; second <= 5; ++second) {
+      log.Write(Report(second));
+      try {
+        log.Flush();
+      } catch (const Error& e) {
+        failed += std::string(e.what()).find("metrics.jsonl") != std::string::npos;
+      }
+    }
+    setrlimit(RLIMIT_FSIZE, std::array<rlimit, 1>{{{RLIM_INFINITY, RLIM_INFINITY}}}.data());
+    log.Flush();
+    _exit(failed);
+  }
+  int status = 0;
+  waitpid(child, &status, 0);
+  ASSERT_TRUE(WIFEXITED(status));
+  EXPECT_GE(WEXITSTATUS(status), 3) << "the disk was full for most of them";
+  const auto lines = Lines(file);
+  ASSERT_EQ(lines.size(), 6u);
+  for (size_t i = 0; i < lines.size(); ++i) EXPECT_EQ(lines[i]["t"], i);
+}
+
+TEST(MetricsLog, KeepsTheNewestLinesWhileTheDiskIsFull) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "metrics.jsonl";
+  MetricsLog log(file, {.kept_bytes = 300});
+  for (int second = 0; second < 20; ++second) log.Write(Report(second));
+  EXPECT_GT(log.lines_left_out(), 10u);
+  log.Flush();
+  const auto lines = Lines(file);
+  ASSERT_GE(lines.size(), 2u);
+  EXPECT_EQ(lines.back()["t"], 19);
+}
+
+TEST(MetricsLog, GoesOnBehindALineThatWasCutOff) {
+  const TemporaryFolder folder;
+  const auto file = folder.path() / "metrics.jsonl";
+  WriteFileAtomically(file, "{\"t\": 1}\n{\"t\":");
+  MetricsLog log(file, {});
+  log.Write(Report(2));
+  log.Flush();
+  EXPECT_TRUE(ReadFile(file).starts_with("{\"t\": 1}\n{\"t\":\n{\"t\":2.000,")) << ReadFile(file);
 }
 
 }  // namespace

@@ -40,6 +40,17 @@ TEST(RunProgress, TheNewestSessionHasTheWord) {
   EXPECT_TRUE(progress.drained());
 }
 
+TEST(RunProgress, EnvStepsNeverFall) {
+  RunProgress progress;
+  EXPECT_FALSE(progress.OnReplay({.session = 1, .stored_steps = 1000, .stored_records = 1020}));
+  EXPECT_TRUE(progress.OnReplay({.session = 2, .stored_steps = 950, .stored_records = 10}));
+  EXPECT_EQ(progress.stored_steps(), 1000u) << "the successor of a replay whose memory is gone";
+  EXPECT_FALSE(progress.OnReplay({.session = 2, .stored_steps = 1010, .stored_records = 70}));
+  EXPECT_EQ(progress.stored_steps(), 1010u);
+  EXPECT_FALSE(progress.OnReplay({.session = 3, .stored_steps = 1010, .stored_records = 70}))
+      << "the ring is a file";
+}
+
 TEST(RunProgress, AnEvaluationIsAskedForByTheLearnerThatMadeItsParameters) {
   RunProgress progress;
   EvaluationPoint point;

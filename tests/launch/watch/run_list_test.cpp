@@ -137,6 +137,20 @@ TEST_F(RunListTest, TableAndJsonSayTheSame) {
   EXPECT_EQ(run.at("env_steps"), 1234);
   EXPECT_EQ(run.at("best_success_rate"), 0.5);
   EXPECT_TRUE(run.at("final_success_rate").is_null());
+  EXPECT_EQ(run.at("disk_bytes"), runs[0].size->total);
+  EXPECT_EQ(run.at("replay_bytes"), 0);
+}
+
+TEST_F(RunListTest, EachRunIsListedWithItsSize) {
+  Begin("a", "target");
+  WriteFileAtomically(dir_.path() / "a" / "replay.ring", std::string(3'000'000, 'x'));
+  const auto runs = ListRunStatus(dir_.path());
+  ASSERT_TRUE(runs.at(0).size);
+  EXPECT_GE(runs[0].size->replay, 3'000'000u);
+  EXPECT_GT(runs[0].size->total, runs[0].size->replay);
+  const auto lines = FormatRunList(runs);
+  EXPECT_THAT(lines[0], HasSubstr("  SIZE  "));
+  EXPECT_THAT(lines[1], HasSubstr(" 3.0 MB  "));
 }
 
 TEST_F(RunListTest, AFolderThatIsNotThereHoldsNoRuns) {

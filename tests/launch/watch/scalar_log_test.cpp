@@ -27,7 +27,8 @@ MetricsMessage LearnerReport(double updates, double env_steps, double critic_los
 
 class ScalarLogTest : public ::testing::Test {
  protected:
-  Scalars Read() const {
+  Scalars Read() {
+    log_.Flush();
     const auto files = EventFiles(folder_.path() / "tensorboard");
     EXPECT_EQ(files.size(), 1u);
     return ReadScalars(files.at(0));
@@ -76,6 +77,26 @@ TEST_F(ScalarLogTest, AReportWithoutNewUpdatesAddsNoPoint) {
   EXPECT_THAT(Read().at("train/critic_loss"), ElementsAre(Pair(1000, 0.5f)));
 }
 
+// The learner of a resumed run reports at the env steps where the former one stopped.
+TEST_F(ScalarLogTest, AResumedRunAddsNoStepTwice) {
+  log_.WriteTraining(LearnerReport(10, 1000, 0.5), start_);
+  log_.WriteTraining(LearnerReport(20, 1500, 0.5), start_);
+  log_.WriteEvaluation({.env_steps = 1400, .success = {}, .mean_return = -3});
+  log_.Flush();
+  ScalarLog resumed(folder_.path());
+  resumed.WriteTraining(LearnerReport(15, 1400, 0.75), start_);
+  resumed.WriteTraining(LearnerReport(20, 1500, 0.75), start_);
+  resumed.WriteTraining(LearnerReport(30, 1600, 0.75), start_);
+  resumed.WriteEvaluation({.env_steps = 1400, .success = {}, .mean_return = -3});
+  resumed.WriteEvaluation({.env_steps = 1600, .success = {}, .mean_return = -2});
+  resumed.Flush();
+  const auto files = EventFiles(folder_.path() / "tensorboard");
+  ASSERT_EQ(files.size(), 2u);
+  const Scalars scalars = ReadScalars(files[1]);
+  EXPECT_THAT(scalars.at("train/critic_loss"), ElementsAre(Pair(1600, 0.75f)));
+  EXPECT_THAT(scalars.at("eval/mean_reward"), ElementsAre(Pair(1600, -2)));
+}
+
 TEST_F(ScalarLogTest, AReportBeforeTheFirstUpdateAndThoseOfOthersAddNone) {
   MetricsMessage starting = LearnerReport(500, 1000, 0);
   starting.names.resize(2);
@@ -93,6 +114,7 @@ TEST_F(ScalarLogTest, TheConfigurationIsATextAndASessionOfHyperParameters) {
   config.task = "FetchPush";
   log_.WriteConfig(config);
   log_.WriteEnd(false);
+  log_.Flush();
   const auto values = ReadPluginValues(EventFiles(folder_.path() / "tensorboard").at(0));
   const auto& text = values.at("configuration");
   EXPECT_EQ(text.metadata().plugin_data().plugin_name(), "text");

@@ -117,8 +117,8 @@ TEST_F(IntakeTest, WhatOnlyThisServerCanHaveStoredIsNeverTakenAsLost) {
 
 TEST_F(IntakeTest, AnInheritedSessionIsLostAndGoesOn) {
   SessionTable sessions(ring_.sessions());
-  sessions.Inherit({.sessions = {{.actor = 0, .session = 10, .highest = 6, .rejected = 1},
-                                 {.actor = 1, .session = 11, .highest = 3}}});
+  sessions.TakeOver({.sessions = {{.actor = 0, .session = 10, .highest = 6, .rejected = 1},
+                                  {.actor = 1, .session = 11, .highest = 3}}});
   Intake intake(spec_.Hash(), &ring_, &sessions, &index_);
   EXPECT_EQ(sessions.at(0).lost, 5u);
   EXPECT_EQ(sessions.at(0).stored(), 0u);
@@ -224,7 +224,7 @@ TEST_F(IntakeTest, CountsARecordWhoseWriterDiedBeforeItCouldCountIt) {
 
 TEST_F(IntakeTest, AnInheritedTableOutlivesNothingButItself) {
   SessionTable sessions(ring_.sessions());
-  sessions.Inherit({.sessions = {{.actor = 0, .session = 10, .highest = 6}}});
+  sessions.TakeOver({.sessions = {{.actor = 0, .session = 10, .highest = 6}}});
   EXPECT_EQ(SessionTable(ring_.sessions()).at(0), sessions.at(0)) << "it is in the ring";
 }
 

@@ -83,7 +83,7 @@ TEST_F(PeekTest, TheSameSeedShowsTheSame) {
 }
 
 TEST_F(PeekTest, SaysWhatIsMissing) {
-  EXPECT_THAT(Refusal(), HasSubstr("cannot open the replay file"));
+  EXPECT_THAT(Refusal(), HasSubstr("--set replay.keep=true"));
   ReplayCore core(run_, folder_.path(), 1);
   EXPECT_THAT(Refusal(), HasSubstr("no step that can be sampled"));
   run_.config.replay.storage = "memory";

@@ -82,11 +82,13 @@ TEST_F(RingTest, SaysThatItIsAliveForEachRecordThatIsReadAtStart) {
   EXPECT_EQ(SignsOfLife(), 2 * static_cast<int>(kCapacity) + records);
 }
 
-TEST_F(RingTest, TheFileIsTheOwnersAloneAndFullyReserved) {
+TEST_F(RingTest, TheFileFollowsTheUmaskAndIsFullyReserved) {
+  const mode_t former = umask(027);
   Ring ring(spec_, Options());
+  umask(former);
   struct stat status {};
   ASSERT_EQ(stat(file_.c_str(), &status), 0);
-  EXPECT_EQ(status.st_mode & 0777, 0600u);
+  EXPECT_EQ(status.st_mode & 0777, 0640u);
   EXPECT_EQ(static_cast<uint64_t>(status.st_size), geometry_.total_bytes());
   EXPECT_GE(static_cast<uint64_t>(status.st_blocks) * 512, geometry_.total_bytes());
   EXPECT_FALSE(fs::exists(file_.string() + ".new"));
@@ -245,6 +247,23 @@ TEST_F(RingTest, InMemoryTheCountOfStepsGoesOnWhereEarlierServersWere) {
   const auto record = MakeRecord(spec_, 0, 0, 0, 1, 1);
   ring.Append(0, 1, 0, record.data());
   EXPECT_EQ(ring.stored_steps(), 501u);
+}
+
+TEST_F(RingTest, ANewFileCountsStepsOnFromThoseOfALostOne) {
+  RingOptions options = Options();
+  options.steps_before = 500;
+  { EXPECT_EQ(Ring(spec_, options).stored_steps(), 500u); }
+  // A server that was killed before it had stored anything leaves an empty ring.
+  {
+    Ring ring(spec_, options);
+    EXPECT_EQ(ring.stored_steps(), 500u);
+    const auto record = MakeRecord(spec_, 0, 0, 0, 1, 1);
+    ring.Append(0, 1, 0, record.data());
+  }
+  options.steps_before = 0;
+  EXPECT_EQ(Ring(spec_, options).stored_steps(), 501u) << "the ring itself knows from here on";
+  options.steps_before = 900;
+  EXPECT_EQ(Ring(spec_, options).stored_steps(), 900u) << "the file is an older copy";
 }
 
 TEST_F(RingTest, AFolderThatIsNotThereIsAClearError) {

@@ -49,6 +49,35 @@ TEST_F(SessionTableTest, AnUpdateCutShortLeavesTheFormerCounters) {
   EXPECT_EQ(SessionTable(storage_).at(0).highest, 5u);
 }
 
+// The ring's file was replaced by a copy that was made earlier.
+TEST_F(SessionTableTest, WhatAnEarlierServerStoredBeyondThisTableIsLost) {
+  SessionTable table(storage_);
+  table.Update(*table.Add(0, 10), {.actor = 0, .session = 10, .highest = 5, .after_gap = 1});
+  const FormerServer former{
+      .sessions = {{.actor = 0, .session = 10, .highest = 9, .rejected = 1, .after_gap = 1},
+                   {.actor = 1, .session = 11, .highest = 3}}};
+  EXPECT_TRUE(table.StoresLessThan(former));
+  table.TakeOver(former);
+  EXPECT_EQ(table.at(0).highest, 9u);
+  EXPECT_EQ(table.at(0).stored(), 4u) << "as many as lie in the ring";
+  EXPECT_EQ(table.at(0).lost, 3u);
+  EXPECT_EQ(table.at(1).lost, 3u);
+  EXPECT_TRUE(table.StoresLessThan(former)) << "a second start tells the same";
+  const std::vector<SessionCounters> once = table.all();
+  table.TakeOver(former);
+  EXPECT_EQ(table.all(), once) << "nothing is counted twice";
+}
+
+TEST_F(SessionTableTest, AServerThatKnewNoMoreChangesNothing) {
+  SessionTable table(storage_);
+  const SessionCounters counters{.actor = 0, .session = 10, .highest = 5};
+  table.Update(*table.Add(0, 10), counters);
+  const FormerServer former{.sessions = {{.actor = 0, .session = 10, .highest = 4}}};
+  table.TakeOver(former);
+  EXPECT_EQ(table.at(0), counters);
+  EXPECT_FALSE(table.StoresLessThan(former));
+}
+
 TEST_F(SessionTableTest, AnAddCutShortLeavesNoSession) {
   { SessionTable(storage_).Add(1, 10); }
   storage_[0].copies[1].check = 0;

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// Files that could not be written and will be tried again: a full disk, a quota, a disk that became
+// read-only, a folder that was moved. A long-running process goes on without them and reports each
+// once. What to write again, and when, is the caller's part.
+#pragma once
+
+#include <functional>
+#include <set>
+#include <string>
+
+namespace shoal {
+
+// Exit code of a program that did its work in order, but could not write all of its results.
+inline constexpr int kUnwrittenExit = 4;
+
+// One thread.
+class WriteFaults {
+ public:
+  // `say` gets a line when a file begins to fail, and one when it is written again.
+  explicit WriteFaults(std::function<void(const std::string&)> say) : say_(std::move(say)) {}
+
+  // Runs `write`. False when it threw Error. `what` names the file, or the kind of file, in lines
+  // and in failing().
+  bool Try(const std::string& what, const std::function<void()>& write);
+
+  // Those whose last attempt failed.
+  const std::set<std::string>& failing() const { return failing_; }
+
+ private:
+  const std::function<void(const std::string&)> say_;
+  std::set<std::string> failing_;
+};
+
+}  // namespace shoal
