@@ -132,7 +132,10 @@ bool RolloutSource::Complete(SteadyTime now) {
   if (ready == 0) return false;
   if (!first_ready_) first_ready_ = now;
   if (ready >= expected) return true;
-  return now - *first_ready_ >= deadline_ && 2 * ready >= expected;
+  // An update takes minibatches of learner.batch rows: fewer rows make none.
+  const int64_t rows = int64_t{ready} * run_.config.ppo.rollout_steps;
+  return now - *first_ready_ >= deadline_ && 2 * ready >= expected &&
+         rows >= run_.config.learner.batch;
 }
 
 Batch RolloutSource::HandOut() {

@@ -6,8 +6,9 @@
 // true account, and its successor goes on from it. Knows nothing of DDS: chunks come in through
 // OnChunk, words go out through `send`.
 //
-// A batch is whole when every environment that the update waits for has its rollout, or, once
-// ppo.rollout_deadline has passed since the first one was there, when at least half of them have.
+// A batch is whole when every environment that the update waits for has its rollout. Once
+// ppo.rollout_deadline has passed since the first rollout, half of the environments are enough if
+// their rollouts have at least learner.batch steps.
 //
 // Threads: OnChunk from receive threads; Next, SetActors, counters from one other. Memory: two
 // rollouts of every environment, more with ppo.versions_ahead.

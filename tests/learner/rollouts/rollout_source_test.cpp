@@ -21,6 +21,7 @@ class RolloutSourceTest : public testing::Test {
   RolloutSource& Make(int actors, double rollout_deadline) {
     RunConfig run = PpoRun(actors);
     run.config.ppo.rollout_deadline = rollout_deadline;
+    run.config.learner.batch = batch_;
     source_.emplace(run, folder_.path() / "run", kFirst.session, kFirst.update,
                     [this](const CreditsMessage& message) { Keep(message); });
     return *source_;
@@ -55,6 +56,7 @@ class RolloutSourceTest : public testing::Test {
   RolloutSourceTest() { std::filesystem::create_directory(folder_.path() / "run"); }
 
   const TemporaryFolder folder_;
+  int batch_ = 3;  // a rollout's steps
   Mutex mutex_;
   ConditionVariable changed_;
   std::map<uint32_t, uint64_t> told_ SHOAL_GUARDED_BY(mutex_);
@@ -120,6 +122,22 @@ TEST_F(RolloutSourceTest, AfterTheDeadlineHalfOfTheRolloutsDoAndAreSaidToBeLate)
   EXPECT_GE(Now() - start, milliseconds(150));
   EXPECT_EQ(batch->view.reward.size(), 3u);
   EXPECT_EQ(source_->counters().rollouts->late, 1u);
+}
+
+// An update needs the rows of one minibatch at least.
+TEST_F(RolloutSourceTest, FewerRowsThanABatchAreWaitedForBeyondTheDeadline) {
+  batch_ = 6;
+  Make(2, 0.1);
+  a_.PlayThree(0, 0);
+  source_->OnChunk(a_.Chunk());
+  ASSERT_TRUE(WaitUntilTold(0, 4, seconds(20)));
+  EXPECT_FALSE(source_->Next(Now() + milliseconds(400))) << "half of the rollouts, 3 rows of 6";
+  b_.PlayThree(1, 0);
+  source_->OnChunk(b_.Chunk());
+  const auto batch = source_->Next(Now() + seconds(20));
+  ASSERT_TRUE(batch);
+  EXPECT_EQ(batch->view.reward.size(), 6u);
+  EXPECT_EQ(source_->counters().rollouts->late, 0u);
 }
 
 TEST_F(RolloutSourceTest, LessThanHalfAreWaitedForBeyondTheDeadline) {
