@@ -83,7 +83,9 @@ void SessionTable::Inherit(const FormerServer& former) {
   for (SessionCounters counters : former.sessions) {
     const std::optional<int> i = Add(counters.actor, counters.session);
     if (!i) return;  // a table as full as the former one's was: the next chunk will say so
-    counters.lost += counters.stored();
+    // Records that a learner on policy discarded are gone like the stored ones.
+    counters.lost += counters.stored() + counters.discarded;
+    counters.discarded = 0;
     Update(*i, counters);
   }
 }
