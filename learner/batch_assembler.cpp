@@ -50,6 +50,7 @@ BatchAssembler::Verdict BatchAssembler::Add(const BatchPart& part) {
   if (!same_answer) {
     slot->stored_records = part.stored_records;
     slot->stored_steps = part.stored_steps;
+    slot->unsampleable_steps = part.unsampleable_steps;
     slot->pieces.assign(part.parts, Piece());
     slot->missing = part.parts;
   }
@@ -70,7 +71,8 @@ std::optional<BatchAssembler::Assembled> BatchAssembler::TryGet(uint64_t request
   Slot* slot = Find(request);
   CHECK(slot != nullptr) << request;
   if (!slot->whole) return std::nullopt;
-  return Assembled{slot->memory.data(), slot->stored_records, slot->stored_steps};
+  return Assembled{slot->memory.data(), slot->stored_records, slot->stored_steps,
+                   slot->unsampleable_steps};
 }
 
 void BatchAssembler::Release(uint64_t request) {

@@ -35,7 +35,7 @@ class BatchAssembler {
 
   struct Assembled {
     uint8_t* data;  // aligned to 64; valid until Release
-    uint64_t stored_records, stored_steps;
+    uint64_t stored_records, stored_steps, unsampleable_steps;
   };
 
   // Batches of `batch_bytes` each; memory for `buffers` of them is taken at once.
@@ -58,8 +58,9 @@ class BatchAssembler {
     AlignedBytes memory;
     bool whole = false;
     uint64_t stored_records = 0, stored_steps = 0;  // tell answers apart
-    std::vector<Piece> pieces;                      // per part
-    uint32_t missing = 0;                           // parts; 0 and no pieces: none here yet
+    uint64_t unsampleable_steps = 0;
+    std::vector<Piece> pieces;  // per part
+    uint32_t missing = 0;       // parts; 0 and no pieces: none here yet
   };
 
   Slot* Find(uint64_t request);

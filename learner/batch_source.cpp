@@ -235,14 +235,16 @@ std::optional<Batch> BatchSource::FindBatch(uint64_t request) {
   if (!assembled) return std::nullopt;
   return Batch{.view = schema_.View(assembled->data, assembled->stored_steps),
                .request = request,
-               .stored_records = assembled->stored_records};
+               .stored_records = assembled->stored_records,
+               .unsampleable_steps = assembled->unsampleable_steps};
 }
 
 std::optional<Batch> BatchSource::OpenSlot(uint64_t request) {
   try {
     return Batch{.view = schema_.View(slots_.Open(request), slots_.stored_steps(request)),
                  .request = request,
-                 .stored_records = slots_.stored_records(request)};
+                 .stored_records = slots_.stored_records(request),
+                 .unsampleable_steps = slots_.unsampleable_steps(request)};
   } catch (const Error& e) {
     SayRefusal(e.what());
     for (const uint64_t refused : slots_.Refuse(request)) {

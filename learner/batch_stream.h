@@ -13,8 +13,9 @@ namespace shoal::learner {
 struct Batch {
   // Valid until the stream's Next is called again. Only read: it may lie in the replay's memory.
   BatchView view;
-  uint64_t request = 0;         // that it answers
-  uint64_t stored_records = 0;  // in the replay when it was drawn, whole run; the steps: view
+  uint64_t request = 0;             // that it answers
+  uint64_t stored_records = 0;      // in the replay when it was drawn, whole run; the steps: view
+  uint64_t unsampleable_steps = 0;  // as in BatchPart; on policy none
 };
 
 // What is under way, what went wrong so far, and what it was put right with.

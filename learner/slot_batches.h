@@ -34,6 +34,9 @@ class SlotBatches {
   bool Has(uint64_t request) const { return words_.contains(request); }
   uint64_t stored_records(uint64_t request) const { return words_.at(request).stored_records; }
   uint64_t stored_steps(uint64_t request) const { return words_.at(request).stored_steps; }
+  uint64_t unsampleable_steps(uint64_t request) const {
+    return words_.at(request).unsampleable_steps;
+  }
 
   // The batch of a request that it has; to be read, until Release. Opens the memory when it is
   // needed first. Throws Error when that cannot be or the slot does not hold the batch.

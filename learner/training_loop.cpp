@@ -110,6 +110,7 @@ UpdateOutcome TrainingLoop::Update(const BatchView& batch) {
 void TrainingLoop::AfterUpdate(const Batch& batch, const UpdateFigures& figures) {
   const uint64_t updates = parts_.agent.updates();
   env_steps_ = batch.view.stored_steps;
+  unsampleable_steps_ = batch.unsampleable_steps;
   request_ = batch.request;
   report_.OnUpdate(figures, batch, updates);
   if (on_policy_) {
@@ -209,13 +210,15 @@ bool TrainingLoop::DrainingIsOver() const {
   return drain_batches_ > config_.learner.request_credits && RatioReached();
 }
 
-double TrainingLoop::GrantedSamples() const {
-  const uint64_t steps = std::max(env_steps_, granted_from_steps_);
+double TrainingLoop::GrantedSamples(uint64_t env_steps) const {
+  const uint64_t steps = std::max(env_steps, granted_from_steps_);
   return granted_before_ + samples_per_insert_.Integral(granted_from_steps_, steps);
 }
 
 bool TrainingLoop::RatioReached() const {
-  return static_cast<double>(parts_.agent.updates()) * config_.learner.batch >= GrantedSamples();
+  const uint64_t sampled_from = env_steps_ - std::min(env_steps_, unsampleable_steps_);
+  return static_cast<double>(parts_.agent.updates()) * config_.learner.batch >=
+         GrantedSamples(sampled_from);
 }
 
 void TrainingLoop::ApplySettings() {
@@ -233,7 +236,7 @@ void TrainingLoop::ApplySettings() {
   const std::optional<double> set = control.Setting("replay.samples_per_insert");
   const Schedule samples = set ? Schedule::Constant(*set) : config_.replay.samples_per_insert;
   if (samples == samples_per_insert_) return;
-  granted_before_ = GrantedSamples();
+  granted_before_ = GrantedSamples(env_steps_);
   granted_from_steps_ = std::max(env_steps_, granted_from_steps_);
   samples_per_insert_ = samples;
 }

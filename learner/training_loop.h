@@ -81,10 +81,11 @@ class TrainingLoop {
   // Draining: goes on training until it is over, then makes the last evaluation point, once.
   void Drain();
   bool DrainingIsOver() const;
-  // Batch elements that samples_per_insert grants for the steps stored: its integral over them, of
+  // Batch elements that samples_per_insert grants for so many env steps: its integral over them, of
   // each value set meanwhile for the steps it was in force for, as far as this process knows.
-  double GrantedSamples() const;
-  // Whether the updates done are those granted.
+  double GrantedSamples(uint64_t env_steps) const;
+  // Whether the updates done are those granted. Steps that no sample begins with grant none, as in
+  // the replay's limiter.
   bool RatioReached() const;
   // On policy: the weights that actors wait for, once; not beyond the budget.
   void GiveAwaitedWeights();
@@ -109,6 +110,7 @@ class TrainingLoop {
   double granted_before_ = 0;              // samples, up to granted_from_steps_
   uint64_t granted_from_steps_;            // env steps from which samples_per_insert_ counts
   uint64_t env_steps_ = 0;                 // stored when the last batch was drawn
+  uint64_t unsampleable_steps_ = 0;        // of these, as far as the replay knows
   uint64_t request_ = 0;                   // of that batch
   uint64_t checkpoints_written_ = 0;
   std::optional<uint64_t> checkpoint_of_;  // updates at which one was asked for last

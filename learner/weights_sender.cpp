@@ -14,7 +14,7 @@ WeightsSender::WeightsSender(const RunConfig& run, nn::Precision precision, uint
     : config_(run.config),
       spec_hash_(run.spec.Hash()),
       session_(session),
-      precision_(precision),
+      rounds_(precision == nn::Precision::kBf16 && !LearnsOnPolicy(run.config)),
       agent_(agent),
       outlet_(outlet),
       awaited_(config_.lockstep || LearnsOnPolicy(config_)),
@@ -41,7 +41,7 @@ void WeightsSender::Send(uint64_t env_steps) {
 
 std::string WeightsSender::Serialised() const {
   nn::TensorMap tensors = agent_.PolicyTensors();
-  if (precision_ == nn::Precision::kBf16) tensors = nn::ToBf16(std::move(tensors));
+  if (rounds_) tensors = nn::ToBf16(std::move(tensors));
   return nn::WriteSafetensors(tensors, {});
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sends the policy's parameters to the actors as the updates go by: at the first update, then every
 // learner.weights_period; in lockstep at the end of each phase; on policy after each one. BF16 when
-// the precision is, else F32.
+// the precision is, else F32. On policy always F32: the actors' log-probabilities are the
+// denominator of the ratio that the learner forms with its unrounded parameters (Eq. 24).
 //
 // Weights that are due while readers still lack the last ones wait for them, at most kPatience, so
 // that slow readers are not starved; not in lockstep or on policy, where actors wait for exactly
@@ -54,7 +55,7 @@ class WeightsSender {
 
   const Config config_;
   const uint64_t spec_hash_, session_;
-  const nn::Precision precision_;
+  const bool rounds_;  // to BF16
   const Agent& agent_;
   Outlet& outlet_;
   const bool awaited_;  // by actors that do not step meanwhile

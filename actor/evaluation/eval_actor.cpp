@@ -62,7 +62,8 @@ class EvalActor {
   // One weights version for the whole evaluation; newer ones wait in the inbox.
   void Evaluate(const ReceivedWeights& weights) {
     evaluator_.selector().Load(weights);
-    const EpisodeStream stream{run_.config.seed, StreamRole::kEvalEnvironment, weights.env_steps};
+    const EpisodeStream stream =
+        EvaluationStream(run_.config.seed, weights.env_steps, weights.version.update);
     const SteadyTime start = Now();
     SteadyTime counted = start;
     const auto episodes = evaluator_.Play(run_.config.eval.episodes, stream, [&] {

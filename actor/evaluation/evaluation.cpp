@@ -97,6 +97,10 @@ Evaluator::Evaluator(const RunConfig& run, bool noop)
   }
 }
 
+EpisodeStream EvaluationStream(int64_t seed, uint64_t env_steps, uint64_t updates) {
+  return {seed, StreamRole::kEvalEnvironment, HashWords({env_steps, updates})};
+}
+
 void Evaluator::Listen(SeatListener* listener) {
   CHECK(players_.size() == 1) << players_.size();
   players_[0].seat.set_listener(listener);

@@ -41,6 +41,11 @@ struct EpisodeStream {
   }
 };
 
+// Of the evaluation of a run's checkpoint. The evaluation when a run drains may have the env steps
+// of the one before: the updates since then give it episodes of its own. The same checkpoint,
+// evaluated again after a restart, is given the same ones.
+EpisodeStream EvaluationStream(int64_t seed, uint64_t env_steps, uint64_t updates);
+
 // What eval/*.json says about where the numbers come from.
 struct EvaluationLabel {
   std::string

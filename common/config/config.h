@@ -71,6 +71,7 @@ struct ReplayConfig {
   std::string hindsight = "none";  // none | future | final | episode: goals of an episode's own
   int hindsight_goals = 4;         // N: a share N / (N + 1) of the samples is relabelled
   double movement_share = 0;       // of the samples, drawn by how far what is achieved still moves
+  std::string movement = "path";   // path | displacement: what that distance is
   int window_chunks = 4;           // chunks an actor may have unacknowledged
 };
 
@@ -93,9 +94,11 @@ struct LearnerConfig {
   double initial_temperature = 0.1;
   std::string temperature = "auto";  // auto | fixed
   double min_temperature = 0;        // of an automatic one
-  double target_entropy = 0;         // 0 = -(action size)
-  bool normalise_vectors = false;    // of observations, by running mean and deviation
-  bool bounded_targets = false;      // values cut off at what rewards of -1 and 0 allow
+  double target_entropy = 0;         // 0 = target_entropy_per_action * (action size)
+  double target_entropy_per_action = -1;
+  bool normalise_vectors = false;  // of observations, by running mean and deviation
+  double variance_floor = 0;       // smaller variances count as this in normalise_vectors
+  bool bounded_targets = false;    // values cut off at what rewards of -1 and 0 allow
   // What learning knows and acting does not: common/config/privileged_blocks.h.
   StateBlocks critic_blocks = false;  // that the critic sees in place of pixels; false = pixels
   std::vector<std::string> aux;   // what the features are trained to tell: BLOCK, or BLOCK-BLOCK

@@ -122,6 +122,10 @@ std::vector<Key> ReplayKeys() {
           replay.movement_share, (RealRange{0, 1}),
           "with hindsight: share of the samples that are drawn in proportion to how far what "
           "is achieved still moves in its episode, the others uniformly"),
+      SHOAL_SAME(replay.movement, (Choices{{"path", "displacement"}}),
+                 "of replay.movement_share: path = sum of the distances of all steps to the "
+                 "episode's end; displacement = distance between where it is before the step and "
+                 "where the episode ends"),
       SHOAL_SAME(replay.window_chunks, (IntegerRange{2, 1024}),
                  "chunks an actor may have unacknowledged"),
   };
@@ -176,10 +180,17 @@ std::vector<Key> LearnerKeys() {
           "auto = follows learner.target_entropy; fixed = stays learner.initial_temperature"),
       SHOAL_SAME(learner.min_temperature, (RealRange{0, 100}), "of an automatic one, at least"),
       SHOAL_SAME(learner.target_entropy, (RealRange{-1000, 1000}),
-                 "entropy the temperature aims at, in nats; 0 = -(action size)"),
+                 "entropy the temperature aims at, in nats; 0 = learner.target_entropy_per_action "
+                 "times the action size"),
+      SHOAL_SAME(learner.target_entropy_per_action, (RealRange{-100, 100}),
+                 "entropy per action dimension that the temperature aims at, in nats, unless "
+                 "learner.target_entropy is set; 0 aims at 0 nats"),
       SHOAL_SAME(learner.normalise_vectors, AnyValue{},
                  "vectors are scaled by their running mean and deviation, which belong to the "
                  "policy; cut off at 10"),
+      SHOAL_SAME(learner.variance_floor, (RealRange{0, 1}),
+                 "of learner.normalise_vectors: smaller variances count as this one, so that "
+                 "numbers that hardly vary are not magnified; 1e-4 = deviations of at least 0.01"),
       SHOAL_SAME(learner.bounded_targets, AnyValue{},
                  "cut target values off at what rewards of -1 and 0 allow"),
       SHOAL_SAME(
@@ -230,7 +241,8 @@ std::vector<Key> PpoKeys() {
                  "rollout meanwhile"),
       SHOAL_SAME(ppo.rollout_deadline, (RealRange{0.1, 60}),
                  "seconds after the first rollout of an update is there, after which the update is "
-                 "made of those there are, at least half; after three times as long of any number"),
+                 "made of those there are: at least half, after three times as long any number, and "
+                 "always at least learner.batch steps"),
   };
 }
 

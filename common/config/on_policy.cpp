@@ -2,6 +2,7 @@
 #include "common/config/on_policy.h"
 
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <string_view>
@@ -32,6 +33,7 @@ constexpr std::string_view kOffPolicyKeys[] = {"replay.",
                                                "learner.temperature",
                                                "learner.min_temperature",
                                                "learner.target_entropy",
+                                               "learner.target_entropy_per_action",
                                                "learner.bounded_targets",
                                                "learner.critic_blocks",
                                                "learner.aux",
@@ -99,13 +101,21 @@ void ValidateRollout(const Config& config) {
   }
   if (config.actors == 0) return;  // not known yet
   const int64_t envs = int64_t{config.actors} * config.envs_per_actor;
-  const int64_t batch = config.learner.batch;
-  if (steps * envs % batch == 0) return;
+  const int64_t batch = config.learner.batch, rows = steps * envs;
+  constexpr int64_t kMostRows = std::numeric_limits<int>::max();
+  if (rows > kMostRows) {
+    throw UsageError(
+        "ppo.rollout_steps = {}: {} steps of {} actor(s) with {} environments each are {}; "
+        "expected "
+        "at most {} in one update",
+        steps, steps, config.actors, config.envs_per_actor, rows, kMostRows);
+  }
+  if (rows % batch == 0) return;
   const int64_t unit = batch / std::gcd(batch, envs);
   throw UsageError(
       "ppo.rollout_steps = {}: {} steps of {} actor(s) with {} environments each are {}, which "
       "learner.batch = {} does not divide; expected a multiple of {}, {} for one",
-      steps, steps, config.actors, config.envs_per_actor, steps * envs, batch, unit,
+      steps, steps, config.actors, config.envs_per_actor, rows, batch, unit,
       (steps + unit - 1) / unit * unit);
 }
 

@@ -52,6 +52,11 @@ void ValidateVectors(const Config& config) {
     throw UsageError(
         "learner.normalise_vectors = true: the run observes pixels alone, expected false");
   }
+  if (config.learner.variance_floor > 0 && !config.learner.normalise_vectors) {
+    throw UsageError(
+        "learner.variance_floor = {} without learner.normalise_vectors: expected it unset",
+        config.learner.variance_floor);
+  }
 }
 
 // Noise that the run's exploration does not add.
@@ -108,12 +113,20 @@ void ValidateEntropy(const Config& config) {
         "learner.min_temperature = {}: expected at most learner.initial_temperature = {}",
         learner.min_temperature, learner.initial_temperature);
   }
+  const bool per_action = learner.target_entropy_per_action != none.target_entropy_per_action;
+  if (learner.target_entropy != none.target_entropy && per_action) {
+    throw UsageError(
+        "learner.target_entropy = {}, learner.target_entropy_per_action = {}: both say what the "
+        "temperature aims at; expected one of them unset",
+        learner.target_entropy, learner.target_entropy_per_action);
+  }
   if (LearnsDeviation(config)) return;
   const std::pair<const char*, bool> keys[] = {
       {"learner.temperature", learner.temperature != none.temperature},
       {"learner.initial_temperature", learner.initial_temperature != none.initial_temperature},
       {"learner.min_temperature", learner.min_temperature != none.min_temperature},
       {"learner.target_entropy", learner.target_entropy != none.target_entropy},
+      {"learner.target_entropy_per_action", per_action},
       {"learner.temperature_learning_rate",
        learner.temperature_learning_rate != none.temperature_learning_rate},
       {"network.log_std", config.network.log_std != usual.network.log_std}};
@@ -229,6 +242,10 @@ void ValidateReplay(const Config& config) {
                      config.replay.copies, config.learner.batch);
   }
   ValidateShifts(config);
+  if (config.replay.movement != ReplayConfig().movement && config.replay.movement_share == 0) {
+    throw UsageError("replay.movement = {} with replay.movement_share = 0: expected it unset",
+                     config.replay.movement);
+  }
 }
 
 }  // namespace

@@ -38,9 +38,10 @@ bool ParseCdr(std::span<const uint8_t> cdr, BatchPart* message) {
   message->total_bytes = reader.Read<uint64_t>();
   message->stored_records = reader.Read<uint64_t>();
   message->stored_steps = reader.Read<uint64_t>();
+  message->unsampleable_steps = reader.Read<uint64_t>();
   message->parts = reader.Read<uint32_t>();
   message->payload = reader.ReadBytes();
-  return reader.Finished() && version == kBulkVersion && message->part < message->parts &&
+  return reader.Finished() && version == kBatchPartVersion && message->part < message->parts &&
          !message->payload.empty() && message->offset <= message->total_bytes &&
          message->payload.size() <= message->total_bytes - message->offset;
 }

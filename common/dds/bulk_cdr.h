@@ -17,7 +17,8 @@ namespace shoal::dds {
 
 // First byte of every bulk message; others are refused.
 inline constexpr uint8_t kBulkVersion = 1;
-inline constexpr uint8_t kWeightsVersion = 2;  // of weights, which 1 sent whole
+inline constexpr uint8_t kBatchPartVersion = 2;  // 1 had no unsampleable_steps
+inline constexpr uint8_t kWeightsVersion = 2;    // of weights, which 1 sent whole
 
 // False when the bytes are truncated, of another version or inconsistent; `message` is then
 // unspecified. The message's payload borrows `cdr`; where `cdr` starts 4 bytes before a multiple of

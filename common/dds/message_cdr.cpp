@@ -128,6 +128,7 @@ bool ParseCdr(std::span<const uint8_t> cdr, BatchSlot* message) {
     message->request = reader.Read<uint64_t>();
     message->stored_records = reader.Read<uint64_t>();
     message->stored_steps = reader.Read<uint64_t>();
+    message->unsampleable_steps = reader.Read<uint64_t>();
     message->address.pid = reader.Read<int32_t>();
     message->address.descriptor = reader.Read<int32_t>();
     message->address.token[0] = reader.Read<uint64_t>();

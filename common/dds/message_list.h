@@ -22,7 +22,7 @@
   X(CreditsMessage, Credits, "credits", Main, 16, late, small, 100, (kReplay, kLearner), (kActor)) \
   X(SampleRequest, SampleRequest, "sample_request", Batch, 0, now, small, 2000, (kLearner),        \
     (kReplay))                                                                                     \
-  X(BatchPart, BatchPart, "batch_part_v1", Batch, 0, now, bulk, 2000, (kReplay), (kLearner))       \
+  X(BatchPart, BatchPart, "batch_part_v2", Batch, 0, now, bulk, 2000, (kReplay), (kLearner))       \
   X(BatchSlot, BatchSlot, "batch_slot", Batch, 0, now, small, 2000, (kReplay), (kLearner))         \
   X(WeightsPart, WeightsPart, "weights_v2", Main, 1, late, bulk, 100, (kLearner), (kActor))        \
   X(EvalWeightsPart, WeightsPart, "eval_weights_v2", Main, 1, late, bulk, 100, (kLearner),         \

@@ -48,9 +48,10 @@ shoal_idl_TransitionChunk ToWire(const TransitionChunk& message, WireBuffers*) {
 }
 
 shoal_idl_BatchPart ToWire(const BatchPart& message, WireBuffers*) {
-  return {kBulkVersion,         message.part,   message.spec_hash,      message.learner_session,
-          message.request,      message.offset, message.total_bytes,    message.stored_records,
-          message.stored_steps, message.parts,  Borrow(message.payload)};
+  return {kBatchPartVersion,          message.part,           message.spec_hash,
+          message.learner_session,    message.request,        message.offset,
+          message.total_bytes,        message.stored_records, message.stored_steps,
+          message.unsampleable_steps, message.parts,          Borrow(message.payload)};
 }
 
 shoal_idl_WeightsPart ToWire(const WeightsPart& message, WireBuffers*) {
@@ -79,12 +80,9 @@ shoal_idl_SampleRequest ToWire(const SampleRequest& message, WireBuffers*) {
 
 shoal_idl_BatchSlot ToWire(const BatchSlot& message, WireBuffers*) {
   const SlotAddress& address = message.address;
-  return {message.spec_hash,    message.learner_session,
-          message.request,      message.stored_records,
-          message.stored_steps, address.pid,
-          address.descriptor,   address.token[0],
-          address.token[1],     address.bytes,
-          message.slot};
+  return {message.spec_hash,    message.learner_session,    message.request, message.stored_records,
+          message.stored_steps, message.unsampleable_steps, address.pid,     address.descriptor,
+          address.token[0],     address.token[1],           address.bytes,   message.slot};
 }
 
 shoal_idl_Metrics ToWire(const MetricsMessage& message, WireBuffers* buffers) {

@@ -2,13 +2,22 @@
 #include "common/nn/rows.h"
 
 #include <cstring>
+#include <limits>
 
 #include "common/base/check.h"
+#include "common/base/error.h"
 #include "common/nn/bf16.h"
 
 namespace shoal::nn {
 
 Rows::Rows(int batch, int columns, Precision precision) : batch_(batch), columns_(columns) {
+  const int64_t numbers = int64_t{batch} * columns;
+  if (numbers > std::numeric_limits<int>::max()) {
+    throw UsageError(
+        "{} rows of {} numbers are {}; expected at most {} in a layer: choose a smaller "
+        "learner.batch, network.hidden or network.features",
+        batch, columns, numbers, std::numeric_limits<int>::max());
+  }
   f32_ = compute_ = MakeMemory(PlainF32({batch, columns}));
   if (precision == Precision::kBf16) {
     compute_ = MakeMemory(dnnl::memory::desc({batch, columns}, dnnl::memory::data_type::bf16,

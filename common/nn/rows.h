@@ -9,6 +9,7 @@ namespace shoal::nn {
 
 class Rows {
  public:
+  // Throws UsageError when an int does not hold size().
   Rows(int batch, int columns, Precision precision);
 
   int batch() const { return batch_; }

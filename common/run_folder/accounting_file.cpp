@@ -3,7 +3,9 @@
 
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string>
+#include <utility>
 
 #include "common/base/error.h"
 #include "common/base/files.h"
@@ -44,8 +46,14 @@ RunAccount ParseAccount(const std::string& text, const fs::path& path) {
       .stored_steps = members.Count("stored_steps"),
       .stored_records = members.Count("stored_records"),
       .ring_replaced = members.Has("ring_replaced") && members.Flag("ring_replaced")};
+  std::set<std::pair<uint32_t, uint64_t>> seen;
   for (size_t i = 0; i < members.List("sessions").size(); ++i) {
-    account.sessions.push_back(SessionOf(members.ObjectOf("sessions", i)));
+    const JsonMembers session = members.ObjectOf("sessions", i);
+    const SessionCounters& counters = account.sessions.emplace_back(SessionOf(session));
+    if (!seen.emplace(counters.actor, counters.session).second) {
+      session.Refuse("session", fmt::format("{} of actor {} is listed twice: expected it once",
+                                            counters.session, counters.actor));
+    }
   }
   return account;
 }

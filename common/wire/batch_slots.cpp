@@ -80,11 +80,12 @@ uint8_t* SlotWriter::FreeSlot() {
   return memory_.data() + SlotOffset(batch_bytes_, static_cast<uint32_t>(slots_.size()), *writing_);
 }
 
-BatchSlot SlotWriter::Fill(uint64_t request, uint64_t stored_records, uint64_t stored_steps) {
+BatchSlot SlotWriter::Fill(uint64_t request, uint64_t stored_records, uint64_t stored_steps,
+                           uint64_t unsampleable_steps) {
   CHECK(writing_ && request > 0 && !Held(request)) << request;
   const uint32_t slot = *writing_;
   writing_.reset();
-  slots_[slot] = {request, stored_records, stored_steps};
+  slots_[slot] = {request, stored_records, stored_steps, unsampleable_steps};
   RequestWord(memory_, slot).store(request, std::memory_order_release);
   return Word(slot);
 }
@@ -112,6 +113,7 @@ BatchSlot SlotWriter::Word(uint32_t slot) const {
           .request = slots_[slot].request,
           .stored_records = slots_[slot].stored_records,
           .stored_steps = slots_[slot].stored_steps,
+          .unsampleable_steps = slots_[slot].unsampleable_steps,
           .address = address_,
           .slot = slot};
 }

@@ -43,7 +43,8 @@ class SlotWriter {
   uint8_t* FreeSlot();
   // The batch of `request`, not held yet, lies whole in the slot that FreeSlot() returned last;
   // returns what to tell the learner.
-  BatchSlot Fill(uint64_t request, uint64_t stored_records, uint64_t stored_steps);
+  BatchSlot Fill(uint64_t request, uint64_t stored_records, uint64_t stored_steps,
+                 uint64_t unsampleable_steps = 0);
   // What was told when the slot of `request` was filled, if it is held.
   std::optional<BatchSlot> Held(uint64_t request) const;
   // Requests up to `released` are done with: their slots are free.
@@ -54,7 +55,7 @@ class SlotWriter {
  private:
   struct Slot {
     uint64_t request = 0;  // 0: free
-    uint64_t stored_records = 0, stored_steps = 0;
+    uint64_t stored_records = 0, stored_steps = 0, unsampleable_steps = 0;
   };
   BatchSlot Word(uint32_t slot) const;
 

@@ -80,6 +80,9 @@ struct BatchPart {
   uint64_t offset = 0, total_bytes = 0;
   uint64_t stored_records = 0;  // in the replay when the batch was drawn, over the whole run
   uint64_t stored_steps = 0;    // of these the step records: the run's env steps
+  // Of the steps that this replay has stored since its start those that no sample can begin with:
+  // the n - 1 before a time limit, and what waits for a later record.
+  uint64_t unsampleable_steps = 0;
   std::span<const uint8_t> payload;
 };
 
@@ -99,7 +102,7 @@ struct BatchSlot {
   uint64_t spec_hash = 0;
   uint64_t learner_session = 0;
   uint64_t request = 0;
-  uint64_t stored_records = 0, stored_steps = 0;  // as in BatchPart
+  uint64_t stored_records = 0, stored_steps = 0, unsampleable_steps = 0;  // as in BatchPart
   SlotAddress address;
   uint32_t slot = 0;
 };

@@ -101,12 +101,14 @@ PrivilegedInputs PrivilegedInputsOf(const Config& config, const ObservationSpec&
 std::string HindsightText(const RunConfig& run) {
   const std::vector<std::string> blocks = PrivilegedInputsOf(run.config, run.spec).replay_blocks;
   if (blocks.empty()) return "";
-  const double share = run.config.replay.movement_share;
-  return fmt::format(
-      "relabels goals with {}{}", fmt::join(blocks, ", "),
-      share > 0
-          ? fmt::format(" and draws {:.3g} % of the samples by how far it still moves", 100 * share)
-          : "");
+  const ReplayConfig& replay = run.config.replay;
+  const char* distance =
+      replay.movement == "displacement" ? "how far from there it ends" : "how far it still moves";
+  return fmt::format("relabels goals with {}{}", fmt::join(blocks, ", "),
+                     replay.movement_share > 0
+                         ? fmt::format(" and draws {:.3g} % of the samples by {}",
+                                       100 * replay.movement_share, distance)
+                         : "");
 }
 
 ordered_json ToJson(const PolicyInputs& inputs) {

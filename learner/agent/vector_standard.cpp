@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "learner/agent/vector_standard.h"
 
+#include <algorithm>
 #include <cstring>
 
 #include "common/nn/actor_critic_plan.h"
@@ -18,14 +19,22 @@ nn::NamedTensor Vector(const std::vector<float>& values) {
 
 }  // namespace
 
-VectorStandard::VectorStandard(bool on, int vector_size, int privileged_size) {
+VectorStandard::VectorStandard(const LearnerConfig& learner, int vector_size, int privileged_size)
+    : variance_floor_(float(learner.variance_floor)) {
+  const bool on = learner.normalise_vectors;
   if (on && vector_size > 0) observed_.emplace(Part{RunningMoments(vector_size), {}, {}});
   if (on && privileged_size > 0) privileged_.emplace(Part{RunningMoments(privileged_size), {}, {}});
 }
 
+std::vector<float> VectorStandard::Variance(const Part& part) const {
+  std::vector<float> variance = part.moments.Variance();
+  for (float& v : variance) v = std::max(v, variance_floor_);
+  return variance;
+}
+
 BatchView VectorStandard::Seen(const BatchView& batch) {
-  const auto scale = [](Part& part, std::span<float>* obs, std::span<float>* next_obs) {
-    const nn::VectorScale moved(part.moments.Mean(), part.moments.Variance());
+  const auto scale = [this](Part& part, std::span<float>* obs, std::span<float>* next_obs) {
+    const nn::VectorScale moved(part.moments.Mean(), Variance(part));
     const auto apply = [&](std::span<float>* x, std::vector<float>* y) {
       y->resize(x->size());
       moved.Apply(x->data(), *y);
@@ -48,7 +57,7 @@ void VectorStandard::Add(const BatchView& batch) {
 void VectorStandard::ExportTo(nn::TensorMap* policy) const {
   if (!observed_) return;
   (*policy)[nn::kObservationMean] = Vector(observed_->moments.Mean());
-  (*policy)[nn::kObservationVariance] = Vector(observed_->moments.Variance());
+  (*policy)[nn::kObservationVariance] = Vector(Variance(*observed_));
 }
 
 void VectorStandard::AddTo(AgentState* state) {

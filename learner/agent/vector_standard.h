@@ -2,7 +2,8 @@
 // Vectors as an algorithm's networks see them with learner.normalise_vectors: at about mean 0 and
 // deviation 1, by the moments of all vectors of earlier updates. Those of the observation belong to
 // the policy: actors and evaluations scale by those that came with their weights
-// (common/nn/vector_scale.h). Those of privileged blocks stay with the learner.
+// (common/nn/vector_scale.h). Those of privileged blocks stay with the learner. A variance below
+// learner.variance_floor counts as the floor, also in the policy's tensors.
 //
 // Dimensions: B batch, V vector size, P privileged size.
 #pragma once
@@ -10,6 +11,7 @@
 #include <optional>
 #include <vector>
 
+#include "common/config/config.h"
 #include "common/nn/safetensors.h"
 #include "common/wire/batch_schema.h"
 #include "learner/agent/agent_state.h"
@@ -20,8 +22,8 @@ namespace shoal::learner {
 // One thread.
 class VectorStandard {
  public:
-  // Off, or without vectors: they stay as they are.
-  VectorStandard(bool on, int vector_size, int privileged_size = 0);
+  // Without learner.normalise_vectors, or without vectors, they stay as they are.
+  VectorStandard(const LearnerConfig& learner, int vector_size, int privileged_size = 0);
 
   // The batch with vectors as networks see them; valid until the next call.
   BatchView Seen(const BatchView& batch);
@@ -39,6 +41,10 @@ class VectorStandard {
     std::vector<float> obs, next_obs;  // (B, V) or (B, P), scaled
   };
 
+  // (V) or (P): no value below the floor.
+  std::vector<float> Variance(const Part& part) const;
+
+  const float variance_floor_;
   // Nothing: they stay as they are.
   std::optional<Part> observed_, privileged_;
 };

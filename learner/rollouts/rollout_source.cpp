@@ -129,6 +129,7 @@ bool RolloutSource::Complete(SteadyTime now) {
   const int ready = core_.Ready(), expected = core_.Expected();
   if (ready == 0) return false;
   if (!first_ready_) first_ready_ = now;
+  // An update takes minibatches of learner.batch rows: fewer rows make none.
   if (int64_t{ready} * run_.config.ppo.rollout_steps < run_.config.learner.batch) return false;
   if (ready >= expected) return true;
   const std::chrono::duration<double> waited = now - *first_ready_;

@@ -16,7 +16,7 @@ EpisodeIndex::EpisodeIndex(const Ring& ring, const IndexOptions& options, const 
     if (ring.Slot(id).id == id) Added(id);
     if (alive) alive();
   }
-  became_sampleable_ = cut_episodes_ = 0;
+  became_sampleable_ = cut_episodes_ = steps_ = 0;
 }
 
 void EpisodeIndex::SetSelector(Selector* selector) {
@@ -55,6 +55,7 @@ void EpisodeIndex::Added(uint64_t id) {
   if (id > ring_.capacity()) Forget(id - ring_.capacity());
   const size_t slot = Slot(id);
   oldest_needed_[slot] = next_[slot] = 0;
+  steps_ += ring_.Header(id).kind == RecordKind::kStep ? 1 : 0;
   if (const uint64_t prev = Previous(id); prev != 0) next_[Slot(prev)] = id;
   const bool ended = (ring_.Header(id).flags & (kTerminated | kTruncated)) != 0;
   if (!options_.whole_episodes) Complete(id);

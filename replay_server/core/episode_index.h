@@ -20,6 +20,7 @@
 // Threads: none inside; one owner. Memory: 20 bytes per slot.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <optional>
 #include <unordered_map>
@@ -74,6 +75,10 @@ class EpisodeIndex {
   uint64_t sampleable() const { return sampleable_; }
   // How often a step became sampleable since construction.
   uint64_t became_sampleable() const { return became_sampleable_; }
+  // Steps added since construction that have not become sampleable: those that wait for a later
+  // record, and those that never will. A step that was there before and has become so counts
+  // against them.
+  uint64_t unsampleable() const { return steps_ - std::min(steps_, became_sampleable_); }
   // Episodes that ended neither terminated nor truncated, seen when the next one began or a record
   // was missing. Since construction.
   uint64_t cut_episodes() const { return cut_episodes_; }
@@ -117,6 +122,7 @@ class EpisodeIndex {
   std::vector<uint64_t> oldest_needed_;         // by slot; 0 = not a sample's first step (yet)
   std::vector<uint32_t> needed_by_;             // by slot: sampleable steps whose oldest it is
   uint64_t sampleable_ = 0, became_sampleable_ = 0, cut_episodes_ = 0;
+  uint64_t steps_ = 0;  // added since construction
 };
 
 }  // namespace shoal::replay

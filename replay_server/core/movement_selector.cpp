@@ -9,20 +9,21 @@
 namespace shoal::replay {
 namespace {
 
-// What moves farther in one step, or is no number, counts as this: sums of weights stay exact.
+// A longer distance, or one that is no number, counts as this: sums of weights stay exact.
 constexpr double kFarthest = 10;  // m
 
 }  // namespace
 
 MovementSelector::MovementSelector(const Ring& ring, const EpisodeIndex& index,
-                                   const GoalChange& goals, double share)
+                                   const GoalChange& goals, double share, MovementKind kind)
     : ring_(ring),
       index_(index),
       goals_(goals),
       share_(share),
+      kind_(kind),
       uniform_(ring, index),
       weights_(static_cast<size_t>(ring.capacity())),
-      movements_(static_cast<size_t>(ring.capacity())) {
+      ahead_(static_cast<size_t>(ring.capacity())) {
   CHECK(share >= 0 && share <= 1) << share;
 }
 
@@ -35,7 +36,7 @@ std::optional<Selection> MovementSelector::Draw(Random* random) {
   std::optional<Selection> selection;
   if (moving) {
     const size_t slot = weights_.Find(random->Below(weights_.total()));
-    selection = Selection{.id = movements_[slot].id, .probability = 0};
+    selection = Selection{.id = ahead_[slot].id, .probability = 0};
   } else {
     selection = uniform_.Draw(random);
   }
@@ -46,25 +47,27 @@ std::optional<Selection> MovementSelector::Draw(Random* random) {
   return selection;
 }
 
-// On to the first step whose movement is known, or the episode's end, and back: each step of an
-// episode is looked at once, whichever comes first.
+// On to the first step of which it is known what lies ahead, or the episode's end, and back: each
+// step of an episode is visited once, in whatever order the steps become sampleable.
 uint64_t MovementSelector::MovementFrom(uint64_t id) {
+  const bool path = kind_ == MovementKind::kPath;
   unknown_.clear();
   uint64_t next = id;
-  for (; next != 0 && movements_[Slot(next)].id != next; next = index_.Next(next)) {
+  for (; next != 0 && ahead_[Slot(next)].id != next; next = index_.Next(next)) {
     unknown_.push_back(next);
   }
-  uint64_t movement = next == 0 ? 0 : movements_[Slot(next)].micrometres;
+  const uint64_t at_the_end = path ? 0 : unknown_.empty() ? id : unknown_.back();
+  uint64_t value = next == 0 ? at_the_end : ahead_[Slot(next)].value;
   for (auto step = unknown_.rbegin(); step != unknown_.rend(); ++step) {
-    movement += MovementOf(*step);
-    movements_[Slot(*step)] = {*step, movement};
+    if (path) value += Micrometres(*step, *step);
+    ahead_[Slot(*step)] = {*step, value};
   }
-  return movement;
+  return path ? value : Micrometres(id, value);
 }
 
-uint64_t MovementSelector::MovementOf(uint64_t id) const {
-  const std::span<const float> after = goals_.Achieved(ring_.Record(id));
-  const std::span<const float> before = goals_.Achieved(ring_.Record(index_.Previous(id)));
+uint64_t MovementSelector::Micrometres(uint64_t from, uint64_t to) const {
+  const std::span<const float> after = goals_.Achieved(ring_.Record(to));
+  const std::span<const float> before = goals_.Achieved(ring_.Record(index_.Previous(from)));
   double squares = 0;
   for (size_t i = 0; i < after.size(); ++i) {
     const double difference = double{after[i]} - double{before[i]};

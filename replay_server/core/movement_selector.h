@@ -2,7 +2,11 @@
 // Samples after which something still happens: a share of them is drawn in proportion to how far
 // what is achieved still moves in its episode, the others uniformly.
 //
-//   movement(s) = sum over the steps k = s, ..., T of the episode of |achieved_k - achieved_(k-1)|
+//   path:          movement(s) = sum over the steps k = s, ..., T of |achieved_k - achieved_(k-1)|
+//   displacement:  movement(s) = |achieved_T - achieved_(s-1)|
+//
+// with T the episode's last step. An object that rattles between the fingers and ends where it was
+// has a path, but no displacement; hindsight learns from the latter.
 //
 // Where an object is to be moved most steps of an unskilled policy leave it alone, and every goal
 // of hindsight is reached before it begins. The idea of preferring episodes by what moved is that
@@ -22,18 +26,21 @@
 
 namespace shoal::replay {
 
+enum class MovementKind { kPath, kDisplacement };
+
 // Episodes must have ended: EpisodeIndex with whole_episodes. Movement is counted in whole
-// micrometres and depends on nothing that is older than the step, so that a server that starts
-// again with the same ring draws the same samples. Where nothing moves all are drawn uniformly.
+// micrometres and depends on nothing older than the observation before the step, so that a server
+// that starts again with the same ring draws the same samples. Where nothing moves all are drawn
+// uniformly.
 class MovementSelector final : public Selector {
  public:
   // Borrows all; share in [0, 1].
   MovementSelector(const Ring& ring, const EpisodeIndex& index, const GoalChange& goals,
-                   double share);
+                   double share, MovementKind kind = MovementKind::kPath);
 
   // Memory it takes for a ring of that many records.
   static constexpr uint64_t Bytes(uint64_t capacity) {
-    return WeightTree::Bytes(capacity) + capacity * sizeof(Movement);
+    return WeightTree::Bytes(capacity) + capacity * sizeof(Ahead);
   }
 
   void Added(uint64_t id) override;
@@ -43,24 +50,28 @@ class MovementSelector final : public Selector {
   uint64_t redraws() const override { return uniform_.redraws(); }
 
  private:
-  struct Movement {
-    uint64_t id = 0;           // of the step whose it is
-    uint64_t micrometres = 0;  // from it to its episode's end
+  // What lies ahead of a step.
+  struct Ahead {
+    uint64_t id = 0;  // of the step
+    uint64_t value =
+        0;  // kPath: micrometres to the episode's end; kDisplacement: id of the last step
   };
 
   size_t Slot(uint64_t id) const { return static_cast<size_t>(id % ring_.capacity()); }
   // Of a step of an ended episode, whose predecessor is there.
   uint64_t MovementFrom(uint64_t id);
-  uint64_t MovementOf(uint64_t id) const;  // of this step alone
+  // Between the records before step `from` and of step `to`.
+  uint64_t Micrometres(uint64_t from, uint64_t to) const;
 
   const Ring& ring_;
   const EpisodeIndex& index_;
   const GoalChange& goals_;
   const double share_;
+  const MovementKind kind_;
   UniformSelector uniform_;
-  WeightTree weights_;               // by slot; 0 = cannot be drawn
-  std::vector<Movement> movements_;  // by slot; of another id = not known yet
-  std::vector<uint64_t> unknown_;    // steps at hand
+  WeightTree weights_;             // by slot; 0 = cannot be drawn
+  std::vector<Ahead> ahead_;       // by slot; of another id = not known yet
+  std::vector<uint64_t> unknown_;  // steps at hand
 };
 
 }  // namespace shoal::replay

@@ -168,7 +168,7 @@ std::optional<DrawnBatch> ReplayCore::TryAnswer(uint8_t* data) {
     counters_.zero_rewards += static_cast<uint64_t>(std::ranges::count(view.reward, 0.0f));
     limiter_.Sampled();
   }
-  return DrawnBatch{*request, ring_.last_id(), ring_.stored_steps()};
+  return DrawnBatch{*request, ring_.last_id(), ring_.stored_steps(), index_.unsampleable()};
 }
 
 std::optional<SampleRequest> ReplayCore::NextRepeated() const {

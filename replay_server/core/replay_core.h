@@ -47,7 +47,7 @@ void CheckSampling(const RunConfig& run);
 // The answer to one request, without its bytes.
 struct DrawnBatch {
   SampleRequest request;
-  uint64_t stored_records = 0, stored_steps = 0;  // when it was drawn
+  uint64_t stored_records = 0, stored_steps = 0, unsampleable_steps = 0;  // when it was drawn
 };
 
 // Counts since construction, where not said otherwise.

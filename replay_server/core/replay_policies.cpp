@@ -18,6 +18,10 @@ HindsightGoal GoalOf(const std::string& kind) {
   return kind == "episode" ? HindsightGoal::kEpisode : HindsightGoal::kFuture;
 }
 
+MovementKind MovementOf(const std::string& kind) {
+  return kind == "displacement" ? MovementKind::kDisplacement : MovementKind::kPath;
+}
+
 }  // namespace
 
 ReplayPolicies MakePolicies(const RunConfig& run, const Ring& ring, const EpisodeIndex& index) {
@@ -32,8 +36,8 @@ ReplayPolicies MakePolicies(const RunConfig& run, const Ring& ring, const Episod
       run.spec, TaskOf(run), PrivilegedBlocksOf(run.config.learner, run.spec).all,
       run.config.end_on_success);
   if (config.movement_share > 0) {
-    policies.selector =
-        std::make_unique<MovementSelector>(ring, index, *policies.goals, config.movement_share);
+    policies.selector = std::make_unique<MovementSelector>(
+        ring, index, *policies.goals, config.movement_share, MovementOf(config.movement));
   }
   return policies;
 }

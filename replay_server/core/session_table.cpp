@@ -87,7 +87,10 @@ void SessionTable::TakeOver(const FormerServer& former) {
     const uint64_t ours = i ? at(*i).stored() : 0;
     if (!i) i = Add(counters.actor, counters.session);
     if (!i) return;  // a table as full as the former one's was: the next chunk will say so
-    if (counters.stored() > ours) counters.lost += counters.stored() - ours;
+    // Records that a learner on policy discarded are gone like the stored ones.
+    const uint64_t former_ones = counters.stored() + counters.discarded;
+    if (former_ones > ours) counters.lost += former_ones - ours;
+    counters.discarded = 0;
     Update(*i, counters);
   }
 }

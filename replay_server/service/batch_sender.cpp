@@ -127,6 +127,7 @@ bool BatchSender::SendBatch(const BufferedBatch& outgoing) {
   part.total_bytes = batch_bytes_;
   part.stored_records = outgoing.batch.stored_records;
   part.stored_steps = outgoing.batch.stored_steps;
+  part.unsampleable_steps = outgoing.batch.unsampleable_steps;
   for (part.part = 0; part.part < part.parts; ++part.part) {
     part.offset = part.part * kBulkPartBytes;
     part.payload = {outgoing.buffer + part.offset,

@@ -250,7 +250,8 @@ class ReplayService {
     if (slot == nullptr) return false;
     const std::optional<DrawnBatch> batch = Draw(slot);
     if (!batch) return false;
-    sender_.Send(slots.Fill(batch->request.request, batch->stored_records, batch->stored_steps));
+    sender_.Send(slots.Fill(batch->request.request, batch->stored_records, batch->stored_steps,
+                            batch->unsampleable_steps));
     report_.NoteSlotBatch();
     return true;
   }

@@ -141,6 +141,39 @@ TEST(OnPolicy, WithoutAnActorThatHangsUpdatesAreMadeOfTheOtherHalf) {
   ExpectBalanced(run.Json("meta.json"));
 }
 
+// Half of the environments make no minibatch: the update waits for the actor that hangs.
+TEST(OnPolicy, AnActorThatHangsIsWaitedForWhereTheOthersMakeNoMinibatch) {
+  const TrainingRun run;
+  RunningTraining training(run, run.OnPolicyCommand({{"env_steps", "10000000"},
+                                                     {"eval.interval", "1000000"},
+                                                     {"actors", "2"},
+                                                     {"envs_per_actor", "1"},
+                                                     {"ppo.rollout_steps", "64"},
+                                                     {"learner.batch", "128"},
+                                                     {"ppo.rollout_deadline", "0.1"}}));
+  ASSERT_TRUE(WaitForMoreUpdates(&training, 2)) << training.Output();
+  const json actor = training.reports().Await("actor");
+  ASSERT_FALSE(actor.is_null());
+  const pid_t victim = actor.at("pid").get<pid_t>();
+  ASSERT_EQ(kill(victim, SIGSTOP), 0);
+  const auto half_is_there = [](const json& r) { return r.at("rollouts_ready") == 1; };
+  const json first = training.reports().WaitFor("learner", half_is_there);
+  ASSERT_FALSE(first.is_null()) << training.Output();
+  const double long_after_the_deadline = first.at("t").get<double>() + 2;
+  const json later = training.reports().WaitFor(
+      "learner", [&](const json& r) { return r.at("t").get<double>() >= long_after_the_deadline; });
+  ASSERT_FALSE(later.is_null()) << training.Output();
+  EXPECT_EQ(Updates(later), Updates(first));
+  EXPECT_TRUE(half_is_there(later)) << later.dump();
+  ASSERT_EQ(kill(victim, SIGCONT), 0);
+  EXPECT_TRUE(WaitForMoreUpdates(&training, 3)) << training.Output();
+  training.Interrupt();
+  ASSERT_EQ(training.End(seconds(120)), kInterruptedExit) << training.Output();
+  const json meta = run.Json("meta.json");
+  ExpectBalanced(meta);
+  EXPECT_EQ(meta.at("restarts"), 0);
+}
+
 TEST(OnPolicy, ARunIsScaledAndSetWhileItGoesOn) {
   const TrainingRun run;
   RunningTraining training(

@@ -51,6 +51,7 @@ class BatchSourceTest : public testing::Test {
     part.total_bytes = schema.total_bytes();
     part.stored_records = stored_steps + 2;
     part.stored_steps = stored_steps;
+    part.unsampleable_steps = stored_steps / 10;
     part.payload = {data, schema.total_bytes()};
     source_->OnPart(part);
   }
@@ -61,7 +62,7 @@ class BatchSourceTest : public testing::Test {
     if (slot == nullptr) throw std::runtime_error("no free slot");
     const BatchSchema schema = BatchSchemaOf(run_);
     for (float& reward : schema.View(slot).reward) reward = static_cast<float>(request);
-    const BatchSlot word = replay.Fill(request, stored_steps + 2, stored_steps);
+    const BatchSlot word = replay.Fill(request, stored_steps + 2, stored_steps, stored_steps / 10);
     source_->OnSlot(word);
     return word;
   }
@@ -106,6 +107,7 @@ TEST_F(BatchSourceTest, HandsOutBatchesInTheOrderOfRequests) {
   EXPECT_EQ(first->request, 1u);
   EXPECT_EQ(first->view.stored_steps, 70u);
   EXPECT_EQ(first->stored_records, 72u);
+  EXPECT_EQ(first->unsampleable_steps, 7u);
   EXPECT_EQ(first->view.reward[3], 1.0f);
   const auto second = source.Next(Now());
   ASSERT_TRUE(second);
@@ -214,6 +216,7 @@ TEST_F(BatchSourceTest, ReadsABatchInSharedMemoryWhereItLies) {
   EXPECT_EQ(batch->request, 1u);
   EXPECT_EQ(batch->view.stored_steps, 70u);
   EXPECT_EQ(batch->stored_records, 72u);
+  EXPECT_EQ(batch->unsampleable_steps, 7u);
   EXPECT_EQ(batch->view.reward[3], 1.0f);
   EXPECT_EQ(source.counters().shared, true);
   EXPECT_EQ(source.counters().refused_slots, 0u);

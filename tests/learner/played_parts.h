@@ -40,7 +40,10 @@ class PlayedBatches final : public BatchStream {
     if (next_ == poisoned_request) view.reward[0] = std::numeric_limits<float>::quiet_NaN();
     const uint64_t steps = stored_steps(next_);
     view.stored_steps = steps;
-    return Batch{.view = view, .request = next_++, .stored_records = steps + 1};
+    return Batch{.view = view,
+                 .request = next_++,
+                 .stored_records = steps + 1,
+                 .unsampleable_steps = unsampleable_steps};
   }
   BatchCounters counters() const override { return {}; }
   uint64_t given() const { return next_ - 1; }
@@ -48,6 +51,7 @@ class PlayedBatches final : public BatchStream {
   std::function<void(uint64_t request)> before;
   uint64_t last_request = std::numeric_limits<uint64_t>::max();
   uint64_t poisoned_request = 0;
+  uint64_t unsampleable_steps = 0;
   std::function<uint64_t(uint64_t request)> stored_steps = [](uint64_t r) { return 10 * r; };
 
  private:

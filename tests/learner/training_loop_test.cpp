@@ -186,6 +186,19 @@ TEST_F(TrainingLoopTest, DrainingEndsWithTheUpdatesThatTheStoredStepsGrant) {
   EXPECT_TRUE(Checkpoints().contains("step_000000010"));
 }
 
+// Of the 48 steps that are stored 12 cannot be sampled: (36 - 8) * 1 samples, 7 batches of 4.
+TEST_F(TrainingLoopTest, DrainingGrantsNothingForStepsThatNoSampleBeginsWith) {
+  outlet_.on_evaluation = [this] { Say(RunState::kStopping); };
+  Train(1000, [&](PlayedBatches& batches) {
+    batches.unsampleable_steps = 12;
+    batches.stored_steps = [](uint64_t request) { return request < 3 ? 12 * request : 48; };
+    batches.before = [this](uint64_t request) {
+      if (request == 3) Say(RunState::kDraining);
+    };
+  });
+  EXPECT_EQ(updates_, 7u);
+}
+
 // Steps 8 to 48 of a line from 3 at step 0 to 1 at step 40: 32 (2.6 + 1) / 2 + 8 = 65.6 samples are
 // granted, 17 batches of 4.
 TEST_F(TrainingLoopTest, DrainingEndsWithTheUpdatesThatAScheduleGrants) {

@@ -9,6 +9,7 @@
 #include "common/nn/policy.h"
 #include "strided_encoder.h"
 #include "tests/learner/agent/agent_fixture.h"
+#include "tests/learner/agent/bar_pictures.h"
 #include "tests/support/temporary_folder.h"
 
 namespace shoal::learner {
@@ -98,17 +99,7 @@ TEST(OwnEncoder, IsAPlanFromWhichShapesAndParametersFollow) {
   EXPECT_EQ(small.output().height, 1) << "padding keeps what is small";
 }
 
-// A grey picture of 16x16 on which a bright bar stands at column x: place -1 is the left side, 1
-// the right one.
-constexpr int kSide = 16, kBar = 3;
-
-float DrawBar(int x, std::span<uint8_t> picture) {
-  for (int i = 0; i < kSide * kSide; ++i) {
-    const int column = i % kSide;
-    picture[size_t(i)] = column >= x && column < x + kBar ? 230 : 20;
-  }
-  return 2 * float(x) / float(kSide - kBar) - 1;
-}
+constexpr int kSide = 16;
 
 ObservationSpec BarSpec() {
   ObservationSpec spec;
@@ -140,7 +131,7 @@ TEST(OwnEncoder, LearnsABanditOnPictures) {
     const BatchView view = batch.View();
     for (size_t b = 0; b < view.reward.size(); ++b) {
       const auto picture = view.obs_frames.subspan(b * kSide * kSide, size_t{kSide} * kSide);
-      const float place = DrawBar(int(random.Next() % (kSide - kBar + 1)), picture);
+      const float place = DrawBar(int(random.Next() % (kSide - kBarWidth + 1)), kSide, picture);
       const float error = view.action[b] - place / 2;
       view.reward[b] = -error * error;
       view.bootstrap[b] = 0;

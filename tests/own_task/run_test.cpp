@@ -90,6 +90,23 @@ TEST(OwnTaskRun, TrainsFromItsOwnCameraWithAThresholdFromJson) {
   }
 }
 
+// Share of 200 episodes that end within the threshold of TrainPoint by a policy that has learned
+// nothing.
+double UntrainedSuccess(const std::string& policy) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder.path() / "untrained.json";
+  const ProgramResult result =
+      RunProgram({"shoal", "env", "random", "PointReachDense", "--task-library", Library(),
+                  "--policy", policy, "--episodes", "200", "--json", file.string()},
+                 std::chrono::seconds(60));
+  EXPECT_EQ(ExitCode(result), 0) << result.out << result.err;
+  for (const auto& point : nlohmann::json::parse(ReadFile(file)).at("success_by_threshold")) {
+    if (point.at("threshold") == 0.1) return point.at("success_rate");
+  }
+  ADD_FAILURE() << result.out;
+  return 1;
+}
+
 // The whole path of pixels: rendering, records, stacks, shifts, encoder, weights back. Where the
 // goal is can be told from the picture alone; a policy that does not see it ends within 0.1 m of
 // one goal in twelve.
@@ -107,6 +124,7 @@ TEST(OwnTaskRun, LearnsFromPixelsAlone) {
   ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
   const auto meta = nlohmann::json::parse(ReadFile(folder.path() / "point" / "meta.json"));
   EXPECT_EQ(meta.at("exit"), "target") << result.out;
+  for (const char* policy : {"noop", "random"}) EXPECT_LT(UntrainedSuccess(policy), 0.25) << policy;
 }
 
 }  // namespace

@@ -106,7 +106,7 @@ DeterministicAgent::DeterministicAgent(const Config& config, const ObservationSp
       average_(SetsOf(encoder_.get(), &actor_), replica),
       critic_optimiser_(SetsOf(encoder_.get(), &critic_), CriticStep(config.learner), replica),
       actor_optimiser_({&actor_.parameters()}, ActorStep(config.learner), replica),
-      standard_(config.learner.normalise_vectors, spec.VectorSize()),
+      standard_(config.learner, spec.VectorSize()),
       target_action_(size_t(rows_) * size_t(action_size_)),
       targets_(size_t(rows_)),
       q_gradients_(size_t(options.critics), targets_),

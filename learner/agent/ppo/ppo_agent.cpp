@@ -108,7 +108,7 @@ PpoAgent::PpoAgent(const Config& config, const ObservationSpec& spec, nn::Precis
       optimiser_(networks_.Sets(), {.rate = config.learner.learning_rate,
                                     .epsilon = kAdamEpsilon,
                                     .max_norm = config.learner.max_grad_norm}),
-      standard_(config.learner.normalise_vectors, vector_size_),
+      standard_(config.learner, vector_size_),
       rewards_(config.learner.discount),
       frames_(size_t(batch_size_) * frame_bytes_),
       vectors_(size_t(batch_size_) * size_t(vector_size_)),

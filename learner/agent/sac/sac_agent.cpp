@@ -43,6 +43,12 @@
 namespace shoal::learner {
 namespace {
 
+// H of Eq. 8.
+float TargetEntropy(const LearnerConfig& learner, int action_size) {
+  return float(learner.target_entropy != 0 ? learner.target_entropy
+                                           : learner.target_entropy_per_action * action_size);
+}
+
 class SacAgent final : public Agent {
  public:
   SacAgent(const Config& config, const ObservationSpec& spec, nn::Precision precision,
@@ -102,13 +108,11 @@ SacAgent::SacAgent(const Config& config, const ObservationSpec& spec, nn::Precis
       batch_size_(config.learner.batch),
       rows_(replica->Rows(batch_size_)),
       action_size_(spec.action_size),
-      target_entropy_(float(config.learner.target_entropy == 0 ? -spec.action_size
-                                                               : config.learner.target_entropy)),
+      target_entropy_(TargetEntropy(config.learner, spec.action_size)),
       bounds_(ValueBoundsOf(config.learner)),
       threads_(replica->threads()),
       networks_(config, spec, precision, replica),
-      standard_(config.learner.normalise_vectors, spec.VectorSize(),
-                PrivilegedSize(config.learner, spec)),
+      standard_(config.learner, spec.VectorSize(), PrivilegedSize(config.learner, spec)),
       critic_vectors_(config.learner, spec),
       gaussian_(rows_, spec.action_size),
       targets_(size_t(rows_)),

@@ -62,6 +62,17 @@ TEST(EvaluationJson, WhatATaskDoesNotHaveIsNull) {
   EXPECT_EQ(json["aggregate"]["length_mean"], 5);
 }
 
+TEST(EvaluationStream, EachEvaluationHasEpisodesOfItsOwn) {
+  const auto key = [](int64_t seed, uint64_t env_steps, uint64_t updates) {
+    return EvaluationStream(seed, env_steps, updates).Key(0);
+  };
+  EXPECT_EQ(key(7, 1000, 400), key(7, 1000, 400)) << "a checkpoint that is evaluated again";
+  EXPECT_NE(key(7, 1000, 400), key(7, 1000, 401)) << "another one after as many env steps";
+  EXPECT_NE(key(7, 1000, 400), key(7, 1001, 400));
+  EXPECT_NE(key(7, 1000, 400), key(8, 1000, 400));
+  EXPECT_NE(key(7, 1000, 400), (EpisodeStream{7, StreamRole::kFinalEnvironment, 0}.Key(0)));
+}
+
 // The whole way: nobody touches the block of FetchPush where nothing is done.
 TEST(EvaluationJson, FailedEpisodesHaveACauseAndAreCountedByIt) {
   RunConfig run = RunOf("FetchPush");

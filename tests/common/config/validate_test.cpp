@@ -98,6 +98,8 @@ TEST(Validate, APolicyWithoutEntropyTakesNoKeysOfIt) {
                 HasSubstr("learner.initial_temperature: the policy of learner.algorithm = "));
     EXPECT_THAT(refusal([](Config* c) { c->learner.target_entropy = -1; }),
                 HasSubstr("learner.target_entropy"));
+    EXPECT_THAT(refusal([](Config* c) { c->learner.target_entropy_per_action = 0; }),
+                HasSubstr("learner.target_entropy_per_action"));
     EXPECT_THAT(refusal([](Config* c) { c->learner.temperature = "fixed"; }),
                 HasSubstr("learner.temperature:"));
     EXPECT_THAT(refusal([](Config* c) { c->learner.temperature_learning_rate = 1e-3; }),
@@ -117,6 +119,35 @@ TEST(Validate, ATemperaturesFloorIsBelowItsStartAndOfOneThatMoves) {
                 c->learner.temperature = "fixed";
               }),
               HasSubstr("learner.temperature = fixed"));
+}
+
+TEST(Validate, TheTargetEntropyIsSetInOneWay) {
+  EXPECT_EQ(Refusal([](Config* c) { c->learner.target_entropy = -3; }), "");
+  EXPECT_EQ(Refusal([](Config* c) { c->learner.target_entropy_per_action = 0; }), "");
+  EXPECT_THAT(Refusal([](Config* c) {
+                c->learner.target_entropy = -3;
+                c->learner.target_entropy_per_action = 0;
+              }),
+              HasSubstr("learner.target_entropy = -3, learner.target_entropy_per_action = 0: "));
+}
+
+TEST(Validate, KeysOfWhatIsOffAreRefused) {
+  EXPECT_THAT(Refusal([](Config* c) { c->learner.variance_floor = 1e-4; }),
+              HasSubstr("learner.variance_floor = 0.0001 without learner.normalise_vectors"));
+  const auto floor = [](Config* c) {
+    c->observation.proprioception = true;
+    c->learner.normalise_vectors = true;
+    c->learner.variance_floor = 1e-4;
+  };
+  EXPECT_EQ(Refusal(floor), "");
+  EXPECT_THAT(Refusal([](Config* c) { c->replay.movement = "displacement"; }),
+              HasSubstr("replay.movement = displacement with replay.movement_share = 0"));
+  EXPECT_EQ(Refusal([](Config* c) {
+              c->replay.hindsight = "future";
+              c->replay.movement_share = 0.5;
+              c->replay.movement = "displacement";
+            }),
+            "");
 }
 
 TEST(Validate, FurtherEncodersAreOfSacFromPixels) {

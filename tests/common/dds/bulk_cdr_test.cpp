@@ -61,7 +61,7 @@ struct PartFields {
 
 std::vector<uint8_t> Part(const PartFields& fields) {
   return CdrWriter()
-      .Put<uint8_t>(1)
+      .Put<uint8_t>(2)
       .Put<uint32_t>(fields.part)
       .Put<uint64_t>(11)
       .Put<uint64_t>(12)
@@ -70,6 +70,7 @@ std::vector<uint8_t> Part(const PartFields& fields) {
       .Put<uint64_t>(fields.total_bytes)
       .Put<uint64_t>(16)
       .Put<uint64_t>(17)
+      .Put<uint64_t>(18)
       .Put<uint32_t>(fields.parts)
       .PutBytes(fields.payload)
       .bytes();
@@ -143,6 +144,7 @@ TEST(BulkCdr, ReadsEveryFieldOfAPart) {
   EXPECT_EQ(part.total_bytes, 20u);
   EXPECT_EQ(part.stored_records, 16u);
   EXPECT_EQ(part.stored_steps, 17u);
+  EXPECT_EQ(part.unsampleable_steps, 18u);
   EXPECT_EQ(Text(part.payload), "abcdefgh");
 }
 

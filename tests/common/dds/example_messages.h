@@ -62,6 +62,7 @@ inline void Fill(uint64_t n, BatchSlot* m) {
         .request = n,
         .stored_records = n + 8,
         .stored_steps = n + 9,
+        .unsampleable_steps = n + 23,
         .address = {.pid = 12, .descriptor = 13, .token = {n + 19, n + 20}, .bytes = n + 21},
         .slot = 14};
 }
@@ -75,6 +76,7 @@ inline void Fill(uint64_t n, BatchPart* m) {
         .total_bytes = n * 64 + m->payload.size() + 1,
         .stored_records = n + 8,
         .stored_steps = n + 9,
+        .unsampleable_steps = n + 23,
         .payload = m->payload};
 }
 inline void Fill(uint64_t n, WeightsPart* m) {
@@ -187,14 +189,15 @@ inline std::string Describe(const SampleRequest& m) {
                      m.refused_token);
 }
 inline std::string Describe(const BatchSlot& m) {
-  return fmt::format("{} {} {} {} {} {} {} {} {} {} {}", m.spec_hash, m.learner_session, m.request,
-                     m.stored_records, m.stored_steps, m.address.pid, m.address.descriptor,
-                     m.address.token[0], m.address.token[1], m.address.bytes, m.slot);
+  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {}", m.spec_hash, m.learner_session,
+                     m.request, m.stored_records, m.stored_steps, m.unsampleable_steps,
+                     m.address.pid, m.address.descriptor, m.address.token[0], m.address.token[1],
+                     m.address.bytes, m.slot);
 }
 inline std::string Describe(const BatchPart& m) {
-  return fmt::format("{} {} {} {} {} {} {} {} {} {}", m.spec_hash, m.learner_session, m.request,
+  return fmt::format("{} {} {} {} {} {} {} {} {} {} {}", m.spec_hash, m.learner_session, m.request,
                      m.part, m.parts, m.offset, m.total_bytes, m.stored_records, m.stored_steps,
-                     Bytes(m.payload));
+                     m.unsampleable_steps, Bytes(m.payload));
 }
 inline std::string Describe(const WeightsPart& m) {
   return fmt::format("{} {} {} {} {} {} {} {} {}", m.part, m.spec_hash, m.version.session,

@@ -105,6 +105,8 @@ TEST_F(AccountingFile, WhatIsWrongIsNamedWithItsMember) {
   EXPECT_THAT(refused("/sessions/1/lost", 0.5), names("'sessions[1].lost': expected a count"));
   EXPECT_THAT(refused("/sessions/1/actor", uint64_t{1} << 32), names("'sessions[1].actor'"));
   EXPECT_THAT(refused("/sessions/0/stored", 8), names("'sessions[0].stored': 8 of actor 1"));
+  EXPECT_THAT(refused("/sessions/1", good["sessions"][0]),
+              names("'sessions[1].session': 1700000000000000001 of actor 1 is listed twice"));
   for (const char* member : {"stored_steps", "stored_records", "sessions"}) {
     json object = good;
     object.erase(member);

@@ -26,7 +26,7 @@ class BatchSlotsTest : public testing::Test {
     uint8_t* slot = writer_.FreeSlot();
     if (slot == nullptr) throw std::runtime_error("no free slot");
     std::memset(slot, value, kBatchBytes);
-    return writer_.Fill(request, 100, 90);
+    return writer_.Fill(request, 100, 90, 7);
   }
   SlotReader Reader() const { return {writer_.address(), kSession, kBatchBytes}; }
 
@@ -53,6 +53,7 @@ TEST_F(BatchSlotsTest, ABatchIsReadWhereItWasWritten) {
   EXPECT_EQ(first.request, 1u);
   EXPECT_EQ(first.stored_records, 100u);
   EXPECT_EQ(first.stored_steps, 90u);
+  EXPECT_EQ(first.unsampleable_steps, 7u);
   EXPECT_EQ(first.address, writer_.address());
   const SlotReader reader = Reader();
   for (const auto& [word, value] : {std::pair(first, 0x11), std::pair(second, 0x22)}) {
@@ -88,6 +89,7 @@ TEST_F(BatchSlotsTest, WhatIsHeldIsSaidAgainInTheSameWords) {
   EXPECT_EQ(again->request, 5u);
   EXPECT_EQ(again->stored_records, word.stored_records);
   EXPECT_EQ(again->stored_steps, word.stored_steps);
+  EXPECT_EQ(again->unsampleable_steps, word.unsampleable_steps);
   EXPECT_FALSE(writer_.Held(4));
   EXPECT_FALSE(writer_.Held(0));
   writer_.Release(5);

@@ -55,6 +55,9 @@ TEST(RunInputs, WhatTheReplayGoesByIsPrivilegedToo) {
               HasSubstr("privileged, in training alone:\n"
                         "  the replay             relabels goals with achieved_goal and draws 50 % "
                         "of the samples by how far it still moves\n"));
+  run.config.replay.movement = "displacement";
+  EXPECT_THAT(DescribeInputs(run),
+              HasSubstr("50 % of the samples by how far from there it ends\n"));
   run.config.replay.hindsight = "none";
   run.config.replay.movement_share = 0;
   EXPECT_THAT(DescribeInputs(run), HasSubstr("privileged, in training alone: nothing\n"));

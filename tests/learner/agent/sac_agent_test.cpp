@@ -361,6 +361,22 @@ TEST(SacAgent, TheTemperatureFollowsIsFixedOrHasAFloor) {
   EXPECT_NEAR(After(config, 5, kTemperature), start, 1e-7);
 }
 
+// Eq. 8: L = temperature (entropy - target), before the update's step.
+TEST(SacAgent, TheTargetEntropyIsANumberOrAShareOfEachAction) {
+  const auto target = [](const std::function<void(LearnerConfig*)>& set) {
+    Config config = SmallConfig();
+    set(&config.learner);
+    const UpdateOutcome outcome =
+        SmallAgent(config)->Update(RandomBatch(SmallSpec(), config.learner.batch, 0).View());
+    return Get(outcome, kEntropy) -
+           Get(outcome, kTemperatureLoss) / config.learner.initial_temperature;
+  };
+  EXPECT_NEAR(target([](LearnerConfig*) {}), -2, 1e-4) << "one nat less for each of two actions";
+  EXPECT_NEAR(target([](LearnerConfig* l) { l->target_entropy = -3; }), -3, 1e-4);
+  EXPECT_NEAR(target([](LearnerConfig* l) { l->target_entropy_per_action = -0.5; }), -1, 1e-4);
+  EXPECT_NEAR(target([](LearnerConfig* l) { l->target_entropy_per_action = 0; }), 0, 1e-4);
+}
+
 TEST(SacAgent, EachPartHasItsLearningRate) {
   const auto moved = [](const std::function<void(LearnerConfig*)>& set) {
     Config config = SmallConfig();

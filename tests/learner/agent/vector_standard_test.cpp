@@ -24,6 +24,39 @@ TEST(RunningMoments, OfTwoBatchesAreThoseOfAllNumbers) {
   EXPECT_EQ(other.count(), 3);
 }
 
+TEST(VectorStandard, AVarianceBelowTheFloorCountsAsTheFloor) {
+  const ObservationSpec spec = SmallSpec();
+  const RandomBatch batch(spec, 6, 1);
+  const BatchView view = batch.View();
+  for (size_t i = 0; i < view.obs_vector.size(); i += 2) {
+    view.obs_vector[i] = 1 + 1e-4f * float(i);  // hardly varies
+    view.next_obs_vector[i] = 1.05f;
+    view.next_obs_vector[i + 1] = 0.5f;
+  }
+  RunningMoments moments(2);
+  moments.Add(view.obs_vector);
+  const float small = moments.Variance()[0], usual = moments.Variance()[1];
+  ASSERT_LT(small, 1e-6f);
+  ASSERT_GT(usual, 0.01f);
+  const auto look = [&](double floor) {
+    LearnerConfig learner;
+    learner.normalise_vectors = true;
+    learner.variance_floor = floor;
+    VectorStandard standard(learner, 2);
+    standard.Add(view);
+    nn::TensorMap policy;
+    standard.ExportTo(&policy);
+    const BatchView seen = standard.Seen(view);
+    return std::pair(Floats(policy, nn::kObservationVariance), seen.next_obs_vector[0]);
+  };
+  const auto [variance, seen] = look(0);
+  EXPECT_EQ(variance, moments.Variance());
+  EXPECT_EQ(seen, 10) << "far beyond its deviation of 0.0003";
+  const auto [floored, seen_with_floor] = look(1e-4);
+  EXPECT_EQ(floored, (std::vector<float>{1e-4f, usual})) << "actors scale by it, too";
+  EXPECT_NEAR(seen_with_floor, (1.05f - moments.Mean()[0]) / 0.01f, 0.01f);
+}
+
 class VectorStandardTest : public testing::TestWithParam<const char*> {
  protected:
   std::unique_ptr<Agent> Make(bool normalise) const {

@@ -21,6 +21,7 @@ class RolloutSourceTest : public testing::Test {
   RolloutSource& Make(int actors, double rollout_deadline) {
     RunConfig run = PpoRun(actors);
     run.config.ppo.rollout_deadline = rollout_deadline;
+    run.config.learner.batch = batch_;
     source_.emplace(run, folder_.path() / "run", kFirst.session, kFirst.update,
                     [this](const CreditsMessage& message) { Keep(message); });
     return *source_;
@@ -55,6 +56,7 @@ class RolloutSourceTest : public testing::Test {
   RolloutSourceTest() { std::filesystem::create_directory(folder_.path() / "run"); }
 
   const TemporaryFolder folder_;
+  int batch_ = 3;  // a rollout's steps
   Mutex mutex_;
   ConditionVariable changed_;
   std::map<uint32_t, uint64_t> told_ SHOAL_GUARDED_BY(mutex_);

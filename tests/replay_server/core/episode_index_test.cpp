@@ -92,6 +92,7 @@ TEST_F(EpisodeIndexTest, ATerminationMakesItsLastStepsSampleableATimeLimitDoesNo
     EXPECT_EQ(index_->Sampleable(4), terminated) << "two";
     EXPECT_EQ(index_->Sampleable(5), terminated) << "one";
     EXPECT_EQ(index_->sampleable(), terminated ? 4u : 2u);
+    EXPECT_EQ(index_->unsampleable(), terminated ? 0u : 2u) << "never of a time limit's last steps";
   }
 }
 
@@ -109,7 +110,11 @@ TEST_F(EpisodeIndexTest, WholeEpisodesAreSampleableOnceTheyEnd) {
   Open(/*stack=*/2, 100, /*n_step=*/1, /*whole_episodes=*/true);
   for (uint32_t i = 0; i < 4; ++i) Store(0, 0, i);  // steps 2, 3, 4
   EXPECT_EQ(index_->sampleable(), 0u);
+  EXPECT_EQ(index_->unsampleable(), 3u) << "they wait";
+  index_.emplace(*ring_, options_);
+  EXPECT_EQ(index_->unsampleable(), 0u) << "of steps before a restart nothing is known";
   Store(0, 0, 4, kTruncated);
+  EXPECT_EQ(index_->unsampleable(), 0u);
   EXPECT_EQ(index_->sampleable(), 4u) << "truncated";
   for (uint32_t i = 0; i < 3; ++i) Store(0, 1, i);
   EXPECT_EQ(index_->sampleable(), 4u);

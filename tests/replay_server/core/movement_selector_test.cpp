@@ -28,11 +28,14 @@ ObservationSpec PushSpec() {
 
 // A ring with the index and the selector over it, as a server has them.
 struct Stored {
-  explicit Stored(double share, const Ring& ring)
-      : index(ring, {.whole_episodes = true}), selector(ring, index, goals, share) {
+  Stored(double share, const Ring& ring, MovementKind movement = MovementKind::kPath)
+      : kind(movement),
+        index(ring, {.whole_episodes = true}),
+        selector(ring, index, goals, share, kind) {
     index.SetSelector(&selector);
   }
 
+  const MovementKind kind;
   const GoalChange goals{PushSpec(), tasks::FindTask("FetchPush")};
   EpisodeIndex index;
   MovementSelector selector;
@@ -63,12 +66,15 @@ class MovementSelectorTest : public testing::Test {
     std::map<uint64_t, double> movements;
     for (uint64_t id = ring_.oldest_id(); id <= ring_.last_id(); ++id) {
       if (!stored.index.Sampleable(id)) continue;
+      double path = 0, from_start = 0;
       for (uint64_t step = id; step != 0; step = stored.index.Next(step)) {
         const auto x = [&](uint64_t record) {
           return double{stored.goals.Achieved(ring_.Record(record))[0]};
         };
-        movements[id] += std::abs(x(step) - x(stored.index.Previous(step)));
+        path += std::abs(x(step) - x(stored.index.Previous(step)));
+        from_start = std::abs(x(step) - x(stored.index.Previous(id)));
       }
+      movements[id] = stored.kind == MovementKind::kPath ? path : from_start;
     }
     return movements;
   }
@@ -112,8 +118,22 @@ TEST_F(MovementSelectorTest, DrawsByHowFarTheObjectStillMoves) {
   }
 }
 
-TEST_F(MovementSelectorTest, WhatIsOverwrittenIsDrawnNoMore) {
-  Stored stored(1, ring_);
+// An object that goes back to where it was is displaced by nothing from its first step on.
+TEST_F(MovementSelectorTest, DrawsByHowFarFromThereTheObjectEnds) {
+  for (const double share : {1.0, 0.5}) {
+    Stored stored(share, ring_, MovementKind::kDisplacement);
+    Play(&stored, {0, 0.01, 0.02, 0, 0});
+    Play(&stored, {0.05, -0.05, 0.05, -0.05, 0});
+    Play(&stored, {0.03, 0, -0.03, 0.1, 0});
+    CheckDraws(share, &stored);
+  }
+}
+
+class MovementSelectorKinds : public MovementSelectorTest,
+                              public testing::WithParamInterface<MovementKind> {};
+
+TEST_P(MovementSelectorKinds, WhatIsOverwrittenIsDrawnNoMore) {
+  Stored stored(1, ring_, GetParam());
   for (int i = 0; i < 20; ++i) Play(&stored, {0.01 * (i % 3), 0, 0.02, 0, 0.001 * i});
   ASSERT_GT(ring_.oldest_id(), 1u);
   CheckDraws(1, &stored);
@@ -140,11 +160,11 @@ TEST_F(MovementSelectorTest, FindsNothingWhereNothingIs) {
 }
 
 // Also of the episode that is partly overwritten.
-TEST_F(MovementSelectorTest, AServerThatStartsAgainDrawsTheSameSteps) {
-  Stored before(0.7, ring_);
+TEST_P(MovementSelectorKinds, AServerThatStartsAgainDrawsTheSameSteps) {
+  Stored before(0.7, ring_, GetParam());
   for (int i = 0; i < 9; ++i) Play(&before, {0.01, 0, 0.001 * i, 0.02, 0});
   ASSERT_GT(ring_.oldest_id(), 1u);
-  Stored after(0.7, ring_);
+  Stored after(0.7, ring_, GetParam());
   Random a(5), b(5);
   for (int i = 0; i < 1000; ++i) {
     const Selection first = before.selector.Draw(&a).value();
@@ -153,6 +173,12 @@ TEST_F(MovementSelectorTest, AServerThatStartsAgainDrawsTheSameSteps) {
     ASSERT_EQ(first.probability, second.probability);
   }
 }
+
+INSTANTIATE_TEST_SUITE_P(Kinds, MovementSelectorKinds,
+                         testing::Values(MovementKind::kPath, MovementKind::kDisplacement),
+                         [](const auto& kind) {
+                           return kind.param == MovementKind::kPath ? "Path" : "Displacement";
+                         });
 
 // What a world that broke sends neither stops the server nor takes all draws.
 TEST_F(MovementSelectorTest, WhatIsNoNumberCountsAsTenMetres) {

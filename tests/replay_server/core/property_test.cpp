@@ -31,6 +31,7 @@ struct Case {
   bool goal_pictures = false;
   bool end_on_success = false;
   std::optional<double> movement_share{};  // of the samples, drawn by what still moves
+  MovementKind movement = MovementKind::kPath;
 };
 
 // Goals are points of the plane; the script's are spread over [-2, 2].
@@ -103,6 +104,7 @@ class History {
         end_on_success_(kind.end_on_success),
         hindsight_(kind.hindsight),
         movement_share_(kind.movement_share),
+        movement_kind_(kind.movement),
         random_(seed) {
     StartServer();
     for (uint32_t actor = 0; actor < 3; ++actor) StartSession(actor);
@@ -186,7 +188,7 @@ class History {
     server_ = std::make_unique<Server>(spec_, ring_options_, index_options_);
     kept_ = {};
     if (movement_share_) {
-      movement_.emplace(server_->ring, server_->index, goals_, *movement_share_);
+      movement_.emplace(server_->ring, server_->index, goals_, *movement_share_, movement_kind_);
       kept_.other = &*movement_;
     }
     server_->index.SetSelector(&kept_);
@@ -312,15 +314,22 @@ class History {
 
   // Of what is achieved, from that step to its episode's end.
   double Movement(uint64_t id) const {
-    double movement = 0;
-    for (const uint64_t step : oracle_.Episode(id)) {
-      if (step < id) continue;
-      const auto after = layout_.Vector(oracle_.all[step - 1].bytes.data()).subspan(2, 2);
-      const auto before =
-          layout_.Vector(oracle_.all[oracle_.all[step - 1].prev - 1].bytes.data()).subspan(2, 2);
-      movement += std::hypot(double{after[0]} - before[0], double{after[1]} - before[1]);
+    const auto achieved = [&](uint64_t record) {
+      return layout_.Vector(oracle_.all[record - 1].bytes.data()).subspan(2, 2);
+    };
+    const auto distance = [&](uint64_t from, uint64_t to) {
+      return std::hypot(double{achieved(to)[0]} - achieved(from)[0],
+                        double{achieved(to)[1]} - achieved(from)[1]);
+    };
+    const std::vector<uint64_t> episode = oracle_.Episode(id);
+    if (movement_kind_ == MovementKind::kDisplacement) {
+      return distance(oracle_.all[id - 1].prev, episode.back());
     }
-    return movement;
+    double path = 0;
+    for (const uint64_t step : episode) {
+      if (step >= id) path += distance(oracle_.all[step - 1].prev, step);
+    }
+    return path;
   }
 
   bool LacksItsGoalAlone(uint64_t id) const {
@@ -404,6 +413,7 @@ class History {
   const GoalChange goals_{spec_, TinyTask(), privileged_, end_on_success_};
   const std::optional<HindsightGoal> hindsight_;
   const std::optional<double> movement_share_;
+  const MovementKind movement_kind_;
   KeptSelector kept_;
   std::unique_ptr<Server> server_;
   std::optional<MovementSelector> movement_;  // over the server's ring
@@ -441,31 +451,33 @@ TEST_P(ReplayProperty, AgreesWithAnOracleThatKeepsEverything) {
 
 std::string CaseName(const testing::TestParamInfo<Case>& info) {
   static constexpr const char* kNames[] = {"Future", "Final", "Episode"};
-  const auto& [stack, n_step, hindsight, goal_pictures, end_on_success, movement_share] =
+  const auto& [stack, n_step, hindsight, goal_pictures, end_on_success, movement_share, movement] =
       info.param;
   return "Stack" + std::to_string(stack) + "NStep" + std::to_string(n_step) +
          (hindsight ? kNames[static_cast<int>(*hindsight)] : "") +
          (goal_pictures ? "GoalPictures" : "") + (end_on_success ? "EndOnSuccess" : "") +
-         (movement_share ? "Movement" : "");
+         (!movement_share                           ? ""
+          : movement == MovementKind::kDisplacement ? "Displacement"
+                                                    : "Movement");
 }
 
-INSTANTIATE_TEST_SUITE_P(StacksAndSteps, ReplayProperty,
-                         testing::Values(Case{1, 1}, Case{2, 1}, Case{3, 1}, Case{1, 3}, Case{3, 2},
-                                         Case{1, 1, HindsightGoal::kFuture},
-                                         Case{2, 3, HindsightGoal::kFuture},
-                                         Case{1, 1, HindsightGoal::kFinal},
-                                         Case{3, 1, HindsightGoal::kEpisode}, Case{1, 1, {}, true},
-                                         Case{3, 2, {}, true},
-                                         Case{1, 1, HindsightGoal::kFuture, true},
-                                         Case{2, 3, HindsightGoal::kEpisode, true},
-                                         Case{1, 1, HindsightGoal::kFuture, false, true},
-                                         Case{2, 3, HindsightGoal::kFuture, false, true},
-                                         Case{1, 2, HindsightGoal::kFinal, false, true},
-                                         Case{2, 1, HindsightGoal::kEpisode, false, true},
-                                         Case{1, 4, HindsightGoal::kEpisode, true, true},
-                                         Case{1, 1, HindsightGoal::kFuture, false, false, 0.5},
-                                         Case{2, 3, HindsightGoal::kFinal, true, true, 1}),
-                         CaseName);
+INSTANTIATE_TEST_SUITE_P(
+    StacksAndSteps, ReplayProperty,
+    testing::Values(
+        Case{1, 1}, Case{2, 1}, Case{3, 1}, Case{1, 3}, Case{3, 2},
+        Case{1, 1, HindsightGoal::kFuture}, Case{2, 3, HindsightGoal::kFuture},
+        Case{1, 1, HindsightGoal::kFinal}, Case{3, 1, HindsightGoal::kEpisode},
+        Case{1, 1, {}, true}, Case{3, 2, {}, true}, Case{1, 1, HindsightGoal::kFuture, true},
+        Case{2, 3, HindsightGoal::kEpisode, true}, Case{1, 1, HindsightGoal::kFuture, false, true},
+        Case{2, 3, HindsightGoal::kFuture, false, true},
+        Case{1, 2, HindsightGoal::kFinal, false, true},
+        Case{2, 1, HindsightGoal::kEpisode, false, true},
+        Case{1, 4, HindsightGoal::kEpisode, true, true},
+        Case{1, 1, HindsightGoal::kFuture, false, false, 0.5},
+        Case{2, 3, HindsightGoal::kFinal, true, true, 1},
+        Case{1, 1, HindsightGoal::kFuture, false, false, 0.5, MovementKind::kDisplacement},
+        Case{2, 3, HindsightGoal::kFinal, true, true, 1, MovementKind::kDisplacement}),
+    CaseName);
 
 }  // namespace
 }  // namespace shoal::replay

@@ -36,6 +36,16 @@ TEST_F(SessionTableTest, CountersOutliveTheTable) {
   EXPECT_FALSE(table.Find(3, 20).has_value());
 }
 
+TEST_F(SessionTableTest, WhatAFormerServerStoredOrDiscardedIsLost) {
+  SessionTable table(storage_);
+  table.Inherit(
+      {.sessions = {{.actor = 1, .session = 7, .highest = 20, .lost = 3, .discarded = 5}}});
+  const SessionCounters& counters = table.at(*table.Find(1, 7));
+  EXPECT_EQ(counters.lost, 20u);
+  EXPECT_EQ(counters.discarded, 0u);
+  EXPECT_EQ(counters.stored(), 0u);
+}
+
 TEST_F(SessionTableTest, AnUpdateCutShortLeavesTheFormerCounters) {
   {
     SessionTable table(storage_);

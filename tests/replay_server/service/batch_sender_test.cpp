@@ -77,6 +77,7 @@ class BatchSenderTest : public testing::Test {
     batch.request.request = request;
     batch.stored_records = 100;
     batch.stored_steps = 90;
+    batch.unsampleable_steps = 7;
     sender_.Send(batch, buffer);
   }
   // Waits until `count` batches have come to an end.
@@ -121,6 +122,7 @@ TEST_F(BatchSenderTest, CutsABatchIntoPartsThatCoverIt) {
     EXPECT_EQ(part.total_bytes, kBatchBytes);
     EXPECT_EQ(part.stored_records, 100u);
     EXPECT_EQ(part.stored_steps, 90u);
+    EXPECT_EQ(part.unsampleable_steps, 7u);
     EXPECT_LT(writer_.bytes_[i].size(), 1'000'000u);
     EXPECT_EQ(writer_.bytes_[i], std::vector<uint8_t>(writer_.bytes_[i].size(), 0x5a));
     offset += writer_.bytes_[i].size();

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// Trainings whose result is held to what policies achieve that have learned nothing. A learning
+// test that doing nothing or acting at random passes tests nothing.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "tests/support/program.h"
+#include "tests/support/training_run.h"
+
+namespace shoal {
+
+// Figures of two policies that have learned nothing: every action zero, and uniform random actions.
+// Members are those of `aggregate` in eval/*.json.
+struct Untrained {
+  nlohmann::json noop, random;
+
+  // Of the better one.
+  double Most(const char* figure) const {
+    return std::max(noop.at(figure).get<double>(), random.at(figure).get<double>());
+  }
+};
+
+// Measures them over 50 episodes of a task each, always the same ones.
+inline Untrained PlayUntrained(const std::string& task) {
+  const TemporaryFolder folder;
+  const auto play = [&](const std::string& policy) {
+    const std::filesystem::path file = folder.path() / (policy + ".json");
+    const ProgramResult result = RunProgram({"shoal", "env", "random", task, "--policy", policy,
+                                             "--episodes", "50", "--json", file.string()},
+                                            std::chrono::seconds(120));
+    EXPECT_EQ(ExitCode(result), 0) << result.out << result.err;
+    return nlohmann::json::parse(ReadFile(file)).at("aggregate");
+  };
+  return {.noop = play("noop"), .random = play("random")};
+}
+
+// What a run leaves.
+struct LearningResult {
+  nlohmann::json meta;
+  nlohmann::json aggregate;  // of the final evaluation, of the best checkpoint
+};
+
+// Trains with a preset, `keys` over its own. The run must end well, with a balanced account.
+inline LearningResult Learn(const std::string& preset,
+                            const std::map<std::string, std::string>& keys,
+                            std::chrono::seconds deadline) {
+  const TemporaryFolder folder;
+  std::vector<std::string> command{
+      "shoal",      "train",    "--preset", preset,
+      "--run-name", "learning", "--set",    "run_dir=" + folder.path().string()};
+  for (const auto& [key, value] : keys) {
+    command.insert(command.end(), {"--set", key + "=" + value});
+  }
+  const ProgramResult result = RunProgram(command, deadline);
+  EXPECT_EQ(ExitCode(result), 0) << result.out << result.err;
+  const std::filesystem::path run = folder.path() / "learning";
+  LearningResult learned;
+  learned.meta = nlohmann::json::parse(ReadFile(run / "meta.json"));
+  ExpectBalanced(learned.meta);
+  learned.aggregate = nlohmann::json::parse(ReadFile(run / "eval/final.json")).at("aggregate");
+  return learned;
+}
+
+// The final episodes succeed at least at this rate, and far more often than with either policy that
+// has learned nothing.
+inline void ExpectSuccess(const LearningResult& learned, const std::string& task, double least) {
+  constexpr double kMargin = 0.5;
+  const double rate = learned.aggregate.at("success_rate").get<double>();
+  EXPECT_GE(rate, least) << learned.aggregate.dump();
+  EXPECT_GE(rate, PlayUntrained(task).Most("success_rate") + kMargin);
+}
+
+}  // namespace shoal
