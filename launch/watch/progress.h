@@ -34,6 +34,7 @@ struct ProgressFigures {
   std::optional<double> learner_waits;  // the same for the learner
   std::optional<EvaluationPoint> last_evaluation, best;
   int processes = 0, restarts = 0;
+  uint64_t faulty_episodes = 0;  // of the training actors, over the whole run
 };
 
 // "12:05" or "1:02:03"; "-" when unknown.

@@ -87,6 +87,7 @@ void AddRunFigures(const ProgressFigures& figures, MetricsReport* report) {
   AddEvaluation("best_evaluation", figures.best, report);
   report->Add("processes", figures.processes);
   report->Add("restarts", figures.restarts);
+  report->Add("faulty_episodes", static_cast<double>(figures.faulty_episodes));
   report->AddResources();
 }
 
@@ -161,6 +162,7 @@ ProgressFigures FiguresOfView(const RunViewMessage& message, SteadyTime now) {
   figures.best = FindEvaluation(view, "best_evaluation");
   figures.processes = SaturatingCast<int>(own("processes").value_or(0));
   figures.restarts = SaturatingCast<int>(own("restarts").value_or(0));
+  figures.faulty_episodes = SaturatingCast<uint64_t>(own("faulty_episodes").value_or(0));
   figures.env_steps_per_second = figures.updates_per_second = std::nullopt;
   // What is shown again and again once no process is left tells of nothing that goes on.
   if (message.state == "evaluating" || message.state == "ended") return figures;

@@ -118,6 +118,7 @@ class RolloutCore final : private RecordTaker {
   void OnGap(const SessionCounters& session, uint32_t env) override;
   // The lane of an environment that this actor may host; null for any other.
   Lane* FindLane(uint32_t actor, uint32_t env);
+  void EndEpisode(Lane* lane);
   void TakeReset(const uint8_t* record, Lane* lane);
   bool TakeStep(const uint8_t* record, Lane* lane);
   void AddRow(const uint8_t* record, Lane* lane);
