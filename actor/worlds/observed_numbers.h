@@ -6,8 +6,8 @@
 //   guard | state vector | guard | achieved goal | guard | desired goal | guard
 //
 // Before each Read every number and every guard value is set to one bit pattern, a NaN that no
-// arithmetic makes; afterwards the guards must still have it, and no number may. Cost: some 200
-// stores and comparisons a control step, less than a ten-thousandth of a millisecond.
+// arithmetic makes; afterwards the guards must still have it, and no number may. Cost: 0.13 to 0.16
+// us a control step, of some hundred us that a step of the built-in tasks takes without pictures.
 #pragma once
 
 #include <span>

@@ -197,8 +197,8 @@ TEST_F(TroubledRun, ARelativeModelIsFoundFromAnyFolderAndAChangedOneIsNamed) {
   const ProgramResult result =
       Train("TroubledTalk", {"model=" + relative, "env_steps=300", "eval.final_episodes=0"});
   ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
-  EXPECT_EQ(Read("config.json").at("model"),
-            std::filesystem::absolute(relative).lexically_normal());
+  EXPECT_EQ(Read("config.json").at("model").get<std::string>(),
+            std::filesystem::absolute(relative).lexically_normal().string());
   const std::filesystem::path here = std::filesystem::current_path();
   std::filesystem::current_path("/");
   const auto eval = [&] {
