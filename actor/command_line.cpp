@@ -42,10 +42,11 @@ void AddOptions(CLI::App& app, Options* options) {
   app.add_option("--view-width", options->frames.width, "its width in pixels")
       ->needs(frames)
       ->check(CLI::Range(16, 3840));
-  auto* json = app.add_option("--json", options->json, "file for the result of --evaluate");
-  app.add_flag("--progress", options->progress,
-               "print after each episode of --evaluate how many have been played")
-      ->needs(evaluate, json);
+  app.add_option("--json", options->json,
+                 "file for the result of --evaluate or --describe, in place of standard output");
+  app.add_option("--progress", options->progress,
+                 "file that says after each episode of --evaluate how many have been played")
+      ->needs(evaluate);
 }
 
 }  // namespace

@@ -16,10 +16,9 @@ class App;
 namespace shoal::actor {
 
 struct Options {
-  std::string run, role = "train", config_json, checkpoint, json;
+  std::string run, role = "train", config_json, checkpoint, json, progress;
   uint32_t id = 0;
   CheckpointEvaluation evaluation;
-  bool progress = false;
   FrameRecorder::Options frames;
   bool describe = false, stop_with_input = false;
   dds::Reach reach;

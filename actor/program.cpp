@@ -2,6 +2,8 @@
 #include "actor/program.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -10,6 +12,7 @@
 #include "actor/evaluation/eval_actor.h"
 #include "actor/loop/training_actor.h"
 #include "actor/worlds/environment.h"
+#include "actor/worlds/episode_fault.h"
 #include "actor/worlds/physics_library.h"
 #include "common/base/command_line.h"
 #include "common/base/error.h"
@@ -47,10 +50,25 @@ double FrameMicroseconds(worlds::Environment& environment) {
   environment.Reset(StreamKey(0, StreamRole::kEvalEnvironment, 0),
                     out);  // the first frame prepares much
   const double before = environment.render_seconds();
-  for (int i = 0; i < kSteps; ++i) {
-    if (environment.Step(action, out).terminated) break;
+  int steps = 0;
+  try {
+    for (bool running = true; running && steps < kSteps; ++steps) {
+      const worlds::StepResult result = environment.Step(action, out);
+      running = !result.terminated && !result.truncated;
+    }
+  } catch (const worlds::EpisodeFault&) {  // training will count it
   }
-  return 1e6 * (environment.render_seconds() - before) / kSteps;
+  return 1e6 * (environment.render_seconds() - before) / std::max(1, steps);
+}
+
+// Whoever started this program reads its answer in a file: on standard output a task of the user's
+// may say something, too.
+void Answer(const Options& options, const std::string& json) {
+  if (options.json.empty()) {
+    std::cout << json << std::endl;
+  } else {
+    WriteFileAtomically(options.json, json + "\n");
+  }
 }
 
 int Describe(const Options& options) {
@@ -63,25 +81,22 @@ int Describe(const Options& options) {
   const auto environment = worlds::MakeEnvironment(config, render);
   nlohmann::ordered_json description = ToJson(environment->spec());
   description["frame_microseconds"] = FrameMicroseconds(*environment);
-  std::cout << description.dump(2) << std::endl;
+  Answer(options, description.dump(2));
   return 0;
 }
 
 int Evaluate(const Options& options) {
   CheckpointEvaluation evaluation = options.evaluation;
   if (!options.frames.file.empty()) evaluation.frames = options.frames;
-  if (options.progress) {
-    evaluation.on_ended = [asked = evaluation.episodes](int ended) {
-      std::cout << ended << " of " << asked << " episodes" << std::endl;
+  std::ofstream progress;
+  if (!options.progress.empty()) {
+    progress.open(options.progress, std::ios::app);
+    if (!progress) throw RuntimeError("cannot write '{}'", options.progress);
+    evaluation.on_ended = [&progress, asked = evaluation.episodes](int ended) {
+      progress << ended << " of " << asked << " episodes" << std::endl;
     };
   }
-  const std::string result =
-      EvaluateCheckpoint(options.run, options.checkpoint, evaluation).dump(2);
-  if (options.json.empty()) {
-    std::cout << result << std::endl;
-  } else {
-    WriteFileAtomically(options.json, result + "\n");
-  }
+  Answer(options, EvaluateCheckpoint(options.run, options.checkpoint, evaluation).dump(2));
   return 0;
 }
 

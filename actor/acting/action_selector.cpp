@@ -60,12 +60,13 @@ std::span<const float> ActionSelector::DrawnOf(int e) const {
   return std::span(drawn_).subspan(size_t(e) * action_size_, size_t(action_size_));
 }
 
-void ActionSelector::Select(Acting acting) {
+void ActionSelector::Select(Acting acting, const std::vector<bool>& asked) {
   if (version_.session == 0) acting = Acting::kUniform;
   nn::PolicyOutput all;
   if (acting != Acting::kUniform) all = policy_.Forward(envs_, frames_.data(), vectors_.data());
   const auto size = size_t(action_size_);
   for (int e = 0; e < envs_; ++e) {
+    if (!asked.empty() && !asked[size_t(e)]) continue;
     const size_t at = size_t(e) * size;
     nn::PolicyOutput output;
     if (!all.mean.empty()) output.mean = all.mean.subspan(at, size);

@@ -54,8 +54,9 @@ class ActionSelector {
   std::span<uint8_t> FrameStackOf(int e);
   std::span<float> VectorOf(int e);
 
-  // actions (E, A) in [-1, 1], valid until the next call.
-  void Select(Acting acting);
+  // actions (E, A) in [-1, 1], valid until the next call. `asked` (E): of these environments alone;
+  // the actions and the noise of the others stay. Empty = of all.
+  void Select(Acting acting, const std::vector<bool>& asked = {});
   std::span<const float> ActionOf(int e) const;
   // Of kExplore where the spec has drawn actions: as drawn, before it was clipped, and its
   // log-probability. Empty and 0 otherwise.

@@ -2,6 +2,7 @@
 #include "actor/acting/environments.h"
 
 #include "common/base/error.h"
+#include "common/config/spec_mismatch.h"
 
 namespace shoal::actor {
 
@@ -16,8 +17,7 @@ std::vector<std::unique_ptr<worlds::Environment>> MakeEnvironments(const RunConf
     environments.push_back(worlds::MakeEnvironment(run.config, render));
     const ObservationSpec& spec = environments.back()->spec();
     if (spec.Hash() != run.spec.Hash()) {
-      throw RuntimeError("this actor observes [{}], the run's config.json says [{}]",
-                         spec.Summary(), run.spec.Summary());
+      throw RuntimeError("{}", SpecMismatch(run, spec));
     }
   }
   return environments;

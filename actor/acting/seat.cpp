@@ -5,6 +5,7 @@
 #include <cmath>
 #include <utility>
 
+#include "actor/worlds/episode_fault.h"
 #include "common/base/check.h"
 
 namespace shoal::actor {
@@ -25,7 +26,13 @@ float Seat::Begin(uint64_t stream_key, worlds::ObservationOut out, int cut_after
   figures_ = {};
   cut_after_ = cut_after;
   last_action_.clear();
-  const float distance = environment_->Reset(stream_key, out);
+  running_ = false;
+  try {
+    distance_ = environment_->Reset(stream_key, out);
+  } catch (const worlds::EpisodeFault&) {
+    if (listener_ != nullptr) listener_->OnFault(input_.stack);
+    throw;
+  }
   const auto masses = environment_->drawn_masses();
   figures_.drawn_masses.assign(masses.begin(), masses.end());
   stack_.Reset(out.frame);
@@ -34,12 +41,19 @@ float Seat::Begin(uint64_t stream_key, worlds::ObservationOut out, int cut_after
   observed_.Copy(out.vector, input_.vector);
   running_ = true;
   if (listener_ != nullptr) listener_->OnBegin(stream_key, input_.stack);
-  return distance;
+  return distance_;
 }
 
 worlds::StepResult Seat::Step(std::span<const float> action, worlds::ObservationOut out) {
   CHECK(running_) << "a step without an episode";
-  worlds::StepResult result = environment_->Step(action, out);
+  worlds::StepResult result;
+  try {
+    result = environment_->Step(action, out);
+  } catch (const worlds::EpisodeFault&) {
+    EndFaulty();
+    throw;
+  }
+  distance_ = result.distance;
   if (figures_.length + 1 == cut_after_) result.truncated = !result.terminated;
   stack_.Push(out.frame);
   observed_.Copy(out.vector, input_.vector);
@@ -67,10 +81,21 @@ void Seat::AddToFigures(std::span<const float> action, const worlds::StepResult&
   ++figures_.length;
   figures_.episode_return += result.reward;
   if (running_) return;
+  CompleteFigures();
+  figures_.success = result.success;
+}
+
+void Seat::CompleteFigures() {
   // A sum until here. An episode of one step has no pair of actions to compare.
   if (figures_.length > 1) figures_.action_smoothness /= figures_.length - 1;
-  figures_.success = result.success;
-  figures_.final_distance = result.distance;
+  figures_.final_distance = distance_;
+}
+
+void Seat::EndFaulty() {
+  running_ = false;
+  CompleteFigures();
+  figures_.success = false;
+  if (listener_ != nullptr) listener_->OnFault(input_.stack);
 }
 
 }  // namespace shoal::actor

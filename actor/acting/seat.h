@@ -32,6 +32,9 @@ class SeatListener {
   // The episode's stream key; stack (I, H, W): the policy's first input of the episode.
   virtual void OnBegin(uint64_t stream_key, std::span<const uint8_t> stack) = 0;
   virtual void OnStep(const SeenStep& step) = 0;
+  // The episode ended at its last step, or at its beginning: the step after that was faulty. The
+  // stack is still that of then.
+  virtual void OnFault(std::span<const uint8_t> stack) = 0;
 };
 
 // Owns the environment, borrows the policy's input. One thread.
@@ -49,9 +52,11 @@ class Seat {
   // Starts the episode of a stream key; the observation is written to `out`, with every block, and
   // what the policy sees of it into the policy's input. After `cut_after` env steps it is
   // truncated, as by a time limit, if it still runs; 0 = its environment ends it. Returns the
-  // distance at the start. Errors: as of Environment.
+  // distance at the start. Errors: as of Environment; no episode runs then.
   float Begin(uint64_t stream_key, worlds::ObservationOut out, int cut_after = 0);
-  // One env step of the running episode, which it may end.
+  // One env step of the running episode, which it may end. Throws EpisodeFault: the episode has
+  // ended, truncated and without success, at the observation before; the step does not count, and
+  // neither `out` nor the policy's input was changed.
   worlds::StepResult Step(std::span<const float> action, worlds::ObservationOut out);
   // Of the episode that runs or has just ended, as Begin was told; 0 = it is whole.
   int cut_after() const { return cut_after_; }
@@ -68,6 +73,9 @@ class Seat {
 
  private:
   void AddToFigures(std::span<const float> action, const worlds::StepResult& result);
+  void EndFaulty();
+  // Of sums until the episode's end.
+  void CompleteFigures();
 
   std::unique_ptr<worlds::Environment> environment_;
   PolicyInput input_;
@@ -75,6 +83,7 @@ class Seat {
   FrameStack stack_;  // the first K*C channels of the input
   EpisodeFigures figures_;
   std::vector<float> last_action_;  // empty before the episode's first
+  float distance_ = 0;              // after the last observation
   int cut_after_ = 0;
   bool running_ = false;
   SeatListener* listener_ = nullptr;

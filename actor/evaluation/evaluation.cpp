@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -41,6 +42,7 @@ EvaluatedEpisode EpisodeOf(const EpisodeResult& result, bool has_success, bool h
                     .achieved = result.achieved,
                     .failure = std::string(result.failure ? NameOf(*result.failure) : "")};
   }
+  if (result.fault) episode.fault = worlds::NameOf(*result.fault);
   for (const worlds::DrawnMass& drawn : figures.drawn_masses) {
     episode.body_mass_kg.emplace_back(drawn.body, drawn.mass_kg);
   }
@@ -50,12 +52,16 @@ EvaluatedEpisode EpisodeOf(const EpisodeResult& result, bool has_success, bool h
 EvaluationAggregate Aggregate(const std::vector<EpisodeResult>& episodes, bool has_success) {
   const double n = static_cast<double>(episodes.size());
   double successes = 0, mean = 0, length = 0, distance = 0, variance = 0;
+  size_t faulty = 0, distances = 0;
   for (const EpisodeResult& result : episodes) {
     const EpisodeFigures& episode = result.figures;
     successes += episode.success;
     mean += episode.episode_return / n;
     length += episode.length / n;
-    distance += episode.final_distance / n;
+    faulty += result.fault.has_value();
+    if (!std::isfinite(episode.final_distance)) continue;  // no task of goals, or never begun
+    distance += episode.final_distance;
+    ++distances;
   }
   for (const EpisodeResult& result : episodes) {
     variance += std::pow(result.figures.episode_return - mean, 2) / n;
@@ -63,9 +69,10 @@ EvaluationAggregate Aggregate(const std::vector<EpisodeResult>& episodes, bool h
   EvaluationAggregate aggregate{.episodes = episodes.size(),
                                 .return_mean = mean,
                                 .return_std = std::sqrt(variance),
-                                .length_mean = length};
+                                .length_mean = length,
+                                .faulty_episodes = faulty};
   if (has_success) aggregate.success_rate = successes / n;
-  if (std::isfinite(distance)) aggregate.final_distance_mean = distance;
+  if (distances > 0) aggregate.final_distance_mean = distance / static_cast<double>(distances);
   return aggregate;
 }
 
@@ -106,52 +113,77 @@ void Evaluator::Listen(SeatListener* listener) {
   players_[0].seat.set_listener(listener);
 }
 
-void Evaluator::Begin(int e, int64_t episode, const EpisodeStream& stream) {
+void Evaluator::Begin(int e, const EpisodeStream& stream, Played* played) {
   Player& player = players_[size_t(e)];
-  player.episode = episode;
-  const uint64_t key = stream.Key(episode);
-  // Only a policy without weights draws: uniform random actions, apart from the environment's
-  // draws.
-  selector_.BeginEpisode(e, HashWords({key, static_cast<uint64_t>(StreamRole::kEvalPolicy)}));
-  player.seat.Begin(key, {frame_, vector_});
-  player.facts.Begin(vector_);
+  while (!player.seat.running() && played->begun < static_cast<int>(played->results.size())) {
+    player.episode = played->begun++;
+    player.begun = false;
+    const uint64_t key = stream.Key(player.episode);
+    // Only a policy without weights draws: uniform random actions, apart from the environment's
+    // draws.
+    selector_.BeginEpisode(e, HashWords({key, static_cast<uint64_t>(StreamRole::kEvalPolicy)}));
+    try {
+      player.seat.Begin(key, {frame_, vector_});
+      player.facts.Begin(vector_);
+      player.begun = true;
+    } catch (const worlds::EpisodeFault& fault) {
+      faults_.Count(fault);
+      End(player, fault.cause(), played);
+    }
+  }
+}
+
+void Evaluator::Step(int e, Played* played) {
+  Player& player = players_[size_t(e)];
+  try {
+    player.seat.Step(noop_.empty() ? selector_.ActionOf(e) : noop_, {frame_, vector_});
+  } catch (const worlds::EpisodeFault& fault) {
+    faults_.Count(fault);
+    End(player, fault.cause(), played);
+    return;
+  }
+  player.facts.Step(vector_);
+  if (!player.seat.running()) End(player, std::nullopt, played);
+}
+
+void Evaluator::End(const Player& player, std::optional<worlds::FaultCause> fault, Played* played) {
+  EpisodeResult& result = played->results[static_cast<size_t>(player.episode)];
+  result = {.seed = player.episode, .figures = player.seat.figures(), .fault = fault};
+  if (!player.begun) result.figures.final_distance = std::numeric_limits<double>::quiet_NaN();
+  played->ended[static_cast<size_t>(player.episode)] = true;
+  ++played->done;
+  if (!player.facts.applies()) return;
+  if (player.begun) {
+    result.desired = player.facts.desired();
+    result.achieved = player.facts.achieved();
+  }
+  if (result.figures.success) return;
+  result.failure = fault ? FailureCause::kNotFinite : player.facts.Cause();
 }
 
 std::vector<EpisodeResult> Evaluator::Play(int episodes, const EpisodeStream& stream,
                                            const std::function<bool()>& stop,
                                            const std::function<void(int ended)>& on_ended) {
   for (Player& player : players_) player.seat.Abandon();  // of a call that was stopped
-  std::vector<EpisodeResult> results(static_cast<size_t>(episodes));
-  std::vector<bool> ended(results.size());
+  Played played;
+  played.results.resize(static_cast<size_t>(episodes));
+  played.ended.resize(played.results.size());
   const int envs = static_cast<int>(players_.size());
-  int begun = 0, done = 0;
-  while (done < episodes) {
+  int told = 0;
+  while (played.done < episodes) {
     if (stop()) {
-      results.resize(static_cast<size_t>(std::ranges::find(ended, false) - ended.begin()));
-      return results;
+      const auto first_missing = std::ranges::find(played.ended, false);
+      played.results.resize(static_cast<size_t>(first_missing - played.ended.begin()));
+      return played.results;
     }
-    for (int e = 0; e < envs && begun < episodes; ++e) {
-      if (!players_[size_t(e)].seat.running()) Begin(e, begun++, stream);
-    }
+    for (int e = 0; e < envs; ++e) Begin(e, stream, &played);
     selector_.Select(Acting::kMean);
     for (int e = 0; e < envs; ++e) {
-      auto& [seat, facts, episode] = players_[size_t(e)];
-      if (!seat.running()) continue;
-      seat.Step(noop_.empty() ? selector_.ActionOf(e) : noop_, {frame_, vector_});
-      facts.Step(vector_);
-      if (seat.running()) continue;
-      EpisodeResult& result = results[static_cast<size_t>(episode)];
-      result = {.seed = episode, .figures = seat.figures()};
-      ended[static_cast<size_t>(episode)] = true;
-      ++done;
-      if (on_ended) on_ended(done);
-      if (!facts.applies()) continue;
-      result.desired = facts.desired();
-      result.achieved = facts.achieved();
-      if (!result.figures.success) result.failure = facts.Cause();
+      if (players_[size_t(e)].seat.running()) Step(e, &played);
     }
+    while (on_ended && told < played.done) on_ended(++told);
   }
-  return results;
+  return played.results;
 }
 
 EvaluationFile MakeEvaluation(const RunConfig& run, const EvaluationLabel& label,

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "actor/acting/action_selector.h"
+#include "actor/acting/fault_log.h"
 #include "actor/acting/seat.h"
 #include "actor/evaluation/failure_cause.h"
 #include "actor/evaluation/frame_recorder.h"
@@ -28,6 +29,9 @@ struct EpisodeResult {
   // and why the episode failed, if it did.
   std::vector<double> desired{}, achieved{};
   std::optional<FailureCause> failure{};
+  // Of a faulty episode, which has failed: one that ended, or could not begin, because a number of
+  // the simulation was not finite.
+  std::optional<worlds::FaultCause> fault{};
 };
 
 // Which episodes are played: episode k starts from StreamKey(seed, role, group, k). Train,
@@ -70,7 +74,8 @@ class Evaluator {
   // Plays `episodes` whole episodes, actions by the mean of the policy (or uniform random before
   // any weights). When `stop`, asked after each step, says so before they are done: those of the
   // first that are, up to one that is not, so that short episodes are not preferred. `on_ended` is
-  // told after each episode how many have ended by then.
+  // told after each episode how many have ended by then. Faulty episodes are logged, and are never
+  // so many that they are an error.
   std::vector<EpisodeResult> Play(int episodes, const EpisodeStream& stream,
                                   const std::function<bool()>& stop,
                                   const std::function<void(int ended)>& on_ended = {});
@@ -80,14 +85,26 @@ class Evaluator {
     Seat seat;
     FailureFacts facts;
     int64_t episode = 0;
+    bool begun = false;  // the episode has a first observation
   };
 
-  void Begin(int e, int64_t episode, const EpisodeStream& stream);
+  // What a call of Play has so far.
+  struct Played {
+    std::vector<EpisodeResult> results;
+    std::vector<bool> ended;
+    int begun = 0, done = 0;
+  };
+
+  // Gives environment `e` the next episode that can begin, if any is left.
+  void Begin(int e, const EpisodeStream& stream, Played* played);
+  void Step(int e, Played* played);
+  void End(const Player& player, std::optional<worlds::FaultCause> fault, Played* played);
 
   const RunConfig run_;
   const std::vector<float> noop_;  // the action of every step; empty = the policy's
   ActionSelector selector_;
   std::vector<Player> players_;
+  FaultLog faults_{/*max_share=*/2};
   // What an environment observed last: it is in the policy's input by then.
   std::vector<uint8_t> frame_;
   std::vector<float> vector_;

@@ -13,13 +13,13 @@ namespace {
 constexpr double kFallen = 0.05, kTouched = 0.01, kLifted = 0.03, kOnTheTable = 0.01;  // m
 constexpr double kTipped = 30 * std::numbers::pi / 180;                                // rad
 
-constexpr FailureCause kOfObjects[] = {FailureCause::kLeftTheTable,    FailureCause::kNeverTouched,
-                                       FailureCause::kNotLifted,       FailureCause::kDropped,
-                                       FailureCause::kTipped,          FailureCause::kPassedTheGoal,
-                                       FailureCause::kReachedThenLeft, FailureCause::kMovedAway,
-                                       FailureCause::kBesideTheGoal,   FailureCause::kStoppedShort};
-constexpr FailureCause kOfReaching[] = {FailureCause::kReachedThenLeft, FailureCause::kMovedAway,
-                                        FailureCause::kStoppedShort};
+constexpr FailureCause kOfObjects[] = {
+    FailureCause::kNotFinite,     FailureCause::kLeftTheTable,    FailureCause::kNeverTouched,
+    FailureCause::kNotLifted,     FailureCause::kDropped,         FailureCause::kTipped,
+    FailureCause::kPassedTheGoal, FailureCause::kReachedThenLeft, FailureCause::kMovedAway,
+    FailureCause::kBesideTheGoal, FailureCause::kStoppedShort};
+constexpr FailureCause kOfReaching[] = {FailureCause::kNotFinite, FailureCause::kReachedThenLeft,
+                                        FailureCause::kMovedAway, FailureCause::kStoppedShort};
 
 double Distance(const std::array<double, 3>& one, const std::array<double, 3>& other) {
   return std::hypot(one[0] - other[0], one[1] - other[1], one[2] - other[2]);
@@ -29,6 +29,8 @@ double Distance(const std::array<double, 3>& one, const std::array<double, 3>& o
 
 std::string_view NameOf(FailureCause cause) {
   switch (cause) {
+    case FailureCause::kNotFinite:
+      return "not_finite";
     case FailureCause::kLeftTheTable:
       return "left_the_table";
     case FailureCause::kNeverTouched:

@@ -7,6 +7,8 @@
 //
 // Of a failed episode, the first that fits; the z axis points up:
 //
+//   not_finite            a number of the simulation was not finite: the episode was faulty
+//
 //   with an object (a block `object` is recorded; p is its position)
 //     left_the_table      some p_t is 5 cm or more below p_0
 //     never_touched       no p_t is 1 cm or more from p_0
@@ -34,6 +36,7 @@
 namespace shoal::actor {
 
 enum class FailureCause {
+  kNotFinite,
   kLeftTheTable,
   kNeverTouched,
   kNotLifted,
@@ -65,7 +68,7 @@ class FailureFacts {
   // Where the episode should end and where it is, in m: as many numbers as the goal has.
   std::vector<double> desired() const { return Numbers(goal_); }
   std::vector<double> achieved() const { return Numbers(now_); }
-  // Of an episode that has ended without success. CHECK: applies, begun.
+  // Of an episode that has ended without success and without a fault. CHECK: applies, begun.
   FailureCause Cause() const;
 
  private:

@@ -3,8 +3,11 @@
 
 #include <cmath>
 
+#include "actor/worlds/custom_cameras.h"
+#include "actor/worlds/episode_fault.h"
 #include "actor/worlds/world_registry.h"
 #include "common/base/check.h"
+#include "common/base/error.h"
 #include "common/tasks/task_registry.h"
 
 namespace shoal::actor {
@@ -29,7 +32,7 @@ Config ViewConfig(const RunConfig& run, const FrameRecorder::Options& options) {
       camera = own->name;
       observation.custom_cameras[camera] = CustomOf(*own);
     } else {
-      camera = observation.pixels ? observation.cameras.front() : world->cameras().front().name;
+      camera = observation.pixels ? run.spec.cameras.front() : worlds::DefaultCamera(*world).name;
     }
   }
   observation.pixels = true;
@@ -51,10 +54,14 @@ std::unique_ptr<worlds::Environment> MakeView(const Config& config) {
 
 // What an env step takes in the world; 0 = unknown. Plays one step.
 uint32_t StepMicroseconds(worlds::Environment& environment, worlds::ObservationOut out) {
-  environment.Reset(0, out);
-  const double start = environment.simulated_seconds();
-  environment.Step(std::vector<float>(size_t(environment.spec().action_size), 0.0F), out);
-  return static_cast<uint32_t>(std::lround(1e6 * (environment.simulated_seconds() - start)));
+  try {
+    environment.Reset(0, out);
+    const double start = environment.simulated_seconds();
+    environment.Step(std::vector<float>(size_t(environment.spec().action_size), 0.0F), out);
+    return static_cast<uint32_t>(std::lround(1e6 * (environment.simulated_seconds() - start)));
+  } catch (const worlds::EpisodeFault&) {
+    return 0;
+  }
 }
 
 image::FrameStreamHeader HeaderOf(const ObservationSpec& seen, const ObservationSpec& view,
@@ -68,6 +75,11 @@ image::FrameStreamHeader HeaderOf(const ObservationSpec& seen, const Observation
           .view_width = static_cast<uint32_t>(view.width),
           .action_size = static_cast<uint32_t>(seen.action_size),
           .step_microseconds = step_microseconds};
+}
+
+// Equal episodes are equally faulty.
+[[noreturn]] void ThrowParted(const worlds::EpisodeFault& fault) {
+  throw RuntimeError("the view's environment went another way than the policy's: {}", fault.what());
 }
 
 // (3, H, W) to (H, W, 3).
@@ -92,13 +104,23 @@ FrameRecorder::FrameRecorder(const RunConfig& run, const Options& options)
       no_action_(static_cast<size_t>(run.spec.action_size), 0.0F) {}
 
 void FrameRecorder::OnBegin(uint64_t stream_key, std::span<const uint8_t> stack) {
-  view_->Reset(stream_key, {planes_, vector_});
+  try {
+    view_->Reset(stream_key, {planes_, vector_});
+  } catch (const worlds::EpisodeFault& fault) {
+    ThrowParted(fault);
+  }
   step_ = 0;
+  running_ = true;
   Write({.episode = episode_, .step = step_, .reward = 0, .flags = 0}, no_action_, stack);
 }
 
 void FrameRecorder::OnStep(const SeenStep& step) {
-  const worlds::StepResult result = view_->Step(step.action, {planes_, vector_});
+  worlds::StepResult result;
+  try {
+    result = view_->Step(step.action, {planes_, vector_});
+  } catch (const worlds::EpisodeFault& fault) {
+    ThrowParted(fault);
+  }
   CHECK(result.reward == step.reward) << "the view's environment went another way";
   ++step_;
   const uint32_t flags =
@@ -106,6 +128,17 @@ void FrameRecorder::OnStep(const SeenStep& step) {
   Write({.episode = episode_, .step = step_, .reward = step.reward, .flags = flags}, step.action,
         step.stack);
   if (step.ended) ++episode_;
+  running_ = !step.ended;
+}
+
+void FrameRecorder::OnFault(std::span<const uint8_t> stack) {
+  Write({.episode = episode_,
+         .step = running_ ? step_ + 1 : 0,
+         .reward = 0,
+         .flags = image::kShownEnd},
+        no_action_, stack);
+  ++episode_;
+  running_ = false;
 }
 
 void FrameRecorder::Write(const image::FrameRecordHeader& record, std::span<const float> action,

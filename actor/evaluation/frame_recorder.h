@@ -34,6 +34,9 @@ class FrameRecorder final : public SeatListener {
   void OnBegin(uint64_t stream_key, std::span<const uint8_t> stack) override;
   // CHECK that both environments earn the same.
   void OnStep(const SeenStep& step) override;
+  // Shows the last picture once more, as the episode's end: films show as many episodes as were
+  // played.
+  void OnFault(std::span<const uint8_t> stack) override;
 
  private:
   void Write(const image::FrameRecordHeader& record, std::span<const float> action,
@@ -45,6 +48,7 @@ class FrameRecorder final : public SeatListener {
   image::FrameStreamWriter writer_;
   std::vector<float> no_action_;
   uint32_t episode_ = 0, step_ = 0;
+  bool running_ = false;  // an episode has begun and has not ended
 };
 
 }  // namespace shoal::actor

@@ -25,8 +25,9 @@ ordered_json SuccessByThreshold(const tasks::Task& task,
   thresholds.insert(task.distance_threshold());
   ordered_json curve = ordered_json::array();
   for (const double threshold : thresholds) {
-    const auto successes = std::ranges::count_if(
-        episodes, [&](const EpisodeResult& e) { return e.figures.final_distance < threshold; });
+    const auto successes = std::ranges::count_if(episodes, [&](const EpisodeResult& e) {
+      return !e.fault && e.figures.final_distance < threshold;
+    });
     curve.push_back(
         {{"threshold", threshold},
          {"success_rate", static_cast<double>(successes) / static_cast<double>(episodes.size())}});
@@ -71,6 +72,7 @@ std::string RandomText(const ordered_json& result) {
   std::string text = fmt::format("{}: {} {} episodes, {}return {:.3f} +- {:.3f}, length {:.1f}\n",
                                  summary.task, all.episodes, result.at("policy").get<std::string>(),
                                  success, all.return_mean, all.return_std.value(), all.length_mean);
+  text += FaultyEpisodesText(all);
   const ordered_json& curve = result.at("success_by_threshold");
   if (curve.is_null()) return text;
   text += fmt::format("  final distance {:.4f} m; success by threshold:\n",

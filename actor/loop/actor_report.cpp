@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "actor/loop/actor_report.h"
 
+#include <fmt/core.h>
+
 namespace shoal::actor {
 
 const MetricsMessage& ActorReport::Make(const char* state) {
@@ -14,6 +16,7 @@ const MetricsMessage& ActorReport::Make(const char* state) {
   report_.Add("weights_update", static_cast<double>(parts_.selector.version().update));
   AddStages();
   AddEpisodes();
+  AddFaults();
   report_.AddResources();
   return report_.message();
 }
@@ -38,6 +41,13 @@ void ActorReport::AddStages() {
   report_.AddSeconds("publishing", parts_.sender.publish_seconds());
   report_.AddSeconds("waiting_credit", parts_.loop.blocked_seconds());
   report_.AddSeconds("weights", parts_.loop.weights_seconds());
+}
+
+void ActorReport::AddFaults() {
+  for (const worlds::FaultCause cause : worlds::kFaultCauses) {
+    report_.Add(fmt::format("faulty_episodes_{}", worlds::NameOf(cause)),
+                static_cast<double>(parts_.rollout.faults().count(cause)));
+  }
 }
 
 void ActorReport::AddEpisodes() {

@@ -34,6 +34,7 @@ class ActorReport {
   void AddSending();
   void AddStages();
   void AddEpisodes();
+  void AddFaults();
 
   const Parts parts_;
   MetricsReport report_;

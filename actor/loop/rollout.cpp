@@ -11,6 +11,11 @@
 #include "common/wire/scoped_seconds.h"
 
 namespace shoal::actor {
+namespace {
+
+constexpr int kMostAttempts = 100;  // to begin an episode
+
+}  // namespace
 
 Rollout::Options Rollout::Options::Of(const Config& config, uint32_t first_env) {
   const tasks::Task& task = tasks::FindTask(config.task);
@@ -18,7 +23,8 @@ Rollout::Options Rollout::Options::Of(const Config& config, uint32_t first_env) 
           .first_env = first_env,
           .own_random_steps = RandomStepsOfActor(config),
           .run_random_steps = static_cast<uint64_t>(config.exploration.random_steps),
-          .episode_steps = task.EnvStepsPerEpisode(task.ActionRepeat(config.action_repeat))};
+          .episode_steps = task.EnvStepsPerEpisode(task.ActionRepeat(config.action_repeat)),
+          .max_faulty_share = config.max_faulty_share};
 }
 
 Rollout::Rollout(const Options& options, const ObservationSpec& spec,
@@ -29,7 +35,8 @@ Rollout::Rollout(const Options& options, const ObservationSpec& spec,
       goal_pictures_(spec.goal_picture),
       made_(made),
       sink_(sink),
-      selector_(selector) {
+      selector_(selector),
+      faults_(options.max_faulty_share) {
   CHECK(!environments.empty());
   for (size_t e = 0; e < environments.size(); ++e) {
     const Seat::PolicyInput input{selector.FrameStackOf(int(e)), selector.VectorOf(int(e))};
@@ -38,21 +45,24 @@ Rollout::Rollout(const Options& options, const ObservationSpec& spec,
 }
 
 bool Rollout::TryStep() {
-  const int envs = static_cast<int>(slots_.size());
-  if (sink_.Room() < size_t(MostRecordsOfStep(goal_pictures_)) * slots_.size()) return false;
-  {
+  if (owed_.empty()) owed_.assign(slots_.size(), true);
+  while (const auto owing = static_cast<size_t>(std::ranges::count(owed_, true))) {
+    if (sink_.Room() < size_t(MostRecordsOfStep(goal_pictures_)) * owing) return false;
+    {
+      const ScopedSeconds timed(environment_seconds_);
+      BeginEpisodes();
+    }
+    {
+      const ScopedSeconds timed(inference_seconds_);
+      uniform_ = WarmingUp();
+      selector_.Select(uniform_ ? Acting::kUniform : Acting::kExplore, owed_);
+    }
     const ScopedSeconds timed(environment_seconds_);
-    BeginEpisodes();
+    for (size_t e = 0; e < slots_.size(); ++e) {
+      if (owed_[e]) owed_[e] = !StepOne(static_cast<int>(e));
+    }
   }
-  {
-    const ScopedSeconds timed(inference_seconds_);
-    uniform_ = WarmingUp();
-    selector_.Select(uniform_ ? Acting::kUniform : Acting::kExplore);
-  }
-  {
-    const ScopedSeconds timed(environment_seconds_);
-    for (int e = 0; e < envs; ++e) StepOne(e);
-  }
+  owed_.clear();
   env_steps_ += slots_.size();
   return true;
 }
@@ -80,7 +90,8 @@ void Rollout::BeginEpisodes() {
   const auto running = [](const Slot& slot) { return slot.seat.running(); };
   const bool together = std::ranges::none_of(slots_, running);
   for (int e = 0; e < static_cast<int>(slots_.size()); ++e) {
-    if (!running(slots_[size_t(e)])) BeginEpisode(e, together ? CutAfter(e) : 0);
+    if (owed_[size_t(e)] && !running(slots_[size_t(e)]))
+      BeginEpisode(e, together ? CutAfter(e) : 0);
   }
 }
 
@@ -90,16 +101,29 @@ int Rollout::CutAfter(int e) const {
   return steps < options_.episode_steps ? static_cast<int>(steps) : 0;
 }
 
-void Rollout::BeginEpisode(int e, int cut_after) {
+void Rollout::ResetSeat(int e, int cut_after, uint8_t* record) {
   Slot& slot = slots_[size_t(e)];
-  slot.episode = made_.TakeEpisode(static_cast<uint32_t>(e));
-  slot.actions.clear();
-  selector_.BeginEpisode(e, StreamKeyOf(StreamRole::kTrainPolicy, e));
+  // A task that cannot begin at all would be asked for ever where max_faulty_share allows it.
+  for (int attempts = 1;; ++attempts) {
+    slot.episode = made_.TakeEpisode(static_cast<uint32_t>(e));
+    slot.actions.clear();
+    selector_.BeginEpisode(e, StreamKeyOf(StreamRole::kTrainPolicy, e));
+    try {
+      RecordLayout::Header(record).distance =
+          slot.seat.Begin(StreamKeyOf(StreamRole::kTrainEnvironment, e),
+                          {layout_.Frame(record), layout_.Vector(record)}, cut_after);
+      return;
+    } catch (const worlds::EpisodeFault& fault) {
+      faults_.Count(fault);
+      if (attempts < kMostAttempts) continue;
+      throw NonFiniteError("{}; {} episodes in a row cannot begin", fault.what(), attempts);
+    }
+  }
+}
 
+void Rollout::BeginEpisode(int e, int cut_after) {
   uint8_t* record = sink_.BeginRecord();
-  RecordHeader& header = RecordLayout::Header(record);
-  header.distance = slot.seat.Begin(StreamKeyOf(StreamRole::kTrainEnvironment, e),
-                                    {layout_.Frame(record), layout_.Vector(record)}, cut_after);
+  ResetSeat(e, cut_after, record);
   if (goal_pictures_) {
     // The picture is known once the reset is: the reset waits while the goal goes first.
     reset_.assign(record, record + layout_.record_bytes());
@@ -119,15 +143,26 @@ void Rollout::PublishGoal(int e, uint8_t* record) {
   Publish(record);
 }
 
-void Rollout::StepOne(int e) {
+void Rollout::OnFault(int e, const worlds::EpisodeFault& fault) {
+  const Seat& seat = slots_[size_t(e)].seat;
+  faults_.Count(fault);
+  if (seat.cut_after() == 0 && seat.figures().length > 0) episodes_.Add(seat.figures());
+}
+
+bool Rollout::StepOne(int e) {
   Slot& slot = slots_[size_t(e)];
   uint8_t* record = sink_.BeginRecord();
   const std::span<const float> action = selector_.ActionOf(e);
   std::copy(action.begin(), action.end(), layout_.Action(record).begin());
   slot.actions.insert(slot.actions.end(), action.begin(), action.end());
   std::ranges::copy(selector_.DrawnOf(e), layout_.DrawnAction(record).begin());
-  const worlds::StepResult result =
-      slot.seat.Step(action, {layout_.Frame(record), layout_.Vector(record)});
+  worlds::StepResult result;
+  try {
+    result = slot.seat.Step(action, {layout_.Frame(record), layout_.Vector(record)});
+  } catch (const worlds::EpisodeFault& fault) {
+    OnFault(e, fault);  // the record that was begun is begun anew by whoever comes next
+    return false;
+  }
 
   RecordHeader& header = RecordLayout::Header(record);
   FillHeader(e, RecordKind::kStep, &header);
@@ -138,7 +173,11 @@ void Rollout::StepOne(int e) {
       static_cast<uint8_t>((result.terminated ? kTerminated : 0) |
                            (result.truncated ? kTruncated : 0) | (result.success ? kSuccess : 0));
   Publish(record);
-  if (!slot.seat.running() && slot.seat.cut_after() == 0) episodes_.Add(slot.seat.figures());
+  if (!slot.seat.running()) {
+    faults_.Ended();
+    if (slot.seat.cut_after() == 0) episodes_.Add(slot.seat.figures());
+  }
+  return true;
 }
 
 RolloutState Rollout::State() const {
@@ -150,6 +189,7 @@ RolloutState Rollout::State() const {
         {.episode = slot.episode,
          .running = slot.seat.running(),
          .cut_after = slot.seat.running() ? slot.seat.cut_after() : 0,
+         .owes = !owed_.empty() && owed_[size_t(e)],
          .noise = selector_.NoiseOf(e),
          .actions = slot.seat.running() ? slot.actions : std::vector<float>()});
   }
@@ -163,6 +203,10 @@ void Rollout::Restore(const RolloutState& state) {
                        slots_.size());
   }
   env_steps_ = state.env_steps;
+  const auto owes = [](const EpisodeState& episode) { return episode.owes; };
+  if (std::ranges::any_of(state.episodes, owes)) {
+    for (const EpisodeState& episode : state.episodes) owed_.push_back(episode.owes);
+  }
   for (size_t e = 0; e < slots_.size(); ++e) {
     if (state.episodes[e].running) PlayAgain(static_cast<int>(e), state.episodes[e]);
   }

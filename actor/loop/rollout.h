@@ -7,6 +7,11 @@
 //
 //   environment e of E truncates it after ceil(L (e + 1) / E) of the L env steps of a whole one.
 //
+// A faulty episode (actor/worlds/episode_fault.h) ends at its last finite observation. The step
+// that failed is not recorded; its environment begins another episode and steps in that, so that
+// every vector step still has one step record of each environment: budget, lockstep and rollouts on
+// policy count as without. The replay sees the next episode begin and closes the faulty one there.
+//
 // Borrows everything it is built from. One thread.
 #pragma once
 
@@ -16,6 +21,7 @@
 
 #include "actor/acting/action_selector.h"
 #include "actor/acting/episode_log.h"
+#include "actor/acting/fault_log.h"
 #include "actor/acting/seat.h"
 #include "actor/loop/rollout_state.h"
 #include "actor/sending/made_page.h"
@@ -42,7 +48,8 @@ class Rollout {
     // reached first, the one by its own env steps or the other by the run's, ends the warm-up: so
     // an actor that was restarted or joined late does not begin anew.
     uint64_t own_random_steps = 0, run_random_steps = 0;
-    int episode_steps = 0;  // L
+    int episode_steps = 0;        // L
+    double max_faulty_share = 0;  // FaultLog
 
     static Options Of(const Config& config, uint32_t first_env);
   };
@@ -51,8 +58,10 @@ class Rollout {
           std::vector<std::unique_ptr<worlds::Environment>> environments, MadePage& made,
           RecordSink& sink, ActionSelector& selector);
 
-  // One step of every environment, episodes beginning where the last ended. False, and nothing
-  // done, while the sink has no room for its records.
+  // One step of every environment, episodes beginning where the last ended. False while the sink
+  // has no room for its records: nothing is done then, but where a step was faulty, after which the
+  // next call goes on with the environments that still owe one. Throws Error (kNonFinite) when
+  // faulty episodes are no exception.
   bool TryStep();
 
   // Ends the running episodes where they are: the next step begins new ones. For a receiver that
@@ -71,6 +80,7 @@ class Rollout {
   // Of all that ended but those that were to be cut short, however they ended: of these only the
   // shortest would be whole.
   const EpisodeLog& episodes() const { return episodes_; }
+  const FaultLog& faults() const { return faults_; }
   StageSeconds seconds() const;
 
  private:
@@ -81,12 +91,16 @@ class Rollout {
   };
 
   bool WarmingUp() const;
-  // Begins an episode wherever none runs.
+  // Begins an episode wherever none runs and a step is owed.
   void BeginEpisodes();
   void BeginEpisode(int e, int cut_after);
+  // Resets the environment for the first of its next episodes that can begin; `record` gets it.
+  void ResetSeat(int e, int cut_after, uint8_t* record);
   // Of an episode that begins together with those of all others; 0 = it is not cut.
   int CutAfter(int e) const;
-  void StepOne(int e);
+  // False: the step was faulty and is not recorded.
+  bool StepOne(int e);
+  void OnFault(int e, const worlds::EpisodeFault& fault);
   void PlayAgain(int e, const EpisodeState& state);
   // Of the episode that local environment `e` plays.
   uint64_t StreamKeyOf(StreamRole role, int e) const;
@@ -104,6 +118,8 @@ class Rollout {
   std::vector<Slot> slots_;
   std::vector<uint8_t> reset_;  // a record, while its episode's goal is published
   EpisodeLog episodes_;
+  FaultLog faults_;
+  std::vector<bool> owed_;  // (E) of a vector step under way: who has not stepped; empty between
   double environment_seconds_ = 0, inference_seconds_ = 0;
   uint64_t env_steps_ = 0;
   bool uniform_ = false;  // the warm-up's actions are being played

@@ -34,9 +34,11 @@ ordered_json ToJson(const EpisodeState& state) {
   for (const float action : state.actions) actions.push_back(std::bit_cast<uint32_t>(action));
   ordered_json carried = ordered_json::array();
   for (const double noise : state.noise.carried) carried.push_back(std::bit_cast<uint64_t>(noise));
-  return {{"episode", state.episode},      {"running", state.running},
-          {"cut_after", state.cut_after},  {"noise", state.noise.stream},
-          {"carried_noise_bits", carried}, {"action_bits", actions}};
+  ordered_json json{{"episode", state.episode},      {"running", state.running},
+                    {"cut_after", state.cut_after},  {"noise", state.noise.stream},
+                    {"carried_noise_bits", carried}, {"action_bits", actions}};
+  if (state.owes) json["owes"] = true;
+  return json;
 }
 
 EpisodeState EpisodeFromJson(const ordered_json& json) {
@@ -44,6 +46,7 @@ EpisodeState EpisodeFromJson(const ordered_json& json) {
   json.at("episode").get_to(state.episode);
   json.at("running").get_to(state.running);
   json.at("cut_after").get_to(state.cut_after);
+  state.owes = json.value("owes", false);
   json.at("noise").get_to(state.noise.stream);
   for (const ordered_json& bits : json.at("carried_noise_bits")) {
     state.noise.carried.push_back(std::bit_cast<double>(bits.get<uint64_t>()));

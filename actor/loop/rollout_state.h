@@ -20,6 +20,7 @@ struct EpisodeState {
   uint32_t episode = 0;
   bool running = false;
   int cut_after = 0;              // env steps; 0 = the episode is not cut short
+  bool owes = false;              // of a vector step under way it has not made its step
   ActionSelector::Noise noise{};  // now
   std::vector<float> actions;     // (length, A) of the running episode
 

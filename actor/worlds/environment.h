@@ -38,8 +38,10 @@ class Environment {
  public:
   virtual ~Environment() = default;
   virtual const ObservationSpec& spec() const = 0;
-  // Reset and Step throw Error (kNonFinite) when an action, the simulation's state, a number of an
-  // observation or a reward is not finite: nothing of that step is to be used.
+  // Reset and Step throw EpisodeFault (actor/worlds/episode_fault.h) when the simulation's state, a
+  // number of an observation or a reward is not finite: the episode is over, nothing of that step
+  // is to be used, and what `out` had stays. They throw Error (kNonFinite) when an action is not
+  // finite.
   //
   // Starts the episode named by the stream key: equal keys give bit-identical episodes for equal
   // actions, whatever happened before. Returns the distance at the start.

@@ -14,4 +14,7 @@ namespace shoal::worlds {
 // The named ones, in the model's order. Throws Error when there is none.
 std::vector<CameraView> ModelCameras(const mjModel_& model);
 
+// The same; empty when there is none.
+std::vector<CameraView> NamedCameras(const mjModel_& model);
+
 }  // namespace shoal::worlds

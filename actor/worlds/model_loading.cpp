@@ -14,6 +14,7 @@
 
 #include "actor/worlds/engine_messages.h"
 #include "actor/worlds/model_files.h"
+#include "actor/worlds/newer_mjcf.h"
 #include "common/base/check.h"
 #include "common/base/error.h"
 #include "common/base/random.h"
@@ -77,7 +78,9 @@ ModelHandle Compile(const std::string& name, const std::string& user_file,
   char reason[kErrorBytes] = "";
   ModelHandle model(mj_loadXML(root.c_str(), folder.get(), reason, kErrorBytes));
   CHECK(model != nullptr || !user_file.empty()) << name << ": " << reason;
-  if (model == nullptr) throw RuntimeError("model file '{}' does not load: {}", user_file, reason);
+  if (model == nullptr) {
+    throw RuntimeError("model file '{}' does not load: {}", user_file, WithNewerMjcf(reason));
+  }
   return model;
 }
 

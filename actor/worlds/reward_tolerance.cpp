@@ -5,13 +5,20 @@
 #include <cmath>
 
 #include "common/base/check.h"
+#include "common/base/error.h"
 
 namespace shoal::worlds {
 
 double Tolerance(double x, const ToleranceShape& shape) {
   const double v = shape.value_at_margin;
-  CHECK(shape.low <= shape.high && shape.margin >= 0) << shape.low << ' ' << shape.high;
-  CHECK(v >= 0 && v < 1 && (v > 0 || shape.fall_off != FallOff::kGaussian)) << v;
+  if (!(shape.low <= shape.high && shape.margin >= 0)) {
+    throw UsageError("Tolerance: bounds [{}, {}], margin {}; expected low <= high, margin >= 0",
+                     shape.low, shape.high, shape.margin);
+  }
+  if (!(v >= 0 && v < 1 && (v > 0 || shape.fall_off != FallOff::kGaussian))) {
+    throw UsageError(
+        "Tolerance: value_at_margin is {}; expected 0 to below 1, above 0 of a gaussian", v);
+  }
   if (x >= shape.low && x <= shape.high) return 1;
   if (shape.margin == 0) return 0;
   const double d = (x < shape.low ? shape.low - x : x - shape.high) / shape.margin;

@@ -8,14 +8,24 @@
 #include <algorithm>
 #include <utility>
 
+#include "actor/worlds/episode_fault.h"
 #include "actor/worlds/model_loading.h"
 #include "common/base/check.h"
 #include "common/base/error.h"
 
 namespace shoal::worlds {
 
+namespace {
+
+ModelHandle Checked(ModelHandle model) {
+  if (model == nullptr) throw UsageError("World: the physics half gave no model");
+  return model;
+}
+
+}  // namespace
+
 World::World(ModelHandle model, const std::string& model_file)
-    : model_(std::move(model)),
+    : model_(Checked(std::move(model))),
       source_(model_file.empty() ? "the model" : fmt::format("model file '{}'", model_file)),
       data_(MakeData(*model_)),
       fingerprint_(ModelFingerprint(*model_)) {}
@@ -47,7 +57,10 @@ int World::SensorId(const std::string& name) const {
 }
 
 void World::PlaceSite(int site, std::span<const double> position) {
-  CHECK(position.size() == 3) << position.size();
+  if (position.size() != 3 || site < 0 || site >= model_->nsite) {
+    throw UsageError("PlaceSite: site {} of {} at {} numbers; expected a site of {} and 3 numbers",
+                     site, model_->nsite, position.size(), source_);
+  }
   std::copy(position.begin(), position.end(), model_->site_pos + 3 * site);
   model_->site_sameframe[site] =
       0;  // 1: same frame as the body, decided when the model was compiled
@@ -64,6 +77,21 @@ void World::LookAtGoal(const std::function<void()>& look) {
 
 double World::simulated_seconds() const { return data_->time; }
 
+void World::SetControls(std::span<const double> action) {
+  if (action.size() != static_cast<size_t>(model_->nu)) {
+    throw UsageError(
+        "SetControls: the task's action has {} numbers, {} has {} actuators; expected one each",
+        action.size(), source_, model_->nu);
+  }
+  std::ranges::copy(action, data_->ctrl);
+}
+
+void World::ForgetDivergence() {
+  for (const int kind : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC}) {
+    data_->warning[kind].number = 0;
+  }
+}
+
 void World::Advance(int count) {
   for (int i = 0; i < count; ++i) mj_step(model_.get(), data_.get());
   CheckState();
@@ -73,8 +101,9 @@ void World::CheckState() const {
   for (const int kind : {mjWARN_BADQPOS, mjWARN_BADQVEL, mjWARN_BADQACC}) {
     const mjWarningStat& warning = data_->warning[kind];
     if (warning.number > 0) {
-      throw NonFiniteError("{}: the simulation diverged: {}", source_,
-                           mju_warningText(kind, warning.lastinfo));
+      throw EpisodeFault(FaultCause::kDiverged,
+                         fmt::format("{}: the simulation diverged: {}", source_,
+                                     mju_warningText(kind, warning.lastinfo)));
     }
   }
 }

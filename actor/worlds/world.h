@@ -37,12 +37,15 @@ class World {
   virtual void Reset(Random* random) = 0;
   // `action`: the task's components, each in [-1, 1].
   virtual Outcome Step(std::span<const double> action) = 0;
-  // The task's blocks; goals are empty for tasks without goals.
+  // Writes every number of the task's blocks; goals are empty for tasks without goals. What is
+  // written beyond a span, and a number that is not written, end the program by name.
   virtual void Observe(std::span<double> observation, std::span<double> achieved_goal,
                        std::span<double> desired_goal) const = 0;
   // From now on nothing that is drawn shows the goal. False: it is shown, and cannot be hidden.
   virtual bool HideGoal() { return false; }
-  // The first is the one to look at by default. Lives as long as the world.
+  // The first is the one to look at by default; ModelCameras (actor/worlds/model_cameras.h) gives
+  // those that the model names. A camera of the model can be named in observation.cameras whether
+  // it is listed here or not. Lives as long as the world.
   virtual std::span<const CameraView> cameras() const = 0;
   // For the larger view of films, none of cameras(); null where one of these serves. Lives as long
   // as the world.
@@ -77,6 +80,9 @@ class World {
   int GeomId(const std::string& name) const;
   int SensorId(const std::string& name) const;
 
+  // Forgets that the state diverged: a new episode begins.
+  void ForgetDivergence();
+
   // Puts a site, such as a target's marker, at `position` (x, y, z in m, in the frame of the body
   // that carries it). The next forward call moves it. Writing site_pos alone is not enough: of a
   // site that the model puts at its body's origin the engine copies the body's place and never
@@ -84,10 +90,13 @@ class World {
   void PlaceSite(int site, std::span<const double> position);
 
  protected:
+  // Sets the model's controls to the action, one number for each actuator. Throws Error (kUsage)
+  // when the action has another number of components than the model has actuators.
+  void SetControls(std::span<const double> action);
   // `count` engine steps, then CheckState.
   void Advance(int count);
-  // Throws Error (kNonFinite) when the state became non-finite or too large: the engine then resets
-  // itself silently, so nothing after that can be trusted.
+  // Throws EpisodeFault when the state became non-finite or too large: the engine then resets
+  // itself silently, so nothing after that can be trusted. The episode then ends.
   void CheckState() const;
 
  private:

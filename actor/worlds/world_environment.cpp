@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "actor/worlds/custom_cameras.h"
+#include "actor/worlds/episode_fault.h"
 #include "actor/worlds/world_registry.h"
 #include "common/base/check.h"
 #include "common/base/error.h"
@@ -38,9 +39,18 @@ std::string RenderFingerprint(const std::string& model, const std::string& quali
   return fmt::format("{:016x}", hash);
 }
 
-void Size(const tasks::Block& block, std::vector<double>* exact, std::vector<float>* numbers) {
-  exact->assign(static_cast<size_t>(block.size()), 0.0);
-  numbers->assign(static_cast<size_t>(block.size()), 0.0f);
+// Runs what a physics half does; what it throws as not finite is a fault of the episode.
+template <class Act>
+auto FaultsOf(const tasks::Task& task, const Act& act) {
+  try {
+    return act();
+  } catch (const EpisodeFault& fault) {
+    throw EpisodeFault(fault.cause(), fmt::format("task {}: {}", task.name(), fault.what()));
+  } catch (const Error& error) {
+    if (error.exit_code() != static_cast<int>(ErrorKind::kNonFinite)) throw;
+    throw EpisodeFault(FaultCause::kDiverged,
+                       fmt::format("task {}: {}", task.name(), error.what()));
+  }
 }
 
 }  // namespace
@@ -52,17 +62,19 @@ WorldEnvironment::WorldEnvironment(const tasks::Task& task, std::unique_ptr<Worl
       end_on_success_(config.end_on_success),
       world_(std::move(world)),
       masses_(*world_, config.randomization.body_mass),
-      render_(std::move(render)) {
+      render_(std::move(render)),
+      observed_(task_),
+      state_(observed_.state().size()),
+      achieved_goal_(observed_.achieved_goal().size()),
+      desired_goal_(observed_.desired_goal().size()) {
   if (end_on_success_ && task.goal_size() == 0) {
     throw UsageError("end_on_success is true, but task {} has no goals; expected false",
                      task.name());
   }
-  Size(task.observation(), &observation_.exact, &observation_.numbers);
-  Size(task.achieved_goal(), &achieved_goal_.exact, &achieved_goal_.numbers);
-  Size(task.desired_goal(), &desired_goal_.exact, &desired_goal_.numbers);
   action_.resize(static_cast<size_t>(task.action_size()));
   if (render_ != nullptr) {
-    for (const std::string& name : config.observation.cameras) {
+    spec_.cameras = ChooseCameras(*world_, config.observation);
+    for (const std::string& name : spec_.cameras) {
       cameras_.push_back(ChooseCamera(*world_, config.observation, name));
     }
     if (config.replay.hindsight != "none") HideGoal("replay.hindsight from pixels");
@@ -108,7 +120,6 @@ void WorldEnvironment::BuildSpec(const ObservationConfig& observation) {
   spec_.action_size = task_.action_size();
   spec_.model_fingerprint = world_->fingerprint();
   if (render_ != nullptr) {
-    spec_.cameras = observation.cameras;
     spec_.channels = render_->channels_per_camera() * static_cast<int>(cameras_.size());
     spec_.height = render_->height();
     spec_.width = render_->width();
@@ -143,20 +154,27 @@ void WorldEnvironment::AddGoal(const tasks::Block& block, bool observed) {
 
 // Fetches the state's numbers, rounded once to what records carry.
 void WorldEnvironment::ReadWorld() {
-  world_->Observe(observation_.exact, achieved_goal_.exact, desired_goal_.exact);
-  RoundBlock(task_.observation(), &observation_);
-  RoundBlock(task_.achieved_goal(), &achieved_goal_);
-  RoundBlock(task_.desired_goal(), &desired_goal_);
+  FaultsOf(task_, [&] { observed_.Read(*world_); });
+  Round(task_.state_blocks(), observed_.state(), &state_);
+  Round({&task_.achieved_goal(), 1}, observed_.achieved_goal(), &achieved_goal_);
+  Round({&task_.desired_goal(), 1}, observed_.desired_goal(), &desired_goal_);
 }
 
-void WorldEnvironment::RoundBlock(const tasks::Block& block, Part* part) const {
-  for (size_t i = 0; i < part->exact.size(); ++i) {
-    part->numbers[i] = static_cast<float>(part->exact[i]);
-    if (std::isfinite(part->numbers[i])) continue;
-    throw NonFiniteError(
-        "task {}: {} of block '{}' is {} after {} control steps: not a finite "
-        "float32",
-        task_.name(), block.components[i].name, block.name, part->exact[i], control_step_);
+void WorldEnvironment::Round(std::span<const tasks::Block> blocks, std::span<const double> exact,
+                             std::vector<float>* rounded) const {
+  size_t at = 0;
+  for (const tasks::Block& block : blocks) {
+    for (const tasks::Component& component : block.components) {
+      (*rounded)[at] = static_cast<float>(exact[at]);
+      if (!std::isfinite((*rounded)[at])) {
+        throw EpisodeFault(
+            FaultCause::kObservation,
+            fmt::format("task {}: {} of block '{}' is {} after {} control steps: not a finite "
+                        "float32",
+                        task_.name(), component.name, block.name, exact[at], control_step_));
+      }
+      ++at;
+    }
   }
 }
 
@@ -164,8 +182,8 @@ void WorldEnvironment::Observe(ObservationOut out) {
   CHECK(out.vector.size() == static_cast<size_t>(spec_.RecordedVectorSize())) << out.vector.size();
   CHECK(out.frame.size() == static_cast<size_t>(spec_.FrameBytes())) << out.frame.size();
   auto to = out.vector.begin();
-  for (const Part* part : {&observation_, &achieved_goal_, &desired_goal_}) {
-    to = std::copy(part->numbers.begin(), part->numbers.end(), to);
+  for (const std::vector<float>* numbers : {&state_, &achieved_goal_, &desired_goal_}) {
+    to = std::ranges::copy(*numbers, to).out;
   }
   if (render_ != nullptr) Draw(out.frame);
 }
@@ -177,15 +195,18 @@ void WorldEnvironment::Draw(std::span<uint8_t> frame) {
 
 double WorldEnvironment::Distance() const {
   if (task_.goal_size() == 0) return std::numeric_limits<double>::quiet_NaN();
-  return task_.Distance(achieved_goal_.numbers, desired_goal_.numbers);
+  return task_.Distance(achieved_goal_, desired_goal_);
 }
 
 float WorldEnvironment::Reset(uint64_t stream_key, ObservationOut out) {
   Random random(stream_key);
   masses_.Draw(&random, world_.get());
-  world_->Reset(&random);
+  world_->ForgetDivergence();
   control_step_ = 0;
-  if (!goal_picture_.empty()) world_->LookAtGoal([this] { Draw(goal_picture_); });
+  FaultsOf(task_, [&] {
+    world_->Reset(&random);
+    if (!goal_picture_.empty()) world_->LookAtGoal([this] { Draw(goal_picture_); });
+  });
   ReadWorld();
   Observe(out);
   return static_cast<float>(Distance());
@@ -209,7 +230,7 @@ void WorldEnvironment::CheckAction(std::span<const float> action) {
 
 // One control step: adds its reward, replaces the rest.
 void WorldEnvironment::StepWorld(StepResult* result) {
-  const World::Outcome outcome = world_->Step(action_);
+  const World::Outcome outcome = FaultsOf(task_, [&] { return world_->Step(action_); });
   ++control_step_;
   ReadWorld();
   const double distance = Distance();
@@ -223,8 +244,10 @@ void WorldEnvironment::StepWorld(StepResult* result) {
   result->terminated = outcome.terminated || (end_on_success_ && result->success);
   result->truncated = !result->terminated && control_step_ == task_.episode_length();
   if (!std::isfinite(result->reward)) {
-    throw NonFiniteError("task {}: the reward is {} after {} control steps: not a finite float32",
-                         task_.name(), result->reward, control_step_);
+    throw EpisodeFault(
+        FaultCause::kReward,
+        fmt::format("task {}: the reward is {} after {} control steps: not a finite float32",
+                    task_.name(), result->reward, control_step_));
   }
 }
 

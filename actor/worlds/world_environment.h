@@ -11,6 +11,7 @@
 #include "actor/worlds/camera_view.h"
 #include "actor/worlds/environment.h"
 #include "actor/worlds/mass_randomization.h"
+#include "actor/worlds/observed_numbers.h"
 #include "actor/worlds/render_context.h"
 #include "actor/worlds/world.h"
 #include "common/tasks/task.h"
@@ -20,9 +21,10 @@ namespace shoal::worlds {
 class WorldEnvironment final : public Environment {
  public:
   // `render` null = no pixels, whatever the configuration says of
-  // cameras. Of `config` it takes observation, randomization, action_repeat, end_on_success and
-  // whether there is hindsight. Throws Error (kUsage) on a camera, goal mode or body that does not
-  // exist, and on episodes that are to end on a success which the task does not have.
+  // cameras; which cameras: ChooseCameras (actor/worlds/custom_cameras.h). Of `config` it takes
+  // observation, randomization, action_repeat, end_on_success and whether there is hindsight.
+  // Throws Error (kUsage) on a camera, goal mode or body that does not exist, and on episodes that
+  // are to end on a success which the task does not have.
   WorldEnvironment(const tasks::Task& task, std::unique_ptr<World> world, const Config& config,
                    std::shared_ptr<RenderContext> render);
 
@@ -35,12 +37,6 @@ class WorldEnvironment final : public Environment {
   std::span<const uint8_t> goal_picture() const override { return goal_picture_; }
 
  private:
-  // The state vector or a goal: the world's numbers, and these as records carry them.
-  struct Part {
-    std::vector<double> exact;
-    std::vector<float> numbers;
-  };
-
   // Pictures must not show the goal that was meant where samples get goals of hindsight, and where
   // a picture of its own shows it.
   void HideGoal(const char* why);
@@ -51,7 +47,8 @@ class WorldEnvironment final : public Environment {
   void CheckAction(std::span<const float> action);
   void StepWorld(StepResult* result);
   void ReadWorld();
-  void RoundBlock(const tasks::Block& block, Part* part) const;
+  void Round(std::span<const tasks::Block> blocks, std::span<const double> exact,
+             std::vector<float>* rounded) const;
   void Observe(ObservationOut out);
   void Draw(std::span<uint8_t> frame);
   // NaN without goals.
@@ -67,7 +64,8 @@ class WorldEnvironment final : public Environment {
   bool goal_hidden_ = false;
   ObservationSpec spec_;
   std::vector<uint8_t> goal_picture_;  // (C, H, W); empty without
-  Part observation_, achieved_goal_, desired_goal_;
+  ObservedNumbers observed_;  // as the world gives them; rounded once to what records carry:
+  std::vector<float> state_, achieved_goal_, desired_goal_;
   std::vector<double> action_;
   double render_seconds_ = 0;
   int control_step_ = -1;  // since the reset; -1 = never reset

@@ -8,6 +8,7 @@
 #include "actor/worlds/ball_in_cup_catch.h"
 #include "actor/worlds/cartpole_swingup.h"
 #include "actor/worlds/cheetah_run.h"
+#include "actor/worlds/custom_cameras.h"
 #include "actor/worlds/fetch_object_world.h"
 #include "actor/worlds/fetch_reach.h"
 #include "actor/worlds/finger_spin.h"
@@ -15,6 +16,7 @@
 #include "actor/worlds/reacher_easy.h"
 #include "actor/worlds/walker_walk.h"
 #include "common/base/error.h"
+#include "common/tasks/task_library.h"
 
 namespace shoal::worlds {
 namespace {
@@ -49,9 +51,24 @@ constexpr Registration kWorlds[] = {
 };
 
 // Added by AddWorld.
-std::map<std::string, WorldMaker>& AddedWorlds() {
-  static std::map<std::string, WorldMaker> worlds;
+struct AddedWorld {
+  WorldMaker make;
+  std::string library_folder;
+};
+std::map<std::string, AddedWorld>& AddedWorlds() {
+  static std::map<std::string, AddedWorld> worlds;
   return worlds;
+}
+
+std::unique_ptr<World> MakeAdded(const std::string& name, const AddedWorld& added,
+                                 WorldOptions options) {
+  options.library_folder = added.library_folder;
+  std::unique_ptr<World> world = added.make(options);
+  if (world == nullptr) {
+    throw UsageError("physics half '{}': the function given to AddWorld returned no world", name);
+  }
+  CheckCameras(*world);
+  return world;
 }
 
 bool IsOurs(const std::string& name) {
@@ -62,7 +79,11 @@ bool IsOurs(const std::string& name) {
 }  // namespace
 
 void AddWorld(const std::string& name, WorldMaker physics_half) {
-  if (IsOurs(name) || !AddedWorlds().emplace(name, physics_half).second) {
+  if (name.empty() || physics_half == nullptr) {
+    throw UsageError("AddWorld: physics half '{}': expected a name and a function", name);
+  }
+  if (IsOurs(name) ||
+      !AddedWorlds().emplace(name, AddedWorld{physics_half, tasks::LoadingFolder()}).second) {
     throw UsageError("there is a physics half '{}' already", name);
   }
 }
@@ -76,19 +97,10 @@ std::unique_ptr<World> MakeWorld(const std::string& name, const WorldOptions& op
     return world.make(options);
   }
   if (const auto added = AddedWorlds().find(name); added != AddedWorlds().end()) {
-    return added->second(options);
+    return MakeAdded(name, added->second, options);
   }
   throw UsageError("there is no physics half '{}': its goal half is registered, but no world",
                    name);
-}
-
-const CameraView& FindCamera(const World& world, const std::string& name) {
-  std::string names;
-  for (const CameraView& camera : world.cameras()) {
-    if (camera.name == name) return camera;
-    names += (names.empty() ? "" : ", ") + camera.name;
-  }
-  throw UsageError("unknown camera '{}'; cameras of this task: {}", name, names);
 }
 
 }  // namespace shoal::worlds

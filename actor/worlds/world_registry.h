@@ -11,16 +11,15 @@
 namespace shoal::worlds {
 
 // `name` is Task::world() of a goal half. Throws Error when there is no such world (kUsage), a
-// model does not load or lacks an element, or the world has no such physics.
+// model does not load or lacks an element, or the world has no such physics. Sets
+// WorldOptions::library_folder.
 std::unique_ptr<World> MakeWorld(const std::string& name, const WorldOptions& options);
 
 using WorldMaker = std::unique_ptr<World> (*)(const WorldOptions& options);
 
 // Adds a physics half; tasks may share one. At the start of a program, before threads. Throws Error
-// (kUsage) when there is another of that name.
+// (kUsage) when there is another of that name. What `physics_half` returns is checked when it is
+// made: no world, or cameras that cannot be, are errors (kUsage).
 void AddWorld(const std::string& name, WorldMaker physics_half);
-
-// The camera of that name; throws Error (kUsage) listing those there are.
-const CameraView& FindCamera(const World& world, const std::string& name);
 
 }  // namespace shoal::worlds

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/base/check.h"
+#include "common/base/error.h"
 
 namespace shoal {
 namespace {
@@ -52,7 +52,7 @@ uint64_t Random::Next() {
 double Random::Uniform() { return static_cast<double>(Next() >> 11) * 0x1.0p-53; }
 
 uint64_t Random::Below(uint64_t n) {
-  CHECK(n > 0);
+  if (n == 0) throw UsageError("Random::Below: one of 0 numbers; expected at least 1");
   __extension__ using Wide = unsigned __int128;
   Wide product = static_cast<Wide>(Next()) * n;
   if (static_cast<uint64_t>(product) < n) {

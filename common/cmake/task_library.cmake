@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # shoal_task_library(NAME FOLDER): NAME.so of FOLDER/goal.cpp and NAME_physics.so of the folder's
 # other sources, which may look inside the engine (docs/own_task.md); NAME_python.so and
-# NAME_python_physics.so, the same for the Python package. Used by Shoal's own build and, installed,
+# NAME_python_physics.so, the same for the Python package. FOLDER/model, where there is one, is copied
+# beside them, for WorldOptions::Beside("model/..."). Used by Shoal's own build and, installed,
 # by a user's project; either sets
 #   SHOAL_TASK_INCLUDE_DIR   where Shoal's headers lie
 #   MUJOCO_INCLUDE_DIR, MUJOCO_LIBRARY
@@ -40,6 +41,17 @@ function(shoal_task_library name folder)
     add_dependencies(${library} shoal_python_module)
     set_target_properties(${library} PROPERTIES LINKER_LANGUAGE CXX)
   endforeach()
+  if(EXISTS ${folder}/model)
+    file(GLOB_RECURSE models CONFIGURE_DEPENDS ${folder}/model/*)
+    set(copied ${CMAKE_CURRENT_BINARY_DIR}/${name}_model.stamp)
+    add_custom_command(OUTPUT ${copied}
+      COMMAND ${CMAKE_COMMAND} -E copy_directory
+              ${folder}/model $<TARGET_FILE_DIR:${name}_physics>/model
+      COMMAND ${CMAKE_COMMAND} -E touch ${copied}
+      DEPENDS ${models} VERBATIM)
+    add_custom_target(${name}_model ALL DEPENDS ${copied})
+    add_dependencies(${name}_physics ${name}_model)
+  endif()
   foreach(library ${name} ${name}_physics)
     target_compile_features(${library} PRIVATE cxx_std_20)
     target_include_directories(${library} PRIVATE ${SHOAL_TASK_INCLUDE_DIR} ${folder})

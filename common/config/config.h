@@ -199,6 +199,7 @@ struct Config {
   std::string physics = "mujoco2";  // mujoco2 | mujoco3: whose version of the Fetch weld
   int action_repeat = 0;            // control steps per env step; 0 = the task's own
   bool end_on_success = false;      // an episode ends, terminated, with the step that succeeds
+  double max_faulty_share = 0.05;   // of an actor's last 200 episodes; more end the run
   ObservationConfig observation;
   RandomizationConfig randomization;
   ReplayConfig replay;

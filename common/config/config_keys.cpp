@@ -52,13 +52,21 @@ std::vector<Key> RunKeys() {
           end_on_success, AnyValue{},
           "tasks with goals: an episode ends with the step that reaches its goal, and nothing "
           "is expected after it; in training and evaluation"),
+      SHOAL_SAME(
+          max_faulty_share, (RealRange{0, 1}),
+          "share of an actor's last 200 episodes that may be faulty, which end, truncated, where a "
+          "number of the simulation is not finite; beyond it the run ends; 0 = the first one ends "
+          "it"),
   };
 }
 
 std::vector<Key> ObservationKeys() {
   return {
       SHOAL_SAME(observation.pixels, AnyValue{}, "render cameras"),
-      SHOAL_SAME(observation.cameras, AnyValue{}, "cameras, in channel order"),
+      SHOAL_SAME(observation.cameras, AnyValue{},
+                 "cameras, in channel order, of the task, of its model or of "
+                 "observation.custom_cameras; a task that lacks one of the default two is seen "
+                 "through its first camera instead"),
       SHOAL_SAME(observation.grey, AnyValue{}, "one grey channel per camera instead of RGB"),
       SHOAL_SAME(observation.height, (IntegerRange{8, 1024}), "image height in pixels"),
       SHOAL_SAME(observation.width, (IntegerRange{8, 1024}), "image width in pixels"),

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/run_folder/evaluation_file.h"
 
+#include <fmt/core.h>
+
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -36,17 +38,20 @@ ordered_json EpisodeObject(const EvaluatedEpisode& episode) {
     object["achieved_goal"] = achieved;
     object["failure"] = failure.empty() ? ordered_json(nullptr) : ordered_json(failure);
   }
+  if (!episode.fault.empty()) object["fault"] = episode.fault;
   for (const auto& [body, mass_kg] : episode.body_mass_kg) object["body_mass"][body] = mass_kg;
   return object;
 }
 
 ordered_json AggregateObject(const EvaluationAggregate& aggregate) {
-  return {{"episodes", aggregate.episodes},
-          {"success_rate", ValueOrNull(aggregate.success_rate)},
-          {"return_mean", aggregate.return_mean},
-          {"return_std", ValueOrNull(aggregate.return_std)},
-          {"length_mean", aggregate.length_mean},
-          {"final_distance_mean", ValueOrNull(aggregate.final_distance_mean)}};
+  ordered_json object{{"episodes", aggregate.episodes},
+                      {"success_rate", ValueOrNull(aggregate.success_rate)},
+                      {"return_mean", aggregate.return_mean},
+                      {"return_std", ValueOrNull(aggregate.return_std)},
+                      {"length_mean", aggregate.length_mean},
+                      {"final_distance_mean", ValueOrNull(aggregate.final_distance_mean)}};
+  if (aggregate.faulty_episodes > 0) object["faulty_episodes"] = aggregate.faulty_episodes;
+  return object;
 }
 
 ordered_json VersionObject(const std::optional<EvaluationSummary::Version>& version) {
@@ -109,7 +114,17 @@ EvaluationSummary SummaryOf(const ordered_json& evaluation, const std::string& s
                        .return_std = aggregate.NumberIfAny("return_std"),
                        .length_mean = aggregate.Number("length_mean"),
                        .final_distance_mean = aggregate.NumberIfAny("final_distance_mean")};
+  if (aggregate.Has("faulty_episodes")) {
+    summary.aggregate.faulty_episodes = aggregate.Count("faulty_episodes");
+  }
   return summary;
+}
+
+std::string FaultyEpisodesText(const EvaluationAggregate& aggregate) {
+  if (aggregate.faulty_episodes == 0) return "";
+  return fmt::format(
+      "  {} of {} episodes ended at a number that is not finite and count as failed\n",
+      aggregate.faulty_episodes, aggregate.episodes);
 }
 
 void SetWallSeconds(double wall_seconds, ordered_json* evaluation) {

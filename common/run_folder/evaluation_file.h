@@ -7,16 +7,18 @@
 //   deterministic,
 //    cameras, seeds: [seed], stream: {role, group},
 //    episodes: [{seed, success, return, length, final_distance, action_smoothness, desired_goal,
-//                achieved_goal, failure, body_mass: {body: kg}}],
+//                achieved_goal, failure, fault, body_mass: {body: kg}}],
 //    aggregate: {episodes, success_rate, return_mean, return_std, length_mean,
-//    final_distance_mean}, commit, created, end_on_success, failures: {cause: episodes},
-//    episodes_asked, trained_task, wall_seconds}
+//    final_distance_mean, faulty_episodes}, commit, created, end_on_success, failures: {cause:
+//    episodes}, episodes_asked, trained_task, wall_seconds}
 //
 // Null is what a task does not have (success, distances) and, of a policy without parameters,
 // checkpoint and weights_version. desired_goal to failure, and failures, are there where the task
 // has causes of failure; `failure` is null for a success. body_mass is there for randomized
-// episodes, end_on_success where it is so, episodes_asked where fewer were played, trained_task
-// where another task was played than the run's.
+// episodes, `fault` (diverged, observation, reward) for a faulty episode, which failed because a
+// number of the simulation was not finite, faulty_episodes where there is one, end_on_success where
+// it is so, episodes_asked where fewer were played, trained_task where another task was played than
+// the run's.
 #pragma once
 
 #include <cstddef>
@@ -42,6 +44,7 @@ struct EvaluatedEpisode {
     std::string failure{};  // empty = none
   };
   std::optional<Goal> goal{};
+  std::string fault{};  // why a faulty episode ended; empty = it was not faulty
   std::vector<std::pair<std::string, double>> body_mass_kg{};
 };
 
@@ -51,8 +54,13 @@ struct EvaluationAggregate {
   double return_mean = 0;
   std::optional<double> return_std{};           // files of early versions have none
   double length_mean = 0;                       // env steps
-  std::optional<double> final_distance_mean{};  // m
+  std::optional<double> final_distance_mean{};  // m; of the episodes that have one
+  size_t faulty_episodes = 0;                   // of the episodes; they have failed
 };
+
+// "  3 of 50 episodes ended at a number that is not finite and count as failed\n"; empty where
+// there is none.
+std::string FaultyEpisodesText(const EvaluationAggregate& aggregate);
 
 // What programs read of an evaluation.
 struct EvaluationSummary {

@@ -3,22 +3,18 @@
 
 #include <cmath>
 #include <cstddef>
-#include <set>
 #include <utility>
 
 #include "common/base/check.h"
 #include "common/base/error.h"
+#include "common/tasks/task_check.h"
 
 namespace shoal::tasks {
 
 Task::Task(Description description) : description_(std::move(description)) {
-  CHECK(description_.achieved_goal.size() == description_.desired_goal.size())
-      << description_.name << ": goals of different size";
-  CHECK(description_.episode_length > 0 && description_.action_repeat > 0) << description_.name;
+  CheckDescription(description_);
   observation_.name = "observation";
-  std::set<std::string> names{description_.achieved_goal.name, description_.desired_goal.name};
   for (const Block& block : description_.observation) {
-    CHECK(names.insert(block.name).second) << description_.name << ": two blocks " << block.name;
     observation_.components.insert(observation_.components.end(), block.components.begin(),
                                    block.components.end());
   }

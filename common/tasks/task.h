@@ -60,6 +60,7 @@ class Task {
     std::string physics_reward;     // without goals: what the physics half pays for, for people
   };
 
+  // Throws Error (kUsage), in one line, when the description cannot be: common/tasks/task_check.h.
   explicit Task(Description description);
 
   // The same task with another distance (m) below which a goal is reached. Throws Error (kUsage)

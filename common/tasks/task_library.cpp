@@ -3,11 +3,40 @@
 
 #include <dlfcn.h>
 
+#include <exception>
+#include <filesystem>
 #include <set>
 
 #include "common/base/error.h"
 
 namespace shoal::tasks {
+
+namespace {
+
+std::string& FolderBeingLoaded() {
+  static std::string folder;
+  return folder;
+}
+
+void Call(const std::string& path, const char* entry_point, void (*function)()) {
+  FolderBeingLoaded() = std::filesystem::absolute(path).lexically_normal().parent_path().string();
+  const auto failed = [&](const char* what) {
+    FolderBeingLoaded().clear();
+    return UsageError("task_library '{}': {}: {}", path, entry_point, what);
+  };
+  try {
+    function();
+  } catch (const std::exception& error) {
+    throw failed(error.what());
+  } catch (...) {
+    throw failed("threw what is no std::exception");
+  }
+  FolderBeingLoaded().clear();
+}
+
+}  // namespace
+
+const std::string& LoadingFolder() { return FolderBeingLoaded(); }
 
 void LoadTaskLibrary(const std::string& path) {
   if (!path.empty()) CallEntryPoint(path, "ShoalRegisterGoals");
@@ -27,7 +56,7 @@ void CallEntryPoint(const std::string& path, const char* entry_point) {
     throw UsageError("task_library: '{}' has no entry point {} (docs/own_task.md)", path,
                      entry_point);
   }
-  reinterpret_cast<void (*)()>(symbol)();
+  Call(path, entry_point, reinterpret_cast<void (*)()>(symbol));
 }
 
 }  // namespace shoal::tasks

@@ -10,8 +10,9 @@
 // They use Shoal's functions as the program that loads them has them, and must be built from the
 // same sources with the same compiler.
 //
-// At the start of a program, before threads. Errors (kUsage), in one line: a file that cannot be
-// loaded, with the loader's reason; one without its entry point; a name that is taken.
+// At the start of a program, before threads. Errors (kUsage), in one line that names the file: a
+// file that cannot be loaded, with the loader's reason; one without its entry point; whatever the
+// entry point throws, such as a name that is taken or a description that cannot be.
 #pragma once
 
 #include <string>
@@ -23,5 +24,9 @@ void LoadTaskLibrary(const std::string& path);
 
 // Loads a shared object and calls its entry point, unless it was called before.
 void CallEntryPoint(const std::string& path, const char* entry_point);
+
+// While an entry point runs: the absolute folder of its library, where model files may lie beside
+// it. Empty otherwise.
+const std::string& LoadingFolder();
 
 }  // namespace shoal::tasks

@@ -11,6 +11,7 @@
 #include "common/tasks/control_tasks.h"
 #include "common/tasks/fetch_tasks.h"
 #include "common/tasks/hopper_tasks.h"
+#include "common/tasks/task_check.h"
 
 namespace shoal::tasks {
 namespace {
@@ -50,6 +51,7 @@ std::vector<std::string> TaskNames() {
 }
 
 void AddTask(Task task) {
+  CheckPlayable(task);
   for (const std::string& name : TaskNames()) {
     if (name == task.name()) throw UsageError("there is a task '{}' already", name);
   }

@@ -21,7 +21,8 @@ Task FindTask(const std::string& name, double distance_threshold);
 std::vector<std::string> TaskNames();
 
 // Adds a task; tasks found before stay where they are. At the start of a program, before threads.
-// Throws Error (kUsage) when there is one of that name.
+// Throws Error (kUsage) when there is one of that name, or when it has no action or no physics
+// half.
 void AddTask(Task task);
 
 }  // namespace shoal::tasks

@@ -35,10 +35,13 @@ Answer Ask(std::vector<std::string> command) {
   ProcessSpec spec;
   spec.role = command[1];
   spec.output = scratch.path() / "said";
+  spec.errors = scratch.path() / "errors";  // a warning is no answer
   spec.command = std::move(command);
   const auto status = RunToEnd(spec, kSlurmAnswers, StopRequested);
   if (!status) return {.good = false, .said = "no answer within a minute"};
-  return {.good = status->Clean(), .said = LastLine(spec.output)};
+  if (status->Clean()) return {.good = true, .said = LastLine(spec.output)};
+  const std::string why = LastLine(spec.errors);
+  return {.good = false, .said = why.empty() ? LastLine(spec.output) : why};
 }
 
 // Null where none was submitted yet.

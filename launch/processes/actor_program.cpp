@@ -37,24 +37,25 @@ Error FailureOf(const ExitStatus& status, const fs::path& errors) {
                fmt::format("{}: {}", kProgram, line));
 }
 
-// What a program says of its progress in the file of its output.
+// What a program says of its progress in a file for nothing else: its standard output is also that
+// of a task of the user's.
 class ProgressWatch {
  public:
   // `tell` may be empty.
-  ProgressWatch(fs::path output, const std::function<void(const std::string&)>& tell)
-      : output_(std::move(output)), tell_(tell), due_(Now() + kProgressInterval) {}
+  ProgressWatch(fs::path file, const std::function<void(const std::string&)>& tell)
+      : file_(std::move(file)), tell_(tell), due_(Now() + kProgressInterval) {}
 
   void Look() {
     if (!tell_ || Now() < due_) return;
     due_ = Now() + kProgressInterval;
-    std::string line = LastLine(output_);
+    std::string line = LastLine(file_);
     if (line.empty() || line == told_) return;
     told_ = std::move(line);
     tell_(told_);
   }
 
  private:
-  const fs::path output_;
+  const fs::path file_;
   const std::function<void(const std::string&)>& tell_;
   SteadyTime due_;
   std::string told_;
@@ -66,8 +67,10 @@ ObservedWorld DescribeObservations(const Config& config) {
   const ScratchFolder scratch;
   const fs::path input = scratch.path() / kConfigFile;
   WriteFileAtomically(input, ToJson(config).dump(2));
-  ProcessSpec spec = ProgramSpec(kProgram, {"--describe", "--config-json", input.string()}, 1);
-  spec.output = scratch.path() / "spec.json";
+  const fs::path answer = scratch.path() / "spec.json";
+  ProcessSpec spec = ProgramSpec(
+      kProgram, {"--describe", "--config-json", input.string(), "--json", answer.string()}, 1);
+  spec.output = scratch.path() / "output";
   spec.errors = scratch.path() / "errors";
   const auto status = RunToEnd(spec, kDescribeDeadline, StopRequested);
   if (!status) {
@@ -78,7 +81,7 @@ ObservedWorld DescribeObservations(const Config& config) {
   }
   if (!status->Clean()) throw FailureOf(*status, spec.errors);
   const nlohmann::json described =
-      ParseStrictJson(ReadFile(spec.output), std::string(kProgram) + " --describe");
+      ParseStrictJson(ReadFile(answer), std::string(kProgram) + " --describe");
   return {.spec = ObservationSpecFromJson(described),
           .frame_microseconds = described.value("frame_microseconds", 0.0)};
 }
@@ -101,10 +104,11 @@ std::optional<EvaluationPoint> EvaluateByActor(const EvaluationOrder& order,
     spec.command.insert(spec.command.end(), {"--frames", order.frames.stream.string(),
                                              "--view-height", side, "--view-width", side});
   }
-  if (order.progress) spec.command.emplace_back("--progress");
+  const fs::path played = scratch.path() / "progress";
+  if (order.progress) spec.command.insert(spec.command.end(), {"--progress", played.string()});
   spec.output = scratch.path() / "output";
   spec.errors = scratch.path() / "errors";
-  ProgressWatch progress(spec.output, order.progress);
+  ProgressWatch progress(played, order.progress);
   const std::chrono::seconds deadline =
       kStartDeadline + order.episodes * (shown ? kShownEpisodeDeadline : kEpisodeDeadline);
   const auto status = RunToEnd(spec, deadline, [&] {

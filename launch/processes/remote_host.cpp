@@ -53,6 +53,35 @@ void RunOrThrow(const std::string& what, const std::vector<std::string>& command
   throw RuntimeError("{}: {}", what, line.empty() ? status->Describe() : line);
 }
 
+// What a command on another host prints, without what the login there prints around it: a greeting,
+// a message of the day, a line at its end.
+constexpr char kAnswerBegins[] = "shoal: the answer begins",
+               kAnswerEnds[] = "shoal: the answer ends";
+
+std::string Ask(const std::string& what, const RemoteHost& host, const std::string& line,
+                const fs::path& input, const StopQuestion& stop) {
+  const ScratchFolder scratch;
+  const fs::path output = scratch.path() / "output";
+  const std::string framed =
+      fmt::format("printf '\\n%s\\n' '{}' && {{ {}; }} && printf '\\n%s\\n' '{}'", kAnswerBegins,
+                  line, kAnswerEnds);
+  RunOrThrow(what, Through(host, framed), input, output, stop);
+  const std::string said = ReadFile(output);
+  const std::string begins = fmt::format("\n{}\n", kAnswerBegins);
+  const std::string ends = fmt::format("\n{}\n", kAnswerEnds);
+  const size_t begin = said.find(begins), end = said.rfind(ends);
+  if (begin == std::string::npos || end == std::string::npos || end < begin + begins.size()) {
+    throw RuntimeError("{}: its answer was not passed on whole: {} bytes came", what, said.size());
+  }
+  return said.substr(begin + begins.size(), end - begin - begins.size());
+}
+
+// Without line breaks at its end.
+std::string OneAnswer(std::string answer) {
+  while (!answer.empty() && (answer.back() == '\n' || answer.back() == '\r')) answer.pop_back();
+  return answer;
+}
+
 bool IsPageOf(const fs::path& file, const ActorRange& actors) {
   for (int id = actors.first; id < actors.first + actors.count; ++id) {
     if (file.extension() == ".page" &&
@@ -94,12 +123,9 @@ std::string ShellLine(const std::vector<std::string>& words) {
 }
 
 void CheckHost(const RemoteHost& host, const StopQuestion& stop) {
-  const ScratchFolder scratch;
-  const fs::path output = scratch.path() / "version";
   const std::string program = host.programs / "shoal-actor";
-  RunOrThrow(fmt::format("host {}: {}", host.name, program),
-             Through(host, ShellLine({program, "--version"})), "", output, stop);
-  const std::string version = LastLine(output);
+  const std::string version = OneAnswer(Ask(fmt::format("host {}: {}", host.name, program), host,
+                                            ShellLine({program, "--version"}), "", stop));
   // The release counts; commits may differ.
   if (!version.starts_with(fmt::format("shoal-actor {} ", BuildVersion()))) {
     throw RuntimeError("host {}: {} has version '{}', this program has '{}'", host.name, program,
@@ -111,7 +137,7 @@ void PushRun(const fs::path& run, const ActorRange& actors, RemoteHost* host,
              const StopQuestion& stop) {
   if (host->shared) return;
   const ScratchFolder scratch;
-  const fs::path archive = scratch.path() / "run.tar", answer = scratch.path() / "answer";
+  const fs::path archive = scratch.path() / "run.tar";
   std::vector<std::string> pack =
       OnPath({"tar", "-c", "-f", archive, "-C", fs::absolute(run), kConfigFile, kClusterFile});
   for (const fs::path& page : PagesIn(run / kMadeFolder, actors)) {
@@ -135,9 +161,9 @@ void PushRun(const fs::path& run, const ActorRange& actors, RemoteHost* host,
       "umask 077 && mkdir -p {0}/{1} && cd {0} && rm -rf {2} {3} {4} {5} && tar -x "
       "--skip-old-files --no-same-owner -f - && pwd",
       folder, kMadeFolder, kConfigFile, kClusterFile, kDdsCopy, kSecureCopy);
-  RunOrThrow(fmt::format("host {}: copying the run to '{}'", host->name, host->run.string()),
-             Through(*host, unpack), archive, answer, stop);
-  host->run = LastLine(answer);
+  host->run =
+      OneAnswer(Ask(fmt::format("host {}: copying the run to '{}'", host->name, host->run.string()),
+                    *host, unpack, archive, stop));
   if (!host->secure.empty()) host->secure = host->run / kSecureCopy;
   if (!host->run.is_absolute()) {
     throw RuntimeError("host {}: expected the path of its run folder, got '{}'", host->name,
@@ -150,8 +176,10 @@ void FetchMadePages(const RemoteHost& host, const ActorRange& actors, const fs::
   if (host.shared) return;
   const ScratchFolder scratch;
   const fs::path archive = scratch.path() / "made.tar";
-  RunOrThrow(fmt::format("host {}: fetching counter pages of '{}'", host.name, host.run.string()),
-             Through(host, "tar -c -f - -C " + ShellLine({host.run}) + " made"), "", archive, stop);
+  WriteFileAtomically(
+      archive,
+      Ask(fmt::format("host {}: fetching counter pages of '{}'", host.name, host.run.string()),
+          host, "tar -c -f - -C " + ShellLine({host.run}) + " made", "", stop));
   RunOrThrow(fmt::format("host {}: unpacking counter pages", host.name),
              OnPath({"tar", "-x", "--no-same-owner", "-f", archive, "-C", scratch.path()}), "", "",
              stop);

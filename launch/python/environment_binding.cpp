@@ -13,7 +13,9 @@
 #include <string>
 #include <vector>
 
+#include "actor/worlds/custom_cameras.h"
 #include "actor/worlds/environment.h"
+#include "actor/worlds/episode_fault.h"
 #include "actor/worlds/physics_library.h"
 #include "actor/worlds/world.h"
 #include "actor/worlds/world_registry.h"
@@ -51,7 +53,7 @@ Config ReadKeys(const std::string& task_name, const std::string& keys) {
   const tasks::Task& task = tasks::FindTask(task_name);
   if (observation.pixels && observation.cameras.empty()) {
     const auto world = worlds::MakeWorld(task.world(), {config.model, config.physics});
-    observation.cameras = {world->cameras().front().name};
+    observation.cameras = {worlds::DefaultCamera(*world).name};
   }
   if (!observation.pixels && !observation.proprioception && observation.goal_mode == "none") {
     observation.proprioception = true;
@@ -81,10 +83,12 @@ class PlayedEnvironment {
       std::ranges::copy(frame_, stack_.begin() + std::ptrdiff_t(k * frame_.size()));
     }
     running_ = true;
+    distance_ = distance;
     return py::make_tuple(Observation(), distance);
   }
 
-  // Returns observation, reward, terminated, truncated, success, distance.
+  // Returns observation, reward, terminated, truncated, success, distance and, where the step was
+  // faulty, why: the episode is truncated at the observation before, which is returned again.
   py::tuple Step(const py::object& action) {
     if (!running_) throw UsageError("step: no episode is running; reset() starts one");
     const auto numbers =
@@ -98,8 +102,13 @@ class PlayedEnvironment {
       throw UsageError("step: number {} of the action is {}, expected -1 to 1", i, numbers.at(i));
     }
     running_ = false;  // unless the step comes to its end
-    const StepResult result =
-        environment_->Step({numbers.data(), size_t(numbers.size())}, {frame_, vector_});
+    StepResult result;
+    try {
+      result = environment_->Step({numbers.data(), size_t(numbers.size())}, {frame_, vector_});
+    } catch (const worlds::EpisodeFault& fault) {
+      return py::make_tuple(Observation(), 0.0F, false, true, false, distance_, fault.what());
+    }
+    distance_ = result.distance;
     running_ = !result.terminated && !result.truncated;
     if (!frame_.empty()) {
       const auto frame = std::ptrdiff_t(frame_.size());
@@ -108,7 +117,7 @@ class PlayedEnvironment {
       std::ranges::copy(frame_, end - frame);
     }
     return py::make_tuple(Observation(), result.reward, result.terminated, result.truncated,
-                          result.success, result.distance);
+                          result.success, result.distance, py::none());
   }
 
   double simulated_seconds() const { return environment_->simulated_seconds(); }
@@ -148,6 +157,7 @@ class PlayedEnvironment {
   std::vector<uint8_t> frame_;  // (C, H, W), the latest
   std::vector<uint8_t> stack_;  // (I, H, W), the oldest frame first, a goal picture last
   std::vector<float> vector_;   // (R)
+  float distance_ = 0;          // after the last observation
   bool running_ = false;        // between a reset and the end of its episode
 };
 

@@ -5,16 +5,26 @@
 
 namespace shoal::launch {
 
+namespace {
+
+std::string FaultyText(const EvaluationPoint& point) {
+  return point.faulty_episodes > 0 ? fmt::format(", {} faulty episodes", point.faulty_episodes)
+                                   : "";
+}
+
+}  // namespace
+
 std::string FormatScore(const EvaluationPoint& point) {
   std::string mean = fmt::format("return {:.3f}", point.mean_return);
   if (point.return_std) mean += fmt::format(" +- {:.3f}", *point.return_std);
   if (point.success) {
     const std::string of = point.episodes > 0 ? fmt::format(" of {} episodes", point.episodes) : "";
-    return fmt::format("success {:.1f} %{}, {}", 100 * *point.success, of, mean);
+    return fmt::format("success {:.1f} %{}, {}{}", 100 * *point.success, of, mean,
+                       FaultyText(point));
   }
   if (point.mean_length > 0) mean += fmt::format(", length {:.1f}", point.mean_length);
   if (point.episodes > 0) mean += fmt::format(", {} episodes", point.episodes);
-  return mean;
+  return mean + FaultyText(point);
 }
 
 std::string FormatWholeScore(const EvaluationPoint& point) {

@@ -20,11 +20,12 @@ struct EvaluationPoint {
   std::string checkpoint{};                // folder name under checkpoints/
   size_t episodes = 0;                     // played
   uint64_t learner_session = 0;            // whose parameters were evaluated
+  size_t faulty_episodes = 0;              // of those played; they have failed
 };
 
 // "success 98.0 % of 50 episodes, return -0.970 +- 0.120", with what is known; where there is no
 // success "return 312.500 +- 8.100, length 740.2, 50 episodes". After +- stands the standard
-// deviation of the episodes' returns.
+// deviation of the episodes' returns. Where there are some: ", 2 faulty episodes".
 std::string FormatScore(const EvaluationPoint& point);
 // The same, with the mean length and final distance behind it that it leaves out of a task with
 // success: ", length 50.0, final distance 0.021 m".

@@ -33,6 +33,10 @@ void CheckFigures(const EvaluationPoint& point, const std::string& source) {
     throw RuntimeError("{}: final_distance_mean is no number", source);
   }
   if (!std::isfinite(point.mean_length)) throw RuntimeError("{}: length_mean is no number", source);
+  if (point.faulty_episodes > point.episodes) {
+    throw RuntimeError("{}: {} faulty episodes of {}", source, point.faulty_episodes,
+                       point.episodes);
+  }
   if (point.episodes == 0) throw RuntimeError("{}: no episodes", source);
 }
 
@@ -51,7 +55,8 @@ EvaluationPoint PointOf(const ordered_json& object, const std::string& source) {
                               .final_distance = summary.aggregate.final_distance_mean,
                               .checkpoint = *summary.checkpoint,
                               .episodes = summary.aggregate.episodes,
-                              .learner_session = summary.version->session};
+                              .learner_session = summary.version->session,
+                              .faulty_episodes = summary.aggregate.faulty_episodes};
   if (!IsPlainName(point.checkpoint)) {
     throw RuntimeError("{}: checkpoint '{}': expected a folder's name without a path", source,
                        point.checkpoint);

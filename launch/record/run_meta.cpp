@@ -113,6 +113,7 @@ void WriteRunMeta(const std::filesystem::path& run, const Config& config, const 
       {"changes", Changes(meta)},
       {"restarts", meta.restarts},
       {"resends", meta.resends},
+      {"faulty_episodes", ordered_json(meta.faulty_episodes)},
       {"exit", meta.exit},
       {"error", meta.error.empty() ? ordered_json(nullptr) : ordered_json(meta.error)}};
   // A problem may quote what a process said last, in whatever encoding.
@@ -139,6 +140,7 @@ RunMeta ReadRunMeta(const std::filesystem::path& run) {
     object.at("restarts").get_to(meta.restarts);
     meta.resends = object.value("resends", uint64_t{0});
     meta.updates_lost = object.value("updates_lost", uint64_t{0});
+    meta.faulty_episodes = object.value("faulty_episodes", meta.faulty_episodes);
     meta.exit = object.value("exit", meta.exit);
     if (const auto it = object.find("final_return_mean"); it != object.end() && it->is_number()) {
       meta.final_return = it->get<double>();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -31,7 +32,10 @@ struct RunMeta {
   std::optional<Accounting> accounting;
   std::vector<SettingChange> changes;  // of keys, while the run went on
   int restarts = 0;
-  uint64_t resends = 0;          // records that actors sent again
+  uint64_t resends = 0;  // records that actors sent again
+  // Episodes of the training actors that ended at a number that is not finite, by cause
+  // (actor/worlds/episode_fault.h).
+  std::map<std::string, uint64_t> faulty_episodes;
   std::string exit = "running";  // then "target", "budget", "interrupted" or "failed"
   std::string error;             // why, where failed
 };

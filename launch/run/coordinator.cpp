@@ -6,6 +6,7 @@
 #include <thread>
 #include <utility>
 
+#include "actor/worlds/episode_fault.h"
 #include "common/base/error.h"
 #include "common/base/saturating_cast.h"
 #include "common/base/stop.h"
@@ -115,6 +116,17 @@ struct Coordinator::Impl {
     return SaturatingCast<uint64_t>(watch.view().Total("actor", "resends"));
   }
 
+  // Of the whole run, by cause.
+  std::map<std::string, uint64_t> FaultyEpisodes() const {
+    std::map<std::string, uint64_t> counts = meta.faulty_episodes;
+    for (const worlds::FaultCause cause : worlds::kFaultCauses) {
+      const std::string name(worlds::NameOf(cause));
+      const double count = watch.view().Total("actor", "faulty_episodes_" + name);
+      if (count > 0) counts[name] += SaturatingCast<uint64_t>(count);
+    }
+    return counts;
+  }
+
   RunResult Run(const std::function<void()>& on_started);
   std::string WaitForEnd(const std::function<void()>& on_started);
   // Every process of the run has reported.
@@ -210,6 +222,7 @@ RunResult Coordinator::Impl::Run(const std::function<void()>& on_started) {
   meta.wall_seconds = Elapsed();
   meta.restarts += supervisor.restarts();
   meta.resends += Resends();
+  meta.faulty_episodes = FaultyEpisodes();
   if (!meta.error.empty()) meta.exit = "failed";
   scalars.WriteEnd(meta.exit != "failed");
   RetryWrites();
@@ -398,6 +411,7 @@ ProgressFigures Coordinator::Impl::Figures(SteadyTime now) const {
   figures.restarts = meta.restarts + supervisor.restarts();
   figures.actors_working = settings.config().actors - static_cast<int>(actors.down.size());
   figures.trouble = DescribeTrouble(actors, evaluation_actor);
+  for (const auto& [cause, count] : FaultyEpisodes()) figures.faulty_episodes += count;
   return figures;
 }
 
@@ -497,6 +511,7 @@ void Coordinator::Impl::StoreMeta() {
   now.wall_seconds = Elapsed();
   now.restarts += supervisor.restarts();
   now.resends += Resends();
+  now.faulty_episodes = FaultyEpisodes();
   faults.Try(kMetaFile, [&] {
     now.updates_lost = ReadLostUpdates(run);
     WriteRunMeta(run, config, now);

@@ -109,6 +109,17 @@ void PrintWhatToLookAt(const fs::path& run, bool filmed, Progress& progress) {
   if (!commands.empty()) progress.Say("  " + commands.substr(2));
 }
 
+// "faulty episodes of the actors, ended where a number was not finite: 3 diverged, 1 observation".
+std::string FaultyEpisodesText(const RunMeta& meta) {
+  std::string counts;
+  for (const auto& [cause, count] : meta.faulty_episodes) {
+    counts += fmt::format("{}{} {}", counts.empty() ? "" : ", ", count, cause);
+  }
+  if (counts.empty()) return "";
+  return fmt::format("faulty episodes of the actors, ended where a number was not finite: {}",
+                     counts);
+}
+
 // `film` is empty where there is none.
 void PrintSummary(const fs::path& run, const Config& config, const RunResult& result,
                   const std::optional<EvaluationPoint>& final_evaluation, const fs::path& film,
@@ -138,6 +149,9 @@ void PrintSummary(const fs::path& run, const Config& config, const RunResult& re
   }
   if (meta.accounting) progress.Say("  " + meta.accounting->Line());
   if (!result.deaths.empty()) progress.Say("  deaths: " + result.deaths);
+  if (const std::string faulty = FaultyEpisodesText(meta); !faulty.empty()) {
+    progress.Say("  " + faulty);
+  }
   if (meta.updates_lost > 0) {
     progress.Say(fmt::format("  updates lost with a learner: {}", meta.updates_lost));
   }

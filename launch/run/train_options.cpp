@@ -53,7 +53,7 @@ Config ResolveConfig(const TrainOptions& options, int cores) {
   if (!options.run_dir.empty()) ApplyAssignments({"run_dir=" + options.run_dir}, &config);
   if (options.lockstep) config.lockstep = true;
   // Programs that start later, also of a resumed run, need not stand where this one does.
-  for (std::string* path : {&config.task_library, &config.network.encoder_weights}) {
+  for (std::string* path : {&config.task_library, &config.model, &config.network.encoder_weights}) {
     if (!path->empty()) *path = std::filesystem::absolute(*path).lexically_normal();
   }
   // Threads of one update wait for each other, so a core shared with an actor stalls them all.

@@ -2,6 +2,7 @@
 #include "launch/run/training_run.h"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -24,6 +25,7 @@
 #include "common/config/privileged_blocks.h"
 #include "common/config/run_files.h"
 #include "common/config/sending_window.h"
+#include "common/config/spec_mismatch.h"
 #include "common/credentials/credentials.h"
 #include "common/dds/bus.h"
 #include "common/dds/publisher.h"
@@ -68,7 +70,22 @@ struct PreparedRun {
   RunMeta meta;
   Hosts hosts;
   double frame_microseconds = 0;
+  std::string camera_note{};  // which camera stands in for the default ones; empty = they are there
 };
+
+// The task chose cameras where the configuration's default ones are none of its own. From now on
+// the configuration names them. Returns a line of the run's first ones, empty where nothing was
+// chosen.
+std::string TakeCameras(RunConfig* run) {
+  std::vector<std::string>& cameras = run->config.observation.cameras;
+  if (!run->spec.HasPixels() || cameras == run->spec.cameras) return "";
+  const std::string note = fmt::format(
+      "  {} has no cameras {}: the policy sees through {}, the task's first "
+      "(observation.cameras)\n",
+      run->config.task, fmt::join(cameras, " and "), fmt::join(run->spec.cameras, ", "));
+  cameras = run->spec.cameras;
+  return note;
+}
 
 // The processes of a run whose coordinator was killed write into its folder until they have
 // noticed: with --overwrite they would write into the new run's.
@@ -181,8 +198,7 @@ PreparedRun PrepareResumed(const TrainOptions& options) {
   tasks::LoadTaskLibrary(config.config.task_library);
   const ObservedWorld now = DescribeObservations(config.config);
   if (now.spec != config.spec) {
-    throw RuntimeError("the run observed '{}', this program's actors would observe '{}'",
-                       config.spec.Summary(), now.spec.Summary());
+    throw RuntimeError("{}", SpecMismatch(config, now.spec));
   }
   if (meta.started.empty()) meta.started = UtcTimestamp();
   NoteResumeOptions(options, before, &meta);
@@ -310,9 +326,10 @@ void PrintStart(const PreparedRun& run, const ClusterAddress& address) {
                     checkpoint.empty() ? "without a checkpoint" : "from " + checkpoint.string());
   }
   for (const std::string& binding : IgnoredOpenMpBindings()) {
-    text += fmt::format("  {} is ignored: it would bind every process to the same core\n", binding);
+    text += fmt::format("  {} is ignored: it would bind every process to the same core\
+", binding);
   }
-  text += PlanText(run.config, run.frame_microseconds);
+  text += run.camera_note + PlanText(run.config, run.frame_microseconds);
   for (const RemoteHost& host : run.hosts.hosts) {
     text +=
         fmt::format("  {} of the actors on {}, in {}\n", host.actors, host.name, host.run.string());
@@ -443,6 +460,7 @@ int Train(const TrainOptions& options, Detachment* detachment) {
   tasks::LoadTaskLibrary(config.config.task_library);
   const ObservedWorld world = DescribeObservations(config.config);
   config.spec = world.spec;
+  const std::string camera_note = TakeCameras(&config);
   PrivilegedBlocksOf(config.config.learner, config.spec);  // refused here
   CheckNetwork(config);
   const NetworkConfig& network = config.config.network;
@@ -465,6 +483,7 @@ int Train(const TrainOptions& options, Detachment* detachment) {
   }
   PreparedRun run = PrepareFresh(options, std::move(config), std::move(hosts));
   run.frame_microseconds = world.frame_microseconds;
+  run.camera_note = camera_note;
   if (!initial.empty()) {
     WriteFileAtomically(run.folder.path() / kInitialWeightsFile, nn::WriteSafetensors(initial, {}));
   }

@@ -61,6 +61,11 @@ std::string Rollouts(const ProgressFigures& f) {
                      *f.rollout_return, NumberText(f.rollout_length));
 }
 
+std::string FaultyEpisodes(const ProgressFigures& f, std::string_view before) {
+  if (f.faulty_episodes == 0) return "";
+  return fmt::format("{}{} faulty episodes", before, f.faulty_episodes);
+}
+
 // "2500/10000 env steps"; a run may be past its budget, as after `shoal set env_steps`.
 std::string StepsOfBudget(const ProgressFigures& f) {
   if (f.env_steps > f.budget) return fmt::format("{} env steps (budget {})", f.env_steps, f.budget);
@@ -94,12 +99,13 @@ std::string FormatDuration(std::optional<double> seconds) {
 
 std::string FormatProgressLine(const ProgressFigures& f) {
   const std::string line = fmt::format(
-      "{} {} | {}, {}/s | {} updates, {}/s | eval {} | actors {} | {} | lag {} | {} | left {}",
+      "{} {} | {}, {}/s | {} updates, {}/s | eval {} | actors {} | {} | lag {} | {}{} | left {}",
       FormatDuration(f.elapsed_seconds), f.state, StepsOfBudget(f),
       NumberText(f.env_steps_per_second), NumberText(f.updates),
       NumberText(f.updates_per_second, "{:.1f}"), ShortScore(f.last_evaluation),
       ShortScore(f.rollout_success, f.rollout_return, f.rollout_length), Headlines(f, " "),
-      NumberText(f.policy_lag), LimiterState(f), FormatDuration(f.seconds_left));
+      NumberText(f.policy_lag), LimiterState(f), FaultyEpisodes(f, " | "),
+      FormatDuration(f.seconds_left));
   return f.trouble.empty() ? line : line + " | " + f.trouble;
 }
 
@@ -118,7 +124,7 @@ std::vector<std::string> FormatProgressBlock(const ProgressFigures& f, int width
                   NumberText(f.updates_per_second, "{:.1f}")),
       fmt::format("  last eval  {}", Evaluation(f.last_evaluation)),
       fmt::format("  best       {}", Evaluation(f.best)),
-      fmt::format("  actors     {}", Rollouts(f)),
+      fmt::format("  actors     {}{}", Rollouts(f), FaultyEpisodes(f, "; ")),
       fmt::format("  figures    {}", Headlines(f, "  ")),
       fmt::format("  age        policy lag {} updates, data {} updates old",
                   NumberText(f.policy_lag), NumberText(f.data_age)),

@@ -37,6 +37,7 @@ struct ProgressFigures {
   // Training actors that are not down after a death; in lockstep, all.
   int actors_working = 0;
   std::string trouble;  // which actors do not work and why, as a line; empty when all do
+  uint64_t faulty_episodes = 0;  // of the training actors, over the whole run
 };
 
 // "12:05" or "1:02:03"; "-" when unknown.

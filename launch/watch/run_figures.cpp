@@ -90,6 +90,7 @@ void AddRunFigures(const ProgressFigures& figures, MetricsReport* report) {
   report->Add("processes", figures.processes);
   report->Add("restarts", figures.restarts);
   report->Add("actors_working", figures.actors_working);
+  report->Add("faulty_episodes", static_cast<double>(figures.faulty_episodes));
   report->AddResources();
 }
 
@@ -173,6 +174,7 @@ ProgressFigures FiguresOfView(const RunViewMessage& message, SteadyTime now) {
   figures.processes = SaturatingCast<int>(own("processes").value_or(0));
   figures.restarts = SaturatingCast<int>(own("restarts").value_or(0));
   figures.actors_working = SaturatingCast<int>(own("actors_working").value_or(0));
+  figures.faulty_episodes = SaturatingCast<uint64_t>(own("faulty_episodes").value_or(0));
   figures.env_steps_per_second = figures.updates_per_second = std::nullopt;
   // What is shown again and again once no process is left tells of nothing that goes on.
   if (message.state == "evaluating" || message.state == "ended") return figures;

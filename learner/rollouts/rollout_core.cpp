@@ -121,14 +121,25 @@ void RolloutCore::OnGap(const SessionCounters& session, uint32_t env) {
 }
 
 void RolloutCore::TakeReset(const uint8_t* record, Lane* lane) {
-  // An episode that was left in its midst: its steps do not go on.
-  if (lane->open && lane->building.rows > 0) Drop(&lane->building);
+  if (lane->open) EndEpisode(lane);
   Observe(record, /*reset=*/true, lane);
   lane->episode = RecordLayout::Header(record).episode;
   lane->index = 0;
   lane->open = true;
   ++lane->building.records;
   lane->missed = 0;
+}
+
+// The actor began another episode without an end of the one before: a faulty one, which is
+// truncated at its last observation.
+void RolloutCore::EndEpisode(Lane* lane) {
+  Rollout& rollout = lane->building;
+  if (rollout.rows == 0)
+    return;  // its last step belongs to a whole rollout, which bootstraps there
+  rollout.ends.back() = 1.f;
+  rollout.continues.back() = 0.f;
+  Append<uint8_t>(lane->stack, &rollout.next_frames);
+  Append<float>(lane->vector, &rollout.next_vectors);
 }
 
 bool RolloutCore::TakeStep(const uint8_t* record, Lane* lane) {

@@ -125,6 +125,7 @@ class RolloutCore final : private RecordTaker {
   // The lane of an environment that this actor may host; null for any other.
   Lane* FindLane(uint32_t actor, uint32_t env);
   int Environments() const { return expected_actors_ * envs_per_actor_; }
+  void EndEpisode(Lane* lane);
   void TakeReset(const uint8_t* record, Lane* lane);
   bool TakeStep(const uint8_t* record, Lane* lane);
   void AddRow(const uint8_t* record, Lane* lane);

@@ -5,10 +5,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <functional>
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "actor/worlds/environment.h"
+#include "actor/worlds/episode_fault.h"
 
 namespace shoal::actor {
 
@@ -36,6 +39,7 @@ class CountingEnvironment final : public worlds::Environment {
   float Reset(uint64_t stream_key, worlds::ObservationOut out) override {
     key_ = stream_key;
     step_ = 0;
+    ThrowIfFaulty(0);
     masses_ = {{"leg", static_cast<double>(key_ % 1000)}};
     if (spec_.goal_picture) {
       goal_picture_.assign(size_t(spec_.FrameBytes()), static_cast<uint8_t>(200 + key_ % 10));
@@ -46,6 +50,7 @@ class CountingEnvironment final : public worlds::Environment {
 
   worlds::StepResult Step(std::span<const float> action, worlds::ObservationOut out) override {
     EXPECT_LT(step_, length_) << "stepped beyond the episode's end";
+    ThrowIfFaulty(step_ + 1);
     ++step_;
     Observe(out);
     const bool last = step_ == length_;
@@ -56,11 +61,21 @@ class CountingEnvironment final : public worlds::Environment {
             .distance = static_cast<float>(100 - step_)};
   }
 
+  // Whether an episode is faulty at a step, 0 = its reset.
+  std::function<bool(uint64_t key, int step)> faulty;
+
   double render_seconds() const override { return 0; }
   std::span<const worlds::DrawnMass> drawn_masses() const override { return masses_; }
   std::span<const uint8_t> goal_picture() const override { return goal_picture_; }
 
  private:
+  void ThrowIfFaulty(int step) const {
+    if (faulty && faulty(key_, step)) {
+      throw worlds::EpisodeFault(worlds::FaultCause::kDiverged,
+                                 "a fault at step " + std::to_string(step));
+    }
+  }
+
   void Observe(worlds::ObservationOut out) const {
     std::ranges::fill(out.frame, static_cast<uint8_t>(10 * (key_ % 10) + uint64_t(step_)));
     out.vector[0] = static_cast<float>(key_ % 1000);

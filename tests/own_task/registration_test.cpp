@@ -127,6 +127,43 @@ TEST(OwnTask, WorksInTheTools) {
   EXPECT_NEAR(baseline.at("aggregate").at("length_mean").get<double>(), 40, 1e-9);
 }
 
+// The section of the page on MJCF files with meshes: docs/examples/arm_reach.
+TEST(OwnTask, AModelWithMeshesLiesBesideItsLibraryWhereverTheProgramStands) {
+  LoadTasks(ProgramPath("arm_reach.so"));
+  Config config;
+  config.task = "ArmReachDense";
+  config.observation.height = config.observation.width = 48;
+  const std::filesystem::path here = std::filesystem::current_path();
+  std::filesystem::current_path("/");
+  const auto environment = MakeEnvironment(config, MakeRenderContext(config.observation));
+  std::filesystem::current_path(here);
+  EXPECT_EQ(environment->spec().cameras, std::vector<std::string>{"overhead"})
+      << "the first camera of the model stands in for front and side";
+  std::vector<uint8_t> frame(static_cast<size_t>(environment->spec().FrameBytes()));
+  std::vector<float> numbers(static_cast<size_t>(environment->spec().RecordedVectorSize()));
+  environment->Reset(1, {frame, numbers});
+  const std::vector<uint8_t> before = frame;
+  for (int i = 0; i < 10; ++i) environment->Step(std::vector<float>{1, 0}, {frame, numbers});
+  EXPECT_GT(numbers[0], 0.1) << "the shoulder turns";
+  // What is blue, the upper link, has moved.
+  const size_t plane = 48 * 48;
+  const auto blue = [&](const std::vector<uint8_t>& picture) {
+    std::vector<size_t> pixels;
+    for (size_t i = 0; i < plane; ++i) {
+      if (picture[2 * plane + i] > picture[i] + 60) pixels.push_back(i);
+    }
+    return pixels;
+  };
+  EXPECT_GT(blue(before).size(), 10u);
+  EXPECT_NE(blue(before), blue(frame));
+}
+
+TEST(OwnTask, AModelFileThatIsMissingIsNamedWithItsWholePath) {
+  LoadTasks(ProgramPath("arm_reach.so"));
+  EXPECT_THAT(Complaint([] { MakeWorld("ArmReach", {.model = "/nowhere/arm.xml"}); }),
+              HasSubstr("model file '/nowhere/arm.xml' does not exist"));
+}
+
 TEST(OwnTask, TakesNoNameThatIsTaken) {
   const tasks::Task& example = Example();
   EXPECT_THAT(Complaint([] { AddWorld("PointReach", NoWorld); }), HasSubstr("'PointReach'"));

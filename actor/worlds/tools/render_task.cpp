@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "actor/worlds/custom_cameras.h"
 #include "actor/worlds/environment.h"
 #include "actor/worlds/world_registry.h"
 #include "common/base/error.h"
@@ -39,7 +40,7 @@ Picture RenderTask(const RenderRequest& request) {
   config.model = request.model;
   config.observation.cameras = {
       request.camera.empty()
-          ? MakeWorld(task.world(), {.model = request.model})->cameras().front().name
+          ? DefaultCamera(*MakeWorld(task.world(), {.model = request.model})).name
           : request.camera};
   config.observation.width = request.width;
   config.observation.height = request.height;

@@ -21,13 +21,19 @@ namespace {
 
 using tasks::Task;
 
-std::vector<RewardSample> PlaySamples(const Task& task, const RewardCheckRequest& request) {
+std::vector<RewardSample> PlaySamples(const Task& task, const RewardCheckRequest& request,
+                                      RangeMeter* meter) {
   OpenEnvironment environment(task, request.model);
   std::vector<RewardSample> samples;
   int episode = -1;
   PlayRandomSteps(
-      &environment, request.env_steps, request.seed, [&] { ++episode; },
+      &environment, request.env_steps, request.seed,
+      [&] {
+        ++episode;
+        meter->OnReset(environment.numbers());
+      },
       [&](const StepResult& result) {
+        meter->OnStep(environment.numbers());
         const auto achieved = environment.achieved_goal(), desired = environment.desired_goal();
         samples.push_back({{achieved.begin(), achieved.end()},
                            {desired.begin(), desired.end()},
@@ -119,9 +125,12 @@ RewardCheck CompareRewards(const Task& task, const std::vector<RewardSample>& sa
 
 RewardCheck CheckRewards(const RewardCheckRequest& request) {
   const Task& task = tasks::FindTask(request.task);
-  const std::vector<RewardSample> samples = PlaySamples(task, request);
+  RangeMeter meter(task), second(task);
+  const std::vector<RewardSample> samples = PlaySamples(task, request, &meter);
   RewardCheck check = CompareRewards(task, samples, request.relabels, request.seed);
-  const std::vector<RewardSample> again = PlaySamples(task, request);
+  check.constant = ConstantNumbers(task, meter);
+  check.observations = meter.observations();
+  const std::vector<RewardSample> again = PlaySamples(task, request, &second);
   for (size_t i = 0; i < samples.size(); ++i) {
     check.repeated += samples[i].result.reward != again[i].result.reward;
   }
@@ -145,6 +154,7 @@ nlohmann::ordered_json ToJson(const RewardCheck& check) {
             {"relabelled_formula", check.relabelled_formula},
             {"success_formula", check.success_formula},
             {"repeated", check.repeated}}},
+          {"constant_numbers", ToJson(check.constant)},
           {"passed", check.Passed()},
           {"commit", BuildCommit()},
           {"created", UtcTimestamp()}};
@@ -167,6 +177,7 @@ std::string ToText(const RewardCheck& check) {
     text += "  no goals: the physics half gives the reward, nothing recomputes it\n";
   }
   line("step's reward = that of a second rollout", check.repeated, check.env_steps);
+  text += ToText(check.constant, check.observations);
   return text + (check.Passed() ? "passed\n" : "FAILED\n");
 }
 

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "actor/worlds/environment.h"
+#include "actor/worlds/tools/measured_ranges.h"
 #include "common/tasks/task.h"
 
 namespace shoal::worlds {
@@ -36,6 +37,9 @@ struct RewardCheck {
   int relabelled_formula = 0;
   int success_formula = 0;  // step's success flag, distance < threshold
   int repeated = 0;         // step's reward, the same step of a second rollout
+  // A warning, no mismatch: numbers that never changed, in so many observations.
+  std::vector<ConstantNumber> constant{};
+  int observations = 0;
 
   bool Passed() const {
     return step_computed + computed_formula + relabelled_formula + success_formula + repeated == 0;

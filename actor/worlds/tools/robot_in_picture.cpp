@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <string_view>
 
+#include "actor/worlds/custom_cameras.h"
 #include "actor/worlds/render_context.h"
 #include "actor/worlds/world_registry.h"
 #include "common/base/check.h"

@@ -4,9 +4,9 @@
 #include <mujoco/mujoco.h>
 
 #include <algorithm>
-#include <limits>
 #include <span>
 
+#include "actor/worlds/custom_cameras.h"
 #include "actor/worlds/tools/open_environment.h"
 #include "actor/worlds/world_registry.h"
 #include "common/base/random.h"
@@ -17,20 +17,14 @@ namespace {
 
 using tasks::Task;
 
-std::vector<MeasuredRange> MeasureRanges(const Task& task, const DescribeRequest& request) {
+RangeMeter MeasureRanges(const Task& task, const DescribeRequest& request) {
   OpenEnvironment environment(task, request.model);
-  std::vector<MeasuredRange> ranges(
-      environment.numbers().size(),
-      {std::numeric_limits<double>::infinity(), -std::numeric_limits<double>::infinity()});
-  const auto include = [&] {
-    for (size_t i = 0; i < ranges.size(); ++i) {
-      const double number = environment.numbers()[i];
-      ranges[i] = {std::min(ranges[i].low, number), std::max(ranges[i].high, number)};
-    }
-  };
-  PlayRandomSteps(&environment, request.random_env_steps, request.seed, include,
-                  [&](const StepResult&) { include(); });
-  return ranges;
+  RangeMeter meter(task);
+  PlayRandomSteps(
+      &environment, request.random_env_steps, request.seed,
+      [&] { meter.OnReset(environment.numbers()); },
+      [&](const StepResult&) { meter.OnStep(environment.numbers()); });
+  return meter;
 }
 
 AxisProbe Probe(OpenEnvironment* environment, const Task& task, const DescribeRequest& request,
@@ -76,12 +70,14 @@ TaskDescription DescribeTask(const DescribeRequest& request) {
   description.task = &task;
   const auto world = MakeWorld(task.world(), {.model = request.model});
   description.fingerprint = world->fingerprint();
-  description.cameras.assign(world->cameras().begin(), world->cameras().end());
+  description.cameras = CamerasOf(*world);
   description.env_step_seconds = SecondsOfAStep(task, world.get(), request.seed);
 
   description.random_env_steps = request.random_env_steps;
-  const std::vector<MeasuredRange> ranges = MeasureRanges(task, request);
-  auto next = ranges.begin();
+  const RangeMeter meter = MeasureRanges(task, request);
+  description.constant = ConstantNumbers(task, meter);
+  description.observations = meter.observations();
+  auto next = meter.ranges().begin();
   const auto take = [&next](const tasks::Block& block, std::vector<MeasuredRange>* to) {
     to->assign(next, next + block.size());
     next += block.size();

@@ -10,13 +10,10 @@
 #include <vector>
 
 #include "actor/worlds/camera_view.h"
+#include "actor/worlds/tools/measured_ranges.h"
 #include "common/tasks/task.h"
 
 namespace shoal::worlds {
-
-struct MeasuredRange {
-  double low = 0, high = 0;
-};
 
 // What one action component does: each number of the state vector after `env_steps` steps of
 // `command` along this axis alone, less what it is after as many steps of no action from the same
@@ -36,7 +33,9 @@ struct TaskDescription {
   int random_env_steps = 0;  // that the ranges were seen in
   // One per number of the observation, the achieved and the desired goal.
   std::vector<MeasuredRange> observation, achieved_goal, desired_goal;
-  std::vector<AxisProbe> probes;  // two per axis: -1, then 1
+  std::vector<ConstantNumber> constant;  // of these
+  int observations = 0;                  // that the ranges were seen in
+  std::vector<AxisProbe> probes;         // two per axis: -1, then 1
 };
 
 struct DescribeRequest {

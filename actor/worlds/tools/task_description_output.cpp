@@ -177,6 +177,7 @@ ordered_json ToJson(const TaskDescription& description) {
       {"blocks", blocks},
       {"state_blocks", state_blocks},
       {"measured_over_env_steps", description.random_env_steps},
+      {"constant_numbers", ToJson(description.constant)},
       {"probes", probes},
       {"cameras", cameras},
       {"commit", BuildCommit()},
@@ -200,6 +201,7 @@ std::string ToText(const TaskDescription& description) {
   text += StateBlocksText(task);
   text += BlockText(task.achieved_goal(), description.achieved_goal);
   text += BlockText(task.desired_goal(), description.desired_goal);
+  text += ToText(description.constant, description.observations);
   text += "  cameras\n";
   for (const CameraView& camera : description.cameras) {
     if (camera.model_camera >= 0) {

@@ -51,7 +51,7 @@ class PointReach final : public shoal::worlds::World {
   }
 
   Outcome Step(std::span<const double> action) override {
-    std::copy(action.begin(), action.end(), data().ctrl);
+    SetControls(action);
     Advance(kEngineStepsPerEnvStep);
     return {};
   }

@@ -3,6 +3,7 @@
 
 import json
 import os
+import warnings
 
 import gymnasium
 import numpy as np
@@ -56,6 +57,8 @@ class Environment(gymnasium.Env):
     Observation: a dict of `pixels` (K*C, H, W) uint8, with goal_mode="image" ((K+1)*C, H, W) whose
     last C show the goal reached, and the vectors that the keys ask for, float32.
     Action: Box(-1, 1). info: `distance` (m) and `is_success`, where the task has a goal.
+    A step at which a number of the simulation is not finite truncates the episode: the observation
+    is the one before, the reward 0, and info's `fault` says why, as a RuntimeWarning does.
     reset(seed=s) starts the first of the episodes that s names, reset() the next of them.
     """
 
@@ -87,7 +90,9 @@ class Environment(gymnasium.Env):
         """By the simulation's clock, over one step of an episode that nobody sees."""
         self._native.reset(0, 0)
         start = self._native.simulated_seconds
-        self._native.step(np.zeros(self._native.action_size, np.float32))
+        *_, fault = self._native.step(np.zeros(self._native.action_size, np.float32))
+        if fault is not None:
+            raise _native.Error(fault)
         return round(1 / (self._native.simulated_seconds - start), 3)
 
     def _info(self, success, distance):
@@ -109,9 +114,14 @@ class Environment(gymnasium.Env):
         return observation, self._info(False, distance)
 
     def step(self, action):
-        observation, reward, terminated, truncated, success, distance = self._native.step(action)
+        observation, reward, *ends, success, distance, fault = self._native.step(action)
+        terminated, truncated = ends
         self._pixels = observation.get("pixels")
-        return observation, reward, terminated, truncated, self._info(success, distance)
+        info = self._info(success, distance)
+        if fault is not None:
+            info["fault"] = fault
+            warnings.warn(fault, RuntimeWarning, stacklevel=2)
+        return observation, reward, terminated, truncated, info
 
     def render(self):
         """The latest frame (H, cameras * W, 3); grey ones in three equal channels."""

@@ -113,6 +113,50 @@ TEST_F(SeatTest, AnAbandonedEpisodeNoLongerRuns) {
   EXPECT_TRUE(seat_.running());
 }
 
+TEST(FaultySeat, TheEpisodeEndsAtTheObservationBefore) {
+  constexpr size_t kFrame = 32;
+  struct Listener : SeatListener {
+    void OnBegin(uint64_t, std::span<const uint8_t>) override { ++begun; }
+    void OnStep(const SeenStep&) override { ++steps; }
+    void OnFault(std::span<const uint8_t> stack) override { shown.push_back(stack.back()); }
+    int begun = 0, steps = 0;
+    std::vector<int> shown;
+  };
+  auto environment = std::make_unique<CountingEnvironment>();
+  environment->faulty = [](uint64_t key, int step) {
+    return key == 4 ? step == 3 : key == 5 && step == 0;
+  };
+  std::vector<uint8_t> stack(2 * kFrame), frame(kFrame);
+  std::vector<float> policy_vector(2), vector(2);
+  Seat seat(std::move(environment), {stack, policy_vector});
+  Listener listener;
+  seat.set_listener(&listener);
+  seat.Begin(4, {frame, vector});
+  const std::vector<float> action{0.75F, 0};
+  seat.Step(action, {frame, vector});
+  seat.Step(action, {frame, vector});
+  const std::vector<uint8_t> stack_before = stack;
+  const std::vector<float> vector_before = vector;
+  EXPECT_THROW(seat.Step(action, {frame, vector}), worlds::EpisodeFault);
+  EXPECT_FALSE(seat.running());
+  EXPECT_EQ(stack, stack_before);
+  EXPECT_EQ(vector, vector_before);
+  EXPECT_EQ(policy_vector, vector_before);
+  EXPECT_EQ(seat.figures().length, 2);
+  EXPECT_EQ(seat.figures().episode_return, 1.5);
+  EXPECT_EQ(seat.figures().final_distance, 98);
+  EXPECT_FALSE(seat.figures().success) << "the last step's counts for nothing";
+  EXPECT_THAT(listener.shown, ElementsAre(42)) << "the second step's frame";
+  EXPECT_THROW(seat.Begin(5, {frame, vector}), worlds::EpisodeFault);
+  EXPECT_FALSE(seat.running());
+  EXPECT_EQ(seat.figures().length, 0);
+  EXPECT_EQ(listener.begun, 1);
+  EXPECT_EQ(listener.steps, 2);
+  EXPECT_EQ(listener.shown.size(), 2u);
+  seat.Begin(6, {frame, vector});
+  EXPECT_TRUE(seat.running()) << "the next episode is as any other";
+}
+
 struct Recorder : SeatListener {
   void OnBegin(uint64_t stream_key, std::span<const uint8_t> stack) override {
     keys.push_back(stream_key);
@@ -126,6 +170,7 @@ struct Recorder : SeatListener {
     successes.push_back(step.success);
     ends.push_back(step.ended);
   }
+  void OnFault(std::span<const uint8_t>) override { FAIL() << "no fault"; }
   std::vector<uint64_t> keys;
   std::vector<int> bytes, oldest;
   std::vector<float> first_actions, rewards;

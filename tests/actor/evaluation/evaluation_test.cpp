@@ -47,6 +47,23 @@ TEST(EvaluationJson, ATaskWithGoalsHasSuccessAndDistance) {
   EXPECT_EQ(json["aggregate"]["final_distance_mean"], 0.25);
 }
 
+TEST(EvaluationJson, AFaultyEpisodeHasFailedAndIsCounted) {
+  std::vector<EpisodeResult> episodes = TwoEpisodes(0.25);
+  episodes.push_back({.seed = 2,
+                      .figures = {.episode_return = 3,
+                                  .length = 2,
+                                  .final_distance = std::numeric_limits<double>::quiet_NaN()},
+                      .fault = worlds::FaultCause::kDiverged});
+  const auto json = EvaluationJson(RunOf("FetchReach"), {}, {}, episodes);
+  EXPECT_EQ(json["aggregate"]["faulty_episodes"], 1);
+  EXPECT_NEAR(json["aggregate"]["success_rate"].get<double>(), 1.0 / 3, 1e-12);
+  EXPECT_EQ(json["aggregate"]["final_distance_mean"], 0.25) << "of those that have one";
+  EXPECT_EQ(json["episodes"][2]["fault"], "diverged");
+  EXPECT_FALSE(json["episodes"][0].contains("fault"));
+  EXPECT_FALSE(EvaluationJson(RunOf("FetchReach"), {}, {}, TwoEpisodes(0))["aggregate"].contains(
+      "faulty_episodes"));
+}
+
 TEST(EvaluationJson, WhatATaskDoesNotHaveIsNull) {
   const auto json = EvaluationJson(RunOf("Hopper-v5"), {}, {},
                                    TwoEpisodes(std::numeric_limits<double>::quiet_NaN()));
@@ -101,7 +118,7 @@ TEST(EvaluationJson, FailedEpisodesHaveACauseAndAreCountedByIt) {
   }
   EXPECT_GT(failed, 0u);
   EXPECT_EQ(json["failures"]["never_touched"], failed);
-  EXPECT_EQ(json["failures"].size(), 10u);
+  EXPECT_EQ(json["failures"].size(), 11u);
   EXPECT_FALSE(EvaluationJson(RunOf("Hopper-v5"), {}, {}, {}).contains("failures"));
 }
 
@@ -172,6 +189,7 @@ class FirstPictures final : public SeatListener {
     seen.emplace_back(stack.begin(), stack.end());
   }
   void OnStep(const SeenStep&) override {}
+  void OnFault(std::span<const uint8_t>) override {}
 
   std::vector<std::vector<uint8_t>> seen;
 };

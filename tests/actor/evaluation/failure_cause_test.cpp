@@ -74,7 +74,7 @@ TEST_F(FailureCauseTest, TheFactsOfAnEpisodeAreItsOwn) {
 TEST_F(FailureCauseTest, WithoutAnObjectDistancesDecide) {
   FailureFacts facts(Spec(/*object=*/false), tasks::FindTask("FetchReach"));
   ASSERT_TRUE(facts.applies());
-  EXPECT_EQ(facts.causes().size(), 3u);
+  EXPECT_EQ(facts.causes().size(), 4u);
   const auto cause = [&](const std::vector<float>& xs) {
     for (size_t i = 0; i < xs.size(); ++i) {
       const std::vector<float> vector{xs[i], 0, 0, 1, 0, 0};

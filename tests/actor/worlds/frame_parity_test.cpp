@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "actor/worlds/custom_cameras.h"
 #include "actor/worlds/fetch_world.h"
 #include "actor/worlds/render_context.h"
 #include "actor/worlds/tools/reference_file.h"
@@ -84,7 +85,8 @@ double ErrorOf(const Case& c, const Recorded& recorded, const std::string& quali
   RenderContext context(observation);
   context.Attach(&world);
   Frame ours(3 * kPlane);
-  context.Render(&world, std::span(&FindCamera(world, "gymnasium"), 1), ours);
+  const CameraView camera = FindCamera(world, "gymnasium");
+  context.Render(&world, {&camera, 1}, ours);
   double sum = 0;
   for (size_t i = 0; i < ours.size(); ++i) sum += std::abs(int{ours[i]} - int{recorded.frame[i]});
   return sum / static_cast<double>(ours.size());

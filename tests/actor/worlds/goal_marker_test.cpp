@@ -7,6 +7,7 @@
 #include <memory>
 #include <vector>
 
+#include "actor/worlds/custom_cameras.h"
 #include "actor/worlds/fetch_reach.h"
 #include "actor/worlds/render_context.h"
 #include "actor/worlds/world_registry.h"

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <array>
 
+#include "actor/worlds/custom_cameras.h"
 #include "actor/worlds/world_registry.h"
 #include "common/base/error.h"
 #include "tests/support/paths.h"

@@ -12,6 +12,7 @@
 #include <optional>
 #include <set>
 
+#include "actor/worlds/custom_cameras.h"
 #include "actor/worlds/fetch_reach.h"
 #include "actor/worlds/world_registry.h"
 #include "common/base/error.h"
@@ -40,7 +41,8 @@ ObservationConfig Observation(const std::string& quality, bool grey = false) {
 Frame Render(RenderContext* context, World* world, const std::string& camera) {
   context->Attach(world);
   Frame frame(static_cast<size_t>(context->channels_per_camera()) * kPlane);
-  context->Render(world, std::span(&FindCamera(*world, camera), 1), frame);
+  const CameraView view = FindCamera(*world, camera);
+  context->Render(world, {&view, 1}, frame);
   return frame;
 }
 

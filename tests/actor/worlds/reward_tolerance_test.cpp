@@ -3,7 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
+
+#include "common/base/error.h"
 
 namespace shoal::worlds {
 namespace {
@@ -39,8 +42,10 @@ TEST(Tolerance, FallsOffInItsShape) {
   EXPECT_EQ(Tolerance(9, {.margin = 1, .fall_off = FallOff::kQuadratic}), 0);
 }
 
-TEST(ToleranceDeathTest, AGaussianNeverReachesZero) {
-  EXPECT_DEATH(Tolerance(2, {.margin = 1, .value_at_margin = 0}), "CHECK|v");
+TEST(Tolerance, AShapeThatCannotBeIsRefused) {
+  EXPECT_THROW(Tolerance(2, {.margin = 1, .value_at_margin = 0}), Error) << "a gaussian";
+  EXPECT_THROW(Tolerance(2, {.low = 1, .high = 0}), Error);
+  EXPECT_THROW(Tolerance(2, {.margin = std::nan("")}), Error);
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "actor/worlds/custom_cameras.h"
 #include "common/base/error.h"
 #include "common/tasks/task_registry.h"
 

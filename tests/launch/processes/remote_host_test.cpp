@@ -106,6 +106,24 @@ TEST_F(RemoteHostTest, PushesWhatItsActorsNeedAndFetchesWhatTheyLeft) {
   EXPECT_FALSE(fs::exists(run_ / "made" / "actor-3-7.page"));
 }
 
+// A greeting without a line's end, and a line when it is left.
+TEST_F(RemoteHostTest, WhatALoginPrintsIsNoAnswer) {
+  host_.ssh = {"sh", "-c",
+               "echo Welcome; printf 'Today: rain'; sh -c \"$0\"; s=$?; echo Bye; exit $s"};
+  InstallProgram("echo 'shoal-actor " + std::string(BuildVersion()) + " (x)'");
+  CheckHost(host_, Never);
+  const ActorRange actors{.first = 2, .count = 1};
+  PushRun(run_, actors, &host_, Never);
+  EXPECT_EQ(host_.run, folder_.path() / "a folder's name");
+  Write(host_.run / "made" / "actor-2-5.page", std::string("grown\n\0\n", 8));
+  FetchMadePages(host_, actors, run_, Never);
+  EXPECT_EQ(ReadFile(run_ / "made" / "actor-2-5.page"), std::string("grown\n\0\n", 8));
+  // A login that swallows what its command says.
+  host_.ssh = {"sh", "-c", "sh -c \"$0\" > /dev/null; echo Welcome"};
+  EXPECT_THAT(Mistake([&] { FetchMadePages(host_, actors, run_, Never); }),
+              AllOf(HasSubstr("host far"), HasSubstr("its answer was not passed on whole")));
+}
+
 TEST_F(RemoteHostTest, ASecondPushRenewsTheAddressAndKeepsThePagesThatAreThere) {
   const ActorRange actors{.first = 0, .count = 1};
   PushRun(run_, actors, &host_, Never);

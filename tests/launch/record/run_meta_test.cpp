@@ -95,6 +95,20 @@ TEST(RunMeta, AProblemInAnyEncodingIsWritten) {
             "ade");
 }
 
+TEST(RunMeta, CountsOfFaultyEpisodesGoOnInAResumedRun) {
+  const TemporaryFolder run;
+  RunMeta meta;
+  meta.faulty_episodes = {{"diverged", 3}, {"reward", 1}};
+  WriteRunMeta(run.path(), Config(), meta);
+  EXPECT_EQ(ReadRunMeta(run.path()).faulty_episodes, meta.faulty_episodes);
+  WriteRunMeta(run.path(), Config(), RunMeta());
+  EXPECT_TRUE(ReadRunMeta(run.path()).faulty_episodes.empty());
+  auto json = nlohmann::json::parse(ReadFile(run.path() / "meta.json"));
+  json.erase("faulty_episodes");  // of an older build
+  WriteFileAtomically(run.path() / "meta.json", json.dump());
+  EXPECT_TRUE(ReadRunMeta(run.path()).faulty_episodes.empty());
+}
+
 TEST(RunMeta, AnOlderFileHasNoChanges) {
   const TemporaryFolder run;
   WriteRunMeta(run.path(), Config(), RunMeta());

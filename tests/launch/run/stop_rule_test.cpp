@@ -121,6 +121,13 @@ TEST(FormatWholeScore, HasLengthAndDistanceOfATaskWithSuccess) {
       "return 312.500, length 740.2, 20 episodes");
 }
 
+TEST(FormatScore, SaysHowManyEpisodesWereFaulty) {
+  EXPECT_EQ(FormatScore({.success = 0.5, .mean_return = -1, .episodes = 50, .faulty_episodes = 2}),
+            "success 50.0 % of 50 episodes, return -1.000, 2 faulty episodes");
+  EXPECT_EQ(FormatScore({.success = std::nullopt, .mean_return = 1, .faulty_episodes = 2}),
+            "return 1.000, 2 faulty episodes");
+}
+
 TEST(FormatScore, SaysHowSureItIs) {
   EXPECT_EQ(
       FormatScore({.success = 0.98, .mean_return = -0.97, .return_std = 0.12, .episodes = 50}),

@@ -4,6 +4,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 namespace shoal::launch {
 namespace {
 
@@ -55,6 +57,17 @@ TEST(FormatProgressLine, EndsWithTheActorsThatDoNotWork) {
   EXPECT_THAT(FormatProgressBlock(f, 100),
               ::testing::Contains("  trouble    actors 1 of 2: actor-1: exit code 1"));
   EXPECT_THAT(FormatProgressBlock(Sample(), 100), ::testing::Each(Not(HasSubstr("trouble"))));
+}
+
+TEST(FormatProgressLine, ShowsFaultyEpisodesWhereThereAreSome) {
+  ProgressFigures f = Sample();
+  EXPECT_THAT(FormatProgressLine(f), testing::Not(HasSubstr("faulty")));
+  f.faulty_episodes = 3;
+  EXPECT_THAT(FormatProgressLine(f), HasSubstr("| 3 faulty episodes | left"));
+  const std::vector<std::string> block = FormatProgressBlock(f, 200);
+  EXPECT_TRUE(std::ranges::any_of(block, [](const std::string& line) {
+    return line.starts_with("  actors") && line.ends_with("; 3 faulty episodes");
+  }));
 }
 
 TEST(FormatProgressLine, ShowsTheReturnWhereThereIsNoSuccess) {

@@ -84,6 +84,40 @@ TEST_F(RolloutCoreTest, GoesOnOverTheEndsOfEpisodes) {
   EXPECT_EQ(core_->used_records(), 6u) << "resets too";
 }
 
+// As a faulty episode ends: its last step does not say that it is one.
+TEST_F(RolloutCoreTest, AnEpisodeThatBreaksOffIsTruncatedAtItsLastObservation) {
+  a_.Reset(0, 0, 1);
+  a_.Step(0, 0, 1, 2);
+  a_.Step(0, 0, 2, 3);
+  a_.Reset(0, 1, 5);
+  a_.Step(0, 1, 1, 6);
+  core_->TakeChunk(a_.Chunk());
+  ASSERT_EQ(core_->Ready(), 1) << "the rollout is whole";
+  const BatchView batch = TakeReady();
+  EXPECT_EQ(batch.obs_vector[3], 2);
+  EXPECT_EQ(batch.obs_vector[6], 5);
+  using V = std::vector<float>;
+  EXPECT_EQ(V(batch.bootstrap.begin(), batch.bootstrap.end()), (V{1, 1, 1}));
+  EXPECT_EQ(V(batch.ends.begin(), batch.ends.end()), (V{0, 1, 0}));
+  EXPECT_EQ(V(batch.continues.begin(), batch.continues.end()), (V{1, 0, 0}));
+  EXPECT_EQ(batch.next_obs_vector[3], 3) << "what its value is bootstrapped from";
+  EXPECT_EQ(core_->counters().dropped_rollouts, 0u);
+  EXPECT_EQ(core_->used_records(), 5u);
+}
+
+TEST_F(RolloutCoreTest, AnEpisodeThatBreaksOffBetweenTwoRolloutsLeavesTheFirstAsItIs) {
+  a_.PlayThree(0, 0);
+  a_.Reset(0, 1, 7);
+  core_->TakeChunk(a_.Chunk());
+  ASSERT_EQ(core_->Ready(), 1);
+  EXPECT_EQ(TakeReady().ends[2], 0);
+  core_->Await({100, 1});
+  for (uint32_t i = 1; i <= 3; ++i) a_.Step(0, 1, i, float(7 + i), {100, 1});
+  core_->TakeChunk(a_.Chunk());
+  ASSERT_EQ(core_->Ready(), 1);
+  EXPECT_EQ(TakeReady().obs_vector[0], 7);
+}
+
 TEST_F(RolloutCoreTest, TheNextRolloutGoesOnWhereTheLastOneEnded) {
   a_.PlayThree(0, 0);
   core_->TakeChunk(a_.Chunk());

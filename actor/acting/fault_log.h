@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+// Faulty episodes: those that ended at a number of the simulation that is not finite. Counts them
+// by cause, logs at most one line in ten seconds, and says when they are no exception any more.
+//
+//   no exception: more than max_faulty_share * kWindow of the newest kWindow episodes were faulty
+//
+// With fewer episodes so far the same number counts, so that a task whose every episode is faulty
+// ends the run within a few of them.
+#pragma once
+
+#include <array>
+#include <bitset>
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <optional>
+
+#include "actor/worlds/episode_fault.h"
+#include "common/base/clock.h"
+
+namespace shoal::actor {
+
+// One thread.
+class FaultLog {
+ public:
+  static constexpr size_t kWindow = 200;  // episodes
+  static constexpr std::chrono::seconds kLogPeriod{10};
+
+  // `max_share`: the key max_faulty_share.
+  explicit FaultLog(double max_share, std::function<SteadyTime()> now = Now)
+      : max_share_(max_share), now_(std::move(now)) {}
+
+  // An episode ended without a fault.
+  void Ended() { Add(false); }
+  // An episode was faulty, or could not begin. Throws Error (kNonFinite) with the fault's message
+  // when such episodes are no exception.
+  void Count(const worlds::EpisodeFault& fault);
+
+  // Since construction.
+  uint64_t count(worlds::FaultCause cause) const { return counts_[static_cast<size_t>(cause)]; }
+  uint64_t total() const;
+
+ private:
+  void Add(bool faulty);
+  void Log(const worlds::EpisodeFault& fault);
+
+  const double max_share_;
+  const std::function<SteadyTime()> now_;
+  std::bitset<kWindow> recent_;  // the newest episodes; set = faulty
+  size_t next_ = 0, episodes_ = 0;
+  std::array<uint64_t, worlds::kFaultCauses.size()> counts_{};
+  std::optional<SteadyTime> logged_;
+  uint64_t unsaid_ = 0;  // since the last line
+};
+
+}  // namespace shoal::actor

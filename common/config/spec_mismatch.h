@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: Apache-2.0
+// Why a run cannot go on: what its actors would observe now is not what its config.json says.
+#pragma once
+
+#include <string>
+
+#include "common/config/run_config.h"
+#include "common/spec/observation_spec.h"
+
+namespace shoal {
+
+// One line for an error. Where only the model's fingerprint differs it names the model file, or the
+// task library, that was changed since the run began; else both observations.
+std::string SpecMismatch(const RunConfig& run, const ObservationSpec& now);
+
+}  // namespace shoal
