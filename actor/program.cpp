@@ -77,7 +77,7 @@ int Evaluate(const Options& options) {
   }
   const std::string result =
       EvaluateCheckpoint(options.run, options.checkpoint, evaluation).dump(2);
-  if (options.json.empty()) {
+  if (options.json.empty() || options.json == "-") {
     std::cout << result << std::endl;
   } else {
     WriteFileAtomically(options.json, result + "\n");

@@ -9,6 +9,8 @@
 #include "common/base/files.h"
 #include "common/base/stop.h"
 #include "launch/commands/commands.h"
+#include "launch/commands/json_output.h"
+#include "launch/commands/target_options.h"
 #include "launch/record/run_folder.h"
 #include "launch/report/card.h"
 #include "launch/report/compare.h"
@@ -41,11 +43,11 @@ void AddSubjects(CLI::App* command, SubjectOptions* subjects) {
 }
 
 int CompareSubjects(const CompareOptions& options) {
-  if (!options.json.empty()) CheckWritable(options.json);
+  const JsonOutput output(options.json, JsonOutput::Readers::kOthers);
   const Comparison comparison =
       launch::Compare(ReadSubjects(options.subjects).groups, options.target);
-  if (!options.json.empty()) WriteFileForOthers(options.json, ToJson(comparison).dump(2) + "\n");
-  std::cout << ToText(comparison) << std::flush;
+  output.Write(ToJson(comparison).dump(2) + "\n");
+  std::fputs(ToText(comparison).c_str(), output.text());
   return 0;
 }
 
@@ -70,7 +72,9 @@ int DrawPlot(const PlotOptions& options) {
       .title = TitleOf(options, subjects), .axis = ParsePlotAxis(options.axis), .figures = {}};
   for (const std::string& word : options.figures) plot.figures.push_back(ParsePlotFigure(word));
   if (plot.figures.empty()) plot.figures = FiguresThereAre(subjects.groups);
-  for (const std::string& output : options.outputs) {
+  std::vector<std::string> outputs = options.outputs;
+  if (outputs.empty()) outputs = {"curves.png"};
+  for (const std::string& output : outputs) {
     Draw(plot, subjects.groups, output);
     std::cout << output << "\n";
   }
@@ -111,9 +115,7 @@ void AddCardCommand(CLI::App& app, Action* chosen) {
       "card",
       "A run as a folder that model hubs take: README with metadata, results, config, policy.");
   const auto options = std::make_shared<CardOptions>();
-  command->add_option("run", options->run, "Run: name or folder")->required();
-  command->add_option("--run-dir", options->run_dir, "Folder that holds the runs")
-      ->capture_default_str();
+  AddRunOption(*command, &options->run, &options->run_dir)->required();
   command->add_option("--output", options->output, "Folder to make; RUN-card by default");
   command->callback([=] { *chosen = [=] { return MakeCard(*options); }; });
 }
@@ -139,7 +141,8 @@ void AddCompareCommand(CLI::App& app, Action* chosen) {
   command->add_option("--target", options->target, "Success rate whose env steps are compared")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
-  command->add_option("--json", options->json, "File for the same (schema shoal-comparison-1)");
+  command->add_option("--json", options->json,
+                      "File for the same; - for standard output (schema shoal-comparison-1)");
   command->callback([=] { *chosen = [=] { return CompareSubjects(*options); }; });
 }
 
@@ -153,9 +156,10 @@ void AddPlotCommand(CLI::App& app, Action* chosen) {
       ->add_option("--y", options->figures,
                    "success | return | distance; may be repeated; all there are by default")
       ->allow_extra_args(false);
-  command->add_option("--output", options->outputs, "File to write, .png or .svg; may be repeated")
-      ->allow_extra_args(false)
-      ->required();
+  command
+      ->add_option("--output", options->outputs,
+                   "File to write, .png or .svg; may be repeated; curves.png by default")
+      ->allow_extra_args(false);
   command->add_option("--title", options->title, "Above the curves");
   command->callback([=] { *chosen = [=] { return DrawPlot(*options); }; });
 }

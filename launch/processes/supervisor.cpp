@@ -172,12 +172,12 @@ std::optional<std::string> Supervisor::OnExit(Child& child, const ExitStatus& st
 }
 
 void Supervisor::OnExpectedExit(Child& child, const ExitStatus& status) {
-  if (status.Clean()) return;
-  // Having obeyed a signal of ours is as asked; SIGKILL came only after everything else was
-  // ignored.
-  const bool obeyed = status.by_signal && status.code == child.signalled;
+  // A program that a stop signal ends in order dies by it, and so does one that had not begun.
+  // SIGKILL is only sent after everything else was ignored.
+  const bool ours = status.by_signal && status.code == child.signalled;
+  if (status.Clean() || (ours && status.code != SIGKILL)) return;
   std::string line =
-      Describe(child.spec, status, obeyed ? "" : LastWords(child.spec.output, child.output_before));
+      Describe(child.spec, status, ours ? "" : LastWords(child.spec.output, child.output_before));
   line += " while stopping";
   say_(line);
   unclean_exits_.push_back(std::move(line));

@@ -61,7 +61,8 @@ class Supervisor {
   // What a retired actor needs to flush what it has, and more.
   static constexpr std::chrono::seconds kRetire{40};
 
-  // Expected exits that were not clean, each as one line.
+  // Expected exits that were not clean, each as one line. Death by a stop signal that was sent with
+  // Signal or Retire is clean.
   const std::vector<std::string>& unclean_exits() const { return unclean_exits_; }
 
  private:

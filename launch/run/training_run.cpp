@@ -272,6 +272,8 @@ void PrintStart(const PreparedRun& run, const ClusterAddress& address) {
                     checkpoint.empty() ? "without a checkpoint" : "from " + checkpoint.string());
   }
   text += PlanText(run.config, run.frame_microseconds);
+  const std::string shared = SharedCoresText(ActorsHere(run.folder.path(), config), UsableCores());
+  if (!shared.empty()) text += "  " + shared + "\n";
   for (const RemoteHost& host : run.hosts.hosts) {
     text +=
         fmt::format("  {} of the actors on {}, in {}\n", host.actors, host.name, host.run.string());
