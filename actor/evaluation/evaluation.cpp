@@ -15,6 +15,7 @@
 #include "common/base/build_info.h"
 #include "common/base/check.h"
 #include "common/base/error.h"
+#include "common/base/interrupted.h"
 #include "common/base/stop.h"
 #include "common/checkpoint/checkpoint_files.h"
 #include "common/config/run_files.h"
@@ -243,7 +244,7 @@ ordered_json EvaluateCheckpoint(const std::filesystem::path& run_folder,
       evaluator.Play(evaluation.episodes, stream, StopRequested, evaluation.on_ended);
   const bool whole = results.size() == static_cast<size_t>(evaluation.episodes);
   if (!whole && (!evaluation.partial || results.empty())) {
-    throw RuntimeError("evaluation of '{}' interrupted", checkpoint.string());
+    throw Interrupted(fmt::format("evaluation of '{}'", checkpoint.string()));
   }
   EvaluationFile file = MakeEvaluation(run, label, stream, results);
   if (!whole) file.episodes_asked = evaluation.episodes;

@@ -8,6 +8,7 @@
 
 #include "actor/evaluation/evaluation.h"
 #include "common/base/error.h"
+#include "common/base/interrupted.h"
 #include "common/tasks/task_registry.h"
 
 namespace shoal::actor {
@@ -57,7 +58,7 @@ ordered_json PlayRandom(const RandomRequest& request, const std::function<bool()
   const EpisodeStream stream{request.seed, StreamRole::kFinalEnvironment, 0};
   const std::vector<EpisodeResult> episodes = evaluator.Play(request.episodes, stream, stop);
   if (std::cmp_less(episodes.size(), request.episodes)) {
-    throw RuntimeError("{} episodes of {} interrupted", request.policy, request.task);
+    throw Interrupted(fmt::format("{} episodes of {}", request.policy, request.task));
   }
   ordered_json result = EvaluationJson(run, {.policy = request.policy}, stream, episodes);
   result["success_by_threshold"] = SuccessByThreshold(task, episodes);

@@ -1,38 +1,62 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/base/main_guard.h"
 
+#include <csignal>
 #include <cstdio>
 #include <exception>
 
-#include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/base/interrupted.h"
 #include "common/base/one_line.h"
+#include "common/base/stop.h"
 
 namespace shoal {
-
 namespace {
 
 // A reason may quote what came from outside: one line of a length that people read.
 constexpr size_t kReasonBytes = 1000;
 
-void PrintError(const char* program, const char* reason) {
-  std::fprintf(stderr, "%s: error: %s\n", program,
+void PrintReason(const char* program, const char* what, const char* reason) {
+  std::fprintf(stderr, "%s: %s: %s\n", program, what,
                Shortened(OneLine(reason), kReasonBytes).c_str());
+}
+
+int Guarded(const char* program, const std::function<int()>& body) {
+  try {
+    return body();
+  } catch (const Interrupted& e) {
+    PrintReason(program, "interrupted", e.what());
+    return kInterruptedExit;
+  } catch (const Error& e) {
+    PrintReason(program, "error", e.what());
+    return e.exit_code();
+  } catch (const std::exception& e) {
+    PrintReason(program, "error", e.what());
+    return 1;
+  }
+}
+
+// Returns only in process 1 of a container, which the kernel spares: with the exit code that a
+// shell reports for a death by the signal.
+int DieBy(int signal) {
+  std::fflush(nullptr);  // a signal's death writes no buffers
+  std::signal(signal, SIG_DFL);
+  sigset_t unblocked;
+  sigemptyset(&unblocked);
+  sigaddset(&unblocked, signal);
+  pthread_sigmask(SIG_UNBLOCK, &unblocked, nullptr);
+  raise(signal);
+  return 128 + signal;
 }
 
 }  // namespace
 
 int GuardMain(const char* program, const std::function<int()>& body) {
   NoteUmask();
-  try {
-    return body();
-  } catch (const Error& e) {
-    PrintError(program, e.what());
-    return e.exit_code();
-  } catch (const std::exception& e) {
-    PrintError(program, e.what());
-    return 1;
-  }
+  const int value = Guarded(program, body);
+  const int signal = StopSignal();
+  const bool in_order = value == 0 || value == kInterruptedExit;
+  return signal != 0 && in_order ? DieBy(signal) : value;
 }
 
 }  // namespace shoal

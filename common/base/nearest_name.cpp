@@ -25,11 +25,16 @@ int EditDistance(std::string_view a, std::string_view b) {
   return row[b.size()];
 }
 
-std::string NearestHint(std::string_view word, std::span<const std::string> names) {
+std::string NearestName(std::string_view word, std::span<const std::string> names) {
   const auto distance = [&](const std::string& name) { return EditDistance(word, name); };
   const auto nearest = std::ranges::min_element(names, {}, distance);
   if (nearest == names.end() || distance(*nearest) > int(word.size() / 2)) return "";
-  return fmt::format("; nearest is '{}'", *nearest);
+  return *nearest;
+}
+
+std::string NearestHint(std::string_view word, std::span<const std::string> names) {
+  const std::string nearest = NearestName(word, names);
+  return nearest.empty() ? "" : fmt::format("; nearest is '{}'", nearest);
 }
 
 }  // namespace shoal

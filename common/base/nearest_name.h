@@ -11,8 +11,11 @@ namespace shoal {
 // Edits (insert, delete, replace one character) that turn `a` into `b`.
 int EditDistance(std::string_view a, std::string_view b);
 
-// "; nearest is 'NAME'" for the end of a refusal; empty where more than half of `word` would have
-// to change: that is another word, not a misspelt one.
+// Empty where more than half of `word` would have to change: that is another word, not a misspelt
+// one.
+std::string NearestName(std::string_view word, std::span<const std::string> names);
+
+// "; nearest is 'NAME'" for the end of a refusal; empty without one.
 std::string NearestHint(std::string_view word, std::span<const std::string> names);
 
 }  // namespace shoal

@@ -8,11 +8,23 @@ namespace {
 
 std::atomic<int> requests{0};
 std::atomic<bool> hung_up{false};
+std::atomic<int> first_signal{0};
 static_assert(std::atomic<int>::is_always_lock_free, "used in a signal handler");
 
-void OnSignal(int) { RequestStop(); }
+void NoteSignal(int signal) {
+  int none = 0;
+  first_signal.compare_exchange_strong(none, signal, std::memory_order_relaxed);
+}
 
-void OnHangUp(int) { hung_up.store(true, std::memory_order_relaxed); }
+void OnSignal(int signal) {
+  NoteSignal(signal);
+  RequestStop();
+}
+
+void OnHangUp(int signal) {
+  NoteSignal(signal);
+  hung_up.store(true, std::memory_order_relaxed);
+}
 
 }  // namespace
 
@@ -34,5 +46,6 @@ void InstallStopSignals() {
 void RequestStop() { requests.fetch_add(1, std::memory_order_relaxed); }
 bool StopRequested() { return StopRequests() > 0 || hung_up.load(std::memory_order_relaxed); }
 int StopRequests() { return requests.load(std::memory_order_relaxed); }
+int StopSignal() { return first_signal.load(std::memory_order_relaxed); }
 
 }  // namespace shoal

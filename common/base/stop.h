@@ -16,9 +16,12 @@ void RequestStop();
 bool StopRequested();
 // How many times a stop was asked for but by SIGHUP: a second Ctrl-C means "now".
 int StopRequests();
+// The first stop signal that arrived; 0 without one, also after RequestStop.
+int StopSignal();
 
-// Exit code of a command that a signal stopped, as shells have it: a script that loops over
-// commands ends with it, too.
+// Value of a main's body that a stop request ended in order. GuardMain (main_guard.h) then ends the
+// process by the signal; 130, which is what a shell reports for SIGINT, is the exit code where the
+// request was no signal.
 inline constexpr int kInterruptedExit = 130;
 
 }  // namespace shoal

@@ -14,6 +14,7 @@
 #include "common/base/one_line.h"
 #include "common/base/random.h"
 #include "common/config/config_keys.h"
+#include "common/config/meant_key.h"
 #include "common/config/nearest_key.h"
 #include "common/config/value_json.h"
 #include "common/run_folder/run_file_names.h"
@@ -44,6 +45,12 @@ bool IsUtf8(const std::string& text) {
 std::string Shown(const json& value) { return Shortened(value.dump(), 200); }
 
 [[noreturn]] void Refuse(const Key& key, const json& value, const std::string& source) {
+  if (std::holds_alternative<internal::FileName>(key.rule) && value.is_string() &&
+      value.get_ref<const std::string&>().size() > internal::kLongestFileName) {
+    throw UsageError("{}: {} = {}: too long with {} characters, expected at most {}", source,
+                     key.path, Shown(value), value.get_ref<const std::string&>().size(),
+                     internal::kLongestFileName);
+  }
   throw UsageError("{}: {} = {}: expected {}", source, key.path, Shown(value),
                    internal::Expected(key));
 }
@@ -52,7 +59,8 @@ bool IsFileName(const std::string& text) {
   const auto allowed = [](char c) {
     return std::isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '_' || c == '-';
   };
-  return !text.empty() && text[0] != '.' && text[0] != '-' && std::ranges::all_of(text, allowed);
+  return !text.empty() && text.size() <= internal::kLongestFileName && text[0] != '.' &&
+         text[0] != '-' && std::ranges::all_of(text, allowed);
 }
 
 // Does the key's rule allow a value that already has the right type?
@@ -174,11 +182,21 @@ bool IsSection(std::string_view path) {
                              [&](const Key& key) { return key.path.starts_with(prefix); });
 }
 
-[[noreturn]] void RefuseUnknown(const std::string& path, const std::string& source) {
+// What was meant: by another program's name, else by the spelling.
+std::string HintFor(const std::string& path) {
+  const MeantKey meant = FindMeantKey(path);
+  if (meant.same) return fmt::format("it is called '{}' here", meant.key);
+  if (!meant.key.empty()) {
+    return fmt::format("nearest in meaning is '{}', {}", meant.key, meant.note);
+  }
+  if (!meant.note.empty()) return meant.note;
   const std::string nearest = internal::NearestKey(path);
-  throw UsageError("{}: unknown key '{}', {}", source, path,
-                   nearest.empty() ? "nothing known is near it (--print-config lists all)"
-                                   : "nearest is '" + nearest + "'");
+  return nearest.empty() ? "nothing known is near it (--print-config lists all)"
+                         : "nearest is '" + nearest + "'";
+}
+
+[[noreturn]] void RefuseUnknown(const std::string& path, const std::string& source) {
+  throw UsageError("{}: unknown key '{}', {}", source, path, HintFor(path));
 }
 
 void ApplySection(const json& object, const std::string& prefix, const std::string& source,

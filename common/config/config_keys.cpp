@@ -377,7 +377,8 @@ struct RuleText {
     return fmt::format("{}", fmt::join(c.words, " | "));
   }
   std::string operator()(const FileName& f) const {
-    return f.optional ? "usable as a file name, or empty" : "usable as a file name";
+    return fmt::format("usable as a file name of at most {} characters{}", kLongestFileName,
+                       f.optional ? ", or empty" : "");
   }
 };
 

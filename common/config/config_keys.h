@@ -35,6 +35,9 @@ struct RealRange {
 struct Choices {
   std::vector<std::string_view> words;
 };
+// At most this long: file systems take 255 bytes, and names of files beside a run's folder end in
+// more.
+inline constexpr size_t kLongestFileName = 200;
 // Letters, digits, '.', '_', '-'; not starting with '.' or '-': usable as a file name. May be empty
 // where `optional`.
 struct FileName {

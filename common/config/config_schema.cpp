@@ -65,6 +65,7 @@ struct ValueSchema {
       schema["enum"] = choices->words;
     if (const auto* name = std::get_if<internal::FileName>(&rule)) {
       schema["pattern"] = name->optional ? kFileNameOrEmpty : kFileName;
+      schema["maxLength"] = internal::kLongestFileName;
     }
     return schema;
   }

@@ -2,39 +2,39 @@
 #include "launch/check/check.h"
 
 #include <CLI/CLI.hpp>
-#include <iostream>
+#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 
 #include "common/base/clock.h"
 #include "common/base/error.h"
-#include "common/base/files.h"
 #include "common/base/stop.h"
 #include "common/config/config_io.h"
 #include "launch/check/loopback.h"
 #include "launch/commands/commands.h"
+#include "launch/commands/json_output.h"
 #include "launch/record/machine.h"
 
 namespace shoal::launch {
 namespace {
 
 int Check(const CheckRequest& request, const std::string& json) {
-  if (!json.empty()) CheckWritable(json);
+  const JsonOutput output(json);
   InstallStopSignals();
   const SteadyTime start = Now();
-  const std::vector<CheckLine> lines =
-      CheckMachine(request, [](const CheckLine& line) { std::cout << ToText(line) << std::flush; });
+  const std::vector<CheckLine> lines = CheckMachine(request, [&](const CheckLine& line) {
+    std::fputs(ToText(line).c_str(), output.text());
+    std::fflush(output.text());
+  });
   if (StopRequested()) {
-    std::cout << "interrupted\n";
+    std::fputs("interrupted\n", output.text());
     return kInterruptedExit;
   }
   const double seconds = SecondsSince(start);
-  if (!json.empty()) {
-    WriteFileAtomically(json, ToJson(lines, seconds, DescribeMachine()).dump(2) + "\n");
-  }
+  output.Write(ToJson(lines, seconds, DescribeMachine()).dump(2) + "\n");
   const Verdict worst = Worst(lines);
-  std::cout << fmt::format(
-      "{} in {:.1f} s\n",
+  fmt::print(
+      output.text(), "{} in {:.1f} s\n",
       worst == Verdict::kFail ? "this machine cannot train as it is" : "this machine can train",
       seconds);
   return worst == Verdict::kFail ? 1 : 0;
@@ -53,7 +53,7 @@ void AddCheckCommand(CLI::App& app, Action* chosen) {
   const auto run_dir = std::make_shared<std::string>("runs");
   const auto peer = std::make_shared<std::string>();
   command->add_option("--json", *json,
-                      "File for the same, replaced if it is there (schema "
+                      "File for the same, replaced if it is there; - for standard output (schema "
                       "shoal-check-1)");
   command->add_option("--run-dir", *run_dir, "Folder that will hold the runs")
       ->capture_default_str();

@@ -2,10 +2,39 @@
 #include "launch/commands/command_line.h"
 
 #include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
 
 #include "common/base/command_line.h"
+#include "common/base/error.h"
+#include "launch/commands/other_words.h"
 
 namespace shoal::launch {
+namespace {
+
+// Checked first: an unknown command has no options that could be wrong.
+void CheckCommand(const CLI::App& app, const std::vector<std::string>& words) {
+  const CLI::App* level = &app;
+  std::string before;  // the names above it
+  for (const std::string& word : words) {
+    if (word.starts_with('-')) return;
+    std::vector<std::string> names;
+    const CLI::App* named = nullptr;
+    for (const CLI::App* command : level->get_subcommands([](const CLI::App*) { return true; })) {
+      names.push_back(command->get_name());
+      if (names.back() == word) named = command;
+    }
+    if (names.empty()) return;
+    if (named == nullptr) {
+      throw UsageError("unknown command '{}' (see {}{} --help){}", word, before, level->get_name(),
+                       HintForCommand(word, names));
+    }
+    before += level->get_name() + " ";
+    level = named;
+  }
+}
+
+}  // namespace
 
 std::unique_ptr<CLI::App> MakeCommandLine(Action* chosen) {
   auto app = std::make_unique<CLI::App>(
@@ -34,6 +63,16 @@ std::unique_ptr<CLI::App> MakeCommandLine(Action* chosen) {
   AddCheckCommand(*app, chosen);
   AddSecureCommand(*app, chosen);
   return app;
+}
+
+int RunCommandLine(int argc, char** argv) {
+  Action chosen;
+  const auto app = MakeCommandLine(&chosen);
+  std::vector<std::string> words(argv + 1, argv + argc);
+  CheckCommand(*app, words);
+  words = AsCommandsTakeThem(*app, std::move(words));
+  if (const auto exit_code = ParseCommandLine(app.get(), words, HintForWord)) return *exit_code;
+  return chosen();
 }
 
 }  // namespace shoal::launch

@@ -11,4 +11,7 @@ namespace shoal::launch {
 // Parsing stores what to do in `*chosen`, which must outlive the command line.
 std::unique_ptr<CLI::App> MakeCommandLine(Action* chosen);
 
+// Parses the command line and runs the command it names; the exit code. Throws Error.
+int RunCommandLine(int argc, char** argv);
+
 }  // namespace shoal::launch

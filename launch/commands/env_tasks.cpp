@@ -2,7 +2,7 @@
 #include "launch/commands/env_tasks.h"
 
 #include <CLI/CLI.hpp>
-#include <iostream>
+#include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -11,11 +11,11 @@
 #include "actor/worlds/tools/task_description.h"
 #include "actor/worlds/tools/task_table.h"
 #include "common/base/error.h"
-#include "common/base/files.h"
 #include "common/base/stop.h"
 #include "common/config/config_io.h"
 #include "common/config/run_files.h"
 #include "common/run_folder/run_file_names.h"
+#include "launch/commands/json_output.h"
 #include "launch/observability/observability.h"
 #include "launch/processes/actor_program.h"
 #include "launch/record/run_folder.h"
@@ -24,17 +24,21 @@
 namespace shoal::launch {
 namespace {
 
+// The JSON, where it is asked for, then the text for people.
+void Show(const JsonOutput& output, const nlohmann::ordered_json& json, const std::string& text) {
+  output.Write(json.dump(2) + "\n");
+  std::fputs(text.c_str(), output.text());
+}
+
 int List(const std::string& json) {
-  if (!json.empty()) WriteFileAtomically(json, worlds::TaskTableJson().dump(2) + "\n");
-  std::cout << worlds::TaskTable() << std::flush;
+  Show(JsonOutput(json), worlds::TaskTableJson(), worlds::TaskTable());
   return 0;
 }
 
 int Describe(const worlds::DescribeRequest& request, const std::string& json) {
-  if (!json.empty()) CheckWritable(json);
+  const JsonOutput output(json);
   const worlds::TaskDescription description = worlds::DescribeTask(request);
-  if (!json.empty()) WriteFileAtomically(json, worlds::ToJson(description).dump(2) + "\n");
-  std::cout << worlds::ToText(description) << std::flush;
+  Show(output, worlds::ToJson(description), worlds::ToText(description));
   return 0;
 }
 
@@ -50,45 +54,47 @@ RunConfig ConfigOf(const InputsRequest& request) {
 }
 
 int PrintInputs(const InputsRequest& request, const std::string& json) {
-  if (!json.empty()) CheckWritable(json);
+  const JsonOutput output(json);
   const RunConfig run = ConfigOf(request);
-  if (!json.empty()) WriteFileAtomically(json, InputsJson(run).dump(2) + "\n");
-  std::cout << DescribeInputs(run) << std::flush;
+  Show(output, InputsJson(run), DescribeInputs(run));
   return 0;
 }
 
 int CheckRewards(const worlds::RewardCheckRequest& request, const std::string& json) {
-  if (!json.empty()) CheckWritable(json);
+  const JsonOutput output(json);
   const worlds::RewardCheck check = worlds::CheckRewards(request);
-  if (!json.empty()) WriteFileAtomically(json, worlds::ToJson(check).dump(2) + "\n");
-  std::cout << worlds::ToText(check) << std::flush;
+  Show(output, worlds::ToJson(check), worlds::ToText(check));
   return check.Passed() ? 0 : 1;
 }
 
 int PlayRandom(const actor::RandomRequest& request, const std::string& json) {
-  if (!json.empty()) CheckWritable(json);
+  const JsonOutput output(json);
   InstallStopSignals();
   const nlohmann::ordered_json result = actor::PlayRandom(request, StopRequested);
-  if (!json.empty()) WriteFileAtomically(json, result.dump(2) + "\n");
-  std::cout << actor::RandomText(result) << std::flush;
+  Show(output, result, actor::RandomText(result));
   return 0;
 }
 
 int Observe(const ObservabilityRequest& request, const std::string& json) {
-  if (!json.empty()) CheckWritable(json);
+  const JsonOutput output(json);
   InstallStopSignals();
   const Observability result = MeasureObservability(
-      request, [&](const ObservabilityRow& row) { std::cout << ToText(request, row) << std::endl; },
+      request,
+      [&](const ObservabilityRow& row) {
+        fmt::print(output.text(), "{}\n", ToText(request, row));
+        std::fflush(output.text());
+      },
       StopRequested);
   if (StopRequested()) return kInterruptedExit;
-  if (!json.empty()) WriteFileAtomically(json, ToJson(result).dump(2) + "\n");
+  output.Write(ToJson(result).dump(2) + "\n");
   return 0;
 }
 
 // Options that several commands take.
 void AddJson(CLI::App* command, const std::string& schema, std::string* json) {
-  command->add_option("--json", *json,
-                      "File for the same, replaced if it is there (schema " + schema + ")");
+  command->add_option(
+      "--json", *json,
+      "File for the same, replaced if it is there; - for standard output (schema " + schema + ")");
 }
 void AddTask(CLI::App* command, std::string* task, std::string* model) {
   command->add_option("task", *task, "Task, e.g. FetchReachDense")->required();

@@ -16,6 +16,8 @@
 #include "common/config/run_files.h"
 #include "common/run_folder/run_file_names.h"
 #include "launch/commands/commands.h"
+#include "launch/commands/json_output.h"
+#include "launch/commands/target_options.h"
 #include "launch/experiment/baselines.h"
 #include "launch/processes/actor_program.h"
 #include "launch/processes/scratch_folder.h"
@@ -27,15 +29,16 @@ namespace {
 namespace fs = std::filesystem;
 
 struct EvalOptions {
-  std::string checkpoint, task, json;
+  CheckpointWords checkpoint;
+  std::string task, json;
   int episodes = 100;
   int64_t seed = 1000;  // not that of a run, whose final evaluation plays the same stream
 };
 
-void AddBaselines(const fs::path& file, const Baselines& baselines) {
-  auto object = ParseBoundedJson<nlohmann::ordered_json>(ReadFile(file));
+std::string WithBaselines(const std::string& result, const Baselines& baselines) {
+  auto object = ParseBoundedJson<nlohmann::ordered_json>(result);
   object["baselines"] = ToJson(std::optional(baselines));
-  WriteFileAtomically(file, object.dump(2) + "\n");
+  return object.dump(2) + "\n";
 }
 
 // "failed 3: 2 stopped_short, 1 never_touched", the commonest first; empty where nothing failed or
@@ -58,36 +61,23 @@ std::string FailuresText(const fs::path& file) {
   return text.empty() ? "" : fmt::format("failed {}: {}", all, text);
 }
 
-struct RunCheckpoint {
-  fs::path run, checkpoint;
-};
-
-// RUN/checkpoints/NAME, or RUN for the checkpoint that it is judged by.
-RunCheckpoint FindRunCheckpoint(const std::string& asked) {
-  fs::path path = fs::absolute(asked).lexically_normal();
-  if (!path.has_filename()) path = path.parent_path();  // "best/" -> "best"
-  if (!fs::is_directory(path)) throw UsageError("no checkpoint folder '{}'", asked);
-  if (IsRun(path)) {
-    const fs::path judged = JudgedCheckpoint(path);
-    if (judged.empty()) throw UsageError("run '{}' has no checkpoint yet", asked);
-    return {path, judged};
-  }
-  const fs::path run = path.parent_path().parent_path();
-  if (!IsRun(run)) {
-    throw UsageError("'{}' is neither a run nor RUN/checkpoints/NAME: there is no '{}'", asked,
-                     (run / kConfigFile).string());
-  }
-  return {run, path};
+// Its run's configuration says what is played.
+NamedCheckpoint FindRunCheckpoint(const CheckpointWords& words) {
+  NamedCheckpoint named = FindCheckpoint(words);
+  if (!named.run.empty()) return named;
+  throw UsageError("'{}' is neither a run nor RUN/checkpoints/NAME: there is no '{}'",
+                   named.checkpoint.string(),
+                   (named.checkpoint.parent_path().parent_path() / kConfigFile).string());
 }
 
-int Interrupted(const std::string& what) {
+int WasInterrupted(const std::string& what) {
   fmt::print(stderr, "shoal: interrupted: {}\n", what);
   return kInterruptedExit;
 }
 
 int Evaluate(const EvalOptions& options) {
   const auto [run, folder] = FindRunCheckpoint(options.checkpoint);
-  if (!options.json.empty()) CheckWritable(options.json);
+  const JsonOutput output(options.json);
   InstallStopSignals();
   const ScratchFolder scratch;
   const fs::path json = scratch.path() / "eval.json";
@@ -101,17 +91,20 @@ int Evaluate(const EvalOptions& options) {
        .partial = true,
        .progress = [](const std::string& line) { fmt::print(stderr, "played {}\n", line); }},
       StopRequested);
-  if (!point) return Interrupted("nothing was evaluated");
-  fmt::print("{} episodes (seed {}) of {}: {} ({} env steps, {} updates)\n", point->episodes,
-             options.seed, folder.string(), FormatWholeScore(*point), point->env_steps,
-             point->updates);
+  if (!point) return WasInterrupted("nothing was evaluated");
+  fmt::print(output.text(), "{} episodes (seed {}) of {}: {} ({} env steps, {} updates)\n",
+             point->episodes, options.seed, folder.string(), FormatWholeScore(*point),
+             point->env_steps, point->updates);
   if (const std::string failures = FailuresText(json); !failures.empty()) {
-    fmt::print("{}\n", failures);
+    fmt::print(output.text(), "{}\n", failures);
   }
-  if (!options.json.empty()) WriteFileAtomically(options.json, ReadFile(json));
+  const std::string result = ReadFile(json);
+  output.WriteEarly(result);
   if (std::cmp_less(point->episodes, options.episodes)) {
-    return Interrupted(fmt::format("partial, the first {} of {} episodes: as --episodes {} plays",
-                                   point->episodes, options.episodes, point->episodes));
+    output.Write(result);
+    return WasInterrupted(
+        fmt::format("partial, the first {} of {} episodes: as --episodes {} plays", point->episodes,
+                    options.episodes, point->episodes));
   }
   Config played = ReadRunConfig(run).config;
   if (!options.task.empty()) {  // played without the run's model file
@@ -120,9 +113,12 @@ int Evaluate(const EvalOptions& options) {
   }
   const auto baselines = BaselineCache().Measure(
       played, StopRequested, [](const std::string& line) { fmt::print(stderr, "{}\n", line); });
-  if (!baselines) return Interrupted("baselines were left out");
-  fmt::print("{} {}\n", played.task, FormatBaselines(*baselines));
-  if (!options.json.empty()) AddBaselines(options.json, *baselines);
+  if (!baselines) {
+    output.Write(result);
+    return WasInterrupted("baselines were left out");
+  }
+  fmt::print(output.text(), "{} {}\n", played.task, FormatBaselines(*baselines));
+  output.Write(WithBaselines(result, *baselines));
   return 0;
 }
 
@@ -134,10 +130,7 @@ void AddEvalCommand(CLI::App& app, Action* chosen) {
       "Evaluate a checkpoint on fresh episodes, with the policy's mean actions. Ctrl-C ends it "
       "with the result of those that were played.");
   const auto options = std::make_shared<EvalOptions>();
-  command
-      ->add_option("--checkpoint", options->checkpoint,
-                   "runs/NAME/checkpoints/best or .../step_N; runs/NAME for its best")
-      ->required();
+  AddCheckpointOptions(*command, &options->checkpoint);
   command->add_option("--episodes", options->episodes, "Episodes to play")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
@@ -147,7 +140,8 @@ void AddEvalCommand(CLI::App& app, Action* chosen) {
   command->add_option("--task", options->task,
                       "Another task than the run's, whose observations and actions have the same "
                       "sizes; without the run's randomization and model file");
-  command->add_option("--json", options->json, "File for every episode (schema shoal-eval-1)");
+  command->add_option("--json", options->json,
+                      "File for every episode; - for standard output (schema shoal-eval-1)");
   command->callback([=] { *chosen = [=] { return Evaluate(*options); }; });
 }
 

@@ -7,10 +7,10 @@
 #include "common/base/files.h"
 #include "common/policy/checkpoint_policy.h"
 #include "launch/commands/commands.h"
+#include "launch/commands/target_options.h"
 #include "launch/export/onnx_export.h"
 #include "launch/export/samples.h"
 #include "launch/export/sb3_policy.h"
-#include "launch/record/run_folder.h"
 
 namespace shoal::launch {
 namespace {
@@ -18,22 +18,13 @@ namespace {
 namespace fs = std::filesystem;
 
 struct ExportOptions {
-  std::string checkpoint, onnx, sb3, samples;
+  CheckpointWords checkpoint;
+  std::string onnx, sb3, samples;
   uint64_t seed = 1;
 };
 
 // Pictures take a plain evaluator long: an eighth of a second to two each.
 constexpr int kPictures = 8, kVectors = 100;
-
-// A checkpoint's folder, or a run's for the checkpoint that it is judged by.
-fs::path FindCheckpoint(const std::string& asked) {
-  const fs::path path = fs::absolute(asked).lexically_normal();
-  if (!fs::is_directory(path)) throw UsageError("no checkpoint folder '{}'", asked);
-  if (!IsRun(path)) return path;
-  const fs::path judged = JudgedCheckpoint(path);
-  if (judged.empty()) throw UsageError("run '{}' has no checkpoint yet", asked);
-  return judged;
-}
 
 // What the exported policy is compared on.
 struct Sets {
@@ -75,7 +66,7 @@ int Export(const ExportOptions& options) {
   for (const std::string& file : {options.onnx, options.sb3, options.samples}) {
     if (!file.empty()) CheckWritable(file);
   }
-  const fs::path checkpoint = FindCheckpoint(options.checkpoint);
+  const fs::path checkpoint = FindCheckpoint(options.checkpoint).checkpoint;
   const policy::CheckpointPolicy policy = policy::ReadCheckpointPolicy(checkpoint);
   const Sets sets = DrawSets(policy, checkpoint, options.seed);
   // Everything is made before anything is written.
@@ -109,10 +100,7 @@ void AddExportCommand(CLI::App& app, Action* chosen) {
       "A checkpoint's policy for other programs: an ONNX file from raw observations to actions, "
       "compared with the policy before it is written, or parameters for Stable-Baselines3.");
   const auto options = std::make_shared<ExportOptions>();
-  command
-      ->add_option("checkpoint", options->checkpoint,
-                   "Folder of a checkpoint, wherever it lies; a run's folder for its best")
-      ->required();
+  AddCheckpointOptions(*command, &options->checkpoint);
   command->add_option("--onnx", options->onnx, "ONNX file to write");
   command->add_option("--sb3", options->sb3,
                       "Zip file to write, for set_parameters of Stable-Baselines3");

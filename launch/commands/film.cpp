@@ -10,8 +10,8 @@
 #include "common/run_folder/run_file_names.h"
 #include "common/tensorboard/event_writer.h"
 #include "launch/commands/commands.h"
+#include "launch/commands/target_options.h"
 #include "launch/film/film_checkpoints.h"
-#include "launch/record/run_folder.h"
 
 namespace shoal::launch {
 namespace {
@@ -19,7 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 
 struct FilmOptions {
-  std::string run, run_dir = "runs", checkpoint, output;
+  CheckpointWords checkpoint;
+  std::string output;
   bool across = false, tensorboard = false;
   int episodes = 0;  // 0: kEpisodes, or kEpisodesAcross of each checkpoint
   int64_t seed = 1;
@@ -30,14 +31,18 @@ constexpr uintmax_t kLargestInReport = 2'000'000;  // bytes
 
 FilmOrder OrderOf(const FilmOptions& options) {
   FilmOrder order;
-  order.run = fs::absolute(FindNamed(options.run, RunsIn(options.run_dir))).lexically_normal();
+  const NamedCheckpoint named = FindCheckpoint(options.checkpoint);
+  if (named.run.empty()) {
+    throw UsageError("'{}' is neither a run nor RUN/checkpoints/NAME", named.checkpoint.string());
+  }
+  order.run = named.run;
   order.seed = options.seed;
   order.episodes = options.episodes;
   if (order.episodes == 0) order.episodes = options.across ? kEpisodesAcross : kEpisodes;
   if (options.across) {
     order.checkpoints = CheckpointsAcross(order.run);
   } else {
-    order.checkpoints = {FilmedCheckpoint(order.run, options.checkpoint)};
+    order.checkpoints = {named.checkpoint};
   }
   order.output = options.output;
   if (options.output.empty()) {
@@ -87,16 +92,11 @@ void AddFilmCommand(CLI::App& app, Action* chosen) {
       "An MP4 film of a run's policy: what it sees, pixel by pixel, beside a larger view, with "
       "step, reward, return and success. Plays in browsers, as fast as the robot moves.");
   const auto options = std::make_shared<FilmOptions>();
-  command->add_option("run", options->run, "Run: name or folder")->required();
-  command->add_option("--run-dir", options->run_dir, "Folder that holds the runs")
-      ->capture_default_str();
+  CLI::Option* checkpoint = AddCheckpointOptions(*command, &options->checkpoint);
   auto* across = command->add_flag(
       "--across-checkpoints", options->across,
       "The first checkpoint, two between and the best, one after the other: how it learned");
-  command
-      ->add_option("--checkpoint", options->checkpoint,
-                   "Name in RUN/checkpoints; default: best, else the newest")
-      ->excludes(across);
+  checkpoint->excludes(across);
   command
       ->add_option("--episodes", options->episodes,
                    fmt::format("Episodes to play; default {}, {} of each checkpoint across them",

@@ -22,7 +22,7 @@ namespace {
 namespace fs = std::filesystem;
 
 struct PeekOptions {
-  std::string run, png;
+  std::string run, run_dir = "runs", png;
   int batch = 8;
   uint64_t seed = 1;
 };
@@ -37,7 +37,7 @@ RunConfig ReadRunWithReplay(const fs::path& run) {
 }
 
 int Peek(const PeekOptions& options) {
-  const fs::path run = FindNamed(options.run, RunsIn(Config().run_dir));
+  const fs::path run = FindNamed(options.run, RunsIn(options.run_dir));
   ReadRunWithReplay(run);
   const replay::Peek peek = replay::PeekBatch(run, options.batch, options.seed);
   std::cout << peek.records << " records in the ring, " << peek.sampleable
@@ -55,7 +55,7 @@ int Peek(const PeekOptions& options) {
 }
 
 struct EpisodesOptions {
-  std::string source, output;
+  std::string source, run_dir = "runs", output;
   uint64_t episodes = 0;
   bool last = false;
 };
@@ -65,7 +65,7 @@ EpisodeExport ExportSubject(const EpisodesOptions& options) {
   std::error_code error;
   const bool is_ring = fs::is_regular_file(options.source, error);
   const fs::path run = is_ring ? fs::absolute(options.source).parent_path()
-                               : FindNamed(options.source, RunsIn(Config().run_dir));
+                               : FindNamed(options.source, RunsIn(options.run_dir));
   EpisodeExport subject{.run = ReadRunWithReplay(run),
                         .ring = is_ring ? fs::path(options.source) : run / kRingFile,
                         .output = options.output,
@@ -100,7 +100,7 @@ void AddPeek(CLI::App* replay, Action* chosen) {
   CLI::App* command =
       replay->add_subcommand("peek", "Draw a batch as the learner would get it and show it.");
   const auto options = std::make_shared<PeekOptions>();
-  command->add_option("--run", options->run, "Run: name or folder")->required();
+  AddRunOption(*command, &options->run, &options->run_dir)->required();
   ExpectPng(command->add_option("--png", options->png, "File for the batch as a picture"));
   command->add_option("--batch", options->batch, "Elements to draw")
       ->check(CLI::Range(1, 64))
@@ -115,7 +115,8 @@ void AddExport(CLI::App* replay, Action* chosen) {
       "Write whole episodes as a dataset that Minari loads: an HDF5 file and metadata.json beside "
       "it.");
   const auto options = std::make_shared<EpisodesOptions>();
-  command->add_option("run", options->source, "Run: name or folder; or its replay.ring")
+  AddRunOption(*command, &options->source, &options->run_dir,
+               "Run: name or folder; or its replay.ring")
       ->required();
   command
       ->add_option("--output", options->output, "HDF5 file to write; Minari wants main_data.hdf5")

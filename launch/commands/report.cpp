@@ -11,6 +11,8 @@
 #include "common/base/files.h"
 #include "common/base/stop.h"
 #include "launch/commands/commands.h"
+#include "launch/commands/json_output.h"
+#include "launch/commands/target_options.h"
 #include "launch/record/run_folder.h"
 #include "launch/report/card.h"
 #include "launch/report/compare.h"
@@ -45,11 +47,11 @@ void AddSubjects(CLI::App* command, SubjectOptions* subjects) {
 }
 
 int CompareSubjects(const CompareOptions& options) {
-  if (!options.json.empty()) CheckWritable(options.json);
+  const JsonOutput output(options.json, JsonOutput::Readers::kOthers);
   const Comparison comparison =
       launch::Compare(ReadSubjects(options.subjects).groups, options.target);
-  if (!options.json.empty()) WriteFileForOthers(options.json, ToJson(comparison).dump(2) + "\n");
-  std::cout << ToText(comparison) << std::flush;
+  output.Write(ToJson(comparison).dump(2) + "\n");
+  std::fputs(ToText(comparison).c_str(), output.text());
   return 0;
 }
 
@@ -118,9 +120,7 @@ void AddCardCommand(CLI::App& app, Action* chosen) {
       "card",
       "A run as a folder that model hubs take: README with metadata, results, config, policy.");
   const auto options = std::make_shared<CardOptions>();
-  command->add_option("run", options->run, "Run: name or folder")->required();
-  command->add_option("--run-dir", options->run_dir, "Folder that holds the runs")
-      ->capture_default_str();
+  AddRunOption(*command, &options->run, &options->run_dir)->required();
   command->add_option("--output", options->output, "Folder to make; RUN-card by default");
   command->callback([=] { *chosen = [=] { return MakeCard(*options); }; });
 }
@@ -146,7 +146,8 @@ void AddCompareCommand(CLI::App& app, Action* chosen) {
   command->add_option("--target", options->target, "Success rate whose env steps are compared")
       ->check(CLI::Range(0.0, 1.0))
       ->capture_default_str();
-  command->add_option("--json", options->json, "File for the same (schema shoal-comparison-1)");
+  command->add_option("--json", options->json,
+                      "File for the same; - for standard output (schema shoal-comparison-1)");
   command->callback([=] { *chosen = [=] { return CompareSubjects(*options); }; });
 }
 

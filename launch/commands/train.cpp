@@ -22,7 +22,9 @@ void AddTrainCommand(CLI::App& app, Action* chosen) {
       "train",
       "Train a policy: starts replay, learner, actors and evaluation, watches them, stops them in "
       "order and evaluates the best checkpoint. Ctrl-C stops in order, without that evaluation "
-      "(--resume goes on); twice at once. Ctrl-Z pauses the run.");
+      "(--resume goes on); twice at once. Ctrl-Z pauses the run. Keys (shoal config) are options, "
+      "too: --seed 3, --steps 20000, --learner.batch 256, and as other programs call them: --env, "
+      "--algo, --lr, --batch-size, --gamma, --threads.");
   const auto options = std::make_shared<TrainOptions>();
   const auto describe_keys = std::make_shared<bool>(false);
   command->add_option("--preset", options->preset, PresetHelp());
@@ -30,7 +32,7 @@ void AddTrainCommand(CLI::App& app, Action* chosen) {
   command->add_option("--set", options->set, "KEY=VALUE, applied last; may be repeated")
       ->allow_extra_args(false);
   command->add_flag("--lockstep", options->lockstep, "Repeat bit for bit (one actor, slower)");
-  command->add_option("--run-name", options->run_name, "Name of the run's folder");
+  command->add_option("--run-name", options->run_name, "Name of the run's folder; also --name");
   command->add_option("--run-dir", options->run_dir, "Folder that holds the runs (run_dir)");
   command->add_flag("--overwrite", options->overwrite, "Delete a run of that name first");
   command->add_option("--hosts", options->hosts,

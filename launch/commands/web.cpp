@@ -8,6 +8,7 @@
 #include "common/base/error.h"
 #include "common/base/stop.h"
 #include "launch/commands/commands.h"
+#include "launch/commands/target_options.h"
 #include "launch/web/web_server.h"
 
 namespace shoal::launch {
@@ -48,10 +49,8 @@ void AddWebCommand(CLI::App& app, Action* chosen) {
       "the printed address also set, scale, stop. Needs libjs-dygraphs.");
   const auto options = std::make_shared<WebOptions>();
   options->listen.port = 8470;
-  command->add_option("--run", options->run,
-                      "Name or folder of the run to show; all of --run-dir when not given");
-  command->add_option("--run-dir", options->run_dir, "Folder that holds the runs")
-      ->capture_default_str();
+  AddRunOption(*command, &options->run, &options->run_dir,
+               "Name or folder of the run to show; all of --run-dir when not given");
   command->add_option("--secure", options->secure,
                       "Folder of credentials of secured runs; as each run says when not given");
   command

@@ -12,6 +12,7 @@
 #include "common/base/clock.h"
 #include "common/base/error.h"
 #include "common/base/file_lock.h"
+#include "common/base/interrupted.h"
 #include "common/base/or_null.h"
 #include "common/base/stop.h"
 #include "launch/experiment/run_queue.h"
@@ -88,6 +89,8 @@ void CheckObservations(const ExperimentPlan& plan) {
   for (size_t i = 0; i < plan.arms.size(); ++i) {
     try {
       DescribeObservations(plan.arms[i]);
+    } catch (const Interrupted&) {
+      throw;
     } catch (const Error& e) {
       throw Error(static_cast<ErrorKind>(e.exit_code()),
                   fmt::format("{}: arm '{}': {}", plan.source,
@@ -151,7 +154,7 @@ std::vector<ExperimentRun> RunsAskedFor(const StoredExperiment& experiment,
 }
 
 int ExitCode(const ExperimentOutcome& outcome, const std::vector<ExperimentRun>& runs) {
-  if (StopRequests() > 0) return kInterruptedExit;
+  if (StopRequested()) return kInterruptedExit;
   for (const ExperimentRun& run : runs) {
     const RunOutcome* found = OutcomeOf(outcome, run);
     if (found == nullptr || found->report.standing != RunStanding::kFinished) return 1;

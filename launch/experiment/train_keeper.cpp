@@ -156,9 +156,9 @@ void TrainKeeper::LogEnding(const ExperimentRun& run, const ExitStatus& status) 
               .by_signal = status.by_signal,
               .code = status.code,
               .stopped = stopping_,
-              .problem = status.Clean()     ? ""
-                         : status.by_signal ? status.Describe()
-                                            : ReasonIn(experiment_.LogFile(run))});
+              .problem = status.Clean() || stopping_ ? ""
+                         : status.by_signal          ? status.Describe()
+                                                     : ReasonIn(experiment_.LogFile(run))});
 }
 
 void TrainKeeper::Stop() {

@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <map>
 
-#include "common/base/error.h"
 #include "common/checkpoint/checkpoint_files.h"
 #include "common/run_folder/run_file_names.h"
-#include "launch/record/run_folder.h"
+#include "launch/record/named_checkpoint.h"
 
 namespace shoal::launch {
 namespace {
@@ -30,21 +29,8 @@ std::map<uint64_t, fs::path> CheckpointsByUpdates(const fs::path& run) {
 
 }  // namespace
 
-fs::path FilmedCheckpoint(const fs::path& run, const std::string& name) {
-  if (!name.empty()) {
-    const fs::path named = run / kCheckpointFolder / name;
-    const bool one_name = fs::path(name).filename() == name && name != "." && name != "..";
-    if (one_name && fs::is_directory(named)) return named;
-    throw UsageError("run '{}' has no checkpoint '{}' (best, or a name in {})", run.string(), name,
-                     (run / kCheckpointFolder).string());
-  }
-  const fs::path checkpoint = JudgedCheckpoint(run);
-  if (checkpoint.empty()) throw RuntimeError("run '{}' has no checkpoint yet", run.string());
-  return checkpoint;
-}
-
 std::vector<fs::path> CheckpointsAcross(const fs::path& run) {
-  const fs::path last = FilmedCheckpoint(run, "");
+  const fs::path last = FindCheckpoint({.run = run.string()}).checkpoint;
   const uint64_t updates = ReadCheckpointFiles(last).state.updates;
   std::vector<fs::path> earlier;
   for (const auto& [at, path] : CheckpointsByUpdates(run)) {

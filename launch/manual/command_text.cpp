@@ -57,10 +57,10 @@ std::vector<Word> KnownValues(const std::string& name, const std::string& type,
   return Choices(type, meaning);
 }
 
-OptionText DescribeOption(const CLI::Option& option) {
+// An option that may also stand without its name is described as each of both.
+OptionText DescribeOption(const CLI::Option& option, bool positional) {
   const CLI::Formatter formatter;
   OptionText text;
-  const bool positional = option.get_positional();
   text.name = formatter.make_option_name(&option, positional);
   text.takes = formatter.make_option_opts(&option);
   text.takes.erase(0, text.takes.find_first_not_of(' '));
@@ -91,7 +91,8 @@ CommandText DescribeCommand(const CLI::App& app, const std::string& name) {
   // What belongs to no group is kept from --help, for other programs to use.
   for (const CLI::Option* option :
        app.get_options([](const CLI::Option* one) { return !one->get_group().empty(); })) {
-    text.options.push_back(DescribeOption(*option));
+    if (option->get_positional()) text.options.push_back(DescribeOption(*option, true));
+    if (option->nonpositional()) text.options.push_back(DescribeOption(*option, false));
   }
   for (const CLI::App* command :
        app.get_subcommands([](const CLI::App* one) { return !one->get_group().empty(); })) {

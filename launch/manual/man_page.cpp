@@ -101,9 +101,9 @@ the command line or the configuration makes no sense
 .TP
 .B 3
 a number was not finite: simulation, weights or losses
-.TP
-.B 130
-ended by an interrupt
+.PP
+A program that SIGINT, SIGTERM or SIGHUP ended in order dies by that signal, which a shell shows as
+130, 143 or 129.
 )";
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "common/base/clock.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/base/interrupted.h"
 #include "common/base/stop.h"
 #include "common/config/config_io.h"
 #include "common/run_folder/run_file_names.h"
@@ -73,11 +74,9 @@ ObservedWorld DescribeObservations(const Config& config) {
   spec.output = scratch.path() / "output";
   spec.errors = scratch.path() / "errors";
   const auto status = RunToEnd(spec, kDescribeDeadline, StopRequested);
+  if (!status && StopRequested()) throw Interrupted("before anything was started");
   if (!status) {
-    throw RuntimeError("{} --describe {}", kProgram,
-                       StopRequested()
-                           ? "interrupted"
-                           : fmt::format("took more than {} s", kDescribeDeadline.count()));
+    throw RuntimeError("{} --describe took more than {} s", kProgram, kDescribeDeadline.count());
   }
   if (!status->Clean()) throw FailureOf(*status, spec.errors);
   const nlohmann::json described =

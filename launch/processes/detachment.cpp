@@ -71,7 +71,9 @@ int Detachment::Reap() const {
     if (Now() > deadline) return 1;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
-  return WIFEXITED(status) ? WEXITSTATUS(status) : 1;
+  if (WIFEXITED(status)) return WEXITSTATUS(status);
+  // It was stopped in order by the signal that was handed on.
+  return WTERMSIG(status) == SIGTERM && StopRequested() ? kInterruptedExit : 1;
 }
 
 void Detachment::Started(const std::filesystem::path& log) {

@@ -21,7 +21,8 @@ class Detachment {
   Detachment& operator=(const Detachment&) = delete;
 
   bool IsChild() const { return child_ == 0; }
-  // Parent: 0 once the child has started, else its exit code; 1 at the deadline.
+  // Parent: 0 once the child has started, else its exit code; kInterruptedExit (stop.h) where a
+  // signal that was handed on stopped it; 1 at the deadline.
   int exit_code() const { return exit_code_; }
   // Child: it has started. From now on stdout and stderr go to the end of `log`, stdin is empty,
   // and the parent returns. Throws Error when the log cannot be opened.

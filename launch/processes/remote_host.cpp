@@ -6,6 +6,7 @@
 #include "common/base/build_info.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/base/interrupted.h"
 #include "common/config/run_files.h"
 #include "common/credentials/credentials.h"
 #include "common/run_folder/run_file_names.h"
@@ -46,7 +47,7 @@ void RunOrThrow(const std::string& what, const std::vector<std::string>& command
   spec.output = output.empty() ? scratch.path() / "output" : output;
   spec.errors = scratch.path() / "errors";
   const auto status = RunToEnd(spec, kDeadline, stop);
-  if (!status && stop()) throw RuntimeError("{}: interrupted", what);
+  if (!status && stop()) throw Interrupted(what + ": not finished");
   if (!status) throw RuntimeError("{}: took more than {} s", what, kDeadline.count());
   if (status->Clean()) return;
   const std::string line = LastLine(spec.errors);

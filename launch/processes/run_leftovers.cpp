@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "common/base/clock.h"
-#include "common/base/error.h"
+#include "common/base/interrupted.h"
 #include "common/config/run_membership.h"
 #include "common/run_folder/run_file_names.h"
 
@@ -38,7 +38,7 @@ void WaitForFormerProcesses(const fs::path& run, std::chrono::seconds deadline,
   const SteadyTime start = Now();
   bool said = false;
   while (const auto pid = AnyMember(run)) {
-    if (stop()) throw RuntimeError("interrupted while process {} still works on the run", *pid);
+    if (stop()) throw Interrupted(fmt::format("process {} still works on the run", *pid));
     if (Now() - start > deadline) {
       throw RuntimeError(
           "process {} of an earlier session still works on the run '{}' after {} s: end it first",

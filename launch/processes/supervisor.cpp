@@ -255,12 +255,12 @@ std::string Supervisor::DescribeDeaths() const {
 }
 
 void Supervisor::OnExpectedExit(Child& child, const ExitStatus& status) {
-  if (status.Clean()) return;
-  // Having obeyed a signal of ours is as asked; SIGKILL came only after everything else was
-  // ignored.
-  const bool obeyed = status.by_signal && status.code == child.signalled;
+  // A program that a stop signal ends in order dies by it, and so does one that had not begun.
+  // SIGKILL is only sent after everything else was ignored.
+  const bool ours = status.by_signal && status.code == child.signalled;
+  if (status.Clean() || (ours && status.code != SIGKILL)) return;
   const std::string reason =
-      Describe(status, obeyed ? "" : LastWords(child.spec.output, child.output_before));
+      Describe(status, ours ? "" : LastWords(child.spec.output, child.output_before));
   std::string line = fmt::format("{}: {} while stopping", child.spec.Name(), reason);
   say_(line);
   if (!status.by_signal && status.code == kUnwrittenExit) {

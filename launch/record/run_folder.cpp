@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "launch/record/run_folder.h"
 
+#include <fcntl.h>
 #include <fmt/ranges.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <optional>
 #include <utility>
 
@@ -42,28 +45,54 @@ bool Has(const fs::path& folder, const std::string& file) {
   return fs::is_regular_file(folder / file, error);
 }
 
+// Whether the file cannot be looked for or, where it is, cannot be read.
+bool IsForbiddenFile(const fs::path& file) {
+  return faccessat(AT_FDCWD, file.c_str(), R_OK, AT_EACCESS) != 0 && errno == EACCES;
+}
+
+// "runs/x/" and "runs/./x" as "runs/x"; a path without a name of its own, as ".", as what it is.
+fs::path Tidied(const fs::path& path) {
+  fs::path tidy = path.lexically_normal();
+  if (!tidy.has_filename()) tidy = tidy.parent_path();
+  return tidy.empty() || tidy.filename() == "." || tidy.filename() == ".."
+             ? fs::weakly_canonical(path)
+             : tidy;
+}
+
 }  // namespace
 
 NamedKind RunsIn(const fs::path& dir) { return {.noun = "run", .dir = dir, .file = kConfigFile}; }
 
 fs::path FindNamed(const std::string& name_or_folder, std::span<const NamedKind> kinds) {
   std::vector<std::string> nouns, looked_at, files;
+  const auto look = [&](const fs::path& path) {
+    std::string text = fmt::format("'{}'", path.string());
+    if (std::ranges::count(looked_at, text) == 0) looked_at.push_back(std::move(text));
+  };
   for (const NamedKind& kind : kinds) {
     const fs::path path = kind.dir / name_or_folder;
     if (Has(path, kind.file)) return path;
     nouns.push_back(kind.noun);
-    looked_at.push_back(fmt::format("'{}'", path.string()));
+    look(path);
     files.push_back(kind.file);
   }
+  look(name_or_folder);
   for (const NamedKind& kind : kinds) {
     if (Has(name_or_folder, kind.file)) return name_or_folder;
   }
-  throw UsageError("no {} '{}': neither {} nor '{}' has a {}", fmt::join(nouns, " or "),
-                   name_or_folder, fmt::join(looked_at, ", "), name_or_folder,
-                   fmt::join(files, " or "));
+  for (const NamedKind& kind : kinds) {
+    for (const fs::path& folder : {kind.dir / name_or_folder, fs::path(name_or_folder)}) {
+      if (!IsForbiddenFile(folder / kind.file)) continue;
+      throw RuntimeError("{} '{}': permission denied", kind.noun, folder.string());
+    }
+  }
+  throw UsageError("no {} '{}': there is no {} in {}", fmt::join(nouns, " or "), name_or_folder,
+                   fmt::join(files, " or "), fmt::join(looked_at, ", "));
 }
 
 bool IsRun(const fs::path& folder) { return Has(folder, kConfigFile); }
+
+bool IsForbidden(const fs::path& folder) { return IsForbiddenFile(folder / kConfigFile); }
 
 bool IsHeld(const fs::path& run) { return IsLocked(run / kRunLockFile); }
 
@@ -91,7 +120,7 @@ RunFolder RunFolder::CreateNumbered(const fs::path& dir, const std::string& base
 }
 
 RunFolder RunFolder::Reopen(const fs::path& dir, const std::string& run) {
-  return RunFolder(fs::weakly_canonical(FindNamed(run, RunsIn(dir))));
+  return RunFolder(Tidied(FindNamed(run, RunsIn(dir))));
 }
 
 RunFolder::RunFolder(fs::path path)

@@ -22,8 +22,8 @@ struct NamedKind {
 NamedKind RunsIn(const std::filesystem::path& dir);
 
 // Which folder RUN or EXPERIMENT on a command line means: the one of that name within a kind's
-// `dir`, by the order of the kinds, else the path itself. Throws Error (usage) naming every folder
-// that was looked at.
+// `dir`, by the order of the kinds, else the path itself. Throws Error: usage naming every folder
+// that was looked at; run-time where one of them may not be read.
 std::filesystem::path FindNamed(const std::string& name_or_folder,
                                 std::span<const NamedKind> kinds);
 inline std::filesystem::path FindNamed(const std::string& name_or_folder, const NamedKind& kind) {
@@ -32,6 +32,8 @@ inline std::filesystem::path FindNamed(const std::string& name_or_folder, const 
 
 // Whether the folder holds a run: one whose configuration has been written.
 bool IsRun(const std::filesystem::path& folder);
+// Whether the folder may not be looked into: another user's run, as a rule.
+bool IsForbidden(const std::filesystem::path& folder);
 
 // Holds an exclusive lock on the run until destruction (or death of the process and of those it
 // forked without exec).

@@ -15,7 +15,8 @@ const std::string& OnlyArgument(const CommandMessage& command) {
 }
 
 void Tell(const SettingChange& change, ReplyMessage* reply) {
-  reply->text = fmt::format("{}: {} -> {}", change.key, change.from, change.to);
+  if (!reply->text.empty()) reply->text += "; ";
+  reply->text += fmt::format("{}: {} -> {}", change.key, change.from, change.to);
   reply->key = change.key;
   reply->from = change.from;
   reply->to = change.to;
@@ -46,18 +47,27 @@ void CommandHandler::Execute(const CommandMessage& command, ReplyMessage* reply)
     throw UsageError("unknown command '{}': another version of Shoal?", command.verb);
   }
   if (!effects_.running()) throw RuntimeError("the run is stopping: nothing is changed any more");
-  if (command.verb == "set") {
-    const SettingChange change = settings_.Assign(OnlyArgument(command), effects_.env_steps());
-    effects_.note(change);
-    Tell(change, reply);
-    return;
-  }
+  if (command.verb == "set") return Set(command.arguments, reply);
   LiveSettings changed = settings_;
   const SettingChange change = changed.SetActors(OnlyArgument(command));
   effects_.scale(static_cast<int>(change.from), static_cast<int>(change.to));
   settings_ = changed;
   effects_.note(change);
   Tell(change, reply);
+}
+
+void CommandHandler::Set(const std::vector<std::string>& assignments, ReplyMessage* reply) {
+  if (assignments.empty()) throw UsageError("command 'set' takes KEY=VALUE, got nothing");
+  LiveSettings changed = settings_;
+  std::vector<SettingChange> changes;
+  for (const std::string& assignment : assignments) {
+    changes.push_back(changed.Assign(assignment, effects_.env_steps()));
+  }
+  settings_ = changed;
+  for (const SettingChange& change : changes) {
+    effects_.note(change);
+    Tell(change, reply);
+  }
 }
 
 }  // namespace shoal::launch

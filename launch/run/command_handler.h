@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <functional>
 #include <string>
+#include <vector>
 
 #include "common/wire/messages.h"
 #include "launch/run/live_settings.h"
@@ -26,12 +27,14 @@ class CommandHandler {
   CommandHandler(LiveSettings& settings, Effects effects)
       : settings_(settings), effects_(std::move(effects)) {}
 
-  // "stop", "set KEY=VALUE", "scale N". The reply says what was done, or why not.
+  // "stop", "set KEY=VALUE...", "scale N". The reply says what was done, or why not: of several
+  // assignments all are made or none; its key and values are those of the last one.
   ReplyMessage Handle(const CommandMessage& command);
 
  private:
   // Fills in what was done.
   void Execute(const CommandMessage& command, ReplyMessage* reply);
+  void Set(const std::vector<std::string>& assignments, ReplyMessage* reply);
 
   LiveSettings& settings_;
   const Effects effects_;

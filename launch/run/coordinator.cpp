@@ -28,6 +28,7 @@
 #include "launch/run/evaluation_intake.h"
 #include "launch/run/flat_score.h"
 #include "launch/run/live_settings.h"
+#include "launch/run/plan_text.h"
 #include "launch/run/run_inbox.h"
 #include "launch/run/run_progress.h"
 #include "launch/run/run_watch.h"
@@ -300,6 +301,8 @@ void Coordinator::Impl::Scale(int from, int to) {
     throw;
   }
   for (id = from - 1; id >= to; --id) supervisor.Retire("actor", id, Now());
+  const std::string shared = SharedCoresText(to, usable_cores);
+  if (to > from && !shared.empty()) progress.Say(shared);
 }
 
 void Coordinator::Impl::Note(SettingChange change) {

@@ -66,7 +66,7 @@ std::string LiveKeyNames() {
 
 SettingChange LiveSettings::Assign(const std::string& assignment, uint64_t env_steps) {
   const std::string key = assignment.substr(0, assignment.find('='));
-  if (key == kActorsKey) throw UsageError("{}: use shoal scale --actors N", assignment);
+  if (key == kActorsKey) throw UsageError("{}: use shoal scale N", assignment);
   return Apply(key, assignment, env_steps);
 }
 

@@ -141,4 +141,10 @@ std::string PlanText(const RunConfig& run, double frame_microseconds) {
                      ObjectText(run.spec), StackText(run), DefaultsText(run.config));
 }
 
+std::string SharedCoresText(int actors, int cores) {
+  if (actors <= cores) return "";
+  return fmt::format("{} actors share {} core(s): actors and learner get less time each", actors,
+                     cores);
+}
+
 }  // namespace shoal::launch

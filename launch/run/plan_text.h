@@ -14,4 +14,7 @@ namespace shoal::launch {
 // where the CPU lacks the asked precision.
 std::string PlanText(const RunConfig& run, double frame_microseconds);
 
+// One sentence where more actors than cores share this machine; else empty.
+std::string SharedCoresText(int actors, int cores);
+
 }  // namespace shoal::launch

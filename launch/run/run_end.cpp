@@ -53,29 +53,57 @@ bool WantsFinalEvaluation(const RunMeta& meta) {
   return meta.exit != "interrupted" && !StopRequested();
 }
 
+// Keeps watchers and those who steer the run answered while it is evaluated and filmed.
+class Judging {
+ public:
+  Judging(OperatorDesk& desk, Progress& progress) : desk_(desk), progress_(progress) {}
+
+  // Asked for several times a second. Whether the rest is to be left out: after a stop signal, also
+  // by the end of the terminal, and after `shoal stop`.
+  bool Stops() {
+    desk_.ShowAgain("evaluating", Now());
+    for (const CommandMessage& command : desk_.TakeCommands()) Answer(command);
+    return stop_ || StopRequested();
+  }
+  void Say(const std::string& line) { progress_.Say(line); }
+
+ private:
+  void Answer(const CommandMessage& command) {
+    ReplyMessage reply{.client = command.client, .request = command.request};
+    reply.accepted = command.verb == "stop";
+    reply.text = reply.accepted ? "training has ended; what is left of its evaluation is left out"
+                                : "training has ended and the run is being evaluated: nothing is "
+                                  "changed any more";
+    stop_ = stop_ || reply.accepted;
+    Say(fmt::format("command: {}: {}{}", command.verb,
+                    reply.accepted ? "" : "refused: ", reply.text));
+    desk_.Answer(reply);
+  }
+
+  OperatorDesk& desk_;
+  Progress& progress_;
+  bool stop_ = false;
+};
+
 std::optional<EvaluationPoint> EvaluateAtEnd(const fs::path& run, const Config& config,
-                                             OperatorDesk& desk, Progress& progress) {
+                                             Judging& judging) {
   const fs::path checkpoint = JudgedCheckpoint(run);
   if (config.eval.final_episodes == 0 || checkpoint.empty()) return std::nullopt;
-  progress.Say(fmt::format("evaluating {} on {} fresh episodes; Ctrl-C to leave it out",
-                           checkpoint.string(), config.eval.final_episodes));
+  judging.Say(fmt::format("evaluating {} on {} fresh episodes; Ctrl-C to leave it out",
+                          checkpoint.string(), config.eval.final_episodes));
   auto point = EvaluateByActor({.run = run,
                                 .checkpoint = checkpoint,
                                 .episodes = config.eval.final_episodes,
                                 .seed = config.seed,
                                 .json = run / kEvaluationFolder / kFinalEvaluationFile,
                                 .own_run = true},
-                               [&desk] {
-                                 desk.ShowAgain("evaluating", Now());
-                                 return StopRequested();  // by the end of the terminal, too
-                               });
-  if (!point) progress.Say("the evaluation was left out");
+                               [&judging] { return judging.Stops(); });
+  if (!point) judging.Say("the evaluation was left out");
   return point;
 }
 
 // Of the first of the episodes that judge the run. Empty when it was left out.
-fs::path FilmAtEnd(const fs::path& run, const Config& config, OperatorDesk& desk,
-                   Progress& progress) {
+fs::path FilmAtEnd(const fs::path& run, const Config& config, Judging& judging) {
   constexpr int kEpisodes = 5;
   const fs::path checkpoint = JudgedCheckpoint(run);
   if (checkpoint.empty()) throw RuntimeError("run '{}' has no checkpoint", run.string());
@@ -86,13 +114,10 @@ fs::path FilmAtEnd(const fs::path& run, const Config& config, OperatorDesk& desk
        .episodes = kEpisodes,
        .seed = config.seed,
        .output = film},
-      [&desk] {
-        desk.ShowAgain("evaluating", Now());
-        return StopRequested();  // by the end of the terminal, too
-      },
-      [&](const std::string& line) { progress.Say(line); });
+      [&judging] { return judging.Stops(); },
+      [&judging](const std::string& line) { judging.Say(line); });
   if (made) return film;
-  progress.Say("the film was left out");
+  judging.Say("the film was left out");
   return {};
 }
 
@@ -144,7 +169,7 @@ void PrintSummary(const fs::path& run, const Config& config, const RunResult& re
   if (meta.exit == "interrupted") {
     progress.Say(
         fmt::format("  not evaluated: go on with shoal train --resume {0}, or judge it with shoal "
-                    "eval --checkpoint {0}/checkpoints/NAME",
+                    "eval {0}",
                     run.string()));
   }
   if (meta.accounting) progress.Say("  " + meta.accounting->Line());
@@ -210,12 +235,12 @@ void TakeAccount(const fs::path& run, const Config& config, const std::set<std::
 }
 
 // Empty when it was left out or not asked for.
-std::optional<EvaluationPoint> Judge(const fs::path& run, const Config& config, OperatorDesk& desk,
-                                     Progress& progress, const Fail& fail, RunMeta* meta) {
+std::optional<EvaluationPoint> Judge(const fs::path& run, const Config& config, Judging& judging,
+                                     const Fail& fail, RunMeta* meta) {
   std::optional<EvaluationPoint> evaluation;
   try {
     meta->updates_lost = ReadLostUpdates(run);
-    if (WantsFinalEvaluation(*meta)) evaluation = EvaluateAtEnd(run, config, desk, progress);
+    if (WantsFinalEvaluation(*meta)) evaluation = EvaluateAtEnd(run, config, judging);
   } catch (const Error& e) {
     fail(e.what());
   }
@@ -259,11 +284,14 @@ int EndRun(const fs::path& run, const Config& config, RunResult result, bool fil
     unwritten.insert(kBottleneckFile);
   }
   if (!unwritten.empty() && Finished(meta)) meta.exit = "interrupted";  // --resume ends it
-  const auto final_evaluation = Judge(run, config, desk, progress, fail, &meta);
+  Judging judging(desk, progress);
+  const auto final_evaluation = Judge(run, config, judging, fail, &meta);
   WriteLastMeta(run, config, progress, &unwritten, &meta);
   fs::path filmed;
   try {
-    if (film && WantsFinalEvaluation(meta)) filmed = FilmAtEnd(run, config, desk, progress);
+    if (film && WantsFinalEvaluation(meta) && !judging.Stops()) {
+      filmed = FilmAtEnd(run, config, judging);
+    }
   } catch (const Error& e) {
     good = false;  // what was asked for is not there; the run itself is none the worse
     progress.Say(fmt::format("error: no film: {}", e.what()));
@@ -272,7 +300,7 @@ int EndRun(const fs::path& run, const Config& config, RunResult result, bool fil
   if (!good) return 1;
   if (!unwritten.empty()) return ReportUnwritten(run, unwritten, progress);
   if (Finished(meta)) RemoveRing(run, config, progress);
-  return meta.exit == "interrupted" && StopRequested() ? kInterruptedExit : 0;
+  return StopRequested() ? kInterruptedExit : 0;
 }
 
 }  // namespace shoal::launch

@@ -326,10 +326,11 @@ void PrintStart(const PreparedRun& run, const ClusterAddress& address) {
                     checkpoint.empty() ? "without a checkpoint" : "from " + checkpoint.string());
   }
   for (const std::string& binding : IgnoredOpenMpBindings()) {
-    text += fmt::format("  {} is ignored: it would bind every process to the same core\
-", binding);
+    text += fmt::format("  {} is ignored: it would bind every process to the same core\n", binding);
   }
   text += run.camera_note + PlanText(run.config, run.frame_microseconds);
+  const std::string shared = SharedCoresText(ActorsHere(run.folder.path(), config), UsableCores());
+  if (!shared.empty()) text += "  " + shared + "\n";
   for (const RemoteHost& host : run.hosts.hosts) {
     text +=
         fmt::format("  {} of the actors on {}, in {}\n", host.actors, host.name, host.run.string());

@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <string>
@@ -28,7 +29,10 @@ MetricFamily Describe(const std::string& name, const Metric* metric) {
                      (metric->kind == MetricKind::kStage && name.starts_with("seconds_"));
   if (grows) family.type = MetricType::Counter;
   const bool share = metric->kind == MetricKind::kStage && name.starts_with("share_");
-  family.help = std::string(metric->meaning);
+  // The meaning alone may be a part of a sentence whose subject is the name: "that came again".
+  family.help = name;
+  std::ranges::replace(family.help, '_', ' ');
+  if (!metric->meaning.empty()) family.help += fmt::format(": {}", metric->meaning);
   if (share) {
     family.help += " (share of the last second)";
   } else if (!metric->unit.empty()) {

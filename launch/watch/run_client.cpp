@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/base/error.h"
+#include "common/base/interrupted.h"
 #include "common/base/random.h"
 #include "common/base/saturating_cast.h"
 #include "common/base/stop.h"
@@ -18,7 +19,7 @@ constexpr std::chrono::milliseconds kPoll{100};  // between looks at stop signal
 constexpr std::chrono::milliseconds kResend{500};
 
 void ThrowIfInterrupted() {
-  if (StopRequested()) throw RuntimeError("interrupted before the run's coordinator answered");
+  if (StopRequested()) throw Interrupted("before the run's coordinator answered");
 }
 
 }  // namespace
@@ -54,7 +55,8 @@ RunViewMessage RunClient::FirstView() {
   if (auto view = WaitForView(Now() + kAnswer)) return *std::move(view);
   ThrowIfInterrupted();
   throw RuntimeError(
-      "run '{}': its coordinator at {}:{} did not answer within {} s; it may be paused (Ctrl-Z)",
+      "run '{}': its coordinator at {}:{} did not answer within {} s; it may be paused (Ctrl-Z) "
+      "or about to end: see shoal runs",
       target_.name, target_.address.host, dds::OperatePort(target_.address), kAnswer.count());
 }
 
@@ -81,7 +83,7 @@ ReplyMessage RunClient::Order(const std::string& verb, const std::vector<std::st
     ThrowIfInterrupted();
     throw RuntimeError(
         "run '{}': its coordinator at {}:{} did not answer the command within {} s; it may be "
-        "paused (Ctrl-Z)",
+        "paused (Ctrl-Z) or about to end: see shoal runs",
         target_.name, target_.address.host, dds::OperatePort(target_.address), kAnswer.count());
   }
   if (!reply->accepted) throw RuntimeError("refused: {}", reply->text);

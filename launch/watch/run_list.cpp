@@ -108,6 +108,11 @@ const char* ToString(RunStatus status) {
 RunListing RunStatusOf(const std::filesystem::path& run) {
   RunListing listing;
   listing.name = run.filename().string();
+  if (IsForbidden(run)) {
+    listing.status = RunStatus::kUnreadable;
+    listing.problem = "permission denied";
+    return listing;
+  }
   try {
     ReadMeta(run, &listing);
   } catch (const Error& e) {

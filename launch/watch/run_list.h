@@ -17,7 +17,7 @@ enum class RunStatus {
   kInterrupted,  // was stopped; --resume goes on
   kFailed,
   kDead,        // its coordinator ended without a word, if only in the last evaluation; --resume
-  kUnreadable,  // a broken meta.json or config.json
+  kUnreadable,  // a broken meta.json or config.json, or another user's run
 };
 const char* ToString(RunStatus status);
 

@@ -51,7 +51,10 @@ std::vector<fs::path> ListRuns(const fs::path& dir) {
   std::vector<fs::path> runs;
   std::error_code error;
   for (fs::directory_iterator it(dir, error), end; !error && it != end; it.increment(error)) {
-    if (IsRun(it->path())) runs.push_back(it->path());
+    if (IsRun(it->path()) || IsForbidden(it->path())) runs.push_back(it->path());
+  }
+  if (error == std::errc::permission_denied) {
+    throw RuntimeError("cannot read '{}': {}", dir.string(), error.message());
   }
   std::ranges::sort(runs);
   return runs;

@@ -25,8 +25,8 @@ struct RunTarget {
   TransportConfig transport;
 };
 
-// Folders in `dir` that are runs (have a config.json), sorted by name; empty when there is no
-// `dir`.
+// Folders in `dir` that are runs (have a config.json) or may not be looked into, sorted by name;
+// empty when there is no `dir`. Throws Error when `dir` may not be read.
 std::vector<std::filesystem::path> ListRuns(const std::filesystem::path& dir);
 
 // Throws Error: both run and peer given, no such run, not running, none or several running.

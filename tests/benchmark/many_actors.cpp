@@ -15,6 +15,7 @@
 #include "common/base/clock.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/base/interrupted.h"
 #include "common/base/stop.h"
 #include "common/config/run_files.h"
 #include "common/dds/bus.h"
@@ -66,7 +67,7 @@ class Bystander {
   bool Until(Done done, std::chrono::duration<double> deadline) {
     const SteadyTime start = Now();
     while (!done()) {
-      if (StopRequested()) throw RuntimeError("interrupted");
+      if (StopRequested()) throw Interrupted("nothing was measured");
       if (Now() - start > deadline) return false;
       Beat();
       std::this_thread::sleep_for(kPoll);

@@ -8,6 +8,7 @@
 
 #include "common/base/clock.h"
 #include "common/base/error.h"
+#include "common/base/interrupted.h"
 #include "common/base/stop.h"
 
 namespace shoal::bench {
@@ -17,7 +18,7 @@ double CallsPerSecond(const std::function<void()>& act, double seconds) {
   const SteadyTime start = Now();
   int calls = 0;
   do {
-    if (StopRequested()) throw RuntimeError("interrupted");
+    if (StopRequested()) throw Interrupted("not every row was measured");
     act();
     ++calls;
   } while (SecondsSince(start) < seconds);

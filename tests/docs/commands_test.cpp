@@ -9,6 +9,7 @@
 
 #include "common/base/files.h"
 #include "common/config/key_description.h"
+#include "common/config/meant_key.h"
 #include "tests/launch/manual/help_text.h"
 #include "tests/support/paths.h"
 
@@ -63,7 +64,12 @@ std::string CallFault(const std::vector<std::string>& call) {
   for (size_t i = 1; i < call.size(); ++i) {
     const std::string& word = call[i];
     const std::string flag = word.substr(0, word.find('='));
-    if (word.starts_with("--") && !flags.contains(flag)) return help->name() + " has no " + flag;
+    // Keys are options of `shoal train`, too.
+    const bool key =
+        help->name() == "shoal train" && flag.size() > 2 && FindMeantKey(flag.substr(2)).same;
+    if (word.starts_with("--") && !flags.contains(flag) && !key) {
+      return help->name() + " has no " + flag;
+    }
     if (i > 1 && call[i - 1] == "--set" && std::islower(static_cast<unsigned char>(word[0])) != 0 &&
         !keys.contains(word.substr(0, word.find('=')))) {
       return "no key " + word;

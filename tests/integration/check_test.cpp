@@ -69,7 +69,7 @@ TEST(Check, AnInterruptionEndsItAfterTheLineThatItIsAt) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
   }
   ASSERT_TRUE(status);
-  EXPECT_EQ(status->Describe(), "exit code 130");
+  EXPECT_EQ(status->Describe(), "killed by SIGINT");
   EXPECT_NE(said().find("\ninterrupted\n"), std::string::npos) << said();
   EXPECT_EQ(said().find("training"), std::string::npos) << said();
 }

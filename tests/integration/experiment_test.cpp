@@ -161,7 +161,7 @@ TEST_F(ExperimentTest, CtrlCEndsInOrder) {
   EXPECT_THAT(second.err, HasSubstr("is being run"));
   child.Signal(SIGINT);
   ASSERT_TRUE(WaitUntilEnded(child.pid(), seconds(120)));
-  EXPECT_EQ(child.Poll()->Describe(), "exit code 130");
+  EXPECT_EQ(child.Poll()->Describe(), "killed by SIGINT");
   EXPECT_THAT(Statuses(), ElementsAre("interrupted", "missing"));
   EXPECT_EQ(Read("runs/a-s0/meta.json").at("exit"), "interrupted");
   const ProgramResult status =
@@ -181,7 +181,7 @@ TEST_F(ExperimentTest, CtrlCWhileBaselinesAreMeasuredIsAStopLikeAnyOther) {
   }
   child.Signal(SIGINT);
   ASSERT_TRUE(WaitUntilEnded(child.pid(), seconds(60)));
-  EXPECT_EQ(child.Poll()->Describe(), "exit code 130") << ReadFile(folder_.path() / "said");
+  EXPECT_EQ(child.Poll()->Describe(), "killed by SIGINT") << ReadFile(folder_.path() / "said");
   EXPECT_THAT(Statuses(), ElementsAre("missing", "missing"));
 }
 

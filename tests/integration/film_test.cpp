@@ -111,7 +111,7 @@ TEST_F(Film, OneThatIsInterruptedLeavesNothing) {
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
   ASSERT_TRUE(child.Poll());
-  EXPECT_EQ(child.Poll()->Describe(), "exit code 130");
+  EXPECT_EQ(child.Poll()->Describe(), "killed by SIGINT");
   EXPECT_EQ(CountFiles(taken), before);
 }
 

@@ -80,7 +80,7 @@ TEST(Operate, ATerminalThatCannotMoveItsCursorGetsLines) {
     EXPECT_TRUE(watcher.WaitFor(" running | ", seconds(30))) << command;
     EXPECT_THAT(watcher.shown(), ::testing::Not(HasSubstr("\x1b"))) << command;
     watcher.Signal(SIGINT);
-    EXPECT_EQ(watcher.End(seconds(30)), 0) << command;
+    EXPECT_EQ(watcher.End(seconds(30)), kInterruptedExit) << command;
   }
   kill(training.pid(), SIGINT);
   EXPECT_EQ(training.End(seconds(120)), kInterruptedExit) << training.Output();
@@ -110,7 +110,7 @@ TEST(Operate, TopOnATerminalIsALiveTableAndLeavesTheTerminalAsItWas) {
     EXPECT_TRUE(program.WaitFor("(now PROCESS)", seconds(30))) << program.shown();
     EXPECT_FALSE(program.LeftAsItWas()) << "keys come at once while it runs";
     program.Signal(SIGTERM);
-    EXPECT_EQ(program.End(seconds(30)), 0);
+    EXPECT_EQ(program.End(seconds(30)), 128 + SIGTERM);
     EXPECT_TRUE(program.LeftAsItWas());
   }
   kill(training.pid(), SIGINT);

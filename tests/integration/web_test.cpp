@@ -116,7 +116,7 @@ TEST(Web, TheCommandPrintsTheAddressAndEndsWithASignal) {
   EXPECT_TRUE(web.WaitFor("/?token=", seconds(30)));
   EXPECT_TRUE(web.WaitFor("Ctrl-C ends it", seconds(30)));
   web.Signal(SIGINT);
-  EXPECT_EQ(web.End(seconds(30)), 0);
+  EXPECT_EQ(web.End(seconds(30)), kInterruptedExit);
 }
 
 TEST(Web, BadUsageIsOneLine) {

@@ -63,7 +63,7 @@ int Run(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--preset", options.soak.preset, "of the run, e.g. fetch-reach-her")
       ->capture_default_str();
-  app.add_option("--json", options.json, "file for the result");
+  app.add_option("--json", options.json, "file for the result, which standard output gets, too");
   if (const auto exit_code = shoal::ParseCommandLine(&app, argc, argv)) return *exit_code;
   prctl(PR_SET_CHILD_SUBREAPER, 1);  // what a run leaves behind becomes a child of ours
   options.soak.programs = shoal::launch::ProgramFolder();
@@ -74,7 +74,8 @@ int Run(int argc, char** argv) {
                             ? shoal::soak::SoakSteadily(options.soak, options.steady_minutes)
                             : shoal::soak::SoakFaults(options.soak, options.faults);
     fmt::print("{}\n", result.dump(2));
-    if (!options.json.empty()) shoal::WriteFileAtomically(options.json, result.dump(2) + "\n");
+    if (!options.json.empty() && options.json != "-")
+      shoal::WriteFileAtomically(options.json, result.dump(2) + "\n");
     CheckNothingIsBroken(result);
   } catch (const shoal::soak::Broken& e) {
     throw shoal::RuntimeError("{} (seed {}; files kept in '{}')", e.what(), options.soak.seed,

@@ -12,6 +12,7 @@
 #include "common/base/clock.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/base/interrupted.h"
 #include "common/base/stop.h"
 #include "tests/support/processes.h"
 
@@ -111,7 +112,8 @@ void RunUnderTest::KillCoordinator(seconds deadline) {
       if (Now() > end) throw Broken(name + " did not leave after its coordinator's death");
       std::this_thread::sleep_for(kLookAgain);
     }
-    if (WIFSIGNALED(status)) {
+    // SIGHUP is how they hear of the coordinator's death: they end in order, then die by it.
+    if (WIFSIGNALED(status) && WTERMSIG(status) != SIGHUP) {
       throw Broken(fmt::format("{}, left alone, ended by signal {}", name, WTERMSIG(status)));
     }
   }
@@ -211,7 +213,7 @@ std::map<std::string, double> RunUnderTest::QueueDepths() {
 }
 
 void RunUnderTest::CheckAlive() {
-  if (StopRequested()) throw RuntimeError("interrupted");
+  if (StopRequested()) throw Interrupted("the soak did not end");
   if (const auto status = coordinator_.Poll()) {
     throw Broken(fmt::format("the run has ended ({}): {}", status->Describe(), Output()));
   }
@@ -223,7 +225,7 @@ json RunUnderTest::End(seconds deadline) {
   const SteadyTime start = Now();
   while (true) {
     if (const auto status = coordinator_.Poll()) {
-      if (status->by_signal || status->code != kInterruptedExit) {
+      if (status->ShellCode() != kInterruptedExit) {
         throw Broken("the run ended with " + status->Describe() + ": " + Output());
       }
       break;

@@ -45,12 +45,14 @@ class RunningTraining {
 
   // Ctrl-C.
   void Interrupt() { child_.Signal(SIGINT); }
-  // Waits for the end; exit code (kInterruptedExit after Interrupt), or -1 when it was killed or
-  // did not end.
+  // Waits for the end; exit code as a shell has it (kInterruptedExit after Interrupt), or -1 when
+  // it was killed (SIGKILL) or did not end.
   int End(std::chrono::seconds deadline) {
     const SteadyTime end = Now() + deadline;
     while (Now() < end) {
-      if (const auto status = child_.Poll()) return status->by_signal ? -1 : status->code;
+      if (const auto status = child_.Poll()) {
+        return status->ShellCode() == 128 + SIGKILL ? -1 : status->ShellCode();
+      }
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
     }
     return -1;

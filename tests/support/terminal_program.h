@@ -24,11 +24,16 @@ namespace shoal {
 class TerminalProgram {
  public:
   // command[0] is a program's name in the build's bin folder. `kind`: TERM.
-  explicit TerminalProgram(std::vector<std::string> command, const char* kind = "xterm") {
+  explicit TerminalProgram(const std::vector<std::string>& command, const char* kind = "xterm")
+      : TerminalProgram(ProgramPath(command[0]), {command.begin() + 1, command.end()}, kind) {}
+  // `program`: a path.
+  TerminalProgram(const std::string& program, const std::vector<std::string>& arguments,
+                  const char* kind = "xterm") {
     winsize size{.ws_row = 24, .ws_col = 100, .ws_xpixel = 0, .ws_ypixel = 0};
     EXPECT_EQ(openpty(&own_end_, &its_end_, nullptr, nullptr, &size), 0);
     tcgetattr(its_end_, &before_);
-    command[0] = ProgramPath(command[0]);
+    std::vector<std::string> command{program};
+    command.insert(command.end(), arguments.begin(), arguments.end());
     std::vector<char*> words;
     for (std::string& word : command) words.push_back(word.data());
     words.push_back(nullptr);
@@ -70,7 +75,8 @@ class TerminalProgram {
   }
   const std::string& shown() const { return shown_; }
 
-  // Its exit code; -1 when it was killed or has not ended in time.
+  // Its exit code as a shell has it, 128 + the number of the signal it died by; -1 when it has not
+  // ended in time.
   int End(std::chrono::seconds deadline) {
     const SteadyTime end = Now() + deadline;
     int status = 0;
@@ -78,7 +84,7 @@ class TerminalProgram {
       Read();
       if (waitpid(pid_, &status, WNOHANG) != pid_) continue;
       pid_ = -1;
-      return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+      return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
     }
     return -1;
   }

@@ -88,6 +88,20 @@ TEST(Detachment, UntilItHasStartedTheParentHandsStopSignalsOn) {
   EXPECT_EQ(ExitCodeOfProcess(parent), 7);
 }
 
+TEST(Detachment, AChildThatDiesByTheSignalThatWasHandedOnWasStoppedInOrder) {
+  const TemporaryFolder folder;
+  const auto waits = folder.path() / "waits";
+  const pid_t parent = Launch([&](Detachment&) {
+    signal(SIGTERM, SIG_DFL);
+    WriteFileAtomically(waits, "");
+    while (true) pause();
+    return 0;
+  });
+  EXPECT_TRUE(WaitUntil([&] { return std::filesystem::exists(waits); }));
+  kill(parent, SIGINT);
+  EXPECT_EQ(ExitCodeOfProcess(parent), kInterruptedExit);
+}
+
 TEST(Detachment, ALogThatCannotBeOpenedIsNamed) {
   const pid_t parent = Launch([](Detachment& detachment) {
     try {

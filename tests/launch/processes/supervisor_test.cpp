@@ -382,6 +382,22 @@ TEST_F(SupervisorTest, KnowsWhoCouldNotWriteAllOfItsResults) {
   EXPECT_THAT(supervisor_.unclean_exits(), IsEmpty());
 }
 
+TEST_F(SupervisorTest, AProcessThatIsRetiredBeforeItHasBegunLeftAsItWasTold) {
+  supervisor_.Start(Fake("actor", 0, "exec sleep 60"));  // which has no handler of SIGTERM
+  supervisor_.Retire("actor", 0, Now());
+  EXPECT_TRUE(PollUntil([&] { return supervisor_.Running("") == 0; }));
+  EXPECT_THAT(supervisor_.unclean_exits(), IsEmpty());
+  EXPECT_THAT(said_, IsEmpty());
+}
+
+TEST_F(SupervisorTest, AProcessThatDiesByAnotherSignalThanItWasSentDidNotLeaveInOrder) {
+  supervisor_.Start(Fake("actor", 0, "trap 'kill -SEGV $$' TERM; echo ready; sleep 60 & wait"));
+  EXPECT_TRUE(WaitUntil([&] { return Output("actor", 0).find("ready") != std::string::npos; }));
+  supervisor_.Retire("actor", 0, Now());
+  EXPECT_TRUE(PollUntil([&] { return supervisor_.Running("") == 0; }));
+  EXPECT_THAT(supervisor_.unclean_exits(), ElementsAre(HasSubstr("killed by SIGSEGV")));
+}
+
 TEST_F(SupervisorTest, ForgetsAPendingRestartOfAnExpectedExit) {
   supervisor_.Start(Fake("actor", 0, "exit 1"));
   const SteadyTime late = Now() + std::chrono::hours(1);

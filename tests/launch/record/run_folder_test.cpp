@@ -7,6 +7,7 @@
 #include "common/base/files.h"
 #include "tests/support/error_message.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/without_rights.h"
 
 namespace shoal::launch {
 namespace {
@@ -32,6 +33,41 @@ TEST(RunFolderTest, RefusesAGivenNameThatExists) {
   EXPECT_THAT(UsageMessage([&] { RunFolder::Create(dir.path(), "a", false); }),
               HasSubstr((dir.path() / "a").string() + "' exists"));
   EXPECT_TRUE(std::filesystem::exists(dir.path() / "a" / "config.json"));
+}
+
+TEST(FindNamed, SaysWhereItLookedOnceEach) {
+  EXPECT_EQ(UsageMessage([] { FindNamed("/absent", RunsIn("runs")); }),
+            "no run '/absent': there is no config.json in '/absent'");
+  EXPECT_EQ(UsageMessage([] { FindNamed("absent", RunsIn("runs")); }),
+            "no run 'absent': there is no config.json in 'runs/absent', 'absent'");
+}
+
+TEST(FindNamed, AnotherUsersRunMayNotBeReadWhichIsSaid) {
+  const TemporaryFolder dir;
+  { RunFolder::Create(dir.path(), "theirs", false); }
+  const WithoutRights closed(dir.path() / "theirs");
+  EXPECT_EQ(ErrorMessage(1, [&] { FindNamed("theirs", RunsIn(dir.path())); }),
+            "run '" + (dir.path() / "theirs").string() + "': permission denied");
+  EXPECT_TRUE(IsForbidden(dir.path() / "theirs"));
+  EXPECT_FALSE(IsForbidden(dir.path() / "absent"));
+}
+
+TEST(RunFolderTest, AResumedRunIsCalledAsItWasNamed) {
+  const TemporaryFolder dir;
+  {
+    const RunFolder run = RunFolder::Create(dir.path() / "runs", "a", false);
+    WriteFileAtomically(run.path() / "config.json", "{}");
+  }
+  const std::filesystem::path before = std::filesystem::current_path();
+  std::filesystem::current_path(dir.path());
+  for (const char* words : {"a", "runs/a", "runs/./a/"}) {
+    const RunFolder run = RunFolder::Reopen("runs", words);
+    EXPECT_EQ(run.path(), "runs/a") << words;
+    EXPECT_EQ(run.name(), "a") << words;
+  }
+  std::filesystem::current_path("runs/a");
+  EXPECT_EQ(RunFolder::Reopen("runs", ".").name(), "a");
+  std::filesystem::current_path(before);
 }
 
 TEST(RunFolderTest, NumbersAutomaticNames) {

@@ -50,6 +50,19 @@ TEST_F(CommandHandlerTest, AChangeIsNotedAndAnsweredWithBothValues) {
   EXPECT_THAT(done_, ElementsAre("note eval.interval"));
 }
 
+TEST_F(CommandHandlerTest, OfSeveralAssignmentsAllAreMadeOrNone) {
+  const ReplyMessage refused = Handle("set", {"eval.interval=500", "learner.batch=3"});
+  EXPECT_FALSE(refused.accepted);
+  EXPECT_EQ(settings_.config().eval.interval, 2500);
+  EXPECT_THAT(done_, IsEmpty());
+  const ReplyMessage reply = Handle("set", {"eval.interval=500", "stop.success=2"});
+  EXPECT_TRUE(reply.accepted);
+  EXPECT_THAT(reply.text, HasSubstr("eval.interval: 2500 -> 500; stop.success: "));
+  EXPECT_EQ(settings_.config().eval.interval, 500);
+  EXPECT_EQ(settings_.config().stop.success, 2);
+  EXPECT_THAT(done_, ElementsAre("note eval.interval", "note stop.success"));
+}
+
 TEST_F(CommandHandlerTest, OfAScheduleTheFormerValueIsThatOfTheEnvStepsSoFar) {
   Config config = Running();
   config.replay.samples_per_insert = Schedule{64, 16, 1000};

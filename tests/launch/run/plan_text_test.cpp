@@ -27,6 +27,11 @@ TEST(PlanText, FromStateThereAreNoPicturesAndNoEncoder) {
                     Not(HasSubstr("encoder"))));
 }
 
+TEST(SharedCoresText, MoreActorsThanCoresAreSaid) {
+  EXPECT_EQ(SharedCoresText(2, 2), "");
+  EXPECT_EQ(SharedCoresText(3, 2), "3 actors share 2 core(s): actors and learner get less time each");
+}
+
 TEST(PlanText, AScheduleOfUpdatesIsSaidWithBothEnds) {
   RunConfig run;
   run.config.observation.pixels = false;

@@ -11,7 +11,9 @@
 #include "common/dds/bus.h"
 #include "launch/record/run_folder.h"
 #include "launch/record/run_meta.h"
+#include "tests/support/error_message.h"
 #include "tests/support/temporary_folder.h"
+#include "tests/support/without_rights.h"
 
 namespace shoal::launch {
 namespace {
@@ -119,6 +121,22 @@ TEST_F(RunListTest, ABrokenRunIsListedAndHidesNoOther) {
   EXPECT_THAT(Only("b").problem, HasSubstr("meta.json"));
   EXPECT_EQ(Only("c").status, RunStatus::kUnreadable);
   EXPECT_EQ(Only("a").status, RunStatus::kFinished);
+}
+
+TEST_F(RunListTest, AnotherUsersRunIsListedAsUnreadable) {
+  Begin("mine", "target");
+  Begin("theirs", "target");
+  const WithoutRights closed(dir_.path() / "theirs");
+  const auto runs = ListRunStatus(dir_.path());
+  ASSERT_EQ(runs.size(), 2u);
+  EXPECT_EQ(Only("theirs").status, RunStatus::kUnreadable);
+  EXPECT_EQ(Only("theirs").problem, "permission denied");
+}
+
+TEST_F(RunListTest, AFolderThatMayNotBeReadIsNoEmptyOne) {
+  Begin("mine", "target");
+  const WithoutRights closed(dir_.path());
+  EXPECT_THAT(ErrorMessage(1, [&] { ListRunStatus(dir_.path()); }), HasSubstr("Permission denied"));
 }
 
 TEST_F(RunListTest, TableAndJsonSayTheSame) {

@@ -50,7 +50,8 @@ class ReplayProcess {
     waitpid(pid_, nullptr, 0);
     pid_ = -1;
   }
-  // The exit code; nothing when it does not end within the deadline or was killed.
+  // The exit code as a shell has it, 128 + the number of the signal it died by; nothing when it
+  // does not end within the deadline.
   std::optional<int> ExitCode(std::chrono::seconds deadline) {
     const SteadyTime end = Now() + deadline;
     int status = 0;
@@ -59,7 +60,7 @@ class ReplayProcess {
       std::this_thread::sleep_for(std::chrono::milliseconds(5));  // a poll with a deadline
     }
     pid_ = -1;
-    return WIFEXITED(status) ? std::optional(WEXITSTATUS(status)) : std::nullopt;
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
   }
   std::string Errors() const { return ReadFile(errors_); }
 

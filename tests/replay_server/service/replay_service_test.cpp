@@ -164,7 +164,7 @@ TEST_F(ReplayServiceTest, LeavesItsAccountingOnSigterm) {
   StartAll();
   ASSERT_TRUE(peers_->Deliver(&a_, 50));
   replay_->Signal(SIGTERM);
-  EXPECT_EQ(replay_->ExitCode(seconds(20)), 0) << replay_->Errors();
+  EXPECT_EQ(replay_->ExitCode(seconds(20)), 128 + SIGTERM) << replay_->Errors();
   EXPECT_EQ(Accounting(a_).at("stored"), 50u);
 }
 
