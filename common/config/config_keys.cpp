@@ -247,10 +247,11 @@ std::vector<Key> PpoKeys() {
       SHOAL_SAME(ppo.versions_ahead, (IntegerRange{0, 1}),
                  "0 = an actor awaits the weights that follow its rollout; 1 = it plays the next "
                  "rollout meanwhile"),
-      SHOAL_SAME(ppo.rollout_deadline, (RealRange{0.1, 60}),
-                 "seconds after the first rollout of an update is there, after which the update is "
-                 "made of those there are: at least half, after three times as long any number, and "
-                 "always at least learner.batch steps"),
+      SHOAL_SAME(
+          ppo.rollout_deadline, (RealRange{0.1, 60}),
+          "seconds after the first rollout of an update is there, after which the update is "
+          "made of those there are: at least half, after three times as long any number, and "
+          "always at least learner.batch steps"),
   };
 }
 

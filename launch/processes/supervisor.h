@@ -97,8 +97,8 @@ class Supervisor {
 
   // Processes that left as expected, but could not write all of their results (kUnwrittenExit).
   const std::set<std::string>& unwritten_exits() const { return unwritten_exits_; }
-  // Other expected exits that were not clean, each as one line. Death by a stop signal that was sent
-  // with Signal or Retire is clean.
+  // Other expected exits that were not clean, each as one line. Death by a stop signal that was
+  // sent with Signal or Retire is clean.
   const std::vector<std::string>& unclean_exits() const { return unclean_exits_; }
 
  private:

@@ -36,7 +36,7 @@ struct ProgressFigures {
   int processes = 0, restarts = 0;
   // Training actors that are not down after a death; in lockstep, all.
   int actors_working = 0;
-  std::string trouble;  // which actors do not work and why, as a line; empty when all do
+  std::string trouble;           // which actors do not work and why, as a line; empty when all do
   uint64_t faulty_episodes = 0;  // of the training actors, over the whole run
 };
 

@@ -61,8 +61,8 @@ void MakeOfAnotherBuild(const std::filesystem::path& run) {
 // A newer build goes on with a run, and the run says so.
 TEST(Resume, WithAFileTheReplayGoesOnWithItsContent) {
   const TrainingRun run;
-  const ProgramResult first = run.Train(
-      {{"env_steps", "2500"}, {"eval.final_episodes", "0"}, {"replay.keep", "true"}});
+  const ProgramResult first =
+      run.Train({{"env_steps", "2500"}, {"eval.final_episodes", "0"}, {"replay.keep", "true"}});
   ASSERT_EQ(ExitCode(first), 0) << first.out << first.err;
   ExpectScalars(run.path(), 1);
   const auto before = run.Json("meta.json");
