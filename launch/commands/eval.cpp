@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,7 @@
 #include "launch/experiment/baselines.h"
 #include "launch/processes/actor_program.h"
 #include "launch/processes/scratch_folder.h"
+#include "launch/record/evaluation_seed.h"
 #include "launch/record/run_folder.h"
 
 namespace shoal::launch {
@@ -29,7 +31,7 @@ namespace fs = std::filesystem;
 struct EvalOptions {
   std::string checkpoint, task, json;
   int episodes = 100;
-  int64_t seed = 1000;  // not that of a run, whose final evaluation plays the same stream
+  std::optional<int64_t> seed{};  // empty: the run's own (evaluation_seed.h)
 };
 
 void AddBaselines(const fs::path& file, const Baselines& baselines) {
@@ -89,22 +91,28 @@ int Evaluate(const EvalOptions& options) {
   const auto [run, folder] = FindRunCheckpoint(options.checkpoint);
   if (!options.json.empty()) CheckWritable(options.json);
   InstallStopSignals();
+  const int64_t seed = options.seed ? *options.seed : OwnEvaluationSeed(run);
+  if (seed == kReservedEvaluationSeed) {
+    fmt::print(
+        stderr,
+        "seed {} is kept for final figures: choose no recipe or checkpoint by its episodes\n",
+        seed);
+  }
   const ScratchFolder scratch;
   const fs::path json = scratch.path() / "eval.json";
   const auto point = EvaluateByActor(
       {.run = run,
        .checkpoint = folder,
        .episodes = options.episodes,
-       .seed = options.seed,
+       .seed = seed,
        .task = options.task,
        .json = json,
        .partial = true,
        .progress = [](const std::string& line) { fmt::print(stderr, "played {}\n", line); }},
       StopRequested);
   if (!point) return Interrupted("nothing was evaluated");
-  fmt::print("{} episodes (seed {}) of {}: {} ({} env steps, {} updates)\n", point->episodes,
-             options.seed, folder.string(), FormatWholeScore(*point), point->env_steps,
-             point->updates);
+  fmt::print("{} episodes (seed {}) of {}: {} ({} env steps, {} updates)\n", point->episodes, seed,
+             folder.string(), FormatWholeScore(*point), point->env_steps, point->updates);
   if (const std::string failures = FailuresText(json); !failures.empty()) {
     fmt::print("{}\n", failures);
   }
@@ -141,9 +149,11 @@ void AddEvalCommand(CLI::App& app, Action* chosen) {
   command->add_option("--episodes", options->episodes, "Episodes to play")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
-  command->add_option("--seed", options->seed, "Names the episodes: equal seeds, equal episodes")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+  command
+      ->add_option("--seed", options->seed,
+                   "Names the episodes: equal seeds, equal episodes. Default: from the run's "
+                   "config.json, so that each run and recipe has episodes of its own")
+      ->check(CLI::NonNegativeNumber);
   command->add_option("--task", options->task,
                       "Another task than the run's, whose observations and actions have the same "
                       "sizes; without the run's randomization and model file");
