@@ -6,6 +6,7 @@
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 #include <vector>
 
@@ -21,6 +22,7 @@
 #include "launch/experiment/baselines.h"
 #include "launch/processes/actor_program.h"
 #include "launch/processes/scratch_folder.h"
+#include "launch/record/evaluation_seed.h"
 #include "launch/record/run_folder.h"
 
 namespace shoal::launch {
@@ -32,7 +34,7 @@ struct EvalOptions {
   CheckpointWords checkpoint;
   std::string task, json;
   int episodes = 100;
-  int64_t seed = 1000;  // not that of a run, whose final evaluation plays the same stream
+  std::optional<int64_t> seed{};  // empty: the run's own (evaluation_seed.h)
 };
 
 std::string WithBaselines(const std::string& result, const Baselines& baselines) {
@@ -79,13 +81,20 @@ int Evaluate(const EvalOptions& options) {
   const auto [run, folder] = FindRunCheckpoint(options.checkpoint);
   const JsonOutput output(options.json);
   InstallStopSignals();
+  const int64_t seed = options.seed ? *options.seed : OwnEvaluationSeed(run);
+  if (seed == kReservedEvaluationSeed) {
+    fmt::print(
+        stderr,
+        "seed {} is kept for final figures: choose no recipe or checkpoint by its episodes\n",
+        seed);
+  }
   const ScratchFolder scratch;
   const fs::path json = scratch.path() / "eval.json";
   const auto point = EvaluateByActor(
       {.run = run,
        .checkpoint = folder,
        .episodes = options.episodes,
-       .seed = options.seed,
+       .seed = seed,
        .task = options.task,
        .json = json,
        .partial = true,
@@ -93,8 +102,8 @@ int Evaluate(const EvalOptions& options) {
       StopRequested);
   if (!point) return WasInterrupted("nothing was evaluated");
   fmt::print(output.text(), "{} episodes (seed {}) of {}: {} ({} env steps, {} updates)\n",
-             point->episodes, options.seed, folder.string(), FormatWholeScore(*point),
-             point->env_steps, point->updates);
+             point->episodes, seed, folder.string(), FormatWholeScore(*point), point->env_steps,
+             point->updates);
   if (const std::string failures = FailuresText(json); !failures.empty()) {
     fmt::print(output.text(), "{}\n", failures);
   }
@@ -134,9 +143,11 @@ void AddEvalCommand(CLI::App& app, Action* chosen) {
   command->add_option("--episodes", options->episodes, "Episodes to play")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
-  command->add_option("--seed", options->seed, "Names the episodes: equal seeds, equal episodes")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
+  command
+      ->add_option("--seed", options->seed,
+                   "Names the episodes: equal seeds, equal episodes. Default: from the run's "
+                   "config.json, so that each run and recipe has episodes of its own")
+      ->check(CLI::NonNegativeNumber);
   command->add_option("--task", options->task,
                       "Another task than the run's, whose observations and actions have the same "
                       "sizes; without the run's randomization and model file");

@@ -7,6 +7,7 @@
 #include "common/base/error.h"
 #include "launch/commands/commands.h"
 #include "launch/experiment/run_experiment.h"
+#include "launch/experiment/stored_summary.h"
 #include "launch/experiment/summary.h"
 
 namespace shoal::launch {
@@ -20,6 +21,11 @@ int Status(const std::string& name) {
 }
 
 int Summary(const std::string& name, bool json) {
+  if (name.ends_with(".json")) {
+    const auto summary = ReadStoredSummary(name);
+    std::cout << (json ? summary.dump(2) + "\n" : StoredSummaryText(summary)) << std::flush;
+    return 0;
+  }
   const ExperimentOutcome outcome = ReadOutcome(ReadExperiment(FindNamed(name, ExperimentsIn())));
   std::cout << (json ? ToJson(outcome).dump(2) + "\n" : SummaryText(outcome)) << std::flush;
   return 0;
@@ -94,10 +100,14 @@ void AddStatus(CLI::App& experiment, Action* chosen) {
 
 void AddSummary(CLI::App& experiment, Action* chosen) {
   CLI::App* command = experiment.add_subcommand(
-      "summary", "What an experiment has shown so far: success, return and ratios with intervals.");
+      "summary",
+      "What an experiment has shown so far: success, return and ratios with intervals. Of a "
+      "summary.json: the same from the rows of that file alone.");
   const auto name = std::make_shared<std::string>();
   const auto json = std::make_shared<bool>(false);
-  command->add_option("experiment", *name, "Name within experiments/, or folder")->required();
+  command
+      ->add_option("experiment", *name, "Name within experiments/, folder, or a summary's *.json")
+      ->required();
   command->add_flag("--json", *json, "Print JSON (schema shoal-experiment-1)");
   command->callback([=] { *chosen = [=] { return Summary(*name, *json); }; });
 }

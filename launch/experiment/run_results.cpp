@@ -2,7 +2,6 @@
 #include "launch/experiment/run_results.h"
 
 #include <algorithm>
-#include <cmath>
 
 #include "common/base/error.h"
 #include "common/base/files.h"
@@ -10,6 +9,7 @@
 #include "common/config/run_files.h"
 #include "common/run_folder/evaluation_file.h"
 #include "common/run_folder/run_file_names.h"
+#include "launch/record/first_reached.h"
 #include "launch/record/json_fields.h"
 #include "launch/record/run_folder.h"
 
@@ -71,10 +71,6 @@ std::vector<EvaluationFigures> ReadAll(const fs::path& run, const std::string& s
 
 }  // namespace
 
-uint64_t EvaluationFigures::Successes() const {
-  return static_cast<uint64_t>(std::llround(success.value_or(0) * static_cast<double>(episodes)));
-}
-
 EvaluationFigures ReadEvaluationFigures(const fs::path& file) {
   return FiguresOf(SummaryOf(ParseEvaluationObject(ReadFile(file), file), file), file);
 }
@@ -109,19 +105,18 @@ RunResults ReadRunResults(const fs::path& run) {
   return results;
 }
 
-const EvaluationFigures* FirstReaching(const std::vector<EvaluationFigures>& curve,
-                                       double success) {
-  for (size_t i = 0; i + 1 < curve.size(); ++i) {
-    if (curve[i].success.value_or(-1) >= success && curve[i + 1].success.value_or(-1) >= success) {
-      return &curve[i];
-    }
+const EvaluationFigures* FirstReaching(const RunResults& run, double success) {
+  std::vector<EvaluatedSuccess> successes;
+  for (const EvaluationFigures& point : run.curve) {
+    successes.push_back({point.success, point.episodes});
   }
-  return nullptr;
+  const auto first =
+      FirstReached(successes, success, static_cast<size_t>(run.config.stop.evaluations));
+  return first ? &run.curve[*first] : nullptr;
 }
 
-std::optional<uint64_t> StepsToSuccess(const std::vector<EvaluationFigures>& curve,
-                                       double success) {
-  const EvaluationFigures* first = FirstReaching(curve, success);
+std::optional<uint64_t> StepsToSuccess(const RunResults& run, double success) {
+  const EvaluationFigures* first = FirstReaching(run, success);
   return first == nullptr ? std::nullopt : std::optional(first->env_steps);
 }
 

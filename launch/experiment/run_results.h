@@ -25,9 +25,6 @@ struct EvaluationFigures {
   std::optional<double> success{};  // rate; empty where the task has none
   double return_mean = 0, return_std = 0;
   std::optional<double> final_distance_mean{};  // m; empty where the task has none
-
-  // Episodes that succeeded, of those with a success.
-  uint64_t Successes() const;
 };
 
 // Throws Error unless the file is a shoal-eval-1 object.
@@ -60,10 +57,10 @@ struct RunResults {
 // Throws Error: no config.json, or a broken file.
 RunResults ReadRunResults(const std::filesystem::path& run);
 
-// The first of two consecutive evaluations with at least this success; null = not reached. `curve`
-// is in the order of evaluation.
-const EvaluationFigures* FirstReaching(const std::vector<EvaluationFigures>& curve, double success);
+// The first of the first stop.evaluations (two by default) evaluations in a row whose episodes,
+// pooled, have at least this success (launch/record/first_reached.h); null = not reached.
+const EvaluationFigures* FirstReaching(const RunResults& run, double success);
 // The env steps at that one; empty = not reached.
-std::optional<uint64_t> StepsToSuccess(const std::vector<EvaluationFigures>& curve, double success);
+std::optional<uint64_t> StepsToSuccess(const RunResults& run, double success);
 
 }  // namespace shoal::launch

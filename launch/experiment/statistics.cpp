@@ -78,6 +78,10 @@ double Median(std::vector<double> values) {
   return n % 2 == 1 ? values[n / 2] : (values[n / 2 - 1] + values[n / 2]) / 2;
 }
 
+Interval Within(const Interval& interval, double low, double high) {
+  return {std::clamp(interval.low, low, high), std::clamp(interval.high, low, high)};
+}
+
 Interval Wilson95(uint64_t successes, uint64_t trials) {
   CHECK(trials > 0 && successes <= trials);
   const auto n = static_cast<double>(trials);
@@ -108,20 +112,53 @@ std::optional<Interval> MeanInterval95(std::span<const double> values) {
   return Interval{mean - half, mean + half};
 }
 
+std::optional<Interval> SuccessInterval95(std::span<const SeedSuccess> seeds) {
+  if (seeds.size() < 2) return std::nullopt;
+  std::vector<double> rates;
+  SeedSuccess all;
+  for (const SeedSuccess& seed : seeds) {
+    CHECK(seed.episodes > 0);
+    rates.push_back(seed.Rate());
+    all.successes += seed.successes;
+    all.episodes += seed.episodes;
+  }
+  const Interval student = Within(*MeanInterval95(rates), 0, 1);
+  const Interval wilson = Wilson95(all.successes, all.episodes);
+  return Interval{std::min(student.low, wilson.low), std::max(student.high, wilson.high)};
+}
+
+double InterquartileMean(std::vector<double> values) {
+  CHECK(!values.empty());
+  std::ranges::sort(values);
+  const size_t cut = values.size() / 4;
+  return Mean(std::span(values).subspan(cut, values.size() - 2 * cut));
+}
+
+std::optional<Interval> StratifiedBootstrap95(const std::vector<std::vector<double>>& strata,
+                                              const Statistic& statistic, uint64_t seed,
+                                              int resamples) {
+  const auto too_few = [](const std::vector<double>& stratum) { return stratum.size() < 2; };
+  if (strata.empty() || std::ranges::any_of(strata, too_few)) return std::nullopt;
+  Random random(seed);
+  std::vector<double> drawn, results(static_cast<size_t>(resamples));
+  for (double& result : results) {
+    drawn.clear();
+    for (const std::vector<double>& stratum : strata) {
+      for (size_t i = 0; i < stratum.size(); ++i) {
+        drawn.push_back(stratum[random.Below(stratum.size())]);
+      }
+    }
+    result = statistic(drawn);
+  }
+  std::ranges::sort(results);
+  return Interval{Quantile(results, 0.025), Quantile(results, 0.975)};
+}
+
 std::optional<Interval> BootstrapInterval95(std::span<const double> values, uint64_t seed,
                                             int resamples) {
-  if (values.size() < 2) return std::nullopt;
-  Random random(seed);
-  std::vector<double> means(static_cast<size_t>(resamples));
-  for (double& mean : means) {
-    double sum = 0;
-    for (size_t i = 0; i < values.size(); ++i) {
-      sum += values[random.Below(static_cast<uint32_t>(values.size()))];
-    }
-    mean = sum / static_cast<double>(values.size());
-  }
-  std::ranges::sort(means);
-  return Interval{Quantile(means, 0.025), Quantile(means, 0.975)};
+  return StratifiedBootstrap95(
+      {{values.begin(), values.end()}},
+      [](const std::vector<double>& drawn) { return Mean(drawn); }, seed, resamples);
 }
 
 std::optional<double> RatioPair::Ratio() const {
@@ -147,12 +184,12 @@ SampleRatio RatioOf(std::vector<RatioPair> pairs) {
   return result;
 }
 
-SampleRatio RatioOfFinished(std::span<const TargetReached> arm,
-                            std::span<const TargetReached> reference) {
+SampleRatio RatioOfEnded(std::span<const TargetReached> arm,
+                         std::span<const TargetReached> reference) {
   std::vector<RatioPair> pairs;
   for (const TargetReached& run : arm) {
     const auto same = std::ranges::find(reference, run.seed, &TargetReached::seed);
-    if (same == reference.end() || !run.finished || !same->finished) continue;
+    if (same == reference.end() || !run.over || !same->over) continue;
     pairs.push_back({run.seed, run.n, same->n});
   }
   return RatioOf(std::move(pairs));

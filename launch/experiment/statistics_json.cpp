@@ -2,6 +2,9 @@
 #include "launch/experiment/statistics_json.h"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <vector>
 
 #include "common/base/or_null.h"
 
@@ -27,26 +30,29 @@ ordered_json RatioJson(const std::string& name, const SampleRatio& ratio) {
           {"median", OrNull(ratio.median)}};
 }
 
-std::string FormatPooled(uint64_t successes, uint64_t episodes) {
-  if (episodes == 0) return "-";
-  const Interval interval = Wilson95(successes, episodes);
-  return fmt::format("{:.1f} % [{:.1f}, {:.1f}] ({}/{})",
-                     100 * static_cast<double>(successes) / static_cast<double>(episodes),
-                     100 * interval.low, 100 * interval.high, successes, episodes);
+std::string FormatMedian(const SampleRatio& ratio) {
+  if (ratio.pairs.empty()) return "no seed is done in both";
+  const std::string pairs =
+      fmt::format("{} pair{}", ratio.pairs.size(), ratio.pairs.size() == 1 ? "" : "s");
+  if (!ratio.median) {
+    return fmt::format("no median: {} of {} did not reach the target", ratio.not_reached, pairs);
+  }
+  const std::string missed =
+      ratio.not_reached > 0 ? fmt::format(", {} not reached", ratio.not_reached) : "";
+  return fmt::format("median {:.2f} of {}{}", *ratio.median, pairs, missed);
 }
 
-std::string FormatMean(const std::vector<double>& values, int digits) {
-  if (values.empty()) return "-";
-  const auto interval = MeanInterval95(values);
-  const std::string mean = fmt::format("{:.{}f}", Mean(values), digits);
-  if (!interval) return mean + " (1 seed)";
-  return fmt::format("{} [{:.{}f}, {:.{}f}] ({} seeds)", mean, interval->low, digits,
-                     interval->high, digits, values.size());
-}
-
-std::string FormatDistances(std::vector<double> metres) {
-  for (double& distance : metres) distance = Centimetres(distance);
-  return FormatMean(metres, 2);
+std::string FormatPairs(const SampleRatio& ratio, const std::string& arm,
+                        const std::string& reference) {
+  std::vector<std::string> words;
+  for (const RatioPair& pair : ratio.pairs) {
+    const auto value = pair.Ratio();
+    const std::string& missing = pair.n ? reference : pair.reference ? arm : "either";
+    words.push_back(fmt::format(
+        "seed {}: {}", pair.seed,
+        value ? fmt::format("{:.2f}", *value) : fmt::format("not reached by {}", missing)));
+  }
+  return fmt::format("{}", fmt::join(words, ", "));
 }
 
 }  // namespace shoal::launch

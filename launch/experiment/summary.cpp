@@ -11,6 +11,7 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/or_null.h"
+#include "launch/experiment/arm_table.h"
 #include "launch/experiment/statistics_json.h"
 #include "launch/record/run_folder.h"
 
@@ -28,33 +29,31 @@ RunOutcome ReadRun(const StoredExperiment& experiment, const ExperimentRun& run,
   if (!IsRun(run.folder)) return outcome;
   try {
     outcome.results = ReadRunResults(run.folder);
-    outcome.n_to_target =
-        StepsToSuccess(outcome.results->curve, experiment.definition.target_success);
+    outcome.n_to_target = StepsToSuccess(*outcome.results, experiment.definition.target_success);
   } catch (const Error& e) {
     outcome.report = {RunStanding::kFailed, e.what()};
   }
   return outcome;
 }
 
-void Pool(ArmOutcome& arm) {
+void Gather(ArmOutcome& arm) {
   for (const RunOutcome& run : arm.runs) {
-    if (run.report.standing != RunStanding::kFinished || !run.results->final) continue;
+    const RunStanding standing = run.report.standing;
+    if (standing == RunStanding::kFailed) ++arm.figures.failed;
+    if (standing != RunStanding::kFinished || !run.results->final) continue;
     const EvaluationFigures& final = *run.results->final;
-    if (final.success) {
-      arm.successes += final.Successes();
-      arm.episodes += final.episodes;
-    }
-    arm.returns.push_back(final.return_mean);
-    if (final.final_distance_mean) arm.distances.push_back(*final.final_distance_mean);
+    arm.figures.Add(final.success, final.episodes, final.return_mean, final.final_distance_mean);
   }
 }
 
 std::vector<TargetReached> TargetsOf(const ArmOutcome& arm) {
   std::vector<TargetReached> targets;
   for (const RunOutcome& run : arm.runs) {
+    const RunStanding standing = run.report.standing;
+    const bool over = standing == RunStanding::kFinished || standing == RunStanding::kFailed;
     const auto n = run.n_to_target;
-    targets.push_back({run.run.seed, run.report.standing == RunStanding::kFinished,
-                       n ? std::optional(static_cast<double>(*n)) : std::nullopt});
+    targets.push_back(
+        {run.run.seed, over, n ? std::optional(static_cast<double>(*n)) : std::nullopt});
   }
   return targets;
 }
@@ -108,23 +107,7 @@ ordered_json ArmJson(const ArmOutcome& outcome, const Arm& arm,
   ordered_json runs = ordered_json::array();
   for (const RunOutcome& run : outcome.runs) runs.push_back(RunJson(run, folder));
   ordered_json object{{"name", arm.name}, {"overrides", arm.set}, {"runs", runs}};
-  std::optional<Interval> wilson;
-  std::optional<double> pooled, mean, distance;
-  if (outcome.episodes > 0) {
-    wilson = Wilson95(outcome.successes, outcome.episodes);
-    pooled = static_cast<double>(outcome.successes) / static_cast<double>(outcome.episodes);
-  }
-  if (!outcome.returns.empty()) mean = Mean(outcome.returns);
-  if (!outcome.distances.empty()) distance = Mean(outcome.distances);
-  object["success"] = {{"pooled", OrNull(pooled)},
-                       {"episodes", outcome.episodes},
-                       {"wilson95", IntervalJson(wilson)}};
-  object["return"] = {{"mean", OrNull(mean)},
-                      {"ci95", IntervalJson(MeanInterval95(outcome.returns))},
-                      {"seeds", outcome.returns.size()}};
-  object["final_distance"] = {{"mean", OrNull(distance)},
-                              {"ci95", IntervalJson(MeanInterval95(outcome.distances))},
-                              {"seeds", outcome.distances.size()}};
+  SetAggregates(outcome.figures, &object);
   return object;
 }
 
@@ -147,18 +130,6 @@ ordered_json BaselinesJson(const ExperimentOutcome& outcome) {
     }
   }
   return object;
-}
-
-std::string FormatRatio(const ExperimentOutcome::NamedRatio& named) {
-  std::vector<std::string> pairs;
-  for (const RatioPair& pair : named.ratio.pairs) {
-    const auto ratio = pair.Ratio();
-    pairs.push_back(ratio ? fmt::format("{:.2f}", *ratio) : "not reached");
-  }
-  const std::string median =
-      named.ratio.median ? fmt::format("{:.2f}", *named.ratio.median) : "unknown";
-  return fmt::format("  {}: median {} of {} seed(s), {} not reached: {}\n", named.name, median,
-                     pairs.size(), named.ratio.not_reached, fmt::join(pairs, ", "));
 }
 
 std::string Missing(const ExperimentOutcome& outcome) {
@@ -217,13 +188,13 @@ ExperimentOutcome ReadOutcome(const StoredExperiment& experiment) {
   }
   bool has_success = false;
   for (ArmOutcome& arm : outcome.arms) {
-    Pool(arm);
-    has_success |= arm.episodes > 0;
+    Gather(arm);
+    has_success |= !arm.figures.successes.empty();
   }
   for (size_t i = 1; has_success && i < outcome.arms.size(); ++i) {
     outcome.ratios.push_back(
-        {outcome.arms[i].name + "/" + outcome.arms[0].name,
-         RatioOfFinished(TargetsOf(outcome.arms[i]), TargetsOf(outcome.arms[0]))});
+        {outcome.arms[i].name, outcome.arms[0].name,
+         RatioOfEnded(TargetsOf(outcome.arms[i]), TargetsOf(outcome.arms[0]))});
   }
   return outcome;
 }
@@ -235,12 +206,15 @@ ordered_json ToJson(const ExperimentOutcome& outcome) {
   for (size_t i = 0; i < outcome.arms.size(); ++i) {
     arms.push_back(ArmJson(outcome.arms[i], definition.arms[i], experiment.folder));
   }
-  for (const auto& named : outcome.ratios) ratios.push_back(RatioJson(named.name, named.ratio));
-  return {{"schema", "shoal-experiment-1"},
+  for (const auto& named : outcome.ratios) {
+    ratios.push_back(RatioJson(named.arm + "/" + named.first, named.ratio));
+  }
+  return {{"schema", kSummarySchema},
           {"name", definition.name},
           {"question", definition.question},
           {"base", definition.base},
           {"target_success", definition.target_success},
+          {"n_to_target_rule", kReachedTogether},
           {"commit", BuildCommit()},
           {"created", UtcTimestamp()},
           {"arms", arms},
@@ -259,18 +233,19 @@ std::string SummaryText(const ExperimentOutcome& outcome) {
   std::string text = fmt::format("experiment {}: base {}, {} arm(s)\n", definition.name,
                                  definition.base, definition.arms.size());
   if (!definition.question.empty()) text += definition.question + "\n";
-  text += fmt::format("{:<16} {:>8}  {:<30} {:<34} {}\n", "ARM", "FINISHED", "SUCCESS [95 %]",
-                      "RETURN [95 %]", "DISTANCE, cm [95 %]");
+  std::vector<ArmRow> rows;
   for (const ArmOutcome& arm : outcome.arms) {
-    text += fmt::format("{:<16} {:>8}  {:<30} {:<34} {}\n", arm.name,
-                        fmt::format("{}/{}", arm.returns.size(), arm.runs.size()),
-                        FormatPooled(arm.successes, arm.episodes), FormatMean(arm.returns, 2),
-                        FormatDistances(arm.distances));
+    rows.push_back({arm.name, arm.figures, arm.runs.size()});
   }
+  text += ArmTable(rows);
   if (!outcome.ratios.empty()) {
     text += fmt::format("env steps to {:.0f} % success, arm / first arm:\n",
                         100 * definition.target_success);
-    for (const auto& named : outcome.ratios) text += FormatRatio(named);
+    for (const auto& [arm, first, ratio] : outcome.ratios) {
+      text += fmt::format("  {} / {}: {}", arm, first, FormatMedian(ratio));
+      if (!ratio.pairs.empty()) text += fmt::format(" ({})", FormatPairs(ratio, arm, first));
+      text += "\n";
+    }
   }
   for (const auto& [world, baselines] : outcome.baselines) {
     const bool of_arm = world.kind == JudgedWorld::Kind::kOtherArm;

@@ -12,6 +12,7 @@
 #include "launch/experiment/experiment_folder.h"
 #include "launch/experiment/run_results.h"
 #include "launch/experiment/run_standing.h"
+#include "launch/experiment/seed_figures.h"
 #include "launch/experiment/statistics.h"
 
 namespace shoal::launch {
@@ -27,10 +28,7 @@ struct RunOutcome {
 struct ArmOutcome {
   std::string name{};
   std::vector<RunOutcome> runs{};  // by seed, in the order of the seeds
-  // Over the final evaluations of the finished runs.
-  uint64_t successes = 0, episodes = 0;  // pooled; no episodes where the task has no success
-  std::vector<double> returns{};         // mean return of each run
-  std::vector<double> distances{};       // mean final distance of each run, m
+  SeedFigures figures{};           // of the final evaluations of the finished runs
 };
 
 // What baselines are of: a task with its threshold, model file, physics and action repeat.
@@ -54,7 +52,7 @@ struct ExperimentOutcome {
   // n_to_target of an arm and of the first one, seed by seed: for each arm but the first, where the
   // task has a success.
   struct NamedRatio {
-    std::string name;  // "ARM/FIRST"
+    std::string arm, first;
     SampleRatio ratio;
   };
   std::vector<NamedRatio> ratios{};

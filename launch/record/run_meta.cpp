@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "launch/record/run_meta.h"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -152,6 +154,27 @@ RunMeta ReadRunMeta(const std::filesystem::path& run) {
     throw RuntimeError("{}: {}", path.string(), e.what());
   }
   return meta;
+}
+
+std::string FormatFirstSuccess(const RunMeta& meta, int evaluations) {
+  const double percent = 100 * meta.target;
+  if (!meta.first_success) {
+    if (!meta.best || !meta.best->success) return "";
+    return fmt::format(
+        "while training: no {} evaluations in a row had success >= {:.0f} % together", evaluations,
+        percent);
+  }
+  const EvaluationPoint& first = *meta.first_success;
+  std::string line = fmt::format(
+      "while training: success >= {:.0f} % over {} evaluations in a row, first from {} env steps, "
+      "{} "
+      "updates, {:.0f} s on",
+      percent, evaluations, first.env_steps, first.updates, first.wall_seconds);
+  if (meta.final_success && *meta.final_success < meta.target) {
+    line += fmt::format("; the final evaluation, of other episodes, is below that: {:.1f} %",
+                        100 * *meta.final_success);
+  }
+  return line;
 }
 
 }  // namespace shoal::launch

@@ -13,6 +13,7 @@
 #include "common/checkpoint/checkpoint_files.h"
 #include "common/run_folder/run_file_names.h"
 #include "launch/experiment/run_results.h"
+#include "launch/experiment/seed_figures.h"
 #include "launch/experiment/statistics_json.h"
 #include "launch/record/run_folder.h"
 #include "launch/report/command_line.h"
@@ -61,6 +62,8 @@ std::string Metadata(const RunResults& run) {
 
 std::string Readme(const RunResults& run, bool film) {
   const EvaluationFigures& final = *run.final;
+  SeedFigures figures;
+  figures.Add(final.success, final.episodes, final.return_mean, final.final_distance_mean);
   std::string text = Metadata(run);
   text += fmt::format("\n# {} on {}\n\n", run.name, run.config.task);
   text += fmt::format(
@@ -69,8 +72,7 @@ std::string Readme(const RunResults& run, bool film) {
   text += fmt::format(
       "| episodes | success [95 %] | return | final distance, cm |\n"
       "| --- | --- | --- | --- |\n| {} | {} | {} | {} |\n\n",
-      final.episodes, final.success ? FormatPooled(final.Successes(), final.episodes) : "-",
-      RewardText(final),
+      final.episodes, FormatSuccess(figures), RewardText(final),
       final.final_distance_mean ? fmt::format("{:.2f}", Centimetres(*final.final_distance_mean))
                                 : "-");
   text += fmt::format(

@@ -39,22 +39,26 @@ std::vector<std::pair<std::string, std::string>> KeysOf(const Config& config) {
   return keys;
 }
 
+void Judge(const RunResults& run, GroupFigures* figures) {
+  const EvaluationFigures& judged = run.final ? *run.final : run.curve.back();
+  if (!run.final) figures->without_final.push_back(run.name);
+  figures->figures.Add(judged.success, judged.episodes, judged.return_mean,
+                       judged.final_distance_mean);
+}
+
 GroupFigures FiguresOf(const RunGroup& group, double target_success) {
   GroupFigures figures{.name = group.name};
+  figures.failed = group.failed;
   figures.unevaluated = group.unevaluated;
+  // A failed run that is compared by itself is judged: there is nothing else to show.
+  const bool alone = group.runs.size() == 1 && group.failed == std::vector{group.runs[0].name} &&
+                     group.unevaluated.empty();
+  figures.figures.failed = alone ? 0 : group.failed.size();
   for (const RunResults& run : group.runs) {
-    const EvaluationFigures& judged = run.final ? *run.final : run.curve.back();
-    if (!run.final) figures.without_final.push_back(run.name);
+    if (alone || std::ranges::count(group.failed, run.name) == 0) Judge(run, &figures);
     figures.seeds.push_back(run.config.seed);
-    const bool finished = std::ranges::count(group.unfinished, run.name) == 0;
-    figures.finished.push_back(finished);
-    figures.returns.push_back(judged.return_mean);
-    if (judged.final_distance_mean) figures.distances.push_back(*judged.final_distance_mean);
-    if (judged.success) {
-      figures.successes += judged.Successes();
-      figures.episodes += judged.episodes;
-    }
-    const EvaluationFigures* first = FirstReaching(run.curve, target_success);
+    figures.over.push_back(std::ranges::count(group.unfinished, run.name) == 0);
+    const EvaluationFigures* first = FirstReaching(run, target_success);
     figures.n_to_target.emplace_back();
     figures.seconds_to_target.emplace_back();
     if (first != nullptr) {
@@ -72,39 +76,37 @@ GroupFigures FiguresOf(const RunGroup& group, double target_success) {
 std::vector<TargetReached> TargetsOf(const GroupFigures& group) {
   std::vector<TargetReached> targets;
   for (size_t i = 0; i < group.seeds.size(); ++i) {
-    targets.push_back({group.seeds[i], group.finished[i], group.n_to_target[i]});
+    targets.push_back({group.seeds[i], group.over[i], group.n_to_target[i]});
   }
   return targets;
 }
 
-ordered_json MeanJson(const std::vector<double>& values) {
-  const auto mean = values.empty() ? std::nullopt : std::optional(Mean(values));
-  return {{"mean", OrNull(mean)},
-          {"ci95", IntervalJson(MeanInterval95(values))},
-          {"bootstrap95", IntervalJson(BootstrapInterval95(values))},
-          {"seeds", values.size()}};
+std::optional<Interval> IqmInterval95(const std::vector<double>& values) {
+  return StratifiedBootstrap95({values}, InterquartileMean);
+}
+
+// The object of a mean with what only comparisons have: bootstrap95 of the mean, and the
+// interquartile mean with its own.
+ordered_json WithIqm(ordered_json object, const std::vector<double>& values) {
+  const auto iqm = values.empty() ? std::nullopt : std::optional(InterquartileMean(values));
+  object["bootstrap95"] = IntervalJson(BootstrapInterval95(values));
+  object["iqm"] = OrNull(iqm);
+  object["iqm95"] = IntervalJson(IqmInterval95(values));
+  return object;
 }
 
 ordered_json GroupJson(const GroupFigures& group) {
-  std::optional<double> pooled;
-  std::optional<Interval> wilson;
-  if (group.episodes > 0) {
-    pooled = static_cast<double>(group.successes) / static_cast<double>(group.episodes);
-    wilson = Wilson95(group.successes, group.episodes);
-  }
   const auto by_seed = [](const std::vector<std::optional<double>>& values) {
     ordered_json array = ordered_json::array();
     for (const auto& value : values) array.push_back(OrNull(value));
     return array;
   };
+  const SeedFigures& figures = group.figures;
   return {{"name", group.name},
           {"seeds", group.seeds},
-          {"success",
-           {{"pooled", OrNull(pooled)},
-            {"episodes", group.episodes},
-            {"wilson95", IntervalJson(wilson)}}},
-          {"return", MeanJson(group.returns)},
-          {"final_distance", MeanJson(group.distances)},
+          {"success", WithIqm(SuccessJson(figures), figures.Rates())},
+          {"return", WithIqm(ReturnJson(figures), figures.returns)},
+          {"final_distance", WithIqm(DistanceJson(figures), figures.distances)},
           {"n_to_target", by_seed(group.n_to_target)},
           {"seconds_to_target", by_seed(group.seconds_to_target)},
           {"env_steps", group.env_steps},
@@ -112,6 +114,7 @@ ordered_json GroupJson(const GroupFigures& group) {
           {"wall_seconds", group.wall_seconds},
           {"core_hours", group.core_hours},
           {"without_final_evaluation", group.without_final},
+          {"failed", group.failed},
           {"without_evaluation", group.unevaluated}};
 }
 
@@ -143,6 +146,9 @@ std::string Notes(const Comparison& comparison) {
       notes += fmt::format("not yet evaluated at the end, judged by the last evaluation: {}\n",
                            fmt::join(group.without_final, ", "));
     }
+    if (!group.failed.empty()) {
+      notes += fmt::format("failed: {}\n", fmt::join(group.failed, ", "));
+    }
     if (!group.unevaluated.empty()) {
       notes += fmt::format("not in the figures, without any evaluation: {}\n",
                            fmt::join(group.unevaluated, ", "));
@@ -151,7 +157,34 @@ std::string Notes(const Comparison& comparison) {
   return notes;
 }
 
+// Below four seeds it is the mean.
+bool HasIqm(const GroupFigures& group) { return group.figures.returns.size() >= 4; }
+
+// A line for each group of enough seeds.
+std::string Iqms(const Comparison& comparison) {
+  std::string text;
+  for (const GroupFigures& group : comparison.groups) {
+    if (!HasIqm(group)) continue;
+    const bool success = !group.figures.successes.empty();
+    std::vector<double> values = success ? group.figures.Rates() : group.figures.returns;
+    if (success) std::ranges::transform(values, values.begin(), [](double r) { return 100 * r; });
+    const Interval interval = *IqmInterval95(values);
+    text += fmt::format("  {}: {} {:.1f}{} [{:.1f}, {:.1f}] ({} seeds)\n", group.name,
+                        success ? "success" : "return", InterquartileMean(values),
+                        success ? " %" : "", interval.low, interval.high, values.size());
+  }
+  if (text.empty()) return "";
+  return "\ninterquartile mean over seeds [95 %, stratified bootstrap]:\n" + text;
+}
+
 }  // namespace
+
+std::string FormatSeeds(const GroupFigures& group) {
+  const std::string seeds = std::to_string(group.figures.returns.size());
+  if (group.failed.empty()) return seeds;
+  const size_t left_out = group.figures.failed;
+  return seeds + (left_out == 0 ? ", failed" : fmt::format(", {} failed", left_out));
+}
 
 std::string FormatSteps(const GroupFigures& group) {
   std::vector<std::string> words;
@@ -159,7 +192,7 @@ std::string FormatSteps(const GroupFigures& group) {
     if (const auto& n = group.n_to_target[i]) {
       words.push_back(fmt::format("{:.0f} ({:.0f} s)", *n, *group.seconds_to_target[i]));
     } else {
-      words.emplace_back(group.finished[i] ? "not reached" : "not yet");
+      words.emplace_back(group.over[i] ? "not reached" : "not yet");
     }
   }
   return words.empty() ? "-" : fmt::format("{}", fmt::join(words, ", "));
@@ -203,7 +236,7 @@ Comparison Gather(const std::vector<RunGroup>& groups, double target_success) {
   }
   for (size_t i = 1; i < comparison.groups.size(); ++i) {
     comparison.ratios.push_back(
-        RatioOfFinished(TargetsOf(comparison.groups[i]), TargetsOf(comparison.groups[0])));
+        RatioOfEnded(TargetsOf(comparison.groups[i]), TargetsOf(comparison.groups[0])));
   }
   comparison.differences = FindDifferences(groups);
   return comparison;
@@ -240,12 +273,11 @@ std::string ToText(const Comparison& comparison) {
                          "ENV STEPS", "UPDATES", "WALL, s", "CORE-HOURS"}};
   bool has_success = false;
   for (const GroupFigures& group : comparison.groups) {
-    has_success |= group.episodes > 0;
-    rows.push_back({group.name, std::to_string(group.seeds.size()),
-                    FormatPooled(group.successes, group.episodes), FormatMean(group.returns, 2),
-                    FormatDistances(group.distances), FormatCounts(group.env_steps),
-                    FormatCounts(group.updates), FormatCounts(group.wall_seconds),
-                    fmt::format("{:.2f}", group.core_hours)});
+    has_success |= !group.figures.successes.empty();
+    rows.push_back({group.name, FormatSeeds(group), FormatSuccess(group.figures),
+                    FormatReturn(group.figures), FormatDistance(group.figures),
+                    FormatCounts(group.env_steps), FormatCounts(group.updates),
+                    FormatCounts(group.wall_seconds), fmt::format("{:.2f}", group.core_hours)});
   }
   std::string text = comparison.task + "; env steps, updates and wall time are means over seeds\n";
   text += Table(rows);
@@ -256,15 +288,14 @@ std::string ToText(const Comparison& comparison) {
       const GroupFigures& group = comparison.groups[i];
       text += fmt::format("  {}: {}", group.name, FormatSteps(group));
       if (i > 0 && !comparison.ratios[i - 1].pairs.empty()) {
-        const SampleRatio& ratio = comparison.ratios[i - 1];
-        text +=
-            fmt::format("; ratio to {}: median {} of {}, {} not reached", comparison.groups[0].name,
-                        ratio.median ? fmt::format("{:.2f}", *ratio.median) : "unknown",
-                        ratio.pairs.size(), ratio.not_reached);
+        const std::string& first = comparison.groups[0].name;
+        text += fmt::format("; {} times those of {}: {}", FormatMedian(comparison.ratios[i - 1]),
+                            first, FormatPairs(comparison.ratios[i - 1], group.name, first));
       }
       text += "\n";
     }
   }
+  text += Iqms(comparison);
   if (!comparison.differences.empty()) {
     rows = {{"DIFFERENT KEYS"}};
     for (const GroupFigures& group : comparison.groups) rows[0].push_back(group.name);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "launch/experiment/baselines.h"
+#include "launch/experiment/seed_figures.h"
 #include "launch/experiment/statistics.h"
 #include "launch/report/subjects.h"
 
@@ -16,13 +17,14 @@ namespace shoal::launch {
 struct GroupFigures {
   std::string name{};
   std::vector<int64_t> seeds{};
-  std::vector<bool> finished{};  // by seed
-  // Of the final evaluation of each run; of its last one while training where it has not ended.
-  std::vector<double> returns{}, distances{};  // means; distances in m, where the task has some
-  uint64_t successes = 0, episodes = 0;        // pooled; no episodes where the task has no success
-  std::vector<std::string> without_final{};    // runs judged by their last evaluation
+  std::vector<bool> over{};  // by seed: finished or failed
+  // Of the final evaluation of each run; of its last one while training where it has not ended. A
+  // failed run is counted as such and judged by nothing, unless it is the whole group.
+  SeedFigures figures{};
+  std::vector<std::string> without_final{};  // runs judged by their last evaluation
+  std::vector<std::string> failed{};
   std::vector<std::string> unevaluated{};
-  // Env steps, by seed; empty = not reached, or, where the run is not finished, not yet.
+  // Env steps, by seed; empty = not reached, or, where the run is not over, not yet.
   std::vector<std::optional<double>> n_to_target{};
   std::vector<std::optional<double>> seconds_to_target{};      // of wall clock, likewise
   std::vector<double> env_steps{}, updates{}, wall_seconds{};  // by seed
@@ -38,7 +40,7 @@ struct Comparison {
   std::string task{};
   double target_success = 0.9;
   std::vector<GroupFigures> groups{};
-  // Of each group but the first to the first, over the seeds that are finished in both.
+  // Of each group but the first to the first, over the seeds whose runs are over in both.
   std::vector<SampleRatio> ratios{};
   std::vector<KeyDifference> differences{};
   std::optional<Baselines> baselines{};  // empty where they have not been measured
@@ -54,6 +56,9 @@ Comparison Gather(const std::vector<RunGroup>& groups, double target_success);
 nlohmann::ordered_json ToJson(const Comparison& comparison);
 std::string ToText(const Comparison& comparison);
 
+// "3", "2, 1 failed": seeds that a group's figures are of, and those that failed; "1, failed" of a
+// failed run by itself.
+std::string FormatSeeds(const GroupFigures& group);
 // Env steps and wall clock to the target, by seed: "1200 (35 s), not reached, not yet"; "-" without
 // runs.
 std::string FormatSteps(const GroupFigures& group);

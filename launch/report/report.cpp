@@ -78,36 +78,37 @@ std::string ResultsHtml(const Comparison& comparison) {
     const GroupFigures& group = comparison.groups[i];
     std::string ratio = i == 0 ? "1" : "-";
     if (i > 0 && !comparison.ratios[i - 1].pairs.empty()) {
-      const SampleRatio& pairs = comparison.ratios[i - 1];
-      ratio = fmt::format("{} ({} pairs, {} not reached)",
-                          pairs.median ? fmt::format("{:.2f}", *pairs.median) : "unknown",
-                          pairs.pairs.size(), pairs.not_reached);
+      const std::string& first = comparison.groups[0].name;
+      ratio = FormatMedian(comparison.ratios[i - 1]) + "; " +
+              FormatPairs(comparison.ratios[i - 1], group.name, first);
     }
-    const bool success = group.episodes > 0;
-    rows.push_back({group.name, std::to_string(group.seeds.size()),
-                    FormatPooled(group.successes, group.episodes), FormatMean(group.returns, 2),
-                    FormatDistances(group.distances), success ? FormatSteps(group) : "-",
-                    success ? ratio : "-"});
+    const bool success = !group.figures.successes.empty();
+    rows.push_back({group.name, FormatSeeds(group), FormatSuccess(group.figures),
+                    FormatReturn(group.figures), FormatDistance(group.figures),
+                    success ? FormatSteps(group) : "-", success ? ratio : "-"});
   }
   std::string html = TableHtmlOfFilled(
       {"", "seeds", "success [95 %]", "return [95 %]", "distance, cm [95 %]",
        fmt::format("env steps (wall clock) to {:.0f} %", 100 * comparison.target_success),
-       "median ratio to the first"},
+       "ratio to the first"},
       rows);
-  const bool success = std::ranges::any_of(
-      comparison.groups, [](const GroupFigures& group) { return group.episodes > 0; });
+  const bool success = std::ranges::any_of(comparison.groups, [](const GroupFigures& group) {
+    return !group.figures.successes.empty();
+  });
   html +=
       success
-          ? "<p class=\"note\">Success: episodes of all seeds pooled, Wilson's interval. Return "
-            "and distance: mean over seeds, Student's interval. Env steps: at the first of two "
-            "evaluations in a row at or above the rate; a seed that did not get there is "
-            "counted, not dropped. Ratios: over the seeds that are finished in both.</p>\n"
+          ? "<p class=\"note\">Success, return and distance: mean over seeds with Student's "
+            "interval over seeds; that of success is never narrower than Wilson's of all episodes, "
+            "which is the interval of a single seed. Env steps: at the first of the evaluations in "
+            "a row whose episodes together reach the rate; a seed that did not get there, or "
+            "failed, is counted, not dropped.</p>\n"
           : "<p class=\"note\">Return: mean over seeds, Student's interval.</p>\n";
   if (comparison.baselines) {
     html += "<p>" + EscapeMarkup(FormatBaselines(*comparison.baselines)) + ".</p>\n";
   }
-  std::vector<std::string> early, missing;
+  std::vector<std::string> early, failed, missing;
   for (const GroupFigures& group : comparison.groups) {
+    failed.insert(failed.end(), group.failed.begin(), group.failed.end());
     early.insert(early.end(), group.without_final.begin(), group.without_final.end());
     missing.insert(missing.end(), group.unevaluated.begin(), group.unevaluated.end());
   }
@@ -115,6 +116,9 @@ std::string ResultsHtml(const Comparison& comparison) {
     html +=
         EscapeMarkup(fmt::format("Not yet evaluated at the end, judged by the last evaluation: {}.",
                                  fmt::join(early, ", ")));
+  }
+  if (!failed.empty()) {
+    html += EscapeMarkup(fmt::format(" Failed: {}.", fmt::join(failed, ", ")));
   }
   if (!missing.empty()) {
     html += EscapeMarkup(fmt::format(" Missing: {}.", fmt::join(missing, ", ")));
@@ -133,18 +137,17 @@ std::string TransferHtml(const std::vector<RunGroup>& groups) {
       }
     }
     for (const std::string& task : tasks) {
-      std::vector<double> returns;
-      uint64_t successes = 0, episodes = 0;
+      SeedFigures figures;
       for (const RunResults& run : group.runs) {
-        for (const EvaluationFigures& figures : run.transfer) {
-          if (figures.task != task) continue;
-          returns.push_back(figures.return_mean);
-          successes += figures.Successes();
-          episodes += figures.success ? figures.episodes : 0;
+        if (std::ranges::count(group.failed, run.name) > 0) continue;
+        for (const EvaluationFigures& on : run.transfer) {
+          if (on.task != task) continue;
+          figures.Add(on.success, on.episodes, on.return_mean, on.final_distance_mean);
         }
       }
-      rows.push_back({group.name, group.runs[0].config.task, task, FormatMean(returns, 1),
-                      FormatPooled(successes, episodes)});
+      figures.failed = group.failed.size();
+      rows.push_back({group.name, group.runs[0].config.task, task, FormatReturn(figures),
+                      FormatSuccess(figures)});
     }
   }
   if (rows.empty()) return "";

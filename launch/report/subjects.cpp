@@ -14,6 +14,14 @@ namespace fs = std::filesystem;
 
 bool IsEvaluated(const RunResults& run) { return run.final || !run.curve.empty(); }
 
+void Sort(RunStanding standing, const std::string& run, RunGroup* group) {
+  if (standing == RunStanding::kFailed) {
+    group->failed.push_back(run);
+  } else if (standing != RunStanding::kFinished) {
+    group->unfinished.push_back(run);
+  }
+}
+
 RunGroup GroupOfRun(const fs::path& folder) {
   RunGroup group;
   group.runs.push_back(ReadRunResults(folder));
@@ -21,9 +29,7 @@ RunGroup GroupOfRun(const fs::path& folder) {
   if (!IsEvaluated(group.runs[0])) {
     throw UsageError("run '{}' has no evaluations: nothing to compare or draw", folder.string());
   }
-  if (StandingOf(folder, nullptr).standing != RunStanding::kFinished) {
-    group.unfinished.push_back(group.name);
-  }
+  Sort(StandingOf(folder, nullptr).standing, group.name, &group);
   return group;
 }
 
@@ -36,18 +42,21 @@ std::vector<RunGroup> GroupsOfExperiment(const StoredExperiment& experiment, boo
   bool any = false;
   for (const ExperimentRun& run : experiment.Runs()) {
     RunGroup& group = groups[run.arm];
+    const RunStanding standing = experiment.Standing(run, log).standing;
     if (IsRun(run.folder)) {
       RunResults results = ReadRunResults(run.folder);
       if (IsEvaluated(results)) {
-        if (experiment.Standing(run, log).standing != RunStanding::kFinished) {
-          group.unfinished.push_back(run.name);
-        }
+        Sort(standing, run.name, &group);
         group.runs.push_back(std::move(results));
         any = true;
         continue;
       }
     }
-    group.unevaluated.push_back(run.name);
+    if (standing == RunStanding::kFailed) {
+      group.failed.push_back(run.name);
+    } else {
+      group.unevaluated.push_back(run.name);
+    }
   }
   if (!any) {
     throw UsageError("experiment '{}' has no evaluations: nothing to compare or draw",

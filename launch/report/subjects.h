@@ -15,9 +15,10 @@ namespace shoal::launch {
 // Runs that differ in their seeds alone: an arm, or one run that was named.
 struct RunGroup {
   std::string name{};
-  std::vector<RunResults> runs{};          // those that were evaluated
+  std::vector<RunResults> runs{};          // those that were evaluated, failed ones too
   std::vector<std::string> unevaluated{};  // of an arm: runs that have not come so far, by name
   std::vector<std::string> unfinished{};   // of `runs`: those with something still to be done
+  std::vector<std::string> failed{};       // runs that failed, of `runs` or not evaluated
 };
 
 struct SubjectOptions {

@@ -157,14 +157,8 @@ void PrintSummary(const fs::path& run, const Config& config, const RunResult& re
     progress.Say(fmt::format("  final evaluation: {} ({})", FormatScore(*final_evaluation),
                              (run / kEvaluationFolder / kFinalEvaluationFile).string()));
   }
-  if (meta.first_success) {
-    progress.Say(fmt::format("  success >= {:.0f} % from {} env steps, {} updates, {:.0f} s on",
-                             100 * meta.target, meta.first_success->env_steps,
-                             meta.first_success->updates, meta.first_success->wall_seconds));
-  } else if (meta.best && meta.best->success) {
-    progress.Say(fmt::format(
-        "  no {} evaluations in a row, while training, had success >= {:.0f} % together",
-        config.stop.evaluations, 100 * meta.target));
+  if (const std::string line = FormatFirstSuccess(meta, config.stop.evaluations); !line.empty()) {
+    progress.Say("  " + line);
   }
   if (meta.exit == "interrupted") {
     progress.Say(

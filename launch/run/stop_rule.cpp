@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "launch/run/stop_rule.h"
 
+#include <span>
+
 #include "common/config/lockstep.h"
 #include "common/config/on_policy.h"
 
@@ -8,8 +10,6 @@ namespace shoal::launch {
 namespace {
 
 constexpr double kUsualTarget = 0.98;
-// Of an episode: rates times counts are whole numbers but for their last bits.
-constexpr double kRounding = 1e-6;
 
 double TargetOf(const Config& config) {
   return config.stop.success <= 1 ? config.stop.success : kUsualTarget;
@@ -29,34 +29,26 @@ StopRule::StopRule(const Config& config)
 
 void StopRule::OnEvaluation(const EvaluationPoint& point) {
   points_.push_back(point);
-  Judge(points_.size());
+  successes_.push_back({point.success, point.episodes});
+  if (!first_success_) Judge();
 }
 
 void StopRule::Change(const Config& config) {
   stop_ = config.stop;
   budget_ = BudgetOf(config);
   target_ = TargetOf(config);
-  first_success_.reset();
-  for (size_t end = 1; end <= points_.size(); ++end) Judge(end);
+  Judge();
 }
 
-void StopRule::Judge(size_t end) {
-  if (!first_success_ && Reached(end)) first_success_ = points_[end - Evaluations()];
+void StopRule::Judge() {
+  const auto first = FirstReached(successes_, target_, Evaluations());
+  first_success_ = first ? std::optional(points_[*first]) : std::nullopt;
 }
 
-bool StopRule::Reached(size_t end) const {
-  if (end < Evaluations()) return false;
-  double successes = 0, episodes = 0;
-  for (size_t i = end - Evaluations(); i < end; ++i) {
-    const EvaluationPoint& point = points_[i];
-    if (!point.success) return false;
-    episodes += static_cast<double>(point.episodes);
-    successes += *point.success * static_cast<double>(point.episodes);
-  }
-  return successes >= target_ * episodes - kRounding;
+bool StopRule::TargetReached() const {
+  if (stop_.success > 1 || successes_.size() < Evaluations()) return false;
+  return ReachTogether(std::span(successes_).last(Evaluations()), target_);
 }
-
-bool StopRule::TargetReached() const { return stop_.success <= 1 && Reached(points_.size()); }
 
 bool StopRule::BudgetSpent(uint64_t env_steps) const { return env_steps >= budget_; }
 

@@ -8,6 +8,7 @@
 
 #include "common/config/config.h"
 #include "launch/record/evaluation_point.h"
+#include "launch/record/first_reached.h"
 
 namespace shoal::launch {
 
@@ -28,19 +29,19 @@ class StopRule {
 
   // What first_success() is measured against: stop.success, or 0.98 where a run never stops at it.
   double target() const { return target_; }
-  // The first of the first stop.evaluations in a row whose episodes, pooled, reached target().
+  // The first of the first stop.evaluations in a row whose episodes, pooled, reached target()
+  // (first_reached.h).
   const std::optional<EvaluationPoint>& first_success() const { return first_success_; }
 
  private:
   size_t Evaluations() const { return static_cast<size_t>(stop_.evaluations); }
-  // Both look at the stop.evaluations points before points_[end].
-  bool Reached(size_t end) const;
-  void Judge(size_t end);
+  void Judge();  // by all points
 
   StopConfig stop_;
   uint64_t budget_;
   double target_;
   std::vector<EvaluationPoint> points_;
+  std::vector<EvaluatedSuccess> successes_;  // of the same
   std::optional<EvaluationPoint> first_success_;
 };
 

@@ -1,19 +1,28 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Env steps per second of PPO, Shoal's beside Stable-Baselines3's with SubprocVecEnv.
+"""Env steps per second of PPO, Shoal's beside Stable-Baselines3's. Prints JSON.
 
-usage: ppo_rates.py SHOAL [hopper] [reach] [reach-pixels]
+usage: ppo_rates.py SHOAL [hopper] [reach] [reach-pixels] [--repetitions N] [--share F]
 
-SHOAL is the program; shoal-bench lies beside it. The same rollouts, minibatches, epochs and networks on both sides, those of the
-presets hopper-ppo, fetch-reach-ppo and fetch-reach-pixels-ppo; from pixels theirs is NatureCNN, the
-customary one, on one 84x84 picture of the original environment by OSMesa, ours the preset's small
-encoder on two. Each side counts from the end of its first update on; no evaluations. FetchReach from
-state stands beside its physics alone too, on all cores at once, before and after. Prints JSON.
-Wants stable-baselines3, gymnasium[mujoco], gymnasium-robotics and, for the latter's models, mujoco
-3.3.7 from PyPI; nothing of Shoal needs Python.
+SHOAL is the program; shoal-bench lies beside it. Both sides have the same rollouts, minibatches,
+epochs and networks, those of the presets hopper-ppo, fetch-reach-ppo and fetch-reach-pixels-ppo. From
+pixels theirs is NatureCNN, the customary one, on one 84x84 picture of the original environment by
+OSMesa; ours is the preset's small encoder on two pictures. Each side counts from the end of its first
+update on; no evaluations.
+
+The two sides are measured in turn, N times (3). Theirs is measured in four variants, each in a process
+of its own: SubprocVecEnv or DummyVecEnv, PyTorch with its default number of threads or with one. The
+variant of the highest median is the peer; all are printed. `ratio` is that of the medians, `spread` the
+smallest and largest ratio of a repetition. FetchReach from state stands beside its physics alone too, on
+all cores at once, before and after each repetition. F multiplies the env steps: 0.2 for a short trial.
+
+Nothing else may run on the machine. Wants stable-baselines3, gymnasium[mujoco], gymnasium-robotics and,
+for the latter's models, mujoco 3.3.7 from PyPI; nothing of Shoal needs Python.
 """
 
+import argparse
 import json
 import os
+import statistics
 import subprocess
 import sys
 import tempfile
@@ -21,26 +30,17 @@ import time
 
 os.environ.setdefault("MUJOCO_GL", "osmesa")
 
-import gymnasium
-import numpy as np
-import torch
-from stable_baselines3 import PPO
-from stable_baselines3.common.callbacks import BaseCallback
-from stable_baselines3.common.vec_env import SubprocVecEnv, VecNormalize
+VARIANTS = [f"{environments}, {threads}" for environments in ("SubprocVecEnv", "DummyVecEnv")
+            for threads in ("default threads", "1 thread")]
 
 
-class Pixels(gymnasium.ObservationWrapper):
-    """The picture alone, as (3, 84, 84)."""
-
-    def __init__(self, env):
-        super().__init__(env)
-        self.observation_space = gymnasium.spaces.Box(0, 255, (3, 84, 84), np.uint8)
-
-    def observation(self, _):
-        return np.ascontiguousarray(self.render().transpose(2, 0, 1))
+# --- The peer: a process of its own ---------------------------------------------------------------
 
 
 def make(kind):
+    import gymnasium
+    import numpy as np
+
     if kind == "hopper":
         return gymnasium.make("Hopper-v4")
     import gymnasium_robotics
@@ -48,6 +48,17 @@ def make(kind):
     gymnasium.register_envs(gymnasium_robotics)
     if kind == "reach":
         return gymnasium.make("FetchReachDense-v4")
+
+    class Pixels(gymnasium.ObservationWrapper):
+        """The picture alone, as (3, 84, 84)."""
+
+        def __init__(self, env):
+            super().__init__(env)
+            self.observation_space = gymnasium.spaces.Box(0, 255, (3, 84, 84), np.uint8)
+
+        def observation(self, _):
+            return np.ascontiguousarray(self.render().transpose(2, 0, 1))
+
     return Pixels(gymnasium.make("FetchReachDense-v4", render_mode="rgb_array", width=84, height=84))
 
 
@@ -62,15 +73,47 @@ KINDS = {
 }
 
 
-class Clock(BaseCallback):
-    start = None
+def peer(kind, variant, share):
+    """Prints the rate of Stable-Baselines3 in this process."""
+    import torch
+    import torch._dynamo  # before OSMesa, whose LLVM makes a later import of Triton crash
+    from stable_baselines3 import PPO
+    from stable_baselines3.common.callbacks import BaseCallback
+    from stable_baselines3.common.vec_env import DummyVecEnv, SubprocVecEnv, VecNormalize
 
-    def _on_rollout_start(self):
-        if self.start is None and self.num_timesteps > 0:
-            self.start = (time.monotonic(), self.num_timesteps)
+    class Clock(BaseCallback):
+        start = None
 
-    def _on_step(self):
-        return True
+        def _on_rollout_start(self):
+            if self.start is None and self.num_timesteps > 0:
+                self.start = (time.monotonic(), self.num_timesteps)
+
+        def _on_step(self):
+            return True
+
+    environments, threads = variant.split(", ")
+    if threads == "1 thread":
+        torch.set_num_threads(1)
+    _, _, policy, envs, settings, env_steps = KINDS[kind]
+    vectorised = {"SubprocVecEnv": SubprocVecEnv, "DummyVecEnv": DummyVecEnv}[environments]
+    venv = vectorised([lambda: make(kind)] * envs)
+    if kind == "hopper":
+        venv = VecNormalize(venv)
+    model = PPO(policy, venv, device="cpu", **settings)
+    clock = Clock()
+    # Two rollouts at least: the first is before the clock starts.
+    model.learn(max(int(env_steps * share), 2 * envs * settings["n_steps"]), callback=clock)
+    print((model.num_timesteps - clock.start[1]) / (time.monotonic() - clock.start[0]))
+    venv.close()
+
+
+def rate_of_sb3(kind, variant, share):
+    said = subprocess.run([sys.executable, os.path.abspath(__file__), "--peer", kind, variant,
+                           str(share)], check=True, stdout=subprocess.PIPE, text=True)
+    return float(said.stdout.split()[-1])
+
+
+# --- Ours -----------------------------------------------------------------------------------------
 
 
 def rate_of_shoal(program, preset, env_steps):
@@ -101,41 +144,60 @@ def rate_of_physics(program):
     return sum(alone)
 
 
-def rate_of_sb3(kind):
-    _, _, policy, envs, settings, env_steps = KINDS[kind]
-    venv = SubprocVecEnv([lambda: make(kind)] * envs)
-    if kind == "hopper":
-        venv = VecNormalize(venv)
-    model = PPO(policy, venv, device="cpu", **settings)
-    clock = Clock()
-    model.learn(env_steps, callback=clock)
-    rate = (model.num_timesteps - clock.start[1]) / (time.monotonic() - clock.start[0])
-    venv.close()
-    return rate
+# --- Both in turn ---------------------------------------------------------------------------------
+
+
+def measure(program, kind, repetitions, share):
+    preset, env_steps = KINDS[kind][:2]
+    ours, physics, theirs = [], [], {variant: [] for variant in VARIANTS}
+    for repetition in range(repetitions):
+        before = rate_of_physics(program) if kind == "reach" else None
+        ours.append(rate_of_shoal(program, preset, int(env_steps * share)))
+        if before is not None:
+            physics.append((before + rate_of_physics(program)) / 2)
+        for variant in VARIANTS:
+            theirs[variant].append(rate_of_sb3(kind, variant, share))
+        print(f"{kind}, repetition {repetition + 1} of {repetitions}: {ours[-1]:.0f}, " +
+              ", ".join(f"{v}: {rates[-1]:.0f}" for v, rates in theirs.items()), file=sys.stderr)
+    best = max(VARIANTS, key=lambda variant: statistics.median(theirs[variant]))
+    ratios = [mine / its for mine, its in zip(ours, theirs[best])]
+    row = {"task": kind, "preset": preset, "repetitions": repetitions,
+           "env_steps_per_second": round(statistics.median(ours), 1),
+           "each": [round(rate, 1) for rate in ours],
+           "stable_baselines3": round(statistics.median(theirs[best]), 1),
+           "variant": best,
+           "variants": {variant: [round(rate, 1) for rate in rates]
+                        for variant, rates in theirs.items()},
+           "ratio": round(statistics.median(ours) / statistics.median(theirs[best]), 2),
+           "spread": [round(min(ratios), 2), round(max(ratios), 2)]}
+    if physics:
+        row["physics_alone_on_all_cores"] = [round(rate, 1) for rate in physics]
+        row["ratio_to_physics_alone"] = round(
+            statistics.median(mine / its for mine, its in zip(ours, physics)), 2)
+    return row
 
 
 def main():
-    if len(sys.argv) < 2 or not set(sys.argv[2:]) <= set(KINDS):
-        sys.exit(__doc__)
-    program = sys.argv[1]
-    rows = []
-    for kind in sys.argv[2:] or KINDS:
-        preset, env_steps = KINDS[kind][:2]
-        physics = [rate_of_physics(program)] if kind == "reach" else []
-        ours = rate_of_shoal(program, preset, env_steps)
-        if physics:
-            physics.append(rate_of_physics(program))
-        theirs = rate_of_sb3(kind)
-        row = {"task": kind, "preset": preset, "env_steps_per_second": round(ours, 1),
-               "stable_baselines3": round(theirs, 1), "ratio": round(ours / theirs, 2)}
-        if physics:
-            row["physics_alone_on_all_cores"] = [round(rate, 1) for rate in physics]
-            row["ratio_to_physics_alone"] = round(ours * len(physics) / sum(physics), 2)
-        rows.append(row)
+    if sys.argv[1:2] == ["--peer"]:
+        kind, variant, share = sys.argv[2:]
+        return peer(kind, variant, float(share))
+    parser = argparse.ArgumentParser(description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("shoal")
+    parser.add_argument("tasks", nargs="*", metavar="task", help=" | ".join(KINDS))
+    parser.add_argument("--repetitions", type=int, default=3)
+    parser.add_argument("--share", type=float, default=1)
+    arguments = parser.parse_args()
+    if not set(arguments.tasks) <= set(KINDS) or arguments.repetitions < 1:
+        parser.error(f"tasks are {', '.join(KINDS)}; --repetitions is at least 1")
+    program = arguments.shoal
+    rows = [measure(program, kind, arguments.repetitions, arguments.share)
+            for kind in arguments.tasks or KINDS]
     version = subprocess.run([program, "--version"], capture_output=True, text=True, check=True)
-    print(json.dumps({"shoal": version.stdout.strip(), "cores": os.cpu_count(), "rows": rows},
-                     indent=2))
+    print(json.dumps({"shoal": version.stdout.strip(), "cores": os.cpu_count(),
+                      "share_of_the_env_steps": arguments.share, "rows": rows}, indent=2))
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -114,17 +114,5 @@ TEST(SplitCores, GivesEachRunItsOwn) {
   EXPECT_GE(OwnCores().size(), 1u);
 }
 
-TEST(StepsToSuccess, IsTheFirstOfTwoInARow) {
-  std::vector<EvaluationFigures> curve;
-  for (const double success : {0.5, 0.9, 0.8, 0.9, 1.0, 0.1}) {
-    curve.push_back({.env_steps = 100 * (curve.size() + 1), .success = success});
-  }
-  EXPECT_EQ(StepsToSuccess(curve, 0.9), 400u);
-  EXPECT_EQ(StepsToSuccess(curve, 0.95), std::nullopt) << "only once";
-  EXPECT_EQ(StepsToSuccess({}, 0.9), std::nullopt);
-  curve[3].success.reset();
-  EXPECT_EQ(StepsToSuccess(curve, 0), 100u) << "without a success none is reached";
-}
-
 }  // namespace
 }  // namespace shoal::launch

@@ -62,6 +62,72 @@ TEST(Statistics, TheBootstrapIsThatOfTheMean) {
   EXPECT_EQ(level->high, 3);
 }
 
+// Three seeds with 399, 384 and 375 of 400: they differ by more than chance (chi-squared, p =
+// 2e-5), so that Wilson's interval of the 1,200 together, 95.3 to 97.4 %, says too much. Expected:
+// scipy's t interval of the three rates, 88.97 to 104.03 %, as far as rates go.
+TEST(SuccessInterval, SeedsThatDifferWidenIt) {
+  const auto interval =
+      SuccessInterval95(std::vector<SeedSuccess>{{399, 400}, {384, 400}, {375, 400}});
+  ASSERT_TRUE(interval);
+  EXPECT_NEAR(interval->low, 0.889704, 1e-6);
+  EXPECT_EQ(interval->high, 1);
+  const Interval wilson = Wilson95(1158, 1200);
+  EXPECT_NEAR(wilson.low, 0.953029, 1e-6);
+  EXPECT_GT(wilson.low - interval->low, 0.06);
+}
+
+// 396, 395, 394: closer together than chance lets them be. t interval: 98.129 to 99.371 %;
+// Wilson's: 97.948 to 99.241 %.
+TEST(SuccessInterval, SeedsThatAgreeByChanceDoNotNarrowIt) {
+  const auto close =
+      SuccessInterval95(std::vector<SeedSuccess>{{396, 400}, {395, 400}, {394, 400}});
+  EXPECT_NEAR(close->low, 0.979478, 1e-6);
+  EXPECT_NEAR(close->high, 0.993710, 1e-6);
+  const auto all = SuccessInterval95(std::vector<SeedSuccess>{{100, 100}, {100, 100}, {100, 100}});
+  EXPECT_NEAR(all->low, Wilson95(300, 300).low, 1e-12);
+  EXPECT_EQ(all->high, 1);
+}
+
+TEST(SuccessInterval, OneSeedSaysNothingOfAMethod) {
+  EXPECT_FALSE(SuccessInterval95(std::vector<SeedSuccess>{{399, 400}}));
+  EXPECT_FALSE(SuccessInterval95({}));
+}
+
+// Expected: scipy.stats.trim_mean(values, 0.25).
+TEST(InterquartileMean, CutsOffAQuarterAtEachEnd) {
+  EXPECT_DOUBLE_EQ(InterquartileMean({7}), 7);
+  EXPECT_DOUBLE_EQ(InterquartileMean({9, 0, 3}), 4) << "below four values nothing is cut off";
+  EXPECT_DOUBLE_EQ(InterquartileMean({100, 2, 4, -50}), 3);
+  EXPECT_DOUBLE_EQ(InterquartileMean({100, 2, 4, -50, 3, 1}), 2.5);
+  EXPECT_NEAR(InterquartileMean({0.1, 0.5, 0.55, 0.6, 0.7, 0.9, 1.0, 0.2, 0.65}), 0.6, 1e-12);
+}
+
+// Expected: rliable at 72fc16c, get_interval_estimates of aggregate_iqm, 100,000 repetitions. The
+// tolerance is 5 standard errors of a quantile over 10,000 resamples, as below.
+TEST(StratifiedBootstrap, IsThatOfRliable) {
+  const std::vector<double> runs{0.1, 0.5, 0.55, 0.6, 0.7, 0.9, 1.0, 0.2, 0.65};
+  const auto one_task = StratifiedBootstrap95({runs}, InterquartileMean);
+  ASSERT_TRUE(one_task);
+  EXPECT_NEAR(one_task->low, 0.36, 0.02);
+  EXPECT_NEAR(one_task->high, 0.79, 0.02);
+  const auto two_tasks =
+      StratifiedBootstrap95({{1, 2, 3, 4, 50}, {10, 20, 30, 40, 5}}, InterquartileMean);
+  ASSERT_TRUE(two_tasks);
+  EXPECT_NEAR(two_tasks->low, 4.5, 0.4);
+  EXPECT_NEAR(two_tasks->high, 28.33, 1.7);
+}
+
+// By hand: one value a stratum is drawn from {0} and one from {1}, so that the mean of each
+// resample is 1/2; without strata it would be 0 to 1.
+TEST(StratifiedBootstrap, DrawsFromEachStratumItsOwnNumber) {
+  const auto mean = [](const std::vector<double>& values) { return Mean(values); };
+  const auto interval = StratifiedBootstrap95({{0, 0}, {1, 1}}, mean);
+  EXPECT_EQ(interval->low, 0.5);
+  EXPECT_EQ(interval->high, 0.5);
+  EXPECT_FALSE(StratifiedBootstrap95({}, mean));
+  EXPECT_FALSE(StratifiedBootstrap95({{0, 1}, {1}}, mean));
+}
+
 TEST(Statistics, MedianOfOddAndEven) {
   EXPECT_EQ(Median({3, 1, 2}), 2);
   EXPECT_EQ(Median({4, 1, 2, 3}), 2.5);
@@ -101,7 +167,7 @@ TEST(SampleRatio, WhatIsStillToBeDoneHasNotFailedToReachAnything) {
                                        {4, true, 100}};
   const std::vector<TargetReached> reference{
       {3, true, 100}, {2, false, 100}, {1, true, 100}, {0, true, 100}};
-  const SampleRatio ratio = RatioOfFinished(arm, reference);
+  const SampleRatio ratio = RatioOfEnded(arm, reference);
   ASSERT_EQ(ratio.pairs.size(), 2u);
   EXPECT_EQ(ratio.pairs[0].seed, 0);
   EXPECT_EQ(ratio.pairs[0].Ratio(), 2);

@@ -51,6 +51,7 @@ TEST_F(SummaryTest, HasEveryMemberThatOthersRead) {
   const auto json = nlohmann::json::parse(ReadFile(folder_->experiment().folder / "summary.json"));
   EXPECT_EQ(json.at("schema"), "shoal-experiment-1");
   EXPECT_EQ(json.at("name"), "mine");
+  EXPECT_EQ(json.at("n_to_target_rule"), "together");
   for (const char* name : {"commit", "created", "baselines"}) EXPECT_TRUE(json.contains(name));
   const auto& arm = json.at("arms").at(0);
   EXPECT_EQ(arm.at("name"), "state");
@@ -70,17 +71,21 @@ TEST_F(SummaryTest, HasEveryMemberThatOthersRead) {
   EXPECT_EQ(run.at("commits"), (std::vector<std::string>{"abc", "def"}));
 }
 
-TEST_F(SummaryTest, PoolsEpisodesAndTakesSeedsAsTheUnitOfReturns) {
+TEST_F(SummaryTest, TakesSeedsAsTheUnit) {
   const auto json = Json();
   const auto& state = json.at("arms").at(0);
   EXPECT_EQ(state.at("success").at("pooled"), 1.0);
   EXPECT_EQ(state.at("success").at("episodes"), 40);
-  EXPECT_NEAR(state.at("success").at("wilson95").at(0).get<double>(), Wilson95(40, 40).low, 1e-12);
+  EXPECT_EQ(state.at("success").at("seeds"), 2);
+  EXPECT_NEAR(state.at("success").at("ci95").at(0).get<double>(), Wilson95(40, 40).low, 1e-12);
+  EXPECT_TRUE(state.at("success").at("wilson95").is_null()) << "of several seeds there is none";
   EXPECT_EQ(state.at("return").at("mean"), -1.0);
   EXPECT_EQ(state.at("return").at("seeds"), 2);
   const auto& pixels = json.at("arms").at(1);
   EXPECT_EQ(pixels.at("success").at("episodes"), 20) << "of the finished run alone";
   EXPECT_TRUE(pixels.at("return").at("ci95").is_null()) << "one seed has no spread";
+  EXPECT_NEAR(pixels.at("success").at("wilson95").at(0).get<double>(), Wilson95(10, 20).low, 1e-12);
+  EXPECT_EQ(pixels.at("success").at("failed"), 0) << "what is interrupted has not failed";
   EXPECT_EQ(pixels.at("runs").at(1).at("status"), "interrupted");
   EXPECT_TRUE(pixels.at("runs").at(1).at("success").is_null());
 }
@@ -99,10 +104,26 @@ TEST_F(SummaryTest, RatiosAreOfFinishedPairs) {
 TEST_F(SummaryTest, TheTextNamesWhatIsMissing) {
   const std::string text = SummaryText(ReadOutcome(folder_->experiment()));
   EXPECT_THAT(text, HasSubstr("Pixels or state?"));
-  EXPECT_THAT(text, HasSubstr("100.0 % [91.2, 100.0] (40/40)"));
-  EXPECT_THAT(text, HasSubstr("pixels/state: median 2.00 of 1 seed(s), 0 not reached: 2.00"));
+  EXPECT_THAT(text, HasSubstr("100.0 % [91.2, 100.0] (2 seeds, 40/40)"));
+  EXPECT_THAT(text, HasSubstr("pixels / state: median 2.00 of 1 pair (seed 0: 2.00)"));
   EXPECT_THAT(text, HasSubstr("not finished: pixels-s1 (interrupted)"));
   EXPECT_THAT(StatusText(ReadOutcome(folder_->experiment())), HasSubstr("pixels-s1"));
+}
+
+// A run whose numbers were not finite leaves no figures; the row of its arm says so.
+TEST_F(SummaryTest, AFailedSeedIsCountedInTheRowOfItsArm) {
+  const RunPlanter failed(folder_->experiment().folder / "runs/state-s1");
+  failed.WriteMeta("failed", "critic_loss is nan");
+  const auto json = Json();
+  const auto& state = json.at("arms").at(0);
+  EXPECT_EQ(state.at("success").at("failed"), 1);
+  EXPECT_EQ(state.at("success").at("seeds"), 1);
+  EXPECT_EQ(state.at("success").at("mean_with_failed_as_0"), 0.5);
+  EXPECT_EQ(state.at("return").at("failed"), 1);
+  EXPECT_THAT(
+      SummaryText(ReadOutcome(folder_->experiment())),
+      HasSubstr("1/2, 1 failed  100.0 % [83.9, 100.0] (20/20; 1 failed: 50.0 % with it as 0) "
+                " -1.00 (1 seed; 1 failed, left out)"));
 }
 
 TEST_F(SummaryTest, ARunWithoutItsTransferEvaluationIsNotFinished) {

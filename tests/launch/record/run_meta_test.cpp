@@ -129,5 +129,26 @@ TEST(RunMeta, ABrokenChangeIsAnError) {
   EXPECT_THROW(ReadRunMeta(run.path()), Error);
 }
 
+TEST(FormatFirstSuccess, SaysThatTheFinalEvaluationIsLower) {
+  RunMeta meta;
+  meta.target = 0.98;
+  EXPECT_EQ(FormatFirstSuccess(meta, 2), "") << "nothing was evaluated";
+  meta.best = EvaluationPoint{.success = 0.9};
+  EXPECT_EQ(FormatFirstSuccess(meta, 2),
+            "while training: no 2 evaluations in a row had success >= 98 % together");
+  meta.first_success =
+      EvaluationPoint{.env_steps = 60012, .updates = 5400, .wall_seconds = 97.6, .success = 0.98};
+  const std::string first =
+      "while training: success >= 98 % over 2 evaluations in a row, first from 60012 env steps, "
+      "5400 "
+      "updates, 98 s on";
+  EXPECT_EQ(FormatFirstSuccess(meta, 2), first);
+  meta.final_success = 0.98;
+  EXPECT_EQ(FormatFirstSuccess(meta, 2), first);
+  meta.final_success = 0.94;
+  EXPECT_EQ(FormatFirstSuccess(meta, 2),
+            first + "; the final evaluation, of other episodes, is below that: 94.0 %");
+}
+
 }  // namespace
 }  // namespace shoal::launch

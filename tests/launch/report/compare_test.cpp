@@ -53,8 +53,8 @@ TEST_F(CompareTest, RunsAreGroupsOfOneSeed) {
   ASSERT_EQ(comparison.groups.size(), 2u);
   EXPECT_EQ(comparison.task, "FetchReachDense");
   EXPECT_EQ(comparison.groups[1].name, "b");
-  EXPECT_EQ(comparison.groups[1].successes, 50u);
-  EXPECT_EQ(comparison.groups[1].episodes, 100u);
+  EXPECT_EQ(comparison.groups[1].figures.Successes(), 50u);
+  EXPECT_EQ(comparison.groups[1].figures.Episodes(), 100u);
   EXPECT_THAT(comparison.groups[1].n_to_target, ElementsAre(400.0));
   EXPECT_THAT(comparison.groups[1].seconds_to_target, ElementsAre(4.0));
   EXPECT_THAT(ToText(comparison), HasSubstr("b: 400 (4 s)"));
@@ -119,7 +119,7 @@ TEST_F(CompareTest, AnArmIsAGroupAndWhatIsMissingIsNamed) {
   const Comparison comparison = Compare(Read({"mine"}), 0.9);
   ASSERT_EQ(comparison.groups.size(), 2u);
   EXPECT_EQ(comparison.groups[0].name, "x");
-  EXPECT_THAT(comparison.groups[0].finished, ElementsAre(true, false));
+  EXPECT_THAT(comparison.groups[0].over, ElementsAre(true, false));
   EXPECT_THAT(comparison.groups[0].seeds, ElementsAre(0, 1));
   EXPECT_THAT(comparison.groups[0].without_final, ElementsAre("x-s1"));
   EXPECT_THAT(comparison.groups[1].unevaluated, ElementsAre("y-s1"));
@@ -128,6 +128,59 @@ TEST_F(CompareTest, AnArmIsAGroupAndWhatIsMissingIsNamed) {
   EXPECT_THAT(text, HasSubstr("x-s1"));
   Plant("a", 1, 200, 1);
   EXPECT_EQ(Read({"mine", "a"})[0].name, "mine/x") << "several subjects: in full";
+}
+
+TEST_F(CompareTest, AFailedSeedIsCountedInTheRowOfItsArm) {
+  Definition definition{.name = "mine", .base = "fetch-reach-state"};
+  definition.arms = {{"x", nlohmann::ordered_json::object()}, {"y", {{"learner.batch", 32}}}};
+  definition.seeds = {0, 1};
+  const ExperimentFolder open(
+      PlanExperiment(folder_.path() / "experiments/mine", definition, "x.json"));
+  for (const ExperimentRun& run : open.experiment().Runs({0, 1})) {
+    const RunPlanter planter(run.folder);
+    planter.Begin({"seed=" + std::to_string(run.seed)});
+    const bool failed = run.name == "y-s1";
+    planter.WriteEvaluation(100, failed ? 0.1 : 1);
+    planter.WriteEvaluation(200, failed ? 0.1 : 1);
+    planter.WriteFinal(failed ? 0.1 : 1, 10);  // of the best checkpoint that it had
+    planter.WriteMeta(failed ? "failed" : "budget", failed ? "critic_loss is nan" : "");
+  }
+  const Comparison comparison = Compare(Read({"mine"}), 0.9);
+  const GroupFigures& y = comparison.groups[1];
+  EXPECT_THAT(y.failed, ElementsAre("y-s1"));
+  EXPECT_EQ(y.figures.returns.size(), 1u);
+  EXPECT_EQ(comparison.ratios[0].not_reached, 1) << "it will not get there any more";
+  const std::string text = ToText(comparison);
+  EXPECT_THAT(text, HasSubstr("1, 1 failed  100.0 % [72.2, 100.0] (10/10; 1 failed: 50.0 % with it "
+                              "as 0)"));
+  EXPECT_THAT(text, HasSubstr("failed: y-s1\n"));
+  EXPECT_EQ(ToJson(comparison).at("groups").at(1).at("success").at("failed"), 1);
+  // By itself there is nothing else to show of it.
+  const Comparison alone =
+      Compare(Read({(folder_.path() / "experiments/mine/runs/y-s1").string()}), 0.9);
+  EXPECT_THAT(ToText(alone), HasSubstr("1, failed  10.0 % "));
+}
+
+TEST_F(CompareTest, FourSeedsHaveAnInterquartileMean) {
+  Definition definition{.name = "mine", .base = "fetch-reach-state"};
+  definition.arms = {{"x", nlohmann::ordered_json::object()}};
+  definition.seeds = {0, 1, 2, 3};
+  const ExperimentFolder open(
+      PlanExperiment(folder_.path() / "experiments/mine", definition, "x.json"));
+  const std::vector<double> rates{0.1, 0.9, 0.8, 1.0};
+  for (const ExperimentRun& run : open.experiment().Runs({0, 1, 2, 3})) {
+    const RunPlanter planter(run.folder);
+    planter.Begin({"seed=" + std::to_string(run.seed)});
+    planter.WriteFinal(rates[static_cast<size_t>(run.seed)], 10);
+    planter.WriteMeta("budget");
+  }
+  const Comparison comparison = Compare(Read({"mine"}), 0.9);
+  const auto success = ToJson(comparison).at("groups").at(0).at("success");
+  EXPECT_NEAR(success.at("iqm").get<double>(), 0.85, 1e-12) << "the mean is 0.7";
+  EXPECT_EQ(success.at("iqm95").size(), 2u);
+  EXPECT_THAT(ToText(comparison),
+              HasSubstr("interquartile mean over seeds [95 %, stratified bootstrap]:\n"
+                        "  x: success 85.0 % ["));
 }
 
 TEST_F(CompareTest, WhatDoesNotCompareIsRefusedByName) {

@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// When a run's evaluations have reached a success rate: the one rule of the stop rule, meta.json's
+// first_success, n_to_target of experiments and the env steps to a target that `compare` prints.
+// Pure.
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+
+namespace shoal::launch {
+
+// The success of one evaluation.
+struct EvaluatedSuccess {
+  std::optional<double> rate{};  // 0..1; empty where the task has none: never reached
+  size_t episodes = 0;
+};
+
+// Whether the episodes of all these evaluations, pooled, have success of at least `target`. False
+// without episodes.
+bool ReachTogether(std::span<const EvaluatedSuccess> evaluations, double target);
+
+// Index of the first evaluation of the first `in_a_row` (at least 1) that reach `target` together,
+// in the order of evaluation; empty = not reached.
+std::optional<size_t> FirstReached(std::span<const EvaluatedSuccess> evaluations, double target,
+                                   size_t in_a_row);
+
+}  // namespace shoal::launch
