@@ -60,8 +60,7 @@ std::optional<Checkpoint> CheckpointStore::RestoreNewest() {
   if (refused.empty()) return std::nullopt;
   throw UsageError(
       "none of {} checkpoint(s) can be used; the newest: {}; restore one, or move '{}' away to "
-      "learn "
-      "anew with the replay that is there",
+      "learn anew with the replay that is there",
       refused.size(), newest_fault, folder_.string());
 }
 

@@ -53,7 +53,7 @@ constexpr Registration kWorlds[] = {
 // Added by AddWorld.
 struct AddedWorld {
   WorldMaker make;
-  std::string library_folder;
+  std::string task_folder;
 };
 std::map<std::string, AddedWorld>& AddedWorlds() {
   static std::map<std::string, AddedWorld> worlds;
@@ -62,7 +62,7 @@ std::map<std::string, AddedWorld>& AddedWorlds() {
 
 std::unique_ptr<World> MakeAdded(const std::string& name, const AddedWorld& added,
                                  WorldOptions options) {
-  options.library_folder = added.library_folder;
+  options.task_folder = added.task_folder;
   std::unique_ptr<World> world = added.make(options);
   if (world == nullptr) {
     throw UsageError("physics half '{}': the function given to AddWorld returned no world", name);

@@ -12,7 +12,7 @@ namespace shoal::worlds {
 
 // `name` is Task::world() of a goal half. Throws Error when there is no such world (kUsage), a
 // model does not load or lacks an element, or the world has no such physics. Sets
-// WorldOptions::library_folder.
+// WorldOptions::task_folder.
 std::unique_ptr<World> MakeWorld(const std::string& name, const WorldOptions& options);
 
 using WorldMaker = std::unique_ptr<World> (*)(const WorldOptions& options);

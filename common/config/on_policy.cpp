@@ -105,10 +105,9 @@ void ValidateRollout(const Config& config) {
   constexpr int64_t kMostRows = std::numeric_limits<int>::max();
   if (rows > kMostRows) {
     throw UsageError(
-        "ppo.rollout_steps = {}: {} steps of {} actor(s) with {} environments each are {}; "
-        "expected "
-        "at most {} in one update",
-        steps, steps, config.actors, config.envs_per_actor, rows, kMostRows);
+        "ppo.rollout_steps = {}: {} actor(s) with {} environments each play {} steps for one "
+        "update; expected at most {}",
+        steps, config.actors, config.envs_per_actor, rows, kMostRows);
   }
   if (rows % batch == 0) return;
   const int64_t unit = batch / std::gcd(batch, envs);

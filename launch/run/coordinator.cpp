@@ -447,9 +447,8 @@ void Coordinator::Impl::TakeMessages(SteadyTime now) {
   for (const ReplayProgress& word : inbox.TakeReplayProgress()) {
     if (!run_progress.OnReplay(word)) continue;
     progress.Say(
-        fmt::format("replay-{} starts empty, env steps go on from {}; training goes on once it has "
-                    "been refilled "
-                    "to {} sampleable transitions (replay.min_size)",
+        fmt::format("replay-{} starts empty, env steps go on from {}; training goes on once it "
+                    "holds {} sampleable transitions again (replay.min_size)",
                     word.replay, EnvSteps(), config.replay.min_size));
   }
   for (const LearnerProgress& word : inbox.TakeLearnerProgress()) {
@@ -480,9 +479,23 @@ void Coordinator::Impl::KeepCandidates() {
   std::vector<std::string> names;
   for (const EvaluationPoint& candidate : bests.candidates()) names.push_back(candidate.checkpoint);
   if (names.empty() || std::ranges::find(names, "") != names.end()) return;
+  const auto keep = [&] { KeepCheckpoints(run, names, bests.best()->checkpoint); };
+  const bool all_there = std::ranges::all_of(names, [this](const std::string& name) {
+    std::error_code error;
+    return std::filesystem::exists(run / kCheckpointFolder / name, error) ||
+           std::filesystem::exists(run / kCheckpointFolder / kCandidateFolder / name, error);
+  });
   // Where this fails the former best is still whole.
-  candidates_due = !faults.Try(fmt::format("{}/{}", kCheckpointFolder, kBestCheckpoint),
-                               [&] { KeepCheckpoints(run, names, bests.best()->checkpoint); });
+  if (all_there || checkpoints_fail) {
+    candidates_due = !faults.Try(fmt::format("{}/{}", kCheckpointFolder, kBestCheckpoint), keep);
+    return;
+  }
+  candidates_due = false;  // one is gone for good
+  try {
+    keep();
+  } catch (const Error& e) {
+    progress.Say(e.what());
+  }
 }
 
 void Coordinator::Impl::RetryWrites() {

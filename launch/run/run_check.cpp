@@ -245,8 +245,7 @@ void Examination::LookAtCheckpoints() {
   if (all.empty()) return;
   throw UsageError(
       "none of {} checkpoint(s) can be used; the newest: {}; restore one, or move '{}' away to "
-      "learn "
-      "anew with the replay that is there",
+      "learn anew with the replay that is there",
       all.size(), newest_fault, (run_ / kCheckpointFolder).string());
 }
 

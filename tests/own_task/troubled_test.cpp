@@ -203,13 +203,13 @@ TEST(Troubled, AModelFileLiesBesideItsLibrary) {
   ConfigOf("TroubledSensor");
   WorldOptions options;
   EXPECT_EQ(options.ModelOr("model/arm.xml"), "model/arm.xml") << "of a built-in world";
-  options.library_folder = "/tasks";
+  options.task_folder = "/tasks";
   EXPECT_EQ(options.ModelOr("model/arm.xml"), "/tasks/model/arm.xml");
   options.model = "other.xml";
   EXPECT_EQ(options.ModelOr("model/arm.xml"), "other.xml") << "the user's goes first";
   static std::string folder;
   AddWorld("Looks", [](const WorldOptions& given) -> std::unique_ptr<World> {
-    folder = given.library_folder;
+    folder = given.task_folder;
     return nullptr;
   });
   UsageMessage([] { MakeWorld("Looks", {}); });

@@ -239,6 +239,8 @@ TEST(Validate, RefusesWhatOnPolicyLearningHasNoUseForByName) {
       {{"learner.tau=0.5"}, "learner.tau = 0.5"},
       {{"learner.weights_period=3"}, "learner.weights_period = 3"},
       {{"ppo.rollout_steps=1"}, "ppo.rollout_steps = 1: a rollout needs"},
+      {{"ppo.rollout_steps=1000000", "actors=64", "envs_per_actor=256"},
+       "ppo.rollout_steps = 1000000: 64 actor(s) with 256 environments each play 16384000000"},
       {{"ppo.rollout_steps=100", "actors=2", "learner.batch=256"},
        "are 800, which learner.batch = 256 does not divide; expected a multiple of 32, 128 for"},
       {{"lockstep=true", "ppo.versions_ahead=1"}, "ppo.versions_ahead = 1: in lockstep"},
