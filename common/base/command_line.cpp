@@ -11,8 +11,8 @@
 namespace shoal {
 
 void AddVersion(CLI::App* app) {
-  app->set_version_flag("--version",
-                        fmt::format("{} {} ({})", app->get_name(), BuildVersion(), BuildCommit()));
+  app->set_version_flag("--version", fmt::format("{} {} ({}), licence {}", app->get_name(),
+                                                 BuildVersion(), BuildCommit(), kLicence));
 }
 
 std::optional<int> ParseCommandLine(CLI::App* app, int argc, char** argv) {

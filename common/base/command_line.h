@@ -10,7 +10,7 @@ class App;
 
 namespace shoal {
 
-// --version says "NAME VERSION (COMMIT)", NAME being the app's.
+// --version prints one line, "NAME VERSION (COMMIT), licence Apache-2.0". NAME is the app's.
 void AddVersion(CLI::App* app);
 
 // The exit code where help or the version was asked for and has been printed; nothing where the
