@@ -11,7 +11,7 @@
 //                         than kRiseFactor times the smallest such mean
 //
 // Each kind is repeated at most once per kRepeat. Flat success is the coordinator's to see
-// (launch/flat_score.h).
+// (launch/run/flat_score.h).
 #pragma once
 
 #include <array>

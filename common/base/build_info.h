@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What this program was built from.
+// What this program was built from, and the licence of its sources.
 #pragma once
 
 namespace shoal {
@@ -8,5 +8,7 @@ namespace shoal {
 const char* BuildVersion();
 // Git commit, with "+" when the tree had changes; "unknown" outside a git checkout.
 const char* BuildCommit();
+// SPDX identifier.
+inline constexpr char kLicence[] = "Apache-2.0";
 
 }  // namespace shoal

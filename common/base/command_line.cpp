@@ -116,8 +116,8 @@ std::string NearestOption(const CLI::App* command, const std::string& option) {
 }  // namespace
 
 void AddVersion(CLI::App* app) {
-  app->set_version_flag("--version",
-                        fmt::format("{} {} ({})", app->get_name(), BuildVersion(), BuildCommit()));
+  app->set_version_flag("--version", fmt::format("{} {} ({}), licence {}", app->get_name(),
+                                                 BuildVersion(), BuildCommit(), kLicence));
 }
 
 std::optional<int> ParseCommandLine(CLI::App* app, const std::vector<std::string>& words,

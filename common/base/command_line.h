@@ -13,7 +13,7 @@ class App;
 
 namespace shoal {
 
-// --version says "NAME VERSION (COMMIT)", NAME being the app's.
+// --version prints one line, "NAME VERSION (COMMIT), licence Apache-2.0". NAME is the app's.
 void AddVersion(CLI::App* app);
 
 // What a program knows of a word, or an option with its dashes, that `command` does not take:

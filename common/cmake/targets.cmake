@@ -17,6 +17,14 @@ if(SHOAL_UNITY)
   endif()
 endif()
 
+# shoal_large_groups(TARGET): for a target that programs link whole. A program that links a part of a
+# library gets whole groups of it, and starts later: such libraries keep groups of SHOAL_UNITY_GROUP.
+function(shoal_large_groups target)
+  if(SHOAL_UNITY_GROUP LESS 32)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD_BATCH_SIZE 32)
+  endif()
+endfunction()
+
 function(shoal_warnings target)
   target_compile_options(${target} PRIVATE $<$<COMPILE_LANGUAGE:CXX>:${SHOAL_WARNINGS}>)
 endfunction()
@@ -65,6 +73,7 @@ function(shoal_library name)
   if(SHOAL_COLD)
     shoal_precompile(${name} shoal_cold_headers)
     target_compile_options(${name} PRIVATE ${SHOAL_COLD_OPTIONS})
+    shoal_large_groups(${name})
   else()
     shoal_precompile(${name} shoal_library_headers)
   endif()

@@ -195,7 +195,7 @@ struct ControlMessage {
   std::vector<double> setting_values{};
 };
 
-// eval actor -> coordinator: one finished evaluation, the JSON of eval/*.json (formats.md).
+// eval actor -> coordinator: one finished evaluation, the JSON of eval/*.json (docs/monitoring.md).
 struct EvalMessage {
   uint64_t env_steps = 0;
   WeightsVersion version;

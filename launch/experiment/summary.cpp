@@ -58,7 +58,7 @@ std::vector<TargetReached> TargetsOf(const ArmOutcome& arm) {
   return targets;
 }
 
-// The words formats.md knows: what is running has not finished.
+// The words of docs/experiments.md: a run that is still going is "interrupted" there.
 const char* StatusWord(RunStanding standing) {
   return ToString(standing == RunStanding::kRunning ? RunStanding::kInterrupted : standing);
 }

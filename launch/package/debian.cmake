@@ -57,7 +57,7 @@ foreach(file changelog changelog.Debian)
   execute_process(COMMAND ${GZIP} -9nkf ${CMAKE_CURRENT_BINARY_DIR}/${file} COMMAND_ERROR_IS_FATAL ANY)
 endforeach()
 foreach(package shoal libshoal-dev)
-  install(FILES copyright
+  install(FILES copyright third_party_notices.txt
     ${CMAKE_CURRENT_BINARY_DIR}/changelog.gz ${CMAKE_CURRENT_BINARY_DIR}/changelog.Debian.gz
     DESTINATION ${CMAKE_INSTALL_DATADIR}/doc/${package} COMPONENT ${package})
 endforeach()

@@ -11,14 +11,46 @@
 #include "common/base/files.h"
 
 namespace shoal::launch {
+namespace {
 
-ScratchFolder::ScratchFolder(const std::filesystem::path& parent)
-    : path_(MakeFreshFolder("shoal-", parent)) {}
+namespace fs = std::filesystem;
 
-ScratchFolder ScratchFolder::WithinRun(const std::filesystem::path& run) {
-  const std::filesystem::path path = run / fmt::format(".scratch.tmp-{}", getpid());
+constexpr char kPrefix[] = "shoal-", kOwner[] = ".owner";
+
+bool IsOwnFolder(const fs::path& path) {
+  struct stat status;
+  return lstat(path.c_str(), &status) == 0 && S_ISDIR(status.st_mode) && status.st_uid == geteuid();
+}
+
+// Removes the scratch folders in `parent` whose owner is gone. A folder without a lock file is
+// either being made or was not made here: it stays. So does what cannot be read or removed.
+void RemoveAbandoned(const fs::path& parent) {
   std::error_code error;
-  std::filesystem::remove_all(path, error);  // of a dead process with the same number
+  for (const auto& entry : fs::directory_iterator(parent, error)) {
+    const fs::path owner = entry.path() / kOwner;
+    if (!entry.path().filename().string().starts_with(kPrefix) || !IsOwnFolder(entry.path()) ||
+        !fs::is_regular_file(fs::symlink_status(owner, error)) || IsLocked(owner)) {
+      continue;
+    }
+    fs::remove_all(entry.path(), error);
+  }
+}
+
+}  // namespace
+
+ScratchFolder::ScratchFolder(const fs::path& parent) {
+  RemoveAbandoned(parent);
+  path_ = MakeFreshFolder(kPrefix, parent);
+  // The lock file gets its name when it is locked: others take a free one for abandoned.
+  const fs::path unnamed = path_ / ".owner.new";
+  owner_ = FileLock::Take(unnamed);
+  fs::rename(unnamed, path_ / kOwner);
+}
+
+ScratchFolder ScratchFolder::WithinRun(const fs::path& run) {
+  const fs::path path = run / fmt::format(".scratch.tmp-{}", getpid());
+  std::error_code error;
+  fs::remove_all(path, error);  // of a dead process with the same number
   if (mkdir(path.c_str(), 0700) != 0) {
     throw RuntimeError("cannot create folder '{}': {}", path.string(), std::strerror(errno));
   }
@@ -27,7 +59,7 @@ ScratchFolder ScratchFolder::WithinRun(const std::filesystem::path& run) {
 
 ScratchFolder::~ScratchFolder() {
   std::error_code error;
-  std::filesystem::remove_all(path_, error);
+  fs::remove_all(path_, error);
 }
 
 }  // namespace shoal::launch

@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// A folder that goes away with its owner, and with everything in it.
+// A folder that is removed together with its owner, and everything in it. A process that is killed
+// cannot remove its folders: the next one that makes a scratch folder in the same parent does.
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <utility>
+
+#include "common/base/file_lock.h"
 
 namespace shoal::launch {
 
 class ScratchFolder {
  public:
-  // Made in `parent`; throws Error naming it when that fails.
+  // Made in `parent`, where folders of killed processes of this user are removed first. Throws
+  // Error naming the folder when it cannot be made.
   explicit ScratchFolder(
       const std::filesystem::path& parent = std::filesystem::temp_directory_path());
   // RUN/.scratch.tmp-PID, one of a process at a time: where its owner is killed, it goes with the
@@ -26,6 +31,7 @@ class ScratchFolder {
   ScratchFolder(std::filesystem::path path, Made) : path_(std::move(path)) {}
 
   std::filesystem::path path_;
+  std::optional<FileLock> owner_;  // of PATH/.owner: free as soon as the process is gone
 };
 
 }  // namespace shoal::launch

@@ -17,7 +17,8 @@ TEST(Version, EveryProgramSaysWhichBuildItIs) {
         "shoal-bench-actors", "shoal-bench-weights", "shoal-fake-actor", "shoal-soak"}) {
     const ProgramResult result = RunProgram({program, "--version"}, std::chrono::seconds(10));
     EXPECT_EQ(ExitCode(result), 0) << program << ": " << result.err;
-    EXPECT_EQ(result.out, fmt::format("{} {} ({})\n", program, BuildVersion(), BuildCommit()));
+    EXPECT_EQ(result.out, fmt::format("{} {} ({}), licence Apache-2.0\n", program, BuildVersion(),
+                                      BuildCommit()));
   }
 }
 

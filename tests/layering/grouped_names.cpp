@@ -19,7 +19,8 @@ namespace fs = std::filesystem;
 
 struct File {
   std::vector<SourceName> names;
-  std::vector<std::string> includes;  // those that lie in the tree
+  std::vector<std::string> includes;  // those that are in the tree
+  std::map<std::string, int> free_names;
 };
 
 // Reads each file once.
@@ -33,7 +34,9 @@ class Tree {
     const std::string text = ReadFile(root_ / path);
     File& file = entry->second;
     file.names = NamesOf(text);
-    for (const std::string& include : ReadSource(text).includes) {
+    const SourceText tokens = ReadSource(text);
+    file.free_names = FreeNames(tokens);
+    for (const std::string& include : tokens.includes) {
       if (fs::exists(root_ / include)) file.includes.push_back(include);
     }
     return file;
@@ -125,6 +128,7 @@ class Target {
         }
         if (place.name.is_internal && place.name.kind != NameKind::kMacro) FindAround(place);
         if (place.name.is_internal && place.name.kind == NameKind::kValue) FindLocals(place);
+        if (place.name.is_internal && place.name.kind == NameKind::kValue) FindUses(place);
       }
     }
     return {collisions_.begin(), collisions_.end()};
@@ -155,6 +159,17 @@ class Target {
     if (found == locals_.end()) return;
     for (const Place& other : found->second) {
       if (other.name.scope.starts_with(place.name.scope)) Report(place, other);
+    }
+  }
+
+  void FindUses(const Place& place) {
+    for (const auto& [source, headers] : headers_) {
+      const std::map<std::string, int>& free_names = tree_->Get(source).free_names;
+      const auto use = free_names.find(place.name.name);
+      if (use == free_names.end()) continue;
+      SourceName name = place.name;
+      name.line = use->second;
+      Report(place, {source, name});
     }
   }
 

@@ -10,7 +10,10 @@
 // - both define a type of that name, with or without an unnamed namespace;
 // - one declares it in an unnamed namespace, and the other, or a header that the other includes and
 //   the first does not, in the namespace around;
-// - one declares the constant kName and the other a local constant kName (-Wshadow).
+// - one declares the constant kName and the other a local constant kName (-Wshadow);
+// - one declares a variable in lower case, internal, and the other uses the name for anything of
+// its
+//   own: as a local name it shadows the variable.
 #pragma once
 
 #include <filesystem>

@@ -122,6 +122,21 @@ bool SourceToken::IsIdentifier() const {
   return IsWordCharacter(text.front()) && !std::isdigit(static_cast<unsigned char>(text.front()));
 }
 
+std::map<std::string, int> FreeNames(const SourceText& text) {
+  std::map<std::string, int> names;
+  std::string_view before;
+  for (const SourceToken& token : text.tokens) {
+    const std::string& name = token.text;
+    const bool is_constant = name.size() > 1 && name[0] == 'k' && std::isupper(name[1]) != 0;
+    const bool is_small = std::islower(static_cast<unsigned char>(name.front())) && !is_constant;
+    if (is_small && token.text.back() != '_' && before != "." && before != "->" && before != "::") {
+      names.try_emplace(token.text, token.line);
+    }
+    before = token.text;
+  }
+  return names;
+}
+
 SourceText ReadSource(std::string_view source) { return Tokenizer(source).Read(); }
 
 }  // namespace shoal

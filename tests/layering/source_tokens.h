@@ -2,6 +2,7 @@
 // A source file as tokens, without comments and preprocessor lines; its macros and includes apart.
 #pragma once
 
+#include <map>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -27,5 +28,9 @@ struct SourceText {
 };
 
 SourceText ReadSource(std::string_view source);
+
+// Identifiers that begin with a small letter, but for kName, and are no members: neither behind
+// `.`, `->` or `::` nor with an underscore at the end. The line is that of their first use.
+std::map<std::string, int> FreeNames(const SourceText& text);
 
 }  // namespace shoal

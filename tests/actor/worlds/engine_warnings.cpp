@@ -8,17 +8,18 @@
 namespace shoal::worlds {
 namespace {
 
-int64_t expected = 0;
+int64_t expected_warnings = 0;
 
 class WarningListener : public testing::EmptyTestEventListener {
  public:
   void OnTestProgramStart(const testing::UnitTest&) override { InstallEngineCallbacks(); }
   void OnTestStart(const testing::TestInfo&) override {
     before_ = EngineWarnings();
-    expected = 0;
+    expected_warnings = 0;
   }
   void OnTestEnd(const testing::TestInfo&) override {
-    EXPECT_EQ(EngineWarnings() - before_, expected) << "warnings of the engine, see the log";
+    EXPECT_EQ(EngineWarnings() - before_, expected_warnings)
+        << "warnings of the engine, see the log";
   }
 
  private:
@@ -33,6 +34,6 @@ class WarningListener : public testing::EmptyTestEventListener {
 
 }  // namespace
 
-void ExpectEngineWarnings(int64_t count) { expected = count; }
+void ExpectEngineWarnings(int64_t count) { expected_warnings = count; }
 
 }  // namespace shoal::worlds

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rules of plain English that a program can check, over comments, texts in code, and pages.
+//
+//   opening    a paragraph of a comment that opens with What, Of, Where, As, With or Whoever
+//   phrase     "nobody", "is told", "lies in", "the former" and their like, anywhere in a file
+//   width      a line of a page beyond 100 columns that could wrap: no table, no code, no lone link
+//   reference  a comment or page that names a source or page which the tree does not have
+//
+// docs/decisions/0020-faults-of-language-only-become-fewer.md says why, and how the faults that are
+// left become fewer.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace shoal {
+
+struct LanguageFault {
+  std::string rule;
+  int line = 0;      // from 1
+  std::string text;  // what is wrong, in the words of the file
+};
+
+// Faults of one file, by line. `file` is its path from the root; `tree` has all files of the tree.
+std::vector<LanguageFault> LanguageFaultsOf(const std::string& file, std::string_view text,
+                                            const std::set<std::string>& tree);
+
+// All files below `root` but those that are built, recorded or generated, as paths from there.
+std::set<std::string> FilesOf(const std::filesystem::path& root);
+
+// Faults of all texts of the tree, by file.
+std::map<std::string, std::vector<LanguageFault>> FindLanguageFaults(
+    const std::filesystem::path& root);
+
+}  // namespace shoal
