@@ -40,7 +40,7 @@ TEST(Language, NoFileHasMoreFaultsThanItIsAllowed) {
   const std::vector<std::string> differences = Differences(allowance, faults, SourcePath(""));
   EXPECT_TRUE(differences.empty()) << fmt::format(
       "{}\nThe rules: tests/docs/language.h and "
-      "docs/decisions/0020-faults-of-language-only-become-fewer.md.\n",
+      "docs/decisions/0021-faults-of-language-only-become-fewer.md.\n",
       fmt::join(differences, "\n"));
 }
 
