@@ -84,6 +84,7 @@ void CheckpointStore::Retry(const std::set<std::string>& wanted, bool now) {
 void CheckpointStore::WriteKept(const std::set<std::string>& wanted) {
   tried_ = Now();
   faults_.Try("checkpoint", [&] {
+    CheckWritable(folder_ / ".new");  // a run that was moved away is not made anew
     while (!unwritten_.empty()) {
       const Unwritten& next = unwritten_.front();
       WriteCheckpoint(folder_, next.state, next.learner, next.policy, run_, Meta(next.state));

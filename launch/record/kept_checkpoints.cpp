@@ -78,7 +78,9 @@ void RemoveOthers(const fs::path& folder, const std::vector<std::string>& names)
 void KeepCheckpoints(const fs::path& run, const std::vector<std::string>& candidates,
                      const std::string& best) {
   const fs::path checkpoints = run / kCheckpointFolder, kept = checkpoints / kCandidateFolder;
-  MakeFolders(kept);
+  std::error_code error;
+  fs::create_directory(kept, error);  // not its parents: the run may have been moved away
+  if (error) throw RuntimeError("cannot create '{}': {}", kept.string(), error.message());
   // The best first: what goes wrong with another one does not keep it from its place.
   std::vector<std::string> names{best};
   std::ranges::copy_if(candidates, std::back_inserter(names),
