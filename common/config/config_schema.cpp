@@ -16,8 +16,10 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr char kFileName[] = "^[A-Za-z0-9_][A-Za-z0-9._-]*$";
-constexpr char kFileNameOrEmpty[] = "^([A-Za-z0-9_][A-Za-z0-9._-]*)?$";
+// At most internal::kLongestFileName characters.
+constexpr char kFileName[] = "^[A-Za-z0-9_][A-Za-z0-9._-]{0,199}$";
+constexpr char kFileNameOrEmpty[] = "^([A-Za-z0-9_][A-Za-z0-9._-]{0,199})?$";
+static_assert(internal::kLongestFileName == 200);
 
 ordered_json Integer(const internal::Rule& rule) {
   ordered_json schema{{"type", "integer"}};
@@ -65,7 +67,6 @@ struct ValueSchema {
       schema["enum"] = choices->words;
     if (const auto* name = std::get_if<internal::FileName>(&rule)) {
       schema["pattern"] = name->optional ? kFileNameOrEmpty : kFileName;
-      schema["maxLength"] = internal::kLongestFileName;
     }
     return schema;
   }

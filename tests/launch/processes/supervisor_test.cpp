@@ -392,7 +392,8 @@ TEST_F(SupervisorTest, AProcessThatIsRetiredBeforeItHasBegunLeftAsItWasTold) {
 
 TEST_F(SupervisorTest, AProcessThatDiesByAnotherSignalThanItWasSentDidNotLeaveInOrder) {
   supervisor_.Start(Fake("actor", 0, "trap 'kill -SEGV $$' TERM; echo ready; sleep 60 & wait"));
-  EXPECT_TRUE(WaitUntil([&] { return Output("actor", 0).find("ready") != std::string::npos; }));
+  EXPECT_TRUE(WaitUntil(
+      [&] { return ReadFile(folder_.path() / "actor-0.log").find("ready") != std::string::npos; }));
   supervisor_.Retire("actor", 0, Now());
   EXPECT_TRUE(PollUntil([&] { return supervisor_.Running("") == 0; }));
   EXPECT_THAT(supervisor_.unclean_exits(), ElementsAre(HasSubstr("killed by SIGSEGV")));

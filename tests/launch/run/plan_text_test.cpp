@@ -29,7 +29,8 @@ TEST(PlanText, FromStateThereAreNoPicturesAndNoEncoder) {
 
 TEST(SharedCoresText, MoreActorsThanCoresAreSaid) {
   EXPECT_EQ(SharedCoresText(2, 2), "");
-  EXPECT_EQ(SharedCoresText(3, 2), "3 actors share 2 core(s): actors and learner get less time each");
+  EXPECT_EQ(SharedCoresText(3, 2),
+            "3 actors share 2 core(s): actors and learner get less time each");
 }
 
 TEST(PlanText, AScheduleOfUpdatesIsSaidWithBothEnds) {
