@@ -38,7 +38,7 @@ int DrawSheet(const worlds::ContactSheetRequest& request, const std::string& png
   return 0;
 }
 
-int Replay(const std::vector<std::string>& files, const worlds::ReplayOptions& options, bool json) {
+int ReplayFiles(const std::vector<std::string>& files, const worlds::ReplayOptions& options, bool json) {
   bool passed = true;
   nlohmann::ordered_json reports = nlohmann::ordered_json::array();
   for (const std::string& file : files) {
@@ -113,7 +113,7 @@ void AddReplay(CLI::App& env, Action* chosen) {
   command->add_option("--physics", options->physics,
                       "mujoco2 | mujoco3; the default is what the file was made with");
   command->add_flag("--json", *json, "Print JSON (schema shoal-parity-1; a list for many reports)");
-  command->callback([=] { *chosen = [=] { return Replay(*files, *options, *json); }; });
+  command->callback([=] { *chosen = [=] { return ReplayFiles(*files, *options, *json); }; });
 }
 
 }  // namespace
