@@ -8,6 +8,13 @@
 #include "learner/agent/sample_figures.h"
 
 namespace shoal::learner {
+namespace {
+
+// Frames are megabytes, and other replicas wait for the thread that looks at them. A few batches of
+// a report say as much as all of them.
+constexpr int kFrameFiguresEvery = 16;  // updates
+
+}  // namespace
 
 LearnerReport::LearnerReport(const RunConfig& run)
     : spec_(run.spec),
@@ -18,7 +25,9 @@ LearnerReport::LearnerReport(const RunConfig& run)
 void LearnerReport::OnUpdate(const UpdateFigures& figures, const Batch& batch, uint64_t updates) {
   UpdateFigures all = figures;
   AddSampleFigures(batch.view, spec_, &all);
-  AddFrameFigures(batch.view, spec_, shift_pad_, &all);
+  if (window_.updates() % kFrameFiguresEvery == 0) {
+    AddFrameFigures(batch.view, spec_, shift_pad_, &all);
+  }
   window_.Add(all);
   AddDataAges(batch.view.weights_update, updates, &data_ages_);
 }

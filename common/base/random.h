@@ -46,6 +46,11 @@ class Random {
   uint64_t Below(uint64_t n);
   // Standard normal by Box-Muller; both values of a pair are drawn at once, none is kept.
   double Normal();
+  // Leaves the stream where Normal would, at a tenth of its cost.
+  void SkipNormal() {
+    Next();
+    Next();
+  }
 
   const State& state() const { return state_; }
   void set_state(const State& state) { state_ = state; }

@@ -156,7 +156,7 @@ std::vector<Key> LearnerKeys() {
                  "where the CPU has it natively, else f32"),
       SHOAL_SAME(
           learner.threads, (IntegerRange{0, 1024}),
-          "threads of the learner, each with an equal part of the batch (ppo and encoders with "
+          "threads of the learner, each with a share of the batch's rows (ppo and encoders with "
           "batch normalisation: with a share of each layer); 0 = at most half the cores this "
           "process may use, or three quarters with an update for each eighth env step, all with "
           "one for each; without pixels, but for ppo, 1"),

@@ -32,35 +32,23 @@ int MostCores(const Config& config, int cores) {
   return Half(cores);
 }
 
-// The largest number up to `most` >= 1 that divides `groups`.
-int LargestDivisor(int groups, int most) {
-  int divisor = std::min(groups, most);
-  while (groups % divisor != 0) --divisor;
-  return divisor;
-}
-
 }  // namespace
 
 int LearnerThreads(const Config& config, int cores) {
   if (config.learner.threads > 0) return config.learner.threads;
   if (LearnsOnPolicy(config)) return Half(cores);
   if (!config.observation.pixels) return 1;
-  const int most = MostCores(config, cores);
   const int useful = std::max(1, config.learner.batch / kLeastRows);
-  return LargestDivisor(Groups(config), std::min(most, useful));
+  return std::min({MostCores(config, cores), useful, Groups(config)});
 }
 
 void CheckReplicas(const Config& config, int replicas) {
   const int groups = Groups(config);
-  if (groups % replicas == 0) return;
-  const int fewer = LargestDivisor(groups, replicas);
-  int more = replicas;
-  while (more < groups && groups % more != 0) ++more;
+  if (replicas <= groups) return;
   throw UsageError(
-      "learner.threads = {}: expected a divisor of learner.batch / replay.copies = {} / {} = {}, "
-      "such as {}: each thread learns from an equal part of the batch",
-      replicas, config.learner.batch, config.replay.copies, groups,
-      more > groups ? fmt::format("{}", fewer) : fmt::format("{} or {}", fewer, more));
+      "learner.threads = {}: expected at most learner.batch / replay.copies = {} / {} = {}: each "
+      "thread learns from rows of its own, and the copies of a transition stay together",
+      replicas, config.learner.batch, config.replay.copies, groups);
 }
 
 void CheckCores(int threads, const CoreLimits& limits) {

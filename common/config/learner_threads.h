@@ -7,16 +7,15 @@
 
 namespace shoal {
 
-// learner.threads, or where it is 0 half of `cores`, at least 1; off policy three quarters, rounded
-// up, where an update follows every eighth env step or more often, and all where it follows each:
-// then actors mostly wait. How often that is goes by the mean of replay.samples_per_insert over the
-// budget of env steps. Off policy, where threads are replicas as a rule: the largest number up to
-// there that leaves each an equal part of the batch of at least 16 rows; without pixels 1, as
-// updates are too short to wait for each other.
+// learner.threads. If it is 0: half of `cores`, at least 1; off policy three quarters, rounded up,
+// if an update follows every eighth env step or more often, and all if one follows each: then
+// actors mostly wait. How often updates follow is the mean of replay.samples_per_insert over the
+// budget of env steps. Off policy at most as many as have 16 rows of the batch each; without pixels
+// 1, because updates are too short to wait for each other.
 int LearnerThreads(const Config& config, int cores);
 
-// Throws Error (kUsage) naming the numbers that would fit unless so many replicas can share
-// learner.batch: in equal parts that split no replay.copies of one transition.
+// Throws Error (kUsage) unless there is a transition of learner.batch, with its replay.copies, for
+// each of so many replicas.
 void CheckReplicas(const Config& config, int replicas);
 
 // Throws Error (kUsage) unless `threads` have a core each: threads of one update wait for each

@@ -63,20 +63,31 @@ SHOAL_CPU_CLONES void ScaleRange(float factor, int64_t n, float* values) {
   for (int64_t i = 0; i < n; ++i) values[i] *= factor;
 }
 
-SHOAL_CPU_CLONES void AddToSum(const float* values, int64_t n, float* sum) {
-  for (int64_t i = 0; i < n; ++i) sum[i] += values[i];
+SHOAL_CPU_CLONES void ScaleTo(float factor, const float* values, int64_t n, float* scaled) {
+  for (int64_t i = 0; i < n; ++i) scaled[i] = factor * values[i];
+}
+
+SHOAL_CPU_CLONES void AddScaled(float factor, const float* values, int64_t n, float* sum) {
+  for (int64_t i = 0; i < n; ++i) sum[i] += factor * values[i];
 }
 
 int Blocks(int64_t n) { return int((n + kBlock - 1) / kBlock); }
 
-// The mean of `arrays`, summed in their order, to mean[0..n), which may be one of them.
-void Average(std::span<const float* const> arrays, int64_t n, float* mean) {
+// The gradients of one replica, and their weight in the mean.
+struct Weighted {
+  float weight;
+  const float* values;
+};
+
+// The sum of weight * values in the given order to mean[0..n), which may be one of them.
+void Average(std::span<const Weighted> arrays, int64_t n, float* mean) {
   float sum[kBlock];
   for (int64_t at = 0; at < n; at += kBlock) {
     const int64_t block = std::min<int64_t>(kBlock, n - at);
-    std::copy_n(arrays[0] + at, block, sum);
-    for (const float* array : arrays.subspan(1)) AddToSum(array + at, block, sum);
-    ScaleRange(1.f / float(arrays.size()), block, sum);
+    ScaleTo(arrays[0].weight, arrays[0].values + at, block, sum);
+    for (const Weighted& array : arrays.subspan(1)) {
+      AddScaled(array.weight, array.values + at, block, sum);
+    }
     std::copy_n(sum, block, mean + at);
   }
 }
@@ -86,31 +97,32 @@ void Average(std::span<const float* const> arrays, int64_t n, float* mean) {
 Adam::Adam(const std::vector<ParameterSet*>& sets, const Options& options, Replica* replica)
     : sets_(sets),
       replica_(replica != nullptr ? replica : &alone_),
-      moments_(sets.size()),
+      shared_(replica_->Shared<Shared>([this] { return MakeShared(); })),
       rate_(options.rate),
       epsilon_(options.epsilon),
       max_norm_(options.max_norm) {
-  if (!KeepsMoments()) return;
-  for (size_t s = 0; s < sets_.size(); ++s) {
-    const std::vector<float> zeros(size_t(sets_[s]->trained_size()), 0.f);
-    moments_[s] = {zeros, zeros, zeros, zeros};
+  shared_->members.push_back(this);
+}
+
+std::shared_ptr<Adam::Shared> Adam::MakeShared() const {
+  auto shared = std::make_shared<Shared>();
+  for (const ParameterSet* set : sets_) {
+    const std::vector<float> zeros(size_t(set->trained_size()), 0.f);
+    shared->moments.push_back({{zeros, zeros}, {zeros, zeros}});
   }
+  return shared;
 }
 
-const std::vector<Adam*>& Adam::Peers() {
-  if (peers_.empty()) peers_ = replica_->Peers(this);
-  return peers_;
-}
-
-// Each to its own gradients, from those of all.
+// Each replica writes its own gradients, from those of all.
 void Adam::AverageShares() {
-  const std::vector<Adam*>& peers = Peers();
+  const std::vector<Adam*>& peers = shared_->members;
   replica_->Meet();
-  std::vector<const float*> arrays(peers.size());
+  std::vector<Weighted> arrays(peers.size());
   for (size_t s = 0; s < sets_.size(); ++s) {
     const Replica::Share share = ShareOf(*sets_[s]);
     for (size_t r = 0; r < peers.size(); ++r) {
-      arrays[r] = peers[r]->sets_[s]->gradients() + share.begin;
+      arrays[r] = {float(replica_->WeightOf(int(r))),
+                   peers[r]->sets_[s]->gradients() + share.begin};
     }
     Average(arrays, share.end - share.begin, sets_[s]->gradients() + share.begin);
   }
@@ -123,7 +135,8 @@ double Adam::GatherGradients() {
     const Replica::Share share = ShareOf(*set);
     squares += SumOfSquares(set->gradients() + share.begin, share.end - share.begin);
   }
-  squares_ = replica_->Means({squares})[0] * replica_->count();
+  if (max_norm_ <= 0) ComputeStep();
+  squares_ = replica_->Sum(squares);
   return *squares_;
 }
 
@@ -136,46 +149,41 @@ void Adam::ClipGradients() {
   }
 }
 
-// What was stepped goes to the other replicas while it is in the cache.
+void Adam::ComputeStep() {
+  for (size_t s = 0; s < sets_.size(); ++s) StepShare(s);
+}
+
 void Adam::StepShare(size_t s) {
-  const double t = double(steps_);
+  const double t = double(steps_ + 1);
   const StepSize step{float(rate() / (1 - std::pow(kBeta1, t))),
                       float(1 / std::sqrt(1 - std::pow(kBeta2, t))), float(epsilon_)};
   ParameterSet& set = *sets_[s];
-  Moments& moments = Peers()[0]->moments_[s];
-  const AdamArrays arrays{set.gradients(),  moments.m.data(),      moments.v.data(),
-                          set.values(),     moments.next_m.data(), moments.next_v.data(),
-                          set.next_values()};
+  auto& [m, v] = shared_->moments[s];
+  const size_t next = 1 - current_;
+  const AdamArrays arrays{set.gradients(), m[current_].data(), v[current_].data(), set.values(),
+                          m[next].data(),  v[next].data(),     set.next_values()};
   const Replica::Share share = ShareOf(set);
   ParallelFor(Blocks(share.end - share.begin), [&](int begin, int end) {
-    for (int block = begin; block < end; ++block) {
-      const int64_t first = share.begin + int64_t(block) * kBlock;
-      const int64_t last = std::min(share.end, first + kBlock);
-      AdamRange(arrays, first, last, step);
-      for (const Adam* peer : Peers()) {
-        float* next = peer->sets_[s]->next_values();
-        if (peer != this) std::copy_n(arrays.next_value + first, last - first, next + first);
-      }
-    }
+    AdamRange(arrays, share.begin + int64_t(begin) * kBlock,
+              std::min(share.end, share.begin + int64_t(end) * kBlock), step);
   });
 }
 
 void Adam::Step() {
-  if (!squares_ && (replica_->count() > 1 || max_norm_ > 0)) GatherGradients();
-  if (max_norm_ > 0) ClipGradients();
+  if (!squares_) GatherGradients();
+  if (max_norm_ > 0) {
+    ClipGradients();
+    ComputeStep();
+    replica_->Meet();
+  }
   ++steps_;
-  for (size_t s = 0; s < sets_.size(); ++s) StepShare(s);
-  replica_->Meet();
   squares_.reset();
   Exchange();
 }
 
 void Adam::Exchange() {
   for (ParameterSet* set : sets_) set->Exchange();
-  for (Moments& moments : moments_) {
-    moments.m.swap(moments.next_m);
-    moments.v.swap(moments.next_v);
-  }
+  current_ = 1 - current_;
 }
 
 void Adam::Undo() {
@@ -185,9 +193,10 @@ void Adam::Undo() {
 }
 
 void Adam::Export(const std::string& group, TensorMap* tensors) const {
-  for (size_t s = 0; KeepsMoments() && s < sets_.size(); ++s) {
-    sets_[s]->ExportTrained(moments_[s].m.data(), "adam.m.", tensors);
-    sets_[s]->ExportTrained(moments_[s].v.data(), "adam.v.", tensors);
+  for (size_t s = 0; s < sets_.size(); ++s) {
+    const auto& [m, v] = shared_->moments[s];
+    sets_[s]->ExportTrained(m[current_].data(), "adam.m.", tensors);
+    sets_[s]->ExportTrained(v[current_].data(), "adam.v.", tensors);
   }
   ExportCounter("adam.steps." + group, steps_, tensors);
 }
@@ -195,13 +204,15 @@ void Adam::Export(const std::string& group, TensorMap* tensors) const {
 // Into the arrays that the next step would write, so that a refusal leaves the others as they are.
 void Adam::Import(const TensorMap& tensors, const std::string& group, const std::string& source) {
   const uint64_t steps = ImportCounter(tensors, "adam.steps." + group, source);
-  for (size_t s = 0; KeepsMoments() && s < sets_.size(); ++s) {
-    sets_[s]->ImportTrained(tensors, "adam.m.", source, moments_[s].next_m.data());
-    sets_[s]->ImportTrained(tensors, "adam.v.", source, moments_[s].next_v.data());
+  const size_t next = 1 - current_;
+  for (size_t s = 0; s < sets_.size(); ++s) {
+    auto& [m, v] = shared_->moments[s];
+    sets_[s]->ImportTrained(tensors, "adam.m.", source, m[next].data());
+    sets_[s]->ImportTrained(tensors, "adam.v.", source, v[next].data());
   }
-  for (Moments& moments : moments_) {
-    moments.m = moments.next_m;
-    moments.v = moments.next_v;
+  for (auto& [m, v] : shared_->moments) {
+    m[current_] = m[next];
+    v[current_] = v[next];
   }
   steps_ = steps;
   squares_.reset();

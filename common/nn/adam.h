@@ -8,13 +8,15 @@
 //
 // Source: Kingma and Ba 2014, arXiv:1412.6980, algorithm 1.
 //
-// Of N replicas each steps a share of the parameters (1/N), in the sets of all: gradients of the
-// share are averaged over replicas, moments are kept once, by the first replica.
+// Of N replicas each steps a share of the parameters (1/N), whose values all share: gradients of
+// the share are averaged over replicas, weighted by their rows; moments exist once for all.
 //
 // Threads: each pass is split over the current ThreadScope; results do not depend on its size.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -44,44 +46,48 @@ class Adam {
   double rate() const { return rate_ * rate_factor_; }
 
   // Averages the gradients over replicas, each of them in its own share (the rest stays its own),
-  // and returns the sum of the squares of all. Once for each backward pass, also where no step came
-  // of the last one; a Step does it where nobody has since the last Step.
+  // and returns the sum of the squares of all. Call it once for each backward pass, even if no step
+  // follows; a Step calls it if nobody has since the last Step. Without a limit of the norm this
+  // computes the step as well, so that the replicas meet once for both; Step then applies it.
   double GatherGradients();
-  // Applies the sets' gradients, where they are to be clipped by max_norm / (norm + 1e-6), and the
-  // statistics that the forward passes of these gradients measured.
+  // Applies the sets' gradients, clipped by max_norm / (norm + 1e-6) if the norm is limited, and
+  // the statistics that the forward passes of these gradients measured.
   void Step();
-  // Takes the last Step back exactly; at most once after each.
+  // Takes the last Step back exactly; at most once after each, and before the next GatherGradients.
   void Undo();
   uint64_t steps() const { return steps_; }
 
-  // Tensors "adam.m.NAME", "adam.v.NAME" of every parameter (of replicas, only the first one's) and
-  // "adam.steps.`group`".
+  // Tensors "adam.m.NAME", "adam.v.NAME" of every parameter and "adam.steps.`group`".
   void Export(const std::string& group, TensorMap* tensors) const;
   // Throws Error; nothing has changed then.
   void Import(const TensorMap& tensors, const std::string& group, const std::string& source);
 
  private:
-  // Of one set, in its layout; empty but for the first replica's.
+  // Of one set, in its layout: those in force, and where a step writes.
   struct Moments {
-    std::vector<float> m, v;
-    std::vector<float> next_m, next_v;  // where a step writes, then exchanged
+    std::array<std::vector<float>, 2> m, v;
   };
+  // What exists once for all replicas.
+  struct Shared {
+    std::vector<Adam*> members;    // by rank
+    std::vector<Moments> moments;  // one for each set
+  };
+  std::shared_ptr<Shared> MakeShared() const;
 
-  bool KeepsMoments() const { return replica_->rank() == 0; }
   Replica::Share ShareOf(const ParameterSet& set) const {
     return replica_->ShareOf(set.trained_size());
   }
-  const std::vector<Adam*>& Peers();
   void AverageShares();
   void ClipGradients();
+  void ComputeStep();
   void StepShare(size_t set);
   void Exchange();
 
   const std::vector<ParameterSet*> sets_;
   Replica alone_;
   Replica* const replica_;
-  std::vector<Adam*> peers_;       // by rank; empty until they are needed
-  std::vector<Moments> moments_;   // one for each set
+  const std::shared_ptr<Shared> shared_;
+  size_t current_ = 0;             // of the two arrays of moments
   std::optional<double> squares_;  // of the gradients that were gathered for the next step
 
   double rate_, epsilon_, max_norm_;

@@ -35,8 +35,12 @@ inline FeatureSource ToFeatureSource(const Features* features, bool trains_encod
 // What the layers of a module are built with.
 inline LayerContext ToLayerContext(ParameterSet* parameters, Module::Use use,
                                    const ModuleContext& context) {
-  return {parameters, context.precision, context.batch, use == Module::Use::kTraining,
-          context.scratchpad};
+  return {.parameters = parameters,
+          .precision = context.precision,
+          .batch = context.batch,
+          .training = use == Module::Use::kTraining,
+          .scratchpad = context.scratchpad,
+          .plain_gradients = context.replica != nullptr && context.replica->count() > 1};
 }
 
 }  // namespace shoal::nn

@@ -1,15 +1,73 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/nn/laid_out_weight.h"
 
+#include <algorithm>
+
 #include "common/nn/primitive_descs.h"
 
 namespace shoal::nn {
 
+namespace {
+
+constexpr dnnl::memory::dim kPieceElements = 8192;  // about 6 us, of which 1 us is the call
+constexpr dnnl::memory::dim kPieceUnit = 64;        // no layout has larger blocks
+
+// Consecutive ranges of one dimension of a weight, each `length` long but for the last one.
+struct Pieces {
+  int dimension = 0, count = 1;
+  dnnl::memory::dim length = 0;
+};
+
+// The longest dimension in pieces of whole blocks. The last piece must end where the dimension
+// ends, because oneDNN knows no part of a padded block: other weights stay whole.
+Pieces Cut(const dnnl::memory::dims& shape) {
+  const auto longest = std::ranges::max_element(shape);
+  dnnl::memory::dim elements = 1;
+  for (const dnnl::memory::dim size : shape) elements *= size;
+  const auto most = int(*longest / kPieceUnit);
+  if (*longest % kPieceUnit != 0 || most < 2 || elements < 2 * kPieceElements) {
+    return {0, 1, shape[0]};
+  }
+  const auto wanted = std::min(most, int(elements / kPieceElements));
+  const dnnl::memory::dim length = (most + wanted - 1) / wanted * kPieceUnit;
+  return {int(longest - shape.begin()), int((*longest + length - 1) / length), length};
+}
+
+dnnl::memory::desc PieceOf(const dnnl::memory::desc& desc, const Pieces& pieces, int piece) {
+  dnnl::memory::dims sizes = desc.dims(), offsets(sizes.size(), 0);
+  const auto d = size_t(pieces.dimension);
+  offsets[d] = piece * pieces.length;
+  sizes[d] = std::min(pieces.length, sizes[d] - offsets[d]);
+  return desc.submemory_desc(sizes, offsets, /*allow_empty=*/true);
+}
+
+}  // namespace
+
+const SharedLayouts::Layout* SharedLayouts::Join(int64_t offset, const dnnl::memory::desc& wanted,
+                                                 int pieces, int rank, bool* first_of_rank) {
+  auto found = std::ranges::find_if(layouts_, [&](const Layout& layout) {
+    return layout.offset == offset && layout.memory.get_desc() == wanted;
+  });
+  if (found == layouts_.end()) {
+    layouts_.push_back({offset, MakeMemory(wanted), next_turn_, {}});
+    next_turn_ += pieces;
+    found = std::prev(layouts_.end());
+  }
+  *first_of_rank = found->ranks.empty() || found->ranks.back() != rank;
+  if (*first_of_rank) found->ranks.push_back(rank);
+  return &*found;
+}
+
 LaidOutWeight::LaidOutWeight(const Parameter& weight, const dnnl::memory::desc& wanted,
                              std::shared_ptr<Scratchpad> scratchpad)
     : weight_(weight), f32_(PlainF32(weight.shape()), CpuEngine(), nullptr) {
-  if (!weight.borrowed()) {
+  SharedLayouts* layouts = weight.set().layouts();
+  if (!weight.borrowed() && (layouts == nullptr || f32_.get_desc() == wanted)) {
     from_f32_ = Relayout::Before(f32_, wanted, std::move(scratchpad));
+    return;
+  }
+  if (!weight.borrowed()) {
+    Share(layouts, wanted, scratchpad);
     return;
   }
   from_f32_ = Relayout::Copying(f32_, wanted, scratchpad);
@@ -18,10 +76,29 @@ LaidOutWeight::LaidOutWeight(const Parameter& weight, const dnnl::memory::desc& 
   if (reorders_bf16_) from_bf16_ = Op::Reorder(bf16_, memory(), std::move(scratchpad));
 }
 
+void LaidOutWeight::Share(SharedLayouts* layouts, const dnnl::memory::desc& wanted,
+                          const std::shared_ptr<Scratchpad>& scratchpad) {
+  const dnnl::memory::desc plain = f32_.get_desc();
+  Pieces pieces = Cut(weight_.shape());
+  if (!PieceOf(wanted, pieces, pieces.count - 1)) pieces = {0, 1, weight_.shape()[0]};
+  bool writes = false;
+  shared_ = layouts->Join(weight_.offset(), wanted, pieces.count, weight_.set().rank(), &writes);
+  from_f32_ = Relayout::Into(f32_, shared_->memory, scratchpad);
+  for (int piece = 0; writes && piece < pieces.count; ++piece) {
+    const bool whole = pieces.count == 1;
+    pieces_.push_back(Op::ReorderPart(f32_, whole ? plain : PieceOf(plain, pieces, piece),
+                                      shared_->memory,
+                                      whole ? wanted : PieceOf(wanted, pieces, piece), scratchpad));
+  }
+}
+
 void LaidOutWeight::Refresh() {
   if (weight_.borrowed()) return RefreshBorrowed();
   f32_.set_data_handle(weight_.value());
-  from_f32_.Run();
+  if (shared_ == nullptr) return from_f32_.Run();
+  for (size_t piece = 0; piece < pieces_.size(); ++piece) {
+    if (shared_->Writes(weight_.set().rank(), piece)) pieces_[piece].Run();
+  }
 }
 
 void LaidOutWeight::RefreshBorrowed() {

@@ -21,6 +21,9 @@ struct LayerContext {
   int batch;
   bool training;  // false: Forward only
   std::shared_ptr<Scratchpad> scratchpad;
+  // Gradients of weights are computed row-major, as the set keeps them, in place of the layout that
+  // the primitive prefers: see Linear.
+  bool plain_gradients = false;
 };
 
 // Which gradients a backward pass computes.

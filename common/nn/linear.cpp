@@ -46,10 +46,13 @@ void Linear::BuildBackward(const LayerContext& context, const memory& source,
                            const memory& source_gradient,
                            const dnnl::inner_product_forward::primitive_desc& forward) {
   const memory& gradient = output_gradient_.compute();
+  // Replicas have few rows, so that bringing whole gradients from another layout would take longer
+  // than to compute them. With one replica the preferred layout keeps the bits of earlier versions.
   const auto weights = DescribeBackward<dnnl::inner_product_backward_weights>(
       forward, AnyLayout(DimsOf(source), TypeOf(source)),
-      AnyLayout(weight_.shape(), memory::data_type::f32), bias_values_.get_desc(),
-      gradient.get_desc());
+      context.plain_gradients ? PlainF32(weight_.shape())
+                              : AnyLayout(weight_.shape(), memory::data_type::f32),
+      bias_values_.get_desc(), gradient.get_desc());
   const memory weight_target(PlainF32(weight_.shape()), CpuEngine(), weight_.gradient());
   const memory bias_target(bias_values_.get_desc(), CpuEngine(), bias_.gradient());
   backward_source_ = Relayout::Before(source, weights.src_desc(), context.scratchpad);

@@ -2,6 +2,7 @@
 #include "common/nn/module.h"
 
 #include <algorithm>
+#include <array>
 
 #include "common/base/check.h"
 #include "common/nn/adam.h"
@@ -18,16 +19,17 @@ ModuleContext::ModuleContext(Precision compute_precision, int batch_size, int th
   CHECK(batch > 0 && threads > 0) << "batch of " << batch << ", " << threads << " threads";
 }
 
+ModuleContext::ModuleContext(Precision compute_precision, int batch_size, Replica* of)
+    : ModuleContext(compute_precision, of->RowsOf(batch_size).count, of->threads()) {
+  replica = of;
+}
+
 Module::Module(const std::vector<ParameterSpec>& parameters, Use use, const ModuleContext& context)
-    : parameters_(parameters, use), context_(context) {}
+    : parameters_(parameters, use, context.replica), context_(context) {}
 
 void CopyParameters(const ParameterSet& online, ParameterSet* average) {
   CHECK(online.size() == average->size()) << online.size() << " and " << average->size();
   std::copy_n(online.values(), online.size(), average->values());
-}
-
-void MoveTowards(float tau, const ParameterSet& online, ParameterSet* average) {
-  MoveTowards(tau, online, average, Replica());
 }
 
 // Statistics are the first replica's share: there are none where there are several.
@@ -47,9 +49,17 @@ void CopyParameters(const Module& online, Module* target) {
   target->Refresh();
 }
 
+void MoveTowards(float tau, std::span<const Following> targets, Replica* replica) {
+  for (const Following& following : targets) {
+    MoveTowards(tau, following.online->parameters(), &following.target->parameters(), *replica);
+  }
+  replica->Meet();
+  for (const Following& following : targets) following.target->Refresh();
+}
+
 void MoveTowards(float tau, const Module& online, Module* target) {
-  MoveTowards(tau, online.parameters(), &target->parameters());
-  target->Refresh();
+  Replica alone;
+  MoveTowards(tau, std::array{Following{&online, target}}, &alone);
 }
 
 }  // namespace shoal::nn

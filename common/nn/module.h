@@ -8,6 +8,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "common/nn/network_plan.h"
@@ -27,10 +28,13 @@ enum class Statistics { kBatch, kRunning };
 // run one after another, on one thread at a time.
 struct ModuleContext {
   ModuleContext(Precision precision, int batch, int threads);
+  // Of one replica: its rows of a batch of so many, its threads. Borrows the replica.
+  ModuleContext(Precision precision, int batch, Replica* replica);
 
   Precision precision;
-  int batch;    // B
+  int batch;    // B, or the rows of the replica
   int threads;  // that each pass of a module uses
+  Replica* replica = nullptr;
   std::shared_ptr<Scratchpad> scratchpad;
 };
 
@@ -45,7 +49,8 @@ class Module {
   // Owned by the module. Refresh() follows any change of values.
   ParameterSet& parameters() { return parameters_; }
   const ParameterSet& parameters() const { return parameters_; }
-  // Takes over the parameters' present values.
+  // Takes over the parameters' present values. Of replicas, all refresh and then meet
+  // (LaidOutWeight::Refresh).
   virtual void Refresh() = 0;
 
  protected:
@@ -53,16 +58,26 @@ class Module {
   const ModuleContext context_;
 };
 
-// Parameters of `target`, a network of the same plan under another name, become those of `online`,
-// or move by the share `tau` of the way towards them (Eq. 9 of docs/algorithm.md); statistics are
-// copied whole by both. The target is refreshed.
+// Parameters of `target`, a network of the same plan under another name, become those of `online`;
+// statistics as well. The target is refreshed.
 void CopyParameters(const Module& online, Module* target);
+
+// A target and the module that it follows.
+struct Following {
+  const Module* online;
+  Module* target;
+};
+// Each target's parameters move by the share `tau` of the way towards those of its online module
+// (Eq. 9 of docs/algorithm.md); statistics are copied whole. The targets are refreshed. Replicas
+// divide the work; they meet in between, and have to meet before anyone uses the targets.
+void MoveTowards(float tau, std::span<const Following> targets, Replica* replica);
+
+// The same for one target without replicas.
 void MoveTowards(float tau, const Module& online, Module* target);
 
 // The same for a plain set: a moving average that no module computes.
 void CopyParameters(const ParameterSet& online, ParameterSet* average);
-void MoveTowards(float tau, const ParameterSet& online, ParameterSet* average);
-// This replica's share of that; another one of the same average may move its own meanwhile.
+// This replica's share of it; another one may move its own meanwhile.
 void MoveTowards(float tau, const ParameterSet& online, ParameterSet* average,
                  const Replica& replica);
 

@@ -84,6 +84,14 @@ Op Op::Reorder(const dnnl::memory& from, const dnnl::memory& to,
   return Op(desc, {{DNNL_ARG_FROM, from}, {DNNL_ARG_TO, to}}, std::move(scratchpad));
 }
 
+Op Op::ReorderPart(const dnnl::memory& from, const dnnl::memory::desc& from_part,
+                   const dnnl::memory& to, const dnnl::memory::desc& to_part,
+                   std::shared_ptr<Scratchpad> scratchpad) {
+  const dnnl::reorder::primitive_desc desc(CpuEngine(), from_part, CpuEngine(), to_part,
+                                           Attributes());
+  return Op(desc, {{DNNL_ARG_FROM, from}, {DNNL_ARG_TO, to}}, std::move(scratchpad));
+}
+
 void Op::Run() {
   if (scratch_) scratch_.set_data_handle(scratchpad_->Data());
   const dnnl_status_t status = dnnl_primitive_execute(primitive_.get(), CpuStream().get(),
@@ -101,8 +109,13 @@ Relayout Relayout::Before(const dnnl::memory& source, const dnnl::memory::desc& 
 
 Relayout Relayout::Copying(const dnnl::memory& source, const dnnl::memory::desc& wanted,
                            std::shared_ptr<Scratchpad> scratchpad) {
+  return Into(source, MakeMemory(wanted), std::move(scratchpad));
+}
+
+Relayout Relayout::Into(const dnnl::memory& source, const dnnl::memory& target,
+                        std::shared_ptr<Scratchpad> scratchpad) {
   Relayout result;
-  result.memory_ = MakeMemory(wanted);
+  result.memory_ = target;
   result.reorder_ = Op::Reorder(source, result.memory_, std::move(scratchpad));
   result.needed_ = true;
   return result;

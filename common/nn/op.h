@@ -61,6 +61,10 @@ class Op {
   static bool CanReorder(const dnnl::memory& from, const dnnl::memory& to);
   static Op Reorder(const dnnl::memory& from, const dnnl::memory& to,
                     std::shared_ptr<Scratchpad> scratchpad);
+  // The same for parts of the memories, which these descriptions say.
+  static Op ReorderPart(const dnnl::memory& from, const dnnl::memory::desc& from_part,
+                        const dnnl::memory& to, const dnnl::memory::desc& to_part,
+                        std::shared_ptr<Scratchpad> scratchpad);
 
   void Run();
 
@@ -87,6 +91,9 @@ class Relayout {
   // The same, into memory of its own even where the two agree.
   static Relayout Copying(const dnnl::memory& source, const dnnl::memory::desc& wanted,
                           std::shared_ptr<Scratchpad> scratchpad);
+  // The same, into `target`, which is in the wanted layout.
+  static Relayout Into(const dnnl::memory& source, const dnnl::memory& target,
+                       std::shared_ptr<Scratchpad> scratchpad);
   // Run() brings memory(), written by a primitive in the layout `produced`, to `target`.
   static Relayout After(const dnnl::memory::desc& produced, const dnnl::memory& target,
                         std::shared_ptr<Scratchpad> scratchpad);

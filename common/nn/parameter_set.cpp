@@ -10,6 +10,7 @@
 #include "common/base/error.h"
 #include "common/base/random.h"
 #include "common/nn/bf16.h"
+#include "common/nn/laid_out_weight.h"
 #include "common/nn/orthogonal.h"
 
 namespace shoal::nn {
@@ -111,7 +112,8 @@ PlainValues Parameter::plain() const {
 }
 
 float* Parameter::next_value() const {
-  return set_->next_values_.empty() ? nullptr : set_->next_values_.data() + offset_;
+  float* next = set_->next_values();
+  return next == nullptr ? nullptr : next + offset_;
 }
 
 float* Parameter::gradient() const {
@@ -119,24 +121,33 @@ float* Parameter::gradient() const {
   return set_->gradients_.data() + offset_;
 }
 
-ParameterSet::ParameterSet(std::vector<ParameterSpec> specs, Use use)
-    : use_(use), specs_(std::move(specs)) {
+ParameterSet::ParameterSet(std::vector<ParameterSpec> specs, Use use, Replica* replica)
+    : use_(use), specs_(std::move(specs)), rank_(replica == nullptr ? 0 : replica->rank()) {
   const auto statistics = std::stable_partition(
       specs_.begin(), specs_.end(), [](const ParameterSpec& spec) { return !spec.statistic; });
   trained_ = size_t(statistics - specs_.begin());
-  int64_t size = 0;
   for (const ParameterSpec& parameter : specs_) {
-    offsets_.push_back(size);
+    offsets_.push_back(size_);
     if (Borrows(parameter)) continue;
-    size += (Count(parameter) + kAlignment - 1) / kAlignment * kAlignment;
-    if (!parameter.statistic) trained_size_ = size;
+    size_ += (Count(parameter) + kAlignment - 1) / kAlignment * kAlignment;
+    if (!parameter.statistic) trained_size_ = size_;
   }
-  values_.assign(size_t(size), 0.f);
+  shared_ = replica == nullptr ? MakeShared(Replica())
+                               : replica->Shared<Shared>([&] { return MakeShared(*replica); });
+  CHECK(int64_t(shared_->arrays[0].size()) == size_)
+      << "another set than that of the first replica";
   if (use == Use::kBorrowing) borrowed_.resize(specs_.size());
-  if (use == Use::kTraining) {
-    next_values_.assign(size_t(size), 0.f);
-    gradients_.assign(size_t(trained_size_), 0.f);
+  if (use == Use::kTraining) gradients_.assign(size_t(trained_size_), 0.f);
+}
+
+std::shared_ptr<ParameterSet::Shared> ParameterSet::MakeShared(const Replica& replica) const {
+  auto shared = std::make_shared<Shared>();
+  shared->arrays[0].assign(size_t(size_), 0.f);
+  if (use_ == Use::kTraining) shared->arrays[1].assign(size_t(size_), 0.f);
+  if (replica.count() > 1) {
+    shared->layouts = std::make_shared<SharedLayouts>(replica.objects_shared());
   }
+  return shared;
 }
 
 bool ParameterSet::Borrows(const ParameterSpec& parameter) const {
@@ -150,7 +161,7 @@ PlainValues& ParameterSet::BorrowedOf(const ParameterSpec& parameter) {
 void ParameterSet::Initialise(uint64_t seed) {
   CHECK(use_ != Use::kBorrowing);
   for (size_t i = 0; i < specs_.size(); ++i) {
-    InitialiseOne(specs_[i], seed, values_.data() + offsets_[i]);
+    InitialiseOne(specs_[i], seed, values() + offsets_[i]);
   }
 }
 
@@ -222,7 +233,7 @@ void ParameterSet::Borrow(const TensorViews& tensors, const std::string& source)
     found.push_back(PlainOf(Fitting(parameter, tensors, parameter.name, source)));
   }
   for (size_t i = 0; i < specs_.size(); ++i) {
-    if (!Borrows(specs_[i])) Widen(found[i], Count(specs_[i]), values_.data() + offsets_[i]);
+    if (!Borrows(specs_[i])) Widen(found[i], Count(specs_[i]), values() + offsets_[i]);
   }
   borrowed_ = std::move(found);
 }

@@ -3,17 +3,21 @@
 // them the running statistics that belong to them.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "common/nn/network_plan.h"
+#include "common/nn/replica.h"
 #include "common/nn/safetensors.h"
 
 namespace shoal::nn {
 
 class ParameterSet;
+class SharedLayouts;  // laid_out_weight.h
 
 // Where the numbers of a parameter lie, row-major. Null: nowhere yet.
 struct PlainValues {
@@ -46,19 +50,27 @@ class Parameter {
   // Stays. Null in a set without gradients, and of a statistic.
   float* gradient() const;
 
+  // First float in the set's arrays.
+  int64_t offset() const { return offset_; }
+  const ParameterSet& set() const { return *set_; }
+
  private:
   ParameterSet* set_ = nullptr;
   int64_t offset_ = 0;
   const ParameterSpec* spec_ = nullptr;
 };
 
-// Owns values, gradients and a second array of values, into which an optimiser writes: exchanging
+// Owns gradients, values and a second array of values, into which an optimiser writes: exchanging
 // the two applies its step, exchanging them again takes it back. Statistics lie behind what is
 // trained: forward passes write them into the second array, so that a step and its undoing take
 // them along. Not movable: layers borrow it.
 //
 // Each parameter starts at a multiple of 16 floats; the gaps hold zeros in all arrays. Those of
 // several dimensions have no place in a set that borrows them.
+//
+// Replicas: the two arrays of values exist once, each replica's set refers to them. Which of the
+// two holds the values is a property of each set, so that every replica exchanges its own. Whoever
+// writes values writes its share alone, and all replicas meet before anyone reads them.
 class ParameterSet {
  public:
   enum class Use {
@@ -67,7 +79,8 @@ class ParameterSet {
     kBorrowing,  // the same, for layers alone: values come by Borrow, and are not exported
   };
 
-  ParameterSet(std::vector<ParameterSpec> specs, Use use);
+  // `replica`: borrowed while this constructs; null: alone.
+  ParameterSet(std::vector<ParameterSpec> specs, Use use, Replica* replica = nullptr);
   ParameterSet(const ParameterSet&) = delete;
   ParameterSet& operator=(const ParameterSet&) = delete;
 
@@ -81,15 +94,18 @@ class ParameterSet {
   // Where the first parameter whose name starts with `prefix` begins; size() if there is none.
   int64_t OffsetOf(std::string_view prefix) const;
 
-  int64_t size() const { return int64_t(values_.size()); }  // floats, gaps included
+  int64_t size() const { return size_; }  // floats, gaps included
   // Without statistics: what gradients and optimisers have arrays of.
   int64_t trained_size() const { return trained_size_; }
-  const float* values() const { return values_.data(); }
-  float* values() { return values_.data(); }
-  float* next_values() { return next_values_.data(); }
+  const float* values() const { return shared_->arrays[current_].data(); }
+  float* values() { return shared_->arrays[current_].data(); }
+  float* next_values() { return shared_->arrays[1 - current_].data(); }  // null: there are none
   const float* gradients() const { return gradients_.data(); }
   float* gradients() { return gradients_.data(); }
-  void Exchange() { values_.swap(next_values_); }
+  void Exchange() { current_ = 1 - current_; }
+  // Layouts of this set's weights that replicas share; null: alone.
+  SharedLayouts* layouts() const { return shared_->layouts.get(); }
+  int rank() const { return rank_; }  // of its replica
 
   // An array of this set's values to named tensors and back. `prefix` goes before each name.
   void Export(const float* array, const std::string& prefix, TensorMap* tensors) const;
@@ -114,15 +130,24 @@ class ParameterSet {
                    TensorMap* tensors) const;
   void ImportFirst(size_t specs, const TensorViews& tensors, const std::string& prefix,
                    const std::string& source, float* array) const;
+  // What exists once for all replicas.
+  struct Shared {
+    std::array<std::vector<float>, 2> arrays;  // values, and where a step writes
+    std::shared_ptr<SharedLayouts> layouts;
+  };
+  std::shared_ptr<Shared> MakeShared(const Replica& replica) const;
   bool Borrows(const ParameterSpec& parameter) const;
   PlainValues& BorrowedOf(const ParameterSpec& parameter);
 
   const Use use_;
   std::vector<ParameterSpec> specs_;  // statistics last
   size_t trained_ = 0;                // specs that are no statistics
-  int64_t trained_size_ = 0;
+  int64_t size_ = 0, trained_size_ = 0;
   std::vector<int64_t> offsets_;
-  std::vector<float> values_, next_values_, gradients_;
+  const int rank_;
+  std::shared_ptr<Shared> shared_;
+  size_t current_ = 0;  // of the two arrays
+  std::vector<float> gradients_;
   std::vector<PlainValues> borrowed_;  // one for each spec; empty unless kBorrowing
 };
 

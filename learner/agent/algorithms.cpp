@@ -93,7 +93,7 @@ std::unique_ptr<Agent> MakeAgent(const Config& config, const ObservationSpec& sp
   const MakeReplica make = [&](nn::Replica* replica) {
     return algorithm.make_replica(config, spec, precision, replica);
   };
-  return MakeReplicatedAgent(ReplicasOf(config, spec, nn::Threads()), make);
+  return MakeReplicatedAgent(config, ReplicasOf(config, spec, nn::Threads()), make);
 }
 
 std::span<const Figure* const> AllFigures() {

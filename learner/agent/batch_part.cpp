@@ -5,15 +5,15 @@
 
 namespace shoal::learner {
 
-BatchView PartOf(const BatchView& batch, int index, int parts) {
-  CHECK(batch.rows() > 0 && batch.rows() % size_t(parts) == 0)
-      << batch.rows() << " rows in " << parts << " parts";
-  const size_t rows = batch.rows() / size_t(parts), first = rows * size_t(index);
+BatchView PartOf(const BatchView& batch, const nn::Replica::Rows& rows) {
+  CHECK(rows.begin >= 0 && rows.count > 0 && size_t(rows.begin + rows.count) <= batch.rows())
+      << "rows " << rows.begin << " to " << rows.begin + rows.count << " of " << batch.rows();
+  const auto first = size_t(rows.begin), count = size_t(rows.count);
   BatchView part = batch;
   part.first_row += first;
   VisitArrays(part, [&]<class T>(const char*, std::span<T>& array) {
     const size_t row = array.size() / batch.rows();
-    array = array.subspan(first * row, rows * row);
+    array = array.subspan(first * row, count * row);
   });
   return part;
 }

@@ -9,15 +9,20 @@
 
 namespace shoal::learner {
 
-float SetCriticFigures(nn::Replica* replica, std::span<const float* const> q,
-                       std::span<const float> y, double gradient_squares, UpdateFigures* figures) {
+void PostCriticValues(nn::Replica* replica, std::span<const float* const> q,
+                      std::span<const float> y) {
   std::vector<std::span<const float>> own;
   for (const float* values : q) own.emplace_back(values, y.size());
   own.push_back(y);
-  const std::vector<std::vector<float>> whole = replica->Whole(own);
-  std::vector<const float*> whole_q;
-  for (size_t i = 0; i < q.size(); ++i) whole_q.push_back(whole[i].data());
+  replica->Post(own, {});
+}
+
+float SetCriticFigures(const nn::Replica& replica, double gradient_squares,
+                       UpdateFigures* figures) {
+  const std::vector<std::vector<float>> whole = replica.Posted().arrays;
   const std::vector<float>& whole_y = whole.back();
+  std::vector<const float*> whole_q;
+  for (size_t i = 0; i + 1 < whole.size(); ++i) whole_q.push_back(whole[i].data());
   const auto batch = int(whole_y.size());
   const CriticLoss loss = CriticLossForward(batch, whole_q, whole_y.data());
   figures->Set(kCriticLoss, loss.loss);

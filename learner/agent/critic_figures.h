@@ -9,10 +9,13 @@
 
 namespace shoal::learner {
 
-// q_i of one Q function or more and targets y, each (b) of the replica's rows; gradient_squares:
-// the sum over the averaged gradients. Sets the figures from the critic's loss to AddValueFigures
-// and returns the loss; both are the same in all replicas.
-float SetCriticFigures(nn::Replica* replica, std::span<const float* const> q,
-                       std::span<const float> y, double gradient_squares, UpdateFigures* figures);
+// q_i of one Q function or more and targets y, each (b) of the replica's rows: shown to the other
+// replicas with the next Adam::GatherGradients.
+void PostCriticValues(nn::Replica* replica, std::span<const float* const> q,
+                      std::span<const float> y);
+
+// After that. gradient_squares: its result. Sets the figures from the critic's loss to
+// AddValueFigures and returns the loss; both are those of the whole batch in all replicas.
+float SetCriticFigures(const nn::Replica& replica, double gradient_squares, UpdateFigures* figures);
 
 }  // namespace shoal::learner

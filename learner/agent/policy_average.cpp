@@ -7,9 +7,8 @@ namespace shoal::learner {
 
 PolicyAverage::PolicyAverage(const std::vector<nn::ParameterSet*>& policy, nn::Replica* replica)
     : policy_(policy), replica_(replica) {
-  if (replica_->rank() > 0) return;
   for (const nn::ParameterSet* set : policy_) {
-    averages_.emplace_back(set->specs(), nn::ParameterSet::Use::kInference);
+    averages_.emplace_back(set->specs(), nn::ParameterSet::Use::kInference, replica_);
   }
 }
 
@@ -20,9 +19,8 @@ void PolicyAverage::Copy() {
 }
 
 void PolicyAverage::Move(float rate) {
-  if (kept_ == nullptr) kept_ = replica_->Peers(this)[0];
   for (size_t p = 0; p < policy_.size(); ++p) {
-    nn::MoveTowards(rate, *policy_[p], &kept_->averages_[p], *replica_);
+    nn::MoveTowards(rate, *policy_[p], &averages_[p], *replica_);
   }
 }
 

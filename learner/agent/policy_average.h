@@ -2,8 +2,8 @@
 // The moving average of a policy's parameters (Eq. 12 of docs/algorithm.md), which no network is
 // computed with.
 //
-// Of replicas the first keeps it, and each moves a share of it: nobody reads it before the update
-// that moved it has ended for all.
+// Replicas share its values, and each moves a share of them. Nobody reads it before the update that
+// moved it has ended for all.
 #pragma once
 
 #include <deque>
@@ -29,7 +29,7 @@ class PolicyAverage {
   // average += rate * (policy - average); running statistics are copied whole.
   void Move(float rate);
 
-  // Of the first replica; of others none. Under the policy's own names.
+  // Under the policy's own names.
   nn::TensorMap Tensors() const;
   // As "average.NAME".
   void AddTo(AgentState* state);
@@ -37,8 +37,7 @@ class PolicyAverage {
  private:
   const std::vector<nn::ParameterSet*> policy_;
   nn::Replica* const replica_;
-  std::deque<nn::ParameterSet> averages_;  // one for each set, or, but for the first replica, none
-  PolicyAverage* kept_ = nullptr;          // the first replica's, once it is needed
+  std::deque<nn::ParameterSet> averages_;  // one for each set
 };
 
 }  // namespace shoal::learner

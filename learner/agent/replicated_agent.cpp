@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <exception>
 #include <vector>
 
 #include "common/base/check.h"
@@ -15,17 +16,18 @@ namespace {
 
 class ReplicatedAgent final : public Agent {
  public:
-  ReplicatedAgent(int replicas, const MakeReplica& make) : exchange_(replicas), team_(replicas) {
+  ReplicatedAgent(const Config& config, int replicas, const MakeReplica& make)
+      : exchange_(replicas, config.learner.batch, config.replay.copies), team_(replicas) {
     for (int rank = 0; rank < replicas; ++rank) {
       replicas_.push_back(replicas == 1 ? nn::Replica() : nn::Replica(&exchange_, rank));
-      const nn::ThreadScope scope(replicas_.back().threads());  // built in the size they run in
-      agents_.push_back(make(&replicas_.back()));
+      agents_.push_back(MakeOne(rank, make));
     }
   }
 
   // Stages are the first replica's, whose thread is the caller's.
   UpdateOutcome Update(const BatchView& batch, const OnStageEnd& on_stage_end) override {
     std::vector<UpdateOutcome> outcomes(agents_.size());
+    exchange_.SetPatient(!team_.crowded());
     team_.Run([&](int rank) {
       outcomes[size_t(rank)] = agents_[size_t(rank)]->Update(
           batch, rank == 0 ? on_stage_end : [](UpdateStage) {});
@@ -47,6 +49,24 @@ class ReplicatedAgent final : public Agent {
   }
 
  private:
+  // By the thread that will run it.
+  std::unique_ptr<Agent> MakeOne(int own, const MakeReplica& make) {
+    std::unique_ptr<Agent> agent;
+    std::exception_ptr error;
+    team_.Run([&](int rank) {
+      if (rank != own) return;
+      try {
+        nn::Replica* replica = &replicas_[size_t(rank)];
+        const nn::ThreadScope scope(replica->threads());  // built in the size they run in
+        agent = make(replica);
+      } catch (...) {
+        error = std::current_exception();
+      }
+    });
+    if (error) std::rethrow_exception(error);
+    return agent;
+  }
+
   nn::Exchange exchange_;
   std::deque<nn::Replica> replicas_;
   std::vector<std::unique_ptr<Agent>> agents_;
@@ -55,8 +75,9 @@ class ReplicatedAgent final : public Agent {
 
 }  // namespace
 
-std::unique_ptr<Agent> MakeReplicatedAgent(int replicas, const MakeReplica& make) {
-  return std::make_unique<ReplicatedAgent>(replicas, make);
+std::unique_ptr<Agent> MakeReplicatedAgent(const Config& config, int replicas,
+                                           const MakeReplica& make) {
+  return std::make_unique<ReplicatedAgent>(config, replicas, make);
 }
 
 bool NormalisesOverBatch(const NetworkConfig& network, const ObservationSpec& spec) {

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An agent of N replicas (common/nn/replica.h), which is one agent to everybody else: its tensors
-// are those of the first, which alone has moments and the policy's average, and of no number of
-// replicas.
+// An agent of N replicas (common/nn/replica.h) that looks like one agent from outside: its tensors
+// are those of the first replica and do not depend on N.
 #pragma once
 
 #include <functional>
@@ -14,12 +13,15 @@
 
 namespace shoal::learner {
 
-// Makes the agent of one replica, which gets whole batches and learns from its part of them.
+// Makes the agent of one replica, which is given whole batches and learns from its rows of them.
 // Borrows the replica.
 using MakeReplica = std::function<std::unique_ptr<Agent>(nn::Replica*)>;
 
-// The same start for all: `make` may depend on nothing but its replica's rank and number.
-std::unique_ptr<Agent> MakeReplicatedAgent(int replicas, const MakeReplica& make);
+// Replicas for the batch and the copies of `config`. All start alike: `make` may depend on nothing
+// but its replica's rank and number. Each is made and run by a thread of its own, so that its
+// memory lies on the node of that thread. Throws what `make` throws.
+std::unique_ptr<Agent> MakeReplicatedAgent(const Config& config, int replicas,
+                                           const MakeReplica& make);
 
 // Whether a run's networks can be replicas: not those with batch normalisation, whose statistics
 // are of the whole batch.

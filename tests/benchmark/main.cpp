@@ -38,8 +38,9 @@ int Run(int argc, char** argv) {
   // A room at a time: what its rows hold is given back before the next.
   for (const auto make :
        {shoal::bench::ReplayPairings, shoal::bench::GatherPairings, shoal::bench::NetworkPairings,
-        shoal::bench::UpdatePairings, shoal::bench::LearnerPairings, shoal::bench::PolicyPairings,
-        shoal::bench::TransportPairings, shoal::bench::WorldPairings}) {
+        shoal::bench::UpdatePairings, shoal::bench::LearnerPairings, shoal::bench::ScalingPairings,
+        shoal::bench::PolicyPairings, shoal::bench::TransportPairings,
+        shoal::bench::WorldPairings}) {
     for (const shoal::bench::Pairing& pairing : make()) {
       if (pairing.stage.find(only) == std::string::npos) continue;
       if (!pairing.skipped.empty()) {

@@ -53,6 +53,7 @@ std::vector<Pairing> NetworkPairings();
 std::vector<Pairing> UpdatePairings();
 std::vector<Pairing> LearnerPairings();
 std::vector<Pairing> PolicyPairings();
+std::vector<Pairing> ScalingPairings();
 std::vector<Pairing> TransportPairings();
 std::vector<Pairing> WorldPairings();
 

@@ -90,9 +90,9 @@ DeterministicAgent::DeterministicAgent(const Config& config, const ObservationSp
       options_(options),
       replica_(replica),
       batch_size_(config.learner.batch),
-      rows_(replica->Rows(batch_size_)),
+      rows_(replica->RowsOf(batch_size_).count),
       action_size_(spec.action_size),
-      context_(precision, rows_, replica->threads()),
+      context_(precision, batch_size_, replica),
       encoder_(MakeEncoder(config.network, spec, Use::kTraining, context_)),
       features_(encoder_ ? &encoder_->features() : nullptr),
       actor_(PlanActor(config, spec, "actor"), features_, /*trains_encoder=*/false, Use::kTraining,
@@ -152,7 +152,7 @@ void DeterministicAgent::ComputeTargets(const BatchView& batch, Random* random,
   Encode(batch.next_obs_frames, nn::Statistics::kRunning);
   std::copy_n(target_actor_.Forward(vector).action, target_action_.size(), target_action_.begin());
   if (options_.target_noise > 0) {
-    const std::vector<double> normals = replica_->Normals(rows_, action_size_, random);
+    const std::vector<double> normals = replica_->Normals(batch_size_, action_size_, random);
     for (size_t i = 0; i < normals.size(); ++i) {
       const double noise = std::clamp(options_.target_noise * normals[i],
                                       -options_.target_noise_clip, options_.target_noise_clip);
@@ -181,12 +181,14 @@ bool DeterministicAgent::UpdateCritic(const BatchView& batch, const OnStageEnd& 
   }
   critic_.Backward(q_gradients_);
   if (encoder_) encoder_->Backward();
+  PostCriticValues(replica_, Values(critic_), targets_);
   const double squares = critic_optimiser_.GatherGradients();
-  const float loss = SetCriticFigures(replica_, Values(critic_), targets_, squares, figures);
+  const float loss = SetCriticFigures(*replica_, squares, figures);
   on_stage_end(UpdateStage::kBackward);
   if (!Usable(loss, squares)) return false;
   critic_optimiser_.Step();
   RefreshCritic();
+  replica_->Meet();
   on_stage_end(UpdateStage::kOptimiser);
   return true;
 }
@@ -208,9 +210,9 @@ bool DeterministicAgent::UpdateActor(const BatchView& batch, const OnStageEnd& o
   gradients[0].assign(size_t(rows_), -1.f / float(rows_));
   critic_.BackwardAction(gradients, action_gradient_.data());
   actor_.Backward(action_gradient_.data());
+  replica_->Post({}, {own_loss, double(saturated) / double(action_gradient_.size())});
   const double squares = actor_optimiser_.GatherGradients();
-  const std::vector<double> means =
-      replica_->Means({own_loss, double(saturated) / double(action_gradient_.size())});
+  const std::vector<double> means = replica_->Posted().means;
   const auto loss = float(means[0]);
   on_stage_end(UpdateStage::kBackward);
   figures->Set(kActorLoss, loss);
@@ -225,8 +227,8 @@ bool DeterministicAgent::UpdateActor(const BatchView& batch, const OnStageEnd& o
 
 void DeterministicAgent::MoveTargetsAndAverage() {
   if (Due(config_.learner.target_period)) {
-    nn::MoveTowards(float(config_.learner.tau), critic_, &target_critic_);
-    nn::MoveTowards(float(config_.learner.tau), actor_, &target_actor_);
+    const nn::Following targets[] = {{&critic_, &target_critic_}, {&actor_, &target_actor_}};
+    nn::MoveTowards(float(config_.learner.tau), targets, replica_);
   }
   average_.Move(float(config_.learner.average_rate));
 }
@@ -236,7 +238,7 @@ UpdateOutcome DeterministicAgent::Update(const BatchView& drawn, const OnStageEn
   const nn::ThreadScope scope(context_.threads);
   UpdateOutcome outcome{.figures = {}, .finite = AllFinite(drawn)};
   if (!outcome.finite) return outcome;
-  const BatchView batch = PartOf(standard_.Seen(drawn), replica_->rank(), replica_->count());
+  const BatchView batch = PartOf(standard_.Seen(drawn), replica_->RowsOf(batch_size_));
   Random random(StreamKey(uint64_t(config_.seed), StreamRole::kLearnerUpdate, updates_));
   const double rate_factor = config_.learner.rate_factor.At(drawn.stored_steps);
   critic_optimiser_.set_rate_factor(rate_factor);

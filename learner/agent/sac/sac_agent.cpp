@@ -106,7 +106,7 @@ SacAgent::SacAgent(const Config& config, const ObservationSpec& spec, nn::Precis
     : config_(config),
       replica_(replica),
       batch_size_(config.learner.batch),
-      rows_(replica->Rows(batch_size_)),
+      rows_(replica->RowsOf(batch_size_).count),
       action_size_(spec.action_size),
       target_entropy_(TargetEntropy(config.learner, spec.action_size)),
       bounds_(ValueBoundsOf(config.learner)),
@@ -126,7 +126,7 @@ SacAgent::SacAgent(const Config& config, const ObservationSpec& spec, nn::Precis
 }
 
 void SacAgent::Draw(const float* mean, const float* log_std, Random* random) {
-  const std::vector<double> normals = replica_->Normals(rows_, action_size_, random);
+  const std::vector<double> normals = replica_->Normals(batch_size_, action_size_, random);
   const std::vector<float> noise(normals.begin(), normals.end());
   gaussian_.Transform(mean, log_std, noise.data());
 }
@@ -162,8 +162,9 @@ bool SacAgent::UpdateCritic(const Seen& seen, const OnStageEnd& on_stage_end,
   CriticLossBackward(rows_, q0, targets_.data(), q_gradients_[0].data());
   CriticLossBackward(rows_, q1, targets_.data(), q_gradients_[1].data());
   if (networks_.Aux(SacNetworks::Head::kCritic)) ForwardBackwardAux(seen, figures);
+  PostCriticValues(replica_, std::array{q0, q1}, targets_);
   const double squares = networks_.BackwardCritic(q_gradients_);
-  const float loss = SetCriticFigures(replica_, std::array{q0, q1}, targets_, squares, figures);
+  const float loss = SetCriticFigures(*replica_, squares, figures);
   on_stage_end(UpdateStage::kBackward);
   if (!Usable(loss, squares)) return false;
   networks_.StepCritic();
@@ -186,9 +187,9 @@ bool SacAgent::UpdateActor(const Seen& seen, float temperature, Random* random,
   gaussian_.Backward(action_gradient_.data(), temperature / float(rows_), mean_gradient_.data(),
                      log_std_gradient_.data());
   if (networks_.Aux(SacNetworks::Head::kActor)) ForwardBackwardAux(seen, figures);
+  replica_->Post({}, {own_loss, gaussian_.Entropy(), gaussian_.Saturation()});
   const double squares = networks_.BackwardActor(mean_gradient_.data(), log_std_gradient_.data());
-  const std::vector<double> means =
-      replica_->Means({own_loss, gaussian_.Entropy(), gaussian_.Saturation()});
+  const std::vector<double> means = replica_->Posted().means;
   on_stage_end(UpdateStage::kBackward);
   const auto loss = float(means[0]), entropy = float(means[1]);
   const float temperature_loss = TemperatureLoss(temperature, entropy, target_entropy_);
@@ -211,9 +212,9 @@ UpdateOutcome SacAgent::Update(const BatchView& drawn, const OnStageEnd& on_stag
   const nn::ThreadScope scope(threads_);
   UpdateOutcome outcome{.figures = {}, .finite = AllFinite(drawn)};
   if (!outcome.finite) return outcome;
-  const int rank = replica_->rank(), count = replica_->count();
-  const BatchView batch = PartOf(standard_.Seen(drawn), rank, count);
-  const Seen seen{PartOf(drawn, rank, count), batch, critic_vectors_.Of(batch)};
+  const nn::Replica::Rows rows = replica_->RowsOf(batch_size_);
+  const BatchView batch = PartOf(standard_.Seen(drawn), rows);
+  const Seen seen{PartOf(drawn, rows), batch, critic_vectors_.Of(batch)};
 
   Random random(StreamKey(uint64_t(config_.seed), StreamRole::kLearnerUpdate, updates_));
   networks_.SetRateFactor(config_.learner.rate_factor.At(drawn.stored_steps));

@@ -34,7 +34,8 @@ nn::HeadPlan CriticPlan(const Config& config, const ObservationSpec& spec, const
 
 SacNetworks::SacNetworks(const Config& config, const ObservationSpec& spec, nn::Precision precision,
                          nn::Replica* replica)
-    : context_(precision, replica->Rows(config.learner.batch), replica->threads()),
+    : replica_(replica),
+      context_(precision, config.learner.batch, replica),
       asymmetric_(bool(config.learner.critic_blocks)),
       encoder_(MakeEncoder(config.network, spec, Module::Use::kTraining, context_)),
       critic_encoder_(Separate(config) ? MakeEncoder(config.network, spec, Module::Use::kTraining,
@@ -162,6 +163,7 @@ void SacNetworks::SetRateFactor(double factor) {
 void SacNetworks::StepCritic() {
   critic_optimiser_.Step();
   RefreshCritic();
+  replica_->Meet();
 }
 
 void SacNetworks::UndoStepCritic() {
@@ -186,8 +188,9 @@ void SacNetworks::StepTemperature(float gradient, double least) {
 }
 
 void SacNetworks::MoveTarget(float tau) {
-  nn::MoveTowards(tau, critic_, &target_);
-  if (target_encoder_) nn::MoveTowards(tau, *CriticEncoder(), target_encoder_.get());
+  std::vector<nn::Following> targets{{&critic_, &target_}};
+  if (target_encoder_) targets.push_back({CriticEncoder(), target_encoder_.get()});
+  nn::MoveTowards(tau, targets, replica_);
 }
 
 nn::TensorMap SacNetworks::PolicyTensors() const {

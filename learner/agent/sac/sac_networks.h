@@ -95,7 +95,8 @@ class SacNetworks {
   // On the learning rates of all parts, for the steps from now on.
   void SetRateFactor(double factor);
   double CriticRate() const { return critic_optimiser_.rate(); }
-  // One optimiser step with the latest gradients. Features stay those of before.
+  // One optimiser step with the latest gradients. Features stay those of before. Replicas meet
+  // after the critic's, which the actor's loss uses; those that follow are used in the next update.
   void StepCritic();
   // Takes the latest StepCritic back exactly.
   void UndoStepCritic();
@@ -122,6 +123,7 @@ class SacNetworks {
   std::vector<nn::ParameterSet*> ActorSets();
   void RefreshCritic();
 
+  nn::Replica* const replica_;
   const nn::ModuleContext context_;
   const bool asymmetric_;  // the critic sees no pixels
   // Null without pixels: the policy's, which is the critic's, too, unless that has its own.

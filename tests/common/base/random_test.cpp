@@ -30,6 +30,13 @@ TEST(Random, StateRestoresTheStream) {
   EXPECT_EQ(b.Next(), next);
 }
 
+TEST(Random, SkippingANormalLeavesTheStreamWhereDrawingItDoes) {
+  Random drawn(7), skipped(7);
+  drawn.Normal();
+  skipped.SkipNormal();
+  EXPECT_EQ(skipped.state(), drawn.state());
+}
+
 // Streams are part of the files' meaning: a change would silently change every seed.
 TEST(Random, StreamsAreStable) {
   EXPECT_EQ(HashWords({1, 2, 3}), 11729535726472988794ULL);

@@ -133,13 +133,32 @@ TEST(Adam, StepsSeveralSetsAsItWouldOne) {
     alone.Step();
     both.Step();
   }
-  EXPECT_DOUBLE_EQ(both.GatherGradients(), 2 * alone.GatherGradients());
   EXPECT_EQ(WeightsOf(a), WeightsOf(one));
   EXPECT_EQ(std::vector<float>(b.values(), b.values() + kSize), WeightsOf(one));
   both.Undo();
   EXPECT_EQ(both.steps(), 1u);
   EXPECT_EQ(std::vector<float>(b.values(), b.values() + kSize), WeightsOf(a));
   EXPECT_NE(WeightsOf(a), WeightsOf(one));
+  EXPECT_DOUBLE_EQ(both.GatherGradients(), 2 * alone.GatherGradients());
+}
+
+// Replicas meet once for the gradients and the step.
+TEST(Adam, GatheringGradientsChangesNothingBeforeTheStep) {
+  ParameterSet set({{"w", {kSize}}}, ParameterSet::Use::kTraining);
+  Adam adam({&set}, {.rate = kRate});
+  FillGradient(set, 1);
+  adam.Step();
+  const std::vector<float> before = WeightsOf(set);
+  TensorMap moments, same;
+  adam.Export("g", &moments);
+  FillGradient(set, 2);
+  adam.GatherGradients();
+  EXPECT_EQ(WeightsOf(set), before);
+  adam.Export("g", &same);
+  for (const auto& [name, tensor] : moments) EXPECT_EQ(same.at(name).data, tensor.data) << name;
+  adam.Step();
+  EXPECT_NE(WeightsOf(set), before);
+  EXPECT_EQ(adam.steps(), 2u);
 }
 
 TEST(Adam, EpsilonAndRateAreThoseAskedFor) {

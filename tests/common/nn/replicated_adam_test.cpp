@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <deque>
 #include <memory>
-#include <mutex>
 #include <vector>
 
 #include "common/base/random.h"
@@ -17,21 +16,23 @@ namespace {
 
 constexpr double kRate = 0.01;
 constexpr int64_t kSize = 10'007;  // several blocks of work and a remainder
+constexpr int kRowsOfAll = 11;     // of a batch: not the same number for each replica
 
 std::vector<float> ValuesOf(const ParameterSet& set) {
   return {set.values(), set.values() + set.size()};
 }
 
-// Optimisers of replicas side by side, each of two sets of its own, and one alone that gets the
-// mean of their gradients. The first set is smaller than what there is to share out.
+// Optimisers of replicas side by side, each of two sets whose values all share, and one alone that
+// gets the mean of their gradients. The first set is smaller than what there is to share out.
 class ReplicatedAdamTest : public testing::TestWithParam<int> {
  protected:
   struct Optimised {
     explicit Optimised(const Adam::Options& options, Replica* replica = nullptr)
-        : adam({&small, &large}, options, replica) {}
+        : small({{"s", {3}}}, ParameterSet::Use::kTraining, replica),
+          large({{"w", {kSize}}}, ParameterSet::Use::kTraining, replica),
+          adam({&small, &large}, options, replica) {}
 
-    ParameterSet small{{{"s", {3}}}, ParameterSet::Use::kTraining};
-    ParameterSet large{{{"w", {kSize}}}, ParameterSet::Use::kTraining};
+    ParameterSet small, large;
     Adam adam;
   };
 
@@ -42,21 +43,55 @@ class ReplicatedAdamTest : public testing::TestWithParam<int> {
     }
   }
 
-  // Other gradients for every rank; their mean, in the order of ranks, for the one alone.
+  // Other gradients for every rank.
   void SetGradients(uint64_t key) {
     Random random(key);
-    for (const auto set : {&Optimised::small, &Optimised::large}) {
-      ParameterSet& mean = alone_.*set;
-      for (int64_t i = 0; i < mean.trained_size(); ++i) {
-        float sum = 0;
-        for (const auto& own : of_rank_) {
-          const auto value = float(random.Normal());
-          ((*own).*set).gradients()[i] = value;
-          sum += value;
+    for (const auto& own : of_rank_) {
+      for (const auto set : {&Optimised::small, &Optimised::large}) {
+        for (int64_t i = 0; i < (*own.*set).trained_size(); ++i) {
+          (*own.*set).gradients()[i] = float(random.Normal());
         }
-        mean.gradients()[i] = sum * (1.f / float(GetParam()));
       }
     }
+  }
+
+  // A step of all, and one of the one alone by the gradients that each rank averaged in its share.
+  void Step() {
+    std::vector<double> squares(of_rank_.size());
+    const std::vector<std::vector<double>> means = {MeanOverRows(&Optimised::small),
+                                                    MeanOverRows(&Optimised::large)};
+    team_.Run(
+        [&](int rank) { squares[size_t(rank)] = of_rank_[size_t(rank)]->adam.GatherGradients(); });
+    TakeShares(&Optimised::small, means[0]);
+    TakeShares(&Optimised::large, means[1]);
+    Run([](Adam* adam) { adam->Step(); });
+    const double expected = alone_.adam.GatherGradients();
+    alone_.adam.Step();
+    for (const double own : squares) {
+      EXPECT_EQ(own, squares[0]);
+      EXPECT_NEAR(own / expected, 1, 1e-9);
+    }
+  }
+
+  std::vector<double> MeanOverRows(ParameterSet Optimised::*set) {
+    std::vector<double> mean(size_t((alone_.*set).trained_size()));
+    for (size_t r = 0; r < of_rank_.size(); ++r) {
+      const double weight = double(replicas_[r].RowsOf(kRowsOfAll).count) / kRowsOfAll;
+      for (size_t i = 0; i < mean.size(); ++i) {
+        mean[i] += weight * (*of_rank_[r].*set).gradients()[i];
+      }
+    }
+    return mean;
+  }
+
+  void TakeShares(ParameterSet Optimised::*set, const std::vector<double>& mean) {
+    float* gradients = (alone_.*set).gradients();
+    for (size_t r = 0; r < of_rank_.size(); ++r) {
+      const auto [begin, end] = replicas_[r].ShareOf(int64_t(mean.size()));
+      std::copy(&(*of_rank_[r].*set).gradients()[begin], &(*of_rank_[r].*set).gradients()[end],
+                gradients + begin);
+    }
+    for (size_t i = 0; i < mean.size(); ++i) EXPECT_NEAR(gradients[i], mean[i], 1e-6) << i;
   }
 
   template <class Body>
@@ -76,7 +111,7 @@ class ReplicatedAdamTest : public testing::TestWithParam<int> {
   }
 
   const Adam::Options options_{.rate = kRate, .max_norm = 1e6};
-  Exchange exchange_{GetParam()};
+  Exchange exchange_{GetParam(), kRowsOfAll};
   Team team_{GetParam()};
   std::deque<Replica> replicas_;
   std::vector<std::unique_ptr<Optimised>> of_rank_;
@@ -86,43 +121,36 @@ class ReplicatedAdamTest : public testing::TestWithParam<int> {
 TEST_P(ReplicatedAdamTest, TakesTheStepsOfOneWithTheMeanOfTheGradients) {
   for (uint64_t t = 1; t <= 3; ++t) {
     SetGradients(t);
-    std::vector<double> squares;
-    std::mutex mutex;
-    Run([&](Adam* adam) {
-      const double own = adam->GatherGradients();
-      adam->Step();
-      const std::scoped_lock lock(mutex);
-      squares.push_back(own);
-    });
-    const double expected = alone_.adam.GatherGradients();
-    alone_.adam.Step();
-    for (const double own : squares) {
-      EXPECT_EQ(own, squares[0]);
-      EXPECT_NEAR(own / expected, 1, 1e-9);
-    }
+    Step();
     ExpectAllEqualAlone();
   }
 }
 
 TEST_P(ReplicatedAdamTest, UndoesAndIsRestoredLikeOne) {
   SetGradients(1);
-  Run([](Adam* adam) { adam->Step(); });
-  alone_.adam.Step();
-  SetGradients(2);
-  Run([](Adam* adam) { adam->Step(); });
-  Run([](Adam* adam) { adam->Undo(); });
-  ExpectAllEqualAlone();
+  Step();
   TensorMap tensors;
   alone_.adam.Export("g", &tensors);
-  Run([](Adam* adam) { adam->Step(); });  // elsewhere
+  const std::vector<float> small = ValuesOf(alone_.small), large = ValuesOf(alone_.large);
+  SetGradients(2);
+  Step();
+  Run([](Adam* adam) { adam->Undo(); });
+  alone_.adam.Undo();
+  ExpectAllEqualAlone();
+  EXPECT_EQ(ValuesOf(alone_.large), large);
+  SetGradients(3);
+  Step();  // elsewhere
   for (const auto& own : of_rank_) {
     own->adam.Import(tensors, "g", "test");
-    CopyParameters(alone_.small, &own->small);
-    CopyParameters(alone_.large, &own->large);
+    std::ranges::copy(small, own->small.values());
+    std::ranges::copy(large, own->large.values());
   }
-  SetGradients(3);
-  Run([](Adam* adam) { adam->Step(); });
-  alone_.adam.Step();
+  alone_.adam.Import(tensors, "g", "test");
+  std::ranges::copy(small, alone_.small.values());
+  std::ranges::copy(large, alone_.large.values());
+  ExpectAllEqualAlone();
+  SetGradients(4);
+  Step();
   ExpectAllEqualAlone();
 }
 
@@ -134,7 +162,10 @@ TEST_P(ReplicatedAdamTest, ClipsTheNormOfTheMean) {
     clipped.emplace_back(Adam::Options{.rate = kRate, .epsilon = 1, .max_norm = norm}, &replica);
     std::fill_n(clipped.back().large.gradients(), kSize, float(replica.rank()));
   }
-  std::fill_n(alone.large.gradients(), kSize, float(GetParam() - 1) / 2);
+  double mean = 0;
+  for (const Replica& replica : replicas_)
+    mean += replica.WeightOf(replica.rank()) * replica.rank();
+  std::fill_n(alone.large.gradients(), kSize, float(mean));
   team_.Run([&](int rank) { clipped[size_t(rank)].adam.Step(); });
   alone.adam.Step();
   for (Optimised& own : clipped) {

@@ -43,7 +43,7 @@ class PolicyAverageTest : public testing::TestWithParam<int> {
     }
   }
 
-  nn::Exchange exchange_{GetParam()};
+  nn::Exchange exchange_{GetParam(), GetParam()};
   nn::Team team_{GetParam()};
   std::deque<nn::Replica> replicas_;
   std::vector<std::unique_ptr<Averaged>> of_rank_;
@@ -51,7 +51,7 @@ class PolicyAverageTest : public testing::TestWithParam<int> {
   Averaged alone_{&only_};
 };
 
-TEST_P(PolicyAverageTest, IsThatOfOneAloneAndKeptByTheFirst) {
+TEST_P(PolicyAverageTest, IsThatOfOneAloneInEachReplica) {
   Fill(1, &alone_);
   alone_.average.Copy();
   for (const auto& own : of_rank_) {
@@ -68,7 +68,7 @@ TEST_P(PolicyAverageTest, IsThatOfOneAloneAndKeptByTheFirst) {
   ASSERT_EQ(expected.size(), 2u);
   for (size_t rank = 0; rank < of_rank_.size(); ++rank) {
     const nn::TensorMap kept = of_rank_[rank]->average.Tensors();
-    ASSERT_EQ(kept.size(), rank == 0 ? 2u : 0u);
+    ASSERT_EQ(kept.size(), 2u);
     for (const auto& [name, tensor] : kept) {
       EXPECT_EQ(tensor.data, expected.at(name).data) << name << ": bit for bit";
     }
