@@ -38,7 +38,8 @@ int DrawSheet(const worlds::ContactSheetRequest& request, const std::string& png
   return 0;
 }
 
-int ReplayFiles(const std::vector<std::string>& files, const worlds::ReplayOptions& options, bool json) {
+int ReplayFiles(const std::vector<std::string>& files, const worlds::ReplayOptions& options,
+                bool json) {
   bool passed = true;
   nlohmann::ordered_json reports = nlohmann::ordered_json::array();
   for (const std::string& file : files) {
