@@ -12,6 +12,7 @@
 #include "common/base/files.h"
 #include "common/base/log.h"
 #include "common/config/config_io.h"
+#include "common/config/run_files.h"
 #include "common/run_folder/run_file_names.h"
 
 namespace shoal::learner {
@@ -88,6 +89,8 @@ void CheckpointStore::WriteKept(const std::set<std::string>& wanted) {
     while (!unwritten_.empty()) {
       const Unwritten& next = unwritten_.front();
       WriteCheckpoint(folder_, next.state, next.learner, next.policy, run_, Meta(next.state));
+      // A copy of the folder can be evaluated and filmed without its run.
+      WriteRunConfig(folder_ / CheckpointName(next.state.updates), run_);
       unwritten_.pop_front();
     }
     Prune(wanted);

@@ -221,13 +221,30 @@ ordered_json EvaluationJson(const RunConfig& run, const EvaluationLabel& label,
   return ToJson(MakeEvaluation(run, label, stream, episodes));
 }
 
+namespace {
+
+// A card (shoal card) has the policy alone.
+CheckpointFiles FilesToActBy(const std::filesystem::path& checkpoint, uint64_t spec_hash) {
+  if (std::filesystem::exists(checkpoint / kLearnerFile)) {
+    return ReadCheckpointFiles(checkpoint, spec_hash);
+  }
+  CheckpointFiles files = ReadPolicyFiles(checkpoint);
+  if (files.state.spec_hash != spec_hash) {
+    throw RuntimeError("'{}' is of another observation spec than the config.json beside it",
+                       checkpoint.string());
+  }
+  return files;
+}
+
+}  // namespace
+
 ordered_json EvaluateCheckpoint(const std::filesystem::path& run_folder,
                                 const std::filesystem::path& checkpoint,
                                 const CheckpointEvaluation& evaluation) {
   const RunConfig trained = ReadRunConfig(run_folder);
   RunConfig run = evaluation.task.empty() ? trained : WithTask(trained, evaluation.task);
   if (evaluation.frames) run.config.eval.envs = 1;
-  CheckpointFiles files = ReadCheckpointFiles(checkpoint, trained.spec.Hash());
+  CheckpointFiles files = FilesToActBy(checkpoint, trained.spec.Hash());
   const EvaluationLabel label{.policy = "checkpoint",
                               .checkpoint = checkpoint.filename().string(),
                               .version = {files.state.learner_session, files.state.updates},

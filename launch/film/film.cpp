@@ -120,7 +120,7 @@ std::optional<FilmMade> MakeFilm(const FilmOrder& order, const std::function<boo
   FilmReel reel(run.spec, order.output);
   std::vector<CheckpointStrip> strips;
   for (const fs::path& checkpoint : order.checkpoints) {
-    const CheckpointState state = ReadCheckpointFiles(checkpoint, run.spec.Hash()).state;
+    const CheckpointState state = ReadPolicyFiles(checkpoint).state;
     const std::string label = LabelOf(checkpoint, state);
     say(fmt::format("filming {} episodes of {}", order.episodes, label));
     FilmStrip strip;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "common/base/error.h"
+#include "common/checkpoint/checkpoint_files.h"
 #include "common/run_folder/run_file_names.h"
 #include "launch/record/run_folder.h"
 
@@ -53,6 +54,12 @@ NamedCheckpoint OfRun(const fs::path& run, const std::string& name) {
                    names.empty() ? "none yet" : fmt::format("{}", fmt::join(names, ", ")));
 }
 
+// A copied checkpoint or a card: its own config.json says what its run was.
+NamedCheckpoint OutsideOfRuns(const fs::path& folder) {
+  const bool has_run = fs::exists(folder / kConfigFile) && fs::exists(folder / kStateFile);
+  return {has_run ? folder : fs::path(), folder};
+}
+
 }  // namespace
 
 NamedCheckpoint FindCheckpoint(const CheckpointWords& words) {
@@ -71,7 +78,7 @@ NamedCheckpoint FindCheckpoint(const CheckpointWords& words) {
       if (IsRun(run)) return {run, path};
     }
   }
-  if (IsFolder(asked)) return {{}, Absolute(asked)};
+  if (IsFolder(asked)) return OutsideOfRuns(Absolute(asked));
   return Judged(FindNamed(asked, runs));  // which says where it looked
 }
 

@@ -90,7 +90,8 @@ fs::path FindNamed(const std::string& name_or_folder, std::span<const NamedKind>
                    fmt::join(files, " or "), fmt::join(looked_at, ", "));
 }
 
-bool IsRun(const fs::path& folder) { return Has(folder, kConfigFile); }
+// Checkpoints have the configuration of their run, too.
+bool IsRun(const fs::path& folder) { return Has(folder, kConfigFile) && !Has(folder, kStateFile); }
 
 bool IsForbidden(const fs::path& folder) { return IsForbiddenFile(folder / kConfigFile); }
 

@@ -77,9 +77,12 @@ std::string Readme(const RunResults& run, bool film) {
                                 : "-");
   text += fmt::format(
       "Deterministic actions, fresh episodes. Files: `results.json` (the figures above), `{}` "
-      "(every key of the run), `{}` (the policy's parameters)",
-      kConfigFile, kPolicyFile);
+      "(every key of the run), `{}` (the policy's parameters), `{}` and `{}` (what acting by them "
+      "needs)",
+      kConfigFile, kPolicyFile, kDescriptionFile, kStateFile);
   text += film ? ", `replay.mp4`.\n" : ".\n";
+  text +=
+      "\nTo play it: `shoal eval FOLDER`, `shoal film FOLDER` or `shoal_rl.Policy(\"FOLDER\")`.\n";
   return text + fmt::format("\nTo train it again: `{}`.\n", TrainAgain(kConfigFile, run.name));
 }
 
@@ -106,7 +109,9 @@ void WriteCard(const fs::path& run_folder, const fs::path& folder) {
     WriteFileForOthers(fresh / "README.md", Readme(run, !films.empty()));
     WriteFileForOthers(fresh / "results.json", ResultsJson(run).dump(2) + "\n");
     WriteFileForOthers(fresh / kConfigFile, ReadFile(run_folder / kConfigFile));
-    WriteFileForOthers(fresh / kPolicyFile, ReadFile(checkpoint / kPolicyFile));
+    for (const char* file : {kPolicyFile, kDescriptionFile, kStateFile}) {
+      WriteFileForOthers(fresh / file, ReadFile(checkpoint / file));
+    }
     if (!films.empty()) WriteFileForOthers(fresh / "replay.mp4", ReadFile(films[0]));
     fs::rename(fresh, target, error);
     if (error) throw RuntimeError("cannot write '{}': {}", target.string(), error.message());

@@ -124,6 +124,14 @@ TEST(PrintedCommands, ThoseOfARunsEndWork) {
   const std::vector<std::string> commands = CommandsOf(trained.out + trained.err);
   EXPECT_EQ(commands.size(), 3u) << "plot, report, film\n" << trained.out << trained.err;
   ExpectAllWork(commands);
+  // A checkpoint that is copied away and a card can act without the run.
+  const std::string path = run.path().string();
+  ExpectAllWork({"cp -r " + path + "/checkpoints/best ck && mv " + path + " " + path + "-away && " +
+                     "shoal eval ck --episodes 2 && shoal film ck --episodes 1 && " +
+                     "shoal export ck --onnx policy.onnx; status=$?; mv " + path + "-away " + path +
+                     "; exit $status",
+                 "shoal card " + path + " --output card && shoal eval card --episodes 2 && " +
+                     "shoal film card --episodes 1"});
 }
 
 }  // namespace

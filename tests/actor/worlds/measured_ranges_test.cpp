@@ -22,7 +22,7 @@ tasks::Task Made() {
   return tasks::Task(task);
 }
 
-std::vector<std::string> Names(const std::vector<ConstantNumber>& constant) {
+std::vector<std::string> NamesOf(const std::vector<ConstantNumber>& constant) {
   std::vector<std::string> names;
   for (const ConstantNumber& number : constant) names.push_back(number.block + "." + number.name);
   return names;
@@ -45,10 +45,10 @@ TEST(ConstantNumbers, AreThoseThatNeverChanged) {
   meter.OnReset(std::array{1.f, 0.f, 5.f, 2.f});
   EXPECT_TRUE(ConstantNumbers(task, meter).empty()) << "one observation says nothing";
   meter.OnStep(std::array{2.f, 0.f, 6.f, 2.f});
-  EXPECT_THAT(Names(ConstantNumbers(task, meter)), ElementsAre("position.y"))
+  EXPECT_THAT(NamesOf(ConstantNumbers(task, meter)), ElementsAre("position.y"))
       << "a desired goal stays within its episode";
   meter.OnReset(std::array{1.f, 0.f, 5.f, 2.f});
-  EXPECT_THAT(Names(ConstantNumbers(task, meter)), ElementsAre("position.y", "desired_goal.x"));
+  EXPECT_THAT(NamesOf(ConstantNumbers(task, meter)), ElementsAre("position.y", "desired_goal.x"));
   meter.OnReset(std::array{1.f, 0.5f, 5.f, 3.f});
   EXPECT_TRUE(ConstantNumbers(task, meter).empty());
 }
