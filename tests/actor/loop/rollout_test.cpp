@@ -418,8 +418,8 @@ TEST_F(FaultyRolloutTest, WhateverIsFaultyEveryVectorStepHasOneStepOfEachEnviron
   // A fifth of the episodes, at any step or at the reset.
   Start(
       [](uint64_t key, int step) { return key % 5 == 0 && step == static_cast<int>(key / 5 % 4); });
-  constexpr int kSteps = 200;
-  for (int i = 1; i <= kSteps; ++i) {
+  constexpr int kManySteps = 200;
+  for (int i = 1; i <= kManySteps; ++i) {
     ASSERT_TRUE(rollout_->TryStep());
     ASSERT_EQ(rollout_->vector_steps(), i);
   }
@@ -438,7 +438,7 @@ TEST_F(FaultyRolloutTest, WhateverIsFaultyEveryVectorStepHasOneStepOfEachEnviron
       }
       last = played[i];
     }
-    EXPECT_EQ(steps, size_t{kSteps}) << env;
+    EXPECT_EQ(steps, size_t{kManySteps}) << env;
   }
 }
 

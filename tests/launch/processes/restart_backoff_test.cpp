@@ -13,7 +13,7 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 using ::testing::ElementsAre;
 
-constexpr BackoffLimits kLimits{.first_delay = milliseconds(100),
+constexpr BackoffLimits kBackoff{.first_delay = milliseconds(100),
                                 .longest_delay = milliseconds(1000),
                                 .window = seconds(60),
                                 .healthy = seconds(600)};
@@ -25,7 +25,7 @@ std::vector<int64_t> Delays(RestartBackoff* backoff, const std::vector<milliseco
 }
 
 TEST(RestartBackoff, DoublesTheDelayUpToTheLongestAndNeverGivesUp) {
-  RestartBackoff backoff(kLimits);
+  RestartBackoff backoff(kBackoff);
   EXPECT_THAT(Delays(&backoff, std::vector<milliseconds>(6)),
               ElementsAre(100, 200, 400, 800, 1000, 1000));
   for (int i = 0; i < 10'000; ++i) EXPECT_EQ(backoff.OnDeath({}).delay, seconds(1));
@@ -39,14 +39,14 @@ TEST(RestartBackoff, ByDefaultWaitsUpToAMinute) {
 
 // Four deaths lie within a minute of work, whatever the time between them.
 TEST(RestartBackoff, CountsTheDeathsOfTheLastMinuteOfWork) {
-  RestartBackoff backoff(kLimits);
+  RestartBackoff backoff(kBackoff);
   EXPECT_THAT(Delays(&backoff, std::vector<milliseconds>(8, seconds(20))),
               ElementsAre(100, 200, 400, 800, 800, 800, 800, 800));
   EXPECT_EQ(backoff.OnDeath(seconds(61)).delay, milliseconds(100));
 }
 
 TEST(RestartBackoff, AnnouncesTheFirstDeathAndEachDoubling) {
-  RestartBackoff backoff(kLimits);
+  RestartBackoff backoff(kBackoff);
   std::vector<int> announced;
   for (int i = 0; i < 100; ++i) {
     const RestartBackoff::Restart restart = backoff.OnDeath(seconds(100));
@@ -57,7 +57,7 @@ TEST(RestartBackoff, AnnouncesTheFirstDeathAndEachDoubling) {
 }
 
 TEST(RestartBackoff, CountsAnewAfterALongTimeOfWork) {
-  RestartBackoff backoff(kLimits);
+  RestartBackoff backoff(kBackoff);
   for (int i = 0; i < 5; ++i) backoff.OnDeath({});
   EXPECT_EQ(backoff.OnDeath(seconds(599)).deaths, 6);
   const RestartBackoff::Restart restart = backoff.OnDeath(seconds(600));

@@ -94,7 +94,7 @@ TEST_F(NewProject, BuildsAndTrainsAgainstTheInstallation) {
 
 // As in a clone, where nothing is installed: the printed command line is run as it is.
 TEST_F(NewProject, ItsPrintedCommandsBuildAgainstTheBuildFolder) {
-  const std::string shoal = ProgramPath("shoal").string();
+  const std::string shoal = ProgramPath("shoal");
   const ProgramResult made = RunIn(Folder(), shoal + " new 'my robot'");
   Expect(made);
   const std::string next = made.out.substr(made.out.find("next: ") + 6);

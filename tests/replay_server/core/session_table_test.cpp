@@ -38,7 +38,7 @@ TEST_F(SessionTableTest, CountersOutliveTheTable) {
 
 TEST_F(SessionTableTest, WhatAFormerServerStoredOrDiscardedIsLost) {
   SessionTable table(storage_);
-  table.Inherit(
+  table.TakeOver(
       {.sessions = {{.actor = 1, .session = 7, .highest = 20, .lost = 3, .discarded = 5}}});
   const SessionCounters& counters = table.at(*table.Find(1, 7));
   EXPECT_EQ(counters.lost, 20u);
