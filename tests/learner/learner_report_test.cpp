@@ -37,7 +37,7 @@ TEST(LearnerReport, FramesAreThoseOfTheFirstOfSixteenUpdatesOfAReport) {
   double expected = 0;
   for (uint64_t update = 0; update < 17; ++update) {
     for (size_t i = 0; i < batch.view.obs_frames.size(); ++i) {
-      batch.view.obs_frames[i] = uint8_t(i % 2 == 0 ? 0 : 10 * update + 2);
+      batch.view.obs_frames[i] = uint8_t(i % 2 == 0 ? 0 : update * update / 2);
     }
     if (update % 16 == 0) expected += SpreadOf(batch.view, run.spec) / 2;
     report.OnUpdate({}, batch, update);
