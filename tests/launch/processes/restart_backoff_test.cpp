@@ -14,9 +14,9 @@ using std::chrono::seconds;
 using ::testing::ElementsAre;
 
 constexpr BackoffLimits kBackoff{.first_delay = milliseconds(100),
-                                .longest_delay = milliseconds(1000),
-                                .window = seconds(60),
-                                .healthy = seconds(600)};
+                                 .longest_delay = milliseconds(1000),
+                                 .window = seconds(60),
+                                 .healthy = seconds(600)};
 
 std::vector<int64_t> Delays(RestartBackoff* backoff, const std::vector<milliseconds>& lives) {
   std::vector<int64_t> delays;
