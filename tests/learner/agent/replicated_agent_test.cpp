@@ -139,7 +139,7 @@ const Case kCases[] = {
     // Layouts of weights that several replicas write.
     {"sac_wide",
      [](Config* config) {
-       config->network.hidden = {256, 256};
+       config->network.hidden = {64, 256};
      }},
     {"sac_clipped", [](Config* config) { config->learner.max_grad_norm = 0.1; }},
     {"td3", [](Config* config) { config->learner.algorithm = "td3"; }},
