@@ -55,7 +55,7 @@ const std::vector<Names>& Table() {
        {"target_update_interval", "target_network_frequency", "critic_target_update_freq"}},
       {"learner.initial_temperature",
        {"ent_coef", "alpha", "entropy_coef"},
-       "with learner.temperature = auto or fixed; of ppo it is ppo.entropy_weight"},
+       "with learner.temperature = auto or fixed; on policy it is ppo.entropy_weight"},
       {"learner.initial_temperature", {"init_temperature", "init_alpha"}},
       {"learner.normalise_vectors",
        {"normalize", "normalise", "norm_obs", "normalize_observations"}},

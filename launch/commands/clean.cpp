@@ -72,7 +72,7 @@ std::vector<Replay> NamedReplays(const CleanOptions& options) {
   return found;
 }
 
-void Print(const std::vector<Replay>& replays) {
+void PrintReplays(const std::vector<Replay>& replays) {
   for (const Replay& replay : replays) {
     std::cout << "  " << (replay.run / kRingFile).string() << "  " << FormatBytes(replay.bytes)
               << "  of a run that is " << ToString(replay.status)
@@ -113,7 +113,7 @@ int Clean(const CleanOptions& options) {
   }
   uint64_t bytes = 0;
   for (const Replay& replay : replays) bytes += replay.bytes;
-  Print(replays);
+  PrintReplays(replays);
   if (!options.yes && !Agreed(replays.size(), bytes)) {
     std::cout << "nothing was removed\n";
     return 0;

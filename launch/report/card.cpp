@@ -110,7 +110,10 @@ void WriteCard(const fs::path& run_folder, const fs::path& folder) {
     WriteFileForOthers(fresh / "results.json", ResultsJson(run).dump(2) + "\n");
     WriteFileForOthers(fresh / kConfigFile, ReadFile(run_folder / kConfigFile));
     for (const char* file : {kPolicyFile, kDescriptionFile, kStateFile}) {
-      WriteFileForOthers(fresh / file, ReadFile(checkpoint / file));
+      // Checkpoints of older builds have no policy.json.
+      if (fs::exists(checkpoint / file)) {
+        WriteFileForOthers(fresh / file, ReadFile(checkpoint / file));
+      }
     }
     if (!films.empty()) WriteFileForOthers(fresh / "replay.mp4", ReadFile(films[0]));
     fs::rename(fresh, target, error);

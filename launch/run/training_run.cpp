@@ -181,6 +181,21 @@ RunConfig ReadConfigToGoOn(const std::filesystem::path& run) {
   return config;
 }
 
+// Refuses a checkpoint of another network, which the learner would find with every process running.
+// A damaged checkpoint, or one of another version, is the learner's to refuse: it may take an older
+// one.
+void CheckResumedCheckpoint(const std::filesystem::path& run, const Config& config) {
+  const std::filesystem::path folder = NewestCheckpoint(run);
+  if (folder.empty()) return;
+  CheckpointFiles files;
+  try {
+    files = ReadPolicyFiles(folder);
+  } catch (const Error&) {
+    return;
+  }
+  policy::CheckWriter(folder, files.state, files.description, config);
+}
+
 PreparedRun PrepareResumed(const TrainOptions& options) {
   RunFolder folder = RunFolder::Reopen(options.run_dir.empty() ? Config().run_dir : options.run_dir,
                                        options.resume);
@@ -203,6 +218,7 @@ PreparedRun PrepareResumed(const TrainOptions& options) {
   if (meta.started.empty()) meta.started = UtcTimestamp();
   NoteResumeOptions(options, before, &meta);
   if (!options.print_config) {
+    CheckResumedCheckpoint(folder.path(), config.config);
     CheckFiles(folder.path(), config, meta, OwnActors(options, folder.path(), config.config.actors),
                std::move(lines),
                /*repair=*/!only_shows);
@@ -218,20 +234,6 @@ void CheckNetwork(const RunConfig& run) {
                    int64_t{kMaxWeightsBytes});
   learner::ReplicasOf(run.config, run.spec, run.config.learner.threads);
   CheckCores(run.config.learner.threads, ReadCoreLimits());
-}
-
-// Of another network, the learner would find it out with every process running. Damaged or of
-// another version, the checkpoint is the learner's to refuse: it may take an older one.
-void CheckResumedCheckpoint(const PreparedRun& run) {
-  const std::filesystem::path folder = NewestCheckpoint(run.folder.path());
-  if (folder.empty()) return;
-  CheckpointFiles files;
-  try {
-    files = ReadPolicyFiles(folder);
-  } catch (const Error&) {
-    return;
-  }
-  policy::CheckWriter(folder, files.state, files.description, run.config.config);
 }
 
 // Runs `read`, which takes weights from a file; where they do not fit and the file is a
@@ -436,7 +438,6 @@ int Train(const TrainOptions& options, Detachment* detachment) {
     if (options.print_config) fmt::print("{}\n", ToJson(run.config.config).dump(2));
     if (options.print_config) return 0;
     CheckNetwork(run.config);
-    CheckResumedCheckpoint(run);
     CheckReplay(run.config, run.folder.path());
     CheckHosts(run.hosts, StopRequested);
     if (options.dry_run) return 0;

@@ -131,8 +131,10 @@ std::vector<std::string> Differences(const LanguageAllowance& allowance, const F
     for (const auto& [rule, count] : rules) {
       const int allowed = CountOf(allowance, file, rule);
       if (count <= allowed) continue;
-      std::vector<LanguageFault> of_rule = faults.at(file);
-      std::erase_if(of_rule, [&](const LanguageFault& fault) { return fault.rule != rule; });
+      std::vector<LanguageFault> of_rule;
+      for (const LanguageFault& fault : faults.at(file)) {
+        if (fault.rule == rule) of_rule.push_back(fault);
+      }
       differences.push_back(AboveText(file, rule, std::move(of_rule), allowed, root));
     }
   }

@@ -69,7 +69,8 @@ class Surroundings {
 
 constexpr char kRuns[] = R"(
 shoal train --preset fetch-reach-state --run-name reach --set env_steps=600 --set eval.interval=300 \
-  --set eval.episodes=2 --set eval.final_episodes=2 --set stop.success=2 --set replay.samples_per_insert=16
+  --set eval.episodes=2 --set eval.final_episodes=2 --set stop.success=2 --set replay.samples_per_insert=16 \
+  --set replay.keep=true
 shoal train --preset fetch-reach-drq --run-name pixels --set env_steps=400 --set eval.interval=200 \
   --set eval.episodes=2 --set eval.final_episodes=2 --set stop.success=2 --set learner.batch=16 \
   --set replay.capacity=2000 --set replay.min_size=100 --set replay.samples_per_insert=4
@@ -93,6 +94,7 @@ void Prepare(const Surroundings& surroundings) {
     surroundings.Link(std::string("runs/") + name, "pixels");
   }
   surroundings.Link("runs/first", "reach");
+  surroundings.Link("runs/reach-kept", "reach");
   surroundings.Link("runs/source", "plain");
   surroundings.Link("runs/reach-sb3", "../experiments/batches/runs/batch-256-s0");
   for (const char* name :

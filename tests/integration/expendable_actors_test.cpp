@@ -79,7 +79,8 @@ TEST_F(ExpendableActors, OneThatCrashesAgainAndAgainIsTriedOnAndTheRunLearnsFrom
   EXPECT_THAT(training.Output(),
               AllOf(HasSubstr("| actors 1 of 2: actor-1: killed by SIGSEGV (death "),
                     HasSubstr("next try in ")));
-  EXPECT_EQ(Said("actor-1: killed by SIGSEGV; restart in"), 3) << "deaths 1, 2 and 4";
+  EXPECT_THAT(Said("actor-1: killed by SIGSEGV; restart in"), testing::AnyOf(3, 4))
+      << "deaths 1, 2, 4 and by now perhaps 8";
   const ProgramResult top =
       RunProgram({"shoal", "top", "--run", run_.path(), "--once"}, seconds(30));
   EXPECT_THAT(top.out, HasSubstr("actors 1 of 2: actor-1: killed by SIGSEGV")) << top.err;

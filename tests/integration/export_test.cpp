@@ -44,7 +44,8 @@ class ExportTest : public testing::Test {
                                     {"learner.batch", "4"},
                                     {"learner.checkpoint_period", "50"},
                                     {"network.layer_norm", "false"},
-                                    {"observation.proprioception", "true"}});
+                                    {"observation.proprioception", "true"},
+                                    {"replay.keep", "true"}});
   }
   static fs::path Best() { return run_->path() / "checkpoints/best"; }
   std::string Path(const std::string& name) const { return folder_.path() / name; }
@@ -73,7 +74,7 @@ TEST_F(ExportTest, ACheckpointLeavesItsRun) {
 
 TEST_F(ExportTest, WhatCannotBeExportedLeavesNothing) {
   const std::string file = Path("policy.onnx");
-  ExpectRefusal(Export({Path("absent"), "--onnx", file}), 2, "no checkpoint folder");
+  ExpectRefusal(Export({Path("absent"), "--onnx", file}), 2, "absent");
   ExpectRefusal(Export({Best()}), 2, "--onnx FILE or --sb3 FILE");
   ExpectRefusal(Export({folder_.path(), "--onnx", file}), 1, "state.json");
   ExpectRefusal(Export({Best(), "--onnx", Path("absent/policy.onnx")}), 1, "absent");

@@ -42,7 +42,11 @@ class TroubledRun : public testing::Test {
                                   "eval.interval=1500",
                                   "eval.final_episodes=60",
                                   "stop.success=2"};
-    keys.insert(keys.end(), more.begin(), more.end());
+    for (const std::string& key : more) {
+      const std::string start = key.substr(0, key.find('=') + 1);
+      std::erase_if(keys, [&](const std::string& known) { return known.starts_with(start); });
+      keys.push_back(key);
+    }
     for (const std::string& key : keys) command.insert(command.end(), {"--set", key});
     return RunProgram(command, std::chrono::seconds(200));
   }
@@ -153,7 +157,7 @@ TEST_F(TroubledRun, ATaskThatPrintsIsTrainedAndEvaluated) {
                  std::chrono::seconds(60));
   unsetenv("TROUBLED_TALK");
   EXPECT_EQ(ExitCode(eval), 0) << eval.err;
-  EXPECT_THAT(eval.out, HasSubstr("5 episodes (seed 1000)"));
+  EXPECT_THAT(eval.out, HasSubstr("5 episodes (seed "));
   EXPECT_THAT(eval.err, Not(HasSubstr("played hello")));
 }
 

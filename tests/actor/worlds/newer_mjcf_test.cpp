@@ -14,7 +14,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-std::string Refusal(const std::string& mjcf) {
+std::string RefusalOf(const std::string& mjcf) {
   return ErrorMessage([&] { LoadModelText("<mujoco>" + mjcf + "</mujoco>", ""); });
 }
 
@@ -32,7 +32,7 @@ TEST(WithNewerMjcf, AWordOfANewerMjcfIsNamedWithItsVersion) {
       {R"(<compiler assetdir="x"/>)", "assetdir", "2.3.0"},
   };
   for (const auto& [mjcf, word, since] : cases) {
-    const std::string refusal = Refusal(mjcf);
+    const std::string refusal = RefusalOf(mjcf);
     EXPECT_THAT(refusal, HasSubstr(std::string("MuJoCo has '") + word + "' since " + since +
                                    ", Shoal's engine is 2.2.2"));
     EXPECT_THAT(refusal, Not(HasSubstr("\n")));
@@ -41,12 +41,12 @@ TEST(WithNewerMjcf, AWordOfANewerMjcfIsNamedWithItsVersion) {
 }
 
 TEST(WithNewerMjcf, WhatTheEngineDoesNotKnowInAnyVersionStaysItsOwnReason) {
-  EXPECT_THAT(Refusal(R"(<option speed="3"/>)"),
+  EXPECT_THAT(RefusalOf(R"(<option speed="3"/>)"),
               AllOf(HasSubstr("unrecognized attribute: 'speed'"), Not(HasSubstr("since"))));
   // Known of a light, not of a site.
-  EXPECT_THAT(Refusal(R"(<contact><exclude type="spot"/></contact>)"),
+  EXPECT_THAT(RefusalOf(R"(<contact><exclude type="spot"/></contact>)"),
               AllOf(HasSubstr("unrecognized attribute: 'type'"), Not(HasSubstr("since"))));
-  EXPECT_THAT(Refusal("<worldbody>"), Not(HasSubstr("since")));
+  EXPECT_THAT(RefusalOf("<worldbody>"), Not(HasSubstr("since")));
 }
 
 }  // namespace

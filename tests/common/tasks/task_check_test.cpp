@@ -83,10 +83,10 @@ TEST(CheckDescription, SizesAreNeitherNoneNorHuge) {
 
 TEST(CheckDescription, BoundsAreOrderedNumbers) {
   constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-  for (const auto& [low, high] : {std::pair{kNan, 1.0}, {0.0, kNan}, {1.0, 0.0}}) {
+  for (const auto& bounds : {std::pair{kNan, 1.0}, {0.0, kNan}, {1.0, 0.0}}) {
     EXPECT_THAT(Refusal([&](auto& task) {
-                  task.observation[0].components[1].low = low;
-                  task.observation[0].components[1].high = high;
+                  task.observation[0].components[1].low = bounds.first;
+                  task.observation[0].components[1].high = bounds.second;
                 }),
                 AllOf(HasSubstr("block 'position'"), HasSubstr("y has bounds")));
   }

@@ -30,8 +30,8 @@ TEST(ResolveConfig, AppliesPresetThenFileThenSet) {
 }
 
 TEST(ResolveConfig, FillsActorsAndThreadsForTheCores) {
-  EXPECT_EQ(ResolveConfig({}, 8).actors, 4);
-  EXPECT_EQ(ResolveConfig({}, 8).learner.threads, 4);
+  EXPECT_EQ(ResolveConfig({}, 8).actors, 2);
+  EXPECT_EQ(ResolveConfig({}, 8).learner.threads, 6);
   EXPECT_EQ(ResolveConfig({}, 1).actors, 1);
   TrainOptions lockstep;
   lockstep.lockstep = true;
@@ -92,7 +92,7 @@ TEST(ApplyResumeOptions, TakesOnlyHowLongToGoOn) {
   EXPECT_EQ(config.learner.threads, 2);
   options.set = {"learner.threads=0"};
   ApplyResumeOptions(options, /*cores=*/8, &config);
-  EXPECT_EQ(config.learner.threads, 4);
+  EXPECT_EQ(config.learner.threads, 6);
   options.set = {"learner.batch=7"};
   EXPECT_THAT(UsageMessage([&] { ApplyResumeOptions(options, 2, &config); }),
               HasSubstr("learner.batch=7"));

@@ -198,17 +198,6 @@ TEST_F(RolloutCoreTest, AStepWithoutItsPredecessorIsOfNoUse) {
   EXPECT_EQ(core_->Ready(), 1);
 }
 
-TEST_F(RolloutCoreTest, AnEpisodeLeftInItsMidstEndsTheRollout) {
-  a_.Reset(0, 0, 1);
-  a_.Step(0, 0, 1, 2);
-  a_.PlayThree(0, 1);
-  core_->TakeChunk(a_.Chunk());
-  ASSERT_EQ(core_->Ready(), 1);
-  EXPECT_EQ(TakeReady().obs_vector[0], 1);
-  EXPECT_EQ(core_->used_records(), 4u);
-  EXPECT_EQ(Counters(0, 10).discarded, 2u);
-}
-
 TEST_F(RolloutCoreTest, ARestartedLearnerCountsWhatItsPredecessorHadNotUsedAsDiscarded) {
   a_.PlayThree(0, 0);
   core_->TakeChunk(a_.Chunk());

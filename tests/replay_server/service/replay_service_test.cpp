@@ -183,7 +183,7 @@ TEST_F(ReplayServiceTest, BadUsageAndBadFilesAreOneLine) {
   EXPECT_THAT(folder.Errors(), HasSubstr("missing"));
   WriteFileAtomically(folder_.path() / kRingFile, "not a ring");
   ReplayProcess ring({"--run", folder_.path()}, folder_.path() / "err3");
-  EXPECT_EQ(ring.ExitCode(seconds(20)), 1);
+  EXPECT_EQ(ring.ExitCode(seconds(20)), 2);
   EXPECT_THAT(ring.Errors(), HasSubstr("replay.ring"));
   for (ReplayProcess* process : {&usage, &folder, &ring}) {
     EXPECT_EQ(std::ranges::count(process->Errors(), '\n'), 1) << process->Errors();
