@@ -121,7 +121,9 @@ TEST(PrintedCommands, ThoseOfARunsEndWork) {
   const TrainingRun run;
   const ProgramResult trained = run.Train({{"env_steps", "2000"}, {"eval.interval", "500"}});
   ASSERT_EQ(ExitCode(trained), 0) << trained.err;
-  const std::vector<std::string> commands = CommandsOf(trained.out + trained.err);
+  // Before that it prints how to watch it while it runs.
+  const std::vector<std::string> commands =
+      CommandsOf(trained.out.substr(trained.out.find(" ended (")));
   EXPECT_EQ(commands.size(), 3u) << "plot, report, film\n" << trained.out << trained.err;
   ExpectAllWork(commands);
   // A checkpoint that is copied away and a card can act without the run.
