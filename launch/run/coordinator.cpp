@@ -151,6 +151,7 @@ struct Coordinator::Impl {
   void TakeMessages(SteadyTime now);
   void TakeEvaluation(const EvalMessage& message);
   void KeepCandidates();
+  bool HasCheckpoint(const std::string& name) const;
   // Tries again what could not be written.
   void RetryWrites();
   // Returns a warning where the run gets no better.
@@ -195,6 +196,7 @@ struct Coordinator::Impl {
   bool meta_due = false;          // something happened that it records
   bool checkpoints_fail = false;  // of the learner, by its last report
   bool candidates_due = false;    // not all of them could be kept
+  std::set<std::string> gone{};   // checkpoints of candidates that were never written
   const int usable_cores = UsableCores();
   int suspensions_said = Suspensions(), refusals_said = RefusedSuspensions();
   int stops_before_end = 0;  // Ctrl-C's that had been answered when the ordered stop began
@@ -476,26 +478,38 @@ void Coordinator::Impl::TakeEvaluation(const EvalMessage& message) {
 }
 
 void Coordinator::Impl::KeepCandidates() {
-  std::vector<std::string> names;
-  for (const EvaluationPoint& candidate : bests.candidates()) names.push_back(candidate.checkpoint);
-  if (names.empty() || std::ranges::find(names, "") != names.end()) return;
-  const auto keep = [&] { KeepCheckpoints(run, names, bests.best()->checkpoint); };
-  const bool all_there = std::ranges::all_of(names, [this](const std::string& name) {
-    std::error_code error;
-    return std::filesystem::exists(run / kCheckpointFolder / name, error) ||
-           std::filesystem::exists(run / kCheckpointFolder / kCandidateFolder / name, error);
+  std::vector<EvaluationPoint> candidates = bests.candidates();
+  const auto unnamed = [](const EvaluationPoint& point) { return point.checkpoint.empty(); };
+  if (std::ranges::any_of(candidates, unnamed)) return;
+  // The learner gives up older checkpoints that it cannot write. Once it can write again, one that
+  // is missing stays missing, and the best is chosen among the others.
+  if (!checkpoints_fail) {
+    std::erase_if(candidates, [this](const EvaluationPoint& point) {
+      if (HasCheckpoint(point.checkpoint)) return false;
+      if (gone.insert(point.checkpoint).second) {
+        progress.Say(fmt::format("checkpoint {} was never written: the best is chosen without it",
+                                 point.checkpoint));
+      }
+      return true;
+    });
+  }
+  const std::string what = fmt::format("{}/{}", kCheckpointFolder, kBestCheckpoint);
+  candidates_due = !faults.Try(what, [&] {
+    if (candidates.empty()) return;
+    std::vector<std::string> names;
+    for (const EvaluationPoint& candidate : candidates) names.push_back(candidate.checkpoint);
+    // If this fails, the best of before is still whole.
+    KeepCheckpoints(
+        run, names,
+        std::ranges::max_element(candidates, {}, &EvaluationPoint::mean_return)->checkpoint);
   });
-  // Where this fails the former best is still whole.
-  if (all_there || checkpoints_fail) {
-    candidates_due = !faults.Try(fmt::format("{}/{}", kCheckpointFolder, kBestCheckpoint), keep);
-    return;
-  }
-  candidates_due = false;  // one is gone for good
-  try {
-    keep();
-  } catch (const Error& e) {
-    progress.Say(e.what());
-  }
+}
+
+bool Coordinator::Impl::HasCheckpoint(const std::string& name) const {
+  std::error_code error;
+  const std::filesystem::path folder = run / kCheckpointFolder;
+  return std::filesystem::exists(folder / name, error) ||
+         std::filesystem::exists(folder / kCandidateFolder / name, error);
 }
 
 void Coordinator::Impl::RetryWrites() {

@@ -37,8 +37,10 @@ bool WaitUntilTrue(const std::function<bool()>& condition, seconds deadline) {
 }
 
 std::string EndOf(launch::ChildProcess* child, seconds deadline) {
-  if (!WaitUntilEnded(child->pid(), deadline)) return "still running";
-  return child->Poll()->Describe();
+  // Not by its state in /proc: a process of several threads is a zombie there before it has ended.
+  std::optional<launch::ExitStatus> status;
+  const bool ended = WaitUntilTrue([&] { return (status = child->Poll()).has_value(); }, deadline);
+  return ended ? status->Describe() : "still running";
 }
 
 // Whether the process has a handler for the signal by now.
