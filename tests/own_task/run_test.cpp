@@ -83,7 +83,8 @@ TEST(OwnTaskRun, TrainsFromItsOwnCameraWithAThresholdFromJson) {
   EXPECT_EQ(config.at("spec").at("cameras"), std::vector<std::string>{"above"});
   // An episode is judged by the threshold of the configuration.
   for (const auto& entry : std::filesystem::directory_iterator(run / "eval")) {
-    for (const auto& episode : nlohmann::json::parse(ReadFile(entry.path())).at("episodes")) {
+    const auto evaluation = nlohmann::json::parse(ReadFile(entry.path()));
+    for (const auto& episode : evaluation.at("episodes")) {
       EXPECT_EQ(episode.at("success").get<bool>(),
                 episode.at("final_distance").get<double>() < 0.1);
     }
@@ -100,7 +101,8 @@ double UntrainedSuccess(const std::string& policy) {
                   "--policy", policy, "--episodes", "200", "--json", file.string()},
                  std::chrono::seconds(60));
   EXPECT_EQ(ExitCode(result), 0) << result.out << result.err;
-  for (const auto& point : nlohmann::json::parse(ReadFile(file)).at("success_by_threshold")) {
+  const auto json = nlohmann::json::parse(ReadFile(file));
+  for (const auto& point : json.at("success_by_threshold")) {
     if (point.at("threshold") == 0.1) return point.at("success_rate");
   }
   ADD_FAILURE() << result.out;
