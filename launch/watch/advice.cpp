@@ -86,7 +86,7 @@ Split BetterSplit(const Bottleneck& figures, const RunResources& resources) {
   const Split now{resources.actors, resources.learner_threads};
   const double idle = figures.usable - figures.cores;
   if (now.threads == 0 || idle < kWholeCore || resources.actors_elsewhere) return now;
-  const double busy = now.actors * (1 - figures.inserts_blocked);
+  const double busy = now.actors * (1 - ShareOf(figures, "actor", "waiting_credit"));
   const int actors = std::clamp(int(std::ceil(kHeadroom * busy)), 1, std::max(1, now.actors));
   const int threads =
       std::min(now.threads + int(idle + 1 - kWholeCore), int(figures.usable) - actors);

@@ -71,6 +71,7 @@ TEST(Advice, ALearnerHeldByTheLimiterWantsActorsWhileThereAreCores) {
 TEST(Advice, ActorsHeldByTheLimiterLeaveTheirIdleCoresToTheLearner) {
   Bottleneck figures = Balanced();
   figures.inserts_blocked = 0.7;
+  SetShare(&figures, "actor", "waiting_credit", 0.7);
   EXPECT_THAT(
       Advise(figures, WithActors(2)),
       AllOf(HasSubstr("actors wait for it 70 % of the time"), HasSubstr("backward"),
@@ -127,6 +128,13 @@ TEST(Advice, ARecordedRunOnTwoBusyCoresIsToldOfNoChange) {
                                     {.usable_cores = 2, .actors = 1, .learner_threads = 2});
   EXPECT_THAT(advice, AllOf(HasSubstr("actors wait for it 71 %"), HasSubstr("all 2 cores are busy"),
                             Not(HasSubstr("--set")), Not(HasSubstr("samples_per_insert"))));
+}
+
+TEST(Advice, ARecordedRunOnSixteenCoresIsToldOfASplitThatUsesThem) {
+  EXPECT_THAT(Advise(Recorded("flagship_16_cores.json"),
+                     {.usable_cores = 16, .actors = 8, .learner_threads = 8}),
+              AllOf(HasSubstr("actors wait for it 87 %"), HasSubstr("5 of 16 cores are idle"),
+                    HasSubstr("--set learner.threads=12 --set actors=4")));
 }
 
 TEST(Advice, WhoIsHeldLongerIsHelped) {
