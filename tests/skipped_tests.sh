@@ -48,6 +48,7 @@ has_capability() {
 # Whether these surroundings are why a test is skipped for that reason.
 explained() {
   case $1 in
+    "only as a program that another test starts") true ;;
     "this CPU has no bf16 arithmetic") ! grep -qE '\<(avx512_bf16|amx_bf16)\>' /proc/cpuinfo ;;
     "no fingerprint of "*) ! grep -qF "\"${1#*recorded for: }\"" tests/golden/fingerprints.json ;;
     "needs root, iproute2 and network namespaces")

@@ -83,7 +83,7 @@ class SharedLayoutsTest : public testing::TestWithParam<std::tuple<Shape, Precis
 };
 
 TEST_P(SharedLayoutsTest, HoldWhatOneAloneWouldHaveOnceAllHaveRefreshed) {
-  if (!alone_) GTEST_SKIP() << "no bf16 on this CPU";
+  if (!alone_) GTEST_SKIP() << "this CPU has no bf16 arithmetic";
   for (uint64_t round = 1; round <= 3; ++round) {
     Fill(round, &alone_->set);
     Fill(round, &of_rank_[0]->set);  // for all
@@ -98,7 +98,7 @@ TEST_P(SharedLayoutsTest, HoldWhatOneAloneWouldHaveOnceAllHaveRefreshed) {
 
 // A layout of few pieces has fewer writers than there are replicas.
 TEST_P(SharedLayoutsTest, AreWrittenInPiecesByDifferentReplicas) {
-  if (!alone_) GTEST_SKIP() << "no bf16 on this CPU";
+  if (!alone_) GTEST_SKIP() << "this CPU has no bf16 arithmetic";
   const auto [shape, precision, count] = GetParam();
   const bool cut =
       shape.outputs * shape.inputs >= 4 * 8192 && std::max(shape.outputs, shape.inputs) % 64 == 0;
