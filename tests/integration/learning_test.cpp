@@ -7,32 +7,32 @@
 namespace shoal {
 namespace {
 
-using std::chrono::seconds;
+constexpr double kLeast = 0.9;
 
 TEST(Learning, FetchReachDenseFromStateReachesNinetyPercent) {
   const LearningResult learned =
-      Learn("fetch-reach-state", {{"stop.success", "0.95"}}, seconds(300));
+      LearnGoals("fetch-reach-state", {{"stop.success", "0.95"}}, kLeast);
   EXPECT_EQ(learned.aggregate.at("episodes"), 50);
-  ExpectSuccess(learned, "FetchReachDense", 0.9);
+  ExpectSuccess(learned, "FetchReachDense", kLeast);
 }
 
 TEST(Learning, Td3ReachesNinetyPercentFromState) {
-  ExpectSuccess(Learn("fetch-reach-state-td3", {{"stop.success", "0.95"}}, seconds(300)),
-                "FetchReachDense", 0.9);
+  ExpectSuccess(LearnGoals("fetch-reach-state-td3", {{"stop.success", "0.95"}}, kLeast),
+                "FetchReachDense", kLeast);
 }
 
 TEST(Learning, DdpgReachesNinetyPercentFromState) {
-  ExpectSuccess(Learn("fetch-reach-state-ddpg", {{"stop.success", "0.95"}}, seconds(300)),
-                "FetchReachDense", 0.9);
+  ExpectSuccess(LearnGoals("fetch-reach-state-ddpg", {{"stop.success", "0.95"}}, kLeast),
+                "FetchReachDense", kLeast);
 }
 
 // Rewards of -1 and 0 alone: of a policy that rarely reaches its goals nearly all are -1.
 TEST(Learning, HindsightReachesNinetyPercentOfSparseGoals) {
-  const LearningResult learned = Learn(
-      "fetch-reach-her", {{"env_steps", "8000"}, {"eval.interval", "2000"}, {"stop.success", "2"}},
-      seconds(300));
+  const LearningResult learned =
+      LearnGoals("fetch-reach-her",
+                 {{"env_steps", "8000"}, {"eval.interval", "2000"}, {"stop.success", "2"}}, kLeast);
   EXPECT_EQ(learned.aggregate.at("episodes"), 100);
-  ExpectSuccess(learned, "FetchReach", 0.9);
+  ExpectSuccess(learned, "FetchReach", kLeast);
 }
 
 }  // namespace
