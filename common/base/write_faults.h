@@ -7,6 +7,7 @@
 #include <functional>
 #include <set>
 #include <string>
+#include <utility>
 
 namespace shoal {
 
@@ -17,7 +18,10 @@ inline constexpr int kUnwrittenExit = 4;
 class WriteFaults {
  public:
   // `say` gets a line when a file begins to fail, and one when it is written again.
-  explicit WriteFaults(std::function<void(const std::string&)> say) : say_(std::move(say)) {}
+  // `failing` are files whose last attempt failed elsewhere.
+  explicit WriteFaults(std::function<void(const std::string&)> say,
+                       std::set<std::string> failing = {})
+      : say_(std::move(say)), failing_(std::move(failing)) {}
 
   // Runs `write`. False when it threw Error. `what` names the file, or the kind of file, in lines
   // and in failing().

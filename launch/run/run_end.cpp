@@ -246,14 +246,13 @@ std::optional<EvaluationPoint> Judge(const fs::path& run, const Config& config, 
 }
 
 // Adds meta.json to `unwritten`, or takes it off: this time counts.
-void WriteLastMeta(const fs::path& run, const Config& config, Progress& progress,
+void WriteLastMeta(const fs::path& run, const Config& config, WriteFaults& faults,
                    std::set<std::string>* unwritten, RunMeta* meta) {
   meta->finished = UtcTimestamp();
   unwritten->erase(kMetaFile);
   if (!unwritten->empty() && meta->error.empty()) {
     meta->error = fmt::format("could not be written: {}", fmt::join(*unwritten, ", "));
   }
-  WriteFaults faults([&](const std::string& line) { progress.Say(line); });
   if (!faults.Try(kMetaFile, [&] { WriteRunMeta(run, config, *meta); })) {
     unwritten->insert(kMetaFile);
   }
@@ -273,14 +272,15 @@ int EndRun(const fs::path& run, const Config& config, RunResult result, bool fil
     progress.Say("error: " + why);
   };
   TakeAccount(run, config, unwritten, progress, fail, &meta);
-  WriteFaults faults([&](const std::string& line) { progress.Say(line); });
+  // A file that failed before the end is told about once it is written now.
+  WriteFaults faults([&](const std::string& line) { progress.Say(line); }, unwritten);
   if (!faults.Try(kBottleneckFile, [&] { WriteBottleneck(run, result.bottleneck); })) {
     unwritten.insert(kBottleneckFile);
   }
   if (!unwritten.empty() && Finished(meta)) meta.exit = "interrupted";  // --resume ends it
   Judging judging(desk, progress);
   const auto final_evaluation = Judge(run, config, judging, fail, &meta);
-  WriteLastMeta(run, config, progress, &unwritten, &meta);
+  WriteLastMeta(run, config, faults, &unwritten, &meta);
   fs::path filmed;
   try {
     if (film && WantsFinalEvaluation(meta) && !judging.Stops()) {

@@ -84,7 +84,7 @@ inline LearningResult LearnWithOneSeedOfTwo(
   return Learn(preset, keys, deadline);
 }
 
-// Of a task with goals: the final episodes succeed at least at the rate `least`.
+// Trains on a task with goals. The final episodes succeed at least at the rate `least`.
 inline LearningResult LearnGoals(const std::string& preset,
                                  const std::map<std::string, std::string>& keys, double least) {
   return LearnWithOneSeedOfTwo(preset, keys, std::chrono::seconds(280),

@@ -34,6 +34,14 @@ TEST(WriteFaults, AFaultIsSaidOnceAndItsEndOnce) {
   EXPECT_THAT(faults.failing(), IsEmpty());
 }
 
+TEST(WriteFaults, AFaultThatBeganElsewhereEndsHere) {
+  std::vector<std::string> said;
+  WriteFaults faults([&](const std::string& line) { said.push_back(line); }, {"a"});
+  EXPECT_TRUE(faults.Try("b", [] {}));
+  EXPECT_TRUE(faults.Try("a", [] {}));
+  EXPECT_THAT(said, ElementsAre("a: written again"));
+}
+
 TEST(WriteFaults, ABugIsNoFaultOfTheDisk) {
   WriteFaults faults([](const std::string&) {});
   EXPECT_THROW(faults.Try("a", [] { throw std::logic_error("bug"); }), std::logic_error);
