@@ -29,7 +29,8 @@ tasks::Task TaskOf(bool goals) {
   return tasks::Task(task);
 }
 
-// Writes that many numbers to each part, from the beginning, whatever their sizes are.
+// Writes that many numbers to each part, from the beginning, whatever their sizes are: 1, 2, ... to
+// the state, 101, ... and 201, ... to the goals.
 class Writer final : public World {
  public:
   Writer(int state, int achieved, int desired)
@@ -41,7 +42,9 @@ class Writer final : public World {
                std::span<double> desired) const override {
     const std::array parts{state.data(), achieved.data(), desired.data()};
     for (size_t part = 0; part < parts.size(); ++part) {
-      for (int i = 0; i < counts_[part]; ++i) parts[part][i] = value + i;
+      for (int i = 0; i < counts_[part]; ++i) {
+        parts[part][i] = value + 100 * static_cast<double>(part) + i;
+      }
     }
     if (before) state.data()[-1] = 1;
   }
@@ -65,8 +68,8 @@ TEST(ObservedNumbers, HasWhatTheWorldWrote) {
   ObservedNumbers numbers(task);
   numbers.Read(Writer(4, 1, 1));
   EXPECT_THAT(numbers.state(), ElementsAre(1, 2, 3, 4));
-  EXPECT_THAT(numbers.achieved_goal(), ElementsAre(1));
-  EXPECT_THAT(numbers.desired_goal(), ElementsAre(1));
+  EXPECT_THAT(numbers.achieved_goal(), ElementsAre(101));
+  EXPECT_THAT(numbers.desired_goal(), ElementsAre(201));
 }
 
 TEST(ObservedNumbers, ANumberTooManyNamesTaskBlockAndSizes) {

@@ -36,6 +36,16 @@ TEST(SeedFigures, SeveralSeedsHaveAnIntervalOverSeeds) {
   EXPECT_TRUE(json.at("wilson95").is_null()) << "that of one policy alone";
 }
 
+// 100 of 100 and 200 of 400: seeds are the unit, whatever the number of their episodes.
+TEST(SeedFigures, TheMeanIsOfSeedsNotOfEpisodes) {
+  SeedFigures figures;
+  figures.Add(1.0, 100, -1, std::nullopt);
+  figures.Add(0.5, 400, -1, std::nullopt);
+  EXPECT_EQ(FormatSuccess(figures), "75.0 % [0.0, 100.0] (2 seeds, 300/500)");
+  EXPECT_EQ(SuccessJson(figures).at("mean"), 0.75);
+  EXPECT_EQ(SuccessJson(figures).at("pooled"), 0.6);
+}
+
 TEST(SeedFigures, FailedSeedsAreSaidInTheSameLine) {
   SeedFigures figures = Three();
   figures.failed = 1;

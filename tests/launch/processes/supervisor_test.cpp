@@ -223,6 +223,24 @@ TEST_F(SupervisorTest, AnExpendableProcessThatRefusesItsConfigurationIsHopelessA
   EXPECT_EQ(supervisor_.Standing("actor", late).down.at(0).hopeless, "exit code 2: bad batch");
 }
 
+TEST_F(SupervisorTest, AnExpendableProcessThatHasWorkedIsHopelessNoMore) {
+  ProcessSpec actor = Fake("actor", 0,
+                           "[ $(wc -l < " + folder_.path().string() +
+                               "/actor-0.log) -ge 2 ] && exec sleep 60; echo bad batch; exit 2");
+  actor.expendable = true;
+  supervisor_.Start(actor);
+  ASSERT_TRUE(PollUntil([&] { return Starts("actor-0") == 2; }));
+  const SteadyTime start = Now(), settled = start + Supervisor::kSettled;
+  const pid_t pid = supervisor_.Pid("actor", 0);
+  supervisor_.Heard("actor", 0, pid, start);
+  EXPECT_EQ(supervisor_.Standing("actor", start).down.at(0).hopeless, "exit code 2: bad batch");
+  kill(pid, SIGKILL);
+  ASSERT_TRUE(
+      WaitUntil([&] { return supervisor_.Poll(settled), supervisor_.Pid("actor", 0) != pid; }));
+  EXPECT_THAT(supervisor_.Standing("actor", settled).down.at(0).reason, HasSubstr("SIGKILL"));
+  EXPECT_THAT(supervisor_.Standing("actor", settled).down.at(0).hopeless, IsEmpty());
+}
+
 TEST_F(SupervisorTest, ANonFiniteNumberOfAnExpendableProcessEndsTheRun) {
   ProcessSpec actor = Fake("actor", 0, "echo the simulation diverged; exit 3");
   actor.expendable = true;

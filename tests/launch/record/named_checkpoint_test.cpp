@@ -6,6 +6,7 @@
 
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/checkpoint/checkpoint_files.h"
 #include "tests/support/temporary_folder.h"
 
 namespace shoal::launch {
@@ -71,6 +72,16 @@ TEST_F(NamedCheckpointTest, AFolderOutsideOfARunHasNone) {
   MakeFolders(copy);
   EXPECT_EQ(Find(copy.string()).run, "");
   EXPECT_EQ(Find(copy.string()).checkpoint, copy);
+}
+
+// The config.json of a copied checkpoint or of a card says what its run was.
+TEST_F(NamedCheckpointTest, ACopyWithBothFilesIsItsOwnRun) {
+  const fs::path card = folder_.path() / "card";
+  MakeFolders(card);
+  WriteFileAtomically(card / "config.json", "{}");
+  WriteFileAtomically(card / kStateFile, "{}");
+  EXPECT_EQ(Find(card.string()).run, card);
+  EXPECT_EQ(Find(card.string()).checkpoint, card);
 }
 
 TEST_F(NamedCheckpointTest, WhatIsNotThereIsNamed) {

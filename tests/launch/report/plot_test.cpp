@@ -64,6 +64,36 @@ TEST(CurveOf, ThinsButKeepsTheEnd) {
   EXPECT_EQ(curve.back().x, 1000);
 }
 
+RunResults WithRollouts(RunResults run) {
+  run.rollouts = {{.env_steps = 10, .updates = 5, .wall_seconds = 60, .success = 0.25},
+                  {.env_steps = 20, .updates = 9, .wall_seconds = 120, .success = 0.75}};
+  return run;
+}
+
+TEST(RolloutCurveOf, IsThatOfTheActorsEpisodes) {
+  const RunGroup group{.name = "a", .runs = {WithRollouts(RunOf({{100, 0}}, 1.0))}};
+  const auto curve = RolloutCurveOf(group, PlotAxis::kWallMinutes, PlotFigure::kSuccess);
+  ASSERT_EQ(curve.size(), 2u);
+  EXPECT_EQ(curve[0].x, 1);
+  EXPECT_EQ(curve[0].mean, 25);
+  EXPECT_EQ(curve[1].mean, 75);
+  EXPECT_TRUE(RolloutCurveOf(group, PlotAxis::kEnvSteps, PlotFigure::kReturn).empty())
+      << "files of older builds have no return";
+  EXPECT_TRUE(RolloutCurveOf(TwoSeeds(), PlotAxis::kEnvSteps, PlotFigure::kSuccess).empty());
+}
+
+TEST(PlotScript, DrawsTheActorsEpisodesAsThinLines) {
+  const Plot plot{.title = "t", .figures = {PlotFigure::kSuccess}};
+  const RunResults run = RunOf({{100, 0}, {200, 10}}, 0.5);
+  EXPECT_THAT(PlotScript(plot, {{.name = "a", .runs = {run}}}, "x.svg"), Not(HasSubstr("thin")));
+  const std::string script =
+      PlotScript(plot, {{.name = "a", .runs = {WithRollouts(run)}}}, "x.svg");
+  EXPECT_THAT(script, HasSubstr("$rollouts_0_0 << EOD\n10 25 25 25\n20 75 75 75\nEOD\n"));
+  EXPECT_THAT(script, HasSubstr("$rollouts_0_0 using 1:2 with lines lw 1"));
+  EXPECT_THAT(script, HasSubstr("title 'thin: episodes of the actors'"));
+  EXPECT_THAT(script, HasSubstr("set xrange [0:*]"));
+}
+
 TEST(PlotScript, SaysWhatCannotBeDrawn) {
   const Plot plot{.title = "t", .figures = {PlotFigure::kSuccess}};
   EXPECT_THROW(PlotScript(plot, {TwoSeeds()}, "x.png"), Error);

@@ -45,6 +45,19 @@ TEST(Report, IsOnePageThatNeedsNothingElse) {
   }
 }
 
+TEST(Report, ShowsTheEpisodesOfTheActors) {
+  const TemporaryFolder folder;
+  Plant(folder.path() / "a");
+  const auto page = [&] {
+    return ReportHtml(GatherReport({.names = {"a"}, .run_dir = folder.path().string()}));
+  };
+  EXPECT_THAT(page(), Not(HasSubstr("episodes of the actors")));
+  WriteFileAtomically(folder.path() / "a/metrics.jsonl",
+                      R"({"role":"coordinator","env_steps":50,"rollout_success":0.25})"
+                      "\n");
+  EXPECT_THAT(page(), HasSubstr("episodes of the actors"));
+}
+
 TEST(Report, OfATaskWithoutSuccessItSaysNothingAboutIt) {
   const TemporaryFolder folder;
   const RunPlanter run = Plant(folder.path() / "a");

@@ -134,6 +134,7 @@ TEST_F(RunCheckTest, ARingThatCannotBeUsedIsRefusedWithTheRemedy) {
 }
 
 TEST_F(RunCheckTest, TheAccountIsRebuiltFromTheRing) {
+  meta_.env_steps -= 9;  // the meta.json of a killed run is older than its ring
   for (const char* content : {"", "{", "{\"schema\": \"shoal-accounting-1\"}"}) {
     WriteFileAtomically(run_ / kAccountingFile, content);
     EXPECT_THAT(Mend(), ElementsAre(AllOf(HasSubstr("accounting.json' is damaged"),

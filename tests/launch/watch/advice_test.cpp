@@ -159,12 +159,14 @@ TEST(Advice, AHostGetsNoMoreActorsThanItHasCores) {
 
 TEST(Advice, ActorsOfOtherHostsAreThoseOfTheHostsFile) {
   Bottleneck figures = Balanced();
-  RunResources resources = WithActors(8);
-  resources.actors_elsewhere = true;
+  RunResources resources = WithActors(2);
   figures.samples_blocked = 0.4;
+  EXPECT_THAT(Advise(figures, resources), HasSubstr("shoal scale"));
+  resources.actors_elsewhere = true;
   EXPECT_THAT(Advise(figures, resources),
               AllOf(HasSubstr("--hosts"), Not(HasSubstr("shoal scale"))));
   figures.inserts_blocked = 0.7;
+  EXPECT_THAT(Advise(figures, WithActors(2)), HasSubstr("--set"));
   EXPECT_THAT(Advise(figures, resources), Not(HasSubstr("--set")))
       << "the cores of this host are not those of the actors";
 }

@@ -73,7 +73,7 @@ TEST_F(ScalarLogTest, OneFileHasTheTagsThatPeopleKnow) {
 
 TEST_F(ScalarLogTest, AReportWithoutNewUpdatesAddsNoPoint) {
   log_.WriteTraining(LearnerReport(10, 1000, 0.5), start_);
-  log_.WriteTraining(LearnerReport(10, 1000, 0.5), start_ + seconds(1));
+  log_.WriteTraining(LearnerReport(10, 1010, 0.5), start_ + seconds(1));
   EXPECT_THAT(Read().at("train/critic_loss"), ElementsAre(Pair(1000, 0.5f)));
 }
 

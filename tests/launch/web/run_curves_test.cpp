@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "launch/record/evaluations.h"
+#include "tests/launch/evaluation_message.h"
 #include "tests/support/temporary_folder.h"
 
 namespace shoal::launch {
@@ -109,10 +110,21 @@ TEST_F(RunCurvesTest, LinesThatMakeNoSenseArePassedOver) {
 }
 
 TEST_F(RunCurvesTest, EvaluationsComeFromTheirFiles) {
-  std::filesystem::create_directory(folder_.path() / "eval");
-  std::ofstream(folder_.path() / "eval" / "steps_5_updates_6.json") << "{";
+  const auto folder = folder_.path() / "eval";
+  std::filesystem::create_directory(folder);
+  WriteFaults faults([](const std::string&) {});
+  EvaluationStore store(folder_.path(), &faults);
+  store.Write(RecordOf(EvaluationMessage(2'500, 100, 0.25), 3.5));
   curves_.ReadOn();
-  EXPECT_TRUE(Points("return").is_null()) << "a broken file is none";
+  EXPECT_EQ(Points("success"), json({{2500, 0.25}}));
+  EXPECT_EQ(Points("return"), json({{2500, -2.5}}));
+  store.Write(RecordOf(EvaluationMessage(5'000, 200, 0.5), 7));
+  curves_.ReadOn();
+  EXPECT_EQ(Points("success"), json({{2500, 0.25}, {5000, 0.5}}));
+  std::ofstream(folder / "steps_5_updates_6.json") << "{";
+  curves_.ReadOn();
+  EXPECT_EQ(Points("success"), json({{2500, 0.25}, {5000, 0.5}}))
+      << "a broken file takes nothing away";
 }
 
 TEST(ThinnedCurve, HoldsItsBoundAndTheNewestPoint) {
