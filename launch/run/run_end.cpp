@@ -272,7 +272,7 @@ int EndRun(const fs::path& run, const Config& config, RunResult result, bool fil
     progress.Say("error: " + why);
   };
   TakeAccount(run, config, unwritten, progress, fail, &meta);
-  // A file that failed before the end is told about once it is written now.
+  // A file that failed before the end is reported once it is written now.
   WriteFaults faults([&](const std::string& line) { progress.Say(line); }, unwritten);
   if (!faults.Try(kBottleneckFile, [&] { WriteBottleneck(run, result.bottleneck); })) {
     unwritten.insert(kBottleneckFile);

@@ -110,7 +110,7 @@ TEST(MissingEvaluations, EndTheRunUntilTheFirstOneCame) {
 
 TEST(DescribeTrouble, CountsThoseThatAreNotDownAndSaysWhy) {
   EXPECT_EQ(DescribeTrouble(Actors(2, 0), Actors(1, 0)), "");
-  // Of the two that are not down one works, and one is starting.
+  // Two are not down: one works, and one is starting.
   EXPECT_EQ(DescribeTrouble(Actors(3, 1, {Down("actor-1")}), Actors(1, 1)),
             "actors 2 of 3: actor-1: exit code 1: no way to host (death 8, next try in 25 s)");
   DownProcess tried = Down("eval-0");
