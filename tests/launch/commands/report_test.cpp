@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "launch/commands/commands.h"
+#include "tests/launch/experiment/planted_run.h"
+
+namespace shoal::launch {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+// Runs `shoal ARGUMENTS` for a command that `add` adds; returns what it prints.
+std::string Printed(void (*add)(CLI::App&, Action*), std::vector<std::string> arguments) {
+  CLI::App app;
+  Action chosen;
+  add(app, &chosen);
+  std::ranges::reverse(arguments);  // as CLI11 takes them
+  app.parse(arguments);
+  testing::internal::CaptureStdout();
+  EXPECT_EQ(chosen(), 0);
+  return testing::internal::GetCapturedStdout();
+}
+
+TEST(PlotCommand, DrawsEvaluationsAndTheActorsEpisodes) {
+  const TemporaryFolder folder;
+  const RunPlanter run(folder.path() / "a");
+  run.Begin();
+  run.WriteEvaluation(100, 0.5);
+  run.WriteEvaluation(200, 0.95);
+  WriteFileAtomically(run.path() / "metrics.jsonl",
+                      R"({"role":"coordinator","env_steps":50,"rollout_success":0.25})"
+                      "\n");
+  const std::string file = folder.path() / "a.svg";
+  EXPECT_EQ(Printed(AddPlotCommand, {"plot", run.path().string(), "--output", file}), file + "\n");
+  EXPECT_THAT(ReadFile(file), AllOf(HasSubstr("a (1 seed)"), HasSubstr("episodes of the actors")));
+}
+
+}  // namespace
+}  // namespace shoal::launch
