@@ -3,7 +3,7 @@
 # tests/comparison/web_page.sh PROGRAM RUN_DIR RUN OUTPUT: opens the page of `shoal web` on a running
 # run in headless Chromium (Debian's package) and says whether each figure of each process that the
 # page shows is the one of `shoal top --once --json` at the same moment. Screenshots, light and dark,
-# wide and narrow, go to the folder OUTPUT. Needs chromium and python3.
+# wide and of a phone, go to the folder OUTPUT. Needs chromium and python3.
 set -euo pipefail
 if (($# != 4)); then
   echo "usage: web_page.sh PROGRAM RUN_DIR RUN OUTPUT" >&2
@@ -94,7 +94,8 @@ shot() {
 }
 shot wide-light 1400,1800
 shot wide-dark 1400,1800 --blink-settings=preferredColorScheme=0
-shot narrow-light 420,2600
-shot narrow-dark 420,2600 --blink-settings=preferredColorScheme=0
+python3 "$(dirname "$0")/phone_page.py" "$url#$run" "$output/phone-light.png"
+python3 "$(dirname "$0")/phone_page.py" "$url#$run" "$output/phone-dark.png" --dark
+python3 "$(dirname "$0")/phone_page.py" "$url" "$output/phone-runs.png"
 browser --window-size=1400,600 --screenshot="$output/runs.png" "$url" >/dev/null
 echo "screenshots in $output"
