@@ -22,6 +22,8 @@
 #include "common/base/stop_with_input.h"
 #include "common/config/config_io.h"
 #include "common/config/run_files.h"
+#include "common/config/run_membership.h"
+#include "common/dds/bus.h"
 #include "common/nn/precision.h"
 #include "common/wire/process_name.h"
 
@@ -101,15 +103,17 @@ int Evaluate(const Options& options) {
 }
 
 int RunActor(const Options& options) {
+  const bool evaluates = options.role == "eval";
+  log::Start((evaluates ? ProcessName::Evaluation() : ProcessName::Actor(options.id)).Text(), "");
   KeepSecuredRunPrivate(options.run);
   std::optional<StopWithInput> stop_with_input;
   if (options.stop_with_input) stop_with_input.emplace();
-  if (options.role == "eval") {
-    log::Start(ProcessName::Evaluation().Text(), "");
-    return RunEvalActor(options.run, options.reach);
-  }
-  log::Start(ProcessName::Actor(options.id).Text(), "");
-  return RunTrainingActor(options.run, options.id, options.reach);
+  const RunMembership member(options.run);
+  const Config config = ReadRunConfig(options.run).config;
+  dds::Bus bus(dds::FindPlace(options.run, config.transport, options.reach),
+               evaluates ? dds::Role::kEval : dds::Role::kActor);
+  if (evaluates) return EvalActor(options.run, bus).Run();
+  return TrainingActor(options.run, options.id, bus).Run();
 }
 
 }  // namespace

@@ -2,8 +2,8 @@
 #include "learner/batch_feed.h"
 
 #include "common/config/on_policy.h"
-#include "common/dds/publisher.h"
-#include "common/dds/subscriber.h"
+#include "common/link/reader.h"
+#include "common/link/writer.h"
 #include "learner/batch_source.h"
 #include "learner/rollouts/rollout_source.h"
 
@@ -13,12 +13,12 @@ namespace {
 // Members are in construction order: subscribers, which end first, write to what is above them.
 class ReplayFeed final : public BatchFeed {
  public:
-  ReplayFeed(const RunConfig& run, uint64_t learner_session, uint64_t updates, dds::Bus& bus)
-      : requests_(bus),
+  ReplayFeed(const RunConfig& run, uint64_t learner_session, uint64_t updates, link::Hub& hub)
+      : requests_(hub),
         source_(run, learner_session, updates + 1,
                 [this](const SampleRequest& request) { return Ask(request); }),
-        parts_(bus, [this](const BatchPart& part) { source_.OnPart(part); }),
-        slots_(bus, [this](const BatchSlot& slot) { source_.OnSlot(slot); }) {}
+        parts_(hub, [this](const BatchPart& part) { source_.OnPart(part); }),
+        slots_(hub, [this](const BatchSlot& slot) { source_.OnSlot(slot); }) {}
 
   BatchStream& stream() override { return source_; }
 
@@ -28,38 +28,38 @@ class ReplayFeed final : public BatchFeed {
     return requests_.Matched() > 0 && requests_.Write(request);
   }
 
-  dds::Publisher<SampleRequest> requests_;
+  link::Writer<SampleRequest> requests_;
   BatchSource source_;
-  dds::Subscriber<BatchPart> parts_;
-  dds::Subscriber<BatchSlot> slots_;
+  link::Reader<BatchPart> parts_;
+  link::Reader<BatchSlot> slots_;
 };
 
 class RolloutFeed final : public BatchFeed {
  public:
   RolloutFeed(const std::filesystem::path& folder, const RunConfig& run, uint64_t learner_session,
-              uint64_t updates, dds::Bus& bus)
-      : credits_(bus),
+              uint64_t updates, link::Hub& hub)
+      : credits_(hub),
         source_(run, folder, learner_session, updates,
                 [this](const CreditsMessage& message) { credits_.Write(message); }),
-        chunks_(bus, [this](const TransitionChunk& chunk) { source_.OnChunk(chunk); }) {}
+        chunks_(hub, [this](const TransitionChunk& chunk) { source_.OnChunk(chunk); }) {}
 
   BatchStream& stream() override { return source_; }
-  void SayFarewell() override { source_.SayFarewell(); }
+  void DrainAfterCoordinatorLoss() override { source_.DrainAfterCoordinatorLoss(); }
 
  private:
-  dds::Publisher<CreditsMessage> credits_;
+  link::Writer<CreditsMessage> credits_;
   RolloutSource source_;
-  dds::Subscriber<TransitionChunk> chunks_;
+  link::Reader<TransitionChunk> chunks_;
 };
 
 }  // namespace
 
 std::unique_ptr<BatchFeed> MakeFeed(const std::filesystem::path& folder, const RunConfig& run,
-                                    uint64_t learner_session, uint64_t updates, dds::Bus& bus) {
+                                    uint64_t learner_session, uint64_t updates, link::Hub& hub) {
   if (LearnsOnPolicy(run.config)) {
-    return std::make_unique<RolloutFeed>(folder, run, learner_session, updates, bus);
+    return std::make_unique<RolloutFeed>(folder, run, learner_session, updates, hub);
   }
-  return std::make_unique<ReplayFeed>(run, learner_session, updates, bus);
+  return std::make_unique<ReplayFeed>(run, learner_session, updates, hub);
 }
 
 }  // namespace shoal::learner

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a learner's batches come from, over DDS: drawn by a replay, or rollouts of the actors
+// The source of a learner's batches, over the link: drawn by a replay, or rollouts of the actors
 // themselves.
 #pragma once
 
@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "common/config/run_config.h"
-#include "common/dds/bus.h"
+#include "common/link/hub.h"
 #include "learner/batch_stream.h"
 
 namespace shoal::learner {
@@ -17,12 +17,12 @@ class BatchFeed {
  public:
   virtual ~BatchFeed() = default;
   virtual BatchStream& stream() = 0;
-  // When the coordinator is gone: whoever still sends gets his answer.
-  virtual void SayFarewell() {}
+  // Keeps acknowledging chunks after the coordinator is lost, until their senders go quiet.
+  virtual void DrainAfterCoordinatorLoss() {}
 };
 
-// As the run's algorithm learns; `updates`: done before. Borrows the bus. Throws Error.
+// As the run's algorithm learns; `updates`: done before. Borrows the hub. Throws Error.
 std::unique_ptr<BatchFeed> MakeFeed(const std::filesystem::path& folder, const RunConfig& run,
-                                    uint64_t learner_session, uint64_t updates, dds::Bus& bus);
+                                    uint64_t learner_session, uint64_t updates, link::Hub& hub);
 
 }  // namespace shoal::learner

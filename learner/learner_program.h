@@ -1,16 +1,57 @@
 // SPDX-License-Identifier: Apache-2.0
-// The learner of a run, put together: networks, batches and weights over DDS, checkpoints.
+// The learner of a run, put together: networks, batches and weights over the link, checkpoints.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <memory>
+#include <optional>
 
-#include "common/dds/reach.h"
+#include "common/config/run_config.h"
+#include "common/link/hub.h"
+#include "common/link/reader.h"
+#include "common/nn/precision.h"
+#include "common/run_folder/update_page.h"
+#include "common/wire/control_state.h"
+#include "learner/agent/agent.h"
+#include "learner/batch_feed.h"
+#include "learner/checkpoint_store.h"
+#include "learner/hub_outlet.h"
+#include "learner/pending_evaluations.h"
 
 namespace shoal::learner {
 
-// Trains run `run` from its newest checkpoint, or from the start, until it is told to stop; `argv`
-// is the program's, for OpenMP (openmp_environment.h). Returns the exit code: 0 stopped in order, 1
-// the coordinator is gone. Throws Error.
-int RunLearner(const std::filesystem::path& run, const dds::Reach& reach, char** argv);
+// Members are in construction order: readers, which end first, write to what is above them.
+class LearnerProgram {
+ public:
+  // Restores the newest checkpoint of the run in `folder`, or starts fresh. Its networks use
+  // `threads` threads. One thread constructs and runs it. Borrows the hub. Throws Error.
+  LearnerProgram(const std::filesystem::path& folder, const RunConfig& run, int threads,
+                 link::Hub& hub);
+
+  // Trains until it is told to stop (0; kUnwrittenExit where the last checkpoint could not be
+  // written) or the coordinator is gone (1). Throws Error.
+  int Run();
+
+ private:
+  std::optional<CheckpointState> Restore();
+
+  void StartFresh();
+
+  const std::filesystem::path folder_;
+  const RunConfig run_;
+  const uint64_t session_;
+  const nn::Precision precision_;
+  const std::unique_ptr<Agent> agent_;
+  CheckpointStore checkpoints_;
+  const std::optional<CheckpointState> restored_;
+  UpdatePage update_page_;
+  PendingEvaluations pending_evaluations_;
+  ControlState control_;
+  HubOutlet outlet_;
+  const std::unique_ptr<BatchFeed> batches_;
+  link::Reader<EvalMessage> evaluation_subscriber_;
+  link::Reader<ControlMessage> control_subscriber_;
+};
 
 }  // namespace shoal::learner

@@ -6,12 +6,16 @@
 #include "common/base/log.h"
 #include "common/base/main_guard.h"
 #include "common/base/stop.h"
+#include "common/base/usable_cores.h"
+#include "common/config/learner_threads.h"
 #include "common/config/run_files.h"
+#include "common/config/run_membership.h"
 #include "common/dds/bus.h"
 #include "common/tasks/task_library.h"
 #include "common/wire/process_name.h"
 #include "learner/command_line.h"
 #include "learner/learner_program.h"
+#include "learner/openmp_environment.h"
 
 namespace {
 
@@ -21,8 +25,15 @@ int Run(int argc, char** argv) {
   if (const auto exit_code = shoal::ParseCommandLine(app.get(), argc, argv)) return *exit_code;
   shoal::log::Start(shoal::ProcessName::Learner().Text(), "");
   shoal::InstallStopSignals();
-  shoal::tasks::LoadTaskLibrary(shoal::ReadRunConfig(options.run).config.task_library);
-  return shoal::learner::RunLearner(options.run, options.reach, argv);
+  shoal::KeepSecuredRunPrivate(options.run);
+  const shoal::RunConfig run = shoal::ReadRunConfig(options.run);
+  shoal::tasks::LoadTaskLibrary(run.config.task_library);
+  const int threads = shoal::LearnerThreads(run.config, shoal::UsableCores());
+  shoal::learner::EnsurePassiveOpenMp(threads, argv);
+  const shoal::RunMembership member(options.run);
+  shoal::dds::Bus bus(shoal::dds::FindPlace(options.run, run.config.transport, options.reach),
+                      shoal::dds::Role::kLearner);
+  return shoal::learner::LearnerProgram(options.run, run, threads, bus).Run();
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include "common/base/main_guard.h"
 #include "common/base/stop.h"
 #include "common/config/run_files.h"
+#include "common/config/run_membership.h"
 #include "common/dds/bus.h"
 #include "common/tasks/task_library.h"
 #include "common/wire/process_name.h"
@@ -19,10 +20,16 @@ int Run(int argc, char** argv) {
   shoal::replay::Options options;
   const auto app = shoal::replay::MakeCommandLine(&options);
   if (const auto exit_code = shoal::ParseCommandLine(app.get(), argc, argv)) return *exit_code;
+  const shoal::ProcessName name = shoal::ProcessName::Replay(0);
   shoal::InstallStopSignals();
-  shoal::log::Start(shoal::ProcessName::Replay(0).Text(), "");
-  shoal::tasks::LoadTaskLibrary(shoal::ReadRunConfig(options.run).config.task_library);
-  return shoal::replay::RunReplayService(options.run, options.reach);
+  shoal::log::Start(name.Text(), "");
+  shoal::KeepSecuredRunPrivate(options.run);
+  const shoal::RunMembership member(options.run);
+  const shoal::Config config = shoal::ReadRunConfig(options.run).config;
+  shoal::tasks::LoadTaskLibrary(config.task_library);
+  shoal::dds::Bus bus(shoal::dds::FindPlace(options.run, config.transport, options.reach),
+                      shoal::dds::Role::kReplay);
+  return shoal::replay::ReplayService(options.run, name, bus).Run();
 }
 
 }  // namespace

@@ -3,20 +3,14 @@
 
 #include <algorithm>
 
-#include "actor/loop/actor_loop.h"
-#include "actor/loop/actor_report.h"
-#include "actor/loop/dds_parts.h"
-#include "actor/sending/actor_lock.h"
 #include "common/base/error.h"
 #include "common/base/host_name.h"
 #include "common/base/log.h"
 #include "common/base/write_faults.h"
 #include "common/config/on_policy.h"
 #include "common/config/run_files.h"
-#include "common/config/run_membership.h"
 #include "common/config/sending_window.h"
 #include "common/config/session_number.h"
-#include "common/dds/metrics_publisher.h"
 #include "common/tasks/task_registry.h"
 #include "common/wire/process_name.h"
 
@@ -48,124 +42,90 @@ ChunkWindow::Options WindowOptions(const RunConfig& run, uint32_t id, uint64_t s
           .records_before = records_before};
 }
 
-// The parts of the loop, put together. Members are in construction order; destruction is the
-// reverse.
-class TrainingActor {
- public:
-  TrainingActor(const std::filesystem::path& folder, uint32_t id, const dds::Reach& reach,
-                const EnvironmentFactory& make)
-      : member_(folder),
-        run_(ReadRunConfig(folder)),
-        lock_(folder, id, kLockDeadline, StopRequested),
-        folder_(folder),
-        id_(id),
-        resumed_(GoesOnExactly(run_.config) ? TakeRolloutState(folder, id) : std::nullopt),
-        session_(resumed_ ? resumed_->session
-                          : NextSession(folder, ProcessName::Actor(id).Text(), WallTimeNs())),
-        first_env_(id * static_cast<uint32_t>(run_.config.envs_per_actor)),
-        made_(folder, id, session_, first_env_, static_cast<uint32_t>(run_.config.envs_per_actor)),
-        window_(WindowOptions(run_, id, session_, resumed_ ? resumed_->made : 0)),
-        selector_(run_.config, run_.spec, run_.config.envs_per_actor, id),
-        rollout_(Rollout::Options::Of(run_.config, first_env_), run_.spec,
-                 make(run_, run_.config.envs_per_actor), made_, window_, selector_),
-        bus_(dds::FindPlace(folder, run_.config.transport, reach), dds::Role::kActor),
-        metrics_(bus_),
-        link_(bus_, id, session_),
-        weights_(folder, HostName(), run_.spec.Hash(), WeightsOver(bus_)),
-        control_(bus_),
-        sender_(window_, link_,
-                {.spec_hash = run_.spec.Hash(),
-                 .spec_summary = run_.spec.Summary(),
-                 .flush_after = milliseconds(run_.config.transport.flush_ms)}) {}
-
-  int Run() {
-    log::Info("session {}: environments {}..{}, {}", session_, first_env_,
-              first_env_ + static_cast<uint32_t>(run_.config.envs_per_actor) - 1,
-              run_.spec.Summary());
-    if (resumed_) Restore();
-    const auto pace = MakePace(run_.config, rollout_.vector_steps());
-    ActorLoop loop({.rollout = rollout_,
-                    .selector = selector_,
-                    .sender = sender_,
-                    .weights = weights_,
-                    .pace = *pace,
-                    .control = control_});
-    ActorReport report(id_, {.rollout = rollout_,
-                             .selector = selector_,
-                             .sender = sender_,
-                             .weights = weights_,
-                             .loop = loop,
-                             .task = tasks::FindTask(run_.config.task)});
-    const ActorLoop::End end = RunLoop(loop, report);
-    metrics_.WaitForAcks(kLastReportDeadline);
-    const bool stored = end == ActorLoop::End::kAllStored;
-    if (!stored) return 1;
-    return GoesOnExactly(run_.config) && !Leave() ? kUnwrittenExit : 0;
-  }
-
- private:
-  ActorLoop::End RunLoop(ActorLoop& loop, ActorReport& report) {
-    try {
-      return loop.Run([&](const char* state, bool last) {
-        if (report.Due(Now()) || last) metrics_.Write(report.Make(state));
-      });
-    } catch (const SupersededError& e) {
-      // Our successor's session must come after that one.
-      NextSession(folder_, ProcessName::Actor(id_).Text(),
-                  static_cast<int64_t>(std::min<uint64_t>(e.session(), INT64_MAX)));
-      throw;
-    }
-  }
-
-  // In lockstep: goes on exactly where the former process left.
-  void Restore() {
-    if (made_.made() != resumed_->made) {
-      throw RuntimeError("actor {} made {} records, its state was left at {}", id_, made_.made(),
-                         resumed_->made);
-    }
-    rollout_.Restore(*resumed_);
-    log::Info("lockstep: goes on after {} env steps", rollout_.env_steps());
-  }
-
-  // In lockstep: for the process that goes on. False when it could not be written.
-  bool Leave() {
-    RolloutState state = rollout_.State();
-    state.session = session_;
-    state.made = made_.made();
-    try {
-      WriteRolloutState(folder_, id_, state);
-      return true;
-    } catch (const Error& e) {
-      log::Failure("{}; the run will go on, but not repeat bit for bit", e.what());
-      return false;
-    }
-  }
-
-  const RunMembership member_;
-  const RunConfig run_;
-  const ActorLock lock_;
-  const std::filesystem::path folder_;
-  const uint32_t id_;
-  const std::optional<RolloutState> resumed_;  // lockstep
-  const uint64_t session_;
-  const uint32_t first_env_;
-  MadePage made_;
-  ChunkWindow window_;
-  ActionSelector selector_;
-  Rollout rollout_;
-  dds::Bus bus_;
-  dds::MetricsPublisher<ActorMetrics> metrics_;
-  DdsChunkLink link_;
-  HostWeights weights_;
-  DdsRunControl control_;
-  ChunkSender sender_;
-};
-
 }  // namespace
 
-int RunTrainingActor(const std::filesystem::path& run, uint32_t id, const dds::Reach& reach,
-                     const EnvironmentFactory& make) {
-  return TrainingActor(run, id, reach, make).Run();
+TrainingActor::TrainingActor(const std::filesystem::path& folder, uint32_t id, link::Hub& hub,
+                             const EnvironmentFactory& make)
+    : run_(ReadRunConfig(folder)),
+      lock_(folder, id, kLockDeadline, StopRequested),
+      folder_(folder),
+      id_(id),
+      resumed_(GoesOnExactly(run_.config) ? TakeRolloutState(folder, id) : std::nullopt),
+      session_(resumed_ ? resumed_->session
+                        : NextSession(folder, ProcessName::Actor(id).Text(), WallTimeNs())),
+      first_env_(id * static_cast<uint32_t>(run_.config.envs_per_actor)),
+      made_(folder, id, session_, first_env_, static_cast<uint32_t>(run_.config.envs_per_actor)),
+      window_(WindowOptions(run_, id, session_, resumed_ ? resumed_->made : 0)),
+      selector_(run_.config, run_.spec, run_.config.envs_per_actor, id),
+      rollout_(Rollout::Options::Of(run_.config, first_env_), run_.spec,
+               make(run_, run_.config.envs_per_actor), made_, window_, selector_),
+      metrics_(hub),
+      link_(hub, id, session_),
+      weights_(folder, HostName(), run_.spec.Hash(), WeightsOver(hub)),
+      control_(hub),
+      sender_(window_, link_,
+              {.spec_hash = run_.spec.Hash(),
+               .spec_summary = run_.spec.Summary(),
+               .flush_after = milliseconds(run_.config.transport.flush_ms)}) {}
+
+int TrainingActor::Run() {
+  log::Info("session {}: environments {}..{}, {}", session_, first_env_,
+            first_env_ + static_cast<uint32_t>(run_.config.envs_per_actor) - 1,
+            run_.spec.Summary());
+  if (resumed_) Restore();
+  const auto pace = MakePace(run_.config, rollout_.vector_steps());
+  ActorLoop loop({.rollout = rollout_,
+                  .selector = selector_,
+                  .sender = sender_,
+                  .weights = weights_,
+                  .pace = *pace,
+                  .control = control_});
+  ActorReport report(id_, {.rollout = rollout_,
+                           .selector = selector_,
+                           .sender = sender_,
+                           .weights = weights_,
+                           .loop = loop,
+                           .task = tasks::FindTask(run_.config.task)});
+  const ActorLoop::End end = RunLoop(loop, report);
+  metrics_.WaitForAcks(kLastReportDeadline);
+  const bool stored = end == ActorLoop::End::kAllStored;
+  if (!stored) return 1;
+  return GoesOnExactly(run_.config) && !Leave() ? kUnwrittenExit : 0;
+}
+
+ActorLoop::End TrainingActor::RunLoop(ActorLoop& loop, ActorReport& report) {
+  try {
+    return loop.Run([&](const char* state, bool last) {
+      if (report.Due(Now()) || last) metrics_.Write(report.Make(state));
+    });
+  } catch (const SupersededError& e) {
+    // Our successor's session must come after that one.
+    NextSession(folder_, ProcessName::Actor(id_).Text(),
+                static_cast<int64_t>(std::min<uint64_t>(e.session(), INT64_MAX)));
+    throw;
+  }
+}
+
+void TrainingActor::Restore() {
+  if (made_.made() != resumed_->made) {
+    throw RuntimeError("actor {} made {} records, its state was left at {}", id_, made_.made(),
+                       resumed_->made);
+  }
+  rollout_.Restore(*resumed_);
+  log::Info("lockstep: goes on after {} env steps", rollout_.env_steps());
+}
+
+bool TrainingActor::Leave() {
+  RolloutState state = rollout_.State();
+  state.session = session_;
+  state.made = made_.made();
+  try {
+    WriteRolloutState(folder_, id_, state);
+    return true;
+  } catch (const Error& e) {
+    log::Failure("{}; the run will go on, but not repeat bit for bit", e.what());
+    return false;
+  }
 }
 
 }  // namespace shoal::actor

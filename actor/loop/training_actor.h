@@ -1,14 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
-// A training actor process: steps environments, publishes their records on credit, takes the newest
-// weights between steps.
+// A training actor: steps environments, publishes their records on credit, takes the newest weights
+// between steps. The parts of the loop (actor_loop.h), put together.
 #pragma once
 
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
+#include <optional>
+#include <vector>
 
+#include "actor/acting/action_selector.h"
 #include "actor/acting/environments.h"
-#include "common/dds/reach.h"
+#include "actor/acting/host_weights.h"
+#include "actor/loop/actor_loop.h"
+#include "actor/loop/actor_report.h"
+#include "actor/loop/hub_parts.h"
+#include "actor/loop/rollout.h"
+#include "actor/loop/rollout_state.h"
+#include "actor/sending/actor_lock.h"
+#include "actor/sending/chunk_sender.h"
+#include "actor/sending/chunk_window.h"
+#include "actor/sending/made_page.h"
+#include "common/config/run_config.h"
+#include "common/link/hub.h"
+#include "common/link/metrics_writer.h"
 
 namespace shoal::actor {
 
@@ -16,10 +32,45 @@ namespace shoal::actor {
 using EnvironmentFactory =
     std::function<std::vector<std::unique_ptr<worlds::Environment>>(const RunConfig&, int)>;
 
-// Runs until the coordinator ends the run or SIGTERM; returns the exit code: 0 when everything made
-// was reported stored, 1 when the coordinator vanished or records were left. Throws Error at
-// start-up. `make`: the task's environments; tests of the transport bring cheaper ones.
-int RunTrainingActor(const std::filesystem::path& run, uint32_t id, const dds::Reach& reach,
-                     const EnvironmentFactory& make = MakeEnvironments);
+// Members are in construction order; destruction is the reverse.
+class TrainingActor {
+ public:
+  // Actor `id` of the run in `folder`; waits for a former process of that id to end. `make`: the
+  // task's environments; tests of the transport bring cheaper ones. One thread constructs and runs
+  // it. Borrows the hub. Throws Error.
+  TrainingActor(const std::filesystem::path& folder, uint32_t id, link::Hub& hub,
+                const EnvironmentFactory& make = MakeEnvironments);
+
+  // Until the coordinator ends the run or a stop is requested: 0 when everything made was reported
+  // stored, 1 when the coordinator vanished or records were left, kUnwrittenExit when the state of
+  // a run in lockstep could not be written. Throws Error.
+  int Run();
+
+ private:
+  ActorLoop::End RunLoop(ActorLoop& loop, ActorReport& report);
+
+  // In lockstep: goes on exactly where the former process left.
+  void Restore();
+
+  // In lockstep: for the process that goes on. False when it could not be written.
+  bool Leave();
+
+  const RunConfig run_;
+  const ActorLock lock_;
+  const std::filesystem::path folder_;
+  const uint32_t id_;
+  const std::optional<RolloutState> resumed_;  // lockstep
+  const uint64_t session_;
+  const uint32_t first_env_;
+  MadePage made_;
+  ChunkWindow window_;
+  ActionSelector selector_;
+  Rollout rollout_;
+  link::MetricsWriter<ActorMetrics> metrics_;
+  HubChunkLink link_;
+  HostWeights weights_;
+  HubRunControl control_;
+  ChunkSender sender_;
+};
 
 }  // namespace shoal::actor

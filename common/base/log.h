@@ -4,6 +4,7 @@
 
 #include <fmt/core.h>
 
+#include <memory>
 #include <string>
 #include <utility>
 
@@ -13,6 +14,14 @@ namespace shoal::log {
 // A file that cannot be opened throws Error.
 void Start(const std::string& name, const std::string& file);
 
+// A log of its own for the threads of a group (thread_group.h).
+class File;
+// Appends to `file` alone. Throws Error where it cannot be opened.
+std::shared_ptr<File> OpenFile(const std::string& name, const std::string& file);
+// One line as it is, without time and name.
+void WriteRaw(File& log, const std::string& line);
+
+// Into the log of the calling thread's group, else into the process's.
 void WriteInfo(const std::string& line);
 void WriteWarning(const std::string& line);
 void WriteError(const std::string& line);

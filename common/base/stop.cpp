@@ -3,6 +3,8 @@
 
 #include <csignal>
 
+#include "common/base/thread_group.h"
+
 namespace shoal {
 namespace {
 
@@ -44,8 +46,14 @@ void InstallStopSignals() {
 }
 
 void RequestStop() { requests.fetch_add(1, std::memory_order_relaxed); }
-bool StopRequested() { return StopRequests() > 0 || hung_up.load(std::memory_order_relaxed); }
-int StopRequests() { return requests.load(std::memory_order_relaxed); }
+bool StopRequested() {
+  if (ThreadGroup::Current() != nullptr) return StopRequests() > 0;
+  return StopRequests() > 0 || hung_up.load(std::memory_order_relaxed);
+}
+int StopRequests() {
+  if (const ThreadGroup* group = ThreadGroup::Current()) return group->StopRequests();
+  return requests.load(std::memory_order_relaxed);
+}
 int StopSignal() { return first_signal.load(std::memory_order_relaxed); }
 
 }  // namespace shoal

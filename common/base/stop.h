@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // One process-wide request to stop, set by SIGINT / SIGTERM / SIGHUP (the terminal's or the
-// parent's end). Polled by every loop; never un-set.
+// parent's end). Polled by every loop; never un-set. A thread of a group (thread_group.h) polls its
+// group's request instead: signals are for the threads of no group.
 #pragma once
 
 #include <atomic>

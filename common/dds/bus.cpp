@@ -50,10 +50,10 @@ void ThrowJoinError(int domain, Role role, const std::string& reason) {
       if (UdpPortFree(port)) continue;
       throw PortTakenError(RuntimeError(
           "UDP port {} is taken: another process is the {} of DDS domain {} on this host", port,
-          RoleName(role), domain));
+          link::RoleName(role), domain));
     }
   }
-  throw RuntimeError("cannot join DDS domain {} as {}: {}", domain, RoleName(role), reason);
+  throw RuntimeError("cannot join DDS domain {} as {}: {}", domain, link::RoleName(role), reason);
 }
 
 void Join(const std::string& xml_template, const ClusterAddress& address,

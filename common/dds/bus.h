@@ -10,6 +10,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
@@ -17,21 +18,19 @@
 #include "common/config/config.h"
 #include "common/config/run_files.h"
 #include "common/dds/reach.h"
+#include "common/link/hub.h"
 
 namespace shoal::dds {
 
-// kActor: a training actor. kEval: the evaluation actor. kClient: a program that watches or steers
-// a run from outside.
-enum class Role { kCoordinator, kLearner, kReplay, kActor, kEval, kClient };
-
-// kMain: domain D. kBatch: domain D+1. kOperate: domain D+1 without a tag.
-enum class Plane { kMain, kBatch, kOperate };
+using link::Plane;
+using link::Role;
 
 // Sets malloc options that keep megabyte samples out of mmap, whose page faults would be most of a
 // receiver's time. Call first in main, before threads.
 void TuneMalloc();
 
-class Bus {
+// The link between processes (common/link/hub.h has the contract).
+class Bus final : public link::Hub {
  public:
   // Joins the run's domains that the role has to do with. At most one Bus per domain and process.
   // Throws Error naming the port when another process holds the role's index, the interface when it
@@ -42,16 +41,20 @@ class Bus {
   // configuration; docs/wire_format.md lists the placeholders it may use.
   Bus(const ClusterAddress& address, const TransportConfig& transport, Role role);
   Bus(const Place& place, Role role) : Bus(place.address, place.transport, role) {}
-  // Publishers and subscribers of the bus must be gone.
-  ~Bus();
+  // Writers and readers of the bus must be gone.
+  ~Bus() override;
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;
 
-  // Messages that could not be read, by topic, since the bus was made; every topic that a
-  // subscriber read at some time. Any thread.
-  std::map<std::string, uint64_t> Malformed() const;
+  std::map<std::string, uint64_t> Malformed() const override;
+#define SHOAL_BUS_ENDS(message, ...)                                                         \
+  std::unique_ptr<link::WriterEnd<message>> MakeWriter(link::MessageType<message>) override; \
+  std::unique_ptr<link::ReaderEnd> MakeReader(link::MessageType<message>,                    \
+                                              std::function<void(const message&)>) override;
+  SHOAL_MESSAGES(SHOAL_BUS_ENDS)
+#undef SHOAL_BUS_ENDS
 
-  // Implementation access for publisher.h / subscriber.h. Internal.
+  // Access for writer.cpp and reader.cpp. Internal.
   struct Impl;
   Impl& impl() { return *impl_; }
 

@@ -128,25 +128,6 @@ int ParticipantIndex(Role role) {
   return -1;
 }
 
-const char* RoleName(Role role) {
-  switch (role) {
-    case Role::kCoordinator:
-      return "coordinator";
-    case Role::kLearner:
-      return "learner";
-    case Role::kReplay:
-      return "replay";
-    case Role::kActor:
-      return "actor";
-    case Role::kEval:
-      return "eval";
-    case Role::kClient:
-      return "client";
-  }
-  CHECK(false) << "role " << static_cast<int>(role);
-  return "";
-}
-
 int PlaneDomain(const ClusterAddress& address, Plane plane) {
   return plane == Plane::kMain ? address.domain : address.domain + 1;
 }

@@ -26,8 +26,6 @@ inline constexpr const char* kOverrideVariable = "SHOAL_DDS_XML";
 
 // 0 coordinator, 1 learner, 2 replay; -1 for actors and clients, which have no fixed port.
 int ParticipantIndex(Role role);
-// "coordinator", ... for messages.
-const char* RoleName(Role role);
 // The id of the DDS domain that carries a plane.
 int PlaneDomain(const ClusterAddress& address, Plane plane);
 

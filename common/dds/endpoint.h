@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What Publisher and Subscriber share: the topic and the refusal to stay silent about a peer of the
+// What writers and readers share: the topic and the refusal to stay silent about a peer of the
 // other side whose quality of service does not match. Internal.
 #pragma once
 
@@ -9,7 +9,8 @@
 #include "common/base/check.h"
 #include "common/base/log.h"
 #include "common/dds/bus_impl.h"
-#include "common/dds/topics.h"
+#include "common/dds/qos.h"
+#include "common/dds/wire_type.h"
 
 namespace shoal::dds {
 
@@ -17,10 +18,10 @@ using ListenerHandle = std::unique_ptr<dds_listener_t, decltype(&dds_delete_list
 
 template <class M>
 Entity CreateTopic(Bus& bus) {
-  const TopicSettings& settings = Topic<M>::kSettings;
+  const link::TopicSettings& settings = link::Topic<M>::kSettings;
   const dds_entity_t participant = bus.impl().Participant(settings.plane);
   CHECK(participant > 0) << "topic " << settings.name << ": this role is not in the batch domain";
-  return Entity(dds_create_topic(participant, Topic<M>::kType, settings.name,
+  return Entity(dds_create_topic(participant, WireType<M>::kDescriptor, settings.name,
                                  MakeQos(settings).get(), nullptr),
                 std::string("topic ") + settings.name);
 }
@@ -34,14 +35,14 @@ ListenerHandle MakeListener(void* argument) {
         log::Failure(
             "dds: a reader of topic {} asks for quality of service (policy {}) that this "
             "process does not offer: another version of Shoal?",
-            Topic<M>::kSettings.name, static_cast<int>(status.last_policy_id));
+            link::Topic<M>::kSettings.name, static_cast<int>(status.last_policy_id));
       });
   dds_lset_requested_incompatible_qos(
       listener.get(), [](dds_entity_t, dds_requested_incompatible_qos_status_t status, void*) {
         log::Failure(
             "dds: a writer of topic {} does not offer the quality of service (policy {}) "
             "that this process asks for: another version of Shoal?",
-            Topic<M>::kSettings.name, static_cast<int>(status.last_policy_id));
+            link::Topic<M>::kSettings.name, static_cast<int>(status.last_policy_id));
       });
   return listener;
 }

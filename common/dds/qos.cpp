@@ -3,7 +3,7 @@
 
 namespace shoal::dds {
 
-QosHandle MakeQos(const TopicSettings& settings) {
+QosHandle MakeQos(const link::TopicSettings& settings) {
   QosHandle qos(dds_create_qos(), &dds_delete_qos);
   dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE,
                        DDS_MSECS(settings.max_blocking.count()));

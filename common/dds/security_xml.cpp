@@ -57,9 +57,9 @@ std::string File(const char* element, const fs::path& file) {
 std::string SecurityElement(const fs::path& folder, Role role) {
   if (folder.empty()) return "";
   CheckName(fs::absolute(folder));
-  CheckCredentials(folder, RoleName(role), std::time(nullptr));
+  CheckCredentials(folder, link::RoleName(role), std::time(nullptr));
   const auto [ca, governance, certificate, key, permissions] =
-      CredentialFiles(fs::absolute(folder), RoleName(role));
+      CredentialFiles(fs::absolute(folder), link::RoleName(role));
   return "<Security>\n  <Authentication>" + Library("auth", "authentication") +
          File("IdentityCertificate", certificate) + File("IdentityCA", ca) +
          File("PrivateKey", key) + "</Authentication>\n  <AccessControl>" +

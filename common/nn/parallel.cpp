@@ -2,7 +2,6 @@
 #include "common/nn/parallel.h"
 
 #include <algorithm>
-#include <atomic>
 #include <cstdint>
 
 #include "common/base/check.h"
@@ -26,7 +25,7 @@ void __tsan_release(void* address);
 namespace shoal::nn {
 namespace {
 
-std::atomic<int> threads_of_new_networks{1};
+thread_local int threads_of_new_networks = 1;
 
 struct Loop {
   int n;

@@ -8,7 +8,7 @@
 
 namespace shoal::nn {
 
-// Threads that networks built from now on use; 1 until SetThreads.
+// Threads that networks use which the calling thread builds from now on; 1 until SetThreads.
 int Threads();
 
 // The pool's size for the calling thread while this lives: a network is built and run under the

@@ -13,7 +13,7 @@ enum class Precision { kF32, kBf16 };
 // it throws Error.
 Precision ChoosePrecision(const std::string& asked, bool pixels);
 const char* ToString(Precision precision);
-// Sets the threads that the primitives of this process use.
+// Sets the threads that networks use which the calling thread builds from now on.
 void SetThreads(int threads);
 // What oneDNN found, e.g. "avx512_core_bf16", for meta.json.
 std::string CpuIsa();

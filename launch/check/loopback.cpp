@@ -11,8 +11,8 @@
 #include "common/base/stop.h"
 #include "common/config/run_files.h"
 #include "common/dds/bus.h"
-#include "common/dds/publisher.h"
-#include "common/dds/subscriber.h"
+#include "common/link/writer.h"
+#include "common/link/reader.h"
 #include "launch/processes/child_process.h"
 #include "launch/processes/process_plan.h"
 #include "launch/processes/scratch_folder.h"
@@ -58,7 +58,7 @@ class HighestHeard {
 
 // Waits until the peer's greeting has come and our writer knows its reader: what is sent before
 // that is lost.
-void Meet(HighestHeard* acknowledged, const dds::Publisher<TransitionChunk>& publisher,
+void Meet(HighestHeard* acknowledged, const link::Writer<TransitionChunk>& publisher,
           ChildProcess* peer) {
   const SteadyTime deadline = Now() + kMeetingDeadline;
   while (Now() < deadline && !StopRequested()) {
@@ -79,8 +79,8 @@ LoopbackRate MeasureLoopback(const TransportConfig& transport, milliseconds dura
   const auto bus = dds::ClaimDomain(transport, &address);
   WriteClusterAddress(folder.path(), address);
   HighestHeard acknowledged;
-  dds::Publisher<TransitionChunk> publisher(*bus);
-  const dds::Subscriber<CreditsMessage> credits(*bus, [&](const CreditsMessage& message) {
+  link::Writer<TransitionChunk> publisher(*bus);
+  const link::Reader<CreditsMessage> credits(*bus, [&](const CreditsMessage& message) {
     for (const Credit& credit : message.credits) acknowledged.Hear(credit.stored);
   });
   ProcessSpec spec = ProgramSpec("shoal", {"check", "--loopback-peer", folder.path().string()}, 1);
@@ -116,9 +116,9 @@ int RunLoopbackPeer(const std::filesystem::path& folder, const TransportConfig& 
   dds::Bus bus(ReadClusterAddress(folder), transport, dds::Role::kReplay);
   HighestHeard stored;
   stored.Hear(0);
-  dds::Publisher<CreditsMessage> publisher(bus);
+  link::Writer<CreditsMessage> publisher(bus);
   uint64_t next = 1;  // touched by the receive thread alone
-  const dds::Subscriber<TransitionChunk> chunks(bus, [&](const TransitionChunk& chunk) {
+  const link::Reader<TransitionChunk> chunks(bus, [&](const TransitionChunk& chunk) {
     if (chunk.first_sequence != next || chunk.payload.size() != kChunkBytes) return;
     stored.Hear(next++);
   });

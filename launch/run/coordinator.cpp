@@ -13,7 +13,7 @@
 #include "common/base/usable_cores.h"
 #include "common/base/write_faults.h"
 #include "common/config/on_policy.h"
-#include "common/dds/publisher.h"
+#include "common/link/writer.h"
 #include "common/run_folder/run_file_names.h"
 #include "common/run_folder/update_page.h"
 #include "common/wire/process_name.h"
@@ -60,7 +60,7 @@ const char* ToString(RunState state) {
 }  // namespace
 
 struct Coordinator::Impl {
-  Impl(const std::filesystem::path& folder, const RunConfig& run_config, dds::Bus& bus,
+  Impl(const std::filesystem::path& folder, const RunConfig& run_config, link::Hub& hub,
        const RunMeta& before, const std::vector<RemoteHost>& remote_hosts, OperatorDesk& run_desk,
        Progress& shown)
       : run(folder),
@@ -75,12 +75,12 @@ struct Coordinator::Impl {
         evaluations(config.eval.episodes, run_progress,
                     [this](const std::string& line) { progress.Say(line); }),
         watch(
-            folder, bus, [this](const std::string& line) { progress.Say(line); }, &faults),
+            folder, hub, [this](const std::string& line) { progress.Say(line); }, &faults),
         scalars(run),
         supervisor(RestartLimits(), HangLimits(),
                    [this](const std::string& line) { progress.Say(line); }),
-        control(bus),
-        inbox(bus) {
+        control(hub),
+        inbox(hub) {
     settings.Restore(meta.changes);
     settings.AddTo(&order);
     rule.Change(settings.config());
@@ -185,7 +185,7 @@ struct Coordinator::Impl {
   Supervisor supervisor;
   WorkingActors working_actors{Now()};
   RoleStanding actors, evaluation_actor;  // as they were looked at last
-  dds::Publisher<ControlMessage> control;
+  link::Writer<ControlMessage> control;
   RunInbox inbox;
 
   ControlMessage order{.epoch = 1};
@@ -202,10 +202,10 @@ struct Coordinator::Impl {
   int stops_before_end = 0;  // Ctrl-C's that had been answered when the ordered stop began
 };
 
-Coordinator::Coordinator(const std::filesystem::path& run, const RunConfig& config, dds::Bus& bus,
+Coordinator::Coordinator(const std::filesystem::path& run, const RunConfig& config, link::Hub& hub,
                          const RunMeta& meta, const std::vector<RemoteHost>& hosts,
                          OperatorDesk& desk, Progress& progress)
-    : impl_(std::make_unique<Impl>(run, config, bus, meta, hosts, desk, progress)) {}
+    : impl_(std::make_unique<Impl>(run, config, hub, meta, hosts, desk, progress)) {}
 
 Coordinator::~Coordinator() = default;
 

@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "common/config/run_config.h"
-#include "common/dds/bus.h"
+#include "common/link/hub.h"
 #include "launch/processes/remote_host.h"
 #include "launch/record/run_meta.h"
 #include "launch/run/operator_desk.h"
@@ -31,8 +31,8 @@ struct RunResult {
 class Coordinator {
  public:
   // `run` holds config.json and cluster.json. `meta` is a fresh one, or the resumed run's. `hosts`
-  // have the run (run_hosts.h). Borrows the coordinator's bus, `desk` and `progress`. Throws Error.
-  Coordinator(const std::filesystem::path& run, const RunConfig& config, dds::Bus& bus,
+  // have the run (run_hosts.h). Borrows the coordinator's hub, `desk` and `progress`. Throws Error.
+  Coordinator(const std::filesystem::path& run, const RunConfig& config, link::Hub& hub,
               const RunMeta& meta, const std::vector<RemoteHost>& hosts, OperatorDesk& desk,
               Progress& progress);
   ~Coordinator();

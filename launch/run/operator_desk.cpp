@@ -11,12 +11,12 @@ constexpr std::chrono::milliseconds kFarewell{1000};
 
 }  // namespace
 
-OperatorDesk::OperatorDesk(dds::Bus& bus, const std::string& run,
+OperatorDesk::OperatorDesk(link::Hub& hub, const std::string& run,
                            std::function<void(const RunViewMessage&)> on_view)
     : on_view_(std::move(on_view)),
-      publisher_(bus),
-      replies_(bus),
-      commands_(bus, [this](const CommandMessage& command) { inbox_.Put(command); }) {
+      publisher_(hub),
+      replies_(hub),
+      commands_(hub, [this](const CommandMessage& command) { inbox_.Put(command); }) {
   view_.run = run;
 }
 

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "common/base/clock.h"
-#include "common/dds/publisher.h"
-#include "common/dds/subscriber.h"
+#include "common/link/writer.h"
+#include "common/link/reader.h"
 #include "common/wire/messages.h"
 #include "launch/watch/message_inbox.h"
 
@@ -20,8 +20,8 @@ namespace shoal::launch {
 // Lives from the run's start until after its last evaluation. One thread.
 class OperatorDesk {
  public:
-  // Borrows the coordinator's bus. `on_view` gets every view that is shown; may be null.
-  OperatorDesk(dds::Bus& bus, const std::string& run,
+  // Borrows the coordinator's hub. `on_view` gets every view that is shown; may be null.
+  OperatorDesk(link::Hub& hub, const std::string& run,
                std::function<void(const RunViewMessage&)> on_view = nullptr);
   // Gives watchers a moment to get the last view.
   ~OperatorDesk();
@@ -55,15 +55,15 @@ class OperatorDesk {
   void Publish(SteadyTime now);
 
   const std::function<void(const RunViewMessage&)> on_view_;
-  dds::Publisher<RunViewMessage> publisher_;
-  dds::Publisher<ReplyMessage> replies_;
+  link::Writer<RunViewMessage> publisher_;
+  link::Writer<ReplyMessage> replies_;
   std::deque<RunEvent> events_;
   uint64_t last_event_ = 0;
   RunViewMessage view_;
   std::optional<SteadyTime> shown_;
   std::deque<ReplyMessage> answered_;  // newest last, one per client
   MessageInbox<CommandMessage> inbox_{kCommands};
-  dds::Subscriber<CommandMessage> commands_;  // last: its callback uses the inbox
+  link::Reader<CommandMessage> commands_;  // last: its callback uses the inbox
 };
 
 }  // namespace shoal::launch

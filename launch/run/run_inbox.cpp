@@ -12,16 +12,16 @@ constexpr size_t kMostEvaluations = 64;  // of a megabyte each, where they are n
 
 }  // namespace
 
-RunInbox::RunInbox(dds::Bus& bus)
+RunInbox::RunInbox(link::Hub& hub)
     : reports_(kMessages),
       evaluations_(kMostEvaluations),
       replay_words_(kMessages),
       learner_words_(kMessages),
-      actor_reports_(bus, ReportsOf<ActorMetrics>(ProcessName::Actor(0).role)),
-      eval_reports_(bus, ReportsOf<EvalMetrics>(ProcessName::Evaluation().role)),
-      replay_reports_(bus, ReportsOf<ReplayMetrics>(ProcessName::Replay(0).role)),
-      learner_reports_(bus, ReportsOf<LearnerMetrics>(ProcessName::Learner().role)),
-      replay_progress_(bus,
+      actor_reports_(hub, ReportsOf<ActorMetrics>(ProcessName::Actor(0).role)),
+      eval_reports_(hub, ReportsOf<EvalMetrics>(ProcessName::Evaluation().role)),
+      replay_reports_(hub, ReportsOf<ReplayMetrics>(ProcessName::Replay(0).role)),
+      learner_reports_(hub, ReportsOf<LearnerMetrics>(ProcessName::Learner().role)),
+      replay_progress_(hub,
                        [this](const ReplayProgress& word) {
                          if (word.replay == ProcessName::Replay(0).index) {
                            replay_words_.Put(word);
@@ -29,8 +29,8 @@ RunInbox::RunInbox(dds::Bus& bus)
                            ++refused_;
                          }
                        }),
-      learner_progress_(bus, [this](const LearnerProgress& word) { learner_words_.Put(word); }),
-      evaluation_subscriber_(bus, [this](const EvalMessage& m) { evaluations_.Put(m); }) {}
+      learner_progress_(hub, [this](const LearnerProgress& word) { learner_words_.Put(word); }),
+      evaluation_subscriber_(hub, [this](const EvalMessage& m) { evaluations_.Put(m); }) {}
 
 template <class M>
 std::function<void(const M&)> RunInbox::ReportsOf(std::string_view role) {

@@ -9,8 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "common/dds/bus.h"
-#include "common/dds/subscriber.h"
+#include "common/link/hub.h"
+#include "common/link/reader.h"
 #include "common/wire/messages.h"
 #include "launch/watch/message_inbox.h"
 
@@ -22,7 +22,7 @@ namespace shoal::launch {
 // the inboxes they fill.
 class RunInbox {
  public:
-  explicit RunInbox(dds::Bus& bus);
+  explicit RunInbox(link::Hub& hub);
 
   // What has come since the last call.
   std::vector<MetricsMessage> TakeReports() { return reports_.TakeAll(); }
@@ -45,13 +45,13 @@ class RunInbox {
   MessageInbox<ReplayProgress> replay_words_;
   MessageInbox<LearnerProgress> learner_words_;
   std::atomic<uint64_t> refused_{0};
-  dds::Subscriber<ActorMetrics> actor_reports_;
-  dds::Subscriber<EvalMetrics> eval_reports_;
-  dds::Subscriber<ReplayMetrics> replay_reports_;
-  dds::Subscriber<LearnerMetrics> learner_reports_;
-  dds::Subscriber<ReplayProgress> replay_progress_;
-  dds::Subscriber<LearnerProgress> learner_progress_;
-  dds::Subscriber<EvalMessage> evaluation_subscriber_;
+  link::Reader<ActorMetrics> actor_reports_;
+  link::Reader<EvalMetrics> eval_reports_;
+  link::Reader<ReplayMetrics> replay_reports_;
+  link::Reader<LearnerMetrics> learner_reports_;
+  link::Reader<ReplayProgress> replay_progress_;
+  link::Reader<LearnerProgress> learner_progress_;
+  link::Reader<EvalMessage> evaluation_subscriber_;
 };
 
 }  // namespace shoal::launch

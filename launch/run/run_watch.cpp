@@ -5,16 +5,16 @@
 
 #include <utility>
 
-#include "common/dds/metrics_publisher.h"
+#include "common/link/metrics_writer.h"
 #include "common/run_folder/run_file_names.h"
 #include "common/wire/process_name.h"
 #include "launch/watch/run_totals.h"
 
 namespace shoal::launch {
 
-RunWatch::RunWatch(const std::filesystem::path& run, const dds::Bus& bus,
+RunWatch::RunWatch(const std::filesystem::path& run, const link::Hub& hub,
                    std::function<void(const std::string&)> say, WriteFaults* faults)
-    : bus_(bus),
+    : hub_(hub),
       say_(std::move(say)),
       faults_(*faults),
       log_(run / kMetricsFile, MetricsLogLimits()),
@@ -60,7 +60,7 @@ std::vector<MetricsMessage> RunWatch::Reports(const ProgressFigures& figures, co
                      counts.messages_dropped - former));
   }
   MetricsMessage own = own_report_.message();
-  dds::AddMalformed(bus_, &own);
+  link::AddMalformed(hub_, &own);
   WriteLine(own);
   AddShares(lately_, &own);  // for who watches; the file has what they are made of
   view_.OnMessage(own, now);

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "common/base/write_faults.h"
-#include "common/dds/bus.h"
+#include "common/link/hub.h"
 #include "launch/record/metrics_log.h"
 #include "launch/watch/metrics_view.h"
 #include "launch/watch/recent_run.h"
@@ -27,8 +27,8 @@ struct CoordinatorCounts {
 // One thread.
 class RunWatch {
  public:
-  // Borrows the bus and `faults`. `say` shows a line to who looks at the run.
-  RunWatch(const std::filesystem::path& run, const dds::Bus& bus,
+  // Borrows the hub and `faults`. `say` shows a line to who looks at the run.
+  RunWatch(const std::filesystem::path& run, const link::Hub& hub,
            std::function<void(const std::string&)> say, WriteFaults* faults);
 
   // The newest report of each process.
@@ -54,7 +54,7 @@ class RunWatch {
  private:
   void WriteLine(const MetricsMessage& report);
 
-  const dds::Bus& bus_;
+  const link::Hub& hub_;
   const std::function<void(const std::string&)> say_;
   WriteFaults& faults_;
   MetricsView view_;

@@ -28,7 +28,7 @@
 #include "common/config/spec_mismatch.h"
 #include "common/credentials/credentials.h"
 #include "common/dds/bus.h"
-#include "common/dds/publisher.h"
+#include "common/link/writer.h"
 #include "common/dds/role_rights.h"
 #include "common/nn/encoder_weights.h"
 #include "common/nn/named_weights.h"

@@ -11,8 +11,8 @@
 #include "common/base/clock.h"
 #include "common/base/mutex.h"
 #include "common/dds/bus.h"
-#include "common/dds/publisher.h"
-#include "common/dds/subscriber.h"
+#include "common/link/writer.h"
+#include "common/link/reader.h"
 #include "launch/watch/run_target.h"
 
 namespace shoal::launch {
@@ -46,9 +46,9 @@ class RunClient {
   std::optional<RunViewMessage> view_ SHOAL_GUARDED_BY(mutex_);
   std::optional<ReplyMessage> reply_ SHOAL_GUARDED_BY(mutex_);
   dds::Bus bus_;
-  dds::Publisher<CommandMessage> commands_;
-  dds::Subscriber<ReplyMessage> replies_;
-  dds::Subscriber<RunViewMessage> views_;  // last: its callback uses the rest
+  link::Writer<CommandMessage> commands_;
+  link::Reader<ReplyMessage> replies_;
+  link::Reader<RunViewMessage> views_;  // last: its callback uses the rest
 };
 
 // The exit code of a run that has ended, from its last view.

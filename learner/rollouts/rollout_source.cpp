@@ -38,7 +38,7 @@ RolloutSource::RolloutSource(const RunConfig& run, const std::filesystem::path& 
     core_.SetActors(run.config.actors);
     core_.Await({learner_session_, updates_});
   }
-  thread_ = std::thread([this] { Serve(); });
+  thread_ = Thread([this] { Serve(); });
 }
 
 RolloutSource::~RolloutSource() {
@@ -203,7 +203,7 @@ BatchCounters RolloutSource::counters() const {
                                               .actor_sessions = core_.sessions().newest().size()}};
 }
 
-void RolloutSource::SayFarewell() {
+void RolloutSource::DrainAfterCoordinatorLoss() {
   const SteadyTime start = Now();
   while (Now() - start < kFarewellLimit) {
     {

@@ -22,11 +22,11 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <thread>
 
 #include "common/base/aligned_bytes.h"
 #include "common/base/log.h"
 #include "common/base/mutex.h"
+#include "common/base/thread_group.h"
 #include "common/base/write_faults.h"
 #include "common/intake/chunk_pool.h"
 #include "common/intake/intake_problems.h"
@@ -58,7 +58,7 @@ class RolloutSource final : public BatchStream {
 
   // When the coordinator is gone: acknowledges what actors still send, until nothing has come for
   // kFarewell, kFarewellLimit at most.
-  void SayFarewell();
+  void DrainAfterCoordinatorLoss();
 
  private:
   void Serve();
@@ -104,7 +104,7 @@ class RolloutSource final : public BatchStream {
   AlignedBytes memory_;
   uint64_t memory_bytes_ = 0;
 
-  std::thread thread_;  // last: it uses the others
+  Thread thread_;  // last: it uses the others
 };
 
 }  // namespace shoal::learner

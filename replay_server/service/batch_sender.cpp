@@ -30,7 +30,7 @@ BatchSender::BatchSender(uint64_t spec_hash, uint64_t batch_bytes, int buffers, 
     memory_.emplace_back(batch_bytes);
     free_.push_back(memory_.back().data());
   }
-  thread_ = std::thread([this] { Run(); });
+  thread_ = Thread([this] { Run(); });
 }
 
 BatchSender::~BatchSender() {

@@ -16,12 +16,12 @@
 #include <functional>
 #include <optional>
 #include <string>
-#include <thread>
 #include <variant>
 #include <vector>
 
 #include "common/base/aligned_bytes.h"
 #include "common/base/mutex.h"
+#include "common/base/thread_group.h"
 #include "common/wire/messages.h"
 #include "replay_server/core/replay_core.h"
 
@@ -99,7 +99,7 @@ class BatchSender {
   std::atomic<uint64_t> learner_session_{0};
   std::atomic<uint64_t> sent_{0}, given_up_{0};
   std::atomic<double> sending_seconds_{0};
-  std::thread thread_;  // last: starts when everything else is there
+  Thread thread_;  // last: starts when everything else is there
 };
 
 }  // namespace shoal::replay

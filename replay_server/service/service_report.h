@@ -28,14 +28,10 @@ struct ServiceSeconds {
 
 class ServiceReport {
  public:
-  // Borrows all of them.
-  ServiceReport(const ReplayCore& core, const ServiceInbox& inbox, const BatchSender& sender,
-                const LearnerSlots& slots)
-      : core_(core),
-        inbox_(inbox),
-        sender_(sender),
-        slots_(slots),
-        report_(ProcessName::Replay(0)) {}
+  // Borrows all of them but the name.
+  ServiceReport(const ProcessName& name, const ReplayCore& core, const ServiceInbox& inbox,
+                const BatchSender& sender, const LearnerSlots& slots)
+      : core_(core), inbox_(inbox), sender_(sender), slots_(slots), report_(name) {}
 
   // A chunk waited this long in the inbox.
   void NoteQueueAge(double seconds) { queue_age_seconds_ = std::max(queue_age_seconds_, seconds); }

@@ -12,13 +12,13 @@
 #include "common/base/error.h"
 #include "common/config/batch_options.h"
 #include "common/dds/bus.h"
-#include "common/dds/publisher.h"
-#include "common/dds/subscriber.h"
+#include "common/link/writer.h"
+#include "common/link/reader.h"
 #include "common/wire/metrics_report.h"
 #include "learner/batch_feed.h"
 #include "replay_server/core/request_queue.h"
 #include "replay_server/service/batch_sender.h"
-#include "replay_server/service/dds_part_writer.h"
+#include "replay_server/service/hub_part_writer.h"
 #include "replay_server/service/learner_slots.h"
 #include "replay_server/service/service_inbox.h"
 #include "tests/benchmark/forked_processes.h"
@@ -95,10 +95,10 @@ class EmptyReplay {
   dds::Bus bus_;
   replay::ServiceInbox inbox_;
   replay::RequestQueue queue_;
-  replay::DdsPartWriter writer_;
+  replay::HubPartWriter writer_;
   replay::BatchSender sender_;
   replay::LearnerSlots slots_;
-  dds::Subscriber<SampleRequest> requests_;
+  link::Reader<SampleRequest> requests_;
 };
 
 uint64_t LookAt(const BatchView& batch, uint64_t bytes) {

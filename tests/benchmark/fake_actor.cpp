@@ -14,6 +14,8 @@
 #include "common/base/main_guard.h"
 #include "common/base/random.h"
 #include "common/base/stop.h"
+#include "common/config/run_files.h"
+#include "common/config/run_membership.h"
 #include "common/dds/bus.h"
 #include "common/nn/precision.h"
 #include "common/wire/process_name.h"
@@ -84,7 +86,10 @@ int Run(int argc, char** argv) {
     }
     return environments;
   };
-  return shoal::actor::RunTrainingActor(run, id, {}, make);
+  const shoal::RunMembership member(run);
+  const shoal::TransportConfig transport = shoal::ReadRunConfig(run).config.transport;
+  shoal::dds::Bus bus(shoal::dds::FindPlace(run, transport, {}), shoal::dds::Role::kActor);
+  return shoal::actor::TrainingActor(run, id, bus, make).Run();
 }
 
 }  // namespace

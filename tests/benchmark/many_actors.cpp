@@ -19,8 +19,8 @@
 #include "common/base/stop.h"
 #include "common/config/run_files.h"
 #include "common/dds/bus.h"
-#include "common/dds/publisher.h"
-#include "common/dds/subscriber.h"
+#include "common/link/writer.h"
+#include "common/link/reader.h"
 #include "common/wire/weights_parts.h"
 #include "launch/processes/child_process.h"
 #include "launch/record/accounting.h"
@@ -132,10 +132,10 @@ class Bystander {
   ControlMessage order_{.epoch = 1};
   SteadyTime last_beat_{};
   std::unique_ptr<dds::Bus> bus_;
-  dds::Publisher<ControlMessage> control_;
-  dds::Publisher<WeightsPart> weights_;
-  dds::Subscriber<CreditsMessage> credits_;
-  dds::Subscriber<ReplayMetrics> metrics_;
+  link::Writer<ControlMessage> control_;
+  link::Writer<WeightsPart> weights_;
+  link::Reader<CreditsMessage> credits_;
+  link::Reader<ReplayMetrics> metrics_;
 };
 
 launch::ProcessSpec Spec(const ManyActorsOptions& options, const std::string& program,

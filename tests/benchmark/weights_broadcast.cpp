@@ -16,7 +16,7 @@
 #include "actor/acting/action_selector.h"
 #include "actor/acting/host_weights.h"
 #include "actor/loop/actor_loop.h"
-#include "actor/loop/dds_parts.h"
+#include "actor/loop/hub_parts.h"
 #include "common/base/check.h"
 #include "common/base/clock.h"
 #include "common/base/files.h"
@@ -27,7 +27,7 @@
 #include "common/run_folder/run_file_names.h"
 #include "launch/processes/scratch_folder.h"
 #include "learner/agent/agent.h"
-#include "learner/dds_outlet.h"
+#include "learner/hub_outlet.h"
 #include "learner/weights_sender.h"
 #include "tests/benchmark/forked_processes.h"
 
@@ -86,7 +86,7 @@ void Learn(const BroadcastOptions& options, const ClusterAddress& address, const
            const Pipe<int>& done) {
   const RunConfig run = RunOf(options);
   dds::Bus bus(address, run.config.transport, dds::Role::kLearner);
-  learner::DdsOutlet outlet(bus);
+  learner::HubOutlet outlet(bus);
   StillAgent agent(run);
   learner::WeightsSender sender(run, PrecisionOf(run), kLearnerSession, agent, outlet);
   const std::chrono::duration<double> period(1 / options.versions_per_second);

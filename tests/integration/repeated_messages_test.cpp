@@ -8,7 +8,7 @@
 
 #include "common/config/run_files.h"
 #include "common/dds/bus.h"
-#include "common/dds/publisher.h"
+#include "common/link/writer.h"
 #include "tests/support/running_training.h"
 
 namespace shoal {
@@ -70,7 +70,7 @@ TEST(RepeatedMessages, AnEvaluationThatCannotBeIsSaidAndTheRunGoesOn) {
   ASSERT_TRUE(training.WaitForMoreSteps(200)) << training.Output();
   const RunConfig config = ReadRunConfig(run.path());
   dds::Bus bus(ReadClusterAddress(run.path()), config.config.transport, dds::Role::kEval);
-  dds::Publisher<EvalMessage> publisher(bus);
+  link::Writer<EvalMessage> publisher(bus);
   const SteadyTime start = Now();
   while (publisher.Matched() < 2 && Now() - start < seconds(20)) {  // coordinator and learner
     std::this_thread::sleep_for(std::chrono::milliseconds(20));

@@ -41,9 +41,9 @@
 #include "common/base/error.h"
 #include "common/base/main_guard.h"
 #include "common/dds/bus_impl.h"
-#include "common/dds/message_list.h"
-#include "common/dds/publisher.h"
-#include "common/dds/subscriber.h"
+#include "common/link/message_list.h"
+#include "common/link/writer.h"
+#include "common/link/reader.h"
 #include "tests/common/dds/example_messages.h"
 
 namespace shoal::dds {
@@ -137,11 +137,11 @@ class Endpoint : public AnyEndpoint {
   }
 
   const std::string name_;
-  std::optional<Publisher<M>> publisher_;
+  std::optional<link::Writer<M>> publisher_;
   std::mutex mutex_;
   std::condition_variable arrived_;
   uint64_t received_ = 0, gaps_ = 0, bytes_ = 0, last_ = 0;  // guarded by mutex_
-  std::optional<Subscriber<M>> subscriber_;                  // last: its callback uses the rest
+  std::optional<link::Reader<M>> subscriber_;                  // last: its callback uses the rest
 };
 
 // Answers each chunk with a credit from a thread of its own, as a replay does.
@@ -170,20 +170,20 @@ class Answerer {
     }
   }
 
-  Publisher<CreditsMessage> publisher_;
+  link::Writer<CreditsMessage> publisher_;
   std::mutex mutex_;
   std::condition_variable_any arrived_;
   uint64_t newest_ = 0;  // guarded by mutex_
   std::jthread thread_;
-  Subscriber<TransitionChunk> subscriber_;
+  link::Reader<TransitionChunk> subscriber_;
 };
 
 std::string RoundTrip(Bus& bus, uint64_t count, size_t payload_bytes) {
   std::mutex mutex;
   std::condition_variable arrived;
   uint64_t stored = 0;
-  Publisher<TransitionChunk> publisher(bus);
-  const Subscriber<CreditsMessage> subscriber(bus, [&](const CreditsMessage& credits) {
+  link::Writer<TransitionChunk> publisher(bus);
+  const link::Reader<CreditsMessage> subscriber(bus, [&](const CreditsMessage& credits) {
     const std::lock_guard lock(mutex);
     stored = credits.credits.front().stored;
     arrived.notify_all();

@@ -8,7 +8,7 @@
 #include "common/base/check.h"
 
 // clang-format off
-#include "common/dds/topics.h"
+#include "common/dds/wire_type.h"
 #include "common/dds/wire_types.h"
 #include "dds/ddsi/ddsi_cdrstream.h"
 // clang-format on

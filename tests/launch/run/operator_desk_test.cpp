@@ -31,12 +31,12 @@ class OperatorDeskTest : public testing::Test {
   std::unique_ptr<dds::Bus> bus_ = dds::ClaimDomain(TransportConfig{}, &address_);
   std::vector<RunViewMessage> shown_;
   OperatorDesk desk_{*bus_, "run", [this](const RunViewMessage& view) { shown_.push_back(view); }};
-  dds::Publisher<CommandMessage> commands_{*bus_};
+  link::Writer<CommandMessage> commands_{*bus_};
   MessageInbox<ReplyMessage> reply_inbox_{100};
-  dds::Subscriber<ReplyMessage> replies_{
+  link::Reader<ReplyMessage> replies_{
       *bus_, [this](const ReplyMessage& reply) { reply_inbox_.Put(reply); }};
   MessageInbox<RunViewMessage> view_inbox_{100};
-  dds::Subscriber<RunViewMessage> views_{
+  link::Reader<RunViewMessage> views_{
       *bus_, [this](const RunViewMessage& view) { view_inbox_.Put(view); }};
 };
 

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "common/config/config.h"
-#include "common/dds/publisher.h"
+#include "common/link/writer.h"
 #include "tests/launch/wait_until.h"
 
 namespace shoal::launch {
@@ -36,10 +36,10 @@ class RunInboxTest : public testing::Test {
   ClusterAddress address_;
   std::unique_ptr<dds::Bus> bus_ = dds::ClaimDomain(TransportConfig{}, &address_);
   RunInbox inbox_{*bus_};
-  dds::Publisher<ActorMetrics> actor_{*bus_};
-  dds::Publisher<LearnerMetrics> learner_{*bus_};
-  dds::Publisher<ReplayMetrics> replay_{*bus_};
-  dds::Publisher<ReplayProgress> words_{*bus_};
+  link::Writer<ActorMetrics> actor_{*bus_};
+  link::Writer<LearnerMetrics> learner_{*bus_};
+  link::Writer<ReplayMetrics> replay_{*bus_};
+  link::Writer<ReplayProgress> words_{*bus_};
 };
 
 TEST_F(RunInboxTest, HoldsWhatItsProcessesSayUntilItIsTaken) {

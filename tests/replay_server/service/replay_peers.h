@@ -17,8 +17,8 @@
 #include "common/config/batch_options.h"
 #include "common/config/run_files.h"
 #include "common/dds/bus.h"
-#include "common/dds/publisher.h"
-#include "common/dds/subscriber.h"
+#include "common/link/writer.h"
+#include "common/link/reader.h"
 #include "tests/replay_server/record_script.h"
 
 namespace shoal::replay {
@@ -184,12 +184,12 @@ class ReplayPeers {
   SteadyTime last_beat_{};
 
   dds::Bus bus_;
-  dds::Publisher<ControlMessage> control_;
-  dds::Publisher<TransitionChunk> chunks_;
-  dds::Publisher<SampleRequest> requests_;
-  dds::Subscriber<CreditsMessage> credits_;
-  dds::Subscriber<BatchPart> parts_;
-  dds::Subscriber<ReplayMetrics> metrics_;
+  link::Writer<ControlMessage> control_;
+  link::Writer<TransitionChunk> chunks_;
+  link::Writer<SampleRequest> requests_;
+  link::Reader<CreditsMessage> credits_;
+  link::Reader<BatchPart> parts_;
+  link::Reader<ReplayMetrics> metrics_;
 };
 
 }  // namespace shoal::replay

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "learner/dds_outlet.h"
+#include "learner/hub_outlet.h"
 
 #include <chrono>
 
@@ -12,7 +12,7 @@ namespace {
 // takes the places of the one before. False: some part was not taken; a reader then lacks it and
 // waits for the next version.
 template <class Part>
-bool SendParts(const WeightsMessage& weights, dds::Publisher<Part>& publisher) {
+bool SendParts(const WeightsMessage& weights, link::Writer<Part>& publisher) {
   bool sent = true;
   const auto parts = static_cast<uint32_t>(WeightsParts(weights.payload.size()));
   for (uint32_t part = 0; part < parts && sent; ++part) {
@@ -23,21 +23,21 @@ bool SendParts(const WeightsMessage& weights, dds::Publisher<Part>& publisher) {
 
 }  // namespace
 
-DdsOutlet::DdsOutlet(dds::Bus& bus)
-    : weights_(bus), evaluation_weights_(bus), metrics_(bus), progress_(bus) {}
+HubOutlet::HubOutlet(link::Hub& hub)
+    : weights_(hub), evaluation_weights_(hub), metrics_(hub), progress_(hub) {}
 
-bool DdsOutlet::Publish(const WeightsMessage& weights) { return SendParts(weights, weights_); }
+bool HubOutlet::Publish(const WeightsMessage& weights) { return SendParts(weights, weights_); }
 
-bool DdsOutlet::WeightsArrived() { return weights_.WaitForAcks(std::chrono::milliseconds(0)); }
+bool HubOutlet::WeightsArrived() { return weights_.WaitForAcks(std::chrono::milliseconds(0)); }
 
-bool DdsOutlet::Publish(const EvalWeightsMessage& weights) {
+bool HubOutlet::Publish(const EvalWeightsMessage& weights) {
   return SendParts(weights, evaluation_weights_);
 }
 
 // A report that cannot be sent is no loss: the next one holds the same totals.
-void DdsOutlet::Publish(const MetricsMessage& report) { metrics_.Write(report); }
+void HubOutlet::Publish(const MetricsMessage& report) { metrics_.Write(report); }
 
 // The last one is kept for whoever needs it.
-void DdsOutlet::Publish(const LearnerProgress& progress) { progress_.Write(progress); }
+void HubOutlet::Publish(const LearnerProgress& progress) { progress_.Write(progress); }
 
 }  // namespace shoal::learner

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/dds/subscriber.h"
+#include "common/link/reader.h"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "common/base/error.h"
-#include "common/dds/metrics_publisher.h"
-#include "common/dds/publisher.h"
+#include "common/link/metrics_writer.h"
+#include "common/link/writer.h"
 #include "common/wire/weights_parts.h"
 // clang-format off
 #include "shoal.h"
@@ -57,23 +57,23 @@ class RawWriter {
 };
 
 TEST_F(SubscriberTest, ALateReaderGetsOnlyTheNewestControlMessage) {
-  Publisher<ControlMessage> publisher(*bus_);
+  link::Writer<ControlMessage> publisher(*bus_);
   for (uint64_t epoch = 1; epoch <= 5; ++epoch) {
     EXPECT_TRUE(publisher.Write({.epoch = epoch, .state = RunState::kRunning, .time = 1}));
   }
   std::vector<uint64_t> epochs;
-  const Subscriber<ControlMessage> subscriber(
+  const link::Reader<ControlMessage> subscriber(
       *bus_, [&](const ControlMessage& message) { epochs.push_back(message.epoch); });
   EXPECT_EQ(epochs, std::vector<uint64_t>{5});
 }
 
 TEST_F(SubscriberTest, ALateReaderGetsTheLast32Evaluations) {
-  Publisher<EvalMessage> publisher(*bus_);
+  link::Writer<EvalMessage> publisher(*bus_);
   for (uint64_t n = 1; n <= 40; ++n) {
     publisher.Write({.env_steps = n, .version = {}, .checkpoint = "", .json = "{}"});
   }
   std::vector<uint64_t> env_steps;
-  const Subscriber<EvalMessage> subscriber(
+  const link::Reader<EvalMessage> subscriber(
       *bus_, [&](const EvalMessage& message) { env_steps.push_back(message.env_steps); });
   ASSERT_EQ(env_steps.size(), 32u);
   EXPECT_EQ(env_steps.front(), 9u);
@@ -81,7 +81,7 @@ TEST_F(SubscriberTest, ALateReaderGetsTheLast32Evaluations) {
 }
 
 TEST_F(SubscriberTest, ALateReaderGetsTheLast16WordsAboutCredit) {
-  Publisher<CreditsMessage> publisher(*bus_);
+  link::Writer<CreditsMessage> publisher(*bus_);
   for (uint64_t stored = 1; stored <= 20; ++stored) {
     publisher.Write({{{.replay_session = 1,
                        .actor = 2,
@@ -91,7 +91,7 @@ TEST_F(SubscriberTest, ALateReaderGetsTheLast16WordsAboutCredit) {
                        .spec_hash = 0}}});
   }
   std::vector<uint64_t> stored;
-  const Subscriber<CreditsMessage> subscriber(*bus_, [&](const CreditsMessage& message) {
+  const link::Reader<CreditsMessage> subscriber(*bus_, [&](const CreditsMessage& message) {
     for (const Credit& credit : message.credits) stored.push_back(credit.stored);
   });
   ASSERT_EQ(stored.size(), 16u);
@@ -100,12 +100,12 @@ TEST_F(SubscriberTest, ALateReaderGetsTheLast16WordsAboutCredit) {
 }
 
 TEST_F(SubscriberTest, ALateReaderGetsNoOldMetrics) {
-  Publisher<ActorMetrics> publisher(*bus_);
+  link::Writer<ActorMetrics> publisher(*bus_);
   ActorMetrics message;
   message.role = "actor";
   publisher.Write(message);
   int received = 0;
-  const Subscriber<ActorMetrics> subscriber(*bus_, [&](const ActorMetrics&) { ++received; });
+  const link::Reader<ActorMetrics> subscriber(*bus_, [&](const ActorMetrics&) { ++received; });
   EXPECT_EQ(received, 0);
   publisher.Write(message);
   EXPECT_EQ(received, 1);
@@ -113,7 +113,7 @@ TEST_F(SubscriberTest, ALateReaderGetsNoOldMetrics) {
 
 // 250 MB: what a convolutional network with fully connected layers has.
 TEST_F(SubscriberTest, ALateReaderGetsTheNewestVersionOfALargePolicyWhole) {
-  Publisher<WeightsPart> publisher(*bus_);
+  link::Writer<WeightsPart> publisher(*bus_);
   std::vector<uint8_t> bytes(250'000'000);
   WeightsMessage weights;
   weights.payload = bytes;
@@ -127,7 +127,7 @@ TEST_F(SubscriberTest, ALateReaderGetsTheNewestVersionOfALargePolicyWhole) {
   }
   WeightsAssembler assembler;
   uint64_t complete = 0, refused = 0;
-  const Subscriber<WeightsPart> subscriber(*bus_, [&](const WeightsPart& part) {
+  const link::Reader<WeightsPart> subscriber(*bus_, [&](const WeightsPart& part) {
     const auto verdict = assembler.Add(part);
     if (verdict == WeightsAssembler::Verdict::kComplete) complete = part.version.update;
     if (verdict == WeightsAssembler::Verdict::kRefused) ++refused;
@@ -140,7 +140,7 @@ TEST_F(SubscriberTest, ALateReaderGetsTheNewestVersionOfALargePolicyWhole) {
 }
 
 TEST_F(SubscriberTest, WeightsAndEvaluationWeightsDoNotMix) {
-  Publisher<EvalWeightsPart> publisher(*bus_);
+  link::Writer<EvalWeightsPart> publisher(*bus_);
   const std::vector<uint8_t> payload(100, 1);
   EvalWeightsPart message;
   message.version = {1, 1};
@@ -148,15 +148,15 @@ TEST_F(SubscriberTest, WeightsAndEvaluationWeightsDoNotMix) {
   message.payload = payload;
   publisher.Write(message);
   int training = 0, evaluation = 0;
-  const Subscriber<WeightsPart> a(*bus_, [&](const WeightsPart&) { ++training; });
-  const Subscriber<EvalWeightsPart> b(*bus_, [&](const EvalWeightsPart&) { ++evaluation; });
+  const link::Reader<WeightsPart> a(*bus_, [&](const WeightsPart&) { ++training; });
+  const link::Reader<EvalWeightsPart> b(*bus_, [&](const EvalWeightsPart&) { ++evaluation; });
   EXPECT_EQ(training, 0);
   EXPECT_EQ(evaluation, 1);
 }
 
 TEST_F(SubscriberTest, BulkMessagesOfAnotherVersionAreCountedNotDelivered) {
   std::atomic<int> delivered{0};
-  const Subscriber<WeightsPart> subscriber(*bus_, [&](const WeightsPart&) { ++delivered; });
+  const link::Reader<WeightsPart> subscriber(*bus_, [&](const WeightsPart&) { ++delivered; });
   RawWriter writer(address_.domain, &shoal_idl_WeightsPart_desc, "weights_v2",
                    DDS_DATA_REPRESENTATION_XCDR1);
   std::vector<uint8_t> payload(10, 1);
@@ -174,7 +174,7 @@ TEST_F(SubscriberTest, BulkMessagesOfAnotherVersionAreCountedNotDelivered) {
 
 TEST_F(SubscriberTest, ControlOfAnUnknownStateIsCountedNotDelivered) {
   std::atomic<int> delivered{0};
-  const Subscriber<ControlMessage> subscriber(*bus_, [&](const ControlMessage&) { ++delivered; });
+  const link::Reader<ControlMessage> subscriber(*bus_, [&](const ControlMessage&) { ++delivered; });
   RawWriter writer(address_.domain, &shoal_idl_Control_desc, "control",
                    DDS_DATA_REPRESENTATION_XCDR2);
   shoal_idl_Control control{};
@@ -187,14 +187,14 @@ TEST_F(SubscriberTest, ControlOfAnUnknownStateIsCountedNotDelivered) {
 
 TEST_F(SubscriberTest, ReportsCarryTheMalformedMessagesOfEachTopic) {
   MetricsMessage report;
-  const Subscriber<ActorMetrics> reports(*bus_, [&](const ActorMetrics& m) { report = m; });
-  const Subscriber<ControlMessage> control_reader(*bus_, [](const ControlMessage&) {});
+  const link::Reader<ActorMetrics> reports(*bus_, [&](const ActorMetrics& m) { report = m; });
+  const link::Reader<ControlMessage> control_reader(*bus_, [](const ControlMessage&) {});
   RawWriter writer(address_.domain, &shoal_idl_Control_desc, "control",
                    DDS_DATA_REPRESENTATION_XCDR2);
   shoal_idl_Control control{};
   control.state = 77;
   writer.Write(&control);
-  MetricsPublisher<ActorMetrics> publisher(*bus_);
+  link::MetricsWriter<ActorMetrics> publisher(*bus_);
   MetricsMessage message;
   message.role = "actor";
   message.names = {"made"};
@@ -206,7 +206,7 @@ TEST_F(SubscriberTest, ReportsCarryTheMalformedMessagesOfEachTopic) {
 }
 
 TEST_F(SubscriberTest, NoCallbackRunsAfterTheDestructor) {
-  Publisher<ControlMessage> publisher(*bus_);
+  link::Writer<ControlMessage> publisher(*bus_);
   std::atomic<bool> alive{false};
   std::atomic<int> calls{0}, late_calls{0}, writes{0};
   const std::jthread writer([&](const std::stop_token& stop) {
@@ -219,7 +219,7 @@ TEST_F(SubscriberTest, NoCallbackRunsAfterTheDestructor) {
     const int before = calls;
     alive = true;
     {
-      const Subscriber<ControlMessage> subscriber(*bus_, [&](const ControlMessage&) {
+      const link::Reader<ControlMessage> subscriber(*bus_, [&](const ControlMessage&) {
         ++calls;
         if (!alive) ++late_calls;
       });
@@ -233,12 +233,12 @@ TEST_F(SubscriberTest, NoCallbackRunsAfterTheDestructor) {
 }
 
 TEST_F(SubscriberTest, MatchedCountsPeersOfBothSides) {
-  Publisher<ControlMessage> publisher(*bus_);
+  link::Writer<ControlMessage> publisher(*bus_);
   EXPECT_EQ(publisher.Matched(), 0);
   const auto ignore = [](const ControlMessage&) {};
-  const Subscriber<ControlMessage> first(*bus_, ignore);
+  const link::Reader<ControlMessage> first(*bus_, ignore);
   {
-    const Subscriber<ControlMessage> second(*bus_, ignore);
+    const link::Reader<ControlMessage> second(*bus_, ignore);
     EXPECT_EQ(publisher.Matched(), 2);
     EXPECT_EQ(second.Matched(), 1);
   }
@@ -251,7 +251,7 @@ TEST(SubscriberDeathTest, OnlyLearnerAndReplayReachTheBatchTopics) {
       {
         ClusterAddress address;
         const auto bus = ClaimDomain(TransportConfig{}, &address);
-        const Subscriber<BatchPart> subscriber(*bus, [](const BatchPart&) {});
+        const link::Reader<BatchPart> subscriber(*bus, [](const BatchPart&) {});
       },
       "batch domain");
 }

@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every message that crosses the network, one line each: from it follow topics, writers, readers
-// and the rights of roles. A new message is its struct (common/wire/messages.h), its type
-// (shoal.idl), the way there (wire_types.h) and back (message_cdr.h or bulk_cdr.h), and a line
-// here. docs/wire_format.md gives the reasons.
+// The list of messages between processes, one line each. Topics, writers, readers and the rights of
+// roles follow from it. A new message needs its struct (common/wire/messages.h), a line here, its
+// key if it keeps the last n per key (topic.h), and for the network its type (shoal.idl), the way
+// there (wire_types.h) and back (message_cdr.h or bulk_cdr.h) in common/dds. docs/wire_format.md
+// gives the reasons.
 //
 //   message           struct, in namespace shoal
-//   type              generated from shoal.idl
+//   type              the network's, generated from shoal.idl
 //   topic             its name; one message, one topic
-//   plane             domain (bus.h)
+//   plane             role.h
 //   kept              the last n per key are kept and older ones overwritten, so that a write never
 //                     waits; 0: all are kept until every reader has them, and a write waits
-//   late, now         whether who joins later gets the kept ones
+//   late, now         whether a late joiner receives the kept ones
 //   bulk, small       a @final type in plain CDR; else @appendable
 //   ms                a write waits at most
 //   writers, readers  roles

@@ -1,15 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "common/dds/subscriber.h"
-
 #include <atomic>
 #include <chrono>
 #include <span>
 #include <utility>
 
-#include "common/base/check.h"
 #include "common/base/clock.h"
 #include "common/base/log.h"
 #include "common/dds/bulk_cdr.h"
+#include "common/dds/bus.h"
 #include "common/dds/message_cdr.h"
 // clang-format off
 #include "common/dds/endpoint.h"
@@ -18,6 +16,9 @@
 
 namespace shoal::dds {
 namespace {
+
+using link::Topic;
+using link::TopicSettings;
 
 // Samples taken from the reader's cache at a time.
 constexpr uint32_t kTakeAtOnce = 16;
@@ -61,94 +62,89 @@ bool TakeCdr(dds_entity_t reader, const Deliver& deliver) {
   return taken > 0;
 }
 
-}  // namespace
-
 template <class M>
-struct Subscriber<M>::Impl {
-  Impl(Bus& bus, std::function<void(const M&)> callback)
-      : on_message(std::move(callback)),
-        malformed(bus.impl().MalformedCounter(Topic<M>::kSettings.name)),
-        topic(CreateTopic<M>(bus)) {
+class DdsReader final : public link::ReaderEnd {
+ public:
+  DdsReader(Bus& bus, std::function<void(const M&)> callback)
+      : on_message_(std::move(callback)),
+        malformed_(bus.impl().MalformedCounter(Topic<M>::kSettings.name)),
+        topic_(CreateTopic<M>(bus)) {
     // The listener is set as the reader is created: no sample can arrive unnoticed before it.
     const TopicSettings& settings = Topic<M>::kSettings;
     const ListenerHandle listener = MakeListener<M>(this);
-    dds_lset_data_available(listener.get(), &Impl::OnData);
-    callbacks.store(0, std::memory_order_release);
-    reader = Entity(dds_create_reader(bus.impl().Participant(settings.plane), topic.get(),
-                                      MakeQos(settings).get(), listener.get()),
-                    std::string("reader of topic ") + settings.name);
+    dds_lset_data_available(listener.get(), &DdsReader::OnData);
+    callbacks_.store(0, std::memory_order_release);
+    reader_ = Entity(dds_create_reader(bus.impl().Participant(settings.plane), topic_.get(),
+                                       MakeQos(settings).get(), listener.get()),
+                     std::string("reader of topic ") + settings.name);
   }
 
   // Cyclone waits for a running callback before it resets the listener; none starts afterwards.
-  ~Impl() {
-    if (reader) dds_set_listener(reader.get(), nullptr);
-    reader.Reset();
-    (void)callbacks.load(std::memory_order_acquire);
+  ~DdsReader() override {
+    if (reader_) dds_set_listener(reader_.get(), nullptr);
+    reader_.Reset();
+    (void)callbacks_.load(std::memory_order_acquire);
+  }
+  DdsReader(const DdsReader&) = delete;
+  DdsReader& operator=(const DdsReader&) = delete;
+
+  int Matched() const override {
+    dds_subscription_matched_status_t status{};
+    dds_get_subscription_matched_status(reader_.get(), &status);
+    return static_cast<int>(status.current_count);
   }
 
+  uint64_t Malformed() const override { return malformed_->load(std::memory_order_relaxed); }
+
+ private:
   // An exception from the callback would unwind through C: noexcept makes it end the process.
   static void OnData(dds_entity_t handle, void* argument) noexcept {
-    auto* self = static_cast<Impl*>(argument);
-    (void)self->callbacks.load(std::memory_order_acquire);
+    auto* self = static_cast<DdsReader*>(argument);
+    (void)self->callbacks_.load(std::memory_order_acquire);
     const auto deliver = [self](bool well_formed, const M& message) {
       self->Deliver(well_formed, message);
     };
     while (TakeCdr<M>(handle, deliver)) {
     }
-    self->callbacks.fetch_add(1, std::memory_order_release);
+    self->callbacks_.fetch_add(1, std::memory_order_release);
   }
 
   void Deliver(bool well_formed, const M& message) {
     if (well_formed) {
-      on_message(message);
+      on_message_(message);
     } else {
-      OnMalformed(malformed->fetch_add(1, std::memory_order_relaxed) + 1);
+      OnMalformed(malformed_->fetch_add(1, std::memory_order_relaxed) + 1);
     }
   }
 
   // At most one line per interval and topic, whatever comes.
   void OnMalformed(uint64_t count) {
-    if (Now() - last_said < kMalformedLogInterval) return;
-    last_said = Now();
+    if (Now() - last_said_ < kMalformedLogInterval) return;
+    last_said_ = Now();
     log::Warning("dds: topic {}: {} message(s) that make no sense were dropped, {} in all",
-                 Topic<M>::kSettings.name, count - said, count);
-    said = count;
+                 Topic<M>::kSettings.name, count - said_, count);
+    said_ = count;
   }
 
-  std::function<void(const M&)> on_message;
-  std::shared_ptr<std::atomic<uint64_t>> malformed;  // the bus counts with it, too
-  SteadyTime last_said{};                            // receive thread, as `said`
-  uint64_t said = 0;
+  std::function<void(const M&)> on_message_;
+  std::shared_ptr<std::atomic<uint64_t>> malformed_;  // the bus counts with it, too
+  SteadyTime last_said_{};                            // receive thread, as `said_`
+  uint64_t said_ = 0;
   // How often OnData has run. Orders it after the constructor and before the destructor: Cyclone
   // does so by locks of its own, which the thread sanitizer cannot see.
-  std::atomic<uint64_t> callbacks{0};
-  Entity topic;
-  Entity reader;
+  std::atomic<uint64_t> callbacks_{0};
+  Entity topic_;
+  Entity reader_;
 };
 
-template <class M>
-Subscriber<M>::Subscriber(Bus& bus, std::function<void(const M&)> on_message) {
-  CHECK(on_message != nullptr) << Topic<M>::kSettings.name;
-  impl_ = std::make_unique<Impl>(bus, std::move(on_message));
-}
+}  // namespace
 
-template <class M>
-Subscriber<M>::~Subscriber() = default;
-
-template <class M>
-int Subscriber<M>::Matched() const {
-  dds_subscription_matched_status_t status{};
-  dds_get_subscription_matched_status(impl_->reader.get(), &status);
-  return static_cast<int>(status.current_count);
-}
-
-template <class M>
-uint64_t Subscriber<M>::Malformed() const {
-  return impl_->malformed->load(std::memory_order_relaxed);
-}
-
-#define SHOAL_INSTANTIATE(message, ...) template class Subscriber<message>;
-SHOAL_MESSAGES(SHOAL_INSTANTIATE)
-#undef SHOAL_INSTANTIATE
+#define SHOAL_MAKE_READER(message, ...)                                             \
+  std::unique_ptr<link::ReaderEnd> Bus::MakeReader(                                 \
+      link::MessageType<message>, std::function<void(const message&)> on_message) { \
+    return std::make_unique<DdsReader<message>>(*this, std::move(on_message));      \
+  }
+SHOAL_MESSAGES(SHOAL_MAKE_READER)
+#undef SHOAL_MAKE_READER
 
 }  // namespace shoal::dds

@@ -1,25 +1,25 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a BatchSender writes to, on the network.
+// Writes the batches of a BatchSender to the link.
 #pragma once
 
-#include "common/dds/bus.h"
-#include "common/dds/publisher.h"
+#include "common/link/hub.h"
+#include "common/link/writer.h"
 #include "replay_server/service/batch_sender.h"
 
 namespace shoal::replay {
 
-class DdsPartWriter final : public PartWriter {
+class HubPartWriter final : public PartWriter {
  public:
-  // Borrows the bus.
-  explicit DdsPartWriter(dds::Bus& bus) : parts_(bus), slots_(bus) {}
+  // Borrows the hub.
+  explicit HubPartWriter(link::Hub& hub) : parts_(hub), slots_(hub) {}
   bool Write(const BatchPart& part) override { return parts_.Write(part); }
   bool Write(const BatchSlot& slot) override { return slots_.Write(slot); }
   bool HasPartReader() override { return parts_.Matched() > 0; }
   bool HasSlotReader() override { return slots_.Matched() > 0; }
 
  private:
-  dds::Publisher<BatchPart> parts_;
-  dds::Publisher<BatchSlot> slots_;
+  link::Writer<BatchPart> parts_;
+  link::Writer<BatchSlot> slots_;
 };
 
 }  // namespace shoal::replay

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// The outlet over DDS.
+// The outlet over the link.
 #pragma once
 
-#include "common/dds/bus.h"
-#include "common/dds/metrics_publisher.h"
-#include "common/dds/publisher.h"
+#include "common/link/hub.h"
+#include "common/link/metrics_writer.h"
+#include "common/link/writer.h"
 #include "learner/outlet.h"
 
 namespace shoal::learner {
 
-class DdsOutlet final : public Outlet {
+class HubOutlet final : public Outlet {
  public:
-  explicit DdsOutlet(dds::Bus& bus);  // borrows the bus
+  explicit HubOutlet(link::Hub& hub);  // borrows the hub
 
   bool Publish(const WeightsMessage& weights) override;
   bool WeightsArrived() override;
@@ -20,10 +20,10 @@ class DdsOutlet final : public Outlet {
   void Publish(const LearnerProgress& progress) override;
 
  private:
-  dds::Publisher<WeightsPart> weights_;
-  dds::Publisher<EvalWeightsPart> evaluation_weights_;
-  dds::MetricsPublisher<LearnerMetrics> metrics_;
-  dds::Publisher<LearnerProgress> progress_;
+  link::Writer<WeightsPart> weights_;
+  link::Writer<EvalWeightsPart> evaluation_weights_;
+  link::MetricsWriter<LearnerMetrics> metrics_;
+  link::Writer<LearnerProgress> progress_;
 };
 
 }  // namespace shoal::learner

@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// The threads of one role where several roles of a run share a process (shoal train --in-process).
+// A group has its own request to stop and its own log; in a process of its own a role has no group
+// and uses the process's (stop.h, log.h).
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <string>
+#include <thread>
+#include <utility>
+
+#include "common/base/log.h"
+
+namespace shoal {
+
+class ThreadGroup {
+ public:
+  // `name` (as "actor-3") starts the lines of the log, which are appended to `log_file`. Throws
+  // Error where that cannot be opened.
+  ThreadGroup(const std::string& name, const std::string& log_file)
+      : log_(log::OpenFile(name, log_file)) {}
+  ThreadGroup(const ThreadGroup&) = delete;
+  ThreadGroup& operator=(const ThreadGroup&) = delete;
+
+  // Any thread. What a stop signal is to a process.
+  void RequestStop() { stop_requests_.fetch_add(1, std::memory_order_relaxed); }
+  int StopRequests() const { return stop_requests_.load(std::memory_order_relaxed); }
+  log::File& log() { return *log_; }
+
+  // The group of the calling thread; nullptr for none.
+  static ThreadGroup* Current();
+
+  // Puts the calling thread into a group (nullptr: into none) for a scope.
+  class Member {
+   public:
+    explicit Member(ThreadGroup* group);
+    ~Member();
+    Member(const Member&) = delete;
+    Member& operator=(const Member&) = delete;
+
+   private:
+    ThreadGroup* const former_;
+  };
+
+ private:
+  std::atomic<int> stop_requests_{0};
+  const std::shared_ptr<log::File> log_;
+};
+
+// A std::thread that belongs to the group of the thread that makes it. Every thread of a role is
+// one of these.
+class Thread {
+ public:
+  Thread() = default;
+  template <class Body>
+  explicit Thread(Body body)
+      : thread_([group = ThreadGroup::Current(), body = std::move(body)]() mutable {
+          const ThreadGroup::Member member(group);
+          body();
+        }) {}
+
+  bool joinable() const { return thread_.joinable(); }
+  void join() { thread_.join(); }
+
+ private:
+  std::thread thread_;
+};
+
+}  // namespace shoal

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+// The roles of a run's processes, and the planes that separate their traffic.
+#pragma once
+
+namespace shoal::link {
+
+// kActor: a training actor. kEval: the evaluation actor. kClient: a program that watches or steers
+// a run from outside.
+enum class Role { kCoordinator, kLearner, kReplay, kActor, kEval, kClient };
+
+// A slow reader of one plane does not delay the others. kMain: records, weights, metrics, control.
+// kBatch: requests and batches between learner and replay. kOperate: between coordinator and
+// clients.
+enum class Plane { kMain, kBatch, kOperate };
+
+// "coordinator", "learner", "replay", "actor", "eval", "client".
+constexpr const char* RoleName(Role role) {
+  switch (role) {
+    case Role::kCoordinator:
+      return "coordinator";
+    case Role::kLearner:
+      return "learner";
+    case Role::kReplay:
+      return "replay";
+    case Role::kActor:
+      return "actor";
+    case Role::kEval:
+      return "eval";
+    case Role::kClient:
+      return "client";
+  }
+  return "?";
+}
+
+// Whether a process of the role takes part in the plane.
+constexpr bool Joins(Role role, Plane plane) {
+  switch (plane) {
+    case Plane::kMain:
+      return role != Role::kClient;
+    case Plane::kBatch:
+      return role == Role::kLearner || role == Role::kReplay;
+    case Plane::kOperate:
+      return role == Role::kCoordinator || role == Role::kClient;
+  }
+  return false;
+}
+
+}  // namespace shoal::link
