@@ -10,7 +10,6 @@
 #include "common/nn/encoder_weights.h"
 #include "common/policy/checkpoint_writer.h"
 #include "common/run_folder/run_file_names.h"
-#include "common/wire/process_name.h"
 #include "learner/agent/algorithms.h"
 #include "learner/agent/encoder_start.h"
 #include "learner/agent/network_start.h"
@@ -26,11 +25,12 @@ std::unique_ptr<Agent> MakeAgentOf(const RunConfig& run, nn::Precision precision
 
 }  // namespace
 
-LearnerProgram::LearnerProgram(const std::filesystem::path& folder, const RunConfig& run,
-                               int threads, link::Hub& hub)
+LearnerProgram::LearnerProgram(const std::filesystem::path& folder, const ProcessName& name,
+                               const RunConfig& run, int threads, link::Hub& hub)
     : folder_(folder),
+      name_(name),
       run_(run),
-      session_(NextSession(folder, ProcessName::Learner().Text(), WallTimeNs())),
+      session_(NextSession(folder, name.Text(), WallTimeNs())),
       precision_(nn::ChoosePrecision(run.config.learner.precision, run.spec.HasPixels())),
       agent_(MakeAgentOf(run, precision_, threads)),
       checkpoints_(folder, run),
@@ -51,6 +51,7 @@ LearnerProgram::LearnerProgram(const std::filesystem::path& folder, const RunCon
 
 int LearnerProgram::Run() {
   TrainingLoop loop({.run = run_,
+                     .name = name_,
                      .precision = precision_,
                      .session = session_,
                      .agent = *agent_,

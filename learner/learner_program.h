@@ -13,6 +13,7 @@
 #include "common/nn/precision.h"
 #include "common/run_folder/update_page.h"
 #include "common/wire/control_state.h"
+#include "common/wire/process_name.h"
 #include "learner/agent/agent.h"
 #include "learner/batch_feed.h"
 #include "learner/checkpoint_store.h"
@@ -24,10 +25,11 @@ namespace shoal::learner {
 // Members are in construction order: readers, which end first, write to what is above them.
 class LearnerProgram {
  public:
-  // Restores the newest checkpoint of the run in `folder`, or starts fresh. Its networks use
-  // `threads` threads. One thread constructs and runs it. Borrows the hub. Throws Error.
-  LearnerProgram(const std::filesystem::path& folder, const RunConfig& run, int threads,
-                 link::Hub& hub);
+  // The learner `name` of the run in `folder`. Restores the newest checkpoint, or starts fresh. Its
+  // networks use `threads` threads. One thread constructs and runs it. Borrows the hub. Throws
+  // Error.
+  LearnerProgram(const std::filesystem::path& folder, const ProcessName& name, const RunConfig& run,
+                 int threads, link::Hub& hub);
 
   // Trains until it is told to stop (0; kUnwrittenExit where the last checkpoint could not be
   // written) or the coordinator is gone (1). Throws Error.
@@ -39,6 +41,7 @@ class LearnerProgram {
   void StartFresh();
 
   const std::filesystem::path folder_;
+  const ProcessName name_;
   const RunConfig run_;
   const uint64_t session_;
   const nn::Precision precision_;

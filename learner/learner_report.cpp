@@ -3,7 +3,6 @@
 
 #include "common/base/log.h"
 #include "common/config/on_policy.h"
-#include "common/wire/process_name.h"
 #include "learner/agent/frame_figures.h"
 #include "learner/agent/sample_figures.h"
 
@@ -16,11 +15,11 @@ constexpr int kFrameFiguresEvery = 16;  // updates
 
 }  // namespace
 
-LearnerReport::LearnerReport(const RunConfig& run)
+LearnerReport::LearnerReport(const ProcessName& name, const RunConfig& run)
     : spec_(run.spec),
       shift_pad_(LearnsOnPolicy(run.config) ? 0 : run.config.replay.shift_pad),
       guard_(run.config),
-      report_(ProcessName::Learner()) {}
+      report_(name) {}
 
 void LearnerReport::OnUpdate(const UpdateFigures& figures, const Batch& batch, uint64_t updates) {
   UpdateFigures all = figures;

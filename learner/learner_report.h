@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the learner tells about itself once a second: metrics and warnings.
 //
-// Metrics (role "learner", id 0), means over the last interval with updates in it unless said
+// Metrics (role "learner"), means over the last interval with updates in it unless said
 // otherwise:
 //   updates, env_steps, warnings, and counters of weights, checkpoints, batches: totals
 //   updates_per_second
@@ -20,6 +20,7 @@
 
 #include "common/config/run_config.h"
 #include "common/wire/metrics_report.h"
+#include "common/wire/process_name.h"
 #include "learner/agent/agent.h"
 #include "learner/batch_stream.h"
 #include "learner/training_guard.h"
@@ -52,7 +53,7 @@ struct LearnerFigures {
 // One thread.
 class LearnerReport {
  public:
-  explicit LearnerReport(const RunConfig& run);
+  LearnerReport(const ProcessName& name, const RunConfig& run);
 
   void OnUpdate(const UpdateFigures& figures, const Batch& batch, uint64_t updates);
   // Once a second.

@@ -11,8 +11,8 @@
 #include "common/config/run_files.h"
 #include "common/config/run_membership.h"
 #include "common/dds/bus.h"
+#include "common/link/run_topology.h"
 #include "common/tasks/task_library.h"
-#include "common/wire/process_name.h"
 #include "learner/command_line.h"
 #include "learner/learner_program.h"
 #include "learner/openmp_environment.h"
@@ -23,17 +23,18 @@ int Run(int argc, char** argv) {
   shoal::learner::Options options;
   const auto app = shoal::learner::MakeCommandLine(&options);
   if (const auto exit_code = shoal::ParseCommandLine(app.get(), argc, argv)) return *exit_code;
-  shoal::log::Start(shoal::ProcessName::Learner().Text(), "");
   shoal::InstallStopSignals();
   shoal::KeepSecuredRunPrivate(options.run);
   const shoal::RunConfig run = shoal::ReadRunConfig(options.run);
+  const shoal::ProcessName name = shoal::link::RunTopology(run.config).OnlyLearner().Name();
+  shoal::log::Start(name.Text(), "");
   shoal::tasks::LoadTaskLibrary(run.config.task_library);
   const int threads = shoal::LearnerThreads(run.config, shoal::UsableCores());
   shoal::learner::EnsurePassiveOpenMp(threads, argv);
   const shoal::RunMembership member(options.run);
   shoal::dds::Bus bus(shoal::dds::FindPlace(options.run, run.config.transport, options.reach),
                       shoal::dds::Role::kLearner);
-  return shoal::learner::LearnerProgram(options.run, run, threads, bus).Run();
+  return shoal::learner::LearnerProgram(options.run, name, run, threads, bus).Run();
 }
 
 }  // namespace

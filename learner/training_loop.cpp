@@ -36,7 +36,7 @@ TrainingLoop::TrainingLoop(const Parts& parts, const std::optional<CheckpointSta
       weights_(parts.run, parts.precision, parts.session, parts.agent, parts.outlet),
       evaluations_(parts.run, parts.session, restored ? restored->env_steps : 0, parts.agent,
                    parts.outlet),
-      report_(parts.run),
+      report_(parts.name, parts.run),
       on_policy_(LearnsOnPolicy(config_)),
       budget_(static_cast<uint64_t>(config_.env_steps)),
       samples_per_insert_(config_.replay.samples_per_insert),

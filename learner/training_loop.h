@@ -44,6 +44,7 @@ class TrainingLoop {
  public:
   struct Parts {
     RunConfig run;
+    ProcessName name;  // this learner's
     nn::Precision precision = nn::Precision::kF32;
     uint64_t session = 0;  // this learner's: wall-clock ns at its start
     Agent& agent;          // fresh, or as in `restored`

@@ -3,14 +3,15 @@
 #include <CLI/CLI.hpp>
 
 #include "common/base/command_line.h"
+#include "common/base/error.h"
 #include "common/base/log.h"
 #include "common/base/main_guard.h"
 #include "common/base/stop.h"
 #include "common/config/run_files.h"
 #include "common/config/run_membership.h"
 #include "common/dds/bus.h"
+#include "common/link/run_topology.h"
 #include "common/tasks/task_library.h"
-#include "common/wire/process_name.h"
 #include "replay_server/service/command_line.h"
 #include "replay_server/service/replay_service.h"
 
@@ -20,12 +21,17 @@ int Run(int argc, char** argv) {
   shoal::replay::Options options;
   const auto app = shoal::replay::MakeCommandLine(&options);
   if (const auto exit_code = shoal::ParseCommandLine(app.get(), argc, argv)) return *exit_code;
-  const shoal::ProcessName name = shoal::ProcessName::Replay(0);
   shoal::InstallStopSignals();
-  shoal::log::Start(name.Text(), "");
   shoal::KeepSecuredRunPrivate(options.run);
   const shoal::RunMembership member(options.run);
   const shoal::Config config = shoal::ReadRunConfig(options.run).config;
+  const shoal::link::RunTopology topology(config);
+  if (!topology.Has(shoal::link::Role::kReplay)) {
+    throw shoal::UsageError("run '{}' has no replay: learner.algorithm = {} learns from rollouts",
+                            options.run, config.learner.algorithm);
+  }
+  const shoal::ProcessName name = topology.OnlyReplay().Name();
+  shoal::log::Start(name.Text(), "");
   shoal::tasks::LoadTaskLibrary(config.task_library);
   shoal::dds::Bus bus(shoal::dds::FindPlace(options.run, config.transport, options.reach),
                       shoal::dds::Role::kReplay);

@@ -10,6 +10,7 @@
 #include "common/dds/bus.h"
 #include "common/dds/domain_xml.h"
 #include "common/dds/host_network.h"
+#include "common/link/run_topology.h"
 // clang-format off
 #include "common/dds/bus_impl.h"
 // clang-format on
@@ -26,8 +27,9 @@ bool RunPortsFree(int domain) {
   ClusterAddress address;
   address.domain = domain;
   for (const Plane plane : {Plane::kMain, Plane::kBatch}) {
-    for (const Role role : {Role::kCoordinator, Role::kLearner, Role::kReplay}) {
-      const int port = DiscoveryPort(PlaneDomain(address, plane), ParticipantIndex(role));
+    for (const link::RunProcess& server : link::Servers()) {
+      const int port =
+          DiscoveryPort(PlaneDomain(address, plane), ParticipantIndex(server.role, server.index));
       if (!UdpPortFree(port) || !UdpPortFree(port + 1)) return false;
     }
   }
@@ -50,9 +52,10 @@ std::unique_ptr<Bus> ClaimDomain(const TransportConfig& transport, ClusterAddres
       // Another run took it between the check and the join.
     }
   }
+  const link::RunProcess& last = link::Servers().back();
   throw RuntimeError("all {} DDS domains from {} to {} are taken on this host (UDP ports {} to {})",
                      kDomains, kFirstDomain, kLastDomain, DiscoveryPort(kFirstDomain, 0),
-                     DiscoveryPort(kLastDomain + 1, 2) + 1);
+                     DiscoveryPort(kLastDomain + 1, ParticipantIndex(last.role, last.index)) + 1);
 }
 
 }  // namespace shoal::dds

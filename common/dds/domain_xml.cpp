@@ -2,15 +2,14 @@
 #include "common/dds/domain_xml.h"
 
 #include <cstdlib>
-#include <initializer_list>
 #include <map>
 
-#include "common/base/check.h"
 #include "common/base/error.h"
 #include "common/base/escape_markup.h"
 #include "common/base/files.h"
 #include "common/dds/host_network.h"
 #include "common/dds/security_xml.h"
+#include "common/link/run_topology.h"
 
 namespace shoal::dds {
 namespace {
@@ -50,25 +49,17 @@ constexpr std::string_view kTemplate =
 </Domain></CycloneDDS>
 )";
 
-// The roles at known ports that a process announces itself to.
-std::initializer_list<Role> Peers(Role role, Plane plane) {
-  static constexpr std::initializer_list<Role> kServers = {Role::kCoordinator, Role::kLearner,
-                                                           Role::kReplay};
-  static constexpr std::initializer_list<Role> kBatchServers = {Role::kLearner, Role::kReplay};
-  // Actors answer when they are found; the coordinator is found by everybody.
-  static constexpr std::initializer_list<Role> kNone = {};
-  static constexpr std::initializer_list<Role> kCoordinator = {Role::kCoordinator};
-  if (role == Role::kCoordinator) return kNone;
-  if (role == Role::kClient) return kCoordinator;
-  return plane == Plane::kBatch ? kBatchServers : kServers;
-}
-
+// A process announces itself to the other servers of the plane. The coordinator does not: every
+// process announces itself to it.
 std::string PeersElement(const ClusterAddress& address, Role role, Plane plane) {
   std::string element = "<Peers>";
-  for (const Role peer : Peers(role, plane)) {
-    if (peer == role) continue;
+  for (const link::RunProcess& server : link::Servers()) {
+    if (role == Role::kCoordinator || server.role == role || !link::Joins(server.role, plane)) {
+      continue;
+    }
+    const int index = ParticipantIndex(server.role, server.index);
     element += fmt::format("<Peer Address=\"{}:{}\"/>", EscapeMarkup(address.host),
-                           DiscoveryPort(PlaneDomain(address, plane), ParticipantIndex(peer)));
+                           DiscoveryPort(PlaneDomain(address, plane), index));
   }
   return element + "</Peers>";
 }
@@ -111,21 +102,8 @@ std::string Substitute(std::string_view xml,
 
 }  // namespace
 
-int ParticipantIndex(Role role) {
-  switch (role) {
-    case Role::kCoordinator:
-      return 0;
-    case Role::kLearner:
-      return 1;
-    case Role::kReplay:
-      return 2;
-    case Role::kActor:
-    case Role::kEval:
-    case Role::kClient:
-      return -1;
-  }
-  CHECK(false) << "role " << static_cast<int>(role);
-  return -1;
+int ParticipantIndex(Role role, uint32_t index) {
+  return link::FixedPort(role, index).value_or(-1);
 }
 
 int PlaneDomain(const ClusterAddress& address, Plane plane) {

@@ -7,12 +7,14 @@
 //   @INTERFACE@       name="lo" or address="10.0.0.3", an attribute of NetworkInterface
 //   @FRAGMENT_BYTES@  transport.fragment_bytes
 //   @TAG@             the run's tag; empty in the domain of clients
-//   @INDEX@           participant index: 0 coordinator, 1 learner, 2 replay, none for others
+//   @INDEX@           participant index: the process's fixed port (common/link/run_topology.h),
+//                     none for others
 //   @PEERS@           the <Peers> element
 //   @WATERMARKS@      the <Watermarks> element: unacknowledged bytes a writer may have
 //   @SECURITY@        the <Security> element of a secured run, else nothing
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -24,8 +26,9 @@ namespace shoal::dds {
 
 inline constexpr const char* kOverrideVariable = "SHOAL_DDS_XML";
 
-// 0 coordinator, 1 learner, 2 replay; -1 for actors and clients, which have no fixed port.
-int ParticipantIndex(Role role);
+// The fixed port of a process (common/link/run_topology.h); -1 for actors and clients, which have
+// none.
+int ParticipantIndex(Role role, uint32_t index = 0);
 // The id of the DDS domain that carries a plane.
 int PlaneDomain(const ClusterAddress& address, Plane plane);
 

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a process of a run is called, everywhere: in reports, logs, RUN/sessions, the supervisor.
-//
-// Of most roles a run has one process. Where code means that one, it says Replay(0) or Learner(): a
-// run with several replay servers is a matter of those places (docs/architecture.md).
+// The name of a process of a run, everywhere: in reports, logs, RUN/sessions, the supervisor. Which
+// processes a run has is in common/link/run_topology.h.
 #pragma once
 
 #include <fmt/format.h>
@@ -21,8 +19,6 @@ struct ProcessName {
   std::string Text() const { return fmt::format("{}-{}", role, index); }
 
   static constexpr ProcessName Coordinator() { return {"coordinator"}; }
-  static constexpr ProcessName Learner() { return {"learner"}; }
-  static constexpr ProcessName Replay(uint32_t index) { return {"replay", index}; }
   static constexpr ProcessName Evaluation() { return {"eval"}; }
   static constexpr ProcessName Actor(uint32_t index) { return {"actor", index}; }
 };

@@ -10,6 +10,7 @@
 #include "common/base/error.h"
 #include "common/base/silence.h"
 #include "common/base/stop.h"
+#include "common/link/role.h"
 #include "common/wire/process_name.h"
 #include "launch/commands/commands.h"
 #include "launch/commands/target_options.h"
@@ -75,7 +76,7 @@ std::string InForce(const RunViewMessage& message, const LiveKey& live, double v
       text += fmt::format("{}{} {}", text.empty() ? "" : ", ", name.Text(), *used);
     }
     // A run that learns on policy has no replay.
-    if (!any && use.role != ProcessName::Replay(0).role) return "";
+    if (!any && use.role != link::RoleName(link::Role::kReplay)) return "";
   }
   return text;
 }

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "common/base/check.h"
 #include "common/base/error.h"
-#include "common/config/on_policy.h"
 #include "common/wire/process_name.h"
 #include "launch/record/run_folder.h"
 
@@ -30,6 +30,8 @@ ProcessSpec ProgramSpec(const std::string& program, std::vector<std::string> arg
 
 namespace {
 
+using link::Role;
+
 ProcessSpec PlanProcess(const std::filesystem::path& run, const ProcessName& name,
                         const std::string& program, std::vector<std::string> arguments,
                         int threads) {
@@ -41,6 +43,29 @@ ProcessSpec PlanProcess(const std::filesystem::path& run, const ProcessName& nam
   return spec;
 }
 
+ProcessSpec PlanChild(const link::RunProcess& child, const Config& config,
+                      const std::filesystem::path& run, const std::vector<RemoteHost>& hosts) {
+  const ProcessName name = child.Name();
+  switch (child.role) {
+    case Role::kReplay:
+      return PlanProcess(run, name, "shoal-replay", {}, 1);
+    case Role::kLearner:
+      return PlanProcess(run, name, "shoal-learner", {}, config.learner.threads);
+    case Role::kActor: {
+      const int id = static_cast<int>(child.index);
+      return child.host == 0 ? ActorProcess(run, id)
+                             : RemoteActor(hosts.at(child.host - 1), id, run);
+    }
+    case Role::kEval:
+      return PlanProcess(run, name, "shoal-actor", {"--role", "eval"}, 1);
+    case Role::kCoordinator:
+    case Role::kClient:
+      break;
+  }
+  CHECK(false) << name.Text() << " is no child of the coordinator";
+  return {};
+}
+
 }  // namespace
 
 ProcessSpec ActorProcess(const std::filesystem::path& run, int id) {
@@ -50,38 +75,32 @@ ProcessSpec ActorProcess(const std::filesystem::path& run, int id) {
   return spec;
 }
 
-ActorRange ActorsOf(const Config& config, const std::vector<RemoteHost>& hosts, size_t index) {
-  int first = config.actors;
-  for (size_t i = index; i < hosts.size(); ++i) first -= hosts[i].actors;
-  return {.first = first, .count = hosts[index].actors};
+link::RunTopology TopologyOf(const Config& config, const std::vector<RemoteHost>& hosts) {
+  std::vector<int> actors;
+  for (const RemoteHost& host : hosts) actors.push_back(host.actors);
+  return link::RunTopology(config, actors);
 }
 
-std::vector<ProcessSpec> PlanProcesses(const Config& config, const std::filesystem::path& run,
+ActorRange ActorsOf(const Config& config, const std::vector<RemoteHost>& hosts, size_t index) {
+  const auto actors = TopologyOf(config, hosts).ActorsOn(static_cast<uint32_t>(index + 1));
+  return {.first = static_cast<int>(actors.front().index),
+          .count = static_cast<int>(actors.size())};
+}
+
+std::vector<ProcessSpec> PlanProcesses(const link::RunTopology& topology, const Config& config,
+                                       const std::filesystem::path& run,
                                        const std::vector<RemoteHost>& hosts) {
+  const std::vector<link::RunProcess> receivers = topology.RecordReceivers();
   std::vector<ProcessSpec> plan;
-  const bool on_policy = LearnsOnPolicy(config);
-  // When the coordinator is killed, the actors' last records want somebody who acknowledges them:
-  // the replay, or on policy the learner, leaves by itself when the heartbeat has been missing and
-  // nothing comes any more.
-  if (!on_policy) {
-    plan.push_back(PlanProcess(run, ProcessName::Replay(0), "shoal-replay", {}, 1));
-    plan.back().outlives_parent = true;
+  for (const link::RunProcess& child : topology.children()) {
+    ProcessSpec& spec = plan.emplace_back(PlanChild(child, config, run, hosts));
+    // If the coordinator is killed, the receivers go on acknowledging the last records of the
+    // actors. They exit once the heartbeat has been missing and no more records arrive.
+    spec.outlives_parent = std::ranges::find(receivers, child) != receivers.end();
+    // A run in lockstep repeats bit for bit: it does not go on without one of its processes.
+    const bool acts = child.role == Role::kActor || child.role == Role::kEval;
+    spec.expendable = acts && !config.lockstep;
   }
-  plan.push_back(
-      PlanProcess(run, ProcessName::Learner(), "shoal-learner", {}, config.learner.threads));
-  plan.back().outlives_parent = on_policy;
-  const size_t first_expendable = plan.size();
-  const int actors_here = hosts.empty() ? config.actors : ActorsOf(config, hosts, 0).first;
-  for (int i = 0; i < actors_here; ++i) plan.push_back(ActorProcess(run, i));
-  for (size_t host = 0; host < hosts.size(); ++host) {
-    const ActorRange actors = ActorsOf(config, hosts, host);
-    for (int i = actors.first; i < actors.first + actors.count; ++i) {
-      plan.push_back(RemoteActor(hosts[host], i, run));
-    }
-  }
-  plan.push_back(PlanProcess(run, ProcessName::Evaluation(), "shoal-actor", {"--role", "eval"}, 1));
-  // A run in lockstep repeats bit for bit: it does not go on without one of its processes.
-  for (size_t i = first_expendable; i < plan.size(); ++i) plan[i].expendable = !config.lockstep;
   return plan;
 }
 

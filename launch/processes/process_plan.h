@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/config/config.h"
+#include "common/link/run_topology.h"
 #include "launch/processes/child_process.h"
 #include "launch/processes/remote_host.h"
 
@@ -19,14 +20,16 @@ std::filesystem::path ProgramFolder();
 ProcessSpec ProgramSpec(const std::string& program, std::vector<std::string> arguments,
                         int threads);
 
-// Replay (none of a run that learns on policy), learner, actors and evaluation actor of a run, in
-// starting order. `config` is resolved (actors and learner.threads above 0); hosts whose run folder
-// is known run the actors that ActorsOf says.
-std::vector<ProcessSpec> PlanProcesses(const Config& config, const std::filesystem::path& run,
+// The topology of a run with these hosts. `config` is resolved.
+link::RunTopology TopologyOf(const Config& config, const std::vector<RemoteHost>& hosts);
+
+// How the children of a topology are started, in its order. `config` is resolved (learner.threads
+// above 0). `hosts` are those of the topology, with their run folders.
+std::vector<ProcessSpec> PlanProcesses(const link::RunTopology& topology, const Config& config,
+                                       const std::filesystem::path& run,
                                        const std::vector<RemoteHost>& hosts = {});
 
-// The actors of hosts[index]: their numbers follow those of the hosts before it, which follow those
-// of this host. config.actors counts them all.
+// The actors of hosts[index].
 ActorRange ActorsOf(const Config& config, const std::vector<RemoteHost>& hosts, size_t index);
 
 // One training actor of this host, expendable.

@@ -67,11 +67,6 @@ void FetchFromHosts(const fs::path& run, const Config& config, const Hosts& host
   for (size_t i = 0; i < hosts.hosts.size(); ++i) Fetch(run, config, hosts, i, say, stop);
 }
 
-int ActorsHere(const fs::path& run, const Config& config) {
-  if (!fs::exists(HostsFile(run))) return config.actors;
-  return config.actors - ReadHostsFile(HostsFile(run)).RemoteActors();
-}
-
 fs::path HostsFile(const fs::path& run) { return run / kHostsFile; }
 
 }  // namespace shoal::launch

@@ -33,9 +33,6 @@ void PushToHosts(const std::filesystem::path& run, const Config& config, const s
 void FetchFromHosts(const std::filesystem::path& run, const Config& config, const Hosts& hosts,
                     const std::function<void(const std::string&)>& say, const StopQuestion& stop);
 
-// How many of the run's actors are this host's own. Throws Error on a broken hosts.json.
-int ActorsHere(const std::filesystem::path& run, const Config& config);
-
 // RUN/hosts.json.
 std::filesystem::path HostsFile(const std::filesystem::path& run);
 

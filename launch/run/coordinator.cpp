@@ -57,6 +57,12 @@ const char* ToString(RunState state) {
   return "?";
 }
 
+LiveSettings RestoredSettings(const Config& config, const std::vector<SettingChange>& changes) {
+  LiveSettings settings(config);
+  settings.Restore(changes);
+  return settings;
+}
+
 }  // namespace
 
 struct Coordinator::Impl {
@@ -66,7 +72,8 @@ struct Coordinator::Impl {
       : run(folder),
         config(run_config.config),
         hosts(remote_hosts),
-        settings(config),
+        settings(RestoredSettings(config, before.changes)),
+        topology(TopologyOf(settings.config(), remote_hosts)),
         handler(settings, Effects()),
         desk(run_desk),
         progress(shown),
@@ -80,8 +87,7 @@ struct Coordinator::Impl {
         supervisor(RestartLimits(), HangLimits(),
                    [this](const std::string& line) { progress.Say(line); }),
         control(hub),
-        inbox(hub) {
-    settings.Restore(meta.changes);
+        inbox(hub, topology) {
     settings.AddTo(&order);
     rule.Change(settings.config());
     for (const EvaluationPoint& point : ReadEvaluations(run)) {
@@ -134,7 +140,6 @@ struct Coordinator::Impl {
   bool Started() const;
   // Ends the run where it cannot go on without the actors that are down.
   void LookAtActors(SteadyTime now);
-  bool HasReplay() const;
   void TakeCommands();
   void Scale(int from, int to);
   void Note(SettingChange change);
@@ -167,6 +172,7 @@ struct Coordinator::Impl {
   const Config config;  // as the run was started
   const std::vector<RemoteHost> hosts;
   LiveSettings settings;
+  const link::RunTopology topology;  // as started; `shoal scale` may have changed the actors since
   CommandHandler handler;
   OperatorDesk& desk;
   Progress& progress;
@@ -179,7 +185,6 @@ struct Coordinator::Impl {
   BestEvaluation bests;
   FlatScore flat;
   std::optional<EvaluationPoint> last_evaluation;
-  std::vector<ProcessSpec> plan;  // as started; `shoal scale` may have changed the actors since
   RunWatch watch;
   ScalarLog scalars;
   Supervisor supervisor;
@@ -214,8 +219,9 @@ RunResult Coordinator::Run(const std::function<void()>& on_started) {
 }
 
 RunResult Coordinator::Impl::Run(const std::function<void()>& on_started) {
-  plan = PlanProcesses(settings.config(), run, hosts);
-  for (const ProcessSpec& spec : plan) supervisor.Start(spec);
+  for (const ProcessSpec& spec : PlanProcesses(topology, settings.config(), run, hosts)) {
+    supervisor.Start(spec);
+  }
   scalars.WriteConfig(config);
   meta.exit = "running";
   StoreMeta();
@@ -257,13 +263,15 @@ std::string Coordinator::Impl::WaitForEnd(const std::function<void()>& on_starte
 }
 
 bool Coordinator::Impl::Started() const {
-  return std::ranges::all_of(plan, [this](const ProcessSpec& spec) {
-    if (watch.view().Heard(spec.role, static_cast<uint32_t>(spec.id))) return true;
-    const bool retired = spec.role == "actor" && spec.id >= settings.config().actors;
+  return std::ranges::all_of(topology.children(), [this](const link::RunProcess& child) {
+    const ProcessName name = child.Name();
+    if (watch.view().Heard(name.role, name.index)) return true;
+    const bool retired = child.role == link::Role::kActor &&
+                         std::cmp_greater_equal(child.index, settings.config().actors);
     // Others work, so that the run has started without it.
     const bool down =
         actors.working > 0 &&
-        std::ranges::find(actors.down, spec.Name(), &DownProcess::name) != actors.down.end();
+        std::ranges::find(actors.down, name.Text(), &DownProcess::name) != actors.down.end();
     return retired || down;
   });
 }
@@ -274,10 +282,6 @@ void Coordinator::Impl::LookAtActors(SteadyTime now) {
   const std::chrono::seconds patience(config.stop.without_actors);
   if (const auto why = working_actors.Look(actors, patience, now)) Fail(*why);
   if (const auto why = MissingEvaluations(evaluation_actor, evaluated)) Fail(*why);
-}
-
-bool Coordinator::Impl::HasReplay() const {
-  return std::ranges::find(plan, "replay", &ProcessSpec::role) != plan.end();
 }
 
 void Coordinator::Impl::TakeCommands() {
@@ -334,7 +338,8 @@ void Coordinator::Impl::Stop() {
   stops_before_end = StopRequests();
   StopDeadlines deadlines;
   // A run with a replay stores nothing without it.
-  if (HasReplay() && supervisor.Running("replay") == 0) deadlines.drain = milliseconds(0);
+  if (topology.Has(link::Role::kReplay) && supervisor.Running("replay") == 0)
+    deadlines.drain = milliseconds(0);
   StopInOrder(supervisor, deadlines,
               {.announce =
                    [this](RunState state) {
@@ -378,14 +383,15 @@ void Coordinator::Impl::Tick(bool last) {
 }
 
 void Coordinator::Impl::SayUnwrittenCheckpoints() {
-  const double unwritten =
-      watch.view().Get(ProcessName::Learner(), "checkpoints_unwritten").value_or(0);
+  const ProcessName learner = topology.OnlyLearner().Name();
+  const double unwritten = watch.view().Get(learner, "checkpoints_unwritten").value_or(0);
   if ((unwritten > 0) == checkpoints_fail) return;
   checkpoints_fail = unwritten > 0;
-  progress.Say(checkpoints_fail ? fmt::format("learner-0 cannot write its checkpoints: it keeps "
-                                              "them and tries again; why: {}",
-                                              LogFile(run, ProcessName::Learner().Text()).string())
-                                : "learner-0 has written its checkpoints");
+  progress.Say(checkpoints_fail
+                   ? fmt::format("{} cannot write its checkpoints: it keeps them and tries again; "
+                                 "why: {}",
+                                 learner.Text(), LogFile(run, learner.Text()).string())
+                   : fmt::format("{} has written its checkpoints", learner.Text()));
 }
 
 void Coordinator::Impl::SaySuspensions() {

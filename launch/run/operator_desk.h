@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "common/base/clock.h"
-#include "common/link/writer.h"
 #include "common/link/reader.h"
+#include "common/link/writer.h"
 #include "common/wire/messages.h"
 #include "launch/watch/message_inbox.h"
 

@@ -13,13 +13,10 @@
 #include "common/base/error.h"
 #include "common/base/stop.h"
 #include "common/base/write_faults.h"
-#include "common/config/on_policy.h"
 #include "common/run_folder/run_file_names.h"
 #include "common/run_folder/update_page.h"
-#include "common/wire/process_name.h"
 #include "launch/film/film.h"
 #include "launch/processes/actor_program.h"
-#include "launch/processes/run_hosts.h"
 #include "launch/processes/run_leftovers.h"
 #include "launch/record/accounting.h"
 #include "launch/record/run_folder.h"
@@ -31,21 +28,18 @@ namespace {
 namespace fs = std::filesystem;
 
 // Empty when no record was ever made.
-std::optional<Accounting> AccountRun(const fs::path& run, const Config& config, uint64_t resends) {
+std::optional<Accounting> AccountRun(const fs::path& run, const Config& config,
+                                     const link::RunTopology& topology, uint64_t resends) {
   std::vector<MadeRecords> made;
   for (const actor::MadeCount& page : actor::ReadMadePages(run)) {
     made.push_back({page.actor, page.session, page.made, /*known=*/!page.rebuilt});
   }
   if (made.empty() && !fs::exists(run / kAccountingFile)) return std::nullopt;
-  return Account(made, ReadAccount(run),
-                 {.resends = resends,
-                  .own_actors = static_cast<uint32_t>(ActorsHere(run, config)),
-                  .outlives_replay = !LearnsOnPolicy(config) && config.replay.storage == "file"});
-}
-
-// Who keeps the account of the records.
-ProcessName ReceiverOf(const Config& config) {
-  return LearnsOnPolicy(config) ? ProcessName::Learner() : ProcessName::Replay(0);
+  return Account(
+      made, ReadAccount(run),
+      {.resends = resends,
+       .own_actors = static_cast<uint32_t>(topology.ActorsOn(0).size()),
+       .outlives_replay = topology.Has(link::Role::kReplay) && config.replay.storage == "file"});
 }
 
 // Whoever asked for a stop wants the terminal back; a run that has ended by itself is judged.
@@ -209,15 +203,16 @@ int ReportUnwritten(const fs::path& run, const std::set<std::string>& unwritten,
 
 using Fail = std::function<void(const std::string&)>;
 
-void TakeAccount(const fs::path& run, const Config& config, const std::set<std::string>& unwritten,
-                 Progress& progress, const Fail& fail, RunMeta* meta) {
+void TakeAccount(const fs::path& run, const Config& config, const link::RunTopology& topology,
+                 const std::set<std::string>& unwritten, Progress& progress, const Fail& fail,
+                 RunMeta* meta) {
   try {
-    // Who receives the records could not write the last account, so that this one is an old one.
-    const std::string receiver = ReceiverOf(config).Text();
-    if (unwritten.contains(receiver)) {
-      throw RuntimeError("{} could not write {}", receiver, kAccountingFile);
+    // A receiver that could not write its last account leaves an old one.
+    for (const link::RunProcess& receiver : topology.RecordReceivers()) {
+      if (!unwritten.contains(receiver.Name().Text())) continue;
+      throw RuntimeError("{} could not write {}", receiver.Name().Text(), kAccountingFile);
     }
-    meta->accounting = AccountRun(run, config, meta->resends);
+    meta->accounting = AccountRun(run, config, topology, meta->resends);
     if (!meta->accounting) return;
     for (const std::string& fault : meta->accounting->faults) {
       fail("records do not balance: " + fault);
@@ -260,8 +255,8 @@ void WriteLastMeta(const fs::path& run, const Config& config, WriteFaults& fault
 
 }  // namespace
 
-int EndRun(const fs::path& run, const Config& config, RunResult result, bool film,
-           OperatorDesk& desk, Progress& progress) {
+int EndRun(const fs::path& run, const Config& config, const link::RunTopology& topology,
+           RunResult result, bool film, OperatorDesk& desk, Progress& progress) {
   RunMeta& meta = result.meta;
   std::set<std::string>& unwritten = result.unwritten;
   bool good = result.clean && meta.exit != "failed";
@@ -271,7 +266,7 @@ int EndRun(const fs::path& run, const Config& config, RunResult result, bool fil
     if (meta.error.empty()) meta.error = why;
     progress.Say("error: " + why);
   };
-  TakeAccount(run, config, unwritten, progress, fail, &meta);
+  TakeAccount(run, config, topology, unwritten, progress, fail, &meta);
   // A file that failed before the end is reported once it is written now.
   WriteFaults faults([&](const std::string& line) { progress.Say(line); }, unwritten);
   if (!faults.Try(kBottleneckFile, [&] { WriteBottleneck(run, result.bottleneck); })) {

@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "common/link/run_topology.h"
 #include "launch/run/coordinator.h"
 #include "launch/watch/progress.h"
 
@@ -14,7 +15,8 @@ namespace shoal::launch {
 // replay.keep. Prints the summary and returns the run's exit code: 1 when it failed, a process left
 // with an error, the records do not balance, or there is no film that was asked for; else
 // kUnwrittenExit when something of it could not be written.
-int EndRun(const std::filesystem::path& run, const Config& config, RunResult result, bool film,
-           OperatorDesk& desk, Progress& progress);
+int EndRun(const std::filesystem::path& run, const Config& config,
+           const link::RunTopology& topology, RunResult result, bool film, OperatorDesk& desk,
+           Progress& progress);
 
 }  // namespace shoal::launch

@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "launch/run/run_inbox.h"
 
-#include "common/config/config.h"
-#include "common/wire/process_name.h"
-
 namespace shoal::launch {
 namespace {
 
@@ -12,18 +9,20 @@ constexpr size_t kMostEvaluations = 64;  // of a megabyte each, where they are n
 
 }  // namespace
 
-RunInbox::RunInbox(link::Hub& hub)
-    : reports_(kMessages),
+RunInbox::RunInbox(link::Hub& hub, const link::RunTopology& topology)
+    : topology_(topology),
+      reports_(kMessages),
       evaluations_(kMostEvaluations),
       replay_words_(kMessages),
       learner_words_(kMessages),
-      actor_reports_(hub, ReportsOf<ActorMetrics>(ProcessName::Actor(0).role)),
-      eval_reports_(hub, ReportsOf<EvalMetrics>(ProcessName::Evaluation().role)),
-      replay_reports_(hub, ReportsOf<ReplayMetrics>(ProcessName::Replay(0).role)),
-      learner_reports_(hub, ReportsOf<LearnerMetrics>(ProcessName::Learner().role)),
+      actor_reports_(hub, HoldReports<ActorMetrics>()),
+      eval_reports_(hub, HoldReports<EvalMetrics>()),
+      replay_reports_(hub, HoldReports<ReplayMetrics>()),
+      learner_reports_(hub, HoldReports<LearnerMetrics>()),
       replay_progress_(hub,
                        [this](const ReplayProgress& word) {
-                         if (word.replay == ProcessName::Replay(0).index) {
+                         const char* role = link::RoleName(link::Role::kReplay);
+                         if (topology_.CanWrite<ReplayProgress>(role, word.replay)) {
                            replay_words_.Put(word);
                          } else {
                            ++refused_;
@@ -33,10 +32,9 @@ RunInbox::RunInbox(link::Hub& hub)
       evaluation_subscriber_(hub, [this](const EvalMessage& m) { evaluations_.Put(m); }) {}
 
 template <class M>
-std::function<void(const M&)> RunInbox::ReportsOf(std::string_view role) {
-  const uint32_t ids = role == ProcessName::Actor(0).role ? kMostActors : 1;
-  return [this, role, ids](const M& report) {
-    if (report.role == role && report.id < ids) {
+std::function<void(const M&)> RunInbox::HoldReports() {
+  return [this](const M& report) {
+    if (topology_.CanWrite<M>(report.role, report.id)) {
       reports_.Put(report);
     } else {
       ++refused_;

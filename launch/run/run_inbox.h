@@ -1,45 +1,45 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the processes of a run say to its coordinator, received and held until its loop takes it.
+// The messages of a run's processes to its coordinator, held until the coordinator's loop takes
+// them.
 #pragma once
 
 #include <atomic>
 #include <cstdint>
 #include <functional>
-#include <string>
-#include <string_view>
 #include <vector>
 
 #include "common/link/hub.h"
 #include "common/link/reader.h"
+#include "common/link/run_topology.h"
 #include "common/wire/messages.h"
 #include "launch/watch/message_inbox.h"
 
 namespace shoal::launch {
 
-// Messages arrive on threads of DDS; what is here is for one thread. A message of a process that
-// cannot be is not held: each topic may be written by one role only, which has one process, and
-// actors have numbers below kMostActors. Members are in construction order: subscribers end before
-// the inboxes they fill.
+// Messages arrive on threads of the hub; one thread takes them. Messages of processes that the run
+// cannot have are refused and counted. Members are in construction order: readers end before the
+// inboxes that they fill.
 class RunInbox {
  public:
-  explicit RunInbox(link::Hub& hub);
+  RunInbox(link::Hub& hub, const link::RunTopology& topology);
 
-  // What has come since the last call.
+  // Each returns the messages that arrived since its last call.
   std::vector<MetricsMessage> TakeReports() { return reports_.TakeAll(); }
   std::vector<EvalMessage> TakeEvaluations() { return evaluations_.TakeAll(); }
   std::vector<ReplayProgress> TakeReplayProgress() { return replay_words_.TakeAll(); }
   std::vector<LearnerProgress> TakeLearnerProgress() { return learner_words_.TakeAll(); }
 
-  // Came faster than they were taken.
+  // Messages that arrived faster than they were taken.
   uint64_t dropped() const;
-  // Reports and progress of processes that cannot be.
+  // Reports and progress of processes that the run cannot have.
   uint64_t refused() const { return refused_; }
 
  private:
-  // Holds the reports of a topic that only this role may write.
+  // The callback of the topic's reader.
   template <class M>
-  std::function<void(const M&)> ReportsOf(std::string_view role);
+  std::function<void(const M&)> HoldReports();
 
+  const link::RunTopology topology_;
   MessageInbox<MetricsMessage> reports_;
   MessageInbox<EvalMessage> evaluations_;
   MessageInbox<ReplayProgress> replay_words_;

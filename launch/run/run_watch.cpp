@@ -35,7 +35,7 @@ void RunWatch::WriteLine(const MetricsMessage& report) {
 void RunWatch::LookBack(double seconds, uint64_t env_steps, const RunResources& resources) {
   recent_.Add({.seconds = seconds,
                .env_steps = static_cast<double>(env_steps),
-               .updates = view_.Get(ProcessName::Learner(), "updates")},
+               .updates = view_.Largest("learner", "updates")},
               TotalsOf(view_));
   lately_ = FindBottleneck(recent_.Totals(), resources);
 }

@@ -28,8 +28,8 @@
 #include "common/config/spec_mismatch.h"
 #include "common/credentials/credentials.h"
 #include "common/dds/bus.h"
-#include "common/link/writer.h"
 #include "common/dds/role_rights.h"
+#include "common/link/writer.h"
 #include "common/nn/encoder_weights.h"
 #include "common/nn/named_weights.h"
 #include "common/nn/network_check.h"
@@ -40,6 +40,7 @@
 #include "common/wire/weights_parts.h"
 #include "launch/processes/actor_program.h"
 #include "launch/processes/detachment.h"
+#include "launch/processes/process_plan.h"
 #include "launch/processes/run_hosts.h"
 #include "launch/processes/run_leftovers.h"
 #include "launch/processes/suspension.h"
@@ -331,7 +332,8 @@ void PrintStart(const PreparedRun& run, const ClusterAddress& address) {
     text += fmt::format("  {} is ignored: it would bind every process to the same core\n", binding);
   }
   text += run.camera_note + PlanText(run.config, run.frame_microseconds);
-  const std::string shared = SharedCoresText(ActorsHere(run.folder.path(), config), UsableCores());
+  const auto actors_here = TopologyOf(config, run.hosts.hosts).ActorsOn(0).size();
+  const std::string shared = SharedCoresText(static_cast<int>(actors_here), UsableCores());
   if (!shared.empty()) text += "  " + shared + "\n";
   for (const RemoteHost& host : run.hosts.hosts) {
     text +=
@@ -416,7 +418,8 @@ int Start(PreparedRun run, const TrainOptions& options, std::unique_ptr<dds::Bus
   FetchFromHosts(path, run.config.config, run.hosts, say,
                  [stops] { return StopRequests() > stops; });
   const int exit_code =
-      EndRun(path, run.config.config, std::move(result), options.film, desk, progress);
+      EndRun(path, run.config.config, TopologyOf(run.config.config, run.hosts.hosts),
+             std::move(result), options.film, desk, progress);
   desk.ShowEnd(exit_code);
   return exit_code;
 }

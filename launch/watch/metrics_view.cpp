@@ -51,6 +51,27 @@ std::optional<double> MetricsView::Get(const ProcessName& process, std::string_v
   return it == processes_.end() ? std::nullopt : FindValue(it->second.values, name);
 }
 
+std::optional<double> MetricsView::Largest(std::string_view role, std::string_view name) const {
+  std::optional<double> largest;
+  ForRole(role, [&](const Process& process) {
+    const auto value = FindValue(process.values, name);
+    if (value) largest = std::max(largest.value_or(*value), *value);
+  });
+  return largest;
+}
+
+std::optional<double> MetricsView::Average(std::string_view role, std::string_view name) const {
+  double sum = 0;
+  int count = 0;
+  ForRole(role, [&](const Process& process) {
+    const auto value = FindValue(process.values, name);
+    if (!value) return;
+    sum += *value;
+    ++count;
+  });
+  return count > 0 ? std::optional(sum / count) : std::nullopt;
+}
+
 std::optional<double> MetricsView::Sum(std::string_view role, std::string_view name,
                                        SteadyTime now) const {
   std::optional<double> sum;

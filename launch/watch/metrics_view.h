@@ -26,6 +26,10 @@ class MetricsView {
 
   // The figure in the newest report of the process; empty when it has none.
   std::optional<double> Get(const ProcessName& process, std::string_view name) const;
+  // The largest value, and the mean, over the newest reports of the role's processes; empty when
+  // none has the figure.
+  std::optional<double> Largest(std::string_view role, std::string_view name) const;
+  std::optional<double> Average(std::string_view role, std::string_view name) const;
   // Sum over the role's processes that reported within kFresh; empty when none has the figure.
   std::optional<double> Sum(std::string_view role, std::string_view name, SteadyTime now) const;
   // Mean over them, weighted by the figure `weight`.

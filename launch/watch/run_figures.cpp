@@ -17,15 +17,15 @@ namespace shoal::launch {
 ProgressFigures CollectFigures(const MetricsView& view, SteadyTime now) {
   ProgressFigures figures;
   figures.env_steps_per_second = view.Sum("actor", "env_steps_per_second", now);
-  figures.updates = view.Get(ProcessName::Learner(), "updates");
+  figures.updates = view.Largest("learner", "updates");
   figures.updates_per_second = view.Sum("learner", "updates_per_second", now);
   for (const learner::Figure* figure : learner::AllFigures()) {
-    const auto value = view.Get(ProcessName::Learner(), std::string(figure->name));
+    const auto value = view.Average("learner", figure->name);
     if (figure->headline && value) figures.update_figures.emplace_back(figure->name, *value);
   }
-  figures.policy_lag = view.Get(ProcessName::Replay(0), "policy_lag_p50");
-  if (!figures.policy_lag) figures.policy_lag = view.Get(ProcessName::Learner(), "rollout_lag");
-  figures.data_age = view.Get(ProcessName::Learner(), "data_age_updates_p50");
+  figures.policy_lag = view.Largest("replay", "policy_lag_p50");
+  if (!figures.policy_lag) figures.policy_lag = view.Largest("learner", "rollout_lag");
+  figures.data_age = view.Largest("learner", "data_age_updates_p50");
   figures.rollout_success = view.Mean("actor", "rollout_success", "episodes", now);
   figures.rollout_return = view.Mean("actor", "rollout_return", "episodes", now);
   figures.rollout_length = view.Mean("actor", "rollout_length", "episodes", now);

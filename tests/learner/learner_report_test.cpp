@@ -31,7 +31,7 @@ double SpreadOf(const BatchView& batch, const ObservationSpec& spec) {
 // Looking at frames takes the time of a part of an update.
 TEST(LearnerReport, FramesAreThoseOfTheFirstOfSixteenUpdatesOfAReport) {
   const RunConfig run{SmallConfig(), SmallSpec()};
-  LearnerReport report(run);
+  LearnerReport report({.role = "learner"}, run);
   const RandomBatch random(run.spec, run.config.learner.batch, 1);
   const Batch batch{.view = random.View()};
   double expected = 0;

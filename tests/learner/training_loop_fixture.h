@@ -69,6 +69,7 @@ class TrainingLoopTest : public testing::Test {
     if (script) script(batches);
     UpdatePage page(folder_.path(), agent->updates());
     TrainingLoop loop({.run = run_,
+                       .name = {"learner", 0},
                        .precision = precision_,
                        .session = kTrainingSession,
                        .agent = *agent,

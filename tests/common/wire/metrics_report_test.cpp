@@ -74,7 +74,7 @@ TEST(MetricsReport, SharesAndRatesAreOfTheIntervalThatEnded) {
 }
 
 TEST(MetricsReport, ASharesPartAndWholeAreThoseOfTheIntervalThatEnded) {
-  MetricsReport report(ProcessName::Replay(0));
+  MetricsReport report(ProcessName{.role = "replay"});
   report.Begin("running");
   report.AddShare("relabelled_share", 0, 0);
   EXPECT_TRUE(report.message().names.empty()) << "of nothing there is no share";
@@ -89,7 +89,7 @@ TEST(MetricsReport, ASharesPartAndWholeAreThoseOfTheIntervalThatEnded) {
 
 TEST(MetricsReport, AShareIsNeverMoreThanTheWhole) {
   const SteadyTime start = Now();
-  MetricsReport report(ProcessName::Replay(0));
+  MetricsReport report(ProcessName{.role = "replay"});
   WaitUntilSince(start, 0.12);
   report.Begin("running");
   report.AddSeconds("sending", 3.5);  // a send that has waited since long before

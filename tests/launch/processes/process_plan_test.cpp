@@ -16,7 +16,7 @@ TEST(PlanProcesses, StartsServersBeforeActorsAndOneProcessPerActor) {
   config.actors = 2;
   config.learner.threads = 3;
   std::vector<std::string> names;
-  for (const ProcessSpec& spec : PlanProcesses(config, "runs/a")) {
+  for (const ProcessSpec& spec : PlanProcesses(TopologyOf(config, {}), config, "runs/a")) {
     names.push_back(spec.Name());
     EXPECT_EQ(spec.outlives_parent, spec.role == "replay");
     EXPECT_EQ(spec.expendable, spec.role == "actor" || spec.role == "eval");
@@ -29,11 +29,23 @@ TEST(PlanProcesses, StartsServersBeforeActorsAndOneProcessPerActor) {
   EXPECT_THAT(names, ElementsAre("replay-0", "learner-0", "actor-0", "actor-1", "eval-0"));
 }
 
+TEST(PlanProcesses, WithoutAReplayTheLearnerAcknowledgesTheLastRecords) {
+  Config config;
+  config.actors = 1;
+  config.learner.algorithm = "ppo";
+  std::vector<std::string> names;
+  for (const ProcessSpec& spec : PlanProcesses(TopologyOf(config, {}), config, "runs/a")) {
+    names.push_back(spec.Name());
+    EXPECT_EQ(spec.outlives_parent, spec.role == "learner") << spec.Name();
+  }
+  EXPECT_THAT(names, ElementsAre("learner-0", "actor-0", "eval-0"));
+}
+
 TEST(PlanProcesses, InLockstepTheRunNeedsEveryProcess) {
   Config config;
   config.actors = 1;
   config.lockstep = true;
-  for (const ProcessSpec& spec : PlanProcesses(config, "runs/a")) {
+  for (const ProcessSpec& spec : PlanProcesses(TopologyOf(config, {}), config, "runs/a")) {
     EXPECT_FALSE(spec.expendable) << spec.Name();
   }
 }
@@ -41,7 +53,7 @@ TEST(PlanProcesses, InLockstepTheRunNeedsEveryProcess) {
 TEST(PlanProcesses, GivesEachProgramItsArguments) {
   Config config;
   config.actors = 2;
-  const auto plan = PlanProcesses(config, "runs/a");
+  const auto plan = PlanProcesses(TopologyOf(config, {}), config, "runs/a");
   const std::string folder = ProgramFolder();
   EXPECT_THAT(plan[0].command, ElementsAre(folder + "/shoal-replay", "--run", "runs/a"));
   EXPECT_THAT(plan[1].command, ElementsAre(folder + "/shoal-learner", "--run", "runs/a"));

@@ -177,7 +177,8 @@ TEST(ActorsOf, NumbersFollowThoseOfThisHostAndOfTheHostsBefore) {
   EXPECT_EQ(ActorsOf(config, hosts, 0).first, 1);
   EXPECT_EQ(ActorsOf(config, hosts, 1).first, 4);
   std::vector<std::string> names;
-  for (const ProcessSpec& spec : PlanProcesses(config, "runs/a", hosts)) {
+  for (const ProcessSpec& spec :
+       PlanProcesses(TopologyOf(config, hosts), config, "runs/a", hosts)) {
     if (spec.role == "actor") names.push_back(spec.Name() + (spec.elsewhere ? " far" : ""));
   }
   EXPECT_THAT(names, ElementsAre("actor-0", "actor-1 far", "actor-2 far", "actor-3 far",

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "common/config/config.h"
+#include "common/dds/bus.h"
 #include "common/link/writer.h"
 #include "tests/launch/wait_until.h"
 
@@ -35,7 +36,7 @@ class RunInboxTest : public testing::Test {
 
   ClusterAddress address_;
   std::unique_ptr<dds::Bus> bus_ = dds::ClaimDomain(TransportConfig{}, &address_);
-  RunInbox inbox_{*bus_};
+  RunInbox inbox_{*bus_, link::RunTopology(Config{})};
   link::Writer<ActorMetrics> actor_{*bus_};
   link::Writer<LearnerMetrics> learner_{*bus_};
   link::Writer<ReplayMetrics> replay_{*bus_};
@@ -52,6 +53,17 @@ TEST_F(RunInboxTest, HoldsWhatItsProcessesSayUntilItIsTaken) {
   EXPECT_THAT(inbox_.TakeReplayProgress(), ElementsAre(Field(&ReplayProgress::stored_steps, 7u)));
   EXPECT_EQ(inbox_.refused(), 0u);
   EXPECT_EQ(inbox_.dropped(), 0u);
+}
+
+TEST_F(RunInboxTest, ARunWithoutAReplayHearsNone) {
+  Config config;
+  config.learner.algorithm = "ppo";
+  RunInbox inbox(*bus_, link::RunTopology(config));
+  ASSERT_TRUE(WaitUntil([&] { return replay_.Matched() > 1 && words_.Matched() > 1; }));
+  replay_.Write(ReportOf<ReplayMetrics>("replay", 0));
+  words_.Write({.replay = 0, .session = 1, .stored_steps = 7});
+  EXPECT_EQ(inbox.refused(), 2u);
+  EXPECT_EQ(inbox_.refused(), 0u);
 }
 
 TEST_F(RunInboxTest, ProcessesThatCannotBeAreNotHeardAndCounted) {

@@ -14,7 +14,7 @@ const SteadyTime kNow = SteadyTime() + seconds(1000);
 
 TEST(MetricsView, MissingFiguresAreEmpty) {
   MetricsView view;
-  EXPECT_FALSE(view.Get(ProcessName::Learner(), "updates"));
+  EXPECT_FALSE(view.Get({.role = "learner"}, "updates"));
   EXPECT_FALSE(view.Sum("actor", "env_steps", kNow));
   EXPECT_FALSE(view.Mean("actor", "rollout_success", "episodes", kNow));
   EXPECT_EQ(view.Total("actor", "resends"), 0);
@@ -24,7 +24,7 @@ TEST(MetricsView, KeepsTheLastReportThoughTheClockWasSetBack) {
   MetricsView view;
   view.OnMessage(Report("learner", 0, 7, 5000, {{"updates", 10}}), kNow);
   view.OnMessage(Report("learner", 0, 7, 1401, {{"updates", 20}}), kNow);
-  EXPECT_EQ(view.Get(ProcessName::Learner(), "updates"), 20);
+  EXPECT_EQ(view.Get({.role = "learner"}, "updates"), 20);
 }
 
 TEST(MetricsView, SumsAndWeighsFreshProcessesOnly) {
@@ -35,6 +35,18 @@ TEST(MetricsView, SumsAndWeighsFreshProcessesOnly) {
   view.OnMessage(Report("actor", 3, 4, 1, {{"episodes", 0}}), kNow);
   EXPECT_EQ(view.Sum("actor", "rate", kNow), 50);
   EXPECT_EQ(view.Mean("actor", "success", "episodes", kNow), 0.75);
+}
+
+TEST(MetricsView, ARoleOfSeveralProcessesHasALargestFigureAndAMean) {
+  MetricsView view;
+  EXPECT_FALSE(view.Largest("learner", "updates"));
+  EXPECT_FALSE(view.Average("learner", "updates"));
+  view.OnMessage(Report("learner", 0, 1, 1, {{"updates", -20}}), kNow - seconds(60));
+  view.OnMessage(Report("learner", 1, 2, 1, {{"updates", -40}}), kNow);
+  view.OnMessage(Report("learner", 2, 3, 1, {{"warnings", 1}}), kNow);
+  view.OnMessage(Report("replay", 0, 4, 1, {{"updates", 7}}), kNow);
+  EXPECT_EQ(view.Largest("learner", "updates"), -20);
+  EXPECT_EQ(view.Average("learner", "updates"), -30);
 }
 
 TEST(MetricsView, TotalsSurviveRestarts) {

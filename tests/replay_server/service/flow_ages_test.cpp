@@ -40,7 +40,7 @@ class FlowAgesTest : public ::testing::Test {
     ages_.OnChunk(chunk, kNow);
   }
   std::map<std::string, double> Report() {
-    MetricsReport report(ProcessName::Replay(0));
+    MetricsReport report(ProcessName{.role = "replay"});
     report.Begin("running");
     ages_.Report(&report);
     std::map<std::string, double> figures;

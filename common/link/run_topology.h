@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// The processes of a run and who writes to whom, as one value. The process plan, the fixed ports,
+// the account of the records, the messages that the coordinator accepts and the displays derive
+// from it.
+//
+// Today each run has one learner and, unless it learns on policy, one replay. A second one is one
+// more entry of Servers() and the routing between the servers. Code that is written for exactly one
+// asks for it with OnlyLearner() or OnlyReplay().
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "common/config/config.h"
+#include "common/link/role.h"
+#include "common/link/topic.h"
+#include "common/wire/process_name.h"
+
+namespace shoal::link {
+
+struct RunProcess {
+  Role role = Role::kCoordinator;
+  uint32_t index = 0;  // within the role, from 0
+  uint32_t host = 0;   // 0: the coordinator's; n: the nth of the run's other hosts
+
+  ProcessName Name() const { return {RoleName(role), index}; }
+  friend bool operator==(const RunProcess&, const RunProcess&) = default;
+};
+
+// The servers that a run can have, in the order of their fixed ports. A run reserves the port of
+// each of them, also of those that it does not start.
+std::span<const RunProcess> Servers();
+
+// Position in Servers(); empty for a process without a fixed port.
+std::optional<int> FixedPort(Role role, uint32_t index);
+
+class RunTopology {
+ public:
+  // `config` is resolved. `actors_elsewhere` has the number of actors on each other host: they have
+  // the highest indices, in the order of the hosts. config.actors counts all actors.
+  explicit RunTopology(const Config& config, std::span<const int> actors_elsewhere = {});
+
+  // The processes that the coordinator starts, in starting order.
+  const std::vector<RunProcess>& children() const { return children_; }
+  // The children of a role, by index.
+  std::vector<RunProcess> Of(Role role) const;
+  bool Has(Role role) const { return !Of(role).empty(); }
+
+  // The run's one learner, and its one replay: for code that does not choose among several. The run
+  // must have exactly one.
+  RunProcess OnlyLearner() const;
+  RunProcess OnlyReplay() const;
+
+  // The training actors of a host.
+  std::vector<RunProcess> ActorsOn(uint32_t host) const;
+
+  // The children that write the topic of M, and those that read it. They follow from the rights of
+  // the roles. Records and credits pass between the actors and one role only: the replays, or the
+  // learners of a run without one.
+  template <class M>
+  std::vector<RunProcess> WritersOf() const {
+    return WritersOf(Topic<M>::kSettings.name);
+  }
+  template <class M>
+  std::vector<RunProcess> ReadersOf() const {
+    return ReadersOf(Topic<M>::kSettings.name);
+  }
+  // The readers of the actors' records: they acknowledge them and keep the account.
+  std::vector<RunProcess> RecordReceivers() const { return ReadersOf<TransitionChunk>(); }
+
+  // Whether the topic of M can have a writer of this name, now or later: `shoal scale` starts
+  // actors.
+  template <class M>
+  bool CanWrite(std::string_view role, uint32_t index) const {
+    return CanWrite(Topic<M>::kSettings.name, role, index);
+  }
+
+ private:
+  std::vector<RunProcess> WritersOf(std::string_view topic) const;
+  std::vector<RunProcess> ReadersOf(std::string_view topic) const;
+  std::vector<RunProcess> Among(const std::vector<Role>& roles, bool of_records) const;
+  bool CanWrite(std::string_view topic, std::string_view role, uint32_t index) const;
+
+  std::vector<RunProcess> children_;
+};
+
+}  // namespace shoal::link
