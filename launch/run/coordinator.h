@@ -1,20 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs a run: starts its processes, keeps them alive, hears them, shows what they do, decides when
-// to stop, stops them in order.
+// The coordinator of a run: starts its processes, keeps them alive, receives their messages, writes
+// the run's record, shows its progress and stops the processes in order. run_decisions.h decides
+// when.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <memory>
+#include <map>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
-#include "common/config/run_config.h"
+#include "common/base/clock.h"
+#include "common/config/config.h"
 #include "common/link/hub.h"
+#include "common/link/run_topology.h"
 #include "launch/processes/remote_host.h"
+#include "launch/processes/supervisor.h"
 #include "launch/record/run_meta.h"
+#include "launch/run/command_handler.h"
+#include "launch/run/control_sender.h"
+#include "launch/run/evaluation_intake.h"
+#include "launch/run/live_settings.h"
 #include "launch/run/operator_desk.h"
+#include "launch/run/run_decisions.h"
+#include "launch/run/run_inbox.h"
+#include "launch/run/run_record.h"
+#include "launch/run/run_watch.h"
 #include "launch/watch/bottleneck.h"
 #include "launch/watch/progress.h"
 
@@ -30,12 +44,18 @@ struct RunResult {
 
 class Coordinator {
  public:
-  // `run` holds config.json and cluster.json. `meta` is a fresh one, or the resumed run's. `hosts`
-  // have the run (run_hosts.h). Borrows the coordinator's hub, `desk` and `progress`. Throws Error.
-  Coordinator(const std::filesystem::path& run, const RunConfig& config, link::Hub& hub,
-              const RunMeta& meta, const std::vector<RemoteHost>& hosts, OperatorDesk& desk,
-              Progress& progress);
-  ~Coordinator();
+  struct Parts {
+    std::filesystem::path run;      // the folder: holds config.json and cluster.json
+    const Config& config;           // as config.json has it
+    const RunMeta& before;          // a fresh one, or the resumed run's
+    std::vector<RemoteHost> hosts;  // have the run (run_hosts.h)
+    link::Hub& hub;                 // of the role coordinator
+    OperatorDesk& desk;
+    Progress& progress;
+  };
+
+  // Borrows hub, desk and progress. Throws Error.
+  explicit Coordinator(const Parts& parts);
 
   // Until the target, the budget, Ctrl-C, `shoal stop` or a failure; no process is left when it
   // returns. Call on the thread that lives longest (child_process.h). Throws Error when a process
@@ -44,8 +64,60 @@ class Coordinator {
   RunResult Run(const std::function<void()>& on_started);
 
  private:
-  struct Impl;
-  std::unique_ptr<Impl> impl_;
+  CommandHandler::Effects Effects();
+
+  // The stages of a run.
+  RunEnd WaitForEnd(const std::function<void()>& on_started);
+  void Stop(RunEnd end);
+  RunResult Result();
+
+  // One turn of the loop: heartbeat, messages, files, display. An Error in it fails the run.
+  void Tick(bool last = false);
+  void SaySuspensions();
+  void TakeMessages(SteadyTime now);
+  void TakeEvaluation(const EvalMessage& message);
+  void TakeCommands();
+  void WriteFiles(SteadyTime now);
+  void WriteMeta(SteadyTime now);
+  void Show(bool last, SteadyTime now);
+
+  // Effects of commands.
+  void Scale(int from, int to);
+  void Note(SettingChange change);
+
+  void Say(const std::optional<std::string>& line);
+
+  // Seconds of the run, without pauses; earlier sessions included.
+  double Elapsed() const;
+  RunResources Resources() const;
+  ProgressFigures Figures(SteadyTime now) const;
+  // Of the whole run, by cause.
+  std::map<std::string, uint64_t> FaultyEpisodes() const;
+  // meta.json as of now.
+  RunMeta Meta() const;
+
+  const std::filesystem::path run_;
+  const Config config_;  // as the run was started
+  const std::vector<RemoteHost> hosts_;
+  OperatorDesk& desk_;
+  Progress& progress_;
+  RunMeta before_;  // the earlier sessions, and the changes of this one
+  LiveSettings settings_;
+  const link::RunTopology topology_;  // as started; `shoal scale` may have changed the actors since
+  CommandHandler handler_;
+  RunDecisions decisions_;
+  EvaluationIntake evaluations_;
+  RunRecord record_;
+  RunWatch watch_;
+  Supervisor supervisor_;
+  ControlSender control_;
+  RunInbox inbox_;
+
+  const SteadyTime start_;  // by AwakeNow()
+  const int usable_cores_;
+  std::optional<SteadyTime> meta_written_;
+  bool meta_due_ = false;  // something happened that it records
+  int suspensions_said_, refusals_said_;
 };
 
 }  // namespace shoal::launch

@@ -407,7 +407,13 @@ int Start(PreparedRun run, const TrainOptions& options, std::unique_ptr<dds::Bus
   if (prometheus) PrintLines(fmt::format("  metrics for Prometheus at {}", prometheus->Url()));
   RunResult result;
   {
-    Coordinator coordinator(path, run.config, *bus, run.meta, run.hosts.hosts, desk, progress);
+    Coordinator coordinator({.run = path,
+                             .config = run.config.config,
+                             .before = run.meta,
+                             .hosts = run.hosts.hosts,
+                             .hub = *bus,
+                             .desk = desk,
+                             .progress = progress});
     result = coordinator.Run([&] {
       if (detachment == nullptr) return;
       PrintDetached(run);

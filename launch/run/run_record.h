@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// The files that a coordinator writes while its run goes on: meta.json, evaluations, TensorBoard
+// events, and the checkpoints that outlive the learner's own pruning. Files that cannot be written
+// are reported once and tried again.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/base/write_faults.h"
+#include "common/config/config.h"
+#include "launch/record/evaluations.h"
+#include "launch/record/run_meta.h"
+#include "launch/run/candidate_checkpoints.h"
+#include "launch/watch/scalar_log.h"
+
+namespace shoal::launch {
+
+// One thread.
+class RunRecord {
+ public:
+  // `say` gets lines for people.
+  RunRecord(const std::filesystem::path& run, const Config& config,
+            std::function<void(const std::string&)> say);
+
+  WriteFaults& faults() { return faults_; }
+  ScalarLog& scalars() { return scalars_; }
+
+  // Adds `updates_lost`.
+  void WriteMeta(RunMeta meta);
+  void WriteEvaluation(EvaluationRecord record) { evaluations_.Write(std::move(record)); }
+  void FlushScalars();
+
+  // How many checkpoints the learner has not been able to write.
+  void OnUnwrittenCheckpoints(double unwritten, const std::string& learner);
+  // Keeps the checkpoints of these evaluations, in place of those that were kept before.
+  void KeepCheckpointsOf(const std::vector<EvaluationPoint>& candidates);
+
+  // Tries again what could not be written.
+  void Retry();
+
+ private:
+  bool Exists(const std::string& checkpoint) const;
+
+  const std::filesystem::path run_;
+  const Config config_;
+  const std::function<void(const std::string&)> say_;
+  WriteFaults faults_;
+  EvaluationStore evaluations_{run_, &faults_};
+  ScalarLog scalars_;
+  CandidateCheckpoints checkpoints_;
+  std::optional<std::vector<EvaluationPoint>> not_kept_;  // candidates of the last attempt
+};
+
+}  // namespace shoal::launch
