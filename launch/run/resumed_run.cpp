@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "launch/run/resumed_run.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <utility>
+#include <vector>
+
+#include "common/base/clock.h"
+#include "common/base/error.h"
+#include "common/base/usable_cores.h"
+#include "common/config/run_files.h"
+#include "common/config/spec_mismatch.h"
+#include "common/policy/checkpoint_writer.h"
+#include "common/run_folder/run_file_names.h"
+#include "common/tasks/task_library.h"
+#include "launch/processes/actor_program.h"
+#include "launch/processes/run_hosts.h"
+#include "launch/run/live_settings.h"
+#include "launch/run/run_check.h"
+
+namespace shoal::launch {
+namespace {
+
+namespace fs = std::filesystem;
+
+RunConfig ReadConfigToGoOn(const fs::path& run) {
+  RunConfig config;
+  Refusing("a run cannot go on without it: restore it from a copy",
+           [&] { config = ReadRunConfig(run); });
+  return config;
+}
+
+// The end of a run that has ended stays as it is, unless an option asks for more.
+void RefuseFinished(const fs::path& run, const RunMeta& meta, const Config& config,
+                    const TrainOptions& options) {
+  const bool ended = meta.exit == "budget" || meta.exit == "target";
+  const bool evaluated = meta.final_return || config.eval.final_episodes == 0;
+  if (!ended || !evaluated || !options.set.empty()) return;
+  throw UsageError(
+      "run '{}' is finished ({} at {} env steps): nothing is left to do; --set env_steps=N, or "
+      "stop.success=2 where it reached its target, goes on",
+      run.string(), meta.exit, meta.env_steps);
+}
+
+// Values that --set changes now are further changes of a run that was steered: the last one holds.
+void NoteResumeOptions(const TrainOptions& options, const Config& before, RunMeta* meta) {
+  if (before.lockstep) return;
+  LiveSettings settings(before);
+  settings.Restore(meta->changes);
+  for (const std::string& assignment : options.set) {
+    if (SetsForMachine(assignment)) continue;  // no live setting; config.json has it
+    SettingChange change = settings.Assign(assignment, meta->env_steps);
+    change.time = UtcTimestamp();
+    change.env_steps = meta->env_steps;
+    change.updates = meta->updates;
+    meta->changes.push_back(std::move(change));
+  }
+}
+
+// Refuses a checkpoint of another network, which the learner would find with every process running.
+// A damaged checkpoint, or one of another version, is the learner's to refuse: it may take an older
+// one.
+void CheckResumedCheckpoint(const fs::path& run, const Config& config) {
+  const fs::path folder = NewestCheckpoint(run);
+  if (folder.empty()) return;
+  CheckpointFiles files;
+  try {
+    files = ReadPolicyFiles(folder);
+  } catch (const Error&) {
+    return;
+  }
+  policy::CheckWriter(folder, files.state, files.description, config);
+}
+
+// --hosts, else the hosts that the run had.
+fs::path HostsToGoOn(const TrainOptions& options, const fs::path& run) {
+  return options.hosts.empty() ? HostsFile(run) : fs::path(options.hosts);
+}
+
+// Actors below this number run on this host.
+uint32_t OwnActors(const TrainOptions& options, const fs::path& run, int actors) {
+  if (!fs::exists(HostsFile(run))) return static_cast<uint32_t>(actors);
+  int elsewhere = 0;
+  Refusing("give --hosts FILE for others in their place",
+           [&] { elsewhere = ReadHostsFile(HostsToGoOn(options, run)).RemoteActors(); });
+  return static_cast<uint32_t>(std::max(0, actors - elsewhere));
+}
+
+// Prints `lines` and what the check finds. With `repair`, rebuilds what is damaged or missing.
+void CheckFiles(const fs::path& run, const RunConfig& config, const RunMeta& meta,
+                uint32_t own_actors, std::vector<std::string> lines, bool repair) {
+  const RunCheck check = CheckRunFiles(run, config, meta, own_actors);
+  lines.insert(lines.end(), check.lines.begin(), check.lines.end());
+  for (const std::string& line : lines) fmt::print("{}\n", line);
+  std::fflush(stdout);
+  if (!repair) return;
+  for (const auto& repaired : check.repairs) repaired();
+}
+
+Hosts ResumedHosts(const TrainOptions& options, const fs::path& run, const Config& config) {
+  if (!fs::exists(HostsFile(run))) {
+    if (options.hosts.empty()) return {};
+    throw UsageError("--hosts: run '{}' was started without; it goes on without", run.string());
+  }
+  Hosts hosts = ReadHostsFile(HostsToGoOn(options, run));
+  CheckResumedHosts(hosts, config);
+  return hosts;
+}
+
+}  // namespace
+
+RunRequest ResolveResumed(const TrainOptions& options) {
+  RunFolder folder = RunFolder::Reopen(options.run_dir.empty() ? Config().run_dir : options.run_dir,
+                                       options.resume);
+  const fs::path run = folder.path();
+  const bool only_shows = options.dry_run || options.print_config;
+  if (!only_shows) WaitUntilUnused(run);
+  CheckKindsOfFiles(run);
+  RunRequest request{.config = ReadConfigToGoOn(run)};
+  Config& config = request.config.config;
+  const Config before = config;
+  std::vector<std::string> lines;
+  request.meta = ReadMetaToGoOn(run, &lines);
+  RefuseFinished(run, request.meta, before, options);
+  request.meta.exit = "running";
+  request.meta.final_return.reset();
+  ApplyResumeOptions(options, UsableCores(), &config);
+  tasks::LoadTaskLibrary(config.task_library);
+  const ObservedWorld world = DescribeObservations(config);
+  if (world.spec != request.config.spec) {
+    throw RuntimeError("{}", SpecMismatch(request.config, world.spec));
+  }
+  request.frame_microseconds = world.frame_microseconds;
+  if (request.meta.started.empty()) request.meta.started = UtcTimestamp();
+  NoteResumeOptions(options, before, &request.meta);
+  if (!options.print_config) {
+    CheckResumedCheckpoint(run, config);
+    CheckFiles(run, request.config, request.meta, OwnActors(options, run, config.actors),
+               std::move(lines), /*repair=*/!only_shows);
+  }
+  request.hosts = ResumedHosts(options, run, config);
+  request.folder = std::move(folder);
+  return request;
+}
+
+std::string FormerSecurity(const fs::path& run) {
+  if (!fs::exists(run / kClusterFile)) return "";  // killed before it was started
+  std::string secure;
+  Refusing("give --secure FOLDER where the run is secured, else remove the file",
+           [&] { secure = ReadClusterAddress(run).secure; });
+  return secure;
+}
+
+}  // namespace shoal::launch

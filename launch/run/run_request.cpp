@@ -1,0 +1,87 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "launch/run/run_request.h"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <cstdio>
+#include <utility>
+
+#include "common/base/clock.h"
+#include "common/base/files.h"
+#include "common/base/stop.h"
+#include "common/base/usable_cores.h"
+#include "common/config/privileged_blocks.h"
+#include "common/run_folder/run_file_names.h"
+#include "common/tasks/task_library.h"
+#include "launch/processes/actor_program.h"
+#include "launch/processes/run_hosts.h"
+#include "launch/processes/run_leftovers.h"
+
+namespace shoal::launch {
+namespace {
+
+// If the task chose cameras because it has none of the default ones, the configuration names them
+// from now on. Returns a line for the start; empty if nothing was chosen.
+std::string TakeCameras(RunConfig* run) {
+  std::vector<std::string>& cameras = run->config.observation.cameras;
+  if (!run->spec.HasPixels() || cameras == run->spec.cameras) return "";
+  const std::string note = fmt::format(
+      "  {} has no cameras {}: the policy sees through {}, the task's first "
+      "(observation.cameras)\n",
+      run->config.task, fmt::join(cameras, " and "), fmt::join(run->spec.cameras, ", "));
+  cameras = run->spec.cameras;
+  return note;
+}
+
+RunFolder CreateFolder(const TrainOptions& options, const Config& config) {
+  if (config.run_name.empty()) {
+    const std::string& kind = config.preset.empty() ? config.task : config.preset;
+    return RunFolder::CreateNumbered(config.run_dir, fmt::format("{}-s{}", kind, config.seed));
+  }
+  const std::filesystem::path former = std::filesystem::path(config.run_dir) / config.run_name;
+  // With --overwrite, processes of the former run would write into the new one. A run that a
+  // coordinator holds is refused below.
+  if (options.overwrite && !IsHeld(former)) WaitUntilUnused(former);
+  return RunFolder::Create(config.run_dir, config.run_name, options.overwrite);
+}
+
+}  // namespace
+
+void WaitUntilUnused(const std::filesystem::path& run) {
+  WaitForFormerProcesses(run, kFormerProcessesDeadline, StopRequested, [](const std::string& line) {
+    fmt::print("{}\n", line);
+    std::fflush(stdout);
+  });
+}
+
+RunRequest ResolveFresh(const TrainOptions& options) {
+  RunRequest request{.config = {ResolveConfig(options, UsableCores()), {}}};
+  Config& config = request.config.config;
+  if (!options.hosts.empty()) {
+    request.hosts = ReadHostsFile(options.hosts);
+    ApplyHosts(request.hosts, &config);
+  }
+  if (options.print_config) return request;
+  tasks::LoadTaskLibrary(config.task_library);
+  const ObservedWorld world = DescribeObservations(config);
+  request.config.spec = world.spec;
+  request.frame_microseconds = world.frame_microseconds;
+  request.camera_note = TakeCameras(&request.config);
+  PrivilegedBlocksOf(config.learner, request.config.spec);  // throws if they do not exist
+  return request;
+}
+
+RunFolder TakeFolder(const TrainOptions& options, RunRequest* request) {
+  if (request->resumed()) return std::move(*request->folder);
+  RunFolder folder = CreateFolder(options, request->config.config);
+  request->config.config.run_name = folder.name();
+  request->meta.started = UtcTimestamp();
+  if (!request->initial_weights.empty()) {
+    WriteFileAtomically(folder.path() / kInitialWeightsFile,
+                        nn::WriteSafetensors(request->initial_weights, {}));
+  }
+  return folder;
+}
+
+}  // namespace shoal::launch
