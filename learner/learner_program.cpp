@@ -10,7 +10,6 @@
 #include "common/nn/encoder_weights.h"
 #include "common/policy/checkpoint_writer.h"
 #include "common/run_folder/run_file_names.h"
-#include "learner/agent/algorithms.h"
 #include "learner/agent/encoder_start.h"
 #include "learner/agent/network_start.h"
 #include "learner/training_loop.h"
@@ -18,21 +17,23 @@
 namespace shoal::learner {
 namespace {
 
-std::unique_ptr<Agent> MakeAgentOf(const RunConfig& run, nn::Precision precision, int threads) {
+std::unique_ptr<Agent> MakeAgentOf(const RunConfig& run, nn::Precision precision, int threads,
+                                   const AgentFactory& make) {
   nn::SetThreads(threads);
-  return MakeAgent(run.config, run.spec, precision);
+  return make(run.config, run.spec, precision);
 }
 
 }  // namespace
 
 LearnerProgram::LearnerProgram(const std::filesystem::path& folder, const ProcessName& name,
-                               const RunConfig& run, int threads, link::Hub& hub)
+                               const RunConfig& run, int threads, link::Hub& hub,
+                               const AgentFactory& make)
     : folder_(folder),
       name_(name),
       run_(run),
       session_(NextSession(folder, name.Text(), WallTimeNs())),
       precision_(nn::ChoosePrecision(run.config.learner.precision, run.spec.HasPixels())),
-      agent_(MakeAgentOf(run, precision_, threads)),
+      agent_(MakeAgentOf(run, precision_, threads, make)),
       checkpoints_(folder, run),
       restored_(Restore()),
       update_page_(folder, agent_->updates()),

@@ -15,6 +15,7 @@
 #include "common/wire/control_state.h"
 #include "common/wire/process_name.h"
 #include "learner/agent/agent.h"
+#include "learner/agent/algorithms.h"
 #include "learner/batch_feed.h"
 #include "learner/checkpoint_store.h"
 #include "learner/hub_outlet.h"
@@ -26,10 +27,10 @@ namespace shoal::learner {
 class LearnerProgram {
  public:
   // The learner `name` of the run in `folder`. Restores the newest checkpoint, or starts fresh. Its
-  // networks use `threads` threads. One thread constructs and runs it. Borrows the hub. Throws
-  // Error.
+  // networks use `threads` threads. `make`: the run's agent; tests bring a cheaper one. One thread
+  // constructs and runs it. Borrows the hub. Throws Error.
   LearnerProgram(const std::filesystem::path& folder, const ProcessName& name, const RunConfig& run,
-                 int threads, link::Hub& hub);
+                 int threads, link::Hub& hub, const AgentFactory& make = learner::MakeAgent);
 
   // Trains until it is told to stop (0; kUnwrittenExit where the last checkpoint could not be
   // written) or the coordinator is gone (1). Throws Error.

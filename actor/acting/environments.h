@@ -2,6 +2,7 @@
 // The environments of one process.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -9,6 +10,10 @@
 #include "common/config/run_config.h"
 
 namespace shoal::actor {
+
+// Makes so many environments of the run.
+using EnvironmentFactory =
+    std::function<std::vector<std::unique_ptr<worlds::Environment>>(const RunConfig&, int)>;
 
 // `count` environments sharing one render context. Throws Error naming both sides when what they
 // observe is not what the run's config.json says.

@@ -22,9 +22,10 @@ constexpr milliseconds kRetry{20};
 
 }  // namespace
 
-EvalActor::EvalActor(const std::filesystem::path& folder, link::Hub& hub)
+EvalActor::EvalActor(const std::filesystem::path& folder, link::Hub& hub,
+                     const EnvironmentFactory& make)
     : run_(ReadRunConfig(folder)),
-      evaluator_(run_),
+      evaluator_(run_, /*noop=*/false, make),
       report_(ProcessName::Evaluation()),
       weights_(run_.spec.Hash()),
       control_(Now()),

@@ -20,8 +20,10 @@ namespace shoal::actor {
 // Members are in construction order: readers end before what they write to.
 class EvalActor {
  public:
-  // Of the run in `folder`. One thread constructs and runs it. Borrows the hub. Throws Error.
-  EvalActor(const std::filesystem::path& folder, link::Hub& hub);
+  // Of the run in `folder`; `make`: as the Evaluator's. One thread constructs and runs it. Borrows
+  // the hub. Throws Error.
+  EvalActor(const std::filesystem::path& folder, link::Hub& hub,
+            const EnvironmentFactory& make = MakeEnvironments);
 
   // Evaluates until told to stop (0) or the coordinator is gone (1). Throws Error.
   int Run();

@@ -10,7 +10,6 @@
 #include <string>
 #include <utility>
 
-#include "actor/acting/environments.h"
 #include "actor/evaluation/other_task.h"
 #include "common/base/build_info.h"
 #include "common/base/check.h"
@@ -90,14 +89,14 @@ std::vector<std::pair<std::string, size_t>> FailureCounts(
 
 }  // namespace
 
-Evaluator::Evaluator(const RunConfig& run, bool noop)
+Evaluator::Evaluator(const RunConfig& run, bool noop, const EnvironmentFactory& make)
     : run_(run),
       noop_(noop ? size_t(run.spec.action_size) : 0),
       selector_(run.config, run.spec, run.config.eval.envs),
       frame_(size_t(run.spec.FrameBytes())),
       vector_(size_t(run.spec.RecordedVectorSize())) {
   int e = 0;
-  for (auto& environment : MakeEnvironments(run, run.config.eval.envs)) {
+  for (auto& environment : make(run, run.config.eval.envs)) {
     const Seat::PolicyInput input{selector_.FrameStackOf(e), selector_.VectorOf(e)};
     players_.push_back({.seat = Seat(std::move(environment), input),
                         .facts = FailureFacts(run.spec, PlayedTask(run.config))});

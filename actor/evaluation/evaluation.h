@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "actor/acting/action_selector.h"
+#include "actor/acting/environments.h"
 #include "actor/acting/fault_log.h"
 #include "actor/acting/seat.h"
 #include "actor/evaluation/failure_cause.h"
@@ -63,8 +64,9 @@ struct EvaluationLabel {
 class Evaluator {
  public:
   // Throws Error when the environment's spec is not the run's. `noop`: every action is zero,
-  // whatever the policy.
-  explicit Evaluator(const RunConfig& run, bool noop = false);
+  // whatever the policy. `make`: the task's environments; tests bring cheaper ones.
+  explicit Evaluator(const RunConfig& run, bool noop = false,
+                     const EnvironmentFactory& make = MakeEnvironments);
 
   ActionSelector& selector() { return selector_; }
   // Tells the listener, borrowed, of every episode from now on. CHECK that there is one

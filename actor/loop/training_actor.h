@@ -28,10 +28,6 @@
 
 namespace shoal::actor {
 
-// Makes so many environments of the run.
-using EnvironmentFactory =
-    std::function<std::vector<std::unique_ptr<worlds::Environment>>(const RunConfig&, int)>;
-
 // Members are in construction order; destruction is the reverse.
 class TrainingActor {
  public:

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/base/main_guard.h"
 
+#include <fmt/core.h>
+
 #include <csignal>
 #include <cstdio>
 #include <exception>
@@ -16,24 +18,8 @@ namespace {
 // A reason may quote what came from outside: one line of a length that people read.
 constexpr size_t kReasonBytes = 1000;
 
-void PrintReason(const char* program, const char* what, const char* reason) {
-  std::fprintf(stderr, "%s: %s: %s\n", program, what,
-               Shortened(OneLine(reason), kReasonBytes).c_str());
-}
-
-int Guarded(const char* program, const std::function<int()>& body) {
-  try {
-    return body();
-  } catch (const Interrupted& e) {
-    PrintReason(program, "interrupted", e.what());
-    return kInterruptedExit;
-  } catch (const Error& e) {
-    PrintReason(program, "error", e.what());
-    return e.exit_code();
-  } catch (const std::exception& e) {
-    PrintReason(program, "error", e.what());
-    return 1;
-  }
+std::string ReasonLine(const std::string& program, const char* what, const char* reason) {
+  return fmt::format("{}: {}: {}", program, what, Shortened(OneLine(reason), kReasonBytes));
 }
 
 // Returns only in process 1 of a container, which the kernel spares: with the exit code that a
@@ -51,9 +37,26 @@ int DieBy(int signal) {
 
 }  // namespace
 
+int GuardBody(const std::string& program, const std::function<int()>& body,
+              const std::function<void(const std::string& line)>& say) {
+  try {
+    return body();
+  } catch (const Interrupted& e) {
+    say(ReasonLine(program, "interrupted", e.what()));
+    return kInterruptedExit;
+  } catch (const Error& e) {
+    say(ReasonLine(program, "error", e.what()));
+    return e.exit_code();
+  } catch (const std::exception& e) {
+    say(ReasonLine(program, "error", e.what()));
+    return 1;
+  }
+}
+
 int GuardMain(const char* program, const std::function<int()>& body) {
   NoteUmask();
-  const int value = Guarded(program, body);
+  const int value = GuardBody(
+      program, body, [](const std::string& line) { std::fprintf(stderr, "%s\n", line.c_str()); });
   const int signal = StopSignal();
   const bool in_order = value == 0 || value == kInterruptedExit;
   return signal != 0 && in_order ? DieBy(signal) : value;

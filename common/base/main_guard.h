@@ -8,6 +8,7 @@
 #pragma once
 
 #include <functional>
+#include <string>
 
 namespace shoal {
 
@@ -16,5 +17,10 @@ namespace shoal {
 // stop signal arrived and the value is 0 or kInterruptedExit, the process ends by the signal.
 // Failures keep their exit codes.
 int GuardMain(const char* program, const std::function<int()>& body);
+
+// The same for a program that runs as threads of another process: the line goes to `say`, and stop
+// signals are the process's own.
+int GuardBody(const std::string& program, const std::function<int()>& body,
+              const std::function<void(const std::string& line)>& say);
 
 }  // namespace shoal

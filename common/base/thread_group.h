@@ -4,13 +4,17 @@
 // and uses the process's (stop.h, log.h).
 #pragma once
 
+#include <pthread.h>
+
 #include <atomic>
 #include <memory>
 #include <string>
 #include <thread>
 #include <utility>
+#include <vector>
 
 #include "common/base/log.h"
+#include "common/base/mutex.h"
 
 namespace shoal {
 
@@ -27,6 +31,8 @@ class ThreadGroup {
   void RequestStop() { stop_requests_.fetch_add(1, std::memory_order_relaxed); }
   int StopRequests() const { return stop_requests_.load(std::memory_order_relaxed); }
   log::File& log() { return *log_; }
+  // Processor time of the members, also of those that have ended.
+  double CpuSeconds() const;
 
   // The group of the calling thread; nullptr for none.
   static ThreadGroup* Current();
@@ -40,11 +46,18 @@ class ThreadGroup {
     Member& operator=(const Member&) = delete;
 
    private:
+    ThreadGroup* const group_;
     ThreadGroup* const former_;
   };
 
  private:
+  void Enter();
+  void Leave();
+
   std::atomic<int> stop_requests_{0};
+  mutable Mutex mutex_;
+  std::vector<pthread_t> members_ SHOAL_GUARDED_BY(mutex_);
+  double ended_seconds_ SHOAL_GUARDED_BY(mutex_) = 0;  // of members that have ended
   const std::shared_ptr<log::File> log_;
 };
 

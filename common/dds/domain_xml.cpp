@@ -64,13 +64,14 @@ std::string PeersElement(const ClusterAddress& address, Role role, Plane plane) 
   return element + "</Peers>";
 }
 
-// Bulk writers are few and may fill a pipe; many actors share one receiver's socket buffer.
-const char* WatermarksElement(Role role) {
-  return ParticipantIndex(role) < 0
-             ? "<Watermarks><WhcHigh>2MB</WhcHigh><WhcHighInit>1MB</WhcHighInit>"
-               "<WhcLow>256kB</WhcLow></Watermarks>"
-             : "<Watermarks><WhcHigh>8MB</WhcHigh><WhcHighInit>4MB</WhcHighInit>"
-               "<WhcLow>1MB</WhcLow></Watermarks>";
+// A write waits from "high" on until unacknowledged bytes are below "low"; a writer begins with
+// "high init".
+std::string WatermarksElement(Role role) {
+  const uint64_t bound = link::UnreadBytesBound(role);
+  return fmt::format(
+      "<Watermarks><WhcHigh>{}B</WhcHigh><WhcHighInit>{}B</WhcHighInit><WhcLow>{}B</WhcLow>"
+      "</Watermarks>",
+      bound, bound / 2, bound / 8);
 }
 
 bool IsPlaceholderName(std::string_view text) {

@@ -2,16 +2,14 @@
 #include "common/dds/role_rights.h"
 
 #include <algorithm>
-#include <initializer_list>
 
 #include "common/link/topic.h"
 
 namespace shoal::dds {
 
 std::vector<RoleRights> AllRoleRights() {
-  using enum link::Role;
   std::vector<RoleRights> all;
-  for (const link::Role role : {kCoordinator, kLearner, kReplay, kActor, kEval, kClient}) {
+  for (const link::Role role : link::kRoles) {
     RoleRights rights{.role = link::RoleName(role), .publishes = {}, .subscribes = {}};
     for (const link::TopicRights& topic : link::AllTopicRights()) {
       if (std::ranges::find(topic.writers, role) != topic.writers.end()) {

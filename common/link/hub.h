@@ -5,14 +5,17 @@
 //
 // The contract, which tests/common/link checks for each implementation:
 //
-// - Reliable. A sample that Write accepted reaches every reader that was matched at that moment,
-//   in the order of the writer's calls, exactly once, unless the topic keeps the last n only and a
-//   newer sample of the same key overwrote it first, or the writer or the reader ends before.
-//   Between samples of different writers, or of different topics, there is no order.
-// - History. keep_last = n: Write never blocks; per writer and key the last n samples are kept.
-//   keep_last = 0: every sample is kept until all matched readers have it. A writer may have a
-//   bounded number of unread bytes; then Write blocks, at most max_blocking, and returns false: the
-//   sample was not sent to anybody, and the caller keeps it and tries again.
+// - Reliable. A sample that Write accepted reaches every reader that was matched at that moment, in
+//   the order of the writer's calls, exactly once. Exceptions: the topic keeps the last n and n
+//   newer samples of the same key were written before the reader took it; or the writer or the
+//   reader ends before. The order is that of one writer, topic and key: a reader that is behind may
+//   get newer samples of one key before older ones of another.
+// - History. keep_last = n: Write never blocks; per writer and key the last n samples are kept (a
+//   reader that is behind gets at least these). keep_last = 0: every sample is kept until all
+//   matched readers have it. A writer may have a bounded number of unread bytes
+//   (UnreadBytesBound, role.h); then Write blocks, at most max_blocking, and returns false: the
+//   sample was not sent to anybody, and the caller keeps it and tries again. If nothing is unread,
+//   a single sample may be larger than the bound.
 // - Late joiners. With late_joiners a reader first gets the last n samples per key of each living
 //   writer, whenever it joins; without, it gets what is written after the match.
 // - Matching. A writer and a reader of one topic match when both are known to each other; until

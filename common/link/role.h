@@ -2,11 +2,18 @@
 // The roles of a run's processes, and the planes that separate their traffic.
 #pragma once
 
+#include <cstdint>
+#include <optional>
+#include <string_view>
+
 namespace shoal::link {
 
 // kActor: a training actor. kEval: the evaluation actor. kClient: a program that watches or steers
 // a run from outside.
 enum class Role { kCoordinator, kLearner, kReplay, kActor, kEval, kClient };
+
+inline constexpr Role kRoles[] = {Role::kCoordinator, Role::kLearner, Role::kReplay,
+                                  Role::kActor,       Role::kEval,    Role::kClient};
 
 // A slow reader of one plane does not delay the others. kMain: records, weights, metrics, control.
 // kBatch: requests and batches between learner and replay. kOperate: between coordinator and
@@ -30,6 +37,30 @@ constexpr const char* RoleName(Role role) {
       return "client";
   }
   return "?";
+}
+
+// The role of that name.
+constexpr std::optional<Role> FindRole(std::string_view name) {
+  for (const Role role : kRoles) {
+    if (name == RoleName(role)) return role;
+  }
+  return std::nullopt;
+}
+
+// Bytes that a writer of the role may have unread before a write waits (hub.h, "History"). Servers
+// have few bulk writers, which may fill a pipe; many actors share one receiver's buffers.
+constexpr uint64_t UnreadBytesBound(Role role) {
+  switch (role) {
+    case Role::kCoordinator:
+    case Role::kLearner:
+    case Role::kReplay:
+      return 8 << 20;
+    case Role::kActor:
+    case Role::kEval:
+    case Role::kClient:
+      break;
+  }
+  return 2 << 20;
 }
 
 // Whether a process of the role takes part in the plane.

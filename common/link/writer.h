@@ -29,8 +29,8 @@ class Writer {
   }
   // Matched readers now.
   int Matched() const { return end_->Matched(); }
-  // Waits until all matched readers have acknowledged, for the exit of a process. False at the
-  // deadline.
+  // Waits until every sample has arrived at all matched readers, for the exit of a process; the
+  // callback of the last one may still run. False at the deadline; 0 asks without waiting.
   bool WaitForAcks(std::chrono::milliseconds deadline) { return end_->WaitForAcks(deadline); }
 
  private:

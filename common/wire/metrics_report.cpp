@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "common/base/host_name.h"
+#include "common/base/thread_group.h"
 
 namespace shoal {
 
@@ -93,6 +94,7 @@ int OpenFiles() {
 }
 
 double CpuSeconds() {
+  if (const ThreadGroup* group = ThreadGroup::Current()) return group->CpuSeconds();
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   const auto seconds = [](const timeval& t) {

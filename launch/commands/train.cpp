@@ -47,6 +47,9 @@ void AddTrainCommand(CLI::App& app, Action* chosen) {
       ->add_option("--name-map", options->name_map,
                    "JSON file: our tensors' names to those of --init-from")
       ->needs(init_from);
+  command->add_flag("--in-process", options->in_process,
+                    "Run replay, learner and actors as threads of this process, for a debugger "
+                    "(docs/debugger.md)");
   command->add_flag("--detach", options->detach,
                     "Return once the run has started; watch it with shoal attach or shoal top");
   command->add_option("--prometheus", options->prometheus,

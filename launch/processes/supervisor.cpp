@@ -63,8 +63,8 @@ double Seconds(std::chrono::milliseconds delay) {
 }  // namespace
 
 Supervisor::Supervisor(const RestartLimits& limits, const HangLimits& hang_limits,
-                       std::function<void(const std::string&)> say)
-    : limits_(limits), hang_limits_(hang_limits), say_(std::move(say)) {}
+                       std::function<void(const std::string&)> say, ProcessStarter start)
+    : limits_(limits), hang_limits_(hang_limits), say_(std::move(say)), start_(std::move(start)) {}
 
 void Supervisor::Start(const ProcessSpec& spec) {
   const SteadyTime now = Now();
@@ -82,7 +82,7 @@ void Supervisor::Start(const ProcessSpec& spec) {
   Child child{.spec = spec,
               .policy = RestartPolicy(limits_),
               .connection = RestartPolicy(ConnectionLimits(limits_)),
-              .process = std::nullopt,
+              .process = nullptr,
               .silence = Silence(now),
               .heard_since = std::nullopt,
               .restart_at = std::nullopt,
@@ -110,7 +110,7 @@ void Supervisor::Launch(Child& child, SteadyTime now) {
   std::error_code none;
   const uintmax_t before = std::filesystem::file_size(child.spec.output, none);
   child.output_before = none ? 0 : before;
-  child.process.emplace(child.spec);
+  child.process = start_(child.spec);
   child.silence = Silence(now);
   child.heard_since.reset();
   child.hung = false;

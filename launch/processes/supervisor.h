@@ -10,6 +10,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <set>
 #include <string>
@@ -17,9 +18,9 @@
 #include <vector>
 
 #include "common/base/silence.h"
-#include "launch/processes/child_process.h"
 #include "launch/processes/restart_backoff.h"
 #include "launch/processes/restart_policy.h"
+#include "launch/processes/running_process.h"
 
 namespace shoal::launch {
 
@@ -53,8 +54,9 @@ struct RoleStanding {
 class Supervisor {
  public:
   // `say` gets one line for each death and restart, with the process's last words (last_words.h).
+  // `start` starts a process.
   Supervisor(const RestartLimits& limits, const HangLimits& hang_limits,
-             std::function<void(const std::string&)> say);
+             std::function<void(const std::string&)> say, ProcessStarter start = StartChild);
 
   // Starts the process; where its predecessor was retired and has not left yet, once that has.
   // Throws Error when it cannot be started.
@@ -106,7 +108,7 @@ class Supervisor {
     ProcessSpec spec;
     RestartPolicy policy;
     RestartPolicy connection;  // for lost connections to a process elsewhere
-    std::optional<ChildProcess> process;
+    std::unique_ptr<RunningProcess> process;
     uintmax_t output_before = 0;            // bytes in its output when `process` was started
     Silence silence;                        // of `process`
     std::optional<SteadyTime> heard_since;  // first report of `process`
@@ -132,6 +134,7 @@ class Supervisor {
   const RestartLimits limits_;
   const HangLimits hang_limits_;
   std::function<void(const std::string&)> say_;
+  const ProcessStarter start_;
   std::vector<Child> children_;
   int restarts_ = 0;
   std::set<std::string> unwritten_exits_;

@@ -66,8 +66,9 @@ Coordinator::Coordinator(const Parts& parts)
       watch_(
           run_, parts.hub, [this](const std::string& line) { progress_.Say(line); },
           &record_.faults()),
-      supervisor_(RestartLimits(), HangLimits(),
-                  [this](const std::string& line) { progress_.Say(line); }),
+      supervisor_(
+          RestartLimits(), HangLimits(), [this](const std::string& line) { progress_.Say(line); },
+          parts.start),
       control_(parts.hub, settings_),
       inbox_(parts.hub, topology_),
       start_(AwakeNow()),

@@ -18,6 +18,7 @@
 #include "common/link/hub.h"
 #include "common/link/run_topology.h"
 #include "launch/processes/remote_host.h"
+#include "launch/processes/running_process.h"
 #include "launch/processes/supervisor.h"
 #include "launch/record/run_meta.h"
 #include "launch/run/command_handler.h"
@@ -52,6 +53,7 @@ class Coordinator {
     link::Hub& hub;                 // of the role coordinator
     OperatorDesk& desk;
     Progress& progress;
+    ProcessStarter start = StartChild;  // starts a process of the run
   };
 
   // Borrows hub, desk and progress. Throws Error.

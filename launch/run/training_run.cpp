@@ -11,17 +11,20 @@
 #include <sstream>
 #include <utility>
 
+#include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/stop.h"
 #include "common/config/config_io.h"
 #include "common/config/run_files.h"
 #include "common/dds/bus.h"
+#include "common/link/plane_hub.h"
 #include "launch/processes/detachment.h"
 #include "launch/processes/process_plan.h"
 #include "launch/processes/run_hosts.h"
 #include "launch/processes/run_leftovers.h"
 #include "launch/processes/suspension.h"
 #include "launch/run/coordinator.h"
+#include "launch/run/in_process_roles.h"
 #include "launch/run/operator_desk.h"
 #include "launch/run/request_check.h"
 #include "launch/run/resumed_run.h"
@@ -65,6 +68,15 @@ ClusterAddress AddressOf(const TrainOptions& options, const RunRequest& request)
   return address;
 }
 
+// Refuses what threads of one process cannot have.
+void CheckInProcess(bool hosts, bool secured) {
+  const auto refuse = [](const char* what, const char* why) {
+    throw UsageError("--in-process: not with {}: {}", what, why);
+  };
+  if (hosts) refuse("other hosts (--hosts)", "all roles are threads of this process");
+  if (secured) refuse("a secured run (--secure)", "the roles of one process share its memory");
+}
+
 // Writes the files that the processes of the run read.
 void WriteStartFiles(const fs::path& run, const ClusterAddress& address, RunRequest* request) {
   WriteRunConfig(run, request->config);
@@ -100,13 +112,22 @@ int Start(RunRequest request, const RunFolder& folder, const TrainOptions& optio
   if (prometheus) PrintLines(fmt::format("  metrics for Prometheus at {}", prometheus->Url()));
   RunResult result;
   {
+    std::optional<InProcessRoles> roles;
+    std::optional<link::PlaneHub> roles_hub;
+    ProcessStarter start = StartChild;
+    if (options.in_process) {
+      roles.emplace(path, config);
+      roles_hub.emplace(roles->coordinator(), hub);
+      start = [&roles](const ProcessSpec& spec) { return roles->Start(spec); };
+    }
     Coordinator coordinator({.run = path,
                              .config = config,
                              .before = request.meta,
                              .hosts = hosts.hosts,
-                             .hub = hub,
+                             .hub = roles_hub ? *roles_hub : hub,
                              .desk = desk,
-                             .progress = progress});
+                             .progress = progress,
+                             .start = start});
     result = coordinator.Run([&] {
       if (detachment == nullptr) return;
       PrintDetached(path);
@@ -134,6 +155,9 @@ int Train(const TrainOptions& options, Detachment* detachment) {
   // What a resumed run would claim it had before: its dry run ends with the check.
   if (options.dry_run && request.resumed()) return 0;
   ClusterAddress address = AddressOf(options, request);
+  if (options.in_process) {
+    CheckInProcess(!request.hosts.hosts.empty(), !address.secure.empty());
+  }
   CheckRunCredentials(address.secure);
   if (!address.secure.empty()) KeepFilesPrivate();
   if (!options.prometheus.empty()) PrometheusEndpoint::Check(options.prometheus);
@@ -149,6 +173,10 @@ int Train(const TrainOptions& options, Detachment* detachment) {
 }  // namespace
 
 int RunTraining(const TrainOptions& options) {
+  if (options.in_process) {
+    CheckInProcess(!options.hosts.empty(), !options.secure.empty());
+    PrepareForRolesInProcess();
+  }
   InstallStopSignals();
   if (!options.detach) {
     SuspendWithChildren();

@@ -3,6 +3,7 @@
 // and launch know of each is in common/config/algorithm_kind.h, in the same order.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -52,6 +53,10 @@ std::string DescribeThreads(const Config& config, const ObservationSpec& spec, i
 // The agent of config.learner.algorithm, for nn::Threads. Throws as FindAlgorithm.
 std::unique_ptr<Agent> MakeAgent(const Config& config, const ObservationSpec& spec,
                                  nn::Precision precision);
+
+// Makes a run's agent.
+using AgentFactory = std::function<std::unique_ptr<Agent>(
+    const Config& config, const ObservationSpec& spec, nn::Precision precision)>;
 
 // Every figure that the updates of a run may have, by algorithm, each name once.
 std::span<const Figure* const> AllFigures();

@@ -112,6 +112,20 @@ TEST(Layering, TheReplayCoreKnowsNoServiceTransportClockOrThread) {
                               "replay_server/service/x.h: the core knows nothing of its service"));
 }
 
+TEST(Layering, ARoleKnowsTheLinkAlone) {
+  const PlantedTree tree;
+  for (const char* file :
+       {"actor/loop/a.cpp", "actor/program.cpp", "learner/a.cpp", "learner/main.cpp",
+        "replay_server/main.cpp", "replay_server/service/a.cpp"}) {
+    tree.Write(file, "#include \"common/dds/bus.h\"\n");
+  }
+  const std::string why =
+      " may not use common/dds/bus.h: a role knows the link alone (common/link)";
+  EXPECT_THAT(tree.Breaches(),
+              ElementsAre("actor/loop/a.cpp:1: actor/loop" + why, "learner/a.cpp:1: learner" + why,
+                          "replay_server/service/a.cpp:1: replay_server/service" + why));
+}
+
 TEST(Layering, AnAgentKnowsNoTransportClockFileOrThread) {
   const PlantedTree tree;
   tree.Write("learner/agent/replicated_agent.cpp",

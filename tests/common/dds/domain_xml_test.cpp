@@ -53,8 +53,8 @@ TEST(DomainXml, LearnerAndReplayMeetWithoutTheCoordinatorInTheBatchDomain) {
 }
 
 TEST(DomainXml, ActorsMayHaveLessUnacknowledgedThanBulkWriters) {
-  EXPECT_THAT(Render("@WATERMARKS@", Role::kActor), HasSubstr("<WhcHigh>2MB</WhcHigh>"));
-  EXPECT_THAT(Render("@WATERMARKS@", Role::kReplay), HasSubstr("<WhcHigh>8MB</WhcHigh>"));
+  EXPECT_THAT(Render("@WATERMARKS@", Role::kActor), HasSubstr("<WhcHigh>2097152B</WhcHigh>"));
+  EXPECT_THAT(Render("@WATERMARKS@", Role::kReplay), HasSubstr("<WhcHigh>8388608B</WhcHigh>"));
 }
 
 TEST(DomainXml, InterfaceMayBeANameOrAnAddress) {

@@ -23,7 +23,8 @@ std::vector<uint8_t> EncodeCdr(const M& message) {
   const auto wire = ToWire(message, &buffers);
   dds_ostream_t out;
   dds_ostream_init(&out, 0, kXcdr2);
-  CHECK(dds_stream_write(&out, reinterpret_cast<const char*>(&wire), Topic<M>::kType->m_ops));
+  CHECK(dds_stream_write(&out, reinterpret_cast<const char*>(&wire),
+                         WireType<M>::kDescriptor->m_ops));
   std::vector<uint8_t> cdr{0, 9, 0, 0};
   cdr.insert(cdr.end(), out.m_buffer, out.m_buffer + out.m_index);
   dds_ostream_fini(&out);

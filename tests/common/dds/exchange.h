@@ -7,8 +7,8 @@
 
 #include <string>
 
-#include "tests/common/dds/example_messages.h"
 #include "tests/common/dds/peer_process.h"
+#include "tests/common/link/example_messages.h"
 
 namespace shoal::dds {
 

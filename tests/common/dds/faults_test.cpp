@@ -15,8 +15,8 @@
 #include "common/base/random.h"
 #include "common/dds/bus.h"
 #include "common/dds/host_network.h"
-#include "tests/common/dds/example_messages.h"
 #include "tests/common/dds/peer_process.h"
+#include "tests/common/link/example_messages.h"
 
 namespace shoal::dds {
 namespace {

@@ -11,7 +11,7 @@
 #include <string>
 
 #include "tests/common/dds/encode_cdr.h"
-#include "tests/common/dds/example_messages.h"
+#include "tests/common/link/example_messages.h"
 
 namespace shoal::dds {
 namespace {

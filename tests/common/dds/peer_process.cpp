@@ -83,6 +83,15 @@ void PeerProcess::Kill() {
   pid_ = -1;
 }
 
+void PeerProcess::Quit() {
+  if (pid_ < 0) return;
+  Send("quit");
+  int status = 0;
+  waitpid(pid_, &status, 0);
+  EXPECT_EQ(status, 0);
+  pid_ = -1;
+}
+
 void PeerProcess::Send(const std::string& command) {
   const std::string line = command + "\n";
   EXPECT_EQ(write(to_child_, line.data(), line.size()), static_cast<ssize_t>(line.size()));

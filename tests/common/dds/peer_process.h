@@ -42,6 +42,8 @@ class PeerProcess {
   void Signal(int signal) const { kill(pid_, signal); }
   // SIGKILL, and waits for the end.
   void Kill();
+  // Tells it to end, and waits until it has.
+  void Quit();
 
  private:
   void Spawn(std::vector<std::string> arguments);

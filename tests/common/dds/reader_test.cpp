@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/base/error.h"
+#include "common/dds/bus.h"
 #include "common/link/metrics_writer.h"
 #include "common/link/writer.h"
 #include "common/wire/weights_parts.h"

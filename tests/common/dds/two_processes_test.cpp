@@ -6,9 +6,9 @@
 #include <memory>
 
 #include "common/dds/bus.h"
-#include "tests/common/dds/example_messages.h"
 #include "tests/common/dds/exchange.h"
 #include "tests/common/dds/peer_process.h"
+#include "tests/common/link/example_messages.h"
 
 namespace shoal::dds {
 namespace {

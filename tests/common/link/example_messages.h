@@ -13,7 +13,7 @@
 #include "common/base/random.h"
 #include "common/wire/messages.h"
 
-namespace shoal::dds {
+namespace shoal {
 
 // `payload_bytes` pseudo-random bytes that depend on n.
 inline std::vector<uint8_t> ExamplePayload(uint64_t n, size_t payload_bytes) {
@@ -252,4 +252,4 @@ void WithExample(uint64_t n, const std::vector<uint8_t>& payload, const Use& use
   use(message);
 }
 
-}  // namespace shoal::dds
+}  // namespace shoal

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+// The link between the roles of a run that are threads of one process (hub.h has the contract).
+//
+// Beyond the contract:
+// - Writers and readers match when they are made. A sample is copied once, whatever the number of
+//   its readers; payloads start at a multiple of 64 bytes.
+// - Callbacks run on the receive threads of the reader's hub, one per plane, and never on the
+//   writing thread. The readers of a plane take turns, one sample each.
+// - A writer's bound of unread bytes is UnreadBytesBound of its role (role.h); a sample above it is
+//   taken when nothing else is unread. Unread is a sample until each matched reader's callback has
+//   returned; WaitForAcks waits for the same.
+// - What a writer had written when it was destroyed still reaches its readers.
+// - A process that dies takes all roles with it, so there is no liveness to lose.
+#pragma once
+
+#include <atomic>
+#include <memory>
+
+#include "common/link/hub.h"
+#include "common/link/local_exchange.h"
+
+namespace shoal::link {
+
+// Connects the hubs of one run. Owns what they share. Any thread.
+class LocalNetwork {
+ public:
+  LocalNetwork() = default;
+  // The hubs must be gone.
+  ~LocalNetwork();
+  LocalNetwork(const LocalNetwork&) = delete;
+  LocalNetwork& operator=(const LocalNetwork&) = delete;
+
+  // A hub for an instance of the role; one that is restarted joins anew. The hub borrows the
+  // network.
+  std::unique_ptr<Hub> Join(Role role);
+
+ private:
+  LocalExchange exchange_;
+  std::atomic<int> hubs_{0};
+};
+
+}  // namespace shoal::link

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+// A message as the link within one process stores it: copied once when it is written, then shared
+// by all readers and never changed.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <memory>
+#include <utility>
+
+#include "common/base/aligned_bytes.h"
+#include "common/base/mutex.h"
+#include "common/link/topic.h"
+
+namespace shoal::link {
+
+// Samples of one writer that some reader has not finished reading. Its samples share it, so that it
+// may outlive the writer. The exchange's mutex guards it (local_exchange.h).
+struct Unread {
+  uint64_t samples = 0;
+  uint64_t bytes = 0;
+  ConditionVariable fell;
+};
+
+class StoredSample {
+ public:
+  virtual ~StoredSample() = default;
+  StoredSample(const StoredSample&) = delete;
+  StoredSample& operator=(const StoredSample&) = delete;
+
+  const Key& key() const { return key_; }
+  // Counted against the writer's bound.
+  uint64_t bytes() const { return bytes_; }
+  // The same object for all samples of a writer, and for no other's.
+  Unread& unread() const { return *unread_; }
+
+  // Readers that have not finished reading it. The exchange's mutex guards it.
+  int unread_by = 0;
+
+ protected:
+  StoredSample(std::shared_ptr<Unread> unread, Key key, uint64_t bytes)
+      : unread_(std::move(unread)), key_(std::move(key)), bytes_(bytes) {}
+
+ private:
+  const std::shared_ptr<Unread> unread_;
+  const Key key_;
+  const uint64_t bytes_;
+};
+
+using SharedSample = std::shared_ptr<StoredSample>;
+
+template <class M>
+class StoredMessage final : public StoredSample {
+ public:
+  // Copies the message and its payload. Throws Error when there is no memory for the payload.
+  StoredMessage(std::shared_ptr<Unread> unread, const M& message)
+      : StoredSample(std::move(unread), KeyOf(message), Bytes(message)), message_(message) {
+    if constexpr (requires { message_.payload; }) {
+      payload_ = AlignedBytes(message.payload.size());
+      // An empty span may have no address, which memcpy does not allow.
+      if (!message.payload.empty()) {
+        std::memcpy(payload_.data(), message.payload.data(), message.payload.size());
+      }
+      message_.payload = {payload_.data(), message.payload.size()};
+    }
+  }
+
+  const M& message() const { return message_; }
+
+  // What a stored copy of `message` counts against the writer's bound.
+  static uint64_t Bytes(const M& message) {
+    uint64_t bytes = sizeof(M);
+    if constexpr (requires { message.payload; }) bytes += message.payload.size();
+    return bytes;
+  }
+
+ private:
+  AlignedBytes payload_;  // none without a payload
+  M message_;             // its payload is payload_
+};
+
+}  // namespace shoal::link

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+// One process of a run that was started, whatever it runs as: a child process, or threads of this
+// process (launch/run/in_process_roles.h).
+#pragma once
+
+#include <sys/types.h>
+
+#include <functional>
+#include <memory>
+#include <optional>
+
+#include "launch/processes/child_process.h"
+
+namespace shoal::launch {
+
+// One thread. Destruction ends what still runs.
+class RunningProcess {
+ public:
+  virtual ~RunningProcess() = default;
+  // The pid that its reports carry.
+  virtual pid_t pid() const = 0;
+  // Its end, once it has ended; does not wait.
+  virtual std::optional<ExitStatus> Poll() = 0;
+  // Nothing happens once it has ended.
+  virtual void Signal(int signal) = 0;
+};
+
+// Throws Error when the process cannot be started.
+using ProcessStarter = std::function<std::unique_ptr<RunningProcess>(const ProcessSpec&)>;
+
+// Starts a child process.
+std::unique_ptr<RunningProcess> StartChild(const ProcessSpec& spec);
+
+}  // namespace shoal::launch
