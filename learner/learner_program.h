@@ -32,7 +32,7 @@ class LearnerProgram {
   LearnerProgram(const std::filesystem::path& folder, const ProcessName& name, const RunConfig& run,
                  int threads, link::Hub& hub, const AgentFactory& make = learner::MakeAgent);
 
-  // Trains until it is told to stop (0; kUnwrittenExit where the last checkpoint could not be
+  // Trains until an order to stop (0; kUnwrittenExit where the last checkpoint could not be
   // written) or the coordinator is gone (1). Throws Error.
   int Run();
 

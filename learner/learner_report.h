@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the learner tells about itself once a second: metrics and warnings.
+// The learner's report of itself, once a second: metrics and warnings.
 //
 // Metrics (role "learner"), means over the last interval with updates in it unless said
 // otherwise:

@@ -26,7 +26,7 @@ using link::Role;
 using std::chrono::milliseconds;
 using std::chrono::seconds;
 
-constexpr milliseconds kPoll{50};
+constexpr milliseconds kTurn{50};
 constexpr seconds kMetaPeriod{5};
 
 const char* StateText(RunState state) {
@@ -115,7 +115,7 @@ RunEnd Coordinator::WaitForEnd(const std::function<void()>& on_started) {
     Say(decisions_.OnStandings(supervisor_.Standing(RoleName(Role::kActor), now),
                                supervisor_.Standing(RoleName(Role::kEval), now), now));
     if (const auto end = decisions_.MustEnd(StopRequested())) return *end;
-    std::this_thread::sleep_for(kPoll);
+    std::this_thread::sleep_for(kTurn);
   }
 }
 

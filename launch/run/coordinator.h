@@ -93,7 +93,7 @@ class Coordinator {
   double Elapsed() const;
   RunResources Resources() const;
   ProgressFigures Figures(SteadyTime now) const;
-  // Of the whole run, by cause.
+  // Episodes of the whole run that ended at a number that is not finite, by cause.
   std::map<std::string, uint64_t> FaultyEpisodes() const;
   // meta.json as of now.
   RunMeta Meta() const;

@@ -42,7 +42,8 @@ std::optional<Accounting> AccountRun(const fs::path& run, const Config& config,
        .outlives_replay = topology.Has(link::Role::kReplay) && config.replay.storage == "file"});
 }
 
-// Whoever asked for a stop wants the terminal back; a run that has ended by itself is judged.
+// A stop skips the final evaluation, so that the command returns promptly. A run that ends by
+// itself is evaluated.
 bool WantsFinalEvaluation(const RunMeta& meta) {
   return meta.exit != "interrupted" && !StopRequested();
 }

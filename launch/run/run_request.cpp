@@ -39,10 +39,10 @@ RunFolder CreateFolder(const TrainOptions& options, const Config& config) {
     const std::string& kind = config.preset.empty() ? config.task : config.preset;
     return RunFolder::CreateNumbered(config.run_dir, fmt::format("{}-s{}", kind, config.seed));
   }
-  const std::filesystem::path former = std::filesystem::path(config.run_dir) / config.run_name;
-  // With --overwrite, processes of the former run would write into the new one. A run that a
-  // coordinator holds is refused below.
-  if (options.overwrite && !IsHeld(former)) WaitUntilUnused(former);
+  const std::filesystem::path folder = std::filesystem::path(config.run_dir) / config.run_name;
+  // If --overwrite replaced a run whose processes still write, they would write into the new one.
+  // Create refuses a run that a coordinator holds.
+  if (options.overwrite && !IsHeld(folder)) WaitUntilUnused(folder);
   return RunFolder::Create(config.run_dir, config.run_name, options.overwrite);
 }
 

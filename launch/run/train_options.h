@@ -20,10 +20,10 @@ struct TrainOptions {
   std::string resume;               // run to go on with: its path or its name
   bool overwrite = false, lockstep = false;
   bool print_config = false, dry_run = false;
-  bool film = false;       // of the judged checkpoint, once the run has been judged
+  bool film = false;        // of the judged checkpoint, once the run has been judged
   bool in_process = false;  // all roles as threads of this process
-  bool detach = false;     // return once the run has started; it goes on in the background
-  std::string prometheus;  // PORT or ADDRESS:PORT to serve metrics at; empty = none
+  bool detach = false;      // return once the run has started; it goes on in the background
+  std::string prometheus;   // PORT or ADDRESS:PORT to serve metrics at; empty = none
 };
 
 // Preset, then file, then --set, then the other options; `actors` and `learner.threads` filled in

@@ -55,7 +55,7 @@ void PrintDetached(const fs::path& run) {
       getpid(), run.string(), run.string());
 }
 
-// Where the processes of the run will find its servers, and with which credentials.
+// The address at which the processes of the run find its servers, and their credentials.
 ClusterAddress AddressOf(const TrainOptions& options, const RunRequest& request) {
   ClusterAddress address;
   if (!request.hosts.address.empty()) address.host = request.hosts.address;
@@ -152,7 +152,7 @@ int Train(const TrainOptions& options, Detachment* detachment) {
     return 0;
   }
   CheckRequest(options, &request);
-  // What a resumed run would claim it had before: its dry run ends with the check.
+  // A resumed run had a domain before, so its dry run does not claim one.
   if (options.dry_run && request.resumed()) return 0;
   ClusterAddress address = AddressOf(options, request);
   if (options.in_process) {

@@ -70,10 +70,10 @@ TEST_F(ThreadGroupTest, LinesGoToTheLogOfTheGroup) {
 }
 
 // Long enough for the clock of a thread to move.
-void Compute(double seconds) {
+void Compute(double span) {
   const SteadyTime start = Now();
   volatile double sum = 0;
-  while (SecondsSince(start) < seconds) {
+  while (SecondsSince(start) < span) {
     for (int i = 0; i < 1000; ++i) sum = sum + i;
   }
 }

@@ -260,9 +260,13 @@ TEST_P(ContractTest, AWaitingWriteGoesOnWhenTheReaderHasTakenSomething) {
   Connect(*replay, *learner, "BatchPart");
   HoldWith(*learner, *replay, "BatchPart", 1);
   const uint64_t next = WriteUntilRefused(*replay, "BatchPart", 2, 1'000'000);
-  replay->Send(fmt::format("try BatchPart {} 1000000", next));  // waits at most 2 s
+  replay->Send(fmt::format("announce BatchPart {} 1000000", next));
+  EXPECT_EQ(replay->NextGot(), "got trying BatchPart");
+  EXPECT_EQ(learner->Ask("waiting BatchPart 20000"), "yes") << "time for the write to begin";
   EXPECT_EQ(learner->Ask("release BatchPart"), "ok");
-  EXPECT_THAT(replay->Answer(), StartsWith("sent "));
+  const std::string answer = replay->Answer();
+  ASSERT_THAT(answer, StartsWith("sent "));
+  EXPECT_LT(std::stoi(answer.substr(answer.find(' '))), 1900) << "not at the end of its 2 s";
   ExpectReceived(*learner, "BatchPart", next);
 }
 
@@ -429,15 +433,20 @@ TEST_P(ContractTest, ASlowCallbackDelaysItsPlaneOnly) {
 TEST_P(ContractTest, CallbacksOfAReaderRunOneAtATime) {
   const Peer replay = Join(Role::kReplay), actor = Join(Role::kActor);
   Connect(*actor, *replay, "TransitionChunk");
-  // A writer of the reader's own hub may call back on the writing thread.
+  // While a callback runs for long.
+  HoldWith(*replay, *actor, "TransitionChunk", 1);
+  Write(*actor, "TransitionChunk", 2, 20);
+  EXPECT_EQ(replay->Ask("release TransitionChunk"), "ok");
+  ExpectReceived(*replay, "TransitionChunk", 20);
+  // While many arrive. A writer of the reader's own hub may call back on the writing thread.
   EXPECT_EQ(replay->Ask("publish TransitionChunk"), "ok");
   ExpectMatched(*replay, "TransitionChunk", 3);
   ExpectMatched(*actor, "TransitionChunk", 1);
-  actor->Send("write TransitionChunk 1 2000 100");
-  replay->Send("write TransitionChunk 10001 2000 100");
-  EXPECT_THAT(actor->Answer(), StartsWith("wrote 2000 "));
-  EXPECT_THAT(replay->Answer(), StartsWith("wrote 2000 "));
-  ExpectReceived(*replay, "TransitionChunk", 4000);
+  actor->Send("write TransitionChunk 21 1000 100");
+  replay->Send("write TransitionChunk 10001 1000 100");
+  EXPECT_THAT(actor->Answer(), StartsWith("wrote 1000 "));
+  EXPECT_THAT(replay->Answer(), StartsWith("wrote 1000 "));
+  ExpectReceived(*replay, "TransitionChunk", 2020);
   EXPECT_EQ(replay->Ask("overlaps TransitionChunk"), "overlaps 0");
 }
 

@@ -29,7 +29,8 @@ std::string RunTyped(const std::string& verb, std::istream& words, Hub& hub, End
   if (verb == "match") return endpoint.Match(static_cast<int>(a), milliseconds(b));
   if (verb == "write") return endpoint.Write(a, b, c, has_key ? std::optional(key) : std::nullopt);
   if (verb == "scribble") return endpoint.Scribble(a, b, c);
-  if (verb == "try") return endpoint.Try(a, b);
+  if (verb == "try") return endpoint.Try(a, b, false);
+  if (verb == "announce") return endpoint.Try(a, b, true);
   if (verb == "received") return endpoint.Received(a, milliseconds(b));
   if (verb == "seen") return endpoint.Seen();
   if (verb == "hold") return endpoint.Hold(true), "ok";

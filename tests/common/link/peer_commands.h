@@ -19,6 +19,7 @@
 //                              the same, each with a payload of its own number, from one buffer
 //                              that is overwritten after each write, and on a thread each
 //   try T N BYTES              one write; "sent MS" or "refused MS"
+//   announce T N BYTES         the same; says "got trying T" right before the write
 //   received T COUNT MS        waits for COUNT messages; "received N gaps N bytes N malformed N"
 //   seen T                     "seen KEY:NUMBER ...", every message in the order of the callbacks
 //   hold T                     callbacks of T wait from now on; "ok"

@@ -39,7 +39,7 @@ class PeerCommands::Endpoint {
   virtual std::string Write(uint64_t first, uint64_t count, size_t payload_bytes,
                             std::optional<uint64_t> key) = 0;
   virtual std::string Scribble(uint64_t first, uint64_t count, size_t payload_bytes) = 0;
-  virtual std::string Try(uint64_t n, size_t payload_bytes) = 0;
+  virtual std::string Try(uint64_t n, size_t payload_bytes, bool announce) = 0;
   virtual std::string Received(uint64_t count, milliseconds deadline) = 0;
   virtual std::string Seen() = 0;
   virtual void Hold(bool held) = 0;
@@ -127,9 +127,10 @@ class PeerEndpoint final : public PeerCommands::Endpoint {
     return fmt::format("wrote {} refused {} seconds {:.3f}", written, refused, SecondsSince(start));
   }
 
-  std::string Try(uint64_t n, size_t payload_bytes) override {
+  std::string Try(uint64_t n, size_t payload_bytes, bool announce) override {
     const std::vector<uint8_t> payload = ExamplePayload(n, payload_bytes);
     bool sent = false;
+    if (announce) say_("got trying " + name_);
     const SteadyTime start = Now();
     WithExample<M>(n, payload, [&](const M& message) { sent = writer_->Write(message); });
     return fmt::format("{} {:.0f}", sent ? "sent" : "refused", SecondsSince(start) * 1e3);
@@ -171,6 +172,7 @@ class PeerEndpoint final : public PeerCommands::Endpoint {
 
   void OnMessage(const M& message, bool show) {
     if (running_.exchange(true)) ++overlaps_;
+    std::this_thread::yield();  // room for another callback, if it were allowed
     {
       std::unique_lock lock(mutex_);
       ++waiting_;
