@@ -2,12 +2,12 @@
 #include "learner/training_loop.h"
 
 #include <algorithm>
-#include <thread>
 #include <utility>
 
 #include "common/base/error.h"
 #include "common/base/log.h"
 #include "common/base/saturating_cast.h"
+#include "common/base/sleep.h"
 #include "common/base/stop.h"
 #include "common/config/lockstep.h"
 #include "common/config/on_policy.h"
@@ -187,7 +187,7 @@ void TrainingLoop::Drain() {
     log::Info("draining");
   }
   if (drained_) {  // the parameters stay those of the last evaluation point
-    std::this_thread::sleep_for(kPoll);
+    SleepFor(kPoll);
     return;
   }
   if (!on_policy_) {

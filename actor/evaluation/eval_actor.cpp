@@ -2,11 +2,11 @@
 #include "actor/evaluation/eval_actor.h"
 
 #include <nlohmann/json.hpp>
-#include <thread>
 #include <utility>
 
 #include "common/base/error.h"
 #include "common/base/log.h"
+#include "common/base/sleep.h"
 #include "common/base/stop.h"
 #include "common/config/run_files.h"
 #include "common/wire/process_name.h"
@@ -87,7 +87,7 @@ void EvalActor::Send(const EvalMessage& message) {
                          message.env_steps, kReportDeadline.count());
     }
     Report("blocked");
-    std::this_thread::sleep_for(kRetry);
+    SleepFor(kRetry);
   }
 }
 

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "actor/sending/actor_lock.h"
 
-#include <thread>
 
 #include "common/base/clock.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/base/sleep.h"
 #include "common/run_folder/run_file_names.h"
 #include "common/wire/process_name.h"
 
@@ -22,7 +22,7 @@ ActorLock::ActorLock(const std::filesystem::path& run, uint32_t actor,
       throw RuntimeError("actor {} of this run is running already: another process holds '{}'",
                          actor, path.string());
     }
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    SleepFor(std::chrono::milliseconds(50));
   }
 }
 

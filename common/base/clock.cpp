@@ -6,7 +6,7 @@
 namespace shoal {
 
 std::string UtcTimestamp() {
-  const std::time_t now = std::time(nullptr);
+  const std::time_t now = WallTimeNs() / 1'000'000'000;
   std::tm utc{};
   gmtime_r(&now, &utc);
   char text[32];

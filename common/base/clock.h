@@ -1,16 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// Clocks. Deadlines use the steady clock; records and files carry wall time.
+// Clocks, simulated in a simulation (scheduler.h). Deadlines use the steady clock; records and
+// files carry wall time.
 #pragma once
 
 #include <chrono>
 #include <cstdint>
 #include <string>
 
+#include "common/base/scheduler.h"
+#include "common/base/steady_time.h"
+
 namespace shoal {
 
-using SteadyTime = std::chrono::steady_clock::time_point;
-
-inline SteadyTime Now() { return std::chrono::steady_clock::now(); }
+inline SteadyTime Now() {
+  if (Scheduler* scheduler = Scheduler::Current()) return scheduler->Now();
+  return std::chrono::steady_clock::now();
+}
 
 inline double SecondsSince(SteadyTime start) {
   return std::chrono::duration<double>(Now() - start).count();
@@ -18,6 +23,7 @@ inline double SecondsSince(SteadyTime start) {
 
 // Nanoseconds since 1970 (UTC), from the wall clock: may jump.
 inline int64_t WallTimeNs() {
+  if (Scheduler* scheduler = Scheduler::Current()) return scheduler->WallTimeNs();
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
              std::chrono::system_clock::now().time_since_epoch())
       .count();

@@ -6,12 +6,17 @@
 
 #include <utility>
 
+#include "common/base/scheduler.h"
+
 namespace shoal {
 
 class Descriptor {
  public:
   Descriptor() = default;
-  explicit Descriptor(int fd) : fd_(fd) {}
+  explicit Descriptor(int fd) : fd_(fd) {
+    if (fd_ < 0) return;
+    if (Scheduler* scheduler = Scheduler::Current()) scheduler->OnOpened(fd_);
+  }
   ~Descriptor() { Close(); }
   Descriptor(Descriptor&& other) noexcept : fd_(std::exchange(other.fd_, -1)) {}
   Descriptor& operator=(Descriptor&& other) noexcept {
@@ -22,7 +27,9 @@ class Descriptor {
   }
   int get() const { return fd_; }
   void Close() {
-    if (fd_ >= 0) close(std::exchange(fd_, -1));
+    if (fd_ < 0) return;
+    if (Scheduler* scheduler = Scheduler::Current()) scheduler->OnClosed(fd_);
+    close(std::exchange(fd_, -1));
   }
 
  private:

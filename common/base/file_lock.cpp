@@ -5,11 +5,11 @@
 
 #include <cerrno>
 #include <cstring>
-#include <thread>
 
 #include "common/base/clock.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/base/sleep.h"
 
 namespace shoal {
 namespace {
@@ -39,7 +39,7 @@ std::optional<FileLock> FileLock::Take(const std::filesystem::path& path, Holdin
   while (true) {
     if (auto lock = Take(path, holding)) return lock;
     if (Now() >= end) return std::nullopt;
-    std::this_thread::sleep_for(kPoll);
+    SleepFor(kPoll);
   }
 }
 

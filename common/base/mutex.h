@@ -10,6 +10,7 @@
 #include <mutex>
 
 #include "common/base/clock.h"
+#include "common/base/scheduler.h"
 
 #ifdef __clang__
 #define SHOAL_THREAD_ATTRIBUTE(x) __attribute__((x))
@@ -31,12 +32,19 @@ class SHOAL_THREAD_ATTRIBUTE(capability("mutex")) Mutex {
   Mutex(const Mutex&) = delete;
   Mutex& operator=(const Mutex&) = delete;
 
-  void Lock() SHOAL_THREAD_ATTRIBUTE(acquire_capability()) { mutex_.lock(); }
-  void Unlock() SHOAL_THREAD_ATTRIBUTE(release_capability()) { mutex_.unlock(); }
+  void Lock() SHOAL_THREAD_ATTRIBUTE(acquire_capability()) {
+    if (Scheduler* scheduler = Scheduler::Current()) return scheduler->Lock(&held_);
+    mutex_.lock();
+  }
+  void Unlock() SHOAL_THREAD_ATTRIBUTE(release_capability()) {
+    if (Scheduler* scheduler = Scheduler::Current()) return scheduler->Unlock(&held_);
+    mutex_.unlock();
+  }
 
  private:
   friend class ConditionVariable;
   std::mutex mutex_;
+  bool held_ = false;  // in a simulation
 };
 
 // Holds the mutex for a scope.
@@ -60,14 +68,23 @@ class ConditionVariable {
  public:
   // Gives up the mutex while it waits. False when the deadline has passed.
   bool WaitUntil(Mutex& mutex, SteadyTime deadline) SHOAL_REQUIRES(mutex) {
+    if (Scheduler* scheduler = Scheduler::Current()) {
+      return scheduler->Wait(this, &mutex.held_, deadline);
+    }
     std::unique_lock lock(mutex.mutex_, std::adopt_lock);
     const bool in_time = arrived_.wait_until(lock, deadline) == std::cv_status::no_timeout;
     lock.release();  // the caller goes on holding it
     return in_time;
   }
 
-  void NotifyOne() { arrived_.notify_one(); }
-  void NotifyAll() { arrived_.notify_all(); }
+  void NotifyOne() {
+    if (Scheduler* scheduler = Scheduler::Current()) return scheduler->Notify(this, /*all=*/false);
+    arrived_.notify_one();
+  }
+  void NotifyAll() {
+    if (Scheduler* scheduler = Scheduler::Current()) return scheduler->Notify(this, /*all=*/true);
+    arrived_.notify_all();
+  }
 
  private:
   std::condition_variable arrived_;

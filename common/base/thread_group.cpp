@@ -40,6 +40,10 @@ void ThreadGroup::Leave() {
   ended_seconds_ += Seconds(CLOCK_THREAD_CPUTIME_ID);
 }
 
+ThreadGroup::Bound::Bound(ThreadGroup* group) : former_(std::exchange(current_group, group)) {}
+
+ThreadGroup::Bound::~Bound() { current_group = former_; }
+
 ThreadGroup::Member::Member(ThreadGroup* group)
     : group_(group), former_(std::exchange(current_group, group)) {
   if (group_ != nullptr) group_->Enter();

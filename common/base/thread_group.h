@@ -15,6 +15,7 @@
 
 #include "common/base/log.h"
 #include "common/base/mutex.h"
+#include "common/base/scheduler.h"
 
 namespace shoal {
 
@@ -36,6 +37,18 @@ class ThreadGroup {
 
   // The group of the calling thread; nullptr for none.
   static ThreadGroup* Current();
+
+  // For a scheduler of simulated threads: what Current() is for a scope.
+  class Bound {
+   public:
+    explicit Bound(ThreadGroup* group);
+    ~Bound();
+    Bound(const Bound&) = delete;
+    Bound& operator=(const Bound&) = delete;
+
+   private:
+    ThreadGroup* const former_;
+  };
 
   // Puts the calling thread into a group (nullptr: into none) for a scope.
   class Member {
@@ -67,17 +80,26 @@ class Thread {
  public:
   Thread() = default;
   template <class Body>
-  explicit Thread(Body body)
-      : thread_([group = ThreadGroup::Current(), body = std::move(body)]() mutable {
-          const ThreadGroup::Member member(group);
-          body();
-        }) {}
+  explicit Thread(Body body) {
+    if (Scheduler* scheduler = Scheduler::Current()) {
+      simulated_ = scheduler->Start(std::move(body));
+      return;
+    }
+    thread_ = std::thread([group = ThreadGroup::Current(), body = std::move(body)]() mutable {
+      const ThreadGroup::Member member(group);
+      body();
+    });
+  }
 
-  bool joinable() const { return thread_.joinable(); }
-  void join() { thread_.join(); }
+  bool joinable() const { return simulated_ != 0 || thread_.joinable(); }
+  void join() {
+    if (simulated_ == 0) return thread_.join();
+    Scheduler::Current()->Join(std::exchange(simulated_, 0));
+  }
 
  private:
   std::thread thread_;
+  uint64_t simulated_ = 0;  // in a simulation
 };
 
 }  // namespace shoal

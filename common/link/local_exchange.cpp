@@ -70,6 +70,21 @@ void LocalExchange::Remove(Reader& reader) {
   while (reader.called_) reader.returned_.WaitUntil(mutex_, Now() + kIdleWait);
 }
 
+void LocalExchange::Abandon(const void* hub) {
+  std::list<SharedSample> dropped;  // freed without the lock
+  const MutexLock lock(mutex_);
+  for (auto& [name, ends] : topics_) {
+    std::erase_if(ends.writers, [&](const Writer* writer) { return writer->hub_ == hub; });
+    for (Reader* reader : ends.readers) {
+      if (reader->hub_ != hub) continue;
+      std::list<SharedSample> unread = reader->queue_.TakeAll();
+      for (const SharedSample& sample : unread) CountRead(*sample);
+      dropped.splice(dropped.end(), unread);
+    }
+    std::erase_if(ends.readers, [&](const Reader* reader) { return reader->hub_ == hub; });
+  }
+}
+
 bool LocalExchange::WaitForRoom(Writer& writer, uint64_t bytes) {
   if (writer.settings_.keep_last > 0) return true;
   const SteadyTime deadline = Now() + writer.settings_.max_blocking;

@@ -41,8 +41,10 @@ class LocalExchange {
   // The exchange's part of a writer. It and its samples know each other by `unread`.
   class Writer {
    public:
-    Writer(const TopicSettings& settings, uint64_t unread_bytes_bound)
-        : settings_(settings),
+    // `hub`: whose it is, for Abandon.
+    Writer(const void* hub, const TopicSettings& settings, uint64_t unread_bytes_bound)
+        : hub_(hub),
+          settings_(settings),
           bound_(unread_bytes_bound),
           unread_(std::make_shared<Unread>()),
           history_(settings.keep_last) {}
@@ -51,6 +53,7 @@ class LocalExchange {
 
    private:
     friend class LocalExchange;
+    const void* const hub_;
     const TopicSettings settings_;
     const uint64_t bound_;
     const std::shared_ptr<Unread> unread_;
@@ -60,15 +63,17 @@ class LocalExchange {
   // The exchange's part of a reader, which calls `deliver` on the receiver's thread.
   class Reader {
    public:
-    Reader(const TopicSettings& settings, Receiver& receiver,
+    Reader(const void* hub, const TopicSettings& settings, Receiver& receiver,
            std::function<void(const StoredSample&)> deliver)
-        : settings_(settings),
+        : hub_(hub),
+          settings_(settings),
           receiver_(receiver),
           deliver_(std::move(deliver)),
           queue_(settings.keep_last) {}
 
    private:
     friend class LocalExchange;
+    const void* const hub_;
     const TopicSettings settings_;
     Receiver& receiver_;
     const std::function<void(const StoredSample&)> deliver_;
@@ -93,6 +98,10 @@ class LocalExchange {
   void Remove(Writer& writer);
   // Waits for a running callback; none starts afterwards.
   void Remove(Reader& reader);
+
+  // For simulations: unmatches all ends of a hub whose threads never run again. Its readers drop
+  // what they have; samples of its writers still reach other readers.
+  void Abandon(const void* hub);
 
   // Waits until the writer may have `bytes` more unread: at most max_blocking, then false. With
   // keep_last > 0 it does not wait. A sample above the bound has room when nothing is unread.

@@ -29,8 +29,10 @@ class Counted {
 template <class M>
 class LocalWriter final : public WriterEnd<M> {
  public:
-  LocalWriter(LocalExchange& exchange, std::atomic<int>& ends, Role role)
-      : counted_(ends), exchange_(exchange), writer_(Topic<M>::kSettings, UnreadBytesBound(role)) {
+  LocalWriter(LocalExchange& exchange, const Hub* hub, std::atomic<int>& ends, Role role)
+      : counted_(ends),
+        exchange_(exchange),
+        writer_(hub, Topic<M>::kSettings, UnreadBytesBound(role)) {
     exchange_.Add(writer_);
   }
   ~LocalWriter() override { exchange_.Remove(writer_); }
@@ -58,11 +60,11 @@ class LocalWriter final : public WriterEnd<M> {
 template <class M>
 class LocalReader final : public ReaderEnd {
  public:
-  LocalReader(LocalExchange& exchange, LocalExchange::Receiver& receiver, std::atomic<int>& ends,
-              std::function<void(const M&)> on_message)
+  LocalReader(LocalExchange& exchange, const Hub* hub, LocalExchange::Receiver& receiver,
+              std::atomic<int>& ends, std::function<void(const M&)> on_message)
       : counted_(ends),
         exchange_(exchange),
-        reader_(Topic<M>::kSettings, receiver,
+        reader_(hub, Topic<M>::kSettings, receiver,
                 [on_message = std::move(on_message)](const StoredSample& sample) {
                   on_message(static_cast<const StoredMessage<M>&>(sample).message());
                 }) {
@@ -135,14 +137,14 @@ class LocalHub final : public Hub {
   template <class M>
   std::unique_ptr<WriterEnd<M>> MakeWriterOf() {
     CheckPlane(Topic<M>::kSettings);
-    return std::make_unique<LocalWriter<M>>(exchange_, ends_, role_);
+    return std::make_unique<LocalWriter<M>>(exchange_, this, ends_, role_);
   }
 
   template <class M>
   std::unique_ptr<ReaderEnd> MakeReaderOf(std::function<void(const M&)> on_message) {
     CheckPlane(Topic<M>::kSettings);
-    return std::make_unique<LocalReader<M>>(exchange_, ReceiverFor(Topic<M>::kSettings), ends_,
-                                            std::move(on_message));
+    return std::make_unique<LocalReader<M>>(exchange_, this, ReceiverFor(Topic<M>::kSettings),
+                                            ends_, std::move(on_message));
   }
 
   // Of the topic's plane; its thread starts with the plane's first reader.
@@ -164,6 +166,11 @@ class LocalHub final : public Hub {
 };
 
 }  // namespace
+
+void LocalNetwork::Abandon(const Hub& hub) {
+  exchange_.Abandon(&hub);
+  --hubs_;
+}
 
 LocalNetwork::~LocalNetwork() { CHECK(hubs_ == 0) << hubs_ << " hubs outlive their network"; }
 

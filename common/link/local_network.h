@@ -34,6 +34,10 @@ class LocalNetwork {
   // network.
   std::unique_ptr<Hub> Join(Role role);
 
+  // For simulations: the hub's process died without a word. Its writers and readers are unmatched,
+  // what they had not delivered is lost, and their objects must not be used or destroyed any more.
+  void Abandon(const Hub& hub);
+
  private:
   LocalExchange exchange_;
   std::atomic<int> hubs_{0};

@@ -11,12 +11,12 @@
 #include <csignal>
 #include <cstring>
 #include <fstream>
-#include <thread>
 
 #include "common/base/clock.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/pipe.h"
+#include "common/base/sleep.h"
 #include "launch/processes/suspension.h"
 
 namespace shoal::launch {
@@ -181,7 +181,7 @@ void ChildProcess::KillAndReap() {
   if (pid_ < 0 || ended_) return;
   kill(pid_, SIGKILL);
   const SteadyTime deadline = Now() + kReap;
-  while (!Poll() && Now() < deadline) std::this_thread::sleep_for(milliseconds(1));
+  while (!Poll() && Now() < deadline) SleepFor(milliseconds(1));
   if (ended_) return;
   RemoveSuspended(pid_);
   ended_ = ExitStatus{true, SIGKILL};
@@ -202,7 +202,7 @@ std::optional<ExitStatus> RunToEnd(const ProcessSpec& spec, std::chrono::seconds
       terminated = AwakeNow();
     }
     if (terminated && AwakeNow() - *terminated > kTerminate) return std::nullopt;  // and is killed
-    std::this_thread::sleep_for(kPoll);
+    SleepFor(kPoll);
   }
 }
 

@@ -10,12 +10,12 @@
 #include <csignal>
 #include <cstdio>
 #include <cstring>
-#include <thread>
 #include <utility>
 
 #include "common/base/clock.h"
 #include "common/base/error.h"
 #include "common/base/pipe.h"
+#include "common/base/sleep.h"
 #include "common/base/stop.h"
 
 namespace shoal::launch {
@@ -69,7 +69,7 @@ int Detachment::Reap() const {
   int status = 0;
   while (waitpid(child_, &status, WNOHANG) != child_) {
     if (Now() > deadline) return 1;
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    SleepFor(std::chrono::milliseconds(1));
   }
   if (WIFEXITED(status)) return WEXITSTATUS(status);
   // It was stopped in order by the signal that was handed on.

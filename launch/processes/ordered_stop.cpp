@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "launch/processes/ordered_stop.h"
+#include "common/base/sleep.h"
 
 #include <fmt/core.h>
 
 #include <csignal>
-#include <thread>
 
 namespace shoal::launch {
 namespace {
@@ -25,7 +25,7 @@ bool WaitForExit(Supervisor& supervisor, std::string_view role, milliseconds dea
     if (supervisor.Running(role) == 0) return true;
     if (Now() - start > deadline || (patient && hooks.at_once())) return false;
     hooks.tick();
-    std::this_thread::sleep_for(kPoll);
+    SleepFor(kPoll);
   }
 }
 
@@ -50,7 +50,7 @@ void WaitUntilSettled(Supervisor& supervisor, milliseconds deadline, const StopH
     if (const auto failure = supervisor.Poll(Now())) return hooks.say(*failure);
     if (Now() - start > deadline) return hooks.say("the last evaluation did not come in time");
     hooks.tick();
-    std::this_thread::sleep_for(kPoll);
+    SleepFor(kPoll);
   }
 }
 

@@ -3,11 +3,11 @@
 
 #include <fmt/core.h>
 
-#include <thread>
 #include <vector>
 
 #include "common/base/clock.h"
 #include "common/base/interrupted.h"
+#include "common/base/sleep.h"
 #include "common/config/run_membership.h"
 #include "common/run_folder/run_file_names.h"
 
@@ -51,7 +51,7 @@ void WaitForFormerProcesses(const fs::path& run, std::chrono::seconds deadline,
                       *pid, deadline.count()));
       said = true;
     }
-    std::this_thread::sleep_for(kLookAgain);
+    SleepFor(kLookAgain);
   }
 }
 

@@ -3,12 +3,12 @@
 
 #include <fmt/core.h>
 
-#include <thread>
 #include <utility>
 
 #include "actor/worlds/episode_fault.h"
 #include "common/base/error.h"
 #include "common/base/saturating_cast.h"
+#include "common/base/sleep.h"
 #include "common/base/stop.h"
 #include "common/base/usable_cores.h"
 #include "common/config/on_policy.h"
@@ -115,7 +115,7 @@ RunEnd Coordinator::WaitForEnd(const std::function<void()>& on_started) {
     Say(decisions_.OnStandings(supervisor_.Standing(RoleName(Role::kActor), now),
                                supervisor_.Standing(RoleName(Role::kEval), now), now));
     if (const auto end = decisions_.MustEnd(StopRequested())) return *end;
-    std::this_thread::sleep_for(kTurn);
+    SleepFor(kTurn);
   }
 }
 

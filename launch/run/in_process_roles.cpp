@@ -8,7 +8,6 @@
 #include <cstdio>
 #include <cstdlib>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "actor/evaluation/eval_actor.h"
@@ -18,6 +17,7 @@
 #include "common/base/clock.h"
 #include "common/base/files.h"
 #include "common/base/main_guard.h"
+#include "common/base/sleep.h"
 #include "common/base/thread_group.h"
 #include "common/base/usable_cores.h"
 #include "common/config/learner_threads.h"
@@ -58,7 +58,7 @@ class RoleThreads final : public RunningProcess {
   ~RoleThreads() override {
     group_.RequestStop();
     const SteadyTime deadline = Now() + kEnd;
-    while (!ended_ && Now() < deadline) std::this_thread::sleep_for(kPoll);
+    while (!ended_ && Now() < deadline) SleepFor(kPoll);
     if (!ended_) EndProcess(name_);
     thread_.join();
   }

@@ -8,7 +8,6 @@
 #include <set>
 #include <utility>
 
-#include "actor/sending/made_page.h"
 #include "common/base/clock.h"
 #include "common/base/error.h"
 #include "common/base/stop.h"
@@ -21,26 +20,12 @@
 #include "launch/record/accounting.h"
 #include "launch/record/run_folder.h"
 #include "launch/record/run_size.h"
+#include "launch/run/run_account.h"
 
 namespace shoal::launch {
 namespace {
 
 namespace fs = std::filesystem;
-
-// Empty when no record was ever made.
-std::optional<Accounting> AccountRun(const fs::path& run, const Config& config,
-                                     const link::RunTopology& topology, uint64_t resends) {
-  std::vector<MadeRecords> made;
-  for (const actor::MadeCount& page : actor::ReadMadePages(run)) {
-    made.push_back({page.actor, page.session, page.made, /*known=*/!page.rebuilt});
-  }
-  if (made.empty() && !fs::exists(run / kAccountingFile)) return std::nullopt;
-  return Account(
-      made, ReadAccount(run),
-      {.resends = resends,
-       .own_actors = static_cast<uint32_t>(topology.ActorsOn(0).size()),
-       .outlives_replay = topology.Has(link::Role::kReplay) && config.replay.storage == "file"});
-}
 
 // A stop skips the final evaluation, so that the command returns promptly. A run that ends by
 // itself is evaluated.

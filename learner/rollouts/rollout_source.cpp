@@ -7,6 +7,7 @@
 #include "common/base/check.h"
 #include "common/base/error.h"
 #include "common/base/log.h"
+#include "common/base/sleep.h"
 #include "common/config/sending_window.h"
 #include "common/intake/receiver_terms.h"
 #include "common/run_folder/run_file_names.h"
@@ -210,7 +211,7 @@ void RolloutSource::DrainAfterCoordinatorLoss() {
       const MutexLock lock(mutex_);
       if (Now() - std::max(last_chunk_, start) > kFarewell) return;
     }
-    std::this_thread::sleep_for(kCreditSpacing);
+    SleepFor(kCreditSpacing);
   }
 }
 

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: Apache-2.0
+// The only way to sleep in a role's code: it obeys a simulation's clock (scheduler.h).
+#pragma once
+
+#include <thread>
+
+#include "common/base/clock.h"
+#include "common/base/scheduler.h"
+
+namespace shoal {
+
+inline void SleepUntil(SteadyTime time) {
+  if (Scheduler* scheduler = Scheduler::Current()) return scheduler->SleepUntil(time);
+  std::this_thread::sleep_until(time);
+}
+
+template <class Rep, class Period>
+void SleepFor(std::chrono::duration<Rep, Period> span) {
+  SleepUntil(Now() + std::chrono::duration_cast<SteadyTime::duration>(span));
+}
+
+}  // namespace shoal

@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+#include "common/config/config.h"
+#include "common/link/run_topology.h"
+#include "launch/record/accounting.h"
+
+namespace shoal::launch {
+
+// The account of a run whose processes have left, from the files in its folder. Empty when no
+// record was ever made. Throws Error when a file cannot be read.
+std::optional<Accounting> AccountRun(const std::filesystem::path& run, const Config& config,
+                                     const link::RunTopology& topology, uint64_t resends);
+
+}  // namespace shoal::launch

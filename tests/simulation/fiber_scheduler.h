@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// Simulated time and threads (common/base/scheduler.h): fibers on one thread of the operating
+// system, of which one runs until it waits. Which fiber runs next is drawn from a seed, so that a
+// simulation repeats, and another seed tries another order.
+//
+// Time stands still while a fiber computes, but for kPerLook at each look at the clock, so that a
+// loop that polls the clock ends. When no fiber can run, time moves on to the earliest wake-up.
+//
+// Fibers belong to processes, known by their thread group. A process that is killed never runs
+// again and no destructor of its fibers runs, as after SIGKILL: what they own stays in memory until
+// this program ends. Simulate in a child process that ends.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/base/random.h"
+#include "common/base/scheduler.h"
+#include "common/base/thread_group.h"
+
+namespace shoal::simulation {
+
+class FiberScheduler final : public Scheduler {
+ public:
+  static constexpr std::chrono::nanoseconds kPerLook{200};
+
+  // Time starts at zero of the steady clock, and at `wall_time_ns` of the wall clock.
+  FiberScheduler(uint64_t seed, int64_t wall_time_ns);
+  ~FiberScheduler() override;
+  FiberScheduler(const FiberScheduler&) = delete;
+  FiberScheduler& operator=(const FiberScheduler&) = delete;
+
+  // From outside of fibers: starts the first fiber of a process.
+  uint64_t StartIn(ThreadGroup* group, std::function<void()> body);
+  // Runs fibers until `until`, or until none is left. False when there is none that could ever run
+  // again before `until`, although some are left.
+  void RunUntil(SteadyTime until);
+
+  // No fiber of the group runs before `time`; wake-ups are kept.
+  void Pause(ThreadGroup* group, SteadyTime time);
+  // Its fibers are gone, and its descriptors are closed.
+  void Kill(ThreadGroup* group);
+  // Fibers of the group that have not ended.
+  int Alive(const ThreadGroup* group) const;
+  // The wall clock jumps.
+  void MoveWallClock(std::chrono::nanoseconds by) { wall_offset_ns_ += by.count(); }
+
+  // The time, for who is outside of fibers.
+  SteadyTime NowOutside() const { return now_; }
+  // A number that two runs share only if they made the same choices at the same times.
+  uint64_t TraceHash() const { return trace_; }
+  uint64_t switches() const { return switches_; }
+
+  SteadyTime Now() override;
+  int64_t WallTimeNs() override;
+  void SleepUntil(SteadyTime time) override;
+  void Lock(bool* held) override;
+  void Unlock(bool* held) override;
+  bool Wait(const void* condition, bool* held, SteadyTime deadline) override;
+  void Notify(const void* condition, bool all) override;
+  uint64_t Start(std::function<void()> body) override;
+  bool Ended(uint64_t thread) override;
+  void Join(uint64_t thread) override;
+  void OnOpened(int descriptor) override;
+  void OnClosed(int descriptor) override;
+
+ private:
+  struct Fiber;
+
+  // Gives the processor up until the fiber is runnable again, at `wake` at the latest.
+  void Block(SteadyTime wake);
+  // Until a Notify of `condition`, or the deadline: then false.
+  bool WaitFor(const void* condition, SteadyTime deadline);
+  // A runnable fiber, or nullptr.
+  Fiber* Choose();
+  SteadyTime EarliestWake() const;
+  void Resume(Fiber* fiber);
+  static void Enter();
+  Fiber* Find(uint64_t id);
+
+  Random random_;
+  SteadyTime now_{};
+  const int64_t wall_start_ns_;
+  int64_t wall_offset_ns_ = 0;
+  std::vector<std::unique_ptr<Fiber>> fibers_;
+  std::vector<std::unique_ptr<Fiber>> killed_;  // never resumed, never destroyed
+  std::vector<Fiber*> runnable_;                // scratch
+  Fiber* running_ = nullptr;
+  std::map<int, const ThreadGroup*> files_;  // open descriptors
+  uint64_t next_id_ = 1, trace_ = 0, switches_ = 0;
+  struct Main;
+  std::unique_ptr<Main> main_;
+};
+
+}  // namespace shoal::simulation
