@@ -37,7 +37,7 @@ bool HubOutlet::Publish(const EvalWeightsMessage& weights) {
 // A report that cannot be sent is no loss: the next one holds the same totals.
 void HubOutlet::Publish(const MetricsMessage& report) { metrics_.Write(report); }
 
-// The last one is kept for whoever needs it.
+// The link keeps the last one for late joiners.
 void HubOutlet::Publish(const LearnerProgress& progress) { progress_.Write(progress); }
 
 }  // namespace shoal::learner

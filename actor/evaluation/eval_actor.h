@@ -20,7 +20,7 @@ namespace shoal::actor {
 // Members are in construction order: readers end before what they write to.
 class EvalActor {
  public:
-  // Of the run in `folder`; `make`: as the Evaluator's. One thread constructs and runs it. Borrows
+  // For the run in `folder`; `make`: as the Evaluator's. One thread constructs and runs it. Borrows
   // the hub. Throws Error.
   EvalActor(const std::filesystem::path& folder, link::Hub& hub,
             const EnvironmentFactory& make = MakeEnvironments);
@@ -32,8 +32,8 @@ class EvalActor {
   // One weights version for the whole evaluation; newer ones wait in the inbox.
   void Evaluate(const ReceivedWeights& weights);
 
-  // Throws Error at the deadline. The learner's parameters stay on offer: whoever starts next plays
-  // the evaluation again.
+  // Throws Error at the deadline. The learner's parameters stay on offer: the next process of this
+  // role plays the evaluation again.
   void Send(const EvalMessage& message);
 
   void WarnOfOvertaken();

@@ -45,7 +45,7 @@ class TrainingActor {
  private:
   ActorLoop::End RunLoop(ActorLoop& loop, ActorReport& report);
 
-  // In lockstep: goes on exactly where the former process left.
+  // In lockstep: goes on exactly where the process before it left.
   void Restore();
 
   // In lockstep: for the process that goes on. False when it could not be written.

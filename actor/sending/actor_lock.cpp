@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "actor/sending/actor_lock.h"
 
-
 #include "common/base/clock.h"
 #include "common/base/error.h"
 #include "common/base/files.h"

@@ -46,7 +46,7 @@ class TakenCdr {
   ddsi_serdata* held_;
 };
 
-// Takes what lies in the reader's cache and calls deliver(well_formed, message) for each sample.
+// Empties the reader's cache and calls deliver(well_formed, message) for each sample.
 // False when the cache was empty.
 template <class M, class Deliver>
 bool TakeCdr(dds_entity_t reader, const Deliver& deliver) {

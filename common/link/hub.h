@@ -55,7 +55,7 @@ inline constexpr std::chrono::seconds kLivenessLimit{5};
 // below 1 MB.
 inline constexpr uint64_t kMaxPayloadBytes = 63'000'000;
 
-// What an implementation makes for Writer<M> (writer.h), whose functions are the same.
+// The implementation of a Writer<M> (writer.h), whose functions are the same.
 template <class M>
 class WriterEnd {
  public:
@@ -65,7 +65,7 @@ class WriterEnd {
   virtual bool WaitForAcks(std::chrono::milliseconds deadline) = 0;
 };
 
-// What an implementation makes for Reader<M> (reader.h).
+// The implementation of a Reader<M> (reader.h).
 class ReaderEnd {
  public:
   virtual ~ReaderEnd() = default;

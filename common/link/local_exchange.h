@@ -22,7 +22,6 @@
 #include <map>
 #include <memory>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "common/base/mutex.h"
@@ -82,7 +81,7 @@ class LocalExchange {
     ConditionVariable returned_;
   };
 
-  // What a thread in ServeReaders waits for.
+  // The readers that a thread in ServeReaders calls back.
   class Receiver {
     friend class LocalExchange;
     std::deque<Reader*> ready_;  // those with samples, but for the one that is called; each once

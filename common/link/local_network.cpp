@@ -147,7 +147,7 @@ class LocalHub final : public Hub {
                                             ends_, std::move(on_message));
   }
 
-  // Of the topic's plane; its thread starts with the plane's first reader.
+  // Returns the receiver of the topic's plane; its thread starts with the plane's first reader.
   LocalExchange::Receiver& ReceiverFor(const TopicSettings& settings) {
     const MutexLock lock(mutex_);
     read_topics_.insert(settings.name);

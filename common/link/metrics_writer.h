@@ -20,7 +20,8 @@ class MetricsWriter {
   // Borrows the hub. Throws Error.
   explicit MetricsWriter(Hub& hub) : hub_(hub), writer_(hub) {}
 
-  // As Writer::Write. A report that is not sent is no loss: the next one holds the same totals.
+  // Does what Writer::Write does. A report that is not sent is no loss: the next one holds the same
+  // totals.
   bool Write(const MetricsMessage& report) {
     M message;
     static_cast<MetricsMessage&>(message) = report;

@@ -67,7 +67,7 @@ class StoredMessage final : public StoredSample {
 
   const M& message() const { return message_; }
 
-  // What a stored copy of `message` counts against the writer's bound.
+  // The bytes that a stored copy of `message` counts against the writer's bound.
   static uint64_t Bytes(const M& message) {
     uint64_t bytes = sizeof(M);
     if constexpr (requires { message.payload; }) bytes += message.payload.size();

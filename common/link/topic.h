@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What message_list.h says of each message, as values: name, plane and quality of service.
+// The columns of message_list.h as values: name, plane and quality of service of each message.
 #pragma once
 
 #include <chrono>

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "launch/processes/ordered_stop.h"
-#include "common/base/sleep.h"
 
 #include <fmt/core.h>
 
 #include <csignal>
+
+#include "common/base/sleep.h"
 
 namespace shoal::launch {
 namespace {

@@ -32,7 +32,7 @@ namespace {
 
 using std::chrono::seconds;
 
-constexpr seconds kEnd{60};  // for a role's threads to end, once they were told to
+constexpr seconds kEnd{60};  // for a role's threads to end after a request to stop
 constexpr std::chrono::milliseconds kPoll{5};
 
 // Threads cannot be killed alone: the process ends, as if all roles had been killed.

@@ -17,7 +17,7 @@ namespace shoal::launch {
 
 class InProcessRoles {
  public:
-  // Of the run in `folder`. Loads its tasks' physics. Throws Error.
+  // For the run in `folder`. Loads its tasks' physics. Throws Error.
   InProcessRoles(const std::filesystem::path& folder, const Config& config);
 
   // Starts threads for the process, which is a replay, a learner, an actor or the evaluation actor.

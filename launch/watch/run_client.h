@@ -11,8 +11,8 @@
 #include "common/base/clock.h"
 #include "common/base/mutex.h"
 #include "common/dds/bus.h"
-#include "common/link/writer.h"
 #include "common/link/reader.h"
+#include "common/link/writer.h"
 #include "launch/watch/run_target.h"
 
 namespace shoal::launch {

@@ -64,7 +64,7 @@ class ReplayService {
 
   void TellChangedCredits(SteadyTime now);
 
-  // What the coordinator counts the run's env steps by.
+  // Sends the counts by which the coordinator knows the run's env steps.
   void TellProgress(SteadyTime now, bool at_once = false);
 
   void ApplySettings();

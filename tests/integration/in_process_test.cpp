@@ -17,15 +17,6 @@ using std::chrono::seconds;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-// The learner's state of the newest checkpoint.
-std::string LearnerOf(const TrainingRun& run) {
-  std::filesystem::path newest;
-  for (const auto& entry : std::filesystem::directory_iterator(run.path() / "checkpoints")) {
-    if (entry.path().filename() != "best") newest = std::max(newest, entry.path());
-  }
-  return ReadFile(newest / "learner.safetensors");
-}
-
 TEST(InProcess, ALockstepRunLeavesTheBytesOfOneInProcesses) {
   const TrainingRun::Keys keys{{"env_steps", "1200"}, {"eval.interval", "600"}, {"actors", "1"}};
   const TrainingRun processes, threads;
@@ -33,7 +24,8 @@ TEST(InProcess, ALockstepRunLeavesTheBytesOfOneInProcesses) {
   ASSERT_EQ(ExitCode(first), 0) << first.out << first.err;
   const ProgramResult second = threads.Train(keys, {"--lockstep", "--in-process"});
   ASSERT_EQ(ExitCode(second), 0) << second.out << second.err;
-  EXPECT_TRUE(LearnerOf(processes) == LearnerOf(threads)) << "learner.safetensors differs";
+  EXPECT_TRUE(NewestLearnerState(processes) == NewestLearnerState(threads))
+      << "learner.safetensors differs";
   EXPECT_EQ(processes.Json("meta.json").at("updates"), threads.Json("meta.json").at("updates"));
   ExpectBalanced(threads.Json("meta.json"));
   for (const char* role : {"actor-0", "eval-0", "learner-0", "replay-0"}) {
@@ -93,15 +85,21 @@ TEST(InProcess, AnActorThatFailsIsRestartedAndSaysWhy) {
   RunningTraining training(
       run, run.Command({{"env_steps", "1000000"}, {"actors", "2"}}, {"--in-process"}));
   ASSERT_TRUE(training.WaitForSteps(1000)) << training.Output();
-  // What the actor finds when it is started again: a session that is no number.
+  // The actor finds a session that is no number when it is started again.
   WriteFileAtomically(run.path() / "sessions" / "actor-1", "damaged");
   const ProgramResult scaled =
       RunProgram({"shoal", "scale", "--run", run.path().string(), "1"}, seconds(20));
   ASSERT_EQ(ExitCode(scaled), 0) << scaled.out << scaled.err;
-  const ProgramResult again =
-      RunProgram({"shoal", "scale", "--run", run.path().string(), "2"}, seconds(20));
-  ASSERT_EQ(ExitCode(again), 0) << again.out << again.err;
-  ASSERT_TRUE(training.WaitForMoreSteps(500)) << training.Output();
+  launch::ProcessSpec scale;  // which waits for the actor to work
+  scale.role = "scale";
+  scale.command = {ProgramPath("shoal"), "scale", "--run", run.path().string(), "2"};
+  scale.output = run.parent() / "scale.log";
+  const launch::ChildProcess again(scale);
+  const SteadyTime deadline = Now() + seconds(30);
+  while (training.Output().find("actor-1: exit code") == std::string::npos && Now() < deadline) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(50));
+  }
+  ASSERT_TRUE(training.WaitForMoreSteps(200)) << training.Output();
   training.Interrupt();
   ASSERT_EQ(training.End(seconds(60)), kInterruptedExit) << training.Output();
   EXPECT_THAT(training.Output(),

@@ -15,15 +15,6 @@ struct Outcome {
   std::string learner, evaluations;
 };
 
-// learner.safetensors of the newest checkpoint.
-std::string LearnerOf(const TrainingRun& run) {
-  std::filesystem::path newest;
-  for (const auto& entry : std::filesystem::directory_iterator(run.path() / "checkpoints")) {
-    if (entry.path().filename() != "best") newest = std::max(newest, entry.path());
-  }
-  return ReadFile(newest / "learner.safetensors");
-}
-
 Outcome RunInLockstep(const std::string& seed) {
   const TrainingRun run;
   const ProgramResult result =
@@ -31,7 +22,7 @@ Outcome RunInLockstep(const std::string& seed) {
                 {"--lockstep"});
   EXPECT_EQ(ExitCode(result), 0) << result.out << result.err;
   Outcome outcome;
-  outcome.learner = LearnerOf(run);
+  outcome.learner = NewestLearnerState(run);
   for (const auto& entry : std::filesystem::directory_iterator(run.path() / "eval")) {
     outcome.evaluations +=
         nlohmann::json::parse(ReadFile(entry.path())).at("episodes").dump() + "\n";
@@ -66,7 +57,8 @@ void ExpectGoesOnBitForBit(const TrainingRun& whole, const TrainingRun::Keys& ke
   EXPECT_EQ(meta.at("updates"), other.at("updates"));
   EXPECT_GT(meta.at("updates").get<int64_t>(), 20);
   ExpectBalanced(other);
-  EXPECT_TRUE(LearnerOf(whole) == LearnerOf(interrupted)) << "learner.safetensors differs";
+  EXPECT_TRUE(NewestLearnerState(whole) == NewestLearnerState(interrupted))
+      << "learner.safetensors differs";
 }
 
 TEST(Lockstep, AnInterruptedRunGoesOnBitForBit) {
@@ -87,7 +79,7 @@ TEST(Lockstep, RunningStatisticsRepeatAndGoOnBitForBit) {
                                                  {"observation.height", "24"},
                                                  {"observation.width", "24"}}),
                         {"--lockstep"}, {130});
-  EXPECT_NE(LearnerOf(whole).find("encoder.bn1.running_mean"), std::string::npos);
+  EXPECT_NE(NewestLearnerState(whole).find("encoder.bn1.running_mean"), std::string::npos);
 }
 
 // The updates of the whole run are those of a sum over each env step behind phase 0.

@@ -78,9 +78,20 @@ const std::vector<Ban> kBans = [] {
          "a role knows the link alone (common/link)",
          {"learner/main.cpp", "learner/command_line.", "replay_server/service/command_line."}});
   }
+  // A simulation runs these rooms on its own clock and threads (common/base/scheduler.h).
+  for (const char* room :
+       {"actor/acting", "actor/sending", "actor/loop", "actor/evaluation", "common/intake",
+        "common/link", "common/wire", "launch/processes", "launch/record", "launch/run",
+        "launch/watch", "learner", "learner/rollouts", "replay_server/service"}) {
+    for (const char* header : {"condition_variable", "mutex", "thread"}) {
+      bans.push_back({room, header, "waits and threads are those of common/base (scheduler.h)"});
+    }
+  }
   // Plain classes of one thread, whose results depend on their arguments alone.
   for (const std::string room : {"replay_server/core", "learner/agent"}) {
-    bans.push_back({room, "common/dds/", "no transport here"});
+    for (const char* transport : {"common/dds/", "common/link/"}) {
+      bans.push_back({room, transport, "no transport here"});
+    }
     for (const char* clock : {"common/base/clock.h", "chrono", "ctime", "sys/time.h", "time.h"}) {
       bans.push_back({room, clock, "no clock here"});
     }

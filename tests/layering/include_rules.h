@@ -10,7 +10,8 @@
 // - replay_server/core knows neither its service nor the transport, no clock and no threads;
 //   learner/agent no transport, clock, lock or file, and no threads but those of replicas.
 // - The rooms of roles (actor, replay_server, learner) know the link and none of its
-//   implementations; their programs do.
+//   implementations; their programs do. These rooms, the link and the coordinator's rooms wait,
+//   sleep and make threads through common/base alone, so that a simulation can run them.
 // - A third-party library with a home (DDS, oneDNN, MuJoCo, ...) is included there and in that
 //   folder's tests alone; and in tests/stock_client, a program as others would write it.
 // - Headers begin with #pragma once after their comment; no file is called utils, helpers, ...

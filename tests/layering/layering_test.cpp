@@ -99,7 +99,7 @@ TEST(Layering, TheReplayCoreKnowsNoServiceTransportClockOrThread) {
              "#include \"replay_server/service/x.h\"\n");
   tree.Write("replay_server/service/a.cpp",
              "#include \"common/base/clock.h\"\n"
-             "#include \"common/dds/bus.h\"\n"
+             "#include \"common/link/hub.h\"\n"
              "#include \"replay_server/core/x.h\"\n");
   const std::string start = "replay_server/core/a.cpp:", core = ": replay_server/core may not use ";
   EXPECT_THAT(tree.Breaches(),
@@ -124,6 +124,17 @@ TEST(Layering, ARoleKnowsTheLinkAlone) {
   EXPECT_THAT(tree.Breaches(),
               ElementsAre("actor/loop/a.cpp:1: actor/loop" + why, "learner/a.cpp:1: learner" + why,
                           "replay_server/service/a.cpp:1: replay_server/service" + why));
+}
+
+TEST(Layering, ASimulationCanRunTheRoles) {
+  const PlantedTree tree;
+  tree.Write("actor/loop/a.cpp", "#include <thread>\n#include \"common/base/sleep.h\"\n");
+  tree.Write("launch/run/a.cpp", "#include <mutex>\n");
+  tree.Write("launch/web/a.cpp", "#include <mutex>\n");
+  const std::string why = ": waits and threads are those of common/base (scheduler.h)";
+  EXPECT_THAT(tree.Breaches(),
+              ElementsAre("actor/loop/a.cpp:1: actor/loop may not use thread" + why,
+                          "launch/run/a.cpp:1: launch/run may not use mutex" + why));
 }
 
 TEST(Layering, AnAgentKnowsNoTransportClockFileOrThread) {

@@ -59,7 +59,7 @@ class Stack {
   char* const memory_;
 };
 
-// Of a file with a name in a folder; else empty.
+// The path of an open file; empty for memory without a name.
 std::string PathOf(int descriptor) {
   std::error_code error;
   const auto path =
@@ -109,7 +109,7 @@ FiberScheduler::FiberScheduler(uint64_t seed, int64_t wall_time_ns)
     : random_(seed), wall_start_ns_(wall_time_ns), main_(std::make_unique<Main>()) {}
 
 FiberScheduler::~FiberScheduler() {
-  // What fibers own that have not ended cannot be destroyed: their stacks stay, too.
+  // Fibers that have not ended own what cannot be destroyed: their stacks stay, too.
   for (auto* fibers : {&fibers_, &killed_}) {
     for (std::unique_ptr<Fiber>& fiber : *fibers) {
       if (!fiber->ended) (void)fiber.release();

@@ -182,7 +182,7 @@ TEST_F(FiberSchedulerTest, TheWallClockJumpsAndTheSteadyOneDoesNot) {
   EXPECT_NEAR(steady, 1, 1e-3);
 }
 
-// What three fibers do that take a mutex in turns, as a string.
+// Three fibers take a mutex in turns; the result is the order, and the hash of the trace.
 std::pair<std::string, uint64_t> Play(uint64_t seed, ThreadGroup* group) {
   FiberScheduler scheduler(seed, 0);
   Mutex mutex;

@@ -26,9 +26,9 @@ class SimulatedProcesses {
 
   std::unique_ptr<launch::RunningProcess> Start(const launch::ProcessSpec& spec);
 
-  // As SIGKILL. False: no process of that name runs.
+  // Does what SIGKILL does. False: no process of that name runs.
   bool Kill(const std::string& name);
-  // As SIGSTOP and, after `span`, SIGCONT.
+  // Does what SIGSTOP and, after `span`, SIGCONT do.
   bool Pause(const std::string& name, std::chrono::milliseconds span);
 
  private:
@@ -38,7 +38,6 @@ class SimulatedProcesses {
   link::LocalNetwork& network_;
   const ProcessBody body_;
   std::map<std::string, std::shared_ptr<Process>> running_;  // the newest of each name
-  pid_t next_pid_ = 1000;
 };
 
 }  // namespace shoal::simulation

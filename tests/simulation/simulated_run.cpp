@@ -100,7 +100,7 @@ void Apply(const Fault& fault, SimulatedProcesses& processes) {
   }
 }
 
-// What a run promises, held against its files.
+// Holds the files of a run against what it promises.
 void Judge(const Blueprint& blueprint, const std::filesystem::path& folder,
            const launch::RunResult& result, Outcome* outcome) {
   const Config& config = blueprint.run.config;
@@ -183,7 +183,9 @@ Outcome Simulate(const Blueprint& blueprint, uint64_t seed, const std::vector<Fa
                                               /*overwrite=*/false);
   WriteRunConfig(folder, blueprint.run);
   FiberScheduler scheduler(seed, kWallTimeNs);
-  link::LocalNetwork network;
+  // A run that does not end leaves hubs, which may not outlive their network: it is never
+  // destroyed.
+  auto& network = *new link::LocalNetwork();  // NOLINT: ends with this process, as killed ones do
   ThreadGroup coordinator("coordinator", (folder / kLogFolder / "train.log").string());
   ThreadGroup faulter("faults", (folder / kLogFolder / "faults.log").string());
   SimulatedProcesses processes(scheduler, network,

@@ -17,7 +17,8 @@
 
 namespace shoal::simulation {
 
-// What every simulated run begins with. Made once: it asks the real task and a real agent.
+// Configuration and weights that every simulated run begins with. Making one asks the real task and
+// a real agent: once is enough.
 struct Blueprint {
   RunConfig run;
   nn::TensorMap policy;

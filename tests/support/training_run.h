@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -84,6 +85,15 @@ class TrainingRun {
 
   TemporaryFolder folder_;
 };
+
+// learner.safetensors of the newest checkpoint.
+inline std::string NewestLearnerState(const TrainingRun& run) {
+  std::filesystem::path newest;
+  for (const auto& entry : std::filesystem::directory_iterator(run.path() / "checkpoints")) {
+    if (entry.path().filename() != "best") newest = std::max(newest, entry.path());
+  }
+  return ReadFile(newest / "learner.safetensors");
+}
 
 // made = stored + lost with a killed actor + lost with a replay + rejected + after gap + discarded,
 // exactly.

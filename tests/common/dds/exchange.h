@@ -20,17 +20,17 @@ inline std::string Expected(const std::string& name, uint64_t n, size_t payload_
   return "got " + name + " " + text;
 }
 
-// Message n of `name` arrives at the receiver with every field as it was sent.
+// Message `n` of `name` arrives at the receiver with every field as it was sent.
 template <class M>
-inline void ExpectSame(PeerProcess& sender, PeerProcess& receiver, const std::string& name) {
-  constexpr uint64_t kNumber = 41;
+inline void ExpectSame(PeerProcess& sender, PeerProcess& receiver, const std::string& name,
+                       uint64_t n = 41) {
   constexpr size_t kPayloadBytes = 100'000;
   EXPECT_EQ(receiver.Ask("show " + name), "ok");
   EXPECT_EQ(sender.Ask("publish " + name), "ok");
   EXPECT_EQ(sender.Ask("match " + name + " 1 10000"), "matched 1");
-  EXPECT_THAT(sender.Ask(fmt::format("write {} {} 1 {}", name, kNumber, kPayloadBytes)),
+  EXPECT_THAT(sender.Ask(fmt::format("write {} {} 1 {}", name, n, kPayloadBytes)),
               ::testing::StartsWith("wrote 1 "));
-  EXPECT_EQ(receiver.NextGot(), Expected<M>(name, kNumber, kPayloadBytes));
+  EXPECT_EQ(receiver.NextGot(), Expected<M>(name, n, kPayloadBytes));
 }
 
 }  // namespace shoal::dds

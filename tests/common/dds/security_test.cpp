@@ -192,8 +192,10 @@ class Eavesdropper {
 bool WeightsAreReadable(const ClusterAddress& address) {
   const Eavesdropper eavesdropper;
   PeerProcess learner("learner", address), actor("actor", address);
-  ExpectSame<WeightsPart>(learner, actor, "WeightsPart");
-  const std::vector<uint8_t> payload = ExamplePayload(41, 100'000);  // ExpectSame's
+  // A number of its own: other tests send the usual payload in the clear at the same time.
+  const auto number = static_cast<uint64_t>(getpid()) * 1000 + 1;
+  ExpectSame<WeightsPart>(learner, actor, "WeightsPart", number);
+  const std::vector<uint8_t> payload = ExamplePayload(number, 100'000);  // ExpectSame's
   return eavesdropper.Heard(std::span(payload).first(64));
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the contract suite needs of an implementation of the link: members of a run, each with a hub
-// of its own, driven by the commands of peer_commands.h.
+// The part of an implementation of the link that the contract suite needs: members of a run, each
+// with a hub of its own, driven by the commands of peer_commands.h.
 #pragma once
 
 #include <chrono>

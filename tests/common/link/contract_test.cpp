@@ -316,7 +316,7 @@ TEST_P(ContractTest, ALateReaderGetsTheLastNSamplesOfEachKey) {
   ExpectReceived(*actor, "WeightsPart", 2);
   ExpectReceived(*actor, "CreditsMessage", 16);
   ExpectReceived(*coordinator, "EvalMessage", 32);
-  // What is written next arrives behind the old ones.
+  // The next sample arrives behind the old ones.
   Write(*learner, "WeightsPart", 6, 6, 1000, "1");
   Write(*replay, "CreditsMessage", 21, 21);
   Write(*eval, "EvalMessage", 41, 41);
@@ -402,7 +402,7 @@ TEST_P(ContractTest, ARestartedWriterHasNoHistoryButItsOwn) {
   const Peer actor = Join(Role::kActor);
   EXPECT_EQ(actor->Ask("subscribe WeightsPart"), "ok");
   ExpectReceived(*actor, "WeightsPart", 1);
-  // What is written next arrives behind anything old that there may be.
+  // The next sample arrives behind anything old that there may be.
   ExpectMatched(*learner, "WeightsPart", 1);
   Write(*learner, "WeightsPart", 11, 11, 1000, "1");
   ExpectReceived(*actor, "WeightsPart", 2);

@@ -9,7 +9,7 @@ namespace {
 
 using dds::PeerProcess;
 
-// A process that somebody else may keep, as the coordinator's.
+// A process that another object may keep, as the coordinator's.
 class DdsPeer final : public ContractPeer {
  public:
   explicit DdsPeer(std::shared_ptr<PeerProcess> process) : process_(std::move(process)) {}

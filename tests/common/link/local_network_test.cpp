@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What local_network.h promises beyond the contract (contract_test.cpp).
+// Tests of the promises of local_network.h beyond the contract (contract_test.cpp).
 #include "common/link/local_network.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ using std::chrono::seconds;
 
 constexpr seconds kDeadline{20};
 
-// What callbacks saw. They wait while it is shut.
+// The samples that callbacks saw. They wait while it is shut.
 class Gate {
  public:
   void Shut() {

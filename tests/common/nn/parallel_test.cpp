@@ -49,11 +49,15 @@ TEST(ThreadScope, HoldsForItsOwnThreadAndPutsTheFormerSizeBack) {
   EXPECT_EQ(ranges, 2);
 }
 
-TEST(SetThreads, IsSeenByEveryThread) {
+TEST(SetThreads, IsTheCallingThreadsOwn) {
   SetThreads(3);
   int seen = 0;
-  std::thread([&] { seen = Threads(); }).join();
-  EXPECT_EQ(seen, 3);
+  std::thread([&] {
+    seen = Threads();
+    SetThreads(2);
+  }).join();
+  EXPECT_EQ(seen, 1);
+  EXPECT_EQ(Threads(), 3);
 }
 
 }  // namespace

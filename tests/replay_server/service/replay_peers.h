@@ -17,8 +17,8 @@
 #include "common/config/batch_options.h"
 #include "common/config/run_files.h"
 #include "common/dds/bus.h"
-#include "common/link/writer.h"
 #include "common/link/reader.h"
+#include "common/link/writer.h"
 #include "tests/replay_server/record_script.h"
 
 namespace shoal::replay {
