@@ -21,7 +21,8 @@ class BatchFeed {
   virtual void DrainAfterCoordinatorLoss() {}
 };
 
-// As the run's algorithm learns; `updates`: done before. Borrows the hub. Throws Error.
+// The feed that the run's algorithm needs: of a replay, or of rollouts. `updates`: done before.
+// Borrows the hub. Throws Error.
 std::unique_ptr<BatchFeed> MakeFeed(const std::filesystem::path& folder, const RunConfig& run,
                                     uint64_t learner_session, uint64_t updates, link::Hub& hub);
 

@@ -35,22 +35,18 @@ spdlog::sink_ptr OpenSink(const std::string& file) {
 class File {
  public:
   File(const std::string& name, const std::string& file)
-      : sink_(OpenSink(file)), logger_(name, sink_) {
+      : logger_(name, OpenSink(file)), raw_("", OpenSink(file)) {
     logger_.set_pattern(kPattern);
     logger_.flush_on(spdlog::level::info);
+    raw_.set_pattern("%v");
+    raw_.flush_on(spdlog::level::info);
   }
   spdlog::logger& logger() { return logger_; }
-  void WriteRaw(const std::string& line) {
-    spdlog::logger raw("", sink_);
-    raw.set_pattern("%v");
-    raw.info(line);
-    raw.flush();
-    logger_.set_pattern(kPattern);  // the pattern is the sink's
-  }
+  void WriteRaw(const std::string& line) { raw_.info(line); }
 
  private:
-  const spdlog::sink_ptr sink_;
   spdlog::logger logger_;
+  spdlog::logger raw_;  // with a sink of its own: a pattern is the sink's
 };
 
 namespace {

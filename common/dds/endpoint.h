@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What writers and readers share: the topic and the refusal to stay silent about a peer of the
-// other side whose quality of service does not match. Internal.
+// The shared part of writers and readers: the topic, and a log line for a peer whose quality of
+// service does not match. Internal.
 #pragma once
 
 #include <memory>

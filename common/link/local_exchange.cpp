@@ -80,6 +80,7 @@ void LocalExchange::Abandon(const void* hub) {
       std::list<SharedSample> unread = reader->queue_.TakeAll();
       for (const SharedSample& sample : unread) CountRead(*sample);
       dropped.splice(dropped.end(), unread);
+      std::erase(reader->receiver_.ready_, reader);
     }
     std::erase_if(ends.readers, [&](const Reader* reader) { return reader->hub_ == hub; });
   }

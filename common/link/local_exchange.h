@@ -98,8 +98,8 @@ class LocalExchange {
   // Waits for a running callback; none starts afterwards.
   void Remove(Reader& reader);
 
-  // For simulations: unmatches all ends of a hub whose threads never run again. Its readers drop
-  // what they have; samples of its writers still reach other readers.
+  // Unmatches all ends of a hub. Its readers drop their samples; those of its writers still reach
+  // other readers. Remove may follow.
   void Abandon(const void* hub);
 
   // Waits until the writer may have `bytes` more unread: at most max_blocking, then false. With

@@ -167,10 +167,7 @@ class LocalHub final : public Hub {
 
 }  // namespace
 
-void LocalNetwork::Abandon(const Hub& hub) {
-  exchange_.Abandon(&hub);
-  --hubs_;
-}
+void LocalNetwork::Abandon(const Hub& hub) { exchange_.Abandon(&hub); }
 
 LocalNetwork::~LocalNetwork() { CHECK(hubs_ == 0) << hubs_ << " hubs outlive their network"; }
 

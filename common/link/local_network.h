@@ -10,7 +10,7 @@
 //   taken when nothing else is unread. Unread is a sample until each matched reader's callback has
 //   returned; WaitForAcks waits for the same.
 // - What a writer had written when it was destroyed still reaches its readers.
-// - A process that dies takes all roles with it, so there is no liveness to lose.
+// - A process that dies takes all its roles with it: liveness is lost by Abandon alone.
 #pragma once
 
 #include <atomic>
@@ -34,8 +34,8 @@ class LocalNetwork {
   // network.
   std::unique_ptr<Hub> Join(Role role);
 
-  // For simulations: the hub's process died without a word. Its writers and readers are unmatched,
-  // what they had not delivered is lost, and their objects must not be used or destroyed any more.
+  // As if the hub's process had died without a word, for tests and simulations: its writers and
+  // readers are unmatched, and its readers are not called back any more. They may only be destroyed.
   void Abandon(const Hub& hub);
 
  private:

@@ -48,7 +48,7 @@ const std::map<std::string, std::vector<std::string>> kRooms = {
       "observability", "project", "web", "check", "commands", "manual", "python"}},
 };
 
-// What a room may not include: a folder, or one header; files that begin with a word of `except`
+// A folder, or one header, that a room may not include; files that begin with a word of `except`
 // may.
 struct Ban {
   std::string room, start, why;

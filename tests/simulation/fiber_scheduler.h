@@ -37,8 +37,7 @@ class FiberScheduler final : public Scheduler {
 
   // From outside of fibers: starts the first fiber of a process.
   uint64_t StartIn(ThreadGroup* group, std::function<void()> body);
-  // Runs fibers until `until`, or until none is left. False when there is none that could ever run
-  // again before `until`, although some are left.
+  // Runs fibers until `until`, or until none is left.
   void RunUntil(SteadyTime until);
 
   // No fiber of the group runs before `time`; wake-ups are kept.

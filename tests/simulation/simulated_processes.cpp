@@ -65,10 +65,7 @@ class SimulatedProcesses::Process {
   std::optional<launch::ExitStatus> ended_;
 };
 
-namespace {
-
-template <class Process>
-class Handle final : public launch::RunningProcess {
+class SimulatedProcesses::Handle final : public launch::RunningProcess {
  public:
   explicit Handle(std::shared_ptr<Process> process) : process_(std::move(process)) {}
   ~Handle() override { process_->Signal(SIGKILL); }
@@ -83,13 +80,11 @@ class Handle final : public launch::RunningProcess {
   const std::shared_ptr<Process> process_;
 };
 
-}  // namespace
-
 std::unique_ptr<launch::RunningProcess> SimulatedProcesses::Start(const launch::ProcessSpec& spec) {
   auto process = std::make_shared<Process>(*this, spec);
   process->Start(process);
   running_[spec.Name()] = process;
-  return std::make_unique<Handle<Process>>(std::move(process));
+  return std::make_unique<Handle>(std::move(process));
 }
 
 bool SimulatedProcesses::Kill(const std::string& name) {

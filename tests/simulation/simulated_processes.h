@@ -33,6 +33,7 @@ class SimulatedProcesses {
 
  private:
   class Process;
+  class Handle;
 
   FiberScheduler& scheduler_;
   link::LocalNetwork& network_;

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "tests/simulation/simulated_run.h"
 
+#include <fcntl.h>
 #include <fmt/core.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <optional>
 
 #include "actor/evaluation/eval_actor.h"
@@ -12,6 +15,7 @@
 #include "actor/worlds/environment.h"
 #include "common/base/check.h"
 #include "common/base/clock.h"
+#include "common/base/descriptor.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/random.h"
@@ -45,6 +49,24 @@ constexpr microseconds kStep{20'000};
 constexpr microseconds kUpdate{30'000};
 // A run that has not ended by then never will: it lasts 20 s without faults.
 constexpr seconds kPatience{600};
+
+// The coordinator shows its progress on standard output: its log has the same lines.
+class SilentOutput {
+ public:
+  SilentOutput() : kept_((std::fflush(stdout), dup(STDOUT_FILENO))) {
+    const Descriptor nothing(open("/dev/null", O_WRONLY | O_CLOEXEC));
+    CHECK(dup2(nothing.get(), STDOUT_FILENO) == STDOUT_FILENO);
+  }
+  ~SilentOutput() {
+    std::fflush(stdout);
+    dup2(kept_.get(), STDOUT_FILENO);
+  }
+  SilentOutput(const SilentOutput&) = delete;
+  SilentOutput& operator=(const SilentOutput&) = delete;
+
+ private:
+  const Descriptor kept_;
+};
 
 int RunBody(const Blueprint& blueprint, const std::filesystem::path& folder,
             const launch::ProcessSpec& spec, link::Hub& hub) {
@@ -210,6 +232,7 @@ Outcome Simulate(const Blueprint& blueprint, uint64_t seed, const std::vector<Fa
     }
   });
   const SteadyTime end = SteadyTime() + kPatience;
+  const SilentOutput silent;
   while (scheduler.Alive(&coordinator) > 0 && scheduler.NowOutside() < end) {
     scheduler.RunUntil(scheduler.NowOutside() + seconds(1));
   }

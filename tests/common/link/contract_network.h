@@ -24,7 +24,7 @@ class ContractPeer {
   virtual std::string NextGot(milliseconds deadline = std::chrono::seconds(20)) = 0;
   // Destroys writers, readers and hub, and returns after that.
   virtual void Quit() = 0;
-  // Ends without a word. Only where the network's CanKill.
+  // Dies without a word. Only its destruction may follow.
   virtual void Kill() = 0;
 
   std::string Ask(const std::string& command) {
@@ -38,8 +38,6 @@ class ContractNetwork {
   virtual ~ContractNetwork() = default;
   // At most one coordinator, learner and replay at a time.
   virtual std::unique_ptr<ContractPeer> Join(Role role) = 0;
-  // Whether a member can die alone.
-  virtual bool CanKill() const = 0;
 };
 
 // Each member is a thread of this process.

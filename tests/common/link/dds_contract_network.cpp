@@ -33,7 +33,6 @@ class DdsContractNetwork final : public ContractNetwork {
     if (role == Role::kClient) address.tag = "-";  // clients know host and port only
     return std::make_unique<DdsPeer>(std::make_shared<PeerProcess>(RoleName(role), address));
   }
-  bool CanKill() const override { return true; }
 
  private:
   const std::shared_ptr<PeerProcess> coordinator_ = std::make_shared<PeerProcess>();

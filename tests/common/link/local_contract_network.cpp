@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <condition_variable>
 #include <deque>
+#include <memory>
 #include <mutex>
 #include <thread>
 #include <utility>
 
-#include "common/base/check.h"
 #include "common/link/local_network.h"
 #include "tests/common/link/contract_network.h"
 #include "tests/common/link/peer_commands.h"
@@ -48,7 +48,7 @@ class LineQueue {
 class LocalPeer final : public ContractPeer {
  public:
   LocalPeer(LocalNetwork& network, Role role)
-      : thread_([this, &network, role] { Serve(network, role); }) {}
+      : network_(network), hub_(network.Join(role)), thread_([this] { Serve(); }) {}
   ~LocalPeer() override { Quit(); }
 
   void Send(const std::string& command) override { commands_.Put(command); }
@@ -58,18 +58,20 @@ class LocalPeer final : public ContractPeer {
     if (!thread_.joinable()) return;
     commands_.Put("quit");
     thread_.join();
+    hub_.reset();
   }
-  void Kill() override { CHECK(false) << "a thread cannot be killed"; }
+  void Kill() override { network_.Abandon(*hub_); }
 
  private:
-  void Serve(LocalNetwork& network, Role role) {
-    const std::unique_ptr<Hub> hub = network.Join(role);
-    PeerCommands commands(*hub, [this](const std::string& line) { got_.Put(line); });
+  void Serve() {
+    PeerCommands commands(*hub_, [this](const std::string& line) { got_.Put(line); });
     for (std::string line; (line = commands_.Take()) != "quit";) answers_.Put(commands.Run(line));
   }
 
+  LocalNetwork& network_;
   LineQueue commands_, answers_, got_;
-  std::thread thread_;
+  std::unique_ptr<Hub> hub_;
+  std::thread thread_;  // last: it uses the others
 };
 
 class LocalContractNetwork final : public ContractNetwork {
@@ -77,7 +79,6 @@ class LocalContractNetwork final : public ContractNetwork {
   std::unique_ptr<ContractPeer> Join(Role role) override {
     return std::make_unique<LocalPeer>(network_, role);
   }
-  bool CanKill() const override { return false; }
 
  private:
   LocalNetwork network_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tests of the promises of local_network.h beyond the contract (contract_test.cpp).
+// Tests of the promises of local_network.h beyond the contract (contract_fixture.h).
 #include "common/link/local_network.h"
 
 #include <gtest/gtest.h>
