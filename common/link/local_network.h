@@ -34,8 +34,9 @@ class LocalNetwork {
   // network.
   std::unique_ptr<Hub> Join(Role role);
 
-  // As if the hub's process had died without a word, for tests and simulations: its writers and
-  // readers are unmatched, and its readers are not called back any more. They may only be destroyed.
+  // Does what the death of the hub's process would do, for tests and simulations: its writers and
+  // readers are unmatched, and its readers are not called back any more. They may only be
+  // destroyed.
   void Abandon(const Hub& hub);
 
  private:
