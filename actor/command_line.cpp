@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/base/command_line.h"
-#include "common/dds/reach_options.h"
+#include "common/dds/endpoint_options.h"
 
 namespace shoal::actor {
 namespace {
@@ -13,7 +13,7 @@ void AddOptions(CLI::App& app, Options* options) {
   app.add_option("--run", options->run, "run folder (config.json, cluster.json)");
   app.add_option("--id", options->id, "number of this actor within the run");
   app.add_option("--role", options->role, "train or eval")->check(CLI::IsMember({"train", "eval"}));
-  dds::AddReachOptions(&app, &options->reach);
+  dds::AddEndpointOptions(&app, &options->endpoint);
   app.add_flag(
       "--stop-with-input", options->stop_with_input,
       "stop when standard input ends: a remote shell's way to say that its caller is gone");

@@ -7,7 +7,7 @@
 #include <string>
 
 #include "actor/evaluation/evaluation.h"
-#include "common/dds/reach.h"
+#include "common/dds/run_endpoint.h"
 
 namespace CLI {
 class App;
@@ -21,7 +21,7 @@ struct Options {
   CheckpointEvaluation evaluation;
   FrameRecorder::Options frames;
   bool describe = false, stop_with_input = false;
-  dds::Reach reach;
+  dds::EndpointOptions endpoint;
 };
 
 // `options` must outlive the command line.

@@ -110,7 +110,7 @@ int RunActor(const Options& options) {
   if (options.stop_with_input) stop_with_input.emplace();
   const RunMembership member(options.run);
   const Config config = ReadRunConfig(options.run).config;
-  dds::Bus bus(dds::FindPlace(options.run, config.transport, options.reach),
+  dds::Bus bus(dds::FindEndpoint(options.run, config.transport, options.endpoint),
                evaluates ? dds::Role::kEval : dds::Role::kActor);
   if (evaluates) return EvalActor(options.run, bus).Run();
   return TrainingActor(options.run, options.id, bus).Run();

@@ -5,7 +5,7 @@
 #include <memory>
 #include <string>
 
-#include "common/dds/reach.h"
+#include "common/dds/run_endpoint.h"
 
 namespace CLI {
 class App;
@@ -15,7 +15,7 @@ namespace shoal::learner {
 
 struct Options {
   std::string run;  // folder
-  dds::Reach reach;
+  dds::EndpointOptions endpoint;
 };
 
 // `options` must outlive the command line.

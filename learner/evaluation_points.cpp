@@ -7,12 +7,12 @@
 namespace shoal::learner {
 
 EvaluationPoints::EvaluationPoints(const RunConfig& run, uint64_t session, uint64_t env_steps,
-                                   const Agent& agent, Outlet& outlet)
+                                   const Agent& agent, LearnerSink& sink)
     : spec_hash_(run.spec.Hash()),
       session_(session),
       interval_(static_cast<uint64_t>(run.config.eval.interval)),
       agent_(agent),
-      outlet_(outlet),
+      sink_(sink),
       next_((env_steps / interval_ + 1) * interval_) {}
 
 bool EvaluationPoints::Reached(uint64_t env_steps) {
@@ -46,7 +46,7 @@ void EvaluationPoints::Send(const std::string& checkpoint, uint64_t env_steps) {
 }
 
 void EvaluationPoints::Retry() {
-  if (unsent_ && outlet_.Publish(unsent_->message)) unsent_.reset();
+  if (unsent_ && sink_.Publish(unsent_->message)) unsent_.reset();
 }
 
 }  // namespace shoal::learner

@@ -10,16 +10,16 @@
 #include "common/config/run_config.h"
 #include "common/wire/messages.h"
 #include "learner/agent/agent.h"
-#include "learner/outlet.h"
+#include "learner/learner_sink.h"
 
 namespace shoal::learner {
 
-// Borrows agent and outlet. One thread.
+// Borrows agent and sink. One thread.
 class EvaluationPoints {
  public:
   // `env_steps`: stored when a former learner of the run stopped; points up to there are behind.
   EvaluationPoints(const RunConfig& run, uint64_t session, uint64_t env_steps, const Agent& agent,
-                   Outlet& outlet);
+                   LearnerSink& sink);
 
   // True once per multiple of the interval that `env_steps` has come to or passed since the last
   // call; several passed at once are one point.
@@ -42,7 +42,7 @@ class EvaluationPoints {
   const uint64_t spec_hash_, session_;
   uint64_t interval_;  // env steps
   const Agent& agent_;
-  Outlet& outlet_;
+  LearnerSink& sink_;
   uint64_t next_;  // env steps
   struct Unsent {
     EvalWeightsMessage message;  // its payload is `bytes`

@@ -38,7 +38,7 @@ LearnerProgram::LearnerProgram(const std::filesystem::path& folder, const Proces
       restored_(Restore()),
       update_page_(folder, agent_->updates()),
       control_(Now()),
-      outlet_(hub),
+      sink_(hub),
       batches_(MakeFeed(folder, run, session_, agent_->updates(), hub)),
       evaluation_subscriber_(
           hub,
@@ -57,7 +57,7 @@ int LearnerProgram::Run() {
                      .session = session_,
                      .agent = *agent_,
                      .batches = batches_->stream(),
-                     .outlet = outlet_,
+                     .sink = sink_,
                      .checkpoints = checkpoints_,
                      .pending_evaluations = pending_evaluations_,
                      .control = control_,

@@ -18,7 +18,7 @@
 #include "learner/agent/algorithms.h"
 #include "learner/batch_feed.h"
 #include "learner/checkpoint_store.h"
-#include "learner/hub_outlet.h"
+#include "learner/hub_learner_sink.h"
 #include "learner/pending_evaluations.h"
 
 namespace shoal::learner {
@@ -52,7 +52,7 @@ class LearnerProgram {
   UpdatePage update_page_;
   PendingEvaluations pending_evaluations_;
   ControlState control_;
-  HubOutlet outlet_;
+  HubLearnerSink sink_;
   const std::unique_ptr<BatchFeed> batches_;
   link::Reader<EvalMessage> evaluation_subscriber_;
   link::Reader<ControlMessage> control_subscriber_;

@@ -32,7 +32,7 @@ int Run(int argc, char** argv) {
   const int threads = shoal::LearnerThreads(run.config, shoal::UsableCores());
   shoal::learner::EnsurePassiveOpenMp(threads, argv);
   const shoal::RunMembership member(options.run);
-  shoal::dds::Bus bus(shoal::dds::FindPlace(options.run, run.config.transport, options.reach),
+  shoal::dds::Bus bus(shoal::dds::FindEndpoint(options.run, run.config.transport, options.endpoint),
                       shoal::dds::Role::kLearner);
   return shoal::learner::LearnerProgram(options.run, name, run, threads, bus).Run();
 }

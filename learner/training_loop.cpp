@@ -33,9 +33,9 @@ uint64_t CountInForce(const ControlState& control, std::string_view key, uint64_
 TrainingLoop::TrainingLoop(const Parts& parts, const std::optional<CheckpointState>& restored)
     : parts_(parts),
       config_(parts_.run.config),
-      weights_(parts.run, parts.precision, parts.session, parts.agent, parts.outlet),
+      weights_(parts.run, parts.precision, parts.session, parts.agent, parts.sink),
       evaluations_(parts.run, parts.session, restored ? restored->env_steps : 0, parts.agent,
-                   parts.outlet),
+                   parts.sink),
       report_(parts.name, parts.run),
       on_policy_(LearnsOnPolicy(config_)),
       budget_(static_cast<uint64_t>(config_.env_steps)),
@@ -149,11 +149,11 @@ void TrainingLoop::MakeEvaluationPoint() {
 }
 
 void TrainingLoop::TellProgress() {
-  parts_.outlet.Publish(LearnerProgress{.session = parts_.session,
-                                        .updates = parts_.agent.updates(),
-                                        .env_steps = env_steps_,
-                                        .drained = drained_,
-                                        .evaluations = evaluations_asked_});
+  parts_.sink.Publish(LearnerProgress{.session = parts_.session,
+                                      .updates = parts_.agent.updates(),
+                                      .env_steps = env_steps_,
+                                      .drained = drained_,
+                                      .evaluations = evaluations_asked_});
 }
 
 std::string TrainingLoop::WriteCheckpoint() {
@@ -260,7 +260,7 @@ void TrainingLoop::Report(bool now) {
                                .seconds = seconds_,
                                .batches = parts_.batches.counters()};
   TellProgress();
-  parts_.outlet.Publish(report_.Make(figures));
+  parts_.sink.Publish(report_.Make(figures));
 }
 
 const char* TrainingLoop::State() const {

@@ -30,7 +30,7 @@
 #include "learner/checkpoint_store.h"
 #include "learner/evaluation_points.h"
 #include "learner/learner_report.h"
-#include "learner/outlet.h"
+#include "learner/learner_sink.h"
 #include "learner/pending_evaluations.h"
 #include "learner/weights_sender.h"
 
@@ -49,7 +49,7 @@ class TrainingLoop {
     uint64_t session = 0;  // this learner's: wall-clock ns at its start
     Agent& agent;          // fresh, or as in `restored`
     BatchStream& batches;
-    Outlet& outlet;
+    LearnerSink& sink;
     CheckpointStore& checkpoints;
     PendingEvaluations& pending_evaluations;
     ControlState& control;

@@ -10,20 +10,20 @@
 namespace shoal::learner {
 
 WeightsSender::WeightsSender(const RunConfig& run, nn::Precision precision, uint64_t session,
-                             const Agent& agent, Outlet& outlet)
+                             const Agent& agent, LearnerSink& sink)
     : config_(run.config),
       spec_hash_(run.spec.Hash()),
       session_(session),
       rounds_(precision == nn::Precision::kBf16 && !LearnsOnPolicy(run.config)),
       agent_(agent),
-      outlet_(outlet),
+      sink_(sink),
       awaited_(config_.lockstep || LearnsOnPolicy(config_)),
       period_(static_cast<uint64_t>(config_.learner.weights_period)) {}
 
 void WeightsSender::AfterUpdate(uint64_t env_steps) {
   due_ = due_ || Due(agent_.updates());
   if (!due_) return;
-  if (!awaited_ && Now() - last_sent_ < kPatience && !outlet_.WeightsArrived()) return;
+  if (!awaited_ && Now() - last_sent_ < kPatience && !sink_.WeightsArrived()) return;
   Send(env_steps);
 }
 
@@ -34,7 +34,7 @@ void WeightsSender::Send(uint64_t env_steps) {
   message.version = {session_, agent_.updates()};
   message.env_steps = env_steps;
   message.payload = {reinterpret_cast<const uint8_t*>(bytes.data()), bytes.size()};
-  due_ = !outlet_.Publish(message);
+  due_ = !sink_.Publish(message);
   ++(due_ ? unsent_ : sent_);
   last_sent_ = Now();
 }

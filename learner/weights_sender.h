@@ -17,15 +17,15 @@
 #include "common/config/run_config.h"
 #include "common/nn/precision.h"
 #include "learner/agent/agent.h"
-#include "learner/outlet.h"
+#include "learner/learner_sink.h"
 
 namespace shoal::learner {
 
-// Borrows agent and outlet. One thread.
+// Borrows agent and sink. One thread.
 class WeightsSender {
  public:
   WeightsSender(const RunConfig& run, nn::Precision precision, uint64_t session, const Agent& agent,
-                Outlet& outlet);
+                LearnerSink& sink);
 
   // Call after each update: sends when it is time.
   void AfterUpdate(uint64_t env_steps);
@@ -57,7 +57,7 @@ class WeightsSender {
   const uint64_t spec_hash_, session_;
   const bool rounds_;  // to BF16
   const Agent& agent_;
-  Outlet& outlet_;
+  LearnerSink& sink_;
   const bool awaited_;  // by actors that do not step meanwhile
   uint64_t period_;
   bool due_ = false;

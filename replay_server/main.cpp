@@ -33,7 +33,7 @@ int Run(int argc, char** argv) {
   const shoal::ProcessName name = topology.OnlyReplay().Name();
   shoal::log::Start(name.Text(), "");
   shoal::tasks::LoadTaskLibrary(config.task_library);
-  shoal::dds::Bus bus(shoal::dds::FindPlace(options.run, config.transport, options.reach),
+  shoal::dds::Bus bus(shoal::dds::FindEndpoint(options.run, config.transport, options.endpoint),
                       shoal::dds::Role::kReplay);
   return shoal::replay::ReplayService(options.run, name, bus).Run();
 }

@@ -97,8 +97,8 @@ Evaluator::Evaluator(const RunConfig& run, bool noop, const EnvironmentFactory& 
       vector_(size_t(run.spec.RecordedVectorSize())) {
   int e = 0;
   for (auto& environment : make(run, run.config.eval.envs)) {
-    const Seat::PolicyInput input{selector_.FrameStackOf(e), selector_.VectorOf(e)};
-    players_.push_back({.seat = Seat(std::move(environment), input),
+    const EpisodeRunner::PolicyInput input{selector_.FrameStackOf(e), selector_.VectorOf(e)};
+    players_.push_back({.runner = EpisodeRunner(std::move(environment), input),
                         .facts = FailureFacts(run.spec, PlayedTask(run.config))});
     ++e;
   }
@@ -108,14 +108,14 @@ EpisodeStream EvaluationStream(int64_t seed, uint64_t env_steps, uint64_t update
   return {seed, StreamRole::kEvalEnvironment, HashWords({env_steps, updates})};
 }
 
-void Evaluator::Listen(SeatListener* listener) {
+void Evaluator::Listen(EpisodeListener* listener) {
   CHECK(players_.size() == 1) << players_.size();
-  players_[0].seat.set_listener(listener);
+  players_[0].runner.set_listener(listener);
 }
 
 void Evaluator::Begin(int e, const EpisodeStream& stream, Played* played) {
   Player& player = players_[size_t(e)];
-  while (!player.seat.running() && played->begun < static_cast<int>(played->results.size())) {
+  while (!player.runner.running() && played->begun < static_cast<int>(played->results.size())) {
     player.episode = played->begun++;
     player.begun = false;
     const uint64_t key = stream.Key(player.episode);
@@ -123,7 +123,7 @@ void Evaluator::Begin(int e, const EpisodeStream& stream, Played* played) {
     // draws.
     selector_.BeginEpisode(e, HashWords({key, static_cast<uint64_t>(StreamRole::kEvalPolicy)}));
     try {
-      player.seat.Begin(key, {frame_, vector_});
+      player.runner.Begin(key, {frame_, vector_});
       player.facts.Begin(vector_);
       player.begun = true;
     } catch (const worlds::EpisodeFault& fault) {
@@ -136,19 +136,19 @@ void Evaluator::Begin(int e, const EpisodeStream& stream, Played* played) {
 void Evaluator::Step(int e, Played* played) {
   Player& player = players_[size_t(e)];
   try {
-    player.seat.Step(noop_.empty() ? selector_.ActionOf(e) : noop_, {frame_, vector_});
+    player.runner.Step(noop_.empty() ? selector_.ActionOf(e) : noop_, {frame_, vector_});
   } catch (const worlds::EpisodeFault& fault) {
     faults_.Count(fault);
     End(player, fault.cause(), played);
     return;
   }
   player.facts.Step(vector_);
-  if (!player.seat.running()) End(player, std::nullopt, played);
+  if (!player.runner.running()) End(player, std::nullopt, played);
 }
 
 void Evaluator::End(const Player& player, std::optional<worlds::FaultCause> fault, Played* played) {
   EpisodeResult& result = played->results[static_cast<size_t>(player.episode)];
-  result = {.seed = player.episode, .figures = player.seat.figures(), .fault = fault};
+  result = {.seed = player.episode, .figures = player.runner.figures(), .fault = fault};
   if (!player.begun) result.figures.final_distance = std::numeric_limits<double>::quiet_NaN();
   played->ended[static_cast<size_t>(player.episode)] = true;
   ++played->done;
@@ -164,7 +164,7 @@ void Evaluator::End(const Player& player, std::optional<worlds::FaultCause> faul
 std::vector<EpisodeResult> Evaluator::Play(int episodes, const EpisodeStream& stream,
                                            const std::function<bool()>& stop,
                                            const std::function<void(int ended)>& on_ended) {
-  for (Player& player : players_) player.seat.Abandon();  // of a call that was stopped
+  for (Player& player : players_) player.runner.Abandon();  // of a call that was stopped
   Played played;
   played.results.resize(static_cast<size_t>(episodes));
   played.ended.resize(played.results.size());
@@ -179,7 +179,7 @@ std::vector<EpisodeResult> Evaluator::Play(int episodes, const EpisodeStream& st
     for (int e = 0; e < envs; ++e) Begin(e, stream, &played);
     selector_.Select(Acting::kMean);
     for (int e = 0; e < envs; ++e) {
-      if (players_[size_t(e)].seat.running()) Step(e, &played);
+      if (players_[size_t(e)].runner.running()) Step(e, &played);
     }
     while (on_ended && told < played.done) on_ended(++told);
   }

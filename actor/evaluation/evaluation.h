@@ -13,8 +13,8 @@
 
 #include "actor/acting/action_selector.h"
 #include "actor/acting/environments.h"
+#include "actor/acting/episode_runner.h"
 #include "actor/acting/fault_log.h"
-#include "actor/acting/seat.h"
 #include "actor/evaluation/failure_cause.h"
 #include "actor/evaluation/frame_recorder.h"
 #include "actor/worlds/environment.h"
@@ -71,7 +71,7 @@ class Evaluator {
   ActionSelector& selector() { return selector_; }
   // Tells the listener, borrowed, of every episode from now on. CHECK that there is one
   // environment, so that episodes come one after the other.
-  void Listen(SeatListener* listener);
+  void Listen(EpisodeListener* listener);
 
   // Plays `episodes` whole episodes, actions by the mean of the policy (or uniform random before
   // any weights). When `stop`, asked after each step, says so before they are done: those of the
@@ -84,7 +84,7 @@ class Evaluator {
 
  private:
   struct Player {
-    Seat seat;
+    EpisodeRunner runner;
     FailureFacts facts;
     int64_t episode = 0;
     bool begun = false;  // the episode has a first observation

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Records what one seat's policy sees and does, and a larger view of it, into a stream of frames
-// (common/image/frame_stream.h): for films.
+// Records what the policy of one episode runner sees and does, and a larger view of it, into a
+// stream of frames (common/image/frame_stream.h): for films.
 #pragma once
 
 #include <cstdint>
@@ -9,17 +9,17 @@
 #include <string>
 #include <vector>
 
-#include "actor/acting/seat.h"
+#include "actor/acting/episode_runner.h"
 #include "common/config/run_config.h"
 #include "common/image/frame_stream.h"
 
 namespace shoal::actor {
 
 // The view is drawn by an environment of its own, which plays the same episodes by the same
-// actions: equal stream keys and actions give equal physics, so the seat's environment needs to
+// actions: equal stream keys and actions give equal physics, so the runner's environment needs to
 // know nothing of it. The view shows the goal's marker, whether or not the policy's pictures do.
 // Owns that environment. One thread.
-class FrameRecorder final : public SeatListener {
+class FrameRecorder final : public EpisodeListener {
  public:
   struct Options {
     std::filesystem::path file;

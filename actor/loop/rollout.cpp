@@ -28,7 +28,7 @@ Rollout::Options Rollout::Options::Of(const Config& config, uint32_t first_env) 
 }
 
 Rollout::Rollout(const Options& options, const ObservationSpec& spec,
-                 std::vector<std::unique_ptr<worlds::Environment>> environments, MadePage& made,
+                 std::vector<std::unique_ptr<worlds::Environment>> environments, SequenceLog& made,
                  RecordSink& sink, ActionSelector& selector)
     : options_(options),
       layout_(spec),
@@ -39,8 +39,9 @@ Rollout::Rollout(const Options& options, const ObservationSpec& spec,
       faults_(options.max_faulty_share) {
   CHECK(!environments.empty());
   for (size_t e = 0; e < environments.size(); ++e) {
-    const Seat::PolicyInput input{selector.FrameStackOf(int(e)), selector.VectorOf(int(e))};
-    slots_.push_back({.seat = Seat(std::move(environments[e]), input), .actions = {}});
+    const EpisodeRunner::PolicyInput input{selector.FrameStackOf(int(e)),
+                                           selector.VectorOf(int(e))};
+    slots_.push_back({.runner = EpisodeRunner(std::move(environments[e]), input), .actions = {}});
   }
 }
 
@@ -73,13 +74,13 @@ bool Rollout::WarmingUp() const {
 }
 
 void Rollout::AbandonEpisodes() {
-  for (Slot& slot : slots_) slot.seat.Abandon();
+  for (Slot& slot : slots_) slot.runner.Abandon();
 }
 
 StageSeconds Rollout::seconds() const {
   StageSeconds seconds;
   for (const Slot& slot : slots_) {
-    seconds.rendering += slot.seat.environment().render_seconds();
+    seconds.rendering += slot.runner.environment().render_seconds();
   }
   seconds.physics = environment_seconds_ - seconds.rendering;
   seconds.inference = inference_seconds_;
@@ -87,7 +88,7 @@ StageSeconds Rollout::seconds() const {
 }
 
 void Rollout::BeginEpisodes() {
-  const auto running = [](const Slot& slot) { return slot.seat.running(); };
+  const auto running = [](const Slot& slot) { return slot.runner.running(); };
   const bool together = std::ranges::none_of(slots_, running);
   for (int e = 0; e < static_cast<int>(slots_.size()); ++e) {
     if (owed_[size_t(e)] && !running(slots_[size_t(e)]))
@@ -101,7 +102,7 @@ int Rollout::CutAfter(int e) const {
   return steps < options_.episode_steps ? static_cast<int>(steps) : 0;
 }
 
-void Rollout::ResetSeat(int e, int cut_after, uint8_t* record) {
+void Rollout::ResetRunner(int e, int cut_after, uint8_t* record) {
   Slot& slot = slots_[size_t(e)];
   // A task that cannot begin at all would be asked for ever where max_faulty_share allows it.
   for (int attempts = 1;; ++attempts) {
@@ -110,8 +111,8 @@ void Rollout::ResetSeat(int e, int cut_after, uint8_t* record) {
     selector_.BeginEpisode(e, StreamKeyOf(StreamRole::kTrainPolicy, e));
     try {
       RecordLayout::Header(record).distance =
-          slot.seat.Begin(StreamKeyOf(StreamRole::kTrainEnvironment, e),
-                          {layout_.Frame(record), layout_.Vector(record)}, cut_after);
+          slot.runner.Begin(StreamKeyOf(StreamRole::kTrainEnvironment, e),
+                            {layout_.Frame(record), layout_.Vector(record)}, cut_after);
       return;
     } catch (const worlds::EpisodeFault& fault) {
       faults_.Count(fault);
@@ -123,7 +124,7 @@ void Rollout::ResetSeat(int e, int cut_after, uint8_t* record) {
 
 void Rollout::BeginEpisode(int e, int cut_after) {
   uint8_t* record = sink_.BeginRecord();
-  ResetSeat(e, cut_after, record);
+  ResetRunner(e, cut_after, record);
   if (goal_pictures_) {
     // The picture is known once the reset is: the reset waits while the goal goes first.
     reset_.assign(record, record + layout_.record_bytes());
@@ -136,7 +137,7 @@ void Rollout::BeginEpisode(int e, int cut_after) {
 }
 
 void Rollout::PublishGoal(int e, uint8_t* record) {
-  const std::span<const uint8_t> picture = slots_[size_t(e)].seat.environment().goal_picture();
+  const std::span<const uint8_t> picture = slots_[size_t(e)].runner.environment().goal_picture();
   CHECK(picture.size() == size_t(layout_.frame_bytes())) << picture.size();
   std::ranges::copy(picture, layout_.Frame(record).begin());
   FillHeader(e, RecordKind::kGoal, &RecordLayout::Header(record));
@@ -144,9 +145,9 @@ void Rollout::PublishGoal(int e, uint8_t* record) {
 }
 
 void Rollout::OnFault(int e, const worlds::EpisodeFault& fault) {
-  const Seat& seat = slots_[size_t(e)].seat;
+  const EpisodeRunner& runner = slots_[size_t(e)].runner;
   faults_.Count(fault);
-  if (seat.cut_after() == 0 && seat.figures().length > 0) episodes_.Add(seat.figures());
+  if (runner.cut_after() == 0 && runner.figures().length > 0) episodes_.Add(runner.figures());
 }
 
 bool Rollout::StepOne(int e) {
@@ -158,7 +159,7 @@ bool Rollout::StepOne(int e) {
   std::ranges::copy(selector_.DrawnOf(e), layout_.DrawnAction(record).begin());
   worlds::StepResult result;
   try {
-    result = slot.seat.Step(action, {layout_.Frame(record), layout_.Vector(record)});
+    result = slot.runner.Step(action, {layout_.Frame(record), layout_.Vector(record)});
   } catch (const worlds::EpisodeFault& fault) {
     OnFault(e, fault);  // the record that was begun is begun anew by whoever comes next
     return false;
@@ -173,9 +174,9 @@ bool Rollout::StepOne(int e) {
       static_cast<uint8_t>((result.terminated ? kTerminated : 0) |
                            (result.truncated ? kTruncated : 0) | (result.success ? kSuccess : 0));
   Publish(record);
-  if (!slot.seat.running()) {
+  if (!slot.runner.running()) {
     faults_.Ended();
-    if (slot.seat.cut_after() == 0) episodes_.Add(slot.seat.figures());
+    if (slot.runner.cut_after() == 0) episodes_.Add(slot.runner.figures());
   }
   return true;
 }
@@ -187,11 +188,11 @@ RolloutState Rollout::State() const {
     const Slot& slot = slots_[size_t(e)];
     state.episodes.push_back(
         {.episode = slot.episode,
-         .running = slot.seat.running(),
-         .cut_after = slot.seat.running() ? slot.seat.cut_after() : 0,
+         .running = slot.runner.running(),
+         .cut_after = slot.runner.running() ? slot.runner.cut_after() : 0,
          .owes = !owed_.empty() && owed_[size_t(e)],
          .noise = selector_.NoiseOf(e),
-         .actions = slot.seat.running() ? slot.actions : std::vector<float>()});
+         .actions = slot.runner.running() ? slot.actions : std::vector<float>()});
   }
   return state;
 }
@@ -217,10 +218,10 @@ void Rollout::PlayAgain(int e, const EpisodeState& state) {
   std::vector<uint8_t> memory(static_cast<size_t>(layout_.record_bytes()));
   const worlds::ObservationOut unread{layout_.Frame(memory.data()), layout_.Vector(memory.data())};
   slot.episode = state.episode;
-  slot.seat.Begin(StreamKeyOf(StreamRole::kTrainEnvironment, e), unread, state.cut_after);
+  slot.runner.Begin(StreamKeyOf(StreamRole::kTrainEnvironment, e), unread, state.cut_after);
   const auto action_size = static_cast<size_t>(layout_.action_size());
   for (size_t at = 0; at + action_size <= state.actions.size(); at += action_size) {
-    slot.seat.Step({state.actions.data() + at, action_size}, unread);
+    slot.runner.Step({state.actions.data() + at, action_size}, unread);
   }
   slot.actions = state.actions;
   selector_.SetNoise(e, state.noise);
@@ -241,7 +242,7 @@ void Rollout::FillHeader(int e, RecordKind kind, RecordHeader* header) const {
   header->time_ns = WallTimeNs();
   header->env = options_.first_env + static_cast<uint32_t>(e);
   header->episode = slot.episode;
-  header->index = static_cast<uint32_t>(slot.seat.figures().length);
+  header->index = static_cast<uint32_t>(slot.runner.figures().length);
   header->kind = kind;
   header->version = kRecordVersion;
 }

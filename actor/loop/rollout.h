@@ -21,11 +21,11 @@
 
 #include "actor/acting/action_selector.h"
 #include "actor/acting/episode_log.h"
+#include "actor/acting/episode_runner.h"
 #include "actor/acting/fault_log.h"
-#include "actor/acting/seat.h"
 #include "actor/loop/rollout_state.h"
-#include "actor/sending/made_page.h"
 #include "actor/sending/record_sink.h"
+#include "actor/sending/sequence_log.h"
 #include "actor/worlds/environment.h"
 #include "common/base/random.h"
 #include "common/spec/record.h"
@@ -55,7 +55,7 @@ class Rollout {
   };
   // The environments observe what `spec` says and are as many as the selector chooses for.
   Rollout(const Options& options, const ObservationSpec& spec,
-          std::vector<std::unique_ptr<worlds::Environment>> environments, MadePage& made,
+          std::vector<std::unique_ptr<worlds::Environment>> environments, SequenceLog& made,
           RecordSink& sink, ActionSelector& selector);
 
   // One step of every environment, episodes beginning where the last ended. False while the sink
@@ -85,7 +85,7 @@ class Rollout {
 
  private:
   struct Slot {
-    Seat seat;
+    EpisodeRunner runner;
     uint32_t episode = 0;
     std::vector<float> actions;  // of the running episode
   };
@@ -95,7 +95,7 @@ class Rollout {
   void BeginEpisodes();
   void BeginEpisode(int e, int cut_after);
   // Resets the environment for the first of its next episodes that can begin; `record` gets it.
-  void ResetSeat(int e, int cut_after, uint8_t* record);
+  void ResetRunner(int e, int cut_after, uint8_t* record);
   // Of an episode that begins together with those of all others; 0 = it is not cut.
   int CutAfter(int e) const;
   // False: the step was faulty and is not recorded.
@@ -112,7 +112,7 @@ class Rollout {
   const Options options_;
   const RecordLayout layout_;
   const bool goal_pictures_;
-  MadePage& made_;
+  SequenceLog& made_;
   RecordSink& sink_;
   ActionSelector& selector_;
   std::vector<Slot> slots_;

@@ -21,7 +21,7 @@
 #include "actor/sending/actor_lock.h"
 #include "actor/sending/chunk_sender.h"
 #include "actor/sending/chunk_window.h"
-#include "actor/sending/made_page.h"
+#include "actor/sending/sequence_log.h"
 #include "common/config/run_config.h"
 #include "common/link/hub.h"
 #include "common/link/metrics_writer.h"
@@ -58,7 +58,7 @@ class TrainingActor {
   const std::optional<RolloutState> resumed_;  // lockstep
   const uint64_t session_;
   const uint32_t first_env_;
-  MadePage made_;
+  SequenceLog made_;
   ChunkWindow window_;
   ActionSelector selector_;
   Rollout rollout_;

@@ -8,7 +8,7 @@
 #   MUJOCO_INCLUDE_DIR, MUJOCO_LIBRARY
 
 # What a task uses is found in the program that loads it. Python shows the names of its modules to
-# nobody: libraries for it need the module by its soname (launch/python), and the loader takes the
+# nobody: libraries for it need the module by its soname (launch/tools/python), and the loader takes the
 # one that is loaded. An empty library stands for it when they are linked.
 function(shoal_python_module_stand_in)
   if(TARGET shoal_python_module)

@@ -17,7 +17,7 @@
 
 #include "common/config/config.h"
 #include "common/config/run_files.h"
-#include "common/dds/reach.h"
+#include "common/dds/run_endpoint.h"
 #include "common/link/hub.h"
 
 namespace shoal::dds {
@@ -40,7 +40,7 @@ class Bus final : public link::Hub {
   // The environment variable SHOAL_DDS_XML names a file that replaces the built-in Cyclone DDS
   // configuration; docs/wire_format.md lists the placeholders it may use.
   Bus(const ClusterAddress& address, const TransportConfig& transport, Role role);
-  Bus(const Place& place, Role role) : Bus(place.address, place.transport, role) {}
+  Bus(const RunEndpoint& endpoint, Role role) : Bus(endpoint.address, endpoint.transport, role) {}
   // Writers and readers of the bus must be gone.
   ~Bus() override;
   Bus(const Bus&) = delete;

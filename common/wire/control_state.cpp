@@ -5,7 +5,7 @@ namespace shoal {
 
 void ControlState::OnMessage(const ControlMessage& message, SteadyTime now) {
   const MutexLock lock(mutex_);
-  silence_.Heard(now);
+  liveness_.Heard(now);
   heard_ = true;
   if (message.epoch < epoch_) return;
   epoch_ = message.epoch;
@@ -29,7 +29,7 @@ std::optional<double> ControlState::Setting(std::string_view key) const {
 
 bool ControlState::CoordinatorLost(SteadyTime now) {
   const MutexLock lock(mutex_);
-  return silence_.Look(now) > (heard_ ? kLease : kFirstLease);
+  return liveness_.Look(now) > (heard_ ? kLease : kFirstLease);
 }
 
 }  // namespace shoal

@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "common/base/clock.h"
+#include "common/base/liveness_timer.h"
 #include "common/base/mutex.h"
-#include "common/base/silence.h"
 #include "common/wire/messages.h"
 
 namespace shoal {
@@ -19,7 +19,7 @@ namespace shoal {
 class ControlState {
  public:
   // `start`: when waiting for the first heartbeat began.
-  explicit ControlState(SteadyTime start) : silence_(start) {}
+  explicit ControlState(SteadyTime start) : liveness_(start) {}
 
   // Any thread. Older epochs than the newest seen are ignored.
   void OnMessage(const ControlMessage& message, SteadyTime now);
@@ -41,7 +41,7 @@ class ControlState {
 
  private:
   mutable Mutex mutex_;
-  Silence silence_ SHOAL_GUARDED_BY(mutex_);
+  LivenessTimer liveness_ SHOAL_GUARDED_BY(mutex_);
   bool heard_ SHOAL_GUARDED_BY(mutex_) = false;
   uint64_t epoch_ SHOAL_GUARDED_BY(mutex_) = 0;
   RunState state_ SHOAL_GUARDED_BY(mutex_) = RunState::kRunning;

@@ -10,7 +10,7 @@
 #include "actor/acting/action_selector.h"
 #include "actor/loop/rollout.h"
 #include "actor/sending/chunk_window.h"
-#include "actor/sending/made_page.h"
+#include "actor/sending/sequence_log.h"
 #include "common/base/aligned_bytes.h"
 #include "common/config/run_config.h"
 #include "common/wire/batch_schema.h"
@@ -40,7 +40,7 @@ class LocalCollection {
 
   const RunConfig run_;
   replay::ReplayCore core_;
-  actor::MadePage made_;
+  actor::SequenceLog made_;
   actor::ChunkWindow window_;
   actor::ActionSelector selector_;
   actor::Rollout rollout_;

@@ -16,10 +16,10 @@
 #include "common/config/run_files.h"
 #include "common/run_folder/run_file_names.h"
 #include "launch/commands/json_output.h"
-#include "launch/observability/observability.h"
 #include "launch/processes/actor_program.h"
 #include "launch/record/run_folder.h"
 #include "launch/record/run_inputs.h"
+#include "launch/tools/observability/observability.h"
 
 namespace shoal::launch {
 namespace {

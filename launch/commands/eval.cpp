@@ -19,11 +19,11 @@
 #include "launch/commands/commands.h"
 #include "launch/commands/json_output.h"
 #include "launch/commands/target_options.h"
-#include "launch/experiment/baselines.h"
 #include "launch/processes/actor_program.h"
 #include "launch/processes/scratch_folder.h"
 #include "launch/record/evaluation_seed.h"
 #include "launch/record/run_folder.h"
+#include "launch/tools/experiment/baselines.h"
 
 namespace shoal::launch {
 namespace {

@@ -6,9 +6,9 @@
 
 #include "common/base/error.h"
 #include "launch/commands/commands.h"
-#include "launch/experiment/run_experiment.h"
-#include "launch/experiment/stored_summary.h"
-#include "launch/experiment/summary.h"
+#include "launch/tools/experiment/run_experiment.h"
+#include "launch/tools/experiment/stored_summary.h"
+#include "launch/tools/experiment/summary.h"
 
 namespace shoal::launch {
 namespace {

@@ -8,9 +8,9 @@
 #include "common/policy/checkpoint_policy.h"
 #include "launch/commands/commands.h"
 #include "launch/commands/target_options.h"
-#include "launch/export/onnx_export.h"
-#include "launch/export/samples.h"
-#include "launch/export/sb3_policy.h"
+#include "launch/tools/export/onnx_export.h"
+#include "launch/tools/export/samples.h"
+#include "launch/tools/export/sb3_policy.h"
 
 namespace shoal::launch {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "launch/film/film.h"
+#include "launch/tools/film/film.h"
 
 #include <CLI/CLI.hpp>
 #include <iostream>
@@ -11,7 +11,7 @@
 #include "common/tensorboard/event_writer.h"
 #include "launch/commands/commands.h"
 #include "launch/commands/target_options.h"
-#include "launch/film/film_checkpoints.h"
+#include "launch/tools/film/film_checkpoints.h"
 
 namespace shoal::launch {
 namespace {

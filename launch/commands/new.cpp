@@ -4,7 +4,7 @@
 #include <memory>
 
 #include "launch/commands/commands.h"
-#include "launch/project/new_project.h"
+#include "launch/tools/project/new_project.h"
 
 namespace shoal::launch {
 

@@ -10,9 +10,9 @@
 #include "common/run_folder/run_file_names.h"
 #include "launch/commands/commands.h"
 #include "launch/commands/target_options.h"
-#include "launch/dataset/export_episodes.h"
-#include "launch/dataset/minari_metadata.h"
 #include "launch/record/run_folder.h"
+#include "launch/tools/dataset/export_episodes.h"
+#include "launch/tools/dataset/minari_metadata.h"
 #include "replay_server/core/peek.h"
 #include "replay_server/core/replay_core.h"
 

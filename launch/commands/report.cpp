@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "launch/report/report.h"
+#include "launch/tools/report/report.h"
 
 #include <fmt/core.h>
 
@@ -14,9 +14,9 @@
 #include "launch/commands/json_output.h"
 #include "launch/commands/target_options.h"
 #include "launch/record/run_folder.h"
-#include "launch/report/card.h"
-#include "launch/report/compare.h"
-#include "launch/report/plot.h"
+#include "launch/tools/report/card.h"
+#include "launch/tools/report/compare.h"
+#include "launch/tools/report/plot.h"
 
 namespace shoal::launch {
 namespace {

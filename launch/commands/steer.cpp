@@ -8,7 +8,7 @@
 #include <thread>
 
 #include "common/base/error.h"
-#include "common/base/silence.h"
+#include "common/base/liveness_timer.h"
 #include "common/base/stop.h"
 #include "common/link/role.h"
 #include "common/wire/process_name.h"
@@ -38,12 +38,12 @@ constexpr seconds kStopped{3600};  // for a run that had begun its last evaluati
 bool WatchUntil(RunClient& client, seconds most,
                 const std::function<bool(const RunViewMessage&)>& done) {
   const SteadyTime deadline = Now() + most;
-  Silence silence(Now());
+  LivenessTimer liveness(Now());
   while (!StopRequested() && Now() < deadline) {
     const auto view = client.WaitForView(std::min(deadline, Now() + kLookAtSilence));
-    if (view) silence.Heard(Now());
+    if (view) liveness.Heard(Now());
     if (view && done(*view)) return true;
-    if (silence.Look(Now()) > kCoordinatorSilence) {
+    if (liveness.Look(Now()) > kCoordinatorSilence) {
       throw RuntimeError(
           "accepted, but the run's coordinator has been silent for {} s: see shoal runs",
           kCoordinatorSilence.count());

@@ -9,7 +9,7 @@
 #include "common/base/stop.h"
 #include "launch/commands/commands.h"
 #include "launch/commands/target_options.h"
-#include "launch/web/web_server.h"
+#include "launch/tools/web/web_server.h"
 
 namespace shoal::launch {
 namespace {

@@ -172,8 +172,8 @@ void PushRun(const fs::path& run, const ActorRange& actors, RemoteHost* host,
   }
 }
 
-void FetchMadePages(const RemoteHost& host, const ActorRange& actors, const fs::path& run,
-                    const StopQuestion& stop) {
+void FetchSequenceLogs(const RemoteHost& host, const ActorRange& actors, const fs::path& run,
+                       const StopQuestion& stop) {
   if (host.shared) return;
   const ScratchFolder scratch;
   const fs::path archive = scratch.path() / "made.tar";

@@ -37,8 +37,8 @@ void PushRun(const std::filesystem::path& run, const ActorRange& actors, RemoteH
              const StopQuestion& stop);
 
 // Copies the counter pages of these actors from host.run to RUN/made. Throws Error naming the host.
-void FetchMadePages(const RemoteHost& host, const ActorRange& actors,
-                    const std::filesystem::path& run, const StopQuestion& stop);
+void FetchSequenceLogs(const RemoteHost& host, const ActorRange& actors,
+                       const std::filesystem::path& run, const StopQuestion& stop);
 
 // Training actor `id` there, as a child of ours: it stops when its input is closed.
 ProcessSpec RemoteActor(const RemoteHost& host, int id, const std::filesystem::path& run);

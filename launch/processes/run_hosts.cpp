@@ -14,7 +14,7 @@ namespace fs = std::filesystem;
 void Fetch(const fs::path& run, const Config& config, const Hosts& hosts, size_t index,
            const std::function<void(const std::string&)>& say, const StopQuestion& stop) {
   try {
-    FetchMadePages(hosts.hosts[index], ActorsOf(config, hosts.hosts, index), run, stop);
+    FetchSequenceLogs(hosts.hosts[index], ActorsOf(config, hosts.hosts, index), run, stop);
   } catch (const Error& e) {
     say(fmt::format("warning: {}", e.what()));
   }

@@ -29,7 +29,7 @@ void PushToHosts(const std::filesystem::path& run, const Config& config, const s
                  Hosts* hosts, const std::function<void(const std::string&)>& say,
                  const StopQuestion& stop);
 
-// FetchMadePages of each host; a failure is said and goes on with the next one.
+// FetchSequenceLogs of each host; a failure is said and goes on with the next one.
 void FetchFromHosts(const std::filesystem::path& run, const Config& config, const Hosts& hosts,
                     const std::function<void(const std::string&)>& say, const StopQuestion& stop);
 

@@ -12,7 +12,7 @@
 #include "common/base/check.h"
 #include "common/base/error.h"
 #include "common/base/write_faults.h"
-#include "launch/processes/last_words.h"
+#include "launch/processes/exit_reason.h"
 
 namespace shoal::launch {
 namespace {
@@ -52,8 +52,8 @@ std::string TooOften(const RestartLimits& limits) {
                      limits.window.count());
 }
 
-std::string Describe(const ExitStatus& status, const std::string& last_words) {
-  return fmt::format("{}{}{}", status.Describe(), last_words.empty() ? "" : ": ", last_words);
+std::string Describe(const ExitStatus& status, const std::string& exit_reason) {
+  return fmt::format("{}{}{}", status.Describe(), exit_reason.empty() ? "" : ": ", exit_reason);
 }
 
 double Seconds(std::chrono::milliseconds delay) {
@@ -83,7 +83,7 @@ void Supervisor::Start(const ProcessSpec& spec) {
               .policy = RestartPolicy(limits_),
               .connection = RestartPolicy(ConnectionLimits(limits_)),
               .process = nullptr,
-              .silence = Silence(now),
+              .liveness = LivenessTimer(now),
               .heard_since = std::nullopt,
               .restart_at = std::nullopt,
               .down = {},
@@ -111,7 +111,7 @@ void Supervisor::Launch(Child& child, SteadyTime now) {
   const uintmax_t before = std::filesystem::file_size(child.spec.output, none);
   child.output_before = none ? 0 : before;
   child.process = start_(child.spec);
-  child.silence = Silence(now);
+  child.liveness = LivenessTimer(now);
   child.heard_since.reset();
   child.hung = false;
 }
@@ -120,7 +120,7 @@ void Supervisor::Heard(std::string_view role, int id, pid_t pid, SteadyTime now)
   for (Child& child : children_) {
     if (child.spec.role != role || child.spec.id != id) continue;
     if (!child.process || (child.process->pid() != pid && !child.spec.elsewhere)) continue;
-    child.silence.Heard(now);
+    child.liveness.Heard(now);
     if (!child.heard_since) child.heard_since = now;
   }
 }
@@ -157,7 +157,7 @@ void Supervisor::KillIfOverdue(Child& child, SteadyTime now) {
 void Supervisor::KillIfHung(Child& child, SteadyTime now) {
   if (child.exit_expected || child.hung) return;
   const std::chrono::seconds limit = child.heard_since ? hang_limits_.report : hang_limits_.start;
-  if (child.silence.Look(now) <= limit) return;
+  if (child.liveness.Look(now) <= limit) return;
   child.hung = true;
   say_(fmt::format("{} (pid {}) hangs: no report for {} s; killed", child.spec.Name(),
                    child.process->pid(), limit.count()));
@@ -177,7 +177,7 @@ std::optional<std::string> Supervisor::OnExit(Child& child, const ExitStatus& st
     }
     return std::nullopt;
   }
-  const std::string reason = Describe(status, LastWords(child.spec.output, child.output_before));
+  const std::string reason = Describe(status, ExitReason(child.spec.output, child.output_before));
   const std::string death = fmt::format("{}: {}", child.spec.Name(), reason);
   if (child.spec.expendable && !IsNonFinite(status)) {
     BackOff(child, status, reason, now);
@@ -260,7 +260,7 @@ void Supervisor::OnExpectedExit(Child& child, const ExitStatus& status) {
   const bool ours = status.by_signal && status.code == child.signalled;
   if (status.Clean() || (ours && status.code != SIGKILL)) return;
   const std::string reason =
-      Describe(status, ours ? "" : LastWords(child.spec.output, child.output_before));
+      Describe(status, ours ? "" : ExitReason(child.spec.output, child.output_before));
   std::string line = fmt::format("{}: {} while stopping", child.spec.Name(), reason);
   say_(line);
   if (!status.by_signal && status.code == kUnwrittenExit) {

@@ -17,15 +17,15 @@
 #include <string_view>
 #include <vector>
 
-#include "common/base/silence.h"
+#include "common/base/liveness_timer.h"
 #include "launch/processes/restart_backoff.h"
 #include "launch/processes/restart_policy.h"
 #include "launch/processes/running_process.h"
 
 namespace shoal::launch {
 
-// Silence after which a running process is taken for hung. Ten times what a process stopped for a
-// moment or starved by its machine needs to be heard again; starting up takes longer.
+// LivenessTimer after which a running process is taken for hung. Ten times what a process stopped
+// for a moment or starved by its machine needs to be heard again; starting up takes longer.
 struct HangLimits {
   std::chrono::seconds start{120};  // before its first report
   std::chrono::seconds report{30};  // since its last one
@@ -53,7 +53,7 @@ struct RoleStanding {
 // Destruction kills what still runs.
 class Supervisor {
  public:
-  // `say` gets one line for each death and restart, with the process's last words (last_words.h).
+  // `say` gets one line for each death and restart, with the process's last words (exit_reason.h).
   // `start` starts a process.
   Supervisor(const RestartLimits& limits, const HangLimits& hang_limits,
              std::function<void(const std::string&)> say, ProcessStarter start = StartChild);
@@ -110,7 +110,7 @@ class Supervisor {
     RestartPolicy connection;  // for lost connections to a process elsewhere
     std::unique_ptr<RunningProcess> process;
     uintmax_t output_before = 0;            // bytes in its output when `process` was started
-    Silence silence;                        // of `process`
+    LivenessTimer liveness;                 // of `process`
     std::optional<SteadyTime> heard_since;  // first report of `process`
     bool hung = false;                      // and killed for it
     std::optional<SteadyTime> restart_at;

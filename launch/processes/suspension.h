@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ctrl-Z on a command whose children have process groups of their own: the terminal tells this
 // process alone, which hands it on. Children stop with it and go on with it (`fg`, `bg`), at the
-// same moment as far as they can tell: each counts silence only while it runs (silence.h).
+// same moment as far as they can tell: each counts silence only while it runs (liveness_timer.h).
 #pragma once
 
 #include <sys/types.h>

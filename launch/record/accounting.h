@@ -23,7 +23,7 @@
 
 namespace shoal::launch {
 
-// One actor session, by its own count (actor/sending/made_page.h).
+// One actor session, by its own count (actor/sending/sequence_log.h).
 struct MadeRecords {
   uint32_t actor = 0;
   uint64_t session = 0;

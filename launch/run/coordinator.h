@@ -25,10 +25,10 @@
 #include "launch/run/control_sender.h"
 #include "launch/run/evaluation_intake.h"
 #include "launch/run/live_settings.h"
-#include "launch/run/operator_desk.h"
 #include "launch/run/run_decisions.h"
 #include "launch/run/run_inbox.h"
 #include "launch/run/run_record.h"
+#include "launch/run/run_server.h"
 #include "launch/run/run_watch.h"
 #include "launch/watch/bottleneck.h"
 #include "launch/watch/progress.h"
@@ -51,7 +51,7 @@ class Coordinator {
     const RunMeta& before;          // a fresh one, or the resumed run's
     std::vector<RemoteHost> hosts;  // have the run (run_hosts.h)
     link::Hub& hub;                 // of the role coordinator
-    OperatorDesk& desk;
+    RunServer& desk;
     Progress& progress;
     ProcessStarter start = StartChild;  // starts a process of the run
   };
@@ -101,7 +101,7 @@ class Coordinator {
   const std::filesystem::path run_;
   const Config config_;  // as the run was started
   const std::vector<RemoteHost> hosts_;
-  OperatorDesk& desk_;
+  RunServer& desk_;
   Progress& progress_;
   RunMeta before_;  // the earlier sessions, and the changes of this one
   LiveSettings settings_;

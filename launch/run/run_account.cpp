@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "actor/sending/made_page.h"
+#include "actor/sending/sequence_log.h"
 #include "common/run_folder/accounting_file.h"
 #include "common/run_folder/run_file_names.h"
 
@@ -12,7 +12,7 @@ namespace shoal::launch {
 std::optional<Accounting> AccountRun(const std::filesystem::path& run, const Config& config,
                                      const link::RunTopology& topology, uint64_t resends) {
   std::vector<MadeRecords> made;
-  for (const actor::MadeCount& page : actor::ReadMadePages(run)) {
+  for (const actor::MadeCount& page : actor::ReadSequenceLogs(run)) {
     made.push_back({page.actor, page.session, page.made, /*known=*/!page.rebuilt});
   }
   if (made.empty() && !std::filesystem::exists(run / kAccountingFile)) return std::nullopt;

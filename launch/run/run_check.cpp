@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "actor/loop/rollout_state.h"
-#include "actor/sending/made_page.h"
+#include "actor/sending/sequence_log.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/checkpoint/checkpoint_files.h"
@@ -53,7 +53,7 @@ class Examination {
   RunCheck Run() {
     LookAtRing();
     LookAtAccount();
-    LookAtMadePages();
+    LookAtSequenceLogs();
     LookAtUpdatePage();
     LookAtSessions();
     LookAtCheckpoints();
@@ -70,7 +70,7 @@ class Examination {
   void LookAtRing();
   void LookAtAccount();
   RunAccount RebuiltAccount(std::string* what);
-  void LookAtMadePages();
+  void LookAtSequenceLogs();
   void LookAtUpdatePage();
   void LookAtSessions();
   void LookAtCheckpoints();
@@ -122,7 +122,7 @@ RunAccount Examination::RebuiltAccount(std::string* what) {
     return account;
   }
   std::vector<actor::MadeCount> pages;
-  Throws([&] { pages = actor::ReadMadePages(run_); });
+  Throws([&] { pages = actor::ReadSequenceLogs(run_); });
   uint64_t made = 0;
   for (const actor::MadeCount& page : pages) {
     SessionCounters counters{.actor = page.actor, .session = page.session, .highest = page.made};
@@ -155,7 +155,7 @@ void Examination::LookAtAccount() {
   Repair([this_run = run_, account = account_] { StoreAccount(this_run, account); });
 }
 
-void Examination::LookAtMadePages() {
+void Examination::LookAtSequenceLogs() {
   std::map<std::pair<uint32_t, uint64_t>, uint64_t> seen;  // of the account
   for (const SessionCounters& counters : account_.sessions) {
     if (counters.actor < own_actors_) seen[{counters.actor, counters.session}] = counters.highest;
@@ -165,13 +165,13 @@ void Examination::LookAtMadePages() {
     wanted[{page.actor, page.session}] = "damaged";
   }
   if (wanted.empty()) {
-    for (const actor::MadeCount& page : actor::ReadMadePages(run_)) {
+    for (const actor::MadeCount& page : actor::ReadSequenceLogs(run_)) {
       const auto it = seen.find({page.actor, page.session});
       if (it != seen.end() && page.made < it->second) wanted[it->first] = "damaged";
     }
   }
   for (const auto& [session, highest] : seen) {
-    const fs::path page = actor::MadePageFile(run_, session.first, session.second);
+    const fs::path page = actor::SequenceLogFile(run_, session.first, session.second);
     if (!Exists(page)) wanted[session] = "missing";
   }
   for (const auto& [session, state] : wanted) {
@@ -180,10 +180,10 @@ void Examination::LookAtMadePages() {
     Say(fmt::format(
         "'{}' is {}: rebuilt; what actor {} made in that session beyond {} records is no longer "
         "known, and its episodes go on at higher numbers",
-        actor::MadePageFile(run_, actor, number).string(), state, actor, made));
+        actor::SequenceLogFile(run_, actor, number).string(), state, actor, made));
     Repair([=, this_run = run_, envs = static_cast<uint32_t>(config_.config.envs_per_actor),
             actor_number = actor, session_number = number] {
-      actor::RebuildMadePage(this_run, actor_number, session_number, envs, made);
+      actor::RebuildSequenceLog(this_run, actor_number, session_number, envs, made);
     });
   }
 }

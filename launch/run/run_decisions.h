@@ -43,7 +43,8 @@ class RunDecisions {
   // Progress of a replay, of the learner.
   std::optional<std::string> OnReplay(const ReplayProgress& progress);
   void OnLearner(const LearnerProgress& progress) { progress_.OnLearner(progress); }
-  // The training actors and the evaluation actor now. Call several times a second (silence.h).
+  // The training actors and the evaluation actor now. Call several times a second
+  // (liveness_timer.h).
   std::optional<std::string> OnStandings(const RoleStanding& actors, const RoleStanding& evaluation,
                                          SteadyTime now);
   // An evaluation that an earlier session of the run counted.

@@ -14,13 +14,13 @@
 #include "common/base/write_faults.h"
 #include "common/run_folder/run_file_names.h"
 #include "common/run_folder/update_page.h"
-#include "launch/film/film.h"
 #include "launch/processes/actor_program.h"
 #include "launch/processes/run_leftovers.h"
 #include "launch/record/accounting.h"
 #include "launch/record/run_folder.h"
 #include "launch/record/run_size.h"
 #include "launch/run/run_account.h"
+#include "launch/tools/film/film.h"
 
 namespace shoal::launch {
 namespace {
@@ -36,7 +36,7 @@ bool WantsFinalEvaluation(const RunMeta& meta) {
 // Keeps watchers and those who steer the run answered while it is evaluated and filmed.
 class Judging {
  public:
-  Judging(OperatorDesk& desk, Progress& progress) : desk_(desk), progress_(progress) {}
+  Judging(RunServer& desk, Progress& progress) : desk_(desk), progress_(progress) {}
 
   // Asked for several times a second. Whether the rest is to be left out: after a stop signal, also
   // by the end of the terminal, and after `shoal stop`.
@@ -60,7 +60,7 @@ class Judging {
     desk_.Answer(reply);
   }
 
-  OperatorDesk& desk_;
+  RunServer& desk_;
   Progress& progress_;
   bool stop_ = false;
 };
@@ -242,7 +242,7 @@ void WriteLastMeta(const fs::path& run, const Config& config, WriteFaults& fault
 }  // namespace
 
 int EndRun(const fs::path& run, const Config& config, const link::RunTopology& topology,
-           RunResult result, bool film, OperatorDesk& desk, Progress& progress) {
+           RunResult result, bool film, RunServer& desk, Progress& progress) {
   RunMeta& meta = result.meta;
   std::set<std::string>& unwritten = result.unwritten;
   bool good = result.clean && meta.exit != "failed";

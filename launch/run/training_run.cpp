@@ -25,11 +25,11 @@
 #include "launch/processes/suspension.h"
 #include "launch/run/coordinator.h"
 #include "launch/run/in_process_roles.h"
-#include "launch/run/operator_desk.h"
 #include "launch/run/request_check.h"
 #include "launch/run/resumed_run.h"
 #include "launch/run/run_end.h"
 #include "launch/run/run_request.h"
+#include "launch/run/run_server.h"
 #include "launch/run/start_text.h"
 #include "launch/watch/prometheus_endpoint.h"
 #include "launch/watch/terminal_block.h"
@@ -97,7 +97,7 @@ int Start(RunRequest request, const RunFolder& folder, const TrainOptions& optio
   std::optional<PrometheusEndpoint> prometheus;
   if (!options.prometheus.empty()) prometheus.emplace(options.prometheus);
   WriteStartFiles(path, address, &request);
-  OperatorDesk desk(hub, config.run_name, [&](const RunViewMessage& view) {
+  RunServer desk(hub, config.run_name, [&](const RunViewMessage& view) {
     if (prometheus) prometheus->Update(view);
   });
   Progress progress(

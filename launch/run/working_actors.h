@@ -8,12 +8,12 @@
 #include <string>
 
 #include "common/base/clock.h"
-#include "common/base/silence.h"
+#include "common/base/liveness_timer.h"
 #include "launch/processes/supervisor.h"
 
 namespace shoal::launch {
 
-// The training actors of a run. Look several times a second (silence.h).
+// The training actors of a run. Look several times a second (liveness_timer.h).
 class WorkingActors {
  public:
   explicit WorkingActors(SteadyTime start) : without_(start) {}
@@ -26,8 +26,8 @@ class WorkingActors {
                                   SteadyTime now);
 
  private:
-  bool ever_ = false;  // one worked
-  Silence without_;    // a working actor
+  bool ever_ = false;      // one worked
+  LivenessTimer without_;  // a working actor
 };
 
 // Why a run must end whose evaluation actor has not delivered an evaluation since the run was

@@ -5,7 +5,8 @@
 
 namespace shoal::replay {
 
-EpisodeIndex::EpisodeIndex(const Ring& ring, const IndexOptions& options, const Alive& alive)
+EpisodeIndex::EpisodeIndex(const Ring& ring, const IndexOptions& options,
+                           const StartupProgress& progress)
     : ring_(ring),
       options_(options),
       next_(ring.capacity()),
@@ -14,7 +15,7 @@ EpisodeIndex::EpisodeIndex(const Ring& ring, const IndexOptions& options, const 
   CHECK(options.stack >= 1 && options.n_step >= 1);
   for (uint64_t id = ring.oldest_id(); id <= ring.last_id(); ++id) {
     if (ring.Slot(id).id == id) Added(id);
-    if (alive) alive();
+    if (progress) progress();
   }
   became_sampleable_ = cut_episodes_ = steps_ = 0;
 }

@@ -41,9 +41,9 @@ struct IndexOptions {
 
 class EpisodeIndex {
  public:
-  // Borrows the ring and reads what is in it, calling `alive` for each record, if there is one;
+  // Borrows the ring and reads what is in it, calling `progress` for each record, if there is one;
   // records of a snapshot that vanished are skipped.
-  EpisodeIndex(const Ring& ring, const IndexOptions& options, const Alive& alive = {});
+  EpisodeIndex(const Ring& ring, const IndexOptions& options, const StartupProgress& progress = {});
 
   // Told from now on of samples that come and go, and at once of those there are; borrowed until
   // another, or nullptr, takes its place.

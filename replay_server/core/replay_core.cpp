@@ -14,9 +14,9 @@ namespace shoal::replay {
 namespace {
 
 RingOptions OptionsOfRing(const Config& config, const std::filesystem::path& folder,
-                          uint64_t steps_before, const Alive& alive) {
+                          uint64_t steps_before, const StartupProgress& progress) {
   RingOptions options;
-  options.alive = alive;
+  options.progress = progress;
   if (config.replay.storage == "file") options.file = folder / kRingFile;
   options.capacity = static_cast<uint64_t>(config.replay.capacity);
   options.run = config.run_name;
@@ -92,14 +92,15 @@ NStep NStepOf(const Config& config) {
 }
 
 ReplayCore::ReplayCore(const RunConfig& run, const std::filesystem::path& folder,
-                       uint64_t replay_session, const FormerServer& former, const Alive& alive)
+                       uint64_t replay_session, const FormerServer& former,
+                       const StartupProgress& progress)
     : run_(run),
       spec_hash_(run.spec.Hash()),
       replay_session_(replay_session),
       batch_schema_(BatchSchemaOf(run)),
-      ring_(run.spec, OptionsOfRing(run.config, folder, former.stored_steps, alive)),
+      ring_(run.spec, OptionsOfRing(run.config, folder, former.stored_steps, progress)),
       sessions_(SessionsOf(ring_, former)),
-      index_(ring_, IndexOptionsOf(run), alive),
+      index_(ring_, IndexOptionsOf(run), progress),
       intake_(spec_hash_, &ring_, &sessions_, &index_),
       policies_(MakePolicies(run, ring_, index_)),
       gather_(ring_, index_, run.spec, NStepOf(run.config), policies_.goals.get(),

@@ -66,10 +66,10 @@ class ReplayCore {
   // Opens or makes the ring in `folder` (or in memory, as configured). `replay_session` must grow
   // from start to start. `former`: what the server before said; counts only where it knew more than
   // the ring does.
-  // `alive` is called often while a ring that is there is read. Throws Error: no room, a ring that
-  // does not fit, a band that is too small.
+  // `progress` is called often while a ring that is there is read. Throws Error: no room, a ring
+  // that does not fit, a band that is too small.
   ReplayCore(const RunConfig& run, const std::filesystem::path& folder, uint64_t replay_session,
-             const FormerServer& former = {}, const Alive& alive = {});
+             const FormerServer& former = {}, const StartupProgress& progress = {});
   // The parts refer to each other: neither copied nor moved.
   ReplayCore(const ReplayCore&) = delete;
   ReplayCore& operator=(const ReplayCore&) = delete;

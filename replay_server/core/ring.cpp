@@ -84,7 +84,7 @@ Ring::Ring(const ObservationSpec& spec, const RingOptions& options)
   mapping_ = Mapping::OpenFile(options.file, Access::kReadWrite);
   WithRemedy([&] {
     CheckHeader(mapping_, spec, options);
-    const RingExtent extent = ScanRing(mapping_, geometry_, options.file.string(), options.alive);
+    const RingExtent extent = ScanRing(mapping_, geometry_, options.file.string(), options.progress);
     oldest_id_ = extent.oldest_id;
     last_id_ = extent.last_id;
     stored_steps_ = std::max(extent.stored_steps, options.steps_before);

@@ -11,9 +11,9 @@
 #include <string>
 
 #include "common/spec/observation_spec.h"
-#include "replay_server/core/alive.h"
 #include "replay_server/core/mapping.h"
 #include "replay_server/core/ring_format.h"
+#include "replay_server/core/startup_progress.h"
 
 namespace shoal::replay {
 
@@ -24,7 +24,7 @@ struct RingOptions {
   // Step records that earlier servers of the run have acknowledged. The count goes on from here
   // where the ring itself knows of fewer: it is new, or an older copy.
   uint64_t steps_before = 0;
-  Alive alive = {};  // called while a file that is there is read; may be empty
+  StartupProgress progress = {};  // called while a file that is there is read; may be empty
 };
 
 class Ring {

@@ -22,12 +22,13 @@ Error Damaged(const std::string& name, uint64_t slot, const std::string& what) {
   return RuntimeError("replay file '{}' is damaged: slot {} {}", name, slot, what);
 }
 
-uint64_t NewestId(const Mapping& mapping, const RingGeometry& geometry, const Alive& alive = {}) {
+uint64_t NewestId(const Mapping& mapping, const RingGeometry& geometry,
+                  const StartupProgress& progress = {}) {
   uint64_t newest = 0;
   for (uint64_t slot = 0; slot < geometry.capacity; ++slot) {
     const SlotHeader& header = SlotAt(mapping, geometry, slot);
     if (header.commit != 0) newest = std::max(newest, header.id);
-    if (alive) alive();
+    if (progress) progress();
   }
   return newest;
 }
@@ -77,14 +78,14 @@ bool SlotIntact(const Mapping& mapping, const RingGeometry& geometry, uint64_t s
 }
 
 RingExtent ScanRing(const Mapping& mapping, const RingGeometry& geometry, const std::string& name,
-                    const Alive& alive) {
+                    const StartupProgress& progress) {
   const uint64_t capacity = geometry.capacity;
-  const uint64_t last = NewestId(mapping, geometry, alive);
+  const uint64_t last = NewestId(mapping, geometry, progress);
   RingExtent extent;
   extent.last_id = last;
   extent.oldest_id = last > capacity ? last - capacity + 1 : 1;
   for (uint64_t slot = 0; slot < capacity; ++slot) {
-    if (alive) alive();
+    if (progress) progress();
     const SlotHeader& header = SlotAt(mapping, geometry, slot);
     // The one id this slot may hold: the newest not above `last`.
     const uint64_t behind = (last % capacity + capacity - slot) % capacity;

@@ -6,9 +6,9 @@
 #include <string>
 
 #include "common/spec/observation_spec.h"
-#include "replay_server/core/alive.h"
 #include "replay_server/core/mapping.h"
 #include "replay_server/core/ring_format.h"
+#include "replay_server/core/startup_progress.h"
 
 namespace shoal::replay {
 
@@ -30,7 +30,7 @@ struct RingExtent {
 // newest records without holes, and at most one slot half-written. Throws Error naming the slot
 // otherwise.
 RingExtent ScanRing(const Mapping& mapping, const RingGeometry& geometry, const std::string& name,
-                    const Alive& alive = {});
+                    const StartupProgress& progress = {});
 
 // The same while another process writes: takes what is there, never throws.
 RingExtent ScanLiveRing(const Mapping& mapping, const RingGeometry& geometry);

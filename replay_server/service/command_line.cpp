@@ -4,7 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "common/base/command_line.h"
-#include "common/dds/reach_options.h"
+#include "common/dds/endpoint_options.h"
 
 namespace shoal::replay {
 
@@ -13,7 +13,7 @@ std::unique_ptr<CLI::App> MakeCommandLine(Options* options) {
                                         "shoal-replay");
   AddVersion(app.get());
   app->add_option("--run", options->run, "run folder (config.json, cluster.json)")->required();
-  dds::AddReachOptions(app.get(), &options->reach);
+  dds::AddEndpointOptions(app.get(), &options->endpoint);
   return app;
 }
 

@@ -88,7 +88,7 @@ int Run(int argc, char** argv) {
   };
   const shoal::RunMembership member(run);
   const shoal::TransportConfig transport = shoal::ReadRunConfig(run).config.transport;
-  shoal::dds::Bus bus(shoal::dds::FindPlace(run, transport, {}), shoal::dds::Role::kActor);
+  shoal::dds::Bus bus(shoal::dds::FindEndpoint(run, transport, {}), shoal::dds::Role::kActor);
   return shoal::actor::TrainingActor(run, id, bus, make).Run();
 }
 

@@ -11,7 +11,7 @@
 #include <thread>
 #include <vector>
 
-#include "actor/sending/made_page.h"
+#include "actor/sending/sequence_log.h"
 #include "common/base/clock.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
@@ -207,7 +207,7 @@ void RequireEnd(Bystander* bystander, std::vector<launch::ChildProcess>* process
 
 void TakeAccount(const fs::path& run, ManyActorsFigures* figures) {
   std::vector<launch::MadeRecords> made;
-  for (const actor::MadeCount& page : actor::ReadMadePages(run)) {
+  for (const actor::MadeCount& page : actor::ReadSequenceLogs(run)) {
     made.push_back({page.actor, page.session, page.made});
   }
   const launch::Accounting account = launch::Account(

@@ -27,7 +27,7 @@
 #include "common/run_folder/run_file_names.h"
 #include "launch/processes/scratch_folder.h"
 #include "learner/agent/agent.h"
-#include "learner/hub_outlet.h"
+#include "learner/hub_learner_sink.h"
 #include "learner/weights_sender.h"
 #include "tests/benchmark/forked_processes.h"
 
@@ -86,9 +86,9 @@ void Learn(const BroadcastOptions& options, const ClusterAddress& address, const
            const Pipe<int>& done) {
   const RunConfig run = RunOf(options);
   dds::Bus bus(address, run.config.transport, dds::Role::kLearner);
-  learner::HubOutlet outlet(bus);
+  learner::HubLearnerSink sink(bus);
   StillAgent agent(run);
-  learner::WeightsSender sender(run, PrecisionOf(run), kLearnerSession, agent, outlet);
+  learner::WeightsSender sender(run, PrecisionOf(run), kLearnerSession, agent, sink);
   const std::chrono::duration<double> period(1 / options.versions_per_second);
   const auto send = [&] {
     const uint64_t unsent = sender.unsent();

@@ -14,7 +14,7 @@ experiment's summary.json (schema shoal-experiment-1): each arm, and its differe
 `--target`: the first of two evaluations of a curve whose episodes together reach the rate, by the rule
 of launch/record/first_reached.h.
 
-Python's standard library alone, so that it checks launch/experiment/statistics.cpp from outside.
+Python's standard library alone, so that it checks launch/tools/experiment/statistics.cpp from outside.
 """
 
 import argparse

@@ -10,7 +10,7 @@
 #include "common/base/files.h"
 #include "common/config/key_description.h"
 #include "common/config/meant_key.h"
-#include "tests/launch/manual/help_text.h"
+#include "tests/launch/tools/manual/help_text.h"
 #include "tests/support/paths.h"
 
 namespace shoal {

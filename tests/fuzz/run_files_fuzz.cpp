@@ -3,7 +3,7 @@
 // byte: which one.
 #include <nlohmann/json.hpp>
 
-#include "actor/sending/made_page.h"
+#include "actor/sending/sequence_log.h"
 #include "common/base/check.h"
 #include "common/config/run_files.h"
 #include "common/config/session_number.h"
@@ -35,7 +35,7 @@ void Read(uint8_t which, const std::string& bytes) {
       break;
     case 3:
       fuzz::WriteScratch(run / "made" / "actor-0-1.page", bytes);
-      actor::ReadMadePages(run);
+      actor::ReadSequenceLogs(run);
       break;
     case 4:
       launch::ParseEvaluation(bytes, "evaluation");

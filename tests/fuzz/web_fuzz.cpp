@@ -5,12 +5,12 @@
 #include <nlohmann/json.hpp>
 
 #include "common/base/check.h"
-#include "launch/web/access.h"
-#include "launch/web/byte_range.h"
-#include "launch/web/page_answers.h"
-#include "launch/web/page_route.h"
-#include "launch/web/run_curves.h"
-#include "launch/web/served_file.h"
+#include "launch/tools/web/access.h"
+#include "launch/tools/web/byte_range.h"
+#include "launch/tools/web/page_answers.h"
+#include "launch/tools/web/page_route.h"
+#include "launch/tools/web/run_curves.h"
+#include "launch/tools/web/served_file.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace shoal {

@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "common/base/clock.h"
-#include "tests/launch/film/decoded_film.h"
+#include "tests/launch/tools/film/decoded_film.h"
 #include "tests/support/training_run.h"
 
 namespace shoal {

@@ -19,13 +19,13 @@ using ::testing::Not;
 class RunScript : public testing::Test {
  protected:
   RunScript() {
-    MakeFolders(tree_ / "launch" / "presets");
+    MakeFolders(tree_ / "launch" / "data" / "presets");
     for (const char* room : {"actor", "common", "learner", "replay_server"}) {
       MakeFolders(tree_ / room);
     }
     fs::copy(SourcePath("run"), tree_ / "run");
     WriteFileAtomically(tree_ / "CMakeLists.txt", "");
-    WriteFileAtomically(tree_ / "launch" / "presets" / "fetch-reach-fast.json", "{}");
+    WriteFileAtomically(tree_ / "launch" / "data" / "presets" / "fetch-reach-fast.json", "{}");
     Tool("dpkg-query", "echo -n installed");
     Tool("cmake", "exit 0");
     Tool("ninja",

@@ -106,7 +106,7 @@ TEST(SharedBatches, ALearnerThatCannotOpenThemGetsItsBatchesOverTheNetwork) {
   for (const char* program : {"shoal", "shoal-actor", "shoal-replay"}) {
     fs::copy_file(ProgramPath(program), bin / program);
   }
-  fs::copy(SourcePath("launch/presets"), bin / "presets");
+  fs::copy(SourcePath("launch/data/presets"), bin / "presets");
   std::ofstream(bin / "shoal-learner")
       << "#!/bin/sh\nexec " << apart << " " << ProgramPath("shoal-learner") << " \"$@\"\n";
   fs::permissions(bin / "shoal-learner", fs::perms::owner_all);

@@ -19,7 +19,7 @@ using std::chrono::seconds;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-const std::string kPresets = SourcePath("launch/presets");
+const std::string kPresets = SourcePath("launch/data/presets");
 
 #define SHOAL_NEEDS(expression) \
   if (const std::string& no = (expression); !no.empty()) GTEST_SKIP() << no

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <map>
 
-#include "launch/web/web_server.h"
+#include "launch/tools/web/web_server.h"
 #include "tests/support/page_client.h"
 #include "tests/support/run_views.h"
 #include "tests/support/running_training.h"

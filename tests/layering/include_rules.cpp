@@ -19,11 +19,21 @@ const std::vector<std::string> kTopFolders = {"common",  "actor",  "replay_serve
 
 // Start of an include path -> the folder that wraps the library.
 const std::map<std::string, std::string> kHomes = {
-    {"dds/", "common/dds"},     {"dnnl", "common/nn"},          {"oneapi/", "common/nn"},
-    {"Eigen/", "common/nn"},    {"mujoco/", "actor/worlds"},    {"GL/", "actor/worlds"},
-    {"spdlog/", "common/base"}, {"png.h", "common/image"},      {"openssl/", "common/credentials"},
-    {"libav", "launch/film"},   {"libsw", "launch/film"},       {"cairo", "launch/film"},
-    {"httplib", "launch/web"},  {"pybind11/", "launch/python"}, {"hdf5", "launch/dataset"},
+    {"dds/", "common/dds"},
+    {"dnnl", "common/nn"},
+    {"oneapi/", "common/nn"},
+    {"Eigen/", "common/nn"},
+    {"mujoco/", "actor/worlds"},
+    {"GL/", "actor/worlds"},
+    {"spdlog/", "common/base"},
+    {"png.h", "common/image"},
+    {"openssl/", "common/credentials"},
+    {"libav", "launch/tools/film"},
+    {"libsw", "launch/tools/film"},
+    {"cairo", "launch/tools/film"},
+    {"httplib", "launch/tools/web"},
+    {"pybind11/", "launch/tools/python"},
+    {"hdf5", "launch/tools/dataset"},
 };
 
 // Stands for a program of others, which knows of Shoal what the documentation says.
@@ -118,12 +128,15 @@ std::vector<fs::path> Sources(const fs::path& root) {
   return sources;
 }
 
-// First two folders of a path: "common/dds"; "launch" where there is only one.
+// First two folders of a path: "common/dds"; "launch" where there is only one. The rooms of the
+// tools lie one level deeper: "launch/tools/web".
 std::string Room(const fs::path& path) {
   std::vector<std::string> parts;
   for (const auto& part : path.parent_path()) parts.push_back(part.string());
   if (parts.empty()) return "";
-  return parts.size() == 1 ? parts[0] : parts[0] + "/" + parts[1];
+  if (parts.size() == 1) return parts[0];
+  const std::string room = parts[0] + "/" + parts[1];
+  return room == "launch/tools" && parts.size() > 2 ? room + "/" + parts[2] : room;
 }
 
 std::string Top(const fs::path& path) { return path.begin()->string(); }

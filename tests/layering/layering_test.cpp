@@ -130,7 +130,7 @@ TEST(Layering, ASimulationCanRunTheRoles) {
   const PlantedTree tree;
   tree.Write("actor/loop/a.cpp", "#include <thread>\n#include \"common/base/sleep.h\"\n");
   tree.Write("launch/run/a.cpp", "#include <mutex>\n");
-  tree.Write("launch/web/a.cpp", "#include <mutex>\n");
+  tree.Write("launch/tools/web/a.cpp", "#include <mutex>\n");
   const std::string why = ": waits and threads are those of common/base (scheduler.h)";
   EXPECT_THAT(tree.Breaches(),
               ElementsAre("actor/loop/a.cpp:1: actor/loop may not use thread" + why,
@@ -232,15 +232,16 @@ TEST(Layering, LibrariesStayAtHome) {
   const PlantedTree tree;
   tree.Write("actor/a.cpp", "#include <mujoco/mujoco.h>\n");
   tree.Write("common/wire/a.cpp", "#include \"dds/dds.h\"\n");
-  tree.Write("launch/film/a.cpp", "#include <cairo.h>\n#include <libavcodec/avcodec.h>\n");
+  tree.Write("launch/tools/film/a.cpp", "#include <cairo.h>\n#include <libavcodec/avcodec.h>\n");
   tree.Write("launch/run/a.cpp", "#include <cairo.h>\n#include <libavcodec/avcodec.h>\n");
   tree.Write("learner/a.cpp", "#include <dnnl.hpp>\n");
-  EXPECT_THAT(tree.Breaches(),
-              ElementsAre("actor/a.cpp:1: <mujoco/mujoco.h> belongs to actor/worlds alone",
-                          "common/wire/a.cpp:1: <dds/dds.h> belongs to common/dds alone",
-                          "launch/run/a.cpp:1: <cairo.h> belongs to launch/film alone",
-                          "launch/run/a.cpp:2: <libavcodec/avcodec.h> belongs to launch/film alone",
-                          "learner/a.cpp:1: <dnnl.hpp> belongs to common/nn alone"));
+  EXPECT_THAT(
+      tree.Breaches(),
+      ElementsAre("actor/a.cpp:1: <mujoco/mujoco.h> belongs to actor/worlds alone",
+                  "common/wire/a.cpp:1: <dds/dds.h> belongs to common/dds alone",
+                  "launch/run/a.cpp:1: <cairo.h> belongs to launch/tools/film alone",
+                  "launch/run/a.cpp:2: <libavcodec/avcodec.h> belongs to launch/tools/film alone",
+                  "learner/a.cpp:1: <dnnl.hpp> belongs to common/nn alone"));
 }
 
 TEST(Layering, HeadersAreGuardedAndNamesSaySomething) {

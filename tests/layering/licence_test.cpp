@@ -43,7 +43,7 @@ bool IsLeftOut(const std::string& folder) {
                                                  "docs/examples",
                                                  "docs/results",
                                                  "experiments",
-                                                 "launch/project/template",
+                                                 "launch/tools/project/template",
                                                  "runs",
                                                  "tests/fuzz/corpus"};
   return kFolders.contains(folder);
@@ -98,7 +98,7 @@ TEST(Licence, SourcesWithoutItAreNamedAndExamplesAreNot) {
   write("actor/late.h", fmt::format("#pragma once\n\n// {}\n", kLine));
   write("docs/examples/c.cpp", "int c;\n");
   write("docs/page.md", "# Page\n");
-  write("launch/project/template/CMakeLists.txt", "project(x)\n");
+  write("launch/tools/project/template/CMakeLists.txt", "project(x)\n");
   write("run", fmt::format("#!/usr/bin/env bash\n# {}\n", kLine));
   write("x.service", "[Unit]\n");
   const Found found = Look(tree.path());

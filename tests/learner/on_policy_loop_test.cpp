@@ -24,14 +24,14 @@ class OnPolicyLoopTest : public TrainingLoopTest {
 
 TEST_F(OnPolicyLoopTest, GivesTheWeightsBeforeTheFirstUpdateAndAfterEachOne) {
   Train(2);
-  EXPECT_THAT(outlet_.Updates(outlet_.weights), ElementsAre(0, 1, 2));
+  EXPECT_THAT(sink_.Updates(sink_.weights), ElementsAre(0, 1, 2));
 }
 
 TEST_F(OnPolicyLoopTest, GivesNoWeightsBeyondTheBudgetUnlessItIsRaised) {
   Train(3);
-  EXPECT_THAT(outlet_.Updates(outlet_.weights), ElementsAre(0, 1, 2));
-  EXPECT_EQ(outlet_.progress.back().env_steps, 30u);
-  outlet_.weights.clear();
+  EXPECT_THAT(sink_.Updates(sink_.weights), ElementsAre(0, 1, 2));
+  EXPECT_EQ(sink_.progress.back().env_steps, 30u);
+  sink_.weights.clear();
   Say(RunState::kRunning);
   Train(5, [&](PlayedBatches& batches) {
     batches.before = [&](uint64_t request) {
@@ -45,27 +45,27 @@ TEST_F(OnPolicyLoopTest, GivesNoWeightsBeyondTheBudgetUnlessItIsRaised) {
     };
   });
   // Restored beyond its budget it gives none until that is raised.
-  EXPECT_THAT(outlet_.Updates(outlet_.weights), ElementsAre(4, 5));
+  EXPECT_THAT(sink_.Updates(sink_.weights), ElementsAre(4, 5));
 }
 
 TEST_F(OnPolicyLoopTest, WeightsThatTheTransportDidNotTakeAreSentAgain) {
-  outlet_.accept_weights = false;
+  sink_.accept_weights = false;
   int turns = 0;
   Train(1, [&](PlayedBatches& batches) {
     batches.last_request = 0;
     batches.before = [&](uint64_t) {
-      if (++turns == 3) outlet_.accept_weights = true;
+      if (++turns == 3) sink_.accept_weights = true;
       if (turns == 6) Say(RunState::kStopping);
     };
   });
-  EXPECT_THAT(outlet_.Updates(outlet_.weights), ElementsAre(0));
+  EXPECT_THAT(sink_.Updates(sink_.weights), ElementsAre(0));
 }
 
 // It may take longer than a process may be silent.
 TEST_F(OnPolicyLoopTest, ReportsInTheMidstOfAnUpdate) {
   slow_ = true;
   Train(1);
-  const MetricsMessage& first = outlet_.reports.front();
+  const MetricsMessage& first = sink_.reports.front();
   const auto updates = std::ranges::find(first.names, "updates");
   ASSERT_NE(updates, first.names.end());
   EXPECT_EQ(first.values[size_t(updates - first.names.begin())], 0) << "the first is not over";
@@ -81,11 +81,11 @@ TEST_F(OnPolicyLoopTest, DrainsAtOnce) {
         Say(RunState::kDraining);
       }
     };
-    outlet_.on_evaluation = [&] { Say(RunState::kStopping); };
+    sink_.on_evaluation = [&] { Say(RunState::kStopping); };
   });
   EXPECT_EQ(drained_at, 2u);
   EXPECT_EQ(updates_, 2u) << "the batch that it had, no more";
-  EXPECT_TRUE(outlet_.progress.back().drained);
+  EXPECT_TRUE(sink_.progress.back().drained);
 }
 
 }  // namespace

@@ -16,7 +16,7 @@
 #include "common/config/on_policy.h"
 #include "common/config/run_config.h"
 #include "learner/batch_stream.h"
-#include "learner/outlet.h"
+#include "learner/learner_sink.h"
 
 namespace shoal::learner {
 
@@ -66,7 +66,7 @@ class PlayedBatches final : public BatchStream {
 };
 
 // Keeps what is sent.
-class KeptMessages final : public Outlet {
+class KeptMessages final : public LearnerSink {
  public:
   struct Sent {
     uint64_t update, env_steps;

@@ -51,8 +51,8 @@ class TrainingLoopTest : public testing::Test {
   // One learner process: from the newest checkpoint until `stop_after` batches were given.
   TrainingLoop::End Train(uint64_t stop_after,
                           const std::function<void(PlayedBatches&)>& script = {}) {
-    outlet_.spec_hash = run_.spec.Hash();
-    outlet_.session = kTrainingSession;
+    sink_.spec_hash = run_.spec.Hash();
+    sink_.session = kTrainingSession;
     std::unique_ptr<Agent> agent = MakeAgent(run_.config, run_.spec, precision_);
     if (slow_) agent = std::make_unique<SlowAgent>(std::move(agent));
     CheckpointStore checkpoints(folder_.path(), run_);
@@ -74,7 +74,7 @@ class TrainingLoopTest : public testing::Test {
                        .session = kTrainingSession,
                        .agent = *agent,
                        .batches = batches,
-                       .outlet = outlet_,
+                       .sink = sink_,
                        .checkpoints = checkpoints,
                        .pending_evaluations = pending_,
                        .control = control_,
@@ -93,7 +93,7 @@ class TrainingLoopTest : public testing::Test {
 
   // Of the last report.
   double Figure(const std::string& name) const {
-    const MetricsMessage& report = outlet_.reports.back();
+    const MetricsMessage& report = sink_.reports.back();
     const auto at = std::ranges::find(report.names, name);
     EXPECT_NE(at, report.names.end()) << name;
     return at == report.names.end() ? -1 : report.values[size_t(at - report.names.begin())];
@@ -113,7 +113,7 @@ class TrainingLoopTest : public testing::Test {
   const TemporaryFolder folder_;
   RunConfig run_ = SmallRun();  // weights every 5 updates
   nn::Precision precision_ = nn::Precision::kF32;
-  KeptMessages outlet_;
+  KeptMessages sink_;
   PendingEvaluations pending_;
   ControlState control_{Now()};
   uint64_t epoch_ = 0;

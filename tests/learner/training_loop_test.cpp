@@ -25,62 +25,62 @@ TEST_F(TrainingLoopTest, EveryUpdateIsCountedForWhoeverComesAfterAKill) {
 
 TEST_F(TrainingLoopTest, SendsWeightsAtTheFirstUpdateAndEveryPeriod) {
   EXPECT_EQ(Train(12), TrainingLoop::End::kStopped);
-  EXPECT_THAT(outlet_.Updates(outlet_.weights), ElementsAre(1, 5, 10));
-  EXPECT_EQ(outlet_.weights[1].env_steps, 50u);
-  const auto tensors = nn::ReadSafetensors(outlet_.weights[1].payload, "weights");
+  EXPECT_THAT(sink_.Updates(sink_.weights), ElementsAre(1, 5, 10));
+  EXPECT_EQ(sink_.weights[1].env_steps, 50u);
+  const auto tensors = nn::ReadSafetensors(sink_.weights[1].payload, "weights");
   ASSERT_FALSE(tensors.empty());
   for (const auto& [name, tensor] : tensors) EXPECT_EQ(tensor.dtype, "F32") << name;
-  EXPECT_NE(outlet_.weights[1].payload, outlet_.weights[2].payload);
+  EXPECT_NE(sink_.weights[1].payload, sink_.weights[2].payload);
 }
 
 TEST_F(TrainingLoopTest, SendsBf16WeightsWhenThatIsThePrecision) {
   // The products' precision does not matter to the loop; ask the agent for what any CPU has.
   const auto agent = MakeAgent(run_.config, run_.spec, nn::Precision::kF32);
-  outlet_.spec_hash = run_.spec.Hash();
-  outlet_.session = kTrainingSession;
-  WeightsSender(run_, nn::Precision::kBf16, kTrainingSession, *agent, outlet_).Send(0);
-  ASSERT_EQ(outlet_.weights.size(), 1u);
-  for (const auto& [name, t] : nn::ReadSafetensors(outlet_.weights[0].payload, "weights")) {
+  sink_.spec_hash = run_.spec.Hash();
+  sink_.session = kTrainingSession;
+  WeightsSender(run_, nn::Precision::kBf16, kTrainingSession, *agent, sink_).Send(0);
+  ASSERT_EQ(sink_.weights.size(), 1u);
+  for (const auto& [name, t] : nn::ReadSafetensors(sink_.weights[0].payload, "weights")) {
     EXPECT_EQ(t.dtype, "BF16") << name;
   }
 }
 
 TEST_F(TrainingLoopTest, WithoutBatchesNothingIsSentOrWritten) {
   Train(0);
-  EXPECT_TRUE(outlet_.weights.empty());
+  EXPECT_TRUE(sink_.weights.empty());
   EXPECT_TRUE(Checkpoints().empty());
 }
 
 TEST_F(TrainingLoopTest, ALearnerThatResumedSendsItsWeightsAtOnce) {
   Train(7);
-  const auto before = outlet_.weights.size();
+  const auto before = sink_.weights.size();
   Say(RunState::kRunning);
   Train(7);
-  ASSERT_EQ(outlet_.weights.size(), before + 1);
-  EXPECT_EQ(outlet_.weights.back().update, 7u);
-  EXPECT_EQ(outlet_.weights.back().env_steps, 70u);
+  ASSERT_EQ(sink_.weights.size(), before + 1);
+  EXPECT_EQ(sink_.weights.back().update, 7u);
+  EXPECT_EQ(sink_.weights.back().env_steps, 70u);
 }
 
 TEST_F(TrainingLoopTest, WeightsThatWereNotTakenAreFollowedByNewerOnes) {
-  outlet_.accept_weights = false;
+  sink_.accept_weights = false;
   Train(8, [&](PlayedBatches& batches) {
     batches.before = [this](uint64_t request) {
-      if (request == 8) outlet_.accept_weights = true;
+      if (request == 8) sink_.accept_weights = true;
       if (request > 8) Say(RunState::kStopping);
     };
   });
-  EXPECT_THAT(outlet_.Updates(outlet_.weights), ElementsAre(8));
+  EXPECT_THAT(sink_.Updates(sink_.weights), ElementsAre(8));
 }
 
 TEST_F(TrainingLoopTest, SlowReadersAreNotOverrun) {
-  outlet_.readers_keep_up = false;
+  sink_.readers_keep_up = false;
   Train(30, [&](PlayedBatches& batches) {
     batches.before = [this](uint64_t request) {
-      if (request == 28) outlet_.readers_keep_up = true;
+      if (request == 28) sink_.readers_keep_up = true;
       if (request > 30) Say(RunState::kStopping);
     };
   });
-  const auto updates = outlet_.Updates(outlet_.weights);
+  const auto updates = sink_.Updates(sink_.weights);
   // Without readers only patience would send more, and the thirty updates are done well within it.
   EXPECT_THAT(updates, ElementsAre(1, 28, 30));
 }
@@ -88,8 +88,8 @@ TEST_F(TrainingLoopTest, SlowReadersAreNotOverrun) {
 TEST_F(TrainingLoopTest, MakesAnEvaluationPointAtEachMultipleOfTheInterval) {
   run_.config.eval.interval = 40;  // ten steps per batch
   Train(10);
-  EXPECT_THAT(outlet_.Updates(outlet_.evaluations), ElementsAre(4, 8));
-  for (const auto& sent : outlet_.evaluations) {
+  EXPECT_THAT(sink_.Updates(sink_.evaluations), ElementsAre(4, 8));
+  for (const auto& sent : sink_.evaluations) {
     EXPECT_EQ(sent.checkpoint, CheckpointName(sent.update));
     EXPECT_EQ(sent.env_steps, 10 * sent.update);
     const fs::path folder = Checkpoint(sent.checkpoint);
@@ -109,16 +109,16 @@ TEST_F(TrainingLoopTest, SeveralMultiplesPassedAtOnceAreOnePoint) {
   Train(3, [](PlayedBatches& batches) {
     batches.stored_steps = [](uint64_t request) { return 100 + request; };
   });
-  EXPECT_THAT(outlet_.Updates(outlet_.evaluations), ElementsAre(1));
+  EXPECT_THAT(sink_.Updates(sink_.evaluations), ElementsAre(1));
 }
 
 TEST_F(TrainingLoopTest, AnUnsentEvaluationPointIsSentAgain) {
   run_.config.eval.interval = 40;
-  outlet_.reject_evaluations = 2;
+  sink_.reject_evaluations = 2;
   Train(7);
-  EXPECT_THAT(outlet_.Updates(outlet_.evaluations), ElementsAre(4));
-  EXPECT_EQ(outlet_.evaluations[0].checkpoint, "step_000000004");
-  EXPECT_EQ(outlet_.evaluations[0].env_steps, 40u);
+  EXPECT_THAT(sink_.Updates(sink_.evaluations), ElementsAre(4));
+  EXPECT_EQ(sink_.evaluations[0].checkpoint, "step_000000004");
+  EXPECT_EQ(sink_.evaluations[0].env_steps, 40u);
 }
 
 TEST_F(TrainingLoopTest, KeepsCheckpointsThatWaitForTheirEvaluation) {
@@ -174,7 +174,7 @@ TEST_F(TrainingLoopTest, ANonFiniteUpdateEndsTheRunAndKeepsTheLastGoodCheckpoint
 
 TEST_F(TrainingLoopTest, DrainingEndsWithTheUpdatesThatTheStoredStepsGrant) {
   // 48 steps are stored when draining begins: (48 - 8) * 1 samples are granted, 10 batches of 4.
-  outlet_.on_evaluation = [this] { Say(RunState::kStopping); };
+  sink_.on_evaluation = [this] { Say(RunState::kStopping); };
   Train(1000, [&](PlayedBatches& batches) {
     batches.stored_steps = [](uint64_t request) { return request < 3 ? 12 * request : 48; };
     batches.before = [this](uint64_t request) {
@@ -182,13 +182,13 @@ TEST_F(TrainingLoopTest, DrainingEndsWithTheUpdatesThatTheStoredStepsGrant) {
     };
   });
   EXPECT_EQ(updates_, 10u);
-  EXPECT_THAT(outlet_.Updates(outlet_.evaluations), ElementsAre(10));
+  EXPECT_THAT(sink_.Updates(sink_.evaluations), ElementsAre(10));
   EXPECT_TRUE(Checkpoints().contains("step_000000010"));
 }
 
 // Of the 48 steps that are stored 12 cannot be sampled: (36 - 8) * 1 samples, 7 batches of 4.
 TEST_F(TrainingLoopTest, DrainingGrantsNothingForStepsThatNoSampleBeginsWith) {
-  outlet_.on_evaluation = [this] { Say(RunState::kStopping); };
+  sink_.on_evaluation = [this] { Say(RunState::kStopping); };
   Train(1000, [&](PlayedBatches& batches) {
     batches.unsampleable_steps = 12;
     batches.stored_steps = [](uint64_t request) { return request < 3 ? 12 * request : 48; };
@@ -203,7 +203,7 @@ TEST_F(TrainingLoopTest, DrainingGrantsNothingForStepsThatNoSampleBeginsWith) {
 // granted, 17 batches of 4.
 TEST_F(TrainingLoopTest, DrainingEndsWithTheUpdatesThatAScheduleGrants) {
   run_.config.replay.samples_per_insert = Schedule{3, 1, 40};
-  outlet_.on_evaluation = [this] { Say(RunState::kStopping); };
+  sink_.on_evaluation = [this] { Say(RunState::kStopping); };
   Train(1000, [&](PlayedBatches& batches) {
     batches.stored_steps = [](uint64_t request) { return request < 3 ? 12 * request : 48; };
     batches.before = [this](uint64_t request) {
@@ -219,7 +219,7 @@ TEST_F(TrainingLoopTest, AResumedLearnerDrainsByTheWholeSchedule) {
   const auto stored = [](uint64_t request) { return std::min<uint64_t>(6 * request, 48); };
   Train(4, [&](PlayedBatches& batches) { batches.stored_steps = stored; });
   ASSERT_EQ(updates_, 4u);
-  outlet_.on_evaluation = [this] { Say(RunState::kStopping); };
+  sink_.on_evaluation = [this] { Say(RunState::kStopping); };
   Say(RunState::kRunning);
   Train(1000, [&](PlayedBatches& batches) {
     batches.stored_steps = stored;
@@ -233,7 +233,7 @@ TEST_F(TrainingLoopTest, AResumedLearnerDrainsByTheWholeSchedule) {
 // At step 28 the number 0.6 takes the schedule's place: 20 (2.6 + 1.6) / 2 + 20 * 0.6 = 54 samples.
 TEST_F(TrainingLoopTest, WhatIsSetTakesTheSchedulesPlaceFromThereOn) {
   run_.config.replay.samples_per_insert = Schedule{3, 1, 40};
-  outlet_.on_evaluation = [this] { Say(RunState::kStopping); };
+  sink_.on_evaluation = [this] { Say(RunState::kStopping); };
   const auto say = [this](RunState state) {
     control_.OnMessage({.epoch = ++epoch_,
                         .state = state,
@@ -255,27 +255,27 @@ TEST_F(TrainingLoopTest, WhatIsSetTakesTheSchedulesPlaceFromThereOn) {
 }
 
 TEST_F(TrainingLoopTest, DrainingEndsWhenNoMoreBatchesCome) {
-  outlet_.on_evaluation = [this] { Say(RunState::kStopping); };
+  sink_.on_evaluation = [this] { Say(RunState::kStopping); };
   Train(6, [&](PlayedBatches& batches) {
     batches.before = [this](uint64_t request) {
       if (request == 5) Say(RunState::kDraining);
     };
   });
-  EXPECT_THAT(outlet_.Updates(outlet_.evaluations), ElementsAre(6));
+  EXPECT_THAT(sink_.Updates(sink_.evaluations), ElementsAre(6));
 }
 
 TEST_F(TrainingLoopTest, ADrainedLearnerTrainsNoMoreAndSaysSo) {
   run_.config.replay.samples_per_insert =
-      Schedule::Constant(0);       // no limit: three more batches tell what is stored
-  outlet_.reject_evaluations = 2;  // sent in the second pass after draining was over
-  outlet_.on_evaluation = [this] { Say(RunState::kStopping); };
+      Schedule::Constant(0);     // no limit: three more batches tell what is stored
+  sink_.reject_evaluations = 2;  // sent in the second pass after draining was over
+  sink_.on_evaluation = [this] { Say(RunState::kStopping); };
   Train(1000, [&](PlayedBatches& batches) {
     batches.before = [this](uint64_t request) {
       if (request == 5) Say(RunState::kDraining);
     };
   });
   EXPECT_EQ(given_, 8u) << "the one being waited for when draining began, and three more";
-  EXPECT_THAT(outlet_.Updates(outlet_.evaluations), ElementsAre(8));
+  EXPECT_THAT(sink_.Updates(sink_.evaluations), ElementsAre(8));
   EXPECT_EQ(Figure("drained"), 1);
   EXPECT_EQ(Figure("eval_updates"), 8);
 }
@@ -298,32 +298,32 @@ TEST_F(TrainingLoopTest, InLockstepSendsWeightsAtTheEndsOfPhasesOnly) {
   run_.config.lockstep = true;
   run_.config.envs_per_actor = 2;
   run_.config.lockstep_steps = 6;  // 12 steps, 3 updates per phase
-  outlet_.readers_keep_up = false;
+  sink_.readers_keep_up = false;
   Train(10);
-  EXPECT_THAT(outlet_.Updates(outlet_.weights), ElementsAre(3, 6, 9));
+  EXPECT_THAT(sink_.Updates(sink_.weights), ElementsAre(3, 6, 9));
 }
 
 TEST_F(TrainingLoopTest, TellsItsProgressWithTheEvaluationsItAskedFor) {
   run_.config.eval.interval = 20;
   Train(5);
-  ASSERT_FALSE(outlet_.progress.empty());
-  const LearnerProgress& last = outlet_.progress.back();
+  ASSERT_FALSE(sink_.progress.empty());
+  const LearnerProgress& last = sink_.progress.back();
   EXPECT_EQ(last.session, kTrainingSession);
   EXPECT_EQ(last.updates, 5u);
   EXPECT_EQ(last.env_steps, 50u);
   EXPECT_FALSE(last.drained);
-  ASSERT_EQ(last.evaluations.size(), outlet_.evaluations.size());
+  ASSERT_EQ(last.evaluations.size(), sink_.evaluations.size());
   for (size_t i = 0; i < last.evaluations.size(); ++i) {
-    EXPECT_EQ(last.evaluations[i].update, outlet_.evaluations[i].update);
-    EXPECT_EQ(last.evaluations[i].env_steps, outlet_.evaluations[i].env_steps);
-    EXPECT_EQ(last.evaluations[i].checkpoint, outlet_.evaluations[i].checkpoint);
+    EXPECT_EQ(last.evaluations[i].update, sink_.evaluations[i].update);
+    EXPECT_EQ(last.evaluations[i].env_steps, sink_.evaluations[i].env_steps);
+    EXPECT_EQ(last.evaluations[i].checkpoint, sink_.evaluations[i].checkpoint);
   }
 }
 
 TEST_F(TrainingLoopTest, ReportsWhatItDid) {
   Train(5);
-  ASSERT_FALSE(outlet_.reports.empty());
-  const MetricsMessage& last = outlet_.reports.back();
+  ASSERT_FALSE(sink_.reports.empty());
+  const MetricsMessage& last = sink_.reports.back();
   EXPECT_EQ(last.role, "learner");
   EXPECT_EQ(last.state, "stopping");
   EXPECT_EQ(Figure("updates"), 5);

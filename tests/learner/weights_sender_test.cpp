@@ -42,7 +42,7 @@ class LargeAgent final : public Agent {
   void Restore(const nn::TensorMap&, const std::string&) override {}
 };
 
-class MeasuringOutlet final : public Outlet {
+class MeasuringSink final : public LearnerSink {
  public:
   bool Publish(const WeightsMessage& weights) override {
     payload = weights.payload.size();
@@ -62,19 +62,19 @@ TEST(WeightsSender, WhatTheTransportTakesIsTheOnlyCopyThen) {
   for (const nn::Precision precision : {nn::Precision::kF32, nn::Precision::kBf16}) {
     const size_t bytes_each = precision == nn::Precision::kBf16 ? 2 : 4;
     const LargeAgent agent;
-    MeasuringOutlet outlet;
-    WeightsSender sender(SmallRun(), precision, /*session=*/1, agent, outlet);
+    MeasuringSink sink;
+    WeightsSender sender(SmallRun(), precision, /*session=*/1, agent, sink);
     const size_t before = MemoryInUse();
     sender.Send(0);
-    EXPECT_GE(outlet.payload, kFloats * bytes_each);
-    EXPECT_LT(outlet.payload, kFloats * bytes_each + 1000);
-    EXPECT_LT(outlet.memory, before + outlet.payload + outlet.payload / 10);
+    EXPECT_GE(sink.payload, kFloats * bytes_each);
+    EXPECT_LT(sink.payload, kFloats * bytes_each + 1000);
+    EXPECT_LT(sink.memory, before + sink.payload + sink.payload / 10);
     EXPECT_EQ(sender.sent(), 1u);
   }
 }
 
 // Keeps the payload of the weights sent last.
-class KeepingOutlet final : public Outlet {
+class KeepingSink final : public LearnerSink {
  public:
   bool Publish(const WeightsMessage& weights) override {
     payload.assign(weights.payload.begin(), weights.payload.end());
@@ -121,10 +121,10 @@ TEST(WeightsSender, OnPolicyActorsActByThePolicyThatTheLearnerHas) {
   for (uint64_t u = 0; u < 3; ++u) {
     ASSERT_TRUE(agent->Update(RandomBatch(run.spec, rows, u, /*rollout=*/true).View()).finite);
   }
-  KeepingOutlet outlet;
-  WeightsSender(run, nn::Precision::kBf16, /*session=*/1, *agent, outlet).Send(0);
+  KeepingSink sink;
+  WeightsSender(run, nn::Precision::kBf16, /*session=*/1, *agent, sink).Send(0);
   nn::Policy actor(run.config.network, run.spec, nn::Precision::kBf16, rows);
-  actor.Load(nn::ReadSafetensors(outlet.payload, "sent"), "sent");
+  actor.Load(nn::ReadSafetensors(sink.payload, "sent"), "sent");
   const RandomBatch rollout(run.spec, rows, 9, /*rollout=*/true);
   Random random(5);
   Act(&actor, rollout.View(), &random);
@@ -140,9 +140,9 @@ TEST(WeightsSender, OffPolicyWeightsHaveTheRunsPrecision) {
   for (const char* algorithm : {"sac", "ppo"}) {
     RunConfig run = SmallRun();
     run.config.learner.algorithm = algorithm;
-    KeepingOutlet outlet;
-    WeightsSender(run, nn::Precision::kBf16, /*session=*/1, agent, outlet).Send(0);
-    const nn::TensorMap sent = nn::ReadSafetensors(outlet.payload, "sent");
+    KeepingSink sink;
+    WeightsSender(run, nn::Precision::kBf16, /*session=*/1, agent, sink).Send(0);
+    const nn::TensorMap sent = nn::ReadSafetensors(sink.payload, "sent");
     EXPECT_EQ(sent.at("actor.weight").dtype, std::string(algorithm) == "sac" ? "BF16" : "F32");
   }
 }

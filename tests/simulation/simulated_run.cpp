@@ -26,8 +26,8 @@
 #include "launch/processes/process_plan.h"
 #include "launch/record/run_folder.h"
 #include "launch/run/coordinator.h"
-#include "launch/run/operator_desk.h"
 #include "launch/run/run_account.h"
+#include "launch/run/run_server.h"
 #include "launch/run/train_options.h"
 #include "learner/agent/algorithms.h"
 #include "learner/learner_program.h"
@@ -97,7 +97,7 @@ int RunBody(const Blueprint& blueprint, const std::filesystem::path& folder,
 launch::RunResult Coordinate(const Blueprint& blueprint, const std::filesystem::path& folder,
                              link::Hub& hub, SimulatedProcesses& processes) {
   const Config& config = blueprint.run.config;
-  launch::OperatorDesk desk(hub, config.run_name);
+  launch::RunServer desk(hub, config.run_name);
   launch::Progress progress(launch::LogFile(folder, "coordinator").string(), nullptr,
                             /*plain=*/true);
   launch::RunMeta meta;

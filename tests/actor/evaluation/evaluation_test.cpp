@@ -183,7 +183,7 @@ TEST(Evaluator, StoppedItHasTheFirstEpisodesAsIfNoMoreHadBeenAsked) {
 }
 
 // What the policy sees first in each episode.
-class FirstPictures final : public SeatListener {
+class FirstPictures final : public EpisodeListener {
  public:
   void OnBegin(uint64_t, std::span<const uint8_t> stack) override {
     seen.emplace_back(stack.begin(), stack.end());

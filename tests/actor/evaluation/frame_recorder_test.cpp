@@ -35,7 +35,7 @@ class FrameRecorderTest : public testing::Test {
     policy_vector_.resize(size_t(run_.spec.VectorSize()));
     frame_.resize(size_t(run_.spec.FrameBytes()));
     vector_.resize(size_t(run_.spec.RecordedVectorSize()));
-    seat_.emplace(std::move(environment), Seat::PolicyInput{stack_, policy_vector_});
+    runner_.emplace(std::move(environment), EpisodeRunner::PolicyInput{stack_, policy_vector_});
   }
 
   FrameRecorder::Options Options(const std::string& camera = "") const {
@@ -44,15 +44,15 @@ class FrameRecorderTest : public testing::Test {
   // Plays a few steps of two episodes; returns the policy's input after each record.
   std::vector<std::vector<uint8_t>> Record(const FrameRecorder::Options& options) {
     FrameRecorder recorder(run_, options);
-    seat_->set_listener(&recorder);
+    runner_->set_listener(&recorder);
     std::vector<std::vector<uint8_t>> inputs;
-    seat_->Begin(11, {frame_, vector_});
+    runner_->Begin(11, {frame_, vector_});
     inputs.push_back(stack_);
     for (int step = 0; step < kSteps; ++step) {
-      seat_->Step(std::vector<float>{1, -0.5F, 0.25F, 0}, {frame_, vector_});
+      runner_->Step(std::vector<float>{1, -0.5F, 0.25F, 0}, {frame_, vector_});
       inputs.push_back(stack_);
     }
-    seat_->set_listener(nullptr);
+    runner_->set_listener(nullptr);
     return inputs;
   }
   std::vector<image::ShownFrame> Read() const {
@@ -70,7 +70,7 @@ class FrameRecorderTest : public testing::Test {
   RunConfig run_;
   std::vector<uint8_t> stack_, frame_;
   std::vector<float> policy_vector_, vector_;
-  std::optional<Seat> seat_;
+  std::optional<EpisodeRunner> runner_;
 };
 
 TEST_F(FrameRecorderTest, HoldsThePolicysInputsAndALargerViewOfTheSameEpisode) {
@@ -103,7 +103,7 @@ TEST_F(FrameRecorderTest, HoldsThePolicysInputsAndALargerViewOfTheSameEpisode) {
   }
 }
 
-// As a film is made: the evaluation's own seat, and the view beside it.
+// As a film is made: the evaluation's own runner, and the view beside it.
 TEST_F(FrameRecorderTest, WithHindsightTheViewAloneShowsTheGoal) {
   for (const bool hindsight : {false, true}) {
     RunConfig run = run_;

@@ -93,7 +93,7 @@ struct RolloutParts {
 
   const Config config;
   const ObservationSpec spec;
-  MadePage made;
+  SequenceLog made;
   ActionSelector selector;
   Rollout rollout;
 };

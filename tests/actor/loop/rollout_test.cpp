@@ -80,7 +80,7 @@ TEST(GoalPictures, AGoalRecordComesBeforeEachResetAndThePolicySeesItsPicture) {
   const ObservationSpec spec = like.spec();
   FakeSink sink(spec);
   const Config config = SmallConfig(/*envs=*/1);
-  MadePage made(run.path(), /*actor=*/0, /*session=*/10, kFirstEnv, /*envs=*/1);
+  SequenceLog made(run.path(), /*actor=*/0, /*session=*/10, kFirstEnv, /*envs=*/1);
   ActionSelector selector(config, spec, /*envs=*/1);
   std::vector<std::unique_ptr<worlds::Environment>> environments;
   environments.push_back(
@@ -387,7 +387,7 @@ class FaultyRolloutTest : public testing::Test {
   Config config_ = SmallConfig(kEnvs);
   const ObservationSpec spec_ = CountingEnvironment().spec();
   FakeSink sink_{spec_};
-  MadePage made_{run_.path(), /*actor=*/0, /*session=*/10, kFirstEnv, kEnvs};
+  SequenceLog made_{run_.path(), /*actor=*/0, /*session=*/10, kFirstEnv, kEnvs};
   ActionSelector selector_{config_, spec_, kEnvs};
   std::optional<Rollout> rollout_;
 };
@@ -467,7 +467,7 @@ TEST_F(FaultyRolloutTest, WithoutRoomTheOwedStepWaitsAndTheStateKnowsIt) {
     environments.push_back(std::move(environment));
   }
   const TemporaryFolder run;
-  MadePage made(run.path(), 0, 10, kFirstEnv, kEnvs);
+  SequenceLog made(run.path(), 0, 10, kFirstEnv, kEnvs);
   Rollout rollout(Rollout::Options::Of(config_, kFirstEnv), spec_, std::move(environments), made,
                   narrow, selector_);
   EXPECT_FALSE(rollout.TryStep()) << "three resets, two steps: one record left, a reset wants two";

@@ -6,7 +6,7 @@
 #include <algorithm>
 
 #include "launch/commands/commands.h"
-#include "tests/launch/experiment/planted_run.h"
+#include "tests/launch/tools/experiment/planted_run.h"
 
 namespace shoal::launch {
 namespace {

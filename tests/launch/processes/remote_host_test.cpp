@@ -99,7 +99,7 @@ TEST_F(RemoteHostTest, PushesWhatItsActorsNeedAndFetchesWhatTheyLeft) {
   Write(host_.run / "made" / "actor-3-6.page", "new");
   Write(host_.run / "made" / "actor-1-7.page", "not theirs");
   fs::create_symlink("/etc/passwd", host_.run / "made" / "actor-3-7.page");
-  FetchMadePages(host_, actors, run_, Never);
+  FetchSequenceLogs(host_, actors, run_, Never);
   EXPECT_EQ(ReadFile(run_ / "made" / "actor-2-5.page"), "grown");
   EXPECT_EQ(ReadFile(run_ / "made" / "actor-3-6.page"), "new");
   EXPECT_FALSE(fs::exists(run_ / "made" / "actor-1-7.page"));
@@ -116,11 +116,11 @@ TEST_F(RemoteHostTest, WhatALoginPrintsIsNoAnswer) {
   PushRun(run_, actors, &host_, Never);
   EXPECT_EQ(host_.run, folder_.path() / "a folder's name");
   Write(host_.run / "made" / "actor-2-5.page", std::string("grown\n\0\n", 8));
-  FetchMadePages(host_, actors, run_, Never);
+  FetchSequenceLogs(host_, actors, run_, Never);
   EXPECT_EQ(ReadFile(run_ / "made" / "actor-2-5.page"), std::string("grown\n\0\n", 8));
   // A login that swallows what its command says.
   host_.ssh = {"sh", "-c", "sh -c \"$0\" > /dev/null; echo Welcome"};
-  EXPECT_THAT(Mistake([&] { FetchMadePages(host_, actors, run_, Never); }),
+  EXPECT_THAT(Mistake([&] { FetchSequenceLogs(host_, actors, run_, Never); }),
               AllOf(HasSubstr("host far"), HasSubstr("its answer was not passed on whole")));
 }
 
@@ -151,7 +151,7 @@ TEST_F(RemoteHostTest, TakesAnActorsCredentialsAlongAndNobodyElses) {
 }
 
 TEST_F(RemoteHostTest, AFolderThatIsNotThereIsAnErrorThatNamesTheHost) {
-  EXPECT_THAT(Mistake([&] { FetchMadePages(host_, {.first = 0, .count = 1}, run_, Never); }),
+  EXPECT_THAT(Mistake([&] { FetchSequenceLogs(host_, {.first = 0, .count = 1}, run_, Never); }),
               AllOf(HasSubstr("host far"), HasSubstr("folder's name")));
 }
 

@@ -298,8 +298,8 @@ TEST_F(SupervisorTest, DoesNotRestartAfterANonFiniteNumber) {
 }
 
 // Looks twice a second of the supervisor's time until something is said; the time it took.
-std::chrono::milliseconds SilenceUntilSaid(Supervisor* supervisor,
-                                           const std::vector<std::string>& said, SteadyTime start) {
+std::chrono::milliseconds TimerUntilSaid(Supervisor* supervisor,
+                                         const std::vector<std::string>& said, SteadyTime start) {
   SteadyTime now = start;
   while (said.empty() && now < start + std::chrono::hours(1)) {
     now += milliseconds(500);
@@ -313,7 +313,7 @@ TEST_F(SupervisorTest, KillsAndRestartsAProcessThatSaysNothingAnyMore) {
   ASSERT_TRUE(WaitUntil([&] { return Starts("learner-0") == 1; }));
   const SteadyTime start = Now();
   supervisor_.Heard("learner", 0, supervisor_.Pid("learner", 0), start);
-  const milliseconds silence = SilenceUntilSaid(&supervisor_, said_, start);
+  const milliseconds silence = TimerUntilSaid(&supervisor_, said_, start);
   EXPECT_EQ(silence, HangLimits().report + milliseconds(500));
   ASSERT_THAT(said_, ElementsAre(AllOf(HasSubstr("learner-0"), HasSubstr("hangs"),
                                        HasSubstr("no report for 30 s"))));
@@ -326,7 +326,7 @@ TEST_F(SupervisorTest, GivesAProcessLongerForItsFirstReport) {
   const SteadyTime start = Now();
   const pid_t predecessor = 1;
   supervisor_.Heard("replay", 0, predecessor, start);
-  EXPECT_GE(SilenceUntilSaid(&supervisor_, said_, start), HangLimits().start);
+  EXPECT_GE(TimerUntilSaid(&supervisor_, said_, start), HangLimits().start);
   EXPECT_THAT(said_, ElementsAre(HasSubstr("no report for 120 s")));
 }
 
@@ -370,7 +370,7 @@ TEST_F(SupervisorTest, DoesNotTakeItsOwnAbsenceForAHang) {
 TEST_F(SupervisorTest, LeavesTheHangingOfThoseWhoMayExitToTheOrderedStop) {
   supervisor_.Start(Fake("actor", 0, "exec sleep 60"));
   supervisor_.ExpectExit("actor");
-  SilenceUntilSaid(&supervisor_, said_, Now());
+  TimerUntilSaid(&supervisor_, said_, Now());
   EXPECT_THAT(said_, IsEmpty());
 }
 

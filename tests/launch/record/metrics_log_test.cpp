@@ -106,7 +106,7 @@ TEST(MetricsLog, AnHourCostsItsBudgetWhateverTheProcessesSay) {
   EXPECT_LE(BytesAfter(3), 141'000u);
 }
 
-TEST(MetricsLog, AlwaysWritesTheFirstReportOfAProcessAndItsLastWords) {
+TEST(MetricsLog, AlwaysWritesTheFirstReportOfAProcessAndItsExitReason) {
   const TemporaryFolder folder;
   const auto file = folder.path() / "metrics.jsonl";
   MetricsLog log(file, {.burst_bytes = 0, .bytes_per_hour = 1, .most_bytes = 100'000});

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "actor/sending/made_page.h"
+#include "actor/sending/sequence_log.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/checkpoint/checkpoint_files.h"
@@ -51,7 +51,7 @@ class RunCheckTest : public ::testing::Test {
                 .stored_records = ring.last_id(),
                 .sessions = sessions.all()};
     StoreAccount(run_, account_);
-    actor::MadePage page(run_, 0, kSession, 0, 4);
+    actor::SequenceLog page(run_, 0, kSession, 0, 4);
     while (page.CountRecord() < kRecords + 2) {
     }
     UpdatePage(run_, 0).SetDone(100);
@@ -164,7 +164,7 @@ TEST_F(RunCheckTest, ACounterPageIsRebuiltAndSaysWhatIsNoLongerKnown) {
     const auto lines = Mend();
     EXPECT_THAT(lines, ElementsAre(AllOf(HasSubstr("actor-0-10.page' is " + state),
                                          HasSubstr("beyond 40 records is no longer known"))));
-    const auto pages = actor::ReadMadePages(run_);
+    const auto pages = actor::ReadSequenceLogs(run_);
     return pages.size() == 1 && pages[0].made == kRecords && pages[0].rebuilt;
   };
   fs::resize_file(page_, 44);

@@ -63,9 +63,9 @@ class RingTest : public testing::Test {
   int SignsOfLife() {
     int signs = 0;
     RingOptions options = Options();
-    options.alive = [&signs] { ++signs; };
+    options.progress = [&signs] { ++signs; };
     const Ring ring(spec_, options);
-    const EpisodeIndex index(ring, {}, options.alive);
+    const EpisodeIndex index(ring, {}, options.progress);
     return signs;
   }
 

@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "launch/tools/experiment/definition.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <set>
+
+#include "common/base/bounded_json.h"
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/config/config_io.h"
+#include "common/config/shared_data.h"
+#include "common/tasks/task_library.h"
+#include "common/tasks/task_registry.h"
+
+namespace shoal::launch {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+using nlohmann::ordered_json;
+
+constexpr char kDefinitionSchema[] = "shoal-experiment-definition-1";
+constexpr char kKind[] = "experiments";
+
+// What a run of an experiment is called, where it lies and how it is judged is the experiment's.
+constexpr std::array kOwnKeys = {"seed", "run_name", "run_dir", "preset", "eval.final_episodes"};
+
+bool IsFileName(const std::string& text) {
+  const auto allowed = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '_' || c == '-';
+  };
+  return !text.empty() && text[0] != '.' && text[0] != '-' && std::ranges::all_of(text, allowed);
+}
+
+// An integer of at least 0 that fits; text gives another kind of number than C++ does.
+std::optional<int64_t> NaturalNumber(const ordered_json& value) {
+  if (!value.is_number_integer()) return std::nullopt;
+  if (value.is_number_unsigned() &&
+      value.get<uint64_t>() > uint64_t(std::numeric_limits<int64_t>::max())) {
+    return std::nullopt;
+  }
+  const auto number = value.get<int64_t>();
+  return number >= 0 ? std::optional(number) : std::nullopt;
+}
+
+// Reads the members of one JSON object and refuses those it was not asked for.
+class Members {
+ public:
+  Members(const ordered_json& object, std::string source)
+      : object_(object), source_(std::move(source)) {
+    if (!object.is_object()) throw UsageError("{}: expected a JSON object", source_);
+  }
+
+  const ordered_json* Find(const std::string& name) {
+    known_.push_back(name);
+    const auto it = object_.find(name);
+    return it == object_.end() ? nullptr : &*it;
+  }
+  const ordered_json& Need(const std::string& name) {
+    if (const ordered_json* value = Find(name)) return *value;
+    throw UsageError("{}: '{}' is missing", source_, name);
+  }
+  std::string Text(const std::string& name, const std::string& absent) {
+    const ordered_json* value = Find(name);
+    if (value == nullptr) return absent;
+    if (!value->is_string()) Refuse(name, *value, "a string");
+    return value->get<std::string>();
+  }
+  ordered_json Keys(const std::string& name) {
+    const ordered_json* value = Find(name);
+    if (value == nullptr) return ordered_json::object();
+    if (!value->is_object()) Refuse(name, *value, "an object {KEY: VALUE}");
+    return *value;
+  }
+  [[noreturn]] void Refuse(const std::string& name, const ordered_json& value,
+                           const char* expected) const {
+    throw UsageError("{}: {} = {}: expected {}", source_, name, value.dump(), expected);
+  }
+  // After every member there is has been asked for.
+  void RefuseOthers() const {
+    for (const auto& [name, value] : object_.items()) {
+      if (std::ranges::find(known_, name) == known_.end()) {
+        throw UsageError("{}: unknown member '{}', there are: {}", source_, name,
+                         fmt::join(known_, ", "));
+      }
+    }
+  }
+
+ private:
+  const ordered_json& object_;
+  const std::string source_;
+  std::vector<std::string> known_;
+};
+
+std::vector<Arm> ReadArms(Members& members, const std::string& source) {
+  const ordered_json& list = members.Need("arms");
+  if (!list.is_array() || list.empty()) members.Refuse("arms", list, "a list of at least one arm");
+  std::vector<Arm> arms;
+  std::set<std::string> names;
+  for (const ordered_json& entry : list) {
+    const std::string where = fmt::format("{}: arm {}", source, arms.size() + 1);
+    Members arm(entry, where);
+    arms.push_back({.name = arm.Text("name", ""), .set = arm.Keys("set")});
+    arm.RefuseOthers();
+    const std::string& name = arms.back().name;
+    if (!IsFileName(name)) {
+      throw UsageError("{}: name '{}': expected letters, digits, '.', '_', '-'", where, name);
+    }
+    if (!names.insert(name).second) throw UsageError("{}: name '{}' is given twice", where, name);
+  }
+  return arms;
+}
+
+std::vector<int64_t> ReadSeeds(Members& members) {
+  const ordered_json& list = members.Need("seeds");
+  const char* const expected = "a list of different integers of at least 0";
+  if (!list.is_array() || list.empty()) members.Refuse("seeds", list, expected);
+  std::vector<int64_t> seeds;
+  for (const ordered_json& seed : list) {
+    const auto number = NaturalNumber(seed);
+    if (!number || std::ranges::count(seeds, *number) > 0) members.Refuse("seeds", list, expected);
+    seeds.push_back(*number);
+  }
+  return seeds;
+}
+
+std::vector<std::string> ReadTransfer(Members& members) {
+  const ordered_json* list = members.Find("transfer");
+  std::vector<std::string> tasks;
+  if (list == nullptr) return tasks;
+  if (!list->is_array()) members.Refuse("transfer", *list, "a list of tasks");
+  for (const ordered_json& task : *list) {
+    if (!task.is_string()) members.Refuse("transfer", *list, "a list of tasks");
+    tasks.push_back(task.get<std::string>());
+  }
+  return tasks;
+}
+
+// {"learner.batch": 8} as {"learner": {"batch": 8}}: the form ApplyJson takes.
+json Nested(const ordered_json& set, const std::string& source) {
+  json nested = json::object();
+  for (const auto& [key, value] : set.items()) {
+    if (std::ranges::find(kOwnKeys, key) != kOwnKeys.end()) {
+      throw UsageError("{}: key '{}' is the experiment's own", source, key);
+    }
+    const size_t dot = key.find('.');
+    if (dot == std::string::npos) {
+      if (value.is_object()) {
+        throw UsageError("{}: key '{}': expected dotted keys, as '{}.KEY'", source, key, key);
+      }
+      nested[key] = json(value);
+    } else {
+      nested[key.substr(0, dot)][key.substr(dot + 1)] = json(value);
+    }
+  }
+  return nested;
+}
+
+}  // namespace
+
+Definition ParseDefinition(const ordered_json& object, const std::string& source,
+                           const std::string& stem) {
+  Members members(object, source);
+  if (members.Text("schema", "") != kDefinitionSchema) {
+    throw UsageError("{}: expected an object of schema '{}'", source, kDefinitionSchema);
+  }
+  Definition definition;
+  definition.name = members.Text("name", stem);
+  if (!IsFileName(definition.name)) {
+    throw UsageError("{}: name '{}': expected letters, digits, '.', '_', '-'", source,
+                     definition.name);
+  }
+  members.Need("base");
+  definition.base = members.Text("base", "");
+  definition.question = members.Text("question", "");
+  definition.set = members.Keys("set");
+  definition.arms = ReadArms(members, source);
+  definition.seeds = ReadSeeds(members);
+  if (const ordered_json* episodes = members.Find("final_episodes")) {
+    const auto number = NaturalNumber(*episodes);
+    if (!number || *number < 1 || *number > 100'000) {
+      members.Refuse("final_episodes", *episodes, "an integer in 1..100000");
+    }
+    definition.final_episodes = static_cast<int>(*number);
+  }
+  if (const ordered_json* target = members.Find("target_success")) {
+    const bool fits =
+        target->is_number() && target->get<double>() > 0 && target->get<double>() <= 1;
+    if (!fits) members.Refuse("target_success", *target, "a rate in (0, 1]");
+    definition.target_success = target->get<double>();
+  }
+  definition.transfer = ReadTransfer(members);
+  members.RefuseOthers();
+  return definition;
+}
+
+Definition ReadDefinition(const fs::path& file) {
+  const std::string text = ReadFile(file);
+  ParseStrictJson(text, file);  // refuses broken text and duplicate keys
+  return ParseDefinition(ParseBoundedJson<ordered_json>(text), file, file.stem());
+}
+
+ordered_json ToJson(const Definition& definition) {
+  ordered_json arms = ordered_json::array();
+  for (const Arm& arm : definition.arms) arms.push_back({{"name", arm.name}, {"set", arm.set}});
+  ordered_json object{
+      {"schema", kDefinitionSchema}, {"name", definition.name}, {"base", definition.base}};
+  if (!definition.question.empty()) object["question"] = definition.question;
+  object["set"] = definition.set;
+  object["arms"] = arms;
+  object["seeds"] = definition.seeds;
+  if (definition.final_episodes) object["final_episodes"] = *definition.final_episodes;
+  object["target_success"] = definition.target_success;
+  if (!definition.transfer.empty()) object["transfer"] = definition.transfer;
+  return object;
+}
+
+std::vector<std::string> ListDefinitions() { return ListSharedData(kKind); }
+
+fs::path FindDefinition(const std::string& file_or_name) {
+  const bool is_file =
+      file_or_name.find('/') != std::string::npos || fs::path(file_or_name).extension() == ".json";
+  if (is_file) return file_or_name;
+  if (const auto path = FindSharedData(kKind, file_or_name)) return *path;
+  throw UsageError("no experiment '{}': expected a file (*.json) or one of: {}", file_or_name,
+                   fmt::join(ListDefinitions(), ", "));
+}
+
+Config ResolveBase(const Definition& definition, const std::string& source) {
+  Config base;
+  try {
+    base = LoadPreset(definition.base);
+  } catch (const Error& e) {
+    throw UsageError("{}: base: {}", source, e.what());
+  }
+  const std::string where = source + ": set";
+  ApplyJson(Nested(definition.set, where), where, &base);
+  if (definition.final_episodes) base.eval.final_episodes = *definition.final_episodes;
+  return base;
+}
+
+void CheckTransfer(const Definition& definition, const std::string& source) {
+  for (const std::string& task : definition.transfer) {
+    try {
+      tasks::FindTask(task);
+    } catch (const Error& e) {
+      throw UsageError("{}: transfer: {}", source, e.what());
+    }
+  }
+}
+
+Config ArmConfig(const Config& base, const Arm& arm, const std::string& source) {
+  const std::string where = fmt::format("{}: arm '{}'", source, arm.name);
+  Config config = base;
+  ApplyJson(Nested(arm.set, where), where, &config);
+  try {
+    Validate(config);
+    tasks::LoadTaskLibrary(config.task_library);
+    tasks::FindTask(config.task);
+  } catch (const Error& e) {
+    throw UsageError("{}: {}", where, e.what());
+  }
+  return config;
+}
+
+}  // namespace shoal::launch

@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a run's folder says about it once it has ended, or so far: the figures that comparisons,
+// plots and reports are made of. Reads config.json, meta.json and eval/ alone, so that a committed
+// copy without checkpoints serves as well.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/config/config.h"
+#include "launch/record/rollout_curve.h"
+
+namespace shoal::launch {
+
+// The means of one evaluation.
+struct EvaluationFigures {
+  uint64_t env_steps = 0, updates = 0;
+  double wall_seconds = 0;  // since the run's start
+  std::string task{}, checkpoint{};
+  size_t episodes = 0;
+  std::optional<double> success{};  // rate; empty where the task has none
+  double return_mean = 0, return_std = 0;
+  std::optional<double> final_distance_mean{};  // m; empty where the task has none
+};
+
+// Throws Error unless the file is a shoal-eval-1 object.
+EvaluationFigures ReadEvaluationFigures(const std::filesystem::path& file);
+
+// The folder without a slash at its end, which typing it often leaves: its last part is its name.
+std::filesystem::path NamedFolder(const std::filesystem::path& folder);
+
+struct RunResults {
+  std::filesystem::path folder{};
+  std::string name{};
+  Config config{};
+  std::vector<EvaluationFigures> curve{};  // while training, by env steps
+  std::vector<RolloutPoint> rollouts{};  // empty until ReadRollouts (launch/tools/report/curves.h)
+  std::optional<EvaluationFigures> final{};   // eval/final.json
+  std::vector<EvaluationFigures> transfer{};  // eval/on-TASK.json: on other tasks, by task
+  // meta.json; empty before the run has written it.
+  std::string exit{}, error{}, started{}, finished{}, precision{};
+  std::vector<std::string> commits{};  // builds that took part, in order
+  std::string cpu{};
+  int cores = 0;  // of the machine that it could use
+  uint64_t env_steps = 0, updates = 0;
+  double wall_seconds = 0;
+
+  // What a tuner maximises: the final success rate, the final mean return where the task has no
+  // success, empty without a final evaluation.
+  std::optional<double> Objective() const;
+};
+
+// Throws Error: no config.json, or a broken file.
+RunResults ReadRunResults(const std::filesystem::path& run);
+
+// The first of the first stop.evaluations (two by default) evaluations in a row whose episodes,
+// pooled, have at least this success (launch/record/first_reached.h); null = not reached.
+const EvaluationFigures* FirstReaching(const RunResults& run, double success);
+// The env steps at that one; empty = not reached.
+std::optional<uint64_t> StepsToSuccess(const RunResults& run, double success);
+
+}  // namespace shoal::launch

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the seeds of one method earned, and how summaries, comparisons and reports write and print
+// it with its intervals. Seeds are the unit (statistics.h).
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "launch/tools/experiment/statistics.h"
+
+namespace shoal::launch {
+
+struct SeedFigures {
+  std::vector<SeedSuccess> successes{};        // of each seed; none where the task has no success
+  std::vector<double> returns{}, distances{};  // means of each seed; distances in m
+  // Seeds whose run failed (numbers that were not finite, a process that died). They are in none of
+  // the vectors, and every line and object says how many there are.
+  size_t failed = 0;
+
+  // The evaluation that judges one seed.
+  void Add(std::optional<double> success, size_t episodes, double return_mean,
+           std::optional<double> distance);
+
+  uint64_t Successes() const;
+  uint64_t Episodes() const;
+  std::vector<double> Rates() const;
+  // Mean of the seeds' rates, a failed seed as 0; empty without any seed, or without success.
+  std::optional<double> RateWithFailedAsZero() const;
+};
+
+// {pooled, episodes, mean, seeds, ci95, wilson95, failed, mean_with_failed_as_0}: `mean` and `ci95`
+// are over seeds, `wilson95` is that of the one policy where there is one seed, else null.
+nlohmann::ordered_json SuccessJson(const SeedFigures& figures);
+// {mean, ci95, seeds, failed}.
+nlohmann::ordered_json ReturnJson(const SeedFigures& figures);
+nlohmann::ordered_json DistanceJson(const SeedFigures& figures);
+
+// "97.3 % [94.1, 98.9] (292/300)" of one seed, "96.5 % [89.0, 100.0] (3 seeds, 1158/1200)" of
+// several; "(2 seeds, 792/800; 1 failed: 66.0 % with it as 0)"; "-" where there is nothing to say.
+std::string FormatSuccess(const SeedFigures& figures);
+// "-0.82 [-0.91, -0.73] (3 seeds)"; "-0.82 (1 seed)"; "(2 seeds; 1 failed, left out)". As many
+// digits as the interval bears.
+std::string FormatReturn(const SeedFigures& figures);
+// The same in centimetres.
+std::string FormatDistance(const SeedFigures& figures);
+
+// Interval of the distances' mean, m: not below 0.
+std::optional<Interval> DistanceInterval95(const std::vector<double>& distances);
+
+}  // namespace shoal::launch

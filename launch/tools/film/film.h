@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+// `shoal film`: episodes that a run's checkpoints play, as an MP4 file.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "launch/tools/film/film_strip.h"
+
+namespace shoal::launch {
+
+struct FilmOrder {
+  std::filesystem::path run;
+  std::vector<std::filesystem::path> checkpoints;  // shown one after the other
+  int episodes = 0;                                // of each checkpoint
+  int64_t seed = 0;  // of the episodes: those of a final evaluation with this seed
+  std::filesystem::path output;
+  bool strips = false;  // makes a strip of each checkpoint's first episode as well
+};
+
+// Pictures of an episode side by side (film_strip.h).
+struct CheckpointStrip {
+  uint64_t env_steps = 0;  // of the checkpoint
+  StripImage image;
+};
+
+struct FilmMade {
+  uint64_t frames = 0;
+  double seconds = 0;
+  uintmax_t bytes = 0;
+  std::vector<CheckpointStrip> strips{};  // in the order of the checkpoints
+};
+
+// RUN/videos/NAME.mp4
+std::filesystem::path FilmPath(const std::filesystem::path& run, const std::string& name);
+
+// Throws Error (usage) where a film cannot be called that; and, as CheckWritable, where it could
+// not be written.
+void CheckFilmOutput(const std::filesystem::path& run, const std::filesystem::path& output);
+
+// Plays the episodes by `shoal-actor --evaluate --frames` and writes them down as they come. `say`
+// gets a line per checkpoint. Throws Error; empty when `stop` ended it. The file is there as a
+// whole or not at all.
+std::optional<FilmMade> MakeFilm(const FilmOrder& order, const std::function<bool()>& stop,
+                                 const std::function<void(const std::string&)>& say);
+
+}  // namespace shoal::launch

@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+// Draws one picture of a film: the policy's input, the larger view, and what they are in words.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/spec/observation_spec.h"
+#include "launch/tools/film/layout.h"
+
+namespace shoal::launch {
+
+struct FilmText {
+  std::string title, subtitle;    // whose film; which policy
+  uint32_t episode = 0;           // from 1
+  uint32_t episodes = 0;          // that are shown
+  uint32_t step = 0;              // 0 = reset
+  std::optional<float> reward{};  // of the step; a reset has none
+  double episode_return = 0;      // so far
+  bool success = false;
+};
+
+// Owns the picture, which the next Draw replaces. One thread.
+class FilmPicture {
+ public:
+  // Throws Error where there is no font.
+  explicit FilmPicture(const ObservationSpec& spec);
+  ~FilmPicture();
+
+  const FilmLayout& layout() const { return layout_; }
+
+  // `input` (I, H, W) u8 as the policy gets it, of which the newest of the K frames and the goal
+  // picture, if there is one, are shown, empty without pixels; `view` (kFilmView, kFilmView, 3) u8.
+  // CHECK on other sizes.
+  void Draw(const FilmText& text, std::span<const uint8_t> input, std::span<const uint8_t> view);
+
+  // Rows of 4 bytes per pixel, B G R and one without meaning.
+  std::span<const uint8_t> pixels() const;
+  int stride() const;  // bytes from a row to the next
+
+ private:
+  struct Canvas;  // cairo's surface
+
+  // A value of the three colours at (row, column) of a box, row and column from 0.
+  template <class ColourAt>
+  void Fill(const Box& box, const ColourAt& colour_at);
+  // Of `frame` (C, H, W) one camera's picture.
+  void DrawCamera(const Box& box, size_t camera, std::span<const uint8_t> frame);
+  void DrawView(std::span<const uint8_t> view);
+  void DrawWords(const FilmText& text);
+
+  const ObservationSpec spec_;
+  const FilmLayout layout_;
+  std::unique_ptr<Canvas> canvas_;
+};
+
+}  // namespace shoal::launch

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// shoal_rl._native: what the Python package shoal-rl has of C++.
+//
+// Threads: every call holds Python's lock, so a process runs one call at a time; environments step
+// side by side in processes of their own (shoal_rl.make_vec). A call must not run Python code while
+// it holds a C++ lock, the guard of a static local variable included: Python code may pass the lock
+// of Python on to a thread that then waits for the C++ one for ever.
+//
+// Errors: shoal::Error is shoal_rl.Error, its message one line.
+#include <pybind11/numpy.h>
+
+#include <exception>
+#include <vector>
+
+#include "common/base/build_info.h"
+#include "common/base/error.h"
+#include "common/base/one_line.h"
+#include "launch/tools/python/environment_binding.h"
+#include "launch/tools/python/policy_binding.h"
+
+namespace py = pybind11;
+
+namespace {
+
+// pybind11 keeps NumPy's functions in a static local variable, which imports NumPy when it is first
+// used: Python code under a C++ guard. Two threads whose first calls meet there would wait for each
+// other. Used here, while the module is imported, the variable is initialised before any call.
+void ImportNumpy() { py::array_t<float>(std::vector<py::ssize_t>{0}); }
+
+}  // namespace
+
+PYBIND11_MODULE(_native, module) {
+  ImportNumpy();
+  // Lives as long as the process: translators have no argument to reach it by.
+  static py::object error =  // NOLINT: set once, when the module is loaded
+      py::exception<shoal::Error>(module, "Error");
+  error.attr("__module__") = "shoal_rl";
+  error.attr("__doc__") = "What was wrong and what was expected, in one line.";
+  error.inc_ref();
+  py::register_exception_translator([](std::exception_ptr thrown) {
+    try {
+      if (thrown) std::rethrow_exception(thrown);
+    } catch (const shoal::Error& e) {
+      PyErr_SetString(error.ptr(), shoal::OneLine(e.what()).c_str());
+    }
+  });
+  module.attr("__version__") = shoal::BuildVersion();
+  shoal::python::BindPolicy(module);
+  shoal::python::BindEnvironment(module);
+}

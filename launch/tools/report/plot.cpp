@@ -1,0 +1,224 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "launch/tools/report/plot.h"
+
+#include <unistd.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdlib>
+#include <optional>
+#include <sstream>
+
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/base/stop.h"
+#include "launch/processes/child_process.h"
+#include "launch/processes/scratch_folder.h"
+
+namespace shoal::launch {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::chrono::seconds kDeadline{120};
+constexpr int kWidth = 900, kPanelHeight = 330;
+
+// Told apart by people with any colour vision, and on paper (Wong 2011, Nature Methods 8:441).
+constexpr std::array kColours = {"#0072B2", "#D55E00", "#009E73", "#CC79A7",
+                                 "#E69F00", "#56B4E9", "#000000"};
+
+const char* AxisLabel(PlotAxis axis) {
+  switch (axis) {
+    case PlotAxis::kEnvSteps:
+      return "env steps";
+    case PlotAxis::kUpdates:
+      return "updates";
+    case PlotAxis::kWallMinutes:
+      return "wall time, minutes";
+  }
+  return "";
+}
+
+const char* FigureLabel(PlotFigure figure) {
+  switch (figure) {
+    case PlotFigure::kSuccess:
+      return "success, %";
+    case PlotFigure::kReturn:
+      return "mean return";
+    case PlotFigure::kFinalDistance:
+      return "final distance, cm";
+  }
+  return "";
+}
+
+// In gnuplot's single quotes, in which nothing but '' means anything else than itself: double
+// quotes would run what is in backticks as a shell command. Control characters are for nobody's
+// terminal.
+std::string Quoted(const std::string& text) {
+  std::string quoted = "'";
+  for (const char c : text) {
+    if (c == '\'') quoted += '\'';
+    quoted += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  }
+  return quoted + "'";
+}
+
+std::string BlockName(size_t group, size_t figure) {
+  return fmt::format("$curve_{}_{}", group, figure);
+}
+
+std::string RolloutBlockName(size_t group, size_t figure) {
+  return fmt::format("$rollouts_{}_{}", group, figure);
+}
+
+std::string DataBlock(const std::string& name, const std::vector<CurvePoint>& curve) {
+  std::string block = name + " << EOD\n";
+  for (const CurvePoint& p : curve) {
+    block += fmt::format("{:.10g} {:.10g} {:.10g} {:.10g}\n", p.x, p.mean, p.low, p.high);
+  }
+  return block + "EOD\n";
+}
+
+std::string SeedsOf(const RunGroup& group) {
+  return fmt::format("{} ({} seed{})", group.name, group.runs.size(),
+                     group.runs.size() == 1 ? "" : "s");
+}
+
+// Which curves of a group a panel has.
+struct Drawn {
+  bool evaluations = false, rollouts = false;
+};
+
+// Bands first and the actors' thin lines next: no curve of evaluations is hidden by them.
+std::string PanelCommands(const std::vector<RunGroup>& groups, size_t figure,
+                          const std::vector<Drawn>& drawn, bool legend) {
+  std::vector<std::string> parts;
+  for (size_t g = 0; g < groups.size(); ++g) {
+    if (!drawn[g].evaluations || groups[g].runs.size() < 2) continue;
+    parts.push_back(
+        fmt::format("{} using 1:3:4 with filledcurves fc rgb '{}' fs transparent solid "
+                    "0.18 noborder notitle",
+                    BlockName(g, figure), kColours[g % kColours.size()]));
+  }
+  for (size_t g = 0; g < groups.size(); ++g) {
+    if (!drawn[g].rollouts) continue;
+    parts.push_back(fmt::format("{} using 1:2 with lines lw 1 lc rgb '{}' notitle",
+                                RolloutBlockName(g, figure), kColours[g % kColours.size()]));
+  }
+  for (size_t g = 0; g < groups.size(); ++g) {
+    if (!drawn[g].evaluations) continue;
+    parts.push_back(fmt::format("{} using 1:2 with linespoints lw 2 pt 7 ps 0.35 lc rgb '{}' {}",
+                                BlockName(g, figure), kColours[g % kColours.size()],
+                                legend ? "title " + Quoted(SeedsOf(groups[g])) : "notitle"));
+  }
+  if (legend && std::ranges::any_of(drawn, &Drawn::rollouts)) {
+    parts.push_back("NaN with lines lw 1 lc rgb '#666666' title 'thin: episodes of the actors'");
+  }
+  std::string commands = "plot ";
+  for (size_t i = 0; i < parts.size(); ++i) commands += (i == 0 ? "" : ", \\\n  ") + parts[i];
+  return commands + "\n";
+}
+
+bool OnPath(const std::string& program) {
+  const char* const path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    if (access((fs::path(folder) / program).c_str(), X_OK) == 0) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+PlotAxis ParsePlotAxis(const std::string& word) {
+  if (word == "env-steps") return PlotAxis::kEnvSteps;
+  if (word == "updates") return PlotAxis::kUpdates;
+  if (word == "wall") return PlotAxis::kWallMinutes;
+  throw UsageError("axis '{}': expected env-steps | updates | wall", word);
+}
+
+PlotFigure ParsePlotFigure(const std::string& word) {
+  if (word == "success") return PlotFigure::kSuccess;
+  if (word == "return") return PlotFigure::kReturn;
+  if (word == "distance") return PlotFigure::kFinalDistance;
+  throw UsageError("figure '{}': expected success | return | distance", word);
+}
+
+std::string PlotScript(const Plot& plot, const std::vector<RunGroup>& groups,
+                       const fs::path& output) {
+  const std::string ending = output.extension();
+  if (ending != ".png" && ending != ".svg") {
+    throw UsageError("'{}': expected a file that ends in .png or .svg", output.string());
+  }
+  const size_t panels = plot.figures.size();
+  const size_t height = kPanelHeight * panels + 60;
+  std::string script =
+      ending == ".png"
+          ? fmt::format("set terminal pngcairo size {},{} font 'DejaVu Sans,11' enhanced\n", kWidth,
+                        height)
+          : fmt::format(
+                "set terminal svg size {},{} dynamic font 'DejaVu Sans,13' enhanced "
+                "background rgb 'white'\n",
+                kWidth, height);
+  script += "set output " + Quoted(output) + "\nset encoding utf8\n";
+  std::vector<std::vector<Drawn>> drawn(panels, std::vector<Drawn>(groups.size()));
+  for (size_t f = 0; f < panels; ++f) {
+    bool any = false;
+    for (size_t g = 0; g < groups.size(); ++g) {
+      const auto curve = CurveOf(groups[g], plot.axis, plot.figures[f]);
+      const auto rollouts = RolloutCurveOf(groups[g], plot.axis, plot.figures[f]);
+      drawn[f][g] = {.evaluations = !curve.empty(), .rollouts = !rollouts.empty()};
+      any |= drawn[f][g].evaluations;
+      if (!curve.empty()) script += DataBlock(BlockName(g, f), curve);
+      if (!rollouts.empty()) script += DataBlock(RolloutBlockName(g, f), rollouts);
+    }
+    if (!any) {
+      throw UsageError("no run has evaluations with {} to draw", FigureLabel(plot.figures[f]));
+    }
+  }
+  script += fmt::format(
+      "set border 3 lc rgb '#666666'\nset tics nomirror out textcolor rgb '#333333'\n"
+      "set grid lc rgb '#dddddd' lt 1\nset xrange [0:*]\nset autoscale xfixmax\nset format x "
+      "'%.10g'\nset "
+      "decimalsign '.'\n"
+      "set lmargin 10\nset rmargin 4\n"
+      "set key outside top center horizontal noenhanced samplen 2\n"
+      "set multiplot layout {},1 title {} noenhanced font ',13'\n",
+      panels, Quoted(plot.title));
+  for (size_t f = 0; f < panels; ++f) {
+    const bool last = f + 1 == panels;
+    const bool success = plot.figures[f] == PlotFigure::kSuccess;
+    script += fmt::format("set ylabel {}\nset yrange [{}]\nset xlabel {}\n",
+                          Quoted(FigureLabel(plot.figures[f])),
+                          success                                         ? "0:102"
+                          : plot.figures[f] == PlotFigure::kFinalDistance ? "0:*"
+                                                                          : "*:*",
+                          last ? Quoted(AxisLabel(plot.axis)) : "''");
+    script += PanelCommands(groups, f, drawn[f], f == 0);
+  }
+  return script + "unset multiplot\n";
+}
+
+void Draw(const Plot& plot, const std::vector<RunGroup>& groups, const fs::path& output) {
+  CheckWritable(output);
+  const ScratchFolder scratch;
+  // Drawn beside it and moved there: a reader sees the old picture or the new one.
+  const fs::path script = scratch.path() / "plot.gp",
+                 drawn = scratch.path() / ("plot" + output.extension().string());
+  WriteFileAtomically(script, PlotScript(plot, groups, drawn));
+  if (!OnPath("gnuplot")) {
+    throw RuntimeError("gnuplot is not installed: plots need it (Debian: apt install gnuplot-nox)");
+  }
+  ProcessSpec spec;
+  spec.command = {"/usr/bin/env", "gnuplot", script.string()};
+  spec.output = scratch.path() / "said";
+  const auto status = RunToEnd(spec, kDeadline, StopRequested);
+  if (!status || !status->Clean() || !fs::exists(drawn)) {
+    throw RuntimeError("gnuplot: {}: {}", status ? status->Describe() : "did not end",
+                       LastLine(spec.output));
+  }
+  WriteFileForOthers(output, ReadFile(drawn));
+}
+
+}  // namespace shoal::launch

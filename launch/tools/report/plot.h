@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// `shoal plot`: learning curves with bands over seeds, drawn by gnuplot.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "launch/tools/report/curves.h"
+#include "launch/tools/report/subjects.h"
+
+namespace shoal::launch {
+
+// Throw Error (usage) naming the word and those there are.
+PlotAxis ParsePlotAxis(const std::string& word);      // env-steps | updates | wall
+PlotFigure ParsePlotFigure(const std::string& word);  // success | return | distance
+
+struct Plot {
+  std::string title{};
+  PlotAxis axis = PlotAxis::kEnvSteps;
+  std::vector<PlotFigure> figures{};  // one below the other
+};
+
+// Commands for gnuplot with the data in them; `output` as png or svg, by its ending. Throws Error
+// (usage) where no run has a figure.
+std::string PlotScript(const Plot& plot, const std::vector<RunGroup>& groups,
+                       const std::filesystem::path& output);
+
+// Draws the picture. Throws Error: gnuplot is not installed, fails, or the file cannot be written.
+void Draw(const Plot& plot, const std::vector<RunGroup>& groups,
+          const std::filesystem::path& output);
+
+}  // namespace shoal::launch

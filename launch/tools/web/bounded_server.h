@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+// cpp-httplib's server with a bound on everything that somebody outside decides: how long a request
+// takes to come and an answer to go, how long a request is, how many connections there are. One
+// request per connection.
+//
+// Bodies that are encoded are not decoded, answers are not compressed (the library would, at a cost
+// that who asks decides), and ranges are left to who answers.
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <string>
+
+#include "launch/tools/web/http_library.h"
+
+namespace shoal::launch {
+
+struct ServerLimits {
+  std::chrono::milliseconds request{3000};  // for a request to arrive as a whole
+  std::chrono::milliseconds answer{15000};  // for its answer to be taken
+  std::chrono::milliseconds file{300000};   // for a file's, behind a slow line
+  size_t request_bytes = 24000;             // headers and body
+  size_t threads = 16;
+  size_t waiting = 16;  // connections; what comes beyond is closed at once
+};
+
+class BoundedServer final : public HttpServer {
+ public:
+  // `is_file`: whether the answer to this path is a file, for which limits.file is the time.
+  BoundedServer(const ServerLimits& limits, std::function<bool(const std::string&)> is_file);
+
+  // Ends the waits of every connection, so that Server::stop need not wait for them.
+  void EndConnections() { ending_ = true; }
+
+ private:
+  bool process_and_close_socket(socket_t socket) override;
+
+  const ServerLimits limits_;
+  const std::function<bool(const std::string&)> is_file_;
+  std::atomic<bool> ending_ = false;
+};
+
+}  // namespace shoal::launch

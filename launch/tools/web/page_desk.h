@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: Apache-2.0
+// Finds the answers to the page's requests: the runs there are, their curves, lines to those that
+// run, episodes that are played.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/base/mutex.h"
+#include "launch/tools/web/live_runs.h"
+#include "launch/tools/web/played_episode.h"
+#include "launch/tools/web/run_curves.h"
+
+namespace shoal::launch {
+
+struct DeskOptions {
+  std::filesystem::path run{};  // folder of the only run that is shown; empty = all of run_dir
+  std::filesystem::path run_dir = "runs";
+  std::string secure{};
+};
+
+// Any thread. The answers are JSON (page_answers.h). All throw Error.
+class PageDesk {
+ public:
+  explicit PageDesk(const DeskOptions& options) : options_(options), live_(options.secure) {}
+
+  // Folder of a run that is shown; empty when there is none of that name. No path is ever made of
+  // the name.
+  std::optional<std::filesystem::path> FindRun(const std::string& name) const;
+
+  std::string Runs();
+  std::string Run(const std::filesystem::path& run) const;
+  std::string Top(const std::filesystem::path& run);
+  std::string Curves(const std::filesystem::path& run);
+  // Carries out an order to a run (ParsePageOrder), and returns {"text": what was done}.
+  std::string Carry(const std::filesystem::path& run, const std::string& body);
+  std::string Play(const std::filesystem::path& run);
+
+  // Film of the run's played episode; empty while there is none.
+  std::filesystem::path EpisodeFilm(const std::filesystem::path& run) const;
+  void Tend() { live_.LeaveUnwatched(Now()); }
+
+ private:
+  struct CurvesOf {
+    RunCurves curves;
+    SteadyTime asked;
+  };
+
+  std::vector<std::filesystem::path> Folders() const;
+
+  const DeskOptions options_;
+  LiveRuns live_;
+  PlayedEpisodes episodes_;
+  Mutex curves_mutex_;
+  std::map<std::filesystem::path, CurvesOf> curves_ SHOAL_GUARDED_BY(curves_mutex_);
+  Mutex runs_mutex_;
+  std::string runs_ SHOAL_GUARDED_BY(runs_mutex_);  // the answer of a moment ago, for all who ask
+  SteadyTime runs_of_ SHOAL_GUARDED_BY(runs_mutex_){};
+};
+
+}  // namespace shoal::launch

@@ -1,0 +1,12 @@
+// SPDX-License-Identifier: Apache-2.0
+// A sign of life from long work at start: reading a cold ring of many gigabytes takes minutes.
+#pragma once
+
+#include <functional>
+
+namespace shoal::replay {
+
+// Called often, about once per record; cheap. Empty = nobody listens.
+using StartupProgress = std::function<void()>;
+
+}  // namespace shoal::replay
