@@ -91,6 +91,7 @@ struct LearnerConfig {
   double average_rate = 0.005;  // evaluated policy: average += rate * (policy - average); 1 = none
   int actor_period = 2;         // updates per actor and temperature update
   int target_period = 1;
+  double mean_penalty = 0;  // of a deterministic policy: weight of its squared outputs before tanh
   double initial_temperature = 0.1;
   std::string temperature = "auto";  // auto | fixed
   double min_temperature = 0;        // of an automatic one

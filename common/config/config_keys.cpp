@@ -181,6 +181,10 @@ std::vector<Key> LearnerKeys() {
       SHOAL_SAME(learner.actor_period, (IntegerRange{1, 1000}),
                  "updates per actor and temperature update"),
       SHOAL_SAME(learner.target_period, (IntegerRange{1, 100'000}), "updates per target update"),
+      SHOAL_SAME(
+          learner.mean_penalty, (RealRange{0, 1e6}),
+          "td3, ddpg: weight, in the actor's loss, of the mean square of the policy's outputs "
+          "before tanh; it keeps actions from saturating for good"),
       SHOAL_SAME(learner.initial_temperature, (RealRange{0, 100, true}),
                  "entropy temperature at the start"),
       SHOAL_SAME(

@@ -120,6 +120,12 @@ void ValidateEntropy(const Config& config) {
         "temperature aims at; expected one of them unset",
         learner.target_entropy, learner.target_entropy_per_action);
   }
+  if (LearnsDeviation(config) && learner.mean_penalty > 0) {
+    throw UsageError(
+        "learner.mean_penalty = {}: it belongs to a deterministic policy, and that of "
+        "learner.algorithm = {} is a Gaussian; expected 0",
+        learner.mean_penalty, learner.algorithm);
+  }
   if (LearnsDeviation(config)) return;
   const std::pair<const char*, bool> keys[] = {
       {"learner.temperature", learner.temperature != none.temperature},

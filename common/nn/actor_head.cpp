@@ -85,10 +85,12 @@ void ActorHead::Backward(const float* mean_gradient, const float* log_std_gradie
 }
 
 // daction/dmean = 1 - action^2.
-void ActorHead::Backward(const float* action_gradient) {
+void ActorHead::BackwardAction(const float* action_gradient, double mean_penalty) {
   CHECK(!action_.empty());
+  const auto slope = float(2 * mean_penalty / double(action_.size()));
   for (size_t i = 0; i < action_.size(); ++i) {
     output_gradient_[i] = action_gradient[i] * (1 - action_[i] * action_[i]);
+    if (slope > 0) output_gradient_[i] += slope * mean_[i];
   }
   BackwardMlp();
 }

@@ -38,8 +38,8 @@ class ActorHead {
   void Forward(const float* vector);
   // Of a Gaussian, from dL/dmean, dL/dlog_std (B, A).
   void Backward(const float* mean_gradient, const float* log_std_gradient);
-  // Of a deterministic one, from dL/daction (B, A).
-  void Backward(const float* action_gradient);
+  // Of a deterministic one: ActorModule::BackwardAction.
+  void BackwardAction(const float* action_gradient, double mean_penalty);
 
  private:
   void ForwardLogStd();

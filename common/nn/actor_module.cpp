@@ -40,9 +40,9 @@ void ActorModule::Backward(const float* mean_gradient, const float* log_std_grad
   impl_->head.Backward(mean_gradient, log_std_gradient);
 }
 
-void ActorModule::Backward(const float* action_gradient) {
+void ActorModule::BackwardAction(const float* action_gradient, double mean_penalty) {
   const ThreadScope scope(context_.threads);
-  impl_->head.Backward(action_gradient);
+  impl_->head.BackwardAction(action_gradient, mean_penalty);
 }
 
 }  // namespace shoal::nn

@@ -32,10 +32,12 @@ class ActorModule final : public Module {
   void Refresh() override;
   // vector (B, V), for the features as they are.
   Output Forward(const float* vector);
-  // Gradients of the parameters, for the latest Forward: of a Gaussian from dL/dmean and
-  // dL/dlog_std (B, A), of a deterministic actor from dL/daction (B, A).
+  // Gradients of the parameters, for the latest Forward of a Gaussian actor, from dL/dmean and
+  // dL/dlog_std (B, A).
   void Backward(const float* mean_gradient, const float* log_std_gradient);
-  void Backward(const float* action_gradient);
+  // The same of a deterministic actor, from dL/daction (B, A). The loss besides has the term
+  // mean_penalty times the mean of the squares of `mean`; 0 leaves it out.
+  void BackwardAction(const float* action_gradient, double mean_penalty);
 
  private:
   struct Impl;

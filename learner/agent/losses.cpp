@@ -77,8 +77,14 @@ void ActorLossBackward(int batch, const float* q0, const float* q1, float* q0_gr
   }
 }
 
-float DeterministicActorLoss(int batch, const float* q) {
-  return float(-std::accumulate(q, q + batch, 0.0) / batch);
+float DeterministicActorLoss(std::span<const float> q, std::span<const float> mean,
+                             double mean_penalty) {
+  double loss = -std::accumulate(q.begin(), q.end(), 0.0) / double(q.size());
+  if (mean_penalty > 0) {
+    const double squares = std::inner_product(mean.begin(), mean.end(), mean.begin(), 0.0);
+    loss += mean_penalty * squares / double(mean.size());
+  }
+  return float(loss);
 }
 
 float TemperatureLoss(float temperature, float entropy, float target_entropy) {

@@ -53,8 +53,10 @@ float ActorLossForward(int batch, const float* log_prob, const float* q0, const 
 void ActorLossBackward(int batch, const float* q0, const float* q1, float* q0_gradient,
                        float* q1_gradient);
 
-// Eq. 19:  L = -mean_b q;   dL/dq = -1 / B
-float DeterministicActorLoss(int batch, const float* q);
+// Eq. 19:  L = -mean_b q + mean_penalty mean_ba m^2;   dL/dq = -1 / B. mean: m (B, A), the policy's
+// outputs before tanh.
+float DeterministicActorLoss(std::span<const float> q, std::span<const float> mean,
+                             double mean_penalty);
 
 // Eq. 8:  L = temperature (entropy - target_entropy) with entropy = -mean_b log pi held fixed;
 //   dL/dlog temperature = L

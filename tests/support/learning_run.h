@@ -72,8 +72,7 @@ inline LearningResult Learn(const std::string& preset,
 }
 
 // The same with seed 1 and, unless the result is `enough`, once more with seed 2. A seed may fail
-// although the algorithm learns: a deterministic policy can saturate in its first updates and stay
-// there (seen once of four TD3 trainings). An algorithm that is broken fails with both.
+// although the algorithm learns; an algorithm that is broken fails with both.
 inline LearningResult LearnWithOneSeedOfTwo(
     const std::string& preset, std::map<std::string, std::string> keys,
     std::chrono::seconds deadline, const std::function<bool(const nlohmann::json&)>& enough) {

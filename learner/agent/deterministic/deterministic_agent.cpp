@@ -198,10 +198,11 @@ bool DeterministicAgent::UpdateCritic(const BatchView& batch, const OnStageEnd& 
 bool DeterministicAgent::UpdateActor(const BatchView& batch, const OnStageEnd& on_stage_end,
                                      UpdateFigures* figures) {
   const float* vector = batch.obs_vector.data();
-  const float* action = actor_.Forward(vector).action;
+  const auto [mean, log_std, action] = actor_.Forward(vector);
   critic_.ForwardObservation(vector);
   critic_.ForwardAction(action);
-  const float own_loss = DeterministicActorLoss(rows_, critic_.q(0));
+  const float own_loss = DeterministicActorLoss(
+      {critic_.q(0), size_t(rows_)}, {mean, action_gradient_.size()}, config_.learner.mean_penalty);
   int64_t saturated = 0;
   for (size_t i = 0; i < action_gradient_.size(); ++i) saturated += std::abs(action[i]) > 0.99f;
   on_stage_end(UpdateStage::kForward);
@@ -209,7 +210,7 @@ bool DeterministicAgent::UpdateActor(const BatchView& batch, const OnStageEnd& o
   std::vector<std::vector<float>> gradients(size_t(options_.critics));
   gradients[0].assign(size_t(rows_), -1.f / float(rows_));
   critic_.BackwardAction(gradients, action_gradient_.data());
-  actor_.Backward(action_gradient_.data());
+  actor_.BackwardAction(action_gradient_.data(), config_.learner.mean_penalty);
   replica_->Post({}, {own_loss, double(saturated) / double(action_gradient_.size())});
   const double squares = actor_optimiser_.GatherGradients();
   const std::vector<double> means = replica_->Posted().means;

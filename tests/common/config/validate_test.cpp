@@ -110,6 +110,17 @@ TEST(Validate, APolicyWithoutEntropyTakesNoKeysOfIt) {
   EXPECT_EQ(Refusal([](Config* c) { c->learner.initial_temperature = 1; }), "");
 }
 
+TEST(Validate, OnlyADeterministicPolicyTakesAPenaltyOfItsMean) {
+  for (const char* algorithm : {"sac", "ppo", "td3", "ddpg"}) {
+    const std::string refusal = Refusal([&](Config* config) {
+      config->learner.algorithm = algorithm;
+      config->learner.mean_penalty = 0.1;
+    });
+    const bool takes = algorithm == std::string("td3") || algorithm == std::string("ddpg");
+    EXPECT_EQ(refusal.find("learner.mean_penalty") == std::string::npos, takes) << refusal;
+  }
+}
+
 TEST(Validate, ATemperaturesFloorIsBelowItsStartAndOfOneThatMoves) {
   EXPECT_EQ(Refusal([](Config* c) { c->learner.min_temperature = 0.01; }), "");
   EXPECT_THAT(Refusal([](Config* c) { c->learner.min_temperature = 0.2; }),

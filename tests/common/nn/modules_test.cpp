@@ -86,7 +86,7 @@ TEST_P(ModulesTest, ADeterministicActorIsTheTanhOfItsMlpAndMayTrainItsOwnEncoder
             2 * Tolerance(GetParam()));
 
   const Values daction = RandomValues(kRows * 3, 6);
-  actor.Backward(ToFloats(daction).data());
+  actor.BackwardAction(ToFloats(daction).data(), 0);
   encoder.Backward();
   if (GetParam() != Precision::kF32) return;
   const auto loss = [&] { return Dot(daction, reference::Tanh(Raw(network))); };

@@ -7,6 +7,7 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cstring>
 #include <functional>
 #include <numeric>
 
@@ -27,24 +28,33 @@ struct Case {
   std::string algorithm;
   std::vector<std::string> critics;  // MLPs of a critic
   bool smooth = false;               // noise on the target's action
+  double mean_penalty = 0;
+  std::string name = algorithm;
 };
 
-void PrintTo(const Case& each, std::ostream* out) { *out << each.algorithm; }
+void PrintTo(const Case& each, std::ostream* out) { *out << each.name; }
 
 Config ConfigOf(const Case& each) {
   Config config = SmallConfig();
   config.learner.algorithm = each.algorithm;
   config.learner.actor_period = config.learner.target_period = 1;
+  config.learner.mean_penalty = each.mean_penalty;
   if (each.smooth) config.td3 = {.target_noise = 0.3, .target_noise_clip = 0.4};
   return config;
 }
 
 class DeterministicAgentTest : public testing::TestWithParam<Case> {
  protected:
+  // (B, A) before tanh.
+  Values Mean(const Network& network, const std::string& head, const Values& features,
+              const Values& vector) const {
+    return network.Mlp(head + ".mlp", batch_size_,
+                       network.Observation(head, batch_size_, features, vector));
+  }
+
   Values Action(const Network& network, const std::string& head, const Values& features,
                 const Values& vector) const {
-    Values action = network.Mlp(head + ".mlp", batch_size_,
-                                network.Observation(head, batch_size_, features, vector));
+    Values action = Mean(network, head, features, vector);
     for (double& a : action) a = std::tanh(a);
     return action;
   }
@@ -106,7 +116,10 @@ class DeterministicAgentTest : public testing::TestWithParam<Case> {
     const Values vector = ToDoubles(data_.View().obs_vector);
     const Values q =
         Q(judge, "critic", "q1", features, vector, Action(network, "actor", features, vector));
-    return -std::accumulate(q.begin(), q.end(), 0.0) / batch_size_;
+    const Values mean = Mean(network, "actor", features, vector);
+    const double squares = std::inner_product(mean.begin(), mean.end(), mean.begin(), 0.0);
+    return -std::accumulate(q.begin(), q.end(), 0.0) / batch_size_ +
+           GetParam().mean_penalty * squares / double(mean.size());
   }
 
   const ObservationSpec spec_ = SmallSpec();
@@ -218,12 +231,30 @@ TEST_P(DeterministicAgentTest, ItsPolicyHasNoDeviation) {
   EXPECT_TRUE(output.log_std.empty());
 }
 
+// Without the penalty a policy whose actions are all at a bound stays there: the gradient through
+// tanh is 0.
+TEST_P(DeterministicAgentTest, OnlyAPenaltyMovesASaturatedPolicy) {
+  nn::TensorMap tensors = agent_->AllTensors();
+  nn::NamedTensor& bias = tensors.at("actor.mlp.output.bias");
+  const std::vector<float> far(bias.data.size() / sizeof(float), 40.f);
+  std::memcpy(bias.data.data(), far.data(), bias.data.size());
+  agent_->Restore(tensors, "saturated");
+  agent_->Update(data_.View());
+  const bool moved = !Differences(tensors, agent_->AllTensors(), "actor.").empty();
+  EXPECT_EQ(moved, GetParam().mean_penalty > 0);
+}
+
 TEST_P(DeterministicAgentTest, LearnsABandit) { EXPECT_LT(BanditError(config_, MakeAgent), 0.08); }
 
 INSTANTIATE_TEST_SUITE_P(Of, DeterministicAgentTest,
                          testing::Values(Case{"td3", {"q1", "q2"}, /*smooth=*/true},
-                                         Case{"ddpg", {"q1"}, /*smooth=*/false}),
-                         [](const auto& each) { return each.param.algorithm; });
+                                         Case{"ddpg", {"q1"}, /*smooth=*/false},
+                                         Case{.algorithm = "td3",
+                                              .critics = {"q1", "q2"},
+                                              .smooth = true,
+                                              .mean_penalty = 0.7,
+                                              .name = "td3_with_a_penalty"}),
+                         [](const auto& each) { return each.param.name; });
 
 }  // namespace
 }  // namespace shoal::learner
