@@ -4,7 +4,7 @@
 usage: gymnasium_random.py ENVIRONMENT EPISODES SEED FILE
 
 For comparison with `shoal env random`; nothing of Shoal needs Python. Wants gymnasium-robotics
-(docs/results.md names the versions).
+(docs/results/random-actions.md names the versions).
 """
 
 import json

@@ -208,9 +208,15 @@ class Reader {
 
 // Built, recorded or generated.
 bool IsLeftOut(const std::string& folder) {
-  static const std::set<std::string> kFolders = {
-      ".cache",      ".git", "build", "runs", "docs/results", "experiments", "tests/fuzz/corpus",
-      "tests/golden"};
+  static const std::set<std::string> kFolders = {".cache",
+                                                 ".git",
+                                                 "build",
+                                                 "runs",
+                                                 "docs/results/experiments",
+                                                 "docs/results/runs",
+                                                 "experiments",
+                                                 "tests/fuzz/corpus",
+                                                 "tests/golden"};
   return kFolders.contains(folder);
 }
 

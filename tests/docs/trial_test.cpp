@@ -25,11 +25,7 @@ constexpr std::chrono::seconds kDeadline{400};  // of a machine that has much el
 class Surroundings {
  public:
   Surroundings() {
-    for (const char* folder :
-         {"docs/images", "docs/results/experiments/pick-and-place-movement",
-          "docs/results/experiments/pick-and-place-pixels", "docs/results/experiments/push-her",
-          "docs/results/experiments/push-image-goals", "docs/results/experiments/push-pixels",
-          "docs/results/experiments/reach-recipe", "docs/results/original-environment", "home"}) {
+    for (const char* folder : {"docs/images", "home"}) {
       fs::create_directories(folder_.path() / folder);
     }
     Link("tests", SourcePath("tests"));

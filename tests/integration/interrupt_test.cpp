@@ -59,8 +59,8 @@ std::string Words(const std::vector<std::string>& command) {
   return line;
 }
 
-// A loop over seeds in bash that is written as in docs/results.md. As a terminal does on Ctrl-C,
-// every process of its group gets SIGINT.
+// A loop over seeds in bash, written as in docs/results/reach-fast.md. As a terminal does on
+// Ctrl-C, every process of its group gets SIGINT.
 TEST(Interrupt, ALoopOfAShellEndsWithTheRun) {
   const TrainingRun run;
   std::vector<std::string> command = run.Command(kEndless);
