@@ -10,10 +10,14 @@ from mkdocs.exceptions import BuildError
 
 
 def on_config(config):
-    """Every decision is a page of the last section, under its own title."""
-    decisions = sorted(os.listdir(os.path.join(config["docs_dir"], "decisions")))
-    *_, pages = config["nav"][-1].values()
-    pages.append({"Decisions": [f"decisions/{name}" for name in decisions]})
+    """Every decision and every experiment is a page under its own title."""
+    def pages_of(folder):
+        names = sorted(os.listdir(os.path.join(config["docs_dir"], folder)))
+        return [f"{folder}/{name}" for name in names if name.endswith(".md")]
+
+    sections = {title: pages for section in config["nav"] for title, pages in section.items()}
+    sections["What to expect"].append({"Experiments": pages_of("results")})
+    sections["How it works"].append({"Decisions": pages_of("decisions")})
     return config
 
 
