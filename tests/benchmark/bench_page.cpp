@@ -3,6 +3,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <sstream>
 #include <vector>
 
@@ -34,18 +35,38 @@ std::string_view OrderOf(std::string_view line) {
 }
 
 std::string Source(const Report& report, const std::string& file) {
-  return fmt::format("Commit {}, {}. [File]({}).\n", report.commit, report.machine, file);
+  return fmt::format("Commit {}, {}.\n[File]({}).\n", report.commit, report.machine, file);
+}
+
+// Parts of "A; B", of which a stage has to contain one.
+std::vector<std::string_view> PartsOf(std::string_view only) {
+  std::vector<std::string_view> parts;
+  for (size_t end = only.find("; "); end != std::string_view::npos; end = only.find("; ")) {
+    parts.push_back(only.substr(0, end));
+    only.remove_prefix(end + 2);
+  }
+  parts.push_back(only);
+  return parts;
 }
 
 std::string Rows(std::string_view order, const Reader& read) {
   const size_t colon = order.find(": ");
   const std::string file(order.substr(0, colon));
-  const std::string_view only =
-      colon == std::string_view::npos ? std::string_view() : order.substr(colon + 2);
+  const std::vector<std::string_view> parts =
+      PartsOf(colon == std::string_view::npos ? std::string_view() : order.substr(colon + 2));
   Report report = ParseReport(read(file), file);
-  std::erase_if(report.rows,
-                [&](const ReportedRow& row) { return row.stage.find(only) == std::string::npos; });
-  if (report.rows.empty()) throw RuntimeError("'{}' has no row '{}'", file, only);
+  const auto has = [](const ReportedRow& row, std::string_view part) {
+    return row.stage.find(part) != std::string::npos;
+  };
+  for (const std::string_view part : parts) {
+    const auto matches = [&](const ReportedRow& row) { return has(row, part); };
+    if (std::ranges::none_of(report.rows, matches)) {
+      throw RuntimeError("'{}' has no row '{}'", file, part);
+    }
+  }
+  std::erase_if(report.rows, [&](const ReportedRow& row) {
+    return std::ranges::none_of(parts, [&](std::string_view part) { return has(row, part); });
+  });
   return fmt::format("{}\n{}", Source(report, file), MarkdownTable(report));
 }
 

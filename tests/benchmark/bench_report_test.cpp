@@ -65,12 +65,27 @@ TEST(BenchPage, APageKeepsAllButWhatStandsBetweenItsMarks) {
   };
   const std::string once = RewritePage(page, read);
   EXPECT_THAT(once, testing::StartsWith("before\n<!-- bench a.json: fast -->\n\nCommit abc, X, 2 "
-                                        "cores, avx. [File](a.json).\n\n| stage"));
+                                        "cores, avx.\n[File](a.json).\n\n| stage"));
   EXPECT_THAT(once, testing::EndsWith("<!-- end of bench -->\nafter\n"));
   EXPECT_THAT(once, HasSubstr("fast one"));
   EXPECT_EQ(once.find("other"), std::string::npos);
   EXPECT_EQ(once.find("old"), std::string::npos);
   EXPECT_EQ(RewritePage(once, read), once);
+}
+
+TEST(BenchPage, RowsOfSeveralTextsKeepTheirOrder) {
+  const auto read = [](const std::string&) {
+    return File(RowText("one", 4) + "," + RowText("two", 4) + "," + RowText("three", 4));
+  };
+  const std::string page =
+      RewritePage("<!-- bench a.json: three; one -->\n<!-- end of bench -->\n", read);
+  EXPECT_LT(page.find("| one"), page.find("| three"));
+  EXPECT_NE(page.find("| three"), std::string::npos);
+  EXPECT_EQ(page.find("| two"), std::string::npos);
+  EXPECT_THAT(ErrorMessage([&] {
+                RewritePage("<!-- bench a.json: one; four -->\n<!-- end of bench -->\n", read);
+              }),
+              HasSubstr("'a.json' has no row 'four'"));
 }
 
 TEST(BenchPage, MarksWithoutPartnersAndRowsThatAreNotThereAreNamed) {
@@ -105,7 +120,7 @@ TEST(BenchReport, OnlyRowsThatBothCommitsHaveAreCompared) {
 
 TEST(BenchPage, PagesAreWhatTheirFilesSay) {
   const std::filesystem::path docs = SourcePath("docs");
-  for (const char* name : {"performance.md", "scale.md"}) {
+  for (const char* name : {"performance.md", "performance_tables.md", "scale.md"}) {
     const std::string page = ReadFile(docs / name);
     const std::string anew =
         RewritePage(page, [&](const std::string& file) { return ReadFile(docs / file); });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // shoal-bench-scaling: how fast N learner threads are, and what the parts of an update cost: a JSON
-// line for each network, batch and N (docs/performance.md, "Threads of the learner").
+// line for each network, batch and N (docs/performance_tables.md, "Threads of the learner").
 #include <sys/resource.h>
 
 #include <CLI/CLI.hpp>
