@@ -25,7 +25,7 @@ constexpr std::chrono::seconds kDeadline{400};  // of a machine that has much el
 class Surroundings {
  public:
   Surroundings() {
-    for (const char* folder : {"docs/images", "home"}) {
+    for (const char* folder : {"docs/images", "docs/results", "home"}) {
       fs::create_directories(folder_.path() / folder);
     }
     Link("tests", SourcePath("tests"));
