@@ -58,6 +58,35 @@ TEST(ResultsPage, HasTheTablesOfTheCommittedFigures) {
       << "build/release/bin/shoal-results writes it anew";
 }
 
+// Whether a meta.json lists privileged inputs of this kind.
+bool Lists(const json& meta, const char* kind) {
+  const json inputs = meta.value("privileged_inputs", json::object());
+  return !inputs.value(kind, json::array()).empty();
+}
+
+// "critic" and "encoder" are in the text of a row exactly if the runs had such inputs.
+TEST(ResultsPage, NamesThePrivilegedInputsOfTheRuns) {
+  const std::string folder = SourcePath("docs/results");
+  const json table = json::parse(ReadFile(folder + "/table.json"));
+  int metas = 0, privileged = 0;
+  for (const json& group : table.at("groups")) {
+    for (const json& row : group.at("rows")) {
+      const auto text = row.at("privileged").get<std::string>();
+      const json names = row.value("metas", json::array());
+      for (const json& name : names) {
+        const json meta = json::parse(ReadFile(folder + "/" + name.get<std::string>()));
+        if (!meta.contains("privileged_inputs")) continue;
+        ++metas;
+        privileged += Lists(meta, "critic_blocks") ? 1 : 0;
+        EXPECT_EQ(text.find("critic") != text.npos, Lists(meta, "critic_blocks")) << name;
+        EXPECT_EQ(text.find("encoder") != text.npos, Lists(meta, "labels")) << name;
+      }
+    }
+  }
+  EXPECT_GE(metas, 20);
+  EXPECT_GE(privileged, 3);
+}
+
 // The README repeats some rows: each success with its interval is one of the tables.
 TEST(ResultsPage, HasEverySuccessOfTheReadme) {
   const std::string page = ReadFile(SourcePath("docs/results.md"));
