@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <string>
@@ -85,6 +86,25 @@ TEST(ResultsPage, NamesThePrivilegedInputsOfTheRuns) {
   }
   EXPECT_GE(metas, 10);
   EXPECT_GE(privileged, 3);
+}
+
+// Pages link a percentage to the evaluation that it is from: "[98.2 %](runs/a-eval200.json)".
+TEST(ResultsPage, LinkedPercentagesAreThoseOfTheirFiles) {
+  const std::regex link(R"(\[([0-9.]+) %\]\(([^)]+\.json)\))");
+  const std::filesystem::path folder = SourcePath("docs/results");
+  int found = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    if (entry.path().extension() != ".md") continue;
+    const std::string page = ReadFile(entry.path());
+    for (std::sregex_iterator it(page.begin(), page.end(), link), end; it != end; ++it) {
+      const json file = json::parse(ReadFile(folder / (*it)[2].str()));
+      const json& figures = file.contains("aggregate") ? file.at("aggregate") : file;
+      ++found;
+      EXPECT_NEAR(std::stod((*it)[1]), 100 * figures.at("success_rate").get<double>(), 0.051)
+          << entry.path() << ": " << it->str();
+    }
+  }
+  EXPECT_GE(found, 30);
 }
 
 // The README repeats some rows: each success with its interval is one of the tables.
