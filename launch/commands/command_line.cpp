@@ -8,6 +8,7 @@
 #include "common/base/command_line.h"
 #include "common/base/error.h"
 #include "launch/commands/other_words.h"
+#include "launch/commands/tool_commands.h"
 
 namespace shoal::launch {
 namespace {
@@ -43,25 +44,17 @@ std::unique_ptr<CLI::App> MakeCommandLine(Action* chosen) {
   app->require_subcommand(1);
   AddTrainCommand(*app, chosen);
   AddEvalCommand(*app, chosen);
-  AddExperimentCommand(*app, chosen);
-  AddCompareCommand(*app, chosen);
-  AddPlotCommand(*app, chosen);
-  AddReportCommand(*app, chosen);
-  AddCardCommand(*app, chosen);
-  AddExportCommand(*app, chosen);
-  AddFilmCommand(*app, chosen);
   AddTopCommand(*app, chosen);
   AddRunsCommand(*app, chosen);
   AddCleanCommand(*app, chosen);
-  AddWebCommand(*app, chosen);
   AddSteerCommands(*app, chosen);
   AddAttachCommand(*app, chosen);
   AddEnvCommand(*app, chosen);
   AddReplayCommand(*app, chosen);
   AddConfigCommand(*app, chosen);
-  AddNewCommand(*app, chosen);
   AddCheckCommand(*app, chosen);
   AddSecureCommand(*app, chosen);
+  AddToolCommands(*app, chosen);
   return app;
 }
 
@@ -69,6 +62,7 @@ int RunCommandLine(int argc, char** argv) {
   Action chosen;
   const auto app = MakeCommandLine(&chosen);
   std::vector<std::string> words(argv + 1, argv + argc);
+  CheckToolsAreBuilt(words);
   CheckCommand(*app, words);
   words = AsCommandsTakeThem(*app, std::move(words));
   if (const auto exit_code = ParseCommandLine(app.get(), words, HintForWord)) return *exit_code;

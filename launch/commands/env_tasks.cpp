@@ -19,7 +19,6 @@
 #include "launch/processes/actor_program.h"
 #include "launch/record/run_folder.h"
 #include "launch/record/run_inputs.h"
-#include "launch/tools/observability/observability.h"
 
 namespace shoal::launch {
 namespace {
@@ -72,21 +71,6 @@ int PlayRandom(const actor::RandomRequest& request, const std::string& json) {
   InstallStopSignals();
   const nlohmann::ordered_json result = actor::PlayRandom(request, StopRequested);
   Show(output, result, actor::RandomText(result));
-  return 0;
-}
-
-int Observe(const ObservabilityRequest& request, const std::string& json) {
-  const JsonOutput output(json);
-  InstallStopSignals();
-  const Observability result = MeasureObservability(
-      request,
-      [&](const ObservabilityRow& row) {
-        fmt::print(output.text(), "{}\n", ToText(request, row));
-        std::fflush(output.text());
-      },
-      StopRequested);
-  if (StopRequested()) return kInterruptedExit;
-  output.Write(ToJson(result).dump(2) + "\n");
   return 0;
 }
 
@@ -185,49 +169,6 @@ void AddRandom(CLI::App& env, Action* chosen) {
   command->callback([=] { *chosen = [=] { return PlayRandom(*request, *json); }; });
 }
 
-// "front,side" as a set of cameras.
-std::vector<std::string> SplitAtCommas(const std::string& text) {
-  return CLI::detail::split(text, ',');
-}
-
-void AddObservability(CLI::App& env, Action* chosen) {
-  CLI::App* command = env.add_subcommand(
-      "observability",
-      "What can be told from which cameras: the error of a small network, trained on frames of "
-      "random play, on episodes that were held out.");
-  const auto request = std::make_shared<ObservabilityRequest>();
-  const auto sets = std::make_shared<std::vector<std::string>>();
-  const auto json = std::make_shared<std::string>();
-  command->add_option("task", request->task, "Task, e.g. FetchPush")->required();
-  command
-      ->add_option("--tell", request->labels,
-                   "Blocks, or differences of two, as learner.aux: object-grip")
-      ->required();
-  command->add_option("--cameras", *sets,
-                      "Sets of cameras, each as front,side; every camera and pair by default");
-  command->add_flag("--hide-goal", request->goal_hidden, "As where goals are relabelled");
-  command->add_option("--width", request->width, "Pixels")
-      ->check(CLI::Range(8, 1024))
-      ->capture_default_str();
-  command->add_option("--height", request->height, "Pixels")
-      ->check(CLI::Range(8, 1024))
-      ->capture_default_str();
-  command->add_option("--quality", request->quality, "fast | reference")->capture_default_str();
-  command->add_option("--encoder", request->encoder, "As network.encoder")->capture_default_str();
-  command->add_option("--samples", request->samples, "Frames, of which a fifth is held out")
-      ->check(CLI::Range(20, 1'000'000))
-      ->capture_default_str();
-  command->add_option("--updates", request->updates, "Of the network")
-      ->check(CLI::Range(1, 1'000'000))
-      ->capture_default_str();
-  AddSeed(command, &request->seed);
-  AddJson(command, "shoal-observability-1", json.get());
-  command->callback([=] {
-    for (const std::string& set : *sets) request->cameras.push_back(SplitAtCommas(set));
-    *chosen = [=] { return Observe(*request, *json); };
-  });
-}
-
 }  // namespace
 
 void AddEnvTaskCommands(CLI::App& env, Action* chosen) {
@@ -235,7 +176,6 @@ void AddEnvTaskCommands(CLI::App& env, Action* chosen) {
   AddDescribe(env, chosen);
   AddRandom(env, chosen);
   AddRewardCheck(env, chosen);
-  AddObservability(env, chosen);
 }
 
 }  // namespace shoal::launch

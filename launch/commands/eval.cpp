@@ -23,7 +23,7 @@
 #include "launch/processes/scratch_folder.h"
 #include "launch/record/evaluation_seed.h"
 #include "launch/record/run_folder.h"
-#include "launch/tools/experiment/baselines.h"
+#include "launch/run/baselines.h"
 
 namespace shoal::launch {
 namespace {

@@ -3,18 +3,12 @@
 #include <iostream>
 #include <memory>
 
-#include "common/base/error.h"
-#include "common/config/on_policy.h"
-#include "common/config/run_files.h"
 #include "common/image/png.h"
-#include "common/run_folder/run_file_names.h"
 #include "launch/commands/commands.h"
+#include "launch/commands/run_with_replay.h"
 #include "launch/commands/target_options.h"
 #include "launch/record/run_folder.h"
-#include "launch/tools/dataset/export_episodes.h"
-#include "launch/tools/dataset/minari_metadata.h"
 #include "replay_server/core/peek.h"
-#include "replay_server/core/replay_core.h"
 
 namespace shoal::launch {
 namespace {
@@ -26,15 +20,6 @@ struct PeekOptions {
   int batch = 8;
   uint64_t seed = 1;
 };
-
-RunConfig ReadRunWithReplay(const fs::path& run) {
-  RunConfig config = ReadRunConfig(run);
-  if (LearnsOnPolicy(config.config)) {
-    throw UsageError("'{}' has no replay: learner.algorithm = {} learns from rollouts",
-                     run.string(), config.config.learner.algorithm);
-  }
-  return config;
-}
 
 int Peek(const PeekOptions& options) {
   const fs::path run = FindNamed(options.run, RunsIn(options.run_dir));
@@ -54,48 +39,6 @@ int Peek(const PeekOptions& options) {
   return 0;
 }
 
-struct EpisodesOptions {
-  std::string source, run_dir = "runs", output;
-  uint64_t episodes = 0;
-  bool last = false;
-};
-
-// A ring belongs to the run in whose folder it lies: the run's configuration says what it holds.
-EpisodeExport ExportSubject(const EpisodesOptions& options) {
-  std::error_code error;
-  const bool is_ring = fs::is_regular_file(options.source, error);
-  const fs::path run = is_ring ? fs::absolute(options.source).parent_path()
-                               : FindNamed(options.source, RunsIn(options.run_dir));
-  EpisodeExport subject{.run = ReadRunWithReplay(run),
-                        .ring = is_ring ? fs::path(options.source) : run / kRingFile,
-                        .output = options.output,
-                        .episodes = options.episodes,
-                        .last = options.last};
-  if (!is_ring && subject.run.config.replay.storage != "file") {
-    throw UsageError("the run in '{}' keeps its replay in memory (replay.storage): no episodes",
-                     run.string());
-  }
-  replay::CheckRingIsThere(subject.ring);
-  return subject;
-}
-
-int RunExport(const EpisodesOptions& options) {
-  const EpisodeExport subject = ExportSubject(options);
-  const ExportedEpisodes exported = ExportEpisodes(subject);
-  fmt::print("{}: {} episodes, {} steps of {} ({:.2f} MB)\n", options.output, exported.episodes,
-             exported.steps, subject.run.spec.task, 1e-6 * static_cast<double>(exported.bytes));
-  fmt::print("  left out: {} partly overwritten, {} without an end\n", exported.overwritten,
-             exported.unended);
-  const fs::path folder = fs::absolute(subject.output).lexically_normal().parent_path();
-  if (subject.output.filename() == kMinariData) {
-    fmt::print("  for minari.MinariDataset(\"{}\")\n", folder.string());
-  } else {
-    fmt::print("  {} beside it; Minari would look for the episodes in {}\n", kMinariMetadata,
-               kMinariData);
-  }
-  return 0;
-}
-
 void AddPeek(CLI::App* replay, Action* chosen) {
   CLI::App* command =
       replay->add_subcommand("peek", "Draw a batch as the learner would get it and show it.");
@@ -109,33 +52,12 @@ void AddPeek(CLI::App* replay, Action* chosen) {
   command->callback([=] { *chosen = [=] { return Peek(*options); }; });
 }
 
-void AddExport(CLI::App* replay, Action* chosen) {
-  CLI::App* command = replay->add_subcommand(
-      "export",
-      "Write whole episodes as a dataset that Minari loads: an HDF5 file and metadata.json beside "
-      "it.");
-  const auto options = std::make_shared<EpisodesOptions>();
-  AddRunOption(*command, &options->source, &options->run_dir,
-               "Run: name or folder; or its replay.ring")
-      ->required();
-  command
-      ->add_option("--output", options->output, "HDF5 file to write; Minari wants main_data.hdf5")
-      ->required();
-  CLI::Option* episodes =
-      command->add_option("--episodes", options->episodes, "At most so many; else all")
-          ->check(CLI::PositiveNumber);
-  command->add_flag("--last", options->last, "Those that ended last, not those that ended first")
-      ->needs(episodes);
-  command->callback([=] { *chosen = [=] { return RunExport(*options); }; });
-}
-
 }  // namespace
 
 void AddReplayCommand(CLI::App& app, Action* chosen) {
   CLI::App* replay = app.add_subcommand("replay", "Look into a run's replay, take episodes out.");
   replay->require_subcommand(1);
   AddPeek(replay, chosen);
-  AddExport(replay, chosen);
 }
 
 }  // namespace shoal::launch

@@ -4,6 +4,7 @@
 
 #include "common/config/config_io.h"
 #include "launch/commands/commands.h"
+#include "launch/commands/tool_commands.h"
 #include "launch/run/training_run.h"
 
 namespace shoal::launch {
@@ -68,6 +69,7 @@ void AddTrainCommand(CLI::App& app, Action* chosen) {
       ->excludes(describe);
   command->callback([=] {
     *chosen = [=] {
+      if (options->film) CheckToolsAreBuilt({"film"});
       if (!*describe_keys) return RunTraining(*options);
       std::fputs(DescribeKeys().c_str(), stdout);
       return 0;

@@ -27,17 +27,6 @@ constexpr std::chrono::seconds kStartDeadline{60}, kEpisodeDeadline{60};
 // A thousand larger pictures of the reference quality, drawn without a GPU and encoded.
 constexpr std::chrono::seconds kShownEpisodeDeadline{600};
 
-// The program's own error line, without its name, as an Error of the same exit code.
-Error FailureOf(const ExitStatus& status, const fs::path& errors) {
-  std::string line = LastLine(errors);
-  const std::string prefix = std::string(kProgram) + ": error: ";
-  if (line.starts_with(prefix)) line.erase(0, prefix.size());
-  if (line.empty() || status.by_signal) line = fmt::format("{}: {}", status.Describe(), line);
-  const bool usage = !status.by_signal && status.code == 2;
-  return Error(usage ? ErrorKind::kUsage : ErrorKind::kRuntime,
-               fmt::format("{}: {}", kProgram, line));
-}
-
 // What a program says of its progress in a file for nothing else: its standard output is also that
 // of a task of the user's.
 class ProgressWatch {
@@ -78,7 +67,7 @@ ObservedWorld DescribeObservations(const Config& config) {
   if (!status) {
     throw RuntimeError("{} --describe took more than {} s", kProgram, kDescribeDeadline.count());
   }
-  if (!status->Clean()) throw FailureOf(*status, spec.errors);
+  if (!status->Clean()) throw ProgramError(kProgram, *status, spec.errors);
   const nlohmann::json described =
       ParseStrictJson(ReadFile(answer), std::string(kProgram) + " --describe");
   return {.spec = ObservationSpecFromJson(described),
@@ -122,7 +111,7 @@ std::optional<EvaluationPoint> EvaluateByActor(const EvaluationOrder& order,
     throw RuntimeError("evaluation of '{}' took more than {} s", order.checkpoint.string(),
                        deadline.count());
   }
-  if (!status->Clean()) throw FailureOf(*status, spec.errors);
+  if (!status->Clean()) throw ProgramError(kProgram, *status, spec.errors);
   return ParseEvaluation(ReadFile(json), json);
 }
 

@@ -206,6 +206,17 @@ std::optional<ExitStatus> RunToEnd(const ProcessSpec& spec, std::chrono::seconds
   }
 }
 
+Error ProgramError(const std::string& program, const ExitStatus& status,
+                   const std::filesystem::path& errors) {
+  std::string line = LastLine(errors);
+  const std::string prefix = program + ": error: ";
+  if (line.starts_with(prefix)) line.erase(0, prefix.size());
+  if (line.empty() || status.by_signal) line = fmt::format("{}: {}", status.Describe(), line);
+  const bool usage = !status.by_signal && status.code == 2;
+  return Error(usage ? ErrorKind::kUsage : ErrorKind::kRuntime,
+               fmt::format("{}: {}", program, line));
+}
+
 std::string LastLine(const std::filesystem::path& file) {
   constexpr std::streamoff kTail = 4096;
   std::ifstream in(file, std::ios::binary);

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "common/base/descriptor.h"
+#include "common/base/error.h"
 #include "common/wire/process_name.h"
 
 namespace shoal::launch {
@@ -79,6 +80,11 @@ class ChildProcess {
 // about ten times a second); empty when that happened.
 std::optional<ExitStatus> RunToEnd(const ProcessSpec& spec, std::chrono::seconds deadline,
                                    const std::function<bool()>& stop);
+
+// The error of a program that did not end cleanly: the last line of its standard error, without
+// "PROGRAM: error: ". Exit code 2 gives a usage error, every other end a run-time error.
+Error ProgramError(const std::string& program, const ExitStatus& status,
+                   const std::filesystem::path& errors);
 
 // The last line of a file that is not blank, for messages; empty when there is none.
 std::string LastLine(const std::filesystem::path& file);

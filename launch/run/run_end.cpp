@@ -15,12 +15,12 @@
 #include "common/run_folder/run_file_names.h"
 #include "common/run_folder/update_page.h"
 #include "launch/processes/actor_program.h"
+#include "launch/processes/film_program.h"
 #include "launch/processes/run_leftovers.h"
 #include "launch/record/accounting.h"
 #include "launch/record/run_folder.h"
 #include "launch/record/run_size.h"
 #include "launch/run/run_account.h"
-#include "launch/tools/film/film.h"
 
 namespace shoal::launch {
 namespace {
@@ -82,18 +82,14 @@ std::optional<EvaluationPoint> EvaluateAtEnd(const fs::path& run, const Config& 
   return point;
 }
 
-// Of the first of the episodes that judge the run. Empty when it was left out.
+// Films the first of the episodes that judge the run. Empty if `judging` stopped the film.
 fs::path FilmAtEnd(const fs::path& run, const Config& config, Judging& judging) {
   constexpr int kEpisodes = 5;
   const fs::path checkpoint = JudgedCheckpoint(run);
   if (checkpoint.empty()) throw RuntimeError("run '{}' has no checkpoint", run.string());
-  const fs::path film = FilmPath(run, checkpoint.filename());
-  const auto made = MakeFilm(
-      {.run = run,
-       .checkpoints = {checkpoint},
-       .episodes = kEpisodes,
-       .seed = config.seed,
-       .output = film},
+  const fs::path film = run / kVideoFolder / (checkpoint.filename().string() + ".mp4");
+  const bool made = FilmByCommand(
+      {.checkpoint = checkpoint, .episodes = kEpisodes, .seed = config.seed, .output = film},
       [&judging] { return judging.Stops(); },
       [&judging](const std::string& line) { judging.Say(line); });
   if (made) return film;

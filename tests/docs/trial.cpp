@@ -37,6 +37,8 @@ const std::vector<TrialRule>& TrialRules() {
       {"network.encoder=strided", kElsewhere,
        "OwnEncoder.IsAPlanFromWhichShapesAndParametersFollow"},
       {"^gdb ", kElsewhere, "InProcess.TheBreakpointsOfTheDebuggersScriptAreFunctionsOfTheProgram"},
+      {"^cmake (--preset release -B|--build) build/training\\b", kElsewhere,
+       "WithoutTools.TheProgramNeedsNoLibraryOfTheTools"},
       {"^cmake --preset debug|^ninja -C build/(debug|release shoal-simulate)", kNotHere,
        "builds everything once more"},
       {"^build/release/bin/shoal-simulate\\b", kElsewhere,

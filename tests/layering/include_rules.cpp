@@ -54,8 +54,9 @@ const std::map<std::string, std::vector<std::string>> kRooms = {
     {"replay_server", {"core", "service"}},
     {"learner", {"agent", "batch_stream.h", "rollouts"}},
     {"launch",
-     {"record", "processes", "film", "watch", "run", "experiment", "report", "export", "dataset",
-      "observability", "project", "web", "check", "commands", "manual", "python"}},
+     {"record", "processes", "watch", "run", "check", "commands", "tools/film", "tools/experiment",
+      "tools/report", "tools/export", "tools/dataset", "tools/observability", "tools/project",
+      "tools/web", "tools/commands", "tools/manual", "tools/python"}},
 };
 
 // A folder, or one header, that a room may not include; files that begin with a word of `except`
@@ -175,8 +176,8 @@ bool MayUseRoom(const fs::path& file, const fs::path& included) {
   const auto& order = rooms->second;
   const auto place = [&](const fs::path& path) {
     const auto own = std::ranges::find(order, path.filename().string());
-    return own != order.end() ? own
-                              : std::ranges::find(order, fs::path(Room(path)).filename().string());
+    if (own != order.end()) return own;
+    return std::ranges::find(order, fs::path(Room(path)).lexically_relative(Top(path)).string());
   };
   // A room that is not in the list may not be used before it is given its place there.
   const auto from = place(file), to = place(included);

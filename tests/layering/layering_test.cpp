@@ -228,6 +228,25 @@ TEST(Layering, TheRoomsOfTheActorPointOneWayAndWorldsUseNone) {
                           "actor/worlds/tools/a.cpp:1: actor/worlds may not use actor/acting/x.h"));
 }
 
+TEST(Layering, NothingOfARunUsesATool) {
+  const PlantedTree tree;
+  const std::string tool = "#include \"launch/tools/film/x.h\"\n";
+  const std::vector<std::string> rooms = {"check",  "commands", "processes",
+                                          "record", "run",      "watch"};
+  std::vector<std::string> breaches;
+  for (const std::string& room : rooms) {
+    tree.Write("launch/" + room + "/a.cpp", tool);
+    breaches.push_back("launch/" + room + "/a.cpp:1: launch/" + room +
+                       " may not use launch/tools/film/x.h");
+  }
+  tree.Write("launch/tools/commands/a.cpp", tool + "#include \"launch/commands/x.h\"\n");
+  tree.Write("launch/tools/film/a.cpp", "#include \"launch/tools/commands/x.h\"\n");
+  breaches.push_back(
+      "launch/tools/film/a.cpp:1: launch/tools/film may not use "
+      "launch/tools/commands/x.h");
+  EXPECT_THAT(tree.Breaches(), testing::UnorderedElementsAreArray(breaches));
+}
+
 TEST(Layering, LibrariesStayAtHome) {
   const PlantedTree tree;
   tree.Write("actor/a.cpp", "#include <mujoco/mujoco.h>\n");

@@ -7,7 +7,6 @@
 #include "common/base/files.h"
 #include "common/config/config_io.h"
 #include "common/config/run_files.h"
-#include "common/run_folder/evaluation_file.h"
 #include "common/run_folder/run_file_names.h"
 #include "launch/record/first_reached.h"
 #include "launch/record/json_fields.h"
@@ -18,21 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-EvaluationFigures FiguresOf(const EvaluationSummary& summary, const std::string& source) {
-  const EvaluationAggregate& aggregate = summary.aggregate;
-  if (!aggregate.return_std) throw RuntimeError("{}: no 'aggregate.return_std'", source);
-  return {.env_steps = summary.env_steps,
-          .updates = summary.version ? summary.version->update : 0,
-          .wall_seconds = summary.wall_seconds,
-          .task = summary.task,
-          .checkpoint = summary.checkpoint.value_or(""),
-          .episodes = aggregate.episodes,
-          .success = aggregate.success_rate,
-          .return_mean = aggregate.return_mean,
-          .return_std = *aggregate.return_std,
-          .final_distance_mean = aggregate.final_distance_mean};
-}
 
 void ReadMeta(const json& meta, RunResults* results) {
   results->exit = TextOrEmpty(meta, "exit");
@@ -70,10 +54,6 @@ std::vector<EvaluationFigures> ReadAll(const fs::path& run, const std::string& s
 }
 
 }  // namespace
-
-EvaluationFigures ReadEvaluationFigures(const fs::path& file) {
-  return FiguresOf(SummaryOf(ParseEvaluationObject(ReadFile(file), file), file), file);
-}
 
 fs::path NamedFolder(const fs::path& folder) {
   const fs::path canonical = fs::weakly_canonical(folder);

@@ -12,23 +12,10 @@
 #include <vector>
 
 #include "common/config/config.h"
+#include "launch/record/evaluation_figures.h"
 #include "launch/record/rollout_curve.h"
 
 namespace shoal::launch {
-
-// The means of one evaluation.
-struct EvaluationFigures {
-  uint64_t env_steps = 0, updates = 0;
-  double wall_seconds = 0;  // since the run's start
-  std::string task{}, checkpoint{};
-  size_t episodes = 0;
-  std::optional<double> success{};  // rate; empty where the task has none
-  double return_mean = 0, return_std = 0;
-  std::optional<double> final_distance_mean{};  // m; empty where the task has none
-};
-
-// Throws Error unless the file is a shoal-eval-1 object.
-EvaluationFigures ReadEvaluationFigures(const std::filesystem::path& file);
 
 // The folder without a slash at its end, which typing it often leaves: its last part is its name.
 std::filesystem::path NamedFolder(const std::filesystem::path& folder);

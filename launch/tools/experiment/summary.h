@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "launch/tools/experiment/baselines.h"
+#include "launch/run/baselines.h"
 #include "launch/tools/experiment/experiment_folder.h"
 #include "launch/tools/experiment/experiment_run_status.h"
 #include "launch/tools/experiment/run_results.h"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "launch/tools/experiment/baselines.h"
+#include "launch/run/baselines.h"
 #include "launch/tools/experiment/seed_figures.h"
 #include "launch/tools/experiment/statistics.h"
 #include "launch/tools/report/subjects.h"

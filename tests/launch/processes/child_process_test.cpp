@@ -201,5 +201,19 @@ TEST_F(ChildProcessTest, LastLineSkipsBlankOnes) {
   EXPECT_EQ(LastLine(file), "last without end");
 }
 
+TEST_F(ChildProcessTest, AProgramsErrorIsItsLastLineWithItsKind) {
+  const auto errors = folder_.path() / "errors";
+  WriteFileAtomically(errors, "filming\nshoal: error: no such run\n");
+  const auto error = [&](ExitStatus status) { return ProgramError("shoal", status, errors); };
+  EXPECT_STREQ(error({.code = 2}).what(), "shoal: no such run");
+  EXPECT_EQ(error({.code = 2}).exit_code(), 2);
+  EXPECT_EQ(error({.code = 1}).exit_code(), 1);
+  const Error killed = error({.by_signal = true, .code = 2});
+  EXPECT_EQ(killed.exit_code(), 1);
+  EXPECT_THAT(killed.what(), testing::HasSubstr("killed by SIGINT"));
+  WriteFileAtomically(errors, "");
+  EXPECT_THAT(error({.code = 3}).what(), testing::HasSubstr("exit code 3"));
+}
+
 }  // namespace
 }  // namespace shoal::launch

@@ -6,8 +6,8 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/policy/checkpoint_policy.h"
-#include "launch/commands/commands.h"
 #include "launch/commands/target_options.h"
+#include "launch/tools/commands/commands.h"
 #include "launch/tools/export/onnx_export.h"
 #include "launch/tools/export/samples.h"
 #include "launch/tools/export/sb3_policy.h"
@@ -26,7 +26,7 @@ struct ExportOptions {
 // Pictures take a plain evaluator long: an eighth of a second to two each.
 constexpr int kPictures = 8, kVectors = 100;
 
-// What the exported policy is compared on.
+// Observations on which the exported policy is compared.
 struct Sets {
   std::vector<ObservationSet> sets;
   std::vector<std::string> names;

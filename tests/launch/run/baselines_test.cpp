@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "launch/tools/experiment/baselines.h"
+#include "launch/run/baselines.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

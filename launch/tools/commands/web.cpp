@@ -7,8 +7,8 @@
 
 #include "common/base/error.h"
 #include "common/base/stop.h"
-#include "launch/commands/commands.h"
 #include "launch/commands/target_options.h"
+#include "launch/tools/commands/commands.h"
 #include "launch/tools/web/web_server.h"
 
 namespace shoal::launch {
@@ -28,10 +28,11 @@ int Web(const WebOptions& options) {
              options.run.empty() ? fmt::format("the runs of '{}'", options.run_dir)
                                  : fmt::format("run '{}'", options.run),
              server.Url());
-  fmt::print("{}\n", options.listen.Loopback()
-                         ? "who has no token may look, on this host alone; Ctrl-C ends it"
-                         : "whoever has this address may look and steer, and the network between "
-                           "may read along; Ctrl-C ends it");
+  fmt::print("{}\n",
+             options.listen.Loopback()
+                 ? "who has no token may look, on this host alone; Ctrl-C ends it"
+                 : "every holder of this address may look and steer, and the network between "
+                   "may read along; Ctrl-C ends it");
   std::fflush(stdout);
   for (int looks = 1; !StopRequested(); ++looks) {
     std::this_thread::sleep_for(kLook);

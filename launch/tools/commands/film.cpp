@@ -9,8 +9,8 @@
 #include "common/base/stop.h"
 #include "common/run_folder/run_file_names.h"
 #include "common/tensorboard/event_writer.h"
-#include "launch/commands/commands.h"
 #include "launch/commands/target_options.h"
+#include "launch/tools/commands/commands.h"
 #include "launch/tools/film/film_checkpoints.h"
 
 namespace shoal::launch {

@@ -10,10 +10,10 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/stop.h"
-#include "launch/commands/commands.h"
 #include "launch/commands/json_output.h"
 #include "launch/commands/target_options.h"
 #include "launch/record/run_folder.h"
+#include "launch/tools/commands/commands.h"
 #include "launch/tools/report/card.h"
 #include "launch/tools/report/compare.h"
 #include "launch/tools/report/plot.h"
@@ -55,7 +55,7 @@ int CompareSubjects(const CompareOptions& options) {
   return 0;
 }
 
-// What the picture is of: the subjects by name.
+// Title of the picture: the subjects by name.
 std::string TitleOf(const PlotOptions& options, const Subjects& subjects) {
   if (!options.title.empty()) return options.title;
   std::string title;

@@ -3,7 +3,7 @@
 #include <iostream>
 #include <memory>
 
-#include "launch/commands/commands.h"
+#include "launch/tools/commands/commands.h"
 #include "launch/tools/project/new_project.h"
 
 namespace shoal::launch {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What doing nothing and what uniform random actions earn on a task: the floors that stand beside
+// Baselines of a task: results of no-op actions and of uniform random actions, reported beside
 // every success rate. Measured once per task, threshold and model, then kept.
 #pragma once
 
@@ -11,7 +11,7 @@
 #include <string>
 
 #include "common/config/config.h"
-#include "launch/tools/experiment/run_results.h"
+#include "launch/record/evaluation_figures.h"
 
 namespace shoal::launch {
 

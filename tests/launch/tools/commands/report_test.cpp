@@ -5,7 +5,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
-#include "launch/commands/commands.h"
+#include "launch/tools/commands/commands.h"
 #include "tests/launch/tools/experiment/planted_run.h"
 
 namespace shoal::launch {

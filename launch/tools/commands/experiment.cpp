@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "common/base/error.h"
-#include "launch/commands/commands.h"
+#include "launch/tools/commands/commands.h"
 #include "launch/tools/experiment/run_experiment.h"
 #include "launch/tools/experiment/stored_summary.h"
 #include "launch/tools/experiment/summary.h"
@@ -16,7 +16,7 @@ namespace {
 int Status(const std::string& name) {
   const std::filesystem::path folder = FindNamed(name, ExperimentsIn());
   std::cout << StatusText(ReadOutcome(ReadExperiment(folder)));
-  if (!IsExperimentHeld(folder)) std::cout << "nobody runs it at the moment\n";
+  if (!IsExperimentHeld(folder)) std::cout << "no command runs it at the moment\n";
   return 0;
 }
 
