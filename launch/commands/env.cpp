@@ -2,12 +2,10 @@
 #include <CLI/CLI.hpp>
 #include <iostream>
 #include <memory>
-#include <nlohmann/json.hpp>
 
 #include "actor/worlds/physics_library.h"
 #include "actor/worlds/tools/contact_sheet.h"
 #include "actor/worlds/tools/render_task.h"
-#include "actor/worlds/tools/replay_file.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/image/png.h"
@@ -36,25 +34,6 @@ int DrawSheet(const worlds::ContactSheetRequest& request, const std::string& png
   std::cout << png << ": every task, camera and quality, " << sheet.width << "x" << sheet.height
             << "\n";
   return 0;
-}
-
-int ReplayFiles(const std::vector<std::string>& files, const worlds::ReplayOptions& options,
-                bool json) {
-  bool passed = true;
-  nlohmann::ordered_json reports = nlohmann::ordered_json::array();
-  for (const std::string& file : files) {
-    for (const worlds::ReplayReport& report : worlds::ReplayFile(file, options)) {
-      passed = passed && report.passed;
-      if (json) {
-        reports.push_back(worlds::ToJson(report));
-      } else {
-        std::cout << worlds::ToText(report) << std::endl;
-      }
-    }
-  }
-  // One report is given itself, several as a list.
-  if (json) std::cout << (reports.size() == 1 ? reports[0] : reports).dump(2) << std::endl;
-  return passed ? 0 : 1;
 }
 
 void AddRender(CLI::App& env, Action* chosen) {
@@ -97,26 +76,6 @@ void AddRender(CLI::App& env, Action* chosen) {
   });
 }
 
-void AddReplay(CLI::App& env, Action* chosen) {
-  CLI::App* command = env.add_subcommand(
-      "replay",
-      "Replay recorded trajectories of the original environments in our physics and say how far "
-      "apart the two get. Exit code 1 when that is more than the tolerance.");
-  const auto files = std::make_shared<std::vector<std::string>>();
-  const auto options = std::make_shared<worlds::ReplayOptions>();
-  const auto json = std::make_shared<bool>(false);
-  command
-      ->add_option("files", *files,
-                   "Trajectories (JSON, format vrl-ref-1), or grip positions in newer versions of "
-                   "MuJoCo (vrl-xversion-1) beside trajectories of the same actions")
-      ->required();
-  command->add_option("--model", options->model, "Another MJCF file for the task");
-  command->add_option("--physics", options->physics,
-                      "mujoco2 | mujoco3; the default is what the file was made with");
-  command->add_flag("--json", *json, "Print JSON (schema shoal-parity-1; a list for many reports)");
-  command->callback([=] { *chosen = [=] { return ReplayFiles(*files, *options, *json); }; });
-}
-
 }  // namespace
 
 void AddEnvCommand(CLI::App& app, Action* chosen) {
@@ -129,7 +88,6 @@ void AddEnvCommand(CLI::App& app, Action* chosen) {
       ->trigger_on_parse();
   AddEnvTaskCommands(*env, chosen);
   AddRender(*env, chosen);
-  AddReplay(*env, chosen);
 }
 
 }  // namespace shoal::launch

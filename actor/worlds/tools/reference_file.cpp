@@ -8,7 +8,6 @@
 #include <string_view>
 
 #include "actor/worlds/tools/measurement_reader.h"
-#include "actor/worlds/tools/state_reference.h"
 #include "common/tasks/task_registry.h"
 
 namespace shoal::worlds {
@@ -61,9 +60,9 @@ void ReadIdentity(const MeasurementReader& root, ReferenceTrajectory* trajectory
   }
   trajectory->environment = root.Text("env");
   if (std::ranges::find(kReplayable, trajectory->environment) == std::end(kReplayable)) {
-    throw root.Fault("key 'env'", fmt::format("is '{}', which cannot be replayed; known: {}, {}",
-                                              trajectory->environment, fmt::join(kReplayable, ", "),
-                                              StateEnvironments()));
+    throw root.Fault("key 'env'",
+                     fmt::format("is '{}', which cannot be replayed; known: {}",
+                                 trajectory->environment, fmt::join(kReplayable, ", ")));
   }
   trajectory->task =
       trajectory->environment.substr(0, trajectory->environment.size() - kVersion.size());

@@ -9,8 +9,8 @@
 
 #include "actor/worlds/reacher_easy.h"
 #include "actor/worlds/render_context.h"
-#include "actor/worlds/tools/state_reference.h"
 #include "actor/worlds/world_registry.h"
+#include "tests/actor/worlds/parity/state_reference.h"
 #include "tests/common/image/png_file.h"
 #include "tests/support/paths.h"
 

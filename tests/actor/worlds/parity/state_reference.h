@@ -29,7 +29,7 @@ struct StateTrajectory {
   std::string environment;  // "Hopper", "walker_walk"
   std::string variant;      // Hopper: "gymnasium", "gymnasium_source", "custom_target" or "_source"
   std::string sequence;     // name of the action sequence: "random0"
-  // What a reset was given: the drawn state, before cheetah_run's settling.
+  // The drawn state of a reset, before cheetah_run's settling.
   std::vector<double> drawn_qpos, drawn_qvel;
   std::optional<std::array<double, 2>> target;  // reacher_easy, m
   StateSnapshot reset;

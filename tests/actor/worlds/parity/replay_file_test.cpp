@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "actor/worlds/tools/replay_file.h"
+#include "tests/actor/worlds/parity/replay_file.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -8,9 +8,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
-#include "actor/worlds/tools/cross_version_file.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "tests/actor/worlds/parity/cross_version_file.h"
 #include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
 
@@ -83,7 +83,7 @@ TEST(ReplayFile, SequencesWhoseActionsNothingTellsAreLeftOutAndSaid) {
   EXPECT_EQ(file.left_out, std::vector<std::string>{"FetchReach random_hold5"});
 }
 
-// `shoal env replay fetch_Reach_*.json` meets them beside the trajectories.
+// `shoal-parity fetch_Reach_*.json` meets them beside the trajectories.
 TEST(ReplayFile, PicturesAreSkippedAndAnUnknownFormatIsNamed) {
   EXPECT_TRUE(ReplayFile(kFolder + "fetch_Reach_frames_84.json").empty());
   const TemporaryFolder folder;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "actor/worlds/tools/cross_version_file.h"
+#include "tests/actor/worlds/parity/cross_version_file.h"
 
 #include <fmt/core.h>
 
@@ -35,7 +35,7 @@ std::optional<ReferenceTrajectory> FindTrajectory(const std::filesystem::path& f
   return ReadReference(path);
 }
 
-// Of any one trajectory of the task: all start alike.
+// Reads any one trajectory of the task: all have the same start.
 std::optional<ReferenceTrajectory> FindStart(const std::filesystem::path& file,
                                              const std::string& task) {
   for (const NamedAction& constant : kConstant) {

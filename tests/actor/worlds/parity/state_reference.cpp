@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "actor/worlds/tools/state_reference.h"
+#include "tests/actor/worlds/parity/state_reference.h"
 
 #include <fmt/ranges.h>
 

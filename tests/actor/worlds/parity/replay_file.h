@@ -12,7 +12,7 @@ namespace shoal::worlds {
 // A trajectory (vrl-ref-1) gives one report, see ReplayReference and, for environments without
 // goals, ReplayStates; a file of grip positions in newer
 // versions of MuJoCo (vrl-xversion-1) one for each of MuJoCo 3.3.8's sequences whose actions are
-// known (the others are logged), see CrossVersionTolerance. The latter are replayed with physics
+// known (the others are logged), see CrossVersionTolerance. These are replayed with physics
 // mujoco3 unless the options say otherwise, and in our own models only.
 //
 // A file of pictures (vrl-frames-1), which lies beside them, is logged and gives no report.

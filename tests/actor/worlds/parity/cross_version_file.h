@@ -22,7 +22,7 @@ struct CrossVersionSequence {
   std::array<double, 3> initial_grip{};
   std::vector<std::array<double, 3>> grip;  // m, after each env step
 
-  // As ReadCrossVersions found them.
+  // Found by ReadCrossVersions.
   std::array<double, 2> object_xy{};
   std::array<double, 3> desired_goal{};
   std::vector<std::array<double, 4>> actions{};

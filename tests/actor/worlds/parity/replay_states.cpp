@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "actor/worlds/tools/replay_states.h"
+#include "tests/actor/worlds/parity/replay_states.h"
 
 #include <mujoco/mujoco.h>
 
@@ -10,10 +10,10 @@
 #include "actor/worlds/control_world.h"
 #include "actor/worlds/hopper.h"
 #include "actor/worlds/reacher_easy.h"
-#include "actor/worlds/tools/state_reference.h"
 #include "actor/worlds/world_registry.h"
 #include "common/base/check.h"
 #include "common/base/error.h"
+#include "tests/actor/worlds/parity/state_reference.h"
 
 namespace shoal::worlds {
 namespace {

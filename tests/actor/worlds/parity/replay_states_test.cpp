@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "actor/worlds/tools/replay_states.h"
+#include "tests/actor/worlds/parity/replay_states.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -7,9 +7,9 @@
 #include <functional>
 #include <nlohmann/json.hpp>
 
-#include "actor/worlds/tools/replay_file.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "tests/actor/worlds/parity/replay_file.h"
 #include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
 

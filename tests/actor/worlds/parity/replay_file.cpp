@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "actor/worlds/tools/replay_file.h"
+#include "tests/actor/worlds/parity/replay_file.h"
 
 #include <memory>
 
 #include "actor/worlds/fetch_world.h"
-#include "actor/worlds/tools/cross_version_file.h"
 #include "actor/worlds/tools/measurement_reader.h"
 #include "actor/worlds/tools/reference_file.h"
-#include "actor/worlds/tools/replay_states.h"
-#include "actor/worlds/tools/state_reference.h"
 #include "actor/worlds/world_registry.h"
 #include "common/base/error.h"
 #include "common/base/log.h"
+#include "tests/actor/worlds/parity/cross_version_file.h"
+#include "tests/actor/worlds/parity/replay_states.h"
+#include "tests/actor/worlds/parity/state_reference.h"
 
 namespace shoal::worlds {
 namespace {
@@ -66,8 +66,14 @@ std::vector<ReplayReport> ReplayFile(const std::filesystem::path& path,
       throw root.Fault("key 'format'", fmt::format("is '{}'; expected '{}' or '{}'", format,
                                                    kReferenceFormat, kCrossVersionFormat));
     }
-    const bool goals = !IsStateEnvironment(root.Text("env"));
-    return {goals ? ReplayReference(path, options) : ReplayStates(path, options)};
+    const std::string environment = root.Text("env");
+    if (IsStateEnvironment(environment)) return {ReplayStates(path, options)};
+    if (!environment.starts_with("Fetch")) {
+      throw root.Fault("key 'env'",
+                       fmt::format("is '{}', which cannot be replayed; known: Fetch..., {}",
+                                   environment, StateEnvironments()));
+    }
+    return {ReplayReference(path, options)};
   }
   if (!options.model.empty()) {
     throw UsageError("'{}' holds several tasks; it cannot be replayed with one model file",
