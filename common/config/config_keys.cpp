@@ -78,7 +78,8 @@ std::vector<Key> ObservationKeys() {
                  "the task's state vector: all of it, nothing, or the blocks named (shoal env "
                  "describe lists them)"),
       SHOAL_SAME(observation.quality, (Choices{{"fast", "reference"}}),
-                 "fast = no shadows, reflections, multisampling; reference = as the originals"),
+                 "fast = no shadows, reflections, multisampling; reference = the rendering of the "
+                 "originals"),
       SHOAL_SAME(
           observation.custom_cameras, AnyValue{},
           "cameras of one's own for observation.cameras; in m and degrees, azimuth 0 looks "
@@ -120,20 +121,19 @@ std::vector<Key> ReplayKeys() {
                  "which the critic's loss is averaged; 0 = as many as copies"),
       SHOAL_SAME(replay.n_step, (IntegerRange{1, 20}),
                  "steps whose rewards are summed before the next value; all within an episode"),
-      SHOAL_SAME(
-          replay.hindsight, (Choices{{"none", "future", "final", "episode"}}),
-          "goals that samples are given besides their own: achieved by the same episode after "
-          "the step, at its end, or anywhere; for tasks with goals"),
+      SHOAL_SAME(replay.hindsight, (Choices{{"none", "future", "final", "episode"}}),
+                 "source of the goals that samples get besides their own: achieved by the same "
+                 "episode after the step, at its end, or anywhere; for tasks with goals"),
       SHOAL_SAME(replay.hindsight_goals, (IntegerRange{0, 1000}),
                  "N: a share N / (N + 1) of the samples gets another goal"),
-      SHOAL_SAME(
-          replay.movement_share, (RealRange{0, 1}),
-          "with hindsight: share of the samples that are drawn in proportion to how far what "
-          "is achieved still moves in its episode, the others uniformly"),
+      SHOAL_SAME(replay.movement_share, (RealRange{0, 1}),
+                 "achieved-goal displacement sampling, with hindsight: share of the samples that "
+                 "are drawn in proportion to the movement of the achieved goal in the rest of the "
+                 "episode; the others are drawn uniformly"),
       SHOAL_SAME(replay.movement, (Choices{{"path", "displacement"}}),
-                 "of replay.movement_share: path = sum of the distances of all steps to the "
-                 "episode's end; displacement = distance between where it is before the step and "
-                 "where the episode ends"),
+                 "movement for replay.movement_share: path = sum of the distances of all steps to "
+                 "the episode's end; displacement = distance between the achieved goal before the "
+                 "step and at the episode's end"),
       SHOAL_SAME(replay.window_chunks, (IntegerRange{2, 1024}),
                  "chunks an actor may have unacknowledged"),
   };
@@ -148,7 +148,7 @@ Choices AlgorithmChoices() {
 std::vector<Key> LearnerKeys() {
   const RealRange positive{0, 1, true};
   return {
-      SHOAL_SAME(learner.algorithm, AlgorithmChoices(), "what learns: docs/algorithm.md"),
+      SHOAL_SAME(learner.algorithm, AlgorithmChoices(), "learning algorithm: docs/algorithm.md"),
       SHOAL_SAME(learner.batch, (IntegerRange{1, 65'536}),
                  "transitions per update; ppo: per minibatch"),
       SHOAL_SAME(learner.precision, (Choices{{"auto", "f32", "bf16"}}),
@@ -160,15 +160,16 @@ std::vector<Key> LearnerKeys() {
           "batch normalisation: with a share of each layer); 0 = at most half the cores this "
           "process may use, or three quarters with an update for each eighth env step, all with "
           "one for each; without pixels, but for ppo, 1"),
-      SHOAL_SAME(learner.learning_rate, positive, "Adam step of actor, critic and temperature"),
+      SHOAL_SAME(learner.learning_rate, positive,
+                 "learning rate of Adam for actor, critic and temperature"),
       SHOAL_SAME(learner.actor_learning_rate, (RealRange{0, 1}),
-                 "that of the actor alone; 0 = learner.learning_rate"),
+                 "learning rate of the actor; 0 = learner.learning_rate"),
       SHOAL_SAME(learner.critic_learning_rate, (RealRange{0, 1}),
-                 "that of critic and encoder alone; 0 = learner.learning_rate"),
+                 "learning rate of critic and encoder; 0 = learner.learning_rate"),
       SHOAL_SAME(learner.temperature_learning_rate, (RealRange{0, 1}),
-                 "that of the temperature alone; 0 = learner.learning_rate"),
+                 "learning rate of the temperature; 0 = learner.learning_rate"),
       SHOAL_SAME(learner.rate_factor, (RealRange{0, 1}),
-                 "on all of these rates, over the run's env steps"),
+                 "factor on all learning rates, over the run's env steps"),
       SHOAL_SAME(learner.max_grad_norm, (RealRange{0, 1e6}),
                  "gradients of the actor, and those of critic and encoder, are scaled down to this "
                  "Euclidean norm; 0 = never"),
@@ -187,35 +188,37 @@ std::vector<Key> LearnerKeys() {
           "before tanh; it keeps actions from saturating for good"),
       SHOAL_SAME(learner.initial_temperature, (RealRange{0, 100, true}),
                  "entropy temperature at the start"),
-      SHOAL_SAME(
-          learner.temperature, (Choices{{"auto", "fixed"}}),
-          "auto = follows learner.target_entropy; fixed = stays learner.initial_temperature"),
-      SHOAL_SAME(learner.min_temperature, (RealRange{0, 100}), "of an automatic one, at least"),
+      SHOAL_SAME(learner.temperature, (Choices{{"auto", "fixed"}}),
+                 "auto = adapted to the target entropy; fixed = stays learner.initial_temperature"),
+      SHOAL_SAME(learner.min_temperature, (RealRange{0, 100}),
+                 "lower bound of an automatic temperature"),
       SHOAL_SAME(learner.target_entropy, (RealRange{-1000, 1000}),
-                 "entropy the temperature aims at, in nats; 0 = learner.target_entropy_per_action "
-                 "times the action size"),
+                 "target entropy of an automatic temperature, in nats; 0 = "
+                 "learner.target_entropy_per_action times the action size"),
       SHOAL_SAME(learner.target_entropy_per_action, (RealRange{-100, 100}),
-                 "entropy per action dimension that the temperature aims at, in nats, unless "
-                 "learner.target_entropy is set; 0 aims at 0 nats"),
+                 "target entropy per action dimension, in nats, unless learner.target_entropy is "
+                 "set; 0 aims at 0 nats"),
       SHOAL_SAME(learner.normalise_vectors, AnyValue{},
-                 "vectors are scaled by their running mean and deviation, which belong to the "
-                 "policy; cut off at 10"),
+                 "scale vectors by their running mean and deviation, which are stored with the "
+                 "policy; clipped at 10"),
       SHOAL_SAME(learner.variance_floor, (RealRange{0, 1}),
-                 "of learner.normalise_vectors: smaller variances count as this one, so that "
-                 "numbers that hardly vary are not magnified; 1e-4 = deviations of at least 0.01"),
+                 "for learner.normalise_vectors: lower bound of a variance, so that numbers that "
+                 "hardly vary are not magnified; 1e-4 = deviations of at least 0.01"),
       SHOAL_SAME(learner.bounded_targets, AnyValue{},
-                 "cut target values off at what rewards of -1 and 0 allow"),
+                 "clip target values to the range that rewards of -1 and 0 allow"),
       SHOAL_SAME(
           learner.critic_blocks, AnyValue{},
           "sac: the critic sees these recorded blocks in place of pixels, beside the vectors "
           "that the policy sees: true (all), false (it sees the pixels) or their names"),
-      SHOAL_SAME(learner.aux, AnyValue{},
-                 "sac: what the encoder's features are trained to tell besides: recorded blocks or "
-                 "differences of two, as \"object\" or \"object-grip\"; [] = nothing"),
-      SHOAL_SAME(learner.aux_weight, (RealRange{0, 1e6, true}), "of that loss"),
+      SHOAL_SAME(
+          learner.aux, AnyValue{},
+          "sac: quantities that the encoder's features are also trained to predict: recorded "
+          "blocks or differences of two, as \"object\" or \"object-grip\"; [] = none"),
+      SHOAL_SAME(learner.aux_weight, (RealRange{0, 1e6, true}),
+                 "weight of the auxiliary loss (learner.aux)"),
       SHOAL_SAME(learner.weights_period, (IntegerRange{1, 1'000'000}),
                  "updates between weights broadcasts"),
-      SHOAL_SAME(learner.request_credits, (IntegerRange{1, 64}), "batches asked for ahead"),
+      SHOAL_SAME(learner.request_credits, (IntegerRange{1, 64}), "batches requested ahead"),
       SHOAL_SAME(learner.checkpoint_period, (IntegerRange{1, 1'000'000'000}),
                  "updates between checkpoints"),
   };
@@ -228,14 +231,16 @@ std::vector<Key> PpoKeys() {
                  "all environments a multiple of learner.batch"),
       SHOAL_SAME(ppo.epochs, (IntegerRange{1, 1000}), "passes over a rollout in one update"),
       SHOAL_SAME(ppo.clip, (RealRange{0, 10, true}),
-                 "the probability ratio counts within 1 - clip and 1 + clip, over the run's env "
-                 "steps"),
+                 "range of the probability ratio in the loss, 1 - clip to 1 + clip, over the run's "
+                 "env steps"),
       SHOAL_SAME(ppo.value_clip, (RealRange{0, 1e6}),
-                 "how far a value may move from that before the update; 0 = any distance"),
+                 "largest change of a value from that before the update; 0 = no limit"),
       SHOAL_SAME(ppo.gae_lambda, (RealRange{0, 1}),
-                 "advantages: 0 = one step's, 1 = the whole rollout's"),
-      SHOAL_SAME(ppo.entropy_weight, (RealRange{0, 100}), "of the policy's entropy in the loss"),
-      SHOAL_SAME(ppo.value_weight, (RealRange{0, 1e6}), "of the squared value error in the loss"),
+                 "lambda of generalised advantage estimation: 0 = one step, 1 = the whole rollout"),
+      SHOAL_SAME(ppo.entropy_weight, (RealRange{0, 100}),
+                 "weight of the policy's entropy in the loss"),
+      SHOAL_SAME(ppo.value_weight, (RealRange{0, 1e6}),
+                 "weight of the squared value error in the loss"),
       SHOAL_SAME(
           ppo.target_kl, (RealRange{0, 1e6}),
           "an update ends when the policy has moved by 1.5 times this divergence; 0 = never"),
@@ -251,11 +256,10 @@ std::vector<Key> PpoKeys() {
       SHOAL_SAME(ppo.versions_ahead, (IntegerRange{0, 1}),
                  "0 = an actor awaits the weights that follow its rollout; 1 = it plays the next "
                  "rollout meanwhile"),
-      SHOAL_SAME(
-          ppo.rollout_deadline, (RealRange{0.1, 60}),
-          "seconds after the first rollout of an update is there, after which the update is "
-          "made of those there are: at least half, after three times as long any number, and "
-          "always at least learner.batch steps"),
+      SHOAL_SAME(ppo.rollout_deadline, (RealRange{0.1, 60}),
+                 "seconds from the arrival of the first rollout of an update to the update with "
+                 "the rollouts that have arrived: at least half of them, after three times as long "
+                 "any number, and always at least learner.batch steps"),
   };
 }
 
@@ -263,22 +267,21 @@ std::vector<Key> Td3Keys() {
   return {
       SHOAL_SAME(td3.target_noise, (RealRange{0, 2}),
                  "standard deviation of the noise on a target's action; 0 = none"),
-      SHOAL_SAME(td3.target_noise_clip, (RealRange{0, 2}),
-                 "what that noise is clipped to, up and down"),
+      SHOAL_SAME(td3.target_noise_clip, (RealRange{0, 2}), "largest absolute value of that noise"),
   };
 }
 
 std::vector<Key> ExplorationKeys() {
   return {
       SHOAL_SAME(exploration.kind, (Choices{{"auto", "squashed_gaussian", "gaussian", "ou"}}),
-                 "noise of the training actors; auto = what the algorithm wants"),
+                 "noise of the training actors; auto = the algorithm's own"),
       SHOAL_SAME(exploration.sigma, (RealRange{0, 10}),
                  "deviation of gaussian and ou noise, over the run's env steps"),
       SHOAL_SAME(exploration.theta, (RealRange{0, 1000}), "ou: pull towards zero per unit of time"),
       SHOAL_SAME(exploration.dt, (RealRange{0, 1, true}), "ou: units of time per env step"),
       SHOAL_SAME(exploration.random_steps, (IntegerRange{0, 1'000'000'000'000}),
                  "env steps of the run, shared by the actors, that are played by uniform random "
-                 "actions; until the first weights all are"),
+                 "actions; all are before the first weights arrive"),
       SHOAL_SAME(exploration.spread, (RealRange{1, 100}),
                  "noise of N actors is multiplied by factors from 1/spread to spread, "
                  "geometrically even; 1 = all alike"),
@@ -290,7 +293,7 @@ std::vector<Key> NetworkKeys() {
       SHOAL_SAME(
           network.encoder,
           (Choices{{"compact", "drq", "mrq", "nature", "resnet18", "alexnet", "spatial_softmax"}}),
-          "from pixels to a feature map"),
+          "network from pixels to a feature map"),
       SHOAL_SAME(network.encoder_weights, AnyValue{},
                  "path of a safetensors file that the encoder starts from, with Shoal's or "
                  "torchvision's names; empty = none"),
@@ -303,9 +306,9 @@ std::vector<Key> NetworkKeys() {
       SHOAL_SAME(network.encoders, (Choices{{"shared", "separate"}}),
                  "sac: shared = one, trained by the critic's loss; separate = the actor has its "
                  "own, trained by its loss"),
-      SHOAL_SAME(network.target_encoder, AnyValue{},
-                 "sac: the target critic has an encoder of its own, which follows the critic's as "
-                 "the rest of it does"),
+      SHOAL_SAME(
+          network.target_encoder, AnyValue{},
+          "sac: the target critic has an encoder of its own, which follows the critic's encoder"),
       SHOAL_SAME(
           network.trunk, (Choices{{"auto", "tanh", "relu"}}),
           "over the feature map: tanh = linear, LayerNorm, tanh; relu = linear, ReLU; auto = "
@@ -314,14 +317,14 @@ std::vector<Key> NetworkKeys() {
                  "outputs of the trunk; 0 = the encoder's own: 512 of nature, else 50"),
       SHOAL_SAME(network.hidden, (IntegerRange{1, 65'536}), "hidden layers of actor and critics"),
       SHOAL_SAME(network.layer_norm, AnyValue{}, "LayerNorm after each hidden layer"),
-      SHOAL_SAME(network.activation, (Choices{{"relu", "tanh"}}), "of each hidden layer"),
-      SHOAL_SAME(
-          network.log_std, (Choices{{"smooth", "clamped"}}),
-          "log deviation of a Gaussian policy: smooth = by tanh in [-5, 2]; clamped = cut off "
-          "at -20 and 2"),
+      SHOAL_SAME(network.activation, (Choices{{"relu", "tanh"}}),
+                 "activation of each hidden layer"),
+      SHOAL_SAME(network.log_std, (Choices{{"smooth", "clamped"}}),
+                 "log deviation of a Gaussian policy: smooth = by tanh in [-5, 2]; clamped = "
+                 "clipped to [-20, 2]"),
       SHOAL_SAME(network.initialisation, (Choices{{"orthogonal", "pytorch"}}),
-                 "how weights start: orthogonal, biases 0; or as PyTorch's layers do, uniform, and "
-                 "as torchvision's resnet18 does, normal"),
+                 "initial weights: orthogonal, with biases 0; pytorch = those of PyTorch's layers "
+                 "(uniform) and of torchvision's resnet18 (normal)"),
   };
 }
 
@@ -367,7 +370,7 @@ std::vector<Key> AllKeys() {
   return all;
 }
 
-// What the rule allows; empty when the type alone says it.
+// The rule of a key in words; empty if its type says everything.
 struct RuleText {
   std::string operator()(const AnyValue&) const { return ""; }
   std::string operator()(const IntegerRange& r) const {
