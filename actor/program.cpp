@@ -41,7 +41,7 @@ std::optional<int> Parse(int argc, char** argv, Options* options) {
   return std::nullopt;
 }
 
-// Of one environment's cameras together, over some steps of an episode.
+// Time to draw one frame by all cameras of an environment, measured over some steps of an episode.
 double FrameMicroseconds(worlds::Environment& environment) {
   constexpr int kSteps = 10;
   const ObservationSpec& spec = environment.spec();
@@ -63,8 +63,8 @@ double FrameMicroseconds(worlds::Environment& environment) {
   return 1e6 * (environment.render_seconds() - before) / std::max(1, steps);
 }
 
-// Whoever started this program reads its answer in a file: on standard output a task of the user's
-// may say something, too.
+// The answer goes into a file for the program that started this one: a user's task may print to
+// standard output.
 void Answer(const Options& options, const std::string& json) {
   if (options.json.empty()) {
     std::cout << json << std::endl;

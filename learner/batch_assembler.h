@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Puts the parts of batches together in buffers of its own. Pure: no DDS, threads or clocks.
 //
-// A batch is asked for with a request id; the answer is a set of parts that tile its bytes
-// (common/wire/batch_schema.h). Parts may come in any order, several batches at once, some twice.
-// When a request is answered anew (it was sent again, the replay has restarted), the answer may
-// hold other transitions: parts of two answers are never mixed, the newer one starts over. Answers
-// are told apart by what the replay held when they were drawn.
+// A request for a batch has an id; the answer is a set of parts that tile its bytes
+// (common/wire/batch_schema.h). Parts may arrive in any order, several batches at once, some twice.
+// If a request is answered again (it was sent again, or the replay has restarted), the new answer
+// may hold other transitions. Parts of two answers are never mixed: the newer answer starts over.
+// The replay's count of steps at the draw distinguishes answers.
 //
 // Bound: `buffers` batches; a part that belongs to none of them is counted by the caller and
 // dropped.
@@ -24,7 +24,7 @@ class BatchAssembler {
  public:
   enum class Verdict {
     kTaken,           // copied into its batch
-    kStartedOver,     // taken, as the first part of another answer; the former one was dropped
+    kStartedOver,     // taken, as the first part of another answer; the old answer was dropped
     kCompleted,       // taken, and its batch is whole now
     kDuplicate,       // had been taken before
     kUnknownRequest,  // never expected, or done with

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the training loop gets its batches from.
+// Source of the training loop's batches.
 #pragma once
 
 #include <cstdint>
@@ -11,19 +11,19 @@
 namespace shoal::learner {
 
 struct Batch {
-  // Valid until the stream's Next is called again. Only read: it may lie in the replay's memory.
+  // Valid until the stream's Next is called again. Read-only: it may be in the replay's memory.
   BatchView view;
   uint64_t request = 0;             // that it answers
   uint64_t stored_records = 0;      // in the replay when it was drawn, whole run; the steps: view
   uint64_t unsampleable_steps = 0;  // as in BatchPart; on policy none
 };
 
-// What is under way, what went wrong so far, and what it was put right with.
+// Counters of pending requests, of faults so far, and of the repeats that corrected them.
 struct BatchCounters {
   uint64_t requests_outstanding = 0;  // batches asked for and not handed out, now
   uint64_t ready = 0;                 // of these whole, waiting to be used
   uint64_t resent_requests = 0;
-  std::optional<bool> shared{};  // whether the batch handed out last lies in shared memory
+  std::optional<bool> shared{};  // whether the last batch is in shared memory
   uint64_t duplicate_parts = 0;  // these and the next: parts, and words of slots
   uint64_t unknown_parts = 0;    // of requests done with, or of a former learner session
   uint64_t malformed_parts = 0;  // sizes or offsets no batch has

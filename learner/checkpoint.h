@@ -21,17 +21,18 @@ struct Checkpoint {
   std::filesystem::path folder;
 };
 
-// As WriteCheckpointFiles. `described`: whose policy it is, for policy.json.
+// See WriteCheckpointFiles. `described`: the policy's description, for policy.json.
 void WriteCheckpoint(const std::filesystem::path& parent, const CheckpointState& state,
                      const nn::TensorMap& learner, const nn::TensorMap& policy,
                      const RunConfig& described, const nlohmann::ordered_json& meta);
 
-// As ReadCheckpointFiles.
+// See ReadCheckpointFiles.
 Checkpoint ReadCheckpoint(const std::filesystem::path& folder, uint64_t spec_hash);
 
-// A run goes on exactly only in the precision it was computed in. `asked` is learner.precision,
-// `chosen` what became of it on this machine. Where they differ: throws Error (kUsage) saying what
-// to do if nobody asked for it (auto), else returns a warning; empty where they agree.
+// A resumed run repeats exactly only in the precision of the checkpoint. `asked` is
+// learner.precision, `chosen` the precision on this machine. If the checkpoint's precision differs
+// from `chosen`: throws Error (kUsage) with a remedy if `asked` is auto, else returns a warning.
+// Empty if they agree.
 std::string CheckPrecision(const Checkpoint& checkpoint, const std::string& asked,
                            nn::Precision chosen);
 

@@ -126,7 +126,7 @@ std::vector<uint64_t> CheckpointStore::Existing() const {
   return existing;
 }
 
-// Renamed first, so that nobody finds a checkpoint with half of its files.
+// Renames the folder first, so that no reader finds a checkpoint with half of its files.
 void CheckpointStore::Remove(const std::string& name) {
   std::error_code error;
   const fs::path going = folder_ / ("." + name + ".old");

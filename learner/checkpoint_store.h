@@ -24,7 +24,7 @@ class CheckpointStore {
   // Makes the folder and removes what a killed learner left half-written. Throws Error.
   CheckpointStore(const std::filesystem::path& run_folder, const RunConfig& run);
 
-  // Of the configuration with every default; the state's config_hash.
+  // Hash of the configuration with every default; the state's config_hash.
   uint64_t config_hash() const { return config_hash_; }
 
   // The newest checkpoint that is whole; none in a new run. Newer broken ones are set aside as
@@ -41,9 +41,9 @@ class CheckpointStore {
   // Tries again; at most every kRetryPeriod, unless `now`.
   void Retry(const std::set<std::string>& wanted, bool now = false);
   size_t unwritten() const { return unwritten_.size(); }
-  // Of the newest one; empty when all are written.
+  // Updates of the newest checkpoint that is not written yet; empty if all are written.
   std::optional<uint64_t> UnwrittenUpdates() const;
-  // Of the newest one on the disk.
+  // Updates of the newest checkpoint on the disk.
   std::optional<uint64_t> WrittenUpdates() const;
 
   static constexpr size_t kKept = 3, kMostUnwritten = 2;

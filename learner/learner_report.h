@@ -28,7 +28,7 @@
 
 namespace shoal::learner {
 
-// Where the learner's seconds went since its start.
+// Use of the learner's time since its start, in seconds.
 struct LearnerSeconds {
   double waiting = 0;              // for batches
   std::array<double, 3> update{};  // by UpdateStage

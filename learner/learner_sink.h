@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the training loop sends what others need of it.
+// Sink of the training loop's messages to other processes.
 #pragma once
 
 #include "common/wire/messages.h"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Batches that lie in the replay's shared memory: which slot was said to hold which request's, and
-// where it is mapped. Memory of a replay that has ended stays readable while a batch in it is
-// waited for or handed out.
+// Batches in the replay's shared memory: maps each request id to the slot that holds its batch, and
+// the slots' memory into this process. Memory of a replay that has ended stays readable while a
+// batch in it is awaited or handed out.
 //
 // Threads: none inside; one owner.
 #pragma once

@@ -21,8 +21,7 @@ using std::chrono::milliseconds;
 constexpr milliseconds kPoll{100};            // the longest that control is not looked at
 constexpr milliseconds kBlockedAfter{1'000};  // without a batch
 
-// A key that counts from one. Whoever else sends its orders on an open network may say zero, which
-// is not taken over.
+// A key that counts from one. On an open network a foreign program may send zero, which is ignored.
 uint64_t CountInForce(const ControlState& control, std::string_view key, uint64_t configured) {
   const double value = control.SettingOr(key, static_cast<double>(configured));
   return value < 1 ? configured : SaturatingCast<uint64_t>(value);
@@ -232,7 +231,7 @@ void TrainingLoop::ApplySettings() {
   evaluations_.SetInterval(
       CountInForce(control, "eval.interval", static_cast<uint64_t>(config_.eval.interval)),
       env_steps_);
-  // What is set while the run goes on is a number, which then holds in place of the schedule.
+  // A live setting is a number, which replaces the schedule.
   const std::optional<double> set = control.Setting("replay.samples_per_insert");
   const Schedule samples = set ? Schedule::Constant(*set) : config_.replay.samples_per_insert;
   if (samples == samples_per_insert_) return;

@@ -53,7 +53,7 @@ class TrainingLoop {
     CheckpointStore& checkpoints;
     PendingEvaluations& pending_evaluations;
     ControlState& control;
-    UpdatePage& update_page;  // counts for whoever comes after a kill
+    UpdatePage& update_page;  // counts for the successor after a kill
     std::chrono::milliseconds drain_idle = kDrainIdle;
   };
 

@@ -18,8 +18,8 @@ class UpdateWindow {
   void Clear() { *this = UpdateWindow(); }
 
   int updates() const { return updates_; }
-  // Of each figure the mean over those of the window's updates that had it, in the order of first
-  // sight; what no update had is absent.
+  // Mean of each figure over those of the window's updates that had it, in the order of first
+  // appearance; a figure that no update had is absent.
   UpdateFigures Mean() const;
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Sends the policy's parameters to the actors as the updates go by: at the first update, then every
-// learner.weights_period; in lockstep at the end of each phase; on policy after each one. BF16 when
-// the precision is, else F32. On policy always F32: the actors' log-probabilities are the
+// Sends the policy's parameters to the actors: at the first update, then every
+// learner.weights_period; in lockstep at the end of each phase; on policy after each update. BF16
+// if the precision is bf16, else F32. On policy always F32: the actors' log-probabilities are the
 // denominator of the ratio that the learner forms with its unrounded parameters (Eq. 24).
 //
 // Weights that are due while readers still lack the last ones wait for them, at most kPatience, so

@@ -14,7 +14,7 @@ skips() {
        /: Skipped$/ { getline; print $0 "\t" test }' "$@"
 }
 
-# As tests/support/isolation.h does it: as root here, else as root of a namespace of users.
+# Same as tests/support/isolation.h: as root here, else as root of a namespace of users.
 can_unshare() {
   local user=()
   ((EUID == 0)) || user=(--user --map-root-user)

@@ -31,17 +31,18 @@ class ActionSelector {
   // `actor`: its number within the run, for its factor of the noise.
   ActionSelector(const Config& config, const ObservationSpec& spec, int envs, uint32_t actor = 0);
 
-  // Throws Error when the weights do not fit the network; the former ones then stay.
+  // Throws Error when the weights do not fit the network; the old ones then stay.
   void Load(const ReceivedWeights& weights);
   WeightsVersion version() const { return version_; }
-  // Of the whole run when those weights were made; 0 before any.
+  // Env steps of the whole run when those weights were made; 0 before any.
   uint64_t run_env_steps() const { return run_env_steps_; }
 
   // Starts the exploration stream of an episode of local environment `e`.
   void BeginEpisode(int e, uint64_t stream_key);
 
-  // Where that stream is, and what the noise carries over from step to step, to go on with both in
-  // another process. SetNoise throws Error when the state is another kind of exploration's.
+  // Position of that stream, and the state that the noise carries over from step to step, so that
+  // another process can continue both. SetNoise throws Error if the state belongs to another kind
+  // of exploration.
   struct Noise {
     Random::State stream{};
     std::vector<double> carried{};
@@ -50,7 +51,7 @@ class ActionSelector {
   Noise NoiseOf(int e) const;
   void SetNoise(int e, const Noise& noise);
 
-  // Where the loop writes the observations: (E, K*C, H, W) u8 and (E, V) f32.
+  // Memory into which the loop writes the observations: (E, K*C, H, W) u8 and (E, V) f32.
   std::span<uint8_t> FrameStackOf(int e);
   std::span<float> VectorOf(int e);
 
@@ -58,7 +59,7 @@ class ActionSelector {
   // the actions and the noise of the others stay. Empty = of all.
   void Select(Acting acting, const std::vector<bool>& asked = {});
   std::span<const float> ActionOf(int e) const;
-  // Of kExplore where the spec has drawn actions: as drawn, before it was clipped, and its
+  // If kExplore and the spec has drawn actions: the drawn action, before it was clipped, and its
   // log-probability. Empty and 0 otherwise.
   std::span<const float> DrawnOf(int e) const;
   float LogProbOf(int e) const { return log_probs_[size_t(e)]; }

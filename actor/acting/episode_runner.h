@@ -17,8 +17,8 @@
 
 namespace shoal::actor {
 
-// What the policy of an episode runner sees and does, for films and the like. Spans are valid
-// during the call.
+// Receives the observations and actions of an episode runner's policy, for films and the like.
+// Spans are valid during the call.
 class EpisodeListener {
  public:
   struct SeenStep {
@@ -41,7 +41,8 @@ class EpisodeListener {
 // Owns the environment, borrows the policy's input. One thread.
 class EpisodeRunner {
  public:
-  // Where the policy reads its observation: (I, H, W) u8, empty without pixels; (V) f32.
+  // Memory from which the policy reads its observation: (I, H, W) u8, empty without pixels; (V)
+  // f32.
   struct PolicyInput {
     std::span<uint8_t> stack;
     std::span<float> vector;
@@ -59,13 +60,13 @@ class EpisodeRunner {
   // ended, truncated and without success, at the observation before; the step does not count, and
   // neither `out` nor the policy's input was changed.
   worlds::StepResult Step(std::span<const float> action, worlds::ObservationOut out);
-  // Of the episode that runs or has just ended, as Begin was told; 0 = it is whole.
+  // Argument of Begin for the episode that runs or has just ended; 0 = it is whole.
   int cut_after() const { return cut_after_; }
   // Forgets a running episode.
   void Abandon() { running_ = false; }
 
   bool running() const { return running_; }
-  // Of the running episode, or of the last one; complete once that has ended.
+  // Figures of the running episode, or of the last one; complete once that has ended.
   const EpisodeFigures& figures() const { return figures_; }
   const worlds::Environment& environment() const { return *environment_; }
 
@@ -75,7 +76,7 @@ class EpisodeRunner {
  private:
   void AddToFigures(std::span<const float> action, const worlds::StepResult& result);
   void EndFaulty();
-  // Of sums until the episode's end.
+  // Turns the sums of the episode into its figures.
   void CompleteFigures();
 
   std::unique_ptr<worlds::Environment> environment_;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From what a policy says to the action that is played: exploration, apart from the policy and from
-// the pace. All draws of an episode come from that episode's own stream.
+// Exploration: from a policy's output to the action that is played. Independent of the policy and
+// of the pace. Each episode has a random stream of its own for all its draws.
 //
 //   squashed_gaussian   a = tanh(mean + f exp(log_std) eps)           Eq. 4 of docs/algorithm.md
 //   gaussian            a = clip(tanh(mean) + f sigma eps, -1, 1)
@@ -34,17 +34,17 @@ class Exploration {
 
   // The env steps of the whole run, for schedules.
   virtual void OnEnvSteps(uint64_t run_env_steps) = 0;
-  // Forgets what the noise of environment `e` carried over from its episode before.
+  // Resets the state that the noise of environment `e` carried over from its previous episode.
   virtual void BeginEpisode(int e) = 0;
   // Writes the action (A) of environment `e`, each in [-1, 1]. `policy`: its rows, (A).
   virtual void Act(int e, const nn::PolicyOutput& policy, Random& stream,
                    std::span<float> action) = 0;
-  // Of the last Act, for on-policy learning: the action as drawn, written to `drawn` (A), and its
-  // log-probability. Others than `policy` have none, leave it and return 0.
+  // Result of the last Act, for on-policy learning: the drawn action, written to `drawn` (A), and
+  // its log-probability. Kinds other than `policy` have none: they leave `drawn` and return 0.
   virtual float Drawn(std::span<float> /*drawn*/) const { return 0; }
 
-  // What BeginEpisode forgets, to go on with it in another process; empty where there is nothing.
-  // SetState throws Error when the state is of another kind or size.
+  // The state that BeginEpisode resets, so that another process can continue; empty if there is
+  // none. SetState throws Error if the state is of another kind or size.
   virtual std::vector<double> StateOf(int e) const = 0;
   virtual void SetState(int e, std::span<const double> state) = 0;
 };
@@ -53,11 +53,11 @@ class Exploration {
 std::unique_ptr<Exploration> MakeExploration(const Config& config, int envs, int action_size,
                                              double factor);
 
-// exploration.spread's factor of an actor: of N actors they lie geometrically even from 1 / spread
-// to spread. Actors beyond the configured ones take turns with those.
+// Factor of an actor by exploration.spread: the factors of N actors form a geometric sequence from
+// 1 / spread to spread. Actors beyond the configured number repeat them in turn.
 double NoiseFactor(const Config& config, uint32_t actor);
 
-// How many of exploration.random_steps an actor plays: they are shared evenly.
+// An actor's part of exploration.random_steps, which are shared evenly.
 uint64_t RandomStepsOfActor(const Config& config);
 
 }  // namespace shoal::actor

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // Faulty episodes: those that ended at a number of the simulation that is not finite. Counts them
-// by cause, logs at most one line in ten seconds, and says when they are no exception any more.
+// by cause, logs at most one line in ten seconds, and ends the run if there are too many.
 //
-//   no exception: more than max_faulty_share * kWindow of the newest kWindow episodes were faulty
+//   too many: more than max_faulty_share * kWindow of the newest kWindow episodes were faulty
 //
-// With fewer episodes so far the same number counts, so that a task whose every episode is faulty
-// ends the run within a few of them.
+// Before kWindow episodes the limit is the same number of episodes, so that a task whose every
+// episode is faulty ends the run early.
 #pragma once
 
 #include <array>
@@ -33,7 +33,7 @@ class FaultLog {
   // An episode ended without a fault.
   void Ended() { Add(false); }
   // An episode was faulty, or could not begin. Throws Error (kNonFinite) with the fault's message
-  // when such episodes are no exception.
+  // if there are too many.
   void Count(const worlds::EpisodeFault& fault);
 
   // Since construction.

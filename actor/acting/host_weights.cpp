@@ -82,8 +82,8 @@ bool HostWeights::TryReceiveForHost() {
     board_ = std::make_unique<WeightsBoard>(spec_hash_);
     WriteFileAtomically(address_file_, ToText(board_->address()));
   } catch (const Error& e) {
-    // The lock stays: whoever took it next would fail as well, and who cannot read a board receives
-    // for itself.
+    // The lock stays: a neighbour that took it would fail as well, and a process that cannot read a
+    // board receives for itself.
     board_.reset();
     ReceiveAlone(e.what());
     return true;

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a training actor gets its weights from: one process of a host receives them and posts them
-// on a board (weights_board.h), the others read them there. So a version crosses the network, and
-// is unpacked, once per host and not once per actor.
+// Source of a training actor's weights: one process of a host receives them and posts them on a
+// board (weights_board.h), the others read them there. So a version crosses the network, and is
+// unpacked, once per host and not once per actor.
 //
-// Whoever gets the lock RUN/made/weights-HOST.lock receives, and writes beside it, in
-// RUN/made/weights-HOST.json, where its board is. The lock ends with its holder, however that ends;
-// the neighbours ask for it once a second, and one of them goes on. Who cannot read the board
-// (another namespace of processes, another user) or waits for a holder that is stopped receives for
-// itself alone, from kPatience on and for good.
+// The process that holds the lock RUN/made/weights-HOST.lock receives, and writes the address of
+// its board beside it, into RUN/made/weights-HOST.json. The lock is free as soon as its holder
+// ends, for whatever reason. The neighbours try to take it once a second; the one that succeeds
+// receives from then on. A process that cannot read the board for kPatience (another namespace of
+// processes, another user, a holder that is stopped) receives for itself, until it ends.
 #pragma once
 
 #include <chrono>

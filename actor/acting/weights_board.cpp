@@ -43,7 +43,7 @@ static_assert(offsetof(Board, newest) == 32 && sizeof(Board) == 72);
 static_assert(sizeof(Version) == 56);
 
 // Words that one process writes while others read. What was written before a store(release) is seen
-// by whoever load(acquire)s it.
+// by each reader that load(acquire)s it.
 std::atomic_ref<uint64_t> Word(uint64_t& word) {
   static_assert(std::atomic_ref<uint64_t>::is_always_lock_free);
   return std::atomic_ref<uint64_t>(word);

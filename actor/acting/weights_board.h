@@ -8,7 +8,7 @@
 //           8   16    token, random
 //           24  8     observation spec's hash
 //           32  8     number of the newest version, from 1; 0 = none yet, 2^64 - 1 = no more
-//           40  2 x   descriptor, bytes (8 each): version n stands at place n mod 2
+//           40  2 x   descriptor, bytes (8 each): version n has place n mod 2
 //   version 0   8     magic "SHOALWV1"
 //           8   16    the board's token
 //           24  8     number
@@ -26,7 +26,7 @@
 
 namespace shoal::actor {
 
-// Where a board lies, within one host.
+// Address of a board within one host.
 struct BoardAddress {
   int32_t pid = 0;
   int32_t descriptor = 0;

@@ -23,7 +23,7 @@ struct ReceivedWeights {
   SharedBytes payload;  // safetensors
 };
 
-// Where an acting loop gets its weights from.
+// Source of an acting loop's weights.
 class WeightsSource {
  public:
   virtual ~WeightsSource() = default;

@@ -26,12 +26,12 @@ namespace shoal::actor {
 struct EpisodeResult {
   int64_t seed = 0;  // number of the episode in its stream
   EpisodeFigures figures;
-  // Of tasks that have causes (failure_cause.h): the goal and what was achieved at the end, in m,
-  // and why the episode failed, if it did.
+  // For tasks that have causes of failure (failure_cause.h): the goal and the achieved goal at the
+  // end, in m, and the cause if the episode failed.
   std::vector<double> desired{}, achieved{};
   std::optional<FailureCause> failure{};
-  // Of a faulty episode, which has failed: one that ended, or could not begin, because a number of
-  // the simulation was not finite.
+  // The fault of a faulty episode, which counts as failed: it ended, or could not begin, because a
+  // number of the simulation was not finite.
   std::optional<worlds::FaultCause> fault{};
 };
 
@@ -46,12 +46,12 @@ struct EpisodeStream {
   }
 };
 
-// Of the evaluation of a run's checkpoint. The evaluation when a run drains may have the env steps
-// of the one before: the updates since then give it episodes of its own. The same checkpoint,
-// evaluated again after a restart, is given the same ones.
+// Stream of the episodes that evaluate a checkpoint of a run. The evaluation of a draining run may
+// have the env steps of the evaluation before; the updates since then give it other episodes. The
+// same checkpoint, evaluated again after a restart, gets the same episodes.
 EpisodeStream EvaluationStream(int64_t seed, uint64_t env_steps, uint64_t updates);
 
-// What eval/*.json says about where the numbers come from.
+// The part of eval/*.json that names the source of its numbers.
 struct EvaluationLabel {
   std::string
       policy;  // "checkpoint" | "random" | "noop": but the first have no checkpoint, version
@@ -74,10 +74,10 @@ class Evaluator {
   void Listen(EpisodeListener* listener);
 
   // Plays `episodes` whole episodes, actions by the mean of the policy (or uniform random before
-  // any weights). When `stop`, asked after each step, says so before they are done: those of the
-  // first that are, up to one that is not, so that short episodes are not preferred. `on_ended` is
-  // told after each episode how many have ended by then. Faulty episodes are logged, and are never
-  // so many that they are an error.
+  // any weights). When `stop`, asked after each step, says so before they are done, returns the
+  // leading episodes that have ended, so that short episodes are not preferred. After each episode
+  // `on_ended` receives the number that have ended. Faulty episodes are logged; no number of them
+  // is an error.
   std::vector<EpisodeResult> Play(int episodes, const EpisodeStream& stream,
                                   const std::function<bool()>& stop,
                                   const std::function<void(int ended)>& on_ended = {});
@@ -90,7 +90,7 @@ class Evaluator {
     bool begun = false;  // the episode has a first observation
   };
 
-  // What a call of Play has so far.
+  // State of a call of Play.
   struct Played {
     std::vector<EpisodeResult> results;
     std::vector<bool> ended;
@@ -107,12 +107,12 @@ class Evaluator {
   ActionSelector selector_;
   std::vector<Player> players_;
   FaultLog faults_{/*max_share=*/2};
-  // What an environment observed last: it is in the policy's input by then.
+  // Buffer for the newest observation of an environment, until it is in the policy's input.
   std::vector<uint8_t> frame_;
   std::vector<float> vector_;
 };
 
-// What eval/*.json says of these episodes (common/run_folder/evaluation_file.h).
+// The content of eval/*.json for these episodes (common/run_folder/evaluation_file.h).
 EvaluationFile MakeEvaluation(const RunConfig& run, const EvaluationLabel& label,
                               const EpisodeStream& stream,
                               const std::vector<EpisodeResult>& episodes);
@@ -127,7 +127,7 @@ struct CheckpointEvaluation {
   // Another task to play than the run's (see WithTask), named beside the run's own as trained_task;
   // empty = the run's.
   std::string task = "";
-  // Where frames go, if anywhere; the episodes are then played one after the other.
+  // Destination of frames, if any; the episodes are then played one after the other.
   std::optional<FrameRecorder::Options> frames = {};
   // Asked to stop: the result of the episodes that were played, with `episodes_asked`, if there are
   // any.

@@ -5,7 +5,7 @@
 //   d_t = |p_t - g|                                                           D   task's threshold
 //   along = (p_T - p_0) (g - p_0) / |g - p_0|                                 all in m
 //
-// Of a failed episode, the first that fits; the z axis points up:
+// A failed episode has the first cause that fits; the z axis points up:
 //
 //   not_finite            a number of the simulation was not finite: the episode was faulty
 //
@@ -52,7 +52,7 @@ enum class FailureCause {
 // "left_the_table", as files have it.
 std::string_view NameOf(FailureCause cause);
 
-// What has been seen of one episode, observation by observation. One thread.
+// Facts about one episode, collected observation by observation. One thread.
 class FailureFacts {
  public:
   // Tasks with goals of up to three numbers in m; `applies()` is false for others.
@@ -65,10 +65,11 @@ class FailureFacts {
   // `vector` (R): every block, as Environment writes it.
   void Begin(std::span<const float> vector);
   void Step(std::span<const float> vector);
-  // Where the episode should end and where it is, in m: as many numbers as the goal has.
+  // The desired and the achieved goal, in m: as many numbers as the goal has.
   std::vector<double> desired() const { return Numbers(goal_); }
   std::vector<double> achieved() const { return Numbers(now_); }
-  // Of an episode that has ended without success and without a fault. CHECK: applies, begun.
+  // The cause for an episode that has ended without success and without a fault. CHECK: applies,
+  // begun.
   FailureCause Cause() const;
 
  private:

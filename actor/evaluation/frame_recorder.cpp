@@ -41,7 +41,7 @@ Config ViewConfig(const RunConfig& run, const FrameRecorder::Options& options) {
   observation.height = options.height;
   observation.width = options.width;
   observation.stack = 1;
-  // Nobody acts by the view: it shows the goal's marker also where the policy must not see it.
+  // The view is no input of the policy: it always shows the goal's marker.
   observation.goal_mode = "none";
   config.replay.hindsight = "none";
   observation.quality = options.quality;
@@ -52,7 +52,7 @@ std::unique_ptr<worlds::Environment> MakeView(const Config& config) {
   return worlds::MakeEnvironment(config, worlds::MakeRenderContext(config.observation));
 }
 
-// What an env step takes in the world; 0 = unknown. Plays one step.
+// Simulated time of one env step; 0 = unknown. Plays one step.
 uint32_t StepMicroseconds(worlds::Environment& environment, worlds::ObservationOut out) {
   try {
     environment.Reset(0, out);

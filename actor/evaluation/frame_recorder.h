@@ -23,7 +23,8 @@ class FrameRecorder final : public EpisodeListener {
  public:
   struct Options {
     std::filesystem::path file;
-    // Of the view; empty = the task's for films, else the run's first, else the task's first.
+    // Camera of the view; empty = the task's for films, else the run's first, else the task's
+    // first.
     std::string camera = "";
     int height = 480, width = 480;      // of the view
     std::string quality = "reference";  // of the view: fast | reference

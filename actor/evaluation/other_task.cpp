@@ -9,8 +9,8 @@
 namespace shoal::actor {
 namespace {
 
-// Of what a network takes and gives; which task, model and cameras it comes from, and what records
-// hold besides, is left out.
+// The part of a spec that gives the sizes of a network's inputs and outputs, without task, model,
+// cameras and further blocks of records.
 ObservationSpec Sizes(ObservationSpec spec) {
   spec.task.clear();
   spec.model_fingerprint.clear();

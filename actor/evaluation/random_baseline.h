@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What uniform random actions earn, and what doing nothing earns: the floors that a policy must
-// beat.
+// Baselines: results of uniform random actions and of no-op actions, which a policy must beat.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps a chunk window and a link going: hears credits, closes partial chunks in time, sends what
-// may be sent, sends again what was not reported stored for too long.
+// Sends the chunks of a window over a link: receives credits, closes partial chunks in time, sends
+// chunks that have credit, and resends chunks that were not reported stored for too long.
 #pragma once
 
 #include <chrono>
@@ -15,7 +15,7 @@
 
 namespace shoal::actor {
 
-// Another process has this actor's number and began later: it is the one that is believed.
+// Another process has this actor's number and began later, so its session supersedes this one.
 class SupersededError : public Error {
  public:
   SupersededError(uint32_t actor, uint64_t session);
@@ -28,9 +28,9 @@ class SupersededError : public Error {
 // Borrows window and link. One thread.
 class ChunkSender {
  public:
-  // Without progress on what was sent, or without a credit, for longer than this, everything is
-  // sent again. Every credit is repeated once a second: silence is a replay that does not know this
-  // session, because it does not know what its predecessor stored.
+  // If for longer than this no sent chunk is acknowledged, or no credit arrives, everything is
+  // resent. Every credit is repeated once a second: silence means that the replay does not know
+  // this session, because it does not know the records that its predecessor stored.
   static constexpr std::chrono::seconds kResendAfter{2};
 
   struct Options {
@@ -41,16 +41,16 @@ class ChunkSender {
   };
   ChunkSender(ChunkWindow& window, ChunkLink& link, const Options& options);
 
-  // Hears the replay (waiting for it until `deadline`) and sends what may be sent. Throws Error
+  // Receives credits (waits for them until `deadline`) and sends chunks within them. Throws Error
   // naming both sides when the replay's observation spec is another one; SupersededError.
   void Exchange(SteadyTime deadline);
   // Makes a partial chunk ready to be sent by the next Exchange.
   void Flush() { window_.Flush(); }
 
   const ChunkWindow& window() const { return window_; }
-  // Chunks that the transport did not take in its time.
+  // Chunks that the transport did not accept in time.
   uint64_t write_timeouts() const { return write_timeouts_; }
-  // Spent handing chunks to the transport.
+  // Time spent in handing chunks to the transport.
   double publish_seconds() const { return publish_seconds_; }
 
  private:

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The sending side of credited transitions: records are written into chunks, chunks are sent inside
 // the window the replay allows, kept until it reports them stored, and sent again to a new replay
-// session or when nothing was reported for a while. Duplicates are the replay's to drop. What is
-// sent again is led by a chunk without records, which says where the keeping begins: a replay whose
-// predecessor's memory is gone must not wait for what nobody has.
+// session or when nothing was reported for a while. The replay drops duplicates. A resend begins
+// with a chunk without records, which reports where the retained records begin: a replay whose
+// predecessor lost its memory must not wait for records that are gone.
 //
 // Owns the chunk memory: `chunks` chunks of `chunk_records` records, allocated once. Knows nothing
 // of DDS or clocks. One thread.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a rollout's records go: memory for each, in order, as far as the receiver allows.
+// Sink of a rollout's records: provides memory for each, in order, as far as the receiver allows.
 #pragma once
 
 #include <cstddef>
@@ -14,7 +14,7 @@ class RecordSink {
   virtual size_t Room() const = 0;
   // Memory for the next record, zeroed, aligned to 8, valid until EndRecord. Room() must not be 0.
   virtual uint8_t* BeginRecord() = 0;
-  // Completes the record begun last. `sequence` must follow the former one.
+  // Completes the record begun last. `sequence` must follow the previous one.
   virtual void EndRecord(uint64_t sequence) = 0;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The *made* counter of an actor session and the next unused episode of each of its environments,
-// in a mapped file that survives SIGKILL of the actor (not power loss): what it says was made and
-// is not stored was lost with the process.
+// in a mapped file that survives SIGKILL of the actor (not power loss). Records that it counts as
+// made and that are not stored were lost with the process.
 //
 // File RUN/made/actor-ID-SESSION.page: SequenceLogHeader, then env_count u32 "next episode".
 #pragma once
@@ -26,9 +26,9 @@ static_assert(sizeof(SequenceLogHeader) == 40);
 // Owns the mapping. One thread.
 class SequenceLog {
  public:
-  // Creates the page of this session, or goes on with it where the session goes on (lockstep); its
-  // episodes go on where earlier sessions hosting the same environments stopped. Throws Error when
-  // the folder cannot be written, and Error (usage) when an older page is broken.
+  // Creates the page of this session, or continues it if the session continues (lockstep). Its
+  // episodes continue the numbers of earlier sessions with the same environments. Throws Error if
+  // the folder cannot be written, and Error (usage) if an older page is broken.
   SequenceLog(const std::filesystem::path& run, uint32_t actor, uint64_t session,
               uint32_t first_env, uint32_t env_count);
   ~SequenceLog();
@@ -38,7 +38,7 @@ class SequenceLog {
   // Counts one more record; returns its sequence (from 1).
   uint64_t CountRecord();
   uint64_t made() const { return header_->made; }
-  // The episode that local environment `e` begins now; never given out again.
+  // Number of the episode that local environment `e` begins now; never used again.
   uint32_t TakeEpisode(uint32_t e);
 
  private:
@@ -61,13 +61,13 @@ std::vector<MadeCount> ReadSequenceLogs(const std::filesystem::path& run);
 std::filesystem::path SequenceLogFile(const std::filesystem::path& run, uint32_t actor,
                                       uint64_t session);
 
-// A page that cannot be read, and whose it is by its name.
+// A page that cannot be read, with its actor and session by its name.
 struct DamagedPage {
   std::filesystem::path path;
   uint32_t actor = 0;
   uint64_t session = 0;
 };
-// By file name. Throws Error (usage) naming a page of nobody.
+// Sorted by file name. Throws Error (usage) naming a page that belongs to no actor.
 std::vector<DamagedPage> FindDamagedPages(const std::filesystem::path& run);
 
 // Writes a page in place of a damaged or missing one: `made` is what the receiver of the records

@@ -13,8 +13,8 @@ namespace shoal {
 
 inline constexpr int kMaxJsonDepth = 64;
 
-// Arrays and objects of `text` lie in each other more than kMaxJsonDepth deep. The text need not be
-// valid JSON. One pass, no memory.
+// Whether arrays and objects of `text` are nested more than kMaxJsonDepth deep. The text need not
+// be valid JSON. One pass, no memory.
 bool JsonTooDeep(std::string_view text);
 
 // `Json` is nlohmann::json or ordered_json. A discarded value (is_discarded()) where the text is

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What this program was built from, and the licence of its sources.
+// The version and commit that this program was built from, and the licence of its sources.
 #pragma once
 
 namespace shoal {

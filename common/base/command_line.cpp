@@ -19,7 +19,7 @@ bool IsOption(const std::string& word) {
   return word.size() > 1 && word[0] == '-' && !number;
 }
 
-// Of the command and, where it lets options fall through, of those above it.
+// The command and, if it lets options fall through, the commands above it.
 std::vector<const CLI::App*> Levels(const CLI::App* command) {
   std::vector<const CLI::App*> levels{command};
   while (levels.back()->get_fallthrough() && levels.back()->get_parent() != nullptr) {

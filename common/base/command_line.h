@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How every program of ours takes its command line: --version, and one line for what is wrong.
+// Command lines of all programs: --version, and one line for each error.
 #pragma once
 
 #include <functional>
@@ -16,14 +16,14 @@ namespace shoal {
 // --version prints one line, "NAME VERSION (COMMIT), licence Apache-2.0". NAME is the app's.
 void AddVersion(CLI::App* app);
 
-// What a program knows of a word, or an option with its dashes, that `command` does not take:
-// "; it is a preset: --preset X". Empty where it knows nothing; of an option the nearest one of the
-// command is named then.
+// A hint for a word, or an option with its dashes, that `command` does not take: "; it is a preset:
+// --preset X". If the hint for an option is empty, the error names the nearest option of the
+// command.
 using WordHint = std::function<std::string(const CLI::App& command, const std::string& word)>;
 
-// The exit code where help or the version was asked for and has been printed; nothing where the
-// program goes on. Throws Error (usage) for what the app does not take, naming the command, the
-// option or word, and what is near it. `words`: without the program's own name.
+// The exit code, if help or the version was requested and has been printed; empty if the program
+// continues. Throws Error (usage) for unknown options and words, naming the command, the option or
+// word, and the nearest known one. `words`: without the program's own name.
 std::optional<int> ParseCommandLine(CLI::App* app, const std::vector<std::string>& words,
                                     const WordHint& hint = nullptr);
 std::optional<int> ParseCommandLine(CLI::App* app, int argc, char** argv);

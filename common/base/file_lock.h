@@ -11,8 +11,8 @@
 namespace shoal {
 
 enum class Holding {
-  kAlone,       // nobody else holds it
-  kWithOthers,  // nobody holds it alone
+  kAlone,       // excludes all other holders
+  kWithOthers,  // excludes a holder of kAlone
 };
 
 // Locks of the open file (F_OFD_SETLK): they also hold between two openings within one process, are
@@ -20,8 +20,8 @@ enum class Holding {
 // reach the other hosts of a network file system that has locks.
 class FileLock {
  public:
-  // Makes the file where it is not there (its permissions as the umask allows). Empty: somebody
-  // else holds it. Throws Error naming the file where it cannot be written or is no file.
+  // Makes the file if it does not exist (its permissions as the umask allows). Empty if another
+  // process holds the lock. Throws Error naming the file if it cannot be written or is no file.
   static std::optional<FileLock> Take(const std::filesystem::path& file,
                                       Holding holding = Holding::kAlone);
   // Asks again until the deadline.

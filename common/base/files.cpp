@@ -21,7 +21,7 @@ namespace {
 
 constexpr mode_t kPrivate = 0077;
 
-// What NoteUmask found.
+// The mask that NoteUmask found.
 std::optional<mode_t>& FoundMask() {
   static std::optional<mode_t> mask;
   return mask;

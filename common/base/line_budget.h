@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many lines of a kind a log takes, so that whoever causes them from outside cannot fill a
-// disk: the first kLines of each kSpan. What was left out is counted and told with the next line.
+// Limits the lines of a kind that a log takes, so that a sender outside cannot fill a disk: the
+// first kLines of each kSpan. The next line reports the number of lines that were left out.
 #pragma once
 
 #include <chrono>

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// How long nothing was heard of somebody, as far as this process was there to hear it.
+// Time since the last message of another process, counted only while this process ran.
 //
-// A process that was itself stopped, swapped out or busy for long finds an old "last heard" when it
-// comes back; the news lie unread meanwhile. So a look counts at most kMostPerLook of the time
-// since the last look: own absence is never held against the other side.
+// If this process was stopped, swapped out or busy for long, unread messages may be waiting. So one
+// poll counts at most kMostPerLook of the time since the last poll: the absence of the observer
+// does not count as silence of the other process.
 #pragma once
 
 #include <algorithm>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What there may not be, in JSON: its value, or null.
+// An optional value in JSON: the value, or null.
 #pragma once
 
 #include <nlohmann/json.hpp>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bytes that nobody can guess, from the kernel: for tokens.
+// Unpredictable bytes from the kernel, for tokens.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Bytes that nobody changes any more, and whatever keeps them: a string that was moved in, or
-// memory that is mapped. Copies share both. Copies may be used on different threads.
+// Immutable bytes with shared ownership of their memory: a string that was moved in, or mapped
+// memory. Copies may be used on different threads.
 #pragma once
 
 #include <memory>

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Memory that processes of one user on one host share. It has no name in any file system: when its
-// maker and whoever has it mapped are gone, however they ended, nothing of it is left; nobody meets
-// that of another run by accident; and the size of /dev/shm does not matter.
+// Memory that processes of one user on one host share. It has no name in any file system: once its
+// maker and all processes that have it mapped have ended, for whatever reason, it is freed. It
+// cannot collide with memory of another run, and the size of /dev/shm does not matter.
 //
 // A reader finds it by the maker's process number and descriptor, through /proc, while the maker
-// lives; what it has mapped stays there. The kernel lets nobody in but the maker's user and root.
+// lives; a mapping stays valid afterwards. The kernel admits only the maker's user and root.
 // The size is sealed, so that no access can fail later.
 #pragma once
 
@@ -24,9 +24,9 @@ class SharedMemory {
   // with the reason: a limit on files' sizes, no memory, a kernel without memfd_create. A control
   // group with too little room kills instead: the caller asks before.
   static SharedMemory Make(const std::string& label, uint64_t bytes);
-  // Memory of `pieces`, one behind the other, that nobody can change any more, for others to Open
-  // as long as the descriptor is kept. Written without being mapped, which costs about half of Make
-  // and a copy into it. Throws Error as Make does.
+  // Memory with the concatenated `pieces`, sealed against changes. Others can Open it as long as
+  // the descriptor is kept. It is written without being mapped, which costs about half of Make and
+  // a copy into it. Throws Error as Make does.
   static Descriptor MakeOf(const std::string& label,
                            std::initializer_list<std::string_view> pieces);
   // That of a process on this host, for reading. Throws Error: nothing there, not ours to read,

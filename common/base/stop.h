@@ -9,13 +9,13 @@
 namespace shoal {
 
 // Installs handlers for SIGINT and SIGTERM that call RequestStop, for SIGHUP (unless it is ignored,
-// as under nohup), and ignores SIGPIPE. SIGHUP asks for a stop but is not counted, so that it
-// never means haste: the kernel sends a parent's death once per thread that the parent had.
+// as under nohup), and ignores SIGPIPE. SIGHUP requests a stop but is not counted, so that it
+// never shortens the stop: the kernel sends it once per thread of a parent that died.
 void InstallStopSignals();
 // Async-signal-safe.
 void RequestStop();
 bool StopRequested();
-// How many times a stop was asked for but by SIGHUP: a second Ctrl-C means "now".
+// Number of stop requests except by SIGHUP: a second Ctrl-C means "now".
 int StopRequests();
 // The first stop signal that arrived; 0 without one, also after RequestStop.
 int StopSignal();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stops a process when whoever holds the other end of its standard input is gone. A remote shell
-// closes it when its client dies, where no signal and no parent's death would be seen.
+// Stops a process at the end of its standard input. A remote shell closes that input when its
+// client dies; neither a signal nor the death of a parent would show it.
 #pragma once
 
 #include <thread>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Files that could not be written and will be tried again: a full disk, a quota, a disk that became
-// read-only, a folder that was moved. A long-running process goes on without them and reports each
-// once. What to write again, and when, is the caller's part.
+// read-only, a folder that was moved. A long-running process continues without them and reports
+// each once. The caller decides what to write again, and when.
 #pragma once
 
 #include <functional>

@@ -22,7 +22,7 @@ function(shoal_grouped_sources_below folder)
   get_property(targets DIRECTORY ${folder} PROPERTY BUILDSYSTEM_TARGETS)
   foreach(target ${targets})
     get_target_property(sources ${target} SOURCES)
-    get_target_property(grouped ${target} UNITY_BUILD)  # NOTFOUND where nobody has set it
+    get_target_property(grouped ${target} UNITY_BUILD)  # NOTFOUND if it is not set
     if(sources AND NOT grouped STREQUAL "OFF")
       list(FILTER sources EXCLUDE REGEX "^\\$<")
       shoal_grouped_sources(${target} ${folder} ${sources})

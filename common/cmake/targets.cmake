@@ -54,9 +54,9 @@ set(SHOAL_COMMON_HEADERS <algorithm> <chrono> <cmath> <cstdint> <filesystem> <fu
   <optional> <span> <string> <string_view> <utility> <vector>)
 shoal_precompiled(shoal_library_headers ${SHOAL_COMMON_HEADERS})
 
-# What starts, watches and tells computes little: where SHOAL_COLD is set, a folder's libraries and programs
-# are compiled soon rather than to be fast. The headers of CLI11 and nlohmann-json are not precompiled: every
-# source would pay seconds for them, most of them in vain.
+# Code that starts, watches and reports computes little: where SHOAL_COLD is set, a folder's libraries and
+# programs are compiled for a short build. The headers of CLI11 and nlohmann-json are not precompiled: every
+# source would pay seconds for them, and most do not use them.
 set(SHOAL_COLD_OPTIONS $<$<CONFIG:Release>:-O1>)
 if(CMAKE_CXX_COMPILER_ID STREQUAL GNU)  # g++ 12 sees what is not there when it optimises little
   list(APPEND SHOAL_COLD_OPTIONS -Wno-array-bounds -Wno-maybe-uninitialized -Wno-stringop-overflow)

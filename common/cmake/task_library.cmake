@@ -7,9 +7,9 @@
 #   SHOAL_TASK_INCLUDE_DIR   where Shoal's headers lie
 #   MUJOCO_INCLUDE_DIR, MUJOCO_LIBRARY
 
-# What a task uses is found in the program that loads it. Python shows the names of its modules to
-# nobody: libraries for it need the module by its soname (launch/tools/python), and the loader takes the
-# one that is loaded. An empty library stands for it when they are linked.
+# A task finds the symbols that it uses in the program that loads it. Python hides the symbols of its
+# modules: libraries for it need the module by its soname (launch/tools/python), and the loader takes the
+# module that is loaded. An empty library stands in for the module when they are linked.
 function(shoal_python_module_stand_in)
   if(TARGET shoal_python_module)
     return()

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run asks of its algorithm before and beside learning: which keys fit, whether there is a
-// replay, how actors explore. What learning takes is in learner/agent/algorithms.cpp.
+// Properties of an algorithm that a run needs outside of learning: which keys fit, whether there is
+// a replay, how actors explore. learner/agent/algorithms.cpp has the list that learning uses.
 //
-// A further algorithm is a line in both lists; the choices of learner.algorithm follow from this
-// one.
+// A further algorithm is a line in both lists. The choices of learner.algorithm follow from the
+// list here.
 #pragma once
 
 #include <span>

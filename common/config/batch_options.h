@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What learner and replay make of the configuration of a run to agree on its batches.
+// Options of batches that learner and replay both derive from the configuration of a run. Equal
+// options on both sides make their batches agree.
 #pragma once
 
 #include "common/config/run_config.h"

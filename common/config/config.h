@@ -81,7 +81,7 @@ struct LearnerConfig {
   std::string precision = "auto";  // auto | f32 | bf16
   int threads = 0;                 // 0 = chosen: common/config/learner_threads.h
   double learning_rate = 5e-4;
-  // Of one of them alone; 0 = learning_rate.
+  // Rate of the actor, the critic or the temperature alone; 0 = learning_rate.
   double actor_learning_rate = 0, critic_learning_rate = 0, temperature_learning_rate = 0;
   Schedule rate_factor = Schedule::Constant(1);  // on all of these
   double max_grad_norm = 0;  // of the actor's gradients and of the critic's; 0 = not clipped
@@ -100,7 +100,7 @@ struct LearnerConfig {
   bool normalise_vectors = false;  // of observations, by running mean and deviation
   double variance_floor = 0;       // smaller variances count as this in normalise_vectors
   bool bounded_targets = false;    // values cut off at what rewards of -1 and 0 allow
-  // What learning knows and acting does not: common/config/privileged_blocks.h.
+  // Privileged inputs, which acting does not have: common/config/privileged_blocks.h.
   StateBlocks critic_blocks = false;  // that the critic sees in place of pixels; false = pixels
   std::vector<std::string> aux;   // what the features are trained to tell: BLOCK, or BLOCK-BLOCK
   double aux_weight = 1;          // of that loss
@@ -134,7 +134,7 @@ struct Td3Config {
   double target_noise_clip = 0.5;  // it is cut off at
 };
 
-// What training actors play beyond what their policy says (actor/acting/exploration.h).
+// Noise that training actors add to their policy's actions (actor/acting/exploration.h).
 struct ExplorationConfig {
   std::string kind = "auto";                 // auto | squashed_gaussian | gaussian | ou
   Schedule sigma = Schedule::Constant(0.1);  // deviation of gaussian and ou noise
@@ -149,7 +149,7 @@ struct NetworkConfig {
   std::string encoder_weights;      // safetensors file that the encoder starts from; empty = none
   std::string encoders = "shared";  // shared | separate: of actor and critic
   bool target_encoder = false;      // the target critic has one of its own, which follows
-  // Of the compact encoder alone; 0 and [] = its own values.
+  // Keys of the compact encoder alone; 0 and [] = its own values.
   int pool = 0;  // average pooling of the input, 1 = none
   std::vector<int> filters, strides;
   std::string trunk = "auto";                 // auto = the encoder's own | tanh | relu

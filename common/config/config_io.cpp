@@ -41,7 +41,7 @@ bool IsUtf8(const std::string& text) {
   }
 }
 
-// What a refusal quotes of a value.
+// The part of a value that a refusal quotes.
 std::string Shown(const json& value) { return Shortened(value.dump(), 200); }
 
 [[noreturn]] void Refuse(const Key& key, const json& value, const std::string& source) {
@@ -165,7 +165,7 @@ void Assign(const Key& key, const json& value, const std::string& source, Config
   if (!std::visit(read, key.slot(*config))) Refuse(key, value, source);
 }
 
-// What keys were called in files of runs and experiments that were begun then, and today's names.
+// Former names of keys, which files of older runs and experiments have, and today's names.
 constexpr std::pair<std::string_view, std::string_view> kFormerNames[] = {
     {"ppo.normalise_observations", "learner.normalise_vectors"}};
 
@@ -182,7 +182,7 @@ bool IsSection(std::string_view path) {
                              [&](const Key& key) { return key.path.starts_with(prefix); });
 }
 
-// What was meant: by another program's name, else by the spelling.
+// A hint at the key that was meant: by another program's name, else by the spelling.
 std::string HintFor(const std::string& path) {
   const MeantKey meant = FindMeantKey(path);
   if (meant.same) return fmt::format("it is called '{}' here", meant.key);

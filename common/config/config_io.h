@@ -30,15 +30,15 @@ void ApplyFile(const std::string& path, Config* config);
 // `assignments` is refused.
 void ApplyAssignments(const std::vector<std::string>& assignments, Config* config);
 
-// Checks that depend on several keys, after everything is applied. Throws Error (kUsage). Whether
-// the networks fit what is observed is nn::CheckNetwork's to say.
+// Checks that depend on several keys, after everything is applied. Throws Error (kUsage).
+// nn::CheckNetwork checks that the networks fit the observations.
 void Validate(const Config& config);
 
 // Every key, nested, in declaration order.
 nlohmann::ordered_json ToJson(const Config& config);
 
-// Of what a run computes: every key but preset, run_name, run_dir, env_steps and stop.*, so that a
-// resumed run may go on for longer.
+// Hash of everything that decides the results of a run: every key but preset, run_name, run_dir,
+// env_steps and stop.*, so that a resumed run may train for longer.
 uint64_t ConfigHash(const Config& config);
 
 // Markdown table of every key: default, range, meaning. Source of docs/configuration.md.

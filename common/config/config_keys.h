@@ -57,7 +57,7 @@ struct Key {
 // Every key, in the declaration order of Config.
 std::span<const Key> Keys();
 
-// What the key takes, for errors and documentation: "an integer in 1..65536", "f32 | bf16".
+// Values that the key takes, for errors and documentation: "an integer in 1..65536", "f32 | bf16".
 std::string Expected(const Key& key);
 
 }  // namespace shoal::internal

@@ -53,7 +53,7 @@ ordered_json Camera() {
           {"additionalProperties", false}};
 }
 
-// What a value of each type of member looks like in JSON.
+// JSON Schema of a value, by the type of its member.
 struct ValueSchema {
   const internal::Rule& rule;
 
@@ -114,8 +114,8 @@ ordered_json ObjectOfKeys() {
       {"type", "object"}, {"properties", ordered_json::object()}, {"additionalProperties", false}};
 }
 
-// What a file may hold besides keys: the schema it is written for; in a run's config.json what
-// describes the run.
+// Adds the members of a file that are no keys: its schema and, in a run's config.json, the
+// description of the run.
 void AddWhatIsNoKey(ordered_json* schema) {
   ordered_json& properties = (*schema)["properties"];
   properties["$schema"] = {{"type", "string"}, {"description", "for editors; programs skip it"}};

@@ -2,15 +2,15 @@
 // The configuration as a JSON Schema (2020-12), for editors and for programs that write presets:
 // types, ranges, choices, defaults and meanings, from the table that the parser walks.
 //
-// It says what can be said of one key at a time. Left to the parser: low <= high of an interval,
-// the two ends of a schedule, and what several keys must agree on (Validate).
+// The schema has the rules of single keys. The parser alone checks low <= high of an interval, the
+// two ends of a schedule, and rules across keys (Validate).
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
 
 namespace shoal {
 
-// Of a preset, of a file for --config, and of a run's config.json.
+// JSON Schema of a preset, of a file for --config, and of a run's config.json.
 nlohmann::ordered_json ConfigSchema();
 
 }  // namespace shoal

@@ -15,11 +15,11 @@ enum class ExplorationKind { kSquashedGaussian, kGaussian, kOrnsteinUhlenbeck, k
 // algorithms is not squashed, the others' are deterministic.
 bool LearnsDeviation(const Config& config);
 
-// What exploration.kind says; `auto` is what the run's algorithm wants: its own Gaussian, or
-// Gaussian noise beside a deterministic policy.
+// The kind of exploration.kind. `auto` depends on the run's algorithm: a stochastic policy explores
+// by its own Gaussian, a deterministic one by Gaussian noise.
 ExplorationKind ExplorationKindOf(const Config& config);
 
-// As exploration.kind has it; of kPolicy, which no key names, "policy".
+// The word for exploration.kind; "policy" for kPolicy, which no key names.
 std::string_view NameOf(ExplorationKind kind);
 
 }  // namespace shoal

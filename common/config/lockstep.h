@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 // Lockstep: one actor and the learner take turns, so that a run repeats bit for bit.
 //
-// With E environments, L = lockstep_steps and B = learner.batch, phase p (0, 1, ...) is
+// Let E be the number of environments, L = lockstep_steps and B = learner.batch. Phase p (0, 1,
+// ...) consists of
 //   1. vector steps of the actor: S0 in phase 0 (replay.min_size / E, rounded up to a multiple of
-//   L),
-//      L in every later one; then
+//      L), L in every later phase;
 //   2. updates of the learner until LockstepUpdatesAtPhaseEnd(p), drawn from exactly these steps;
-//   then
-//   3. the actor takes the weights of that update and phase p + 1 begins.
-// Phase 0 has no updates: its end only fixes what the ring holds when learning starts.
+//   3. the change of the actor to the weights of the last update. Then phase p + 1 begins.
+// Phase 0 has no updates: its end only fixes the content of the ring when learning starts.
 //
-// What the two sides must keep for this to be exact: a vector step makes E step records; an
-// episode's reset record is made at the start of the vector step that follows the episode's end,
-// never behind the last step of a phase; the actor sends everything before it waits; the replay
-// serves a request once SampleRequest::after_steps step records are stored; request u is that of
-// update u.
+// Both sides must obey these rules for a run to be exact:
+// - A vector step makes E step records. An episode's reset record is made at the start of the
+// vector
+//   step that follows the episode's end, never behind the last step of a phase.
+// - The actor sends everything before it waits.
+// - The replay serves a request once SampleRequest::after_steps step records are stored. Request u
+//   belongs to update u.
 #pragma once
 
 #include <cstdint>
@@ -35,9 +36,9 @@ uint64_t LockstepUpdatesAtPhaseEnd(const Config& config, int64_t phase);
 // Step records that must be stored before the batch of update `update` >= 1 is drawn.
 uint64_t LockstepStepsBeforeUpdate(const Config& config, uint64_t update);
 
-// Where a run ends: with the first phase at whose end config.env_steps steps are stored. Its steps
-// and its last update: none is told to drain before those, nor asks for a batch beyond, so that
-// where a run ends does not depend on timing.
+// End of a run, in env steps and in updates: that of the first phase at whose end config.env_steps
+// steps are stored. No process drains before it, and the learner requests no batch beyond it, so
+// that the end of a run does not depend on timing.
 uint64_t LockstepEnvSteps(const Config& config);
 uint64_t LockstepLastUpdate(const Config& config);
 

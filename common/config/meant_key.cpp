@@ -124,7 +124,7 @@ MeantKey FindMeantKey(std::string_view word) {
     return {.key = std::string(own), .note = "", .same = true};
   }
   for (const Names& names : Table()) {
-    // A section that somebody guessed does not change what is meant.
+    // The last word decides: users guess the section.
     if (std::ranges::count(names.words, LastWord(text)) == 0) continue;
     return {.key = std::string(names.key),
             .note = std::string(names.note),

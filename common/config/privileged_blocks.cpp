@@ -76,7 +76,7 @@ PrivilegedBlocks PrivilegedBlocksOf(const LearnerConfig& learner, const Observat
       std::ranges::count(blocks.critic, "desired_goal") == 0) {
     throw UsageError(
         "learner.critic_blocks with observation.goal_mode = image: a critic without pixels would "
-        "not be told the goal; expected 'desired_goal' among them");
+        "not see the goal; expected 'desired_goal' among them");
   }
   std::set<std::string> wanted(blocks.critic.begin(), blocks.critic.end());
   for (const std::string& text : learner.aux) {

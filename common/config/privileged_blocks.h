@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What learning knows and acting does not: blocks of the record that are no part of the policy's
+// Privileged inputs: blocks of the record that learning uses and that are no part of the policy's
 // observation.
 //
 //   learner.critic_blocks   an asymmetric critic sees them in place of the pixels (Eq. 26 of

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run is: every key, and what is observed in it. Knows no file: run_files.h writes and reads
+// Description of a run: every key, and the spec of its observations. run_files.h writes and reads
 // it.
 #pragma once
 

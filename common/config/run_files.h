@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run folder tells its processes: config.json (schema shoal-config-1: every key, the
-// observation spec and its hash) and cluster.json (schema shoal-cluster-1: where to meet).
+// Files of a run folder that its processes read: config.json (schema shoal-config-1: every key, the
+// observation spec and its hash) and cluster.json (schema shoal-cluster-1: addresses, domain,
+// credentials).
 #pragma once
 
 #include <cstdint>
@@ -15,7 +16,8 @@ void WriteRunConfig(const std::filesystem::path& run, const RunConfig& config);
 // Throws Error on a missing, malformed or inconsistent file (spec and stored hash differ).
 RunConfig ReadRunConfig(const std::filesystem::path& run);
 
-// Where the processes of a run meet. The odd domain above `domain` carries batches.
+// Address at which the processes of a run find each other. The odd domain above `domain` carries
+// batches.
 struct ClusterAddress {
   int domain = 0;                  // even, below 100
   std::string tag;                 // run id: processes with another tag do not see each other

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which processes belong to a run, known to the kernel: each holds a shared lock on RUN/.members,
-// which goes with the process however it ends. Two coordinators cannot run one run (RunFolder);
-// this tells the second one of processes that the first, killed, has left behind and that are still
-// storing what they have.
+// Membership of processes in a run, held by the kernel: each process holds a shared lock on
+// RUN/.members, which is released when it ends for whatever reason. Two coordinators cannot run one
+// run (RunFolder). With this lock the second one detects processes that a killed first one has left
+// behind and that still store their records.
 #pragma once
 
 #include <sys/types.h>
@@ -14,9 +14,9 @@
 
 namespace shoal {
 
-// Held for as long as the process works on the run. A lock of the process (F_SETLK), not one of the
-// open file as FileLock's: of those the kernel does not say who holds them, and AnyMember names a
-// process. So it is one per process: closing any descriptor of the file would drop the lock.
+// Held for as long as the process works on the run. Uses F_SETLK, not the open-file locks of
+// FileLock: the kernel reports the holder's pid only for F_SETLK, and AnyMember names a process. A
+// process may have only one, because closing any descriptor of the file releases the lock.
 class RunMembership {
  public:
   // Throws Error when the file cannot be written.
@@ -26,7 +26,7 @@ class RunMembership {
   Descriptor file_;
 };
 
-// A process that is a member of the run; none when there is none. Not to be asked by a member.
+// A process that is a member of the run; empty if there is none. Members must not call it.
 std::optional<pid_t> AnyMember(const std::filesystem::path& run);
 
 }  // namespace shoal

@@ -2,7 +2,7 @@
 // A number that may change while a run goes on: constant, or linear from `start` at 0 env steps of
 // the run to `end` at `env_steps`, and `end` from then on.
 //
-// As a configuration value: a JSON number, or the text "linear(START,END,ENV_STEPS)".
+// A configuration spells it as a JSON number or as the text "linear(START,END,ENV_STEPS)".
 #pragma once
 
 #include <algorithm>

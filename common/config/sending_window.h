@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many records an actor may have unacknowledged, and in chunks of which size: arithmetic that
-// actors and replay must agree on.
+// The window of unacknowledged records of an actor and the size of its chunks. Actors and replay
+// compute both from the configuration and must agree.
 //
 //   per chunk  transport.chunk_records, fewer (but one) where they exceed kChunkBytes together
 //   chunks     as many of these as replay.window_chunks chunks of transport.chunk_records hold
-//   least      what an actor must be allowed to go on: its oldest chunk, and a reset and a step of
-//              each of its environments, with the goal record that comes before the reset
+//   least      records that an actor needs credit for to make progress: its oldest chunk, and a
+//   reset
+//              and a step of each of its environments, with the goal record before the reset
 #pragma once
 
 #include <cstddef>

@@ -10,9 +10,9 @@
 
 namespace shoal {
 
-// The next session of `process` ("actor-3"); RUN/sessions/PROCESS remembers it. `wall_time_ns` is
-// the clock's word. Throws Error (usage) when the file is not a number; one that cannot be written
-// is a warning.
+// The next session of `process` ("actor-3"), stored in RUN/sessions/PROCESS. `wall_time_ns` is the
+// time of the clock. Throws Error (usage) if the file is not a number; a file that cannot be
+// written gives a warning.
 uint64_t NextSession(const std::filesystem::path& run, const std::string& process,
                      int64_t wall_time_ns);
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Presets and experiments: JSON files, one a name, that lie in a folder of their kind.
+// Presets and experiments: JSON files, one for each name, in a folder of their kind.
 //
-// Looked for, first match wins, in
+// The search takes the first match of
 //   PROJECT/KIND              when the working folder is a project of the user's (shoal new)
 //   PROGRAM/KIND              beside the program: a copy of a few files, without an installation
 //   PROGRAM/../share/shoal/KIND   an installation; a build folder, too, has this

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why a run cannot go on: what its actors would observe now is not what its config.json says.
+// The reason why a run cannot be resumed: its actors would observe something else than its
+// config.json says.
 #pragma once
 
 #include <string>

@@ -175,7 +175,7 @@ void ValidateEncoders(const Config& config) {
   }
 }
 
-// What learning alone knows. Whether the task records it is PrivilegedBlocksOf's to say.
+// Privileged inputs. PrivilegedBlocksOf checks whether the task records them.
 void ValidatePrivileged(const Config& config) {
   const LearnerConfig& learner = config.learner;
   const char* key = learner.critic_blocks                               ? "learner.critic_blocks"

@@ -39,7 +39,8 @@ void CheckValidity(const X509* certificate, const fs::path& file, std::time_t no
   }
 }
 
-// As the DDS library will: the signature must be the authority's own, over just this text.
+// Checks as the DDS library does: the signature must be the authority's own, over exactly this
+// text.
 void CheckSigned(const fs::path& file, const Certificate& ca, const fs::path& ca_file) {
   const std::string bytes = ReadFile(file);
   if (bytes.empty()) throw RuntimeError("'{}' is empty", file.string());

@@ -13,7 +13,7 @@ namespace shoal::credentials {
 // all topics' data are encrypted, and readers and writers need permission.
 std::string GovernanceDocument();
 
-// What the holder of a certificate with CN=`subject` may do; everything else is denied.
+// The rights of the holder of a certificate with CN=`subject`; everything else is denied.
 std::string PermissionsDocument(const RoleRights& rights, const std::string& subject,
                                 const Validity& validity);
 

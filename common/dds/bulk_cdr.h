@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parses the bulk messages from serialised CDR as it lies in a receive buffer, without copying the
-// payload. Everything is bounds-checked: the bytes come from the network.
+// Parses the bulk messages from serialised CDR in a receive buffer, without copying the payload.
+// Everything is bounds-checked: the bytes come from the network.
 //
 //   0x00 0x01 (CDR, little-endian) | 2 bytes options | body
 //

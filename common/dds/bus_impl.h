@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a Bus owns. Internal to common/dds.
+// The members of a Bus. Internal to common/dds.
 #pragma once
 
 #include <atomic>

@@ -93,7 +93,8 @@ class CdrReader {
   static constexpr size_t kHeaderBytes = 4;
   static constexpr size_t kMaxPadding = 3;
 
-  // What is read by `read` lies within a size that comes first; the position afterwards is its end.
+  // Reads a size, then by `read` a part that must fit into it. Afterwards the position is the end
+  // of that size.
   template <class ReadPart>
   void ReadScope(bool may_lack, ReadPart read) {
     const std::span<const uint8_t> part = Take(Read<uint32_t>(), 1);

@@ -11,8 +11,8 @@ namespace shoal::dds {
 // odd one above.
 constexpr int DiscoveryPort(int domain, int index) { return 7400 + 250 * domain + 10 + 2 * index; }
 
-// Whether nobody on this host has bound the UDP port. Binds it for an instant. Throws
-// Error when it cannot ask.
+// Whether the UDP port is free on this host. Binds it for an instant. Throws Error if the system
+// refuses for another reason.
 bool UdpPortFree(int port);
 // Whether an interface has that name.
 bool InterfaceExists(const std::string& name);

@@ -13,7 +13,7 @@ namespace {
 
 CdrReader ReaderOf(std::span<const uint8_t> cdr) { return {cdr, CdrEncoding::kDelimited2}; }
 
-// What people may get to see.
+// Text that is shown to users: one line.
 std::string Text(CdrReader* reader) { return OneLine(reader->ReadString()); }
 
 std::vector<std::string> Texts(CdrReader* reader) {
@@ -55,7 +55,7 @@ MetricsMessage ReadMetrics(CdrReader* reader) {
 constexpr size_t kMostFigures = 1000;
 constexpr size_t kMostNameBytes = 200;
 
-// What doubles count exactly; far from where arithmetic with it overflows.
+// Doubles hold integers up to here exactly; arithmetic with it does not overflow.
 constexpr double kLargestSetting = 9e15;
 
 bool IsShort(const std::string& name) { return name.size() <= kMostNameBytes; }
@@ -186,7 +186,7 @@ bool ParseCdr(std::span<const uint8_t> cdr, ControlMessage* message) {
   });
   const bool known = message->state == RunState::kRunning ||
                      message->state == RunState::kDraining || message->state == RunState::kStopping;
-  // Of all keys that change while a run goes on: counts, ratios and shares.
+  // Holds for every key that changes while a run goes on: counts, ratios and shares.
   const auto possible = [](double value) { return value >= 0 && value <= kLargestSetting; };
   return reader.Finished() && known && std::isfinite(message->time) &&
          std::ranges::all_of(message->setting_values, possible) &&

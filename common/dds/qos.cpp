@@ -14,7 +14,7 @@ QosHandle MakeQos(const link::TopicSettings& settings) {
   }
   if (settings.late_joiners) {
     dds_qset_durability(qos.get(), DDS_DURABILITY_TRANSIENT_LOCAL);
-    // What late joiners get is this depth, not the history's.
+    // Late joiners receive this depth, not that of the history.
     dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, settings.keep_last,
                                 DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
   } else {

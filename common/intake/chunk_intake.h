@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// From chunks to records in order: duplicates and gaps are sorted out and counted here, whoever
-// takes the records. Per (actor, session) every sequence up to the highest is dealt with exactly
-// once.
+// Turns chunks into records in order, for the replay server and for the learner. Duplicates and
+// gaps are detected and counted here. Per (actor, session), each sequence up to the highest is
+// handled exactly once.
 //
-// Resending. An actor keeps what is not reported stored and resends it oldest first, so a chunk
-// ahead of the next expected sequence is not a loss yet: it is set aside and will come again.
+// Resending. An actor retains records until they are reported stored and resends them oldest first.
+// So a chunk ahead of the next expected sequence is not a loss yet: it is dropped, and the actor
+// sends it again.
 //
-// Taking over. What an earlier receiver reported stored the actor keeps no more; where that one's
-// memory is gone, nobody has it. So whenever the actor sends again what it keeps, it says first
-// where its keeping begins: a chunk without records, whose first_sequence that is. The first time
-// that this receiver hears of a session, what lies between what it knows and that sequence is
-// counted as lost. Afterwards it cannot be news: nobody else has reported anything stored.
+// Takeover. Actors free records once they are acknowledged. If the receiver that acknowledged them
+// lost its memory, those records are gone. So whenever an actor resends, it reports first
+// where its retained records begin: a chunk without records, whose first_sequence that is. At the
+// first report of a session, the sequences between those that this receiver knows and that one
+// count as lost. Later reports of a session cannot reveal a loss: no other receiver acknowledges
+// records.
 //
 // Sessions from the future. A session is the actor's clock at its start, and the newest supersedes
 // the others: a number far beyond the present would shut the true actor out for good.
@@ -31,7 +33,7 @@ namespace shoal {
 
 enum class ChunkFate {
   kDealtWith,   // every record in it is stored or counted
-  kAhead,       // set aside: what lies before it did not come yet
+  kAhead,       // dropped: records before it have not arrived yet
   kSuperseded,  // of a session whose actor has a newer one: its process is gone
   kFuture,      // of a session that cannot have begun yet
   kWrongSpec,   // another observation spec
@@ -76,7 +78,7 @@ class ChunkIntake {
   // The session's index, added where it is new; or why the chunk is not taken.
   std::optional<int> FindSession(const TransitionChunk& chunk, uint64_t latest_session,
                                  ChunkFate* fate);
-  // Of a chunk without records.
+  // Handles a chunk without records.
   ChunkResult TakePosition(const TransitionChunk& chunk, int i);
   void TakeRecord(const uint8_t* record, uint64_t sequence, SessionCounters* counters,
                   ChunkResult* result);

@@ -15,7 +15,7 @@
 namespace shoal {
 
 struct PooledChunk {
-  TransitionChunk chunk;  // its payload lies in `words`
+  TransitionChunk chunk;  // its payload is in `words`
   SteadyTime arrived{};
   std::vector<uint64_t> words;  // aligned to 8
 };

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each actor may send: the newest session of every actor, its window, and what was last said
-// about it.
+// Credits of the actors: the newest session of each actor, its window, and the credit last sent.
 //
 //   allowed = stored + window, raised while inserts may go on, never lowered by the limiter
 //   allowed <= stored + share of the budget, and lowered for it
@@ -35,8 +34,8 @@ class CreditBook {
   // Credits of newest sessions; `changed_only`: those that differ from what was taken last.
   std::vector<Credit> Take(bool changed_only);
 
-  // What has changed should be told now: an actor has half of its window or less left by what was
-  // taken last, or has not been told anything yet.
+  // Whether credits should be sent now: an actor has at most half of its window left by the credit
+  // last sent, or has received no credit yet.
   bool Urgent() const;
 
   // Actor sessions with a window.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What became of the chunks that a receiver took, over its process's life.
+// Counts of the chunks that a receiver took, by outcome, over the life of its process.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a receiver of records refused or lost, logged once per interval as one line each, with its
-// number and an example.
+// Log of the records that a receiver refused or lost: once per interval one line for each kind,
+// with a count and an example.
 #pragma once
 
 #include <chrono>

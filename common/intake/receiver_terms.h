@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The terms on which a process receives records, whoever it is: replay server or learner.
+// The terms on which a receiver of records, replay server or learner, serves its actors.
 #pragma once
 
 #include <algorithm>
@@ -15,8 +15,8 @@ namespace shoal {
 inline constexpr std::chrono::milliseconds kCreditSpacing{20};
 // ... and between repetitions of every credit.
 inline constexpr std::chrono::seconds kCreditInterval{1};
-// With more actors than this the moment grows with their number: 1,600 words a second reach actors,
-// however many they are.
+// Beyond this number of actors the interval grows with it: at most 1,600 credits a second are sent,
+// for any number of actors.
 inline constexpr int64_t kClosestActors = 32;
 
 inline std::chrono::milliseconds CreditSpacing(size_t actors) {
@@ -25,7 +25,7 @@ inline std::chrono::milliseconds CreditSpacing(size_t actors) {
                   std::chrono::milliseconds(kCreditInterval) / 2);
 }
 
-// When the coordinator is gone a receiver stays until nothing has come for so long, ...
+// After the coordinator is lost, a receiver stays until nothing has arrived for this time, ...
 inline constexpr std::chrono::seconds kFarewell{2};
 // ... but no longer than this.
 inline constexpr std::chrono::seconds kFarewellLimit{20};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Accounting per actor session: what became of every record that an actor sent, whoever receives
-// them.
+// Accounting per actor session: the outcome of every record that an actor sent, for either
+// receiver.
 #pragma once
 
 #include <cstdint>

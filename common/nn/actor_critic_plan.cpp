@@ -46,7 +46,7 @@ NetworkPlan PlanTrunk(const NetworkConfig& network, const ObservationSpec& spec,
   return trunk;
 }
 
-// Of orthogonal weights.
+// Gains of orthogonal weights.
 struct Gains {
   double hidden = 1, output = 1;
 };

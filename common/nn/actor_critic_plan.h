@@ -31,7 +31,7 @@ namespace shoal::nn {
 NetworkPlan PlanEncoder(const NetworkConfig& network, const ObservationSpec& spec,
                         const std::string& name = "encoder");
 
-// What stands above an encoder: a trunk over its features, and MLPs that read
+// Plan of the layers above an encoder: a trunk over its features, and MLPs that read
 // [trunk | vector (V) | extra columns]. Without pixels the trunk has no layers and no outputs.
 struct HeadPlan {
   NetworkPlan trunk = {};
@@ -71,12 +71,12 @@ HeadPlan PlanCritic(const NetworkConfig& network, const ObservationSpec& spec,
 HeadPlan PlanObservationHead(const NetworkConfig& network, const ObservationSpec& spec,
                              const std::string& name, int outputs, double output_gain);
 
-// Where the observation is to be normalised, a policy has these tensors (V) beside its parameters:
-// the mean and the variance of the observations that its network was trained with.
+// Tensors (V) that a policy has beside its parameters if its observation is normalised: mean and
+// variance of the observations that its network was trained with.
 inline constexpr char kObservationMean[] = "observation.mean";
 inline constexpr char kObservationVariance[] = "observation.variance";
 
-// Of the encoder and the Gaussian actor.
+// Parameters of the encoder and the Gaussian actor.
 std::vector<ParameterSpec> PolicyParameters(const NetworkConfig& network,
                                             const ObservationSpec& spec);
 

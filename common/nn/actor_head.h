@@ -30,15 +30,15 @@ class ActorHead {
   // (B, A); null: deterministic.
   const float* log_std() const { return log_std_.empty() ? nullptr : log_std_.data(); }
 
-  // As ObservationTrunk::features.
+  // See ObservationTrunk::features.
   const Features* trunk_features() const { return trunk_.features(); }
 
   void Refresh();
   // vector (B, V).
   void Forward(const float* vector);
-  // Of a Gaussian, from dL/dmean, dL/dlog_std (B, A).
+  // Backward pass of a Gaussian policy, from dL/dmean, dL/dlog_std (B, A).
   void Backward(const float* mean_gradient, const float* log_std_gradient);
-  // Of a deterministic one: ActorModule::BackwardAction.
+  // Backward pass of a deterministic policy: see ActorModule::BackwardAction.
   void BackwardAction(const float* action_gradient, double mean_penalty);
 
  private:

@@ -8,8 +8,8 @@
 //
 // Source: Kingma and Ba 2014, arXiv:1412.6980, algorithm 1.
 //
-// Of N replicas each steps a share of the parameters (1/N), whose values all share: gradients of
-// the share are averaged over replicas, weighted by their rows; moments exist once for all.
+// Each of N replicas steps its share (1/N) of the parameters, whose values all replicas use. The
+// gradients of a share are averaged over replicas, weighted by their rows. Moments exist once.
 //
 // Threads: each pass is split over the current ThreadScope; results do not depend on its size.
 #pragma once
@@ -47,7 +47,8 @@ class Adam {
 
   // Averages the gradients over replicas, each of them in its own share (the rest stays its own),
   // and returns the sum of the squares of all. Call it once for each backward pass, even if no step
-  // follows; a Step calls it if nobody has since the last Step. Without a limit of the norm this
+  // follows; a Step calls it if no call has been made since the last Step. Without a limit of the
+  // norm this
   // computes the step as well, so that the replicas meet once for both; Step then applies it.
   double GatherGradients();
   // Applies the sets' gradients, clipped by max_norm / (norm + 1e-6) if the norm is limited, and
@@ -63,11 +64,11 @@ class Adam {
   void Import(const TensorMap& tensors, const std::string& group, const std::string& source);
 
  private:
-  // Of one set, in its layout: those in force, and where a step writes.
+  // Moments of one parameter set, in its layout: the current ones, and those that a step writes.
   struct Moments {
     std::array<std::vector<float>, 2> m, v;
   };
-  // What exists once for all replicas.
+  // State that exists once for all replicas.
   struct Shared {
     std::vector<Adam*> members;    // by rank
     std::vector<Moments> moments;  // one for each set

@@ -22,7 +22,7 @@
 
 namespace shoal::nn {
 
-// Where a layer reads a map and leaves its gradient. Both may be empty.
+// Memory of the map that a layer reads and of the gradient that it writes. Both may be empty.
 struct MapSource {
   dnnl::memory values, gradient;
 };
@@ -36,7 +36,7 @@ class BatchNorm final : public MapLayer {
 
   void Refresh() override;
   void Forward(Statistics statistics) override;
-  // Of the latest Forward, which has to have been of kBatch.
+  // Backward pass of the latest Forward, whose statistics must have been kBatch.
   void Backward() override;
 
  private:

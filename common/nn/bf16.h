@@ -17,8 +17,8 @@ void Bf16ToFloats(const uint16_t* in, int64_t n, float* out);
   return std::bit_cast<float>(uint32_t{bf16} << 16);
 }
 [[gnu::always_inline]] inline void Store(float value, float* out) { *out = value; }
-// As FloatsToBf16, but for NaN with bits set in the lower half alone, which arithmetic does not
-// make: it would become an infinity.
+// Same as FloatsToBf16, except for a NaN whose set bits are all in the lower half: it would become
+// an infinity. Arithmetic does not produce such a NaN.
 [[gnu::always_inline]] inline void Store(float value, uint16_t* out) {
   const auto bits = std::bit_cast<uint32_t>(value);
   *out = uint16_t((bits + 0x7fffu + ((bits >> 16) & 1u)) >> 16);

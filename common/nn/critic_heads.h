@@ -23,7 +23,7 @@ class CriticHeads {
   int count() const { return int(mlps_.size()); }
   const float* q(int i) const { return mlps_[size_t(i)].output(); }  // (B)
 
-  // As ObservationTrunk::features.
+  // See ObservationTrunk::features.
   const Features* trunk_features() const { return trunk_.features(); }
 
   void Refresh();

@@ -25,7 +25,8 @@ class Encoder {
   void Refresh();
   // frames (B, K*C, H, W) u8. statistics: kRunning in inference.
   void Forward(const uint8_t* frames, Statistics statistics);
-  // Of the latest Forward, which has to have been of kBatch where the plan has batch normalisation.
+  // Backward pass of the latest Forward. With batch normalisation in the plan, its statistics must
+  // have been kBatch.
   void Backward();
 
  private:
@@ -37,7 +38,7 @@ class Encoder {
   };
 
   void Build(const LayerContext& context, const NetworkPlan& plan);
-  // Where layer `reader` finds the output of layer `read`, and where it leaves the gradient.
+  // Memory in which layer `reader` finds the output of layer `read` and writes its gradient.
   MapSource SourceOf(const NetworkPlan& plan, int reader, int read, MapSource* shared);
   void BuildFeatures(const LayerContext& context);
 

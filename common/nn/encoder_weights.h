@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// What network.encoder_weights names: a safetensors file that an encoder starts from.
+// The file of network.encoder_weights: safetensors that an encoder starts from.
 //
-// Tensors are looked for under Shoal's names, encoder.NAME, as in a checkpoint's
-// policy.safetensors; where the file has none that begin like that, under NAME alone, which for
-// resnet18 and alexnet is torchvision's. What belongs to no encoder is left alone: other networks
-// of a policy, and torchvision's fc.*, classifier.* and *.num_batches_tracked.
+// Tensors have Shoal's names, encoder.NAME, as in a checkpoint's policy.safetensors. If no name in
+// the file begins like that, NAME alone is used, which for resnet18 and alexnet is torchvision's.
+// Tensors of no encoder are ignored: other networks of a policy, and torchvision's fc.*,
+// classifier.* and *.num_batches_tracked.
 #pragma once
 
 #include "common/config/config.h"

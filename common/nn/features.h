@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an encoder hands to the heads above it, in the form its engine computes with. Only
-// common/nn looks inside.
+// Output of an encoder for the heads above it, in the form that its engine computes with. Opaque
+// outside of common/nn.
 #pragma once
 
 #include "common/nn/layer_context.h"
@@ -22,8 +22,8 @@ class Features {
   dnnl::memory values_, gradient_;
 };
 
-// Where a head reads its features and leaves their gradient; empty handles without pixels, and an
-// empty gradient where the head does not train the encoder.
+// Memory of the features that a head reads and of the gradient that it writes. Both are empty
+// without pixels; the gradient is empty if the head does not train the encoder.
 struct FeatureSource {
   dnnl::memory values, gradient;
 };
@@ -32,7 +32,7 @@ inline FeatureSource ToFeatureSource(const Features* features, bool trains_encod
   return {features->values(), trains_encoder ? features->gradient() : dnnl::memory()};
 }
 
-// What the layers of a module are built with.
+// The context that the layers of a module are built with.
 inline LayerContext ToLayerContext(ParameterSet* parameters, Module::Use use,
                                    const ModuleContext& context) {
   return {.parameters = parameters,

@@ -104,7 +104,7 @@ void LaidOutWeight::Refresh() {
 void LaidOutWeight::RefreshBorrowed() {
   const PlainValues plain = weight_.plain();
   if (plain.data == nullptr) return;
-  // What is read is not written to: oneDNN has no handle to constant memory.
+  // The memory is only read; oneDNN has no handle to constant memory.
   auto* data = const_cast<uint8_t*>(plain.data);
   if (plain.aligned && !plain.bf16) {
     f32_.set_data_handle(data);

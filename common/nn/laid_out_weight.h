@@ -63,10 +63,10 @@ class LaidOutWeight {
   Parameter weight_;
   dnnl::memory f32_;  // row-major, where the parameter's values lie
   Relayout from_f32_;
-  // Of replicas: the pieces of the layout, where this is the first reader of its rank.
+  // Replicas: the pieces of the layout, if this is the first reader of its rank.
   const SharedLayouts::Layout* shared_ = nullptr;
   std::vector<Op> pieces_;
-  // Of borrowed weights alone.
+  // Used for borrowed weights only.
   dnnl::memory bf16_;
   Op from_bf16_;
   bool reorders_bf16_ = false;  // oneDNN does so on CPUs that have AVX-512

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every layer of one network is built with.
+// Context that every layer of one network is built with.
 #pragma once
 
 #include <memory>

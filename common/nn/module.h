@@ -20,15 +20,15 @@ namespace shoal::nn {
 
 class Scratchpad;
 
-// What batch normalisation normalises by: the statistics of the batch at hand, as in the pass that
-// a backward pass follows, or running averages over former batches, as in acting and in targets.
+// Statistics of batch normalisation: kBatch, those of the present batch, in a pass that a backward
+// pass follows; kRunning, averages over former batches, in acting and in targets.
 enum class Statistics { kBatch, kRunning };
 
-// What modules that work together are built with. Copies share the scratch memory: their modules
-// run one after another, on one thread at a time.
+// Context that modules of one computation are built with. Copies share the scratch memory, so their
+// modules run one after another, on one thread at a time.
 struct ModuleContext {
   ModuleContext(Precision precision, int batch, int threads);
-  // Of one replica: its rows of a batch of so many, its threads. Borrows the replica.
+  // Context of one replica: its rows of a batch of `batch` rows, its threads. Borrows the replica.
   ModuleContext(Precision precision, int batch, Replica* replica);
 
   Precision precision;

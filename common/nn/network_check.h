@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a configuration's networks ask of memory and of messages: refused by name before anything is
-// built or started.
+// Checks the memory and the message sizes that a configuration's networks need. A configuration
+// that needs too much is refused by name before anything is built or started.
 #pragma once
 
 #include <cstdint>

@@ -40,7 +40,7 @@ struct ParameterSpec {
   bool statistic = false;
 };
 
-// What the names of batch normalisation's running averages end with, and no other's.
+// Endings of the names of batch normalisation's running averages. No other name ends so.
 inline constexpr std::string_view kRunningMean = ".running_mean", kRunningVariance = ".running_var";
 
 // kOrthogonal: weights orthogonal of the layer's gain, biases 0 (Saxe et al. 2013,
@@ -58,7 +58,7 @@ struct MapShape {
   bool operator==(const MapShape&) const = default;
 };
 
-// What pixels / 255 are scaled to: [-0.5, 0.5] or [0, 1].
+// Range of scaled pixels: [-0.5, 0.5] or [0, 1].
 enum class PixelRange { kCentred, kUnit };
 
 // In the place of a layer's index: the one before; none.
@@ -135,7 +135,7 @@ class NetworkPlan {
   const std::vector<LayerPlan>& layers() const { return layers_; }
   const MapShape& input() const { return input_; }
   const MapShape& output() const { return layers_.empty() ? input_ : layers_.back().output; }
-  // Of all layers, in order.
+  // Parameters of all layers, in order.
   std::vector<ParameterSpec> Parameters() const;
 
  private:

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the MLPs of a head see of an observation: the trunk's features beside the vector (Eq. 3 of
-// docs/algorithm.md).
+// Input of the MLPs of a head: the trunk's features beside the vector (Eq. 3 of docs/algorithm.md).
 //
 //   input[b] = [ trunk(features[b]) | vector[b] | extra columns ]
 //
@@ -49,7 +48,7 @@ class ObservationTrunk {
   std::optional<DenseLayer> dense_;
   int features_, vector_size_, extra_column_;
   Rows input_;
-  std::optional<Rows> readout_gradient_;  // dL/d(trunk's outputs) (B, F); 0: nobody left one
+  std::optional<Rows> readout_gradient_;  // dL/d(trunk's outputs) (B, F); 0: none was written
   std::optional<Features> own_features_;
   std::vector<float> dense_gradient_;  // (B, F)
 };

@@ -102,7 +102,7 @@ void Widen(const PlainValues& from, int64_t count, float* to) {
 bool Parameter::borrowed() const { return set_->Borrows(*spec_); }
 
 float* Parameter::value() const {
-  CHECK(!borrowed()) << spec_->name << " lies in what was loaded";
+  CHECK(!borrowed()) << spec_->name << " is borrowed from what was loaded";
   return set_->values() + offset_;
 }
 

@@ -19,7 +19,7 @@ namespace shoal::nn {
 class ParameterSet;
 class SharedLayouts;  // laid_out_weight.h
 
-// Where the numbers of a parameter lie, row-major. Null: nowhere yet.
+// Address of the numbers of a parameter, row-major. Null: none yet.
 struct PlainValues {
   const uint8_t* data = nullptr;
   bool bf16 = false;    // else f32
@@ -42,10 +42,10 @@ class Parameter {
   bool borrowed() const;
   // Moves with every optimiser step: fetch it when it is needed. Not of a borrowed one.
   float* value() const;
-  // Of any: a borrowed one moves with every load.
+  // Values of any parameter, also of a borrowed one, whose address changes with every load.
   PlainValues plain() const;
-  // Where an optimiser's step writes: a statistic's value after it is written there by the forward
-  // pass that measures it. Moves like value().
+  // Destination of an optimiser's step. The forward pass that measures a statistic writes the
+  // statistic's next value here. Moves like value().
   float* next_value() const;
   // Stays. Null in a set without gradients, and of a statistic.
   float* gradient() const;
@@ -69,8 +69,8 @@ class Parameter {
 // several dimensions have no place in a set that borrows them.
 //
 // Replicas: the two arrays of values exist once, each replica's set refers to them. Which of the
-// two holds the values is a property of each set, so that every replica exchanges its own. Whoever
-// writes values writes its share alone, and all replicas meet before anyone reads them.
+// two holds the values is a property of each set, so that every replica exchanges its own. A
+// replica writes only its share of the values, and all replicas meet before one reads them.
 class ParameterSet {
  public:
   enum class Use {
@@ -84,14 +84,14 @@ class ParameterSet {
   ParameterSet(const ParameterSet&) = delete;
   ParameterSet& operator=(const ParameterSet&) = delete;
 
-  // As each parameter's Start says; its random stream is keyed by seed and name.
+  // Sets each parameter by its Start. Its random stream is keyed by seed and name.
   void Initialise(uint64_t seed);
 
   const std::vector<ParameterSpec>& specs() const { return specs_; }
   bool Has(std::string_view name) const;
   // CHECKs that there is one.
   Parameter Find(std::string_view name);
-  // Where the first parameter whose name starts with `prefix` begins; size() if there is none.
+  // Offset of the first parameter whose name starts with `prefix`; size() if there is none.
   int64_t OffsetOf(std::string_view prefix) const;
 
   int64_t size() const { return size_; }  // floats, gaps included
@@ -130,7 +130,7 @@ class ParameterSet {
                    TensorMap* tensors) const;
   void ImportFirst(size_t specs, const TensorViews& tensors, const std::string& prefix,
                    const std::string& source, float* array) const;
-  // What exists once for all replicas.
+  // State that exists once for all replicas.
   struct Shared {
     std::array<std::vector<float>, 2> arrays;  // values, and where a step writes
     std::shared_ptr<SharedLayouts> layouts;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a policy computes, in words: one line per layer, of all that its result depends on but the
-// parameters. Equal lines mean equal networks; how parameters start is left out. Written beside a
-// policy's parameters, so that a program whose network of the same name computes something else
-// finds out before it acts.
+// Text of a policy's network: one line per layer with everything that its result depends on except
+// the parameters. Equal lines mean equal networks; the text leaves out how parameters start. It is
+// stored beside a policy's parameters, so that a program whose network of the same name computes
+// something else detects this before it acts.
 #pragma once
 
 #include <string>

@@ -131,7 +131,7 @@ void Policy::Impl::Load(const TensorViews& tensors, std::shared_ptr<const void> 
   std::unique_ptr<Built> other;
   if (output != built->actor.output) other = Build(output);
   Built& target = other ? *other : *built;
-  // What throws comes first: the former weights stay.
+  // Reading may throw, so it comes first: the old weights stay.
   std::optional<VectorScale> read = ReadVectorScale(tensors, spec.VectorSize(), source);
   target.parameters.Borrow(tensors, source);
   target.loaded = std::move(owner);

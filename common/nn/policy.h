@@ -16,7 +16,7 @@
 
 namespace shoal::nn {
 
-// Of a batch of B observations with A actions each, (B, A).
+// Output for a batch of B observations with A actions each, (B, A).
 struct PolicyOutput {
   std::span<const float> mean;     // before tanh
   std::span<const float> log_std;  // of the Gaussian around it; empty of a deterministic policy
@@ -28,8 +28,9 @@ struct PolicyOutput {
 // that is not squashed. CHECK that there are as many as means.
 void MeanActions(const PolicyOutput& output, std::span<float> actions);
 
-// What kind of policy its tensors are: one with a log deviation of its own is unsquashed, one whose
-// last layer has A outputs deterministic. A missing or misshaped tensor is Load's to refuse.
+// The kind of a policy, read off its tensors: a policy with a log deviation of its own is
+// unsquashed, a policy whose last layer has A outputs is deterministic. Load refuses missing and
+// misshaped tensors.
 ActorOutput ActorOutputOf(const TensorViews& tensors, int action_size);
 
 class Policy {

@@ -15,7 +15,7 @@ Precision ChoosePrecision(const std::string& asked, bool pixels);
 const char* ToString(Precision precision);
 // Sets the threads that networks use which the calling thread builds from now on.
 void SetThreads(int threads);
-// What oneDNN found, e.g. "avx512_core_bf16", for meta.json.
+// The instruction set that oneDNN found, e.g. "avx512_core_bf16", for meta.json.
 std::string CpuIsa();
 
 }  // namespace shoal::nn

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What oneDNN 2 and 3 declare differently, in one way for both: Debian 12 has 2.6, Debian 13 3.7.
+// One spelling for declarations that differ between oneDNN 2 and 3. Debian 12 has 2.6, Debian 13
+// has 3.7.
 //
 // 2 first describes an operation, then asks an engine for a primitive that does it; 3 does both in
 // one constructor. 3 also wants the dilation of a pooling's window (none here) and each map of a

@@ -18,8 +18,8 @@ class Features;
 
 class ReadoutModule final : public Module {
  public:
-  // Of the trunk of a module for training (ActorModule::trunk_features, CriticModule's), which it
-  // borrows. One readout for each trunk.
+  // Reads the trunk of a module for training (trunk_features of ActorModule or CriticModule), which
+  // it borrows. A trunk has at most one readout.
   ReadoutModule(const std::string& name, int outputs, const Features& trunk,
                 const ModuleContext& context);
   ~ReadoutModule() override;

@@ -34,8 +34,9 @@ class Exchange {
   int replicas() const { return int(first_rows_.size()) - 1; }
   // Whether replicas may assume free cores when they wait. While none of them works.
   void SetPatient(bool patient) { barrier_.SetPatient(patient); }
-  // false: nobody waits, and a replica sees its own arrays and numbers in place of the others'. To
-  // measure what one replica costs by itself: its results are useless. While no replica works.
+  // If false, replicas do not wait for each other, and each reads its own arrays and numbers in
+  // place of the others'. This measures the cost of one replica by itself; its results are useless.
+  // Call it while no replica works.
   void SetMeets(bool meets) { meets_ = meets; }
 
  private:

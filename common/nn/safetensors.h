@@ -20,15 +20,15 @@ struct NamedTensor {
 
 using TensorMap = std::map<std::string, NamedTensor>;
 
-// A tensor whose bytes are somebody else's, row-major and aligned to nothing.
+// A tensor whose bytes it borrows, row-major and without alignment.
 struct TensorView {
   std::string dtype;
   std::vector<int64_t> shape;
   std::span<const uint8_t> data;
 };
 
-// What functions that read tensors take: a TensorMap converts to it. Like a string_view it does not
-// keep what it refers to.
+// Parameter type of functions that read tensors: a TensorMap converts to it. Like a string_view, it
+// owns nothing.
 class TensorViews {
  public:
   TensorViews() = default;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Maps lie in blocks of channels, nChw16c in oneDNN's words, as its convolutions leave them on CPUs
-// with AVX-512: a pixel of sixteen channels is one vector, whose lanes are the channels.
+// Maps are stored in blocks of channels (nChw16c in oneDNN), the output layout of its convolutions
+// on CPUs with AVX-512: a pixel of sixteen channels is one vector, whose lanes are the channels.
 #include "common/nn/spatial_softmax.h"
 
 #include <bit>
@@ -39,7 +39,7 @@ float Coordinate(int at, int side) { return side == 1 ? 0.f : 2 * float(at) / fl
   return power * std::bit_cast<float>((exponent + 127u) << 23);
 }
 
-// What all maps of a layer share.
+// Values that all maps of a layer share.
 struct Grid {
   int pixels;
   const float *across, *down;  // (pixels)

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where in its map each channel is large, as a point: a softmax over the map's pixels and the mean
-// of their coordinates under it (Levine et al. 2016, arXiv:1504.00702; Finn et al. 2016,
-// arXiv:1509.06113).
+// Spatial softmax: one point per channel, at which its map is large. A softmax over the map's
+// pixels weights the mean of their coordinates (Levine et al. 2016, arXiv:1504.00702; Finn et al.
+// 2016, arXiv:1509.06113).
 //
 //   p[b, c, i, j] = exp(s x[b, c, i, j]) / sum_{u,v} exp(s x[b, c, u, v])     s: the sharpness
 //   y[b, c, 0] = sum_{i,j} p[b, c, i, j] (2 j / (W-1) - 1)                    to the right

@@ -33,7 +33,7 @@ void Barrier::ArriveAndWait() {
   if (arrived_.fetch_add(1, std::memory_order_acq_rel) + 1 == parties_) {
     arrived_.store(0, std::memory_order_relaxed);  // published by the next round's number
     round_.store(round + 1, std::memory_order_release);
-    round_.notify_all();  // no system call where nobody sleeps
+    round_.notify_all();  // no system call if no thread sleeps
     return;
   }
   const SteadyTime start = Now();

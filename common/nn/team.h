@@ -10,8 +10,8 @@
 
 namespace shoal::nn {
 
-// Where all of `parties` threads wait for the last of them. Each reads afterwards what the others
-// wrote before.
+// Barrier: each of `parties` threads waits for the last of them. Afterwards each reads everything
+// that the others wrote before.
 //
 // A waiting thread spins for 200 us, about the time between the ends of equal parts that run at
 // once; then it sleeps and leaves its core to others: on a busy machine the thread that it waits

@@ -33,8 +33,8 @@ class VectorScale {
   std::vector<float> mean_, factor_;  // (V)
 };
 
-// Of a policy's tensors (kObservationMean, kObservationVariance); nothing where it has none. Throws
-// Error naming a missing tensor or a wrong type or shape.
+// The scale among a policy's tensors (kObservationMean, kObservationVariance); empty if there is
+// none. Throws Error naming a missing tensor or a wrong type or shape.
 std::optional<VectorScale> ReadVectorScale(const TensorViews& tensors, int vector_size,
                                            const std::string& source);
 

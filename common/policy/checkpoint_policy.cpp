@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Of a checkpoint that has no policy.json: from the run that it lies in.
+// Description of a checkpoint without policy.json, read from the run around it.
 PolicyDescription DescribeByRun(const fs::path& folder, const CheckpointPolicy& policy) {
   const fs::path checkpoints = fs::weakly_canonical(folder).parent_path();
   for (const fs::path& run : {checkpoints.parent_path(), checkpoints.parent_path().parent_path()}) {

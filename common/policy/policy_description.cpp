@@ -47,7 +47,7 @@ nn::ActorOutput OutputFrom(const std::string& word) {
                      Shortened(word, 40));
 }
 
-// What no task has, so that sizes computed from the spec stay within reason.
+// Limits beyond those of any task, so that sizes computed from the spec stay reasonable.
 constexpr int kMostPixels = 1024, kMostChannels = 256, kMostStack = 256;
 constexpr int kMostNumbers = 1 << 20;
 

@@ -31,7 +31,7 @@ struct PolicyDescription {
   nn::ActorPlan Actor() const { return nn::PlanActor(network, spec, output); }
 };
 
-// Of a run's policy, by this program's version.
+// The description of a run's policy, by this program's version.
 PolicyDescription Describe(const Config& config, const ObservationSpec& spec,
                            nn::ActorOutput output);
 

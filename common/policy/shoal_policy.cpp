@@ -42,7 +42,7 @@ shoal_policy_status Fail(shoal_policy_status status, const char* message) noexce
   return status;
 }
 
-// What `act` does, with every exception as a status; `refused` is that of an Error.
+// Calls `act` and turns every exception into a status; `refused` is the status of an Error.
 template <class Act>
 shoal_policy_status Guard(shoal_policy_status refused, Act act) noexcept {
   try {

@@ -13,8 +13,8 @@
  * colour camera, 1 for each grey one, camera after camera), H, W, A actions. Arrays are row-major
  * and without gaps.
  *
- * Ownership: a policy belongs to whoever loaded it, until shoal_policy_free. Arrays and names that
- * are passed in are borrowed for the call; strings that are returned belong to the policy.
+ * Ownership: the caller that loaded a policy owns it, until shoal_policy_free. Arrays and names
+ * that are passed in are borrowed for the call; strings that are returned belong to the policy.
  * Threads: one thread at a time for each policy; policies are independent of each other.
  * Errors: a function that can fail returns a status other than SHOAL_POLICY_OK, and
  * shoal_policy_error() says in one line what was wrong and what was expected. Nothing is printed,

@@ -41,7 +41,7 @@ class TrainedPolicy {
   // observation; those for batches are built when they are first asked for.
   explicit TrainedPolicy(const CheckpointPolicy& policy,
                          nn::Precision precision = nn::Precision::kF32);
-  // As ReadCheckpointPolicy.
+  // Reads and throws as ReadCheckpointPolicy.
   explicit TrainedPolicy(const std::filesystem::path& checkpoint,
                          nn::Precision precision = nn::Precision::kF32);
 

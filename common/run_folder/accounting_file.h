@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// accounting.json of a run (schema shoal-accounting-1): what became of every record, per actor
-// session. Written by who receives records, replay or learner; read by its successor, which goes on
-// counting, and by the coordinator, which holds it against what the actors made.
+// accounting.json of a run (schema shoal-accounting-1): outcomes of all records, per actor session.
+// Written by the receiver of records, replay or learner. Its successor continues the counts, and
+// the coordinator compares them with the counts of the actors.
 //
 //   {schema, stored_steps, stored_records, ring_replaced, sessions: [{actor, session, highest,
 //    stored, rejected, after_gap, lost, discarded, duplicates}]}
@@ -15,7 +15,7 @@
 
 namespace shoal {
 
-// What became of the records of one (actor, session). Sequences 1..highest were dealt with; each is
+// Outcomes of the records of one (actor, session). Sequences 1..highest were handled; each is
 // counted once:  highest = stored + rejected + after_gap + lost + discarded.
 struct SessionCounters {
   uint32_t actor = 0;
@@ -23,9 +23,9 @@ struct SessionCounters {
   uint64_t highest = 0;
   uint64_t rejected = 0;    // malformed
   uint64_t after_gap = 0;   // its predecessor in the episode is not stored
-  uint64_t lost = 0;        // stored by an earlier receiver whose memory is gone
-  uint64_t discarded = 0;   // of a rollout that no update was made of
-  uint64_t duplicates = 0;  // came again; not part of the sum
+  uint64_t lost = 0;        // stored by an earlier receiver that lost its memory
+  uint64_t discarded = 0;   // of a rollout that no update used
+  uint64_t duplicates = 0;  // received again; not part of the sum
 
   uint64_t stored() const { return highest - rejected - after_gap - lost - discarded; }
   bool operator==(const SessionCounters&) const = default;
@@ -33,8 +33,8 @@ struct SessionCounters {
 
 struct RunAccount {
   uint64_t stored_steps = 0;
-  uint64_t stored_records = 0;  // the receiver's own count of what was ever put in, or learned from
-  // At some time in the run a ring was gone with what it held, and another one begun.
+  uint64_t stored_records = 0;  // the receiver's own count of records ever stored, or learned from
+  // Whether at some time in the run a ring was lost with its records and replaced.
   bool ring_replaced = false;
   std::vector<SessionCounters> sessions{};
 };
@@ -43,7 +43,7 @@ struct RunAccount {
 // session whose `stored` is not what its other counts leave.
 RunAccount ReadAccount(const std::filesystem::path& run);
 
-// The same; zeros where no receiver has come yet. Throws Error (usage).
+// The same; zeros if no receiver has written it yet. Throws Error (usage).
 RunAccount ReadAccountBefore(const std::filesystem::path& run);
 
 // Replaces the file of a run: readers see the old one or the new one. Not synced, so that a busy

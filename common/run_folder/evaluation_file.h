@@ -38,7 +38,7 @@ struct EvaluatedEpisode {
   int64_t length = 0;         // env steps
   double final_distance = 0;  // m; not finite: the task has none
   double action_smoothness = 0;
-  // Of tasks that have causes of failure: the goal and what was achieved at the end, in m.
+  // For tasks that have causes of failure: the goal, and the achieved goal at the end, in m.
   struct Goal {
     std::vector<double> desired, achieved;
     std::string failure{};  // empty = none
@@ -62,10 +62,10 @@ struct EvaluationAggregate {
 // there is none.
 std::string FaultyEpisodesText(const EvaluationAggregate& aggregate);
 
-// What programs read of an evaluation.
+// The part of an evaluation that programs read.
 struct EvaluationSummary {
   std::string task{};
-  // Of a checkpoint's policy alone: the folder's name and whose parameters it has.
+  // For the policy of a checkpoint only: the folder's name, and the version of its parameters.
   struct Version {
     uint64_t session = 0, update = 0;
   };

@@ -26,7 +26,7 @@ inline nlohmann::ordered_json ParseSchemaObject(const std::string& text, const s
 // Borrows the object. "...IfAny": nothing where the member is absent or null.
 class JsonMembers {
  public:
-  // `path`: where the object lies in the file, "" or "aggregate.".
+  // `path`: the object's place in the file, "" or "aggregate.".
   JsonMembers(const nlohmann::ordered_json& object, std::string file, std::string path = "")
       : object_(object), file_(std::move(file)), path_(std::move(path)) {
     if (!object.is_object()) {

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What lies in a run's folder, each name and each schema once: who writes it, who reads it. Further
-// readers are people, and programs of theirs. What a checkpoint consists of is said in
-// common/checkpoint/checkpoint_files.h. The table of docs/monitoring.md ("The files of a run") has
-// the same names; tests/layering compares the two, and sees to it that no other source spells one.
+// Names and schemas of the files in a run's folder, each once, with their writers and readers.
+// Users and their programs may read all of them. common/checkpoint/checkpoint_files.h has the files
+// of a checkpoint. The table of docs/monitoring.md ("The files of a run") has the same names;
+// tests/layering compares the two and refuses any other source that spells one.
 #pragma once
 
 namespace shoal {
@@ -12,8 +12,8 @@ namespace shoal {
 inline constexpr char kConfigFile[] = "config.json";
 inline constexpr char kConfigSchema[] = "shoal-config-1";
 
-// Where the processes of a run meet. Written by the coordinator before it starts them; they read
-// it, and so do `shoal top`, `attach`, `set`, ...
+// Address at which the processes of a run find each other. The coordinator writes it before it
+// starts them; they read it, and so do `shoal top`, `attach`, `set`, ...
 inline constexpr char kClusterFile[] = "cluster.json";
 inline constexpr char kClusterSchema[] = "shoal-cluster-1";
 
@@ -21,11 +21,11 @@ inline constexpr char kClusterSchema[] = "shoal-cluster-1";
 inline constexpr char kHostsFile[] = "hosts.json";
 inline constexpr char kHostsSchema[] = "shoal-hosts-1";
 
-// What the networks started from. Written by the coordinator, read by the learner.
+// Initial parameters of the networks. Written by the coordinator, read by the learner.
 inline constexpr char kInitialWeightsFile[] = "initial.safetensors";
 
-// What ran where, how far it came and how it ended. Written by the coordinator as the run goes on,
-// read by `shoal runs`, experiments, reports.
+// Machine, builds, progress and end of the run. Written by the coordinator as the run goes on, read
+// by `shoal runs`, experiments, reports.
 inline constexpr char kMetaFile[] = "meta.json";
 inline constexpr char kMetaSchema[] = "shoal-run-1";
 
@@ -37,8 +37,8 @@ inline constexpr char kMetricsFile[] = "metrics.jsonl";
 inline constexpr char kBottleneckFile[] = "bottleneck.json";
 inline constexpr char kBottleneckSchema[] = "shoal-bottleneck-1";
 
-// What became of every record. Written by who receives them, replay or learner; read by its
-// successor and by the coordinator.
+// Outcomes of all records. Written by their receiver, replay or learner; read by its successor and
+// by the coordinator.
 inline constexpr char kAccountingFile[] = "accounting.json";
 inline constexpr char kAccountingSchema[] = "shoal-accounting-1";
 
@@ -67,16 +67,16 @@ inline constexpr char kFinalEvaluationFile[] = "final.json";
 inline constexpr char kEvaluationPrefix[] = "steps_";
 inline constexpr char kTransferPrefix[] = "on-";
 
-// What each actor has made, and where its episodes stood: counters, locks, states of rollouts; who
-// of a host receives the weights. Written by the actors, read by their successors, their neighbours
-// and the coordinator.
+// State of each actor: counters of the records it made, locks, states of rollouts, and the process
+// of a host that receives the weights. Written by the actors, read by their successors, their
+// neighbours and the coordinator.
 inline constexpr char kMadeFolder[] = "made";
 inline constexpr char kRolloutSchema[] = "shoal-rollout-3";
 
 // The number of each process's newest session. Written and read when a process starts.
 inline constexpr char kSessionFolder[] = "sessions";
 
-// What the processes said, a file each; an experiment's folder has one for its runs.
+// Logs, one file per process; an experiment's folder has one for its runs.
 inline constexpr char kLogFolder[] = "logs";
 
 // Event files for TensorBoard. Written by the coordinator.

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many updates a run's learners have done and how many of these were lost, in a mapped file
-// that survives SIGKILL of the learner (not power loss): what a page says was done and no
-// checkpoint has was lost with the process, its last update included.
+// Counts of the updates that a run's learners have done and lost, in a mapped file that survives
+// SIGKILL of the learner (not power loss). Updates that the page counts and no checkpoint has were
+// lost with the process, including its last one.
 //
-// File RUN/learner.page: UpdatePageContent. It tells of learners that have a successor; the updates
-// of one that died last are counted when the run goes on.
+// File RUN/learner.page: UpdatePageContent. The count of lost updates covers learners that have a
+// successor; those of the last learner are added when the run is resumed.
 #pragma once
 
 #include <cstdint>
@@ -22,9 +22,9 @@ static_assert(sizeof(UpdatePageContent) == 24);
 // Owns the mapping. One thread, one learner per run.
 class UpdatePage {
  public:
-  // Makes the run's page, or goes on with it: what its last learner did beyond `restored` updates,
-  // those of the checkpoint that this one starts from, is lost. Throws Error when the folder cannot
-  // be written or the file is no such page.
+  // Makes the run's page, or continues it: the updates of its last learner beyond `restored`, the
+  // updates of the checkpoint that this learner starts from, are lost. Throws Error if the folder
+  // cannot be written or the file is no such page.
   UpdatePage(const std::filesystem::path& run, uint64_t restored);
   ~UpdatePage();
   UpdatePage(const UpdatePage&) = delete;
@@ -41,7 +41,7 @@ class UpdatePage {
 // In place of a damaged page: what else is known.
 void RebuildUpdatePage(const std::filesystem::path& run, uint64_t done, uint64_t lost);
 
-// Updates lost in a run so far; 0 where no learner has come yet. Throws Error when the file is no
+// Updates lost in a run so far; 0 before the first learner. Throws Error when the file is no
 // such page.
 uint64_t ReadLostUpdates(const std::filesystem::path& run);
 

@@ -14,7 +14,7 @@ using nlohmann::json;
 
 namespace {
 
-// Where `name` lies among the blocks that count.
+// The range of `name` among the blocks that count.
 std::optional<ObservationSpec::Range> Find(const std::vector<BlockSpec>& blocks,
                                            std::string_view name, bool observed_only) {
   int first = 0;

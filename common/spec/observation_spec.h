@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an actor publishes and a policy sees: computed once by `shoal-actor --describe`, stored in
-// config.json, compared by hash by every process and carried by every message.
+// The observations that an actor publishes and that a policy sees. `shoal-actor --describe`
+// computes the spec once; config.json stores it. Every message carries its hash, and every process
+// compares.
 //
 // A record holds every block of the task; the policy's vector consists of those that are observed,
-// in the same order. The others are there for what is not acting: goals of hindsight, a critic or a
-// loss that sees more.
+// in the same order. The other blocks serve learning only: goals of hindsight, privileged inputs of
+// a critic or a loss.
 #pragma once
 
 #include <cstdint>
@@ -59,12 +60,12 @@ struct ObservationSpec {
     int first = 0, size = 0;
     bool operator==(const Range&) const = default;
   };
-  // Where a block lies in a record's vector; nothing for a block that there is not.
+  // The range of a block in a record's vector; empty for an unknown block.
   std::optional<Range> Recorded(std::string_view block) const;
-  // Where it lies in the policy's; nothing, too, for one that is not observed.
+  // The range of a block in the policy's vector; empty also for a block that is not observed.
   std::optional<Range> Observed(std::string_view block) const;
 
-  // Of the canonical JSON: equal specs and only they are compatible.
+  // Hash of the canonical JSON. Specs are compatible if and only if they are equal.
   uint64_t Hash() const;
   // "FetchReachDense 2x84x84 RGB [front,side] stack 1, vector 0, action 4, model 1a2b" for
   // messages.

@@ -1,17 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// A record: what an actor publishes about one environment at one instant. The same bytes travel in
-// chunks over DDS and lie in the replay's ring.
+// A record: the data that an actor publishes about one environment at one instant. Chunks carry the
+// same bytes over DDS, and the replay's ring stores them.
 //
 //   RecordHeader (80 bytes) | action (A) f32 | drawn action (A or 0) f32 | vector (R) f32
 //   | frame (C, H, W) u8 | pad to 8
 //
 // A *reset* record holds the first observation of an episode (action and reward are zero). A *step*
-// record holds the action taken, what it earned, and the observation it led to. Where the policy
-// sees a goal picture, a *goal* record comes before each reset: its frame is that picture, all else
-// is the reset's. The vector has
-// every block of the spec, observed or not. The action as drawn is there if the spec says so. All
-// little-endian.
-// docs/wire_format.md describes the layout byte by byte.
+// record holds the action taken, its reward, and the observation after it. If the policy sees a
+// goal picture, a *goal* record precedes each reset: its frame is that picture, all else is the
+// reset's. The vector has every block of the spec, observed or not. The drawn action is present if
+// the spec says so. All little-endian. docs/wire_format.md describes the layout byte by byte.
 #pragma once
 
 #include <cstdint>
@@ -74,7 +72,7 @@ class RecordLayout {
   std::span<const float> Action(const uint8_t* record) const {
     return {reinterpret_cast<const float*>(record + sizeof(RecordHeader)), size_t(action_size_)};
   }
-  // As drawn, before it was clipped; empty where the spec has no drawn actions.
+  // The drawn action, before it was clipped; empty if the spec has no drawn actions.
   std::span<float> DrawnAction(uint8_t* record) const {
     return {reinterpret_cast<float*>(record + drawn_offset_), size_t(drawn_size_)};
   }
@@ -99,7 +97,7 @@ class RecordLayout {
   int drawn_offset_, vector_offset_, frame_offset_, record_bytes_;
 };
 
-// What is wrong with a record from outside, or nullptr: version, kind, index/kind agreement,
+// The fault of a record from outside, or nullptr: version, kind, index/kind agreement,
 // unknown flags, non-finite reward or log-probability, action outside [-1, 1], non-finite drawn
 // action or vector.
 const char* RecordFault(const RecordLayout& layout, const uint8_t* record);

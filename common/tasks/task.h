@@ -91,7 +91,7 @@ class Task {
   double distance_threshold() const { return description_.distance_threshold; }
   const std::string& physics_reward() const { return description_.physics_reward; }
 
-  // What follows is for tasks with goals (else CHECK).
+  // The functions below are for tasks with goals (else CHECK).
   //
   // Goals are the float32 numbers that records carry, so that a reward computed for a record, now
   // or when sampling, is the same number to the last bit. Sums run in double.

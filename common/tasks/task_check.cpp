@@ -22,7 +22,7 @@ bool IsIdentifier(std::string_view name) {
          std::ranges::all_of(name, [](char c) { return IsLetter(c) || IsDigit(c); });
 }
 
-// As the configuration's `task` takes it: run folders are named after it.
+// Whether the configuration's `task` takes the name: run folders are named after it.
 bool IsTaskName(std::string_view name) {
   return !name.empty() && name.size() <= kLongestName && (IsLetter(name[0]) || IsDigit(name[0])) &&
          std::ranges::all_of(

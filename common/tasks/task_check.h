@@ -18,8 +18,7 @@ inline constexpr int kMostActions = 1'024;   // components of an action
 // learner.aux: letters, digits and underscores, not beginning with a digit, at most 64.
 void CheckDescription(const Task::Description& description);
 
-// What a task must have besides before it can be trained: an action and a physics half. Errors as
-// above.
+// Checks that a task can be trained: it has an action and a physics half. Errors as above.
 void CheckPlayable(const Task& task);
 
 }  // namespace shoal::tasks

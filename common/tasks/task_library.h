@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tasks that are not part of Shoal come as shared objects: see docs/own_task.md.
+// Loads tasks that are not part of Shoal from shared objects: see docs/own_task.md.
 //
 //   NAME.so          goal halves; every program of a run loads it, so the replay can compute
 //   rewards

@@ -34,7 +34,7 @@ proto::Event EventOfNow(int64_t step = 0) {
   return event;
 }
 
-// Of a plugin's value, which has no scalar.
+// Adds the value of a plugin, which has no scalar.
 proto::Summary::Value* AddPluginValue(proto::Event* event, const std::string& tag,
                                       const std::string& plugin, const std::string& content) {
   proto::Summary::Value* value = event->mutable_summary()->add_value();

@@ -5,7 +5,7 @@
 // messages. TensorBoard follows the newest file of a folder only, so one process at a time writes
 // there.
 //
-// What is written is kept in memory until Flush. A file always ends at a record's end, unless the
+// Records are kept in memory until Flush. A file always ends at a record's end, unless the
 // process dies within a write or the disk is full; readers ignore such a tail. Threads: one at a
 // time. Errors: Error naming the file when it cannot be made or flushed.
 #pragma once

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a batch consists of: named arrays, each with a type and a shape, one after another, each
-// starting at a multiple of 64 bytes. Learner and replay make the schema from the same observation
-// spec and options; its hash travels with every request, so that neither reads what the other did
-// not write.
+// Layout of a batch: named arrays, each with a type and a shape, one after another, each starting
+// at a multiple of 64 bytes. Learner and replay make the schema from the same observation spec and
+// options. Every request carries its hash, so that neither misreads the other's batches.
 //
 //   obs_frames       (B, K*C, H, W) u8   shifted (DrQ), frames of a stack oldest first
 //   next_obs_frames  (B, K*C, H, W) u8   shifted with offsets of their own
@@ -17,10 +16,10 @@
 //   weights_update   (B) u64             of the policy that chose the action; for policy lag
 //   id               (B) u64             of the record the sample begins with
 //
-// Of a rollout (on policy), whose rows are one environment's steps in order, then the next one's;
-// nothing is shifted, and next_obs_* are filled in only where `continues` is 0:
+// Arrays of a rollout (on policy). Its rows are one environment's steps in order, then the next
+// one's. Nothing is shifted, and next_obs_* are filled in only where `continues` is 0:
 //
-//   drawn_action     (B, A) f32          as drawn, before it was clipped to the action
+//   drawn_action     (B, A) f32          before it was clipped to the action
 //   log_prob         (B) f32             of the drawn action under the policy that chose it
 //   ends             (B) f32             1: the step was its episode's last, else 0
 //   continues        (B) f32             1: the next row's observation is this one's next, else 0
@@ -53,7 +52,7 @@ struct BatchArray {
   bool operator==(const BatchArray&) const = default;
 };
 
-// What decides, beside the spec, which arrays there are and what their numbers mean.
+// Options that decide, beside the spec, which arrays a batch has and what their numbers mean.
 struct BatchOptions {
   int batch = 1;          // B
   int copies = 1;         // elements in a row of one transition
@@ -76,7 +75,7 @@ class BatchSchema {
   const BatchOptions& options() const { return options_; }
   std::span<const BatchArray> arrays() const { return arrays_; }
   bool Has(std::string_view name) const { return Find(name) < arrays_.size(); }
-  // Of all arrays together, with the padding between them; a multiple of 64.
+  // Size of all arrays together, with the padding between them; a multiple of 64.
   uint64_t total_bytes() const { return total_bytes_; }
 
   // Equal for equal arrays and options, and for them only.
@@ -110,7 +109,7 @@ struct BatchView {
   std::span<float> obs_privileged, next_obs_privileged;
   std::span<uint64_t> weights_update, id;
   std::span<float> drawn_action, log_prob, ends, continues;  // of a rollout
-  uint64_t stored_steps = 0;  // the run's env steps when it was drawn; what schedules go by
+  uint64_t stored_steps = 0;  // the run's env steps when it was drawn; the time of schedules
 
   size_t rows() const { return reward.size(); }
 

@@ -37,7 +37,7 @@ uint64_t SlotOffset(uint64_t batch_bytes, uint32_t slots, uint32_t slot) {
   return Pages(kWordsAt + uint64_t{8} * slots) + slot * Pages(batch_bytes);
 }
 
-// Both sides go through it as an atomic: whoever reads a request there sees the batch whole.
+// Both sides access it as an atomic: a reader that finds a request there sees the whole batch.
 std::atomic_ref<uint64_t> RequestWord(const SharedMemory& memory, uint32_t slot) {
   static_assert(std::atomic_ref<uint64_t>::is_always_lock_free);
   return std::atomic_ref<uint64_t>(reinterpret_cast<uint64_t*>(memory.data() + kWordsAt)[slot]);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whole batches in shared memory (common/base/shared_memory.h): the replay writes them into slots,
-// the learner reads them where they lie. Which slot is full, and which is free again, is said in
-// messages (BatchSlot, SampleRequest::released).
+// the learner reads them in place. Messages report full slots (BatchSlot) and free ones
+// (SampleRequest::released).
 //
 //   offset  bytes
 //   0       8       magic "SHOALSL1"
@@ -9,13 +9,12 @@
 //   24      8       learner session that the slots are for
 //   32      8       bytes of a slot
 //   40      4       slots, n
-//   64      8 n     per slot: the request whose batch lies there whole; 0 = none
+//   64      8 n     per slot: the request whose whole batch it has; 0 = none
 //   then    slots, each at a multiple of 4096
 //
-// Slots belong to one learner session, which releases what it was given in the order of its
-// requests; another session gets other memory. So a slot is written again only after its reader
-// has said that it reads it no more, and what is left to a reader that is gone goes with the
-// memory.
+// Slots belong to one learner session, which releases them in the order of its requests; another
+// session gets other memory. So a slot is written again only after its reader has released it.
+// Slots of a reader that has ended are freed with the memory.
 //
 // Errors: what a process cannot know beforehand throws Error; both sides fall back to BatchPart.
 // Threads: one at a time per object.
@@ -41,13 +40,13 @@ class SlotWriter {
   // Memory of a free slot, batch_bytes aligned to 4096; nullptr while all hold batches. It stays
   // free until Fill().
   uint8_t* FreeSlot();
-  // The batch of `request`, not held yet, lies whole in the slot that FreeSlot() returned last;
-  // returns what to tell the learner.
+  // Marks the slot that FreeSlot() returned last as full with the batch of `request`, which must
+  // not be held yet. Returns the message for the learner.
   BatchSlot Fill(uint64_t request, uint64_t stored_records, uint64_t stored_steps,
                  uint64_t unsampleable_steps = 0);
-  // What was told when the slot of `request` was filled, if it is held.
+  // The message that announced the slot of `request`, if the slot is held.
   std::optional<BatchSlot> Held(uint64_t request) const;
-  // Requests up to `released` are done with: their slots are free.
+  // Frees the slots of requests up to `released`.
   void Release(uint64_t released);
   // Slots that hold a batch.
   uint32_t held() const;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the coordinator last asked for, and whether it is still there. Written by a DDS receive
-// thread, read by the process's loop.
+// The coordinator's last request, and whether the coordinator still runs. Written by a receive
+// thread of the link, read by the process's loop.
 #pragma once
 
 #include <chrono>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The messages processes exchange, as plain structs. common/dds carries them; nothing here knows
-// DDS. docs/wire_format.md gives topics, QoS and byte layout.
+// Messages between processes, as plain structs. common/link carries them; this file knows no
+// transport. docs/wire_format.md gives topics, QoS and byte layout.
 //
 // Bulk messages borrow their payload: on reception it is valid only during the callback.
 #pragma once
@@ -28,7 +28,7 @@ inline constexpr uint64_t kBulkPartBytes = 960 * 1024;
 
 // actor -> the receiver of its records: the replay, or the learner of a run on policy. `count`
 // records of equal size, sequences first_sequence .. first_sequence+count-1. Without records it
-// says that the actor keeps nothing before first_sequence any more.
+// reports that the actor retains no record before first_sequence.
 struct TransitionChunk {
   uint64_t spec_hash = 0;
   uint32_t actor = 0;
@@ -38,18 +38,19 @@ struct TransitionChunk {
   std::span<const uint8_t> payload;
 };
 
-// The receiver's word to one actor session: flow control and acknowledgement in one.
+// Credit of the receiver for one actor session: flow control and acknowledgement in one.
 struct Credit {
   uint64_t replay_session = 0;  // of the receiver: when it changes, resend what is not stored
   uint32_t actor = 0;
   uint64_t session = 0;
-  uint64_t stored = 0;         // highest sequence up to which every record was dealt with
+  uint64_t stored = 0;         // highest sequence up to which every record was handled
   uint64_t allowed = 0;        // highest sequence that may be sent
   uint64_t spec_hash = 0;      // the receiver's: an actor with another one stops, naming both
   uint64_t superseded_by = 0;  // the actor's newer session, where there is one: this one ends
 };
 
-// receiver -> all actors: what has changed, in one message, since each message goes to every actor.
+// receiver -> all actors: the credits that have changed. One message, as every actor receives each
+// message.
 struct CreditsMessage {
   std::vector<Credit> credits;
 };
@@ -64,9 +65,9 @@ struct SampleRequest {
   // Served only when this many step records are stored (lockstep); 0 = at once.
   uint64_t after_steps = 0;
   uint64_t schema_hash = 0;  // of the batch: common/wire/batch_schema.h
-  // Batches of this session's requests up to here are not read any more; < request.
+  // The learner has released the batches of its requests up to this one; < request.
   uint64_t released = 0;
-  // The answer may come as a BatchSlot; else it comes as parts.
+  // Whether the answer may be a BatchSlot; else it consists of parts.
   bool takes_slots = false;
   uint64_t refused_token = 0;  // SlotAddress::token[0] of slots that cannot be opened; 0 = none
 };
@@ -80,14 +81,14 @@ struct BatchPart {
   uint64_t offset = 0, total_bytes = 0;
   uint64_t stored_records = 0;  // in the replay when the batch was drawn, over the whole run
   uint64_t stored_steps = 0;    // of these the step records: the run's env steps
-  // Of the steps that this replay has stored since its start those that no sample can begin with:
-  // the n - 1 before a time limit, and what waits for a later record.
+  // Steps stored since this replay's start that no sample can begin with: the n - 1 before a time
+  // limit, and steps that wait for a later record.
   uint64_t unsampleable_steps = 0;
   std::span<const uint8_t> payload;
 };
 
-// Where slots of batches lie: shared memory of a process on the same host, which a token in its
-// first bytes tells from anything else (common/wire/batch_slots.h).
+// Address of slots of batches: shared memory of a process on the same host. A token in its first
+// bytes identifies it (common/wire/batch_slots.h).
 struct SlotAddress {
   int32_t pid = 0;
   int32_t descriptor = 0;      // of that process
@@ -96,8 +97,8 @@ struct SlotAddress {
   bool operator==(const SlotAddress&) const = default;
 };
 
-// replay -> learner, in place of its parts: the whole batch lies in a slot, and stays there
-// unchanged until a request says that it was released.
+// replay -> learner, in place of the batch's parts: the whole batch is in a slot and stays there
+// unchanged until a request releases it.
 struct BatchSlot {
   uint64_t spec_hash = 0;
   uint64_t learner_session = 0;
@@ -146,14 +147,15 @@ struct MetricsMessage {
   std::vector<double> values;
 };
 
-// The same by who sends them: a topic each, so that in a secured run no other role can.
+// The same by sender: each role has a topic of its own, so that in a secured run no other role can
+// send for it.
 struct ActorMetrics : MetricsMessage {};
 struct EvalMetrics : MetricsMessage {};
 struct ReplayMetrics : MetricsMessage {};
 struct LearnerMetrics : MetricsMessage {};
 
-// What decides about a run, as opposed to what is shown of it. The newest one of the newest session
-// holds.
+// Figures that decide about a run, as opposed to figures that are only shown. The newest message of
+// the newest session is valid.
 //
 // replay -> coordinator, when something was stored.
 struct ReplayProgress {
@@ -175,22 +177,22 @@ struct LearnerProgress {
 
   uint64_t session = 0;
   uint64_t updates = 0, env_steps = 0;
-  bool drained = false;                          // it has done what the stored steps allow
+  bool drained = false;  // it has done all updates that the stored steps allow
   std::vector<EvaluationRequest> evaluations{};  // of this session, the last ones, oldest first
 };
 
-// coordinator -> all. The newest one holds; `epoch` grows.
+// coordinator -> all. The newest one is valid; `epoch` grows.
 enum class RunState : uint32_t {
   kRunning = 1,
-  kDraining = 2,  // actors stop stepping, flush what they have and wait until it is stored, exit
-  kStopping = 3,  // everybody finishes what it is at, writes what it must, exits
+  kDraining = 2,  // actors stop stepping, send their records, wait until these are stored, exit
+  kStopping = 3,  // each process finishes its work, writes its files, exits
 };
 struct ControlMessage {
   uint64_t epoch = 0;
   RunState state = RunState::kRunning;
   double time = 0;  // heartbeat: published at least once a second
-  // Configuration keys changed while the run goes on, with their present values; the others are
-  // those of config.json. Equally long.
+  // Configuration keys changed during the run, with their present values; the other keys have the
+  // values of config.json. Equally long.
   std::vector<std::string> setting_names{};
   std::vector<double> setting_values{};
 };
@@ -210,7 +212,7 @@ struct RunEvent {
   std::string text;
 };
 
-// coordinator -> whoever watches, 1 Hz: the whole run at once.
+// coordinator -> `shoal top` and other watchers, 1 Hz: the whole run at once.
 struct RunViewMessage {
   std::string schema = "shoal-top-1";
   std::string run{};    // name
@@ -222,7 +224,7 @@ struct RunViewMessage {
   std::string trouble{};  // which actors do not work and why, as a line; empty when all do
 };
 
-// A client -> coordinator: an order. Sent again unchanged until its reply comes; carried out once.
+// client -> coordinator: an order. Resent unchanged until its reply arrives; carried out once.
 struct CommandMessage {
   uint64_t client = 0;   // names the sender
   uint64_t request = 0;  // from 1, per client
@@ -234,8 +236,8 @@ struct CommandMessage {
 struct ReplyMessage {
   uint64_t client = 0, request = 0;
   bool accepted = false;
-  std::string text{};  // one line: what was done, or why not
-  // Where a configuration key was changed: which, and its former and new value.
+  std::string text{};  // one line: the result, or the reason of a refusal
+  // The configuration key that was changed, if any, with its old and new value.
   std::string key{};
   double from = 0, to = 0;
 };

@@ -135,7 +135,7 @@ constexpr Metric kMetrics[] = {
     {"replay", "queue_age_seconds", kGauge, "s", "longest wait of a chunk in the last interval"},
     {"replay", "requests_waiting", kGauge, "batches", "asked for and not answered"},
     {"replay", "slot_batches", kCounter, "batches", "drawn into shared memory, not sent"},
-    {"replay", "slots_held", kGauge, "batches", "that lie in shared memory for the learner"},
+    {"replay", "slots_held", kGauge, "batches", "kept in shared memory for the learner"},
     {"replay", "redraws", kCounter, "", "steps drawn that could not be used"},
     {"replay", "duplicates", kCounter, "records", "that came again"},
     {"replay", "rejected", kCounter, "records", "malformed"},

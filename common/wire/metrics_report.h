@@ -39,7 +39,7 @@ class MetricsReport {
   void AddShare(const std::string& name, double part, double whole);
   // Time spent in a stage, of seconds since the start: seconds_STAGE and share_STAGE, the share of
   // the interval that ended. Seconds are counted when a stage ends: one that began before the
-  // interval, as a send that found nobody to take it, has all of it, and not more.
+  // interval, as a send without a receiver, has all of it, and not more.
   void AddSeconds(const std::string& stage, double total);
   // How long the process reports and what it takes of its host: uptime_seconds, rss_mb, open_files,
   // cpu_seconds, cpu_share.

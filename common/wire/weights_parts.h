@@ -36,7 +36,7 @@ class WeightsAssembler {
   };
   Verdict Add(const WeightsPart& part);
 
-  // Of the complete version; once.
+  // Moves the bytes of the complete version out; once.
   std::string Take() { return std::move(bytes_); }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// One line of `shoal check`: what was looked at, what was found, what to do about it.
+// One line of `shoal check`: subject, finding, advice.
 #pragma once
 
 #include <functional>

@@ -27,7 +27,7 @@ constexpr size_t kChunkBytes = 1'000'000;
 constexpr uint64_t kWindow = 4;  // chunks
 constexpr seconds kMeetingDeadline{15}, kAcknowledgementDeadline{5};
 constexpr milliseconds kPoll{20}, kGreeting{100};
-constexpr seconds kPeerLife{60};  // if nobody ends it
+constexpr seconds kPeerLife{60};  // if it is not stopped before
 
 // The highest number that was heard, handed from a receive thread to one that waits.
 class HighestHeard {
@@ -40,8 +40,8 @@ class HighestHeard {
     }
     changed_.NotifyAll();
   }
-  // What is known at the deadline, or once it is at least `wanted`; nothing while nothing was
-  // heard.
+  // Returns the number reported last, at the deadline or once it is at least `wanted`; empty if
+  // nothing was received.
   std::optional<uint64_t> WaitFor(uint64_t wanted, SteadyTime deadline) {
     const MutexLock lock(mutex_);
     while (!(heard_ && *heard_ >= wanted)) {

@@ -27,7 +27,8 @@ struct LoopbackRate {
 // other or a chunk is not acknowledged in time.
 LoopbackRate MeasureLoopback(const TransportConfig& transport, std::chrono::milliseconds duration);
 
-// The other side: acknowledges chunks until it is told to stop. `folder` holds cluster.json.
+// The other side: acknowledges chunks until it receives a stop request. `folder` holds
+// cluster.json.
 int RunLoopbackPeer(const std::filesystem::path& folder, const TransportConfig& transport);
 
 // `needed`: MB/s of records that actors of the default preset send.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the machine offers: arithmetic, cores, room on disk and in memory.
+// Lines of `shoal check` about the machine: arithmetic, cores, space on disk and in memory.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,7 @@ CheckLine JudgeCpu(const std::string& isa, const std::string& precision);
 
 CheckLine JudgeCores(const CoreLimits& limits);
 
-// What a run of the default preset needs.
+// Space that a run of the default preset needs.
 struct Needs {
   uint64_t ring_bytes = 0;     // of the replay, a file in the run folder
   double loopback_rate = 0;    // bytes/s of records, over loopback to the replay

@@ -36,7 +36,7 @@ struct Replay {
 // Its processes may have outlived its coordinator.
 bool IsAlive(const fs::path& run) { return IsHeld(run) || AnyMember(run); }
 
-// Of a run that was named; empty where there is none.
+// The replay of a run that was named; empty if it has none.
 std::optional<Replay> ReplayOf(const fs::path& run) {
   const uint64_t bytes = SizeOfRun(run).replay;
   if (bytes == 0) return std::nullopt;
@@ -93,7 +93,7 @@ bool Agreed(size_t files, uint64_t bytes) {
   return answer == "y" || answer == "Y" || answer == "yes";
 }
 
-// Holds the run meanwhile, so that nobody resumes it. False where somebody has.
+// Holds the run meanwhile, so that it cannot be resumed. False if it runs.
 bool Remove(const Replay& replay) {
   const auto lock = FileLock::Take(replay.run / kRunLockFile);
   if (!lock || AnyMember(replay.run)) return false;

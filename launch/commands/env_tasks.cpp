@@ -101,8 +101,8 @@ void AddDescribe(CLI::App& env, Action* chosen) {
   CLI::App* command = env.add_subcommand(
       "describe",
       "A task's observations (shape, unit, meaning, bounds, measured range), what each action axis "
-      "does when moved alone, its reward and cameras. Of a run: what its policy gets, and what "
-      "training alone is told.");
+      "does when moved alone, its reward and cameras. Of a run: inputs of its policy, and "
+      "privileged inputs of training.");
   const auto request = std::make_shared<worlds::DescribeRequest>();
   const auto inputs = std::make_shared<InputsRequest>();
   const auto json = std::make_shared<std::string>();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What tasks are and earn: env list, env describe, env random, env reward-check.
+// Commands about tasks: env list, env describe, env random, env reward-check.
 #pragma once
 
 #include "launch/commands/commands.h"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where --json FILE puts its JSON: into the file, or with "-" on standard output, whose text for
-// people then goes to standard error.
+// Destination of --json FILE: the file, or standard output for "-". With "-" the
+// command prints its text on standard error.
 #pragma once
 
 #include <cstdio>
@@ -16,7 +16,7 @@ class JsonOutput {
   // `file` is empty where no JSON is asked for. Throws Error when it could not be written.
   explicit JsonOutput(std::string file, Readers readers = Readers::kUser);
 
-  // Where text for people goes.
+  // Stream for the command's text.
   std::FILE* text() const { return OnStdout() ? stderr : stdout; }
   // Writes the file now, which Write replaces later; nothing on standard output.
   void WriteEarly(const std::string& json) const;

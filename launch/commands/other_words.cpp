@@ -51,7 +51,7 @@ bool Contains(const std::vector<std::string>& names, const std::string& name) {
   return std::ranges::count(names, name) > 0;
 }
 
-// Of an option of `train` that no single key has the meaning of.
+// Hint for an option of `train` that corresponds to no single key.
 std::string HintForKey(const std::string& option) {
   const MeantKey meant = FindMeantKey(option.substr(option.find_first_not_of('-')));
   if (meant.key.empty()) return meant.note.empty() ? "" : "; " + meant.note;
@@ -59,7 +59,7 @@ std::string HintForKey(const std::string& option) {
                      meant.note.empty() ? "" : ", ", meant.note);
 }
 
-// Of a word to `train`, which takes options alone.
+// Hint for a word to `train`, which takes options only.
 std::string HintForTrainWord(const std::string& word) {
   if (Contains(ListPresets(), word)) return "; it is a preset: --preset " + word;
   if (Contains(tasks::TaskNames(), word)) return "; it is a task: --task " + word;

@@ -81,7 +81,7 @@ std::string InForce(const RunViewMessage& message, const LiveKey& live, double v
   return text;
 }
 
-// After Ctrl-C: the order was accepted and is carried out whoever waits.
+// After Ctrl-C: the order was accepted, and the run carries it out without this command.
 int NotWaitedFor() {
   fmt::print("accepted; not waited for\n");
   return 0;
@@ -90,8 +90,8 @@ int NotWaitedFor() {
 // A run that has begun to end carries out nothing that takes time.
 bool IsEnding(const RunViewMessage& view) { return view.state != "running"; }
 
-// What is typed behind `set` and `scale` in any order: the run, where it is not the only one, and
-// what is to be done.
+// The words after `set` and `scale`, in any order: the run, unless it is the only one, and the
+// change.
 struct SteerWords {
   TargetOptions target;
   std::vector<std::string> words;
@@ -263,7 +263,7 @@ int Stop(const TargetOptions& target) {
     return view.state == "ended";
   });
   if (!ended && StopRequested()) return NotWaitedFor();
-  if (!ended) throw RuntimeError("the run was told to stop, its end was not seen");
+  if (!ended) throw RuntimeError("the run accepted the stop, but has not ended in time");
   // So that who comes next finds the run free.
   const SteadyTime deadline = Now() + kLeaves;
   while (!run.folder.empty() && IsHeld(run.folder) && Now() < deadline) {

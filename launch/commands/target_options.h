@@ -22,7 +22,7 @@ CLI::Option* AddRunOption(CLI::App& command, std::string* run, std::string* run_
 
 // A running run: AddRunOption, --peer and --secure.
 void AddTargetOptions(CLI::App& command, TargetOptions* options);
-// Of a command whose arguments are more than the run: --run alone names it.
+// For a command that has further arguments besides the run: only --run names the run.
 void AddNamedTargetOptions(CLI::App& command, TargetOptions* options);
 
 // A checkpoint: a run or a folder as the argument, --checkpoint and --run-dir. The command's

@@ -38,7 +38,7 @@ void Print(const std::vector<std::string>& lines) {
   std::fflush(stdout);
 }
 
-// What is watched and how.
+// The runs that are shown, and how.
 struct Watched {
   RunViewMessage view;
   TopOrder order{};
@@ -46,7 +46,7 @@ struct Watched {
   bool help = false;  // the keys in place of the table
 };
 
-// What a key does; false: quit.
+// Handles a key; false: quit.
 bool OnKey(char key, Watched* watched) {
   TopOrder& order = watched->order;
   watched->help = !watched->help && (key == 'h' || key == '?');
@@ -58,7 +58,7 @@ bool OnKey(char key, Watched* watched) {
 }
 
 std::vector<std::string> HelpScreen() {
-  std::vector<std::string> lines{"s, S  sort by the next, by the former column: the one with a *",
+  std::vector<std::string> lines{"s, S  sort by the next, previous column: the one with a *",
                                  "r     reverse the order", "q     quit; any other key: back", ""};
   for (std::string& line : DescribeTopColumns()) lines.push_back(std::move(line));
   return lines;

@@ -43,8 +43,8 @@ set(CPACK_COMPONENT_LIBSHOAL-DEV_DESCRIPTION
 Headers and a CMake package for shared objects that Shoal's programs load as
 tasks. They fit the very version of Shoal that they are built with.")
 
-# What Debian expects of every package: whose it is, what changed here and in its packaging. The same
-# bytes from the same commit: gzip's -n leaves the time out.
+# Files that Debian expects in every package: copyright, changelogs of the program and of its packaging.
+# Equal commits give equal bytes: gzip's -n leaves the time out.
 find_program(GZIP gzip REQUIRED)
 execute_process(COMMAND git log -1 --format=%cD WORKING_DIRECTORY ${PROJECT_SOURCE_DIR}
   OUTPUT_VARIABLE commit_time OUTPUT_STRIP_TRAILING_WHITESPACE ERROR_QUIET RESULT_VARIABLE failed)

@@ -27,8 +27,8 @@ constexpr std::chrono::seconds kStartDeadline{60}, kEpisodeDeadline{60};
 // A thousand larger pictures of the reference quality, drawn without a GPU and encoded.
 constexpr std::chrono::seconds kShownEpisodeDeadline{600};
 
-// What a program says of its progress in a file for nothing else: its standard output is also that
-// of a task of the user's.
+// Follows the progress that a program writes into a file of its own: a user's task may print to the
+// program's standard output.
 class ProgressWatch {
  public:
   // `tell` may be empty.

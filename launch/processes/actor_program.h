@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What launch asks of the actor program outside a run's processes.
+// Calls of the actor program outside a run's processes.
 #pragma once
 
 #include <filesystem>
@@ -22,7 +22,7 @@ struct ObservedWorld {
 // its exit code.
 ObservedWorld DescribeObservations(const Config& config);
 
-// Where an evaluation shows its episodes (common/image/frame_stream.h).
+// Destination of an evaluation's frames (common/image/frame_stream.h).
 struct ShownFrames {
   std::filesystem::path stream = {};  // file or pipe; empty = nowhere
   int side = 0;                       // height and width of the larger view, pixels
@@ -35,7 +35,7 @@ struct EvaluationOrder {
   std::string task = {};            // to play instead of the run's; empty = the run's
   std::filesystem::path json = {};  // where the result goes; empty = nowhere
   ShownFrames frames = {};
-  bool own_run = false;  // of whoever holds the run: temporary files go into its folder
+  bool own_run = false;  // the caller holds the run: temporary files go into its folder
   bool partial = false;  // stopped, what was played by then counts
   // Told every few seconds how far it is, "37 of 100 episodes", if it is farther than before.
   std::function<void(const std::string& line)> progress = {};

@@ -38,7 +38,7 @@ Descriptor OpenForAppending(const std::filesystem::path& path) {
   return OpenRegular(path, O_WRONLY | O_CREAT | O_APPEND);
 }
 
-// What the child reads from; `held` gets our end of it where there is one.
+// Input of the child; `held` gets our end of it if it is a pipe.
 Descriptor OpenInput(const ProcessSpec& spec, Descriptor* held) {
   if (!spec.holds_input) return OpenForReading(spec.input.empty() ? "/dev/null" : spec.input);
   Pipe pipe;
@@ -70,7 +70,7 @@ std::vector<char*> Pointers(std::vector<std::string>& strings) {
   return pointers;
 }
 
-// What the child needs between fork and exec, where memory must not be allocated.
+// Data for the child between fork and exec, where memory must not be allocated.
 struct ExecPlan {
   char* const* argv;
   char* const* envp;

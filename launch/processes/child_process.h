@@ -42,8 +42,8 @@ struct ExitStatus {
   int code = 0;  // exit code, or the signal's number
 
   bool Clean() const { return !by_signal && code == 0; }
-  // As a shell has it: 128 + the signal's number where a signal ended it. 130 is the value of a
-  // program that Ctrl-C ended in order (common/base/main_guard.h).
+  // The exit status as shells give it: 128 + the signal's number if a signal ended the process. 130
+  // is the value of a program that Ctrl-C ended in order (common/base/main_guard.h).
   int ShellCode() const { return by_signal ? 128 + code : code; }
   // "exit code 1", "killed by SIGKILL"
   std::string Describe() const;

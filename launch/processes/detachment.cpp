@@ -22,7 +22,7 @@ namespace shoal::launch {
 namespace {
 
 constexpr int kPollMs = 100;
-// Of a child that has closed its end, which exit does.
+// Deadline for the end of a child that has closed its end of the pipe, as exit does.
 constexpr std::chrono::seconds kReapChild{30};
 
 int Redirect(const char* file, int flags, int to) {

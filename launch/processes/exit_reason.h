@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Why a process ended, as far as its own output says so.
+// The reason of a process's end, taken from its own output.
 #pragma once
 
 #include <cstdint>
@@ -8,9 +8,9 @@
 
 namespace shoal::launch {
 
-// Of what was written from the byte `from` on: the last error, or the last line that is none of our
-// log's; else the last warning. What the log only tells is no reason: empty. Date, time and name of
-// a log line are left out. At most the last 64 kB are looked at.
+// Reason of a process's end, from its output after the byte `from`: the last error, or the last
+// line that is not of our log; else the last warning; else empty, as information in the log is no
+// reason. Date, time and name of a log line are left out. At most the last 64 kB are read.
 std::string ExitReason(const std::filesystem::path& output, uintmax_t from);
 
 }  // namespace shoal::launch

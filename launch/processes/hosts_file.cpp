@@ -18,7 +18,7 @@ using nlohmann::json;
 
 constexpr int kMostActors = 1024;
 
-// One JSON object of the file; tells of keys nobody asked for.
+// One JSON object of the file; reports unknown keys.
 class Block {
  public:
   Block(const json& object, std::string path, std::string file)

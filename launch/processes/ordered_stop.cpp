@@ -21,7 +21,8 @@ bool WaitForExit(Supervisor& supervisor, std::string_view role, milliseconds dea
                  const StopHooks& hooks, bool patient) {
   const SteadyTime start = Now();
   while (true) {
-    // What dies for good while actors drain only shortens the drain: the deadline ends it.
+    // A process that dies for good while actors drain does not prolong the drain: the deadline ends
+    // it.
     if (const auto failure = supervisor.Poll(Now())) hooks.say(*failure);
     if (supervisor.Running(role) == 0) return true;
     if (Now() - start > deadline || (patient && hooks.at_once())) return false;

@@ -19,7 +19,7 @@ struct StopDeadlines {
 };
 
 struct StopHooks {
-  std::function<void(RunState)> announce;  // tells the processes
+  std::function<void(RunState)> announce;  // sends the state to the processes
   std::function<void()> tick;              // called every 50 ms meanwhile (heartbeat)
   std::function<bool()> at_once;           // true: skip to SIGTERM, short
   std::function<void(const std::string&)> say;

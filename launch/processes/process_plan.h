@@ -12,7 +12,7 @@
 
 namespace shoal::launch {
 
-// The folder of this program: the others lie beside it.
+// The folder of this program, which also has the other programs.
 std::filesystem::path ProgramFolder();
 
 // PROGRAM of that folder with arguments and the environment every program of ours runs in:

@@ -54,8 +54,8 @@ void RunOrThrow(const std::string& what, const std::vector<std::string>& command
   throw RuntimeError("{}: {}", what, line.empty() ? status->Describe() : line);
 }
 
-// What a command on another host prints, without what the login there prints around it: a greeting,
-// a message of the day, a line at its end.
+// Marks the output of a command on another host, apart from the output of the login around it: a
+// greeting, a message of the day, a line at its end.
 constexpr char kAnswerBegins[] = "shoal: the answer begins",
                kAnswerEnds[] = "shoal: the answer ends";
 

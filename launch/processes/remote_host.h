@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is done on another host, all of it through its ssh command: is the program there, bring what
-// an actor needs, run an actor, fetch what it leaves. No shared file system is needed.
+// Operations on another host, all of them by its ssh command: find the program, copy the files that
+// an actor needs, run an actor, fetch its files. No shared file system is needed.
 #pragma once
 
 #include <filesystem>
@@ -13,7 +13,7 @@
 
 namespace shoal::launch {
 
-// Asked about ten times a second: true gives up what is under way.
+// Called about ten times a second; true cancels the operation.
 using StopQuestion = std::function<bool()>;
 
 // Words as one command line of a POSIX shell.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What processes of a run that were killed leave behind: processes of theirs that still store what
-// they have, and files they were writing.
+// Leftovers of a run whose processes were killed: other processes that still store their records,
+// and unfinished files.
 #pragma once
 
 #include <chrono>

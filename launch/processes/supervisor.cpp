@@ -17,7 +17,7 @@
 namespace shoal::launch {
 namespace {
 
-// What ssh leaves with when the connection fails; whose other codes are the program's.
+// Exit code of ssh if the connection fails; its other codes are those of the remote program.
 constexpr int kDisconnected = 255;
 
 // A host that cannot be reached may come back: tried for as long as the run lasts.
@@ -37,7 +37,7 @@ bool IsNonFinite(const ExitStatus& status) {
   return !status.by_signal && status.code == static_cast<int>(ErrorKind::kNonFinite);
 }
 
-// What starting again cannot cure: a refused configuration, numbers that are not finite any more.
+// Whether a restart cannot help: a refused configuration, numbers that are not finite any more.
 bool Hopeless(const ExitStatus& status) {
   return IsNonFinite(status) ||
          (!status.by_signal && status.code == static_cast<int>(ErrorKind::kUsage));
@@ -153,7 +153,7 @@ void Supervisor::KillIfOverdue(Child& child, SteadyTime now) {
   child.process->Signal(SIGKILL);
 }
 
-// Processes that were told to leave are the ordered stop's, which has deadlines of its own.
+// Leaves out processes that are being stopped: the ordered stop has deadlines of its own.
 void Supervisor::KillIfHung(Child& child, SteadyTime now) {
   if (child.exit_expected || child.hung) return;
   const std::chrono::seconds limit = child.heard_since ? hang_limits_.report : hang_limits_.start;

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keeps a run's processes alive: starts them, restarts what dies, says why it died. A process that
-// is there but says nothing any more - stopped, deadlocked, thrashing - is killed and counts as
-// dead from then on.
+// Supervises a run's processes: starts them, restarts those that die, and reports the reasons. A
+// process that runs but does not report any more (stopped, deadlocked, thrashing) is killed and
+// counts as dead from then on.
 //
 // A process that the run needs is restarted within RestartLimits; the run fails beyond them. An
 // expendable process is restarted at growing intervals (RestartBackoff) for as long as the run
-// lasts, and whether the run goes on without it is the caller's decision (working_actors.h).
+// lasts; the caller decides whether the run continues without it (working_actors.h).
 #pragma once
 
 #include <cstdint>
@@ -24,8 +24,8 @@
 
 namespace shoal::launch {
 
-// LivenessTimer after which a running process is taken for hung. Ten times what a process stopped
-// for a moment or starved by its machine needs to be heard again; starting up takes longer.
+// Liveness timeouts after which a running process is taken for hung. They are ten times the silence
+// of a process that was stopped for a moment or starved by its machine; starting up takes longer.
 struct HangLimits {
   std::chrono::seconds start{120};  // before its first report
   std::chrono::seconds report{30};  // since its last one
@@ -53,24 +53,24 @@ struct RoleStanding {
 // Destruction kills what still runs.
 class Supervisor {
  public:
-  // `say` gets one line for each death and restart, with the process's last words (exit_reason.h).
+  // `say` gets one line for each death and restart, with the reason of the exit (exit_reason.h).
   // `start` starts a process.
   Supervisor(const RestartLimits& limits, const HangLimits& hang_limits,
              std::function<void(const std::string&)> say, ProcessStarter start = StartChild);
 
-  // Starts the process; where its predecessor was retired and has not left yet, once that has.
-  // Throws Error when it cannot be started.
+  // Starts the process. If a retired predecessor still runs, starts it after the predecessor's end.
+  // Throws Error if it cannot be started.
   void Start(const ProcessSpec& spec);
   // Ends one process for good: SIGTERM, and SIGKILL when it has not left after kRetire.
   void Retire(std::string_view role, int id, SteadyTime now);
 
-  // The process has reported. Words of a predecessor (another pid) do not count;
-  // elsewhere our child is the remote shell, whose pid nobody reports.
+  // Notes a report of the process. Reports of a predecessor (another pid) do not count, except on
+  // other hosts, where our child is the remote shell and the reported pid is unknown here.
   void Heard(std::string_view role, int id, pid_t pid, SteadyTime now);
 
-  // Kills the hung, reaps the dead and starts what is due again. When the run cannot go on, returns
-  // one line saying which process ended it and why: a process met a non-finite number (exit 3), or
-  // one that is not expendable died too often or refused its configuration (exit 2).
+  // Kills hung processes, reaps dead ones and restarts those that are due. If the run cannot
+  // continue, returns one line with the process and the reason: a process met a non-finite number
+  // (exit 3), or one that is not expendable died too often or refused its configuration (exit 2).
   std::optional<std::string> Poll(SteadyTime now);
 
   // From now on processes of the role ("" = all) may exit and are not restarted.
@@ -91,7 +91,7 @@ class Supervisor {
   // host)", the most frequent ones first. Empty when there was none.
   std::string DescribeDeaths() const;
 
-  // What a retired actor needs to flush what it has, and more.
+  // Time that a retired actor needs to send its records, and more.
   static constexpr std::chrono::seconds kRetire{40};
 
   // A restarted process counts as working after it has reported for so long.

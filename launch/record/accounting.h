@@ -1,16 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where every record went: what the actors made against what the replay dealt with.
+// Account of all records: those that the actors made against those that the replay handled.
 //
 //   made = stored + lost_with_process + lost_with_replay + rejected + after_gap + discarded,
 //   exactly;
-//   duplicates and resends are apart. Sequences of a session run 1 .. made; the replay dealt with 1
-//   .. highest of them. lost_with_process is what an actor's death kept from the replay, made -
-//   highest; lost_with_replay was stored and is gone: in the memory of a replay server that died,
-//   or with a replay file that was removed. While the file is there, there is none such: it is a
-//   fault. A run without a replay stores nothing: there `stored` are the records that updates were
-//   made of, `discarded` the others that the learner took, of rollouts that were not finished or
-//   not used; nothing is ever discarded by a replay. What the sessions say is stored is held
-//   against the ring's own count.
+//   duplicates and resends are counted apart. Sequences of a session are 1 .. made; the replay
+//   handled 1 .. highest of them.
+//   - lost_with_process: records that an actor's death kept from the replay, made - highest.
+//   - lost_with_replay: records that were stored and are gone, with the memory of a replay server
+//   that
+//     died or with a replay file that was removed. If the file exists, such a loss is a fault.
+//   - stored, without a replay: records that updates used.
+//   - discarded: only without a replay. Records of rollouts that were not finished or not used.
+//   The sessions' count of stored records is compared with the ring's own count.
 #pragma once
 
 #include <cstdint>
@@ -35,8 +36,8 @@ struct Accounting {
   uint64_t made = 0, stored = 0, lost_with_process = 0, lost_with_replay = 0;
   uint64_t rejected = 0, after_gap = 0, discarded = 0;
   uint64_t duplicates = 0, resends = 0;
-  // Of actors started by hand, on a host that cannot be reached any more, or whose page was lost:
-  // what the replay saw counts as made, what they made beyond it is unknown.
+  // Sessions of actors that were started by hand, whose host cannot be reached, or whose page was
+  // lost. The records that the replay received count as made; the number beyond them is unknown.
   uint64_t sessions_without_page = 0;
   std::vector<std::string> faults;  // one line for each thing that does not balance
 

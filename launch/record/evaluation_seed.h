@@ -13,7 +13,7 @@ namespace shoal::launch {
 constexpr int64_t kReservedEvaluationSeed = 20'261'126;
 
 // A seed of the run's own, from its config.json: another run, seed or recipe plays other episodes,
-// the same run always the same ones. From 10^9 on, where nobody numbers runs or evaluations. Throws
+// the same run always the same ones. Seeds begin at 10^9, above those that users choose. Throws
 // Error: no config.json.
 int64_t OwnEvaluationSeed(const std::filesystem::path& run);
 

@@ -51,7 +51,8 @@ class EvaluationStore {
   std::deque<EvaluationRecord> kept_;
 };
 
-// What an EvaluationStore wrote, by env steps. Throws Error naming a broken file.
+// Reads the evaluations that an EvaluationStore wrote, sorted by env steps. Throws Error naming a
+// broken file.
 std::vector<EvaluationPoint> ReadEvaluations(const std::filesystem::path& run);
 
 }  // namespace shoal::launch

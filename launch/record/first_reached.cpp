@@ -6,7 +6,7 @@
 namespace shoal::launch {
 namespace {
 
-// Of an episode: rates times counts are whole numbers but for their last bits.
+// Share of an episode: rates times counts are whole numbers except for their last bits.
 constexpr double kRounding = 1e-6;
 
 }  // namespace

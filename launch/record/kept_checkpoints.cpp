@@ -48,7 +48,7 @@ void Keep(const fs::path& from, const fs::path& to) {
   ReadCheckpointFiles(from);  // refuses what is not whole
   MakeFolders(fresh);
   for (const std::string& name : NamesIn(from)) {
-    // Nobody writes into a checkpoint's files, so two folders may share them.
+    // The files of a checkpoint never change, so two folders may share them.
     fs::create_hard_link(from / name, fresh / name, error);
     if (error) WriteFileAtomically(fresh / name, ReadFile(from / name));
   }

@@ -17,7 +17,7 @@
 namespace shoal::launch {
 namespace {
 
-// Of the first line "KEY<tabs>: VALUE"; empty without one. "model" is not "model name".
+// The value of the first line "KEY<tabs>: VALUE"; empty without one. "model" is not "model name".
 std::string_view ValueOf(std::string_view key, std::string_view cpuinfo) {
   while (!cpuinfo.empty()) {
     const std::string_view line = cpuinfo.substr(0, cpuinfo.find('\n'));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What this machine offers, as meta.json records it.
+// Properties of this machine for meta.json.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -12,9 +12,9 @@ namespace shoal::launch {
 // code found.
 nlohmann::ordered_json DescribeMachine();
 
-// Of the first processor in the text of /proc/cpuinfo: "NAME (family F, model M)", as virtual
-// machines give different CPUs one name; without the brackets where either is missing, "unknown"
-// without a name.
+// Name of the first processor in the text of /proc/cpuinfo: "NAME (family F, model M)", because
+// virtual machines give different CPUs one name. Without the brackets if either number is missing;
+// "unknown" without a name.
 std::string CpuName(std::string_view cpuinfo);
 
 }  // namespace shoal::launch

@@ -10,7 +10,7 @@ namespace shoal::launch {
 // At least one of `run` and `checkpoint` is given.
 struct CheckpointWords {
   std::string run = {};  // name within run_dir, or path of a folder
-  // With `run`: a name in its checkpoints/ folder. Alone: as `run`.
+  // Together with `run`: a name in its checkpoints/ folder. Alone: takes the same words as `run`.
   std::string checkpoint = {};
   std::string run_dir = "runs";
 };

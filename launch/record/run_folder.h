@@ -40,7 +40,7 @@ bool IsForbidden(const std::filesystem::path& folder);
 class RunFolder {
  public:
   // Creates DIR/NAME. A given name whose folder exists is refused (usage error) unless `overwrite`,
-  // which deletes it first, if it is a run (has a config.json) or empty, and nobody runs it.
+  // which deletes it first, if it is empty or a run (has a config.json) that no coordinator holds.
   static RunFolder Create(const std::filesystem::path& dir, const std::string& name,
                           bool overwrite);
   // Creates DIR/BASE, or DIR/BASE-2, DIR/BASE-3, ...: the first that does not exist.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run's policy is given, in training and at test time alike, and what learning alone is told
-// besides: for the run's first lines, for meta.json and for `shoal env describe --run`.
+// Inputs of a run's policy, in training and at test time alike, and the privileged inputs that
+// learning has besides: for the run's first lines, for meta.json and for `shoal env describe
+// --run`.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -13,11 +14,11 @@
 
 namespace shoal::launch {
 
-// What the policy sees.
+// Inputs of the policy.
 struct PolicyInputs {
   std::vector<std::string> blocks{};  // in the order of its vector
-  // Of these, those that tell of an object: where the policy has pictures, to see the object in
-  // them is half of the task, and a figure of such a run has to say what it was told in numbers.
+  // The blocks among these that reveal the object's pose. Reported results must list them: from
+  // pixels, locating the object is part of the task.
   std::vector<std::string> object_blocks{};
   std::vector<std::string> cameras{};  // empty: no pixels
   bool goal_picture = false;           // of each camera, beside its frames
@@ -26,7 +27,7 @@ struct PolicyInputs {
 // where one of those is recorded, for then the object is what has to get to the goal.
 PolicyInputs PolicyInputsOf(const ObservationSpec& spec);
 
-// What learning was told beside it (common/config/privileged_blocks.h).
+// Privileged inputs of learning (common/config/privileged_blocks.h).
 struct PrivilegedInputs {
   std::vector<std::string> critic_blocks{};  // in place of the pixels
   std::vector<std::string> labels{};         // as learner.aux names them
@@ -37,12 +38,12 @@ struct PrivilegedInputs {
 // Throws Error (usage) as PrivilegedBlocksOf.
 PrivilegedInputs PrivilegedInputsOf(const Config& config, const ObservationSpec& spec);
 
-// As meta.json has them.
+// The form of meta.json.
 nlohmann::ordered_json ToJson(const PolicyInputs& inputs);
 nlohmann::ordered_json ToJson(const PrivilegedInputs& inputs);
 
 // "relabels goals with achieved_goal and draws 50 % of the samples by how far it still moves";
-// empty where the replay goes by nothing that is privileged.
+// empty if the replay uses no privileged block.
 std::string HindsightText(const RunConfig& run);
 
 // All of it for people: lines, each ended.

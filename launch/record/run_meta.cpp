@@ -37,7 +37,7 @@ ordered_json Best(const RunMeta& meta) {
           {"return_mean", meta.best->mean_return}};
 }
 
-// With this build's.
+// The commits of the run so far and that of this build.
 std::vector<std::string> Commits(const RunMeta& meta) {
   std::vector<std::string> commits = meta.commits;
   if (std::ranges::find(commits, BuildCommit()) == commits.end()) {

@@ -40,8 +40,8 @@ struct RunMeta {
   std::string error;             // why, where failed
 };
 
-// With `updates_per_env_step` as it came about so far, null before the first env step. Throws
-// Error.
+// Writes meta.json. `updates_per_env_step` is the ratio so far, null before the first env step.
+// Throws Error.
 void WriteRunMeta(const std::filesystem::path& run, const Config& config, const RunMeta& meta);
 
 // "while training: success >= 98 % over 2 evaluations in a row, first from 60012 env steps, 5400
@@ -49,9 +49,9 @@ void WriteRunMeta(const std::filesystem::path& run, const Config& config, const 
 // episodes. That it was never reached where it was not; empty without success or evaluations.
 std::string FormatFirstSuccess(const RunMeta& meta, int evaluations);
 
-// What a resumed run goes on from: commits, started, wall_seconds, the counters, the changes, how
-// it ended and the result of its final evaluation; defaults where the file is missing. Throws Error
-// on a broken file.
+// Reads the state that a resumed run continues: commits, started, wall_seconds, the counters, the
+// changes, the way it ended and the result of its final evaluation. Defaults if the file is
+// missing. Throws Error on a broken file.
 RunMeta ReadRunMeta(const std::filesystem::path& run);
 
 }  // namespace shoal::launch

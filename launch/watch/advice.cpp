@@ -39,7 +39,7 @@ bool NoCoreToSpare(const Bottleneck& figures) {
   return figures.usable > 0 && figures.cores >= kAllCores * figures.usable;
 }
 
-// What would let a run act faster.
+// Advice on how a run can act faster.
 std::string MoreActing(const Bottleneck& figures, const RunResources& resources) {
   if (resources.actors_elsewhere) return "more actors would help (--hosts, when it is started)";
   if (NoCoreToSpare(figures)) {

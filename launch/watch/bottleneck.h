@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the time of a run goes, and what to do about it: per role the share of each stage, who was
-// held back by the limiter, and one sentence of advice. Pure.
+// Use of a run's time: per role the share of each stage, the side that the limiter held back, and
+// one sentence of advice. Pure.
 #pragma once
 
 #include <filesystem>
@@ -39,7 +39,7 @@ struct Bottleneck {
   std::string advice{};  // one sentence; empty: too early for one (advice.h)
 };
 
-// What a run may take.
+// Resources that a run may use.
 struct RunResources {
   double usable_cores = 0;        // of the coordinator's host
   int actors = 0;                 // asked for
@@ -48,7 +48,7 @@ struct RunResources {
   bool may_play_ahead = false;    // on policy with ppo.versions_ahead = 0
 };
 
-// Of all that was counted; empty roles where nothing was.
+// Computes the shares from the totals; roles without counts are empty.
 Bottleneck FindBottleneck(const RunTotals& totals, const RunResources& resources);
 
 // The share of its time that a role spent in a stage; 0 where it has none.

@@ -18,9 +18,9 @@ struct ListenAddress {
 // Whether the text is an IPv4 address, of four numbers.
 bool IsAddress(const std::string& text);
 
-// Throws Error with the system's reason when nobody can listen there now: the port is taken, or the
-// address is none of this host. `who`: the option or program that wants to. Libraries of servers
-// know that they failed, not why.
+// Throws Error with the system's reason if the address cannot be listened on: the port is taken, or
+// the address is none of this host. `who`: the option or program that needs it. Libraries of
+// servers report that they failed, but no reason.
 void CheckCanListen(const ListenAddress& listen, const std::string& who);
 
 }  // namespace shoal::launch

@@ -27,7 +27,7 @@ class LiveTerminal {
   void Draw(const std::vector<std::string>& lines);
   // The next key, waiting at most this long; none at a stop signal or without a terminal on stdin.
   std::optional<char> WaitForKey(std::chrono::milliseconds most);
-  // What Ctrl-Z asks for: gives the terminal back and stops this process until it is continued.
+  // Handles Ctrl-Z: restores the terminal and stops this process until it is continued.
   void Suspend();
 
   static constexpr char kSuspendKey = 0x1a;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kBlockPeriod{500};
 constexpr std::chrono::seconds kLinePeriod{5};
-constexpr double kShownAsWaiting = 0.05;  // share of time from which somebody counts as waiting
+constexpr double kShownAsWaiting = 0.05;  // share of time from which a role counts as waiting
 
 std::string NumberText(const std::optional<double>& value, const char* format = "{:.0f}") {
   return value ? fmt::format(fmt::runtime(format), *value) : "-";
@@ -24,7 +24,7 @@ std::string Percent(const std::optional<double>& value) {
   return value ? fmt::format("{:.0f} %", 100 * *value) : "-";
 }
 
-// Who waits for whom at the limiter.
+// The side that the limiter holds back.
 std::string LimiterState(const ProgressFigures& f) {
   if (f.actors_wait.value_or(0) > kShownAsWaiting) {
     return "actors wait for the learner " + Percent(f.actors_wait);
@@ -32,14 +32,14 @@ std::string LimiterState(const ProgressFigures& f) {
   if (f.learner_waits.value_or(0) > kShownAsWaiting) {
     return "learner waits for the actors " + Percent(f.learner_waits);
   }
-  return f.actors_wait || f.learner_waits ? "nobody waits" : "-";
+  return f.actors_wait || f.learner_waits ? "neither side waits" : "-";
 }
 
 std::string Evaluation(const std::optional<EvaluationPoint>& e) {
   return e ? fmt::format("at {}: {}", e->env_steps, FormatScore(*e)) : "none yet";
 }
 
-// Of the plain line: the rate alone, or return and length where the task has no success.
+// Score for the plain line: the rate alone, or return and length if the task has no success.
 std::string ShortScore(const std::optional<double>& success, const std::optional<double>& mean,
                        const std::optional<double>& length) {
   if (success) return Percent(success);
@@ -52,7 +52,7 @@ std::string ShortScore(const std::optional<EvaluationPoint>& e) {
   return e ? ShortScore(e->success, e->mean_return, e->mean_length) : "-";
 }
 
-// Of the block.
+// Text of the actors' episodes for the block.
 std::string Rollouts(const ProgressFigures& f) {
   if (!f.rollout_return) return "no episode has ended yet";
   const std::string success =

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the user sees of a running run: a live block on a terminal, plain lines elsewhere.
+// Progress display of a running run: a live block on a terminal, plain lines elsewhere.
 #pragma once
 
 #include <cstdio>
@@ -16,7 +16,7 @@
 
 namespace shoal::launch {
 
-// Figures that may be missing are empty: nobody has reported them yet.
+// Figures that no process has reported yet are empty.
 struct ProgressFigures {
   std::string run;    // name
   std::string state;  // "running", "draining", "stopping"

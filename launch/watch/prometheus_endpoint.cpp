@@ -32,7 +32,7 @@ ListenAddress Parse(const std::string& where) {
   return listen;
 }
 
-// What a scrape gets: the newest view.
+// Answers a scrape with the newest view.
 class Page final : public prometheus::Collectable {
  public:
   std::vector<prometheus::MetricFamily> Collect() const override {

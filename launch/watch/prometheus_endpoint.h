@@ -27,7 +27,7 @@ class PrometheusEndpoint {
   static void Check(const std::string& where);
   // "http://127.0.0.1:9464/metrics"
   std::string Url() const;
-  // What is shown from now on. Any thread.
+  // Replaces the view that is served. Any thread.
   void Update(const RunViewMessage& view);
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run did lately, for people: how fast it goes, how long it still takes and where its time
-// goes. The figures of the last second alone jump, those since its start say what has long changed.
+// Recent figures of a run, for users: rates, remaining time and use of time. One-second rates are
+// noisy and averages since the start lag behind; these are 30-second averages.
 #pragma once
 
 #include <deque>
@@ -21,10 +21,10 @@ struct RunMoment {
 // One thread.
 class RecentRun {
  public:
-  // To be told about once a second.
+  // Call it about once a second.
   void Add(const RunMoment& moment, RunTotals totals);
-  // What was before says nothing about what comes, as after a pause: begins anew, with what comes
-  // kSettling later.
+  // Drops all figures and starts again kSettling later. For a change after which earlier figures
+  // predict nothing, such as a pause.
   void Forget(double seconds);
 
   // Per second, over the last half minute; empty while too little of it is known.

@@ -176,7 +176,7 @@ ProgressFigures FiguresOfView(const RunViewMessage& message, SteadyTime now) {
   figures.actors_working = SaturatingCast<int>(own("actors_working").value_or(0));
   figures.faulty_episodes = SaturatingCast<uint64_t>(own("faulty_episodes").value_or(0));
   figures.env_steps_per_second = figures.updates_per_second = std::nullopt;
-  // What is shown again and again once no process is left tells of nothing that goes on.
+  // Once no process is left, the same view is repeated: it has no current rates.
   if (message.state == "evaluating" || message.state == "ended") return figures;
   figures.trouble = message.trouble;
   figures.env_steps_per_second = own("env_steps_per_second");

@@ -26,7 +26,7 @@ void AddOrders(const Config& config, const RunResources& resources, MetricsRepor
 void AddShares(const Bottleneck& lately, MetricsMessage* report);
 // One sentence: what to do about it, from a view; or what the run is at when it ends.
 std::string AdviceOfView(const RunViewMessage& view);
-// What a view shows, as the run's own progress display has it.
+// The figures of a view, in the form of the run's own progress display.
 ProgressFigures FiguresOfView(const RunViewMessage& view, SteadyTime now);
 
 }  // namespace shoal::launch

@@ -21,7 +21,7 @@ enum class RunStatus {
 };
 const char* ToString(RunStatus status);
 
-// Of an evaluation: tasks without success have a return only.
+// Score of an evaluation: tasks without success have a return only.
 struct RunScore {
   std::optional<double> success, mean_return;
 };
@@ -38,7 +38,8 @@ struct RunListing {
   std::optional<RunSize> size;  // on the disk, where it was asked for
 };
 
-// Of one run's folder. Never throws for what is in it: a broken run is listed as such.
+// Status of the run in a folder. Never throws because of its content: a broken run is listed as
+// such.
 RunListing RunStatusOf(const std::filesystem::path& run);
 // By name, with their sizes. Never throws for what is in the folder: a broken run is listed as
 // such.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the processes of a run have counted, by role. The difference of two moments says where the
-// time between them went. Pure.
+// Counters of a run's processes, summed by role. The difference of two moments gives the use of the
+// time between them. Pure.
 #pragma once
 
 #include <functional>

@@ -27,7 +27,7 @@ class ScalarLog {
   // Writes what was added since the last call. Throws Error when that cannot be; it is kept then.
   void Flush() { writer_.Flush(); }
 
-  // What the text tab and the hparams tab show of the run: all keys.
+  // Writes all keys for TensorBoard's text tab and hparams tab.
   void WriteConfig(const Config& config);
   // How it ended, for the hparams tab.
   void WriteEnd(bool success);

@@ -14,7 +14,7 @@ struct TerminalSize {
   bool operator==(const TerminalSize&) const = default;
 };
 
-// Of the terminal on stdout; 80 x 24 when it does not say.
+// Size of the terminal on stdout; 80 x 24 if it is unknown.
 TerminalSize SizeOfTerminal();
 
 // Whether stdout is a terminal on which lines can be drawn in place: TERM=dumb cannot, such as that
@@ -51,8 +51,7 @@ class TerminalBlock {
   void Erase();
   // The block stays as the last thing on the terminal, without what was echoed below it.
   void Leave();
-  // The block stays where it is, and the next one is drawn at the cursor: somebody else has written
-  // below it.
+  // The block stays where it is, and the next one is drawn at the cursor: other output is below it.
   void Forget() { drawn_.clear(); }
 
  private:

@@ -62,7 +62,7 @@ Cell Rate(const Process& process) {
   return {};
 }
 
-// What waits to be worked on: chunks (replay), batches (learner), records not yet stored (actor).
+// Pending work: chunks (replay), batches (learner), records not yet stored (actor).
 Cell Queue(const Process& process) {
   for (const char* name : {"queue_depth", "batches_ready", "outstanding"}) {
     if (const auto depth = Get(process, name)) return Number(depth);
@@ -75,8 +75,8 @@ Cell QueueAge(const Process& process) {
   return seconds ? Number(*seconds * 1000, "{:.0f} ms") : Cell();
 }
 
-// What may still be sent (actor: records), has been asked for (learner: batches) or waits to be
-// answered (replay: batches).
+// Credit: records that may still be sent (actor), batches that were requested (learner) or that
+// wait to be answered (replay).
 Cell Credit(const Process& process) {
   for (const char* name : {"credit", "requests_outstanding", "requests_waiting"}) {
     if (const auto credit = Get(process, name)) return Number(credit);
@@ -84,7 +84,7 @@ Cell Credit(const Process& process) {
   return {};
 }
 
-// The share of time in which the limiter held somebody, and whom; for others, waiting for it.
+// The share of time in which the limiter held a side, and which; for other roles, waiting for it.
 Cell Blocked(const Process& process) {
   if (process.role == "replay") {
     const double in = Get(process, "limiter_blocked_insert_share").value_or(0);

@@ -18,7 +18,7 @@ struct TopOrder {
 int TopColumns();
 // The heading of a column.
 std::string TopColumnName(int column);
-// What each column shows, a line each, at most 79 characters.
+// Description of each column, one line of at most 79 characters each.
 std::vector<std::string> DescribeTopColumns();
 
 // The widths that columns have had while a table is watched: they only grow, so that what is shown

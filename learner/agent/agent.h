@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An algorithm as the learner's loop sees it: networks, targets and optimisers behind one update of
-// a batch. Loop, checkpoints, weights, reports and guards know no algorithm but through this.
+// Interface of an algorithm to the learner's loop: networks, targets and optimisers behind one
+// update of a batch. Loop, checkpoints, weights, reports and guards use algorithms only through it.
 //
 // An agent knows nothing of DDS, clocks or files. Each lives in a folder of its own
 // (learner/agent/ALGORITHM), written against common/nn; algorithms.h lists them.
@@ -16,11 +16,11 @@
 
 namespace shoal::learner {
 
-// What the time of an update goes into. Optimiser: and what follows it, targets and averages.
+// Stages of an update, for its time. kOptimiser includes targets and averages, which follow it.
 enum class UpdateStage { kForward, kBackward, kOptimiser };
 
-// Told whenever a stage ends: the time since the last call, or since the update's beginning, went
-// into it. A stage may end several times in one update.
+// Called whenever a stage ends: the time since the last call, or since the update's beginning,
+// belongs to it. A stage may end several times in one update.
 using OnStageEnd = std::function<void(UpdateStage)>;
 
 struct UpdateOutcome {
@@ -42,18 +42,18 @@ class Agent {
   // Depends on the agent's state and the batch alone: random draws of update u come from the stream
   // (seed, kLearnerUpdate, u). CHECKs the batch's size.
   virtual UpdateOutcome Update(const BatchView& batch, const OnStageEnd& on_stage_end) = 0;
-  // Done so far, those before a checkpoint included.
+  // Number of updates done, including those before a checkpoint.
   virtual uint64_t updates() const = 0;
 
   // F32 parameters an actor needs (names as nn::Policy loads them).
   virtual nn::TensorMap PolicyTensors() const = 0;
-  // The same, averaged over the latest updates: what is evaluated and kept as a checkpoint's
-  // policy.
+  // The same, averaged over the latest updates: the policy that is evaluated and stored in
+  // checkpoints.
   virtual nn::TensorMap AveragedPolicyTensors() const = 0;
   // Everything an exact resume needs: parameters, targets, averages, optimisers, counters.
   virtual nn::TensorMap AllTensors() const = 0;
-  // Takes what AllTensors gave. Throws Error naming a missing tensor or a wrong shape; then nothing
-  // has changed.
+  // Restores the result of AllTensors. Throws Error naming a missing tensor or a wrong shape; the
+  // agent is then unchanged.
   virtual void Restore(const nn::TensorMap& tensors, const std::string& source) = 0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a checkpoint keeps of an agent, listed once: written out and read back from the same list.
+// The state of an agent in a checkpoint: one list from which it is written and read.
 #pragma once
 
 #include <cstdint>

@@ -19,7 +19,7 @@ namespace shoal::learner {
 
 struct Algorithm {
   std::string_view name;  // of learner.algorithm
-  // What its updates report, in this order; each in at least every update that computes it.
+  // Figures that its updates report, in this order; each at least in every update that computes it.
   std::span<const Figure* const> figures;
   int critics = 0;  // Q functions that an update moves, each with a target; on policy none
   // Class of Stable-Baselines3 with the same policy network; empty: none.
@@ -46,7 +46,7 @@ const Algorithm& FindAlgorithm(std::string_view name);
 // share the batch (CheckReplicas), and as MakeAgent.
 int ReplicasOf(const Config& config, const ObservationSpec& spec, int threads);
 
-// What threads the learner has, for people: "2 threads, a replica each".
+// Text about the learner's threads: "2 threads, a replica each".
 std::string DescribeThreads(const Config& config, const ObservationSpec& spec, int threads,
                             int cores);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a critic's loss says about a whole batch, of which a replica has seen its rows.
+// Figures of a critic's loss over a whole batch, combined from the replicas' rows.
 #pragma once
 
 #include <span>

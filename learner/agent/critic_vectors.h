@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a critic sees of a batch's vectors: the policy's and, of an asymmetric one
+// Vectors of a batch that a critic sees: those of the policy and, for an asymmetric critic
 // (learner.critic_blocks), privileged blocks beside them.
 //
 //   obs[b] = [ obs_vector[b] | critic's columns of obs_privileged[b] ],   (B, C)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What algorithms build networks of: an encoder, where there are pixels, and a head above it.
+// Building block of the algorithms' networks: an encoder, if there are pixels, and a head above it.
 #pragma once
 
 #include <memory>
@@ -18,7 +18,7 @@ std::unique_ptr<nn::EncoderModule> MakeEncoder(const NetworkConfig& network,
                                                const nn::ModuleContext& context,
                                                const std::string& name = "encoder");
 
-// What one optimiser steps together; `encoder` may be null. Borrows both.
+// Parameter sets that one optimiser steps together; `encoder` may be null. Borrows both.
 std::vector<nn::ParameterSet*> SetsOf(nn::EncoderModule* encoder, nn::Module* head);
 
 }  // namespace shoal::learner

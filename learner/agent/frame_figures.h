@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the pictures of a batch say of the cameras, whatever the algorithm.
+// Figures of the pictures of a batch, by camera, for every algorithm.
 #pragma once
 
 #include "common/spec/observation_spec.h"

@@ -11,7 +11,7 @@
 
 namespace shoal::learner {
 
-// What the targets of one batch are made of.
+// Inputs of the targets of one batch.
 struct TargetInputs {
   const float* reward;
   const float* bootstrap;      // discount^(n-1) (1 - terminated)

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::string_view kMoments = "observation.moments";
 
-// Of a checkpoint's learner.safetensors, but of no network.
+// Whether a tensor of a checkpoint's learner.safetensors belongs to no network.
 bool IsLeftAlone(std::string_view name) {
   return name.starts_with("adam.") || name.starts_with("agent.") ||
          name.starts_with("temperature.") || name.starts_with("reward.");
@@ -62,8 +62,8 @@ void RefuseStatisticsAlone(const nn::TensorMap& weights, const std::string& sour
       source, nn::kObservationMean);
 }
 
-// What a tensor of the agent starts from; null: what it starts from always. A target follows its
-// critic rather than the encoder that both repeat.
+// The tensor that a tensor of the agent starts from; null: its usual initial value. A target starts
+// from its critic, not from the encoder, which both contain.
 const nn::NamedTensor* SourceOf(const std::string& name, const nn::TensorMap& weights) {
   if (IsLeftAlone(name)) return nullptr;
   const auto find = [&](const std::string& wanted) {

@@ -13,10 +13,10 @@
 
 namespace shoal::learner {
 
-// What AllTensors gives of such an agent: `weights`, F32 by our names, in place of `agent`'s, and
-// in place of the copies that `weights` does not have itself: averages, targets, encoders of their
-// own. The policy must be there whole; a critic need not. Throws Error (usage) naming `source` and
-// a tensor that is missing, of another shape or type, not finite or none of this network's.
+// The AllTensors of an agent that starts from `weights` (F32, Shoal's names): they replace the
+// tensors of `agent` and those copies that `weights` lacks (averages, targets, further encoders).
+// The policy must be complete; a critic is optional. Throws Error (usage) naming `source` and a
+// tensor that is missing, of another shape or type, not finite or unknown to this network.
 nn::TensorMap StartTensors(const nn::TensorMap& weights, const std::string& source,
                            const Agent& agent);
 

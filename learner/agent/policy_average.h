@@ -2,8 +2,8 @@
 // The moving average of a policy's parameters (Eq. 12 of docs/algorithm.md), which no network is
 // computed with.
 //
-// Replicas share its values, and each moves a share of them. Nobody reads it before the update that
-// moved it has ended for all.
+// Replicas share its values, and each updates a share of them. The values are read only after the
+// update has ended for all replicas.
 #pragma once
 
 #include <deque>
@@ -31,7 +31,7 @@ class PolicyAverage {
 
   // Under the policy's own names.
   nn::TensorMap Tensors() const;
-  // As "average.NAME".
+  // Adds its tensors under the names "average.NAME".
   void AddTo(AgentState* state);
 
  private:

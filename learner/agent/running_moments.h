@@ -13,7 +13,7 @@
 
 namespace shoal::learner {
 
-// Of vectors of V numbers. One thread.
+// Mean and variance of vectors of V numbers. One thread.
 class RunningMoments {
  public:
   explicit RunningMoments(int size);
@@ -26,7 +26,7 @@ class RunningMoments {
   std::vector<float> Mean() const;
   std::vector<float> Variance() const;
 
-  // As tensor `name` of 1 + 2V doubles, bit for bit (U64).
+  // Exports tensor `name` of 1 + 2V doubles, bit for bit (U64).
   void Export(const std::string& name, nn::TensorMap* tensors) const;
   // Throws Error naming the tensor that is missing or of another shape; nothing has changed then.
   void Import(const nn::TensorMap& tensors, const std::string& name, const std::string& source);

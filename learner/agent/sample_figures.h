@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the transitions of a batch say, whatever the algorithm, and what critics make of them: the
-// figures that TensorBoard shows below replay/.
+// Figures of the transitions of a batch, for every algorithm, and of the critics' values of them:
+// TensorBoard shows them below replay/.
 #pragma once
 
 #include <span>
@@ -11,7 +11,7 @@
 
 namespace shoal::learner {
 
-// Of sampled rewards, unscaled; of n steps: their sum.
+// Figures of sampled rewards, unscaled; the reward of an n-step sample is the sum.
 inline constexpr Figure kRewardMean{"reward_mean", "", "mean of sampled rewards", false,
                                     "replay/reward_mean"};
 inline constexpr Figure kRewardStd{"reward_std", "", "their standard deviation", false,
@@ -22,7 +22,7 @@ inline constexpr Figure kRewardAboveMinusHalf{
     "reward_above_minus_half", "",
     "share of sampled rewards above -0.5: of a sparse task, of samples at the goal", false,
     "replay/reward_above_minus_half"};
-// Where the policy sees both goals.
+// Present if the policy sees both goals.
 inline constexpr Figure kGoalDistanceMean{"goal_distance_mean", "m",
                                           "between sampled goals; observation.goal_mode = both",
                                           false, "replay/goal_distance_mean"};
@@ -42,7 +42,7 @@ inline constexpr const Figure* kSampleFigures[] = {
 // Appends those that the batch, as it was drawn, has; nothing of a rollout.
 void AddSampleFigures(const BatchView& batch, const ObservationSpec& spec, UpdateFigures* figures);
 
-// Of the Q functions before an update, at the sampled actions.
+// Figures of the Q functions before an update, at the sampled actions.
 inline constexpr Figure kQ1Mean{"q1_mean", "", "mean of the first Q function", false,
                                 "replay/q1_mean"};
 inline constexpr Figure kQ1Std{"q1_std", "", "its standard deviation", false, "replay/q1_std"};

@@ -15,7 +15,7 @@ inline double RateOr(double own, const LearnerConfig& learner) {
 inline nn::Adam::Options ActorStep(const LearnerConfig& learner) {
   return {.rate = RateOr(learner.actor_learning_rate, learner), .max_norm = learner.max_grad_norm};
 }
-// Of the encoder, too.
+// The step of the critic and of the encoder.
 inline nn::Adam::Options CriticStep(const LearnerConfig& learner) {
   return {.rate = RateOr(learner.critic_learning_rate, learner), .max_norm = learner.max_grad_norm};
 }

@@ -12,7 +12,7 @@
 namespace shoal::learner {
 namespace {
 
-// Of one sample.
+// Multiply-adds of a layer for one sample.
 double MultiplyAdds(const nn::LayerPlan& layer) {
   double count = 0;
   for (const nn::ParameterSpec& parameter : layer.Parameters()) {

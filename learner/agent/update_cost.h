@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one update computes, counted from the plans of its networks.
+// Floating-point operations of one update, counted from the plans of its networks.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an update says about itself: an ordered list of named figures.
+// Figures of an update: an ordered list of names and values.
 //
 // A figure is declared once, with its meaning: by the algorithm that alone computes it, in the
 // algorithm's folder, or here where several do. Metrics, TensorBoard, Prometheus, the progress

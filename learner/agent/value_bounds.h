@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a value can be where every reward is -1 or 0 (sparse goals): between -1 / (1 - discount) and
-// 0, times the reward's scale. A target cut off there cannot run away (Eq. 20 of
-// docs/algorithm.md).
+// Bounds of a value if every reward is -1 or 0 (sparse goals): from -1 / (1 - discount) to 0, times
+// the reward's scale. A target clipped to them cannot diverge (Eq. 20 of docs/algorithm.md).
 #pragma once
 
 #include <limits>
@@ -16,7 +15,7 @@ struct ValueBounds {
   float high = std::numeric_limits<float>::infinity();
 };
 
-// Of learner.bounded_targets; without it none.
+// The bounds of learner.bounded_targets; none without that key.
 ValueBounds ValueBoundsOf(const LearnerConfig& learner);
 
 // Throws Error (usage) where learner.bounded_targets is set and rewards are not -1 and 0, or values

@@ -41,12 +41,12 @@ struct RolloutCounters {
   uint64_t dropped_rollouts = 0;  // whole and begun ones that no update was made of
 };
 
-// What an actor of the run may have under way.
+// The window of unacknowledged records of an actor of the run.
 SendingWindow WindowOf(const RunConfig& run);
 
 class RolloutCore final : private RecordTaker {
  public:
-  // As many as a replay keeps.
+  // The limit of a replay.
   static constexpr size_t kMostSessions = 4096;
 
   // `receiver_session`: this process's. `before`: what a former learner of the run left.
@@ -54,7 +54,7 @@ class RolloutCore final : private RecordTaker {
   RolloutCore(const RolloutCore&) = delete;
   RolloutCore& operator=(const RolloutCore&) = delete;
 
-  // As ChunkIntake.
+  // See ChunkIntake.
   ChunkResult TakeChunk(const TransitionChunk& chunk,
                         uint64_t latest_session = std::numeric_limits<uint64_t>::max());
   // Words to actors; `changed_only`: those that differ from what was taken last.
@@ -81,7 +81,7 @@ class RolloutCore final : private RecordTaker {
   // environments: an update is made of them.
   void TakeReady(const BatchSchema& schema, uint8_t* data);
 
-  // Of the whole run: step records taken; records that updates were made of.
+  // For the whole run: step records taken, and records that updates used.
   uint64_t stored_steps() const { return stored_steps_; }
   uint64_t used_records() const { return used_records_; }
   const SessionLedger& sessions() const { return sessions_; }
@@ -93,7 +93,7 @@ class RolloutCore final : private RecordTaker {
   }
 
  private:
-  // What was recorded of one environment by one version, in the order of steps.
+  // Records of one environment by one version of the weights, in the order of steps.
   struct Rollout {
     WeightsVersion version;
     int session = 0;                             // index of the actor session
@@ -102,7 +102,7 @@ class RolloutCore final : private RecordTaker {
     std::vector<uint8_t> frames;                 // (rows, K*C, H, W)
     std::vector<float> vectors, actions, drawn;  // (rows, V), (rows, A) twice
     std::vector<float> rewards, bootstraps, log_probs, ends, continues;  // (rows)
-    // Where the next row is no next observation: of these rows, in order.
+    // Next observations of the rows that the next row does not continue, in order.
     std::vector<uint8_t> next_frames;
     std::vector<float> next_vectors;
 

@@ -50,10 +50,10 @@ class RolloutSource final : public BatchStream {
 
   void OnChunk(const TransitionChunk& chunk);
 
-  // The former batch's update is done, or there was none: its weights are the awaited ones.
+  // Precondition: the update of the previous batch, if any, is done. Actors wait for its weights.
   std::optional<Batch> Next(SteadyTime deadline) override;
   BatchCounters counters() const override;
-  // Of the run, now; takes effect with the next update where there are more of them.
+  // Sets the run's number of actors; a higher number takes effect with the next update.
   void SetActors(int actors) override;
 
   // When the coordinator is gone: acknowledges what actors still send, until nothing has come for
@@ -62,7 +62,7 @@ class RolloutSource final : public BatchStream {
 
  private:
   void Serve();
-  // What has come since the last call, waiting for it a moment.
+  // Chunks that have arrived since the last call; waits for them a moment.
   std::deque<std::unique_ptr<PooledChunk>> Arrivals() SHOAL_EXCLUDES(inbox_mutex_);
   void TakeChunks(std::deque<std::unique_ptr<PooledChunk>> chunks) SHOAL_EXCLUDES(mutex_);
   // Writes the account, then acknowledges.
@@ -99,7 +99,7 @@ class RolloutSource final : public BatchStream {
   WriteFaults faults_ SHOAL_GUARDED_BY(mutex_){
       [](const std::string& line) { log::Warning("{}", line); }};
 
-  // Of the batch that is handed out; the loop's thread.
+  // Schema of the batch that is handed out; used by the loop's thread.
   std::optional<BatchSchema> schema_;
   AlignedBytes memory_;
   uint64_t memory_bytes_ = 0;

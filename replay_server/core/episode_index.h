@@ -7,8 +7,8 @@
 //   episode has ended (with `whole_episodes`), and prev(s) and its K - 1 predecessors, or what the
 //   episode has of them, are in the ring.
 //
-//   With goal pictures an episode begins with a goal record, which its reset follows, and each of
-//   its samples needs that record too: it is the oldest one then.
+//   In runs with goal pictures an episode begins with a goal record, followed by its reset. Each of
+//   its samples needs the goal record too, which is then the oldest one.
 //
 // An episode ends terminated, truncated, or cut: closed because its next record never came.
 //
@@ -54,9 +54,8 @@ class EpisodeIndex {
     return capacity * (2 * sizeof(uint64_t) + sizeof(uint32_t));
   }
 
-  // What a record of this actor session may be stored as the successor of: 0 for an episode's first
-  // record, the id of the environment's last stored record if this one continues that very episode,
-  // nothing else.
+  // The predecessor of a record of this actor session: 0 for an episode's first record, the id of
+  // the environment's last stored record if this record continues the same episode, else empty.
   std::optional<uint64_t> Predecessor(uint32_t actor, uint64_t session,
                                       const RecordHeader& header) const;
   // Call after each Ring::Append, with the id it returned.
@@ -70,7 +69,7 @@ class EpisodeIndex {
   // does (yet), or no longer.
   uint64_t Next(uint64_t id) const { return next_[Slot(id)]; }
   uint64_t Previous(uint64_t id) const;
-  // With goal pictures: the goal record of the episode of a sampleable step.
+  // The goal record of the episode of a sampleable step, in runs with goal pictures.
   uint64_t GoalRecord(uint64_t id) const;
   uint64_t sampleable() const { return sampleable_; }
   // How often a step became sampleable since construction.
@@ -84,7 +83,7 @@ class EpisodeIndex {
   uint64_t cut_episodes() const { return cut_episodes_; }
 
  private:
-  // Where an environment stands.
+  // State of an environment.
   struct Track {
     uint64_t session = 0;
     uint64_t last_id = 0;

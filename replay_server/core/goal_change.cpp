@@ -19,7 +19,7 @@ GoalChange::GoalChange(const ObservationSpec& spec, tasks::Task task,
   CHECK(achieved->size == task_.goal_size() && (!desired_ || desired_->size == task_.goal_size()));
   achieved_ = *achieved;
   size_t first = 0;
-  for (const BlockSpec& block : spec.blocks) {  // privileged blocks lie in this order
+  for (const BlockSpec& block : spec.blocks) {  // privileged blocks have this order
     if (std::ranges::find(privileged, block.name) == privileged.end()) continue;
     if (block.name == task_.desired_goal().name) privileged_first_ = first;
     first += size_t(block.size);

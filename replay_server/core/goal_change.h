@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// What becomes of a transition under another goal: the desired goal of both observations, wherever
-// it stands among their numbers, and the reward, computed by the task's goal half as the actor did,
-// to the last bit. Whether the episode was terminated stays as it was, unless episodes end on
-// success: then the step that reaches the goal terminates it, whichever step did under its own.
+// Relabels a transition with another goal: the desired goal of both observations, at its place in
+// their vectors, and the reward, computed by the task's goal half as the actor did, to the last
+// bit. The termination of the episode stays, unless episodes end on success: then the step that
+// reaches the new goal terminates it.
 //
 // A goal is the achieved goal of a stored record; G its numbers. Where goals are shown in pictures,
 // that record's frame is the goal's: batch_gather.h.
@@ -27,7 +27,7 @@ class GoalChange {
 
   // The achieved goal (G) of a record, which is borrowed.
   std::span<const float> Achieved(const uint8_t* record) const;
-  // Of the step that led to `record`, unscaled.
+  // Reward of the step that led to `record`, unscaled.
   float Reward(const uint8_t* record, std::span<const float> goal) const;
   // Whether that step would have ended the episode, time limits apart.
   bool Terminated(const uint8_t* record, std::span<const float> goal) const;

@@ -66,7 +66,7 @@ void CheckHindsight(const RunConfig& run) {
   }
   if (!run.spec.Observed(task.desired_goal().name) && !run.spec.goal_picture) {
     throw UsageError(
-        "replay.hindsight = {} with observation.goal_mode = {}: the policy would not be told the "
+        "replay.hindsight = {} with observation.goal_mode = {}: the policy would not see the "
         "goal; expected desired, both or image",
         kind, config.observation.goal_mode);
   }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Hindsight: a sample is given a goal that its own episode achieved, as if it had been meant.
 //
-// With N = replay.hindsight_goals a share N / (N + 1) of the samples is relabelled. The goal of a
-// sample that begins with step t of an episode whose last step is T is what was achieved after
+// Let N = replay.hindsight_goals: a share N / (N + 1) of the samples is relabelled. The goal of a
+// sample that begins with step t of an episode whose last step is T is the achieved goal after
 //
 //   future    a step drawn uniformly from t, ..., T
 //   final     step T
@@ -45,10 +45,10 @@ class HindsightRelabeller final : public Relabeller {
 tasks::Task TaskOf(const RunConfig& run);
 
 // Throws Error (kUsage) where replay.hindsight cannot serve the run: a task without goals, actions
-// that are repeated (their rewards are sums, which another goal cannot be told from), a policy that
-// is not told the desired goal, a ring too small for the episodes under way, lockstep that would
-// wait for a sample before there is one; and where replay.movement_share has no hindsight. That
-// pictures do not show a goal is the actor's business.
+// that are repeated (their rewards are sums, which cannot be recomputed for another goal), a policy
+// whose observation lacks the desired goal, a ring too small for the unfinished episodes, lockstep
+// that would wait for a sample before there is one; and if replay.movement_share has no hindsight.
+// The actor checks that pictures do not show a goal.
 void CheckHindsight(const RunConfig& run);
 
 }  // namespace shoal::replay

@@ -27,7 +27,7 @@ class Intake final : private RecordTaker {
   Intake(const Intake&) = delete;
   Intake& operator=(const Intake&) = delete;
 
-  // As ChunkIntake.
+  // See ChunkIntake.
   ChunkResult Take(const TransitionChunk& chunk,
                    uint64_t latest_session = std::numeric_limits<uint64_t>::max()) {
     return chunks_.Take(chunk, latest_session);

@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples after which something still happens: a share of them is drawn in proportion to how far
-// what is achieved still moves in its episode, the others uniformly.
+// Achieved-goal displacement sampling: a share of the samples is drawn in proportion to the
+// movement of the achieved goal in the rest of the episode, the others uniformly.
 //
 //   path:          movement(s) = sum over the steps k = s, ..., T of |achieved_k - achieved_(k-1)|
 //   displacement:  movement(s) = |achieved_T - achieved_(s-1)|
 //
-// with T the episode's last step. An object that rattles between the fingers and ends where it was
-// has a path, but no displacement; hindsight learns from the latter.
+// where T is the episode's last step. An object that rattles between the fingers and ends at its
+// old place has a path but no displacement; hindsight learns from displacement.
 //
-// Where an object is to be moved most steps of an unskilled policy leave it alone, and every goal
-// of hindsight is reached before it begins. The idea of preferring episodes by what moved is that
-// of energy-based prioritisation (Zhao and Tresp 2018, arXiv:1810.01363), whose weight is an
-// episode's energy; this one is a step's, looks ahead, and needs no mass and no time.
+// In tasks that move an object, most steps of an unskilled policy do not touch it, and every goal
+// of hindsight is already reached at the start. Energy-based prioritisation (Zhao and Tresp 2018,
+// arXiv:1810.01363) also prefers samples by movement; its weight is the energy of an episode. The
+// weight here belongs to a step, looks ahead, and needs neither mass nor time.
 #pragma once
 
 #include <cstdint>
@@ -50,7 +50,7 @@ class MovementSelector final : public Selector {
   uint64_t redraws() const override { return uniform_.redraws(); }
 
  private:
-  // What lies ahead of a step.
+  // Movement ahead of a step.
   struct Ahead {
     uint64_t id = 0;  // of the step
     uint64_t value =
@@ -58,7 +58,7 @@ class MovementSelector final : public Selector {
   };
 
   size_t Slot(uint64_t id) const { return static_cast<size_t>(id % ring_.capacity()); }
-  // Of a step of an ended episode, whose predecessor is there.
+  // Movement from a step of an ended episode on; its predecessor must be stored.
   uint64_t MovementFrom(uint64_t id);
   // Between the records before step `from` and of step `to`.
   uint64_t Micrometres(uint64_t from, uint64_t to) const;

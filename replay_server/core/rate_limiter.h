@@ -18,8 +18,8 @@
 // SPI_most * W above the threshold, still within the band. Inserts that do not become sampleable do
 // not move the cursor and are not held back for it.
 //
-// Where each step becomes sampleable as it is stored, the integrals of a run lie end to end. Steps
-// that wait for a later record are granted what the newest env steps are, at most W too late.
+// If each step becomes sampleable as it is stored, the integrals of a run are adjacent. Steps that
+// wait for a later record are granted the rate of the newest env steps, at most W steps too late.
 //
 // It acts on credit and on requests; nothing that has come is ever refused. Knows no clock; one
 // owner.

@@ -73,7 +73,8 @@ PlanOptions PlanOptionsOf(const Config& config) {
 
 void CheckSampling(const RunConfig& run) {
   const Config& config = run.config;
-  // Of each environment the newest n steps are no sample yet, and the oldest stack is of one only.
+  // For each environment, the newest n steps are no sample yet; the oldest stack belongs to one
+  // only.
   const int64_t envs = int64_t{config.envs_per_actor} * std::max(1, config.actors);
   const int64_t least =
       config.replay.min_size + envs * (config.replay.n_step + int64_t{run.spec.stack});

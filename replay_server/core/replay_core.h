@@ -2,15 +2,15 @@
 // The replay server without threads, clocks and network: chunks in, credits out; requests in,
 // batches out. Everything below belongs to one owner.
 //
-//   ring             what is stored
-//   episode index    what follows what, what is sampleable
+//   ring             stored records
+//   episode index    successors of records, sampleable steps
 //   intake           chunks -> ring
 //   session table    accounting
-//   policies         which samples, with which goals
+//   policies         choice of samples and of their goals
 //   gather           ring -> batch
-//   rate limiter     who must wait
-//   credit book      what actors are told
-//   request queue    what the learner asked for
+//   rate limiter     ratio of samples to inserts: which side waits
+//   credit book      credits of the actors
+//   request queue    requests of the learner
 #pragma once
 
 #include <cstdint>
@@ -89,7 +89,7 @@ class ReplayCore {
   // The elements of the batch drawn last.
   const BatchPlan& last_plan() const { return last_plan_; }
 
-  // What to tell the actors: everything, or what has changed since the last call.
+  // Credits to send to the actors: all, or those that have changed since the last call.
   std::vector<Credit> TakeCredits(bool changed_only);
   // CreditBook::Urgent, after taking over what has come.
   bool CreditsUrgent();
@@ -123,7 +123,7 @@ class ReplayCore {
   uint64_t budget() const { return budget_; }
 
  private:
-  // Of the budget; empty where it does not count.
+  // Steps left of the budget; empty if there is no limit.
   std::optional<uint64_t> StepsLeft() const;
 
   const RunConfig run_;

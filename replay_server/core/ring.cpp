@@ -84,7 +84,8 @@ Ring::Ring(const ObservationSpec& spec, const RingOptions& options)
   mapping_ = Mapping::OpenFile(options.file, Access::kReadWrite);
   WithRemedy([&] {
     CheckHeader(mapping_, spec, options);
-    const RingExtent extent = ScanRing(mapping_, geometry_, options.file.string(), options.progress);
+    const RingExtent extent =
+        ScanRing(mapping_, geometry_, options.file.string(), options.progress);
     oldest_id_ = extent.oldest_id;
     last_id_ = extent.last_id;
     stored_steps_ = std::max(extent.stored_steps, options.steps_before);
@@ -117,7 +118,7 @@ uint64_t Ring::Append(uint32_t actor, uint64_t session, uint64_t prev, const uin
   CHECK(prev < id);
   const bool is_step = RecordLayout::Header(record).kind == RecordKind::kStep;
   auto* slot = reinterpret_cast<SlotHeader*>(SlotData(id));
-  // From here until the commit word is back the slot belongs to nobody. The process may be killed
+  // From here until the commit word is set again the slot has no record. The process may be killed
   // between any two stores, so the compiler must keep their order: hence the fence.
   CommitWord(slot).store(0, std::memory_order_relaxed);
   std::atomic_signal_fence(std::memory_order_seq_cst);

@@ -5,7 +5,7 @@
 //   StoredSession[kMaxSessions]          accounting per (actor, session); two copies each
 //   slots[capacity], slot_bytes each     SlotHeader | record bytes verbatim (common/spec/record.h)
 //
-// Record ids run from 1 without holes; record `id` lies in slot id mod capacity, so the ring holds
+// Record ids run from 1 without holes; record `id` is in slot id mod capacity, so the ring holds
 // the newest `capacity` records.
 //
 // What survives: the death of the writing process at any instant (the pages belong to the kernel).

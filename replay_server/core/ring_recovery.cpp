@@ -17,7 +17,7 @@ const SlotHeader& SlotAt(const Mapping& mapping, const RingGeometry& geometry, u
                                               slot * geometry.slot_bytes());
 }
 
-// A slot that no whole record lies in is either unused yet or was being written.
+// A slot without a whole record is either unused yet or was being written.
 Error Damaged(const std::string& name, uint64_t slot, const std::string& what) {
   return RuntimeError("replay file '{}' is damaged: slot {} {}", name, slot, what);
 }

@@ -12,7 +12,7 @@
 
 namespace shoal::replay {
 
-// What to do about a ring that cannot be used.
+// Advice for a ring that cannot be used.
 inline constexpr char kRingRemedy[] =
     "remove it, and the run goes on with an empty replay and its count of env steps";
 

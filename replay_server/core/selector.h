@@ -28,7 +28,8 @@ class Selector {
   // The sample that begins with step `id` can be drawn from now on; it can no longer.
   virtual void Added(uint64_t id) = 0;
   virtual void Removed(uint64_t id) = 0;
-  // Of a sample that may be gone; priority >= 0, in units of the selector's own.
+  // Sets the priority of a sample, which may be gone; priority >= 0, in units of the selector's
+  // own.
   virtual void UpdatePriority(uint64_t id, double priority) = 0;
 
   // A sample, or nothing when none was found. `random` alone decides, given the same history.

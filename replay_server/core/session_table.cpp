@@ -86,7 +86,8 @@ void SessionTable::TakeOver(const FormerServer& former) {
     if (i && at(*i).highest >= counters.highest) continue;
     const uint64_t ours = i ? at(*i).stored() : 0;
     if (!i) i = Add(counters.actor, counters.session);
-    if (!i) return;  // a table as full as the former one's was: the next chunk will say so
+    if (!i)
+      return;  // the table is as full as that of the previous server: the next chunk reports it
     // Records that a learner on policy discarded are gone like the stored ones.
     const uint64_t former_ones = counters.stored() + counters.discarded;
     if (former_ones > ours) counters.lost += former_ones - ours;

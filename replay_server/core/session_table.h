@@ -11,7 +11,7 @@
 
 namespace shoal::replay {
 
-// What an earlier server of the run said in the account.
+// State of an earlier server of the run, read from the account.
 struct FormerServer {
   uint64_t stored_steps = 0;
   std::vector<SessionCounters> sessions;

@@ -6,7 +6,7 @@
 
 namespace shoal::replay {
 
-// Called often, about once per record; cheap. Empty = nobody listens.
+// Called often, about once per record; must be cheap. Empty = no progress is reported.
 using StartupProgress = std::function<void()>;
 
 }  // namespace shoal::replay

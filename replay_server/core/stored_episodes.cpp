@@ -8,7 +8,7 @@
 namespace shoal::replay {
 namespace {
 
-// What there is of an episode that has not ended yet.
+// The stored part of an episode that has not ended yet.
 struct Piece {
   std::vector<uint64_t> ids;
   bool from_reset = false;

@@ -13,7 +13,7 @@ namespace shoal::replay {
 // counts. Borrows both; same owner.
 class UniformSelector final : public Selector {
  public:
-  // With only one step in a thousand sampleable, giving up wrongly has probability e^-100.
+  // If only one step in a thousand is sampleable, a wrong end of the search has probability e^-100.
   static constexpr int kMaxDraws = 100'000;
 
   UniformSelector(const Ring& ring, const EpisodeIndex& index) : ring_(ring), index_(index) {}

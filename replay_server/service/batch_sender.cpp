@@ -106,8 +106,8 @@ void BatchSender::Run() {
 }
 
 bool BatchSender::WaitForReader(uint64_t session, bool (PartWriter::*has_reader)()) {
-  // The learner's request may come before its reader is matched, and a volatile writer without a
-  // reader sends to nobody. DDS tells of a match in a status, so this looks again and again.
+  // The learner's request may come before its reader is matched, and the samples of a
+  // volatile writer without a reader are lost. DDS reports a match in a status, which this polls.
   const SteadyTime deadline = Now() + kReaderDeadline;
   while (!(writer_.*has_reader)()) {
     if (!Wanted(session) || Now() > deadline) return false;

@@ -3,10 +3,10 @@
 // intake.
 //
 // Owns a few batch buffers. The service thread fills one and hands it over; it comes back when all
-// its parts are written or given up. Of a batch that lies in a slot of shared memory only the word
-// is sent; the slot is the caller's. A batch is given up when its learner session is replaced, when
-// no learner is there, or when a part could not be written for kPartDeadline: the learner asks
-// again.
+// its parts are written or given up. For a batch in a slot of shared memory only the slot message
+// is sent; the caller owns the slot. A batch is given up when its learner session is replaced, when
+// no learner is connected, or when a part could not be written for kPartDeadline: the learner sends
+// its request again.
 #pragma once
 
 #include <atomic>
@@ -27,7 +27,7 @@
 
 namespace shoal::replay {
 
-// What the sender writes to: DDS, or a fake.
+// Destination of the sender: the link, or a fake.
 class PartWriter {
  public:
   virtual ~PartWriter() = default;

@@ -17,12 +17,12 @@
 
 namespace shoal::replay {
 
-// Where the service thread's seconds went since its start.
+// Use of the service thread's time since its start, in seconds.
 struct ServiceSeconds {
   double inserting = 0;  // chunks into the ring
   double sampling = 0;   // batches out of it
   double idle = 0;       // waiting for either
-  // With inserts or samples held back: apart, while doing any of the above.
+  // Time in which inserts or samples were held back, also while doing any of the above.
   double blocked_insert = 0, blocked_sample = 0;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What it costs to hand batches from a replay to a learner, beside gathering them: the real sender
+// Cost of handing batches from a replay to a learner, beside gathering them: the real sender
 // and the real source in a process each, with an empty batch in place of a drawn one.
 #pragma once
 

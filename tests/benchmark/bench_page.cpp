@@ -27,7 +27,7 @@ std::string_view TakeLine(std::string_view* text) {
   return line;
 }
 
-// What stands between "<!-- bench " and " -->".
+// The text between "<!-- bench " and " -->".
 std::string_view OrderOf(std::string_view line) {
   const size_t end = line.find(" -->");
   if (end == std::string_view::npos) throw RuntimeError("no ' -->' ends '{}'", line);

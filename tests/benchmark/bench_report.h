@@ -11,8 +11,8 @@
 
 namespace shoal::bench {
 
-// As in the file. A limit is one of two: the ratio is meant to be at least `target`, or the figure
-// itself at most `at_most`.
+// A row of the file. A limit is one of two: the ratio is meant to be at least `target`, or the
+// figure itself at most `at_most`.
 struct ReportedRow {
   std::string stage, unit, against;
   double figure = 0;

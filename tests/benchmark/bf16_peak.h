@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one core can do at most in bf16: dot products of registers, with nothing read or written.
+// Peak rate of one core in bf16: dot products of registers, with nothing read or written.
 // CPUs with AMX can do more by it; oneDNN 2.6 and 3 use it where it is.
 #pragma once
 

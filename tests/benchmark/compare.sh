@@ -4,8 +4,8 @@
 #
 # Builds another commit in a worktree outside of this tree and runs shoal-bench of both in turn, N
 # times (5), so that a machine whose speed drifts does not favour either. Prints for each row of both
-# ours / theirs and its spread. Exit 2: the commit is unknown, or the tree holds changes that no
-# commit does, so that nobody could say what was compared.
+# ours / theirs and its spread. Exit 2: the commit is unknown, or the tree has uncommitted
+# changes, so that no commit would name what was compared.
 set -euo pipefail
 cd "$(dirname "$(readlink -f "$0")")/../.."
 

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # SPDX-License-Identifier: Apache-2.0
-# What `./run bench --compare` refuses, in a repository of the test's own: one line, exit 2, and
+# Refusals of `./run bench --compare`, in a repository of the test's own: one line, exit 2, and
 # nothing built.
 set -euo pipefail
 readonly script=$(dirname "$(readlink -f "$0")")/compare.sh

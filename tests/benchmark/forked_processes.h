@@ -20,8 +20,8 @@
 
 namespace shoal::bench {
 
-// Values of one kind from process to process, whole ones whoever else writes. Throws Error when the
-// other side has ended.
+// Values of one kind from process to process, each whole, also with several writers. Throws Error
+// when the other side has ended.
 template <class T>
 class Pipe {
   static_assert(std::is_trivially_copyable_v<T> && sizeof(T) <= 512);

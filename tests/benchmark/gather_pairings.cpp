@@ -40,7 +40,7 @@ class FullReplay {
     index_.SetSelector(&selector_);
     const RecordLayout layout(spec_);
     for (uint32_t i = 0; i < kDifferent; ++i) {
-      // As words: records are aligned to 8.
+      // Words, because records are aligned to 8.
       std::vector<uint64_t>& record =
           records_.emplace_back(static_cast<size_t>(layout.record_bytes()) / 8);
       auto* bytes = reinterpret_cast<uint8_t*>(record.data());

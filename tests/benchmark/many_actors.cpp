@@ -80,7 +80,7 @@ class Bystander {
     last_beat_ = {};
     Beat();
   }
-  // What all actors are to act by, those that come later, too.
+  // Publishes the weights of all actors, including those that start later.
   void Publish(const RunConfig& run, const std::string& weights) {
     WeightsMessage message;
     message.spec_hash = run.spec.Hash();
@@ -96,7 +96,7 @@ class Bystander {
     const std::lock_guard lock(mutex_);
     return answered_.size();
   }
-  // Of records and, among them, of steps.
+  // Counts of records and of the steps among them.
   struct Stored {
     double records = 0, steps = 0;
   };

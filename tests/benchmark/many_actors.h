@@ -23,7 +23,7 @@ struct ManyActorsOptions {
   std::string weights{};
 };
 
-// Config of a run that nobody learns from, so that nobody is waited for.
+// Config of a run without a learner, whose actors never wait.
 RunConfig UnlearnedRun(int actors);
 
 struct ManyActorsFigures {

@@ -27,7 +27,7 @@ using shoal::bench::Row;
 
 constexpr double kFoundSeconds = 2;  // meant for all actors to be found in
 
-// Of one number of actors, repetition by repetition.
+// Figures for one number of actors, repetition by repetition.
 using Repetitions = std::vector<ManyActorsFigures>;
 
 double MedianOf(const Repetitions& of, double ManyActorsFigures::*figure) {

@@ -30,7 +30,7 @@ struct Pairing {
   std::function<double()> units{};
   // In place of `other`: a rate that is a limit by itself, in units per second.
   double other_rate = 0;
-  // What goes on meanwhile, for as long as the result lives; empty: nothing.
+  // Starts background work, which ends with the result; empty: none.
   std::function<std::shared_ptr<void>()> meanwhile{};
   // Why it cannot be measured on this machine, which is no fault; empty where it can.
   std::string skipped{};
@@ -39,14 +39,14 @@ struct Pairing {
 // Each side runs for about `seconds` per repetition; the first, uncounted call of each warms up.
 Row TimePair(const Pairing& pairing, int repetitions, double seconds);
 
-// Of two in the middle their mean; at least one value.
+// For an even number of values the mean of the two in the middle; needs at least one value.
 double Median(std::vector<double> values);
 
 nlohmann::ordered_json ToJson(const Row& row);
 // For people: figure, ratio, spread and, where it has a target, whether that is met.
 std::string LineOf(const Row& row);
 
-// What is measured, one function per room.
+// The measured pairs, one function per room.
 std::vector<Pairing> ReplayPairings();
 std::vector<Pairing> GatherPairings();
 std::vector<Pairing> NetworkPairings();

@@ -32,7 +32,7 @@ struct Acting {
   std::vector<policy::ObservedBlock> blocks;
 };
 
-// With parameters as they start.
+// Acting with initial parameters.
 std::shared_ptr<Acting> MakeActing(const NetworkConfig& network, const ObservationSpec& spec) {
   policy::CheckpointPolicy checkpoint;
   checkpoint.description.network = network;

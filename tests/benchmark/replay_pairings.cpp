@@ -25,7 +25,7 @@ struct Images {
   }
 };
 
-// As the published code does it: pad, then crop.
+// The published implementation: pad, then crop.
 void PadAndCrop(const uint8_t* in, replay::Shift shift, std::vector<uint8_t>& padded,
                 uint8_t* out) {
   constexpr int kWide = kSize + 2 * kBorder;

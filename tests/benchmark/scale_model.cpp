@@ -12,7 +12,7 @@
 namespace shoal::bench {
 namespace {
 
-// What the rows are of: batches of 128 with one camera's frames of (3, 84, 84).
+// Workload of the rows: batches of 128 with one camera's frames of (3, 84, 84).
 constexpr double kBatch = 128, kFrameBytes = 3 * 84 * 84;
 constexpr double kRecordBytes = kFrameBytes + 120;  // header and action
 constexpr double kBatchBytes = 2 * kBatch * kFrameBytes;
@@ -36,7 +36,7 @@ const ReportedRow& RowOf(std::span<const Report> reports, std::string_view stage
   throw RuntimeError("none of the files has a row '{}'", stage);
 }
 
-// What is exceeded most, with how many of it would do; "nothing".
+// The most exceeded resource and the number of it that would suffice; "nothing".
 std::string NextLimit(const ScaleLoad& load) {
   const std::pair<double, const char*> shares[] = {{load.replay, "replay servers"},
                                                    {load.learner, "learner cores"},

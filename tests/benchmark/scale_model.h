@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What one replay server, one learner and one link carry, by arithmetic from measured rows: the
-// tables of docs/scale.md.
+// Capacity of one replay server, one learner and one link, computed from measured rows: the tables
+// of docs/scale.md.
 //
 // A run makes `t` transitions a second, of which the learner wants S = replay.samples_per_insert
 // samples each, so t S / B batches. Shares of what there is:

@@ -24,7 +24,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-// Of this thread: other work on the machine does not count.
+// CPU time of this thread: other work on the machine does not count.
 double CpuMicroseconds() {
   timespec time{};
   clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);

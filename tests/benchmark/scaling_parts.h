@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the parts of an update by N replicas cost, each measured by itself.
+// Cost of the parts of an update by N replicas, each measured by itself.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

@@ -57,7 +57,7 @@ const std::string& Credentials() {
   return folder;
 }
 
-// Starts the processes at its first call, which nobody counts.
+// Starts the processes at its first call, which is not timed.
 std::function<void()> Sender(size_t chunk_bytes, bool secured) {
   const auto transport = std::make_shared<std::unique_ptr<Transport>>();
   return [=] {

@@ -81,7 +81,7 @@ class StillAgent final : public learner::Agent {
   uint64_t updates_ = 0;
 };
 
-// Sends a version at once and then as many as it is told, at the rate asked for.
+// Sends a version at once and then as many as each order says, at the requested rate.
 void Learn(const BroadcastOptions& options, const ClusterAddress& address, const Pipe<int>& orders,
            const Pipe<int>& done) {
   const RunConfig run = RunOf(options);
@@ -132,7 +132,7 @@ void Act(const BroadcastOptions& options, const ClusterAddress& address,
   }
 }
 
-// Of another process, until now.
+// CPU time of another process so far.
 double CpuSecondsOf(pid_t pid) {
   clockid_t clock{};
   timespec time{};
@@ -177,7 +177,7 @@ int AwaitVersion(int version, int actors, const Pipe<int>& acting_by) {
   return loaded;
 }
 
-// Of one core, each side.
+// Shares of one core, for each side.
 Processes::Cpu Shares(const Processes::Cpu& from, const Processes::Cpu& to) {
   const double span = std::chrono::duration<double>(to.time - from.time).count();
   return {.learner = (to.learner - from.learner) / span,

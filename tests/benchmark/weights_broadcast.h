@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What it costs a host that its learner's weights reach its actors: real processes, the sender of
+// Cost for a host of sending its learner's weights to its actors: real processes, the sender of
 // the learner, the inboxes of actors over DDS and the loading into a policy that acts, layouts
 // included, and nothing else that these do.
 #pragma once

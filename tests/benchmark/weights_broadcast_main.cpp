@@ -26,7 +26,7 @@ constexpr double kAtMost = 0.05;  // of a core, with 16 actors and two versions 
 
 double Cost(const BroadcastFigures& figures) { return figures.learner + figures.actors; }
 
-// Of the repetition in the middle.
+// Row of the median repetition.
 nlohmann::ordered_json Row(const BroadcastOptions& options, std::vector<BroadcastFigures> all) {
   std::ranges::sort(all, {}, Cost);
   const BroadcastFigures& middle = all[all.size() / 2];

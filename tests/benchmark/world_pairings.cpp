@@ -78,7 +78,7 @@ class Stepper {
 }  // namespace
 
 std::vector<Pairing> WorldPairings() {
-  // An environment is made with its first step, which nobody counts: --only leaves most of them
+  // An environment is made with its first step, which is not timed: --only leaves most of them
   // out.
   const auto make = [](const std::string& task, const std::vector<std::string>& cameras,
                        const std::string& quality, int size = kPictureSize,

@@ -9,7 +9,7 @@ stable-baselines3, gymnasium-robotics and mujoco 3.3.7 (./run bench --against pe
 for none: then only our own rows are printed. Exit code 1 when a peer could not be measured.
 
 Each peer is a process of its own (this file again, `bench_peers.py worker KIND ...`) that measures
-for so many seconds when it is told to, and sleeps meanwhile. PyTorch computes an update with the
+for so many seconds on request, and sleeps meanwhile. PyTorch computes an update with the
 networks and passes of docs/algorithm.md; every variant of eager or compiled, f32 or bf16 (autocast),
 channels last or not is tried once for an encoder and a number of threads, with the smaller batch, and
 the best of them is the peer. Two threads are compared for `compact` alone. The other encoders are held

@@ -16,7 +16,7 @@ smallest and largest ratio of a repetition. FetchReach from state stands beside 
 all cores at once, before and after each repetition. F multiplies the env steps: 0.2 for a short trial.
 
 Nothing else may run on the machine. Wants stable-baselines3, gymnasium[mujoco], gymnasium-robotics and,
-for the latter's models, mujoco 3.3.7 from PyPI; nothing of Shoal needs Python.
+for the models of gymnasium-robotics, mujoco 3.3.7 from PyPI; nothing of Shoal needs Python.
 """
 
 import argparse

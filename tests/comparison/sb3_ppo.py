@@ -4,7 +4,7 @@
 usage: sb3_ppo.py FOLDER
 
 Writes ppo.safetensors and ppo_clipped.safetensors to FOLDER: from state, two epochs of a rollout of
-STEPS steps of ENVS environments; the latter with clipped values, an entropy bonus and a small
+STEPS steps of ENVS environments; ppo_clipped with clipped values, an entropy bonus and a small
 clip. Inputs are not stored but computed on both sides, as shared_numbers.py says.
 
 In a file; rows are steps of environment 0 in order, then of environment 1:

@@ -12,7 +12,7 @@ from PyPI; nothing of Shoal needs Python.
 In a file, u = 0..3 counts updates; NAME is a tensor's name in Stable-Baselines3 after its model's
 ("actor.mu.0.weight", "critic.qf0.0.bias", "critic_target.qf0.0.bias"):
 
-  u.critic_loss, u.actor_loss   as logged; the latter in updates that move the actor
+  u.critic_loss, u.actor_loss   as logged; actor_loss in updates that move the actor
   u.ent_coef                    the entropy coefficient that the update's losses are made with
   u.target                      y of the critic's loss (B)
   u.gradient.NAME               as the optimiser's step finds it

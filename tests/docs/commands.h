@@ -20,7 +20,7 @@ struct Command {
 // Those of one block that shells are shown in: ```sh, or a transcript. None of other blocks.
 std::vector<Command> CommandsOf(const Block& block);
 
-// What is called of Shoal's own programs in a text: {"shoal", "train", "--preset", ...}, the words
+// The calls of Shoal's own programs in a text: {"shoal", "train", "--preset", ...}, the words
 // up to the end of the command, without the folder before the program; `./run top` is shoal's.
 std::vector<std::vector<std::string>> OwnCalls(const std::string& text);
 

@@ -45,8 +45,8 @@ TEST(DocsCommands, CallsAreFoundWithTheirWords) {
                           ElementsAre("shoal-actor")));
 }
 
-// What is wrong with a call, or nothing: commands, options and keys must be there. Words that stand
-// for others (NAME, …) are let pass.
+// The fault of a call, or empty: commands, options and keys must exist. Placeholders (NAME, …) are
+// accepted.
 std::string CallFault(const std::vector<std::string>& call) {
   static const std::set<std::string_view> keys = [] {
     std::set<std::string_view> paths;

@@ -16,7 +16,7 @@ const std::string kPyPI = "takes packages from PyPI";
 
 const std::vector<TrialRule>& TrialRules() {
   static const std::vector<TrialRule> rules = {
-      // What builds, installs, measures or wants another machine.
+      // Commands that build, install, measure or need another machine.
       {"^\\./run build\\b", kElsewhere, "NewProject.AnInstallationHasItsPartsWhereTheyBelong"},
       {"^\\./run (package|python|docs)\\b", kNotHere,
        "builds everything once more; a stage of its own"},
@@ -56,7 +56,7 @@ const std::vector<TrialRule>& TrialRules() {
       {"--contact-sheet", kElsewhere,
        "ContactSheet.ShowsEveryTaskWithEachOfItsCamerasInBothQualities"},
 
-      // What watches or steers a run that goes on.
+      // Commands that watch or steer a running run.
       {"^(build/release/bin/)?shoal top", kElsewhere,
        "Operate.TopShowsEveryProcessUntilTheRunEnds"},
       {"^shoal (set|scale)", kElsewhere, "Operate.ARunIsSteeredWhileItGoesOnAndItsRecordSaysSo"},

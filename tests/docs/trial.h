@@ -23,8 +23,8 @@ struct TrialRule {
 // kSmaller that match change it.
 const std::vector<TrialRule>& TrialRules();
 
-// What a shell is given for the command: itself, made smaller, or ":". The numbers of the rules
-// that were used are added to `used`.
+// The command for the shell: the original, a smaller one, or ":". Adds the numbers of the rules
+// that were used to `used`.
 std::string Tried(const std::string& command, std::vector<size_t>* used);
 
 }  // namespace shoal

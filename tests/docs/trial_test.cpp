@@ -46,7 +46,7 @@ class Surroundings {
   void Write(const fs::path& name, const std::string& text) const {
     std::ofstream(folder_.path() / name) << text;
   }
-  // What went wrong, or nothing.
+  // The fault, or empty.
   std::string Run(const std::string& script) const {
     const std::string head =
         fmt::format("cd '{}'\nset -eu -o pipefail\ntrap 'echo \"failed: $BASH_COMMAND\" >&2' ERR\n",

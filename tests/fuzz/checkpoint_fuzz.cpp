@@ -51,7 +51,7 @@ void ReadWithLearner(const std::filesystem::path& folder, const std::string& lea
   fuzz::WriteScratch(folder / "learner.safetensors", learner);
   fuzz::WriteScratch(folder / "state.json", json.dump(2) + "\n");
   const Checkpoint checkpoint = ReadCheckpoint(folder, kSpec);
-  // What was taken says the same when written and read again.
+  // Accepted input is unchanged after writing and reading.
   const std::string written = nn::WriteSafetensors(checkpoint.tensors, {});
   const nn::TensorMap again = nn::ReadSafetensors(written, "again");
   CHECK(again.size() == checkpoint.tensors.size());
@@ -77,7 +77,7 @@ void Read(uint8_t mode, const std::string& bytes) {
   if (mode == 0) return ReadWithState(folder, bytes);
   if (mode == 1) return ReadWithLearner(folder, bytes);
   if (mode == 2) return LoadPolicy(bytes);
-  // What was taken says the same when written and read again.
+  // Accepted input is unchanged after writing and reading.
   const std::string written = policy::WriteDescription(policy::ReadDescription(bytes, "described"));
   CHECK(policy::WriteDescription(policy::ReadDescription(written, "again")) == written);
 }

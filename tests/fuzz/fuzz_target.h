@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the fuzz targets share. Each target defines libFuzzer's entry point; replay_corpus.cpp runs
-// it over files where libFuzzer is not linked.
+// Common parts of the fuzz targets. Each target defines libFuzzer's entry point; replay_corpus.cpp
+// runs it over files where libFuzzer is not linked.
 #pragma once
 
 #include <cstddef>

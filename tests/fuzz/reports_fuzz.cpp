@@ -29,7 +29,7 @@
 namespace shoal {
 namespace {
 
-// What is addressed to somebody is heard by one of that address.
+// A message with an address is received by a receiver of that address.
 void Use(const CreditsMessage& message) {
   for (const Credit& credit : message.credits) {
     actor::CreditInbox inbox(credit.actor, credit.session);
@@ -65,7 +65,7 @@ void Use(const SampleRequest& message) {
   core.TakeRequest(ours);
 }
 
-// Of this process: what it has open are not slots, whatever the word says.
+// The message names this process, whose open memory has no slots.
 void Use(const BatchSlot& message) {
   BatchSlot ours = message;
   ours.address.pid = getpid();

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the page takes from whoever connects: any bytes are refused or make sense. First byte: which
-// part.
+// Input of the page from any client: bytes are refused or valid. First byte: which part.
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
@@ -27,7 +26,7 @@ void CheckRange(const std::string& header) {
   }
 }
 
-// What is served is the one file there is, whatever is asked for.
+// For any path at most the one existing file is served.
 void CheckFile(const std::string& path) {
   const std::filesystem::path run = fuzz::Scratch() / "run";
   std::filesystem::create_directories(run / "videos");

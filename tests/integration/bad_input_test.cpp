@@ -267,7 +267,7 @@ INSTANTIATE_TEST_SUITE_P(
         Mistake{"NoInterface", TrainWith("transport.interface=\"eth77\""), 1, {"eth77"}}),
     [](const auto& test) { return test.param.name; });
 
-// What a run is refused for when it is started in earnest.
+// Faults for which a run is refused at its start.
 struct Refused {
   std::string name, preset;
   std::vector<std::string> assignments, mentions;
@@ -432,7 +432,7 @@ TEST(BadWeights, ARunDoesNotGoOnWithACheckpointOfAnotherNetwork) {
   EXPECT_EQ(ReadFile(run.path() / "logs" / "learner-0.log"), log) << "a learner was started";
 }
 
-// As folders are that were made before the evaluation actor had a key of its own.
+// Folders made before the evaluation actor had a key of its own lack one.
 TEST(BadCredentials, AMissingKeyOfAnyProcessIsNamedBeforeOneIsStarted) {
   const TrainingRun run;
   const std::string secure = (run.parent() / "secure").string();

@@ -39,7 +39,7 @@ TEST(Check, AMachineThatBuildsShoalCanTrain) {
   EXPECT_EQ(left, 1) << "the report alone";
 }
 
-// A folder that takes no runs: the kernel lets nobody write there, not even root.
+// A folder that takes no runs: the kernel refuses writes there, even by root.
 TEST(Check, AFolderThatTakesNoRunsFailsTheLinesThatNeedIt) {
   const ProgramResult result =
       RunProgram({"shoal", "check", "--run-dir", "/proc/sys"}, std::chrono::seconds(60));

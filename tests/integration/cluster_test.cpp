@@ -67,7 +67,7 @@ class Cluster : public testing::Test {
         },
         seconds(60), kFarActor);
   }
-  // What the far actor said last that it had made.
+  // Number of records that the far actor reported last.
   double FarRecords() const {
     double made = 0;
     std::ifstream in(run_.path() / "metrics.jsonl");

@@ -27,7 +27,7 @@ nlohmann::json ExpectReturn(const std::string& preset, const std::string& task, 
   return learned.aggregate;
 }
 
-// Of 1000 points.
+// The maximum is 1000 points.
 TEST(ControlLearning, CartpoleSwingsUpFromState) {
   const nlohmann::json aggregate =
       ExpectReturn("cartpole-swingup-state", "cartpole_swingup", 9000, 800, 500);

@@ -53,7 +53,7 @@ TEST(Describe, SaysWhatEachKindOfObservationConsistsOf) {
   }
 }
 
-// What a run of the preset would get is what its actors say; of a run it stands in its folder.
+// The inputs of a preset come from its actors, those of a run from its folder.
 TEST(Describe, ListsWhatThePolicyOfAPresetOrARunGets) {
   const TemporaryFolder folder;
   const auto describe = [&](const std::string& option, const std::string& name) {

@@ -69,7 +69,7 @@ TEST_F(ExportTest, ACheckpointLeavesItsRun) {
   fs::remove(Path("policy") + "/learner.safetensors");
   const ProgramResult result = Export({Path("policy"), "--onnx", Path("policy.onnx")});
   ASSERT_EQ(ExitCode(result), 0) << result.err;
-  EXPECT_THAT(result.out, HasSubstr("no recorded observations: the checkpoint lies in no run"));
+  EXPECT_THAT(result.out, HasSubstr("no recorded observations: the checkpoint is in no run"));
 }
 
 TEST_F(ExportTest, WhatCannotBeExportedLeavesNothing) {

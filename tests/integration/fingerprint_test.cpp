@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What three short lockstep runs of the real programs learn, held to what they learned before:
+// Compares the policies of three short lockstep runs of the real programs with recorded ones:
 // a change that is meant to change no behaviour leaves every bit of the policy as it was.
 //
 // tests/golden/fingerprints.json holds a CRC-32 of each tensor of the policy, per surroundings: the

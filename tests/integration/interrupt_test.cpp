@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ctrl-C and its like: what a shell, and whoever else starts the programs, sees of an ordered end.
+// Ctrl-C and its like: the end of a program as a shell or another parent sees it.
 #include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -189,7 +189,7 @@ TEST(Interrupt, TheProgramsOfARunDieByTheSignalThatEndsThem) {
   EXPECT_EQ(training.End(seconds(60)), kInterruptedExit) << training.Output();
 }
 
-// Within a second: some actors have not begun when they are told to leave.
+// Within a second: some actors have not begun when their stop arrives.
 TEST(Interrupt, ManyOrdersToScaleAtOnceAreNoFailure) {
   const TrainingRun run;
   RunningTraining training(run, run.Command(kEndless));

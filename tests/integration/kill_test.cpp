@@ -45,7 +45,7 @@ TEST(Kill, TrainingSurvivesTheDeathOfEachRole) {
 }
 
 // The actors have spent their credit by the word of a replay that knew them; the next one knows
-// nobody, and what they had acknowledged is gone.
+// no actor, and the records that were acknowledged are gone.
 TEST(Kill, WithTheReplayInMemoryTheRunGoesOnAndTheAccountIsExact) {
   const TrainingRun run;
   RunningTraining training(run, run.Command({{"env_steps", "10000000"},

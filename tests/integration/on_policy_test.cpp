@@ -36,7 +36,7 @@ TEST(OnPolicy, ARunOfWholeRolloutsHasNoReplayAndAnExactAccount) {
   ExpectBalanced(meta);
   EXPECT_EQ(meta.at("env_steps"), 8 * 1024) << "the budget, in whole rollouts of 2 x 4 x 128";
   EXPECT_EQ(meta.at("updates"), 8);
-  EXPECT_EQ(meta.at("accounting").at("discarded"), 0) << "nobody plays beyond the budget";
+  EXPECT_EQ(meta.at("accounting").at("discarded"), 0) << "no actor plays beyond the budget";
   const ProgramResult replay = RunProgram({"shoal-replay", "--run", run.path()}, seconds(30));
   EXPECT_EQ(ExitCode(replay), 2) << replay.err;
   EXPECT_NE(replay.err.find("has no replay: learner.algorithm = ppo"), std::string::npos)

@@ -235,7 +235,7 @@ json LastReported(const TrainingRun& run, const std::string& role) {
   return last;
 }
 
-// What the processes of a run have reported, each in the table.
+// Metrics that the processes of a run have reported; each must be in the table.
 void AddReported(const TrainingRun& run, std::set<RoleMetric>* seen) {
   std::ifstream in(run.path() / "metrics.jsonl");
   for (std::string line; std::getline(in, line);) {

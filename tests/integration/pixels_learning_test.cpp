@@ -8,8 +8,8 @@
 namespace shoal {
 namespace {
 
-// The fastest recipe, ended after 30,000 of its 52,000 env steps. Where the goal is can be told
-// from the pictures alone.
+// The fastest recipe, ended after 30,000 of its 52,000 env steps. The pictures
+// alone show the goal.
 TEST(PixelsLearning, FetchReachDenseReachesEightyFivePercent) {
   const LearningResult learned =
       Learn("fetch-reach-fast",

@@ -44,7 +44,7 @@ const std::string& HelpOf(const std::vector<std::string>& commands) {
   return at->second;
 }
 
-// What a source names of commands within its string literals. Prose about Shoal does not count: a
+// Commands that a source names within its string literals. Prose about Shoal does not count: a
 // word that is no command is one here only if an option follows it.
 std::vector<Spelled> CommandsIn(const fs::path& file) {
   static const std::regex kLiteral(R"rx("(?:[^"\\\n]|\\.)*")rx");

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the transport delivers again, and what makes no sense, does not count.
+// Messages that the transport delivers again, and invalid messages, do not count.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -30,7 +30,7 @@ int Lines(const std::string& text, const std::string& beginning) {
   return lines;
 }
 
-// The first evaluation is told twice: at stop.success=0 the run would end for it with one
+// The first evaluation is delivered twice: at stop.success=0 the run would end for it with one
 // evaluation on its disk. The second one is far enough for the evaluation actor to be stopped
 // before it.
 TEST(RepeatedMessages, AnEvaluationDeliveredAgainAfterAPauseDoesNotCount) {
@@ -75,7 +75,7 @@ TEST(RepeatedMessages, AnEvaluationThatCannotBeIsSaidAndTheRunGoesOn) {
   while (publisher.Matched() < 2 && Now() - start < seconds(20)) {  // coordinator and learner
     std::this_thread::sleep_for(std::chrono::milliseconds(20));
   }
-  // In form, but of parameters that nobody handed out.
+  // Well-formed, but of parameters that were never sent.
   EvalMessage forged;
   forged.env_steps = 1000;
   forged.version = {1, 5};

@@ -40,8 +40,8 @@ std::vector<int64_t> EvaluatedSteps(const TrainingRun& run) {
   return steps;
 }
 
-// What a user does who frees two gigabytes. The count of env steps is that of the records which
-// were acknowledged, as the actors made them: resets are no steps.
+// Removes the ring, as users do to free two gigabytes. The count of env steps is that of the
+// records which were acknowledged, as the actors made them: resets are no steps.
 TEST(RunFiles, WithoutItsRingARunCountsItsEnvStepsOn) {
   const TrainingRun run;
   const ProgramResult first = run.Train({{"env_steps", "3000"},
@@ -77,7 +77,7 @@ TEST(RunFiles, WithoutItsRingARunCountsItsEnvStepsOn) {
   EXPECT_TRUE(std::ranges::any_of(evaluated, [&](int64_t at) { return at > 3500 && at < 4500; }))
       << "the interval goes on from the run's own steps";
   const auto replay = ReportReader(run.path()).Last("replay");
-  EXPECT_EQ(replay.at("stored_steps"), steps) << "limiter and budget go by the same count";
+  EXPECT_EQ(replay.at("stored_steps"), steps) << "limiter and budget use the same count";
 }
 
 TEST(RunFiles, AFinishedRunKeepsItsReplayOnlyWhereItIsAskedTo) {

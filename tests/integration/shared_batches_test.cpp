@@ -92,8 +92,8 @@ TEST(SharedBatches, WhereTheyDoNotFitTheNetworkIsUsedAndItIsSaid) {
   EXPECT_THAT(Log(run, "learner-0"), HasSubstr("batches come over the network"));
 }
 
-// As on another host: the replay's process number means nothing, or another process, to a learner
-// with process numbers of its own.
+// Imitates another host: the replay's process number means nothing, or another process, to a
+// learner with process numbers of its own.
 TEST(SharedBatches, ALearnerThatCannotOpenThemGetsItsBatchesOverTheNetwork) {
   const std::string apart = std::string("/usr/bin/unshare --pid --fork --kill-child --mount-proc") +
                             (geteuid() == 0 ? "" : " --user --map-root-user");

@@ -104,7 +104,7 @@ class SlurmTest : public testing::Test {
   const fs::path conf_ = folder_.path() / "slurm.conf";
 };
 
-// As a job; `train` is "shoal train ...".
+// Runs as a job; `train` is "shoal train ...".
 void SlurmTest::ExpectTrainsWithActorsThatSrunStarts(const TrainingRun& run,
                                                      const std::vector<std::string>& train) {
   const fs::path output = folder_.path() / "job";

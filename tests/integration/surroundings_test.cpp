@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the machine can do to a run: no room, no permission, no port, little memory. Each gets one
-// clear line, and what was whole before stays whole.
+// Faults of the machine: no space, no permission, no port, little memory. Each gets one clear line,
+// and files that were whole before stay whole.
 #include <arpa/inet.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -42,8 +42,8 @@ TEST(Surroundings, ARingThatDoesNotFitTheDiskIsRefusedWithBothSizes) {
   EXPECT_FALSE(fs::exists(run.path())) << "nothing half-written";
 }
 
-// `shoal` as a user whom permissions hold back: root, who may do anything, runs it as nobody. From
-// a copy of the program and the presets, for nobody may not look into root's checkout.
+// `shoal` as an unprivileged user, because permissions do not bind root. Runs a copy of the program
+// and the presets: that user may not read root's checkout.
 ProgramResult RunAsCommonUser(const fs::path& folder, std::vector<std::string> words) {
   fs::permissions(folder, fs::perms::all);
   fs::create_directory(folder / "bin");

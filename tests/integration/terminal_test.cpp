@@ -72,7 +72,7 @@ TEST(Terminal, CtrlZPausesEveryProcessOfTheRun) {
   const auto steps = view.at("env_steps").get<int64_t>();
   const json later = WaitForView(run, [&](const json& v) { return v.at("env_steps") > steps; });
   ASSERT_TRUE(later.is_object());
-  EXPECT_EQ(PidsOf(later), PidsOf(view)) << "nobody was taken for dead";
+  EXPECT_EQ(PidsOf(later), PidsOf(view)) << "no process was taken for dead";
   training.Type(kCtrlC);
   EXPECT_EQ(training.End(seconds(120)), kInterruptedExit) << training.shown();
   const json meta = run.Json("meta.json");

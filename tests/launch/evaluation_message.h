@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an evaluation actor says, with two episodes.
+// Message of an evaluation actor, with two episodes.
 #pragma once
 
 #include <nlohmann/json.hpp>

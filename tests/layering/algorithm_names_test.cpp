@@ -30,7 +30,7 @@ const std::set<std::string> kMayName = {
     kList, "common/config/algorithm_kind.cpp",
     // The schema: sections of keys, their default and what is said of them.
     "common/config/config.h", "common/config/config_keys.cpp",
-    // What wrote a checkpoint that does not say.
+    // The algorithm of old checkpoints, which do not name it.
     "common/checkpoint/checkpoint_files.h"};
 
 // Folders of learner/agent that the list names; others are shared by several algorithms.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What docs/architecture.md says there is, there is.
+// Files and rooms of docs/architecture.md exist.
 #include <gtest/gtest.h>
 
 #include <algorithm>

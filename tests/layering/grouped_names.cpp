@@ -135,7 +135,7 @@ class Target {
   }
 
  private:
-  // What another source sees in the namespace around an unnamed one.
+  // Names of another source in the namespace around an unnamed one.
   void FindAround(const Place& place) {
     if (IsOverloadedHook(place.name.name)) return;
     const std::pair<std::string, std::string> around(Around(place.name.scope), place.name.name);

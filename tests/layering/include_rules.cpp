@@ -46,8 +46,8 @@ const std::vector<std::string> kUsersTasks = {"tests/integration/crashing_point/
 const std::set<std::string> kEmptyNames = {"utils", "util",    "helpers", "helper",
                                            "misc",  "manager", "common"};
 
-// Rooms inside a top folder in their order: each may use those before it, and what lies in the top
-// folder itself, which puts them together, may use all. A header of the top folder has a place
+// Rooms inside a top folder in their order: each may use those before it. Files of the top folder
+// itself, which puts them together, may use all. A header of the top folder has a place
 // where a room implements it.
 const std::map<std::string, std::vector<std::string>> kRooms = {
     {"actor", {"worlds", "acting", "sending", "loop", "evaluation"}},
@@ -150,7 +150,7 @@ bool Skip(std::string_view start, std::string_view* text) {
   return true;
 }
 
-// What a line includes; empty when it is no #include.
+// The path that a line includes; empty if it is no #include.
 std::string IncludedPath(std::string_view line) {
   if (!Skip("#", &line) || !Skip("include", &line)) return "";
   if (!Skip("<", &line) && !Skip("\"", &line)) return "";
@@ -199,7 +199,7 @@ bool MayUseFolder(const fs::path& file, const fs::path& included,
   return from_place != common_order.end() && to_place < from_place;
 }
 
-// What is wrong with including `included` in `file`, or nothing.
+// The fault of including `included` in `file`; empty if there is none.
 std::string IncludeFault(const fs::path& file, const std::string& included,
                          const std::vector<std::string>& common_order) {
   const auto begins = [&](const std::string& word) { return file.string().starts_with(word); };

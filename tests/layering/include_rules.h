@@ -5,8 +5,8 @@
 //   it; the three in the middle do not use each other.
 // - Inside common, a folder uses those before it in the order of common/CMakeLists.txt; inside the
 //   others, a room uses those before it in the order of include_rules.cpp (worlds < acting <
-//   sending < ... of actor), where a new room gets its place. What lies in the top folder itself
-//   puts its rooms together and is used by none of them. The tools (launch/tools) come after the
+//   sending < ... of actor), where a new room gets its place. Files of the top folder itself put
+//   its rooms together and are used by none of them. The tools (launch/tools) come after the
 //   rooms of a run, which therefore include none of them.
 // - replay_server/core knows neither its service nor the transport, no clock and no threads;
 //   learner/agent no transport, clock, lock or file, and no threads but those of replicas.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What lies in a run's folder is named in common/run_folder/run_file_names.h and nowhere else in
+// The files of a run's folder are named in common/run_folder/run_file_names.h and nowhere else in
 // the product, and docs/monitoring.md has the same names.
 #include <fmt/core.h>
 #include <gmock/gmock.h>
@@ -49,7 +49,7 @@ bool IsFileOrSchema(std::string_view name) {
   return name.starts_with("shoal-") || name.find('.') != std::string_view::npos;
 }
 
-// What is between quotes before a line's comment, and what stands before it.
+// A string literal before a line's comment, and the code before it.
 struct Literal {
   std::string before, text;
 };

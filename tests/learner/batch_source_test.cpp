@@ -288,7 +288,7 @@ TEST_F(BatchSourceTest, WordsOfSlotsThatNobodyWaitsForAreCounted) {
   source.OnSlot(AnswerInSlot(replay, 1));
   EXPECT_EQ(source.counters().duplicate_parts, 1u);
   Answer(1);
-  EXPECT_EQ(source.counters().duplicate_parts, 2u) << "it lies in a slot already";
+  EXPECT_EQ(source.counters().duplicate_parts, 2u) << "it is in a slot already";
   Answer(2);
   AnswerInSlot(replay, 2);
   EXPECT_EQ(source.counters().duplicate_parts, 3u) << "its parts came first";

@@ -177,7 +177,7 @@ TEST_F(CheckpointTest, AFullDiskLeavesNothingHalfWritten) {
   EXPECT_NE(message.find("learner.safetensors"), std::string::npos) << message;
   EXPECT_EQ(message.find('\n'), std::string::npos) << message;
   EXPECT_EQ(EntriesOfParent(), 1u);
-  EXPECT_EQ(ReadCheckpoint(folder_, kSpecHash).tensors.at("critic").data[0], 1) << "the former one";
+  EXPECT_EQ(ReadCheckpoint(folder_, kSpecHash).tensors.at("critic").data[0], 1) << "the old one";
 }
 
 TEST(CheckPrecision, AnotherOneIsRefusedUnlessAskedFor) {

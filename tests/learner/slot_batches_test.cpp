@@ -64,7 +64,7 @@ TEST_F(SlotBatchesTest, WhatIsOpenOutlivesItsReplay) {
   batches_.Add(Fill(successor, 6, 0x66));
   EXPECT_EQ(batches_.Open(6)[0], 0x66);
   batches_.Release(4);
-  EXPECT_EQ(batches_.Open(5)[0], 0x22) << "its word still means the former memory";
+  EXPECT_EQ(batches_.Open(5)[0], 0x22) << "its message still means the old memory";
 }
 
 TEST_F(SlotBatchesTest, WhatCannotBeOpenedIsRefusedAsAWhole) {

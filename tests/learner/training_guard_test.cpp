@@ -18,7 +18,7 @@ using testing::IsEmpty;
 
 constexpr SteadyTime kStart{seconds(1000)};
 
-// What a run that learns shows.
+// Figures of a run that learns.
 UpdateFigures Healthy() {
   UpdateFigures figures;
   figures.Set(kCriticLoss, 0.5);

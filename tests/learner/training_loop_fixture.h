@@ -91,7 +91,7 @@ class TrainingLoopTest : public testing::Test {
     control_.OnMessage({.epoch = ++epoch_, .state = state, .time = 0}, Now());
   }
 
-  // Of the last report.
+  // A figure of the last report.
   double Figure(const std::string& name) const {
     const MetricsMessage& report = sink_.reports.back();
     const auto at = std::ranges::find(report.names, name);

@@ -186,7 +186,7 @@ TEST_F(TrainingLoopTest, DrainingEndsWithTheUpdatesThatTheStoredStepsGrant) {
   EXPECT_TRUE(Checkpoints().contains("step_000000010"));
 }
 
-// Of the 48 steps that are stored 12 cannot be sampled: (36 - 8) * 1 samples, 7 batches of 4.
+// 12 of the 48 stored steps cannot be sampled: (36 - 8) * 1 samples, 7 batches of 4.
 TEST_F(TrainingLoopTest, DrainingGrantsNothingForStepsThatNoSampleBeginsWith) {
   sink_.on_evaluation = [this] { Say(RunState::kStopping); };
   Train(1000, [&](PlayedBatches& batches) {

@@ -105,7 +105,7 @@ void Act(nn::Policy* policy, const BatchView& rollout, Random* random) {
   }
 }
 
-// Where actors act by what the learner starts from, the ratios of its first minibatch are 1.
+// If actors act by the learner's initial parameters, the ratios of its first minibatch are 1.
 TEST(WeightsSender, OnPolicyActorsActByThePolicyThatTheLearnerHas) {
   if (nn::ChoosePrecision("auto", /*pixels=*/true) != nn::Precision::kBf16) {
     GTEST_SKIP() << "this CPU has no bf16 arithmetic";

@@ -47,7 +47,7 @@ TEST(OwnAlgorithm, ItsLineSaysWhatItIs) {
   EXPECT_EQ(FindFigure("critic_spread"), &kCriticSpread);
 }
 
-// As a learner gets it: from the configuration in a run's folder.
+// The learner's way: from the configuration in a run's folder.
 TEST(OwnAlgorithm, ARunThatNamesItMakesIt) {
   const TemporaryFolder folder;
   RunConfig run{OwnConfig(), SmallSpec()};

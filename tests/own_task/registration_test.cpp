@@ -27,7 +27,7 @@ using testing::HasSubstr;
 
 std::string Library() { return ProgramPath("point_reach.so"); }
 
-// As often as one likes: a library is loaded once.
+// Repeated calls are allowed: a library is loaded once.
 const tasks::Task& Example() {
   LoadTasks(Library());
   return tasks::FindTask("PointReachDense");
@@ -149,7 +149,7 @@ TEST(OwnTask, AModelWithMeshesLiesBesideItsLibraryWhereverTheProgramStands) {
   const std::vector<uint8_t> before = frame;
   for (int i = 0; i < 10; ++i) environment->Step(std::vector<float>{1, 0}, {frame, numbers});
   EXPECT_GT(numbers[0], 0.1) << "the shoulder turns";
-  // What is blue, the upper link, has moved.
+  // The blue part, the upper link, has moved.
   const size_t plane = 48 * 48;
   const auto blue = [&](const std::vector<uint8_t>& picture) {
     std::vector<size_t> pixels;

@@ -109,8 +109,8 @@ double UntrainedSuccess(const std::string& policy) {
   return 1;
 }
 
-// The whole path of pixels: rendering, records, stacks, shifts, encoder, weights back. Where the
-// goal is can be told from the picture alone; a policy that does not see it ends within 0.1 m of
+// The whole path of pixels: rendering, records, stacks, shifts, encoder, weights back. Only the
+// picture shows the goal; a policy that does not see it ends within 0.1 m of
 // one goal in twelve.
 TEST(OwnTaskRun, LearnsFromPixelsAlone) {
   const TemporaryFolder folder;

@@ -109,7 +109,7 @@ TEST_F(TroubledRun, WithHindsightOrOnPolicyItGoesOnAsWell) {
   EXPECT_TRUE(meta.at("accounting").at("balances").get<bool>());
 }
 
-// With faults, too, lockstep ends with the same bytes.
+// Lockstep ends with the same bytes also after faults.
 TEST_F(TroubledRun, InLockstepItRepeats) {
   std::vector<std::string> policies;
   for (int i = 0; i < 2; ++i) {

@@ -79,7 +79,7 @@ inline std::vector<uint8_t> MakeRecord(const ObservationSpec& spec, uint32_t act
   return record;
 }
 
-// The goal record of an episode; its pixels are nobody else's.
+// The goal record of an episode; its pixels are unique.
 inline std::vector<uint8_t> MakeGoalRecord(const ObservationSpec& spec, uint32_t actor,
                                            uint32_t env, uint32_t episode, uint64_t sequence) {
   constexpr uint32_t kNoStep = 1'000'000;
@@ -91,7 +91,7 @@ inline std::vector<uint8_t> MakeGoalRecord(const ObservationSpec& spec, uint32_t
   return record;
 }
 
-// What an actor session publishes: `envs` environments step in turn, episodes of random length end
+// Records of an actor session: `envs` environments step in turn, episodes of random length end
 // terminated, half of these by success, or truncated, and begin with a goal record where the spec
 // has a goal picture. Sequences run from 1; the same arguments give the same records.
 class RecordScript {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a soak or a benchmark leaves that is told to stop: nothing.
+// A soak or a benchmark leaves nothing behind when it is stopped.
 #include <gtest/gtest.h>
 
 #include <csignal>

@@ -43,7 +43,7 @@ std::set<std::string> SharedMemoryObjects() {
   std::error_code error;
   for (fs::directory_iterator it("/dev/shm", error), end; !error && it != end;
        it.increment(error)) {
-    // Of a fuzzer that runs beside (tests/fuzz), which changes them all the time.
+    // Files of a fuzzer that runs meanwhile (tests/fuzz), which change all the time.
     if (it->path().filename().string().starts_with("shoal-fuzz-")) continue;
     names.insert(it->path().filename());
   }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run must not leave behind.
+// Leftovers that a run must not have.
 #pragma once
 
 #include <filesystem>

@@ -26,7 +26,7 @@ using std::chrono::seconds;
 
 constexpr milliseconds kLookAgain{50};
 constexpr seconds kStart{60};
-// What counts as going on: more than what was under way when the fault struck.
+// Progress that counts as going on: more than the work in flight at the fault.
 constexpr double kMoreSteps = 200, kMoreUpdates = 5;
 
 // "actor-1" of a child's command line; empty for other programs.
@@ -248,7 +248,7 @@ json RunUnderTest::End(seconds deadline) {
   return meta;
 }
 
-// What any actor had been told was stored must have been dealt with in the end.
+// Each acknowledged record must be accounted for in the end.
 void RunUnderTest::CheckAcknowledged(const json& accounting) {
   double told = 0;
   for (const auto& [process, acknowledged] : acknowledged_) told += acknowledged;

@@ -45,8 +45,8 @@ class RunUnderTest {
   struct Progress {
     double stored_steps = 0, updates = 0;
   };
-  // Of the newest reports. Throws Broken when stored records have become fewer, or batches no
-  // longer come through shared memory.
+  // Progress by the newest reports. Throws Broken when stored records have become fewer, or batches
+  // no longer come through shared memory.
   Progress TakeProgress();
   // Waits until `process` (not `former`) has reported after `since`, steps were stored and updates
   // done since `before`. Throws Broken at `deadline`.
@@ -59,7 +59,7 @@ class RunUnderTest {
   // Starts it anew with --resume; it must have ended.
   void Resume();
 
-  // What waits where, by the newest reports: figure -> how much.
+  // Depths of queues by the newest reports: figure -> depth.
   std::map<std::string, double> QueueDepths();
 
   // Stops it by SIGINT and waits. Throws Broken unless it ends with 0 and balances.
@@ -80,7 +80,7 @@ class RunUnderTest {
   launch::ChildProcess coordinator_;
   ReportReader reports_;
   double most_stored_ = 0;
-  // What each actor process had been told was stored, by its last report.
+  // Records acknowledged to each actor process, by its last report.
   std::map<std::pair<std::string, pid_t>, double> acknowledged_;
 };
 

@@ -17,7 +17,7 @@ class Trend {
   // That slope over ten minutes, in percent of the mean (of 1 where the mean is less: a queue of
   // none that grows by one in ten minutes grows by 100 %).
   double PercentPerTenMinutes() const;
-  // One standard error of the latter, from the scatter around the line.
+  // One standard error of the percentage, from the scatter around the line.
   double PercentError() const;
 
  private:

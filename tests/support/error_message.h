@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a test is told when something is refused.
+// The message of an error, for tests of refusals.
 #pragma once
 
 #include <gtest/gtest.h>

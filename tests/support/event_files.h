@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What TensorBoard would read from a folder of event files.
+// Reads a folder of event files as TensorBoard does.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -27,7 +27,7 @@ inline std::vector<std::filesystem::path> EventFiles(const std::filesystem::path
   return files;
 }
 
-// Of one file, whose framing must be whole; the checksums are tf_record_test's matter.
+// Events of one file, whose framing must be whole; the checksums are tf_record_test's matter.
 inline std::vector<tensorboard::proto::Event> ReadEvents(const std::filesystem::path& path) {
   const std::string file = ReadFile(path);
   std::vector<tensorboard::proto::Event> events;
@@ -58,7 +58,7 @@ inline Scalars ReadScalars(const std::filesystem::path& path) {
   return scalars;
 }
 
-// What the plugins are told, by tag.
+// Data for the plugins, by tag.
 inline std::map<std::string, tensorboard::proto::Summary::Value> ReadPluginValues(
     const std::filesystem::path& path) {
   std::map<std::string, tensorboard::proto::Summary::Value> values;

@@ -22,7 +22,7 @@ namespace shoal {
 
 inline std::string Because(const std::string& what) { return what + ": " + std::strerror(errno); }
 
-// As root in a user namespace where the user is none.
+// Becomes root in a user namespace if the user is not root.
 inline std::string Unshare(int what) {
   const uid_t uid = geteuid();
   if (unshare(uid == 0 ? what : what | CLONE_NEWUSER) != 0) return Because("unshare");

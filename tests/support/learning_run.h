@@ -24,7 +24,7 @@ namespace shoal {
 struct Untrained {
   nlohmann::json noop, random;
 
-  // Of the better one.
+  // Figure of the better one.
   double Most(const char* figure) const {
     return std::max(noop.at(figure).get<double>(), random.at(figure).get<double>());
   }
@@ -44,7 +44,7 @@ inline Untrained PlayUntrained(const std::string& task) {
   return {.noop = play("noop"), .random = play("random")};
 }
 
-// What a run leaves.
+// Result of a run.
 struct LearningResult {
   nlohmann::json meta;
   nlohmann::json aggregate;  // of the final evaluation, of the best checkpoint

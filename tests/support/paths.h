@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where tests find the source tree and the built programs. Compiled in once (paths.cpp), so that no
-// test's own object depends on where the tree lies.
+// Paths of the source tree and of the built programs. Compiled in once (paths.cpp), so that no
+// test's own object depends on the tree's place.
 #pragma once
 
 #include <string>

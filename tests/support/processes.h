@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What /proc says about processes.
+// Reads /proc about processes.
 #pragma once
 
 #include <sys/types.h>

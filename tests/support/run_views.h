@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What `shoal` says about the run of a test to those who watch or steer it.
+// Views of a test's run that `shoal` publishes for watchers.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -46,8 +46,8 @@ std::span<const EncoderKind> EncoderKinds();
 // Throws Error (kUsage) naming an unknown kind and those there are.
 const EncoderKind& FindEncoderKind(std::string_view name);
 
-// What drq and mrq consist of: 32 filters of 3x3 without padding for each stride, on images as they
-// are.
+// The convolutions of drq and mrq: 32 filters of 3x3 without padding for each stride, on images at
+// their full size.
 void AddConvolutions(const NetworkConfig& network, const std::string& prefix,
                      std::initializer_list<int> strides, NetworkPlan* plan);
 

@@ -6,7 +6,7 @@ namespace shoal::nn {
 namespace {
 
 constexpr int kPool = 2, kFilters = 32, kKernel = 3;
-// Of maps as flat as they start all points would lie near the middle.
+// Maps are flat at the start; without this factor all points would be near the middle.
 constexpr double kSharpness = 10;
 
 }  // namespace

@@ -51,7 +51,7 @@ class AveragedDdpgAgent final : public Agent {
     actor_.Refresh();
     nn::CopyParameters(actor_, &target_actor_);
     nn::CopyParameters(critic_, &target_critic_);
-    // What a checkpoint keeps, once: export and restore follow.
+    // The state in a checkpoint, listed once: export and restore use this list.
     if (encoder_) state_.Add(encoder_.get());
     for (nn::Module* module :
          std::initializer_list<nn::Module*>{&actor_, &target_actor_, &critic_, &target_critic_}) {

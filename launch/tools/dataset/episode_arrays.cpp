@@ -42,7 +42,7 @@ class Episode {
     }
     return frames;
   }
-  // Of the steps alone.
+  // Actions of the steps, without the reset.
   std::vector<float> Actions() const {
     std::vector<float> actions;
     for (uint64_t i = 1; i < count_; ++i) {

@@ -23,8 +23,8 @@ namespace {
 
 constexpr unsigned kCompression = 1;  // of deflate's 9: pictures shrink tenfold at the first
 
-// Of a failed call, the system's reason where there was one ("No space left on device"), else what
-// the innermost function of the library says.
+// Reason of a failed call: the system's, if there is one ("No space left on device"), else the
+// message of the library's innermost function.
 std::string Reason() {
   std::string reason;
   const auto take = [](unsigned, const H5E_error2_t* error, void* kept) -> herr_t {

@@ -14,7 +14,7 @@
 namespace shoal::launch {
 namespace {
 
-// Of Minari: the version of the layout.
+// The version of Minari's layout.
 constexpr char kMinariVersion[] = "0.5.4";
 
 // `value` as a nested list of this shape: Gymnasium's spaces have their bounds number by number.

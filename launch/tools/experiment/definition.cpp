@@ -26,7 +26,7 @@ using nlohmann::ordered_json;
 constexpr char kDefinitionSchema[] = "shoal-experiment-definition-1";
 constexpr char kKind[] = "experiments";
 
-// What a run of an experiment is called, where it lies and how it is judged is the experiment's.
+// Keys that the experiment sets: name, folder and final evaluation of its runs.
 constexpr std::array kOwnKeys = {"seed", "run_name", "run_dir", "preset", "eval.final_episodes"};
 
 bool IsFileName(const std::string& text) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an experiment is: arms (named differences from a base preset) x seeds, from one JSON file
-// (schema shoal-experiment-definition-1):
+// Definition of an experiment: arms (named differences from a base preset) x seeds, from one JSON
+// file (schema shoal-experiment-definition-1):
 //
 //   {"schema", "base": PRESET, "set": {KEY: VALUE}, "arms": [{"name", "set": {KEY: VALUE}}],
 //    "seeds": [...], "final_episodes", "name", "target_success", "question", "transfer": [TASK]}

@@ -28,7 +28,7 @@ constexpr char kLockFile[] = ".lock";
 // That a task waits for the command which has submitted it.
 constexpr std::chrono::seconds kSubmission{60};
 
-// What a command that was killed before it had written experiment.json may have left.
+// Whether the file may be left by a command that was killed before it had written experiment.json.
 bool IsLeftover(const fs::path& file) {
   const std::string name = file.filename();
   return name == kLockFile || name.starts_with(std::string(kFile) + ".tmp-");
@@ -47,7 +47,7 @@ bool SameKeys(const ordered_json& a, const ordered_json& b) {
   return nlohmann::json(a) == nlohmann::json(b);
 }
 
-// What of an experiment must be as it was: empty, or what is not.
+// The first part of a definition that must not change and did; empty if there is none.
 std::string Difference(const Definition& stored, const Definition& asked) {
   if (asked.name != stored.name) {
     return fmt::format("its name is '{}', not '{}'", stored.name, asked.name);

@@ -41,8 +41,8 @@ struct StoredExperiment {
   std::vector<ExperimentRun> Runs(const std::vector<int64_t>& seeds) const;
   // "ARM-sSEED" of any seed; empty where there is no such arm.
   std::optional<ExperimentRun> RunNamed(const std::string& name) const;
-  // Of every seed that the definition names and every seed there is a run of: in its folder, or, if
-  // it failed before it had one, in the log. Throws Error on a broken log.
+  // Runs of every seed that the definition names and of every seed that has a run: in its folder,
+  // or, if it failed before it had one, in the log. Throws Error on a broken log.
   std::vector<ExperimentRun> Runs() const;
   // How one of them stands, its evaluations on further tasks included; `log` as Log().Read() gives
   // it.

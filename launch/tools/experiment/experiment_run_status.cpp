@@ -43,7 +43,7 @@ StandingReport StandingOfResults(const RunResults& results, const LoggedRun* log
     report.missing_transfers = MissingTransfers(results, transfer);
     if (report.missing_transfers.empty()) return {ExperimentRunStatus::kFinished, ""};
   }
-  // Of the training, or of the evaluation on a further task: whichever came last.
+  // The newest entry: of the training, or of the evaluation on a further task.
   if (EndedBadly(logged)) {
     report.standing = ExperimentRunStatus::kFailed;
     report.problem = logged->ending->problem;

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 
 constexpr char kProgram[] = "shoal";
 
-// As a resolved configuration, which `shoal train --config` takes without asking for the preset.
+// Writes the resolved configuration, which `shoal train --config` takes without the preset.
 void WriteArmConfig(const fs::path& file, const Config& config) {
   nlohmann::ordered_json object;
   object["schema"] = kConfigSchema;

@@ -45,7 +45,7 @@ const RunOutcome* OutcomeOf(const ExperimentOutcome& outcome, const ExperimentRu
   return nullptr;
 }
 
-// What a tuner reads.
+// Prints the line for tuners.
 void PrintJsonLine(const ExperimentOutcome& outcome, const ExperimentRun& run,
                    const StandingReport& report) {
   const RunOutcome* found = OutcomeOf(outcome, run);
@@ -83,8 +83,8 @@ class ProgressLines {
   SteadyTime last_ = Now();
 };
 
-// What actors of each arm would observe: a camera or model file that does not exist is found before
-// the first run, not hours later.
+// Computes the observations of each arm, so that a camera or model file that does not exist is
+// found before the first run.
 void CheckObservations(const ExperimentPlan& plan) {
   for (size_t i = 0; i < plan.arms.size(); ++i) {
     try {
@@ -107,8 +107,8 @@ bool MeasureBaselines(const StoredExperiment& experiment) {
   return true;
 }
 
-// What there is now, also in summary.json: read and written under a lock, so that of several
-// processes the last one has seen what the others did.
+// Returns the present outcome and writes it to summary.json. Reads and writes under a lock, so that
+// the last of several processes includes the results of the others.
 ExperimentOutcome Summarize(const StoredExperiment& experiment) {
   const fs::path file = experiment.folder / ".summary.lock";
   const auto lock = FileLock::Take(file, Holding::kAlone, kOthersWrite);

@@ -36,8 +36,8 @@ struct ExperimentTask {
 // is finished, 1 when one is not, kInterruptedExit (stop.h) after Ctrl-C. Throws Error before
 // anything is written where the definition, the folder or an arm is refused.
 //
-// As a job array: submits, and stdout gets one line of JSON, {job, script, runs}; 0 unless Slurm
-// refuses.
+// A job array (--slurm) is submitted instead, and stdout gets one line of JSON, {job, script,
+// runs}; 0 unless Slurm refuses.
 int RunExperiment(const ExperimentOptions& options);
 
 // Does one run; output and exit code as RunExperiment's. Any number of these may run of an

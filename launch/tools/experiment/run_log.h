@@ -34,11 +34,11 @@ struct RunEnding {
   std::string run{};
   bool by_signal = false;
   int code = 0;           // exit code, or the signal's number
-  bool stopped = false;   // the experiment was being stopped: the code is nobody's fault
+  bool stopped = false;   // the experiment was being stopped: the code is no failure
   std::string problem{};  // what it said last, or the signal, where it did not end well
 };
 
-// What the log knows of one run.
+// Entries of the log about one run.
 struct LoggedRun {
   int starts = 0;
   int most_jobs = 0;                  // of any start

@@ -40,8 +40,8 @@ struct QueueHooks {
 };
 
 // Does every run once, in order, until all are done with or a stop was asked for and what was under
-// way has ended. A run that somebody else still holds - what a killed command left needs a while to
-// end - is put off.
+// way has ended. A run that another process still holds is put off: processes of a killed command
+// need a while to end.
 void DoRuns(const std::vector<ExperimentRun>& runs, const QueueTerms& terms, RunKeeper& keeper,
             const QueueHooks& hooks);
 

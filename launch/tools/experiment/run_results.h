@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run's folder says about it once it has ended, or so far: the figures that comparisons,
-// plots and reports are made of. Reads config.json, meta.json and eval/ alone, so that a committed
-// copy without checkpoints serves as well.
+// Results of a run, finished or not, read from its folder: the figures of comparisons, plots and
+// reports. Reads config.json, meta.json and eval/ alone, so that a committed copy without
+// checkpoints serves as well.
 #pragma once
 
 #include <cstdint>
@@ -36,8 +36,8 @@ struct RunResults {
   uint64_t env_steps = 0, updates = 0;
   double wall_seconds = 0;
 
-  // What a tuner maximises: the final success rate, the final mean return where the task has no
-  // success, empty without a final evaluation.
+  // The figure that a tuner maximises: the final success rate, or the final mean return if the task
+  // has no success; empty without a final evaluation.
   std::optional<double> Objective() const;
 };
 

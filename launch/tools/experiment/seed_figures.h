@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the seeds of one method earned, and how summaries, comparisons and reports write and print
-// it with its intervals. Seeds are the unit (statistics.h).
+// Results of one method over its seeds with intervals, and their form in summaries, comparisons and
+// reports. Seeds are the unit (statistics.h).
 #pragma once
 
 #include <cstdint>

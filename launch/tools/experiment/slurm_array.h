@@ -25,7 +25,8 @@ struct SlurmArray {
 };
 nlohmann::ordered_json ToJson(const SlurmArray& array);
 
-// Of `runs`, those that an array would do: missing or interrupted ones, and failed ones on request.
+// The runs among `runs` that an array would do: missing or interrupted ones, and failed ones on
+// request.
 std::vector<ExperimentRun> StillToBeDone(const StoredExperiment& experiment,
                                          const std::vector<ExperimentRun>& runs, bool retry_failed);
 

@@ -16,9 +16,9 @@ struct Interval {
 };
 
 double Mean(std::span<const double> values);  // of at least one
-// With n - 1; of at least two values.
+// Standard deviation with n - 1 in the denominator; needs at least two values.
 double SampleDeviation(std::span<const double> values);
-// Of at least one value; the mean of the two in the middle where there are as many on both sides.
+// Needs at least one value; for an even number of values the mean of the two in the middle.
 double Median(std::vector<double> values);
 
 // The part of the interval that lies within [low, high]: where a figure cannot be outside of them.

@@ -113,8 +113,7 @@ ordered_json ArmJson(const ArmOutcome& outcome, const Arm& arm,
   return object;
 }
 
-// Of the first arm's world; beside it those of other tasks, and of arms that set up a task of
-// these otherwise.
+// Baselines of the first arm's world, and of further tasks and arms with another world.
 ordered_json BaselinesJson(const ExperimentOutcome& outcome) {
   ordered_json object = ordered_json::object();
   for (const auto& [world, baselines] : outcome.baselines) {
@@ -167,7 +166,7 @@ std::vector<JudgedWorld> JudgedWorlds(const StoredExperiment& experiment) {
     add(ArmConfig(experiment.base, arm, experiment.definition.name), arm.name);
   }
   for (const std::string& task : experiment.definition.transfer) {
-    // As `shoal eval --task` plays it: without the run's model file.
+    // Same as `shoal eval --task`: without the run's model file.
     Config config = experiment.base;
     config.task = task;
     config.model.clear();

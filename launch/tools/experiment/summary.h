@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an experiment has shown so far: summary.json (schema shoal-experiment-1) and the table of
-// `shoal experiment summary`. docs/experiments.md explains each member.
+// Summary of an experiment so far: summary.json (schema shoal-experiment-1) and the table of `shoal
+// experiment summary`. docs/experiments.md explains each member.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -31,7 +31,8 @@ struct ArmOutcome {
   SeedFigures figures{};           // of the final evaluations of the finished runs
 };
 
-// What baselines are of: a task with its threshold, model file, physics and action repeat.
+// A world with baselines of its own: a task with its threshold, model file, physics and action
+// repeat.
 struct JudgedWorld {
   enum class Kind {
     kFirst,      // of the first arm
@@ -56,7 +57,7 @@ struct ExperimentOutcome {
     SampleRatio ratio;
   };
   std::vector<NamedRatio> ratios{};
-  // Of each world that an arm trains in or is tested in; only what has been measured.
+  // Baselines of each world in which an arm trains or is tested; only those already measured.
   struct NamedBaselines {
     JudgedWorld world;
     Baselines baselines;

@@ -59,7 +59,7 @@ std::optional<ObservationSet> RecordedObservations(const fs::path& checkpoint,
                                                    uint64_t seed, std::string* why) {
   const fs::path run = RunOf(checkpoint);
   if (run.empty()) {
-    *why = "the checkpoint lies in no run";
+    *why = "the checkpoint is in no run";
     return std::nullopt;
   }
   if (!fs::exists(run / kRingFile)) {

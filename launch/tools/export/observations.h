@@ -27,9 +27,9 @@ ObservationSet RandomObservations(const ObservationSpec& spec,
                                   const std::optional<nn::VectorScale>& scale, int count,
                                   uint64_t seed);
 
-// What actors saw, out of the ring of the run that `checkpoint` lies in (RUN/checkpoints/NAME or
-// RUN/checkpoints/candidates/NAME). Nothing where there is no such ring, or none of this spec;
-// `why` says which.
+// Observations of actors, from the ring of the run that contains `checkpoint`
+// (RUN/checkpoints/NAME or RUN/checkpoints/candidates/NAME). Empty if there is no such ring, or one
+// of another spec; `why` gets the reason.
 std::optional<ObservationSet> RecordedObservations(const std::filesystem::path& checkpoint,
                                                    const ObservationSpec& spec, int count,
                                                    uint64_t seed, std::string* why);

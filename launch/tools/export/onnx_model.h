@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// An ONNX file as a value: what of the format a policy needs, and its bytes.
+// An ONNX file as a value: the part of the format that a policy needs, and its bytes.
 //
 // Constants are f32. Inputs and the output have the batch as their first dimension, N, which
-// whoever runs the file chooses. Nodes are in an order in which each finds what it reads.
+// the program that runs the file chooses. Each node follows the nodes whose outputs it reads.
 //
 // Source: ONNX, github.com/onnx/onnx, docs/IR.md and docs/Operators.md, operator set 17 of 2022:
 // the first with LayerNormalization, and old enough that runtimes of the years since read it.

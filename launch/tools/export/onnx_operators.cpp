@@ -186,7 +186,7 @@ struct Window {
     return sides[0];
   }
 
-  // Calls visit(u, v, offset in the window) for the window's cells (u, v) that lie in the map.
+  // Calls visit(u, v, offset in the window) for the window's cells (u, v) within the map.
   template <class Visit>
   void ForCells(int64_t i, int64_t j, const Shape& x, const Visit& visit) const {
     for (int64_t k = 0; k < kernel; ++k) {
@@ -280,7 +280,7 @@ OnnxTensor Conv(const OnnxNode& node, OnnxArguments in) {
 
 // ---- normalisation ----
 
-// Of x (N, C, ...) by scale, shift, mean and variance (C).
+// Normalises x (N, C, ...) by scale, shift, mean and variance (C).
 OnnxTensor BatchNormalization(const OnnxNode& node, OnnxArguments in) {
   Expect(in.size() == 5 && in[0]->shape.size() >= 2, node, "five inputs");
   const int64_t channels = in[0]->shape[1];
@@ -298,7 +298,7 @@ OnnxTensor BatchNormalization(const OnnxNode& node, OnnxArguments in) {
   return y;
 }
 
-// Of the rows of x (N, F) by scale and shift (F).
+// Normalises the rows of x (N, F) by scale and shift (F).
 OnnxTensor LayerNormalization(const OnnxNode& node, OnnxArguments in) {
   Expect(Get<int64_t>(node, "axis") == -1 && in.size() == 3, node, "the last axis, three inputs");
   const size_t columns = size_t(in[0]->shape.back());

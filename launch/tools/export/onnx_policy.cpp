@@ -23,7 +23,7 @@ using nn::MapShape;
 
 constexpr float kNormEpsilon = 1e-5f;  // of layer_norm.h and batch_norm.h
 
-// Of nn::AveragePool along one side, as a matrix (inputs, outputs): row-major shares.
+// nn::AveragePool along one side as a matrix (inputs, outputs): row-major shares.
 std::vector<float> PoolShares(int inputs, int outputs) {
   std::vector<float> shares(size_t(inputs) * size_t(outputs), 0.f);
   for (int i = 0; i < outputs; ++i) {
@@ -50,7 +50,7 @@ using Shape = std::vector<int64_t>;
 
 std::vector<float> Ones(int64_t n) { return std::vector<float>(size_t(n), 1.f); }
 
-// Of nn::SpatialSoftmax along one side.
+// Coordinates of nn::SpatialSoftmax along one side.
 std::vector<float> Coordinates(int64_t side) {
   std::vector<float> coordinates(size_t(side), 0.f);
   for (int64_t i = 0; i < side && side > 1; ++i) {
@@ -237,8 +237,8 @@ void AddPorts(const ObservationSpec& spec, OnnxModel* model) {
   model->output = {.name = kActionOutput, .shape = {spec.action_size}};
 }
 
-// Of encoder and actor. A Gaussian's outputs are means and deviations: the latter's rows are left
-// out.
+// Adds the parameters of encoder and actor. The outputs of a Gaussian are means and deviations: the
+// rows of the deviations are left out.
 void AddParameters(const std::vector<nn::ParameterSpec>& specs, const nn::ActorPlan& actor,
                    nn::ParameterSet* set, OnnxModel* model) {
   const std::string output = actor.mlps[0].layers().back().name;

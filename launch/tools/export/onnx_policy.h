@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// A policy as an ONNX model: what an actor does with an observation, from raw pixels and vectors to
-// the action that is played without exploration.
+// A policy as an ONNX model: an actor's computation from raw pixels and vectors to the action
+// without exploration.
 //
 //   pixels            u8  (N, K*C, H, W)   only with pixels
 //   NAME of a block   f32 (N, size)        each that the policy sees, in the spec's order
 //   action            f32 (N, A)           in [-1, 1]
 //
-// Pixels are pooled and scaled, vectors normalised where the policy was trained on normalised ones;
-// batch normalisation goes by running statistics. Random shifts belong to training, and a
-// Gaussian's deviation to exploration: neither is in it.
+// The model pools and scales pixels, and normalises vectors if the policy was trained on normalised
+// ones. Batch normalisation uses running statistics. Random shifts belong to training, and a
+// Gaussian's deviation to exploration: the model has neither.
 #pragma once
 
 #include "common/policy/checkpoint_policy.h"

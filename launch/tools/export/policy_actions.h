@@ -19,7 +19,7 @@ std::vector<float> OwnActions(const policy::CheckpointPolicy& policy,
 std::vector<float> OnnxActions(const OnnxModel& model, const ObservationSpec& spec,
                                const ObservationSet& observations);
 
-// What came of comparing two lists of actions.
+// Result of a comparison of two lists of actions.
 struct Agreement {
   int observations = 0;
   float largest_difference = 0;  // infinite where an action is not a number

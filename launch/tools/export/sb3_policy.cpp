@@ -22,7 +22,7 @@ namespace {
 
 using nn::ActorOutput;
 
-// What the parameters of a policy with this output are called there.
+// Stable-Baselines3's names for the parameters of a policy with this output.
 struct Sb3Names {
   std::vector<std::string> extractors;
   std::string mlp;           // before a hidden layer's number

@@ -28,9 +28,9 @@ namespace shoal::launch {
 
 struct Sb3File {
   std::string bytes;
-  // What makes a model that the file fits: "SAC("MlpPolicy", env, policy_kwargs=...)".
+  // Python expression for a model that the file fits: "SAC("MlpPolicy", env, policy_kwargs=...)".
   std::string model;
-  // What the model does not take from the file, each a sentence; for people.
+  // Properties that the model does not take from the file, one sentence each.
   std::vector<std::string> notes;
 };
 

@@ -19,7 +19,7 @@ void Put(uint64_t value, int bytes, std::string* out) {
   for (int i = 0; i < bytes; ++i) out->push_back(char(value >> (8 * i) & 0xff));
 }
 
-// What both headers of a file have in common, from "version needed to extract" on.
+// The common part of both headers of a file, from "version needed to extract" on.
 std::string FileFields(const std::string& name, const std::string& content) {
   std::string fields;
   Put(kVersion, 2, &fields);

@@ -90,8 +90,8 @@ bool FilmCheckpoint(const FilmOrder& order, const fs::path& checkpoint, const st
                                         [&] { return reading.broken() || stop(); });
     if (!played && stop()) return false;
   } catch (const Error&) {
-    // What ended first is the reason: without a reader the actor cannot go on, and without an
-    // actor there is nothing to read.
+    // The side that ended first has the reason: without a reader the actor cannot go on, and
+    // without an actor there is nothing to read.
     if (reading.broken()) reading.Finish();
     throw;
   }

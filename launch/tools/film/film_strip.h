@@ -9,7 +9,7 @@
 
 namespace shoal::launch {
 
-// A picture that somebody else owns: rows of 4 bytes per pixel (B G R and one without meaning),
+// A borrowed picture: rows of 4 bytes per pixel (B G R and one without meaning),
 // `stride` bytes from a row to the next.
 struct PictureView {
   int width = 0, height = 0, stride = 0;

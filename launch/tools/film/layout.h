@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where things are in a film's picture, in pixels from the top left:
+// Layout of a film's picture, in pixels from the top left:
 //
 //   +----------------------------------------+
 //   | title                                  |

@@ -66,7 +66,7 @@ class UnfinishedFile {
   UnfinishedFile& operator=(const UnfinishedFile&) = delete;
 
   const fs::path& path() const { return path_; }
-  // As libav takes it: without the protocol it would look for one in the name.
+  // The file's name for libav, with a protocol: without one, libav would look for one in the name.
   std::string Url() const { return "file:" + temporary_.string(); }
   void Keep() {
     OpenToOthers(temporary_);  // a film is made to be passed on
@@ -120,7 +120,7 @@ struct Mp4Writer::Encoder {
     codec->pix_fmt = AV_PIX_FMT_YUV420P;  // the one that every browser decodes
     av_reduce(&codec->time_base.num, &codec->time_base.den, microseconds, 1'000'000, 1'000'000);
     codec->framerate = av_inv_q(codec->time_base);
-    // What swscale makes of RGB.
+    // The range that swscale produces from RGB.
     codec->color_range = AVCOL_RANGE_MPEG;
     codec->colorspace = AVCOL_SPC_SMPTE170M;
     codec->thread_count = 1;  // a film is small, and others may be training on these cores

@@ -24,7 +24,7 @@ constexpr int kStatusColumns = 5;
 
 using RedGreenBlue = std::array<uint8_t, 3>;
 
-// Of the policy's input as it is shown: each camera's newest, and behind them each camera's goal.
+// Number of pictures of the policy's input: each camera's newest, then each camera's goal.
 int PicturesOf(const ObservationSpec& spec) {
   return static_cast<int>(spec.cameras.size()) * (spec.goal_picture ? 2 : 1);
 }
@@ -53,7 +53,7 @@ struct FilmPicture::Canvas {
     cairo_text_extents(context, text.c_str(), &extents);
     return extents.x_advance;
   }
-  // What fits into `width`, its end replaced by dots where it does not.
+  // The text, shortened to `width` with dots at its end if it is too long.
   std::string Fitted(std::string text, double width) {
     if (WidthOf(text) <= width) return text;
     while (!text.empty() && WidthOf(text + "…") > width) {

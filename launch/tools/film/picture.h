@@ -48,7 +48,7 @@ class FilmPicture {
   // A value of the three colours at (row, column) of a box, row and column from 0.
   template <class ColourAt>
   void Fill(const Box& box, const ColourAt& colour_at);
-  // Of `frame` (C, H, W) one camera's picture.
+  // Draws one camera's picture of `frame` (C, H, W).
   void DrawCamera(const Box& box, size_t camera, std::span<const uint8_t> frame);
   void DrawView(std::span<const uint8_t> view);
   void DrawWords(const FilmText& text);

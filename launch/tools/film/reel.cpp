@@ -17,7 +17,7 @@ constexpr uint32_t kShortestPicture = 20'000;  // 50 a second: screens show no m
 constexpr uint32_t kLongestStep = 10'000'000;  // of a task that anybody would look at
 constexpr uint32_t kLastPicture = 500'000;
 
-// Of a stream that comes from another process.
+// Checks the header of a stream from another process.
 void CheckHeader(const image::FrameStreamHeader& header, const ObservationSpec& spec,
                  const fs::path& stream) {
   const auto number = [](int value) { return static_cast<uint32_t>(value); };

@@ -88,7 +88,7 @@ CommandText DescribeCommand(const CLI::App& app, const std::string& name) {
   const std::string label = "Usage: ";
   if (text.usage.starts_with(label)) text.usage.erase(0, label.size());
   text.usage.erase(text.usage.find_last_not_of('\n') + 1);
-  // What belongs to no group is kept from --help, for other programs to use.
+  // Options without a group are hidden from --help: other programs use them.
   for (const CLI::Option* option :
        app.get_options([](const CLI::Option* one) { return !one->get_group().empty(); })) {
     if (option->get_positional()) text.options.push_back(DescribeOption(*option, true));

@@ -12,7 +12,7 @@
 namespace shoal::launch {
 namespace {
 
-// What may stand at one place of a command line. Places are
+// The words that fit at one place of a command line. Places are
 //   "shoal env"                  a sub-command, or the first argument without a flag
 //   "shoal env -"                an option
 //   "shoal env render --quality" the value of an option, no words where any value fits

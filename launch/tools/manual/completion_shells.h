@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a completion script is besides its table: @TABLE@, @LEVELS@ and @PROGRAMS@ are put in.
+// Templates of the completion scripts: @TABLE@, @LEVELS@ and @PROGRAMS@ are replaced.
 #pragma once
 
 namespace shoal::launch {

@@ -23,7 +23,7 @@ std::string Roff(std::string_view text) {
         out += "\\e";
         break;
       case '-':
-        out += "\\-";  // a hyphen is another character, which nobody finds or copies
+        out += "\\-";  // a hyphen is another character, which a search does not find
         break;
       case '^':
         out += "\\(ha";

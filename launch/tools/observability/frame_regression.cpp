@@ -20,7 +20,7 @@ namespace {
 
 using nn::Module;
 
-// A readout needs the trunk of a head: an actor's, whose actions nobody asks for.
+// A readout needs the trunk of a head: that of an actor, whose actions are not used.
 class Network {
  public:
   Network(const Config& config, const ObservationSpec& spec, int labels, nn::Precision precision)

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames of a task with numbers that are to be told from them, from random play.
+// Frames of a task from random play, labelled with the numbers that a network shall predict.
 //
 // Dimensions: S samples, L labels, C channels of a frame (all cameras), H, W.
 #pragma once

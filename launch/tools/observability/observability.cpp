@@ -40,7 +40,7 @@ Config ConfigOf(const ObservabilityRequest& request, const std::vector<std::stri
   config.observation.width = request.width;
   config.observation.height = request.height;
   config.observation.quality = request.quality;
-  // Goals are relabelled only where the policy is told them: then the marker is hidden.
+  // Goals are relabelled only if the policy's observation has them: then the marker is hidden.
   if (request.goal_hidden) config.observation.goal_mode = "desired";
   if (request.goal_hidden) config.replay.hindsight = "future";
   config.learner.aux = request.labels;

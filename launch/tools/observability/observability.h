@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What of a task can be told from which cameras: `shoal env observability`. Cameras are chosen by
-// this, not by how a picture looks to people.
+// `shoal env observability`: how well sets of cameras show a quantity of a task. Choose cameras by
+// this measure rather than by the look of a picture.
 #pragma once
 
 #include <functional>

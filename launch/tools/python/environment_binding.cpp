@@ -133,7 +133,7 @@ class PlayedEnvironment {
         stack_(size_t(spec().InputBytes())),
         vector_(size_t(spec().RecordedVectorSize())) {}
 
-  // What a policy sees: the stack and the observed blocks, each an array of its own.
+  // The observation of a policy: the stack and the observed blocks, each an array of its own.
   py::dict Observation() const {
     py::dict observation;
     if (spec().HasPixels()) {

@@ -25,14 +25,14 @@ using Floats = py::array_t<float, py::array::c_style | py::array::forcecast>;
 using Bytes = py::array_t<uint8_t, py::array::c_style>;
 using Shape = std::vector<py::ssize_t>;
 
-// As Python writes it; `batch` puts N in front: "(3,)", "(N, 3)".
+// A shape in Python's notation; `batch` puts N in front: "(3,)", "(N, 3)".
 std::string ShapeText(std::span<const py::ssize_t> shape, bool batch = false) {
   std::string text = batch ? "(N" : "(";
   for (const py::ssize_t side : shape) text += (text == "(" ? "" : ", ") + std::to_string(side);
   return text + (shape.size() == 1 && !batch ? ",)" : ")");
 }
 
-// What of an observation belongs together while an action is computed.
+// Arrays of an observation while an action is computed.
 struct Arrays {
   Bytes pixels;
   std::vector<std::string> names;

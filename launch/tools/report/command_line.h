@@ -8,7 +8,7 @@
 
 namespace shoal::launch {
 
-// As a shell takes it: quotes only where a word needs them.
+// A command line for a shell: quotes only words that need it.
 std::string CommandLine(const std::vector<std::string>& words);
 
 // Trains a run again from its own configuration, into runs/NAME-again: `config` may say another

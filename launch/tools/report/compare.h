@@ -18,8 +18,8 @@ struct GroupFigures {
   std::string name{};
   std::vector<int64_t> seeds{};
   std::vector<bool> over{};  // by seed: finished or failed
-  // Of the final evaluation of each run; of its last one while training where it has not ended. A
-  // failed run is counted as such and judged by nothing, unless it is the whole group.
+  // Figures of the final evaluation of each run, or of its last one if it has not ended. A failed
+  // run is only counted, unless it is the whole group.
   SeedFigures figures{};
   std::vector<std::string> without_final{};  // runs judged by their last evaluation
   std::vector<std::string> failed{};
@@ -40,7 +40,7 @@ struct Comparison {
   std::string task{};
   double target_success = 0.9;
   std::vector<GroupFigures> groups{};
-  // Of each group but the first to the first, over the seeds whose runs are over in both.
+  // Ratios of each further group to the first, over the seeds whose runs are over in both.
   std::vector<SampleRatio> ratios{};
   std::vector<KeyDifference> differences{};
   std::optional<Baselines> baselines{};  // empty where they have not been measured

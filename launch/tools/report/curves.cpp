@@ -14,7 +14,7 @@ struct Sample {
   double x, y;
 };
 
-// Of an evaluation or of a RolloutPoint.
+// Position of an evaluation or a RolloutPoint on the axis.
 double Along(PlotAxis axis, const auto& point) {
   switch (axis) {
     case PlotAxis::kEnvSteps:

@@ -52,9 +52,8 @@ const char* FigureLabel(PlotFigure figure) {
   return "";
 }
 
-// In gnuplot's single quotes, in which nothing but '' means anything else than itself: double
-// quotes would run what is in backticks as a shell command. Control characters are for nobody's
-// terminal.
+// Text in gnuplot's single quotes, in which only '' has a special meaning: in double quotes gnuplot
+// would run text between backticks as a shell command. Control characters are replaced.
 std::string Quoted(const std::string& text) {
   std::string quoted = "'";
   for (const char c : text) {

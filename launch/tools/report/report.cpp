@@ -126,7 +126,7 @@ std::string ResultsHtml(const Comparison& comparison) {
   return html;
 }
 
-// What policies earn on other tasks than their own.
+// Results of policies on other tasks than their own.
 std::string TransferHtml(const std::vector<RunGroup>& groups) {
   std::vector<Row> rows;
   for (const RunGroup& group : groups) {
@@ -161,7 +161,7 @@ std::string FormatKeys(const nlohmann::ordered_json& set) {
   return keys.empty() ? "-" : fmt::format("{}", fmt::join(keys, ", "));
 }
 
-// What was laid down before the first run.
+// Definitions, which were fixed before the first run.
 std::string DefinitionsHtml(const std::vector<Definition>& definitions) {
   std::string html;
   for (const Definition& definition : definitions) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What comparisons, plots and reports are about: runs and experiments, by name or folder.
+// Subjects of comparisons, plots and reports: runs and experiments, by name or folder.
 #pragma once
 
 #include <filesystem>
@@ -35,8 +35,8 @@ struct Subject {
 
 struct Subjects {
   std::vector<Subject> named{};  // in the order given
-  // Of all of them: one per arm of an experiment (EXPERIMENT/ARM where more than one subject is
-  // given) and one per run.
+  // Groups of all subjects: one per arm of an experiment (EXPERIMENT/ARM if there is more than one
+  // subject) and one per run.
   std::vector<RunGroup> groups{};
 };
 

@@ -1,11 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Who may see and do what at the page. Pure, but for the making of a token.
+// Access rights to the page. Pure, except for making a token.
 //
-// To look: on loopback anybody of this host, under a name of this host (a page elsewhere whose name
-// was made to point here, "DNS rebinding", asks under another); at any other address whoever has
-// the token. To act (every method but GET and HEAD): whoever sends the token in a header of its
-// own, from a page that came from here. A browser sends cookies by itself, so a cookie never
-// suffices to act.
+// Read access: on loopback every user of this host, by a name of this host (after "DNS rebinding" a
+// foreign page uses another name); at any other address every holder of the token. Write access
+// (every method except GET and HEAD): a request that has the token in a header of its own, from a
+// page of this server. A browser sends cookies by itself, so a cookie never gives write access.
 #pragma once
 
 #include <string>
@@ -29,7 +28,7 @@ bool EqualInConstantTime(std::string_view a, std::string_view b);
 // The value of a cookie in a Cookie header; empty when there is none of that name.
 std::string_view CookieValue(std::string_view header, std::string_view name);
 
-// What a request says of who asks. Empty: it does not say.
+// Identification of a caller in its request. Empty members are missing there.
 struct Caller {
   bool acts = false;             // by another method than GET and HEAD
   std::string host{}, origin{};  // headers

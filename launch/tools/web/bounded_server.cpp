@@ -111,7 +111,7 @@ class BoundedStream final : public httplib::Stream {
     return send(socket_, from, size, MSG_NOSIGNAL | MSG_DONTWAIT);
   }
   void get_remote_ip_and_port(std::string& ip, int& port) const override {
-    ip.clear();  // nobody is judged by it
+    ip.clear();  // not used
     port = 0;
   }
   void get_local_ip_and_port(std::string& ip, int& port) const override {
@@ -152,7 +152,8 @@ class BoundedStream final : public httplib::Stream {
   size_t next_ = 0, filled_ = 0;
 };
 
-// What has come and was not read: closing with it would take the answer back.
+// Reads the bytes that were not read yet: closing the socket with unread bytes would discard the
+// answer.
 void Drain(int socket) {
   std::array<char, 4096> rest{};
   for (int i = 0; i < 64; ++i) {

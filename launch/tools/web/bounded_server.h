@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// cpp-httplib's server with a bound on everything that somebody outside decides: how long a request
-// takes to come and an answer to go, how long a request is, how many connections there are. One
-// request per connection.
+// cpp-httplib's server with a bound on everything that a client decides: the time to receive a
+// request and to send an answer, the length of a request, the number of connections. One request
+// per connection.
 //
-// Bodies that are encoded are not decoded, answers are not compressed (the library would, at a cost
-// that who asks decides), and ranges are left to who answers.
+// Encoded bodies are not decoded, and answers are not compressed: in the library the client decides
+// the cost of both. Handlers answer ranges themselves.
 #pragma once
 
 #include <atomic>

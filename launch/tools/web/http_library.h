@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What cpp-httplib 0.11 and 0.18 declare differently, in one way for both: Debian 12 has the one,
-// Debian 13 the other.
+// One spelling for declarations that differ between cpp-httplib 0.11 (Debian 12) and 0.18 (Debian
+// 13).
 #pragma once
 
 #include <httplib.h>
@@ -10,11 +10,11 @@
 
 namespace shoal::launch {
 
-// What httplib::TaskQueue::enqueue gives: nothing, later whether the task is taken.
+// Result of httplib::TaskQueue::enqueue: none in 0.11; in 0.18 whether the task was accepted.
 using Enqueued = decltype(std::declval<httplib::TaskQueue&>().enqueue(nullptr));
 
 // httplib::Server whose one request of a connection is answered by AnswerRequest. The later version
-// also asks for both ends' addresses, to log them; here nobody is judged by them.
+// also asks for both ends' addresses, to log them; Shoal does not use them.
 class HttpServer : public httplib::Server {
  protected:
   // False when there was nothing that could be answered.

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines to the running runs that somebody looks at. A run's network is joined when it is first
-// asked for, and left when it has not been asked for in a while: a run that nobody looks at is not
-// touched.
+// Connections to the running runs that a page shows. The network of a run is joined at the first
+// request for it and left some time after the last one. A run that no page shows is not touched.
 #pragma once
 
 #include <chrono>

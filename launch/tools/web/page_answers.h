@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the page's programs get: JSON of what others have found out. Pure. Text of the network and
-// of files that is not UTF-8 is replaced.
+// Answers to the page's scripts, as JSON. Pure. Text from the network and from files that is not
+// UTF-8 is replaced.
 #pragma once
 
 #include <string>

@@ -8,7 +8,7 @@
 
 namespace shoal::launch {
 
-// Of Debian's package libjs-dygraphs.
+// Folder of Debian's package libjs-dygraphs.
 inline constexpr char kChartLibrary[] = "/usr/share/javascript/dygraphs";
 
 struct PagePart {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a request asks for, from its method and path. Pure.
+// Routes: the meaning of a request, from its method and path. Pure.
 //
 //   GET   /                             the page
 //         /page.js, /dygraph.min.js ... a part of it

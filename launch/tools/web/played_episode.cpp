@@ -60,7 +60,7 @@ void PlayedEpisodes::Play(const fs::path& run) {
 
 void PlayedEpisodes::PlayOn(const fs::path& run, PlayedEpisode episode,
                             const fs::path& checkpoint) {
-  // Of this thread, and so of the program that it starts.
+  // Priority of this thread, and so of the program that it starts.
   setpriority(PRIO_PROCESS, 0, kNice);
   const fs::path before =
       std::exchange(episode.film, scratch_.path() / fmt::format("{}.mp4", episode.seed));

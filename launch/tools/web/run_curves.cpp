@@ -22,7 +22,7 @@ using nlohmann::ordered_json;
 
 constexpr char kSuccess[] = "rollout_success", kReturn[] = "rollout_return",
                kEnvSteps[] = "env_steps_per_second", kUpdates[] = "updates_per_second";
-// Of one line: a process says about a hundred figures.
+// Bytes of one line: a process reports about a hundred figures.
 constexpr size_t kLongestLine = 64'000;
 
 // From whose lines a metric is taken.

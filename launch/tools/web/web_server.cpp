@@ -30,7 +30,7 @@ namespace fs = std::filesystem;
 constexpr char kJson[] = "application/json";
 constexpr int kMostFiles = 4;  // handed out at once: the other threads are for the rest
 
-// The page runs its own scripts and nobody else's; the library that draws sets styles.
+// The page runs only its own scripts; the library that draws sets styles.
 constexpr char kPagePolicy[] =
     "default-src 'none'; script-src 'self'; style-src 'self' 'unsafe-inline'; img-src 'self' "
     "data:; "
@@ -53,7 +53,7 @@ void Refuse(int status, const std::string& message, httplib::Response& response)
   response.set_content(ErrorAnswer(message), kJson);
 }
 
-// What every answer says, unless it has said otherwise.
+// Adds the default headers of every answer.
 void AddHeaders(httplib::Response& response) {
   if (!response.has_header("Content-Security-Policy")) {
     response.set_header("Content-Security-Policy", kPagePolicy);
@@ -78,7 +78,7 @@ struct WebServer::Impl {
   ~Impl();
 
   Caller CallerOf(const httplib::Request& request) const;
-  // Answers whoever may not; true when that is done.
+  // Answers a caller without the right; true if it did.
   bool TurnedAway(const httplib::Request& request, httplib::Response& response) const;
   void Answer(const httplib::Request& request, httplib::Response& response);
   void AnswerRoute(const PageRoute& route, const httplib::Request& request,

@@ -31,7 +31,7 @@ class WebServer {
   const std::string& token() const;  // for who may see and steer (access.h)
   // "http://127.0.0.1:8470/?token=..."
   std::string Url() const;
-  // Leaves runs that nobody looks at any more. To be called every few seconds.
+  // Leaves runs that no page shows any more. Call it every few seconds.
   void Tend();
 
  private:

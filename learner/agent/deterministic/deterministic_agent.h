@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What TD3 and DDPG share: a deterministic actor that climbs its critic, targets of both, and one
-// update of a batch. Equations are numbered in docs/algorithm.md.
+// The common part of TD3 and DDPG: a deterministic actor that ascends its critic, targets of both,
+// and one update of a batch. Equations are numbered in docs/algorithm.md.
 //
 //   1. targets   next_obs -> encoder -> target actor, target critic -> y           (Eq. 18, 15)
 //   2. critic    obs -> encoder -> critic -> loss -> encoder and critic step            (Eq. 6)

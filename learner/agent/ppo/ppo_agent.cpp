@@ -85,7 +85,7 @@ class PpoAgent final : public Agent {
   VectorStandard standard_;
   RewardScale rewards_;
   uint64_t updates_ = 0;
-  uint64_t env_steps_ = 0;  // learned from: what schedules go by
+  uint64_t env_steps_ = 0;  // learned from: the time of schedules
   double clip_ = 0;
   AgentState state_;
 

@@ -9,7 +9,7 @@
 //                   24), gradients cut to learner.max_grad_norm, one step of Adam with eps 1e-5;
 //                   ended early when the policy has moved by 1.5 ppo.target_kl
 //   5. observations of the rollout join the statistics that normalise them, for the policy that
-//                   follows: this one's log-probabilities were made with the former ones
+//                   follows: this one's log-probabilities were made with the old ones
 //
 // Rows that make no whole minibatch (a rollout of fewer environments than usual) are left out of
 // an epoch; which ones differs from epoch to epoch.
@@ -60,7 +60,7 @@ std::vector<int> ShuffledRows(int rows, Random* random);
 // Throws Error (kUsage) where the configuration does not fit.
 std::unique_ptr<Agent> MakePpoAgent(const Config& config, const ObservationSpec& spec,
                                     nn::Precision precision);
-// With an order of one's own: to compare with other programs.
+// Same as above with a given order of rows, to compare with other programs.
 std::unique_ptr<Agent> MakePpoAgent(const Config& config, const ObservationSpec& spec,
                                     nn::Precision precision, RowOrder order);
 

@@ -75,7 +75,7 @@ PpoLoss PpoLossAndGradients(const PpoLossInputs& in, const PpoGradients& out) {
     loss.policy -= std::min(plain, cut) / in.batch;
     loss.approx_kl += (ratio - 1 - log_ratio) / in.batch;
     loss.clip_fraction += (std::abs(ratio - 1) > in.clip ? 1.0 : 0.0) / in.batch;
-    // Where the cut one is smaller, the ratio is beyond its clip and the gradient 0.
+    // If the clipped term is smaller, the ratio is beyond its clip and the gradient is 0.
     AddLogProbGradient(in, b, plain <= cut ? -plain / in.batch : 0, out, &log_std_gradient);
     loss.value += ValueError(in, b, &out.value[b]) / in.batch;
   }

@@ -6,9 +6,9 @@
 //   L = -mean_b min(rho A, clip(rho, 1 - c, 1 + c) A)                                       Eq. 24
 //     + w_v mean_b (R - V)^2 - w_e H,          H = sum_j log sigma_j + log(2 pi e) / 2
 //
-// With a value clip c_v, V is V_old + clip(V - V_old, -c_v, c_v). A is normalised over the
-// minibatch first, to mean 0 and deviation 1, where that is asked for and there is more than one.
-// A gradient is 0 where a clip is in force.
+// If there is a value clip c_v, V is V_old + clip(V - V_old, -c_v, c_v). On request, A is first
+// normalised over a minibatch of more than one row, to mean 0 and deviation 1. A clipped term has
+// gradient 0.
 // Source: Schulman et al. 2017, arXiv:1707.06347; as in ppo.py of Stable-Baselines3.
 // Dimensions: B minibatch, A actions.
 #pragma once

@@ -36,14 +36,14 @@ class PpoNetworks {
   std::span<const float> value() const { return value_; }  // (B) of the latest of both
   std::span<const float> log_std();                        // (A)
 
-  // Where the loss puts its gradients: (B, A), (A), (B).
+  // Destination of the loss's gradients: (B, A), (A), (B).
   std::span<float> mean_gradient() { return mean_gradient_; }
   std::span<float> log_std_gradient();
   std::span<float> value_gradient() { return value_gradient_; }
   // Gradients of all parameters from these, for the latest Forward.
   void Backward();
 
-  // What one optimiser steps; Refresh follows each step.
+  // Parameter sets that one optimiser steps; call Refresh after each step.
   std::vector<nn::ParameterSet*> Sets();
   void Refresh();
   void AddTo(AgentState* state);

@@ -9,7 +9,7 @@
 
 namespace shoal::learner {
 
-// As Algorithm::make_replica.
+// See Algorithm::make_replica.
 std::unique_ptr<Agent> MakeTd3Agent(const Config& config, const ObservationSpec& spec,
                                     nn::Precision precision, nn::Replica* replica);
 

@@ -46,14 +46,14 @@ class Player {
   }
   void Begin() { exploration_->BeginEpisode(0); }
 
-  // What is added to the action of the mean.
+  // The noise on the action of the mean.
   double Noise() { return double{Act()} - double{std::tanh(kPolicyMean)}; }
   std::vector<double> Noises() {
     std::vector<double> noises(kSample);
     for (double& noise : noises) noise = Noise();
     return noises;
   }
-  // What tanh is taken of.
+  // The arguments of tanh.
   std::vector<double> Unsquashed() {
     std::vector<double> numbers(kSample);
     for (double& number : numbers) number = std::atanh(double{Act()});
@@ -168,7 +168,7 @@ TEST(NoiseFactorOf, LiesGeometricallyEvenAroundOne) {
   EXPECT_EQ(NoiseFactor(config, 0), 1);
 }
 
-// With dt = 1 and theta = 0.15 noise forgets within steps: rho = 0.85.
+// At dt = 1 and theta = 0.15 the noise forgets within steps: rho = 0.85.
 class OrnsteinUhlenbeckTest : public testing::Test {
  protected:
   static constexpr double kSigma = 0.05, kRho = 0.85;
@@ -177,7 +177,7 @@ class OrnsteinUhlenbeckTest : public testing::Test {
     config.exploration.dt = 1;
     return config;
   }
-  // Of x_t: sigma^2 (1 - rho^2t) / (1 - rho^2).
+  // Deviation of x_t: sigma^2 (1 - rho^2t) / (1 - rho^2).
   static double Deviation(int t) {
     return kSigma * std::sqrt((1 - std::pow(kRho, 2 * t)) / (1 - kRho * kRho));
   }

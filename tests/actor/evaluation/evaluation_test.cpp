@@ -90,7 +90,7 @@ TEST(EvaluationStream, EachEvaluationHasEpisodesOfItsOwn) {
   EXPECT_NE(key(7, 1000, 400), (EpisodeStream{7, StreamRole::kFinalEnvironment, 0}.Key(0)));
 }
 
-// The whole way: nobody touches the block of FetchPush where nothing is done.
+// End to end: no-op actions never touch the block of FetchPush.
 TEST(EvaluationJson, FailedEpisodesHaveACauseAndAreCountedByIt) {
   RunConfig run = RunOf("FetchPush");
   run.config.observation.pixels = false;
@@ -182,7 +182,7 @@ TEST(Evaluator, StoppedItHasTheFirstEpisodesAsIfNoMoreHadBeenAsked) {
   EXPECT_GT(partial, 3u);
 }
 
-// What the policy sees first in each episode.
+// The first observation of the policy in each episode.
 class FirstPictures final : public EpisodeListener {
  public:
   void OnBegin(uint64_t, std::span<const uint8_t> stack) override {
@@ -216,7 +216,7 @@ TEST(Evaluator, WithHindsightThePolicysPicturesDoNotShowTheGoal) {
   }
 }
 
-// A checkpoint whose policy nobody could load: it must be refused before that is tried.
+// A checkpoint with a policy that cannot be loaded: it must be refused before loading.
 class EvaluateCheckpointTest : public testing::Test {
  protected:
   EvaluateCheckpointTest() {

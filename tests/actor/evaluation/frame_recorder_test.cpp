@@ -103,7 +103,7 @@ TEST_F(FrameRecorderTest, HoldsThePolicysInputsAndALargerViewOfTheSameEpisode) {
   }
 }
 
-// As a film is made: the evaluation's own runner, and the view beside it.
+// Set-up of a film: the evaluation's own runner, and the view beside it.
 TEST_F(FrameRecorderTest, WithHindsightTheViewAloneShowsTheGoal) {
   for (const bool hindsight : {false, true}) {
     RunConfig run = run_;

@@ -48,7 +48,7 @@ TEST(BoundedJson, WhatIsNotJsonIsDiscarded) {
   }
 }
 
-// Whoever parses JSON some other way meets any depth.
+// Other ways to parse JSON have no limit of depth.
 TEST(BoundedJson, TheProductParsesJsonInNoOtherWay) {
   int sources = 0;
   for (const char* room : {"common", "actor", "replay_server", "learner", "launch"}) {

@@ -81,7 +81,7 @@ TEST(GuardMain, WhatWasPrintedIsWrittenBeforeTheSignal) {
   EXPECT_EXIT(prints(), testing::KilledBySignal(SIGINT), "the last words");
 }
 
-// As in a child of a thread that had it blocked.
+// A child of a thread that had blocked the signal inherits that.
 TEST(GuardMain, ABlockedSignalIsUnblocked) {
   const auto blocked = [] {
     std::exit(GuardMain("p", [] {

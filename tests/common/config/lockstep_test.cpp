@@ -52,7 +52,7 @@ TEST(Lockstep, RoundsOverTheRunSoThatTheRatioIsKept) {
   EXPECT_EQ(LockstepUpdatesAtPhaseEnd(config, 1'000'000), 300'000u);
 }
 
-// What a schedule grants is summed step by step, from the end of phase 0 on.
+// The grants of a schedule are summed step by step, from the end of phase 0 on.
 TEST(Lockstep, UpdatesFollowAScheduleOfSamplesPerInsert) {
   const Schedule ratio{40, 4, 1500};
   const Config config = Lockstep(1000, 2, 3, ratio, 16);  // phase 0 ends after 1002 env steps

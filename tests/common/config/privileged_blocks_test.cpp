@@ -108,7 +108,7 @@ TEST(PrivilegedBlocks, TravelInBatchesAndChangeTheirHash) {
   const BatchSchema schema = BatchSchemaOf(run);
   EXPECT_TRUE(schema.Has("obs_privileged") && schema.Has("next_obs_privileged"));
   EXPECT_NE(schema.Hash(), plain);
-  // As many numbers, of another meaning.
+  // The same number of numbers, with another meaning.
   run.config.learner.critic_blocks = StateBlocks({"object-like", "fingers"});
   EXPECT_NE(BatchSchemaOf(run).Hash(), schema.Hash());
 }

@@ -37,7 +37,7 @@ TEST(Schedule, AMeanIsThatOfTheLineAndOfWhatFollowsIt) {
   EXPECT_EQ(line.Most(), 2);
 }
 
-// What is granted for steps that come in pieces is what they come to together.
+// Grants for steps in pieces add up to the grant for all.
 TEST(Schedule, AnIntegralIsTheSumOverItsEnvSteps) {
   Random random(3);
   for (int trial = 0; trial < 200; ++trial) {

@@ -12,7 +12,7 @@ namespace shoal {
 
 class SchemaCheck {
  public:
-  // What is wrong first, as "PATH: KEYWORD"; empty when nothing is. Fails the test on a keyword
+  // The first fault as "PATH: KEYWORD"; empty if there is none. Fails the test on a keyword
   // that it does not know, so that none is passed over.
   static std::string Fault(const nlohmann::json& value, const nlohmann::json& schema,
                            const std::string& path = "") {

@@ -120,7 +120,7 @@ TEST_F(CredentialsTest, ACertificateOfAnotherAuthorityOrWithAnotherKeyIsRefused)
   EXPECT_THAT(Mistake(mixed), AllOf(HasSubstr("actor.key"), HasSubstr("not the key")));
 }
 
-// As the DDS library would, which takes them for another process on the port.
+// The DDS library would refuse them as well, but as another process on the port.
 TEST_F(CredentialsTest, ADocumentOfAnotherAuthorityOrOneThatWasAlteredIsRefused) {
   const fs::path other = parent_.path() / "other";
   Create(other, ValidForDays(2));

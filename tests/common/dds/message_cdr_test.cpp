@@ -70,7 +70,7 @@ TYPED_TEST(EveryMessage, IsRefusedWhenItIsCutShort) {
   }
 }
 
-// What is read from `cdr` where it lies among bytes of `neighbour`.
+// The message read from `cdr` between bytes of `neighbour`.
 template <class M>
 std::string ReadAmong(uint8_t neighbour, const Bytes& cdr) {
   constexpr size_t kMargin = 64;
@@ -142,7 +142,7 @@ TEST(MessageCdr, TextsHoldNothingThatATerminalWouldObey) {
   EXPECT_EQ(back.text, "two lines?[2J");
 }
 
-// What Cyclone 0.10.2 takes: it asks for four bytes per number where eight are read.
+// Cyclone 0.10.2 accepts this message: it asks for four bytes per number where eight are read.
 TEST(MessageCdr, NumbersOfWhichOnlyHalfIsThereAreRefused) {
   Bytes cdr = EncodeCdr(ValidMetrics());
   Resize(&cdr, cdr.size() - 8 - 8);

@@ -26,7 +26,7 @@ class PeerProcess {
   PeerProcess(const PeerProcess&) = delete;
   PeerProcess& operator=(const PeerProcess&) = delete;
 
-  // Of the claimed domain.
+  // Address of the claimed domain.
   const ClusterAddress& address() const { return address_; }
 
   // Sends a command and returns the answer line; "got" lines in between are kept for NextGot. Empty

@@ -140,8 +140,8 @@ TEST_F(SecurityTest, AnActorsCredentialsDoNotLetItSendWeights) {
   EXPECT_EQ(actor.Ask("publish WeightsPart"), "") << "it ends with an error";
 }
 
-// What decides about a run, and what it shows of the others, is not an actor's to say: not with the
-// key that every host with actors has.
+// An actor may not send messages that decide about a run or show other roles: every host with
+// actors has its key.
 TEST_F(SecurityTest, AnActorsCredentialsSayNothingInTheNameOfAnotherRole) {
   for (const char* message : {"EvalMessage", "EvalMetrics", "ReplayMetrics", "LearnerMetrics",
                               "ReplayProgress", "LearnerProgress", "CreditsMessage"}) {
@@ -188,7 +188,7 @@ class Eavesdropper {
   int fd_;
 };
 
-// Whether somebody on the network sees what the learner sends to an actor.
+// Whether the learner's messages to an actor are readable on the network.
 bool WeightsAreReadable(const ClusterAddress& address) {
   const Eavesdropper eavesdropper;
   PeerProcess learner("learner", address), actor("actor", address);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What two processes exchange through the sockets.
+// Messages between two processes through sockets.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

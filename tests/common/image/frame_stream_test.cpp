@@ -40,7 +40,7 @@ class FrameStreamTest : public testing::Test {
                  std::vector<float>{0.25F}, std::vector<uint8_t>{1, 2, 3, 4},
                  std::vector<uint8_t>{10, 11, 12});
   }
-  // What the reader says of other bytes in place of the file's.
+  // The reader's error for other bytes in place of the file's.
   std::string Refusal(const std::string& bytes) const {
     std::ofstream(file_, std::ios::binary | std::ios::trunc) << bytes;
     try {

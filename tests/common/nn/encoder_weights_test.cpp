@@ -35,7 +35,7 @@ class EncoderWeightsTest : public testing::Test {
     set.Export(&ours_);
   }
 
-  // With names as torchvision's.
+  // Tensors with torchvision's names.
   TensorMap Bare() const {
     TensorMap bare;
     for (const auto& [name, tensor] : ours_) bare[name.substr(std::strlen("encoder."))] = tensor;

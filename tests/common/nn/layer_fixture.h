@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What tests of single layers share: memories filled from and read into plain arrays, parameters
-// with random values, both precisions.
+// Common parts of tests of single layers: memories filled from and read into plain arrays,
+// parameters with random values, both precisions.
 #pragma once
 
 #include <cstring>

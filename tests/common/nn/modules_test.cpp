@@ -41,7 +41,7 @@ class ModulesTest : public LayerTest {
     return reference::Network(tensors, network_, spec_);
   }
 
-  // What the actor's MLP gives for its observation.
+  // Output of the actor's MLP for its observation.
   Values Raw(const reference::Network& network) const {
     const Values features = network.Features(kRows, frames_.data());
     return network.Mlp("actor.mlp", kRows, network.Observation("actor", kRows, features, vector_));

@@ -190,7 +190,7 @@ TEST_P(PolicyTest, TellsGoalsTwoMillimetresApart) {
   }
 }
 
-// What the vector columns of the first layer see is the vector, to f32's last digits.
+// The vector columns of the first layer get the vector to f32's last digits.
 TEST_P(PolicyTest, ComputesAVectorsFirstLayerInF32) {
   NetworkConfig network = OddNetwork();
   network.hidden = {};  // the first layer is all there is

@@ -10,7 +10,7 @@ namespace {
 
 using Execution = shoal::nn::PrimitiveTrace::Execution;
 
-// Where this thread's executions are noted; null: nowhere.
+// List of this thread's executions; null: not recorded.
 thread_local std::vector<Execution>* notes = nullptr;
 
 bool IsConvolution(const_dnnl_primitive_t primitive) {

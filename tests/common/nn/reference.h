@@ -30,12 +30,12 @@ Gradient ConvBackward(const ConvShape& shape, const Values& x, const Values& wei
 
 // x (B, C, n), n the numbers of a map; weight, bias, mean, variance (C).
 struct Moments {
-  Values mean, variance;  // the latter as it is, not made unbiased
+  Values mean, variance;  // variance with n in the denominator
 };
 Moments BatchMoments(int batch, const Values& x, int channels);
 Values BatchNormForward(int batch, const Values& x, const Moments& moments, const Values& weight,
                         const Values& bias);
-// Of BatchNormForward with BatchMoments(x).
+// Gradient of BatchNormForward with BatchMoments(x).
 Gradient BatchNormBackward(int batch, const Values& x, const Values& weight, const Values& dy);
 
 // P planes of (H, W) to P planes of (h, w) of a k x k window.

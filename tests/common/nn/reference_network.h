@@ -20,7 +20,7 @@ using Parameters = std::map<std::string, Values>;
 // The F32 tensors.
 Parameters ToParameters(const TensorMap& tensors);
 
-// What an encoder's plan makes of frames (B, K*C, H, W) u8. Batch normalisation normalises by the
+// Output of an encoder's plan for frames (B, K*C, H, W) u8. Batch normalisation normalises by the
 // batch, or by running statistics.
 Values Features(const NetworkPlan& encoder, const Parameters& parameters, int batch,
                 const uint8_t* frames, Statistics statistics = Statistics::kBatch);
@@ -36,7 +36,7 @@ class Network {
 
   // frames (B, K*C, H, W) u8 -> (B, N*h*w).
   Values Features(int batch, const uint8_t* frames) const;
-  // What the MLPs of `head` see: trunk of the features beside the vector (B, V).
+  // Input of the MLPs of `head`: trunk of the features beside the vector (B, V).
   Values Observation(const std::string& head, int batch, const Values& features,
                      const Values& vector) const;
   // `name`: actor.mlp, critic.q1, ... input (B, I).

@@ -64,7 +64,7 @@ class TorchvisionTest : public testing::TestWithParam<EncoderCase> {
     return {parameter.value(), Count(parameter)};
   }
 
-  // As set_weights of the script.
+  // Same as set_weights of the script.
   void SetWeights(const std::string& name) {
     const std::span<float> values = Values(name);
     const std::vector<int64_t> shape = encoder_.parameters().Find(name).shape();

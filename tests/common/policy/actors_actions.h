@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the actor makes of a checkpoint's policy: what acting outside of training is compared with.
+// The actor's actions by a checkpoint's policy: the reference for acting outside of training.
 #pragma once
 
 #include <algorithm>
@@ -14,7 +14,7 @@
 
 namespace shoal::policy {
 
-// What the evaluation actor plays.
+// Actions of the evaluation actor.
 inline std::vector<float> ActorsActions(const RunConfig& run,
                                         const std::filesystem::path& checkpoint,
                                         const RandomObservations& random) {

@@ -64,7 +64,7 @@ inline std::filesystem::path Store(const RunConfig& run, const std::filesystem::
   return folder / "checkpoints" / store.Write(state, learner, policy, {});
 }
 
-// Of an agent after three updates on random numbers.
+// Checkpoint of an agent after three updates on random numbers.
 inline std::filesystem::path WriteCheckpointOf(const RunConfig& run,
                                                const std::filesystem::path& folder) {
   const auto agent = learner::MakeAgent(run.config, run.spec, nn::Precision::kF32);
@@ -79,7 +79,8 @@ inline std::filesystem::path WriteCheckpointOf(const RunConfig& run,
   return Store(run, folder, agent->updates(), agent->AllTensors(), agent->AveragedPolicyTensors());
 }
 
-// Of a policy of random parameters alone: for encoders whose optimisers would be large files.
+// Checkpoint of a policy with random parameters only: for encoders whose optimisers would be large
+// files.
 inline std::filesystem::path WritePolicyOf(const RunConfig& run,
                                            const std::filesystem::path& folder) {
   nn::ParameterSet parameters(nn::PolicyParameters(run.config.network, run.spec),

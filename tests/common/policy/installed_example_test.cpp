@@ -50,7 +50,7 @@ class InstalledExampleTest : public testing::Test {
     return fs::path(Installed()) / SHOAL_LIBDIR / "libshoal-policy.so.0";
   }
 
-  // What `program` says to the checkpoint and one observation, whose file it writes.
+  // Output of `program` for the checkpoint and one observation, whose file this writes.
   static ProgramResult Act(const std::string& program, const fs::path& checkpoint,
                            const RandomObservations& random) {
     const fs::path input = root_->path() / "observation";

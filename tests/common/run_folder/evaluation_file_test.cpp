@@ -18,7 +18,7 @@ using nlohmann::ordered_json;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 
-// Of a task with goals and causes of failure.
+// An evaluation of a task with goals and causes of failure.
 EvaluationFile OfACheckpoint() {
   EvaluationFile file{
       .summary = {.task = "FetchPush",

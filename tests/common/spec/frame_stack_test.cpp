@@ -25,7 +25,7 @@ TEST(FrameStack, RepeatsTheFirstFrameThenKeepsTheLastOldestFirst) {
   EXPECT_EQ(memory, (Bytes{9, 9, 9, 9, 9, 9}));
 }
 
-// As in a batch without pixels, whose slices have no bytes.
+// A batch without pixels has slices without bytes.
 TEST(FrameStack, OfNoFramesLeavesItsNeighboursAlone) {
   Bytes memory{1, 2, 3, 4};
   FrameStack stack(std::span<uint8_t>(memory).subspan(2, 0), 1);

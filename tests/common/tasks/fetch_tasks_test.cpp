@@ -91,7 +91,7 @@ TEST(FetchTasks, OnlyPickAndPlaceUsesItsFingers) {
   }
 }
 
-// What relabelling with other goals relies on.
+// Relabelling with other goals relies on this.
 TEST(FetchTasks, RewardsOfABatchOfArbitraryGoalsFollowTheirDistances) {
   constexpr size_t kGoals = 200;
   Random random(3);

@@ -23,7 +23,7 @@ std::map<std::string, double> Figures(const MetricsReport& report) {
   return figures;
 }
 
-// Until `seconds` after `start`: reports need intervals that can be told.
+// Waits until `seconds` after `start`: reports need intervals of some length.
 void WaitUntilSince(SteadyTime start, double seconds) {
   while (SecondsSince(start) < seconds) std::this_thread::yield();
 }

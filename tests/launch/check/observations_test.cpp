@@ -114,8 +114,8 @@ TEST_P(Observations, GoAllTheWayFromConfigurationToUpdate) {
   }
 }
 
-// As the preset fetch-push-image-goals: goals of hindsight shown by stored frames, and told to the
-// critic as numbers.
+// Set-up of the preset fetch-push-image-goals: stored frames show goals of hindsight, and the
+// critic gets them as numbers.
 TEST(ImageGoals, GoWithHindsightAndACriticWithoutPixels) {
   const TemporaryFolder folder;
   Config config = ConfigOf({"image", true, false, /*pixels=*/true, /*stack=*/1, /*cameras=*/2});

@@ -40,7 +40,7 @@ class ChildProcessTest : public ::testing::Test {
   TemporaryFolder folder_;
 };
 
-// Running, and not a zombie that nobody has reaped.
+// Running, and not a zombie.
 bool Alive(pid_t pid) {
   std::ifstream stat("/proc/" + std::to_string(pid) + "/stat");
   std::string number, name, state;

@@ -17,8 +17,8 @@
 namespace shoal::launch {
 namespace {
 
-// A process that detaches `body` and leaves with what the parent's side was told; `body` gets the
-// detachment and returns the detached process's exit code.
+// A process that detaches `body` and exits with the code that the parent's side received; `body`
+// gets the detachment and returns the detached process's exit code.
 pid_t Launch(const std::function<int(Detachment&)>& body) {
   const pid_t pid = fork();
   if (pid != 0) return pid;

@@ -82,7 +82,7 @@ TEST_F(OrderedStop, OverdueProcessesGetSigterm) {
   StopInOrder(supervisor_, kQuickStop, Hooks());
   EXPECT_EQ(supervisor_.Running(""), 0);
   EXPECT_THAT(said_, ElementsAre(HasSubstr("SIGTERM")));
-  EXPECT_THAT(supervisor_.unclean_exits(), IsEmpty()) << "it did as it was told";
+  EXPECT_THAT(supervisor_.unclean_exits(), IsEmpty()) << "it ended in order";
 }
 
 TEST_F(OrderedStop, ThoseThatIgnoreItGetSigkill) {

@@ -349,7 +349,7 @@ TEST_F(SupervisorTest, HearsAProcessElsewhereWhateverItsPid) {
   }
   EXPECT_THAT(said_, ElementsAre(AllOf(HasSubstr("actor-0"), HasSubstr("no report for 30 s"))))
       << "its reports are not those of the actor here";
-  // Between them the death of the former may be noticed, and said.
+  // Between them the death of the first actor may be noticed and reported.
   const auto silence = AllOf(HasSubstr("actor-1"), HasSubstr("no report for 30 s"));
   const SteadyTime end = now + HangLimits().start;
   while (!Matches(Contains(silence))(said_) && now < end) {

@@ -16,7 +16,7 @@ using ::testing::HasSubstr;
 
 constexpr uint64_t kFirst = 1'700'000'000'000'000'001, kSecond = kFirst + 1;
 
-// As a ring that agrees with its sessions would say.
+// Account of a ring that agrees with its sessions.
 RunAccount Seen(std::vector<SessionCounters> sessions) {
   RunAccount seen{.sessions = std::move(sessions)};
   for (const SessionCounters& session : seen.sessions) seen.stored_records += session.stored();

@@ -45,7 +45,7 @@ TEST(RunInputs, SayWhatThePolicyGetsAndWhatTrainingAloneIsTold) {
             "recorded besides: object_velocity_from_grip (3)\n");
 }
 
-// Neither network is told of the object, and the samples are chosen by it all the same.
+// Neither network has the object as an input, but the samples are chosen by it.
 TEST(RunInputs, WhatTheReplayGoesByIsPrivilegedToo) {
   RunConfig run = PushRun();
   run.config.learner.critic_blocks = false;
@@ -110,7 +110,7 @@ TEST(RunInputs, BlocksThatTellOfTheObjectAreNamed) {
   run.spec = spec;
   run.config.learner.critic_blocks = false;  // which leaves nothing to a critic of its own
   EXPECT_THAT(DescribeInputs(run), HasSubstr("  of these tell of the object: object, "));
-  // What is achieved by a gripper alone tells of the gripper.
+  // The achieved goal of a gripper alone reveals only the gripper.
   std::erase_if(spec.blocks,
                 [](const BlockSpec& block) { return block.name.starts_with("object"); });
   EXPECT_THAT(PolicyInputsOf(spec).object_blocks, IsEmpty());

@@ -22,7 +22,7 @@ TEST(EvaluationFilter, CountsEachPointOnce) {
   EXPECT_EQ(filter.repeated(), 1u);
 }
 
-// What the transport kept comes again from its beginning, after newer ones were counted.
+// The transport delivers its stored messages again, after newer ones were counted.
 TEST(EvaluationFilter, WhatComesAgainInItsOldOrderDoesNotCount) {
   EvaluationFilter filter;
   for (uint64_t i = 1; i <= 4; ++i) EXPECT_TRUE(filter.Accept(PointAt(1000 * i, 7, 100 * i)));

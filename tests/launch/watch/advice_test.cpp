@@ -30,7 +30,7 @@ RunResources WithActors(int actors) {
   return {.usable_cores = 4, .actors = actors, .learner_threads = 1};
 }
 
-// A run in which nobody waits for anybody, on four cores.
+// A run in which no role waits for another, on four cores.
 Bottleneck Balanced() {
   return {.seconds = 100,
           .inserts_blocked = 0.05,

@@ -99,7 +99,7 @@ TEST(FormatProgressLine, SaysWhoWaitsForWhom) {
   EXPECT_THAT(FormatProgressLine(f), Not(HasSubstr("wait")));
   f.actors_wait = 0.01;
   f.learner_waits = 0.02;
-  EXPECT_THAT(FormatProgressLine(f), HasSubstr("nobody waits"));
+  EXPECT_THAT(FormatProgressLine(f), HasSubstr("neither side waits"));
   f.learner_waits = 0.5;
   EXPECT_THAT(FormatProgressLine(f), HasSubstr("learner waits for the actors 50 %"));
   f.actors_wait = 0.3;

@@ -35,7 +35,7 @@ TEST(RecentRun, RolesThatHaveNotRunMeanwhileAreAbsent) {
   EXPECT_EQ(grown.at("learner").stages.at("backward"), 1);
 }
 
-// What an ordinary run looks like: quick while the replay is filled, then bounded by the learner,
+// An ordinary run: quick while the replay is filled, then bounded by the learner,
 // with records stored in chunks and a pause at each checkpoint.
 TEST(RecentRun, TheTimeLeftOfASteadyRunNeverJumps) {
   constexpr double kBudget = 80000;

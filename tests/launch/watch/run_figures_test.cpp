@@ -26,7 +26,7 @@ Bottleneck Lately() {
   return FindBottleneck(totals, {.usable_cores = 4, .actors = 2});
 }
 
-// As a coordinator shows itself.
+// The view of a coordinator.
 RunViewMessage ViewOf(const ProgressFigures& figures, const Bottleneck& lately) {
   Config config;
   config.env_steps = 4000;

@@ -90,7 +90,7 @@ TEST_F(RunListTest, ARunningRunSaysWhereItIsToBeReached) {
     WriteClusterAddress(held.path(), address);
     EXPECT_EQ(peer(Only("a")), "10.0.0.7:" + std::to_string(dds::OperatePort(address)));
   }
-  EXPECT_TRUE(peer(Only("a")).is_null()) << "nobody is there any more";
+  EXPECT_TRUE(peer(Only("a")).is_null()) << "the process has ended";
 }
 
 TEST_F(RunListTest, ARunOfATaskWithoutSuccessIsListedByItsReturn) {

@@ -77,7 +77,7 @@ TEST_F(ScalarLogTest, AReportWithoutNewUpdatesAddsNoPoint) {
   EXPECT_THAT(Read().at("train/critic_loss"), ElementsAre(Pair(1000, 0.5f)));
 }
 
-// The learner of a resumed run reports at the env steps where the former one stopped.
+// The learner of a resumed run reports at the env steps where its predecessor stopped.
 TEST_F(ScalarLogTest, AResumedRunAddsNoStepTwice) {
   log_.WriteTraining(LearnerReport(10, 1000, 0.5), start_);
   log_.WriteTraining(LearnerReport(20, 1500, 0.5), start_);

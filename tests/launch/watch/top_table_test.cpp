@@ -96,7 +96,7 @@ TEST(TopTable, ShowsEachRolesOwnFigures) {
   EXPECT_THAT(lines[6], HasSubstr("20.0 steps/s"));
 }
 
-// Where a column begins in the heading of a table.
+// Position of a column in the heading of a table.
 size_t StartOf(const std::vector<std::string>& lines, const std::string& column) {
   for (const std::string& line : lines) {
     if (line.starts_with("PROCESS")) return line.find(column);

@@ -16,8 +16,8 @@ namespace shoal::learner {
 
 constexpr double kFirstMoment = 0.1;  // of a gradient, after the first update
 
-// Of the parameters of `network` whose names start with `prefix`: what the tensors `after` the
-// update hold against central differences of `loss`, which reads `network`. Some of each parameter.
+// Compares Adam's moments in the tensors `after` an update with central differences of `loss`,
+// which reads `network`: for some entries of each parameter whose name starts with `prefix`.
 inline void ExpectMoments(const nn::TensorMap& after, const std::string& prefix,
                           nn::reference::Network* network, const std::function<double()>& loss) {
   int compared = 0;

@@ -127,8 +127,8 @@ float BanditError(Config config, Make make) {
   return error;
 }
 
-// With noise on every value of the F32 tensors whose names start with `prefix`: targets as after
-// many updates.
+// Adds noise to every value of the F32 tensors whose names start with `prefix`: targets then differ
+// as after many updates.
 inline nn::TensorMap Perturbed(nn::TensorMap tensors, const std::string& prefix) {
   Random random(11);
   for (auto& [name, tensor] : tensors) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What holds for every algorithm of the list.
+// Properties of every algorithm of the list.
 #include "learner/agent/algorithms.h"
 
 #include <fmt/core.h>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What batch normalisation in the encoder asks of an algorithm: statistics of the batch in the
+// Batch normalisation in the encoder needs from an algorithm: statistics of the batch in the
 // passes that are trained, running ones in targets; running ones are state like any other.
 #include <gmock/gmock.h>
 

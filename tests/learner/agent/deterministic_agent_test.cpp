@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What TD3 and DDPG share. One update against a double in double: losses, and every gradient by
-// central differences.
+// The common part of TD3 and DDPG. One update against a double in double: losses, and every
+// gradient by central differences.
 //
 // The gradients are read off Adam's first moment, which was 0 before: m = (1 - 0.9) g. Targets are
 // far from what they follow, so that each is seen where it belongs.

@@ -63,7 +63,7 @@ float DrawFrame(Random* random, Frame* frame) {
   return DrawBar(column(), kSide, planes.first(kPlane));
 }
 
-// What to do where the first camera's bar has moved from one place to the other.
+// The best action after the first camera's bar has moved from one place to the other.
 float Best(float from, float to) { return 0.4f * (to - from); }
 
 // Episodes of uniform random actions, as one actor sends them.

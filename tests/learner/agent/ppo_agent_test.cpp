@@ -103,7 +103,7 @@ TEST(RewardScale, ReturnsGoOnFromRolloutToRolloutAndBeginAnewWithEpisodes) {
   const std::vector<uint64_t> env{3, 3, 3};
   scale.Scale(std::vector<float>{1, 1, 1}, std::vector<float>{0, 1, 0}, env);  // G: 1, 1.5 | 1
   const auto second = scale.Scale(std::vector<float>{1, 0, 0}, std::vector<float>{0, 0, 0}, env);
-  // G: 1.5, 0.75, 0.375, with the former three: mean 1.0208, variance 0.1584.
+  // G: 1.5, 0.75, 0.375, with the three before: mean 1.0208, variance 0.1584.
   EXPECT_NEAR(second[0], 1 / std::sqrt(0.15842), 1e-3);
 }
 

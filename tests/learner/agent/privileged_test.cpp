@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Learning that is told more than the policy: asymmetric critics and the auxiliary loss, against a
+// Learning with privileged inputs: asymmetric critics and the auxiliary loss, against a
 // double in double as in sac_gradient_test.cpp.
 #include <gmock/gmock.h>
 
@@ -22,7 +22,7 @@ using nn::reference::Values;
 using testing::IsEmpty;
 using testing::Not;
 
-// Of which the policy sees the frames and the goal alone.
+// A spec of which the policy sees only the frames and the goal.
 ObservationSpec PushSpec() {
   ObservationSpec spec = SmallSpec();
   spec.blocks = {{"grip", 2, /*observed=*/false}, {"goal", 2}, {"object", 2, false}};
@@ -123,7 +123,7 @@ TEST_F(PrivilegedTest, AnAsymmetricCriticLeavesTheEncoderToTheActorAndTheLabels)
   for (const char* prefix : {"encoder.", "actor.", "aux."}) {
     ExpectMoments(after, prefix, &network, loss);
   }
-  // Of the critic's loss: q_i of [goal | grip | object | action].
+  // Input of the critic's loss: q_i of [goal | grip | object | action].
   const Values input = Beside(
       config_.learner.batch,
       Beside(config_.learner.batch, ToDoubles(batch.obs_vector), ToDoubles(batch.obs_privileged)),
@@ -247,7 +247,7 @@ TEST_F(PrivilegedTest, TheCriticSeesScaledBlocksAndTheAuxiliaryLossMetres) {
   EXPECT_EQ(Get(a, kTargetMean), Get(b, kTargetMean));
 }
 
-// Where something is can be told from pixels: a bright column at the place that the label names.
+// Pixels show the position: a bright column at the place that the label names.
 TEST_F(PrivilegedTest, TheEncoderLearnsWhatItIsTaught) {
   for (const bool asymmetric : {false, true}) {
     config_.learner.critic_blocks = asymmetric;

@@ -149,7 +149,7 @@ const Case kCases[] = {
 INSTANTIATE_TEST_SUITE_P(Of, ReplicatedAgentTest, testing::ValuesIn(kCases),
                          [](const auto& test) { return test.param.name; });
 
-// With access to each.
+// Replicas with access to each.
 class Replicas {
  public:
   explicit Replicas(int count, const Config& config = SmallConfig())

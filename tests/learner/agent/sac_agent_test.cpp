@@ -258,7 +258,7 @@ TEST(SacAgent, NonFiniteActorLossTakesTheCriticsStepBack) {
   EXPECT_TRUE(std::isfinite(Get(stats, kCriticLoss)));
   EXPECT_FALSE(stats.finite);
   EXPECT_THAT(Differences(before, agent->AllTensors()), IsEmpty());
-  // The layers have the former weights back as well: the critic's loss is what it was.
+  // The layers have the old weights back as well: the critic's loss is what it was.
   EXPECT_EQ(Get(agent->Update(batch.View()), kCriticLoss), Get(stats, kCriticLoss));
 }
 
@@ -353,7 +353,7 @@ TEST(SacAgent, TheTemperatureFollowsIsFixedOrHasAFloor) {
   config.learner.target_entropy = -100;  // the policy has more
   const double start = config.learner.initial_temperature;
   const double followed = After(config, 5, kTemperature);
-  EXPECT_LT(followed, 0.9 * start) << "what the others are told from";
+  EXPECT_LT(followed, 0.9 * start) << "the reference for the other cases";
   config.learner.min_temperature = 0.95 * start;
   EXPECT_NEAR(After(config, 5, kTemperature), 0.95 * start, 1e-6);
   config.learner.min_temperature = 0;

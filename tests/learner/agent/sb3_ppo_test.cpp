@@ -142,7 +142,7 @@ TEST_P(Sb3PpoTest, AdvantagesAreTheirs) {
   const BatchView batch = View();
   const std::vector<float> value = Recorded("value");
   std::vector<float> next_value(kRows), advantage(kRows), target(kRows);
-  // What follows the rollout, and the time limit, is known by what they made of it.
+  // The value after the rollout, and the time limit, follow from the recorded advantages.
   const std::vector<float> theirs = Recorded("advantage");
   for (size_t t = 0; t < kRows; ++t) {
     next_value[t] = batch.continues[t] != 0 ? value[t + 1]

@@ -51,7 +51,7 @@ class Sb3Recording {
            double scale = 1) {
     layers_.push_back({ours, theirs, part, parts, scale});
   }
-  // Of two hidden layers.
+  // Adds an MLP of two hidden layers.
   void AddMlp(const std::string& ours, const std::string& theirs) {
     Add(ours + ".layer0", theirs + ".0");
     Add(ours + ".layer1", theirs + ".2");
@@ -133,7 +133,7 @@ class Sb3Recording {
     const size_t size = numbers.size() / size_t(layer.parts);
     return std::span(numbers).subspan(size_t(layer.part) * size, size);
   }
-  // As recorded.
+  // The thinned numbers of a recording.
   static std::vector<float> Thin(std::span<const float> numbers) {
     const size_t step = numbers.size() > 1024 ? (numbers.size() + 255) / 256 : 1;
     std::vector<float> kept;

@@ -13,7 +13,7 @@ namespace shoal::learner {
 
 inline constexpr WeightsVersion kFirst{100, 0};
 
-// What one actor publishes: its environments in turn, by hand.
+// Records of one actor, made by hand: its environments in turn.
 class ActorScript {
  public:
   ActorScript(const ObservationSpec& spec, uint32_t actor, uint64_t session)

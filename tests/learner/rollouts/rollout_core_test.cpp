@@ -48,7 +48,7 @@ TEST_F(RolloutCoreTest, ARolloutHasWhatWasSeenDoneAndEarned) {
   ASSERT_EQ(batch.reward.size(), 6u);
   for (size_t t = 0; t < 6; ++t) {
     const float at = float(t % 3 + 1);
-    EXPECT_EQ(batch.id[t], t / 3) << "environments in order, whoever came first";
+    EXPECT_EQ(batch.id[t], t / 3) << "environments in order, not by arrival";
     EXPECT_EQ(batch.obs_vector[3 * t], at);
     EXPECT_EQ(batch.reward[t], at + 1);
     EXPECT_EQ(batch.log_prob[t], -at - 1);
@@ -84,7 +84,7 @@ TEST_F(RolloutCoreTest, GoesOnOverTheEndsOfEpisodes) {
   EXPECT_EQ(core_->used_records(), 6u) << "resets too";
 }
 
-// As a faulty episode ends: its last step does not say that it is one.
+// A faulty episode ends without a mark on its last step.
 TEST_F(RolloutCoreTest, AnEpisodeThatBreaksOffIsTruncatedAtItsLastObservation) {
   a_.Reset(0, 0, 1);
   a_.Step(0, 0, 1, 2);
@@ -158,7 +158,7 @@ TEST_F(RolloutCoreTest, RolloutsOfAnotherVersionAreDropped) {
   EXPECT_EQ(core_->used_records(), 0u);
 }
 
-// Where writing a checkpoint took longer than playing a rollout, both sides waited for ever.
+// Earlier both sides waited for ever if writing a checkpoint took longer than playing a rollout.
 TEST_F(RolloutCoreTest, RolloutsByWeightsThatAreOutAreKeptUntilTheirUpdateIsAwaited) {
   a_.PlayThree(0, 0);
   core_->TakeChunk(a_.Chunk());

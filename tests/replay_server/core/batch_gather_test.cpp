@@ -16,7 +16,7 @@
 namespace shoal::replay {
 namespace {
 
-// Draws the ids it is told to.
+// Draws the ids of a list.
 class ListedSelector : public Selector {
  public:
   explicit ListedSelector(std::deque<uint64_t> ids) : ids_(std::move(ids)) {}
@@ -75,7 +75,7 @@ class BatchGatherTest : public testing::Test {
     }
     return stack;
   }
-  // Of the script's three blocks of 2 numbers the middle one is recorded only.
+  // The script has three blocks of 2 numbers; the middle one is recorded only.
   std::vector<float> Observed(size_t index) {
     const auto all = ring_->layout().Vector(records_[index].data());
     return {all[0], all[1], all[4], all[5]};

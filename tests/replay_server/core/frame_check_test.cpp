@@ -41,7 +41,7 @@ TEST(FrameCheck, LengthOrderAndZerosCount) {
   EXPECT_NE(FrameCheck(frame), before);
 }
 
-// The word lies in files: an accidental change of the function would refuse them all.
+// Files contain the word: an accidental change of the function would refuse them all.
 TEST(FrameCheck, KeepsItsValues) {
   EXPECT_EQ(FrameCheck({}), 625047191052667199u);
   EXPECT_EQ(FrameCheck(Noise(33)), 1736442720695497170u);

@@ -267,7 +267,7 @@ TEST_F(HindsightTest, WhatItCannotServeIsRefusedByName) {
                 r.config.replay.n_step = 10;
               }),
               HasSubstr("expected at least 357"));
-  // Where episodes end on success each may have one step and its reset: 2 x 100 and 4 whole ones.
+  // If episodes end on success, each may have one step and its reset: 2 x 100 and 4 whole ones.
   EXPECT_THAT(Refusal([](RunConfig& r) {
                 r.config.end_on_success = true;
                 r.config.replay.capacity = 403;

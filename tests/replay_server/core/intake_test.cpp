@@ -85,7 +85,7 @@ TEST_F(IntakeTest, SetsAsideWhatIsAheadUntilTheMissingOnesCome) {
   EXPECT_EQ(Counters(a_).stored(), 12u);
 }
 
-// What an actor says before it sends again what it keeps.
+// The message of an actor before a resend.
 TransitionChunk Position(const RecordScript& script, const ObservationSpec& spec, uint64_t first) {
   return {.spec_hash = spec.Hash(),
           .actor = script.actor(),
@@ -122,7 +122,7 @@ TEST_F(IntakeTest, AnInheritedSessionIsLostAndGoesOn) {
   Intake intake(spec_.Hash(), &ring_, &sessions, &index_);
   EXPECT_EQ(sessions.at(0).lost, 5u);
   EXPECT_EQ(sessions.at(0).stored(), 0u);
-  // The former server's account was a second old: it had stored up to 8 by its end.
+  // The old server's account was a second old: it had stored up to 8 by its end.
   EXPECT_EQ(intake.Take(Position(a_, spec_, 9)).lost, 2u);
   EXPECT_EQ(intake.Take(a_.Chunk(9, 2)).fate, ChunkFate::kDealtWith);
   EXPECT_EQ(sessions.at(0).highest, 10u);

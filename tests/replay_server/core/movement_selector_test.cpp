@@ -180,7 +180,7 @@ INSTANTIATE_TEST_SUITE_P(Kinds, MovementSelectorKinds,
                            return kind.param == MovementKind::kPath ? "Path" : "Displacement";
                          });
 
-// What a world that broke sends neither stops the server nor takes all draws.
+// Records of a faulty world neither stop the server nor get all draws.
 TEST_F(MovementSelectorTest, WhatIsNoNumberCountsAsTenMetres) {
   Stored stored(1, ring_);
   Play(&stored, {0, std::numeric_limits<double>::infinity(), 0});

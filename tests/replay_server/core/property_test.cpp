@@ -70,7 +70,7 @@ class KeptSelector final : public Selector {
   Selector* other = nullptr;
 };
 
-// What a replay server has of a ring in a file.
+// The parts of a replay server over a ring in a file.
 struct Server {
   Server(const ObservationSpec& spec, const RingOptions& ring_options, const IndexOptions& options)
       : ring(spec, ring_options),
@@ -293,7 +293,7 @@ class History {
     return false;
   }
 
-  // What the world itself ended has ended under every goal.
+  // An episode that the world ended has ended under every goal.
   bool EndsUnderGoal(const Oracle::Stored& step, uint64_t goal) const {
     return (step.header().flags & (kTerminated | kSuccess)) == kTerminated ||
            Distance(step, goal) < kThreshold;
@@ -312,7 +312,7 @@ class History {
     }
   }
 
-  // Of what is achieved, from that step to its episode's end.
+  // Movement of the achieved goal from that step to its episode's end.
   double Movement(uint64_t id) const {
     const auto achieved = [&](uint64_t record) {
       return layout_.Vector(oracle_.all[record - 1].bytes.data()).subspan(2, 2);
@@ -337,7 +337,7 @@ class History {
            oracle_.Stack(oracle_.all[id - 1].prev);
   }
 
-  // Of the episode that the sample is of, stored, and where the kind of hindsight says.
+  // The goal is a stored one of the same episode, at a step that the kind of hindsight allows.
   void CheckGoal(const BatchPlan::Element& element) {
     ++relabelled_;
     const std::vector<uint64_t> episode = oracle_.Episode(element.id);
@@ -360,8 +360,8 @@ class History {
     return std::sqrt(x * x + y * y);
   }
 
-  // Of the script's three blocks of 2 numbers the second, what was achieved, is recorded only; so
-  // is the third, what is wanted, where a picture shows it.
+  // The script has three blocks of 2 numbers. The second, the achieved goal, is recorded only; so
+  // is the third, the desired goal, if a picture shows it.
   std::vector<float> Observed(const Oracle::Stored& stored, uint64_t goal) const {
     const auto all = layout_.Vector(stored.bytes.data());
     std::vector<float> observed{all[0], all[1]};

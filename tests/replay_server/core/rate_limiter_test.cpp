@@ -186,7 +186,7 @@ TEST(RateLimiterProperty, SamplesPerInsertFollowAScheduleWithinTheBand) {
         limiter.Sampled();
         drawn += static_cast<uint64_t>(options.batch);
       }
-      // As exact as sums of doubles are, and nothing was cut off at an end of the band.
+      // Exact up to sums of doubles; nothing was clipped at an end of the band.
       ASSERT_NEAR(limiter.cursor(), granted - static_cast<double>(drawn), 1e-6)
           << "seed " << seed << ", step " << steps;
       ASSERT_LE(std::abs(granted - static_cast<double>(drawn)), limiter.band() / 2);
@@ -217,7 +217,7 @@ class World {
     if (kind == 99) limiter_ = Restarted();
   }
 
-  // One side can move: a batch may be drawn, or some actor may send now or once it is told so.
+  // One side can move: a batch may be drawn, or an actor may send now or after its next credit.
   bool SomeoneCanMove() {
     Refresh();
     const bool can_send = std::ranges::any_of(actors_, [](const Actor& a) { return a.credit > 0; });
@@ -266,7 +266,7 @@ class World {
     limiter_.SetSessions(static_cast<int>(actors));
   }
 
-  // Its window is gone with it; its successor is told anew.
+  // Its window is gone with it; its successor gets a new one.
   void Kill() { actors_[random_.Below(actors_.size())] = {}; }
 
   // The server died: what was inserted and sampled before is not remembered.

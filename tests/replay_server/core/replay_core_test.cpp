@@ -289,7 +289,7 @@ TEST_F(ReplayCoreTest, AServerWithoutItsPredecessorsRingTakesItsActorsOver) {
   EXPECT_EQ(credits[0].stored, 44u);
   EXPECT_GT(credits[0].allowed, 44u);
   core_.emplace(run_, folder_.path(), 3, FormerServer{});
-  EXPECT_FALSE(core_->ring_replaced()) << "nobody was there before";
+  EXPECT_FALSE(core_->ring_replaced()) << "there was no server before";
 }
 
 TEST_F(ReplayCoreTest, ARingThatNeverHoldsEnoughSamplesIsRefusedBeforehand) {

@@ -129,7 +129,7 @@ TEST_F(RingTest, AReopenedFileHoldsWhatWasStored) {
 
 TEST_F(RingTest, ASlotThatWasBeingOverwrittenIsLeftOut) {
   WriteRing(50);
-  // As left by a writer that died inside Append of record 51: its slot's commit word is 0.
+  // State after a writer that died inside Append of record 51: its slot's commit word is 0.
   const uint64_t slot = geometry_.slots_offset() + 51 % kCapacity * geometry_.slot_bytes();
   std::fstream(file_, std::ios::in | std::ios::out | std::ios::binary)
       .seekp(static_cast<std::streamoff>(slot))

@@ -53,7 +53,7 @@ TEST_F(SessionTableTest, AnUpdateCutShortLeavesTheFormerCounters) {
     table.Update(0, {.actor = 1, .session = 10, .highest = 5});
     table.Update(0, {.actor = 1, .session = 10, .highest = 6});
   }
-  // Version 3 lies in copy 1; the writer died after it had begun to change it.
+  // Version 3 is in copy 1; the writer died after it had begun to change it.
   storage_[0].copies[1].check = 0;
   storage_[0].copies[1].highest = 999;
   EXPECT_EQ(SessionTable(storage_).at(0).highest, 5u);
@@ -69,7 +69,7 @@ TEST_F(SessionTableTest, WhatAnEarlierServerStoredBeyondThisTableIsLost) {
   EXPECT_TRUE(table.StoresLessThan(former));
   table.TakeOver(former);
   EXPECT_EQ(table.at(0).highest, 9u);
-  EXPECT_EQ(table.at(0).stored(), 4u) << "as many as lie in the ring";
+  EXPECT_EQ(table.at(0).stored(), 4u) << "as many as the ring has";
   EXPECT_EQ(table.at(0).lost, 3u);
   EXPECT_EQ(table.at(1).lost, 3u);
   EXPECT_TRUE(table.StoresLessThan(former)) << "a second start tells the same";

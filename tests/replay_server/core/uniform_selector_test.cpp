@@ -44,8 +44,8 @@ class UniformSelectorTest : public testing::Test {
     }
   }
 
-  // What is not uniform about the selector's draws: too few or too many of one id by 5 sigma of a
-  // binomial, or of the older half of the ids; "" when nothing is.
+  // The deviation of the selector's draws from uniform ones: too few or too many of one id by 5
+  // sigma of a binomial, or of the older half of the ids; "" when nothing is.
   std::string Fault(Selector* selector) {
     constexpr int kDraws = 400'000;
     std::map<uint64_t, int> counts;

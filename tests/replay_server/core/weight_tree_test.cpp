@@ -8,7 +8,7 @@
 namespace shoal::replay {
 namespace {
 
-// Where `at` lies among the weights laid one after the other.
+// Index of the weight that contains `at` in the sequence of weights.
 size_t Sought(const std::vector<uint64_t>& weights, uint64_t at) {
   size_t i = 0;
   while (at >= weights[i]) at -= weights[i++];

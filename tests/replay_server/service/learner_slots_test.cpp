@@ -80,7 +80,7 @@ TEST_F(LearnerSlotsTest, WhatALearnerCannotOpenItDoesNotGetAgain) {
   EXPECT_EQ(slots_.writer(), nullptr);
 }
 
-// Whoever still reads a former session's slot, stopped or slow, reads what was there.
+// A stopped or slow reader of an old session's slot still reads its old content.
 TEST_F(LearnerSlotsTest, ANewLearnerGetsOtherMemory) {
   slots_.OnRequest(Request(5, 1));
   const BatchSlot word = Fill(1, 0x11);

@@ -87,7 +87,7 @@ class Environment(gymnasium.Env):
         self._pixels = None
 
     def _frames_per_second(self):
-        """By the simulation's clock, over one step of an episode that nobody sees."""
+        """By the simulation's clock, over one step of an episode that is not shown."""
         self._native.reset(0, 0)
         start = self._native.simulated_seconds
         *_, fault = self._native.step(np.zeros(self._native.action_size, np.float32))

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page: asks the server for what it shows, as often as it changes, while somebody looks.
+// The page: requests its data from the server as often as they change, while the page is visible.
 
 import { forgetCharts, showCharts } from "./charts.js";
 import { get, mayAct, post, runPath } from "./requests.js";
@@ -107,7 +107,7 @@ function showProgress(progress) {
     tile("Restarts", number(progress.restarts)));
 }
 
-// What a run that has ended came to.
+// Shows the result of a run that has ended.
 function showResult(listing) {
   const ended = listing !== undefined && !["running", "unreadable"].includes(listing.status);
   $("result").hidden = !ended;
@@ -232,8 +232,8 @@ async function play() {
 $("play").addEventListener("click", play);
 $("all-figures").addEventListener("toggle", () => { next.top = 0; });
 
-// What is asked for, and what becomes of the answer. `run` is that of the question: by the time of
-// its answer another one may be shown.
+// The requests, and the handlers of their answers. `run` is the run of the request: by the time of
+// the answer the page may show another run.
 const questions = {
   async runs() {
     const answer = await get("api/runs");
@@ -335,6 +335,6 @@ addEventListener("hashchange", choose);
 document.addEventListener("visibilitychange", () => { for (const name of Object.keys(next)) next[name] = 0; });
 choose();
 await look();
-// The only run there is, when there is one, is what somebody came for.
+// A single run is shown at once.
 if (shown === null && runs.length === 1) location.hash = encodeURIComponent(runs[0].name);
 watch();

@@ -30,7 +30,7 @@ class ExportEpisodesTest : public testing::Test {
     asked_.ring = folder_.path() / kRingFile;
     asked_.output = output_;
   }
-  // What an actor's first `records` records leave in the ring.
+  // Stores an actor's first `records` records in the ring.
   void Store(uint32_t records) {
     replay::ReplayCore core(asked_.run, folder_.path(), 1);
     core.TakeChunk(actor_.Chunk(1, records));
@@ -107,8 +107,8 @@ TEST_F(ExportEpisodesTest, WithANumberTheFirstOrTheLastOfThem) {
 }
 
 TEST_F(ExportEpisodesTest, AnOverwrittenBeginningIsCountedNotExported) {
-  // Of a full ring the eighth that is overwritten next is left out, too: 300 - 64 + 1 + 8 is the
-  // oldest record, and lies in the midst of an episode.
+  // The eighth of a full ring that is overwritten next is left out as well: 300 - 64 + 1 + 8 is the
+  // oldest record, in the middle of an episode.
   Store(300);
   const RecordHeader& oldest = RecordLayout::Header(actor_.At(245).data());
   ASSERT_GT(oldest.index, 0u);

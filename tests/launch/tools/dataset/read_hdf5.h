@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What an HDF5 file holds, read by the library itself.
+// Content of an HDF5 file, read by the library itself.
 #pragma once
 
 #include <gtest/gtest.h>

@@ -25,7 +25,7 @@ ordered_json Valid() {
     "seeds": [0, 1]})");
 }
 
-// What parsing and resolving it says; empty when nothing is wrong with it.
+// The error of parsing and resolving; empty if there is none.
 std::string Refusal(const ordered_json& object) {
   return UsageMessage([&] {
     const Definition definition = ParseDefinition(object, "x.json", "x");
@@ -121,7 +121,7 @@ TEST(Definition, AFileIsReadStrictly) {
   EXPECT_THROW(ReadDefinition(folder.path() / "absent.json"), Error);
 }
 
-// What is committed can be run, as far as the key table knows.
+// Committed definitions are valid by the table of keys.
 TEST(Definition, EveryCommittedOneIsGood) {
   const std::vector<std::string> names = ListDefinitions();
   EXPECT_THAT(names, testing::Contains("reach-three-way"));

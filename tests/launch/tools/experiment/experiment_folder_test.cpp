@@ -27,7 +27,7 @@ class ExperimentFolderTest : public testing::Test {
   ExperimentPlan Plan(const Definition& definition) const {
     return PlanExperiment(path_, definition, "x.json");
   }
-  // What opening says; empty when it is accepted.
+  // The error of opening; empty if there is none.
   std::string Refusal(const Definition& definition) const {
     return UsageMessage([&] { const ExperimentFolder open(Plan(definition)); });
   }
@@ -45,7 +45,7 @@ TEST_F(ExperimentFolderTest, RunsAreArmsTimesSeedsSeedBySeed) {
 
 TEST_F(ExperimentFolderTest, TheBaseOfTheFirstRunHolds) {
   { const ExperimentFolder first(Plan(TwoArms())); }
-  // As if the preset had said something else then.
+  // Stands for a preset that has changed since.
   auto object = nlohmann::ordered_json::parse(ReadFile(path_ / "experiment.json"));
   object["base"]["learner"]["discount"] = 0.123;
   WriteFileAtomically(path_ / "experiment.json", object.dump());

@@ -14,7 +14,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-// Runs that take as many looks as they are told to, then stand as they are told to.
+// Runs that end after a given number of looks with a given status.
 class FakeKeeper : public RunKeeper {
  public:
   struct Play {
@@ -49,7 +49,7 @@ class FakeKeeper : public RunKeeper {
 
   std::map<std::string, ExperimentRunStatus> standings;  // kMissing where not set
   std::map<std::string, Play> plays;
-  std::map<std::string, int> held_for;  // looks for which somebody else holds it
+  std::map<std::string, int> held_for;  // looks for which another process holds it
   std::vector<std::string> started;
   size_t most_at_once = 0;
   int stop_calls = 0;

@@ -153,7 +153,7 @@ TEST(SampleRatio, IsPairedBySeed) {
 }
 
 TEST(SampleRatio, WhatWasNotReachedIsCountedNotDropped) {
-  // Of 1, 2 and "never" the middle is 2; without the third it would be 1.5.
+  // The median of 1, 2 and "never" is 2; without the third it would be 1.5.
   SampleRatio ratio = RatioOf({{0, 100, 100}, {1, 200, 100}, {2, std::nullopt, 100}});
   EXPECT_EQ(ratio.not_reached, 1);
   EXPECT_EQ(ratio.median, 2);

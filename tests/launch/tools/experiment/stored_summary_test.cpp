@@ -29,7 +29,7 @@ ordered_json Row(int seed, const char* status, ordered_json success, ordered_jso
           {"final_distance_mean", nullptr}};
 }
 
-// As a build wrote it that pooled the episodes of all seeds.
+// A summary by an older build, which pooled the episodes of all seeds.
 ordered_json Old() {
   return {{"schema", "shoal-experiment-1"},
           {"name", "old"},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the learner writes of networks that hold more than a policy: the policy alone leaves.
+// Export of checkpoints whose networks hold more than a policy: only the policy is exported.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ policy::CheckpointPolicy Learned(const RunConfig& run) {
   return policy::ReadCheckpointPolicy(policy::WriteCheckpointOf(run, folder.path()));
 }
 
-// Of a policy that sees pixels and the blocks "grip" and "goal", not "hidden".
+// Compares the actions of a policy that sees pixels and the blocks "grip" and "goal", not "hidden".
 void ExpectItsActions(const RunConfig& run) {
   const policy::CheckpointPolicy policy = Learned(run);
   const ObservationSpec& spec = policy.description.spec;

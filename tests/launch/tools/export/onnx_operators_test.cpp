@@ -79,7 +79,7 @@ TEST(OnnxOperators, Pools) {
   const OnnxTensor map = Counting({1, 1, 3, 3});  // [1 2 3; 4 5 6; 7 8 9]
   EXPECT_EQ(Apply("AveragePool", {map}, {{"kernel_shape", Ints{2, 2}}, {"strides", Ints{1, 1}}}),
             (OnnxTensor{{1, 1, 2, 2}, {3, 4, 6, 7}}));
-  // What does not fill a window is left out.
+  // Rows and columns that do not fill a window are left out.
   EXPECT_EQ(Apply("AveragePool", {map}, {{"kernel_shape", Ints{2, 2}}, {"strides", Ints{2, 2}}}),
             (OnnxTensor{{1, 1, 1, 1}, {3}}));
   EXPECT_EQ(Apply("MaxPool", {map}, Window(3, 2, 1)), (OnnxTensor{{1, 1, 2, 2}, {5, 6, 8, 9}}));

@@ -26,7 +26,7 @@ void Write(const std::string& name, const RunConfig& run, const fs::path& folder
   fmt::print("{}\n", policy::WriteCheckpointOf(run, folder / name).string());
 }
 
-// What Stable-Baselines3's MlpPolicy or CnnPolicy is.
+// The network of Stable-Baselines3's MlpPolicy or CnnPolicy.
 RunConfig Sb3Run(const std::string& algorithm, bool pixels) {
   RunConfig run = policy::SmallRun(algorithm, pixels);
   run.config.network.layer_norm = false;

@@ -13,7 +13,7 @@ namespace {
 
 using std::string_view_literals::operator""sv;
 
-// What python3 -m pickletools shows of a file of torch.save, without the memo.
+// Output of python3 -m pickletools for a file of torch.save, without the memo.
 TEST(TorchFile, IsAnArchiveOfAPickleAndItsStorages) {
   nn::TensorMap tensors;
   tensors["w"] = FloatTensor({1, 2, 3, 4, 5, 6});

@@ -10,7 +10,7 @@ namespace {
 
 using std::string_view_literals::operator""sv;
 
-// As python3 -m zipfile reads it; CRC-32 of "hello" is 3610a686.
+// python3 -m zipfile reads these bytes; CRC-32 of "hello" is 3610a686.
 TEST(ZipArchive, HasTheFormatsBytes) {
   const std::string_view local =
       "PK\3\4\x0a\0\0\0\0\0\0\0\x21\0\x86\xa6\x10\x36\5\0\0\0\5\0\0\0\5\0\0\0a.txthello"sv;

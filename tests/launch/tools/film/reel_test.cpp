@@ -48,7 +48,7 @@ class FilmReelTest : public testing::Test {
     const std::vector<uint8_t> input(header.InputBytes(), 50), view(header.ViewBytes(), 60);
     for (const FrameRecordHeader& record : records) writer.Write(record, action, input, view);
   }
-  // What a film says of the stream in stream_.
+  // The error of a film for the stream in stream_.
   std::string Refusal(uint32_t episodes = 1) const {
     try {
       FilmReel reel(spec_, film_);

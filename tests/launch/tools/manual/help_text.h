@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the built programs' --help says, read off their output: what man pages and completions are
-// compared with. Knows nothing of how those are made.
+// The --help of the built programs, parsed from their output: the reference for man pages and
+// completions, independent of the code that makes them.
 #pragma once
 
 #include <set>
@@ -19,7 +19,7 @@ struct HelpText {
   std::string name() const;  // "shoal env render"
 };
 
-// Of a program and each of its commands, as `PROGRAM ... --help` prints it.
+// The help of a program and each of its commands, as `PROGRAM ... --help` prints it.
 const std::vector<HelpText>& AllHelp();
 
 // build/share/FILE as the build made it.

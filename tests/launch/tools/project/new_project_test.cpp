@@ -92,7 +92,7 @@ TEST_F(NewProject, BuildsAndTrainsAgainstTheInstallation) {
   EXPECT_GT(meta.at("updates").get<int64_t>(), 10);
 }
 
-// As in a clone, where nothing is installed: the printed command line is run as it is.
+// In a clone nothing is installed: the printed command line is run as it is.
 TEST_F(NewProject, ItsPrintedCommandsBuildAgainstTheBuildFolder) {
   const std::string shoal = ProgramPath("shoal");
   const ProgramResult made = RunIn(Folder(), shoal + " new 'my robot'");

@@ -50,7 +50,7 @@ TEST(Access, ActingTakesTheTokenInItsHeader) {
   Caller caller = Actor();
   caller.header_token = kWrong;
   EXPECT_EQ(kLoopback.Decide(caller), Access::kNoToken);
-  // What a browser sends by itself, or a link holds, is not enough.
+  // Data that a browser sends by itself, or that a link contains, is not enough.
   caller.header_token = "";
   caller.cookie_token = caller.query_token = kToken;
   EXPECT_EQ(kLoopback.Decide(caller), Access::kNoToken);

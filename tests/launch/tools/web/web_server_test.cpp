@@ -42,7 +42,7 @@ class WebServerTest : public ::testing::Test {
             .secure = "",
             .listen = {.address = address, .port = port}};
   }
-  // With the headers' lines in `more`.
+  // A request with the headers' lines in `more`.
   static std::string Request(const std::string& line, const std::string& more = "") {
     return line + " HTTP/1.1\r\nHost: 127.0.0.1\r\n" + more + "\r\n";
   }
@@ -138,7 +138,7 @@ TEST_F(WebServerTest, SteeringTakesTheToken) {
   }
 }
 
-// What a browser sends whose `ssh -L` listens at another port of another host's loopback.
+// The request of a browser whose `ssh -L` listens at another port of another host's loopback.
 TEST_F(WebServerTest, BehindAForwardedPortItIsLookedAtAndSteered) {
   const WebServer server(Options());
   const std::string token = "X-Shoal-Token: " + server.token() + "\r\n";
