@@ -1,0 +1,201 @@
+// SPDX-License-Identifier: Apache-2.0
+// Plain data between the setup of a frame and the kernels that draw it.
+//
+// Coordinates are the camera's: x right, y up, z ahead, the eye at the origin.
+// The ray of a pixel is (X, Y, 1), so a point on it is (X, Y, 1) / w with w = 1
+// / depth. Tiles are 4x4 pixels; the pixels of a tile are stored so that 4
+// neighbours (2x2), 8 (4x2) and 16 (4x4) are contiguous: column = (i & 1) + 2 *
+// (i >> 2 & 1), row = (i >> 1 & 1) + 2 * (i >> 3).
+//
+// The kernels include this header with wider instruction sets than the rest of
+// the program: it must hold no functions and include nothing that does.
+#pragma once
+
+#include <cstdint>
+
+namespace shoal::worlds::native {
+
+constexpr int kTileSide = 4, kTilePixels = 16;
+constexpr int kMostLevels = 16, kMostLights = 100;
+constexpr int kNothing = -1;  // id of a pixel that shows the sky
+
+// c + x * X + y * Y, of X and Y relative to the shape's origin.
+struct Affine {
+  float c, x, y;
+};
+
+// Roots in w of a quadric on a ray: b +- sqrt(d), d a quadratic form of X and
+// Y.
+struct Quadric {
+  Affine b;
+  float d, dx, dy, dxx, dxy, dyy;
+};
+
+struct TileRect {
+  int left, top, right, bottom;  // in tiles, right and bottom excluded
+};
+
+enum ShapeKind : int32_t { kEllipsoid, kCapsule, kCylinder, kBox, kPlane, kTriangles };
+
+struct Triangle {
+  int index;
+  TileRect rect;
+  float x, y;       // origin
+  Affine w;         // 1 / depth
+  Affine edges[3];  // barycentric coordinates times w
+};
+
+// A geom as the visibility pass needs it. Its pixels get id + face.
+struct Shape {
+  ShapeKind kind;
+  int id;
+  TileRect rect;
+  float x, y;           // origin of the affine functions
+  Quadric quadric;      // ellipsoid, or the side of a capsule or cylinder
+  Quadric caps[2];      // of a capsule: at +z and at -z
+  bool inside_side;     // the eye is within the endless cylinder
+  int cap;              // then: which cap it looks at, 0 = +z
+  Affine z;             // z axis times ray
+  float z_low, z_high;  // axis coordinate of the ends, relative to the eye
+  // Faces of boxes, cylinders and planes: w is the least of `enter` and must
+  // not be below any of `leave`; of planes it must also leave every `inside` at
+  // or above zero.
+  int enters, leaves, insides;
+  int faces[3];
+  Affine enter[3], leave[6], inside[4];
+  int triangles;
+  const Triangle* triangle;
+};
+
+// Light in the camera's coordinates. Its colours are in the surfaces'
+// LightColour.
+struct Light {
+  bool directional;
+  float direction[3];  // towards the light when directional, else the spot's axis
+  float position[3];
+  float attenuation[3];
+  float cutoff_cosine;  // -1 or less: shines everywhere
+  float exponent;
+  bool specular;  // any channel
+  bool own_pass;  // added after the sum of the others was limited to full light
+};
+
+struct LightColour {
+  float ambient[3], diffuse[3], specular[3];  // material included
+};
+
+enum NormalKind : int32_t { kFlat, kRound, kRod, kOval, kMeshNormals };
+
+// A texture in memory. A level has the faces of a cube (+x, -x, +y, -y, +z, -z)
+// behind each other. Texels are r | g << 8 | b << 16, rows from t = 0. Each
+// face has a frame of one texel that repeats what is beyond its edges, so it
+// has (height + 2, width + 2) texels.
+struct Texture {
+  int levels;
+  bool cube;
+  const int32_t* level[kMostLevels];
+  int width[kMostLevels], height[kMostLevels];
+};
+
+enum TextureMapping : int32_t { kNoTexture, kMap2d, kMapCube };
+
+// The grid on whose vertices a plane is lit. Axes k = 0, 1 are the plane's x
+// and y.
+struct PlaneGrid {
+  int cells[2];
+  float start[2], step[2], inverse_step[2];  // of the second cell
+  float pad[2], inverse_pad[2];              // width of the first and last cell
+  int stride;                                // vertices in a row, a multiple of kTilePixels
+  const float* x;                            // (stride) positions of vertices
+  const float* y;                            // (cells[1] + 1)
+  float* light[3];                           // (cells[1] + 1, stride); written on demand
+  uint32_t* stamps;  // (cells[1] + 1, stride / kTilePixels): frame that lit it
+};
+
+struct MeshData {
+  const float* normals;  // (triangles, 3, 3), object coordinates
+  const float* coords;   // (triangles, 3, 2) texture coordinates; null = none
+};
+
+// One colour rule for the pixels with this id.
+struct Surface {
+  int id;
+  TileRect rect;
+  NormalKind normal_kind;
+  float normal[3];
+  float centre[3], axis[3], inverse_radius, half_length;
+  float gram[9];  // kOval: normal = gram * (p - centre)
+  float turn[2];  // kFlat: normal x and y by the plane's distance from the eye
+  float emission[3];
+  bool one_light;  // light is the same everywhere: `light`
+  float light[3];
+  LightColour* colours;  // (lights)
+  bool specular;
+  bool merged_passes;  // transparent: one sum of all lights
+  float exponent;      // of the cosine's square
+  int whole_exponent;  // -1 = not a whole number
+  float alpha;
+  PlaneGrid* grid;  // null = lit per pixel
+  bool grey_grid;
+  float grid_axes[2][4];        // plane coordinates = axes * (p, 1)
+  float grid_directions[2][3];  // a unit along the plane's x and y; its origin
+                                // is `centre`
+  uint32_t stamp;
+  TextureMapping mapping;
+  const Texture* texture;
+  float texture_axes[3][4];  // texture coordinates = axes * (p, 1)
+  // Cube coordinate z of a capsule's caps: scale * (z -+ offset) beyond the
+  // half length.
+  bool capsule_caps;
+  float cap_scale, cap_offset;
+  MeshData mesh;
+  int first_triangle;
+};
+
+struct View {
+  int width, height, tiles_x, tiles_y;
+  const float* ray_x;           // (tiles_x, 16)
+  const float* ray_y;           // (tiles_y, 16)
+  const float* inverse_length;  // (tiles, 16): 1 / |(X, Y, 1)|
+  float pixel;                  // distance of neighbouring rays
+  float w_near, w_far;
+  const Texture* sky;    // null = black
+  float sky_axes[3][3];  // cube coordinates = axes * (X, Y, 1)
+};
+
+// Per pixel, tile after tile.
+struct Tiles {
+  float* w;
+  int32_t* id;
+  int32_t* colour;    // r | g << 8 | b << 16
+  int32_t* triangle;  // of meshes; null when none is drawn
+};
+
+struct LightSet {
+  int count;
+  const Light* light;
+};
+
+// The kernels of one instruction set. Functions of a shape or surface touch the
+// tiles of its rect.
+struct Kernels {
+  const char* name;
+  int lanes;
+  // No depth and no id anywhere.
+  void (*clear)(const View&, const Tiles&);
+  // Writes depth and id where the shape is in front of what is there.
+  void (*see)(const View&, const Shape&, const Tiles&);
+  // As see, but `behind` gives the depth to compare with and keeps it; other
+  // pixels of `tiles` lose their id.
+  void (*see_over)(const View&, const Shape&, const Tiles& behind, const Tiles& tiles);
+  // Colours the pixels with the surface's id.
+  void (*shade)(const View&, const LightSet&, const Surface&, const Tiles&);
+  // colour = alpha * over + (1 - alpha) * colour where `over` has an id.
+  void (*blend)(const TileRect&, int tiles_x, float alpha, const Tiles& over, const Tiles&);
+  // Colours the pixels without id. Needs view.sky.
+  void (*sky)(const View&, const Tiles&);
+};
+
+extern const Kernels kSse2Kernels, kAvx2Kernels, kAvx512Kernels;
+
+}  // namespace shoal::worlds::native

@@ -1,0 +1,10 @@
+// SPDX-License-Identifier: Apache-2.0
+#define SHOAL_LANES 4
+#include "actor/worlds/native/shading_kernels.h"
+#include "actor/worlds/native/visibility_kernels.h"
+
+namespace shoal::worlds::native {
+
+const Kernels kSse2Kernels{"sse2", SHOAL_LANES, Clear, See, SeeOver, Shade, Blend, Sky};
+
+}  // namespace shoal::worlds::native

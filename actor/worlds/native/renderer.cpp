@@ -1,0 +1,468 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "actor/worlds/native/renderer.h"
+
+#include <mujoco/mujoco.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "actor/worlds/native/camera_frame.h"
+#include "actor/worlds/native/plane_grids.h"
+#include "actor/worlds/native/shape_setup.h"
+#include "actor/worlds/native/static_layers.h"
+#include "actor/worlds/native/surface_setup.h"
+#include "actor/worlds/native/texture_levels.h"
+#include "actor/worlds/native/tile_buffer.h"
+#include "common/base/check.h"
+#include "common/base/error.h"
+
+namespace shoal::worlds::native {
+namespace {
+
+constexpr float kOpaque = 0.995f;    // alpha below which the engine blends
+constexpr float kFromBehind = 0.3f;  // alpha of a plane seen from behind
+constexpr uint32_t kFirstStamp = 1;
+// Transparent geoms are blended twice; so many of them are not drawn anew for
+// that.
+constexpr size_t kOversKept = 16;
+
+const Kernels& KernelsOf(InstructionSet set) {
+  switch (set) {
+    case InstructionSet::kAvx512:
+      return kAvx512Kernels;
+    case InstructionSet::kAvx2:
+      return kAvx2Kernels;
+    case InstructionSet::kSse2:
+      break;
+  }
+  return kSse2Kernels;
+}
+
+bool Drawable(int type) {
+  return type == mjGEOM_PLANE || type == mjGEOM_SPHERE || type == mjGEOM_CAPSULE ||
+         type == mjGEOM_ELLIPSOID || type == mjGEOM_CYLINDER || type == mjGEOM_BOX;
+}
+
+void CheckGeom(const mjvGeom& geom, int number) {
+  float sum = 0;
+  for (const float v : geom.pos) sum += v;
+  for (const float v : geom.mat) sum += v;
+  for (const float v : geom.size) sum += v;
+  for (const float v : geom.rgba) sum += v;
+  if (!std::isfinite(sum)) {
+    throw NonFiniteError("geom {} of the scene (object {}) is not finite: position ({}, {}, {})",
+                         number, geom.objid, geom.pos[0], geom.pos[1], geom.pos[2]);
+  }
+}
+
+// Bodies without extent show nothing.
+bool HasExtent(const mjvGeom& geom) {
+  const float* s = geom.size;
+  switch (geom.type) {
+    case mjGEOM_SPHERE:
+    case mjGEOM_ELLIPSOID:
+      return s[0] > 0 && s[1] > 0 && s[2] > 0;
+    case mjGEOM_CAPSULE:
+    case mjGEOM_CYLINDER:
+      return s[0] > 0;
+    default:
+      return true;
+  }
+}
+
+bool IsBehind(const mjvGeom& geom, const CameraFrame& frame) {
+  return Dot(frame.position - FromFloats(geom.pos), ColumnOf(geom.mat, 2)) < 0;
+}
+
+bool IsTransparent(const mjvGeom& geom, const CameraFrame& frame) {
+  return geom.rgba[3] < kOpaque || (geom.type == mjGEOM_PLANE && IsBehind(geom, frame));
+}
+
+double BoundingRadius(const mjvGeom& geom) {
+  const double x = geom.size[0], y = geom.size[1], z = geom.size[2];
+  if (geom.objtype == mjOBJ_GEOM) return geom.modelrbound;
+  switch (geom.type) {
+    case mjGEOM_SPHERE:
+      return x;
+    case mjGEOM_CAPSULE:
+      return x + z;
+    case mjGEOM_CYLINDER:
+      return std::sqrt(x * x + z * z);
+    case mjGEOM_BOX:
+      return std::sqrt(x * x + y * y + z * z);
+    default:
+      return std::max({x, y, z});
+  }
+}
+
+}  // namespace
+
+struct Renderer::State {
+  const Kernels& kernels;
+  std::vector<TextureLevels> textures;
+  std::vector<const Texture*> texture_views;
+  int sky = -1;  // number of its texture
+  PlaneGrids grids;
+
+  uint32_t stamp = kFirstStamp;
+  RayTables rays;
+  TileBuffer picture;
+  std::vector<TileBuffer> overs;  // transparent geoms, each alone
+  StaticLayers layers;
+  bool keep_layers = true;
+  // The sky of the camera's last orientation, once that was seen twice.
+  std::vector<uint32_t> sky_key, wanted_sky;
+  std::vector<int32_t> sky_picture;
+
+  // One frame's.
+  View view{};
+  CameraFrame frame;
+  std::vector<int> fixed, moving, transparent;  // geoms in the order of drawing
+  std::vector<double> distances;                // of transparent geoms, by number
+  std::vector<TileRect> rects;                  // of transparent geoms, in order
+  std::vector<bool> seen;
+  std::vector<LightColour> colours;
+  std::vector<Surface> surfaces;
+  std::vector<uint32_t> key;
+
+  State(const mjModel& model, InstructionSet set) : kernels(KernelsOf(set)), grids(model) {}
+
+  void Start(const mjvScene& scene, int width, int height);
+  void Sort(const mjvScene& scene);
+  void SetSky();
+  void MakeKey(const mjvScene& scene, const SceneLights& lights);
+  void See(const mjvScene& scene, std::span<const int> geoms, const SceneLights& lights);
+  void ShadeAll(const SceneLights& lights);
+  bool ShadeOver(const mjvScene& scene, const SceneLights& lights, int number, TileBuffer* over,
+                 TileRect* rect);
+  void DrawTransparent(const mjvScene& scene, const SceneLights& lights);
+  void Clear();
+  void DrawOpaque(const mjvScene& scene, const SceneLights& lights);
+  void SeeEverything(const mjvScene& scene, int width, int height);
+};
+
+bool Supported(InstructionSet set) {
+  __builtin_cpu_init();
+  switch (set) {
+    case InstructionSet::kSse2:
+      return true;
+    case InstructionSet::kAvx2:
+      return __builtin_cpu_supports("avx2");
+    case InstructionSet::kAvx512:
+      return __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512bw") &&
+             __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+  }
+  return false;
+}
+
+InstructionSet WidestInstructionSet() {
+  if (Supported(InstructionSet::kAvx512)) return InstructionSet::kAvx512;
+  return Supported(InstructionSet::kAvx2) ? InstructionSet::kAvx2 : InstructionSet::kSse2;
+}
+
+std::string RefusalOf(const mjModel& model) {
+  if (model.nskin > 0) return fmt::format("{} skins", model.nskin);
+  mjvOption shown;
+  mjv_defaultOption(&shown);
+  for (int i = 0; i < model.ngeom; ++i) {
+    const int group = std::clamp(model.geom_group[i], 0, mjNGROUP - 1);
+    if (Drawable(model.geom_type[i]) || !shown.geomgroup[group]) continue;
+    const char* name = mj_id2name(&model, mjOBJ_GEOM, i);
+    return fmt::format("geom {} ('{}') is a {}", i, name == nullptr ? "" : name,
+                       model.geom_type[i] == mjGEOM_HFIELD ? "height field" : "mesh");
+  }
+  return "";
+}
+
+Renderer::Renderer(const mjModel& model, InstructionSet set) {
+  CHECK(Supported(set));
+  const std::string refusal = RefusalOf(model);
+  if (!refusal.empty()) {
+    throw UsageError(
+        "observation.quality is 'native', which does not draw this model: {}; "
+        "expected fast or reference",
+        refusal);
+  }
+  state_ = std::make_unique<State>(model, set);
+  State& state = *state_;
+  for (int i = 0; i < model.ntex; ++i) {
+    const bool cube = model.tex_type[i] != mjTEXTURE_2D;
+    const size_t size =
+        3 * static_cast<size_t>(model.tex_width[i]) * static_cast<size_t>(model.tex_height[i]);
+    state.textures.emplace_back(std::span(model.tex_rgb + model.tex_adr[i], size),
+                                model.tex_width[i], model.tex_height[i], cube);
+    if (model.tex_type[i] == mjTEXTURE_SKYBOX && state.sky < 0) state.sky = i;
+  }
+  for (const TextureLevels& levels : state.textures) {
+    state.texture_views.push_back(&levels.view());
+  }
+}
+
+Renderer::~Renderer() = default;
+
+void Renderer::ForgetLayers() {
+  state_->layers = StaticLayers();
+  state_->sky_key.clear();
+}
+
+void Renderer::KeepLayers(bool keep) {
+  ForgetLayers();
+  state_->keep_layers = keep;
+}
+
+void Renderer::State::SetSky() {
+  view.sky = sky < 0 ? nullptr : texture_views[static_cast<size_t>(sky)];
+  // The engine turns the sky's cube by 90 degrees about x: (x, z, -y) of the
+  // world.
+  const Vector3 rows[3] = {{frame.right.x, frame.up.x, frame.forward.x},
+                           {frame.right.z, frame.up.z, frame.forward.z},
+                           {-frame.right.y, -frame.up.y, -frame.forward.y}};
+  for (int i = 0; i < 3; ++i) {
+    view.sky_axes[i][0] = static_cast<float>(rows[i].x);
+    view.sky_axes[i][1] = static_cast<float>(rows[i].y);
+    view.sky_axes[i][2] = static_cast<float>(rows[i].z);
+  }
+}
+
+void Renderer::State::Start(const mjvScene& scene, int width, int height) {
+  CHECK(width > 0 && height > 0) << width << " x " << height;
+  if (++stamp == 0) {  // wrapped around: nothing may look lit
+    CHECK(false) << "2^32 frames of one renderer";
+  }
+  frame = FrameOf(scene, width, height);
+  rays.Fill(frame, width, height, &view);
+  SetSky();
+  picture.Resize(view);
+  colours.clear();
+  surfaces.clear();
+}
+
+void Renderer::State::Sort(const mjvScene& scene) {
+  fixed.clear();
+  moving.clear();
+  transparent.clear();
+  distances.resize(static_cast<size_t>(scene.ngeom));
+  for (int i = 0; i < scene.ngeom; ++i) {
+    const mjvGeom& geom = scene.geoms[i];
+    CheckGeom(geom, i);
+    if (geom.rgba[3] <= 0 || !HasExtent(geom)) continue;
+    if (!Drawable(geom.type)) {
+      throw RuntimeError("quality native does not draw geom {} of the scene: its type is {}", i,
+                         geom.type);
+    }
+    if (IsTransparent(geom, frame)) {
+      const double distance =
+          geom.type == mjGEOM_PLANE
+              ? 1e10
+              : Length(FromFloats(geom.pos) - frame.position) - BoundingRadius(geom);
+      distances[static_cast<size_t>(i)] = distance;
+      transparent.push_back(i);
+    } else if (geom.category == mjCAT_STATIC && geom.objtype == mjOBJ_GEOM) {
+      fixed.push_back(i);
+    } else {
+      moving.push_back(i);
+    }
+  }
+  std::stable_sort(transparent.begin(), transparent.end(), [this](int a, int b) {
+    return distances[static_cast<size_t>(a)] < distances[static_cast<size_t>(b)];
+  });
+}
+
+void Renderer::State::MakeKey(const mjvScene& scene, const SceneLights& lights) {
+  key.clear();
+  const auto add_words = [this](const void* data, size_t bytes) {
+    const size_t at = key.size();
+    key.resize(at + bytes / 4);
+    std::copy_n(static_cast<const char*>(data), bytes / 4 * 4,
+                reinterpret_cast<char*>(key.data() + at));
+  };
+  add_words(&frame, sizeof(frame));
+  key.push_back(static_cast<uint32_t>(view.width));
+  key.push_back(static_cast<uint32_t>(view.height));
+  key.push_back(static_cast<uint32_t>(scene.nlight));
+  for (int i = 0; i < std::min(scene.nlight, mjMAXLIGHT); ++i) {
+    const mjvLight& light = scene.lights[i];
+    add_words(light.attenuation, sizeof(float) * (3 + 2 + 9));
+    key.push_back(light.headlight | light.directional << 8 | light.castshadow << 16);
+    if (light.headlight) continue;  // where the camera is
+    add_words(light.pos, sizeof(light.pos));
+    add_words(light.dir, sizeof(light.dir));
+  }
+  (void)lights;
+  for (const int i : fixed) {
+    const mjvGeom& geom = scene.geoms[i];
+    key.push_back(static_cast<uint32_t>(i));
+    for (const int word : {geom.type, geom.dataid, geom.texid, geom.texuniform, geom.texcoord}) {
+      key.push_back(static_cast<uint32_t>(word));
+    }
+    // texrepeat to reflectance follow each other.
+    add_words(geom.texrepeat, sizeof(float) * (2 + 3 + 3 + 9 + 4 + 4));
+  }
+}
+
+void Renderer::State::See(const mjvScene& scene, std::span<const int> geoms,
+                          const SceneLights& lights) {
+  const SurfaceSources sources{&lights, texture_views, &grids, stamp};
+  for (const int i : geoms) {
+    const mjvGeom& geom = scene.geoms[i];
+    const PlacedGeom placed = Place(geom, frame);
+    Shape shape;
+    if (!MakeShape(geom, placed, frame, view, i * kIdsPerShape, &shape)) continue;
+    kernels.see(view, shape, picture.tiles());
+    const size_t first = colours.size();
+    lights.AddColours(geom, &colours);
+    AddSurfaces(geom, placed, shape, sources, colours.data() + first,
+                /*transparent=*/false, &surfaces);
+  }
+}
+
+void Renderer::State::ShadeAll(const SceneLights& lights) {
+  for (const Surface& surface : surfaces) {
+    kernels.shade(view, lights.set(), surface, picture.tiles());
+  }
+  surfaces.clear();
+  colours.clear();
+}
+
+void Renderer::State::Clear() {
+  kernels.clear(view, picture.tiles());
+  if (view.sky == nullptr) return;
+  // Only the camera's orientation and the view's size make a sky.
+  wanted_sky.clear();
+  for (const auto& row : view.sky_axes) {
+    for (const float v : row) wanted_sky.push_back(std::bit_cast<uint32_t>(v));
+  }
+  for (const float v : {view.pixel, view.ray_x[0], view.ray_y[0]}) {
+    wanted_sky.push_back(std::bit_cast<uint32_t>(v));
+  }
+  wanted_sky.push_back(static_cast<uint32_t>(view.width));
+  wanted_sky.push_back(static_cast<uint32_t>(view.height));
+  if (!keep_layers || wanted_sky != sky_key) {
+    sky_key = wanted_sky;
+    sky_picture.clear();
+    return;
+  }
+  if (sky_picture.empty()) {
+    kernels.sky(view, picture.tiles());
+    sky_picture = picture.colours();
+  } else {
+    std::copy(sky_picture.begin(), sky_picture.end(), picture.colours().begin());
+  }
+}
+
+void Renderer::State::DrawOpaque(const mjvScene& scene, const SceneLights& lights) {
+  const size_t most = (fixed.size() + moving.size()) * lights.lights().size();
+  colours.reserve(most + lights.lights().size());
+  const auto finish_sky = [this] {
+    if (view.sky != nullptr && sky_picture.empty()) kernels.sky(view, picture.tiles());
+  };
+  bool build = false;
+  if (keep_layers && !fixed.empty()) {
+    MakeKey(scene, lights);
+    if (const TileBuffer* layer = layers.Find(key)) {
+      picture.CopyFrom(*layer);
+      See(scene, moving, lights);
+      ShadeAll(lights);
+      return;
+    }
+    build = layers.Miss(key);
+  }
+  Clear();
+  See(scene, fixed, lights);
+  if (build) {
+    ShadeAll(lights);
+    finish_sky();
+    layers.Store(key, picture, view);
+  }
+  See(scene, moving, lights);
+  ShadeAll(lights);
+  if (!build) finish_sky();
+}
+
+// `over` keeps the geom's colours and `rect` their place. False: none of it is
+// in view.
+bool Renderer::State::ShadeOver(const mjvScene& scene, const SceneLights& lights, int number,
+                                TileBuffer* over, TileRect* rect) {
+  const mjvGeom& geom = scene.geoms[number];
+  const PlacedGeom placed = Place(geom, frame);
+  Shape shape;
+  if (!MakeShape(geom, placed, frame, view, number * kIdsPerShape, &shape)) return false;
+  over->Resize(view);
+  colours.clear();
+  surfaces.clear();
+  lights.AddColours(geom, &colours);
+  AddSurfaces(geom, placed, shape, {&lights, texture_views, &grids, ++stamp}, colours.data(),
+              /*transparent=*/true, &surfaces);
+  kernels.see_over(view, shape, picture.tiles(), over->tiles());
+  for (const Surface& surface : surfaces) {
+    kernels.shade(view, lights.set(), surface, over->tiles());
+  }
+  *rect = shape.rect;
+  return true;
+}
+
+// The engine blends twice: front to back, then back to front.
+void Renderer::State::DrawTransparent(const mjvScene& scene, const SceneLights& lights) {
+  const size_t count = transparent.size();
+  overs.resize(std::max(overs.size(), std::min(count, kOversKept)));
+  rects.resize(count);
+  seen.assign(count, false);
+  for (size_t turn = 0; turn < 2 * count; ++turn) {
+    const bool first = turn < count;
+    const size_t i = first ? turn : 2 * count - 1 - turn;
+    const mjvGeom& geom = scene.geoms[transparent[i]];
+    TileBuffer& over = overs[std::min(i, kOversKept - 1)];
+    if (first || i + 1 >= kOversKept) {
+      seen[i] = ShadeOver(scene, lights, transparent[i], &over, &rects[i]);
+    }
+    if (!seen[i]) continue;
+    float alpha = geom.rgba[3];
+    if (geom.type == mjGEOM_PLANE && IsBehind(geom, frame)) alpha *= kFromBehind;
+    kernels.blend(rects[i], view.tiles_x, alpha, over.tiles(), picture.tiles());
+  }
+}
+
+void Renderer::Draw(const mjvScene& scene, int width, int height, std::span<uint8_t> planes) {
+  State& state = *state_;
+  state.Start(scene, width, height);
+  state.Sort(scene);
+  const SceneLights lights(scene, state.frame);
+  state.DrawOpaque(scene, lights);
+  state.DrawTransparent(scene, lights);
+  WritePlanes(state.view, state.picture.tiles().colour, planes);
+}
+
+void Renderer::State::SeeEverything(const mjvScene& scene, int width, int height) {
+  Start(scene, width, height);
+  Sort(scene);
+  kernels.clear(view, picture.tiles());
+  const SceneLights lights(scene, frame);
+  for (const auto* geoms : {&fixed, &moving, &transparent}) {
+    colours.reserve(colours.size() + (geoms->size() + 1) * lights.lights().size());
+    See(scene, *geoms, lights);
+    surfaces.clear();
+    colours.clear();
+  }
+}
+
+void Renderer::DrawNumbers(const mjvScene& scene, int width, int height,
+                           std::span<int32_t> numbers) {
+  state_->SeeEverything(scene, width, height);
+  const int32_t* id = state_->picture.tiles().id;
+  WriteRows(
+      state_->view, [id](size_t at) { return id[at] < 0 ? -1 : id[at] / kIdsPerShape; }, numbers);
+}
+
+void Renderer::DrawDepth(const mjvScene& scene, int width, int height, std::span<float> depths) {
+  state_->SeeEverything(scene, width, height);
+  const float* w = state_->picture.tiles().w;
+  WriteRows(
+      state_->view,
+      [w](size_t at) { return w[at] > 0 ? 1 / w[at] : std::numeric_limits<float>::infinity(); },
+      depths);
+}
+
+}  // namespace shoal::worlds::native

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which tiles of a picture a body in camera coordinates can touch.
+#pragma once
+
+#include <array>
+#include <span>
+
+#include "actor/worlds/native/camera_frame.h"
+#include "actor/worlds/native/frame_job.h"
+
+namespace shoal::worlds::native {
+
+// Range of ray coordinates X and Y. Empty when right < left or top < bottom.
+struct RayRect {
+  double left, right, bottom, top;
+};
+
+RayRect EmptyRect();
+RayRect Union(const RayRect& a, const RayRect& b);
+
+// An ellipsoid about `centre` with half axes `radii` along `axes`; a radius may
+// be 0 (a disc).
+RayRect BoundEllipsoid(Vector3 centre, const std::array<Vector3, 3>& axes,
+                       const std::array<double, 3>& radii, double near);
+
+// The convex hull of points, by edges (pairs of points) that are cut at the
+// near plane.
+RayRect BoundHull(std::span<const Vector3> points, std::span<const std::array<int, 2>> edges,
+                  double near);
+
+// The tiles, within the view, with pixels in the rectangle or up to a hundredth
+// of a pixel outside. False: none.
+bool TilesOf(const RayRect& rect, const CameraFrame& frame, const View& view, TileRect* tiles);
+
+}  // namespace shoal::worlds::native

@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+// Material, light and texture of a geom of the engine's abstract scene, for the
+// kernels.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "actor/worlds/native/camera_frame.h"
+#include "actor/worlds/native/frame_job.h"
+#include "actor/worlds/native/plane_grids.h"
+#include "actor/worlds/native/shape_setup.h"
+
+struct mjvGeom_;
+struct mjvScene_;
+
+namespace shoal::worlds::native {
+
+// A scene's lights in camera coordinates, in an order in which those that cast
+// shadows come last: the engine adds each of them in a pass of its own. Their
+// shadows are left out.
+class SceneLights {
+ public:
+  SceneLights(const mjvScene_& scene, const CameraFrame& frame);
+
+  LightSet set() const { return {static_cast<int>(lights_.size()), lights_.data()}; }
+  // The light that each light gives to a geom's material is added to the end of
+  // `colours`.
+  void AddColours(const mjvGeom_& geom, std::vector<LightColour>* colours) const;
+  // The same for all points and normals: without lights the engine has a little
+  // ambient light.
+  float global_ambient() const { return lights_.empty() ? 0.3f : 0.0f; }
+  std::span<const Light> lights() const { return lights_; }
+
+ private:
+  std::vector<Light> lights_;
+  std::vector<LightColour> plain_;  // of a white material
+};
+
+// Data that the surfaces of a frame refer to; must live as long as they do.
+struct SurfaceSources {
+  const SceneLights* lights;
+  std::span<const Texture* const> textures;  // of the model, by number
+  PlaneGrids* grids;
+  uint32_t stamp;  // of the frame
+};
+
+// Appends the surfaces of a shape, one for each colour rule. `colours` are the
+// geom's, one for each light; must stay where they are.
+void AddSurfaces(const mjvGeom_& geom, const PlacedGeom& placed, const Shape& shape,
+                 const SurfaceSources& sources, LightColour* colours, bool transparent,
+                 std::vector<Surface>* surfaces);
+
+}  // namespace shoal::worlds::native

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+// A model's textures with their mip levels.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "actor/worlds/native/frame_job.h"
+
+namespace shoal::worlds::native {
+
+// Owns the texels that view() points to; movable, not copyable.
+class TextureLevels {
+ public:
+  // rgb: rows of (width, height) texels, one face after another when `cube`:
+  // six faces of width x width, or one that is used for all six. CHECK on
+  // sizes.
+  TextureLevels(std::span<const uint8_t> rgb, int width, int height, bool cube);
+  TextureLevels(TextureLevels&&) = default;
+  TextureLevels& operator=(TextureLevels&&) = default;
+
+  const Texture& view() const { return view_; }
+
+ private:
+  void AddLevel(std::span<const int32_t> texels, int width, int height);
+
+  std::vector<std::vector<int32_t>> texels_;
+  Texture view_{};
+};
+
+}  // namespace shoal::worlds::native

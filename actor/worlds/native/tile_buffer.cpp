@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "actor/worlds/native/tile_buffer.h"
+
+#include <emmintrin.h>
+
+#include <algorithm>
+#include <cstring>
+
+#include "common/base/check.h"
+
+namespace shoal::worlds::native {
+
+void TileBuffer::Resize(const View& view) {
+  const size_t pixels =
+      static_cast<size_t>(view.tiles_x) * static_cast<size_t>(view.tiles_y) * kTilePixels;
+  if (w_.size() == pixels) return;
+  w_.resize(pixels);
+  id_.resize(pixels);
+  colour_.resize(pixels);
+  triangle_.resize(pixels);
+}
+
+void TileBuffer::CopyFrom(const TileBuffer& other) {
+  CHECK(w_.size() == other.w_.size());
+  std::memcpy(w_.data(), other.w_.data(), w_.size() * sizeof(float));
+  std::memcpy(id_.data(), other.id_.data(), id_.size() * sizeof(int32_t));
+  std::memcpy(colour_.data(), other.colour_.data(), colour_.size() * sizeof(int32_t));
+}
+
+namespace {
+
+// Four pixels of a row of a tile: columns 0 and 1, and 4 further on 2 and 3.
+__m128i FourPixels(const int32_t* row) {
+  return _mm_unpacklo_epi64(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(row)),
+                            _mm_loadl_epi64(reinterpret_cast<const __m128i*>(row + 4)));
+}
+
+// The low bytes of 16 pixels.
+__m128i Bytes(const __m128i (&p)[4]) {
+  const __m128i byte = _mm_set1_epi32(255);
+  return _mm_packus_epi16(_mm_packs_epi32(_mm_and_si128(p[0], byte), _mm_and_si128(p[1], byte)),
+                          _mm_packs_epi32(_mm_and_si128(p[2], byte), _mm_and_si128(p[3], byte)));
+}
+
+// 16 pixels of one row, from four tiles.
+void WriteSixteen(const int32_t* row, uint8_t* to, size_t plane) {
+  __m128i p[4];
+  for (int i = 0; i < 4; ++i) p[i] = FourPixels(row + i * kTilePixels);
+  for (int channel = 0; channel < 3; ++channel) {
+    _mm_storeu_si128(reinterpret_cast<__m128i*>(to), Bytes(p));
+    for (__m128i& pixels : p) pixels = _mm_srli_epi32(pixels, 8);
+    to += plane;
+  }
+}
+
+// Up to 4 pixels of one row of a tile.
+void WriteFew(const int32_t* row, size_t count, uint8_t* to, size_t plane) {
+  const int32_t pixels[4] = {row[0], row[1], row[4], row[5]};
+  for (size_t channel = 0; channel < 3; ++channel) {
+    for (size_t x = 0; x < count; ++x) {
+      to[channel * plane + x] = static_cast<uint8_t>(pixels[x] >> (8 * channel) & 255);
+    }
+  }
+}
+
+}  // namespace
+
+void WritePlanes(const View& view, const int32_t* colours, std::span<uint8_t> planes) {
+  const auto width = static_cast<size_t>(view.width), height = static_cast<size_t>(view.height);
+  CHECK(planes.size() == 3 * width * height) << planes.size();
+  const size_t plane = width * height;
+  const size_t in_row = static_cast<size_t>(view.tiles_x) * kTilePixels;
+  for (size_t y = 0; y < height; ++y) {
+    const int32_t* row = colours + y / kTileSide * in_row + 2 * (y & 1) + 8 * (y >> 1 & 1);
+    uint8_t* to = planes.data() + y * width;
+    size_t x = 0;
+    for (; x + 16 <= width; x += 16) WriteSixteen(row + x * kTileSide, to + x, plane);
+    for (; x < width; x += kTileSide) {
+      WriteFew(row + x * kTileSide, std::min<size_t>(kTileSide, width - x), to + x, plane);
+    }
+  }
+}
+
+}  // namespace shoal::worlds::native
