@@ -27,7 +27,7 @@ class FrameRecorder final : public EpisodeListener {
     // first.
     std::string camera = "";
     int height = 480, width = 480;      // of the view
-    std::string quality = "reference";  // of the view: fast | reference
+    std::string quality = "reference";  // of the view: fast | native | reference
   };
   // Throws Error: a camera that the task does not have, a file that cannot be written.
   FrameRecorder(const RunConfig& run, const Options& options);

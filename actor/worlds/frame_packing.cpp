@@ -25,6 +25,13 @@ SHOAL_CPU_CLONES void LumaRow(const uint8_t* from, size_t width, uint8_t* luma) 
   }
 }
 
+SHOAL_CPU_CLONES void LumaOfPlanes(const uint8_t* red, const uint8_t* green, const uint8_t* blue,
+                                   size_t count, uint8_t* luma) {
+  for (size_t i = 0; i < count; ++i) {
+    luma[i] = static_cast<uint8_t>((77 * red[i] + 150 * green[i] + 29 * blue[i] + 128) >> 8);
+  }
+}
+
 void CheckSizes(std::span<const uint8_t> pixels, size_t plane, std::span<uint8_t> planes,
                 size_t channels) {
   CHECK(pixels.size() == 3 * plane) << pixels.size() << " bytes for " << plane << " pixels";
@@ -49,6 +56,13 @@ void PackGrey(std::span<const uint8_t> pixels, int height, int width, std::span<
   for (size_t y = 0; y < rows; ++y) {
     LumaRow(pixels.data() + (rows - 1 - y) * columns * 3, columns, plane.data() + y * columns);
   }
+}
+
+void GreyOfPlanes(std::span<const uint8_t> planes, std::span<uint8_t> plane) {
+  const size_t count = plane.size();
+  CHECK(planes.size() == 3 * count) << planes.size() << " bytes for " << count << " pixels";
+  LumaOfPlanes(planes.data(), planes.data() + count, planes.data() + 2 * count, count,
+               plane.data());
 }
 
 }  // namespace shoal::worlds

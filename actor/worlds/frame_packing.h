@@ -16,4 +16,7 @@ void PackRgb(std::span<const uint8_t> pixels, int height, int width, std::span<u
 // One plane of luma: (77 R + 150 G + 29 B) / 256, rounded (Rec. 601).
 void PackGrey(std::span<const uint8_t> pixels, int height, int width, std::span<uint8_t> plane);
 
+// The same luma of a frame: planes (3, H, W), plane (1, H, W).
+void GreyOfPlanes(std::span<const uint8_t> planes, std::span<uint8_t> plane);
+
 }  // namespace shoal::worlds

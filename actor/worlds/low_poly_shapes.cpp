@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "actor/worlds/low_poly_shapes.h"
 
-#include <GL/gl.h>
 #include <mujoco/mujoco.h>
 
 #include <array>
 #include <cmath>
 #include <vector>
 
+#include "actor/worlds/osmesa_library.h"
 #include "common/base/check.h"
 
 namespace shoal::worlds {
@@ -32,8 +32,8 @@ Ring MakeRing(int slices, float radius, float z, float elevation_rad) {
 }
 
 void Emit(const Vertex& vertex) {
-  glNormal3fv(vertex.normal.data());
-  glVertex3fv(vertex.position.data());
+  Osmesa().normal(vertex.normal.data());
+  Osmesa().vertex(vertex.position.data());
 }
 
 void Triangle(const Vertex& a, const Vertex& b, const Vertex& c) {
@@ -73,13 +73,14 @@ void RoundCap(int slices, float z, int up) {
 
 template <typename Draw>
 uint32_t Compile(Draw draw) {
-  const uint32_t list = glGenLists(1);
+  const OsmesaLibrary& gl = Osmesa();
+  const uint32_t list = gl.gen_lists(1);
   CHECK(list != 0) << "no display list: no current context?";
-  glNewList(list, GL_COMPILE);
-  glBegin(GL_TRIANGLES);
+  gl.new_list(list, GL_COMPILE);
+  gl.begin(GL_TRIANGLES);
   draw();
-  glEnd();
-  glEndList();
+  gl.end();
+  gl.end_list();
   return list;
 }
 

@@ -46,7 +46,7 @@ struct ObservationConfig {
   int stack = 1;
   std::string goal_mode = "none";  // none | desired | both: goal vectors among the blocks
   StateBlocks proprioception = false;
-  std::string quality = "fast";                        // fast | reference
+  std::string quality = "fast";                        // fast | native | reference
   std::map<std::string, CustomCamera> custom_cameras;  // by name, beside the task's own
 };
 

@@ -77,9 +77,9 @@ std::vector<Key> ObservationKeys() {
       SHOAL_SAME(observation.proprioception, AnyValue{},
                  "the task's state vector: all of it, nothing, or the blocks named (shoal env "
                  "describe lists them)"),
-      SHOAL_SAME(observation.quality, (Choices{{"fast", "reference"}}),
-                 "fast = no shadows, reflections, multisampling; reference = the rendering of the "
-                 "originals"),
+      SHOAL_SAME(observation.quality, (Choices{{"fast", "native", "reference"}}),
+                 "fast = no shadows, reflections, multisampling; native = as fast, drawn by a "
+                 "renderer without OpenGL; reference = the rendering of the originals"),
       SHOAL_SAME(
           observation.custom_cameras, AnyValue{},
           "cameras of one's own for observation.cameras; in m and degrees, azimuth 0 looks "

@@ -50,7 +50,7 @@ void AddRender(CLI::App& env, Action* chosen) {
       ->capture_default_str();
   command->add_option("--seed", request->seed, "Of the goal and the actions")
       ->capture_default_str();
-  command->add_option("--quality", request->quality, "fast | reference")->capture_default_str();
+  command->add_option("--quality", request->quality, "fast | native | reference")->capture_default_str();
   command->add_option("--width", request->width, "Pixels")->capture_default_str();
   command->add_option("--height", request->height, "Pixels")->capture_default_str();
   command->add_option("--model", request->model, "Another MJCF file for the task");

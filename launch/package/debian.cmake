@@ -22,8 +22,9 @@ set(package_version ${PROJECT_VERSION}-${CPACK_DEBIAN_PACKAGE_RELEASE})
 
 set(CPACK_DEBIAN_SHOAL_PACKAGE_NAME shoal)
 set(CPACK_DEBIAN_SHOAL_PACKAGE_SECTION science)
-# Programs and a font that are found when they are asked for; no library names them.
-set(CPACK_DEBIAN_SHOAL_PACKAGE_RECOMMENDS "gnuplot-nox, fonts-dejavu-core, libjs-dygraphs")
+# Programs, a font and a library that are found when they are asked for; no library names them.
+set(CPACK_DEBIAN_SHOAL_PACKAGE_RECOMMENDS
+  "libosmesa6, gnuplot-nox, fonts-dejavu-core, libjs-dygraphs")
 set(CPACK_DEBIAN_SHOAL_PACKAGE_SUGGESTS "libshoal-dev, openssh-client")
 set(CPACK_COMPONENT_SHOAL_DESCRIPTION
 "distributed reinforcement learning from pixels

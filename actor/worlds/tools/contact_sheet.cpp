@@ -83,7 +83,7 @@ ContactSheetRows PlanContactSheet() {
     const auto world = MakeWorld(name, {});
     std::vector<ContactSheetTile> row;
     for (const CameraView& camera : world->cameras()) {
-      for (const char* quality : {"fast", "reference"})
+      for (const char* quality : {"fast", "native", "reference"})
         row.push_back({tasks, camera.name, quality});
     }
     rows.push_back(std::move(row));

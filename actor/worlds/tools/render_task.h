@@ -19,7 +19,7 @@ struct RenderRequest {
   std::string task;    // "FetchReachDense"
   std::string camera;  // "front"; empty = the task's first
   int width = 480, height = 480;
-  std::string quality = "reference";  // fast | reference
+  std::string quality = "reference";  // fast | native | reference
   bool goal = false;  // the picture of the goal reached, of observation.goal_mode = image
   int env_steps = 0;  // uniform random actions before the picture, at most an episode's
   int64_t seed = 1;   // of the goal and of the actions

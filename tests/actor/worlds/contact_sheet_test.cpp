@@ -14,7 +14,7 @@
 namespace shoal::worlds {
 namespace {
 
-TEST(ContactSheet, ShowsEveryTaskWithEachOfItsCamerasInBothQualities) {
+TEST(ContactSheet, ShowsEveryTaskWithEachOfItsCamerasInAllQualities) {
   std::set<std::string> shown;
   for (const auto& row : PlanContactSheet()) {
     for (const ContactSheetTile& tile : row) {
@@ -27,7 +27,7 @@ TEST(ContactSheet, ShowsEveryTaskWithEachOfItsCamerasInBothQualities) {
   for (const std::string& name : tasks::TaskNames()) {
     const auto world = MakeWorld(tasks::FindTask(name).world(), {});
     for (const CameraView& camera : world->cameras()) {
-      for (const char* quality : {" fast", " reference"}) {
+      for (const char* quality : {" fast", " native", " reference"}) {
         expected.insert(name + " " + camera.name + quality);
       }
     }

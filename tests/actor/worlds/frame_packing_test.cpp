@@ -29,6 +29,14 @@ TEST(FramePacking, GreyIsTheLumaOfEachPixel) {
   EXPECT_EQ(plane, (std::vector<uint8_t>{255, 0, 90, 77, 149, 29}));
 }
 
+TEST(FramePacking, GreyOfPlanesIsThatOfPixels) {
+  std::vector<uint8_t> planes(18), plane(6), of_planes(6);
+  PackRgb(kPixels, 2, 3, planes);
+  PackGrey(kPixels, 2, 3, plane);
+  GreyOfPlanes(planes, of_planes);
+  EXPECT_EQ(of_planes, plane);
+}
+
 TEST(FramePacking, WideRowsPackAsNarrowOnesDo) {
   // Long enough for the widest vectors, odd enough for their remainders.
   constexpr int kHeight = 3, kWidth = 331;

@@ -107,6 +107,7 @@ class FrameParity : public testing::TestWithParam<Case> {
 };
 
 TEST_P(FrameParity, ReferenceFramesLookLikeTheOriginals) { ExpectAtMost(2.5, "reference"); }
+TEST_P(FrameParity, NativeFramesLookAlmostLikeTheOriginals) { ExpectAtMost(5, "native"); }
 TEST_P(FrameParity, FastFramesLookAlmostLikeTheOriginals) { ExpectAtMost(5, "fast"); }
 
 // The actions between Push's two recorded frames are not known, so only its first is compared.

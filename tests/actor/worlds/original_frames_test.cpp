@@ -84,6 +84,14 @@ TEST_P(OriginalFrames, FastQualityIsWithinTenGreyLevels) {
   }
 }
 
+TEST_P(OriginalFrames, NativeQualityIsWithinTenGreyLevels) {
+  for (const int step : {0, 50}) {
+    const double error = Error("native", step);
+    RecordProperty("grey_levels_after_" + std::to_string(step), std::to_string(error));
+    EXPECT_LE(error, 10) << "after step " << step;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Tasks, OriginalFrames, testing::ValuesIn(kOriginals),
                          [](const auto& original) { return std::string(original.param.picture); });
 

@@ -216,6 +216,36 @@ TEST(RenderContext, AContextDrawsIntoItsOwnBufferWhicheverWasUsedLast) {
   EXPECT_EQ(Render(&reference, &world, "close"), smooth);
 }
 
+// Contours differ: fast draws few triangles.
+TEST(RenderContext, NativeFramesLookLikeFastOnes) {
+  for (const char* task : {"FetchReach", "cartpole_swingup"}) {
+    const auto world = MakeWorld(task, {}), other = MakeWorld(task, {});
+    Random random(1), same(1);
+    world->Reset(&random);
+    other->Reset(&same);
+    RenderContext fast(Observation("fast")), native(Observation("native"));
+    const std::string camera = DefaultCamera(*world).name;
+    EXPECT_LT(
+        MeanAbsoluteError(Render(&fast, world.get(), camera), Render(&native, other.get(), camera)),
+        6)
+        << task;
+  }
+}
+
+TEST(RenderContext, NativeGreyIsOneChannelOfTheSamePicture) {
+  const auto world = MakeWorld("FetchReach", {});
+  Random random(1);
+  world->Reset(&random);
+  RenderContext colour(Observation("native")), grey(Observation("native", /*grey=*/true));
+  const Frame rgb = Render(&colour, world.get(), "front");
+  const Frame luma = Render(&grey, world.get(), "front");
+  ASSERT_EQ(luma.size(), kPlane);
+  for (size_t i = 0; i < kPlane; ++i) {
+    const double exact = 0.299 * rgb[i] + 0.587 * rgb[kPlane + i] + 0.114 * rgb[2 * kPlane + i];
+    ASSERT_NEAR(luma[i], exact, 1.5) << i;
+  }
+}
+
 TEST(RenderContext, WorldsThatShareAContextAreDrawnEachAsItIs) {
   FetchReach left, right;
   left.ResetTo({1.45, 0.65, 0.5});
