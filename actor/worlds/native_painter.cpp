@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Quality native: our own renderer, without OpenGL.
+#include <algorithm>
+#include <cmath>
 #include <optional>
 #include <vector>
 
@@ -15,10 +17,8 @@ namespace {
 class NativePainter final : public Painter {
  public:
   explicit NativePainter(const ObservationConfig& observation)
-      : width_(observation.width), height_(observation.height) {
-    if (observation.grey) {
-      colours_.resize(3 * static_cast<size_t>(width_) * static_cast<size_t>(height_));
-    }
+      : width_(observation.width), height_(observation.height), grey_(observation.grey) {
+    if (grey_) colours_.resize(3 * pixels());
   }
 
   void TakeModel(World* world) override {
@@ -28,16 +28,52 @@ class NativePainter final : public Painter {
 
   void Draw(World* world, const CameraView& camera, std::span<uint8_t> planes) override {
     scene_.Update(world, camera);
-    if (colours_.empty()) {
-      renderer_->Draw(scene_.scene(), width_, height_, planes);
-    } else {
-      renderer_->Draw(scene_.scene(), width_, height_, colours_);
-      GreyOfPlanes(colours_, planes);
+    const std::span<uint8_t> colours = grey_ ? std::span(colours_) : planes;
+    switch (output_) {
+      case PainterOutput::kColours:
+        renderer_->Draw(scene_.scene(), width_, height_, colours);
+        break;
+      case PainterOutput::kSegments:
+        DrawSegments(colours);
+        break;
+      case PainterOutput::kDepths:
+        DrawDepths(colours);
+        break;
+    }
+    if (grey_) GreyOfPlanes(colours_, planes);
+  }
+
+  void SetOutput(PainterOutput output) override { output_ = output; }
+
+ private:
+  size_t pixels() const { return static_cast<size_t>(width_) * static_cast<size_t>(height_); }
+
+  void DrawSegments(std::span<uint8_t> planes) {
+    std::vector<int32_t> numbers(pixels());
+    renderer_->DrawNumbers(scene_.scene(), width_, height_, numbers);
+    for (size_t i = 0; i < pixels(); ++i) {
+      // Neighbouring numbers get colours that are far apart.
+      const uint32_t mixed = static_cast<uint32_t>(numbers[i] + 1) * 2654435761U;
+      for (size_t c = 0; c < 3; ++c) {
+        planes[c * pixels() + i] =
+            numbers[i] < 0 ? uint8_t{0} : static_cast<uint8_t>(64 + (mixed >> (8 * c + 4)) % 192);
+      }
     }
   }
 
- private:
+  void DrawDepths(std::span<uint8_t> planes) {
+    std::vector<float> depths(pixels());
+    renderer_->DrawDepth(scene_.scene(), width_, height_, depths);
+    const float least = std::ranges::min(depths);
+    for (size_t i = 0; i < pixels(); ++i) {
+      const float grey = std::isinf(depths[i]) ? 0 : 255 * least / depths[i];
+      for (size_t c = 0; c < 3; ++c) planes[c * pixels() + i] = static_cast<uint8_t>(grey);
+    }
+  }
+
   int width_, height_;
+  bool grey_;
+  PainterOutput output_ = PainterOutput::kColours;
   std::vector<uint8_t> colours_;  // (3, H, W); empty unless the observation is grey
   AbstractScene scene_;
   std::optional<native::Renderer> renderer_;

@@ -15,6 +15,11 @@ struct ObservationConfig;
 
 namespace shoal::worlds {
 
+// Pictures of a scene: its colours, or for people to look at:
+//   kSegments  one colour for each geom, black for the sky
+//   kDepths    grey, 255 times the least depth in view by the pixel's, black for the sky
+enum class PainterOutput { kColours, kSegments, kDepths };
+
 class Painter {
  public:
   virtual ~Painter() = default;
@@ -25,6 +30,8 @@ class Painter {
   // planes (3, H, W) uint8, or (1, H, W) when the observation is grey, row 0 = top. `world` has the
   // same model.
   virtual void Draw(World* world, const CameraView& camera, std::span<uint8_t> planes) = 0;
+  // From now on Draw gives this. Throws Error (kUsage) when this quality does not have it.
+  virtual void SetOutput(PainterOutput output);
 };
 
 // Qualities fast and reference. Throws Error when there is no OSMesa context.

@@ -17,6 +17,11 @@ std::unique_ptr<Painter> PainterOf(const ObservationConfig& observation) {
 
 }  // namespace
 
+void Painter::SetOutput(PainterOutput output) {
+  if (output == PainterOutput::kColours) return;
+  throw UsageError("segments and depths are drawn in quality native alone");
+}
+
 RenderContext::RenderContext(const ObservationConfig& observation)
     : width_(observation.width), height_(observation.height), grey_(observation.grey) {
   CHECK(width_ > 0 && height_ > 0) << width_ << " x " << height_;

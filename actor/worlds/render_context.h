@@ -30,6 +30,10 @@ class RenderContext {
   // Channels of one camera: 1 grey, 3 RGB.
   int channels_per_camera() const { return grey_ ? 1 : 3; }
 
+  // From now on Render gives this instead of colours. Throws Error (kUsage) when the quality has
+  // colours alone.
+  void SetOutput(PainterOutput output) { painter_->SetOutput(output); }
+
   // To be called once per world before Render. Uploads the model of the first; throws Error when a
   // later one has another model.
   void Attach(World* world);

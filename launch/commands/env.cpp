@@ -50,12 +50,19 @@ void AddRender(CLI::App& env, Action* chosen) {
       ->capture_default_str();
   command->add_option("--seed", request->seed, "Of the goal and the actions")
       ->capture_default_str();
-  command->add_option("--quality", request->quality, "fast | native | reference")->capture_default_str();
+  command->add_option("--quality", request->quality, "fast | native | reference")
+      ->capture_default_str();
   command->add_option("--width", request->width, "Pixels")->capture_default_str();
   command->add_option("--height", request->height, "Pixels")->capture_default_str();
   command->add_option("--model", request->model, "Another MJCF file for the task");
   command->add_flag("--goal", request->goal,
                     "The goal reached, as observation.goal_mode = image shows it");
+  const auto segments = std::make_shared<bool>(false), depths = std::make_shared<bool>(false);
+  CLI::Option* segmentation = command->add_flag(
+      "--segmentation", *segments, "One colour for each geom instead (quality native)");
+  CLI::Option* depth =
+      command->add_flag("--depth", *depths, "Grey, the nearest white, instead (quality native)")
+          ->excludes(segmentation);
   CLI::Option* all =
       command
           ->add_flag("--contact-sheet", *whole, "All tasks, cameras and qualities in one picture")
@@ -64,6 +71,7 @@ void AddRender(CLI::App& env, Action* chosen) {
        {"--goal", "--camera", "--steps", "--quality", "--width", "--height", "--model"}) {
     all->excludes(command->get_option(other));
   }
+  all->excludes(segmentation)->excludes(depth);
   command->add_option("--tile", sheet->side, "Pixels a side of a contact sheet's pictures")
       ->needs(all)
       ->capture_default_str();
@@ -72,6 +80,8 @@ void AddRender(CLI::App& env, Action* chosen) {
       throw UsageError("env render: expected a task or --contact-sheet");
     }
     sheet->seed = request->seed;
+    if (*segments) request->output = worlds::PainterOutput::kSegments;
+    if (*depths) request->output = worlds::PainterOutput::kDepths;
     *chosen = [=] { return *whole ? DrawSheet(*sheet, *png) : Render(*request, *png); };
   });
 }

@@ -39,8 +39,8 @@ int Run(int argc, char** argv) {
   for (const auto make :
        {shoal::bench::ReplayPairings, shoal::bench::GatherPairings, shoal::bench::NetworkPairings,
         shoal::bench::UpdatePairings, shoal::bench::LearnerPairings, shoal::bench::ScalingPairings,
-        shoal::bench::PolicyPairings, shoal::bench::TransportPairings,
-        shoal::bench::WorldPairings}) {
+        shoal::bench::PolicyPairings, shoal::bench::TransportPairings, shoal::bench::WorldPairings,
+        shoal::bench::FramePairings}) {
     for (const shoal::bench::Pairing& pairing : make()) {
       if (pairing.stage.find(only) == std::string::npos) continue;
       if (!pairing.skipped.empty()) {

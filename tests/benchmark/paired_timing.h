@@ -56,5 +56,6 @@ std::vector<Pairing> PolicyPairings();
 std::vector<Pairing> ScalingPairings();
 std::vector<Pairing> TransportPairings();
 std::vector<Pairing> WorldPairings();
+std::vector<Pairing> FramePairings();
 
 }  // namespace shoal::bench

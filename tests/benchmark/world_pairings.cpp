@@ -104,6 +104,12 @@ std::vector<Pairing> WorldPairings() {
                         .target = 0.35,
                         .ours = make(task, {"front", "side"}, "fast"),
                         .other = physics});
+    pairings.push_back({.stage = task + " with one 84x84 camera, native",
+                        .unit = "env steps/s",
+                        .against = "physics alone",
+                        .target = 0.9,
+                        .ours = make(task, {"front"}, "native"),
+                        .other = physics});
   }
   const std::pair<const char*, const char*> others[] = {
       {"Hopper-v5", "track"},  {"cartpole_swingup", "fixed"}, {"reacher_easy", "fixed"},
@@ -115,6 +121,12 @@ std::vector<Pairing> WorldPairings() {
                         .against = "physics alone",
                         .ours = make(task, {camera}, "fast"),
                         .other = make(task, {}, "fast")});
+    pairings.push_back({.stage = std::string(task) + " with one 84x84 camera, native",
+                        .unit = "env steps/s",
+                        .against = "physics alone",
+                        .target = 0.5,
+                        .ours = make(task, {camera}, "native"),
+                        .other = make(task, {}, "native")});
   }
   for (const std::string task : {"FetchReach", "FetchPush"}) {
     const auto with_goals = [&](const char* goal_mode) {

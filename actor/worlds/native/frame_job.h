@@ -15,7 +15,7 @@
 
 namespace shoal::worlds::native {
 
-constexpr int kTileSide = 4, kTilePixels = 16;
+constexpr int kTileSide = 4, kTilePixels = 16, kTilePixelsLog2 = 4;
 constexpr int kMostLevels = 16, kMostLights = 100;
 constexpr int kNothing = -1;  // id of a pixel that shows the sky
 
@@ -38,7 +38,7 @@ struct TileRect {
 enum ShapeKind : int32_t { kEllipsoid, kCapsule, kCylinder, kBox, kPlane, kTriangles };
 
 struct Triangle {
-  int index;
+  int index;  // in its mesh
   TileRect rect;
   float x, y;       // origin
   Affine w;         // 1 / depth
@@ -113,8 +113,10 @@ struct PlaneGrid {
 };
 
 struct MeshData {
-  const float* normals;  // (triangles, 3, 3), object coordinates
-  const float* coords;   // (triangles, 3, 2) texture coordinates; null = none
+  const Triangle* triangles;  // the shape's
+  const float* normals;       // (T, 3, 3), in the geom's coordinates, by Triangle::index
+  const float* coords;        // (T, 3, 2) texture coordinates; null = none
+  float axes[3][3];           // the geom's axes
 };
 
 // One colour rule for the pixels with this id.
@@ -149,7 +151,6 @@ struct Surface {
   bool capsule_caps;
   float cap_scale, cap_offset;
   MeshData mesh;
-  int first_triangle;
 };
 
 struct View {
@@ -168,7 +169,7 @@ struct Tiles {
   float* w;
   int32_t* id;
   int32_t* colour;    // r | g << 8 | b << 16
-  int32_t* triangle;  // of meshes; null when none is drawn
+  int32_t* triangle;  // number in Shape::triangle, where the id is a mesh's
 };
 
 struct LightSet {

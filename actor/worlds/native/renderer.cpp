@@ -16,6 +16,7 @@
 #include "actor/worlds/native/surface_setup.h"
 #include "actor/worlds/native/texture_levels.h"
 #include "actor/worlds/native/tile_buffer.h"
+#include "actor/worlds/native/triangle_meshes.h"
 #include "common/base/check.h"
 #include "common/base/error.h"
 
@@ -43,7 +44,8 @@ const Kernels& KernelsOf(InstructionSet set) {
 
 bool Drawable(int type) {
   return type == mjGEOM_PLANE || type == mjGEOM_SPHERE || type == mjGEOM_CAPSULE ||
-         type == mjGEOM_ELLIPSOID || type == mjGEOM_CYLINDER || type == mjGEOM_BOX;
+         type == mjGEOM_ELLIPSOID || type == mjGEOM_CYLINDER || type == mjGEOM_BOX ||
+         type == mjGEOM_MESH || type == mjGEOM_HFIELD;
 }
 
 void CheckGeom(const mjvGeom& geom, int number) {
@@ -67,7 +69,9 @@ bool HasExtent(const mjvGeom& geom) {
       return s[0] > 0 && s[1] > 0 && s[2] > 0;
     case mjGEOM_CAPSULE:
     case mjGEOM_CYLINDER:
-      return s[0] > 0;
+      return s[0] > 0 && s[2] >= 0;
+    case mjGEOM_BOX:
+      return s[0] >= 0 && s[1] >= 0 && s[2] >= 0;
     default:
       return true;
   }
@@ -106,6 +110,7 @@ struct Renderer::State {
   std::vector<const Texture*> texture_views;
   int sky = -1;  // number of its texture
   PlaneGrids grids;
+  TriangleMeshes meshes;
 
   uint32_t stamp = kFirstStamp;
   RayTables rays;
@@ -126,14 +131,19 @@ struct Renderer::State {
   std::vector<bool> seen;
   std::vector<LightColour> colours;
   std::vector<Surface> surfaces;
+  std::vector<std::vector<Triangle>> triangles;  // of each mesh among the surfaces
+  size_t meshes_used = 0;
   std::vector<uint32_t> key;
 
-  State(const mjModel& model, InstructionSet set) : kernels(KernelsOf(set)), grids(model) {}
+  State(const mjModel& model, InstructionSet set)
+      : kernels(KernelsOf(set)), grids(model), meshes(model) {}
 
   void Start(const mjvScene& scene, int width, int height);
   void Sort(const mjvScene& scene);
   void SetSky();
   void MakeKey(const mjvScene& scene, const SceneLights& lights);
+  bool MakeAnyShape(const mjvGeom& geom, const PlacedGeom& placed, int number, Shape* shape);
+  SurfaceSources SourcesOf(const mjvGeom& geom, const SceneLights& lights);
   void See(const mjvScene& scene, std::span<const int> geoms, const SceneLights& lights);
   void ShadeAll(const SceneLights& lights);
   bool ShadeOver(const mjvScene& scene, const SceneLights& lights, int number, TileBuffer* over,
@@ -164,15 +174,12 @@ InstructionSet WidestInstructionSet() {
 }
 
 std::string RefusalOf(const mjModel& model) {
-  if (model.nskin > 0) return fmt::format("{} skins", model.nskin);
-  mjvOption shown;
-  mjv_defaultOption(&shown);
-  for (int i = 0; i < model.ngeom; ++i) {
-    const int group = std::clamp(model.geom_group[i], 0, mjNGROUP - 1);
-    if (Drawable(model.geom_type[i]) || !shown.geomgroup[group]) continue;
-    const char* name = mj_id2name(&model, mjOBJ_GEOM, i);
-    return fmt::format("geom {} ('{}') is a {}", i, name == nullptr ? "" : name,
-                       model.geom_type[i] == mjGEOM_HFIELD ? "height field" : "mesh");
+  if (model.nskin > 0) return fmt::format("it has {} skins", model.nskin);
+  for (int i = 0; i < model.nsensor; ++i) {
+    if (model.sensor_type[i] != mjSENS_RANGEFINDER) continue;
+    const char* name = mj_id2name(&model, mjOBJ_SENSOR, i);
+    return fmt::format("sensor {} ('{}') is a rangefinder, which the engine shows as a line", i,
+                       name == nullptr ? "" : name);
   }
   return "";
 }
@@ -238,6 +245,7 @@ void Renderer::State::Start(const mjvScene& scene, int width, int height) {
   picture.Resize(view);
   colours.clear();
   surfaces.clear();
+  meshes_used = 0;
 }
 
 void Renderer::State::Sort(const mjvScene& scene) {
@@ -303,18 +311,39 @@ void Renderer::State::MakeKey(const mjvScene& scene, const SceneLights& lights) 
   }
 }
 
+bool Renderer::State::MakeAnyShape(const mjvGeom& geom, const PlacedGeom& placed, int number,
+                                   Shape* shape) {
+  const int id = number * kIdsPerShape;
+  if (geom.type != mjGEOM_MESH && geom.type != mjGEOM_HFIELD) {
+    return MakeShape(geom, placed, frame, view, id, shape);
+  }
+  const TriangleMesh* mesh = meshes.Find(geom);
+  if (mesh == nullptr) {
+    throw RuntimeError(
+        "geom {} of the scene shows mesh or height field {}, which no visible geom "
+        "of the model has",
+        number, geom.dataid);
+  }
+  if (triangles.size() == meshes_used) triangles.emplace_back();
+  return MakeTriangles(*mesh, placed, frame, view, id, &triangles[meshes_used++], shape);
+}
+
+SurfaceSources Renderer::State::SourcesOf(const mjvGeom& geom, const SceneLights& lights) {
+  const bool is_mesh = geom.type == mjGEOM_MESH || geom.type == mjGEOM_HFIELD;
+  return {&lights, texture_views, &grids, is_mesh ? meshes.Find(geom) : nullptr, stamp};
+}
+
 void Renderer::State::See(const mjvScene& scene, std::span<const int> geoms,
                           const SceneLights& lights) {
-  const SurfaceSources sources{&lights, texture_views, &grids, stamp};
   for (const int i : geoms) {
     const mjvGeom& geom = scene.geoms[i];
     const PlacedGeom placed = Place(geom, frame);
     Shape shape;
-    if (!MakeShape(geom, placed, frame, view, i * kIdsPerShape, &shape)) continue;
+    if (!MakeAnyShape(geom, placed, i, &shape)) continue;
     kernels.see(view, shape, picture.tiles());
     const size_t first = colours.size();
     lights.AddColours(geom, &colours);
-    AddSurfaces(geom, placed, shape, sources, colours.data() + first,
+    AddSurfaces(geom, placed, shape, SourcesOf(geom, lights), colours.data() + first,
                 /*transparent=*/false, &surfaces);
   }
 }
@@ -389,12 +418,13 @@ bool Renderer::State::ShadeOver(const mjvScene& scene, const SceneLights& lights
   const mjvGeom& geom = scene.geoms[number];
   const PlacedGeom placed = Place(geom, frame);
   Shape shape;
-  if (!MakeShape(geom, placed, frame, view, number * kIdsPerShape, &shape)) return false;
+  if (!MakeAnyShape(geom, placed, number, &shape)) return false;
   over->Resize(view);
   colours.clear();
   surfaces.clear();
+  ++stamp;
   lights.AddColours(geom, &colours);
-  AddSurfaces(geom, placed, shape, {&lights, texture_views, &grids, ++stamp}, colours.data(),
+  AddSurfaces(geom, placed, shape, SourcesOf(geom, lights), colours.data(),
               /*transparent=*/true, &surfaces);
   kernels.see_over(view, shape, picture.tiles(), over->tiles());
   for (const Surface& surface : surfaces) {

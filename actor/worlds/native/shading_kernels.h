@@ -168,8 +168,8 @@ inline void LightBlock(const LightSet& lights, const Surface& s, int row, int bl
 }
 
 SHOAL_INLINE void NeedVertex(const LightSet& lights, const Surface& s, int vertex_x, int vertex_y) {
-  const int block = vertex_x / kTilePixels;
-  uint32_t& stamp = s.grid->stamps[vertex_y * (s.grid->stride / kTilePixels) + block];
+  const int block = vertex_x >> kTilePixelsLog2;
+  uint32_t& stamp = s.grid->stamps[vertex_y * (s.grid->stride >> kTilePixelsLog2) + block];
   if (stamp == s.stamp) return;
   stamp = s.stamp;
   LightBlock(lights, s, vertex_y, block);
@@ -253,20 +253,26 @@ SHOAL_INLINE Colour GridLight(const LightSet& lights, const Surface& s, M lanes,
   return colour;
 }
 
+// How the plane that touches the surface turns away from the ray: normal / (normal . ray).
+SHOAL_INLINE void TurnOf(const Surface& s, Vector n, Vector ray, F depth, F* turn_x, F* turn_y) {
+  if (s.normal_kind == kFlat) {
+    *turn_x = Set(s.turn[0]) * depth;
+    *turn_y = Set(s.turn[1]) * depth;
+    return;
+  }
+  const F slant = Dot(n, ray);
+  const F away = Select(slant >= Set(0.0f), Max(slant, Set(1e-6f)), Min(slant, Set(-1e-6f)));
+  const F inverse = Set(1.0f) / away;
+  *turn_x = n.x * inverse;
+  *turn_y = n.y * inverse;
+}
+
 // ray: (X, Y, 1); p = ray / w. The texture's change from pixel to pixel is that
 // on the plane that touches the surface: dp/dX = (e_x - ray * n_x / (n . ray))
 // / w.
 SHOAL_INLINE Footprint FootprintOf(const View& view, const Surface& s, Vector ray, Vector p,
-                                   Vector n, F depth) {
+                                   F turn_x, F turn_y, F depth) {
   const F zero = Set(0.0f);
-  F turn_x = Set(s.turn[0]) * depth, turn_y = Set(s.turn[1]) * depth;
-  if (s.normal_kind != kFlat) {
-    const F slant = Dot(n, ray);
-    const F away = Select(slant >= zero, Max(slant, Set(1e-6f)), Min(slant, Set(-1e-6f)));
-    const F inverse = Set(1.0f) / away;
-    turn_x = n.x * inverse;
-    turn_y = n.y * inverse;
-  }
   const F pixel = depth * Set(view.pixel);
   Footprint f;
   F* at[3] = {&f.at.x, &f.at.y, &f.at.z};
@@ -295,6 +301,68 @@ SHOAL_INLINE Footprint FootprintOf(const View& view, const Surface& s, Vector ra
   return f;
 }
 
+struct MeshPoint {
+  Vector normal;
+  F turn_x, turn_y;  // the triangle's plane's change of depth
+  Footprint coords;  // of the texture, where the mesh has its own
+};
+
+// Interpolates between the corners of each lane's triangle.
+SHOAL_INLINE MeshPoint MeshAt(const View& view, const Surface& s, M lanes, I numbers, F ray_x,
+                              F ray_y, F depth) {
+  alignas(64) int32_t stored[kLanes];
+  Store(stored, numbers);
+  const F zero = Set(0.0f);
+  MeshPoint point{{zero, zero, zero}, zero, zero, {}};
+  Vector object{zero, zero, zero};
+  F coords[6] = {zero, zero, zero, zero, zero, zero};
+  for (M left = lanes; Any(left);) {
+    const int number = stored[FirstLane(left)];
+    const M here = left & (numbers == Set(int32_t{number}));
+    left = Without(left, here);
+    const Triangle& triangle = s.mesh.triangles[number];
+    const float* n = s.mesh.normals + 9 * int64_t{triangle.index};
+    const F x = ray_x - Set(triangle.x), y = ray_y - Set(triangle.y);
+    F b[3];
+    for (int k = 0; k < 3; ++k) {
+      const Affine& edge = triangle.edges[k];
+      b[k] = (Set(edge.c) + Set(edge.x) * x + Set(edge.y) * y) * depth;
+    }
+    const auto mix = [&b](const float* corner, int stride) {
+      return b[0] * Set(corner[0]) + b[1] * Set(corner[stride]) + b[2] * Set(corner[2 * stride]);
+    };
+    object.x = Select(here, mix(n, 3), object.x);
+    object.y = Select(here, mix(n + 1, 3), object.y);
+    object.z = Select(here, mix(n + 2, 3), object.z);
+    point.turn_x = Select(here, Set(triangle.w.x) * depth, point.turn_x);
+    point.turn_y = Select(here, Set(triangle.w.y) * depth, point.turn_y);
+    if (s.mesh.coords == nullptr) continue;
+    const float* c = s.mesh.coords + 6 * int64_t{triangle.index};
+    for (int k = 0; k < 2; ++k) {
+      const F at = mix(c + k, 2);
+      float along_x = 0, along_y = 0;
+      for (int corner = 0; corner < 3; ++corner) {
+        along_x += triangle.edges[corner].x * c[2 * corner + k];
+        along_y += triangle.edges[corner].y * c[2 * corner + k];
+      }
+      coords[k] = Select(here, at, coords[k]);
+      const F pixel = depth * Set(view.pixel);
+      coords[2 + k] = Select(here, (Set(along_x) - at * Set(triangle.w.x)) * pixel, coords[2 + k]);
+      coords[4 + k] = Select(here, (Set(along_y) - at * Set(triangle.w.y)) * pixel, coords[4 + k]);
+    }
+  }
+  const float(*axes)[3] = s.mesh.axes;
+  F* to[3] = {&point.normal.x, &point.normal.y, &point.normal.z};
+  for (int k = 0; k < 3; ++k) {
+    *to[k] = Set(axes[0][k]) * object.x + Set(axes[1][k]) * object.y + Set(axes[2][k]) * object.z;
+  }
+  const F length = Max(Sqrt(Dot(point.normal, point.normal)), Set(1e-20f));
+  point.normal = Scale(Set(1.0f) / length, point.normal);
+  point.coords = {
+      {coords[0], coords[1], zero}, {coords[2], coords[3], zero}, {coords[4], coords[5], zero}};
+  return point;
+}
+
 SHOAL_INLINE I Pack(Colour c) {
   const F one = Set(1.0f), full = Set(255.0f), half = Set(0.5f);
   const I r = Truncate(Min(c.r, one) * full + half);
@@ -303,28 +371,52 @@ SHOAL_INLINE I Pack(Colour c) {
   return r | ShiftLeft<8>(g) | ShiftLeft<16>(b);
 }
 
-SHOAL_INLINE I ShadeGroup(const View& view, const LightSet& lights, const Surface& s, M mine, F x,
-                          F y, F w, F inverse_length) {
-  const F depth = Set(1.0f) / Select(mine, w, Set(1.0f));
-  const Vector ray{x, y, Set(1.0f)};
+struct Group {
+  M mine;  // lanes of the surface; others hold anything
+  F x, y, w, inverse_length;
+  I triangle;
+};
+
+template <bool kMesh>
+SHOAL_INLINE I ShadeGroup(const View& view, const LightSet& lights, const Surface& s,
+                          const Group& g) {
+  const F depth = Set(1.0f) / Select(g.mine, g.w, Set(1.0f));
+  const Vector ray{g.x, g.y, Set(1.0f)};
   const Vector p = Scale(depth, ray);
-  const Vector n = NormalOf(s, p);
+  [[maybe_unused]] MeshPoint mesh;
+  Vector n;
+  if constexpr (kMesh) {
+    mesh = MeshAt(view, s, g.mine, g.triangle, g.x, g.y, depth);
+    n = mesh.normal;
+  } else {
+    n = NormalOf(s, p);
+  }
   Colour colour{Set(s.light[0]), Set(s.light[1]), Set(s.light[2])};
   if (!s.one_light) {
     colour = s.grid != nullptr
-                 ? GridLight(lights, s, mine, p)
-                 : LightAt<false>(lights, s, p, n, Scale(Set(0.0f) - inverse_length, ray));
+                 ? GridLight(lights, s, g.mine, p)
+                 : LightAt<false>(lights, s, p, n, Scale(Set(0.0f) - g.inverse_length, ray));
   }
   if (s.mapping != kNoTexture) {
-    const Footprint f = FootprintOf(view, s, ray, p, n, depth);
+    Footprint f;
+    if constexpr (kMesh) {
+      f = s.mesh.coords != nullptr ? mesh.coords
+                                   : FootprintOf(view, s, ray, p, mesh.turn_x, mesh.turn_y, depth);
+    } else {
+      F turn_x, turn_y;
+      TurnOf(s, n, ray, depth, &turn_x, &turn_y);
+      f = FootprintOf(view, s, ray, p, turn_x, turn_y, depth);
+    }
     const Colour texel =
-        s.mapping == kMap2d ? LookUp2d(*s.texture, mine, f) : LookUpCube(*s.texture, mine, f);
+        s.mapping == kMap2d ? LookUp2d(*s.texture, g.mine, f) : LookUpCube(*s.texture, g.mine, f);
     colour = {colour.r * texel.r, colour.g * texel.g, colour.b * texel.b};
   }
   return Pack(colour);
 }
 
-void Shade(const View& view, const LightSet& lights, const Surface& s, const Tiles& tiles) {
+template <bool kMesh>
+SHOAL_INLINE void ShadeRect(const View& view, const LightSet& lights, const Surface& s,
+                            const Tiles& tiles) {
   const bool uniform = s.one_light && s.mapping == kNoTexture;
   const I colour = Pack({Set(s.light[0]), Set(s.light[1]), Set(s.light[2])});
   for (int row = s.rect.top; row < s.rect.bottom; ++row) {
@@ -333,14 +425,28 @@ void Shade(const View& view, const LightSet& lights, const Surface& s, const Til
       for (int i = 0; i < kTilePixels; i += kLanes) {
         const M mine = Load(tiles.id + tile + i) == Set(int32_t{s.id});
         if (!Any(mine)) continue;
-        const I shaded =
-            uniform ? colour
-                    : ShadeGroup(view, lights, s, mine, Load(view.ray_x + column * kTilePixels + i),
-                                 Load(view.ray_y + row * kTilePixels + i), Load(tiles.w + tile + i),
-                                 Load(view.inverse_length + tile + i));
+        I shaded = colour;
+        if (!uniform) {
+          Group group{mine,
+                      Load(view.ray_x + column * kTilePixels + i),
+                      Load(view.ray_y + row * kTilePixels + i),
+                      Load(tiles.w + tile + i),
+                      Load(view.inverse_length + tile + i),
+                      Set(int32_t{0})};
+          if constexpr (kMesh) group.triangle = Load(tiles.triangle + tile + i);
+          shaded = ShadeGroup<kMesh>(view, lights, s, group);
+        }
         Store(tiles.colour + tile + i, Select(mine, shaded, Load(tiles.colour + tile + i)));
       }
     }
+  }
+}
+
+void Shade(const View& view, const LightSet& lights, const Surface& s, const Tiles& tiles) {
+  if (s.normal_kind == kMeshNormals) {
+    ShadeRect<true>(view, lights, s, tiles);
+  } else {
+    ShadeRect<false>(view, lights, s, tiles);
   }
 }
 

@@ -12,6 +12,8 @@ namespace shoal::worlds::native {
 namespace {
 
 constexpr double kMostExponent = 128;  // of shininess 1
+// The light on a finer grid is that of each pixel, and costs more.
+constexpr int kMostGridCells = 64 * 64;
 
 void Write(Vector3 v, float* to) {
   to[0] = static_cast<float>(v.x);
@@ -92,8 +94,11 @@ void SetMaterial(const mjvGeom& geom, const SurfaceSources& sources, LightColour
   s->merged_passes = transparent;
   s->exponent = static_cast<float>(double{geom.shininess} * kMostExponent);
   s->exponent *= 0.5f;  // kernels have the cosine's square
-  const auto whole = static_cast<int>(s->exponent);
-  s->whole_exponent = s->exponent >= 0 && static_cast<float>(whole) == s->exponent ? whole : -1;
+  s->whole_exponent = -1;
+  if (s->exponent >= 0 && s->exponent <= kMostExponent) {
+    const auto whole = static_cast<int>(s->exponent);
+    if (static_cast<float>(whole) == s->exponent) s->whole_exponent = whole;
+  }
   s->stamp = sources.stamp;
 }
 
@@ -148,6 +153,8 @@ Vector3 FacePoint(const mjvGeom& geom, const PlacedGeom& placed, int face) {
 void SetGrid(const mjvGeom& geom, const PlacedGeom& placed, const SurfaceSources& sources,
              Surface* s) {
   if (geom.dataid < 0 || geom.dataid >= sources.grids->size()) return;
+  const PlaneGrid& grid = *sources.grids->grid(geom.dataid);
+  if (grid.cells[0] * grid.cells[1] > kMostGridCells) return;
   s->grid = sources.grids->grid(geom.dataid);
   const size_t lights = sources.lights->lights().size();
   s->grey_grid = GreyColours(geom, {s->colours, lights});
@@ -238,6 +245,17 @@ void AddSurfaces(const mjvGeom& geom, const PlacedGeom& placed, const Shape& sha
       base.normal_kind = kRod;
       base.inverse_radius = static_cast<float>(1 / placed.size[0]);
       base.half_length = static_cast<float>(placed.size[2]);
+      break;
+    case mjGEOM_MESH:
+    case mjGEOM_HFIELD:
+      base.normal_kind = kMeshNormals;
+      base.mesh.triangles = shape.triangle;
+      base.mesh.normals = sources.mesh->normals.data();
+      if (geom.texcoord && base.texture != nullptr && !sources.mesh->coords.empty()) {
+        base.mesh.coords = sources.mesh->coords.data();
+        base.mapping = kMap2d;
+      }
+      for (size_t k = 0; k < 3; ++k) Write(placed.axes[k], base.mesh.axes[k]);
       break;
     default:
       if (placed.size[0] == placed.size[1] && placed.size[1] == placed.size[2]) {

@@ -10,6 +10,7 @@
 #include "actor/worlds/native/frame_job.h"
 #include "actor/worlds/native/plane_grids.h"
 #include "actor/worlds/native/shape_setup.h"
+#include "actor/worlds/native/triangle_meshes.h"
 
 struct mjvGeom_;
 struct mjvScene_;
@@ -42,7 +43,8 @@ struct SurfaceSources {
   const SceneLights* lights;
   std::span<const Texture* const> textures;  // of the model, by number
   PlaneGrids* grids;
-  uint32_t stamp;  // of the frame
+  const TriangleMesh* mesh;  // the geom's; null = it is no mesh
+  uint32_t stamp;            // of the frame
 };
 
 // Appends the surfaces of a shape, one for each colour rule. `colours` are the

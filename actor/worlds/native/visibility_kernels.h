@@ -18,6 +18,8 @@ using namespace shoal::worlds::native;
 // share a face would otherwise flicker.
 constexpr float kCoincident = 1.00001f;
 constexpr float kNever = 3e38f;
+// How far, of its size, a triangle reaches beyond its edges.
+constexpr float kCrack = 1e-5f;
 
 SHOAL_INLINE F Eval(const Affine& f, F x, F y) { return Set(f.c) + Set(f.x) * x + Set(f.y) * y; }
 
@@ -133,7 +135,7 @@ SHOAL_INLINE void SeeShape(const View& view, const Shape& s, const Tiles& behind
 template <bool kOver>
 SHOAL_INLINE void SeeTriangles(const View& view, const Shape& s, const Tiles& behind,
                                const Tiles& tiles) {
-  const F w_near = Set(view.w_near), w_far = Set(view.w_far), zero = Set(0.0f);
+  const F w_near = Set(view.w_near), w_far = Set(view.w_far);
   for (int t = 0; t < s.triangles; ++t) {
     const Triangle& triangle = s.triangle[t];
     const F origin_x = Set(triangle.x), origin_y = Set(triangle.y);
@@ -143,11 +145,13 @@ SHOAL_INLINE void SeeTriangles(const View& view, const Shape& s, const Tiles& be
         for (int i = 0; i < kTilePixels; i += kLanes) {
           const F x = Load(view.ray_x + column * kTilePixels + i) - origin_x;
           const F y = Load(view.ray_y + row * kTilePixels + i) - origin_y;
-          M seen = (Eval(triangle.edges[0], x, y) >= zero) &
-                   (Eval(triangle.edges[1], x, y) >= zero) &
-                   (Eval(triangle.edges[2], x, y) >= zero);
-          if (!Any(seen)) continue;
           const F w = Eval(triangle.w, x, y);
+          // Neighbours round their common edge apart.
+          const F edge = w * Set(-kCrack);
+          M seen = (Eval(triangle.edges[0], x, y) >= edge) &
+                   (Eval(triangle.edges[1], x, y) >= edge) &
+                   (Eval(triangle.edges[2], x, y) >= edge);
+          if (!Any(seen)) continue;
           const F before = Load(behind.w + tile + i);
           seen = seen & (w * Set(kCoincident) >= before) & (w >= w_far) & (w_near >= w);
           // Triangles of one transparent mesh hide each other, unlike the
@@ -160,7 +164,7 @@ SHOAL_INLINE void SeeTriangles(const View& view, const Shape& s, const Tiles& be
           Store(tiles.w + tile + i, Select(seen, w, Load(tiles.w + tile + i)));
           Store(tiles.id + tile + i, Select(seen, Set(s.id), Load(tiles.id + tile + i)));
           Store(tiles.triangle + tile + i,
-                Select(seen, Set(triangle.index), Load(tiles.triangle + tile + i)));
+                Select(seen, Set(int32_t{t}), Load(tiles.triangle + tile + i)));
         }
       }
     }

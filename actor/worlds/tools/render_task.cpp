@@ -5,6 +5,7 @@
 
 #include "actor/worlds/custom_cameras.h"
 #include "actor/worlds/environment.h"
+#include "actor/worlds/render_context.h"
 #include "actor/worlds/world_registry.h"
 #include "common/base/error.h"
 #include "common/base/random.h"
@@ -45,7 +46,9 @@ Picture RenderTask(const RenderRequest& request) {
   config.observation.width = request.width;
   config.observation.height = request.height;
   config.observation.quality = request.quality;
-  const auto environment = MakeEnvironment(config, MakeRenderContext(config.observation));
+  const std::shared_ptr<RenderContext> render = MakeRenderContext(config.observation);
+  render->SetOutput(request.output);
+  const auto environment = MakeEnvironment(config, render);
 
   const size_t plane = static_cast<size_t>(request.width) * static_cast<size_t>(request.height);
   std::vector<uint8_t> frame(3 * plane);

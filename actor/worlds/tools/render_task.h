@@ -6,6 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "actor/worlds/painter.h"
+
 namespace shoal::worlds {
 
 // (H, W, 3) uint8, row 0 = top, interleaved RGB: as image::WritePng takes it.
@@ -19,14 +21,16 @@ struct RenderRequest {
   std::string task;    // "FetchReachDense"
   std::string camera;  // "front"; empty = the task's first
   int width = 480, height = 480;
-  std::string quality = "reference";  // fast | native | reference
+  std::string quality = "reference";               // fast | native | reference
+  PainterOutput output = PainterOutput::kColours;  // others in quality native alone
   bool goal = false;  // the picture of the goal reached, of observation.goal_mode = image
   int env_steps = 0;  // uniform random actions before the picture, at most an episode's
   int64_t seed = 1;   // of the goal and of the actions
   std::string model;  // path of another MJCF file; empty = our own
 };
 
-// Throws Error (kUsage) on an unknown task, camera or quality, a size that is not 1..4096 and more
+// Throws Error (kUsage) on an unknown task, camera or quality, an output that the quality does not
+// have, a size that is not 1..4096 and more
 // env steps than an episode has, or a goal picture of a task without, or after steps; (kRuntime)
 // when the task terminates the episode before.
 Picture RenderTask(const RenderRequest& request);

@@ -59,7 +59,8 @@ void AddObservabilityCommand(CLI::App& env, Action* chosen) {
   command->add_option("--height", request->height, "Pixels")
       ->check(CLI::Range(8, 1024))
       ->capture_default_str();
-  command->add_option("--quality", request->quality, "fast | reference")->capture_default_str();
+  command->add_option("--quality", request->quality, "fast | native | reference")
+      ->capture_default_str();
   command->add_option("--encoder", request->encoder, "As network.encoder")->capture_default_str();
   command->add_option("--samples", request->samples, "Frames, of which a fifth is held out")
       ->check(CLI::Range(20, 1'000'000))

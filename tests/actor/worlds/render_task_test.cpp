@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
+#include <map>
 
 #include "common/base/error.h"
 
@@ -57,6 +59,35 @@ TEST(RenderTask, TheSeedMovesTheTargetAndStepsMoveTheArm) {
   EXPECT_NE(RenderTask(other).pixels, picture.pixels);
 }
 
+TEST(RenderTask, SegmentsHaveOneColourEachAndTheSkyIsBlack) {
+  RenderRequest request = Request();
+  request.quality = "native";
+  request.output = PainterOutput::kSegments;
+  const Picture picture = RenderTask(request);
+  std::map<std::array<uint8_t, 3>, int> colours;
+  for (size_t i = 0; i < picture.pixels.size(); i += 3) {
+    ++colours[{picture.pixels[i], picture.pixels[i + 1], picture.pixels[i + 2]}];
+  }
+  EXPECT_GE(colours.size(), 8u);
+  EXPECT_LE(colours.size(), 40u);
+  // The top right corner is sky.
+  EXPECT_EQ(picture.pixels[59 * 3], 0);
+  const bool black_is_sky = colours.contains({0, 0, 0});
+  EXPECT_TRUE(black_is_sky);
+}
+
+TEST(RenderTask, DepthsAreGreyAndTheNearestIsWhite) {
+  RenderRequest request = Request();
+  request.quality = "native";
+  request.output = PainterOutput::kDepths;
+  const Picture picture = RenderTask(request);
+  EXPECT_EQ(std::ranges::max(picture.pixels), 255);
+  EXPECT_EQ(picture.pixels[59 * 3], 0);
+  for (size_t i = 0; i < picture.pixels.size(); i += 3) {
+    ASSERT_EQ(picture.pixels[i], picture.pixels[i + 2]);
+  }
+}
+
 TEST(RenderTask, RefusesWhatItCannotDoByName) {
   RenderRequest request = Request();
   request.task = "FetchSleep";
@@ -67,6 +98,9 @@ TEST(RenderTask, RefusesWhatItCannotDoByName) {
   request = Request();
   request.quality = "best";
   EXPECT_THAT(Complaint(request), testing::HasSubstr("best"));
+  request = Request();
+  request.output = PainterOutput::kDepths;
+  EXPECT_THAT(Complaint(request), testing::HasSubstr("native alone"));
   request = Request();
   request.width = 0;
   EXPECT_THAT(Complaint(request), testing::HasSubstr("width is 0"));

@@ -95,7 +95,7 @@ class Pictures : public testing::TestWithParam<std::string> {};
 TEST_P(Pictures, LookLikeTheReferenceWithoutShadows) {
   RandomStates states(GetParam());
   World* world = states.world();
-  UnshadowedReference reference(world, kSide, kSide);
+  UnshadowedReference reference(&world->model(), kSide, kSide);
   Renderer renderer(world->model());
   AbstractScene scene;
   scene.Allocate(*world);
@@ -153,8 +153,8 @@ TEST_P(Pictures, AreTheSameBitsOnAllInstructionSetsAndWithoutLayers) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Tasks, Pictures, testing::ValuesIn(Tasks()), [](const auto& info) {
-  std::string name = info.param;
+INSTANTIATE_TEST_SUITE_P(Tasks, Pictures, testing::ValuesIn(Tasks()), [](const auto& task) {
+  std::string name = task.param;
   std::ranges::replace_if(
       name, [](char c) { return !isalnum(c); }, '_');
   return name;

@@ -236,6 +236,53 @@ TEST_F(RendererTest, BodiesWithoutExtentAreNotSeen) {
   }
 }
 
+// Sizes, places, colours and cameras of all magnitudes, frames that are not orthonormal: every
+// scene is drawn with the same bits by all instruction sets, or refused by all. Sanitizers watch.
+TEST_F(RendererTest, FuzzedScenesAreDrawnAlikeOrRefused) {
+  Random random(77);
+  const auto any = [&random](double most_exponent) {
+    const double magnitude = std::pow(10, random.Uniform(-most_exponent, most_exponent));
+    return static_cast<float>(random.Uniform(0, 1) < 0.5 ? magnitude : -magnitude);
+  };
+  constexpr int kTypes[] = {mjGEOM_SPHERE,   mjGEOM_CAPSULE, mjGEOM_ELLIPSOID,
+                            mjGEOM_CYLINDER, mjGEOM_BOX,     mjGEOM_PLANE};
+  int drawn = 0;
+  for (int scene = 0; scene < 400; ++scene) {
+    hand_.geoms().clear();
+    const double range = scene % 4 == 0 ? 18 : scene % 4;
+    for (int i = 0; i < 12; ++i) {
+      mjvGeom& geom = hand_.Add(kTypes[random.Below(6)], {any(range), any(range), any(range)},
+                                {any(range), any(range), any(range)});
+      for (float& v : geom.mat) v = scene % 2 == 0 ? any(range / 2) : v;
+      for (float& v : geom.rgba) v = std::fabs(any(0.5));
+      geom.category = i % 2 == 0 ? mjCAT_STATIC : mjCAT_DYNAMIC;
+      geom.specular = std::fabs(any(1));
+      geom.shininess = std::fabs(any(range));
+      if (i == 5 && scene % 7 == 0) geom.size[1] = std::numeric_limits<float>::denorm_min();
+    }
+    mjvGLCamera& camera = hand_.scene().camera[0];
+    camera.frustum_near = std::fabs(any(range / 2));
+    camera.frustum_top = camera.frustum_near * std::fabs(any(1));
+    camera.frustum_bottom = -camera.frustum_top;
+    hand_.scene().camera[1] = camera;
+    std::vector<std::vector<uint8_t>> frames;
+    int refused = 0;
+    const std::vector<InstructionSet> sets = SupportedSets();
+    for (const InstructionSet set : sets) {
+      Renderer renderer(model_, set);
+      try {
+        frames.push_back(DrawWith(renderer, 21, 13));
+      } catch (const Error&) {
+        ++refused;
+      }
+    }
+    ASSERT_TRUE(refused == 0 || frames.empty()) << "scene " << scene;
+    for (const auto& frame : frames) ASSERT_EQ(frame, frames[0]) << "scene " << scene;
+    drawn += refused == 0;
+  }
+  EXPECT_GT(drawn, 200);
+}
+
 TEST_F(RendererTest, RefusesWhatIsNotFinite) {
   hand_.Add(mjGEOM_SPHERE, {3, 0, 0}, {1, 1, 1});
   const float nan = std::numeric_limits<float>::quiet_NaN();

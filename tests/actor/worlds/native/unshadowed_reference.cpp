@@ -26,7 +26,7 @@ struct UnshadowedReference::State {
   }
 };
 
-UnshadowedReference::UnshadowedReference(World* world, int width, int height)
+UnshadowedReference::UnshadowedReference(mjModel* of, int width, int height)
     : state_(std::make_unique<State>()) {
   setenv("LP_NUM_THREADS", "0", /*overwrite=*/1);
   State& state = *state_;
@@ -40,7 +40,7 @@ UnshadowedReference::UnshadowedReference(World* world, int width, int height)
   CHECK(OSMesaMakeCurrent(state.osmesa, state.window.data(), GL_UNSIGNED_BYTE, width, height) ==
         GL_TRUE);
   mjr_defaultContext(&state.context);
-  mjModel& model = world->model();
+  mjModel& model = *of;
   const auto kept = model.vis;
   model.vis.quality.offsamples = 0;
   // Lights that cast shadows keep their passes, but the shadow map covers next to nothing.

@@ -7,15 +7,14 @@
 #include <memory>
 #include <vector>
 
-#include "actor/worlds/world.h"
-
+struct mjModel_;
 struct mjvScene_;
 
 namespace shoal::worlds::native {
 
 class UnshadowedReference {
  public:
-  UnshadowedReference(World* world, int width, int height);
+  UnshadowedReference(mjModel_* model, int width, int height);
   ~UnshadowedReference();
   UnshadowedReference(const UnshadowedReference&) = delete;
   UnshadowedReference& operator=(const UnshadowedReference&) = delete;
