@@ -186,7 +186,7 @@ struct Kernels {
   void (*clear)(const View&, const Tiles&);
   // Writes depth and id where the shape is in front of what is there.
   void (*see)(const View&, const Shape&, const Tiles&);
-  // As see, but `behind` gives the depth to compare with and keeps it; other
+  // Like see, but `behind` gives the depth to compare with and keeps it; other
   // pixels of `tiles` lose their id.
   void (*see_over)(const View&, const Shape&, const Tiles& behind, const Tiles& tiles);
   // Colours the pixels with the surface's id.

@@ -19,14 +19,14 @@ std::vector<int32_t> Packed(std::span<const uint8_t> rgb) {
   return texels;
 }
 
-struct Place {
+struct TexelPair {
   int first, second;
   float fraction;
 };
 
 // Texel `i` of `to` falls between the two of `from` texels whose centres
 // surround it.
-Place PlaceOf(int i, int to, int from) {
+TexelPair PairOf(int i, int to, int from) {
   const float at =
       (static_cast<float>(i) + 0.5f) * static_cast<float>(from) / static_cast<float>(to) - 0.5f;
   const int first = std::clamp(static_cast<int>(at), 0, from - 1);
@@ -39,9 +39,9 @@ Place PlaceOf(int i, int to, int from) {
 void Halve(std::span<const int32_t> from, int width, int height, int half_width, int half_height,
            int32_t* to) {
   for (int y = 0; y < half_height; ++y) {
-    const Place row = PlaceOf(y, half_height, height);
+    const TexelPair row = PairOf(y, half_height, height);
     for (int x = 0; x < half_width; ++x) {
-      const Place column = PlaceOf(x, half_width, width);
+      const TexelPair column = PairOf(x, half_width, width);
       int32_t mixed = 0;
       for (int shift = 0; shift < 24; shift += 8) {
         const auto channel = [&](int r, int c) {
