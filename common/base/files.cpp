@@ -14,6 +14,7 @@
 #include <system_error>
 
 #include "common/base/descriptor.h"
+#include "common/base/disk_steps.h"
 #include "common/base/error.h"
 
 namespace shoal {
@@ -79,6 +80,17 @@ int WriteAll(int fd, std::string_view content) {
   return 0;
 }
 
+// Does what WriteAll does, in two halves on a simulated disk.
+int WriteInSteps(int fd, const std::string& path, std::string_view content) {
+  const size_t half = DiskSteps::Current() == nullptr ? content.size() : content.size() / 2;
+  for (const std::string_view part : {content.substr(0, half), content.substr(half)}) {
+    int error = DiskStep(path);
+    if (error == 0) error = WriteAll(fd, part);
+    if (error != 0) return error;
+  }
+  return 0;
+}
+
 enum class Sync { kNo, kYes };
 
 // Writes `temporary` and renames it over `path`.
@@ -86,12 +98,14 @@ void Replace(const std::filesystem::path& temporary, const std::filesystem::path
              std::string_view content, mode_t mode, Sync sync) {
   std::error_code ignored;
   std::filesystem::remove(temporary, ignored);  // left by a process that was killed
+  if (const int error = DiskStep(path)) Fail("cannot write", path, error);
   const int fd =
       open(temporary.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, mode);
   if (fd < 0) Fail("cannot write", path, errno);
-  int error = WriteAll(fd, content);
+  int error = WriteInSteps(fd, path, content);
   if (error == 0 && sync == Sync::kYes && fsync(fd) != 0) error = errno;
   if (close(fd) != 0 && error == 0) error = errno;  // by hand: here its result counts
+  if (error == 0) error = DiskStep(path);
   if (error == 0 && rename(temporary.c_str(), path.c_str()) != 0) error = errno;
   if (error != 0) {
     unlink(temporary.c_str());

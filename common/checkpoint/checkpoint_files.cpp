@@ -15,6 +15,7 @@
 #include "common/base/bounded_json.h"
 #include "common/base/build_info.h"
 #include "common/base/crc32.h"
+#include "common/base/disk_steps.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/one_line.h"
@@ -145,7 +146,8 @@ CheckpointFiles ReadFiles(const fs::path& folder, bool policy_alone) {
 
 // Moves `from` to `to`; what was there before is then at `from`.
 void MoveOver(const fs::path& from, const fs::path& to) {
-  if (rename(from.c_str(), to.c_str()) == 0) return;
+  errno = DiskStep(to);
+  if (errno == 0 && rename(from.c_str(), to.c_str()) == 0) return;
   if ((errno == ENOTEMPTY || errno == EEXIST) &&
       renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_EXCHANGE) == 0) {
     return;

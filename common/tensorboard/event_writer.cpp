@@ -10,6 +10,7 @@
 #include <cstring>
 
 #include "common/base/clock.h"
+#include "common/base/disk_steps.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/host_name.h"
@@ -136,17 +137,16 @@ void EventWriter::Append(const std::string& event) {
 
 void EventWriter::Flush() {
   size_t done = 0;
-  while (done < pending_.size()) {
+  int error = pending_.empty() ? 0 : DiskStep(path_);
+  while (done < pending_.size() && error == 0) {
     const ssize_t n = write(file_.get(), pending_.data() + done, pending_.size() - done);
-    if (n < 0 && errno == EINTR) continue;
-    if (n < 0) {
-      const int error = errno;
-      pending_.erase(0, done);
-      throw RuntimeError("cannot write '{}': {}", path_.string(), std::strerror(error));
-    }
-    done += static_cast<size_t>(n);
+    if (n >= 0) done += static_cast<size_t>(n);
+    if (n < 0 && errno != EINTR) error = errno;
   }
-  pending_.clear();
+  pending_.erase(0, done);
+  if (error != 0) {
+    throw RuntimeError("cannot write '{}': {}", path_.string(), std::strerror(error));
+  }
 }
 
 }  // namespace shoal::tensorboard

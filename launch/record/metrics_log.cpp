@@ -9,6 +9,7 @@
 #include <cstring>
 #include <nlohmann/json.hpp>
 
+#include "common/base/disk_steps.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
 
@@ -91,7 +92,7 @@ void MetricsLog::DropOldest() {
 
 void MetricsLog::Flush() {
   size_t done = 0;
-  int error = 0;
+  int error = kept_.empty() ? 0 : DiskStep(path_);
   while (done < kept_.size() && error == 0) {
     const ssize_t n = write(file_.get(), kept_.data() + done, kept_.size() - done);
     if (n >= 0) done += static_cast<size_t>(n);

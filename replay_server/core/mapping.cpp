@@ -10,6 +10,7 @@
 #include <cerrno>
 #include <cstring>
 
+#include "common/base/disk_steps.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "replay_server/core/storage_limits.h"
@@ -73,7 +74,8 @@ Mapping Mapping::NewFile(const fs::path& path, uint64_t bytes) {
     throw RuntimeError("cannot create the replay file '{}': {}", path.string(),
                        std::strerror(errno));
   }
-  const int error = posix_fallocate(fd, 0, static_cast<off_t>(bytes));
+  int error = DiskStep(path);
+  if (error == 0) error = posix_fallocate(fd, 0, static_cast<off_t>(bytes));
   if (error != 0) FailNewFile(path, bytes, error);
   if (flock(fd, LOCK_EX | LOCK_NB) != 0) FailNewFile(path, bytes, errno);
   mapping.data_ = Map(fd, bytes, Access::kReadWrite);

@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+// The seam for simulated disks. The code that writes the files of a run asks DiskStep before each
+// step that changes the disk: creating a file, writing half of it, fsync, rename. In the product
+// the answer is always 0, at the cost of one load.
+#pragma once
+
+#include <string>
+
+namespace shoal {
+
+class DiskSteps {
+ public:
+  virtual ~DiskSteps() = default;
+
+  // Returns 0, or the errno that the step on `path` fails with. May let other simulated threads
+  // run, so that a process can be killed between two steps.
+  virtual int Before(const std::string& path) = 0;
+
+  // Of the program; nullptr outside of simulations.
+  static DiskSteps* Current() { return current_; }
+  static void SetCurrent(DiskSteps* steps) { current_ = steps; }
+
+ private:
+  static inline constinit DiskSteps* current_ = nullptr;
+};
+
+// Call before a step on `path`. Returns 0, or the errno that the step fails with.
+inline int DiskStep(const std::string& path) {
+  DiskSteps* const steps = DiskSteps::Current();
+  return steps == nullptr ? 0 : steps->Before(path);
+}
+
+}  // namespace shoal
