@@ -18,8 +18,9 @@ constexpr std::chrono::minutes kIdleWait{1};
 thread_local bool in_callback = false;
 
 void CheckNotInCallback(const TopicSettings& settings) {
-  CHECK(!in_callback) << "topic " << settings.name
-                      << ": a callback must not make or destroy writers and readers";
+  // The threads of a simulation share the variable.
+  CHECK(!in_callback || Scheduler::Current() != nullptr)
+      << "topic " << settings.name << ": a callback must not make or destroy writers and readers";
 }
 
 // noexcept: an exception from a callback ends the process here, where its cause is on the stack.
@@ -44,11 +45,7 @@ void LocalExchange::Add(Reader& reader) {
   const MutexLock lock(mutex_);
   Ends& ends = topics_[reader.settings_.name];
   ends.readers.push_back(&reader);
-  for (const Writer* writer : ends.writers) {
-    for (const SharedSample& sample : writer->history_.samples()) {
-      Enqueue(reader, sample, &pushed_out);
-    }
-  }
+  for (const Writer* writer : ends.writers) EnqueueHistory(*writer, reader, &pushed_out);
 }
 
 void LocalExchange::Remove(Writer& writer) {
@@ -73,16 +70,44 @@ void LocalExchange::Remove(Reader& reader) {
 void LocalExchange::Abandon(const void* hub) {
   std::list<SharedSample> dropped;  // freed without the lock
   const MutexLock lock(mutex_);
+  DropUnread(hub, &dropped);
   for (auto& [name, ends] : topics_) {
     std::erase_if(ends.writers, [&](const Writer* writer) { return writer->hub_ == hub; });
+    std::erase_if(ends.readers, [&](const Reader* reader) { return reader->hub_ == hub; });
+  }
+  disconnected_.erase(hub);
+}
+
+void LocalExchange::Disconnect(const void* hub) {
+  std::list<SharedSample> dropped;  // freed without the lock
+  const MutexLock lock(mutex_);
+  DropUnread(hub, &dropped);
+  disconnected_.insert(hub);
+}
+
+void LocalExchange::Reconnect(const void* hub) {
+  std::vector<SharedSample> pushed_out;  // freed without the lock
+  const MutexLock lock(mutex_);
+  if (disconnected_.erase(hub) == 0) return;
+  for (auto& [name, ends] : topics_) {
+    for (const Writer* writer : ends.writers) {
+      for (Reader* reader : ends.readers) {
+        const bool again = (writer->hub_ == hub) != (reader->hub_ == hub);
+        if (again) EnqueueHistory(*writer, *reader, &pushed_out);
+      }
+    }
+  }
+}
+
+void LocalExchange::DropUnread(const void* hub, std::list<SharedSample>* dropped) {
+  for (auto& [name, ends] : topics_) {
     for (Reader* reader : ends.readers) {
       if (reader->hub_ != hub) continue;
       std::list<SharedSample> unread = reader->queue_.TakeAll();
       for (const SharedSample& sample : unread) CountRead(*sample);
-      dropped.splice(dropped.end(), unread);
+      dropped->splice(dropped->end(), unread);
       std::erase(reader->receiver_.ready_, reader);
     }
-    std::erase_if(ends.readers, [&](const Reader* reader) { return reader->hub_ == hub; });
   }
 }
 
@@ -104,8 +129,9 @@ void LocalExchange::Put(Writer& writer, const SharedSample& sample) {
   if (writer.settings_.late_joiners) {
     if (SharedSample old = writer.history_.Push(sample)) pushed_out.push_back(std::move(old));
   }
+  if (!Connected(writer.hub_)) return;
   for (Reader* reader : topics_[writer.settings_.name].readers) {
-    Enqueue(*reader, sample, &pushed_out);
+    if (Connected(reader->hub_)) Enqueue(*reader, sample, &pushed_out);
   }
 }
 
@@ -120,12 +146,14 @@ bool LocalExchange::WaitUntilRead(Writer& writer, SteadyTime deadline) {
 
 int LocalExchange::Matched(const Writer& writer) const {
   const MutexLock lock(mutex_);
-  return static_cast<int>(topics_.find(writer.settings_.name)->second.readers.size());
+  if (!Connected(writer.hub_)) return 0;
+  return CountConnected(topics_.find(writer.settings_.name)->second.readers);
 }
 
 int LocalExchange::Matched(const Reader& reader) const {
   const MutexLock lock(mutex_);
-  return static_cast<int>(topics_.find(reader.settings_.name)->second.writers.size());
+  if (!Connected(reader.hub_)) return 0;
+  return CountConnected(topics_.find(reader.settings_.name)->second.writers);
 }
 
 void LocalExchange::ServeReaders(Receiver& receiver) {
@@ -161,6 +189,14 @@ void LocalExchange::Enqueue(Reader& reader, const SharedSample& sample,
   reader.receiver_.changed_.NotifyOne();
 }
 
+void LocalExchange::EnqueueHistory(const Writer& writer, Reader& reader,
+                                   std::vector<SharedSample>* pushed_out) {
+  if (!Connected(writer.hub_) || !Connected(reader.hub_)) return;
+  for (const SharedSample& sample : writer.history_.samples()) {
+    Enqueue(reader, sample, pushed_out);
+  }
+}
+
 void LocalExchange::CountRead(StoredSample& sample) {
   if (--sample.unread_by > 0) return;
   --sample.unread().samples;
@@ -174,8 +210,9 @@ LocalExchange::Reader* LocalExchange::WaitForReady(Receiver& receiver, SharedSam
     if (receiver.stopping_) return nullptr;
     receiver.changed_.WaitUntil(mutex_, Now() + kIdleWait);
   }
-  Reader* reader = receiver.ready_.front();
-  receiver.ready_.pop_front();
+  const size_t chosen = choose_ ? choose_(receiver.ready_.size()) : 0;
+  Reader* reader = receiver.ready_[chosen];
+  receiver.ready_.erase(receiver.ready_.begin() + static_cast<std::ptrdiff_t>(chosen));
   *sample = reader->queue_.Pop();
   reader->called_ = true;
   return reader;

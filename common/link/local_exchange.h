@@ -21,6 +21,7 @@
 #include <list>
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,11 @@ class LocalExchange {
   class Writer;
   class Reader;
   class Receiver;
+  // Chooses one of `count` ready readers, as a number below it.
+  using Choice = std::function<size_t(size_t count)>;
+
+  // Without a choice a receiver calls its ready readers in turn.
+  explicit LocalExchange(Choice choose = nullptr) : choose_(std::move(choose)) {}
 
   // The exchange's part of a writer. It and its samples know each other by `unread`.
   class Writer {
@@ -101,6 +107,12 @@ class LocalExchange {
   // Unmatches all ends of a hub. Its readers drop their samples; those of its writers still reach
   // other readers. Remove may follow.
   void Abandon(const void* hub);
+  // Unmatches the ends of a hub until Reconnect, those that it makes meanwhile included. Its
+  // readers drop their samples; its writers go on filling their histories.
+  void Disconnect(const void* hub);
+  // Matches the ends of a hub again, as new ones: a reader on either side gets the histories of the
+  // writers on the other.
+  void Reconnect(const void* hub);
 
   // Waits until the writer may have `bytes` more unread: at most max_blocking, then false. With
   // keep_last > 0 it does not wait. A sample above the bound has room when nothing is unread.
@@ -127,14 +139,29 @@ class LocalExchange {
 
   void Enqueue(Reader& reader, const SharedSample& sample, std::vector<SharedSample>* pushed_out)
       SHOAL_REQUIRES(mutex_);
+  void EnqueueHistory(const Writer& writer, Reader& reader, std::vector<SharedSample>* pushed_out)
+      SHOAL_REQUIRES(mutex_);
+  // Moves the samples of the hub's readers to `dropped`.
+  void DropUnread(const void* hub, std::list<SharedSample>* dropped) SHOAL_REQUIRES(mutex_);
+  bool Connected(const void* hub) const SHOAL_REQUIRES(mutex_) {
+    return !disconnected_.contains(hub);
+  }
+  template <class End>
+  int CountConnected(const std::vector<End*>& ends) const SHOAL_REQUIRES(mutex_) {
+    int count = 0;
+    for (const End* end : ends) count += Connected(end->hub_) ? 1 : 0;
+    return count;
+  }
   // One of the sample's readers has finished with it.
   static void CountRead(StoredSample& sample);
   // The next reader to call, and its oldest sample; null when the receiver is stopped.
   Reader* WaitForReady(Receiver& receiver, SharedSample* sample) SHOAL_EXCLUDES(mutex_);
   void FinishCall(Reader& reader, StoredSample& sample) SHOAL_EXCLUDES(mutex_);
 
+  const Choice choose_;
   mutable Mutex mutex_;
   std::map<std::string, Ends, std::less<>> topics_ SHOAL_GUARDED_BY(mutex_);
+  std::set<const void*> disconnected_ SHOAL_GUARDED_BY(mutex_);  // hubs
 };
 
 }  // namespace shoal::link

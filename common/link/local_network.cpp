@@ -168,6 +168,8 @@ class LocalHub final : public Hub {
 }  // namespace
 
 void LocalNetwork::Abandon(const Hub& hub) { exchange_.Abandon(&hub); }
+void LocalNetwork::Disconnect(const Hub& hub) { exchange_.Disconnect(&hub); }
+void LocalNetwork::Reconnect(const Hub& hub) { exchange_.Reconnect(&hub); }
 
 LocalNetwork::~LocalNetwork() { CHECK(hubs_ == 0) << hubs_ << " hubs outlive their network"; }
 

@@ -15,6 +15,7 @@
 
 #include <atomic>
 #include <memory>
+#include <utility>
 
 #include "common/link/hub.h"
 #include "common/link/local_exchange.h"
@@ -24,7 +25,9 @@ namespace shoal::link {
 // Connects the hubs of one run. Owns what they share. Any thread.
 class LocalNetwork {
  public:
-  LocalNetwork() = default;
+  // `choose`: which of several topics that have samples for a receive thread it reads next, for
+  // simulations; null: they take turns.
+  explicit LocalNetwork(LocalExchange::Choice choose = nullptr) : exchange_(std::move(choose)) {}
   // The hubs must be gone.
   ~LocalNetwork();
   LocalNetwork(const LocalNetwork&) = delete;
@@ -38,6 +41,11 @@ class LocalNetwork {
   // readers are unmatched, and its readers are not called back any more. They may only be
   // destroyed.
   void Abandon(const Hub& hub);
+  // Does what a partition longer than kLivenessLimit does to the hub's process, and its end: its
+  // writers and readers are unmatched, then matched again as new ones. In between their samples are
+  // lost, but for the history of topics with late joiners, which is then sent again.
+  void Disconnect(const Hub& hub);
+  void Reconnect(const Hub& hub);
 
  private:
   LocalExchange exchange_;

@@ -112,6 +112,74 @@ TEST_F(LocalNetworkTest, WritersAndReadersMatchWhenTheyAreMade) {
   EXPECT_EQ(writer.Matched(), 0);
 }
 
+// 1 arrives before, 2 in between, 3 afterwards.
+TEST_F(LocalNetworkTest, WhatIsWrittenToADisconnectedHubIsLostUntilItIsReconnected) {
+  Gate gate;
+  Writer<TransitionChunk> writer(*actor_);
+  const auto reader = ReadChunks(*replay_, &gate);
+  writer.Write(Chunk(1));
+  gate.WaitForPassed(1);
+  network_.Disconnect(*replay_);
+  EXPECT_EQ(writer.Matched(), 0);
+  EXPECT_EQ(reader->Matched(), 0);
+  writer.Write(Chunk(2));
+  network_.Reconnect(*replay_);
+  EXPECT_EQ(writer.Matched(), 1);
+  EXPECT_EQ(reader->Matched(), 1);
+  writer.Write(Chunk(3));
+  EXPECT_EQ(gate.WaitForPassed(2), (Numbers{1, 3}));
+}
+
+// The first chunk is in the callback, the second one in the queue.
+TEST_F(LocalNetworkTest, ADisconnectedReaderHoldsNoWriterUp) {
+  const std::vector<uint8_t> payload(UnreadBytesBound(Role::kActor) / 2);
+  Gate gate;
+  Writer<TransitionChunk> writer(*actor_);
+  const auto reader = ReadChunks(*replay_, &gate);
+  gate.Shut();
+  writer.Write(Chunk(1));
+  ASSERT_TRUE(gate.WaitForArrived(1));
+  ASSERT_TRUE(writer.Write(Chunk(2, payload)));
+  ASSERT_FALSE(writer.Write(Chunk(3, payload)));
+  network_.Disconnect(*replay_);
+  EXPECT_TRUE(writer.Write(Chunk(4, payload)));
+  gate.Open();
+  EXPECT_EQ(gate.WaitForPassed(1), (Numbers{1}));
+}
+
+// As over a network: the reader takes the writer for a new one.
+TEST_F(LocalNetworkTest, HistoriesAreSentAgainInBothDirectionsAfterAReconnection) {
+  Gate mine, others;
+  Writer<WeightsPart> weights(*learner_);
+  Writer<EvalMessage> evaluations(*actor_);
+  const Reader<WeightsPart> on_actor(
+      *actor_, [&](const WeightsPart& part) { mine.Pass(part.version.update); });
+  const Reader<EvalMessage> on_learner(
+      *learner_, [&](const EvalMessage& message) { others.Pass(message.env_steps); });
+  weights.Write(Weights(1, 7));
+  EvalMessage evaluation;
+  evaluation.env_steps = 8;
+  evaluations.Write(evaluation);
+  mine.WaitForPassed(1);
+  others.WaitForPassed(1);
+  network_.Disconnect(*actor_);
+  network_.Reconnect(*actor_);
+  EXPECT_EQ(mine.WaitForPassed(2), (Numbers{7, 7}));
+  EXPECT_EQ(others.WaitForPassed(2), (Numbers{8, 8}));
+}
+
+TEST_F(LocalNetworkTest, AnEndThatIsMadeWhileItsHubIsDisconnectedMatchesAfterwards) {
+  Gate gate;
+  Writer<WeightsPart> writer(*learner_);
+  writer.Write(Weights(1, 7));
+  network_.Disconnect(*actor_);
+  const Reader<WeightsPart> reader(
+      *actor_, [&](const WeightsPart& part) { gate.Pass(part.version.update); });
+  EXPECT_EQ(reader.Matched(), 0);
+  network_.Reconnect(*actor_);
+  EXPECT_EQ(gate.WaitForPassed(1), (Numbers{7}));
+}
+
 TEST_F(LocalNetworkTest, AllReadersShareOneCopy) {
   const std::vector<uint8_t> payload(1000, 7);
   std::mutex mutex;
