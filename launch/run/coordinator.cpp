@@ -331,7 +331,8 @@ std::map<std::string, uint64_t> Coordinator::FaultyEpisodes() const {
 
 RunMeta Coordinator::Meta() const {
   RunMeta meta = before_;
-  meta.exit = decisions_.end() ? ToString(*decisions_.end()) : "running";
+  // Until the end has been reached: --resume takes up a run whose coordinator is killed before.
+  meta.exit = "running";
   meta.error = decisions_.error();
   meta.env_steps = decisions_.env_steps();
   meta.updates = decisions_.updates();
