@@ -16,7 +16,6 @@
 #include "common/policy/checkpoint_writer.h"
 #include "common/run_folder/run_file_names.h"
 #include "common/tasks/task_library.h"
-#include "launch/processes/actor_program.h"
 #include "launch/processes/run_hosts.h"
 #include "launch/run/live_settings.h"
 #include "launch/run/run_check.h"
@@ -112,7 +111,8 @@ Hosts ResumedHosts(const TrainOptions& options, const fs::path& run, const Confi
 
 }  // namespace
 
-RunRequest ResolveResumed(const TrainOptions& options) {
+RunRequest ResolveResumed(const TrainOptions& options,
+                          const std::function<ObservedWorld(const Config&)>& describe) {
   RunFolder folder = RunFolder::Reopen(options.run_dir.empty() ? Config().run_dir : options.run_dir,
                                        options.resume);
   const fs::path run = folder.path();
@@ -129,7 +129,7 @@ RunRequest ResolveResumed(const TrainOptions& options) {
   request.meta.final_return.reset();
   ApplyResumeOptions(options, UsableCores(), &config);
   tasks::LoadTaskLibrary(config.task_library);
-  const ObservedWorld world = DescribeObservations(config);
+  const ObservedWorld world = describe(config);
   if (world.spec != request.config.spec) {
     throw RuntimeError("{}", SpecMismatch(request.config, world.spec));
   }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// An environment that costs a simulation nothing: numbers from its stream, episodes of a fixed
-// length, a step that takes a fixed span of simulated time.
+// An environment that costs a simulation nothing: episodes of a fixed length, a step that takes a
+// fixed span of simulated time. An observation says which one it is: its first two numbers are the
+// episode's and the step's. The reward is the action's first number.
 #pragma once
 
 #include <algorithm>
@@ -25,31 +26,36 @@ class FakeEnvironment final : public worlds::Environment {
 
   float Reset(uint64_t stream_key, worlds::ObservationOut out) override {
     random_ = Random(stream_key);
+    episode_ = static_cast<float>(random_.Below(1 << 24));
     steps_ = 0;
     Observe(out);
     return 1;
   }
 
-  worlds::StepResult Step(std::span<const float>, worlds::ObservationOut out) override {
+  worlds::StepResult Step(std::span<const float> action, worlds::ObservationOut out) override {
     SleepFor(step_);
+    ++steps_;
     Observe(out);
-    return {.reward = -1, .truncated = ++steps_ == kEpisodeSteps, .distance = 1};
+    return {.reward = action[0], .truncated = steps_ == kEpisodeSteps, .distance = 1};
   }
 
   double render_seconds() const override { return 0; }
   std::span<const worlds::DrawnMass> drawn_masses() const override { return {}; }
 
- private:
   static constexpr int kEpisodeSteps = 10;
 
+ private:
   void Observe(worlds::ObservationOut out) {
     std::ranges::fill(out.frame, static_cast<uint8_t>(random_.Next()));
     for (float& value : out.vector) value = static_cast<float>(random_.Uniform(-1, 1));
+    out.vector[0] = episode_;
+    out.vector[1] = static_cast<float>(steps_);
   }
 
   const ObservationSpec spec_;
   const std::chrono::microseconds step_;
   Random random_;
+  float episode_ = 0;
   int steps_ = 0;
 };
 

@@ -194,6 +194,14 @@ void FiberScheduler::Resume(Fiber* fiber) {
   fiber->exceptions = std::exchange(CurrentExceptions(), main_->exceptions);
   Scheduler::SetCurrent(outer);
   running_ = nullptr;
+  if (slow_.empty()) return;
+  const auto slow = slow_.find(fiber->group);
+  if (slow == slow_.end()) return;
+  if (now_ < slow->second.until) {
+    fiber->not_before = std::max(fiber->not_before, now_ + slow->second.turn);
+  } else {
+    slow_.erase(slow);
+  }
 }
 
 void FiberScheduler::Block(SteadyTime wake) {
@@ -218,6 +226,20 @@ void FiberScheduler::Pause(ThreadGroup* group, SteadyTime time) {
   for (const auto& fiber : fibers_) {
     if (fiber->group == group) fiber->not_before = std::max(fiber->not_before, time);
   }
+}
+
+void FiberScheduler::Stall(ThreadGroup* group, uint64_t which, SteadyTime time) {
+  std::vector<Fiber*> all;
+  for (const auto& fiber : fibers_) {
+    if (fiber->group == group && !fiber->ended) all.push_back(fiber.get());
+  }
+  if (all.empty()) return;
+  Fiber* const fiber = all[which % all.size()];
+  fiber->not_before = std::max(fiber->not_before, time);
+}
+
+void FiberScheduler::SlowDown(ThreadGroup* group, SteadyTime::duration turn, SteadyTime time) {
+  slow_[group] = {turn, time};
 }
 
 void FiberScheduler::Kill(ThreadGroup* group) {

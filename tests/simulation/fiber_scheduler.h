@@ -42,6 +42,12 @@ class FiberScheduler final : public Scheduler {
 
   // No fiber of the group runs before `time`; wake-ups are kept.
   void Pause(ThreadGroup* group, SteadyTime time);
+  // One of its fibers does not run before `time`: the one that `which` chooses.
+  void Stall(ThreadGroup* group, uint64_t which, SteadyTime time);
+  // Until `time` each turn of one of its fibers takes `turn`.
+  void SlowDown(ThreadGroup* group, SteadyTime::duration turn, SteadyTime time);
+  // A number below `count`, from the seed.
+  size_t Draw(size_t count) { return random_.Below(count); }
   // Its fibers are gone, and its descriptors are closed.
   void Kill(ThreadGroup* group);
   // Fibers of the group that have not ended.
@@ -91,6 +97,11 @@ class FiberScheduler final : public Scheduler {
   std::vector<Fiber*> runnable_;                // scratch
   Fiber* running_ = nullptr;
   std::map<int, const ThreadGroup*> files_;  // open descriptors
+  struct Slow {
+    SteadyTime::duration turn;
+    SteadyTime until;
+  };
+  std::map<const ThreadGroup*, Slow> slow_;
   uint64_t next_id_ = 1, trace_ = 0, switches_ = 0;
   struct Main;
   std::unique_ptr<Main> main_;

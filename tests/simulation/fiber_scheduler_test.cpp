@@ -182,6 +182,24 @@ TEST_F(FiberSchedulerTest, TheWallClockJumpsAndTheSteadyOneDoesNot) {
   EXPECT_NEAR(steady, 1, 1e-3);
 }
 
+// Each fiber would sleep for a millisecond a hundred times.
+TEST_F(FiberSchedulerTest, OneFiberStallsAndASlowProcessTakesItsTimeForEachTurn) {
+  std::vector<double> ended(3);
+  const auto work = [&](int which) {
+    for (int i = 0; i < 100; ++i) SleepFor(milliseconds(1));
+    ended[static_cast<size_t>(which)] = std::chrono::duration<double>(Now() - kStart).count();
+  };
+  scheduler_.StartIn(&one_, [&] { work(0); });
+  scheduler_.StartIn(&one_, [&] { work(1); });
+  scheduler_.StartIn(&two_, [&] { work(2); });
+  scheduler_.Stall(&one_, /*which=*/1, kStart + seconds(7));
+  scheduler_.SlowDown(&two_, milliseconds(20), kStart + seconds(1));
+  scheduler_.RunUntil(kStart + seconds(100));
+  EXPECT_NEAR(ended[0], 0.1, 0.01);
+  EXPECT_NEAR(ended[1], 7.1, 0.01);
+  EXPECT_NEAR(ended[2], 1.05, 0.02) << "50 slow turns, then 50 of the usual length";
+}
+
 // Three fibers take a mutex in turns; the result is the order, and the hash of the trace.
 std::pair<std::string, uint64_t> Play(uint64_t seed, ThreadGroup* group) {
   FiberScheduler scheduler(seed, 0);

@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// An agent whose update is a hash of the batch: what was learned from is checkable, and costs
-// little. Its policy is the one that a real agent begins with.
+// An agent whose update is a hash of the batch, which costs little, and whose policy's first action
+// says after how many updates it was made: what is evaluated can be held against what it is called.
+// It refuses a batch that changes while it reads it, and one whose observations do not follow one
+// another (fake_environment.h).
 #pragma once
 
+#include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <string>
@@ -21,10 +25,16 @@ class HashAgent final : public learner::Agent {
  public:
   // `policy`: as nn::Policy loads them. An update takes `span` of simulated time.
   HashAgent(nn::TensorMap policy, std::chrono::microseconds span)
-      : policy_(std::move(policy)), span_(span) {}
+      : policy_(std::move(policy)), span_(span) {
+    for (auto& [name, tensor] : policy_) std::ranges::fill(tensor.data, 0);
+  }
+
+  // The first action of the policy after so many updates, without exploration.
+  static double ActionAfter(uint64_t updates) { return static_cast<double>(updates) / 10'000; }
 
   learner::UpdateOutcome Update(const BatchView& batch,
                                 const learner::OnStageEnd& on_stage_end) override {
+    CheckFollows(batch);
     const uint64_t before = HashBytes(batch.data, batch.schema->total_bytes());
     SleepFor(span_);
     if (HashBytes(batch.data, batch.schema->total_bytes()) != before) {
@@ -39,11 +49,18 @@ class HashAgent final : public learner::Agent {
   }
 
   uint64_t updates() const override { return updates_; }
-  nn::TensorMap PolicyTensors() const override { return policy_; }
-  nn::TensorMap AveragedPolicyTensors() const override { return policy_; }
+  nn::TensorMap PolicyTensors() const override {
+    nn::TensorMap policy = policy_;
+    const bool squashed = !policy.contains("actor.log_std");
+    const double action = ActionAfter(updates_);
+    const float mean = static_cast<float>(squashed ? std::atanh(action) : action);
+    std::memcpy(policy.at("actor.mlp.output.bias").data.data(), &mean, sizeof mean);
+    return policy;
+  }
+  nn::TensorMap AveragedPolicyTensors() const override { return PolicyTensors(); }
 
   nn::TensorMap AllTensors() const override {
-    nn::TensorMap all = policy_;
+    nn::TensorMap all;
     all["updates"] = Word(updates_);
     all["hash"] = Word(hash_);
     return all;
@@ -55,6 +72,23 @@ class HashAgent final : public learner::Agent {
   }
 
  private:
+  // Each next observation is the successor of its observation.
+  void CheckFollows(const BatchView& batch) const {
+    const size_t rows = batch.rows(), size = batch.obs_vector.size() / rows;
+    const bool rollout = !batch.continues.empty();
+    for (size_t row = 0; row < rows; ++row) {
+      const float* observation = &batch.obs_vector[row * size];
+      const bool next_row = rollout && batch.continues[row] != 0;
+      const float* next =
+          next_row ? &batch.obs_vector[(row + 1) * size] : &batch.next_obs_vector[row * size];
+      const bool ends = rollout && batch.ends[row] != 0;
+      if (next_row && ends) continue;  // the next row begins an episode
+      if (next[0] == observation[0] && next[1] == observation[1] + 1) continue;
+      throw RuntimeError("update {}, row {}: step {} of episode {} is followed by {} of {}",
+                         updates_ + 1, row, observation[1], observation[0], next[1], next[0]);
+    }
+  }
+
   static nn::NamedTensor Word(uint64_t value) {
     nn::NamedTensor tensor{.dtype = "U64", .shape = {1}, .data = std::vector<uint8_t>(8)};
     std::memcpy(tensor.data.data(), &value, sizeof value);
@@ -71,7 +105,7 @@ class HashAgent final : public learner::Agent {
     return value;
   }
 
-  const nn::TensorMap policy_;
+  nn::TensorMap policy_;  // zeros
   const std::chrono::microseconds span_;
   uint64_t updates_ = 0, hash_ = 0;
 };

@@ -1,80 +1,117 @@
 // SPDX-License-Identifier: Apache-2.0
 // shoal-simulate: simulated runs with faults drawn from seeds.
 #include <fmt/core.h>
-#include <sys/wait.h>
-#include <unistd.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
+#include <vector>
 
 #include "common/base/clock.h"
 #include "common/base/command_line.h"
 #include "common/base/error.h"
-#include "common/base/files.h"
 #include "common/base/main_guard.h"
-#include "tests/simulation/simulated_run.h"
+#include "common/base/usable_cores.h"
+#include "tests/simulation/child_runs.h"
 
 namespace shoal::simulation {
 namespace {
 
 struct Options {
   uint64_t seed = 1, count = 1;
-  bool trace = false, faultless = false;
+  int jobs = 0;
+  double seconds = 0;
+  int most_failures = 0;
+  bool trace = false, no_shorten = false;
+  std::vector<size_t> only;
 };
 
-// Prints what was wrong. False when something was.
-bool RunSeed(const Blueprint& blueprint, uint64_t seed, const Options& options) {
-  const std::filesystem::path folder = MakeFreshFolder("shoal-simulate-", "/dev/shm");
-  const std::vector<Fault> faults =
-      options.faultless ? std::vector<Fault>() : DrawFaults(seed, blueprint.run.config);
-  const Outcome outcome = Simulate(blueprint, seed, faults, folder / "run");
-  if (options.trace || !outcome.good()) {
-    for (const Fault& fault : faults) fmt::print("  {}\n", fault.Text());
-    fmt::print("{}", outcome.log);
-    for (const std::string& violation : outcome.violations) fmt::print("  ! {}\n", violation);
-  }
-  if (options.trace || !outcome.good() || options.count == 1) {
-    fmt::print("seed {}: {}, {:.1f} simulated s, {} switches, trace {:016x}\n", seed,
-               outcome.good() ? outcome.exit : "FAILED", outcome.seconds, outcome.switches,
-               outcome.trace);
-  }
-  std::filesystem::remove_all(folder);
-  std::fflush(stdout);
-  return outcome.good();
-}
+class Simulations {
+ public:
+  explicit Simulations(const Options& options)
+      : options_(options), blueprints_(MakeBlueprints()), start_(Now()), next_(options.seed) {}
 
-// Each seed in a child, whose memory goes with it.
-bool RunSeedInChild(const Blueprint& blueprint, uint64_t seed, const Options& options) {
-  const pid_t child = fork();
-  if (child == 0) {
-    const int code = GuardBody(
-        "shoal-simulate", [&] { return RunSeed(blueprint, seed, options) ? 0 : 1; },
-        [](const std::string& line) { fmt::print("{}\n", line); });
-    std::fflush(stdout);
-    _exit(code);
+  int Run() {
+    RunInChildren(
+        blueprints_, options_.jobs > 0 ? options_.jobs : UsableCores(), options_.trace,
+        [this] { return Next(); }, [this](uint64_t seed) { return FaultsOf(seed); },
+        [this](const ChildRun& run) { Take(run); });
+    fmt::print("{} of {} seeds failed; {:.0f} simulated s in {:.1f} s\n", failed_.size(), done_,
+               simulated_seconds_, SecondsSince(start_));
+    return failed_.empty() ? 0 : 1;
   }
-  int status = 0;
-  waitpid(child, &status, 0);
-  if (!WIFEXITED(status)) fmt::print("seed {}: FAILED by signal {}\n", seed, WTERMSIG(status));
-  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
-}
+
+ private:
+  uint64_t Next() {
+    const bool late = options_.seconds > 0 && SecondsSince(start_) > options_.seconds;
+    const bool enough = options_.most_failures > 0 &&
+                        std::cmp_greater_equal(failed_.size(), options_.most_failures);
+    if (late || enough || next_ >= options_.seed + options_.count) return 0;
+    return next_++;
+  }
+
+  std::vector<Fault> FaultsOf(uint64_t seed) const {
+    const std::vector<Fault> all = DrawFaults(seed, BlueprintOf(seed, blueprints_).run.config);
+    if (options_.only.empty()) return all;
+    std::vector<Fault> some;
+    for (const size_t number : options_.only) {
+      if (number < all.size()) some.push_back(all[number]);
+    }
+    return some;
+  }
+
+  void Take(const ChildRun& run) {
+    ++done_;
+    simulated_seconds_ += run.simulated_seconds;
+    if (!run.good) failed_.push_back(run.seed);
+    if (run.good && !options_.trace && options_.count > 1) return;
+    fmt::print("{}{}\n", run.text, run.summary);
+    if (!run.good) Explain(run.seed);
+    std::fflush(stdout);
+  }
+
+  // How to repeat a failure, with the faults that it takes.
+  void Explain(uint64_t seed) const {
+    const std::vector<Fault> faults = FaultsOf(seed);
+    if (options_.no_shorten || !options_.only.empty() || faults.size() < 2) {
+      fmt::print("  again: shoal-simulate --seed {} --trace\n", seed);
+      return;
+    }
+    const std::vector<size_t> kept = ShortenedSchedule(blueprints_, seed, faults);
+    if (kept.empty()) {
+      fmt::print("  again, it fails without a fault: shoal-simulate --seed {} --trace --only 99\n",
+                 seed);
+      return;
+    }
+    fmt::print(
+        "  again, with the faults that it takes: shoal-simulate --seed {} --trace --only "
+        "{}\n",
+        seed, fmt::join(kept, " "));
+    for (const size_t number : kept) fmt::print("    {}\n", faults[number].Text());
+  }
+
+  const Options options_;
+  const std::vector<Blueprint> blueprints_;
+  const SteadyTime start_;
+  uint64_t next_, done_ = 0;
+  double simulated_seconds_ = 0;
+  std::vector<uint64_t> failed_;
+};
 
 int Run(int argc, char** argv) {
   Options options;
   CLI::App app("Simulated runs with faults drawn from seeds.", "shoal-simulate");
-  app.add_option("--seed", options.seed, "first seed");
+  app.add_option("--seed", options.seed, "first seed")->check(CLI::PositiveNumber);
   app.add_option("--count", options.count, "seeds");
+  app.add_option("--jobs", options.jobs, "seeds at once; 0: one for each core");
+  app.add_option("--seconds", options.seconds, "begin no seed after so long; 0: no limit");
+  app.add_option("--most-failures", options.most_failures,
+                 "begin no seed after so many have failed; 0: no limit");
+  app.add_option("--only", options.only, "of a seed's faults those with these numbers");
   app.add_flag("--trace", options.trace, "print what happened");
-  app.add_flag("--faultless", options.faultless, "no faults");
+  app.add_flag("--no-shorten", options.no_shorten,
+               "do not look for the faults that a failure takes");
   if (const auto exit_code = ParseCommandLine(&app, argc, argv)) return *exit_code;
-  const Blueprint blueprint = MakeBlueprint();
-  const SteadyTime start = Now();
-  uint64_t bad = 0;
-  for (uint64_t seed = options.seed; seed < options.seed + options.count; ++seed) {
-    if (!RunSeedInChild(blueprint, seed, options)) ++bad;
-  }
-  fmt::print("{} of {} seeds failed, {:.1f} s\n", bad, options.count, SecondsSince(start));
-  return bad == 0 ? 0 : 1;
+  return Simulations(options).Run();
 }
 
 }  // namespace

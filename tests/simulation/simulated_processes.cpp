@@ -12,89 +12,130 @@
 #include "common/base/main_guard.h"
 
 namespace shoal::simulation {
+namespace {
 
-// Lives on after its end or death, as its fibers may still refer to it.
-class SimulatedProcesses::Process {
- public:
-  Process(SimulatedProcesses& all, const launch::ProcessSpec& spec)
-      : all_(all),
-        spec_(spec),
-        program_(std::filesystem::path(spec.command.at(0)).filename()),
-        group_(spec.Name(), spec.output),
-        hub_(all.network_.Join(*link::FindRole(spec.role))) {}
+constexpr std::chrono::milliseconds kSlowTurn{20};
 
-  void Start(const std::shared_ptr<Process>& self) {
-    all_.scheduler_.StartIn(&group_, [self] { self->Run(); });
-  }
-  bool Kill() {
-    if (ended_) return false;
-    all_.scheduler_.Kill(&group_);
-    all_.network_.Abandon(*hub_);
-    (void)hub_.release();  // its ends belong to fibers that never run again
-    ended_ = launch::ExitStatus{.by_signal = true, .code = SIGKILL};
-    return true;
-  }
-  bool Pause(std::chrono::milliseconds span) {
-    if (ended_) return false;
-    all_.scheduler_.Pause(&group_, all_.scheduler_.Now() + span);
-    return true;
-  }
-  void Signal(int signal) {
-    if (signal == SIGKILL) {
-      Kill();
-    } else if (!ended_) {
-      group_.RequestStop();
-    }
-  }
-  std::optional<launch::ExitStatus> ended() const { return ended_; }
+}  // namespace
 
- private:
-  void Run() {
+SimulatedProcess::SimulatedProcess(FiberScheduler& scheduler, link::LocalNetwork& network,
+                                   link::Role role, const std::string& name,
+                                   const std::string& log_file, bool outlives_parent)
+    : scheduler_(scheduler),
+      network_(network),
+      name_(name),
+      outlives_parent_(outlives_parent),
+      group_(name, log_file),
+      hub_(network.Join(role)) {}
+
+void SimulatedProcess::Start(const std::shared_ptr<SimulatedProcess>& self,
+                             const std::string& program, std::function<int(link::Hub&)> body) {
+  self->scheduler_.StartIn(&self->group_, [self, program, body = std::move(body)] {
     const int code = GuardBody(
-        program_, [this] { return all_.body_(spec_, *hub_); },
-        [this](const std::string& line) { log::WriteRaw(group_.log(), line); });
-    hub_.reset();
-    ended_ = launch::ExitStatus{.by_signal = false, .code = code};
-  }
+        program, [&] { return body(*self->hub_); },
+        [&](const std::string& line) {
+          self->last_words_ = line;
+          log::WriteRaw(self->group_.log(), line);
+        });
+    self->hub_.reset();
+    self->ended_ = launch::ExitStatus{.by_signal = false, .code = code};
+  });
+}
 
-  SimulatedProcesses& all_;
-  const launch::ProcessSpec spec_;
-  const std::string program_;
-  ThreadGroup group_;
-  std::unique_ptr<link::Hub> hub_;
-  std::optional<launch::ExitStatus> ended_;
-};
+bool SimulatedProcess::Kill() {
+  if (ended_) return false;
+  scheduler_.Kill(&group_);
+  if (hub_) {
+    network_.Abandon(*hub_);
+    (void)hub_.release();  // its ends belong to fibers that never run again
+  }
+  ended_ = launch::ExitStatus{.by_signal = true, .code = SIGKILL};
+  return true;
+}
+
+bool SimulatedProcess::Pause(std::chrono::milliseconds span) {
+  if (!ended_) scheduler_.Pause(&group_, scheduler_.Now() + span);
+  return !ended_;
+}
+
+bool SimulatedProcess::Stall(uint64_t which_thread, std::chrono::milliseconds span) {
+  if (!ended_) scheduler_.Stall(&group_, which_thread, scheduler_.Now() + span);
+  return !ended_;
+}
+
+bool SimulatedProcess::SlowDown(std::chrono::milliseconds span) {
+  if (!ended_) scheduler_.SlowDown(&group_, kSlowTurn, scheduler_.Now() + span);
+  return !ended_;
+}
+
+bool SimulatedProcess::Disconnect() {
+  if (!ended_ && hub_) network_.Disconnect(*hub_);
+  return !ended_;
+}
+
+bool SimulatedProcess::Reconnect() {
+  if (!ended_ && hub_) network_.Reconnect(*hub_);
+  return !ended_;
+}
+
+bool SimulatedProcess::RequestStop() {
+  if (!ended_) group_.RequestStop();
+  return !ended_;
+}
 
 class SimulatedProcesses::Handle final : public launch::RunningProcess {
  public:
-  explicit Handle(std::shared_ptr<Process> process) : process_(std::move(process)) {}
-  ~Handle() override { process_->Signal(SIGKILL); }
+  explicit Handle(std::shared_ptr<SimulatedProcess> process) : process_(std::move(process)) {}
+  ~Handle() override { process_->Kill(); }
   Handle(const Handle&) = delete;
   Handle& operator=(const Handle&) = delete;
 
   pid_t pid() const override { return getpid(); }
   std::optional<launch::ExitStatus> Poll() override { return process_->ended(); }
-  void Signal(int signal) override { process_->Signal(signal); }
+  void Signal(int signal) override {
+    if (signal == SIGKILL) {
+      process_->Kill();
+    } else {
+      process_->RequestStop();
+    }
+  }
 
  private:
-  const std::shared_ptr<Process> process_;
+  const std::shared_ptr<SimulatedProcess> process_;
 };
 
-std::unique_ptr<launch::RunningProcess> SimulatedProcesses::Start(const launch::ProcessSpec& spec) {
-  auto process = std::make_shared<Process>(*this, spec);
-  process->Start(process);
-  running_[spec.Name()] = process;
+std::unique_ptr<launch::RunningProcess> SimulatedProcesses::StartChild(
+    const launch::ProcessSpec& spec) {
+  auto process =
+      std::make_shared<SimulatedProcess>(scheduler_, network_, *link::FindRole(spec.role),
+                                         spec.Name(), spec.output, spec.outlives_parent);
+  const std::string program = std::filesystem::path(spec.command.at(0)).filename();
+  SimulatedProcess::Start(process, program,
+                          [this, spec](link::Hub& hub) { return body_(spec, hub); });
+  children_.push_back(process);
+  newest_[spec.Name()] = process;
   return std::make_unique<Handle>(std::move(process));
 }
 
-bool SimulatedProcesses::Kill(const std::string& name) {
-  const auto found = running_.find(name);
-  return found != running_.end() && found->second->Kill();
+std::shared_ptr<SimulatedProcess> SimulatedProcesses::StartOther(
+    const std::string& name, link::Role role, const std::string& log_file,
+    std::function<int(link::Hub&)> body) {
+  auto process = std::make_shared<SimulatedProcess>(scheduler_, network_, role, name, log_file,
+                                                    /*outlives_parent=*/true);
+  SimulatedProcess::Start(process, "shoal", std::move(body));
+  newest_[name] = process;
+  return process;
 }
 
-bool SimulatedProcesses::Pause(const std::string& name, std::chrono::milliseconds span) {
-  const auto found = running_.find(name);
-  return found != running_.end() && found->second->Pause(span);
+std::shared_ptr<SimulatedProcess> SimulatedProcesses::Find(const std::string& name) const {
+  const auto found = newest_.find(name);
+  return found == newest_.end() || found->second->ended() ? nullptr : found->second;
+}
+
+void SimulatedProcesses::OnCoordinatorDeath() {
+  for (const auto& child : children_) {
+    if (!child->outlives_parent()) child->RequestStop();
+  }
 }
 
 }  // namespace shoal::simulation

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The processes of a simulated run, started by its coordinator and harmed by its faults.
+// The processes of a simulated run: coordinators and what they start, harmed by its faults.
 #pragma once
 
 #include <chrono>
@@ -7,7 +7,9 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include "common/link/local_network.h"
 #include "launch/processes/running_process.h"
@@ -15,7 +17,48 @@
 
 namespace shoal::simulation {
 
-// The body of a process, with its hub; returns the exit code.
+// One process, its threads and its place on the link. It stays in memory after its end or death, as
+// its fibers may still refer to it.
+class SimulatedProcess {
+ public:
+  // Borrows scheduler and network. `log_file` gets what the process logs. `outlives_parent`: it
+  // gets no signal when the coordinator dies.
+  SimulatedProcess(FiberScheduler& scheduler, link::LocalNetwork& network, link::Role role,
+                   const std::string& name, const std::string& log_file, bool outlives_parent);
+
+  // Runs `body`, whose result is the exit code, in the first thread of `self`. Errors end it with
+  // the product's one line, in the log, and code.
+  static void Start(const std::shared_ptr<SimulatedProcess>& self, const std::string& program,
+                    std::function<int(link::Hub&)> body);
+
+  // Each is false when the process has ended.
+  bool Kill();
+  bool Pause(std::chrono::milliseconds span);
+  bool Stall(uint64_t which_thread, std::chrono::milliseconds span);
+  bool SlowDown(std::chrono::milliseconds span);
+  bool Disconnect();
+  bool Reconnect();
+  bool RequestStop();
+
+  const std::string& name() const { return name_; }
+  bool outlives_parent() const { return outlives_parent_; }
+  ThreadGroup& group() { return group_; }
+  const std::optional<launch::ExitStatus>& ended() const { return ended_; }
+  // The line of its Error; empty when there was none.
+  const std::string& last_words() const { return last_words_; }
+
+ private:
+  FiberScheduler& scheduler_;
+  link::LocalNetwork& network_;
+  const std::string name_;
+  const bool outlives_parent_;
+  ThreadGroup group_;
+  std::unique_ptr<link::Hub> hub_;
+  std::optional<launch::ExitStatus> ended_;
+  std::string last_words_;
+};
+
+// The body of a child, with its hub; returns the exit code.
 using ProcessBody = std::function<int(const launch::ProcessSpec&, link::Hub&)>;
 
 class SimulatedProcesses {
@@ -24,21 +67,27 @@ class SimulatedProcesses {
   SimulatedProcesses(FiberScheduler& scheduler, link::LocalNetwork& network, ProcessBody body)
       : scheduler_(scheduler), network_(network), body_(std::move(body)) {}
 
-  std::unique_ptr<launch::RunningProcess> Start(const launch::ProcessSpec& spec);
+  // A child of the coordinator. Destruction of the result kills it.
+  std::unique_ptr<launch::RunningProcess> StartChild(const launch::ProcessSpec& spec);
+  // A process that somebody else starts; found by its name as others are.
+  std::shared_ptr<SimulatedProcess> StartOther(const std::string& name, link::Role role,
+                                               const std::string& log_file,
+                                               std::function<int(link::Hub&)> body);
 
-  // Does what SIGKILL does. False: no process of that name runs.
-  bool Kill(const std::string& name);
-  // Does what SIGSTOP and, after `span`, SIGCONT do.
-  bool Pause(const std::string& name, std::chrono::milliseconds span);
+  // The newest of that name that has not ended; null for none.
+  std::shared_ptr<SimulatedProcess> Find(const std::string& name) const;
+  // Does what the death of the coordinator does to its children: those that do not outlive it get a
+  // stop signal.
+  void OnCoordinatorDeath();
 
  private:
-  class Process;
   class Handle;
 
   FiberScheduler& scheduler_;
   link::LocalNetwork& network_;
   const ProcessBody body_;
-  std::map<std::string, std::shared_ptr<Process>> running_;  // the newest of each name
+  std::vector<std::shared_ptr<SimulatedProcess>> children_;  // oldest first
+  std::map<std::string, std::shared_ptr<SimulatedProcess>> newest_;
 };
 
 }  // namespace shoal::simulation

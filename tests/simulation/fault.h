@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is done to a simulated run, and when: values, drawn from a seed.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "common/config/config.h"
+
+namespace shoal::simulation {
+
+struct Fault {
+  enum class Kind {
+    kKill,         // SIGKILL; of the coordinator: and the run is resumed after `span`
+    kPause,        // SIGSTOP, and SIGCONT after `span`
+    kStall,        // one thread of the process does not run for `span`
+    kSlow,         // for `span` each turn of a thread of the process takes 20 ms
+    kPartition,    // the process is cut off from all others for `span`
+    kFullDisk,     // for `span` nothing can be written
+    kFailingDisk,  // for `span` one step in three of a write fails
+    kClock,        // the wall clock jumps by `span`, which may be negative
+    kCommand,      // a client sends `text`: "scale 3"
+    kWatch,        // a client watches the run for `span`
+    kSecond,       // a second coordinator asks for the run
+    kInterrupt,    // Ctrl-C
+  };
+
+  Kind kind = Kind::kKill;
+  std::chrono::milliseconds at{0};    // simulated, after the start
+  std::string process{};              // "actor-1", "coordinator"; empty where it is nobody's
+  std::chrono::milliseconds span{0};  // as said above
+  std::string text{};                 // of a command; of a coordinator's kill: what follows
+  uint64_t number = 0;                // chooses the thread of a stall
+
+  // "12.345 s: pause actor-1 for 3.000 s"
+  std::string Text() const;
+};
+
+// What may follow a killed coordinator (Fault::text).
+inline constexpr char kThenResume[] = "resume";
+inline constexpr char kThenOverwrite[] = "overwrite";       // train --overwrite in its place
+inline constexpr char kThenLoseRing[] = "lose the ring";    // its file is removed, then resume
+inline constexpr char kThenCutRing[] = "cut the ring off";  // its file is truncated, then resume
+
+// The faults of a seed, by time.
+std::vector<Fault> DrawFaults(uint64_t seed, const Config& config);
+
+}  // namespace shoal::simulation

@@ -1,0 +1,198 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/simulation/oracles.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <tuple>
+
+#include "common/base/error.h"
+#include "common/base/files.h"
+#include "common/checkpoint/checkpoint_files.h"
+#include "common/config/on_policy.h"
+#include "common/run_folder/accounting_file.h"
+#include "common/run_folder/run_file_names.h"
+#include "launch/processes/process_plan.h"
+#include "launch/processes/run_leftovers.h"
+#include "launch/record/evaluations.h"
+#include "launch/record/run_meta.h"
+#include "launch/run/live_settings.h"
+#include "launch/run/run_account.h"
+#include "replay_server/core/ring.h"
+#include "tests/simulation/fake_environment.h"
+#include "tests/simulation/hash_agent.h"
+
+namespace shoal::simulation {
+namespace {
+
+namespace fs = std::filesystem;
+
+// More files than a run of this length leaves, by folder; what grows without bound exceeds them.
+constexpr size_t kMostCheckpoints = 12;   // kept, best, candidates
+constexpr uint64_t kMostBytes = 8 << 20;  // of everything but the ring
+
+class Examination {
+ public:
+  Examination(const World& world, const Facts& facts)
+      : run_(world.folder), config_(world.blueprint.run.config), world_(world), facts_(facts) {}
+
+  std::vector<std::string> Run() {
+    Try("meta.json", [this] { meta_ = launch::ReadRunMeta(run_); });
+    Try("the account", [this] { CheckAccount(); });
+    Try("the evaluations", [this] { CheckEvaluations(); });
+    Try("the ring", [this] { CheckRing(); });
+    Try("the limiter", [this] { CheckLimiter(); });
+    Try("the files", [this] { CheckFiles(); });
+    return std::move(broken_);
+  }
+
+ private:
+  // A file that cannot be read is a broken promise.
+  void Try(const char* what, const std::function<void()>& look) {
+    try {
+      look();
+    } catch (const std::exception& error) {
+      Break(fmt::format("{}: {}", what, error.what()));
+    }
+  }
+  void Break(std::string what) { broken_.push_back(std::move(what)); }
+
+  void CheckAccount();
+  void CheckEvaluations();
+  void CheckRing();
+  void CheckLimiter();
+  void CheckFiles();
+
+  const fs::path run_;
+  const Config& config_;
+  const World& world_;
+  const Facts& facts_;
+  launch::RunMeta meta_;
+  std::vector<std::string> broken_;
+};
+
+void Examination::CheckAccount() {
+  const auto sums =
+      launch::AccountRun(run_, config_, launch::TopologyOf(config_, {}), meta_.resends);
+  if (!sums) return Break("there is no account");
+  for (const std::string& fault : sums->faults) Break("account: " + fault);
+  launch::LiveSettings settings(config_);
+  settings.Restore(meta_.changes);
+  const auto budget = static_cast<uint64_t>(settings.config().env_steps);
+  if (meta_.exit == "budget" && meta_.env_steps < budget) {
+    Break(fmt::format("{} env steps of a budget of {}", meta_.env_steps, budget));
+  }
+  // What a killed memory held is gone; on policy, what was acknowledged while the account could not
+  // be written (learner/rollouts/rollout_source.h).
+  const bool remembers =
+      LearnsOnPolicy(config_) ? !facts_.unwritten : config_.replay.storage == "file";
+  if (!remembers) return;
+  std::map<std::pair<uint32_t, uint64_t>, uint64_t> dealt_with;
+  for (const SessionCounters& session : ReadAccount(run_).sessions) {
+    dealt_with[{session.actor, session.session}] = session.highest;
+  }
+  for (const auto& [session, acknowledged] : facts_.acknowledged) {
+    const auto found = dealt_with.find(session);
+    if (found == dealt_with.end() && facts_.overwritten) continue;
+    const uint64_t highest = found == dealt_with.end() ? 0 : found->second;
+    if (highest >= acknowledged) continue;
+    Break(fmt::format("actor {} session {}: {} records were acknowledged, {} are accounted for",
+                      session.first, session.second, acknowledged, highest));
+  }
+}
+
+void Examination::CheckEvaluations() {
+  constexpr double kNear = 1e-3;  // of a return; that of one update is kEpisodeSteps / 10'000
+  for (const launch::EvaluationPoint& point : launch::ReadEvaluations(run_)) {
+    const double expected = FakeEnvironment::kEpisodeSteps * HashAgent::ActionAfter(point.updates);
+    if (std::abs(point.mean_return - expected) < kNear / 2) continue;
+    Break(fmt::format("the evaluation after {} updates has the return of {:.0f}", point.updates,
+                      point.mean_return * 10'000 / FakeEnvironment::kEpisodeSteps));
+  }
+  std::set<std::string> said;
+  for (const std::string& line : world_.story.lines()) {
+    const bool begins = line.find("operator: shoal train") != std::string::npos;
+    if (begins && line.find("--resume") == std::string::npos) said.clear();
+    // Evaluations that a full disk kept from their files are made again.
+    if (line.find("could not be written to the end") != std::string::npos) said.clear();
+    const size_t begin = line.find("coordinator: evaluation at ");
+    const size_t end = line.find(" updates: ");
+    if (begin == std::string::npos || end == std::string::npos) continue;
+    const std::string which = line.substr(begin, end - begin);
+    if (!said.insert(which).second) Break("counted twice: " + which);
+  }
+}
+
+void Examination::CheckRing() {
+  std::error_code error;
+  if (LearnsOnPolicy(config_) || facts_.cut || !fs::exists(run_ / kRingFile, error)) return;
+  const replay::Ring ring = replay::Ring::OpenSnapshot(world_.blueprint.run.spec, run_ / kRingFile);
+  std::set<std::tuple<uint32_t, uint32_t, uint32_t, RecordKind>> seen;
+  for (uint64_t id = ring.oldest_id(); id <= ring.last_id(); ++id) {
+    if (!ring.Intact(id)) {
+      Break(fmt::format("record {} is not whole", id));
+      continue;
+    }
+    const RecordHeader& header = ring.Header(id);
+    if (seen.insert({header.env, header.episode, header.index, header.kind}).second) continue;
+    Break(fmt::format("record {} is stored twice: env {} episode {} index {}", id, header.env,
+                      header.episode, header.index));
+  }
+}
+
+void Examination::CheckLimiter() {
+  std::ifstream lines(run_ / kMetricsFile);
+  for (std::string line; std::getline(lines, line);) {
+    const auto report = nlohmann::json::parse(line, nullptr, /*allow_exceptions=*/false);
+    if (report.is_discarded() || report.value("role", "") != "replay") continue;
+    if (report.value("state", "") != "running" || !report.contains("limiter_cursor")) continue;
+    const double cursor = report.at("limiter_cursor"), band = report.at("limiter_band");
+    if (std::abs(cursor) <= band / 2 + 1e-3) continue;
+    return Break(fmt::format("the limiter's cursor is {} in a band of {}", cursor, band));
+  }
+}
+
+void Examination::CheckFiles() {
+  size_t checkpoints = 0;
+  uint64_t bytes = 0;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(run_)) {
+    const std::string name = entry.path().filename();
+    if (entry.is_directory()) {
+      if (!fs::exists(entry.path() / kStateFile)) continue;
+      ++checkpoints;
+      Try("a checkpoint",
+          [&] { ReadCheckpointFiles(entry.path(), world_.blueprint.run.spec.Hash()); });
+      continue;
+    }
+    if (name != kRingFile) bytes += entry.file_size();
+    if (!name.ends_with(".json")) continue;
+    if (!nlohmann::json::accept(ReadFile(entry.path()))) {
+      Break(fmt::format("'{}' is half written", entry.path().string()));
+    }
+  }
+  if (checkpoints > kMostCheckpoints) Break(fmt::format("{} checkpoints are kept", checkpoints));
+  if (bytes > kMostBytes) Break(fmt::format("the run has {} bytes", bytes));
+  // A clean end leaves no file under a temporary name.
+  const int unfinished = launch::RemoveUnfinishedFiles(run_);
+  if (facts_.last_clean && unfinished > 0) Break(fmt::format("{} unfinished files", unfinished));
+}
+
+}  // namespace
+
+void Witness::Hear(const CreditsMessage& message) {
+  for (const Credit& credit : message.credits) {
+    uint64_t& highest = acknowledged_[{credit.actor, credit.session}];
+    highest = std::max(highest, credit.stored);
+  }
+}
+
+std::vector<std::string> BrokenPromises(const World& world, const Facts& facts) {
+  return Examination(world, facts).Run();
+}
+
+}  // namespace shoal::simulation

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// What a run promises, held against what a simulated one left and said.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "common/link/hub.h"
+#include "common/link/reader.h"
+#include "tests/simulation/train_session.h"
+
+namespace shoal::simulation {
+
+// Hears what is acknowledged to actors. Its hub has the role of one.
+class Witness {
+ public:
+  explicit Witness(link::Hub& hub)
+      : credits_(hub, [this](const CreditsMessage& message) { Hear(message); }) {}
+
+  // The highest sequence that was acknowledged, by actor and session.
+  using Acknowledged = std::map<std::pair<uint32_t, uint64_t>, uint64_t>;
+  const Acknowledged& acknowledged() const { return acknowledged_; }
+
+ private:
+  void Hear(const CreditsMessage& message);
+
+  Acknowledged acknowledged_;
+  link::Reader<CreditsMessage> credits_;
+};
+
+struct Facts {
+  bool last_clean = true;    // every process left in order in the last session
+  bool overwritten = false;  // another run took the folder
+  bool cut = false;          // half of the ring was removed
+  bool unwritten = false;    // a disk failed
+  Witness::Acknowledged acknowledged;
+};
+
+// Returns one line for each promise that a run which has reached its end does not keep.
+std::vector<std::string> BrokenPromises(const World& world, const Facts& facts);
+
+}  // namespace shoal::simulation

@@ -1,0 +1,308 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/simulation/run_operator.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <csignal>
+#include <sstream>
+#include <utility>
+
+#include "common/base/check.h"
+#include "common/base/error.h"
+#include "common/base/sleep.h"
+#include "common/base/stop.h"
+#include "common/base/write_faults.h"
+#include "common/config/run_membership.h"
+#include "common/link/reader.h"
+#include "common/link/writer.h"
+#include "common/run_folder/run_file_names.h"
+#include "launch/record/run_folder.h"
+
+namespace shoal::simulation {
+namespace {
+
+using std::chrono::milliseconds;
+using std::chrono::seconds;
+using Kind = Fault::Kind;
+
+constexpr milliseconds kLook{100};
+constexpr seconds kTryAgain{3};
+// More sessions than faults can make necessary.
+constexpr int kMostSessions = 40;
+
+// After them a session may end by itself with an error: nothing can be written, or the processes
+// do not hear of one another for longer than they wait, or the ring is not what it was.
+bool MayEndSessions(const Fault& fault) {
+  switch (fault.kind) {
+    case Kind::kFullDisk:
+    case Kind::kFailingDisk:
+    case Kind::kPartition:
+      return true;
+    case Kind::kKill:
+      return fault.text == kThenCutRing;
+    default:
+      return false;
+  }
+}
+
+bool Ended(const std::string& exit) { return exit == "budget" || exit == "target"; }
+
+}  // namespace
+
+void RunOperator::Work() {
+  Begin begin = Begin::kFresh;
+  while (sessions_ < kMostSessions) {
+    RunSession(begin);
+    if (finished_) return WaitForChildren();
+    begin = Prepare();
+  }
+  Violate(fmt::format("{} sessions have not brought the run to its end", sessions_));
+}
+
+void RunOperator::RunSession(Begin begin) {
+  ++sessions_;
+  killed_ = nullptr;
+  const char* how = begin == Begin::kFresh       ? "shoal train"
+                    : begin == Begin::kOverwrite ? "shoal train --overwrite"
+                                                 : "shoal train --resume";
+  world_.story.Add("operator", how);
+  std::optional<bool> clean;
+  const auto coordinator = world_.processes.StartOther(
+      "coordinator", link::Role::kCoordinator, world_.folder.string() + ".coordinator.log",
+      [&, begin](link::Hub& hub) { return Train(world_, begin, hub, &clean); });
+  while (!coordinator->ended()) SleepFor(kLook);
+  last_clean_ = clean.value_or(true);
+  JudgeExit(*coordinator);
+}
+
+void RunOperator::JudgeExit(const SimulatedProcess& coordinator) {
+  last_words_ = coordinator.last_words();
+  const launch::ExitStatus status = *coordinator.ended();
+  const launch::RunMeta meta = TakeMeta();
+  if (status.by_signal) return;
+  world_.story.Add("coordinator", fmt::format("exit code {}{}{}", status.code,
+                                              last_words_.empty() ? "" : ": ", last_words_));
+  const int code = status.code;
+  if (code != 0 && code != 1 && code != 2 && code != kUnwrittenExit && code != kInterruptedExit) {
+    Violate(fmt::format("exit code {} is not documented", code));
+  }
+  if (last_words_.find('\n') != std::string::npos) Violate("the last words are not one line");
+  // A process that was killed while the run stopped makes the end unclean, and the code 1.
+  // One that was killed while it ended had finished, too.
+  const auto says = [this](const char* text) {
+    return last_words_.find(text) != std::string::npos;
+  };
+  const bool unclean = code == 1 && !last_clean_, interrupted = code == kInterruptedExit;
+  finished_ = Ended(meta.exit) &&
+              (code == 0 || unclean || interrupted || (code == 2 && says("is finished")));
+  const bool stopped = interrupted || (meta.exit == "interrupted" && code == 0);
+  if (finished_ || stopped || trouble_) return;
+  // Somebody else held the run for a moment, or a paused process has not left it yet.
+  if (says("is running") || says("of an earlier session still works")) return;
+  Violate(fmt::format("a session ended as '{}' with code {}: {} {}", meta.exit, code, meta.error,
+                      last_words_));
+}
+
+launch::RunMeta RunOperator::TakeMeta() {
+  launch::RunMeta meta;
+  try {
+    meta = launch::ReadRunMeta(world_.folder);
+  } catch (const Error& error) {
+    Violate(fmt::format("meta.json after a session: {}", error.what()));
+    return meta;
+  }
+  if (meta.env_steps < env_steps_) {
+    Violate(fmt::format("{} env steps after a session, {} before it", meta.env_steps, env_steps_));
+  }
+  env_steps_ = meta.env_steps;
+  return meta;
+}
+
+Begin RunOperator::Prepare() {
+  if (killed_ == nullptr) {
+    SleepFor(kTryAgain);
+    if (last_words_.find(kRingFile) != std::string::npos) {
+      world_.story.Add("operator", "removes the ring, as the refusal says");
+      std::error_code ignored;
+      std::filesystem::remove(world_.folder / kRingFile, ignored);
+    }
+    return NextBegin(Begin::kResume);
+  }
+  const Fault& fault = *killed_;
+  SleepFor(fault.span);
+  const std::filesystem::path ring = world_.folder / kRingFile;
+  std::error_code error;
+  if (fault.text == kThenLoseRing || fault.text == kThenCutRing) {
+    WaitForChildren();
+    const uintmax_t bytes = std::filesystem::file_size(ring, error);
+    if (fault.text == kThenLoseRing) {
+      std::filesystem::remove(ring, error);
+    } else if (!error) {
+      std::filesystem::resize_file(ring, bytes / 2, error);
+    }
+  }
+  return NextBegin(fault.text == kThenOverwrite ? Begin::kOverwrite : Begin::kResume);
+}
+
+// A coordinator that ends before there is a run leaves a folder that no command takes.
+Begin RunOperator::NextBegin(Begin wanted) {
+  const bool is_run = launch::IsRun(world_.folder);
+  if (!is_run) {
+    std::error_code ignored;
+    WaitForChildren();
+    std::filesystem::remove_all(world_.folder, ignored);
+  }
+  const Begin begin = is_run ? wanted : Begin::kFresh;
+  if (begin != Begin::kResume) env_steps_ = 0;
+  return begin;
+}
+
+void RunOperator::WaitForChildren() {
+  while (AnyMember(world_.folder)) SleepFor(kLook);
+}
+
+void RunOperator::Strike(const std::vector<Fault>& faults) {
+  const SteadyTime start = Now();
+  for (const Fault& fault : faults) {
+    SleepUntil(start + fault.at);
+    if (finished_) return;
+    Do(fault);
+  }
+}
+
+void RunOperator::Do(const Fault& fault) {
+  const auto process = world_.processes.Find(fault.process);
+  const bool nobody = !fault.process.empty() && process == nullptr;
+  world_.story.Add("fault", fault.Text() + (nobody ? " (it does not run)" : ""));
+  if (nobody) return;
+  trouble_ = trouble_ || MayEndSessions(fault);
+  const bool lasts = fault.kind != Kind::kClock && fault.kind != Kind::kCommand;
+  quiet_from_ = std::max(quiet_from_, Now() + (lasts ? fault.span : milliseconds(0)));
+  switch (fault.kind) {
+    case Kind::kKill:
+      if (fault.process == "coordinator") return KillCoordinator(fault, *process);
+      process->Kill();
+      return;
+    case Kind::kPause:
+      return Pause(fault, *process);
+    case Kind::kStall:
+      process->Stall(fault.number, fault.span);
+      return;
+    case Kind::kSlow:
+      process->SlowDown(fault.span);
+      return;
+    case Kind::kPartition:
+      process->Disconnect();
+      After(fault.span, [process] { process->Reconnect(); });
+      return;
+    case Kind::kFullDisk:
+      disk_.BeFull(Now() + fault.span);
+      return;
+    case Kind::kFailingDisk:
+      disk_.Fail(&process->group(), Now() + fault.span);
+      return;
+    case Kind::kClock:
+      scheduler_.MoveWallClock(fault.span);
+      return;
+    case Kind::kCommand:
+      return SendCommand(fault.text);
+    case Kind::kWatch:
+      return Watch(fault.span);
+    case Kind::kSecond:
+      return AskAsSecond();
+    case Kind::kInterrupt:
+      if (const auto coordinator = world_.processes.Find("coordinator")) {
+        coordinator->RequestStop();
+      }
+      return;
+  }
+}
+
+// Peers take a process that says nothing for longer than the link's lease for gone.
+void RunOperator::Pause(const Fault& fault, SimulatedProcess& process) {
+  process.Pause(fault.span);
+  if (fault.span <= link::kLivenessLimit) return;
+  const auto paused = world_.processes.Find(process.name());
+  After(link::kLivenessLimit, [paused, span = fault.span] {
+    paused->Disconnect();
+    SleepFor(span - link::kLivenessLimit);
+    paused->Reconnect();
+  });
+}
+
+void RunOperator::KillCoordinator(const Fault& fault, SimulatedProcess& coordinator) {
+  killed_ = &fault;
+  coordinator.Kill();
+  world_.processes.OnCoordinatorDeath();
+}
+
+void RunOperator::SendCommand(const std::string& text) {
+  const std::string name = fmt::format("client-{}", ++clients_);
+  CommandMessage command{
+      .client = static_cast<uint64_t>(clients_), .request = 1, .verb = {}, .arguments = {}};
+  std::istringstream words(text);
+  words >> command.verb;
+  for (std::string word; words >> word;) command.arguments.push_back(word);
+  world_.processes.StartOther(name, link::Role::kClient, world_.folder.string() + ".client.log",
+                              [this, name, command](link::Hub& hub) {
+                                constexpr int kTries = 60;
+                                std::optional<ReplyMessage> reply;
+                                link::Writer<CommandMessage> writer(hub);
+                                const link::Reader<ReplyMessage> reader(
+                                    hub, [&](const ReplyMessage& message) {
+                                      if (message.client != command.client) return;
+                                      if (reply) Violate(fmt::format("a second reply to {}", name));
+                                      reply = message;
+                                    });
+                                for (int i = 0; i < kTries && !reply; ++i) {
+                                  writer.Write(command);
+                                  SleepFor(milliseconds(500));
+                                }
+                                world_.story.Add(name, reply ? reply->text : "no reply");
+                                return 0;
+                              });
+}
+
+void RunOperator::Watch(milliseconds span) {
+  const std::string name = fmt::format("client-{}", ++clients_);
+  world_.processes.StartOther(
+      name, link::Role::kClient, world_.folder.string() + ".client.log", [span](link::Hub& hub) {
+        const link::Reader<RunViewMessage> reader(hub, [](const RunViewMessage&) {});
+        SleepFor(span);
+        return 0;
+      });
+}
+
+void RunOperator::AskAsSecond() {
+  const auto first = world_.processes.Find("coordinator");
+  world_.processes.StartOther(fmt::format("second-{}", ++clients_), link::Role::kClient,
+                              world_.folder.string() + ".client.log", [this, first](link::Hub&) {
+                                const bool held = launch::IsHeld(world_.folder);
+                                try {
+                                  AskForRun(world_);
+                                } catch (const Error& error) {
+                                  world_.story.Add("second", error.what());
+                                  return error.exit_code();
+                                }
+                                world_.story.Add("second", "got the run");
+                                if (held && first && !first->ended())
+                                  Violate("two coordinators have the run");
+                                return 0;
+                              });
+}
+
+void RunOperator::After(milliseconds span, std::function<void()> body) {
+  const auto until = Now() + span;
+  Thread([until, body = std::move(body)] {
+    SleepUntil(until);
+    body();
+  });
+}
+
+void RunOperator::Violate(const std::string& what) {
+  world_.story.Add("VIOLATION", what);
+  violations_.push_back(what);
+}
+
+}  // namespace shoal::simulation

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// The person at a simulated run: starts it, resumes it when its coordinator was killed or it ended
+// early, follows the remedies that refusals name, and lets faults and commands happen.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "launch/record/run_meta.h"
+#include "tests/simulation/fault.h"
+#include "tests/simulation/simulated_disk.h"
+#include "tests/simulation/train_session.h"
+
+namespace shoal::simulation {
+
+class RunOperator {
+ public:
+  // Borrows all of them.
+  RunOperator(const World& world, FiberScheduler& scheduler, SimulatedDisk& disk)
+      : world_(world), scheduler_(scheduler), disk_(disk) {}
+
+  // Begins and resumes the run until it has reached its end. Runs in a simulated thread.
+  void Work();
+  // Lets the faults happen, each at its time. Runs in a simulated thread of its own group.
+  void Strike(const std::vector<Fault>& faults);
+
+  // The run has reached its end.
+  bool finished() const { return finished_; }
+  // What a coordinator did that it must not do, one line each.
+  const std::vector<std::string>& violations() const { return violations_; }
+  // Whether a process did not leave in order in the last session.
+  bool last_clean() const { return last_clean_; }
+  int sessions() const { return sessions_; }
+  // The end of the last fault, its span included.
+  SteadyTime quiet_from() const { return quiet_from_; }
+
+ private:
+  struct Session;
+
+  void RunSession(Begin begin);
+  void JudgeExit(const SimulatedProcess& coordinator);
+  // Reads meta.json, whose env steps never become fewer.
+  launch::RunMeta TakeMeta();
+  // What is done before the next session; returns how that begins.
+  Begin Prepare();
+  Begin NextBegin(Begin wanted);
+  void WaitForChildren();
+  void Do(const Fault& fault);
+  void Pause(const Fault& fault, SimulatedProcess& process);
+  void KillCoordinator(const Fault& fault, SimulatedProcess& coordinator);
+  void SendCommand(const std::string& text);
+  void Watch(std::chrono::milliseconds span);
+  void AskAsSecond();
+  void After(std::chrono::milliseconds span, std::function<void()> body);
+  void Violate(const std::string& what);
+
+  const World& world_;
+  FiberScheduler& scheduler_;
+  SimulatedDisk& disk_;
+  std::vector<std::string> violations_;
+  bool finished_ = false, last_clean_ = true;
+  bool trouble_ = false;  // a fault has come that may end a session by itself
+  int sessions_ = 0, clients_ = 0;
+  const Fault* killed_ = nullptr;  // what killed the last coordinator
+  std::string last_words_;
+  uint64_t env_steps_ = 0;  // at the end of the last session
+  SteadyTime quiet_from_{};
+};
+
+}  // namespace shoal::simulation
