@@ -147,6 +147,19 @@ TEST_F(RendererTest, NothingBehindTheEyeOrBeforeTheNearPlaneIsSeen) {
   }
 }
 
+// The near plane cuts the front off; the back is not drawn.
+TEST_F(RendererTest, AShapeAcrossTheNearPlaneIsOpenInFront) {
+  for (const int type : {mjGEOM_SPHERE, mjGEOM_CAPSULE, mjGEOM_ELLIPSOID, mjGEOM_CYLINDER}) {
+    hand_.geoms().clear();
+    hand_.Add(type, {0.16f, 0, 0}, {0.07f, 0.07f, 0.07f});
+    std::vector<float> depths(65 * 65);
+    renderer_.DrawDepth(hand_.scene(), 65, 65, depths);
+    EXPECT_EQ(depths[32 * 65 + 32], std::numeric_limits<float>::infinity()) << type;
+    EXPECT_GE(std::ranges::min(depths), 0.1f) << type;
+    EXPECT_GT(Covered(), 50) << type;
+  }
+}
+
 // A floor below an eye that is level ends at the horizon, in the middle of the picture.
 TEST_F(RendererTest, AnEndlessPlaneReachesTheFarPlane) {
   hand_.Add(mjGEOM_PLANE, {0, 0, -1}, {0, 0, 1});
