@@ -123,18 +123,33 @@ void BatchGather::GatherVectors(const BatchPlan::Element& element, uint64_t last
   gather(last, out.next_obs_vector, out.next_obs_privileged);
 }
 
-void BatchGather::Gather(const BatchPlan& plan, const BatchView& out) const {
+void BatchGather::Gather(const BatchPlan& plan, const BatchView& out, const RunParts& run) const {
   const RecordLayout& layout = ring_.layout();
   const size_t batch = plan.elements.size();
-  const size_t input_bytes =
-      static_cast<size_t>(layout.frame_bytes()) * size_t(stack_ + (goal_pictures_ ? 1 : 0));
-  const size_t action_size = static_cast<size_t>(layout.action_size());
   CHECK(out.obs_privileged.size() == batch * size_t(privileged_.size()));
-  CHECK(out.reward.size() == batch && out.obs_frames.size() == batch * input_bytes &&
+  CHECK(out.reward.size() == batch && out.obs_frames.size() == batch * InputBytes() &&
         out.obs_vector.size() == batch * size_t(observed_.size()) &&
-        out.action.size() == batch * action_size)
+        out.action.size() == batch * static_cast<size_t>(layout.action_size()))
       << "a batch of " << out.reward.size() << " for a plan of " << batch;
-  for (size_t b = 0; b < batch; ++b) {
+  if (run == nullptr) return GatherElements(plan, 0, batch, out);
+  constexpr size_t kPart = kElementsOfPart;
+  run(static_cast<int>((batch + kPart - 1) / kPart), [&](int part) {
+    const size_t begin = static_cast<size_t>(part) * kPart;
+    GatherElements(plan, begin, std::min(batch, begin + kPart), out);
+  });
+}
+
+size_t BatchGather::InputBytes() const {
+  return static_cast<size_t>(ring_.layout().frame_bytes()) *
+         size_t(stack_ + (goal_pictures_ ? 1 : 0));
+}
+
+void BatchGather::GatherElements(const BatchPlan& plan, size_t begin, size_t end,
+                                 const BatchView& out) const {
+  const RecordLayout& layout = ring_.layout();
+  const size_t input_bytes = InputBytes();
+  const auto action_size = static_cast<size_t>(layout.action_size());
+  for (size_t b = begin; b < end; ++b) {
     const BatchPlan::Element& element = plan.elements[b];
     const std::span<const float> goal = GoalOf(element);
     const Returns returns = SumRewards(element.id, goal);

@@ -24,6 +24,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -65,6 +66,10 @@ struct PlanOptions {
 std::optional<BatchPlan> DrawPlan(const PlanOptions& options, Selector* selector,
                                   Relabeller* relabeller, Random* random);
 
+// Calls part(0) .. part(parts - 1), each once, on any threads and in any order; returns when all
+// have returned.
+using RunParts = std::function<void(int parts, const std::function<void(int part)>& part)>;
+
 struct NStep {
   int steps = 1;  // n
   double discount = 1;
@@ -80,9 +85,17 @@ class BatchGather {
 
   // Writes every byte of the arrays in `out`, whose batch is plan.elements.size() (CHECKed). The
   // steps must be sampleable for this stack and n.
-  void Gather(const BatchPlan& plan, const BatchView& out) const;
+  //
+  // `run` (null: the calling thread) may share the elements among threads: kElementsOfPart of them
+  // are a part. The bytes do not depend on how.
+  void Gather(const BatchPlan& plan, const BatchView& out, const RunParts& run = nullptr) const;
+
+  static constexpr int kElementsOfPart = 4;  // 340 kB of two cameras' frames
 
  private:
+  size_t InputBytes() const;  // of one observation's pictures
+  // The elements [begin, end) of the plan, as Gather.
+  void GatherElements(const BatchPlan& plan, size_t begin, size_t end, const BatchView& out) const;
   // The goal of an element that has another than its own, else nothing.
   std::span<const float> GoalOf(const BatchPlan::Element& element) const;
   // Where the sample that begins with some step ends, and what it earns on the way.

@@ -158,7 +158,7 @@ std::optional<DrawnBatch> ReplayCore::TryAnswer(uint8_t* data) {
                                            policies_.relabeller.get(), &random);
   if (!plan) return std::nullopt;
   const BatchView view = batch_schema_.View(data);
-  gather_.Gather(*plan, view);
+  gather_.Gather(*plan, view, gatherers_);
   last_plan_ = *std::move(plan);
   requests_.Pop();
   if (repeated) {

@@ -19,6 +19,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/config/run_config.h"
@@ -97,6 +98,9 @@ class ReplayCore {
   // session, no credit.
   Credit Refusal(const TransitionChunk& chunk) const;
 
+  // Shares the copying of a batch (BatchGather::Gather); null: the calling thread copies.
+  void SetGatherers(RunParts run) { gatherers_ = std::move(run); }
+
   void SetDraining(bool draining);
   // The run's env steps from now on (before: the configured ones): with them stored no actor gets
   // credit any more. Draining and lockstep, which ends by its own rule, know no budget.
@@ -136,6 +140,7 @@ class ReplayCore {
   Intake intake_;
   ReplayPolicies policies_;
   BatchGather gather_;
+  RunParts gatherers_;
   RateLimiter limiter_;
   CreditBook credits_;
   RequestQueue requests_;

@@ -8,6 +8,7 @@
 #include "common/base/log.h"
 #include "common/base/saturating_cast.h"
 #include "common/base/stop.h"
+#include "common/base/usable_cores.h"
 #include "common/config/run_files.h"
 #include "common/config/session_number.h"
 #include "common/intake/receiver_terms.h"
@@ -22,6 +23,10 @@ using std::chrono::milliseconds;
 constexpr milliseconds kPoll{100};  // between looks at control and stop requests
 constexpr int kBatchBuffers = 2;    // one being filled, one being sent
 constexpr milliseconds kProgressSpacing{200};
+constexpr std::chrono::seconds kChoiceSpacing{1};
+
+// With replay.threads = 0. Memory, not cores, bounds how many copy faster: four reach most of it.
+int MostGatherers() { return std::clamp(UsableCores() / 4, 1, 4); }
 
 }  // namespace
 
@@ -35,6 +40,8 @@ ReplayService::ReplayService(const std::filesystem::path& folder, const ProcessN
       before_(ReadAccountBefore(folder)),
       core_(run_, folder, NextSession(folder, name.Text(), WallTimeNs()),
             {before_.stored_steps, before_.sessions}, [this] { ReportStarting(); }),
+      gatherers_(1),
+      most_gatherers_(MostGatherers()),
       control_(Now()),
       inbox_(SpecHash(), ChunkBytes(Window(), core_.ring().layout().record_bytes()), MaxChunks()),
       problems_(SpecHash(), core_.batch_schema()),
@@ -47,10 +54,13 @@ ReplayService::ReplayService(const std::filesystem::path& folder, const ProcessN
       // One for each batch that the learner may have asked for, one for that which it reads.
       slots_(SpecHash(), core_.batch_schema().total_bytes(),
              static_cast<uint32_t>(Settings().learner.request_credits) + 1),
-      report_(name, core_, inbox_, sender_, slots_),
+      report_(name, core_, inbox_, sender_, slots_, gatherers_),
       control_subscriber_(hub, [this](const ControlMessage& m) { control_.OnMessage(m, Now()); }),
       request_subscriber_(hub, [this](const SampleRequest& r) { inbox_.OnRequest(r); }),
-      chunk_subscriber_(hub, [this](const TransitionChunk& c) { inbox_.OnChunk(c); }) {}
+      chunk_subscriber_(hub, [this](const TransitionChunk& c) { inbox_.OnChunk(c); }) {
+  core_.SetGatherers(
+      [this](int parts, const std::function<void(int)>& part) { gatherers_.Run(parts, part); });
+}
 
 int ReplayService::Run() {
   const Ring& ring = core_.ring();
@@ -65,7 +75,7 @@ int ReplayService::Run() {
         Settings().replay.storage == "memory" ? "replay.storage=memory" : "the file is another one",
         ring.stored_steps(), Settings().replay.min_size);
   }
-  last_turn_ = Now();
+  last_turn_ = last_choice_ = Now();
   int exit_code = 0;
   while (!StopRequested() && control_.state() != RunState::kStopping) {
     if (control_.CoordinatorLost(Now())) {
@@ -129,6 +139,7 @@ void ReplayService::Turn() {
   }
   TellProgress(now);
   ApplySettings();
+  ChooseGatherers(now);
   if (report_.Due(now)) Report(control_.state() == RunState::kDraining ? "draining" : "running");
 }
 
@@ -236,6 +247,15 @@ std::optional<DrawnBatch> ReplayService::Draw(uint8_t* data) {
 
 void ReplayService::Publish(const std::vector<Credit>& credits) {
   if (!credits.empty()) credit_publisher_.Write({credits});
+}
+
+void ReplayService::ChooseGatherers(SteadyTime now) {
+  if (now - last_choice_ < kChoiceSpacing) return;
+  const double seconds = std::chrono::duration<double>(now - last_choice_).count();
+  const double share = (seconds_.sampling - sampling_then_) / seconds;
+  last_choice_ = now;
+  sampling_then_ = seconds_.sampling;
+  gatherers_.Resize(GatherThreadsFor(share, gatherers_.threads(), most_gatherers_));
 }
 
 void ReplayService::Report(const char* state) {

@@ -25,6 +25,7 @@
 #include "replay_server/core/replay_core.h"
 #include "replay_server/service/batch_sender.h"
 #include "replay_server/service/flow_ages.h"
+#include "replay_server/service/gather_threads.h"
 #include "replay_server/service/hub_part_writer.h"
 #include "replay_server/service/learner_slots.h"
 #include "replay_server/service/problem_log.h"
@@ -83,6 +84,9 @@ class ReplayService {
 
   void Publish(const std::vector<Credit>& credits);
 
+  // replay.threads = 0: for the next second as many as the last one asked for.
+  void ChooseGatherers(SteadyTime now);
+
   void Report(const char* state);
 
   RunAccount AccountNow() const;
@@ -100,6 +104,8 @@ class ReplayService {
   MetricsReport starting_report_;
   const RunAccount before_;
   ReplayCore core_;
+  GatherThreads gatherers_;
+  const int most_gatherers_;
   ControlState control_;
   ServiceInbox inbox_;
   ProblemLog problems_;
@@ -117,6 +123,8 @@ class ReplayService {
   WriteFaults faults_{[](const std::string& line) { log::Warning("{}", line); }};
   ServiceSeconds seconds_;
   SteadyTime last_turn_{}, last_credits_{}, last_chunk_{};
+  SteadyTime last_choice_{};  // of gatherers
+  double sampling_then_ = 0;  // seconds_.sampling at that time
   SteadyTime last_told_{};
   std::optional<SteadyTime> progress_told_;
   uint64_t told_records_ = 0;

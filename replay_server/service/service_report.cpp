@@ -25,6 +25,7 @@ const MetricsMessage& ServiceReport::Make(const std::string& state, const Servic
   Add("requests_waiting", core_.requests().size());
   Add("slot_batches", slot_batches_);
   Add("slots_held", slots_.held());
+  report_.Add("gather_threads", gatherers_.threads());
   AddTroubles();
   AddTimes(seconds);
   ages->Report(&report_);

@@ -12,6 +12,7 @@
 #include "replay_server/core/replay_core.h"
 #include "replay_server/service/batch_sender.h"
 #include "replay_server/service/flow_ages.h"
+#include "replay_server/service/gather_threads.h"
 #include "replay_server/service/learner_slots.h"
 #include "replay_server/service/service_inbox.h"
 
@@ -30,8 +31,14 @@ class ServiceReport {
  public:
   // Borrows all of them but the name.
   ServiceReport(const ProcessName& name, const ReplayCore& core, const ServiceInbox& inbox,
-                const BatchSender& sender, const LearnerSlots& slots)
-      : core_(core), inbox_(inbox), sender_(sender), slots_(slots), report_(name) {}
+                const BatchSender& sender, const LearnerSlots& slots,
+                const GatherThreads& gatherers)
+      : core_(core),
+        inbox_(inbox),
+        sender_(sender),
+        slots_(slots),
+        gatherers_(gatherers),
+        report_(name) {}
 
   // A chunk waited this long in the inbox.
   void NoteQueueAge(double seconds) { queue_age_seconds_ = std::max(queue_age_seconds_, seconds); }
@@ -54,6 +61,7 @@ class ServiceReport {
   const ServiceInbox& inbox_;
   const BatchSender& sender_;
   const LearnerSlots& slots_;
+  const GatherThreads& gatherers_;
   MetricsReport report_;
   uint64_t slot_batches_ = 0;
   double queue_age_seconds_ = 0;  // largest of the interval

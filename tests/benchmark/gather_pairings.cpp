@@ -3,17 +3,21 @@
 // beside a small one, from a ring in a file beside one in memory.
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <memory>
 
 #include "common/base/check.h"
 #include "common/base/random.h"
+#include "common/base/usable_cores.h"
 #include "common/spec/record.h"
 #include "launch/processes/scratch_folder.h"
 #include "replay_server/core/batch_gather.h"
 #include "replay_server/core/episode_index.h"
 #include "replay_server/core/ring.h"
 #include "replay_server/core/uniform_selector.h"
+#include "replay_server/service/gather_threads.h"
 #include "tests/benchmark/noise_batch.h"
 #include "tests/benchmark/paired_timing.h"
 
@@ -25,6 +29,7 @@ constexpr uint64_t kFew = 10'000, kMany = 200'000;
 constexpr uint32_t kEpisodeSteps = 50, kDifferent = 64;
 constexpr int kInserts = 16;  // per batch, as with replay.samples_per_insert = 8
 constexpr double kCopyTarget = 0.8, kManyTarget = 0.8, kFileTarget = 0.95;
+constexpr double kTwoThreadsTarget = 1.8;
 
 // A full ring of one environment's episodes, and what draws batches from it.
 class FullReplay {
@@ -67,11 +72,11 @@ class FullReplay {
   }
 
   // Draws a batch and gathers it, shifted.
-  void Draw() {
+  void Draw(const replay::RunParts& run = nullptr) {
     const auto plan =
         DrawPlan({.batch = kBatch, .copies = 1, .shift_pad = kPad}, &selector_, nullptr, &random_);
     CHECK(plan.has_value());
-    gather_.Gather(*plan, batch_.batch);
+    gather_.Gather(*plan, batch_.batch, run);
   }
 
   // Copies as many frames as a batch holds from anywhere in the ring to where the batch goes.
@@ -132,36 +137,62 @@ class Replays {
   std::unique_ptr<FullReplay> few_, many_, in_file_;
 };
 
+// The same batches by several threads beside one.
+std::vector<Pairing> ThreadPairings(const std::shared_ptr<Replays>& replays,
+                                    const std::string& drawn) {
+  std::vector<Pairing> pairings;
+  for (const int threads : {2, 4}) {
+    const auto gatherers = std::make_shared<replay::GatherThreads>(threads);
+    pairings.push_back(
+        {.stage = fmt::format("{}, of {} records, by {} threads", drawn, kFew, threads),
+         .unit = "batches/s",
+         .against = "one thread",
+         .ours =
+             [replays, gatherers] {
+               replays->Few().Draw([&](int parts, const std::function<void(int)>& part) {
+                 gatherers->Run(parts, part);
+               });
+             },
+         .other = [replays] { replays->Few().Draw(); }});
+    if (threads == 2) pairings.back().target = kTwoThreadsTarget;
+    if (threads > UsableCores()) pairings.back().skipped = "too few cores";
+  }
+  return pairings;
+}
+
 }  // namespace
 
 std::vector<Pairing> GatherPairings() {
   const auto replays = std::make_shared<Replays>();
   const std::string drawn =
       fmt::format("{} samples of ({}, 84, 84), drawn and shifted", kBatch, kChannels);
-  return {{.stage = fmt::format("{}, of {} records", drawn, kFew),
-           .unit = "batches/s",
-           .against = "memcpy of as many random frames",
-           .target = kCopyTarget,
-           .ours = [replays] { replays->Few().Draw(); },
-           .other = [replays] { replays->Few().Copy(); }},
-          {.stage = fmt::format("{}, of {} records", drawn, kMany),
-           .unit = "batches/s",
-           .against = "memcpy of as many random frames",
-           .target = kCopyTarget,
-           .ours = [replays] { replays->Many().Draw(); },
-           .other = [replays] { replays->Many().Copy(); }},
-          {.stage = fmt::format("{}, of {} records", drawn, kMany),
-           .unit = "batches/s",
-           .against = fmt::format("of {} records", kFew),
-           .target = kManyTarget,
-           .ours = [replays] { replays->Many().Draw(); },
-           .other = [replays] { replays->Few().Draw(); }},
-          {.stage = fmt::format("{} records in, {}, ring in a file", kInserts, drawn),
-           .unit = "batches/s",
-           .against = "ring in memory",
-           .target = kFileTarget,
-           .ours = [replays] { replays->InFile().InsertAndDraw(); },
-           .other = [replays] { replays->Few().InsertAndDraw(); }}};
+  std::vector<Pairing> pairings{
+      {.stage = fmt::format("{}, of {} records", drawn, kFew),
+       .unit = "batches/s",
+       .against = "memcpy of as many random frames",
+       .target = kCopyTarget,
+       .ours = [replays] { replays->Few().Draw(); },
+       .other = [replays] { replays->Few().Copy(); }},
+      {.stage = fmt::format("{}, of {} records", drawn, kMany),
+       .unit = "batches/s",
+       .against = "memcpy of as many random frames",
+       .target = kCopyTarget,
+       .ours = [replays] { replays->Many().Draw(); },
+       .other = [replays] { replays->Many().Copy(); }},
+      {.stage = fmt::format("{}, of {} records", drawn, kMany),
+       .unit = "batches/s",
+       .against = fmt::format("of {} records", kFew),
+       .target = kManyTarget,
+       .ours = [replays] { replays->Many().Draw(); },
+       .other = [replays] { replays->Few().Draw(); }},
+      {.stage = fmt::format("{} records in, {}, ring in a file", kInserts, drawn),
+       .unit = "batches/s",
+       .against = "ring in memory",
+       .target = kFileTarget,
+       .ours = [replays] { replays->InFile().InsertAndDraw(); },
+       .other = [replays] { replays->Few().InsertAndDraw(); }}};
+  std::ranges::move(ThreadPairings(replays, drawn), std::back_inserter(pairings));
+  return pairings;
 }
 
 }  // namespace shoal::bench

@@ -53,10 +53,11 @@ class BatchGatherTest : public testing::Test {
     schema_.emplace(spec_, BatchOptions{.batch = static_cast<int>(plan.elements.size()),
                                         .privileged = std::move(privileged)});
     memory_ = AlignedBytes(schema_->total_bytes());
+    std::fill_n(memory_.data(), schema_->total_bytes(), uint8_t{0});  // between the arrays, too
     const BatchView view = schema_->View(memory_.data());
     const EpisodeIndex index(*ring_, {.stack = spec_.stack, .n_step = n_step.steps});
     BatchGather(*ring_, index, spec_, n_step, nullptr, schema_->options().privileged)
-        .Gather(plan, view);
+        .Gather(plan, view, run_parts_);
     return view;
   }
 
@@ -89,6 +90,7 @@ class BatchGatherTest : public testing::Test {
   std::vector<std::vector<uint8_t>> records_;
   std::optional<BatchSchema> schema_;
   AlignedBytes memory_;
+  RunParts run_parts_;  // of the next Gather
 };
 
 TEST_F(BatchGatherTest, AStackAtAnEpisodesStartRepeatsTheFirstFrame) {
@@ -107,6 +109,30 @@ TEST_F(BatchGatherTest, OneShiftHoldsForAllFramesAndChannelsOfAStackAndAnotherFo
   const BatchView view = Gather({.elements = {{.id = 4, .obs = obs, .next_obs = next}}});
   EXPECT_EQ(Bytes(view.obs_frames), Stack({1, 2}, obs));
   EXPECT_EQ(Bytes(view.next_obs_frames), Stack({2, 3}, next));
+}
+
+// Parts in another order, as threads may run them, and a batch that they do not divide evenly.
+TEST_F(BatchGatherTest, TheBytesDoNotDependOnHowTheElementsAreShared) {
+  Fill(TinySpec(2, 9, 7), kTerminated);
+  BatchPlan plan;
+  for (int b = 0; b < 4 * BatchGather::kElementsOfPart + 3; ++b) {
+    plan.elements.push_back({.id = uint64_t(2 + b % 4),
+                             .obs = {.dx = b % 5 - 2, .dy = b % 3 - 1},
+                             .next_obs = {.dx = b % 4 - 2, .dy = b % 7 - 3}});
+  }
+  Gather(plan, {.steps = 2, .discount = 0.5});
+  const AlignedBytes alone = std::move(memory_);
+  const auto bytes = [&](const AlignedBytes& memory) {
+    return std::vector<uint8_t>(memory.data(), memory.data() + schema_->total_bytes());
+  };
+  int parts_run = 0;
+  run_parts_ = [&](int parts, const std::function<void(int)>& part) {
+    parts_run = parts;
+    for (int i = parts - 1; i >= 0; --i) part(i);
+  };
+  Gather(plan, {.steps = 2, .discount = 0.5});
+  EXPECT_EQ(parts_run, 5);
+  EXPECT_EQ(bytes(memory_), bytes(alone));
 }
 
 TEST_F(BatchGatherTest, PrivilegedBlocksAreThoseOfTheSameRecordsAsTheVectors) {
