@@ -9,6 +9,7 @@
 #include <string>
 
 #include "common/base/error.h"
+#include "common/base/program_file.h"
 
 namespace shoal::learner {
 namespace {
@@ -23,7 +24,7 @@ void EnsurePassiveOpenMp(int threads, char** argv) {
   setenv(kGuard, "1", 1);
   setenv("OMP_WAIT_POLICY", "passive", 1);
   setenv("OMP_NUM_THREADS", std::to_string(threads).c_str(), 1);
-  execv("/proc/self/exe", argv);
+  execv(ProgramFile().c_str(), argv);
   throw RuntimeError("cannot start '{}' anew: {}", argv[0], std::strerror(errno));
 }
 

@@ -3,6 +3,8 @@
 
 #include <set>
 
+#include "common/base/program_file.h"
+
 namespace shoal {
 
 namespace fs = std::filesystem;
@@ -11,11 +13,9 @@ std::vector<fs::path> SharedDataFolders(const std::string& kind) {
   std::vector<fs::path> folders;
   std::error_code error;
   if (fs::is_regular_file(kProjectFile, error)) folders.push_back(fs::path(kind));
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
-  if (!error) {
-    folders.push_back(program.parent_path() / kind);
-    folders.push_back(program.parent_path().parent_path() / "share/shoal" / kind);
-  }
+  const fs::path program = ProgramFile();
+  folders.push_back(program.parent_path() / kind);
+  folders.push_back(program.parent_path().parent_path() / "share/shoal" / kind);
   return folders;
 }
 

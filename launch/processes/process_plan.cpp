@@ -4,18 +4,13 @@
 #include <algorithm>
 
 #include "common/base/check.h"
-#include "common/base/error.h"
+#include "common/base/program_file.h"
 #include "common/wire/process_name.h"
 #include "launch/record/run_folder.h"
 
 namespace shoal::launch {
 
-std::filesystem::path ProgramFolder() {
-  std::error_code error;
-  const auto program = std::filesystem::read_symlink("/proc/self/exe", error);
-  if (error) throw RuntimeError("cannot read /proc/self/exe: {}", error.message());
-  return program.parent_path();
-}
+std::filesystem::path ProgramFolder() { return ProgramFile().parent_path(); }
 
 ProcessSpec ProgramSpec(const std::string& program, std::vector<std::string> arguments,
                         int threads) {

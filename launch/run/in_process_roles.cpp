@@ -15,8 +15,8 @@
 #include "actor/worlds/physics_library.h"
 #include "common/base/check.h"
 #include "common/base/clock.h"
-#include "common/base/files.h"
 #include "common/base/main_guard.h"
+#include "common/base/program_file.h"
 #include "common/base/sleep.h"
 #include "common/base/thread_group.h"
 #include "common/base/usable_cores.h"
@@ -131,11 +131,9 @@ int InProcessRoles::Run(const ProcessSpec& spec) {
 
 void PrepareForRolesInProcess() {
   setenv("LP_NUM_THREADS", "0", 1);  // no threads of the renderer's: the actors fill the cores
-  std::string words = ReadFile("/proc/self/cmdline");
+  std::vector<std::string> words = ProgramWords();
   std::vector<char*> arguments;
-  for (size_t at = 0; at < words.size(); at = words.find('\0', at) + 1) {
-    arguments.push_back(words.data() + at);
-  }
+  for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   learner::EnsurePassiveOpenMp(UsableCores(), arguments.data());
 }

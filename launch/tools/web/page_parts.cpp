@@ -3,9 +3,16 @@
 
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/base/program_file.h"
 #include "launch/tools/web/page_texts.h"
 
 namespace shoal::launch {
+
+std::filesystem::path ChartLibrary() {
+  constexpr char kFolder[] = "share/javascript/dygraphs";
+  const std::filesystem::path own = ProgramFile().parent_path().parent_path() / kFolder;
+  return std::filesystem::exists(own) ? own : std::filesystem::path("/usr") / kFolder;
+}
 
 std::map<std::string, PagePart> LoadPageParts(const std::filesystem::path& chart_library) {
   constexpr char kHtml[] = "text/html; charset=utf-8", kCss[] = "text/css; charset=utf-8",

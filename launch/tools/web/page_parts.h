@@ -8,8 +8,9 @@
 
 namespace shoal::launch {
 
-// Folder of Debian's package libjs-dygraphs.
-inline constexpr char kChartLibrary[] = "/usr/share/javascript/dygraphs";
+// The folder of dygraphs: that of the bundle or prefix that the program belongs to, else that of
+// Debian's package libjs-dygraphs.
+std::filesystem::path ChartLibrary();
 
 struct PagePart {
   std::string type;  // MIME
@@ -19,6 +20,6 @@ struct PagePart {
 // By name: "index.html", "page.js", "dygraph.min.js", ... Reads the chart library from its folder.
 // Throws Error naming the file that is missing, and its package.
 std::map<std::string, PagePart> LoadPageParts(
-    const std::filesystem::path& chart_library = kChartLibrary);
+    const std::filesystem::path& chart_library = ChartLibrary());
 
 }  // namespace shoal::launch

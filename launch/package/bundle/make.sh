@@ -1,0 +1,116 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# make.sh BUILD FOLDER [--slim]: makes FOLDER/shoal-VERSION-linux-x86_64.tar.xz of what BUILD has
+# built: programs, shared data, manual, and every library that they use, the loader and the C library
+# included (docs/install.md). --slim leaves out FFmpeg, Cairo and Mesa: no films, no pictures by
+# OpenGL. Needs Debian, whose packages say under which licence a library is.
+set -euo pipefail
+here=$(dirname "$(readlink -f "$0")")
+source=$(readlink -f "$here/../../..")
+build=$(readlink -f "$1") folder=$(readlink -f "$2") slim=false
+[[ ${3:-} == --slim ]] && slim=true
+programs=(shoal shoal-actor shoal-learner shoal-replay)
+version=$(sed -n 's/^CPACK_PACKAGE_VERSION "\(.*\)"\|^set(CPACK_PACKAGE_VERSION "\(.*\)")/\1\2/p' \
+  "$build/CPackConfig.cmake" | head -1)
+name=shoal-$version$($slim && echo -slim || true)-linux-$(uname -m)
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+root=$work/$name
+
+DESTDIR='' cmake --install "$build" --component shoal --strip --prefix "$root" >/dev/null
+mkdir -p "$root"/{libexec,lib,share/licences} "$work/left_out"
+for program in "${programs[@]}"; do
+  mv "$root/bin/$program" "$root/libexec/"
+  install -m 755 "$here/launcher.sh" "$root/bin/$program"
+done
+
+# The libraries that a file needs, and theirs: "soname path" a line.
+libraries_of() {
+  LD_LIBRARY_PATH=$work/left_out ldd "$@" | awk '$2 == "=>" && $3 ~ /^\// {print $1, $3}' | sort -u
+}
+
+# left_out OPTION WHAT FUNCTIONS SONAME...: libraries whose functions (of the pattern FUNCTIONS, as far
+# as the programs use them) fail, because WHAT need the full bundle (left_out.c).
+left_out() {
+  local option=$1 what=$2 functions=$3 soname
+  shift 3
+  nm -D --undefined-only "${programs[@]/#/$root/libexec/}" | awk 'NF == 2 {print $2}' |
+    grep -E "$functions" | sort -u >"$work/names"
+  sed 's/@.*//; s/.*/SHOAL_LEFT_OUT(&)/' "$work/names" >"$work/names.h"
+  # FUNCTION@VERSION: the loader looks for the versions.
+  awk -F@ 'NF > 1 {of[$NF] = of[$NF] " " $1 ";"}
+    END {for (version in of) print version " {" of[version] " };"}' "$work/names" >"$work/versions"
+  local versions=()
+  [[ ! -s $work/versions ]] || versions=(-Wl,--version-script="$work/versions")
+  for soname in "$@"; do
+    gcc -shared -fPIC -O1 -w -fno-builtin "$option" -DWHAT="\"$what\"" \
+      -DNAMES="\"$work/names.h\"" -Wl,-soname,"$soname" "${versions[@]}" \
+      -o "$work/left_out/$soname" "$here/left_out.c"
+  done
+}
+needed() { libraries_of "${programs[@]/#/$root/libexec/}" | awk '{print $1}' | grep -E "$1"; }
+if $slim; then
+  mapfile -t film < <(needed '^lib(avcodec|avformat|avutil|swscale|cairo)\.so')
+  mapfile -t gl < <(needed '^libOSMesa\.so')
+  left_out -UFAILS films '^(av|sws|swr|cairo)' "${film[@]}"
+  left_out -DFAILS "pictures drawn by OpenGL" '^OSMesa' "${gl[@]}"
+fi
+
+carried=()  # files of the system that the bundle has
+while read -r soname path; do
+  install -m 644 "$(readlink -f "$path")" "$root/lib/$soname"
+  [[ $path == "$work"/* ]] || carried+=("$path")
+done < <(libraries_of "${programs[@]/#/$root/libexec/}")
+loader=/lib64/ld-linux-x86-64.so.2
+install -m 755 "$(readlink -f "$loader")" "$root/lib/ld-linux-x86-64.so.2"
+carried+=("$loader")
+
+# What programs find when they are asked for it: the page's curves, the fonts of films.
+javascript=/usr/share/javascript/dygraphs
+mkdir -p "$root/share/javascript/dygraphs"
+install -m 644 "$javascript"/dygraph.min.{js,css} "$root/share/javascript/dygraphs/"
+carried+=("$javascript/dygraph.min.js")
+if ! $slim; then
+  mkdir -p "$root"/share/{fonts,fontconfig}
+  install -m 644 /usr/share/fonts/truetype/dejavu/DejaVuSans{,-Bold}.ttf "$root/share/fonts/"
+  install -m 644 "$here/fonts.conf" "$root/share/fontconfig/"
+  carried+=(/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf)
+fi
+
+# A file of licences for each package that something comes from.
+mapfile -t carried < <(printf '%s\n' "${carried[@]}" | xargs readlink -f | sort -u)
+# dpkg knows some files below /lib, which is /usr/lib: both names are asked for.
+owners=$(dpkg -S "${carried[@]}" "${carried[@]#/usr}" 2>/dev/null || true)
+owned=$(sed 's/^.*: //; s#^/usr##' <<<"$owners")
+for file in "${carried[@]}"; do
+  grep -qxF -e "${file#/usr}" <<<"$owned" ||
+    { echo "bundle: no package owns '$file': its licence is not known" >&2; exit 1; }
+done
+mapfile -t packages < <(cut -d: -f1 <<<"$owners" | tr ',' '\n' | tr -d ' ' | sort -u)
+for package in "${packages[@]}"; do
+  install -m 644 "/usr/share/doc/$package/copyright" "$root/share/licences/$package"
+done
+
+# What launcher.sh compares before it starts a program.
+(cd "$root" && LC_ALL=C && stat -c '%s %n' lib/*.so* libexec/* >"$work/sizes")
+install -m 644 "$work/sizes" "$root/lib/sizes"
+
+install -m 644 "$source"/{LICENSE,NOTICE} "$root/"
+{
+  echo "Libraries in lib/, fonts and scripts in share/ come from these packages of Debian, unchanged."
+  echo "Their licences lie beside this file. Their sources: https://snapshot.debian.org, by name and"
+  echo "version of the source package, or apt-get source."
+  $slim || echo "FFmpeg is under the GPL as Debian builds it: so is this bundle as a whole, version 3."
+  echo
+  dpkg-query -W -f='${Package} ${Version} (source ${source:Package} ${source:Version})\n' \
+    "${packages[@]}" | sort -u
+} >"$root/share/licences/PACKAGES"
+(cd "$root" && find . -type f ! -name SHA256SUMS -print0 | sort -z | xargs -0 sha256sum >SHA256SUMS)
+
+mkdir -p "$folder"
+time=$(git -C "$source" log -1 --format=%ct 2>/dev/null || echo 0)
+# XZ_LEVEL: 0 to 9; the tests take less time for more bytes.
+tar -C "$work" --sort=name --owner=0 --group=0 --numeric-owner --mtime="@$time" -cf - "$name" |
+  xz -T0 --x86 --lzma2=preset="${XZ_LEVEL:-9}" >"$folder/$name.tar.xz.part"
+mv "$folder/$name.tar.xz.part" "$folder/$name.tar.xz"
+echo "$folder/$name.tar.xz"

@@ -1,0 +1,108 @@
+#!/usr/bin/env bash
+# SPDX-License-Identifier: Apache-2.0
+# bundle_test.sh BUILD [--slim] [--debian SUITE]: makes a bundle of BUILD, unpacks it elsewhere, and
+# uses it there with nothing of this system's libraries: `shoal check`, a training, an evaluation and
+# (not slim) a training from pixels and a film. --debian: in a bare root of that Debian, made by
+# debootstrap, which needs root and a mirror; else in this system, as it is. With XZ_LEVEL set
+# (make.sh) the size is not judged.
+set -euo pipefail
+build=$(readlink -f "$1")
+shift
+slim='' suite=''
+while (($# > 0)); do
+  case $1 in
+    --slim) slim=--slim ;;
+    --debian) suite=$2 && shift ;;
+    *) echo "bundle_test: $1?" >&2; exit 2 ;;
+  esac
+  shift
+done
+here=$(dirname "$(readlink -f "$0")")
+work=$(mktemp -d)
+trap 'rm -rf "$work"' EXIT
+fail() { echo "bundle_test: $*" >&2; exit 1; }
+
+archive=$("$here/../../../launch/package/bundle/make.sh" "$build" "$work/out" $slim)
+most=90000000
+[[ -z $slim ]] || most=40000000
+size=$(stat -c %s "$archive")
+echo "$archive: $size bytes"
+
+# A folder with a space in its name, in a root that has nothing of ours.
+root=$work/root
+if [[ -n $suite ]]; then
+  debootstrap --variant=minbase "$suite" "$root" >"$work/debootstrap.log" 2>&1 ||
+    { tail -5 "$work/debootstrap.log" >&2; fail "no root of $suite"; }
+  inside() { chroot "$root" /usr/bin/env -i PATH=/usr/bin:/bin HOME=/tmp TERM=dumb sh -c "$1"; }
+  mount --bind /proc "$root/proc"
+  mount -t tmpfs none "$root/dev/shm" 2>/dev/null || mkdir -p "$root/dev/shm"
+  trap 'umount "$root/proc" "$root/dev/shm" 2>/dev/null; rm -rf "$work"' EXIT
+  place="/opt/a place"
+else
+  mkdir -p "$root"
+  inside() { env -i PATH=/usr/bin:/bin HOME="$work" TERM=dumb sh -c "$1"; }
+  place="$root/a place"
+fi
+target="$root/a place"
+[[ -z $suite ]] || target="$root/opt/a place"
+mkdir -p "$target"
+tar -C "$target" -xf "$archive"
+name=$(basename "$archive" .tar.xz)
+bundle="$place/$name"
+run() { inside "cd '$place' && $1"; }
+
+(cd "$target/$name" && sha256sum --quiet -c SHA256SUMS) || fail "a file is not as it was packed"
+run "'$bundle/bin/shoal' --version"
+
+# No library of the system: each that a running program has mapped lies in the bundle.
+if ! run "'$bundle/bin/shoal' check" >"$work/check" 2>&1; then
+  # Of a slim one nothing fails but pictures.
+  if [[ -z $slim ]] || grep FAIL "$work/check" | grep -qv "slim bundle"; then
+    cat "$work/check"
+    fail "shoal check"
+  fi
+fi
+keys="--set env_steps=2000 --set eval.interval=1000 --set eval.episodes=2 --set eval.final_episodes=4"
+run "'$bundle/bin/shoal' train --preset fetch-reach-state $keys --set run_name=state" >"$work/state" 2>&1 ||
+  { cat "$work/state"; fail "training from state"; }
+run "'$bundle/bin/shoal' eval state --episodes 3" >/dev/null || fail "evaluation"
+if [[ -z $slim ]]; then
+  pixels="--preset fetch-reach-fast --set run_name=pixels --set env_steps=8000 --set eval.interval=8000"
+  pixels+=" --set eval.episodes=2 --set eval.final_episodes=4"
+  # Meanwhile: the libraries that the processes of the run have mapped.
+  run "'$bundle/bin/shoal' train $pixels >'$place/pixels' 2>&1 & run=\$!
+    while kill -0 \$run 2>/dev/null; do
+      for maps in /proc/[0-9]*/maps; do
+        if grep -qF '$bundle/libexec' \$maps 2>/dev/null; then
+          echo seen
+          grep '\.so' \$maps | grep -vF '$bundle/lib/' | grep -v '/dev/shm'
+        fi
+      done
+      sleep 1
+    done >'$place/maps' 2>/dev/null
+    wait \$run" || { cat "$target/pixels"; fail "training from pixels"; }
+  grep -q seen "$target/maps" || fail "no process of the run was seen"
+  if grep -v seen "$target/maps" | head -3 | grep .; then fail "libraries of the system are used"; fi
+  run "'$bundle/bin/shoal' film pixels" >/dev/null || fail "a film"
+else
+  if run "'$bundle/bin/shoal' film state" >"$work/film" 2>&1; then fail "a slim bundle made a film"; fi
+  grep -q "this is a slim bundle" "$work/film" || { cat "$work/film"; fail "no word of what is left out"; }
+fi
+
+# One line and an exit code for what cannot work.
+refused() {  # TEXT COMMAND
+  local said
+  if said=$(inside "$2" 2>&1); then fail "taken: $2"; fi
+  [[ $(wc -l <<<"$said") == 1 && $said == *"$1"* ]] || fail "'$2' said: $said"
+}
+mkdir -p "$target/tools"
+printf '#!/bin/sh\necho aarch64\n' >"$target/tools/uname" && chmod +x "$target/tools/uname"
+refused "cannot run on aarch64" "PATH='$place/tools':\$PATH '$bundle/bin/shoal' --version"
+mv "$target/$name/lib/libc.so.6" "$work/"
+refused "the bundle is damaged" "'$bundle/bin/shoal' --version"
+mv "$work/libc.so.6" "$target/$name/lib/"
+truncate -s 1000 "$target/$name"/lib/libfmt.so.*
+refused "the bundle is damaged" "'$bundle/bin/shoal' --version"
+
+[[ -n ${XZ_LEVEL:-} ]] || ((size <= most)) || fail "$size bytes are more than $most"
+echo "bundle_test: passed${suite:+ in a bare $suite}"
