@@ -41,8 +41,13 @@ std::optional<int> Parse(int argc, char** argv, Options* options) {
   return std::nullopt;
 }
 
-// Time to draw one frame by all cameras of an environment, measured over some steps of an episode.
-double FrameMicroseconds(worlds::Environment& environment) {
+// Times of one environment, measured over some steps of an episode.
+struct StepCosts {
+  double frame_microseconds = 0;  // drawing a frame, all cameras
+  double step_microseconds = 0;   // a whole env step
+};
+
+StepCosts MeasureSteps(worlds::Environment& environment) {
   constexpr int kSteps = 10;
   const ObservationSpec& spec = environment.spec();
   std::vector<uint8_t> frame(spec.FrameBytes());
@@ -52,6 +57,7 @@ double FrameMicroseconds(worlds::Environment& environment) {
   environment.Reset(StreamKey(0, StreamRole::kEvalEnvironment, 0),
                     out);  // the first frame prepares much
   const double before = environment.render_seconds();
+  const SteadyTime start = Now();
   int steps = 0;
   try {
     for (bool running = true; running && steps < kSteps; ++steps) {
@@ -60,7 +66,9 @@ double FrameMicroseconds(worlds::Environment& environment) {
     }
   } catch (const worlds::EpisodeFault&) {  // training will count it
   }
-  return 1e6 * (environment.render_seconds() - before) / std::max(1, steps);
+  const double each = 1e6 / std::max(1, steps);
+  return {.frame_microseconds = each * (environment.render_seconds() - before),
+          .step_microseconds = each * std::chrono::duration<double>(Now() - start).count()};
 }
 
 // The answer goes into a file for the program that started this one: a user's task may print to
@@ -82,7 +90,9 @@ int Describe(const Options& options) {
   if (config.observation.pixels) render = worlds::MakeRenderContext(config.observation);
   const auto environment = worlds::MakeEnvironment(config, render);
   nlohmann::ordered_json description = ToJson(environment->spec());
-  description["frame_microseconds"] = FrameMicroseconds(*environment);
+  const StepCosts costs = MeasureSteps(*environment);
+  description["frame_microseconds"] = costs.frame_microseconds;
+  description["step_microseconds"] = costs.step_microseconds;
   Answer(options, description.dump(2));
   return 0;
 }

@@ -6,6 +6,7 @@
 #include "common/base/log.h"
 #include "common/base/usable_cores.h"
 #include "common/base/write_faults.h"
+#include "common/config/learner_threads.h"
 #include "common/config/session_number.h"
 #include "common/nn/encoder_weights.h"
 #include "common/policy/checkpoint_writer.h"
@@ -17,10 +18,12 @@
 namespace shoal::learner {
 namespace {
 
-std::unique_ptr<Agent> MakeAgentOf(const RunConfig& run, nn::Precision precision, int threads,
-                                   const AgentFactory& make) {
-  nn::SetThreads(threads);
-  return make(run.config, run.spec, precision);
+ResizableAgent::Make MakeAgentOf(const RunConfig& run, nn::Precision precision,
+                                 const AgentFactory& make) {
+  return [&run, precision, make](int threads) {
+    nn::SetThreads(threads);
+    return make(run.config, run.spec, precision);
+  };
 }
 
 }  // namespace
@@ -33,13 +36,13 @@ LearnerProgram::LearnerProgram(const std::filesystem::path& folder, const Proces
       run_(run),
       session_(NextSession(folder, name.Text(), WallTimeNs())),
       precision_(nn::ChoosePrecision(run.config.learner.precision, run.spec.HasPixels())),
-      agent_(MakeAgentOf(run, precision_, threads, make)),
+      agent_(MakeAgentOf(run_, precision_, make), threads),
       checkpoints_(folder, run),
       restored_(Restore()),
-      update_page_(folder, agent_->updates()),
+      update_page_(folder, agent_.updates()),
       control_(Now()),
       sink_(hub),
-      batches_(MakeFeed(folder, run, session_, agent_->updates(), hub)),
+      batches_(MakeFeed(folder, run, session_, agent_.updates(), hub)),
       evaluation_subscriber_(
           hub,
           [this](const EvalMessage& m) { pending_evaluations_.OnEvaluated(m.version.update); }),
@@ -55,13 +58,15 @@ int LearnerProgram::Run() {
                      .name = name_,
                      .precision = precision_,
                      .session = session_,
-                     .agent = *agent_,
+                     .agent = agent_,
                      .batches = batches_->stream(),
                      .sink = sink_,
                      .checkpoints = checkpoints_,
                      .pending_evaluations = pending_evaluations_,
                      .control = control_,
-                     .update_page = update_page_},
+                     .update_page = update_page_,
+                     .threads = agent_.threads(),
+                     .resize = [this](int threads) { return Resize(threads); }},
                     restored_);
   const TrainingLoop::End end = loop.Run();
   const auto unwritten = checkpoints_.UnwrittenUpdates();
@@ -87,28 +92,42 @@ std::optional<CheckpointState> LearnerProgram::Restore() {
   const std::string warning =
       CheckPrecision(*checkpoint, run_.config.learner.precision, precision_);
   if (!warning.empty()) log::Warning("{}", warning);
-  agent_->Restore(checkpoint->tensors, (checkpoint->folder / kLearnerFile).string());
-  if (agent_->updates() != checkpoint->state.updates) {
+  agent_.Restore(checkpoint->tensors, (checkpoint->folder / kLearnerFile).string());
+  if (agent_.updates() != checkpoint->state.updates) {
     throw RuntimeError("'{}': parameters of update {}, but {} says {}", checkpoint->folder.string(),
-                       agent_->updates(), kStateFile, checkpoint->state.updates);
+                       agent_.updates(), kStateFile, checkpoint->state.updates);
   }
   log::Info("restored {}: {} updates, {} env steps", checkpoint->folder.filename().string(),
             checkpoint->state.updates, checkpoint->state.env_steps);
   return checkpoint->state;
 }
 
+int LearnerProgram::Resize(int threads) {
+  try {
+    if (threads < 1) throw UsageError("learner.threads = {}: expected at least 1", threads);
+    CheckCores(threads, ReadCoreLimits());
+    agent_.Resize(threads);
+    log::Info("{} from update {} on",
+              DescribeThreads(run_.config, run_.spec, threads, UsableCores()),
+              agent_.updates() + 1);
+  } catch (const Error& error) {
+    log::Warning("{}; it stays {}", error.what(), agent_.threads());
+  }
+  return agent_.threads();
+}
+
 void LearnerProgram::StartFresh() {
   const std::filesystem::path initial = folder_ / kInitialWeightsFile;
   if (std::filesystem::exists(initial)) {
     const std::string source = initial.string();
-    agent_->Restore(StartTensors(nn::ReadSafetensors(ReadFile(initial), source), source, *agent_),
-                    source);
+    agent_.Restore(StartTensors(nn::ReadSafetensors(ReadFile(initial), source), source, agent_),
+                   source);
     log::Info("the networks start from {}", source);
     return;
   }
   const nn::TensorMap weights = nn::ReadEncoderWeights(run_.config.network, run_.spec);
   if (weights.empty()) return;
-  StartEncoder(weights, agent_.get());
+  StartEncoder(weights, &agent_);
   log::Info("the encoder starts from {}", run_.config.network.encoder_weights);
 }
 

@@ -16,6 +16,7 @@
 #include "common/wire/process_name.h"
 #include "learner/agent/agent.h"
 #include "learner/agent/algorithms.h"
+#include "learner/agent/resizable_agent.h"
 #include "learner/batch_feed.h"
 #include "learner/checkpoint_store.h"
 #include "learner/hub_learner_sink.h"
@@ -41,12 +42,15 @@ class LearnerProgram {
 
   void StartFresh();
 
+  // Gives the agent so many threads, unless they do not fit, and returns how many it has.
+  int Resize(int threads);
+
   const std::filesystem::path folder_;
   const ProcessName name_;
   const RunConfig run_;
   const uint64_t session_;
   const nn::Precision precision_;
-  const std::unique_ptr<Agent> agent_;
+  ResizableAgent agent_;
   CheckpointStore checkpoints_;
   const std::optional<CheckpointState> restored_;
   UpdatePage update_page_;

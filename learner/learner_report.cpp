@@ -62,6 +62,7 @@ const MetricsMessage& LearnerReport::Make(const LearnerFigures& figures) {
   }
   add("eval_interval", figures.eval_interval);
   add("budget_env_steps", figures.budget);
+  add("threads", figures.threads);
   add("weights_sent", figures.weights_sent);
   add("weights_unsent", figures.weights_unsent);
   add("evaluations_overtaken", figures.evaluations_overtaken);

@@ -10,6 +10,7 @@
 //   seconds_STAGE, share_STAGE        where the learner's time went
 //   eval_interval, budget_env_steps   in force
 //   samples_per_insert, weights_period   the same, with a replay
+//   threads                           of the agent, in force
 //   eval_updates                      updates of the last evaluation point handed out
 //   drained                           1 once draining is over
 #pragma once
@@ -46,6 +47,7 @@ struct LearnerFigures {
   bool drained = false;
   double samples_per_insert = 0, eval_interval = 0, weights_period = 0;
   double budget = 0;  // env steps
+  int threads = 1;    // of the agent
   LearnerSeconds seconds;
   BatchCounters batches;
 };

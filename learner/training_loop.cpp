@@ -37,6 +37,8 @@ TrainingLoop::TrainingLoop(const Parts& parts, const std::optional<CheckpointSta
                    parts.sink),
       report_(parts.name, parts.run),
       on_policy_(LearnsOnPolicy(config_)),
+      threads_(parts.threads),
+      threads_asked_(parts.threads),
       budget_(static_cast<uint64_t>(config_.env_steps)),
       samples_per_insert_(config_.replay.samples_per_insert),
       granted_from_steps_(static_cast<uint64_t>(config_.replay.min_size)),
@@ -231,6 +233,7 @@ void TrainingLoop::ApplySettings() {
   evaluations_.SetInterval(
       CountInForce(control, "eval.interval", static_cast<uint64_t>(config_.eval.interval)),
       env_steps_);
+  ApplyThreads();
   // A live setting is a number, which replaces the schedule.
   const std::optional<double> set = control.Setting("replay.samples_per_insert");
   const Schedule samples = set ? Schedule::Constant(*set) : config_.replay.samples_per_insert;
@@ -238,6 +241,14 @@ void TrainingLoop::ApplySettings() {
   granted_before_ = GrantedSamples(env_steps_);
   granted_from_steps_ = std::max(env_steps_, granted_from_steps_);
   samples_per_insert_ = samples;
+}
+
+void TrainingLoop::ApplyThreads() {
+  const int asked =
+      SaturatingCast<int>(parts_.control.SettingOr("learner.threads", double(threads_asked_)));
+  if (asked == threads_asked_ || parts_.resize == nullptr || on_policy_) return;
+  threads_asked_ = asked;
+  threads_ = parts_.resize(asked);
 }
 
 void TrainingLoop::Report(bool now) {
@@ -256,6 +267,7 @@ void TrainingLoop::Report(bool now) {
                                .eval_interval = static_cast<double>(evaluations_.interval()),
                                .weights_period = static_cast<double>(weights_.period()),
                                .budget = static_cast<double>(budget_),
+                               .threads = threads_,
                                .seconds = seconds_,
                                .batches = parts_.batches.counters()};
   TellProgress();

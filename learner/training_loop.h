@@ -17,6 +17,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -55,6 +56,10 @@ class TrainingLoop {
     ControlState& control;
     UpdatePage& update_page;  // counts for the successor after a kill
     std::chrono::milliseconds drain_idle = kDrainIdle;
+    int threads = 1;  // the agent's
+    // Gives the agent another number of threads; returns its number from now on. Null: it keeps
+    // `threads`. Called between updates, once for each number that is asked for.
+    std::function<int(int threads)> resize = nullptr;
   };
 
   enum class End { kStopped, kCoordinatorLost };
@@ -92,6 +97,7 @@ class TrainingLoop {
   void GiveAwaitedWeights();
   // Takes over what was changed while the run goes on.
   void ApplySettings();
+  void ApplyThreads();
   // To the coordinator: what the run is decided by.
   void TellProgress();
   void Report(bool now = false);
@@ -105,6 +111,7 @@ class TrainingLoop {
   LearnerReport report_;
   LearnerSeconds seconds_;
   const bool on_policy_;
+  int threads_, threads_asked_;            // of the agent; of the order obeyed last
   uint64_t budget_;                        // env steps, in force
   std::optional<uint64_t> given_weights_;  // on policy: the update of those given last
   Schedule samples_per_insert_;            // in force

@@ -14,6 +14,9 @@ namespace shoal {
 // 1, because updates are too short to wait for each other.
 int LearnerThreads(const Config& config, int cores);
 
+// Threads that have enough rows of a batch to be worth a core: 8 each, transitions whole.
+int MostThreads(const Config& config);
+
 // Throws Error (kUsage) unless there is a transition of learner.batch, with its replay.copies, for
 // each of so many replicas.
 void CheckReplicas(const Config& config, int replicas);

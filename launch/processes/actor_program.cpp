@@ -71,7 +71,8 @@ ObservedWorld DescribeObservations(const Config& config) {
   const nlohmann::json described =
       ParseStrictJson(ReadFile(answer), std::string(kProgram) + " --describe");
   return {.spec = ObservationSpecFromJson(described),
-          .frame_microseconds = described.value("frame_microseconds", 0.0)};
+          .frame_microseconds = described.value("frame_microseconds", 0.0),
+          .step_microseconds = described.value("step_microseconds", 0.0)};
 }
 
 std::optional<EvaluationPoint> EvaluateByActor(const EvaluationOrder& order,

@@ -15,7 +15,8 @@ namespace shoal::launch {
 
 struct ObservedWorld {
   ObservationSpec spec;
-  double frame_microseconds = 0;  // that drawing a frame, all cameras, takes on this machine
+  // What drawing a frame, all cameras, takes on this machine, and a whole env step with it.
+  double frame_microseconds = 0, step_microseconds = 0;
 };
 
 // `shoal-actor --describe`: what actors of this configuration observe. Its error becomes ours, with

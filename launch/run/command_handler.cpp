@@ -63,6 +63,7 @@ void CommandHandler::Set(const std::vector<std::string>& assignments, ReplyMessa
   for (const std::string& assignment : assignments) {
     changes.push_back(changed.Assign(assignment, effects_.env_steps()));
   }
+  effects_.check(changed.config());
   settings_ = changed;
   for (const SettingChange& change : changes) {
     effects_.note(change);

@@ -17,11 +17,12 @@ namespace shoal::launch {
 class CommandHandler {
  public:
   struct Effects {
-    std::function<bool()> running;            // no: it is on its way to the end
-    std::function<uint64_t()> env_steps;      // of the run so far
-    std::function<void()> stop;               // ends the run in order
-    std::function<void(int, int)> scale;      // actors: from, to; may throw Error
-    std::function<void(SettingChange)> note;  // a change was made: record it, tell the processes
+    std::function<bool()> running;             // no: it is on its way to the end
+    std::function<uint64_t()> env_steps;       // of the run so far
+    std::function<void()> stop;                // ends the run in order
+    std::function<void(int, int)> scale;       // actors: from, to; may throw Error
+    std::function<void(SettingChange)> note;   // a change was made: record it, tell the processes
+    std::function<void(const Config&)> check;  // of new settings on this machine; throws Error
   };
 
   CommandHandler(LiveSettings& settings, Effects effects)

@@ -11,6 +11,7 @@
 #include "common/base/sleep.h"
 #include "common/base/stop.h"
 #include "common/base/usable_cores.h"
+#include "common/config/learner_threads.h"
 #include "common/config/on_policy.h"
 #include "launch/processes/ordered_stop.h"
 #include "launch/processes/process_plan.h"
@@ -41,6 +42,11 @@ const char* StateText(RunState state) {
   return "?";
 }
 
+std::optional<CoreSplit> SplitOf(const std::optional<SplitLimits>& limits, const Config& config) {
+  if (!limits) return std::nullopt;
+  return CoreSplit(*limits, {.actors = config.actors, .threads = config.learner.threads});
+}
+
 LiveSettings Restored(const Config& config, const std::vector<SettingChange>& changes) {
   LiveSettings settings(config);
   settings.Restore(changes);
@@ -60,6 +66,7 @@ Coordinator::Coordinator(const Parts& parts)
       topology_(TopologyOf(settings_.config(), hosts_)),
       handler_(settings_, Effects()),
       decisions_(settings_.config(), topology_, before_, Now()),
+      split_(SplitOf(parts.split_limits, settings_.config())),
       evaluations_(config_.eval.episodes, decisions_.progress(),
                    [this](const std::string& line) { progress_.Say(line); }),
       record_(run_, config_, [this](const std::string& line) { progress_.Say(line); }),
@@ -82,11 +89,13 @@ Coordinator::Coordinator(const Parts& parts)
 }
 
 CommandHandler::Effects Coordinator::Effects() {
-  return {.running = [this] { return decisions_.TakesCommands(); },
-          .env_steps = [this] { return decisions_.env_steps(); },
-          .stop = [this] { decisions_.OnStopCommand(); },
-          .scale = [this](int from, int to) { Scale(from, to); },
-          .note = [this](const SettingChange& change) { Note(change); }};
+  return {
+      .running = [this] { return decisions_.TakesCommands(); },
+      .env_steps = [this] { return decisions_.env_steps(); },
+      .stop = [this] { decisions_.OnStopCommand(); },
+      .scale = [this](int from, int to) { Scale(from, to); },
+      .note = [this](const SettingChange& change) { Note(change); },
+      .check = [](const Config& config) { CheckCores(config.learner.threads, ReadCoreLimits()); }};
 }
 
 RunResult Coordinator::Run(const std::function<void()>& on_started) {
@@ -214,6 +223,7 @@ void Coordinator::TakeEvaluation(const EvalMessage& message) {
 void Coordinator::TakeCommands() {
   for (const CommandMessage& command : desk_.TakeCommands()) {
     const ReplyMessage reply = handler_.Handle(command);
+    if (reply.accepted && (reply.key == "actors" || reply.key == "learner.threads")) split_.reset();
     std::string line = "command: " + command.verb;
     for (const std::string& argument : command.arguments) line += " " + argument;
     progress_.Say(fmt::format("{}: {}{}", line, reply.accepted ? "" : "refused: ", reply.text));
@@ -237,6 +247,40 @@ void Coordinator::Scale(int from, int to) {
   for (id = from - 1; id >= to; --id) supervisor_.Retire(actor, id, Now());
   const std::string shared = SharedCoresText(to, usable_cores_);
   if (to > from && !shared.empty()) progress_.Say(shared);
+}
+
+// The actors move first: should one not start, the threads stay as well.
+void Coordinator::DivideCores() {
+  if (!split_ || decisions_.end() || !decisions_.TakesCommands()) return;
+  const Config& config = settings_.config();
+  const auto steps = decisions_.env_steps();
+  const auto move = split_->Look(Elapsed() - before_.wall_seconds, CountsOf(watch_.view()),
+                                 config.replay.samples_per_insert.At(steps) / config.learner.batch);
+  if (!move) return;
+  progress_.Say(move->line);
+  try {
+    Divide(move->to);
+  } catch (const Error& e) {
+    split_.reset();
+    progress_.Say(fmt::format("the cores stay divided as they were: {}", e.what()));
+  }
+}
+
+void Coordinator::Divide(const Split& to) {
+  const Split from{.actors = settings_.config().actors,
+                   .threads = settings_.config().learner.threads};
+  LiveSettings changed = settings_;
+  std::vector<SettingChange> changes;
+  if (to.actors != from.actors) {
+    changes.push_back(changed.SetActors(std::to_string(to.actors)));
+    Scale(from.actors, to.actors);
+  }
+  if (to.threads != from.threads) {
+    changes.push_back(
+        changed.Assign(fmt::format("learner.threads={}", to.threads), decisions_.env_steps()));
+  }
+  settings_ = changed;
+  for (const SettingChange& change : changes) Note(change);
 }
 
 void Coordinator::Note(SettingChange change) {
@@ -263,6 +307,7 @@ void Coordinator::WriteMeta(SteadyTime now) {
 
 void Coordinator::Show(bool last, SteadyTime now) {
   const bool view_due = last || desk_.Due(now);
+  if (view_due && !last) DivideCores();
   if (view_due) watch_.LookBack(Elapsed(), decisions_.env_steps(), Resources());
   const ProgressFigures figures = Figures(now);
   record_.scalars().WriteRollouts(watch_.view(), figures, now);
@@ -298,6 +343,8 @@ RunResources Coordinator::Resources() const {
           .actors = config.actors,
           .actors_elsewhere = !hosts_.empty(),
           .learner_threads = config.learner.threads,
+          // A run that divides the cores itself has measured what advice could only expect.
+          .most_threads = split_ ? 0 : MostThreads(config),
           .may_play_ahead = LearnsOnPolicy(config) && config.ppo.versions_ahead == 0};
 }
 

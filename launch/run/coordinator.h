@@ -23,6 +23,7 @@
 #include "launch/record/run_meta.h"
 #include "launch/run/command_handler.h"
 #include "launch/run/control_sender.h"
+#include "launch/run/core_split.h"
 #include "launch/run/evaluation_intake.h"
 #include "launch/run/live_settings.h"
 #include "launch/run/run_decisions.h"
@@ -54,6 +55,8 @@ class Coordinator {
     RunServer& desk;
     Progress& progress;
     ProcessStarter start = StartChild;  // starts a process of the run
+    // Within which the run divides the cores by what it measures; empty: it keeps its numbers.
+    std::optional<SplitLimits> split_limits = {};
   };
 
   // Borrows hub, desk and progress. Throws Error.
@@ -79,6 +82,9 @@ class Coordinator {
   void TakeMessages(SteadyTime now);
   void TakeEvaluation(const EvalMessage& message);
   void TakeCommands();
+  // Once a second: moves actors and learner threads where that makes the run faster.
+  void DivideCores();
+  void Divide(const Split& to);
   void WriteFiles(SteadyTime now);
   void WriteMeta(SteadyTime now);
   void Show(bool last, SteadyTime now);
@@ -108,6 +114,7 @@ class Coordinator {
   const link::RunTopology topology_;  // as started; `shoal scale` may have changed the actors since
   CommandHandler handler_;
   RunDecisions decisions_;
+  std::optional<CoreSplit> split_;  // empty: somebody chose the numbers
   EvaluationIntake evaluations_;
   RunRecord record_;
   RunWatch watch_;

@@ -8,6 +8,8 @@
 #include "common/base/check.h"
 #include "common/base/error.h"
 #include "common/config/config_io.h"
+#include "common/config/learner_threads.h"
+#include "common/config/on_policy.h"
 
 namespace shoal::launch {
 namespace {
@@ -17,16 +19,18 @@ constexpr SettingUse kBudget[] = {{"coordinator", "budget_env_steps"},
                                   {"replay", "budget_env_steps"},
                                   {"learner", "budget_env_steps"}};
 constexpr SettingUse kInterval[] = {{"learner", "eval_interval"}};
+constexpr SettingUse kThreads[] = {{"learner", "threads"}};
 constexpr SettingUse kPeriod[] = {{"learner", "weights_period"}};
 constexpr SettingUse kRatio[] = {{"replay", "limiter_samples_per_insert"},
                                  {"learner", "samples_per_insert"}};
 constexpr SettingUse kEvaluations[] = {{"coordinator", "stop_evaluations"}};
 constexpr SettingUse kSuccess[] = {{"coordinator", "stop_success"}};
 
-constexpr std::string_view kActorsKey = "actors";
+constexpr std::string_view kActorsKey = "actors", kThreadsKey = "learner.threads";
 constexpr LiveKey kKeys[] = {{kActorsKey, kActors},
                              {"env_steps", kBudget},
                              {"eval.interval", kInterval},
+                             {kThreadsKey, kThreads},
                              {"learner.weights_period", kPeriod},
                              {"replay.samples_per_insert", kRatio},
                              {"stop.evaluations", kEvaluations},
@@ -34,6 +38,18 @@ constexpr LiveKey kKeys[] = {{kActorsKey, kActors},
 
 bool IsLive(std::string_view key) {
   return std::ranges::find(kKeys, key, &LiveKey::key) != std::end(kKeys);
+}
+
+// A number of threads that the learner can take while it runs.
+void CheckThreads(const Config& config) {
+  if (LearnsOnPolicy(config)) {
+    throw UsageError("learner.threads is fixed for the run: {} learns on policy",
+                     config.learner.algorithm);
+  }
+  if (config.learner.threads == 0) {
+    throw UsageError("learner.threads=0: a run that goes on takes a number of at least 1");
+  }
+  CheckReplicas(config, config.learner.threads);
 }
 
 // A number, or the text of a schedule.
@@ -87,6 +103,7 @@ SettingChange LiveSettings::Apply(const std::string& key, const std::string& ass
                      key);
   }
   Validate(changed);
+  if (key == kThreadsKey) CheckThreads(changed);
   if (JsonOf(changed, key).is_string()) {
     throw UsageError("{}: a run that goes on takes a number, which holds from now on", assignment);
   }

@@ -11,6 +11,7 @@
 #include "common/base/clock.h"
 #include "common/base/error.h"
 #include "common/base/usable_cores.h"
+#include "common/config/on_policy.h"
 #include "common/config/run_files.h"
 #include "common/config/spec_mismatch.h"
 #include "common/policy/checkpoint_writer.h"
@@ -45,13 +46,19 @@ void RefuseFinished(const fs::path& run, const RunMeta& meta, const Config& conf
 }
 
 // Values that --set changes now are further changes of a run that was steered: the last one holds.
-void NoteResumeOptions(const TrainOptions& options, const Config& before, RunMeta* meta) {
+// `now`: the configuration with them.
+void NoteResumeOptions(const TrainOptions& options, const Config& before, const Config& now,
+                       RunMeta* meta) {
   if (before.lockstep) return;
   LiveSettings settings(before);
   settings.Restore(meta->changes);
   for (const std::string& assignment : options.set) {
-    if (SetsForMachine(assignment)) continue;  // no live setting; config.json has it
-    SettingChange change = settings.Assign(assignment, meta->env_steps);
+    const bool threads = assignment.starts_with("learner.threads=");
+    if (SetsForMachine(assignment) && !threads) continue;  // no live setting; config.json has it
+    if (threads && LearnsOnPolicy(before)) continue;
+    SettingChange change = settings.Assign(
+        threads ? fmt::format("learner.threads={}", now.learner.threads) : assignment,
+        meta->env_steps);
     change.time = UtcTimestamp();
     change.env_steps = meta->env_steps;
     change.updates = meta->updates;
@@ -135,7 +142,7 @@ RunRequest ResolveResumed(const TrainOptions& options,
   }
   request.frame_microseconds = world.frame_microseconds;
   if (request.meta.started.empty()) request.meta.started = UtcTimestamp();
-  NoteResumeOptions(options, before, &request.meta);
+  NoteResumeOptions(options, before, config, &request.meta);
   if (!options.print_config) {
     CheckResumedCheckpoint(run, config);
     CheckFiles(run, request.config, request.meta, OwnActors(options, run, config.actors),

@@ -17,6 +17,7 @@
 #include "launch/processes/actor_program.h"
 #include "launch/processes/run_hosts.h"
 #include "launch/processes/run_leftovers.h"
+#include "launch/run/first_split.h"
 
 namespace shoal::launch {
 namespace {
@@ -32,6 +33,16 @@ std::string TakeCameras(RunConfig* run) {
       run->config.task, fmt::join(cameras, " and "), fmt::join(run->spec.cameras, ", "));
   cameras = run->spec.cameras;
   return note;
+}
+
+// The division of the cores that the run starts with, where it has one to choose.
+void DivideCores(double step_microseconds, RunRequest* request) {
+  if (!request->split_limits) return;
+  const auto costs = ExpectedCosts(request->config, step_microseconds);
+  if (!costs) return;
+  const Split split = BestSplit(*costs, *request->split_limits);
+  request->config.config.actors = split.actors;
+  request->config.config.learner.threads = split.threads;
 }
 
 RunFolder CreateFolder(const TrainOptions& options, const Config& config) {
@@ -67,6 +78,9 @@ RunRequest ResolveFresh(const TrainOptions& options) {
   const ObservedWorld world = DescribeObservations(config);
   request.config.spec = world.spec;
   request.frame_microseconds = world.frame_microseconds;
+  request.split_limits =
+      LimitsOfSplit(GivenConfig(options), !request.hosts.hosts.empty(), UsableCores());
+  DivideCores(world.step_microseconds, &request);
   request.camera_note = TakeCameras(&request.config);
   PrivilegedBlocksOf(config.learner, request.config.spec);  // throws if they do not exist
   return request;

@@ -13,6 +13,7 @@
 #include "launch/record/run_folder.h"
 #include "launch/record/run_meta.h"
 #include "launch/run/train_options.h"
+#include "launch/watch/best_split.h"
 
 namespace shoal::launch {
 
@@ -23,9 +24,10 @@ struct RunRequest {
   // A resumed run's, held from the beginning. A fresh run gets its own last (TakeFolder), so that a
   // refusal leaves nothing behind.
   std::optional<RunFolder> folder{};
-  double frame_microseconds = 0;    // to draw a frame, all cameras
-  std::string camera_note{};        // one line; empty unless the task chose the cameras
-  nn::TensorMap initial_weights{};  // --init-from, by our names; empty without
+  double frame_microseconds = 0;              // to draw a frame, all cameras
+  std::optional<SplitLimits> split_limits{};  // within which the run divides the cores anew
+  std::string camera_note{};                  // one line; empty unless the task chose the cameras
+  nn::TensorMap initial_weights{};            // --init-from, by our names; empty without
 
   bool resumed() const { return folder.has_value(); }
 };

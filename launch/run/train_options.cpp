@@ -40,7 +40,7 @@ FilePreset ChoosePreset(const TrainOptions& options) {
 
 }  // namespace
 
-Config ResolveConfig(const TrainOptions& options, int cores) {
+Config GivenConfig(const TrainOptions& options) {
   const auto [preset, whole] = ChoosePreset(options);
   // A run's config.json holds every key: it stays what it was, whatever becomes of its preset.
   Config config = preset.empty() || whole ? Config{} : LoadPreset(preset);
@@ -56,6 +56,11 @@ Config ResolveConfig(const TrainOptions& options, int cores) {
   for (std::string* path : {&config.task_library, &config.model, &config.network.encoder_weights}) {
     if (!path->empty()) *path = std::filesystem::absolute(*path).lexically_normal();
   }
+  return config;
+}
+
+Config ResolveConfig(const TrainOptions& options, int cores) {
+  Config config = GivenConfig(options);
   // Threads of one update wait for each other, so a core shared with an actor stalls them all.
   config.learner.threads = LearnerThreads(config, cores);
   if (config.actors == 0) {

@@ -26,8 +26,10 @@ struct TrainOptions {
   std::string prometheus;   // PORT or ADDRESS:PORT to serve metrics at; empty = none
 };
 
-// Preset, then file, then --set, then the other options; `actors` and `learner.threads` filled in
-// for `cores`. Validated. Throws Error (usage).
+// Preset, then file, then --set, then the other options. Throws Error (usage).
+Config GivenConfig(const TrainOptions& options);
+// The same with `actors` and `learner.threads` filled in for `cores`, validated. Throws Error
+// (usage).
 Config ResolveConfig(const TrainOptions& options, int cores);
 
 // A resumed run keeps its configuration; only env_steps, stop.* and, for another machine,

@@ -127,7 +127,8 @@ int Start(RunRequest request, const RunFolder& folder, const TrainOptions& optio
                              .hub = roles_hub ? *roles_hub : hub,
                              .desk = desk,
                              .progress = progress,
-                             .start = start});
+                             .start = start,
+                             .split_limits = request.split_limits});
     result = coordinator.Run([&] {
       if (detachment == nullptr) return;
       PrintDetached(path);

@@ -8,14 +8,17 @@
 #include <span>
 #include <string_view>
 
+#include "launch/watch/best_split.h"
+
 namespace shoal::launch {
 namespace {
 
 // Shares of the time from which on a process counts as held back, or as busy all the time.
 constexpr double kHeld = 0.2, kBusy = 0.8;
-constexpr double kAllCores = 0.9;   // share of the usable cores in use: there is none to spare
-constexpr double kWholeCore = 0.9;  // cores; with less unused a further thread would not run
-constexpr double kHeadroom = 1.1;   // actors kept beyond those that are busy
+constexpr double kAllCores = 0.9;  // share of the usable cores in use: there is none to spare
+constexpr double kServers = 1;     // cores of replay server and evaluation where it is not said
+// Times the present progress. Less than this is within what such a prediction misses by.
+constexpr double kWorthAdvising = 1.15;
 
 constexpr std::string_view kActing[] = {"physics", "rendering", "inference"};
 constexpr std::string_view kLearning[] = {"forward", "backward", "optimiser", "weights",
@@ -77,20 +80,31 @@ std::string AdviseOnPolicy(const Bottleneck& figures, const RunResources& resour
          ": the actors could play meanwhile (--set ppo.versions_ahead=1 at the next start).";
 }
 
-// The larger number of learner threads that the idle cores allow, with as many actors as the
-// learner keeps busy; the present numbers if no whole core is idle.
-struct Split {
-  int actors = 0, threads = 0;
+// Another division of the cores and how many times the env steps it promises, by where the time of
+// this one went: costs are those of one unit of progress.
+struct BetterSplit {
+  Split split;
+  double gain = 1;
 };
-Split BetterSplit(const Bottleneck& figures, const RunResources& resources) {
-  const Split now{resources.actors, resources.learner_threads};
-  const double idle = figures.usable - figures.cores;
-  if (now.threads == 0 || idle < kWholeCore || resources.actors_elsewhere) return now;
-  const double busy = now.actors * (1 - ShareOf(figures, "actor", "waiting_credit"));
-  const int actors = std::clamp(int(std::ceil(kHeadroom * busy)), 1, std::max(1, now.actors));
-  const int threads =
-      std::min(now.threads + int(idle + 1 - kWholeCore), int(figures.usable) - actors);
-  return threads > now.threads ? Split{actors, threads} : now;
+BetterSplit FindBetterSplit(const Bottleneck& figures, const RunResources& resources) {
+  const Split now{.actors = resources.actors, .threads = resources.learner_threads};
+  if (now.threads == 0 || resources.most_threads == 0 || resources.actors_elsewhere) return {now};
+  double servers = 0;
+  for (const ProcessTimes& times : figures.roles) {
+    if (times.role == "replay" || times.role == "eval") servers += times.cores;
+  }
+  if (servers == 0) servers = kServers;
+  CoreCosts costs{.env_step = now.actors * (1 - ShareOf(figures, "actor", "waiting_credit")),
+                  .update = 1,
+                  .updates_per_env_step = 1,
+                  .servers = servers};
+  // Without waiting the present threads would do this much.
+  const double possible = 1 / (1 - ShareOf(figures, "learner", "waiting_data"));
+  costs.update = UpdatesPerSecond(costs, now.threads) / possible;
+  if (!std::isfinite(possible) || costs.env_step <= 0) return {now};
+  const Split best =
+      BestSplit(costs, {.cores = int(figures.usable), .most_threads = resources.most_threads});
+  return {.split = best, .gain = PaceOf(costs, best)};
 }
 
 std::string AdviseMoreLearning(const Bottleneck& figures, const RunResources& resources) {
@@ -102,12 +116,12 @@ std::string AdviseMoreLearning(const Bottleneck& figures, const RunResources& re
   std::string advice =
       fmt::format("The learner sets the pace, the actors wait for it {:.0f} % of the time{}",
                   100 * figures.inserts_blocked, most);
-  const Split better = BetterSplit(figures, resources);
-  if (better.threads > resources.learner_threads) {
+  const BetterSplit better = FindBetterSplit(figures, resources);
+  if (better.gain >= kWorthAdvising) {
     advice += fmt::format(
-        ": {:.0f} of {:.0f} cores are idle, use them with --set "
-        "learner.threads={} --set actors={} at the next start",
-        figures.usable - figures.cores, figures.usable, better.threads, better.actors);
+        ": about {:.1f} times as fast with --set learner.threads={} --set actors={} at the next "
+        "start",
+        better.gain, better.split.threads, better.split.actors);
   } else if (NoCoreToSpare(figures)) {
     advice += fmt::format("; all {:.0f} cores are busy", figures.usable);
   }

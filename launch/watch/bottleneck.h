@@ -45,6 +45,7 @@ struct RunResources {
   int actors = 0;                 // asked for
   bool actors_elsewhere = false;  // on other hosts: it has those that were named at its start
   int learner_threads = 0;        // 0: not known
+  int most_threads = 0;           // that have rows of a batch; 0: not known
   bool may_play_ahead = false;    // on policy with ppo.versions_ahead = 0
 };
 

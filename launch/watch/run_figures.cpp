@@ -102,6 +102,7 @@ void AddOrders(const Config& config, const RunResources& resources, MetricsRepor
   report->Add("stop_evaluations", config.stop.evaluations);
   report->Add("usable_cores", resources.usable_cores);
   report->Add("learner_threads", resources.learner_threads);
+  report->Add("most_threads", resources.most_threads);
   report->Add("may_play_ahead", resources.may_play_ahead ? 1 : 0);
 }
 
@@ -155,6 +156,7 @@ std::string AdviceOfView(const RunViewMessage& message) {
                       .actors = SaturatingCast<int>(own("actors").value_or(0)),
                       .actors_elsewhere = own("actors_elsewhere").value_or(0) > 0,
                       .learner_threads = SaturatingCast<int>(own("learner_threads").value_or(0)),
+                      .most_threads = SaturatingCast<int>(own("most_threads").value_or(0)),
                       .may_play_ahead = own("may_play_ahead").value_or(0) > 0});
   return advice.empty() ? "Too early to say where the time goes." : advice;
 }

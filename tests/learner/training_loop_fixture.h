@@ -79,7 +79,8 @@ class TrainingLoopTest : public testing::Test {
                        .pending_evaluations = pending_,
                        .control = control_,
                        .update_page = page,
-                       .drain_idle = std::chrono::milliseconds(20)},
+                       .drain_idle = std::chrono::milliseconds(20),
+                       .resize = resize_},
                       restored);
     const TrainingLoop::End end = loop.Run();
     given_ = batches.given();
@@ -89,6 +90,12 @@ class TrainingLoopTest : public testing::Test {
 
   void Say(RunState state) {
     control_.OnMessage({.epoch = ++epoch_, .state = state, .time = 0}, Now());
+  }
+  void Set(const std::string& key, double value) {
+    ControlMessage message{.epoch = ++epoch_, .state = RunState::kRunning, .time = 0};
+    message.setting_names = {key};
+    message.setting_values = {value};
+    control_.OnMessage(message, Now());
   }
 
   // A figure of the last report.
@@ -119,6 +126,7 @@ class TrainingLoopTest : public testing::Test {
   uint64_t epoch_ = 0;
   uint64_t given_ = 0, updates_ = 0;
   bool slow_ = false;
+  std::function<int(int threads)> resize_;
 };
 
 }  // namespace shoal::learner

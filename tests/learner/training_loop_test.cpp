@@ -45,6 +45,31 @@ TEST_F(TrainingLoopTest, SendsBf16WeightsWhenThatIsThePrecision) {
   }
 }
 
+TEST_F(TrainingLoopTest, AnOrderOfThreadsIsObeyedOnceBetweenTwoUpdates) {
+  std::vector<int> orders;
+  resize_ = [&](int threads) {
+    orders.push_back(threads);
+    return threads == 3 ? 3 : 1;  // 9 does not fit: as before
+  };
+  Train(8, [&](PlayedBatches& batches) {
+    batches.before = [this](uint64_t request) {
+      if (request == 3) Set("learner.threads", 3);
+      if (request > 8) Say(RunState::kStopping);
+    };
+  });
+  EXPECT_THAT(orders, ElementsAre(3));
+  EXPECT_EQ(Figure("threads"), 3);
+  orders.clear();
+  Train(8, [&](PlayedBatches& batches) {
+    batches.before = [this](uint64_t request) {
+      Set("learner.threads", 9);
+      if (request > 8) Say(RunState::kStopping);
+    };
+  });
+  EXPECT_THAT(orders, ElementsAre(9)) << "not asked again for each batch";
+  EXPECT_EQ(Figure("threads"), 1);
+}
+
 TEST_F(TrainingLoopTest, WithoutBatchesNothingIsSentOrWritten) {
   Train(0);
   EXPECT_TRUE(sink_.weights.empty());

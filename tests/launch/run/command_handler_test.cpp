@@ -35,7 +35,11 @@ class CommandHandlerTest : public ::testing::Test {
        .env_steps = [] { return uint64_t{500}; },
        .stop = [this] { done_.push_back("stop"); },
        .scale = [this](int from, int to) { done_.push_back(fmt::format("{}->{}", from, to)); },
-       .note = [this](const SettingChange& c) { done_.push_back("note " + c.key); }}};
+       .note = [this](const SettingChange& c) { done_.push_back("note " + c.key); },
+       .check =
+           [](const Config& config) {
+             if (config.learner.threads > 4) throw UsageError("this machine has 4 cores");
+           }}};
 };
 
 TEST_F(CommandHandlerTest, AChangeIsNotedAndAnsweredWithBothValues) {
@@ -61,6 +65,15 @@ TEST_F(CommandHandlerTest, OfSeveralAssignmentsAllAreMadeOrNone) {
   EXPECT_EQ(settings_.config().eval.interval, 500);
   EXPECT_EQ(settings_.config().stop.success, 2);
   EXPECT_THAT(done_, ElementsAre("note eval.interval", "note stop.success"));
+}
+
+TEST_F(CommandHandlerTest, WhatTheMachineCannotDoChangesNothing) {
+  const ReplyMessage refused = Handle("set", {"eval.interval=500", "learner.threads=5"});
+  EXPECT_FALSE(refused.accepted);
+  EXPECT_EQ(refused.text, "this machine has 4 cores");
+  EXPECT_EQ(settings_.config().eval.interval, 2500);
+  EXPECT_THAT(done_, IsEmpty());
+  EXPECT_TRUE(Handle("set", {"learner.threads=4"}).accepted);
 }
 
 TEST_F(CommandHandlerTest, OfAScheduleTheFormerValueIsThatOfTheEnvStepsSoFar) {
@@ -95,7 +108,8 @@ TEST_F(CommandHandlerTest, AScaleThatFailsChangesNothing) {
                           .env_steps = [] { return uint64_t{0}; },
                           .stop = [] {},
                           .scale = [](int, int) { throw RuntimeError("no room"); },
-                          .note = [this](const SettingChange&) { done_.push_back("note"); }});
+                          .note = [this](const SettingChange&) { done_.push_back("note"); },
+                          .check = [](const Config&) {}});
   const ReplyMessage reply =
       handler.Handle({.client = 7, .request = 3, .verb = "scale", .arguments = {"5"}});
   EXPECT_FALSE(reply.accepted);

@@ -86,6 +86,18 @@ TEST(LiveSettings, WhatIsFixedUnknownOrOutOfRangeIsRefusedByName) {
   EXPECT_TRUE(message.setting_names.empty());
 }
 
+TEST(LiveSettings, ThreadsOfTheLearnerNeedRowsAndALearnerThatCanChangeThem) {
+  LiveSettings settings(Running());  // batches of 128
+  EXPECT_EQ(settings.Assign("learner.threads=12", 0).to, 12);
+  EXPECT_THAT(Refusal(settings, "learner.threads=129"), HasSubstr("rows of its own"));
+  EXPECT_THAT(Refusal(settings, "learner.threads=0"), HasSubstr("at least 1"));
+  EXPECT_EQ(settings.config().learner.threads, 12);
+  Config on_policy = Running();
+  on_policy.learner.algorithm = "ppo";
+  LiveSettings rollouts(on_policy);
+  EXPECT_THAT(Refusal(rollouts, "learner.threads=2"), HasSubstr("fixed for the run"));
+}
+
 TEST(LiveSettings, InLockstepNothingCanBeChanged) {
   Config config = Running();
   config.actors = 1;

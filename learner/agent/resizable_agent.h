@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+// An agent whose number of threads may change between two updates. It is then made anew and takes
+// over the tensors of the former one, as from a checkpoint, which belongs to no number of threads.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "learner/agent/agent.h"
+
+namespace shoal::learner {
+
+class ResizableAgent final : public Agent {
+ public:
+  // Makes the agent for so many threads; may throw Error.
+  using Make = std::function<std::unique_ptr<Agent>(int threads)>;
+
+  ResizableAgent(Make make, int threads)
+      : make_(std::move(make)), threads_(threads), agent_(make_(threads)) {}
+
+  // Between updates. Takes as long as making an agent. Throws what `make` throws; then nothing has
+  // changed.
+  void Resize(int threads);
+  int threads() const { return threads_; }
+
+  using Agent::Update;
+  UpdateOutcome Update(const BatchView& batch, const OnStageEnd& on_stage_end) override {
+    return agent_->Update(batch, on_stage_end);
+  }
+  uint64_t updates() const override { return agent_->updates(); }
+  nn::TensorMap PolicyTensors() const override { return agent_->PolicyTensors(); }
+  nn::TensorMap AveragedPolicyTensors() const override { return agent_->AveragedPolicyTensors(); }
+  nn::TensorMap AllTensors() const override { return agent_->AllTensors(); }
+  void Restore(const nn::TensorMap& tensors, const std::string& source) override {
+    agent_->Restore(tensors, source);
+  }
+
+ private:
+  const Make make_;
+  int threads_;
+  std::unique_ptr<Agent> agent_;
+};
+
+}  // namespace shoal::learner
