@@ -29,11 +29,11 @@ libraries_of() {
   LD_LIBRARY_PATH=$work/left_out ldd "$@" | awk '$2 == "=>" && $3 ~ /^\// {print $1, $3}' | sort -u
 }
 
-# left_out OPTION WHAT FUNCTIONS SONAME...: libraries whose functions (of the pattern FUNCTIONS, as far
-# as the programs use them) fail, because WHAT need the full bundle (left_out.c).
+# left_out WHAT FUNCTIONS SONAME...: libraries whose functions (of the pattern FUNCTIONS, as far as the
+# programs use them) say that WHAT need the full bundle (left_out.c).
 left_out() {
-  local option=$1 what=$2 functions=$3 soname
-  shift 3
+  local what=$1 functions=$2 soname
+  shift 2
   nm -D --undefined-only "${programs[@]/#/$root/libexec/}" | awk 'NF == 2 {print $2}' |
     grep -E "$functions" | sort -u >"$work/names"
   sed 's/@.*//; s/.*/SHOAL_LEFT_OUT(&)/' "$work/names" >"$work/names.h"
@@ -43,7 +43,7 @@ left_out() {
   local versions=()
   [[ ! -s $work/versions ]] || versions=(-Wl,--version-script="$work/versions")
   for soname in "$@"; do
-    gcc -shared -fPIC -O1 -w -fno-builtin "$option" -DWHAT="\"$what\"" \
+    gcc -shared -fPIC -O1 -w -fno-builtin -DWHAT="\"$what\"" \
       -DNAMES="\"$work/names.h\"" -Wl,-soname,"$soname" "${versions[@]}" \
       -o "$work/left_out/$soname" "$here/left_out.c"
   done
@@ -51,16 +51,25 @@ left_out() {
 needed() { libraries_of "${programs[@]/#/$root/libexec/}" | awk '{print $1}' | grep -E "$1"; }
 if $slim; then
   mapfile -t film < <(needed '^lib(avcodec|avformat|avutil|swscale|cairo)\.so')
-  mapfile -t gl < <(needed '^libOSMesa\.so')
-  left_out -UFAILS films '^(av|sws|swr|cairo)' "${film[@]}"
-  left_out -DFAILS "pictures drawn by OpenGL" '^OSMesa' "${gl[@]}"
+  left_out films '^(av|sws|swr|cairo)' "${film[@]}"
 fi
 
+opened=()
+if ! $slim; then
+  osmesa=$(ldconfig -p | awk '/libOSMesa\.so\.8 / {print $NF; exit}')
+  [[ -n $osmesa ]] || { echo "bundle: libOSMesa.so.8 is not installed (libosmesa6)" >&2; exit 1; }
+  opened+=("$osmesa")
+fi
 carried=()  # files of the system that the bundle has
 while read -r soname path; do
   install -m 644 "$(readlink -f "$path")" "$root/lib/$soname"
   [[ $path == "$work"/* ]] || carried+=("$path")
-done < <(libraries_of "${programs[@]/#/$root/libexec/}")
+done < <(libraries_of "${programs[@]/#/$root/libexec/}" "${opened[@]}")
+# Those that programs open at run time.
+for path in "${opened[@]}"; do
+  install -m 644 "$(readlink -f "$path")" "$root/lib/$(basename "$path")"
+  carried+=("$path")
+done
 loader=/lib64/ld-linux-x86-64.so.2
 install -m 755 "$(readlink -f "$loader")" "$root/lib/ld-linux-x86-64.so.2"
 carried+=("$loader")
