@@ -5,5 +5,7 @@
 
 int main(int argc, char** argv) {
   shoal::dds::TuneMalloc();
-  return shoal::GuardMain("shoal-actor", [&] { return shoal::actor::RunActorProgram(argc, argv); });
+  return shoal::GuardMain("shoal-actor", [&] {
+    return shoal::actor::RunActorProgram(argc, argv, shoal::actor::WorldParts());
+  });
 }

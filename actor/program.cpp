@@ -11,9 +11,6 @@
 #include "actor/command_line.h"
 #include "actor/evaluation/eval_actor.h"
 #include "actor/loop/training_actor.h"
-#include "actor/worlds/environment.h"
-#include "actor/worlds/episode_fault.h"
-#include "actor/worlds/physics_library.h"
 #include "common/base/command_line.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
@@ -41,36 +38,6 @@ std::optional<int> Parse(int argc, char** argv, Options* options) {
   return std::nullopt;
 }
 
-// Times of one environment, measured over some steps of an episode.
-struct StepCosts {
-  double frame_microseconds = 0;  // drawing a frame, all cameras
-  double step_microseconds = 0;   // a whole env step
-};
-
-StepCosts MeasureSteps(worlds::Environment& environment) {
-  constexpr int kSteps = 10;
-  const ObservationSpec& spec = environment.spec();
-  std::vector<uint8_t> frame(spec.FrameBytes());
-  std::vector<float> vector(static_cast<size_t>(spec.RecordedVectorSize()));
-  const std::vector<float> action(static_cast<size_t>(spec.action_size));
-  const worlds::ObservationOut out{.frame = frame, .vector = vector};
-  environment.Reset(StreamKey(0, StreamRole::kEvalEnvironment, 0),
-                    out);  // the first frame prepares much
-  const double before = environment.render_seconds();
-  const SteadyTime start = Now();
-  int steps = 0;
-  try {
-    for (bool running = true; running && steps < kSteps; ++steps) {
-      const worlds::StepResult result = environment.Step(action, out);
-      running = !result.terminated && !result.truncated;
-    }
-  } catch (const worlds::EpisodeFault&) {  // training will count it
-  }
-  const double each = 1e6 / std::max(1, steps);
-  return {.frame_microseconds = each * (environment.render_seconds() - before),
-          .step_microseconds = each * std::chrono::duration<double>(Now() - start).count()};
-}
-
 // The answer goes into a file for the program that started this one: a user's task may print to
 // standard output.
 void Answer(const Options& options, const std::string& json) {
@@ -81,23 +48,15 @@ void Answer(const Options& options, const std::string& json) {
   }
 }
 
-int Describe(const Options& options) {
+int Describe(const Options& options, const ActorParts& parts) {
   Config config;
   ApplyJson(ParseStrictJson(ReadFile(options.config_json), options.config_json),
             options.config_json, &config);
-  worlds::LoadTasks(config.task_library);
-  std::shared_ptr<worlds::RenderContext> render;
-  if (config.observation.pixels) render = worlds::MakeRenderContext(config.observation);
-  const auto environment = worlds::MakeEnvironment(config, render);
-  nlohmann::ordered_json description = ToJson(environment->spec());
-  const StepCosts costs = MeasureSteps(*environment);
-  description["frame_microseconds"] = costs.frame_microseconds;
-  description["step_microseconds"] = costs.step_microseconds;
-  Answer(options, description.dump(2));
+  Answer(options, parts.describe(config).dump(2));
   return 0;
 }
 
-int Evaluate(const Options& options) {
+int Evaluate(const Options& options, const EvaluationEnvironments& environments) {
   CheckpointEvaluation evaluation = options.evaluation;
   if (!options.frames.file.empty()) evaluation.frames = options.frames;
   std::ofstream progress;
@@ -108,11 +67,12 @@ int Evaluate(const Options& options) {
       progress << ended << " of " << asked << " episodes" << std::endl;
     };
   }
-  Answer(options, EvaluateCheckpoint(options.run, options.checkpoint, evaluation).dump(2));
+  Answer(options,
+         EvaluateCheckpoint(options.run, options.checkpoint, evaluation, environments).dump(2));
   return 0;
 }
 
-int RunActor(const Options& options) {
+int RunActor(const Options& options, const EnvironmentFactory& make) {
   const bool evaluates = options.role == "eval";
   log::Start((evaluates ? ProcessName::Evaluation() : ProcessName::Actor(options.id)).Text(), "");
   KeepSecuredRunPrivate(options.run);
@@ -122,20 +82,21 @@ int RunActor(const Options& options) {
   const Config config = ReadRunConfig(options.run).config;
   dds::Bus bus(dds::FindEndpoint(options.run, config.transport, options.endpoint),
                evaluates ? dds::Role::kEval : dds::Role::kActor);
-  if (evaluates) return EvalActor(options.run, bus).Run();
-  return TrainingActor(options.run, options.id, bus).Run();
+  if (evaluates) return EvalActor(options.run, bus, make).Run();
+  return TrainingActor(options.run, options.id, bus, make).Run();
 }
 
 }  // namespace
 
-int RunActorProgram(int argc, char** argv) {
+int RunActorProgram(int argc, char** argv, const ActorParts& parts) {
   Options options;
   if (const auto exit_code = Parse(argc, argv, &options)) return *exit_code;
   nn::SetThreads(1);  // one thread per actor: cores are filled with actors
-  if (options.describe) return Describe(options);
-  worlds::LoadTasks(ReadRunConfig(options.run).config.task_library);
+  if (options.describe) return Describe(options, parts);
+  parts.add_tasks(ReadRunConfig(options.run));
   InstallStopSignals();
-  return options.checkpoint.empty() ? RunActor(options) : Evaluate(options);
+  return options.checkpoint.empty() ? RunActor(options, parts.environments.make)
+                                    : Evaluate(options, parts.environments);
 }
 
 }  // namespace shoal::actor

@@ -12,6 +12,7 @@
 #include "common/config/run_membership.h"
 #include "common/dds/bus.h"
 #include "common/link/run_topology.h"
+#include "common/tasks/environment_description.h"
 #include "common/tasks/task_library.h"
 #include "learner/command_line.h"
 #include "learner/learner_program.h"
@@ -29,6 +30,7 @@ int Run(int argc, char** argv) {
   const shoal::ProcessName name = shoal::link::RunTopology(run.config).OnlyLearner().Name();
   shoal::log::Start(name.Text(), "");
   shoal::tasks::LoadTaskLibrary(run.config.task_library);
+  shoal::tasks::AddEnvironmentTask(run.spec.environment);
   const int threads = shoal::LearnerThreads(run.config, shoal::UsableCores());
   shoal::learner::EnsurePassiveOpenMp(threads, argv);
   const shoal::RunMembership member(options.run);

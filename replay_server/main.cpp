@@ -11,6 +11,7 @@
 #include "common/config/run_membership.h"
 #include "common/dds/bus.h"
 #include "common/link/run_topology.h"
+#include "common/tasks/environment_description.h"
 #include "common/tasks/task_library.h"
 #include "replay_server/service/command_line.h"
 #include "replay_server/service/replay_service.h"
@@ -24,7 +25,8 @@ int Run(int argc, char** argv) {
   shoal::InstallStopSignals();
   shoal::KeepSecuredRunPrivate(options.run);
   const shoal::RunMembership member(options.run);
-  const shoal::Config config = shoal::ReadRunConfig(options.run).config;
+  const shoal::RunConfig run = shoal::ReadRunConfig(options.run);
+  const shoal::Config& config = run.config;
   const shoal::link::RunTopology topology(config);
   if (!topology.Has(shoal::link::Role::kReplay)) {
     throw shoal::UsageError("run '{}' has no replay: learner.algorithm = {} learns from rollouts",
@@ -33,6 +35,7 @@ int Run(int argc, char** argv) {
   const shoal::ProcessName name = topology.OnlyReplay().Name();
   shoal::log::Start(name.Text(), "");
   shoal::tasks::LoadTaskLibrary(config.task_library);
+  shoal::tasks::AddEnvironmentTask(run.spec.environment);
   shoal::dds::Bus bus(shoal::dds::FindEndpoint(options.run, config.transport, options.endpoint),
                       shoal::dds::Role::kReplay);
   return shoal::replay::ReplayService(options.run, name, bus).Run();

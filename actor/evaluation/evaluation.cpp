@@ -10,7 +10,6 @@
 #include <string>
 #include <utility>
 
-#include "actor/evaluation/other_task.h"
 #include "common/base/build_info.h"
 #include "common/base/check.h"
 #include "common/base/error.h"
@@ -239,22 +238,27 @@ CheckpointFiles FilesToActBy(const std::filesystem::path& checkpoint, uint64_t s
 
 ordered_json EvaluateCheckpoint(const std::filesystem::path& run_folder,
                                 const std::filesystem::path& checkpoint,
-                                const CheckpointEvaluation& evaluation) {
+                                const CheckpointEvaluation& evaluation,
+                                const EvaluationEnvironments& environments) {
   const RunConfig trained = ReadRunConfig(run_folder);
-  RunConfig run = evaluation.task.empty() ? trained : WithTask(trained, evaluation.task);
+  RunConfig run =
+      evaluation.task.empty() ? trained : environments.with_task(trained, evaluation.task);
   if (evaluation.frames) run.config.eval.envs = 1;
   CheckpointFiles files = FilesToActBy(checkpoint, trained.spec.Hash());
   const EvaluationLabel label{.policy = "checkpoint",
                               .checkpoint = checkpoint.filename().string(),
                               .version = {files.state.learner_session, files.state.updates},
                               .env_steps = files.state.env_steps};
-  Evaluator evaluator(run);
+  Evaluator evaluator(run, /*noop=*/false, environments.make);
   evaluator.selector().Load({.version = label.version,
                              .env_steps = label.env_steps,
                              .checkpoint = label.checkpoint,
                              .payload = std::move(files.policy)});
   std::optional<FrameRecorder> recorder;
-  if (evaluation.frames) evaluator.Listen(&recorder.emplace(run, *evaluation.frames));
+  if (evaluation.frames) {
+    evaluator.Listen(&recorder.emplace(run.spec, evaluation.frames->file,
+                                       environments.view(run, *evaluation.frames)));
+  }
   const EpisodeStream stream{evaluation.seed, StreamRole::kFinalEnvironment, 0};
   const std::vector<EpisodeResult> results =
       evaluator.Play(evaluation.episodes, stream, StopRequested, evaluation.on_ended);

@@ -15,6 +15,7 @@
 #include "actor/acting/environments.h"
 #include "actor/acting/episode_runner.h"
 #include "actor/acting/fault_log.h"
+#include "actor/evaluation/evaluation_environments.h"
 #include "actor/evaluation/failure_cause.h"
 #include "actor/evaluation/frame_recorder.h"
 #include "actor/worlds/environment.h"
@@ -137,8 +138,9 @@ struct CheckpointEvaluation {
 };
 // Plays fresh episodes (final stream of the seed) with the policy of a checkpoint folder of the
 // run. Throws Error when it is asked to stop, but for `partial`.
-nlohmann::ordered_json EvaluateCheckpoint(const std::filesystem::path& run,
-                                          const std::filesystem::path& checkpoint,
-                                          const CheckpointEvaluation& evaluation);
+nlohmann::ordered_json EvaluateCheckpoint(
+    const std::filesystem::path& run, const std::filesystem::path& checkpoint,
+    const CheckpointEvaluation& evaluation,
+    const EvaluationEnvironments& environments = WorldEnvironments());
 
 }  // namespace shoal::actor

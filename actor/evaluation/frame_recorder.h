@@ -10,15 +10,13 @@
 #include <vector>
 
 #include "actor/acting/episode_runner.h"
-#include "common/config/run_config.h"
+#include "actor/evaluation/episode_view.h"
 #include "common/image/frame_stream.h"
+#include "common/spec/observation_spec.h"
 
 namespace shoal::actor {
 
-// The view is drawn by an environment of its own, which plays the same episodes by the same
-// actions: equal stream keys and actions give equal physics, so the runner's environment needs to
-// know nothing of it. The view shows the goal's marker, whether or not the policy's pictures do.
-// Owns that environment. One thread.
+// Owns the view. One thread.
 class FrameRecorder final : public EpisodeListener {
  public:
   struct Options {
@@ -29,23 +27,19 @@ class FrameRecorder final : public EpisodeListener {
     int height = 480, width = 480;      // of the view
     std::string quality = "reference";  // of the view: fast | native | reference
   };
-  // Throws Error: a camera that the task does not have, a file that cannot be written.
-  FrameRecorder(const RunConfig& run, const Options& options);
+  // `spec`: of what the policy observes. Throws Error on a file that cannot be written.
+  FrameRecorder(const ObservationSpec& spec, const std::filesystem::path& file,
+                std::unique_ptr<EpisodeView> view);
 
   void OnBegin(uint64_t stream_key, std::span<const uint8_t> stack) override;
-  // CHECK that both environments earn the same.
   void OnStep(const SeenStep& step) override;
   // Shows the last picture once more, as the episode's end: films show as many episodes as were
   // played.
   void OnFault(std::span<const uint8_t> stack) override;
 
  private:
-  void Write(const image::FrameRecordHeader& record, std::span<const float> action,
-             std::span<const uint8_t> stack);
-
-  std::unique_ptr<worlds::Environment> view_;
-  std::vector<uint8_t> planes_, interleaved_;  // the view as it is drawn: (3, H, W); as written
-  std::vector<float> vector_;
+  const std::unique_ptr<EpisodeView> view_;
+  std::vector<uint8_t> picture_;  // (H, W, 3): the view's
   image::FrameStreamWriter writer_;
   std::vector<float> no_action_;
   uint32_t episode_ = 0, step_ = 0;

@@ -50,6 +50,20 @@ struct ObservationConfig {
   std::map<std::string, CustomCamera> custom_cameras;  // by name, beside the task's own
 };
 
+// An object of JSON: arguments of a user's function, by name.
+struct KeywordArguments {
+  std::string json = "{}";
+};
+
+// An environment that is not one of Shoal's worlds, run by Python in the actors.
+struct EnvConfig {
+  std::string id;            // "Pendulum-v1", "module:Name", "/folder/file.py:Name"; empty = none
+  KeywordArguments kwargs;   // of the environment's constructor
+  std::string python;        // path of the interpreter; empty = chosen when the run starts
+  std::string folder;        // where modules are looked for; empty = where the run is started
+  double step_timeout = 20;  // s, of one call of reset, step or render
+};
+
 // Physical quantities drawn anew for every episode, uniformly in [low, high].
 struct RandomizationConfig {
   std::map<std::string, std::array<double, 2>> body_mass;  // body -> kg; empty = as modelled
@@ -201,6 +215,7 @@ struct Config {
   int action_repeat = 0;            // control steps per env step; 0 = the task's own
   bool end_on_success = false;      // an episode ends, terminated, with the step that succeeds
   double max_faulty_share = 0.05;   // of an actor's last 200 episodes; more end the run
+  EnvConfig env;
   ObservationConfig observation;
   RandomizationConfig randomization;
   ReplayConfig replay;

@@ -124,6 +124,10 @@ bool Read(const json& value, const internal::Rule& rule, T* out) {
     return true;
   } else if constexpr (std::is_same_v<T, StateBlocks>) {
     return internal::ReadStateBlocks(value, out);
+  } else if constexpr (std::is_same_v<T, KeywordArguments>) {
+    if (!value.is_object()) return false;
+    out->json = value.dump();
+    return true;
   } else if constexpr (std::is_same_v<T, Schedule>) {
     double constant = 0;
     if (Read(value, rule, &constant)) {

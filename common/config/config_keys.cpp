@@ -60,6 +60,24 @@ std::vector<Key> RunKeys() {
   };
 }
 
+std::vector<Key> EnvKeys() {
+  return {
+      SHOAL_SAME(env.id, AnyValue{},
+                 "environment written in Python, in place of a task: a name that gymnasium.make "
+                 "knows, MODULE:NAME or FILE.py:NAME (docs/own_environment.md); empty = none"),
+      SHOAL_SAME(env.kwargs, AnyValue{}, "arguments of the environment's constructor"),
+      SHOAL_SAME(env.python, AnyValue{},
+                 "path of the Python interpreter that runs the environment; empty = that of the "
+                 "active virtual environment, else python3"),
+      SHOAL_SAME(env.folder, AnyValue{},
+                 "folder in which MODULE is looked for besides the interpreter's own places; empty "
+                 "= where the run is started"),
+      SHOAL_SAME(env.step_timeout, (RealRange{0, 3600, true}),
+                 "seconds after which a call of reset, step or render that has not returned ends "
+                 "its actor, which is then restarted"),
+  };
+}
+
 std::vector<Key> ObservationKeys() {
   return {
       SHOAL_SAME(observation.pixels, AnyValue{}, "render cameras"),
@@ -363,8 +381,8 @@ std::vector<Key> TransportKeys() {
 std::vector<Key> AllKeys() {
   std::vector<Key> all;
   for (const auto& section :
-       {RunKeys(), ObservationKeys(), RandomizationKeys(), ReplayKeys(), LearnerKeys(), PpoKeys(),
-        Td3Keys(), ExplorationKeys(), NetworkKeys(), EvalKeys(), TransportKeys()}) {
+       {RunKeys(), EnvKeys(), ObservationKeys(), RandomizationKeys(), ReplayKeys(), LearnerKeys(),
+        PpoKeys(), Td3Keys(), ExplorationKeys(), NetworkKeys(), EvalKeys(), TransportKeys()}) {
     all.insert(all.end(), section.begin(), section.end());
   }
   return all;
@@ -403,6 +421,9 @@ struct TypeText {
   std::string operator()(const std::vector<std::string>*) const { return "a list of strings"; }
   std::string operator()(const std::map<std::string, std::array<double, 2>>*) const {
     return "an object of intervals {name: [low, high], ...}, low <= high, each";
+  }
+  std::string operator()(const KeywordArguments*) const {
+    return "an object of JSON {name: value, ...}";
   }
   std::string operator()(const Schedule*) const {
     return "a number, or \"linear(START,END,ENV_STEPS)\", each end";

@@ -20,7 +20,7 @@ namespace shoal::internal {
 using Slot =
     std::variant<bool*, int*, int64_t*, double*, std::string*, StateBlocks*, std::vector<int>*,
                  std::vector<std::string>*, std::map<std::string, std::array<double, 2>>*,
-                 std::map<std::string, CustomCamera>*, Schedule*>;
+                 std::map<std::string, CustomCamera>*, Schedule*, KeywordArguments*>;
 
 // Bounds of an integer, or of each element of a list of integers; both ends included.
 struct IntegerRange {

@@ -91,6 +91,7 @@ struct ValueSchema {
             {"propertyNames", {{"minLength", 1}}},
             {"additionalProperties", Camera()}};
   }
+  ordered_json operator()(const KeywordArguments*) const { return {{"type", "object"}}; }
   ordered_json operator()(const Schedule*) const {
     // Blanks only behind commas, as ParseSchedule has it.
     const std::string number = R"(-?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?)";

@@ -29,6 +29,11 @@ void to_json(Json& out, const StateBlocks& blocks) {
   }
 }
 
+template <class Json>
+void to_json(Json& out, const KeywordArguments& arguments) {
+  out = Json::parse(arguments.json);
+}
+
 namespace internal {
 
 // true, false, or a list of at least one name, each once. False when it is none of these.

@@ -10,7 +10,12 @@
 
 namespace shoal::dds {
 
-// CHECKs that the program's version is the one in use. Also what links it into a program.
+// CHECKs that libc's version is not the one in use. Also what links ours into a program. A module
+// that another program loads (the Python package's actor) comes after libc: there the loader brings
+// in a library of ours before, by LD_PRELOAD.
 void RequireSteadyWaits();
+
+// Links timed_wait.cpp; does nothing.
+void LinkTimedWait();
 
 }  // namespace shoal::dds

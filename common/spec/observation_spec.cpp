@@ -83,8 +83,9 @@ json ToJson(const ObservationSpec& spec) {
               {"action_size", spec.action_size},
               {"drawn_actions", spec.drawn_actions},
               {"model_fingerprint", spec.model_fingerprint}};
-  // Only where there is one: specs without keep the hash they had before goal pictures.
+  // Only where there is one: specs without keep the hash they had before.
   if (spec.goal_picture) object["goal_picture"] = true;
+  if (!spec.environment.empty()) object["environment"] = json::parse(spec.environment);
   return object;
 }
 
@@ -98,6 +99,7 @@ ObservationSpec ObservationSpecFromJson(const json& object) {
     object.at("width").get_to(spec.width);
     object.at("stack").get_to(spec.stack);
     if (object.contains("goal_picture")) object.at("goal_picture").get_to(spec.goal_picture);
+    if (object.contains("environment")) spec.environment = object.at("environment").dump();
     for (const auto& block : object.at("blocks")) {
       spec.blocks.push_back({block.at("name").get<std::string>(), block.at("size").get<int>(),
                              block.at("observed").get<bool>()});

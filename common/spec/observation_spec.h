@@ -42,6 +42,9 @@ struct ObservationSpec {
   // A picture of the episode's goal reached, (C, H, W) like a frame, follows the stack in what the
   // policy sees (observation.goal_mode = image).
   bool goal_picture = false;
+  // JSON of an environment that is not one of Shoal's worlds, as the process that runs it describes
+  // it (common/tasks/environment_description.h); empty = one of Shoal's.
+  std::string environment;
   std::string model_fingerprint;  // hash of the compiled physics model and render settings, hex
 
   bool HasPixels() const { return channels > 0; }

@@ -39,6 +39,9 @@ struct Block {
   int size() const { return static_cast<int>(components.size()); }
 };
 
+// episode_length of a task whose episodes have no time limit, or none that is known.
+inline constexpr int kNoTimeLimit = 1'000'000'000;
+
 enum class RewardKind {
   kSparse,  // -1 while the distance exceeds the threshold, else 0
   kDense,   // -distance
@@ -58,6 +61,8 @@ class Task {
     RewardKind reward = RewardKind::kSparse;
     double distance_threshold = 0;  // m
     std::string physics_reward;     // without goals: what the physics half pays for, for people
+    bool reports_success = false;   // without goals: steps say whether they succeed
+    std::string no_goals;           // why Shoal knows no goals, for people; empty: there are none
   };
 
   // Throws Error (kUsage), in one line, when the description cannot be: common/tasks/task_check.h.
@@ -85,11 +90,12 @@ class Task {
   const Block& achieved_goal() const { return description_.achieved_goal; }
   const Block& desired_goal() const { return description_.desired_goal; }
   int goal_size() const { return description_.desired_goal.size(); }
-  // Does an episode succeed or fail? Tasks without goals only have a return.
-  bool has_success() const { return goal_size() > 0; }
+  // Does an episode succeed or fail? Most tasks without goals only have a return.
+  bool has_success() const { return goal_size() > 0 || description_.reports_success; }
   RewardKind reward_kind() const { return description_.reward; }
   double distance_threshold() const { return description_.distance_threshold; }
   const std::string& physics_reward() const { return description_.physics_reward; }
+  const std::string& no_goals() const { return description_.no_goals; }
 
   // The functions below are for tasks with goals (else CHECK).
   //

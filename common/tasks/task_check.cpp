@@ -17,9 +17,9 @@ constexpr int kLongestEpisode = 1'000'000'000;
 bool IsLetter(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_'; }
 bool IsDigit(char c) { return c >= '0' && c <= '9'; }
 
-bool IsIdentifier(std::string_view name) {
-  return !name.empty() && name.size() <= kLongestName && IsLetter(name[0]) &&
-         std::ranges::all_of(name, [](char c) { return IsLetter(c) || IsDigit(c); });
+bool IsBlockName(std::string_view name) {
+  return !name.empty() && name.size() <= kLongestName && IsLetter(name[0]) && name.back() != '.' &&
+         std::ranges::all_of(name, [](char c) { return IsLetter(c) || IsDigit(c) || c == '.'; });
 }
 
 // Whether the configuration's `task` takes the name: run folders are named after it.
@@ -54,10 +54,10 @@ void CheckComponents(const std::string& task, const std::string& where,
 }
 
 void CheckBlock(const std::string& task, const Block& block) {
-  if (!IsIdentifier(block.name)) {
+  if (!IsBlockName(block.name)) {
     throw UsageError(
-        "task '{}': '{}' is no name of a block: expected letters, digits and underscores, not "
-        "beginning with a digit, at most {}",
+        "task '{}': '{}' is no name of a block: expected letters, digits, underscores and dots, "
+        "beginning with a letter or '_', not ending with a dot, at most {}",
         task, Shown(block.name), kLongestName);
   }
   if (block.components.empty()) {

@@ -15,7 +15,8 @@ inline constexpr int kMostActions = 1'024;   // components of an action
 // sense.
 //
 // A block's name becomes an array of exports, a key of files and part of "BLOCK-BLOCK" in
-// learner.aux: letters, digits and underscores, not beginning with a digit, at most 64.
+// learner.aux: letters, digits, underscores and dots, beginning with a letter or an underscore, not
+// ending with a dot, at most 64.
 void CheckDescription(const Task::Description& description);
 
 // Checks that a task can be trained: it has an action and a physics half. Errors as above.

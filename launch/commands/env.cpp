@@ -97,6 +97,7 @@ void AddEnvCommand(CLI::App& app, Action* chosen) {
          "Shared object with tasks of one's own (docs/own_task.md)")
       ->trigger_on_parse();
   AddEnvTaskCommands(*env, chosen);
+  AddEnvCheckCommand(*env, chosen);
   AddRender(*env, chosen);
 }
 

@@ -116,6 +116,10 @@ int Evaluate(const EvalOptions& options) {
                     options.episodes, point->episodes));
   }
   Config played = ReadRunConfig(run).config;
+  if (!played.env.id.empty()) {  // Python alone can play it without a policy
+    output.Write(result);
+    return 0;
+  }
   if (!options.task.empty()) {  // played without the run's model file
     played.task = options.task;
     played.model.clear();

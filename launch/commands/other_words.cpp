@@ -16,6 +16,7 @@ namespace shoal::launch {
 namespace {
 
 constexpr char kTrain[] = "train", kJson[] = "--json";
+constexpr char kTaskKey[] = "task", kEnvironmentKey[] = "env.id";
 
 struct Advice {
   std::vector<std::string_view> commands;
@@ -69,6 +70,15 @@ std::string HintForTrainWord(const std::string& word) {
   return NearestHint(word, ListPresets());
 }
 
+// Whether the value of --env is a task of Shoal's or of the user's task library, which is not
+// loaded yet.
+bool IsTask(const std::vector<std::string>& words, const std::string& value) {
+  const auto names_library = [](const std::string& word) {
+    return word.find("task_library") != std::string::npos;
+  };
+  return Contains(tasks::TaskNames(), value) || std::ranges::any_of(words, names_library);
+}
+
 bool IsName(const std::string& word) { return word.size() > 2 && word.starts_with("--"); }
 
 // The value behind or within the option at `i`, which moves to the option's last word.
@@ -89,7 +99,9 @@ std::vector<std::string> KeysAsAssignments(const CLI::App& train,
     if (option == nullptr && IsName(name)) {
       const MeantKey meant = FindMeantKey(name.substr(2));
       if (meant.same) {
-        taken.insert(taken.end(), {"--set", meant.key + "=" + ValueOf(words, name, &i)});
+        const std::string value = ValueOf(words, name, &i);
+        const bool hosted = meant.key == kTaskKey && name != "--task" && !IsTask(words, value);
+        taken.insert(taken.end(), {"--set", (hosted ? kEnvironmentKey : meant.key) + "=" + value});
         continue;
       }
     }

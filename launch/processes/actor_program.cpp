@@ -4,12 +4,15 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "actor/hosted/hosted_spec.h"
+#include "common/base/build_info.h"
 #include "common/base/clock.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/interrupted.h"
 #include "common/base/stop.h"
 #include "common/config/config_io.h"
+#include "common/config/run_files.h"
 #include "common/run_folder/run_file_names.h"
 #include "launch/processes/process_plan.h"
 #include "launch/processes/scratch_folder.h"
@@ -23,9 +26,20 @@ namespace fs = std::filesystem;
 constexpr char kProgram[] = "shoal-actor";
 constexpr std::chrono::seconds kProgressInterval{2};
 constexpr std::chrono::seconds kDescribeDeadline{60};
+constexpr std::chrono::seconds kImportDeadline{300};  // to import and try an environment of Python
 constexpr std::chrono::seconds kStartDeadline{60}, kEpisodeDeadline{60};
 // A thousand larger pictures of the reference quality, drawn without a GPU and encoded.
 constexpr std::chrono::seconds kShownEpisodeDeadline{600};
+
+// ProgramError, but a package that the interpreter does not have is named.
+Error ActorError(const ExitStatus& status, const fs::path& errors, const Config& config) {
+  const bool no_package = !config.env.id.empty() &&
+                          LastLine(errors).find("No module named 'shoal_rl") != std::string::npos;
+  if (!no_package) return ProgramError(kProgram, status, errors);
+  return UsageError(
+      "env.python '{}' has no package shoal_rl: install its wheel there (docs/python.md)",
+      config.env.python);
+}
 
 // Follows the progress that a program writes into a file of its own: a user's task may print to the
 // program's standard output.
@@ -51,25 +65,49 @@ class ProgressWatch {
   std::string told_;
 };
 
-}  // namespace
-
-ObservedWorld DescribeObservations(const Config& config) {
+// The answer of the actor program to --describe.
+nlohmann::json AskActor(const Config& config, std::chrono::seconds deadline) {
   const ScratchFolder scratch;
   const fs::path input = scratch.path() / kConfigFile;
   WriteFileAtomically(input, ToJson(config).dump(2));
   const fs::path answer = scratch.path() / "spec.json";
-  ProcessSpec spec = ProgramSpec(
-      kProgram, {"--describe", "--config-json", input.string(), "--json", answer.string()}, 1);
+  ProcessSpec spec =
+      ActorSpec(config, {"--describe", "--config-json", input.string(), "--json", answer.string()});
   spec.output = scratch.path() / "output";
   spec.errors = scratch.path() / "errors";
-  const auto status = RunToEnd(spec, kDescribeDeadline, StopRequested);
+  const auto status = RunToEnd(spec, deadline, StopRequested);
   if (!status && StopRequested()) throw Interrupted("before anything was started");
-  if (!status) {
-    throw RuntimeError("{} --describe took more than {} s", kProgram, kDescribeDeadline.count());
+  if (!status) throw RuntimeError("{} --describe took more than {} s", kProgram, deadline.count());
+  if (!status->Clean()) throw ActorError(*status, spec.errors, config);
+  return ParseStrictJson(ReadFile(answer), std::string(kProgram) + " --describe");
+}
+
+}  // namespace
+
+DescribedEnvironment DescribeEnvironment(const Config& config) {
+  const nlohmann::json answer = AskActor(config, kImportDeadline);
+  const std::string version = answer.value("version", "");
+  if (version != BuildVersion()) {
+    throw UsageError(
+        "env.python '{}' has the package shoal_rl {}, this program is {}: install the wheel of the "
+        "same build there",
+        config.env.python, version, BuildVersion());
   }
-  if (!status->Clean()) throw ProgramError(kProgram, *status, spec.errors);
-  const nlohmann::json described =
-      ParseStrictJson(ReadFile(answer), std::string(kProgram) + " --describe");
+  const nlohmann::json& trial = answer.at("trial");
+  DescribedEnvironment described{
+      .description = tasks::EnvironmentFromJson(answer.at("environment")),
+      .steps = trial.at("steps").get<int>(),
+      .step_microseconds = trial.at("step_microseconds").get<double>(),
+      .repeated_steps = trial.at("repeated_steps").get<int>()};
+  if (trial.contains("differs_at")) described.differs_at = trial.at("differs_at").get<int>();
+  return described;
+}
+
+ObservedWorld DescribeObservations(const Config& config) {
+  if (!config.env.id.empty()) {
+    return {.spec = hosted::SpecOf(DescribeEnvironment(config).description, config)};
+  }
+  const nlohmann::json described = AskActor(config, kDescribeDeadline);
   return {.spec = ObservationSpecFromJson(described),
           .frame_microseconds = described.value("frame_microseconds", 0.0),
           .step_microseconds = described.value("step_microseconds", 0.0)};
@@ -80,11 +118,11 @@ std::optional<EvaluationPoint> EvaluateByActor(const EvaluationOrder& order,
   const ScratchFolder scratch =
       order.own_run ? ScratchFolder::WithinRun(order.run) : ScratchFolder();
   const fs::path json = order.json.empty() ? scratch.path() / "result.json" : order.json;
-  ProcessSpec spec = ProgramSpec(kProgram,
-                                 {"--evaluate", order.checkpoint.string(), "--run",
-                                  order.run.string(), "--episodes", std::to_string(order.episodes),
-                                  "--seed", std::to_string(order.seed), "--json", json.string()},
-                                 1);
+  const Config config = ReadRunConfig(order.run).config;
+  ProcessSpec spec =
+      ActorSpec(config, {"--evaluate", order.checkpoint.string(), "--run", order.run.string(),
+                         "--episodes", std::to_string(order.episodes), "--seed",
+                         std::to_string(order.seed), "--json", json.string()});
   if (!order.task.empty()) spec.command.insert(spec.command.end(), {"--task", order.task});
   if (order.partial) spec.command.emplace_back("--partial");
   const bool shown = !order.frames.stream.empty();
@@ -112,7 +150,7 @@ std::optional<EvaluationPoint> EvaluateByActor(const EvaluationOrder& order,
     throw RuntimeError("evaluation of '{}' took more than {} s", order.checkpoint.string(),
                        deadline.count());
   }
-  if (!status->Clean()) throw ProgramError(kProgram, *status, spec.errors);
+  if (!status->Clean()) throw ActorError(*status, spec.errors, config);
   return ParseEvaluation(ReadFile(json), json);
 }
 

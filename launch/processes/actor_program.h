@@ -9,6 +9,7 @@
 
 #include "common/config/config.h"
 #include "common/spec/observation_spec.h"
+#include "common/tasks/environment_description.h"
 #include "launch/record/evaluation_point.h"
 
 namespace shoal::launch {
@@ -18,6 +19,19 @@ struct ObservedWorld {
   // What drawing a frame, all cameras, takes on this machine, and a whole env step with it.
   double frame_microseconds = 0, step_microseconds = 0;
 };
+
+struct DescribedEnvironment {
+  tasks::EnvironmentDescription description;
+  int steps = 0;                    // that were tried
+  double step_microseconds = 0;     // duration of one
+  int repeated_steps = 0;           // that were played again with the same seed and actions
+  std::optional<int> differs_at{};  // the first that was another the second time; 0 = the reset
+};
+
+// The environment of env.id as its interpreter describes it. Plays one episode of random actions,
+// or its first seconds. Throws Error, with the actor's exit code, when it cannot be made or does
+// not keep to its spaces.
+DescribedEnvironment DescribeEnvironment(const Config& config);
 
 // `shoal-actor --describe`: what actors of this configuration observe. Its error becomes ours, with
 // its exit code.

@@ -23,15 +23,23 @@ ProcessSpec ProgramSpec(const std::string& program, std::vector<std::string> arg
   return spec;
 }
 
+ProcessSpec ActorSpec(const Config& config, std::vector<std::string> arguments) {
+  ProcessSpec spec = ProgramSpec("shoal-actor", std::move(arguments), 1);
+  if (config.env.id.empty()) return spec;
+  const std::vector<std::string> python{config.env.python, "-m", "shoal_rl.actor"};
+  spec.command.erase(spec.command.begin());
+  spec.command.insert(spec.command.begin(), python.begin(), python.end());
+  // Lines that the environment prints before a crash are in the log.
+  spec.environment.emplace_back("PYTHONUNBUFFERED", "1");
+  return spec;
+}
+
 namespace {
 
 using link::Role;
 
-ProcessSpec PlanProcess(const std::filesystem::path& run, const ProcessName& name,
-                        const std::string& program, std::vector<std::string> arguments,
-                        int threads) {
-  arguments.insert(arguments.begin(), {"--run", run.string()});
-  ProcessSpec spec = ProgramSpec(program, std::move(arguments), threads);
+ProcessSpec AsProcessOfRun(ProcessSpec spec, const std::filesystem::path& run,
+                           const ProcessName& name) {
   spec.role = name.role;
   spec.id = static_cast<int>(name.index);
   spec.output = LogFile(run, spec.Name());
@@ -43,16 +51,18 @@ ProcessSpec PlanChild(const link::RunProcess& child, const Config& config,
   const ProcessName name = child.Name();
   switch (child.role) {
     case Role::kReplay:
-      return PlanProcess(run, name, "shoal-replay", {}, 1);
+      return AsProcessOfRun(ProgramSpec("shoal-replay", {"--run", run.string()}, 1), run, name);
     case Role::kLearner:
-      return PlanProcess(run, name, "shoal-learner", {}, config.learner.threads);
+      return AsProcessOfRun(
+          ProgramSpec("shoal-learner", {"--run", run.string()}, config.learner.threads), run, name);
     case Role::kActor: {
       const int id = static_cast<int>(child.index);
-      return child.host == 0 ? ActorProcess(run, id)
+      return child.host == 0 ? ActorProcess(config, run, id)
                              : RemoteActor(hosts.at(child.host - 1), id, run);
     }
     case Role::kEval:
-      return PlanProcess(run, name, "shoal-actor", {"--role", "eval"}, 1);
+      return AsProcessOfRun(ActorSpec(config, {"--run", run.string(), "--role", "eval"}), run,
+                            name);
     case Role::kCoordinator:
     case Role::kClient:
       break;
@@ -63,9 +73,10 @@ ProcessSpec PlanChild(const link::RunProcess& child, const Config& config,
 
 }  // namespace
 
-ProcessSpec ActorProcess(const std::filesystem::path& run, int id) {
-  ProcessSpec spec = PlanProcess(run, ProcessName::Actor(static_cast<uint32_t>(id)), "shoal-actor",
-                                 {"--id", std::to_string(id)}, 1);
+ProcessSpec ActorProcess(const Config& config, const std::filesystem::path& run, int id) {
+  ProcessSpec spec =
+      AsProcessOfRun(ActorSpec(config, {"--run", run.string(), "--id", std::to_string(id)}), run,
+                     ProcessName::Actor(static_cast<uint32_t>(id)));
   spec.expendable = true;
   return spec;
 }

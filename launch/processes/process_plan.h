@@ -20,6 +20,10 @@ std::filesystem::path ProgramFolder();
 ProcessSpec ProgramSpec(const std::string& program, std::vector<std::string> arguments,
                         int threads);
 
+// The program of this configuration's actors: shoal-actor or, if env.id names an environment, the
+// interpreter env.python with the package shoal_rl.
+ProcessSpec ActorSpec(const Config& config, std::vector<std::string> arguments);
+
 // The topology of a run with these hosts. `config` is resolved.
 link::RunTopology TopologyOf(const Config& config, const std::vector<RemoteHost>& hosts);
 
@@ -33,6 +37,6 @@ std::vector<ProcessSpec> PlanProcesses(const link::RunTopology& topology, const 
 ActorRange ActorsOf(const Config& config, const std::vector<RemoteHost>& hosts, size_t index);
 
 // One training actor of this host, expendable.
-ProcessSpec ActorProcess(const std::filesystem::path& run, int id);
+ProcessSpec ActorProcess(const Config& config, const std::filesystem::path& run, int id);
 
 }  // namespace shoal::launch

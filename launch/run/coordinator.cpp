@@ -3,6 +3,8 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "actor/worlds/episode_fault.h"
@@ -29,6 +31,7 @@ using std::chrono::seconds;
 
 constexpr milliseconds kTurn{50};
 constexpr seconds kMetaPeriod{5};
+constexpr seconds kSlowestImport{300};  // of an environment of Python, before the first report
 
 const char* StateText(RunState state) {
   switch (state) {
@@ -53,6 +56,17 @@ LiveSettings Restored(const Config& config, const std::vector<SettingChange>& ch
   return settings;
 }
 
+// An actor reports between calls of its environment, so that the call that its own watch ends
+// (env.step_timeout) is not a hang before.
+HangLimits HangLimitsOf(const Config& config) {
+  HangLimits limits;
+  if (config.env.id.empty()) return limits;
+  const seconds call{static_cast<int64_t>(std::ceil(config.env.step_timeout))};
+  limits.report = std::max(limits.report, call + seconds(10));
+  limits.start = std::max(limits.start, kSlowestImport);
+  return limits;
+}
+
 }  // namespace
 
 Coordinator::Coordinator(const Parts& parts)
@@ -74,8 +88,8 @@ Coordinator::Coordinator(const Parts& parts)
           run_, parts.hub, [this](const std::string& line) { progress_.Say(line); },
           &record_.faults()),
       supervisor_(
-          RestartLimits(), HangLimits(), [this](const std::string& line) { progress_.Say(line); },
-          parts.start),
+          RestartLimits(), HangLimitsOf(config_),
+          [this](const std::string& line) { progress_.Say(line); }, parts.start),
       control_(parts.hub, settings_),
       inbox_(parts.hub, topology_),
       start_(AwakeNow()),
@@ -239,7 +253,7 @@ void Coordinator::Scale(int from, int to) {
   const char* actor = RoleName(Role::kActor);
   int id = from;
   try {
-    for (; id < to; ++id) supervisor_.Start(ActorProcess(run_, id));
+    for (; id < to; ++id) supervisor_.Start(ActorProcess(settings_.config(), run_, id));
   } catch (const Error&) {  // refused as a whole: the next order begins at the same number
     while (--id >= from) supervisor_.Retire(actor, id, Now());
     throw;

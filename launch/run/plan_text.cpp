@@ -23,6 +23,9 @@ constexpr double kMega = 1e6, kGiga = 1e9;
 
 std::string PicturesText(const RunConfig& run, double frame_microseconds) {
   if (!run.config.observation.pixels) return "no pictures";
+  if (!run.config.env.id.empty()) {
+    return fmt::format("the environment draws, {} camera(s)", run.spec.cameras.size());
+  }
   return fmt::format("OSMesa ({}) draws a frame, {} camera(s), in {:.0f} us{}",
                      run.config.observation.quality, run.spec.cameras.size(), frame_microseconds,
                      run.spec.goal_picture ? ", and a goal picture for each episode" : "");

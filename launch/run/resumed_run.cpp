@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 
+#include "actor/hosted/hosted_spec.h"
 #include "common/base/clock.h"
 #include "common/base/error.h"
 #include "common/base/usable_cores.h"
@@ -16,6 +18,7 @@
 #include "common/config/spec_mismatch.h"
 #include "common/policy/checkpoint_writer.h"
 #include "common/run_folder/run_file_names.h"
+#include "common/tasks/environment_description.h"
 #include "common/tasks/task_library.h"
 #include "launch/processes/run_hosts.h"
 #include "launch/run/live_settings.h"
@@ -116,6 +119,14 @@ Hosts ResumedHosts(const TrainOptions& options, const fs::path& run, const Confi
   return hosts;
 }
 
+// What the actors observe now. Whether an environment of Python reports success, and its goal, stay
+// what was found when the run began.
+ObservedWorld ObserveEnvironmentAgain(const RunConfig& run) {
+  tasks::EnvironmentDescription now = DescribeEnvironment(run.config).description;
+  now.TakeFindings(tasks::EnvironmentFromJson(nlohmann::json::parse(run.spec.environment)));
+  return {.spec = hosted::SpecOf(now, run.config)};
+}
+
 }  // namespace
 
 RunRequest ResolveResumed(const TrainOptions& options,
@@ -136,7 +147,9 @@ RunRequest ResolveResumed(const TrainOptions& options,
   request.meta.final_return.reset();
   ApplyResumeOptions(options, UsableCores(), &config);
   tasks::LoadTaskLibrary(config.task_library);
-  const ObservedWorld world = describe(config);
+  tasks::AddEnvironmentTask(request.config.spec.environment);
+  const ObservedWorld world =
+      config.env.id.empty() ? describe(config) : ObserveEnvironmentAgain(request.config);
   if (world.spec != request.config.spec) {
     throw RuntimeError("{}", SpecMismatch(request.config, world.spec));
   }

@@ -7,16 +7,20 @@
 #include <cstdio>
 #include <utility>
 
+#include "actor/hosted/hosted_spec.h"
 #include "common/base/clock.h"
+#include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/stop.h"
 #include "common/base/usable_cores.h"
 #include "common/config/privileged_blocks.h"
 #include "common/run_folder/run_file_names.h"
+#include "common/tasks/environment_description.h"
 #include "common/tasks/task_library.h"
 #include "launch/processes/actor_program.h"
 #include "launch/processes/run_hosts.h"
 #include "launch/processes/run_leftovers.h"
+#include "launch/run/environment_choice.h"
 #include "launch/run/first_split.h"
 
 namespace shoal::launch {
@@ -45,9 +49,37 @@ void DivideCores(double step_microseconds, RunRequest* request) {
   request->config.config.learner.threads = split.threads;
 }
 
+void RefuseOtherHosts(const Config& config, const Hosts& hosts) {
+  if (hosts.hosts.empty()) return;
+  throw UsageError("--hosts: the environment {} is run by {} of this host; expected no other hosts",
+                   config.env.id, config.env.python);
+}
+
+// Asks the environment of env.id what it observes, and resolves the configuration again with what
+// follows from that.
+void TakeEnvironment(const TrainOptions& options, RunRequest* request) {
+  RunConfig& run = request->config;
+  const DescribedEnvironment described = DescribeEnvironment(run.config);
+  const tasks::EnvironmentDescription& environment = described.description;
+  const std::string preset = run.config.preset;
+  const EnvironmentDefaults defaults = DefaultsFor(environment);
+  run.config = ResolveConfig(options, UsableCores(), defaults);
+  run.spec = hosted::SpecOf(environment, run.config);
+  if (run.spec.HasPixels()) run.config.observation.cameras = run.spec.cameras;
+  tasks::AddEnvironmentTask(run.spec.environment);
+  request->split_limits = LimitsOfSplit(GivenConfig(options, defaults), false, UsableCores());
+  DivideCores(described.step_microseconds, request);
+  request->environment_note = fmt::format(
+      "  environment {}, run by {}{}\n", run.config.env.id, run.config.env.python,
+      preset.empty() ? fmt::format("; preset {}, because {}", run.config.preset, defaults.reason)
+                     : "");
+}
+
 RunFolder CreateFolder(const TrainOptions& options, const Config& config) {
   if (config.run_name.empty()) {
-    const std::string& kind = config.preset.empty() ? config.task : config.preset;
+    // The presets for environments of any kind say less than the environment's name.
+    const bool by_task = config.preset.empty() || !config.env.id.empty();
+    const std::string& kind = by_task ? config.task : config.preset;
     return RunFolder::CreateNumbered(config.run_dir, fmt::format("{}-s{}", kind, config.seed));
   }
   const std::filesystem::path folder = std::filesystem::path(config.run_dir) / config.run_name;
@@ -73,15 +105,21 @@ RunRequest ResolveFresh(const TrainOptions& options) {
     request.hosts = ReadHostsFile(options.hosts);
     ApplyHosts(request.hosts, &config);
   }
+  if (!config.env.id.empty()) {
+    RefuseOtherHosts(config, request.hosts);
+    TakeEnvironment(options, &request);
+  }
   if (options.print_config) return request;
-  tasks::LoadTaskLibrary(config.task_library);
-  const ObservedWorld world = DescribeObservations(config);
-  request.config.spec = world.spec;
-  request.frame_microseconds = world.frame_microseconds;
-  request.split_limits =
-      LimitsOfSplit(GivenConfig(options), !request.hosts.hosts.empty(), UsableCores());
-  DivideCores(world.step_microseconds, &request);
-  request.camera_note = TakeCameras(&request.config);
+  if (config.env.id.empty()) {
+    tasks::LoadTaskLibrary(config.task_library);
+    const ObservedWorld world = DescribeObservations(config);
+    request.config.spec = world.spec;
+    request.frame_microseconds = world.frame_microseconds;
+    request.split_limits =
+        LimitsOfSplit(GivenConfig(options), !request.hosts.hosts.empty(), UsableCores());
+    DivideCores(world.step_microseconds, &request);
+    request.camera_note = TakeCameras(&request.config);
+  }
   PrivilegedBlocksOf(config.learner, request.config.spec);  // throws if they do not exist
   return request;
 }

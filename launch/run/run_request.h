@@ -27,6 +27,7 @@ struct RunRequest {
   double frame_microseconds = 0;              // to draw a frame, all cameras
   std::optional<SplitLimits> split_limits{};  // within which the run divides the cores anew
   std::string camera_note{};                  // one line; empty unless the task chose the cameras
+  std::string environment_note{};             // one line; empty unless env.id names an environment
   nn::TensorMap initial_weights{};            // --init-from, by our names; empty without
 
   bool resumed() const { return folder.has_value(); }

@@ -36,7 +36,8 @@ std::string StartText(const RunRequest& request, const std::filesystem::path& ru
   for (const std::string& binding : IgnoredOpenMpBindings()) {
     text += fmt::format("  {} is ignored: it would bind every process to the same core\n", binding);
   }
-  text += request.camera_note + PlanText(request.config, request.frame_microseconds);
+  text += request.environment_note + request.camera_note +
+          PlanText(request.config, request.frame_microseconds);
   const auto actors_here = static_cast<int>(topology.ActorsOn(0).size());
   const std::string shared = SharedCoresText(actors_here, UsableCores());
   if (!shared.empty()) text += "  " + shared + "\n";

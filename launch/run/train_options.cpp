@@ -40,10 +40,16 @@ FilePreset ChoosePreset(const TrainOptions& options) {
 
 }  // namespace
 
-Config GivenConfig(const TrainOptions& options) {
-  const auto [preset, whole] = ChoosePreset(options);
+Config GivenConfig(const TrainOptions& options, const EnvironmentDefaults& defaults) {
+  auto [preset, whole] = ChoosePreset(options);
+  if (preset.empty() && !whole) preset = defaults.preset;
   // A run's config.json holds every key: it stays what it was, whatever becomes of its preset.
-  Config config = preset.empty() || whole ? Config{} : LoadPreset(preset);
+  Config config;
+  if (!whole) ApplyAssignments(defaults.assignments, &config);
+  if (!preset.empty() && !whole) {
+    ApplyFile(FindPreset(preset), &config);
+    config.preset = preset;
+  }
   if (!options.config_file.empty()) ApplyFile(options.config_file, &config);
   ApplyAssignments(options.set, &config);
   if (config.preset != preset) {
@@ -56,11 +62,12 @@ Config GivenConfig(const TrainOptions& options) {
   for (std::string* path : {&config.task_library, &config.model, &config.network.encoder_weights}) {
     if (!path->empty()) *path = std::filesystem::absolute(*path).lexically_normal();
   }
+  CompleteEnvironmentKeys(&config);
   return config;
 }
 
-Config ResolveConfig(const TrainOptions& options, int cores) {
-  Config config = GivenConfig(options);
+Config ResolveConfig(const TrainOptions& options, int cores, const EnvironmentDefaults& defaults) {
+  Config config = GivenConfig(options, defaults);
   // Threads of one update wait for each other, so a core shared with an actor stalls them all.
   config.learner.threads = LearnerThreads(config, cores);
   if (config.actors == 0) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/config/config.h"
+#include "launch/run/environment_choice.h"
 
 namespace shoal::launch {
 
@@ -26,11 +27,12 @@ struct TrainOptions {
   std::string prometheus;   // PORT or ADDRESS:PORT to serve metrics at; empty = none
 };
 
-// Preset, then file, then --set, then the other options. Throws Error (usage).
-Config GivenConfig(const TrainOptions& options);
+// `defaults`, then preset, then file, then --set, then the other options. Throws Error (usage).
+Config GivenConfig(const TrainOptions& options, const EnvironmentDefaults& defaults = {});
 // The same with `actors` and `learner.threads` filled in for `cores`, validated. Throws Error
 // (usage).
-Config ResolveConfig(const TrainOptions& options, int cores);
+Config ResolveConfig(const TrainOptions& options, int cores,
+                     const EnvironmentDefaults& defaults = {});
 
 // A resumed run keeps its configuration; only env_steps, stop.* and, for another machine,
 // learner.precision, replay.keep and learner.threads (0: filled in for `cores`) may be set. Throws

@@ -152,6 +152,9 @@ int Train(const TrainOptions& options, Detachment* detachment) {
     fmt::print("{}\n", ToJson(request.config.config).dump(2));
     return 0;
   }
+  if (options.in_process && !request.config.config.env.id.empty()) {
+    throw UsageError("--in-process: not with env.id: Python runs the environment in processes");
+  }
   CheckRequest(options, &request);
   // A resumed run had a domain before, so its dry run does not claim one.
   if (options.dry_run && request.resumed()) return 0;

@@ -54,8 +54,16 @@ void CheckHindsight(const RunConfig& run) {
   if (kind == "none") return;
   const tasks::Task& task = tasks::FindTask(run.spec.task);
   if (task.goal_size() == 0) {
-    throw UsageError("replay.hindsight = {}: task {} has no goals; expected none", kind,
-                     task.name());
+    const std::string& why = task.no_goals();
+    throw UsageError("replay.hindsight = {}: task {} has no goals{}{}; expected none", kind,
+                     task.name(), why.empty() ? "" : " that Shoal knows: ", why);
+  }
+  if (task.episode_length() >= tasks::kNoTimeLimit) {
+    throw UsageError(
+        "replay.hindsight = {}: the episodes of {} have no time limit that Shoal knows, so the "
+        "replay "
+        "cannot say how many of them it holds; expected one (gymnasium.wrappers.TimeLimit)",
+        kind, task.name());
   }
   const int repeat = task.ActionRepeat(config.action_repeat);
   if (repeat > 1) {

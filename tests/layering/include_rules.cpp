@@ -50,7 +50,7 @@ const std::set<std::string> kEmptyNames = {"utils", "util",    "helpers", "helpe
 // itself, which puts them together, may use all. A header of the top folder has a place
 // where a room implements it.
 const std::map<std::string, std::vector<std::string>> kRooms = {
-    {"actor", {"worlds", "acting", "sending", "loop", "evaluation"}},
+    {"actor", {"worlds", "hosted", "acting", "sending", "loop", "evaluation"}},
     {"replay_server", {"core", "service"}},
     {"learner", {"agent", "batch_stream.h", "rollouts"}},
     {"launch",

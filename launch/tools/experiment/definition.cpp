@@ -260,7 +260,7 @@ Config ArmConfig(const Config& base, const Arm& arm, const std::string& source) 
   try {
     Validate(config);
     tasks::LoadTaskLibrary(config.task_library);
-    tasks::FindTask(config.task);
+    if (config.env.id.empty()) tasks::FindTask(config.task);
   } catch (const Error& e) {
     throw UsageError("{}: {}", where, e.what());
   }

@@ -7,6 +7,7 @@
 #include <algorithm>
 
 #include "actor/evaluation/evaluation.h"
+#include "actor/evaluation/world_view.h"
 #include "common/base/error.h"
 #include "tests/support/temporary_folder.h"
 
@@ -43,7 +44,7 @@ class FrameRecorderTest : public testing::Test {
   }
   // Plays a few steps of two episodes; returns the policy's input after each record.
   std::vector<std::vector<uint8_t>> Record(const FrameRecorder::Options& options) {
-    FrameRecorder recorder(run_, options);
+    FrameRecorder recorder(run_.spec, options.file, MakeWorldView(run_, options));
     runner_->set_listener(&recorder);
     std::vector<std::vector<uint8_t>> inputs;
     runner_->Begin(11, {frame_, vector_});
@@ -117,7 +118,7 @@ TEST_F(FrameRecorderTest, WithHindsightTheViewAloneShowsTheGoal) {
             ->spec();
     Evaluator evaluator(run, /*noop=*/true);
     {
-      FrameRecorder recorder(run, Options());
+      FrameRecorder recorder(run.spec, Options().file, MakeWorldView(run, Options()));
       evaluator.Listen(&recorder);
       int asked = 0;  // before each step: no more than the second episode's first one
       evaluator.Play(2, {7, StreamRole::kFinalEnvironment, 0}, [&] { return asked++ == 51; });

@@ -54,13 +54,43 @@ class _KeepCores:
         _warn_of_one_core(self._mask)
 
 
-try:
-    with _KeepCores():
-        from shoal_rl._native import Error, Policy, __version__, tasks
-except ModuleNotFoundError as error:
-    # pip refuses the wheel under another Python, PYTHONPATH and copied folders do not.
-    raise ImportError(_why_not_native()) from error
-from shoal_rl.runs import evaluations, metrics
+def _load():
+    """The names that need the compiled half, which brings MuJoCo and OSMesa into the process."""
+    try:
+        with _KeepCores():
+            from shoal_rl._native import Error, Policy, __version__, tasks
+    except ModuleNotFoundError as error:
+        # pip refuses the wheel under another Python, PYTHONPATH and copied folders do not.
+        raise ImportError(_why_not_native()) from error
+    from shoal_rl.runs import evaluations, metrics
+
+    return {
+        "Error": Error,
+        "Policy": Policy,
+        "__version__": __version__,
+        "tasks": tasks,
+        "evaluations": evaluations,
+        "metrics": metrics,
+    }
+
+
+def _is_actor():
+    """python -m shoal_rl.actor: it has a compiled half of its own, and the user's environment may
+    have another MuJoCo."""
+    import sys
+
+    return sys.orig_argv[1:3] == ["-m", "shoal_rl.actor"]
+
+
+def __getattr__(name):
+    if name in __all__:
+        globals().update(_load())
+        return globals()[name]
+    raise AttributeError(f"module 'shoal_rl' has no attribute '{name}'")
+
+
+if not _is_actor():
+    globals().update(_load())
 
 __all__ = ["Error", "Policy", "__version__", "evaluations", "make", "make_vec", "metrics", "tasks"]
 

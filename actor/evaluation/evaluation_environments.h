@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+// Where the environments of an evaluation come from.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "actor/acting/environments.h"
+#include "actor/evaluation/episode_view.h"
+#include "actor/evaluation/frame_recorder.h"
+#include "common/config/run_config.h"
+
+namespace shoal::actor {
+
+struct EvaluationEnvironments {
+  EnvironmentFactory make;
+  // The run with another task to play. Throws Error when the policy does not fit it.
+  std::function<RunConfig(const RunConfig&, const std::string& task)> with_task;
+  // The larger view of films. Called once the one environment of the evaluation is made.
+  std::function<std::unique_ptr<EpisodeView>(const RunConfig&, const FrameRecorder::Options&)> view;
+};
+
+// Shoal's own worlds.
+EvaluationEnvironments WorldEnvironments();
+
+}  // namespace shoal::actor

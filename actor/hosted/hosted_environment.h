@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+// An Environment out of a user's environment: maps actions from [-1, 1] to its bounds, images to
+// frames, other arrays to blocks, and refuses numbers that are not finite.
+//
+//   action[i] = low[i] + (a[i] + 1) / 2 * (high[i] - low[i]), a in [-1, 1]
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "actor/hosted/image_resize.h"
+#include "actor/hosted/raw_environment.h"
+#include "actor/worlds/environment.h"
+#include "common/config/config.h"
+#include "common/tasks/environment_description.h"
+
+namespace shoal::hosted {
+
+class HostedEnvironment final : public worlds::Environment {
+ public:
+  // `raw` observes what `description` says. Throws Error (kUsage): hosted_spec.h.
+  HostedEnvironment(tasks::EnvironmentDescription description, const Config& config,
+                    std::unique_ptr<RawEnvironment> raw);
+
+  const ObservationSpec& spec() const override { return spec_; }
+  // A number of an observation or a reward that is not finite is an EpisodeFault. Numbers outside
+  // of their declared bounds pass, with a warning for the first of each array.
+  float Reset(uint64_t stream_key, worlds::ObservationOut out) override;
+  worlds::StepResult Step(std::span<const float> action, worlds::ObservationOut out) override;
+  // Seconds spent in converting images.
+  double render_seconds() const override { return image_seconds_; }
+  std::span<const worlds::DrawnMass> drawn_masses() const override { return {}; }
+
+  RawEnvironment& raw() { return *raw_; }
+
+ private:
+  struct Image {
+    size_t array = 0;  // of the observation
+    ImageResize resize;
+  };
+  struct Block {
+    size_t array = 0;  // of the observation
+    size_t first = 0;  // of the vector
+    bool bounded = false, warned = false;
+  };
+
+  void ReadNumbers();
+  void ReadBlock(Block* block);
+  void WarnOutside(const tasks::ArraySpace& space, size_t element, float value, Block* block);
+  void Observe(worlds::ObservationOut out);
+  void MapAction(std::span<const float> action);
+  // NaN without goals.
+  double Distance() const;
+
+  const tasks::EnvironmentDescription description_;
+  const tasks::Task task_;
+  const int action_repeat_;
+  const bool end_on_success_;
+  const std::unique_ptr<RawEnvironment> raw_;
+  const ObservationSpec spec_;
+  std::vector<Image> images_;
+  std::vector<Block> blocks_;
+  std::vector<float> vector_;   // (R), of the newest observation
+  std::vector<double> action_;  // (A), in the environment's units
+  double image_seconds_ = 0;
+  int64_t steps_ = 0;  // control steps since the reset
+};
+
+}  // namespace shoal::hosted

@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// shoal env check: how Shoal sees an environment of Python, and whether it keeps to what it says.
+#include <fmt/ranges.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "common/base/usable_cores.h"
+#include "launch/commands/env_tasks.h"
+#include "launch/commands/json_output.h"
+#include "launch/processes/actor_program.h"
+#include "launch/run/train_options.h"
+
+namespace shoal::launch {
+namespace {
+
+std::string BoundsText(const tasks::ArraySpace& space) {
+  double low = space.Low(0), high = space.High(0);
+  for (int i = 1; i < space.size(); ++i) {
+    low = std::min(low, space.Low(i));
+    high = std::max(high, space.High(i));
+  }
+  return fmt::format("[{:g}, {:g}]", low, high);
+}
+
+std::string ArrayText(const tasks::ArraySpace& space) {
+  const std::string shape = fmt::format("{}", fmt::join(space.shape, "x"));
+  if (const auto image = ImageLayoutOf(space)) {
+    return fmt::format("  {}: image {}, {} channel(s), frames of camera '{}'\n", space.name, shape,
+                       image->channels, space.name);
+  }
+  return fmt::format("  {}: {} in {}, block of {} numbers\n", space.name, shape, BoundsText(space),
+                     space.size());
+}
+
+std::string GoalText(const tasks::EnvironmentDescription& environment) {
+  if (environment.goal) {
+    const bool dense = environment.goal->reward == tasks::RewardKind::kDense;
+    return fmt::format("  OK    hindsight: the rewards are {}, threshold {:g}; verified\n",
+                       dense ? "dense" : "sparse", environment.goal->threshold);
+  }
+  if (environment.no_goal.empty()) return "";
+  return fmt::format("  WARN  no hindsight: {}\n", environment.no_goal);
+}
+
+std::string RepeatText(const DescribedEnvironment& described) {
+  if (!described.differs_at) {
+    return fmt::format("  OK    equal seeds and actions gave equal episodes ({} steps)\n",
+                       described.repeated_steps);
+  }
+  return fmt::format(
+      "  WARN  equal seeds and actions gave other observations or rewards from step {} on: runs "
+      "cannot repeat\n",
+      *described.differs_at);
+}
+
+std::string Text(const DescribedEnvironment& described, const Config& config) {
+  const tasks::EnvironmentDescription& environment = described.description;
+  std::string text =
+      fmt::format("{}, task {}, run by {}\n", environment.id, environment.task, config.env.python);
+  for (const tasks::ArraySpace& space : environment.observation) text += ArrayText(space);
+  text += fmt::format("  action: {} numbers in {}, mapped to [-1, 1]\n", environment.action.size(),
+                      BoundsText(environment.action));
+  text += environment.episode_steps > 0
+              ? fmt::format("  episodes of at most {} steps", environment.episode_steps)
+              : "  episodes without a time limit";
+  text += environment.success ? "; steps report success\n" : "; success is not reported\n";
+  text += fmt::format("  OK    {} random steps, {:.0f} microseconds each\n", described.steps,
+                      described.step_microseconds);
+  return text + RepeatText(described) + GoalText(environment);
+}
+
+nlohmann::ordered_json Json(const DescribedEnvironment& described) {
+  nlohmann::ordered_json json{{"schema", "shoal-env-check-1"},
+                              {"environment", ToJson(described.description)},
+                              {"steps", described.steps},
+                              {"step_microseconds", described.step_microseconds},
+                              {"repeats", !described.differs_at.has_value()}};
+  if (described.differs_at) json["differs_at"] = *described.differs_at;
+  return json;
+}
+
+int Check(const TrainOptions& options, const std::string& json) {
+  const JsonOutput output(json);
+  const Config config = ResolveConfig(options, UsableCores());
+  const DescribedEnvironment described = DescribeEnvironment(config);
+  output.Write(Json(described).dump(2) + "\n");
+  std::fputs(Text(described, config).c_str(), output.text());
+  return 0;
+}
+
+}  // namespace
+
+void AddEnvCheckCommand(CLI::App& env, Action* chosen) {
+  CLI::App* command = env.add_subcommand(
+      "check",
+      "Make an environment of Python, play it, and say how it is observed, whether it repeats, and "
+      "whether hindsight is possible (docs/own_environment.md).");
+  const auto environment = std::make_shared<std::string>();
+  const auto options = std::make_shared<TrainOptions>();
+  const auto json = std::make_shared<std::string>();
+  command
+      ->add_option("environment", *environment,
+                   "A name that gymnasium.make knows, MODULE:NAME or FILE.py:NAME")
+      ->required();
+  command->add_option("--set", options->set, "KEY=VALUE, such as env.kwargs; may be repeated")
+      ->allow_extra_args(false);
+  command->add_option("--json", *json,
+                      "File for the same, replaced if it is there; - for standard output (schema "
+                      "shoal-env-check-1)");
+  command->callback([=] {
+    options->set.push_back("env.id=" + *environment);
+    *chosen = [=] { return Check(*options, *json); };
+  });
+}
+
+}  // namespace shoal::launch

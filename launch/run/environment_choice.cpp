@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "launch/run/environment_choice.h"
+
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <sstream>
+
+#include "actor/hosted/hosted_spec.h"
+#include "common/base/error.h"
+
+namespace shoal::launch {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr char kPythonFile[] = ".py:";
+
+// Not canonical: the python of a virtual environment is a link, and its place says which one it is.
+std::string Absolute(const std::string& path) { return fs::absolute(path).lexically_normal(); }
+
+bool IsProgram(const fs::path& path) {
+  std::error_code error;
+  return fs::is_regular_file(path, error) && access(path.c_str(), X_OK) == 0;
+}
+
+std::string OnSearchPath(const std::string& program) {
+  const char* path = std::getenv("PATH");
+  std::istringstream folders(path == nullptr ? "" : path);
+  for (std::string folder; std::getline(folders, folder, ':');) {
+    const fs::path file = fs::path(folder.empty() ? "." : folder) / program;
+    if (IsProgram(file)) return Absolute(file);
+  }
+  throw UsageError("env.python: there is no {} on the PATH; expected the path of an interpreter",
+                   program);
+}
+
+std::string ChoosePython(const std::string& asked) {
+  if (asked.empty()) {
+    const char* active = std::getenv("VIRTUAL_ENV");
+    const fs::path of_active = fs::path(active == nullptr ? "" : active) / "bin/python";
+    if (active != nullptr && IsProgram(of_active)) return Absolute(of_active);
+    return OnSearchPath("python3");
+  }
+  if (asked.find('/') == std::string::npos) return OnSearchPath(asked);
+  if (IsProgram(asked)) return Absolute(asked);
+  throw UsageError("env.python '{}' is no program; expected the path of a Python interpreter",
+                   asked);
+}
+
+}  // namespace
+
+void CompleteEnvironmentKeys(Config* config) {
+  EnvConfig& env = config->env;
+  if (env.id.empty()) return;
+  if (const size_t at = env.id.rfind(kPythonFile); at != std::string::npos) {
+    const std::string file = env.id.substr(0, at + 3), name = env.id.substr(at + 4);
+    if (!fs::exists(file)) throw UsageError("env.id '{}': file '{}' does not exist", env.id, file);
+    if (name.empty()) {
+      throw UsageError("env.id '{}': expected the name of a class or a function after the colon",
+                       env.id);
+    }
+    env.id = fmt::format("{}:{}", Absolute(file), name);
+  } else if (env.id.ends_with(".py")) {
+    throw UsageError("env.id '{}': expected {}:NAME, a class or a function of the file", env.id,
+                     env.id);
+  }
+  env.python = ChoosePython(env.python);
+  env.folder = Absolute(env.folder.empty() ? "." : env.folder);
+  config->task = tasks::TaskNameOf(env.id);
+}
+
+EnvironmentDefaults DefaultsFor(const tasks::EnvironmentDescription& environment) {
+  EnvironmentDefaults defaults;
+  const std::vector<std::string> images = hosted::ImagesOf(environment);
+  if (images.empty()) {
+    defaults.preset = "state";
+    defaults.reason = "it observes no image";
+  } else {
+    defaults.preset = "pixels";
+    defaults.reason = fmt::format("it observes {}", fmt::join(images, ", "));
+    const auto is_grey = [&](const std::string& name) {
+      return ImageLayoutOf(*environment.Find(name))->channels == 1;
+    };
+    if (std::ranges::all_of(images, is_grey)) {
+      defaults.assignments.emplace_back("observation.grey=true");
+    }
+  }
+  if (environment.goal) defaults.assignments.emplace_back("observation.goal_mode=both");
+  return defaults;
+}
+
+}  // namespace shoal::launch

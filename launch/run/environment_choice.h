@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+// Runs whose environment Python runs (env.id): the keys that follow from the name, and those that
+// follow from the environment's spaces unless the user sets them.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/config/config.h"
+#include "common/tasks/environment_description.h"
+
+namespace shoal::launch {
+
+// Without env.id nothing. Else completes `config`: env.python and env.folder, a file in env.id as
+// an absolute path, and the task's name. Throws Error (kUsage) on a file or an interpreter that
+// does not exist.
+void CompleteEnvironmentKeys(Config* config);
+
+// What a run gets that the user's preset, file and --set do not say.
+struct EnvironmentDefaults {
+  std::string preset;                    // "state" or "pixels"; only where none is named
+  std::vector<std::string> assignments;  // "observation.grey=true"
+  std::string reason;                    // of the preset, for people
+};
+
+EnvironmentDefaults DefaultsFor(const tasks::EnvironmentDescription& environment);
+
+}  // namespace shoal::launch

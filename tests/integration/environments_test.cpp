@@ -1,0 +1,247 @@
+// SPDX-License-Identifier: Apache-2.0
+// Environments of Python as actors: trained, judged, refused, restarted. The package gymnasium is
+// the tests' own (environments/), so that no network is needed.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <sstream>
+
+#include "tests/support/running_training.h"
+
+namespace shoal {
+namespace {
+
+using nlohmann::json;
+using std::chrono::seconds;
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class Environments : public testing::Test {
+ protected:
+  static RunningTraining::Environment Surroundings() {
+    return {{"PYTHONPATH",
+             ProgramPath("../package") + ":" + SourcePath("tests/integration/environments")},
+            {"PYTHONDONTWRITEBYTECODE", "1"},
+            {"VIRTUAL_ENV", ""}};
+  }
+  ProgramResult Shoal(std::vector<std::string> words, seconds deadline = seconds(180)) const {
+    words.insert(words.begin(), ProgramPath("shoal"));
+    return RunCommand(std::move(words), deadline, Surroundings());
+  }
+  // `shoal train` of an environment, for some thousand steps.
+  std::vector<std::string> Words(const std::string& environment, TrainingRun::Keys keys = {},
+                                 const std::vector<std::string>& flags = {}) const {
+    TrainingRun::Keys all{{"env_steps", "2000"},
+                          {"actors", "1"},
+                          {"eval.episodes", "4"},
+                          {"env.python", SHOAL_TEST_PYTHON},
+                          {"eval.final_episodes", "4"},
+                          {"eval.interval", "1000"},
+                          {"learner.batch", "32"},
+                          {"network.hidden", "[32]"},
+                          {"replay.capacity", "5000"},
+                          {"replay.min_size", "200"},
+                          {"replay.samples_per_insert", "8"},
+                          {"run_dir", run_.parent().string()},
+                          {"run_name", run_.path().filename().string()},
+                          {"stop.success", "2"}};
+    for (const auto& [key, value] : keys) all[key] = value;
+    std::vector<std::string> words{"train", "--env", environment};
+    for (const auto& [key, value] : all) {
+      words.insert(words.end(), {"--set", key + "=" + value});
+    }
+    words.insert(words.end(), flags.begin(), flags.end());
+    return words;
+  }
+  std::string Log(const std::string& process) const {
+    return ReadFile(run_.path() / "logs" / (process + ".log"));
+  }
+  // Trains an environment whose actors die again and again: the run's error.
+  std::string FailureOf(const std::string& environment, TrainingRun::Keys keys = {},
+                        bool plays = true) const {
+    keys["eval.interval"] = "1000000";
+    const ProgramResult done = Shoal(Words(environment, keys, {"--overwrite"}));
+    EXPECT_EQ(ExitCode(done), 1) << environment << ": " << done.out << done.err;
+    const json meta = run_.Json("meta.json");
+    EXPECT_EQ(meta.at("exit"), "failed") << environment;
+    EXPECT_GE(meta.at("restarts"), 1) << environment;
+    if (plays) ExpectBalanced(meta);
+    return meta.value("error", "");
+  }
+
+  const TrainingRun run_;
+};
+
+TEST_F(Environments, OneByNameIsTrainedJudgedAndGoesOn) {
+  const ProgramResult done = Shoal(Words("Point-v0"));
+  ASSERT_EQ(ExitCode(done), 0) << done.out << done.err << Log("actor-0");
+  EXPECT_THAT(done.out, AllOf(HasSubstr("environment Point-v0, run by "),
+                              HasSubstr("preset state, because it observes no image")));
+  const json meta = run_.Json("meta.json");
+  EXPECT_GE(meta.at("env_steps"), 2000);
+  ExpectBalanced(meta);
+  const json spec = run_.Json("config.json").at("spec");
+  EXPECT_EQ(spec.at("task"), "Point-v0");
+  EXPECT_EQ(spec.at("blocks")[1].at("name"), "aims.target");
+  const json judged = run_.Json("eval/final.json");
+  EXPECT_EQ(judged.at("aggregate").at("length_mean"), 40) << "its time limit";
+  EXPECT_TRUE(judged.at("aggregate").contains("success_rate")) << "info has is_success";
+
+  const ProgramResult again = Shoal({"eval", run_.path(), "--episodes", "3", "--seed", "5"});
+  EXPECT_EQ(ExitCode(again), 0) << again.out << again.err;
+
+  const ProgramResult resumed =
+      Shoal({"train", "--resume", run_.path(), "--set", "env_steps=2400"});
+  EXPECT_EQ(ExitCode(resumed), 0) << resumed.out << resumed.err;
+  ExpectBalanced(run_.Json("meta.json"));
+}
+
+// The commands of docs/own_environment.md.
+TEST_F(Environments, TheWorkedExampleIsTrainedAndFilmed) {
+  const ProgramResult done =
+      Shoal(Words(SourcePath("docs/examples/own_environment/catch_light.py") + ":CatchLight"));
+  ASSERT_EQ(ExitCode(done), 0) << done.out << done.err;
+  ExpectBalanced(run_.Json("meta.json"));
+  EXPECT_EQ(run_.Json("config.json").at("task"), "catch_light.CatchLight");
+  EXPECT_EQ(run_.Json("eval/final.json").at("aggregate").at("length_mean"), 100);
+  const ProgramResult film = Shoal({"film", run_.path(), "--episodes", "1"});
+  EXPECT_EQ(ExitCode(film), 0) << film.out << film.err;
+  EXPECT_GT(std::filesystem::file_size(run_.path() / "videos" / "best.mp4"), 1000u);
+}
+
+// Of the Python for which the package is built.
+std::vector<std::string> CheckWords(const std::string& environment) {
+  return {"env", "check", environment, "--set", std::string("env.python=") + SHOAL_TEST_PYTHON};
+}
+
+TEST_F(Environments, CheckSaysWhatIsObservedAndWhetherItRepeats) {
+  const ProgramResult done = Shoal(CheckWords("Point-v0"));
+  EXPECT_EQ(ExitCode(done), 0) << done.err;
+  EXPECT_THAT(done.out, AllOf(HasSubstr("aims.target: 1 in [-1, 1], block of 1 numbers"),
+                              HasSubstr("action: 1 numbers in [-2, 2], mapped to [-1, 1]"),
+                              HasSubstr("episodes of at most 40 steps; steps report success"),
+                              HasSubstr("OK    equal seeds and actions gave equal episodes")));
+  const ProgramResult drifts = Shoal(CheckWords("faulty:Drifts"));
+  EXPECT_EQ(ExitCode(drifts), 0) << drifts.err;
+  EXPECT_THAT(drifts.out, HasSubstr("WARN  equal seeds and actions gave other observations or "
+                                    "rewards from step 0 on"));
+  const ProgramResult goal = Shoal(CheckWords("goals:Reach"));
+  EXPECT_THAT(goal.out, HasSubstr("OK    hindsight: the rewards are sparse, threshold 0.05"))
+      << goal.err;
+  const ProgramResult box = Shoal(CheckWords("goals:Box"));
+  EXPECT_THAT(box.out, HasSubstr("WARN  no hindsight: its reward is no threshold")) << box.err;
+}
+
+TEST_F(Environments, RewardsOfAGoalEnvironmentAreComputedForOtherGoals) {
+  const TrainingRun::Keys keys{{"replay.hindsight", "future"}, {"eval.interval", "1000000"}};
+  const ProgramResult done = Shoal(Words("goals:Reach", keys));
+  ASSERT_EQ(ExitCode(done), 0) << done.out << done.err;
+  ExpectBalanced(run_.Json("meta.json"));
+  EXPECT_EQ(run_.Json("config.json").at("observation").at("goal_mode"), "both");
+  const ProgramResult refused = Shoal(Words("goals:Box", keys, {"--overwrite"}));
+  EXPECT_EQ(ExitCode(refused), 2) << refused.out << refused.err;
+  EXPECT_THAT(refused.err, HasSubstr("no goals that Shoal knows: its reward is no threshold"));
+}
+
+TEST_F(Environments, PicturesAreTrainedFrom) {
+  const ProgramResult done =
+      Shoal(Words("point:Picture", {{"env.kwargs", R"({"channels_first": true})"},
+                                    {"env_steps", "400"},
+                                    {"replay.min_size", "100"},
+                                    {"observation.height", "24"},
+                                    {"observation.width", "24"},
+                                    {"eval.interval", "1000000"},
+                                    {"eval.final_episodes", "0"}}));
+  ASSERT_EQ(ExitCode(done), 0) << done.out << done.err;
+  EXPECT_THAT(done.out, HasSubstr("preset pixels, because it observes observation"));
+  const json spec = run_.Json("config.json").at("spec");
+  EXPECT_EQ(spec.at("cameras"), json::array({"observation"}));
+  EXPECT_EQ(spec.at("channels"), 3);
+  EXPECT_EQ(spec.at("height"), 24);
+  ExpectBalanced(run_.Json("meta.json"));
+}
+
+TEST_F(Environments, WhatCannotBeTrainedIsRefusedInOneLineBeforeAnythingStarts) {
+  const std::string folder = SourcePath("tests/integration/environments");
+  const std::pair<std::string, std::string> refusals[] = {
+      {"Nowhere-v0", "gymnasium knows no environment 'Nowhere-v0'"},
+      {"nowhere.at_all:Point", "module 'nowhere.at_all' was not found"},
+      {"faulty:DiscreteActions", "the action space is Discrete; expected a Box"},
+      {"faulty:Unbounded", "expected finite bounds"},
+      {"faulty:RaisesAtOnce", "step raised ValueError: the gripper is stuck"},
+      {"faulty:DiscreteObservation", "the observation 'room' is Discrete; expected Box"},
+      {"nowhere.py:Point", "file 'nowhere.py' does not exist"},
+      {folder + "/point.py:Line", "has no class or function 'Line'"},
+      {folder + "/point.py", "expected"}};
+  for (const auto& [environment, expected] : refusals) {
+    const ProgramResult done = Shoal(Words(environment), seconds(60));
+    EXPECT_EQ(ExitCode(done), 2) << environment << ": " << done.out << done.err;
+    EXPECT_THAT(done.err, HasSubstr(expected)) << environment;
+    EXPECT_EQ(std::ranges::count(done.err, '\n'), 1) << done.err;
+    EXPECT_FALSE(std::filesystem::exists(run_.path())) << environment;
+  }
+  const std::pair<std::string, std::string> keys[] = {{"env.python", "/nowhere/python"},
+                                                      {"model", "robot.xml"},
+                                                      {"env.kwargs", "[1]"},
+                                                      {"env.kwargs", R"({"colour": 1})"},
+                                                      {"observation.pixels", "true"}};
+  for (const auto& [key, value] : keys) {
+    const ProgramResult done = Shoal(Words("Point-v0", {{key, value}}), seconds(60));
+    EXPECT_EQ(ExitCode(done), 2) << key << ": " << done.out << done.err;
+    EXPECT_FALSE(std::filesystem::exists(run_.path())) << key;
+  }
+  const ProgramResult python =
+      RunCommand({ProgramPath("shoal"), "train", "--env", "Point-v0", "--dry-run"}, seconds(60),
+                 {{"PYTHONPATH", ""}, {"VIRTUAL_ENV", ""}});
+  EXPECT_EQ(ExitCode(python), 2);
+  EXPECT_THAT(python.err, HasSubstr("has no package shoal_rl"));
+}
+
+TEST_F(Environments, FaultsOfTheUsersCodeAreRestartedCountedAndNamed) {
+  EXPECT_THAT(FailureOf("faulty:Raises"),
+              HasSubstr("step raised ValueError: the gripper is stuck"));
+  EXPECT_THAT(Log("actor-0"), AllOf(HasSubstr("Traceback"), HasSubstr("faulty.py")));
+  EXPECT_THAT(FailureOf("faulty:Shape"), HasSubstr("'place' of step has the shape (2,); expected"));
+  EXPECT_THAT(FailureOf("faulty:Type"), HasSubstr("has elements of type int64; expected float32"));
+  EXPECT_THAT(FailureOf("faulty:Missing"), HasSubstr("of step has no 'aims.target'"));
+}
+
+TEST_F(Environments, ProcessesThatEndOfThemselvesAreRestartedAndCounted) {
+  EXPECT_THAT(FailureOf("faulty:Leaves"), HasSubstr("exit code 7"));
+  EXPECT_THAT(FailureOf("faulty:LeavesWell"), HasSubstr("exit code 0"));
+  EXPECT_THAT(FailureOf("faulty:Segfaults"), HasSubstr("SIGSEGV"));
+  EXPECT_THAT(Log("actor-0"), HasSubstr("_segfault")) << "the Python stack";
+}
+
+TEST_F(Environments, ACallThatDoesNotReturnEndsTheActorWithItsStack) {
+  EXPECT_THAT(FailureOf("faulty:Hangs", {{"env.step_timeout", "0.5"}}),
+              HasSubstr("step did not return within env.step_timeout = 0.5 s"));
+  EXPECT_THAT(Log("actor-0"), HasSubstr("_hang"));
+}
+
+TEST_F(Environments, OneWhoseSpacesDifferBetweenProcessesIsRefused) {
+  EXPECT_THAT(FailureOf("faulty:Changes", {}, /*plays=*/false),
+              AllOf(HasSubstr("has changed since the run began"), HasSubstr("'action' was")));
+}
+
+TEST_F(Environments, NumbersThatAreNotFiniteEndEpisodesAndThenTheRun) {
+  const ProgramResult done = Shoal(Words("faulty:NotFinite"));
+  EXPECT_NE(ExitCode(done), 0);
+  EXPECT_THAT(run_.Json("meta.json").value("error", ""), HasSubstr("'place' is nan"));
+  ExpectBalanced(run_.Json("meta.json"));
+}
+
+TEST_F(Environments, OutputOfTheUsersCodeGoesToTheLog) {
+  const ProgramResult done = Shoal(
+      Words("faulty:Talks",
+            {{"env_steps", "600"}, {"eval.interval", "1000000"}, {"eval.final_episodes", "0"}}));
+  EXPECT_EQ(ExitCode(done), 0) << done.out << done.err;
+  EXPECT_THAT(done.out, Not(HasSubstr("\nmoved\n")));
+  EXPECT_THAT(Log("actor-0"), HasSubstr("moved"));
+  ExpectBalanced(run_.Json("meta.json"));
+}
+
+}  // namespace
+}  // namespace shoal
