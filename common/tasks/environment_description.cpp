@@ -24,7 +24,7 @@ using nlohmann::json;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 constexpr int kLeastSide = 8;             // pixels of an image
-constexpr size_t kLongestName = 50;       // of a task, before a prefix
+constexpr size_t kLongestTaskName = 50;   // of a task, before a prefix
 constexpr char kWorld[] = "environment";  // physics half: the process that runs the environment
 
 constexpr std::array<std::pair<const char*, ElementType>, 9> kTypes{
@@ -242,7 +242,7 @@ std::string TaskNameOf(const std::string& id) {
     if (std::isalnum(static_cast<unsigned char>(c)) == 0 && c != '.' && c != '_') c = '-';
   }
   name.erase(0, name.find_first_not_of(".-_"));
-  name = name.substr(0, kLongestName);
+  name = name.substr(0, kLongestTaskName);
   const std::vector<std::string> names = TaskNames();
   const bool taken = std::ranges::count(names, name) > 0 && FindTask(name).world() != kWorld;
   return name.empty() || taken ? fmt::format("environment.{}", name) : name;

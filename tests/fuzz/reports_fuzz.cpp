@@ -147,7 +147,8 @@ void Use(const CommandMessage& message) {
                                             .env_steps = [] { return uint64_t{0}; },
                                             .stop = [] {},
                                             .scale = [](int, int) {},
-                                            .note = [](const launch::SettingChange&) {}});
+                                            .note = [](const launch::SettingChange&) {},
+                                            .check = [](const Config&) {}});
   const ReplyMessage reply = handler.Handle(message);
   CHECK(reply.client == message.client && reply.request == message.request);
   fuzz::CheckOneLine(reply.text);

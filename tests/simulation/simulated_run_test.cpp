@@ -34,10 +34,10 @@ void ExpectGood(uint64_t seed, const std::vector<Fault>& faults) {
   EXPECT_TRUE(run.good) << run.text << run.summary;
 }
 
-Fault At(int seconds, Kind kind, const std::string& process, int span = 0,
+Fault At(int second, Kind kind, const std::string& process, int span = 0,
          const std::string& text = "") {
   return {.kind = kind,
-          .at = milliseconds(seconds * 1000),
+          .at = milliseconds(second * 1000),
           .process = process,
           .span = milliseconds(span * 1000),
           .text = text,

@@ -153,15 +153,18 @@ class AveragedDdpgAgent final : public Agent {
   // The features are still those of obs.
   bool UpdateActor(const BatchView& batch, UpdateFigures* figures) {
     const float* vector = batch.obs_vector.data();
+    const auto [mean, log_std, action] = actor_.Forward(vector);
     critic_.ForwardObservation(vector);
-    critic_.ForwardAction(actor_.Forward(vector).action);
-    const float loss = DeterministicActorLoss(learner_.batch, critic_.q(0));
+    critic_.ForwardAction(action);
+    const float loss =
+        DeterministicActorLoss({critic_.q(0), size_t(learner_.batch)},
+                               {mean, action_gradient_.size()}, learner_.mean_penalty);
     figures->Set(kActorLoss, loss);
     // An empty gradient: no part of the loss.
     std::vector<std::vector<float>> gradients(kCritics);
     gradients[0].assign(size_t(learner_.batch), -1.f / float(learner_.batch));
     critic_.BackwardAction(gradients, action_gradient_.data());
-    actor_.Backward(action_gradient_.data());
+    actor_.BackwardAction(action_gradient_.data(), learner_.mean_penalty);
     if (!Usable(loss, actor_optimiser_.GatherGradients())) return false;
     actor_optimiser_.Step();
     actor_.Refresh();

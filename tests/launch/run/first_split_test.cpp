@@ -9,7 +9,7 @@
 namespace shoal::launch {
 namespace {
 
-RunConfig Flagship() {
+RunConfig FlagshipRun() {
   RunConfig run;
   run.config.env_steps = 52'000;
   run.config.replay.samples_per_insert = Schedule::Constant(16);
@@ -23,7 +23,7 @@ RunConfig Flagship() {
 }
 
 TEST(FirstSplit, CostsAreThoseOfTheStepAndOfTheArithmetic) {
-  const RunConfig run = Flagship();
+  const RunConfig run = FlagshipRun();
   const auto costs = ExpectedCosts(run, /*step_microseconds=*/1000);
   ASSERT_TRUE(costs);
   EXPECT_NEAR(costs->env_step, 1.1e-3, 1e-9) << "and choosing actions";
@@ -35,13 +35,13 @@ TEST(FirstSplit, CostsAreThoseOfTheStepAndOfTheArithmetic) {
 }
 
 TEST(FirstSplit, WhatWasGivenIsALimit) {
-  const auto limits = LimitsOfSplit(Flagship().config, /*other_hosts=*/false, 16);
+  const auto limits = LimitsOfSplit(FlagshipRun().config, /*other_hosts=*/false, 16);
   ASSERT_TRUE(limits);
   EXPECT_EQ(limits->cores, 16);
   EXPECT_EQ(limits->most_threads, 16) << "8 rows each";
   EXPECT_FALSE(limits->actors);
   EXPECT_FALSE(limits->threads);
-  Config given = Flagship().config;
+  Config given = FlagshipRun().config;
   given.actors = 3;
   EXPECT_EQ(LimitsOfSplit(given, false, 16)->actors, 3);
   given.learner.threads = 2;
@@ -50,7 +50,7 @@ TEST(FirstSplit, WhatWasGivenIsALimit) {
 
 TEST(FirstSplit, RunsThatKeepTheirNumbers) {
   const auto divides = [](const auto& change) {
-    Config config = Flagship().config;
+    Config config = FlagshipRun().config;
     change(config);
     return LimitsOfSplit(config, false, 16).has_value();
   };
@@ -59,8 +59,8 @@ TEST(FirstSplit, RunsThatKeepTheirNumbers) {
   EXPECT_FALSE(divides([](Config& c) { c.learner.algorithm = "ppo"; }));
   EXPECT_FALSE(divides([](Config& c) { c.observation.pixels = false; }));
   EXPECT_FALSE(divides([](Config& c) { c.replay.samples_per_insert = Schedule::Constant(0); }));
-  EXPECT_FALSE(LimitsOfSplit(Flagship().config, /*other_hosts=*/true, 16));
-  EXPECT_FALSE(LimitsOfSplit(Flagship().config, false, kLeastCores - 1));
+  EXPECT_FALSE(LimitsOfSplit(FlagshipRun().config, /*other_hosts=*/true, 16));
+  EXPECT_FALSE(LimitsOfSplit(FlagshipRun().config, false, kLeastCores - 1));
 }
 
 }  // namespace
