@@ -11,12 +11,12 @@
 
 namespace shoal::actor {
 
-// What depends on where the environments come from.
+// The parts of an actor that depend on where the environments come from.
 struct ActorParts {
   // Makes the tasks of a configuration known. Before threads. Throws Error.
   std::function<void(const RunConfig&)> add_tasks;
   EvaluationEnvironments environments;
-  // What --describe answers of a configuration, as JSON. Throws Error.
+  // The answer of --describe about a configuration, as JSON. Throws Error.
   std::function<nlohmann::ordered_json(const Config&)> describe;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where the environments of an evaluation come from.
+// The source of an evaluation's environments.
 #pragma once
 
 #include <functional>

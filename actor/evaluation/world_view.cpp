@@ -44,7 +44,7 @@ Config ViewConfig(const RunConfig& run, const FrameRecorder::Options& options) {
   observation.height = options.height;
   observation.width = options.width;
   observation.stack = 1;
-  // Nobody acts by the view: it shows the goal's marker also where the policy must not see it.
+  // No policy acts by the view: it shows the goal's marker also where the policy must not see it.
   observation.goal_mode = "none";
   config.replay.hindsight = "none";
   observation.quality = options.quality;
@@ -55,7 +55,7 @@ std::unique_ptr<worlds::Environment> MakeView(const Config& config) {
   return worlds::MakeEnvironment(config, worlds::MakeRenderContext(config.observation));
 }
 
-// What an env step takes in the world; 0 = unknown. Plays one step.
+// The time that an env step takes in the world; 0 = unknown. Plays one step.
 uint32_t StepMicroseconds(worlds::Environment& environment, worlds::ObservationOut out) {
   try {
     environment.Reset(0, out);

@@ -12,7 +12,7 @@
 
 namespace shoal::hosted {
 
-// What a step yields besides the observation.
+// The results of a step besides the observation.
 struct RawStep {
   double reward = 0;
   bool terminated = false, truncated = false;

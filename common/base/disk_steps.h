@@ -16,7 +16,7 @@ class DiskSteps {
   // run, so that a process can be killed between two steps.
   virtual int Before(const std::string& path) = 0;
 
-  // Of the program; nullptr outside of simulations.
+  // The instance of the program; nullptr outside of simulations.
   static DiskSteps* Current() { return current_; }
   static void SetCurrent(DiskSteps* steps) { current_ = steps; }
 

@@ -17,10 +17,10 @@ namespace shoal {
 std::filesystem::path ProgramFile();
 std::vector<std::string> ProgramWords();
 
-// Of a program that the kernel knows as `executable`, named `name` in its words.
+// The file of a program that the kernel knows as `executable`, named `name` in its words.
 std::filesystem::path ProgramFileOf(const std::filesystem::path& executable,
                                     const std::string& name);
-// Of /proc/self/cmdline of that program: words, each ended by '\0'.
+// The words of that program, from its /proc/self/cmdline, which ends each by '\0'.
 std::vector<std::string> ProgramWordsOf(const std::filesystem::path& executable,
                                         const std::string& command_line);
 

@@ -12,7 +12,7 @@ namespace {
 // Below, what does not shrink with the rows (targets that follow, weights in the layouts of the
 // CPU) takes most of a replica's time, and each holds parameters of its own.
 constexpr int kLeastRows = 16;
-// With fewer it takes nearly all; with so many, 16 threads do 1.2 to 1.6 times what 8 do.
+// Rows below which it takes nearly all; with so many, 16 threads do 1.2 to 1.6 times what 8 do.
 constexpr int kFewestRows = 8;
 
 // Transitions of a batch, each with its copies.

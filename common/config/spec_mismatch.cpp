@@ -5,6 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "common/base/bounded_json.h"
 #include "common/base/one_line.h"
 
 namespace shoal {
@@ -13,7 +14,7 @@ namespace {
 // The first difference between two descriptions of an environment.
 std::string EnvironmentDifference(const std::string& before, const std::string& now) {
   using nlohmann::json;
-  const json was = json::parse(before), is = json::parse(now);
+  const json was = ParseBoundedJson<json>(before), is = ParseBoundedJson<json>(now);
   for (const auto& [key, value] : was.items()) {
     const json other = is.value(key, json());
     if (other == value) continue;

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "common/base/bounded_json.h"
 #include "common/config/config.h"
 
 namespace shoal {
@@ -31,7 +32,7 @@ void to_json(Json& out, const StateBlocks& blocks) {
 
 template <class Json>
 void to_json(Json& out, const KeywordArguments& arguments) {
-  out = Json::parse(arguments.json);
+  out = ParseBoundedJson<Json>(arguments.json);
 }
 
 namespace internal {

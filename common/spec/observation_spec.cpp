@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "common/base/bounded_json.h"
 #include "common/base/check.h"
 #include "common/base/error.h"
 #include "common/base/random.h"
@@ -85,7 +86,7 @@ json ToJson(const ObservationSpec& spec) {
               {"model_fingerprint", spec.model_fingerprint}};
   // Only where there is one: specs without keep the hash they had before.
   if (spec.goal_picture) object["goal_picture"] = true;
-  if (!spec.environment.empty()) object["environment"] = json::parse(spec.environment);
+  if (!spec.environment.empty()) object["environment"] = ParseBoundedJson<json>(spec.environment);
   return object;
 }
 

@@ -58,7 +58,7 @@ struct ArraySpace {
   bool operator==(const ArraySpace&) const = default;
 };
 
-// How an image lies in an array of uint8.
+// How an image is laid out in an array of uint8.
 struct ImageLayout {
   int height = 0, width = 0, channels = 0;
   bool channels_first = false;  // C x H x W; else H x W x C, or H x W with one channel
@@ -95,7 +95,8 @@ struct EnvironmentDescription {
 };
 
 // The name within Shoal of the environment that env.id names: "Pendulum-v1", "ALE-Pong-v5",
-// "my_env.MyEnv" of "./my_env.py:MyEnv". A name that one of Shoal's tasks has gets a prefix.
+// "catch_light.CatchLight" of "./catch_light.py:CatchLight". A name that one of Shoal's tasks has
+// gets a prefix.
 std::string TaskNameOf(const std::string& id);
 
 // Throws Error (kUsage) naming what is missing, ill-typed or cannot be trained on: an action

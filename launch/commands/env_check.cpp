@@ -82,7 +82,7 @@ nlohmann::ordered_json Json(const DescribedEnvironment& described) {
   return json;
 }
 
-int Check(const TrainOptions& options, const std::string& json) {
+int CheckEnvironment(const TrainOptions& options, const std::string& json) {
   const JsonOutput output(json);
   const Config config = ResolveConfig(options, UsableCores());
   const DescribedEnvironment described = DescribeEnvironment(config);
@@ -112,7 +112,7 @@ void AddEnvCheckCommand(CLI::App& env, Action* chosen) {
                       "shoal-env-check-1)");
   command->callback([=] {
     options->set.push_back("env.id=" + *environment);
-    *chosen = [=] { return Check(*options, *json); };
+    *chosen = [=] { return CheckEnvironment(*options, *json); };
   });
 }
 

@@ -16,7 +16,7 @@ namespace shoal::launch {
 
 struct ObservedWorld {
   ObservationSpec spec;
-  // What drawing a frame, all cameras, takes on this machine, and a whole env step with it.
+  // The time of drawing a frame, all cameras, on this machine, and of a whole env step with it.
   double frame_microseconds = 0, step_microseconds = 0;
 };
 

@@ -114,7 +114,7 @@ class Coordinator {
   const link::RunTopology topology_;  // as started; `shoal scale` may have changed the actors since
   CommandHandler handler_;
   RunDecisions decisions_;
-  std::optional<CoreSplit> split_;  // empty: somebody chose the numbers
+  std::optional<CoreSplit> split_;  // empty: the numbers were chosen
   EvaluationIntake evaluations_;
   RunRecord record_;
   RunWatch watch_;

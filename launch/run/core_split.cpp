@@ -11,12 +11,12 @@
 namespace shoal::launch {
 namespace {
 
-std::string Describe(const Split& split) {
+std::string DescribeSplit(const Split& split) {
   return fmt::format("{} learner thread{} and {} actor{}", split.threads,
                      split.threads == 1 ? "" : "s", split.actors, split.actors == 1 ? "" : "s");
 }
 
-// As between two looks.
+// The counts between two looks.
 SplitCounts Difference(const SplitCounts& before, const SplitCounts& now) {
   return {.env_steps = now.env_steps - before.env_steps,
           .updates = now.updates - before.updates,
@@ -91,14 +91,14 @@ std::optional<CoreSplit::Move> CoreSplit::Decide(const SplitCounts& counted,
   if (may_try && gain >= kGain && !Tried(next)) {
     return Move{next, fmt::format("{} cores: {} from now on, {} before; an update took {:.1f} ms, "
                                   "an env step {:.2f} ms: {:.2f} times the env steps expected",
-                                  limits_.cores, Describe(next), Describe(now_),
+                                  limits_.cores, DescribeSplit(next), DescribeSplit(now_),
                                   1e3 * trials_.back().update_seconds, 1e3 * costs.env_step, gain)};
   }
   done_ = true;
   if (best.split == now_ || best.pace < kLoss * trials_.back().pace) return std::nullopt;
-  return Move{best.split,
-              fmt::format("{} cores: back to {}, {:.0f} env steps/s; {:.0f} with {}", limits_.cores,
-                          Describe(best.split), best.pace, trials_.back().pace, Describe(now_))};
+  return Move{best.split, fmt::format("{} cores: back to {}, {:.0f} env steps/s; {:.0f} with {}",
+                                      limits_.cores, DescribeSplit(best.split), best.pace,
+                                      trials_.back().pace, DescribeSplit(now_))};
 }
 
 double CoreSplit::FurtherThread() const {

@@ -14,7 +14,7 @@
 
 namespace shoal::launch {
 
-// What the processes of a run have counted so far.
+// The counts of a run's processes so far.
 struct SplitCounts {
   double env_steps = 0, updates = 0;
   double actor_seconds = 0, actors_waited = 0;     // of all actors; waited for the learner
@@ -35,7 +35,7 @@ class CoreSplit {
   // Call about once a second with the seconds of the run, pauses left out. `updates_per_env_step`:
   // that are asked for now. The caller makes the move.
   std::optional<Move> Look(double seconds, const SplitCounts& counts, double updates_per_env_step);
-  // Keeps still from now on: somebody else decides.
+  // Keeps still from now on: the numbers are decided elsewhere.
   void Stop() { done_ = true; }
   bool done() const { return done_; }
 
@@ -46,7 +46,7 @@ class CoreSplit {
   // After the first update; a measurement that is not finished by then is given up.
   static constexpr double kLast = 20;
   static constexpr size_t kMostMoves = 3;
-  // Of the env steps/s measured best so far, to be worth a move; to be worth the way back.
+  // Factors of the env steps/s measured best so far: to be worth a move; to be worth the way back.
   static constexpr double kGain = 1.08, kLoss = 1.05;
 
  private:
@@ -57,7 +57,8 @@ class CoreSplit {
   };
 
   std::optional<Move> Decide(const SplitCounts& counts, double updates_per_env_step, bool may_try);
-  // What each further thread adds to an update, by the latest two trials of different numbers.
+  // The share that each further thread adds to an update, by the latest two trials of different
+  // numbers.
   double FurtherThread() const;
   bool Tried(const Split& split) const;
 

@@ -16,7 +16,7 @@ namespace shoal::launch {
 // does not exist.
 void CompleteEnvironmentKeys(Config* config);
 
-// What a run gets that the user's preset, file and --set do not say.
+// The settings that a run gets where the user's preset, file and --set do not say them.
 struct EnvironmentDefaults {
   std::string preset;                    // "state" or "pixels"; only where none is named
   std::vector<std::string> assignments;  // "observation.grey=true"

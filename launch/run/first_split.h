@@ -10,9 +10,10 @@
 
 namespace shoal::launch {
 
-// What an env step and an update are going to cost on this machine: the one measured
+// The costs that an env step and an update are going to have on this machine: the one measured
 // (`step_microseconds`, pictures included), the other from its arithmetic and what a core of this
-// kind computes. Empty without the former. Throws Error where the CPU lacks the asked precision.
+// kind computes. Empty without the measurement. Throws Error where the CPU lacks the asked
+// precision.
 std::optional<CoreCosts> ExpectedCosts(const RunConfig& run, double step_microseconds);
 
 // Within which the run may divide `cores`; empty if it keeps its numbers: both were given

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "actor/hosted/hosted_spec.h"
+#include "common/base/bounded_json.h"
 #include "common/base/clock.h"
 #include "common/base/error.h"
 #include "common/base/usable_cores.h"
@@ -119,11 +120,12 @@ Hosts ResumedHosts(const TrainOptions& options, const fs::path& run, const Confi
   return hosts;
 }
 
-// What the actors observe now. Whether an environment of Python reports success, and its goal, stay
-// what was found when the run began.
+// The world that the actors observe now. Whether an environment of Python reports success, and its
+// goal, stay what was found when the run began.
 ObservedWorld ObserveEnvironmentAgain(const RunConfig& run) {
   tasks::EnvironmentDescription now = DescribeEnvironment(run.config).description;
-  now.TakeFindings(tasks::EnvironmentFromJson(nlohmann::json::parse(run.spec.environment)));
+  now.TakeFindings(
+      tasks::EnvironmentFromJson(ParseBoundedJson<nlohmann::json>(run.spec.environment)));
   return {.spec = hosted::SpecOf(now, run.config)};
 }
 

@@ -9,7 +9,7 @@
 namespace shoal::launch {
 namespace {
 
-// As many as keep so many threads busy, on the cores that these leave.
+// The number of actors that keeps so many threads busy, on the cores that these leave.
 int ActorsFor(const CoreCosts& costs, const SplitLimits& limits, int threads) {
   if (limits.actors) return *limits.actors;
   const double busy =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // An agent whose number of threads may change between two updates. It is then made anew and takes
-// over the tensors of the former one, as from a checkpoint, which belongs to no number of threads.
+// over the tensors of its predecessor, as from a checkpoint, which belongs to no number of threads.
 #pragma once
 
 #include <functional>

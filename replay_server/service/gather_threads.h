@@ -33,7 +33,7 @@ class GatherThreads {
   void Run(int parts, const std::function<void(int part)>& part);
 
  private:
-  // Parts of the present job that nobody has taken yet, until there are none.
+  // Parts of the present job that no thread has taken yet, until there are none.
   void TakeParts();
   void Serve();
 

@@ -25,7 +25,8 @@ constexpr int kBatchBuffers = 2;    // one being filled, one being sent
 constexpr milliseconds kProgressSpacing{200};
 constexpr std::chrono::seconds kChoiceSpacing{1};
 
-// With replay.threads = 0. Memory, not cores, bounds how many copy faster: four reach most of it.
+// The most threads with replay.threads = 0. Memory, not cores, bounds how many copy faster: four
+// reach most of it.
 int MostGatherers() { return std::clamp(UsableCores() / 4, 1, 4); }
 
 }  // namespace

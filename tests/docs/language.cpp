@@ -36,7 +36,7 @@ const std::set<std::string> kFilesOfOthers = {
     // made by CMake, or by `shoal new`
     "models.cpp", "task/goal.cpp", "task/physics.cpp",
     // examples
-    "FOLDER/goal.cpp", "NAME_fuzz.cpp", "docs/a.md", "docs/b.md", "own_tusk.md"};
+    "FILE.py", "FOLDER/goal.cpp", "NAME_fuzz.cpp", "docs/a.md", "docs/b.md", "own_tusk.md"};
 
 constexpr std::array<std::string_view, 9> kFileEndings = {".md", ".h",  ".cpp",   ".c", ".cmake",
                                                           ".sh", ".py", ".proto", ".js"};

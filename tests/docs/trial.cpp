@@ -18,7 +18,7 @@ const std::vector<TrialRule>& TrialRules() {
   static const std::vector<TrialRule> rules = {
       // Commands that build, install, measure or need another machine.
       {"^\\./run build\\b", kElsewhere, "NewProject.AnInstallationHasItsPartsWhereTheyBelong"},
-      {"^\\./run (package|python|docs)\\b", kNotHere,
+      {"^\\./run (package|python|docs|bundle)\\b", kNotHere,
        "builds everything once more; a stage of its own"},
       {"^\\./run bench", kNotHere, "measures for minutes"},
       {"^build/release/bin/shoal-bench\\b", kNotHere, "measures for minutes"},
@@ -52,9 +52,13 @@ const std::vector<TrialRule>& TrialRules() {
       {"^pip |/bin/pip |^(/usr/bin/)?python3 -m venv", kNotHere, kPyPI},
       {"python tests/comparison/", kNotHere, kPyPI},
 
+      {"^shoal train --env .*(catch_light|CarRacing|Pendulum)", kElsewhere,
+       "Environments.TheWorkedExampleIsTrainedAndFilmed"},
+      {"^shoal .*gymnasium_robotics:", kElsewhere,
+       "Environments.RewardsOfAGoalEnvironmentAreComputedForOtherGoals"},
       {"--name-map", kElsewhere, "NamedWeightsTest.AMapNamesAndPutsTogether"},
       {"--contact-sheet", kElsewhere,
-       "ContactSheet.ShowsEveryTaskWithEachOfItsCamerasInBothQualities"},
+       "ContactSheet.ShowsEveryTaskWithEachOfItsCamerasInAllQualities"},
 
       // Commands that watch or steer a running run.
       {"^(build/release/bin/)?shoal top", kElsewhere,

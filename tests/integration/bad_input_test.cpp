@@ -164,7 +164,6 @@ INSTANTIATE_TEST_SUITE_P(
                 {"shoal", "eval", "--checkpoint", "/usr/share", "--episodes", "1"},
                 2,
                 {"'/usr/share' is neither a run nor RUN/checkpoints/NAME"}},
-        Mistake{"AbsentReference", {"shoal", "env", "replay", "/absent.json"}, 1, {"/absent.json"}},
         Mistake{"UnknownRenderTask",
                 {"shoal", "env", "render", "FetchFly", "--png", "/absent/x.png"},
                 2,

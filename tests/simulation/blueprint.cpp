@@ -10,7 +10,7 @@
 namespace shoal::simulation {
 namespace {
 
-// What a task would say; no file is read for it.
+// The spec that a task would have; no file is read for it.
 ObservationSpec MadeUpSpec(const Config& config) {
   ObservationSpec spec;
   spec.task = config.task;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What is done to a simulated run, and when: values, drawn from a seed.
+// The faults of a simulated run, and their times: values, drawn from a seed.
 #pragma once
 
 #include <chrono>
@@ -29,7 +29,7 @@ struct Fault {
 
   Kind kind = Kind::kKill;
   std::chrono::milliseconds at{0};    // simulated, after the start
-  std::string process{};              // "actor-1", "coordinator"; empty where it is nobody's
+  std::string process{};              // "actor-1", "coordinator"; empty where it is no process's
   std::chrono::milliseconds span{0};  // as said above
   std::string text{};                 // of a command; of a coordinator's kill: what follows
   uint64_t number = 0;                // chooses the thread of a stall
@@ -38,7 +38,7 @@ struct Fault {
   std::string Text() const;
 };
 
-// What may follow a killed coordinator (Fault::text).
+// The events that may follow a killed coordinator (Fault::text).
 inline constexpr char kThenResume[] = "resume";
 inline constexpr char kThenOverwrite[] = "overwrite";       // train --overwrite in its place
 inline constexpr char kThenLoseRing[] = "lose the ring";    // its file is removed, then resume

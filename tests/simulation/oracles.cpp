@@ -87,8 +87,8 @@ void Examination::CheckAccount() {
   if (meta_.exit == "budget" && meta_.env_steps < budget) {
     Break(fmt::format("{} env steps of a budget of {}", meta_.env_steps, budget));
   }
-  // What a killed memory held is gone; on policy, what was acknowledged while the account could not
-  // be written (learner/rollouts/rollout_source.h).
+  // The content of a killed memory is gone; on policy, so is what was acknowledged while the
+  // account could not be written (learner/rollouts/rollout_source.h).
   const bool remembers =
       LearnsOnPolicy(config_) ? !facts_.unwritten : config_.replay.storage == "file";
   if (!remembers) return;

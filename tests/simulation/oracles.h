@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run promises, held against what a simulated one left and said.
+// The promises of a run, held against what a simulated one left and said.
 #pragma once
 
 #include <cstdint>

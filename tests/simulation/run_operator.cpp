@@ -98,7 +98,7 @@ void RunOperator::JudgeExit(const SimulatedProcess& coordinator) {
               (code == 0 || unclean || interrupted || (code == 2 && says("is finished")));
   const bool stopped = interrupted || (meta.exit == "interrupted" && code == 0);
   if (finished_ || stopped || trouble_) return;
-  // Somebody else held the run for a moment, or a paused process has not left it yet.
+  // Another process held the run for a moment, or a paused process has not left it yet.
   if (says("is running") || says("of an earlier session still works")) return;
   Violate(fmt::format("a session ended as '{}' with code {}: {} {}", meta.exit, code, meta.error,
                       last_words_));
@@ -173,9 +173,9 @@ void RunOperator::Strike(const std::vector<Fault>& faults) {
 
 void RunOperator::Do(const Fault& fault) {
   const auto process = world_.processes.Find(fault.process);
-  const bool nobody = !fault.process.empty() && process == nullptr;
-  world_.story.Add("fault", fault.Text() + (nobody ? " (it does not run)" : ""));
-  if (nobody) return;
+  const bool absent = !fault.process.empty() && process == nullptr;
+  world_.story.Add("fault", fault.Text() + (absent ? " (it does not run)" : ""));
+  if (absent) return;
   trouble_ = trouble_ || MayEndSessions(fault);
   const bool lasts = fault.kind != Kind::kClock && fault.kind != Kind::kCommand;
   quiet_from_ = std::max(quiet_from_, Now() + (lasts ? fault.span : milliseconds(0)));

@@ -29,7 +29,7 @@ class RunOperator {
 
   // The run has reached its end.
   bool finished() const { return finished_; }
-  // What a coordinator did that it must not do, one line each.
+  // The acts of a coordinator that it must not do, one line each.
   const std::vector<std::string>& violations() const { return violations_; }
   // Whether a process did not leave in order in the last session.
   bool last_clean() const { return last_clean_; }
@@ -44,7 +44,7 @@ class RunOperator {
   void JudgeExit(const SimulatedProcess& coordinator);
   // Reads meta.json, whose env steps never become fewer.
   launch::RunMeta TakeMeta();
-  // What is done before the next session; returns how that begins.
+  // Does what comes before the next session; returns how that begins.
   Begin Prepare();
   Begin NextBegin(Begin wanted);
   void WaitForChildren();

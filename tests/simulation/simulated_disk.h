@@ -14,7 +14,7 @@
 
 namespace shoal::simulation {
 
-// Nobody but simulated threads meets its faults.
+// Only simulated threads meet its faults.
 class SimulatedDisk final : public DiskSteps {
  public:
   explicit SimulatedDisk(uint64_t seed) : random_(seed) { DiskSteps::SetCurrent(this); }

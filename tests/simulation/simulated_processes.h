@@ -69,7 +69,7 @@ class SimulatedProcesses {
 
   // A child of the coordinator. Destruction of the result kills it.
   std::unique_ptr<launch::RunningProcess> StartChild(const launch::ProcessSpec& spec);
-  // A process that somebody else starts; found by its name as others are.
+  // A process that is no child of the coordinator; found by its name as others are.
   std::shared_ptr<SimulatedProcess> StartOther(const std::string& name, link::Role role,
                                                const std::string& log_file,
                                                std::function<int(link::Hub&)> body);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What happened in a simulated run, in plain words, by simulated time.
+// The events of a simulated run, in plain words, by simulated time.
 #pragma once
 
 #include <fmt/core.h>

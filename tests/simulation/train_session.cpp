@@ -92,7 +92,7 @@ int RunChild(const Blueprint& blueprint, const std::filesystem::path& folder,
              const launch::ProcessSpec& spec, link::Hub& hub) {
   // In place of RunMembership, whose lock is that of a process of the operating system.
   const auto member = FileLock::Take(folder / kMembersFile, Holding::kWithOthers);
-  CHECK(member) << "nobody holds the file alone";
+  CHECK(member) << "no process holds the file alone";
   const link::RunProcess process{.role = *link::FindRole(spec.role),
                                  .index = static_cast<uint32_t>(spec.id)};
   const auto make_agent = [&](const Config&, const ObservationSpec&, nn::Precision) {

@@ -74,7 +74,7 @@ loader=/lib64/ld-linux-x86-64.so.2
 install -m 755 "$(readlink -f "$loader")" "$root/lib/ld-linux-x86-64.so.2"
 carried+=("$loader")
 
-# What programs find when they are asked for it: the page's curves, the fonts of films.
+# Files that programs find when they are asked for them: the page's curves, the fonts of films.
 javascript=/usr/share/javascript/dygraphs
 mkdir -p "$root/share/javascript/dygraphs"
 install -m 644 "$javascript"/dygraph.min.{js,css} "$root/share/javascript/dygraphs/"
@@ -100,7 +100,7 @@ for package in "${packages[@]}"; do
   install -m 644 "/usr/share/doc/$package/copyright" "$root/share/licences/$package"
 done
 
-# What launcher.sh compares before it starts a program.
+# The sizes that launcher.sh compares before it starts a program.
 (cd "$root" && LC_ALL=C && stat -c '%s %n' lib/*.so* libexec/* >"$work/sizes")
 install -m 644 "$work/sizes" "$root/lib/sizes"
 

@@ -20,6 +20,7 @@
 #include "actor/evaluation/hosted_view.h"
 #include "actor/hosted/hosted_environment.h"
 #include "actor/program.h"
+#include "common/base/bounded_json.h"
 #include "common/base/build_info.h"
 #include "common/base/clock.h"
 #include "common/base/error.h"
@@ -74,7 +75,7 @@ class Hosting {
     const py::gil_scoped_acquire lock;
     OpenedEnvironment opened = Open(opener_, OrderOf(run.config, picture));
     opened.description.TakeFindings(
-        tasks::EnvironmentFromJson(nlohmann::json::parse(run.spec.environment)));
+        tasks::EnvironmentFromJson(ParseBoundedJson<nlohmann::json>(run.spec.environment)));
     auto description = opened.description;
     auto environment = std::make_unique<hosted::HostedEnvironment>(
         std::move(description), run.config,
@@ -134,7 +135,7 @@ class Hosting {
     return {{"environment", ToJson(description)}, {"trial", trial}, {"version", BuildVersion()}};
   }
 
-  // What an episode shows: hashes of the first observation, then of each step.
+  // The course of an episode: hashes of the first observation, then of each step.
   struct Played {
     std::vector<uint64_t> moments;
     bool success = false;  // a step said whether it succeeds

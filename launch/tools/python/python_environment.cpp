@@ -10,6 +10,7 @@
 #include <optional>
 #include <utility>
 
+#include "common/base/bounded_json.h"
 #include "common/base/check.h"
 #include "common/base/error.h"
 #include "common/base/one_line.h"
@@ -72,7 +73,7 @@ OpenedEnvironment Open(const EnvironmentOpener& opener, const EnvironmentOrder& 
                               order.picture ? py::str("rgb_array") : py::str("")),
         .description = {}};
     auto described =
-        nlohmann::json::parse(py::cast<std::string>(opened.opened.attr("description")));
+        ParseBoundedJson<nlohmann::json>(py::cast<std::string>(opened.opened.attr("description")));
     described["schema"] = tasks::kEnvironmentSchema;
     described["id"] = order.id;
     described["task"] = order.task;
@@ -90,8 +91,8 @@ void FindGoal(const EnvironmentOpener& opener, OpenedEnvironment* opened) {
   tasks::EnvironmentDescription& description = opened->description;
   try {
     auto described = ToJson(description);
-    described.update(
-        nlohmann::json::parse(py::cast<std::string>(opened->opened.attr("find_goal")())));
+    described.update(ParseBoundedJson<nlohmann::json>(
+        py::cast<std::string>(opened->opened.attr("find_goal")())));
     description = tasks::EnvironmentFromJson(described);
   } catch (const py::error_already_set& error) {
     if (!error.matches(opener.refused)) {

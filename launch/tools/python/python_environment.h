@@ -21,7 +21,7 @@
 
 namespace shoal::python {
 
-// What makes environments: shoal_rl.hosting.open_environment, and its exception of one line.
+// The maker of environments: shoal_rl.hosting.open_environment, and its exception of one line.
 struct EnvironmentOpener {
   pybind11::object open, refused;
 };

@@ -22,7 +22,7 @@ using testing::HasSubstr;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-// What a fake environment observes and does next.
+// The next observation and step of a fake environment.
 struct Script {
   std::vector<double> state{1, 2};
   std::vector<float> arm{3};

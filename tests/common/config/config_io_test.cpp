@@ -176,8 +176,8 @@ TEST(ToJson, ListsSectionsInTheOrderOfTheStruct) {
   for (const auto& [name, value] : object.items()) {
     if (value.is_object()) names.push_back(name);
   }
-  EXPECT_THAT(names, ElementsAre("observation", "randomization", "replay", "learner", "ppo", "td3",
-                                 "exploration", "network", "eval", "stop", "transport"));
+  EXPECT_THAT(names, ElementsAre("env", "observation", "randomization", "replay", "learner", "ppo",
+                                 "td3", "exploration", "network", "eval", "stop", "transport"));
 }
 
 TEST(ConfigHash, ChangesWithWhatIsComputedButNotWithNameOrLength) {

@@ -147,7 +147,7 @@ TEST_F(LocalNetworkTest, ADisconnectedReaderHoldsNoWriterUp) {
   EXPECT_EQ(gate.WaitForPassed(1), (Numbers{1}));
 }
 
-// As over a network: the reader takes the writer for a new one.
+// The reader takes the writer for a new one, as over a network.
 TEST_F(LocalNetworkTest, HistoriesAreSentAgainInBothDirectionsAfterAReconnection) {
   Gate mine, others;
   Writer<WeightsPart> weights(*learner_);

@@ -28,7 +28,7 @@ json Described() {
     "success": true})");
 }
 
-std::string Refusal(const json& described) {
+std::string RefusalOf(const json& described) {
   return UsageMessage([&] { EnvironmentFromJson(described); });
 }
 
@@ -102,25 +102,25 @@ TEST(EnvironmentDescription, ImagesHaveTheirChannelsFirstOrLast) {
 TEST(EnvironmentDescription, WhatCannotBeTrainedIsRefusedByName) {
   json described = Described();
   described["action"]["high"] = {1, nullptr};
-  EXPECT_THAT(Refusal(described), HasSubstr("number 1 of the action has the bounds [-1, inf]"));
+  EXPECT_THAT(RefusalOf(described), HasSubstr("number 1 of the action has the bounds [-1, inf]"));
   described = Described();
   described["action"]["high"] = {1, 2, 3};
-  EXPECT_THAT(Refusal(described), HasSubstr("'action' has 2 elements and 3 bounds"));
+  EXPECT_THAT(RefusalOf(described), HasSubstr("'action' has 2 elements and 3 bounds"));
   described = Described();
   described["observation"][1]["name"] = "robot.arm";
-  EXPECT_THAT(Refusal(described), HasSubstr("two arrays of the observation have the name"));
+  EXPECT_THAT(RefusalOf(described), HasSubstr("two arrays of the observation have the name"));
   described = Described();
   described["observation"][0]["dtype"] = "complex64";
-  EXPECT_THAT(Refusal(described), AllOf(HasSubstr("complex64"), HasSubstr("float32")));
+  EXPECT_THAT(RefusalOf(described), AllOf(HasSubstr("complex64"), HasSubstr("float32")));
   described = Described();
   described.erase("action");
-  EXPECT_THAT(Refusal(described), HasSubstr("'action' not found"));
+  EXPECT_THAT(RefusalOf(described), HasSubstr("'action' not found"));
   described = Described();
   described["observation"] = json::array();
-  EXPECT_THAT(Refusal(described), HasSubstr("has no arrays"));
+  EXPECT_THAT(RefusalOf(described), HasSubstr("has no arrays"));
   described = Described();
   described["schema"] = "shoal-environment-0";
-  EXPECT_THAT(Refusal(described), HasSubstr("shoal-environment-1"));
+  EXPECT_THAT(RefusalOf(described), HasSubstr("shoal-environment-1"));
 }
 
 TEST(EnvironmentDescription, TasksAreNamedAfterTheEnvironment) {

@@ -37,7 +37,6 @@ TEST_F(OtherWords, KeysAreOptionsOfTrainUnderTheirOwnNamesAndThoseOfOthers) {
       ElementsAre("train", "--set", "seed=3", "--preset", "p", "--set", "learner.batch=64"));
   for (const auto& [option, key] :
        std::map<std::string, std::string>{{"--name", "run_name"},
-                                          {"--env", "task"},
                                           {"--task", "task"},
                                           {"--steps", "env_steps"},
                                           {"--total-timesteps", "env_steps"},
@@ -50,6 +49,15 @@ TEST_F(OtherWords, KeysAreOptionsOfTrainUnderTheirOwnNamesAndThoseOfOthers) {
     EXPECT_THAT(Taken({"train", option, "x"}), ElementsAre("train", "--set", key + "=x"));
     EXPECT_THAT(Taken({"train", option + "=-1"}), ElementsAre("train", "--set", key + "=-1"));
   }
+}
+
+TEST_F(OtherWords, AnEnvironmentThatIsNoTaskIsOneInPython) {
+  for (const char* option : {"--env", "--task"}) {
+    EXPECT_THAT(Taken({"train", option, "FetchPush"}),
+                ElementsAre("train", "--set", "task=FetchPush"));
+  }
+  EXPECT_THAT(Taken({"train", "--env", "Pendulum-v1"}),
+              ElementsAre("train", "--set", "env.id=Pendulum-v1"));
 }
 
 TEST_F(OtherWords, OptionsOfTrainItselfAndTheirValuesStay) {

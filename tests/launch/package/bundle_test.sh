@@ -54,9 +54,9 @@ run() { inside "cd '$place' && $1"; }
 (cd "$target/$name" && sha256sum --quiet -c SHA256SUMS) || fail "a file is not as it was packed"
 run "'$bundle/bin/shoal' --version"
 
-# No library of the system: each that a running program has mapped lies in the bundle.
+# No library of the system: each that a running program has mapped is a file of the bundle.
 if ! run "'$bundle/bin/shoal' check" >"$work/check" 2>&1; then
-  # Of a slim one nothing fails but pictures.
+  # Nothing of a slim one fails but pictures.
   if [[ -z $slim ]] || grep FAIL "$work/check" | grep -qv "OSMesa"; then
     cat "$work/check"
     fail "shoal check"

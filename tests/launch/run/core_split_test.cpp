@@ -52,7 +52,7 @@ class ModelRun {
     const double pace = PaceNow(), updates = pace * costs_.updates_per_env_step;
     counts_.learner_seconds += 1;
     counts_.actor_seconds += split_.actors;
-    if (seconds_ < starts_learning_at) {  // nobody waits for the learner yet
+    if (seconds_ < starts_learning_at) {  // no actor waits for the learner yet
       counts_.env_steps += split_.actors / costs_.env_step;
       counts_.learner_waited += 1;
       return;

@@ -50,7 +50,7 @@ TEST_F(ResizableAgentTest, NothingOfTheStateChangesWithTheNumber) {
   EXPECT_THAT(Differences(agent.AllTensors(), before), IsEmpty());
 }
 
-// As a learner that was started with the second number from the first one's checkpoint.
+// The same as a learner that was started with the second number from the first one's checkpoint.
 TEST_F(ResizableAgentTest, ItGoesOnAsIfFromACheckpoint) {
   ResizableAgent agent = Of(1);
   Update(&agent, 0, 3);

@@ -16,7 +16,7 @@ import shoal_rl
 
 def _preload():
     """Starts the interpreter again with a library that must be loaded before libc: the DDS library
-    then waits on a clock that nobody sets (docs/decisions/0004). Returns in the second one."""
+    then waits on a clock that is never set (docs/decisions/0004). Returns in the second one."""
     library = str(pathlib.Path(__file__).with_name("libshoal_steady_waits.so").resolve())
     preloaded = [name for name in os.environ.get("LD_PRELOAD", "").split(":") if name]
     if library not in preloaded:

@@ -217,7 +217,7 @@ class Opened:
 
 def open_environment(identifier, kwargs, folder, render):
     """kwargs: JSON of an object. folder: where modules are looked for besides the interpreter's own
-    places. render: "rgb_array", or empty for an environment that nobody looks at."""
+    places. render: "rgb_array", or empty for an environment that is not looked at."""
     if folder and folder not in sys.path:
         sys.path.insert(0, folder)
     arguments = json.loads(kwargs)
