@@ -54,6 +54,8 @@ const std::vector<TrialRule>& TrialRules() {
 
       {"^shoal train --env .*(catch_light|CarRacing|Pendulum)", kElsewhere,
        "Environments.TheWorkedExampleIsTrainedAndFilmed"},
+      {"^shoal (film|eval) light\\b", kElsewhere,
+       "Environments.TheWorkedExampleIsTrainedAndFilmed"},
       {"^shoal .*gymnasium_robotics:", kElsewhere,
        "Environments.RewardsOfAGoalEnvironmentAreComputedForOtherGoals"},
       {"--name-map", kElsewhere, "NamedWeightsTest.AMapNamesAndPutsTogether"},
