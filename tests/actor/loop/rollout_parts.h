@@ -15,6 +15,8 @@
 
 namespace shoal::actor {
 
+inline constexpr uint32_t kFirstEnv = 4;  // of the actor
+
 // A small network for the frames of CountingEnvironment.
 inline Config SmallConfig(int envs) {
   Config config;
