@@ -73,7 +73,7 @@ Coordinator::Coordinator(const Parts& parts)
     : run_(parts.run),
       config_(parts.config),
       hosts_(parts.hosts),
-      desk_(parts.desk),
+      server_(parts.server),
       progress_(parts.progress),
       before_(parts.before),
       settings_(Restored(config_, before_.changes)),
@@ -235,13 +235,13 @@ void Coordinator::TakeEvaluation(const EvalMessage& message) {
 }
 
 void Coordinator::TakeCommands() {
-  for (const CommandMessage& command : desk_.TakeCommands()) {
+  for (const CommandMessage& command : server_.TakeCommands()) {
     const ReplyMessage reply = handler_.Handle(command);
     if (reply.accepted && (reply.key == "actors" || reply.key == "learner.threads")) split_.reset();
     std::string line = "command: " + command.verb;
     for (const std::string& argument : command.arguments) line += " " + argument;
     progress_.Say(fmt::format("{}: {}{}", line, reply.accepted ? "" : "refused: ", reply.text));
-    desk_.Answer(reply);
+    server_.Answer(reply);
   }
 }
 
@@ -320,7 +320,7 @@ void Coordinator::WriteMeta(SteadyTime now) {
 }
 
 void Coordinator::Show(bool last, SteadyTime now) {
-  const bool view_due = last || desk_.Due(now);
+  const bool view_due = last || server_.Due(now);
   if (view_due && !last) DivideCores();
   if (view_due) watch_.LookBack(Elapsed(), decisions_.env_steps(), Resources());
   const ProgressFigures figures = Figures(now);
@@ -338,7 +338,7 @@ void Coordinator::Show(bool last, SteadyTime now) {
     shown.updates = decisions_.updates();
     shown.trouble = figures.trouble;
     shown.processes = watch_.Reports(figures, settings_.config(), Resources(), counts, now);
-    desk_.Show(std::move(shown), now);
+    server_.Show(std::move(shown), now);
   }
   progress_.Show(figures, now);
 }

@@ -52,14 +52,14 @@ class Coordinator {
     const RunMeta& before;          // a fresh one, or the resumed run's
     std::vector<RemoteHost> hosts;  // have the run (run_hosts.h)
     link::Hub& hub;                 // of the role coordinator
-    RunServer& desk;
+    RunServer& server;
     Progress& progress;
     ProcessStarter start = StartChild;  // starts a process of the run
     // Within which the run divides the cores by what it measures; empty: it keeps its numbers.
     std::optional<SplitLimits> split_limits = {};
   };
 
-  // Borrows hub, desk and progress. Throws Error.
+  // Borrows hub, server and progress. Throws Error.
   explicit Coordinator(const Parts& parts);
 
   // Until the target, the budget, Ctrl-C, `shoal stop` or a failure; no process is left when it
@@ -107,7 +107,7 @@ class Coordinator {
   const std::filesystem::path run_;
   const Config config_;  // as the run was started
   const std::vector<RemoteHost> hosts_;
-  RunServer& desk_;
+  RunServer& server_;
   Progress& progress_;
   RunMeta before_;  // the earlier sessions, and the changes of this one
   LiveSettings settings_;

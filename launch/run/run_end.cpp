@@ -36,13 +36,13 @@ bool WantsFinalEvaluation(const RunMeta& meta) {
 // Keeps watchers and those who steer the run answered while it is evaluated and filmed.
 class Judging {
  public:
-  Judging(RunServer& desk, Progress& progress) : desk_(desk), progress_(progress) {}
+  Judging(RunServer& server, Progress& progress) : server_(server), progress_(progress) {}
 
   // Asked for several times a second. Whether the rest is to be left out: after a stop signal, also
   // by the end of the terminal, and after `shoal stop`.
   bool Stops() {
-    desk_.ShowAgain("evaluating", Now());
-    for (const CommandMessage& command : desk_.TakeCommands()) Answer(command);
+    server_.ShowAgain("evaluating", Now());
+    for (const CommandMessage& command : server_.TakeCommands()) Answer(command);
     return stop_ || StopRequested();
   }
   void Say(const std::string& line) { progress_.Say(line); }
@@ -57,10 +57,10 @@ class Judging {
     stop_ = stop_ || reply.accepted;
     Say(fmt::format("command: {}: {}{}", command.verb,
                     reply.accepted ? "" : "refused: ", reply.text));
-    desk_.Answer(reply);
+    server_.Answer(reply);
   }
 
-  RunServer& desk_;
+  RunServer& server_;
   Progress& progress_;
   bool stop_ = false;
 };
@@ -238,7 +238,7 @@ void WriteLastMeta(const fs::path& run, const Config& config, WriteFaults& fault
 }  // namespace
 
 int EndRun(const fs::path& run, const Config& config, const link::RunTopology& topology,
-           RunResult result, bool film, RunServer& desk, Progress& progress) {
+           RunResult result, bool film, RunServer& server, Progress& progress) {
   RunMeta& meta = result.meta;
   std::set<std::string>& unwritten = result.unwritten;
   bool good = result.clean && meta.exit != "failed";
@@ -255,7 +255,7 @@ int EndRun(const fs::path& run, const Config& config, const link::RunTopology& t
     unwritten.insert(kBottleneckFile);
   }
   if (!unwritten.empty() && Finished(meta)) meta.exit = "interrupted";  // --resume ends it
-  Judging judging(desk, progress);
+  Judging judging(server, progress);
   const auto final_evaluation = Judge(run, config, judging, fail, &meta);
   WriteLastMeta(run, config, faults, &unwritten, &meta);
   fs::path filmed;

@@ -16,7 +16,7 @@ namespace shoal::launch {
 // when it failed, a process left with an error, the records do not balance, or there is no film
 // that was asked for; else kUnwrittenExit when something of it could not be written.
 int EndRun(const std::filesystem::path& run, const Config& config,
-           const link::RunTopology& topology, RunResult result, bool film, RunServer& desk,
+           const link::RunTopology& topology, RunResult result, bool film, RunServer& server,
            Progress& progress);
 
 }  // namespace shoal::launch

@@ -97,12 +97,12 @@ int Start(RunRequest request, const RunFolder& folder, const TrainOptions& optio
   std::optional<PrometheusEndpoint> prometheus;
   if (!options.prometheus.empty()) prometheus.emplace(options.prometheus);
   WriteStartFiles(path, address, &request);
-  RunServer desk(hub, config.run_name, [&](const RunViewMessage& view) {
+  RunServer server(hub, config.run_name, [&](const RunViewMessage& view) {
     if (prometheus) prometheus->Update(view);
   });
   Progress progress(
       LogFile(path, "coordinator").string(),
-      [&desk](const std::string& line) { desk.AddEvent(line); },
+      [&server](const std::string& line) { server.AddEvent(line); },
       /*plain=*/detachment != nullptr);
   const auto say = [&](const std::string& line) { progress.Say(line); };
   Hosts& hosts = request.hosts;
@@ -125,7 +125,7 @@ int Start(RunRequest request, const RunFolder& folder, const TrainOptions& optio
                              .before = request.meta,
                              .hosts = hosts.hosts,
                              .hub = roles_hub ? *roles_hub : hub,
-                             .desk = desk,
+                             .server = server,
                              .progress = progress,
                              .start = start,
                              .split_limits = request.split_limits});
@@ -138,8 +138,8 @@ int Start(RunRequest request, const RunFolder& folder, const TrainOptions& optio
   const int stops = StopRequests();
   FetchFromHosts(path, config, hosts, say, [stops] { return StopRequests() > stops; });
   const int exit_code = EndRun(path, config, TopologyOf(config, hosts.hosts), std::move(result),
-                               options.film, desk, progress);
-  desk.ShowEnd(exit_code);
+                               options.film, server, progress);
+  server.ShowEnd(exit_code);
   return exit_code;
 }
 

@@ -72,7 +72,7 @@ int Train(const World& world, Begin begin, link::Hub& hub, std::optional<bool>* 
                                      .before = request.meta,
                                      .hosts = {},
                                      .hub = hub,
-                                     .desk = server,
+                                     .server = server,
                                      .progress = progress,
                                      .start = [&](const launch::ProcessSpec& spec) {
                                        return world.processes.StartChild(spec);

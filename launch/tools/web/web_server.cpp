@@ -17,7 +17,7 @@
 #include "launch/tools/web/bounded_server.h"
 #include "launch/tools/web/byte_range.h"
 #include "launch/tools/web/page_answers.h"
-#include "launch/tools/web/page_desk.h"
+#include "launch/tools/web/page_content.h"
 #include "launch/tools/web/page_parts.h"
 #include "launch/tools/web/page_route.h"
 #include "launch/tools/web/served_file.h"
@@ -91,7 +91,7 @@ struct WebServer::Impl {
   ListenAddress listen;  // with the port that it got
   const std::string token = MakeToken();
   const std::map<std::string, PagePart> parts = LoadPageParts();
-  PageDesk desk;
+  PageContent content;
   std::atomic<int> files = 0;  // being handed out
   std::atomic<bool> ended = false;
   BoundedServer server;
@@ -100,7 +100,7 @@ struct WebServer::Impl {
 
 WebServer::Impl::Impl(const WebOptions& options)
     : listen(options.listen),
-      desk({.run = OnlyRun(options), .run_dir = options.run_dir, .secure = options.secure}),
+      content({.run = OnlyRun(options), .run_dir = options.run_dir, .secure = options.secure}),
       server(ServerLimits(), [](const std::string& path) {
         const PageItem item = ParsePageRoute(/*acts=*/false, path).item;
         return item == PageItem::kFile || item == PageItem::kEpisode;
@@ -189,22 +189,22 @@ void WebServer::Impl::AnswerRoute(const PageRoute& route, const httplib::Request
                                   httplib::Response& response) {
   if (route.item == PageItem::kNothing) return Refuse(404, "there is no such page", response);
   if (route.item == PageItem::kPart) return AnswerPart(route.file, response);
-  if (route.item == PageItem::kRuns) return response.set_content(desk.Runs(), kJson);
-  const auto run = desk.FindRun(route.run);
+  if (route.item == PageItem::kRuns) return response.set_content(content.Runs(), kJson);
+  const auto run = content.FindRun(route.run);
   if (!run) return Refuse(404, fmt::format("there is no run '{}'", route.run), response);
   switch (route.item) {
     case PageItem::kRun:
-      return response.set_content(desk.Run(*run), kJson);
+      return response.set_content(content.Run(*run), kJson);
     case PageItem::kTop:
-      return response.set_content(desk.Top(*run), kJson);
+      return response.set_content(content.Top(*run), kJson);
     case PageItem::kCurves:
-      return response.set_content(desk.Curves(*run), kJson);
+      return response.set_content(content.Curves(*run), kJson);
     case PageItem::kOrder:
-      return response.set_content(desk.Carry(*run, request.body), kJson);
+      return response.set_content(content.Carry(*run, request.body), kJson);
     case PageItem::kPlay:
-      return response.set_content(desk.Play(*run), kJson);
+      return response.set_content(content.Play(*run), kJson);
     case PageItem::kEpisode: {
-      const fs::path film = desk.EpisodeFilm(*run);
+      const fs::path film = content.EpisodeFilm(*run);
       return AnswerFile(film.empty() ? std::nullopt : OpenWholeFile(film, "video/mp4"), request,
                         response);
     }
@@ -270,6 +270,6 @@ std::string WebServer::Url() const {
   return fmt::format("http://{}/?{}={}", shown.Text(), kTokenQuery, impl_->token);
 }
 
-void WebServer::Tend() { impl_->desk.Tend(); }
+void WebServer::Tend() { impl_->content.Tend(); }
 
 }  // namespace shoal::launch

@@ -19,7 +19,7 @@ CommandMessage Command(uint64_t client, uint64_t request, const std::string& ver
   return {.client = client, .request = request, .verb = verb};
 }
 
-// A desk with one client on a bus of their own, where a message arrives before its Write returns.
+// A server with one client on a bus of their own, where a message arrives before its Write returns.
 class RunServerTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -30,7 +30,7 @@ class RunServerTest : public testing::Test {
   ClusterAddress address_;
   std::unique_ptr<dds::Bus> bus_ = dds::ClaimDomain(TransportConfig{}, &address_);
   std::vector<RunViewMessage> shown_;
-  RunServer desk_{*bus_, "run", [this](const RunViewMessage& view) { shown_.push_back(view); }};
+  RunServer server_{*bus_, "run", [this](const RunViewMessage& view) { shown_.push_back(view); }};
   link::Writer<CommandMessage> commands_{*bus_};
   MessageInbox<ReplyMessage> reply_inbox_{100};
   link::Reader<ReplyMessage> replies_{
@@ -44,29 +44,29 @@ TEST_F(RunServerTest, ARepeatedCommandIsAnsweredAgainAndNotGivenOutTwice) {
   const auto answered = Field(&ReplyMessage::text, "stopping");
   commands_.Write(Command(5, 1, "stop"));
   commands_.Write(Command(5, 1, "stop"));
-  EXPECT_THAT(desk_.TakeCommands(), ElementsAre(Field(&CommandMessage::verb, "stop")));
-  desk_.Answer({.client = 5, .request = 1, .accepted = true, .text = "stopping"});
+  EXPECT_THAT(server_.TakeCommands(), ElementsAre(Field(&CommandMessage::verb, "stop")));
+  server_.Answer({.client = 5, .request = 1, .accepted = true, .text = "stopping"});
   EXPECT_THAT(reply_inbox_.TakeAll(), ElementsAre(answered));
 
   commands_.Write(Command(5, 1, "stop"));
-  EXPECT_THAT(desk_.TakeCommands(), IsEmpty());
+  EXPECT_THAT(server_.TakeCommands(), IsEmpty());
   EXPECT_THAT(reply_inbox_.TakeAll(), ElementsAre(answered));
 
   commands_.Write(Command(5, 2, "scale"));
   commands_.Write(Command(6, 1, "set"));
-  EXPECT_THAT(desk_.TakeCommands(), ElementsAre(Field(&CommandMessage::verb, "scale"),
-                                                Field(&CommandMessage::verb, "set")));
+  EXPECT_THAT(server_.TakeCommands(), ElementsAre(Field(&CommandMessage::verb, "scale"),
+                                                  Field(&CommandMessage::verb, "set")));
 }
 
 TEST_F(RunServerTest, ShowsTheRunWithItsLastEvents) {
   for (size_t i = 1; i <= RunServer::kEvents + 1; ++i) {
-    desk_.AddEvent("event " + std::to_string(i));
+    server_.AddEvent("event " + std::to_string(i));
   }
   const SteadyTime now = Now();
-  EXPECT_TRUE(desk_.Due(now));
-  desk_.Show({.run = "another", .state = "running", .env_steps = 12}, now);
-  EXPECT_FALSE(desk_.Due(now));
-  EXPECT_TRUE(desk_.Due(now + RunServer::kPeriod));
+  EXPECT_TRUE(server_.Due(now));
+  server_.Show({.run = "another", .state = "running", .env_steps = 12}, now);
+  EXPECT_FALSE(server_.Due(now));
+  EXPECT_TRUE(server_.Due(now + RunServer::kPeriod));
   const std::vector<RunViewMessage> views = view_inbox_.TakeAll();
   ASSERT_EQ(views.size(), 1u);
   EXPECT_EQ(views[0].run, "run");
@@ -83,8 +83,8 @@ TEST_F(RunServerTest, TheLastViewHoldsTheCoordinatorAloneWithItsExitCode) {
     view.processes.emplace_back();
     view.processes.back().role = role;
   }
-  desk_.Show(view, Now());
-  desk_.ShowEnd(3);
+  server_.Show(view, Now());
+  server_.ShowEnd(3);
   ASSERT_EQ(shown_.size(), 2u);
   EXPECT_EQ(shown_[1].state, "ended");
   ASSERT_EQ(shown_[1].processes.size(), 1u);

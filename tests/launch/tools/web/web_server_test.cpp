@@ -153,7 +153,7 @@ TEST_F(WebServerTest, BehindAForwardedPortItIsLookedAtAndSteered) {
     EXPECT_THAT(ask("GET /?token=" + server.token(), host, "\r\n"), StartsWith("HTTP/1.1 200"));
     EXPECT_THAT(order(host, "http://" + host), StartsWith("HTTP/1.1 400")) << host;  // no verb
   }
-  // Another page that is forwarded to the same desk is none of ours.
+  // Another page that is forwarded to the same computer is none of ours.
   EXPECT_THAT(order("127.0.0.1:18470", "http://127.0.0.1:18471"), StartsWith("HTTP/1.1 403"));
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "launch/tools/web/page_desk.h"
+#include "launch/tools/web/page_content.h"
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -21,19 +21,19 @@ constexpr std::chrono::seconds kRunsFor{2};  // an answer about all runs serves 
 
 }  // namespace
 
-std::vector<fs::path> PageDesk::Folders() const {
+std::vector<fs::path> PageContent::Folders() const {
   if (!options_.run.empty()) return {options_.run};
   return ListRuns(options_.run_dir);
 }
 
-std::optional<fs::path> PageDesk::FindRun(const std::string& name) const {
+std::optional<fs::path> PageContent::FindRun(const std::string& name) const {
   for (const fs::path& run : Folders()) {
     if (run.filename().string() == name) return run;
   }
   return std::nullopt;
 }
 
-std::string PageDesk::Runs() {
+std::string PageContent::Runs() {
   const MutexLock lock(runs_mutex_);
   if (runs_.empty() || Now() - runs_of_ > kRunsFor) {
     std::vector<RunListing> runs;
@@ -44,14 +44,14 @@ std::string PageDesk::Runs() {
   return runs_;
 }
 
-std::string PageDesk::Run(const fs::path& run) const {
+std::string PageContent::Run(const fs::path& run) const {
   return RunAnswer(NewestCheckpoint(run).filename().string(), ListServedFiles(run),
                    episodes_.Of(run));
 }
 
-std::string PageDesk::Top(const fs::path& run) { return TopAnswer(live_.View(run)); }
+std::string PageContent::Top(const fs::path& run) { return TopAnswer(live_.View(run)); }
 
-std::string PageDesk::Curves(const fs::path& run) {
+std::string PageContent::Curves(const fs::path& run) {
   const MutexLock lock(curves_mutex_);
   auto it = curves_.find(run);
   if (it == curves_.end()) {
@@ -66,18 +66,18 @@ std::string PageDesk::Curves(const fs::path& run) {
   return it->second.curves.Json();
 }
 
-std::string PageDesk::Carry(const fs::path& run, const std::string& body) {
+std::string PageContent::Carry(const fs::path& run, const std::string& body) {
   const PageOrder order = ParsePageOrder(body);
   const ReplyMessage reply = live_.Order(run, order.verb, order.arguments);
   return nlohmann::json{{"text", reply.text}}.dump(-1, ' ', /*ensure_ascii=*/false,
                                                    nlohmann::json::error_handler_t::replace);
 }
 
-std::string PageDesk::Play(const fs::path& run) {
+std::string PageContent::Play(const fs::path& run) {
   episodes_.Play(run);
   return Run(run);
 }
 
-fs::path PageDesk::EpisodeFilm(const fs::path& run) const { return episodes_.Of(run).film; }
+fs::path PageContent::EpisodeFilm(const fs::path& run) const { return episodes_.Of(run).film; }
 
 }  // namespace shoal::launch

@@ -17,16 +17,17 @@
 
 namespace shoal::launch {
 
-struct DeskOptions {
+struct PageContentOptions {
   std::filesystem::path run{};  // folder of the only run that is shown; empty = all of run_dir
   std::filesystem::path run_dir = "runs";
   std::string secure{};
 };
 
 // Any thread. The answers are JSON (page_answers.h). All throw Error.
-class PageDesk {
+class PageContent {
  public:
-  explicit PageDesk(const DeskOptions& options) : options_(options), live_(options.secure) {}
+  explicit PageContent(const PageContentOptions& options)
+      : options_(options), live_(options.secure) {}
 
   // Folder of a run that is shown; empty when there is none of that name. No path is ever made of
   // the name.
@@ -52,7 +53,7 @@ class PageDesk {
 
   std::vector<std::filesystem::path> Folders() const;
 
-  const DeskOptions options_;
+  const PageContentOptions options_;
   LiveRuns live_;
   PlayedEpisodes episodes_;
   Mutex curves_mutex_;
