@@ -1,12 +1,11 @@
 /* SPDX-License-Identifier: Apache-2.0 */
-/* What a slim bundle has in place of a library that it leaves out: every function says so in one
-   line and ends the program. WHAT: what needs the library ("films"). NAMES: a file with
-   SHOAL_LEFT_OUT(function) a line, for each function that the programs use. */
+/* What a bundle has in place of a library that it leaves out: every function says so in one line
+   and ends the program. LINE: that line. NAMES: a file with SHOAL_LEFT_OUT(function) a line, for
+   each function that is used. */
 #include <unistd.h>
 
 static void say_and_end(void) {
-  static const char line[] = "error: this is a slim bundle, which leaves out what " WHAT
-                             " need: use the full bundle (docs/install.md)\n";
+  static const char line[] = "error: " LINE "\n";
   if (write(STDERR_FILENO, line, sizeof line - 1) < 0) _exit(1);
   _exit(1);
 }

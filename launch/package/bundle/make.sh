@@ -2,8 +2,8 @@
 # SPDX-License-Identifier: Apache-2.0
 # make.sh BUILD FOLDER [--slim]: makes FOLDER/shoal-VERSION-linux-x86_64.tar.xz of what BUILD has
 # built: programs, shared data, manual, and every library that they use, the loader and the C library
-# included (docs/install.md). --slim leaves out FFmpeg, Cairo and Mesa: no films, no pictures by
-# OpenGL. Needs Debian, whose packages say under which licence a library is.
+# included (docs/install.md). libcodec2, a speech codec of 17 MB that FFmpeg names, is left out.
+# --slim leaves out FFmpeg, Cairo and Mesa: no films, no pictures by OpenGL. Needs Debian, whose packages say under which licence a library is.
 set -euo pipefail
 here=$(dirname "$(readlink -f "$0")")
 source=$(readlink -f "$here/../../..")
@@ -29,12 +29,13 @@ libraries_of() {
   LD_LIBRARY_PATH=$work/left_out ldd "$@" | awk '$2 == "=>" && $3 ~ /^\// {print $1, $3}' | sort -u
 }
 
-# left_out WHAT FUNCTIONS SONAME...: libraries whose functions (of the pattern FUNCTIONS, as far as the
-# programs use them) say that WHAT need the full bundle (left_out.c).
+# left_out LINE FUNCTIONS USERS SONAME...: libraries whose functions (of the pattern FUNCTIONS, as far
+# as USERS, the paths of an array, use them) end the program with LINE (left_out.c).
 left_out() {
-  local what=$1 functions=$2 soname
-  shift 2
-  nm -D --undefined-only "${programs[@]/#/$root/libexec/}" | awk 'NF == 2 {print $2}' |
+  local line=$1 functions=$2 soname
+  local -n users=$3
+  shift 3
+  nm -D --undefined-only "${users[@]}" | awk 'NF == 2 {print $2}' |
     grep -E "$functions" | sort -u >"$work/names"
   sed 's/@.*//; s/.*/SHOAL_LEFT_OUT(&)/' "$work/names" >"$work/names.h"
   # FUNCTION@VERSION: the loader looks for the versions.
@@ -43,15 +44,21 @@ left_out() {
   local versions=()
   [[ ! -s $work/versions ]] || versions=(-Wl,--version-script="$work/versions")
   for soname in "$@"; do
-    gcc -shared -fPIC -O1 -w -fno-builtin -DWHAT="\"$what\"" \
+    gcc -shared -fPIC -O1 -w -fno-builtin -DLINE="\"$line\"" \
       -DNAMES="\"$work/names.h\"" -Wl,-soname,"$soname" "${versions[@]}" \
       -o "$work/left_out/$soname" "$here/left_out.c"
   done
 }
-needed() { libraries_of "${programs[@]/#/$root/libexec/}" | awk '{print $1}' | grep -E "$1"; }
+executables=("${programs[@]/#/$root/libexec/}")
+needed() { libraries_of "${executables[@]}" | awk '{print $1}' | grep -E "$1"; }
 if $slim; then
   mapfile -t film < <(needed '^lib(avcodec|avformat|avutil|swscale|cairo)\.so')
-  left_out films '^(av|sws|swr|cairo)' "${film[@]}"
+  left_out 'this is a slim bundle, which leaves out what films need: use the full bundle (docs/install.md)' \
+    '^(av|sws|swr|cairo)' executables "${film[@]}"
+else
+  mapfile -t codec < <(libraries_of "${executables[@]}" | awk '$1 ~ /^libcodec2/ {print $1}')
+  mapfile -t ffmpeg < <(libraries_of "${executables[@]}" | awk '$1 ~ /^libavcodec/ {print $2}')
+  left_out 'this bundle leaves out the speech codec libcodec2' '^codec2_' ffmpeg "${codec[@]}"
 fi
 
 opened=()
@@ -64,7 +71,7 @@ carried=()  # files of the system that the bundle has
 while read -r soname path; do
   install -m 644 "$(readlink -f "$path")" "$root/lib/$soname"
   [[ $path == "$work"/* ]] || carried+=("$path")
-done < <(libraries_of "${programs[@]/#/$root/libexec/}" "${opened[@]}")
+done < <(libraries_of "${executables[@]}" "${opened[@]}")
 # Those that programs open at run time.
 for path in "${opened[@]}"; do
   install -m 644 "$(readlink -f "$path")" "$root/lib/$(basename "$path")"

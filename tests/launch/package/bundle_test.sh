@@ -3,8 +3,8 @@
 # bundle_test.sh BUILD [--slim] [--debian SUITE]: makes a bundle of BUILD, unpacks it elsewhere, and
 # uses it there with nothing of this system's libraries: `shoal check`, a training, an evaluation and
 # (not slim) a training from pixels and a film. --debian: in a bare root of that Debian, made by
-# debootstrap, which needs root and a mirror; else in this system, as it is. With XZ_LEVEL set
-# (make.sh) the size is not judged.
+# debootstrap, which needs root and a mirror; else in this system, as it is. With XZ_LEVEL=1
+# (make.sh), as CI sets it, the archive may be 1.2 times as large: a full one has 102 MB instead of 85.
 set -euo pipefail
 build=$(readlink -f "$1")
 shift
@@ -25,6 +25,7 @@ fail() { echo "bundle_test: $*" >&2; exit 1; }
 archive=$("$here/../../../launch/package/bundle/make.sh" "$build" "$work/out" $slim)
 most=90000000
 [[ -z $slim ]] || most=40000000
+[[ ${XZ_LEVEL:-9} == 9 ]] || most=$((most * 12 / 10))
 size=$(stat -c %s "$archive")
 echo "$archive: $size bytes"
 
@@ -104,5 +105,5 @@ mv "$work/libc.so.6" "$target/$name/lib/"
 truncate -s 1000 "$target/$name"/lib/libfmt.so.*
 refused "the bundle is damaged" "'$bundle/bin/shoal' --version"
 
-[[ -n ${XZ_LEVEL:-} ]] || ((size <= most)) || fail "$size bytes are more than $most"
+((size <= most)) || fail "$size bytes are more than $most"
 echo "bundle_test: passed${suite:+ in a bare $suite}"

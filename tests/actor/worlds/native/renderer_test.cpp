@@ -195,7 +195,7 @@ TEST_F(RendererTest, SurfacesThatDoNotMeetAreSeenInAnyOrder) {
   const std::vector<uint8_t> in_order = Draw();
   std::ranges::reverse(hand_.geoms());
   EXPECT_EQ(Draw(), in_order);
-  std::ranges::rotate(hand_.geoms(), hand_.geoms().begin() + 7);
+  std::rotate(hand_.geoms().begin(), hand_.geoms().begin() + 7, hand_.geoms().end());
   EXPECT_EQ(Draw(), in_order);
 }
 
