@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "actor/worlds/native/geom_rules.h"
 
+#include <fmt/core.h>
 #include <mujoco/mujoco.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "actor/worlds/native/renderer.h"
 #include "common/base/error.h"
 
 namespace shoal::worlds::native {
@@ -14,7 +14,56 @@ namespace {
 
 constexpr float kOpaque = 0.995f;  // alpha below which the engine blends
 
+std::string NameOf(const mjModel& model, int object_type, int id) {
+  const char* name = mj_id2name(&model, object_type, id);
+  return name == nullptr ? "" : name;
+}
+
+bool HasSky(const mjModel& model) {
+  return std::find(model.tex_type, model.tex_type + model.ntex, mjTEXTURE_SKYBOX) !=
+         model.tex_type + model.ntex;
+}
+
+// The engine draws a band of haze around the foot of the sky, over endless planes.
+bool HasHaze(const mjModel& model, int geom) {
+  const mjtNum* size = model.geom_size + 3 * geom;
+  return model.geom_type[geom] == mjGEOM_PLANE && size[0] == 0 && size[1] == 0 &&
+         GroupIsShown(model.geom_group[geom]);
+}
+
 }  // namespace
+
+std::string RefusalOf(const mjModel& model) {
+  if (model.nskin > 0) return fmt::format("it has {} skins", model.nskin);
+  for (int i = 0; i < model.nsensor; ++i) {
+    if (model.sensor_type[i] != mjSENS_RANGEFINDER) continue;
+    return fmt::format("sensor {} ('{}') is a rangefinder, which the engine shows as a line", i,
+                       NameOf(model, mjOBJ_SENSOR, i));
+  }
+  if (model.vis.map.haze <= 0 || !HasSky(model)) return "";
+  for (int i = 0; i < model.ngeom; ++i) {
+    if (!HasHaze(model, i)) continue;
+    return fmt::format(
+        "geom {} ('{}') is an endless plane below a sky, where the engine draws haze; give the "
+        "plane a size, or set visual/map/haze=\"0\"",
+        i, NameOf(model, mjOBJ_GEOM, i));
+  }
+  return "";
+}
+
+void CheckFlags(const mjvScene& scene) {
+  if (scene.flags[mjRND_FOG]) {
+    throw RuntimeError(
+        "quality native does not draw the fog that the scene's flags ask for; "
+        "expected mjRND_FOG = 0, or quality fast or reference");
+  }
+}
+
+bool GroupIsShown(int group) {
+  mjvOption option;
+  mjv_defaultOption(&option);
+  return option.geomgroup[std::clamp(group, 0, mjNGROUP - 1)] != 0;
+}
 
 bool Drawable(int type) {
   return type == mjGEOM_PLANE || type == mjGEOM_SPHERE || type == mjGEOM_CAPSULE ||
@@ -73,17 +122,6 @@ double BoundingRadius(const mjvGeom& geom) {
     default:
       return std::max({x, y, z});
   }
-}
-
-std::string RefusalOf(const mjModel& model) {
-  if (model.nskin > 0) return fmt::format("it has {} skins", model.nskin);
-  for (int i = 0; i < model.nsensor; ++i) {
-    if (model.sensor_type[i] != mjSENS_RANGEFINDER) continue;
-    const char* name = mj_id2name(&model, mjOBJ_SENSOR, i);
-    return fmt::format("sensor {} ('{}') is a rangefinder, which the engine shows as a line", i,
-                       name == nullptr ? "" : name);
-  }
-  return "";
 }
 
 }  // namespace shoal::worlds::native

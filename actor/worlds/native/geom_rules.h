@@ -1,12 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the engine treats geoms of a scene: which are drawn, which are transparent, in which order.
+// How the engine treats geoms: which are drawn, which are transparent, in which order; and which
+// models and scenes ask for more than can be drawn.
 #pragma once
+
+#include <string>
 
 #include "actor/worlds/native/camera_frame.h"
 
+struct mjModel_;
 struct mjvGeom_;
+struct mjvScene_;
 
 namespace shoal::worlds::native {
+
+// Why the content of this model cannot be drawn; empty = it can.
+std::string RefusalOf(const mjModel_& model);
+
+// Throws Error (kRuntime) on a scene whose flags ask for fog. The flags of shadows, reflections,
+// the sky and haze are not read.
+void CheckFlags(const mjvScene_& scene);
+
+// Whether the engine shows geoms of this group by default.
+bool GroupIsShown(int group);
 
 bool Drawable(int type);
 

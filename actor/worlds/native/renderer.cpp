@@ -10,7 +10,9 @@
 #include <vector>
 
 #include "actor/worlds/native/camera_frame.h"
+#include "actor/worlds/native/drawing_order.h"
 #include "actor/worlds/native/geom_rules.h"
+#include "actor/worlds/native/layer_key.h"
 #include "actor/worlds/native/plane_grids.h"
 #include "actor/worlds/native/shape_setup.h"
 #include "actor/worlds/native/static_layers.h"
@@ -25,7 +27,6 @@ namespace shoal::worlds::native {
 namespace {
 
 constexpr float kFromBehind = 0.3f;  // alpha of a plane seen from behind
-constexpr uint32_t kFirstStamp = 1;
 // Transparent geoms are blended twice; so many of them are not drawn anew for that.
 constexpr size_t kOversKept = 16;
 
@@ -51,7 +52,7 @@ struct Renderer::State {
   PlaneGrids grids;
   TriangleMeshes meshes;
 
-  uint32_t stamp = kFirstStamp;
+  uint32_t stamp = 1;  // of the lights on grids; 0 = never lit
   RayTables rays;
   TileBuffer picture;
   std::vector<TileBuffer> overs;  // transparent geoms, each alone
@@ -64,23 +65,21 @@ struct Renderer::State {
   // One frame's.
   View view{};
   CameraFrame frame;
-  std::vector<int> fixed, moving, transparent;  // geoms in the order of drawing
-  std::vector<double> distances;                // of transparent geoms, by number
-  std::vector<TileRect> rects;                  // of transparent geoms, in order
+  DrawingOrder order;
+  std::vector<TileRect> rects;  // of transparent geoms, in order
   std::vector<bool> seen;
   std::vector<LightColour> colours;
   std::vector<Surface> surfaces;
   std::vector<std::vector<Triangle>> triangles;  // of each mesh among the surfaces
   size_t meshes_used = 0;
-  std::vector<uint32_t> key;
+  StaticLayers::Key key;
 
   State(const mjModel& model, InstructionSet set)
       : kernels(KernelsOf(set)), grids(model), meshes(model) {}
 
+  void NextStamp();
   void Start(const mjvScene& scene, int width, int height);
-  void Sort(const mjvScene& scene);
   void SetSky();
-  void MakeKey(const mjvScene& scene, const SceneLights& lights);
   bool MakeAnyShape(const mjvGeom& geom, const PlacedGeom& placed, int number, Shape* shape);
   SurfaceSources SourcesOf(const mjvGeom& geom, const SceneLights& lights);
   void See(const mjvScene& scene, std::span<const int> geoms, const SceneLights& lights);
@@ -162,81 +161,22 @@ void Renderer::State::SetSky() {
   }
 }
 
+void Renderer::State::NextStamp() {
+  CHECK(++stamp != 0) << "2^32 frames of one renderer";  // what was lit once would look lit
+}
+
 void Renderer::State::Start(const mjvScene& scene, int width, int height) {
   CHECK(width > 0 && height > 0) << width << " x " << height;
-  if (++stamp == 0) {  // wrapped around: nothing may look lit
-    CHECK(false) << "2^32 frames of one renderer";
-  }
+  CheckFlags(scene);
+  NextStamp();
   frame = FrameOf(scene, width, height);
+  order.Sort(scene, frame);
   rays.Fill(frame, width, height, &view);
   SetSky();
   picture.Resize(view);
   colours.clear();
   surfaces.clear();
   meshes_used = 0;
-}
-
-void Renderer::State::Sort(const mjvScene& scene) {
-  fixed.clear();
-  moving.clear();
-  transparent.clear();
-  distances.resize(static_cast<size_t>(scene.ngeom));
-  for (int i = 0; i < scene.ngeom; ++i) {
-    const mjvGeom& geom = scene.geoms[i];
-    CheckGeom(geom, i);
-    if (geom.rgba[3] <= 0 || !HasExtent(geom)) continue;
-    if (!Drawable(geom.type)) {
-      throw RuntimeError("quality native does not draw geom {} of the scene: its type is {}", i,
-                         geom.type);
-    }
-    if (IsTransparent(geom, frame)) {
-      const double distance =
-          geom.type == mjGEOM_PLANE
-              ? 1e10
-              : Length(FromFloats(geom.pos) - frame.position) - BoundingRadius(geom);
-      distances[static_cast<size_t>(i)] = distance;
-      transparent.push_back(i);
-    } else if (geom.category == mjCAT_STATIC && geom.objtype == mjOBJ_GEOM) {
-      fixed.push_back(i);
-    } else {
-      moving.push_back(i);
-    }
-  }
-  std::stable_sort(transparent.begin(), transparent.end(), [this](int a, int b) {
-    return distances[static_cast<size_t>(a)] < distances[static_cast<size_t>(b)];
-  });
-}
-
-void Renderer::State::MakeKey(const mjvScene& scene, const SceneLights& lights) {
-  key.clear();
-  const auto add_words = [this](const void* data, size_t bytes) {
-    const size_t at = key.size();
-    key.resize(at + bytes / 4);
-    std::copy_n(static_cast<const char*>(data), bytes / 4 * 4,
-                reinterpret_cast<char*>(key.data() + at));
-  };
-  add_words(&frame, sizeof(frame));
-  key.push_back(static_cast<uint32_t>(view.width));
-  key.push_back(static_cast<uint32_t>(view.height));
-  key.push_back(static_cast<uint32_t>(scene.nlight));
-  for (int i = 0; i < std::min(scene.nlight, mjMAXLIGHT); ++i) {
-    const mjvLight& light = scene.lights[i];
-    add_words(light.attenuation, sizeof(float) * (3 + 2 + 9));
-    key.push_back(light.headlight | light.directional << 8 | light.castshadow << 16);
-    if (light.headlight) continue;  // where the camera is
-    add_words(light.pos, sizeof(light.pos));
-    add_words(light.dir, sizeof(light.dir));
-  }
-  (void)lights;
-  for (const int i : fixed) {
-    const mjvGeom& geom = scene.geoms[i];
-    key.push_back(static_cast<uint32_t>(i));
-    for (const int word : {geom.type, geom.dataid, geom.texid, geom.texuniform, geom.texcoord}) {
-      key.push_back(static_cast<uint32_t>(word));
-    }
-    // texrepeat to reflectance follow each other.
-    add_words(geom.texrepeat, sizeof(float) * (2 + 3 + 3 + 9 + 4 + 4));
-  }
 }
 
 bool Renderer::State::MakeAnyShape(const mjvGeom& geom, const PlacedGeom& placed, int number,
@@ -311,30 +251,30 @@ void Renderer::State::Clear() {
 }
 
 void Renderer::State::DrawOpaque(const mjvScene& scene, const SceneLights& lights) {
-  const size_t most = (fixed.size() + moving.size()) * lights.lights().size();
+  const size_t most = (order.fixed.size() + order.moving.size()) * lights.lights().size();
   colours.reserve(most + lights.lights().size());
   const auto finish_sky = [this] {
     if (view.sky != nullptr && sky_picture.empty()) kernels.sky(view, picture.tiles());
   };
   bool build = false;
-  if (keep_layers && !fixed.empty()) {
-    MakeKey(scene, lights);
+  if (keep_layers && !order.fixed.empty()) {
+    MakeLayerKey(scene, frame, view, order.fixed, &key);
     if (const TileBuffer* layer = layers.Find(key)) {
       picture.CopyFrom(*layer);
-      See(scene, moving, lights);
+      See(scene, order.moving, lights);
       ShadeAll(lights);
       return;
     }
     build = layers.Miss(key);
   }
   Clear();
-  See(scene, fixed, lights);
+  See(scene, order.fixed, lights);
   if (build) {
     ShadeAll(lights);
     finish_sky();
     layers.Store(key, picture, view);
   }
-  See(scene, moving, lights);
+  See(scene, order.moving, lights);
   ShadeAll(lights);
   if (!build) finish_sky();
 }
@@ -350,7 +290,7 @@ bool Renderer::State::ShadeOver(const mjvScene& scene, const SceneLights& lights
   over->Resize(view);
   colours.clear();
   surfaces.clear();
-  ++stamp;
+  NextStamp();
   lights.AddColours(geom, &colours);
   AddSurfaces(geom, placed, shape, SourcesOf(geom, lights), colours.data(),
               /*transparent=*/true, &surfaces);
@@ -364,17 +304,17 @@ bool Renderer::State::ShadeOver(const mjvScene& scene, const SceneLights& lights
 
 // The engine blends twice: front to back, then back to front.
 void Renderer::State::DrawTransparent(const mjvScene& scene, const SceneLights& lights) {
-  const size_t count = transparent.size();
+  const size_t count = order.transparent.size();
   overs.resize(std::max(overs.size(), std::min(count, kOversKept)));
   rects.resize(count);
   seen.assign(count, false);
   for (size_t turn = 0; turn < 2 * count; ++turn) {
     const bool first = turn < count;
     const size_t i = first ? turn : 2 * count - 1 - turn;
-    const mjvGeom& geom = scene.geoms[transparent[i]];
+    const mjvGeom& geom = scene.geoms[order.transparent[i]];
     TileBuffer& over = overs[std::min(i, kOversKept - 1)];
     if (first || i + 1 >= kOversKept) {
-      seen[i] = ShadeOver(scene, lights, transparent[i], &over, &rects[i]);
+      seen[i] = ShadeOver(scene, lights, order.transparent[i], &over, &rects[i]);
     }
     if (!seen[i]) continue;
     float alpha = geom.rgba[3];
@@ -386,7 +326,6 @@ void Renderer::State::DrawTransparent(const mjvScene& scene, const SceneLights& 
 void Renderer::Draw(const mjvScene& scene, int width, int height, std::span<uint8_t> planes) {
   State& state = *state_;
   state.Start(scene, width, height);
-  state.Sort(scene);
   const SceneLights lights(scene, state.frame);
   state.DrawOpaque(scene, lights);
   state.DrawTransparent(scene, lights);
@@ -395,10 +334,9 @@ void Renderer::Draw(const mjvScene& scene, int width, int height, std::span<uint
 
 void Renderer::State::SeeEverything(const mjvScene& scene, int width, int height) {
   Start(scene, width, height);
-  Sort(scene);
   kernels.clear(view, picture.tiles());
   const SceneLights lights(scene, frame);
-  for (const auto* geoms : {&fixed, &moving, &transparent}) {
+  for (const auto* geoms : {&order.fixed, &order.moving, &order.transparent}) {
     colours.reserve(colours.size() + (geoms->size() + 1) * lights.lights().size());
     See(scene, *geoms, lights);
     surfaces.clear();

@@ -15,10 +15,8 @@
 #include <cstdint>
 #include <memory>
 #include <span>
-#include <string>
 
 struct mjModel_;
-struct mjvGeom_;
 struct mjvScene_;
 
 namespace shoal::worlds::native {
@@ -28,9 +26,6 @@ enum class InstructionSet { kSse2, kAvx2, kAvx512 };
 bool Supported(InstructionSet set);
 // The widest that this CPU has.
 InstructionSet WidestInstructionSet();
-
-// Why the content of this model cannot be drawn; empty = it can.
-std::string RefusalOf(const mjModel_& model);
 
 class Renderer {
  public:
@@ -43,7 +38,7 @@ class Renderer {
 
   // planes (3, H, W) uint8, row 0 = top. The scene is of the renderer's model.
   // Throws Error (kNonFinite) when the camera or a geom is not finite,
-  // (kRuntime) on a geom that cannot be drawn.
+  // (kRuntime) on a geom that cannot be drawn and on a scene with fog.
   void Draw(const mjvScene_& scene, int width, int height, std::span<uint8_t> planes);
 
   // (H, W): index in scene.geoms of what is in front, transparent or not; -1 =

@@ -203,12 +203,6 @@ bool MakePlane(const PlacedGeom& geom, const CameraFrame& frame, const View& vie
 
 }  // namespace
 
-bool GroupIsShown(int group) {
-  mjvOption option;
-  mjv_defaultOption(&option);
-  return option.geomgroup[std::clamp(group, 0, mjNGROUP - 1)] != 0;
-}
-
 PlacedGeom Place(const mjvGeom& geom, const CameraFrame& frame) {
   PlacedGeom placed;
   placed.centre = frame.Point(FromFloats(geom.pos));

@@ -21,9 +21,6 @@ struct PlacedGeom {
   std::array<double, 3> size;
 };
 
-// Whether the engine shows geoms of this group by default.
-bool GroupIsShown(int group);
-
 PlacedGeom Place(const mjvGeom_& geom, const CameraFrame& frame);
 
 // Fills `shape` for a plane, sphere, capsule, ellipsoid, cylinder or box; its

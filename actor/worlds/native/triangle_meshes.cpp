@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 
+#include "actor/worlds/native/geom_rules.h"
 #include "actor/worlds/native/screen_bounds.h"
 
 namespace shoal::worlds::native {
