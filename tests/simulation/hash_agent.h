@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // An agent whose update is a hash of the batch, which costs little, and whose policy's first action
 // says after how many updates it was made: what is evaluated can be held against what it is called.
-// It refuses a batch that changes while it reads it, and one whose observations do not follow one
-// another (fake_environment.h).
+// A batch that changes while the agent reads it, and one whose observations do not follow one
+// another (fake_environment.h), break a promise of the run.
 #pragma once
+
+#include <fmt/core.h>
 
 #include <algorithm>
 #include <chrono>
@@ -18,14 +20,15 @@
 #include "common/base/sleep.h"
 #include "common/nn/safetensors.h"
 #include "learner/agent/agent.h"
+#include "tests/simulation/story.h"
 
 namespace shoal::simulation {
 
 class HashAgent final : public learner::Agent {
  public:
   // `policy`: as nn::Policy loads them. An update takes `span` of simulated time.
-  HashAgent(nn::TensorMap policy, std::chrono::microseconds span)
-      : policy_(std::move(policy)), span_(span) {
+  HashAgent(nn::TensorMap policy, std::chrono::microseconds span, Story& story)
+      : policy_(std::move(policy)), span_(span), story_(story) {
     for (auto& [name, tensor] : policy_) std::ranges::fill(tensor.data, 0);
   }
 
@@ -38,7 +41,7 @@ class HashAgent final : public learner::Agent {
     const uint64_t before = HashBytes(batch.data, batch.schema->total_bytes());
     SleepFor(span_);
     if (HashBytes(batch.data, batch.schema->total_bytes()) != before) {
-      throw RuntimeError("the batch of update {} changed while it was read", updates_ + 1);
+      story_.Violate(fmt::format("the batch of update {} changed while it was read", updates_ + 1));
     }
     on_stage_end(learner::UpdateStage::kForward);
     hash_ = HashWords({hash_, before});
@@ -84,8 +87,10 @@ class HashAgent final : public learner::Agent {
       const bool ends = rollout && batch.ends[row] != 0;
       if (next_row && ends) continue;  // the next row begins an episode
       if (next[0] == observation[0] && next[1] == observation[1] + 1) continue;
-      throw RuntimeError("update {}, row {}: step {} of episode {} is followed by {} of {}",
-                         updates_ + 1, row, observation[1], observation[0], next[1], next[0]);
+      story_.Violate(fmt::format("update {}, row {}: step {} of episode {} is followed by {} of {}",
+                                 updates_ + 1, row, observation[1], observation[0], next[1],
+                                 next[0]));
+      return;
     }
   }
 
@@ -107,6 +112,7 @@ class HashAgent final : public learner::Agent {
 
   nn::TensorMap policy_;  // zeros
   const std::chrono::microseconds span_;
+  Story& story_;
   uint64_t updates_ = 0, hash_ = 0;
 };
 

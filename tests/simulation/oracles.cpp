@@ -46,7 +46,7 @@ class Examination {
     Try("the account", [this] { CheckAccount(); });
     Try("the evaluations", [this] { CheckEvaluations(); });
     Try("the ring", [this] { CheckRing(); });
-    Try("the limiter", [this] { CheckLimiter(); });
+    Try("the reports", [this] { CheckReports(); });
     Try("the files", [this] { CheckFiles(); });
     return std::move(broken_);
   }
@@ -65,7 +65,7 @@ class Examination {
   void CheckAccount();
   void CheckEvaluations();
   void CheckRing();
-  void CheckLimiter();
+  void CheckReports();
   void CheckFiles();
 
   const fs::path run_;
@@ -81,6 +81,11 @@ void Examination::CheckAccount() {
       launch::AccountRun(run_, config_, launch::TopologyOf(config_, {}), meta_.resends);
   if (!sums) return Break("there is no account");
   for (const std::string& fault : sums->faults) Break("account: " + fault);
+  if (sums->rejected > 0) Break(fmt::format("{} records were rejected", sums->rejected));
+  const uint64_t gone = sums->lost_with_process + sums->lost_with_replay + sums->after_gap;
+  if (!facts_.struck && gone + sums->duplicates + sums->discarded > 0) {
+    Break("without a fault: " + sums->Line());
+  }
   launch::LiveSettings settings(config_);
   settings.Restore(meta_.changes);
   const auto budget = static_cast<uint64_t>(settings.config().env_steps);
@@ -145,15 +150,23 @@ void Examination::CheckRing() {
   }
 }
 
-void Examination::CheckLimiter() {
+// The replay's reports: the limiter keeps to its band, and a successor counts the run's steps on.
+void Examination::CheckReports() {
   std::ifstream lines(run_ / kMetricsFile);
+  uint64_t stored = 0;
   for (std::string line; std::getline(lines, line);) {
     const auto report = nlohmann::json::parse(line, nullptr, /*allow_exceptions=*/false);
     if (report.is_discarded() || report.value("role", "") != "replay") continue;
     if (report.value("state", "") != "running" || !report.contains("limiter_cursor")) continue;
     const double cursor = report.at("limiter_cursor"), band = report.at("limiter_band");
-    if (std::abs(cursor) <= band / 2 + 1e-3) continue;
-    return Break(fmt::format("the limiter's cursor is {} in a band of {}", cursor, band));
+    if (std::abs(cursor) > band / 2 + 1e-3) {
+      return Break(fmt::format("the limiter's cursor is {} in a band of {}", cursor, band));
+    }
+    const auto steps = report.at("stored_steps").get<uint64_t>();
+    if (steps < stored && !facts_.cut) {
+      return Break(fmt::format("the replay counts {} env steps after {}", steps, stored));
+    }
+    stored = steps;
   }
 }
 

@@ -32,6 +32,7 @@ class Witness {
 };
 
 struct Facts {
+  bool struck = false;       // there were faults
   bool last_clean = true;    // every process left in order in the last session
   bool overwritten = false;  // another run took the folder
   bool cut = false;          // half of the ring was removed

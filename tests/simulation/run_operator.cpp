@@ -31,11 +31,12 @@ constexpr seconds kTryAgain{3};
 // More sessions than faults can make necessary.
 constexpr int kMostSessions = 40;
 
-// After them a session may end by itself with an error: nothing can be written, or the processes
-// do not hear of one another for longer than they wait, or the ring is not what it was.
+// A fault of these kinds may end sessions with an error while it lasts and for so long after it:
+// a process cannot write, or processes do not hear of one another for longer than they wait, or
+// the ring is not what it was. A full disk ends only a session that begins on it.
+constexpr seconds kAftermath{60};
 bool MayEndSessions(const Fault& fault) {
   switch (fault.kind) {
-    case Kind::kFullDisk:
     case Kind::kFailingDisk:
     case Kind::kPartition:
       return true;
@@ -57,11 +58,12 @@ void RunOperator::Work() {
     if (finished_) return WaitForChildren();
     begin = Prepare();
   }
-  Violate(fmt::format("{} sessions have not brought the run to its end", sessions_));
+  world_.story.Violate(fmt::format("{} sessions have not brought the run to its end", sessions_));
 }
 
 void RunOperator::RunSession(Begin begin) {
   ++sessions_;
+  began_on_full_disk_ = Now() < disk_full_until_;
   killed_ = nullptr;
   const char* how = begin == Begin::kFresh       ? "shoal train"
                     : begin == Begin::kOverwrite ? "shoal train --overwrite"
@@ -85,9 +87,10 @@ void RunOperator::JudgeExit(const SimulatedProcess& coordinator) {
                                               last_words_.empty() ? "" : ": ", last_words_));
   const int code = status.code;
   if (code != 0 && code != 1 && code != 2 && code != kUnwrittenExit && code != kInterruptedExit) {
-    Violate(fmt::format("exit code {} is not documented", code));
+    world_.story.Violate(fmt::format("exit code {} is not documented", code));
   }
-  if (last_words_.find('\n') != std::string::npos) Violate("the last words are not one line");
+  if (last_words_.find('\n') != std::string::npos)
+    world_.story.Violate("the last words are not one line");
   // A process that was killed while the run stopped makes the end unclean, and the code 1.
   // One that was killed while it ended had finished, too.
   const auto says = [this](const char* text) {
@@ -97,11 +100,13 @@ void RunOperator::JudgeExit(const SimulatedProcess& coordinator) {
   finished_ = Ended(meta.exit) &&
               (code == 0 || unclean || interrupted || (code == 2 && says("is finished")));
   const bool stopped = interrupted || (meta.exit == "interrupted" && code == 0);
-  if (finished_ || stopped || trouble_) return;
+  const bool unwritten = code == kUnwrittenExit;  // it says so, and a resumed session writes it
+  const bool troubled = Now() < trouble_until_ || began_on_full_disk_;
+  if (finished_ || stopped || unwritten || troubled) return;
   // Another process held the run for a moment, or a paused process has not left it yet.
   if (says("is running") || says("of an earlier session still works")) return;
-  Violate(fmt::format("a session ended as '{}' with code {}: {} {}", meta.exit, code, meta.error,
-                      last_words_));
+  world_.story.Violate(fmt::format("a session ended as '{}' with code {}: {} {}", meta.exit, code,
+                                   meta.error, last_words_));
 }
 
 launch::RunMeta RunOperator::TakeMeta() {
@@ -109,11 +114,12 @@ launch::RunMeta RunOperator::TakeMeta() {
   try {
     meta = launch::ReadRunMeta(world_.folder);
   } catch (const Error& error) {
-    Violate(fmt::format("meta.json after a session: {}", error.what()));
+    world_.story.Violate(fmt::format("meta.json after a session: {}", error.what()));
     return meta;
   }
   if (meta.env_steps < env_steps_) {
-    Violate(fmt::format("{} env steps after a session, {} before it", meta.env_steps, env_steps_));
+    world_.story.Violate(
+        fmt::format("{} env steps after a session, {} before it", meta.env_steps, env_steps_));
   }
   env_steps_ = meta.env_steps;
   return meta;
@@ -176,7 +182,8 @@ void RunOperator::Do(const Fault& fault) {
   const bool absent = !fault.process.empty() && process == nullptr;
   world_.story.Add("fault", fault.Text() + (absent ? " (it does not run)" : ""));
   if (absent) return;
-  trouble_ = trouble_ || MayEndSessions(fault);
+  if (MayEndSessions(fault))
+    trouble_until_ = std::max(trouble_until_, Now() + fault.span + kAftermath);
   const bool lasts = fault.kind != Kind::kClock && fault.kind != Kind::kCommand;
   quiet_from_ = std::max(quiet_from_, Now() + (lasts ? fault.span : milliseconds(0)));
   switch (fault.kind) {
@@ -197,7 +204,8 @@ void RunOperator::Do(const Fault& fault) {
       After(fault.span, [process] { process->Reconnect(); });
       return;
     case Kind::kFullDisk:
-      disk_.BeFull(Now() + fault.span);
+      disk_full_until_ = std::max(disk_full_until_, Now() + fault.span);
+      disk_.BeFull(disk_full_until_);
       return;
     case Kind::kFailingDisk:
       disk_.Fail(&process->group(), Now() + fault.span);
@@ -244,24 +252,24 @@ void RunOperator::SendCommand(const std::string& text) {
   std::istringstream words(text);
   words >> command.verb;
   for (std::string word; words >> word;) command.arguments.push_back(word);
-  world_.processes.StartOther(name, link::Role::kClient, world_.folder.string() + ".client.log",
-                              [this, name, command](link::Hub& hub) {
-                                constexpr int kTries = 60;
-                                std::optional<ReplyMessage> reply;
-                                link::Writer<CommandMessage> writer(hub);
-                                const link::Reader<ReplyMessage> reader(
-                                    hub, [&](const ReplyMessage& message) {
-                                      if (message.client != command.client) return;
-                                      if (reply) Violate(fmt::format("a second reply to {}", name));
-                                      reply = message;
-                                    });
-                                for (int i = 0; i < kTries && !reply; ++i) {
-                                  writer.Write(command);
-                                  SleepFor(milliseconds(500));
-                                }
-                                world_.story.Add(name, reply ? reply->text : "no reply");
-                                return 0;
-                              });
+  world_.processes.StartOther(
+      name, link::Role::kClient, world_.folder.string() + ".client.log",
+      [this, name, command](link::Hub& hub) {
+        constexpr int kTries = 60;
+        std::optional<ReplyMessage> reply;
+        link::Writer<CommandMessage> writer(hub);
+        const link::Reader<ReplyMessage> reader(hub, [&](const ReplyMessage& message) {
+          if (message.client != command.client) return;
+          if (reply) world_.story.Violate(fmt::format("a second reply to {}", name));
+          reply = message;
+        });
+        for (int i = 0; i < kTries && !reply; ++i) {
+          writer.Write(command);
+          SleepFor(milliseconds(500));
+        }
+        world_.story.Add(name, reply ? reply->text : "no reply");
+        return 0;
+      });
 }
 
 void RunOperator::Watch(milliseconds span) {
@@ -287,7 +295,7 @@ void RunOperator::AskAsSecond() {
                                 }
                                 world_.story.Add("second", "got the run");
                                 if (held && first && !first->ended())
-                                  Violate("two coordinators have the run");
+                                  world_.story.Violate("two coordinators have the run");
                                 return 0;
                               });
 }
@@ -298,11 +306,6 @@ void RunOperator::After(milliseconds span, std::function<void()> body) {
     SleepUntil(until);
     body();
   });
-}
-
-void RunOperator::Violate(const std::string& what) {
-  world_.story.Add("VIOLATION", what);
-  violations_.push_back(what);
 }
 
 }  // namespace shoal::simulation

@@ -29,8 +29,6 @@ class RunOperator {
 
   // The run has reached its end.
   bool finished() const { return finished_; }
-  // The acts of a coordinator that it must not do, one line each.
-  const std::vector<std::string>& violations() const { return violations_; }
   // Whether a process did not leave in order in the last session.
   bool last_clean() const { return last_clean_; }
   int sessions() const { return sessions_; }
@@ -38,8 +36,6 @@ class RunOperator {
   SteadyTime quiet_from() const { return quiet_from_; }
 
  private:
-  struct Session;
-
   void RunSession(Begin begin);
   void JudgeExit(const SimulatedProcess& coordinator);
   // Reads meta.json, whose env steps never become fewer.
@@ -55,14 +51,14 @@ class RunOperator {
   void Watch(std::chrono::milliseconds span);
   void AskAsSecond();
   void After(std::chrono::milliseconds span, std::function<void()> body);
-  void Violate(const std::string& what);
 
   const World& world_;
   FiberScheduler& scheduler_;
   SimulatedDisk& disk_;
-  std::vector<std::string> violations_;
   bool finished_ = false, last_clean_ = true;
-  bool trouble_ = false;  // a fault has come that may end a session by itself
+  bool began_on_full_disk_ = false;  // the session
+  SteadyTime trouble_until_{};       // until then a session may end by itself (MayEndSessions)
+  SteadyTime disk_full_until_{};     // of the full disk that was the last to end
   int sessions_ = 0, clients_ = 0;
   const Fault* killed_ = nullptr;  // what killed the last coordinator
   std::string last_words_;

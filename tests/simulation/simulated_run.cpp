@@ -68,7 +68,7 @@ Outcome Simulate(const Blueprint& blueprint, uint64_t seed, const std::vector<Fa
   Story story;
   SimulatedProcesses processes(scheduler, network,
                                [&](const launch::ProcessSpec& spec, link::Hub& hub) {
-                                 return RunChild(blueprint, folder, spec, hub);
+                                 return RunChild(blueprint, folder, story, spec, hub);
                                });
   const World world{blueprint, folder, processes, story};
   RunOperator person(world, scheduler, disk);
@@ -94,14 +94,15 @@ Outcome Simulate(const Blueprint& blueprint, uint64_t seed, const std::vector<Fa
   }
   scheduler.RunUntil(scheduler.NowOutside() + seconds(2));  // the witness ends
   Outcome outcome{
-      .violations = person.violations(),
+      .violations = story.violations(),
       .story = {},
       .trace = scheduler.TraceHash(),
       .switches = scheduler.switches(),
       .seconds = std::chrono::duration<double>(scheduler.NowOutside().time_since_epoch()).count(),
       .sessions = person.sessions()};
   if (person.finished()) {
-    const Facts facts{.last_clean = person.last_clean(),
+    const Facts facts{.struck = !faults.empty(),
+                      .last_clean = person.last_clean(),
                       .overwritten = Any(faults, kThenOverwrite),
                       .cut = Any(faults, kThenCutRing),
                       .unwritten = std::ranges::any_of(faults, FailsWrites),

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The events of a simulated run, in plain words, by simulated time.
+// The events of a simulated run, in plain words, by simulated time, and the promises that were
+// broken while it ran.
 #pragma once
 
 #include <fmt/core.h>
@@ -18,10 +19,16 @@ class Story {
     const double seconds = std::chrono::duration<double>(Now().time_since_epoch()).count();
     lines_.push_back(fmt::format("{:9.3f} s  {}: {}", seconds, who, what));
   }
+  // A broken promise: the run has failed, whatever happens next. Called by simulated threads.
+  void Violate(const std::string& what) {
+    Add("VIOLATION", what);
+    violations_.push_back(what);
+  }
   const std::vector<std::string>& lines() const { return lines_; }
+  const std::vector<std::string>& violations() const { return violations_; }
 
  private:
-  std::vector<std::string> lines_;
+  std::vector<std::string> lines_, violations_;
 };
 
 }  // namespace shoal::simulation

@@ -88,7 +88,7 @@ int Train(const World& world, Begin begin, link::Hub& hub, std::optional<bool>* 
 
 void AskForRun(const World& world) { Resolve(world, OptionsOf(world, Begin::kResume)); }
 
-int RunChild(const Blueprint& blueprint, const std::filesystem::path& folder,
+int RunChild(const Blueprint& blueprint, const std::filesystem::path& folder, Story& story,
              const launch::ProcessSpec& spec, link::Hub& hub) {
   // In place of RunMembership, whose lock is that of a process of the operating system.
   const auto member = FileLock::Take(folder / kMembersFile, Holding::kWithOthers);
@@ -96,7 +96,7 @@ int RunChild(const Blueprint& blueprint, const std::filesystem::path& folder,
   const link::RunProcess process{.role = *link::FindRole(spec.role),
                                  .index = static_cast<uint32_t>(spec.id)};
   const auto make_agent = [&](const Config&, const ObservationSpec&, nn::Precision) {
-    return std::make_unique<HashAgent>(blueprint.policy, kUpdate);
+    return std::make_unique<HashAgent>(blueprint.policy, kUpdate, story);
   };
   switch (process.role) {
     case link::Role::kActor:

@@ -33,7 +33,7 @@ int Train(const World& world, Begin begin, link::Hub& hub, std::optional<bool>* 
 void AskForRun(const World& world);
 
 // The body of a child process of the run.
-int RunChild(const Blueprint& blueprint, const std::filesystem::path& folder,
+int RunChild(const Blueprint& blueprint, const std::filesystem::path& folder, Story& story,
              const launch::ProcessSpec& spec, link::Hub& hub);
 
 }  // namespace shoal::simulation
