@@ -100,8 +100,13 @@ void RunOperator::JudgeExit(const SimulatedProcess& coordinator) {
   finished_ = Ended(meta.exit) &&
               (code == 0 || unclean || interrupted || (code == 2 && says("is finished")));
   const bool stopped = interrupted || (meta.exit == "interrupted" && code == 0);
-  const bool unwritten = code == kUnwrittenExit;  // it says so, and a resumed session writes it
-  const bool troubled = Now() < trouble_until_ || began_on_full_disk_;
+  // The end is noticed up to a second later.
+  const bool full = Now() < disk_full_until_ + seconds(1);
+  // It says so, and a resumed session writes it.
+  const bool unwritten = code == kUnwrittenExit || (unclean && full);
+  // A session may wait for former processes before its first write.
+  const bool began_full = began_on_full_disk_ || (full && says(kConfigFile));
+  const bool troubled = Now() < trouble_until_ || began_full;
   if (finished_ || stopped || unwritten || troubled) return;
   // Another process held the run for a moment, or a paused process has not left it yet.
   if (says("is running") || says("of an earlier session still works")) return;

@@ -93,8 +93,8 @@ TEST(SimulatedRun, SeedsThatFoundAFaultOfTheProductKeepWhatIsPromised) {
 TEST(SimulatedRun, FixedSeedsKeepWhatIsPromised) {
   uint64_t seed = 0;
   RunInChildren(
-      TheBlueprints(), UsableCores(), /*with_story=*/false, [&] { return seed < 400 ? ++seed : 0; },
-      FaultsOf,
+      TheBlueprints(), UsableCores(), /*with_story=*/false,
+      [&] { return seed < 2000 ? ++seed : 0; }, FaultsOf,
       [](const ChildRun& run) {
         EXPECT_TRUE(run.good) << run.text << run.summary << "\n  shoal-simulate --seed " << run.seed
                               << " --trace";
@@ -108,7 +108,7 @@ TEST(SimulatedRun, FreshSeedsKeepWhatIsPromised) {
   const SteadyTime start = Now();
   RunInChildren(
       TheBlueprints(), UsableCores(), /*with_story=*/false,
-      [&] { return seed < first + 100 && SecondsSince(start) < 60 ? ++seed : 0; }, FaultsOf,
+      [&] { return seed < first + 500 && SecondsSince(start) < 60 ? ++seed : 0; }, FaultsOf,
       [](const ChildRun& run) {
         EXPECT_TRUE(run.good) << run.text << run.summary << "\n  shoal-simulate --seed " << run.seed
                               << " --trace";
