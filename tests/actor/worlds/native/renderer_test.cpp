@@ -50,8 +50,10 @@ class RendererTest : public testing::Test {
     };
     for (int i = 0; i < count; ++i) {
       const int type = kTypes[i % 6];
-      mjvGeom& geom = hand_.Add(type, {draw(0.5, 6), draw(-2, 2), draw(-2, 2)},
-                                {draw(0.05, 0.6), draw(0.05, 0.6), draw(0.05, 0.6)});
+      // Drawn one after the other: compilers differ in the order of a call's arguments.
+      const std::array size{draw(0.05, 0.6), draw(0.05, 0.6), draw(0.05, 0.6)};
+      const std::array position{draw(0.5, 6), draw(-2, 2), draw(-2, 2)};
+      mjvGeom& geom = hand_.Add(type, position, size);
       if (type == mjGEOM_SPHERE) geom.size[1] = geom.size[2] = geom.size[0];
       if (type == mjGEOM_CAPSULE || type == mjGEOM_CYLINDER) geom.size[1] = geom.size[0];
       mjtNum quat[4] = {draw(-1, 1), draw(-1, 1), draw(-1, 1), draw(-1, 1)}, mat[9];
