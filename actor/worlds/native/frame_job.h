@@ -136,8 +136,7 @@ struct Surface {
   bool merged_passes;  // transparent: one sum of all lights
   float exponent;      // of the cosine's square
   int whole_exponent;  // -1 = not a whole number
-  float alpha;
-  PlaneGrid* grid;  // null = lit per pixel
+  PlaneGrid* grid;     // null = lit per pixel
   bool grey_grid;
   float grid_axes[2][4];        // plane coordinates = axes * (p, 1)
   float grid_directions[2][3];  // a unit along the plane's x and y; its origin

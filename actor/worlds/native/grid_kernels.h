@@ -3,6 +3,7 @@
 #pragma once
 
 #include "actor/worlds/native/frame_job.h"
+#include "actor/worlds/native/lane_gathers.h"
 #include "actor/worlds/native/lanes.h"
 #include "actor/worlds/native/light_kernels.h"
 

@@ -165,6 +165,43 @@ void SetGrid(const mjvGeom& geom, const PlacedGeom& placed, const SurfaceSources
   }
 }
 
+void SetMesh(const mjvGeom& geom, const PlacedGeom& placed, const Shape& shape,
+             const TriangleMesh& mesh, Surface* s) {
+  s->normal_kind = kMeshNormals;
+  s->mesh.triangles = shape.triangle;
+  s->mesh.normals = mesh.normals.data();
+  if (geom.texcoord && s->texture != nullptr && !mesh.coords.empty()) {
+    s->mesh.coords = mesh.coords.data();
+    s->mapping = kMap2d;
+  }
+  for (size_t k = 0; k < 3; ++k) Write(placed.axes[k], s->mesh.axes[k]);
+}
+
+// Normals of spheres and ellipsoids, and of the sides of cylinders and capsules.
+void SetRoundNormals(const mjvGeom& geom, const PlacedGeom& placed, Surface* s) {
+  const auto& size = placed.size;
+  s->inverse_radius = static_cast<float>(1 / size[0]);
+  if (geom.type == mjGEOM_CYLINDER || geom.type == mjGEOM_CAPSULE) {
+    s->normal_kind = kRod;
+    s->half_length = static_cast<float>(size[2]);
+    return;
+  }
+  if (size[0] == size[1] && size[1] == size[2]) {
+    s->normal_kind = kRound;
+    return;
+  }
+  s->normal_kind = kOval;
+  for (size_t row = 0; row < 3; ++row) {
+    Vector3 sum;
+    for (size_t k = 0; k < 3; ++k) {
+      const Vector3& axis = placed.axes[k];
+      const double of_row = row == 0 ? axis.x : row == 1 ? axis.y : axis.z;
+      sum = sum + of_row / (size[k] * size[k]) * axis;
+    }
+    Write(sum, s->gram + 3 * row);
+  }
+}
+
 }  // namespace
 
 SceneLights::SceneLights(const mjvScene& scene, const CameraFrame& frame) {
@@ -226,53 +263,20 @@ void AddSurfaces(const mjvGeom& geom, const PlacedGeom& placed, const Shape& sha
     if (geom.type == mjGEOM_PLANE && !s.one_light) SetGrid(geom, placed, sources, &s);
     surfaces->push_back(s);
   };
-  switch (geom.type) {
-    case mjGEOM_PLANE:
-      return add_flat(0, placed.axes[2]);
-    case mjGEOM_BOX:
-      for (int i = 0; i < shape.enters; ++i) {
-        const int face = shape.faces[i];
-        const double sign = face % 2 == 0 ? -1 : 1;
-        add_flat(face, sign * placed.axes[static_cast<size_t>(face / 2)]);
-      }
-      return;
-    case mjGEOM_CYLINDER:
-      for (int i = 0; i < shape.enters; ++i) {
-        add_flat(shape.faces[i], (shape.faces[i] == 1 ? 1.0 : -1.0) * placed.axes[2]);
-      }
-      [[fallthrough]];
-    case mjGEOM_CAPSULE:
-      base.normal_kind = kRod;
-      base.inverse_radius = static_cast<float>(1 / placed.size[0]);
-      base.half_length = static_cast<float>(placed.size[2]);
-      break;
-    case mjGEOM_MESH:
-    case mjGEOM_HFIELD:
-      base.normal_kind = kMeshNormals;
-      base.mesh.triangles = shape.triangle;
-      base.mesh.normals = sources.mesh->normals.data();
-      if (geom.texcoord && base.texture != nullptr && !sources.mesh->coords.empty()) {
-        base.mesh.coords = sources.mesh->coords.data();
-        base.mapping = kMap2d;
-      }
-      for (size_t k = 0; k < 3; ++k) Write(placed.axes[k], base.mesh.axes[k]);
-      break;
-    default:
-      if (placed.size[0] == placed.size[1] && placed.size[1] == placed.size[2]) {
-        base.normal_kind = kRound;
-        base.inverse_radius = static_cast<float>(1 / placed.size[0]);
-      } else {
-        base.normal_kind = kOval;
-        for (size_t row = 0; row < 3; ++row) {
-          Vector3 sum;
-          for (size_t k = 0; k < 3; ++k) {
-            const Vector3& axis = placed.axes[k];
-            const double of_row = row == 0 ? axis.x : row == 1 ? axis.y : axis.z;
-            sum = sum + of_row / (placed.size[k] * placed.size[k]) * axis;
-          }
-          Write(sum, base.gram + 3 * row);
-        }
-      }
+  if (geom.type == mjGEOM_PLANE) return add_flat(0, placed.axes[2]);
+  const bool box = geom.type == mjGEOM_BOX;
+  if (box || geom.type == mjGEOM_CYLINDER) {
+    for (const int face : std::span(shape.faces, static_cast<size_t>(shape.enters))) {
+      const bool positive = box ? face % 2 == 1 : face == 1;
+      const size_t axis = box ? static_cast<size_t>(face / 2) : 2;
+      add_flat(face, (positive ? 1.0 : -1.0) * placed.axes[axis]);
+    }
+  }
+  if (box) return;
+  if (sources.mesh != nullptr) {
+    SetMesh(geom, placed, shape, *sources.mesh, &base);
+  } else {
+    SetRoundNormals(geom, placed, &base);
   }
   surfaces->push_back(base);
 }
