@@ -2,15 +2,14 @@
 #include "launch/run/environment_choice.h"
 
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
-#include <sstream>
 
 #include "actor/hosted/hosted_spec.h"
 #include "common/base/error.h"
+#include "common/base/search_path.h"
 
 namespace shoal::launch {
 namespace {
@@ -22,18 +21,8 @@ constexpr char kPythonFile[] = ".py:";
 // Not canonical: the python of a virtual environment is a link, and its place says which one it is.
 std::string Absolute(const std::string& path) { return fs::absolute(path).lexically_normal(); }
 
-bool IsProgram(const fs::path& path) {
-  std::error_code error;
-  return fs::is_regular_file(path, error) && access(path.c_str(), X_OK) == 0;
-}
-
 std::string OnSearchPath(const std::string& program) {
-  const char* path = std::getenv("PATH");
-  std::istringstream folders(path == nullptr ? "" : path);
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    const fs::path file = fs::path(folder.empty() ? "." : folder) / program;
-    if (IsProgram(file)) return Absolute(file);
-  }
+  if (const auto file = FindOnSearchPath(program)) return Absolute(*file);
   throw UsageError("env.python: there is no {} on the PATH; expected the path of an interpreter",
                    program);
 }
@@ -42,11 +31,11 @@ std::string ChoosePython(const std::string& asked) {
   if (asked.empty()) {
     const char* active = std::getenv("VIRTUAL_ENV");
     const fs::path of_active = fs::path(active == nullptr ? "" : active) / "bin/python";
-    if (active != nullptr && IsProgram(of_active)) return Absolute(of_active);
+    if (active != nullptr && IsExecutable(of_active)) return Absolute(of_active);
     return OnSearchPath("python3");
   }
   if (asked.find('/') == std::string::npos) return OnSearchPath(asked);
-  if (IsProgram(asked)) return Absolute(asked);
+  if (IsExecutable(asked)) return Absolute(asked);
   throw UsageError("env.python '{}' is no program; expected the path of a Python interpreter",
                    asked);
 }

@@ -1,17 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "launch/tools/report/plot.h"
 
-#include <unistd.h>
-
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdlib>
 #include <optional>
-#include <sstream>
 
 #include "common/base/error.h"
 #include "common/base/files.h"
+#include "common/base/search_path.h"
 #include "common/base/stop.h"
 #include "launch/processes/child_process.h"
 #include "launch/processes/scratch_folder.h"
@@ -119,15 +116,6 @@ std::string PanelCommands(const std::vector<RunGroup>& groups, size_t figure,
   return commands + "\n";
 }
 
-bool OnPath(const std::string& program) {
-  const char* const path = std::getenv("PATH");
-  std::istringstream folders(path == nullptr ? "" : path);
-  for (std::string folder; std::getline(folders, folder, ':');) {
-    if (access((fs::path(folder) / program).c_str(), X_OK) == 0) return true;
-  }
-  return false;
-}
-
 }  // namespace
 
 PlotAxis ParsePlotAxis(const std::string& word) {
@@ -206,7 +194,7 @@ void Draw(const Plot& plot, const std::vector<RunGroup>& groups, const fs::path&
   const fs::path script = scratch.path() / "plot.gp",
                  drawn = scratch.path() / ("plot" + output.extension().string());
   WriteFileAtomically(script, PlotScript(plot, groups, drawn));
-  if (!OnPath("gnuplot")) {
+  if (!FindOnSearchPath("gnuplot")) {
     throw RuntimeError("gnuplot is not installed: plots need it (Debian: apt install gnuplot-nox)");
   }
   ProcessSpec spec;
