@@ -37,7 +37,8 @@ ImageResize::ImageResize(const tasks::ImageLayout& layout, bool grey, int height
       rows_(Spans(layout.height, height)),
       columns_(Spans(layout.width, width)),
       plane_(size_t(layout.height) * size_t(layout.width)),
-      narrowed_(size_t(layout.height) * size_t(width)) {
+      narrowed_(size_t(layout.height) * size_t(width)),
+      sums_(size_t(width)) {
   if (int64_t{layout.height} * layout.width > kMostPixels) {
     throw UsageError("environment: an image of {}x{} pixels; expected at most {} pixels",
                      layout.height, layout.width, kMostPixels);
@@ -98,16 +99,15 @@ void ImageResize::Shrink(std::span<uint8_t> plane) {
       narrowed[x] = sum;
     }
   }
-  std::vector<uint32_t> sums(width);
   const auto total = static_cast<uint32_t>(layout_.height) * static_cast<uint32_t>(layout_.width);
   for (size_t i = 0; i < size_t(height_); ++i) {
-    std::ranges::fill(sums, 0U);
+    std::ranges::fill(sums_, 0U);
     const Span& span = rows_[i];
     for (size_t k = 0; k < span.weights.size(); ++k) {
       AddWeighted(narrowed_.data() + (size_t(span.first) + k) * width, width, span.weights[k],
-                  sums.data());
+                  sums_.data());
     }
-    Divide(sums.data(), width, total, plane.data() + i * width);
+    Divide(sums_.data(), width, total, plane.data() + i * width);
   }
 }
 

@@ -48,6 +48,7 @@ class ImageResize {
   const std::vector<Span> rows_, columns_;
   std::vector<uint8_t> plane_;      // (H, W)
   std::vector<uint32_t> narrowed_;  // (H, w): sums over columns
+  std::vector<uint32_t> sums_;      // (w): sums over the area of one output row
 };
 
 }  // namespace shoal::hosted

@@ -4,11 +4,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <array>
 #include <cctype>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <ranges>
 #include <set>
 #include <utility>
 
@@ -27,30 +27,30 @@ constexpr int kLeastSide = 8;             // pixels of an image
 constexpr size_t kLongestTaskName = 50;   // of a task, before a prefix
 constexpr char kWorld[] = "environment";  // physics half: the process that runs the environment
 
-constexpr std::array<std::pair<const char*, ElementType>, 9> kTypes{
-    {{"float32", ElementType::kFloat32},
-     {"float64", ElementType::kFloat64},
-     {"uint8", ElementType::kUint8},
-     {"uint16", ElementType::kUint16},
-     {"uint32", ElementType::kUint32},
-     {"int8", ElementType::kInt8},
-     {"int16", ElementType::kInt16},
-     {"int32", ElementType::kInt32},
-     {"int64", ElementType::kInt64}}};
+struct TypeRow {
+  const char* name;
+  ElementType type;
+  size_t bytes;
+};
+constexpr TypeRow kTypes[] = {
+    {"float32", ElementType::kFloat32, 4}, {"float64", ElementType::kFloat64, 8},
+    {"uint8", ElementType::kUint8, 1},     {"uint16", ElementType::kUint16, 2},
+    {"uint32", ElementType::kUint32, 4},   {"int8", ElementType::kInt8, 1},
+    {"int16", ElementType::kInt16, 2},     {"int32", ElementType::kInt32, 4},
+    {"int64", ElementType::kInt64, 8}};
 
-ElementType TypeNamed(const std::string& name, const std::string& array) {
-  const auto found = std::ranges::find(kTypes, name, [](const auto& type) { return type.first; });
-  if (found != kTypes.end()) return found->second;
-  std::string known;
-  for (const auto& [type, value] : kTypes) {
-    known += known.empty() ? "" : ", ";
-    known += type;
-  }
-  throw UsageError("environment: '{}' has elements of type {}; expected {}", array, name, known);
+const TypeRow& RowOf(ElementType type) {
+  const auto* const row = std::ranges::find(kTypes, type, &TypeRow::type);
+  CHECK(row != std::end(kTypes)) << static_cast<int>(type);
+  return *row;
 }
 
-const char* NameOf(ElementType type) {
-  return std::ranges::find(kTypes, type, &std::pair<const char*, ElementType>::second)->first;
+ElementType TypeNamed(const std::string& name, const std::string& array) {
+  const auto* const row = std::ranges::find(kTypes, name, &TypeRow::name);
+  if (row != std::end(kTypes)) return row->type;
+  const auto known = kTypes | std::views::transform(&TypeRow::name);
+  throw UsageError("environment: '{}' has elements of type {}; expected {}", array, name,
+                   fmt::join(known.begin(), known.end(), ", "));
 }
 
 std::vector<double> BoundsFromJson(const json& bound, double infinite) {
@@ -162,25 +162,9 @@ Block BlockOf(const ArraySpace& space) {
 
 }  // namespace
 
-size_t BytesOf(ElementType type) {
-  switch (type) {
-    case ElementType::kUint8:
-    case ElementType::kInt8:
-      return 1;
-    case ElementType::kUint16:
-    case ElementType::kInt16:
-      return 2;
-    case ElementType::kFloat32:
-    case ElementType::kUint32:
-    case ElementType::kInt32:
-      return 4;
-    case ElementType::kFloat64:
-    case ElementType::kInt64:
-      return 8;
-  }
-  CHECK(false) << static_cast<int>(type);
-  return 0;
-}
+const char* NameOf(ElementType type) { return RowOf(type).name; }
+
+size_t BytesOf(ElementType type) { return RowOf(type).bytes; }
 
 int ArraySpace::size() const {
   int size = 1;

@@ -42,6 +42,8 @@ enum class ElementType {
   kInt64
 };
 
+// NumPy's name of the type, "float32", and its size.
+const char* NameOf(ElementType type);
 size_t BytesOf(ElementType type);
 
 // One array of an observation, or the action: a Box in Gymnasium's terms.

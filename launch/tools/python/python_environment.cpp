@@ -23,31 +23,6 @@ namespace {
 using tasks::ArraySpace;
 using tasks::ElementType;
 
-// NumPy's character of an element type; its names differ between platforms, these do not.
-char CharacterOf(ElementType type) {
-  switch (type) {
-    case ElementType::kFloat32:
-      return 'f';
-    case ElementType::kFloat64:
-      return 'd';
-    case ElementType::kUint8:
-      return 'B';
-    case ElementType::kUint16:
-      return 'H';
-    case ElementType::kUint32:
-      return 'I';
-    case ElementType::kInt8:
-      return 'b';
-    case ElementType::kInt16:
-      return 'h';
-    case ElementType::kInt32:
-      return 'i';
-    case ElementType::kInt64:
-      return 'l';
-  }
-  return '?';
-}
-
 std::string ShapeText(std::span<const py::ssize_t> shape) {
   return fmt::format("({}{})", fmt::join(shape, ", "), shape.size() == 1 ? "," : "");
 }
@@ -62,6 +37,35 @@ std::string ShapeText(std::span<const py::ssize_t> shape) {
   const auto message = py::cast<std::string>(py::str(error.value()));
   throw Error(kind, fmt::format("environment {}: {} raised {}{}{}", id, call, name,
                                 message.empty() ? "" : ": ", OneLine(message)));
+}
+
+// As Fail, but a refusal of shoal_rl.hosting is a line of its own, without a traceback.
+[[noreturn]] void Refuse(const EnvironmentOpener& opener, const std::string& id,
+                         const std::string& call, const py::error_already_set& error) {
+  if (!error.matches(opener.refused)) Fail(ErrorKind::kUsage, id, call, error);
+  throw UsageError("environment {}: {}", id,
+                   OneLine(py::cast<std::string>(py::str(error.value()))));
+}
+
+bool TruthOf(const py::handle& value) {
+  const int truth = PyObject_IsTrue(value.ptr());
+  if (truth < 0) throw py::error_already_set();
+  return truth == 1;
+}
+
+// info["is_success"] or info["success"]; empty where it has neither.
+std::optional<bool> SuccessIn(const py::handle& info) {
+  if (!PyDict_Check(info.ptr())) return std::nullopt;
+  for (const char* key : {"is_success", "success"}) {
+    if (PyObject* value = PyDict_GetItemString(info.ptr(), key)) return TruthOf(value);
+  }
+  return std::nullopt;
+}
+
+double NumberOf(const py::handle& value) {
+  const double number = PyFloat_AsDouble(value.ptr());
+  if (number == -1 && PyErr_Occurred() != nullptr) throw py::error_already_set();
+  return number;
 }
 
 }  // namespace
@@ -81,9 +85,7 @@ OpenedEnvironment Open(const EnvironmentOpener& opener, const EnvironmentOrder& 
     opened.description = tasks::EnvironmentFromJson(described);
     return opened;
   } catch (const py::error_already_set& error) {
-    if (!error.matches(opener.refused)) Fail(ErrorKind::kUsage, order.id, "making it", error);
-    throw UsageError("environment {}: {}", order.id,
-                     OneLine(py::cast<std::string>(py::str(error.value()))));
+    Refuse(opener, order.id, "making it", error);
   }
 }
 
@@ -95,11 +97,7 @@ void FindGoal(const EnvironmentOpener& opener, OpenedEnvironment* opened) {
         py::cast<std::string>(opened->opened.attr("find_goal")())));
     description = tasks::EnvironmentFromJson(described);
   } catch (const py::error_already_set& error) {
-    if (!error.matches(opener.refused)) {
-      Fail(ErrorKind::kUsage, description.id, "reset or compute_reward", error);
-    }
-    throw UsageError("environment {}: {}", description.id,
-                     OneLine(py::cast<std::string>(py::str(error.value()))));
+    Refuse(opener, description.id, "reset or compute_reward", error);
   }
 }
 
@@ -112,11 +110,11 @@ PythonEnvironment::PythonEnvironment(OpenedEnvironment opened, CallWatch& watch)
       action_shape_(py::cast<std::vector<py::ssize_t>>(opened.opened.attr("action_shape"))) {
   const py::list paths = opened.opened.attr("paths");
   CHECK(py::len(paths) == description_.observation.size()) << py::len(paths);
-  const py::object dtype = py::module_::import("numpy").attr("dtype");
+  const py::module_ numpy = py::module_::import("numpy");
+  contiguous_ = numpy.attr("ascontiguousarray");
   for (size_t i = 0; i < description_.observation.size(); ++i) {
     const ElementType type = description_.observation[i].type;
-    Leaf leaf{.keys = {}, .type = CharacterOf(type), .numpy_type = {}};
-    leaf.numpy_type = dtype(std::string(1, leaf.type));
+    Leaf leaf{.keys = {}, .type = py::dtype(std::string(tasks::NameOf(type)))};
     leaf.real = type == ElementType::kFloat32 || type == ElementType::kFloat64;
     for (const py::handle& key : py::tuple(paths[i])) {
       leaf.keys.push_back(py::reinterpret_borrow<py::object>(key));
@@ -134,7 +132,7 @@ PythonEnvironment::~PythonEnvironment() {
   } catch (py::error_already_set& error) {
     error.discard_as_unraisable("close");  // the process is about to leave
   }
-  for (py::object* object : {&environment_, &reset_, &step_}) *object = py::object();
+  for (py::object* object : {&environment_, &reset_, &step_, &contiguous_}) *object = py::object();
   leaves_.clear();
   held_.clear();
 }
@@ -157,19 +155,19 @@ py::array PythonEnvironment::TakeArray(const char* call, size_t i, const py::han
         description_.id, space.name, call, ShapeText(shape), ShapeText(expected));
   }
   // float32 and float64 stand for each other: many environments declare one and return the other.
-  const char type = array.dtype().char_();
-  const bool same = type == leaf.type || (type == 'q' && leaf.type == 'l');
+  const char type = array.dtype().char_(), declared = leaf.type.char_();
+  const bool same = type == declared || (type == 'q' && declared == 'l');
   if (!same && !(leaf.real && (type == 'f' || type == 'd'))) {
     throw RuntimeError(
         "environment {}: '{}' of {} has elements of type {}; expected {}, as its "
         "space says",
         description_.id, space.name, call, py::cast<std::string>(py::str(array.dtype())),
-        py::cast<std::string>(py::str(leaf.numpy_type)));
+        py::cast<std::string>(py::str(py::handle(leaf.type))));
   }
-  const bool native = py::detail::array_descriptor_proxy(array.dtype().ptr())->byteorder != '>';
+  const bool native = array.dtype().byteorder() != '>';
   constexpr int kPlain = int{py::array::c_style} | int{py::detail::npy_api::NPY_ARRAY_ALIGNED_};
   if (same && native && (array.flags() & kPlain) == kPlain) return array;
-  return py::module_::import("numpy").attr("ascontiguousarray")(array, leaf.numpy_type);
+  return contiguous_(array, leaf.type);
 }
 
 void PythonEnvironment::Take(const char* call, const py::handle& observation) {
@@ -221,35 +219,6 @@ py::object PythonEnvironment::ActionArray(std::span<const double> action) const 
   return array;
 }
 
-namespace {
-
-// info["is_success"] or info["success"]; empty where it has neither.
-std::optional<bool> SuccessIn(const py::handle& info) {
-  if (!PyDict_Check(info.ptr())) return std::nullopt;
-  for (const char* key : {"is_success", "success"}) {
-    PyObject* value = PyDict_GetItemString(info.ptr(), key);
-    if (value == nullptr) continue;
-    const int truth = PyObject_IsTrue(value);
-    if (truth < 0) throw py::error_already_set();
-    return truth == 1;
-  }
-  return std::nullopt;
-}
-
-bool TruthOf(const py::handle& value) {
-  const int truth = PyObject_IsTrue(value.ptr());
-  if (truth < 0) throw py::error_already_set();
-  return truth == 1;
-}
-
-double NumberOf(const py::handle& value) {
-  const double number = PyFloat_AsDouble(value.ptr());
-  if (number == -1 && PyErr_Occurred() != nullptr) throw py::error_already_set();
-  return number;
-}
-
-}  // namespace
-
 hosted::RawStep PythonEnvironment::Step(std::span<const double> action) {
   const py::gil_scoped_acquire lock;
   const CallWatch::Call call(watch_, "step");
@@ -258,8 +227,7 @@ hosted::RawStep PythonEnvironment::Step(std::span<const double> action) {
     if (!PyTuple_Check(result.ptr()) || PyTuple_GET_SIZE(result.ptr()) != 5) {
       throw RuntimeError(
           "environment {}: step returned no tuple of observation, reward, terminated, truncated "
-          "and "
-          "info, as Gymnasium 1.x has it",
+          "and info, as Gymnasium 1.x has it",
           description_.id);
     }
     const auto part = [&](int i) { return py::handle(PyTuple_GET_ITEM(result.ptr(), i)); };

@@ -59,9 +59,8 @@ class __attribute__((visibility("hidden"))) PythonEnvironment final
  private:
   struct Leaf {
     std::vector<pybind11::object> keys;  // into nested dicts
-    char type = 0;                       // NumPy's character of the element type
-    pybind11::object numpy_type;         // as NumPy names it, for conversion
-    bool real = false;                   // float32 or float64, which may stand for each other
+    pybind11::dtype type;
+    bool real = false;  // float32 or float64, which may stand for each other
   };
 
   // Keeps the arrays of an observation alive and notes where they lie.
@@ -72,6 +71,7 @@ class __attribute__((visibility("hidden"))) PythonEnvironment final
   const tasks::EnvironmentDescription description_;
   CallWatch& watch_;
   pybind11::object environment_, reset_, step_;
+  pybind11::object contiguous_;  // numpy.ascontiguousarray
   std::vector<pybind11::ssize_t> action_shape_;
   std::vector<Leaf> leaves_;
   std::vector<pybind11::array> held_;
