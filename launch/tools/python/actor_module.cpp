@@ -50,7 +50,9 @@ EnvironmentOrder OrderOf(const Config& config, bool picture) {
 // The environments of this process.
 class Hosting {
  public:
-  explicit Hosting(EnvironmentOpener opener) : opener_(std::move(opener)) {}
+  // `pictures`: the environments will be asked for pictures.
+  Hosting(EnvironmentOpener opener, bool pictures)
+      : opener_(std::move(opener)), pictures_(pictures) {}
 
   actor::ActorParts Parts() {
     return {
@@ -176,22 +178,16 @@ class Hosting {
   }
 
   const EnvironmentOpener opener_;
+  const bool pictures_;
   std::optional<CallWatch> watch_;
   hosted::HostedEnvironment* newest_ = nullptr;  // borrowed
-  bool pictures_ = false;
-
- public:
-  void WantPictures() { pictures_ = true; }
 };
 
 int Run(std::vector<std::string> words, const py::object& open, const py::object& refused) {
   dds::TuneMalloc();
-  Hosting hosting({.open = open, .refused = refused});
+  Hosting hosting({.open = open, .refused = refused}, std::ranges::count(words, "--frames") > 0);
   std::vector<char*> arguments;
-  for (std::string& word : words) {
-    if (word == "--frames") hosting.WantPictures();
-    arguments.push_back(word.data());
-  }
+  for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   const py::gil_scoped_release unlocked;
   return GuardMain("shoal-actor", [&] {

@@ -198,7 +198,6 @@ class Opened:
             }
         )
 
-
     def find_goal(self):
         """JSON: {"goal": ...} of a goal environment whose rewards Shoal can compute, {"no_goal": why}
         of another one, {} of an environment without goals."""
