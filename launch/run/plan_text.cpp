@@ -5,9 +5,11 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "common/base/error.h"
+#include "common/base/files.h"
 #include "common/config/config_io.h"
 #include "common/config/on_policy.h"
 #include "common/nn/precision.h"
@@ -109,11 +111,13 @@ std::string StackText(const RunConfig& run) {
   return "  observation.stack = 1: the policy sees no velocity; 3 is usual for this task\n";
 }
 
-// What the run's configuration started from; empty where its preset is gone by now, or no longer
-// valid, which is no reason to refuse a run that has what it needs.
+// What the run's configuration started from; empty if its preset names no task because it fits any,
+// or is gone by now, or no longer valid, which is no reason to refuse a run that has what it needs.
 std::optional<Config> StartOf(const Config& config) {
   if (config.preset.empty()) return Config();
   try {
+    const std::string file = FindPreset(config.preset);
+    if (!ParseStrictJson(ReadFile(file), file).contains("task")) return std::nullopt;
     return LoadPreset(config.preset);
   } catch (const Error&) {
     return std::nullopt;

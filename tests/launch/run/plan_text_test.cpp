@@ -143,6 +143,15 @@ TEST(PlanText, WhatAPresetSaysForAnotherTaskIsNamed) {
               HasSubstr("fetch-reach-drq: learner.reward_scale = 10 as FetchReachDense"));
 }
 
+TEST(PlanText, APresetForAnyTaskIsForNoOther) {
+  RunConfig run;
+  run.config = LoadPreset("state");
+  run.config.task = "walker_walk";
+  run.spec.action_size = 6;
+  run.spec.blocks = {{"velocity", 9}};
+  EXPECT_THAT(PlanText(run, 0), Not(HasSubstr("needs it")));
+}
+
 TEST(PlanText, WithoutAPresetDefaultsOfAnotherTaskAreNamed) {
   RunConfig run;
   run.config.task = "walker_walk";
