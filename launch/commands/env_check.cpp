@@ -37,9 +37,12 @@ std::string ArrayText(const tasks::ArraySpace& space) {
 
 std::string GoalText(const tasks::EnvironmentDescription& environment) {
   if (environment.goal) {
-    const bool dense = environment.goal->reward == tasks::RewardKind::kDense;
-    return fmt::format("  OK    hindsight: the rewards are {}, threshold {:g}; verified\n",
-                       dense ? "dense" : "sparse", environment.goal->threshold);
+    // The threshold of dense rewards decides success, which no reward shows.
+    if (environment.goal->reward == tasks::RewardKind::kDense) {
+      return "  OK    hindsight: the rewards are dense, minus the distance; verified\n";
+    }
+    return fmt::format("  OK    hindsight: the rewards are sparse, threshold {:g}; verified\n",
+                       environment.goal->threshold);
   }
   if (environment.no_goal.empty()) return "";
   return fmt::format("  WARN  no hindsight: {}\n", environment.no_goal);
@@ -65,7 +68,7 @@ std::string Text(const DescribedEnvironment& described, const Config& config) {
                       BoundsText(environment.action));
   text += environment.episode_steps > 0
               ? fmt::format("  episodes of at most {} steps", environment.episode_steps)
-              : "  episodes without a time limit";
+              : "  episodes without a time limit that Shoal knows";
   text += environment.success ? "; steps report success\n" : "; success is not reported\n";
   text += fmt::format("  OK    {} random steps, {:.0f} microseconds each\n", described.steps,
                       described.step_microseconds);

@@ -128,10 +128,20 @@ TEST_F(Environments, CheckSaysWhatIsObservedAndWhetherItRepeats) {
   EXPECT_THAT(drifts.out, HasSubstr("WARN  equal seeds and actions gave other observations or "
                                     "rewards from step 0 on"));
   const ProgramResult goal = Shoal(CheckWords("goals:Reach"));
-  EXPECT_THAT(goal.out, HasSubstr("OK    hindsight: the rewards are sparse, threshold 0.05"))
+  EXPECT_THAT(goal.out,
+              HasSubstr("OK    hindsight: the rewards are sparse, threshold 0.05; verified"))
       << goal.err;
+  const ProgramResult dense = Shoal(CheckWords("goals:Dense"));
+  EXPECT_THAT(dense.out, HasSubstr("OK    hindsight: the rewards are dense, minus the distance"))
+      << dense.err;
   const ProgramResult box = Shoal(CheckWords("goals:Box"));
   EXPECT_THAT(box.out, HasSubstr("WARN  no hindsight: its reward is no threshold")) << box.err;
+}
+
+// The environment may bring another version of MuJoCo.
+TEST_F(Environments, TheActorLoadsNoEngineOfShoals) {
+  const ProgramResult done = Shoal(CheckWords("engines:Alone"));
+  EXPECT_EQ(ExitCode(done), 0) << done.out << done.err;
 }
 
 TEST_F(Environments, RewardsOfAGoalEnvironmentAreComputedForOtherGoals) {

@@ -34,6 +34,11 @@ class Reach(gymnasium.Env):
         return {"observation": self._place, "achieved_goal": self._place, "desired_goal": self._goal}
 
 
+class Dense(Reach):
+    def compute_reward(self, achieved_goal, desired_goal, info):
+        return -float(np.linalg.norm(achieved_goal - desired_goal))
+
+
 class Box(Reach):
     """Reached within a square, which is no threshold on the distance."""
 
