@@ -56,6 +56,8 @@ const std::vector<TrialRule>& TrialRules() {
        "Environments.TheWorkedExampleIsTrainedAndFilmed"},
       {"^shoal (film|eval) light\\b", kElsewhere,
        "Environments.TheWorkedExampleIsTrainedAndFilmed"},
+      {"^shoal env check Pendulum", kElsewhere,
+       "Environments.CheckSaysWhatIsObservedAndWhetherItRepeats"},
       {"^shoal .*gymnasium_robotics:", kElsewhere,
        "Environments.RewardsOfAGoalEnvironmentAreComputedForOtherGoals"},
       {"--name-map", kElsewhere, "NamedWeightsTest.AMapNamesAndPutsTogether"},

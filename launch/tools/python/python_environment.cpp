@@ -39,7 +39,7 @@ std::string ShapeText(std::span<const py::ssize_t> shape) {
                                 message.empty() ? "" : ": ", OneLine(message)));
 }
 
-// As Fail, but a refusal of shoal_rl.hosting is a line of its own, without a traceback.
+// Throws as Fail does, but a refusal of shoal_rl.hosting becomes one line without a traceback.
 [[noreturn]] void Refuse(const EnvironmentOpener& opener, const std::string& id,
                          const std::string& call, const py::error_already_set& error) {
   if (!error.matches(opener.refused)) Fail(ErrorKind::kUsage, id, call, error);
