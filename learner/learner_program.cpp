@@ -105,7 +105,7 @@ std::optional<CheckpointState> LearnerProgram::Restore() {
 int LearnerProgram::Resize(int threads) {
   try {
     if (threads < 1) throw UsageError("learner.threads = {}: expected at least 1", threads);
-    CheckCores(threads, ReadCoreLimits());
+    CheckCores("learner.threads", threads, ReadCoreLimits());
     agent_.Resize(threads);
     log::Info("{} from update {} on",
               DescribeThreads(run_.config, run_.spec, threads, UsableCores()),

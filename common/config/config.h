@@ -87,6 +87,7 @@ struct ReplayConfig {
   double movement_share = 0;       // of the samples, drawn by how far what is achieved still moves
   std::string movement = "path";   // path | displacement: what that distance is
   int window_chunks = 4;           // chunks an actor may have unacknowledged
+  int threads = 0;                 // that copy a batch's frames; 0 = as many as its rate needs
 };
 
 struct LearnerConfig {

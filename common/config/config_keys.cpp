@@ -151,6 +151,10 @@ std::vector<Key> ReplayKeys() {
                  "step and at the episode's end"),
       SHOAL_SAME(replay.window_chunks, (IntegerRange{2, 1024}),
                  "chunks an actor may have unacknowledged"),
+      SHOAL_SAME(replay.threads, (IntegerRange{0, 1024}),
+                 "threads of the replay server that copy the frames of a batch, whose bytes do not "
+                 "depend on their number; 0 = one, and up to four while copying takes most of its "
+                 "time and there are four cores for each"),
   };
 }
 

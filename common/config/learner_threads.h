@@ -2,6 +2,8 @@
 // How many threads learn, and whether the batch can be shared among them.
 #pragma once
 
+#include <string_view>
+
 #include "common/base/usable_cores.h"
 #include "common/config/config.h"
 
@@ -21,9 +23,9 @@ int MostThreads(const Config& config);
 // each of so many replicas.
 void CheckReplicas(const Config& config, int replicas);
 
-// Throws Error (kUsage) unless `threads` have a core each: threads of one update wait for each
-// other, so that more of them learn more slowly than one per core. The error says what limits the
-// cores. `limits` are the learner's host's.
-void CheckCores(int threads, const CoreLimits& limits);
+// Throws Error (kUsage) unless the `threads` that the key asks for have a core each: threads of one
+// update, or of one batch, wait for each other, so that more of them than cores are slower than one
+// per core. The error says what limits the cores. `limits` are those of the threads' host.
+void CheckCores(std::string_view key, int threads, const CoreLimits& limits);
 
 }  // namespace shoal

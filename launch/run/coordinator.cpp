@@ -103,13 +103,15 @@ Coordinator::Coordinator(const Parts& parts)
 }
 
 CommandHandler::Effects Coordinator::Effects() {
-  return {
-      .running = [this] { return decisions_.TakesCommands(); },
-      .env_steps = [this] { return decisions_.env_steps(); },
-      .stop = [this] { decisions_.OnStopCommand(); },
-      .scale = [this](int from, int to) { Scale(from, to); },
-      .note = [this](const SettingChange& change) { Note(change); },
-      .check = [](const Config& config) { CheckCores(config.learner.threads, ReadCoreLimits()); }};
+  return {.running = [this] { return decisions_.TakesCommands(); },
+          .env_steps = [this] { return decisions_.env_steps(); },
+          .stop = [this] { decisions_.OnStopCommand(); },
+          .scale = [this](int from, int to) { Scale(from, to); },
+          .note = [this](const SettingChange& change) { Note(change); },
+          .check =
+              [](const Config& config) {
+                CheckCores("learner.threads", config.learner.threads, ReadCoreLimits());
+              }};
 }
 
 RunResult Coordinator::Run(const std::function<void()>& on_started) {

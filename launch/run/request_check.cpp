@@ -44,7 +44,7 @@ void CheckNetwork(const RunConfig& run) {
   nn::CheckNetwork(run.config.network, run.spec, run.config.learner.batch,
                    int64_t{kMaxWeightsBytes});
   learner::ReplicasOf(run.config, run.spec, run.config.learner.threads);
-  CheckCores(run.config.learner.threads, ReadCoreLimits());
+  CheckCores("learner.threads", run.config.learner.threads, ReadCoreLimits());
 }
 
 // Runs `read`, which takes weights from a file. If they do not fit and the file belongs to a
@@ -100,6 +100,7 @@ void CheckReplay(const RunConfig& run, const fs::path& folder) {
   }
   replay::CheckHindsight(run);
   replay::CheckSampling(run);
+  CheckCores("replay.threads", config.replay.threads, ReadCoreLimits());
   learner::CheckValueBounds(run);
   const replay::StorageNeeds needs = replay::StorageNeedsOf(run);
   if (config.replay.storage == "memory") {

@@ -41,7 +41,7 @@ ReplayService::ReplayService(const std::filesystem::path& folder, const ProcessN
       before_(ReadAccountBefore(folder)),
       core_(run_, folder, NextSession(folder, name.Text(), WallTimeNs()),
             {before_.stored_steps, before_.sessions}, [this] { ReportStarting(); }),
-      gatherers_(1),
+      gatherers_(std::max(1, Settings().replay.threads)),
       most_gatherers_(MostGatherers()),
       control_(Now()),
       inbox_(SpecHash(), ChunkBytes(Window(), core_.ring().layout().record_bytes()), MaxChunks()),
@@ -251,7 +251,7 @@ void ReplayService::Publish(const std::vector<Credit>& credits) {
 }
 
 void ReplayService::ChooseGatherers(SteadyTime now) {
-  if (now - last_choice_ < kChoiceSpacing) return;
+  if (Settings().replay.threads > 0 || now - last_choice_ < kChoiceSpacing) return;
   const double seconds = std::chrono::duration<double>(now - last_choice_).count();
   const double share = (seconds_.sampling - sampling_then_) / seconds;
   last_choice_ = now;

@@ -119,6 +119,20 @@ TEST_F(ReplayServiceTest, StoresAcknowledgesAnswersAndAccounts) {
   EXPECT_EQ(Accounting(a_).at("stored"), 400u);
 }
 
+TEST_F(ReplayServiceTest, CopiesWithTheThreadsThatTheRunAsksFor) {
+  run_.config.replay.threads = 3;
+  WriteRunConfig(folder_.path(), run_);
+  StartAll();
+  ASSERT_TRUE(peers_->Deliver(&a_, 400)) << replay_->Errors();
+  ExpectFramesOf(&a_, 400, peers_->Batch(1));
+  EXPECT_TRUE(peers_->WaitFor([&] {
+    const auto& metrics = peers_->MetricsLocked();
+    return metrics.contains("sampled") && metrics.at("sampled") == 128 &&
+           metrics.at("gather_threads") == 3;
+  }));
+  StopReplay();
+}
+
 TEST_F(ReplayServiceTest, NothingAcknowledgedIsLostWhenKilledAndRestarted) {
   StartAll();
   for (uint64_t target = 200; target <= 800; target += 200) {
