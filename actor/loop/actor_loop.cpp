@@ -61,7 +61,7 @@ void ActorLoop::TakeWeights() {
   }
 }
 
-// The window is full or shut: what lies in an open chunk goes out, so that it can be stored.
+// The window is full or shut. Sends the records of open chunks, so that the replay can store them.
 void ActorLoop::AwaitCredit() {
   const SteadyTime start = Now();
   const double publishing_before = parts_.sender.publish_seconds();

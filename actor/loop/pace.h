@@ -22,22 +22,22 @@ class Pace {
   };
 
   virtual ~Pace() = default;
-  // What to do after `vector_steps` of the actor since the run's start, while it acts by `version`.
-  // To be asked before every vector step.
+  // The actor's next turn after `vector_steps` since the run's start, if it acts by `version`. Call
+  // it before every vector step.
   virtual Turn Next(int64_t vector_steps, const WeightsVersion& version) = 0;
-  // Whether weights are taken between steps as they come, too, and not only when awaited.
+  // True if the loop also takes weights between steps, as they arrive; false if only when awaited.
   virtual bool TakesWeightsAnytime() const = 0;
-  // The weights that the last kAwaitWeights is about, for the error when they do not come.
+  // Names the weights that the last kAwaitWeights waits for, for the error if they do not arrive.
   virtual std::string Awaited() const = 0;
 
-  // For how long weights are awaited before that is an error.
+  // Time that the loop waits for weights before it fails.
   virtual std::chrono::seconds patience() const { return std::chrono::seconds(120); }
-  // Whether episodes end where they are when another learner's weights are taken: it has forgotten
-  // what came before.
+  // True if running episodes end when weights of another learner process arrive: the new process
+  // does not have the records of its predecessor.
   virtual bool BeginsAnewWithLearner() const { return false; }
 };
 
-// Steps always, by the newest weights there are.
+// Always steps, with the newest weights.
 class FreePace final : public Pace {
  public:
   Turn Next(int64_t, const WeightsVersion&) override { return Turn::kStep; }
@@ -45,14 +45,14 @@ class FreePace final : public Pace {
   std::string Awaited() const override { return {}; }  // it awaits none
 };
 
-// Takes turns with the learner (common/config/lockstep.h): at the end of each phase it awaits the
-// weights of that phase's last update, whatever the clocks say; it rests from the phase on in which
-// the budget is reached.
+// Alternates with the learner (common/config/lockstep.h). At the end of each phase it waits for the
+// weights of that phase's last update; clocks have no influence. It rests once a phase has reached
+// the budget.
 class LockstepPace final : public Pace {
  public:
-  // `vector_steps`: done when the actor goes on from a former process's state, else 0. Half-way
-  // through a phase the former one acted by the weights of the phase before, which the learner
-  // offers first when it resumes.
+  // `vector_steps`: those that the restored state contains; 0 for a new actor. In the middle of a
+  // phase the state was made with the weights of the phase before. The learner offers these first
+  // when it resumes.
   LockstepPace(const Config& config, int64_t vector_steps);
 
   Turn Next(int64_t vector_steps, const WeightsVersion& version) override;
@@ -62,14 +62,14 @@ class LockstepPace final : public Pace {
 
  private:
   const Config config_;
-  int64_t phase_ = 0;    // the one that is being played
-  uint64_t update_ = 0;  // of the weights that the phase is played by, at least
+  int64_t phase_ = 0;    // being played
+  uint64_t update_ = 0;  // lowest update of the weights that play the phase
 };
 
-// Plays rollouts of `vector_steps` each by one version of the weights, and awaits the one that
-// follows before the next, or, `ahead` = 1, the one before that: the pace of on-policy learning,
-// where each rollout makes one update. A learner that was restarted, or went on without this actor,
-// says by its version where it is.
+// The pace of on-policy learning, where each rollout makes one update. Plays each rollout of
+// `vector_steps` with one version of the weights. Before the next rollout it waits for the version
+// that follows; with `ahead` = 1, for the version before that one. The version also shows where a
+// learner is that was restarted, or that continued without this actor.
 class VersionPace final : public Pace {
  public:
   explicit VersionPace(int64_t vector_steps, int ahead = 0);
@@ -77,7 +77,7 @@ class VersionPace final : public Pace {
   Turn Next(int64_t vector_steps, const WeightsVersion& version) override;
   bool TakesWeightsAnytime() const override { return false; }
   std::string Awaited() const override;
-  // An update takes as long as it takes.
+  // One update of a whole rollout may take minutes.
   std::chrono::seconds patience() const override { return std::chrono::seconds(600); }
   bool BeginsAnewWithLearner() const override { return true; }
 
@@ -85,11 +85,11 @@ class VersionPace final : public Pace {
   const int64_t length_;
   const uint64_t ahead_;
   int64_t end_ = 0;           // of the running rollout, in vector steps
-  uint64_t session_ = 0;      // of the learner whose weights it is played by
-  uint64_t next_update_ = 0;  // of the weights that the next rollout is to be played by
+  uint64_t session_ = 0;      // of the learner whose weights play the running rollout
+  uint64_t next_update_ = 0;  // of the weights that will play the next rollout
 };
 
-// The pace that a run's configuration asks of an actor that has done `vector_steps` before.
+// The pace that the configuration selects, for an actor that has done `vector_steps` already.
 std::unique_ptr<Pace> MakePace(const Config& config, int64_t vector_steps);
 
 }  // namespace shoal::actor

@@ -161,7 +161,7 @@ bool Rollout::StepOne(int e) {
   try {
     result = slot.runner.Step(action, {layout_.Frame(record), layout_.Vector(record)});
   } catch (const worlds::EpisodeFault& fault) {
-    OnFault(e, fault);  // the record that was begun is begun anew by whoever comes next
+    OnFault(e, fault);  // the next step or reset begins the open record again
     return false;
   }
 

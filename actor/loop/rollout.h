@@ -58,27 +58,28 @@ class Rollout {
           std::vector<std::unique_ptr<worlds::Environment>> environments, SequenceLog& made,
           RecordSink& sink, ActionSelector& selector);
 
-  // One step of every environment, episodes beginning where the last ended. False while the sink
-  // has no room for its records: nothing is done then, but where a step was faulty, after which the
-  // next call goes on with the environments that still owe one. Throws Error (kNonFinite) when
-  // faulty episodes are no exception.
+  // Steps every environment once; begins an episode where the last one ended. Returns false, and
+  // does nothing, while the sink has no room for the records. It also returns false after a faulty
+  // step: the next call then continues with the environments that still owe a step. Throws Error
+  // (kNonFinite) if the share of faulty episodes exceeds max_faulty_share.
   bool TryStep();
 
-  // Ends the running episodes where they are: the next step begins new ones. For a receiver that
-  // does not know what came before.
+  // Ends the running episodes; the next step begins new ones. Needed when the receiver is a new
+  // process, which does not have the episodes' first records.
   void AbandonEpisodes();
 
-  // Where it is, without session and count of records, which are others'.
+  // The present state. The caller fills in `session` and `made`.
   RolloutState State() const;
-  // Goes on where another process was, before the first step: plays the running episodes again by
-  // their actions, publishing nothing. Throws Error when the state is of other environments.
+  // Continues from another process's state: plays the running episodes again by their actions and
+  // publishes nothing. Call it before the first step. Throws Error if the state was made with other
+  // environments.
   void Restore(const RolloutState& state);
 
-  // Of this actor, since the run's start where it was restored, else since its own.
+  // Steps of this actor: since the run's start if its state was restored, else since its own start.
   uint64_t env_steps() const { return env_steps_; }
   int64_t vector_steps() const { return static_cast<int64_t>(env_steps_ / slots_.size()); }
-  // Of all that ended but those that were to be cut short, however they ended: of these only the
-  // shortest would be whole.
+  // All ended episodes except those with a cut (CutAfter). Among these only short episodes end
+  // before their cut, so that counting them would bias the figures.
   const EpisodeLog& episodes() const { return episodes_; }
   const FaultLog& faults() const { return faults_; }
   StageSeconds seconds() const;
@@ -96,16 +97,17 @@ class Rollout {
   void BeginEpisode(int e, int cut_after);
   // Resets the environment for the first of its next episodes that can begin; `record` gets it.
   void ResetRunner(int e, int cut_after, uint8_t* record);
-  // Of an episode that begins together with those of all others; 0 = it is not cut.
+  // Env steps after which the episode is cut that begins in the same step as all others; 0 = no
+  // cut.
   int CutAfter(int e) const;
   // False: the step was faulty and is not recorded.
   bool StepOne(int e);
   void OnFault(int e, const worlds::EpisodeFault& fault);
   void PlayAgain(int e, const EpisodeState& state);
-  // Of the episode that local environment `e` plays.
+  // Key of the episode that local environment `e` plays.
   uint64_t StreamKeyOf(StreamRole role, int e) const;
   void FillHeader(int e, RecordKind kind, RecordHeader* header) const;
-  // Of the episode whose reset is in `record`, which it comes before.
+  // Publishes the goal's picture, before the episode's reset, which is in `record`.
   void PublishGoal(int e, uint8_t* record);
   void Publish(uint8_t* record);
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where an actor in lockstep was when its run stopped, so that a resumed run goes on bit for bit:
-// the running episodes are named by their actions, from which they are played again, since physics
-// follows from the episode's stream and the actions alone.
+// State of an actor in lockstep when its run stopped. A resumed run continues from it bit for bit.
+// It holds the running episodes as lists of actions, which the successor plays again: physics
+// depends on the episode's random stream and the actions alone.
 //
-// File RUN/made/actor-ID.rollout, JSON (schema shoal-rollout-3) with a CRC-32 of itself: written
-// when an actor has left in order, taken away by its successor. A killed actor leaves none.
+// File RUN/made/actor-ID.rollout, JSON (schema shoal-rollout-3) with a CRC-32 of itself. An actor
+// writes it when it stops in order, and its successor removes it. A killed actor leaves none.
 #pragma once
 
 #include <cstdint>

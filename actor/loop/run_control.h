@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What tells an actor's loop to end.
+// The reasons for which an actor's loop ends.
 #pragma once
 
 #include "common/base/clock.h"
@@ -10,11 +10,13 @@ namespace shoal::actor {
 class RunControl {
  public:
   virtual ~RunControl() = default;
-  // The run's state as the coordinator said it last.
+  // The run's state, as in the coordinator's last message.
   virtual RunState state() = 0;
-  // The coordinator has been silent for longer than its lease. To be asked several times a second.
+  // True once the coordinator has been silent for longer than its lease. Call it several times a
+  // second.
   virtual bool CoordinatorLost(SteadyTime now) = 0;
-  // A signal asked this process to stop; and how many times one did, for those who ask twice.
+  // True once a signal asked this process to stop; the number of such signals. A signal during the
+  // drain ends it.
   virtual bool StopRequested() = 0;
   virtual int StopRequests() = 0;
 };

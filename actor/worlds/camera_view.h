@@ -10,8 +10,8 @@ namespace shoal::worlds {
 // A free view looks at `lookat` from `distance`; azimuth 0 looks along +x, 90 along +y; negative
 // elevation looks down. Its vertical field of view is the model's (45 degrees by default).
 //
-// With a `body`, numbers are in that body's frame, its position the origin and its axes x, y and z:
-// the view is mounted on it and moves with it.
+// If `body` is set, the view is mounted on that body and moves with it: numbers are in the body's
+// frame, whose origin is the body's position.
 //
 // A camera of the model, which may follow a body, has `model_camera` and ignores those numbers.
 struct CameraView {

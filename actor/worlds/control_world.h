@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the physics halves of the Control Suite's tasks share: the order of engine calls in a reset
-// and in a control step, down to which of them runs without actuation. Behaviour of dm_control's
-// rl/control.py and mujoco/engine.py ("legacy step").
+// Base of the physics halves of the Control Suite's tasks: the order of engine calls in a reset and
+// in a control step, and which of them run without actuation. Behaves as dm_control's rl/control.py
+// and mujoco/engine.py ("legacy step") do.
 #pragma once
 
 #include <span>

@@ -13,14 +13,14 @@
 
 namespace shoal::worlds {
 
-// Where an observation is written: frame (C, H, W) u8, row 0 = top, empty without pixels; vector
-// (R) f32, every block in spec order, observed or not. The caller owns the memory.
+// Memory for one observation, owned by the caller. frame: (C, H, W) u8, row 0 = top, empty without
+// pixels. vector: (R) f32, every block in spec order, observed or not.
 struct ObservationOut {
   std::span<uint8_t> frame;
   std::span<float> vector;
 };
 
-// Of one env step, that is of all its control steps (see action_repeat).
+// Result of one env step: of all its control steps (action_repeat) together.
 struct StepResult {
   float reward = 0;  // unscaled, summed over the control steps
   bool terminated = false, truncated = false;
@@ -28,7 +28,7 @@ struct StepResult {
   float distance = 0;    // of achieved to desired goal in m; NaN where the task has none
 };
 
-// What was drawn for an episode: a body's mass in kg.
+// A body's mass, drawn for one episode.
 struct DrawnMass {
   std::string body;
   double mass_kg = 0;

@@ -43,7 +43,7 @@ class FetchArm {
   // action[0..2]: displacement in units of 5 cm; action[3]: fingers, ignored while blocked. After
   // this the caller advances the engine by kEngineStepsPerEnvStep and calls FinishStep.
   void Act(std::span<const double> action);
-  // With a blocked gripper: shuts the fingers again and brings positions up to date.
+  // Shuts the fingers of a blocked gripper again and brings positions up to date.
   void FinishStep();
 
   // For pictures of goals: the engine runs until the grip site is within 1 mm of `position` (m), or

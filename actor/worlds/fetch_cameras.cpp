@@ -4,7 +4,7 @@
 namespace shoal::worlds {
 namespace {
 
-// As Gymnasium-Robotics has it.
+// The camera of Gymnasium-Robotics.
 CameraView Gymnasium() { return {"gymnasium", {1.3, 0.75, 0.55}, 2.5, 132, -14}; }
 
 // On the gripper, whose x axis points from the wrist to the fingers: from above and outside of

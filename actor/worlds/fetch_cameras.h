@@ -16,7 +16,7 @@ std::span<const CameraView> FetchCameras();
 std::span<const CameraView> FetchPickAndPlaceCameras();
 std::span<const CameraView> FetchSlideCameras();
 
-// Of films' larger view: from high at the side, where gripper and arm seldom hide object or goal.
+// Larger views for films: from high at the side, where gripper and arm seldom hide object or goal.
 const CameraView& FetchPushFilmCamera();
 const CameraView& FetchPickAndPlaceFilmCamera();
 const CameraView& FetchSlideFilmCamera();

@@ -11,11 +11,11 @@
 
 namespace shoal::worlds {
 
-// Where the gripper stands in the picture of a goal, the object unturned and at rest at the goal.
+// Position of the gripper in the picture of a goal. The object is at rest at the goal, not rotated.
 enum class GripperAtGoal {
-  kAbove,   // 10 cm above the object, fingers shut: beside nothing, and a wrist camera sees it
+  kAbove,   // 10 cm above the object, fingers shut: touches nothing, and a wrist camera sees it
   kAround,  // the grip site in the object's middle, the fingers at its sides
-  kStart,   // where episodes start: goals lie out of the arm's reach
+  kStart,   // where episodes start: the arm cannot reach the goals
 };
 
 struct FetchObjectSetup {

@@ -27,7 +27,7 @@ enum class Physics { kMujoco2, kMujoco3 };
 // "mujoco2" or "mujoco3"; throws Error (kUsage) otherwise.
 Physics ParsePhysics(const std::string& name);
 
-// What a Fetch model needs besides its own MJCF: empty, or the `connect` as an MJCF document.
+// MJCF that a Fetch model needs besides its own: empty, or a document with the `connect`.
 std::string WeldAddition(Physics physics);
 
 // Makes the weld mean "the gripper's frame equals the mocap body's", whatever poses the model was

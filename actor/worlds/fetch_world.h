@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the physics halves of all Fetch tasks share: the arm, the goal and its marker, the order of
+// Base of the physics halves of all Fetch tasks: the arm, the goal and its marker, the order of
 // engine calls in reset and step.
 //
-// Behaviour of Gymnasium-Robotics' Fetch environments, v4. A model of a user's must have the named
+// Behaves as Gymnasium-Robotics' Fetch environments, v4. A user's model must have the named
 // elements of ours: bodies robot0:mocap (mocap) and robot0:gripper_link, welded in this order;
 // sites robot0:grip and target0; joints robot0:slide0 to 2, robot0:r_gripper_finger_joint and
 // robot0:l_gripper_finger_joint; with an object also the free joint object0:joint and the site
-// object0. Whatever is lacking is named.
+// object0. The error names each missing element.
 #pragma once
 
 #include <array>

@@ -42,7 +42,7 @@ void Triangle(const Vertex& a, const Vertex& b, const Vertex& c) {
   Emit(c);
 }
 
-// What lies between two rings.
+// The surface between two rings.
 void Band(const Ring& lower, const Ring& upper) {
   for (size_t i = 0; i < lower.size(); ++i) {
     const size_t next = (i + 1) % lower.size();
@@ -87,7 +87,7 @@ uint32_t Compile(Draw draw) {
 // Makes the geom a mesh that is the given list, scaled along its axes.
 void TurnIntoMesh(const mjrContext& context, uint32_t list, float radius, float along,
                   mjvGeom* geom) {
-  // What is drawn of a mesh is list baseMesh + dataid.
+  // The engine draws a mesh as display list baseMesh + dataid.
   CHECK(list >= context.baseMesh) << list << " " << context.baseMesh;
   geom->type = mjGEOM_MESH;
   geom->dataid = static_cast<int>(list - context.baseMesh);

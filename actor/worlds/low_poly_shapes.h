@@ -2,9 +2,9 @@
 // Cylinders and capsules of few triangles, for the engine to draw in place of its own.
 //
 // The engine divides every side along its axis and every cap along its radius, as finely as a
-// sphere from pole to pole. At 84x84 nobody sees that, and it is most of what a robot of such
-// shapes costs. Here sides are not divided, flat caps have no centre, and a capsule is one object
-// instead of three.
+// sphere from pole to pole. At 84x84 these divisions are invisible, and they are most of the cost
+// of a robot of such shapes. Here sides are not divided, flat caps have no centre, and a capsule is
+// one object instead of three.
 #pragma once
 
 #include <cstdint>

@@ -3,8 +3,9 @@
 //
 //   mass_b ~ Uniform[low_b, high_b], body by body in alphabetical order
 //
-// As in the field's environments only the mass itself is written, into the world's own copy of the
-// model: inertias and what the compiler derived from them (inverse weights, subtree masses) stay.
+// Only the mass itself is written, as in other environments with randomized masses, into the
+// world's own copy of the model. Inertias and what the compiler derived from them (inverse weights,
+// subtree masses) are unchanged.
 #pragma once
 
 #include <array>
@@ -26,8 +27,8 @@ class MassRandomization {
   MassRandomization(const World& world,
                     const std::map<std::string, std::array<double, 2>>& intervals);
 
-  // Draws one number per body and writes it into the model of `world`, to be called before the
-  // world's reset. One thread.
+  // Draws one number per body and writes it into the model of `world`. Call it before the world's
+  // reset. One thread.
   void Draw(Random* random, World* world);
   // In the order drawn; masses of the last Draw.
   std::span<const DrawnMass> drawn() const { return drawn_; }

@@ -55,8 +55,8 @@ namespace {
 
 ModelHandle Compile(const std::string& name, const std::string& user_file,
                     const std::string& addition) {
-  // The engine strews the stars of a procedural sky with the C library's generator, which nobody
-  // else uses: with this seed every process has the same sky.
+  // The engine places the stars of a procedural sky with the C library's generator, which has no
+  // other user here. With this seed the sky is the same in every process.
   std::srand(1);
   if (!user_file.empty() && !std::filesystem::is_regular_file(user_file)) {
     throw UsageError("model file '{}' does not exist", user_file);

@@ -19,7 +19,7 @@ int BodyOf(const mjModel& model, const CameraView& camera) {
   return mj_name2id(&model, mjOBJ_BODY, camera.body.c_str());
 }
 
-// Where a free camera of these numbers stands, and what is ahead of it and above it.
+// Position of a free camera and its directions ahead and up.
 struct Pose {
   Vector position, forward, up;
 };

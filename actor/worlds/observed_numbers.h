@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// The memory that a physics half writes its observation to. Sizes come from the goal half, the
-// numbers from the physics half, which are two files: a wrong size would corrupt the heap, or leave
-// a number that nobody wrote.
+// The memory that a physics half writes its observation to. The goal half gives the sizes, the
+// physics half writes the numbers. If the two disagree, the write would corrupt the heap or leave a
+// number unwritten.
 //
 //   guard | state vector | guard | achieved goal | guard | desired goal | guard
 //
-// Before each Read every number and every guard value is set to one bit pattern, a NaN that no
-// arithmetic makes; afterwards the guards must still have it, and no number may. Cost: 0.13 to 0.16
-// us a control step, of some hundred us that a step of the built-in tasks takes without pictures.
+// Before each Read every number and every guard value is set to one bit pattern, a NaN that
+// arithmetic does not produce. Afterwards the guards must still have it, and no number may. Cost:
+// 0.13 to 0.16 us per control step; a step of the built-in tasks takes some hundred us without
+// pictures.
 #pragma once
 
 #include <span>
@@ -21,7 +22,7 @@ namespace shoal::worlds {
 
 class ObservedNumbers {
  public:
-  // Values behind each part: what is written beyond them is not noticed.
+  // Values behind each part. A write beyond them is not detected.
   static constexpr size_t kGuard = 64;
 
   // Borrows the task.
@@ -31,7 +32,7 @@ class ObservedNumbers {
   // size in the goal half and how many numbers were written, when the sizes disagree.
   void Read(const World& world);
 
-  // Of the last Read; valid until the next.
+  // Numbers of the last Read; valid until the next.
   std::span<const double> state() const { return Numbers(state_); }
   std::span<const double> achieved_goal() const { return Numbers(achieved_); }
   std::span<const double> desired_goal() const { return Numbers(desired_); }

@@ -18,7 +18,7 @@ class ReacherEasy final : public ControlWorld {
   // `model_file` empty = our own model. Throws Error when it does not load or lacks an element.
   explicit ReacherEasy(const std::string& model_file);
 
-  // Where the target's centre is from the next reset on (m); a drawn episode places it anew.
+  // Sets the target's centre (m) from the next reset on. A drawn episode places it anew.
   void PlaceTarget(const std::array<double, 2>& position);
   // See the goal half for the order. No goals.
   void Observe(std::span<double> observation, std::span<double> achieved_goal,

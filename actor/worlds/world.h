@@ -19,7 +19,7 @@ namespace shoal::worlds {
 
 class World {
  public:
-  // What a step yields beyond the observation. Tasks with goals take the reward from their goal
+  // Result of a step besides the observation. Tasks with goals take the reward from their goal
   // half.
   struct Outcome {
     double reward = 0;  // of tasks without goals, unscaled
@@ -37,11 +37,11 @@ class World {
   virtual void Reset(Random* random) = 0;
   // `action`: the task's components, each in [-1, 1].
   virtual Outcome Step(std::span<const double> action) = 0;
-  // Writes every number of the task's blocks; goals are empty for tasks without goals. What is
-  // written beyond a span, and a number that is not written, end the program by name.
+  // Writes every number of the task's blocks; goals are empty for tasks without goals. A write
+  // beyond a span and an unwritten number end the program with a line that names the block.
   virtual void Observe(std::span<double> observation, std::span<double> achieved_goal,
                        std::span<double> desired_goal) const = 0;
-  // From now on nothing that is drawn shows the goal. False: it is shown, and cannot be hidden.
+  // Hides the goal in all frames drawn from now on. False: the goal cannot be hidden.
   virtual bool HideGoal() { return false; }
   // The first is the one to look at by default; ModelCameras (actor/worlds/model_cameras.h) gives
   // those that the model names. A camera of the model can be named in observation.cameras whether
@@ -62,7 +62,7 @@ class World {
   const mjData_& data() const { return *data_; }
   // The engine's clock.
   double simulated_seconds() const;
-  // Of the model as loaded: see ModelFingerprint.
+  // Fingerprint of the model as loaded: see ModelFingerprint.
   const std::string& fingerprint() const { return fingerprint_; }
 
   // Gives the memory of the model's textures back to the system, 11 MB of sky for each world of the
@@ -70,7 +70,7 @@ class World {
   void ReleaseTextures();
   bool textures_released() const { return textures_released_; }
 
-  // What messages call the model: "the model" or "model file 'mine.xml'".
+  // Name of the model in messages: "the model" or "model file 'mine.xml'".
   const std::string& source() const { return source_; }
 
   // Ids of named elements; throw Error naming the model and what it lacks.

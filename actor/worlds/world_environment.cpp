@@ -23,7 +23,7 @@ namespace {
 
 constexpr char kGoalImage[] = "image";
 
-// What makes frames comparable besides the model: quality and the views themselves.
+// Frames are comparable if the model, the quality and the views are equal.
 std::string RenderFingerprint(const std::string& model, const std::string& quality,
                               const std::vector<CameraView>& cameras, bool goal_hidden) {
   uint64_t hash =

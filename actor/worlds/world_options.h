@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a user may choose about the physics of a task.
+// Options of a task's physics.
 #pragma once
 
 #include <string>

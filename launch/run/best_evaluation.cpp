@@ -17,7 +17,7 @@ double ChanceDifference(const EvaluationPoint& point) {
   return std::sqrt(2 * rate * (1 - rate) / episodes);
 }
 
-// Without a success of its own a task's evaluations are told apart by their returns alone.
+// 0 for a task without a success: its evaluations are compared by their returns alone.
 double SuccessOf(const EvaluationPoint& point) { return point.success.value_or(0); }
 
 // Whatever later evaluations bring, `b` comes before `a`.

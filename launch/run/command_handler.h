@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the commands of people who steer a run do to it, and what they are told. Knows nothing of
-// DDS.
+// Carries out the commands of users (stop, set, scale) and makes the replies. Knows no transport.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +16,7 @@ namespace shoal::launch {
 class CommandHandler {
  public:
   struct Effects {
-    std::function<bool()> running;             // no: it is on its way to the end
+    std::function<bool()> running;             // false once the run is ending
     std::function<uint64_t()> env_steps;       // of the run so far
     std::function<void()> stop;                // ends the run in order
     std::function<void(int, int)> scale;       // actors: from, to; may throw Error

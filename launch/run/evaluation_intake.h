@@ -26,14 +26,15 @@ class EvaluationIntake {
   EvaluationIntake(int episodes, const RunProgress& progress,
                    std::function<void(const std::string&)> say);
 
-  // One that an earlier session of the run has counted.
+  // Marks an evaluation that an earlier session of the run has counted.
   void Recall(const EvaluationPoint& point) { filter_.Accept(point); }
 
-  // What has come since the last call. Returns what counts, in the order of arrival. An evaluation
-  // may come before the learner's word that it asked for it: it waits for up to kWait.
+  // Takes the messages received since the last call and returns those that count, in order of
+  // arrival. An evaluation may arrive before the learner's message that announces it: it waits for
+  // up to kWait.
   std::vector<EvalMessage> Take(std::vector<EvalMessage> messages, SteadyTime now);
 
-  // The run is over: those that still wait are refused.
+  // The run is over: refuses the evaluations that still wait.
   void End(SteadyTime now);
 
   uint64_t refused() const { return refused_; }

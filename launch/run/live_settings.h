@@ -31,19 +31,19 @@ std::string LiveKeyNames();
 
 class LiveSettings {
  public:
-  // As config.json has them. In lockstep nothing may be changed.
+  // `config`: the run's config.json. In lockstep no key may be changed.
   explicit LiveSettings(const Config& config) : config_(config) {}
 
-  // "KEY=VALUE". Returns key, former and new value; of a schedule the former value is that at
-  // `env_steps`, those of the run so far. Nothing has changed when it throws Error (kUsage): a key
-  // that does not exist or is fixed for the run, a value that it does not take, a schedule (only
-  // its numbers can be told to processes), lockstep.
+  // Assigns "KEY=VALUE". Returns the key, its old and its new value; the old value of a schedule is
+  // the one at `env_steps`, the run's steps so far. Throws Error (kUsage), and changes nothing, if
+  // the key does not exist or is fixed for the run, if the value is out of range or a schedule
+  // (ControlMessage carries numbers only), and in lockstep.
   SettingChange Assign(const std::string& assignment, uint64_t env_steps);
   SettingChange SetActors(const std::string& count);
-  // What was changed before the run was interrupted.
+  // Repeats the changes made before the run was interrupted.
   void Restore(std::span<const SettingChange> changes);
 
-  // With the present values.
+  // The run's configuration with the present values.
   const Config& config() const { return config_; }
   // Adds the keys that were changed, with their present values.
   void AddTo(ControlMessage* message) const;

@@ -72,33 +72,33 @@ std::string UpdateText(const RunConfig& run) {
       encoder, config.learner.batch, cost.flop / kGiga);
 }
 
-// What learning is told that the policy is not: a figure of such a run has to say so.
+// Inputs of learning that the policy does not have. Results of such a run must name them.
 std::string PrivilegedText(const RunConfig& run) {
   const PrivilegedInputs inputs = PrivilegedInputsOf(run.config, run.spec);
-  std::vector<std::string> told;
+  std::vector<std::string> lines;
   if (!inputs.critic_blocks.empty()) {
-    told.push_back(fmt::format("the critic sees {}{}", fmt::join(inputs.critic_blocks, ", "),
-                               run.spec.HasPixels() ? " in place of pixels" : ""));
+    lines.push_back(fmt::format("the critic sees {}{}", fmt::join(inputs.critic_blocks, ", "),
+                                run.spec.HasPixels() ? " in place of pixels" : ""));
   }
   if (!inputs.labels.empty()) {
-    told.push_back(fmt::format("the encoder is taught {}", fmt::join(inputs.labels, ", ")));
+    lines.push_back(fmt::format("the encoder is taught {}", fmt::join(inputs.labels, ", ")));
   }
-  if (!inputs.replay_blocks.empty()) told.push_back("the replay " + HindsightText(run));
-  if (told.empty()) return "";
-  return fmt::format("  privileged, in training alone: {}\n", fmt::join(told, ", "));
+  if (!inputs.replay_blocks.empty()) lines.push_back("the replay " + HindsightText(run));
+  if (lines.empty()) return "";
+  return fmt::format("  privileged, in training alone: {}\n", fmt::join(lines, ", "));
 }
 
-// "From pixels" leads one to think that the policy finds the object in its pictures: where it is
-// told of it in numbers, a figure of such a run has to say so, too.
+// "From pixels" suggests that the policy finds the object in its pictures. If its inputs contain
+// the object's position, results must say so.
 std::string ObjectText(const ObservationSpec& spec) {
-  const std::vector<std::string> told = PolicyInputsOf(spec).object_blocks;
-  if (!spec.HasPixels() || told.empty()) return "";
+  const std::vector<std::string> blocks = PolicyInputsOf(spec).object_blocks;
+  if (!spec.HasPixels() || blocks.empty()) return "";
   return fmt::format(
-      "  the policy itself is told of the object beside its pictures, also at test time: {}\n",
-      fmt::join(told, ", "));
+      "  besides its pictures the policy gets the object's position, also at test time: {}\n",
+      fmt::join(blocks, ", "));
 }
 
-// One frame shows no velocity; where there is a goal to reach, success is possible without.
+// One frame shows no velocity. Tasks with a success can be solved without it.
 std::string StackText(const RunConfig& run) {
   const auto tells_velocity = [](const BlockSpec& block) {
     return block.observed && block.name.find("velocit") != std::string::npos;
@@ -111,8 +111,8 @@ std::string StackText(const RunConfig& run) {
   return "  observation.stack = 1: the policy sees no velocity; 3 is usual for this task\n";
 }
 
-// What the run's configuration started from; empty if its preset names no task because it fits any,
-// or is gone by now, or no longer valid, which is no reason to refuse a run that has what it needs.
+// The configuration that the run's own one was made from. Empty if the preset names no task, is
+// gone or is no longer valid: the run does not need it.
 std::optional<Config> StartOf(const Config& config) {
   if (config.preset.empty()) return Config();
   try {
@@ -124,7 +124,7 @@ std::optional<Config> StartOf(const Config& config) {
   }
 }
 
-// Keys that nobody set are right for the task of the preset, or of the defaults.
+// Names keys that still have the values of the preset, or of the defaults, for another task.
 std::string DefaultsText(const Config& config) {
   const std::optional<Config> start = StartOf(config);
   if (!start || config.task == start->task) return "";

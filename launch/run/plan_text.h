@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a run is going to cost, as it is told when it starts.
+// The cost of a run, as printed when it starts.
 #pragma once
 
 #include <string>
@@ -8,13 +8,13 @@
 
 namespace shoal::launch {
 
-// Lines, each ended: pictures and what drawing them takes, what the replay takes or how long
-// rollouts are, updates per env step, arithmetic, encoder and work of an update; what learning is
-// told that the policy is not, and what the policy is told that its pictures show. Throws Error
-// where the CPU lacks the asked precision.
+// Lines, each with its newline: pictures and the cost of drawing them; memory of the replay or
+// length of rollouts; updates per env step; arithmetic, encoder and work of an update; privileged
+// inputs of learning; the object's position as an input of the policy. Throws Error if the CPU
+// lacks the requested precision.
 std::string PlanText(const RunConfig& run, double frame_microseconds);
 
-// One sentence where more actors than cores share this machine; else empty.
+// One sentence if more actors than cores share this machine; else empty.
 std::string SharedCoresText(int actors, int cores);
 
 }  // namespace shoal::launch

@@ -200,8 +200,8 @@ void Examination::LookAtUpdatePage() {
   });
 }
 
-// A number that orders a process after its predecessors. These are gone, so that the clock's number
-// will do unless it was set back; of actors and learner other files know the former ones.
+// A session number orders a process after its predecessors. These have ended, so the clock's number
+// is enough unless the clock was set back; for actors and learner other files hold the last one.
 void Examination::LookAtSessions() {
   std::error_code error;
   for (fs::directory_iterator it(run_ / kSessionFolder, error), end; !error && it != end;

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What of a run's files is missing or damaged, found before it goes on and before any process is
-// started. Counts, and what can be derived from other files, are rebuilt; a line says so, and what
-// is no longer known. Other damage refuses the run with one line that names the file and what to
-// do.
+// Finds missing and damaged files of a run before it is resumed and any process is started. Counts,
+// and what other files imply, are rebuilt; a line says so and names what is no longer known. Other
+// damage refuses the run with one line that names the file and the remedy.
 #pragma once
 
 #include <filesystem>

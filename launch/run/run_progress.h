@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far a run is, by the typed word of replay and learner: what its budget, its draining and its
-// end are decided by, and which evaluations it has asked for. Reports (MetricsMessage) are shown
-// and filed, and decide nothing. Pure.
+// The progress of a run, from the typed messages of replay and learner: budget, draining and end
+// are decided by it, and it knows which evaluations were requested. Reports (MetricsMessage) are
+// for display and files only. Pure.
 #pragma once
 
 #include <cstdint>
@@ -17,13 +17,15 @@ namespace shoal::launch {
 
 class RunProgress {
  public:
-  // The newest session of each replay, and of the learner, has the word; a late one of a process
-  // that is gone changes nothing. Of a replay: whether it began without what its predecessor held.
+  // The newest session of each replay, and of the learner, counts; a late message of an earlier
+  // session changes nothing. OnReplay returns whether a new replay began without its predecessor's
+  // records.
   bool OnReplay(const ReplayProgress& progress);
   void OnLearner(const LearnerProgress& progress);
 
-  // Of all replays together; in a run without one, the learner's count. 0 before any has reported.
-  // Never falls: a replay that lost its memory may know a second less than its predecessor said.
+  // Sum over all replays; in a run without one, the learner's count. 0 before the first report.
+  // Never falls: a replay that lost its memory may report less than its predecessor, by the steps
+  // of a second.
   uint64_t stored_steps() const;
   std::optional<uint64_t> updates() const;
   // The learner has done what the stored steps allow.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a run meets those who watch and steer it: shows the whole run once a second on a DDS topic
-// of its own, hands their commands over and answers them (docs/monitoring.md).
+// The run's side of watching and steering (docs/monitoring.md): publishes a view of the whole run
+// once a second, receives commands and sends the replies.
 #pragma once
 
 #include <deque>

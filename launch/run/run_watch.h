@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the processes of a run say, put together: their newest reports, the figures of late, the
-// lines of metrics.jsonl and what is shown to who watches. The coordinator's own report is made
-// here: it watches itself as it does the others.
+// Collects the reports of a run's processes: the newest of each, recent rates, the lines of
+// metrics.jsonl and the figures of the display. The coordinator's own report is made here and
+// treated like the others.
 #pragma once
 
 #include <filesystem>
@@ -18,7 +18,7 @@
 
 namespace shoal::launch {
 
-// What the coordinator has counted besides.
+// Counts of the coordinator itself.
 struct CoordinatorCounts {
   uint64_t messages_dropped = 0, reports_refused = 0;
   uint64_t evaluations_repeated = 0, evaluations_refused = 0;
@@ -27,24 +27,24 @@ struct CoordinatorCounts {
 // One thread.
 class RunWatch {
  public:
-  // Borrows the hub and `faults`. `say` shows a line to who looks at the run.
+  // Borrows the hub and `faults`. `say` shows a line to the user.
   RunWatch(const std::filesystem::path& run, const link::Hub& hub,
            std::function<void(const std::string&)> say, WriteFaults* faults);
 
   // The newest report of each process.
   const MetricsView& view() const { return view_; }
 
-  // Into the view and the file; a file that takes no more is said once.
+  // Adds a report to the view and the file. If the file cannot be written, says so once.
   void OnReport(const MetricsMessage& report, SteadyTime now);
-  // Once a second, at so many seconds and env steps of the run: what the figures of late are made
-  // of.
+  // Samples the run for the recent rates. Call it once a second; `seconds` and `env_steps` count
+  // from the run's start.
   void LookBack(double seconds, uint64_t env_steps, const RunResources& resources);
-  // After a pause, at so many seconds of the run.
+  // Forgets the recent rates after a pause, `seconds` after the run's start.
   void Forget(double seconds) { recent_.Forget(seconds); }
 
-  // What processes report, with which figures begin.
+  // Figures of the processes' reports.
   ProgressFigures Reported(SteadyTime now) const { return CollectFigures(view_, now); }
-  // What was lately, once they have steps and budget.
+  // Adds the recent rates. `figures` must have steps and budget already.
   void AddLately(ProgressFigures* figures) const { launch::AddLately(recent_, lately_, figures); }
   // Makes the coordinator's own report of `figures`, and returns the reports of all.
   std::vector<MetricsMessage> Reports(const ProgressFigures& figures, const Config& config,

@@ -27,7 +27,7 @@ class StopRule {
   bool TargetReached() const;
   bool BudgetSpent(uint64_t env_steps) const;
 
-  // What first_success() is measured against: stop.success, or 0.98 where a run never stops at it.
+  // The target of first_success(): stop.success, or 0.98 if that is not set.
   double target() const { return target_; }
   // The first of the first stop.evaluations in a row whose episodes, pooled, reached target()
   // (first_reached.h).

@@ -14,10 +14,10 @@
 namespace shoal::launch {
 namespace {
 
-// What a configuration file says of the preset it is written for.
+// The preset that a configuration file names.
 struct FilePreset {
-  std::string name;    // empty when it names none
-  bool whole = false;  // a resolved configuration: nothing of the preset is missing in it
+  std::string name;    // empty if it names none
+  bool whole = false;  // a resolved configuration, which contains every key of its preset
 };
 
 FilePreset PresetOfFile(const std::string& file) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From chosen steps to a batch of the schema of common/wire/batch_schema.h: stacks and next
-// observations are put together here, out of frames that are stored once.
+// Makes a batch (common/wire/batch_schema.h) of drawn steps: assembles stacks and next observations
+// from frames that are stored once.
 //
 // A sample is m steps in a row, t .. t+m-1, known by the first one (Eq. 14 of docs/algorithm.md);
 // m = n, or less where step t+m-1 terminated the episode:
@@ -12,8 +12,9 @@
 //   bootstrap = discount^(m-1) (1 - terminated): a time limit's end counts the next value
 //   a stack that would reach before the episode's reset repeats the reset's frame
 //
-// With goal pictures both observations end with one more frame, that of the episode's goal record,
-// shifted like the stack before it: what is apart in the two stays as far apart.
+// If the spec has goal pictures, both observations end with one more frame: the one of the
+// episode's goal record. It is shifted like the stack before it, so that distances between the two
+// pictures are kept.
 //
 // Under another goal (goal_change.h) rewards, terminations and the desired goal of both
 // observations are those of that goal, whose picture is the frame of the record that achieved it.
@@ -41,7 +42,7 @@
 
 namespace shoal::replay {
 
-// What a batch will hold, drawn before anything is copied.
+// The elements of a batch, drawn before anything is copied.
 struct BatchPlan {
   struct Element {
     uint64_t id = 0;         // of the first step
@@ -98,7 +99,7 @@ class BatchGather {
   void GatherElements(const BatchPlan& plan, size_t begin, size_t end, const BatchView& out) const;
   // The goal of an element that has another than its own, else nothing.
   std::span<const float> GoalOf(const BatchPlan::Element& element) const;
-  // Where the sample that begins with some step ends, and what it earns on the way.
+  // The last step of a sample, its reward and its bootstrap.
   struct Returns {
     uint64_t last;
     float reward, bootstrap;

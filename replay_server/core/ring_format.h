@@ -8,9 +8,10 @@
 // Record ids run from 1 without holes; record `id` is in slot id mod capacity, so the ring holds
 // the newest `capacity` records.
 //
-// What survives: the death of the writing process at any instant (the pages belong to the kernel).
-// Not a power failure: nothing is synced. The commit word covers the slot header, with the frame's
-// check word in it, and the record before its frame: a flipped bit anywhere in a record is noticed.
+// The file survives the death of the writing process at any instant, because the kernel owns its
+// pages. It does not survive a power failure: nothing is synced. The commit word covers the slot
+// header, with the frame's check word in it, and the record up to its frame: a flipped bit anywhere
+// in a record is noticed.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Between which values the numbers of a task lay while it was played, and which of them never
-// changed: most often a number that the physics half does not write, or writes to another place.
+// The range of each number of a task while it was played, and the numbers that never changed. A
+// constant number is most often one that the physics half does not write, or writes elsewhere.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -16,7 +16,7 @@ struct MeasuredRange {
   double low = 0, high = 0;
 };
 
-// Of every number of OpenEnvironment::numbers(): state vector, achieved goal, desired goal.
+// Ranges of all numbers of OpenEnvironment::numbers(): state vector, achieved goal, desired goal.
 class RangeMeter {
  public:
   explicit RangeMeter(const tasks::Task& task);

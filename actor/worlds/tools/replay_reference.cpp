@@ -25,7 +25,7 @@ double SequenceTolerance(const std::string& sequence) {
   return kTolerance;
 }
 
-// Where the joints of the reference stand in our model; all numbers of a free joint.
+// Indices in our model of the reference's joints; of a free joint, all of its numbers.
 struct JointOrder {
   std::vector<size_t> qpos, qvel;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a task is, for people and programs: its numbers with units, meaning and bounds, what its
-// actions do, what it rewards, where its cameras stand. Declared facts come from the task's goal
-// half; ranges and effects of actions are measured in its physics half.
+// Description of a task, as text and JSON: its numbers with units, meaning and bounds, the effects
+// of its actions, its reward and its cameras. The task's goal half declares the facts; ranges and
+// effects of actions are measured in its physics half.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +15,9 @@
 
 namespace shoal::worlds {
 
-// What one action component does: each number of the state vector after `env_steps` steps of
-// `command` along this axis alone, less what it is after as many steps of no action from the same
-// start.
+// The effect of one action component: each number of the state vector after `env_steps` steps of
+// `command` along this axis alone, minus the number after as many steps without action from the
+// same start.
 struct AxisProbe {
   int axis = 0;
   double command = 0;  // -1 or 1

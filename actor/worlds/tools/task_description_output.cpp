@@ -96,7 +96,7 @@ std::string BlockText(const Block& block, const std::vector<MeasuredRange>& rang
   return text;
 }
 
-// What observation.proprioception may name: "grip 0-2, fingers 3-4".
+// The blocks that observation.proprioception may name: "grip 0-2, fingers 3-4".
 std::string StateBlocksText(const Task& task) {
   std::string text;
   int first = 0;

@@ -145,7 +145,7 @@ TEST_F(ActorLoopTest, WithoutCreditItLooksForItPatientlyAndGoesOn) {
     if (turn == 100) steps_when_full = parts_.rollout.vector_steps();
     if (turn == 150) storing_ = true;
   });
-  // With three records left for two environments, which may both need a reset and a step.
+  // Three records are left; two environments may each need a reset and a step.
   EXPECT_LE(steps_when_full, int64_t{kWindow} / kEnvs);
   EXPECT_GT(window_.stored(), kWindow) << "went on when credit came";
   EXPECT_GE(clock_.now - start, 80 * ActorLoop::kBlockedWait) << "it does not spin";
@@ -171,7 +171,7 @@ TEST_F(ActorLoopTest, ADrainSendsAgainWhatWasLost) {
       storing_ = false;
       link_.credits.clear();
     }
-    // What was sent before is lost: a replay that came back stores what it is sent from now on.
+    // The restarted replay has lost all records, and stores those sent from now on.
     if (states_.back() == "draining" && window_.resent_records() > 0) storing_ = true;
   });
   EXPECT_EQ(end, End::kAllStored);

@@ -45,7 +45,7 @@ class FakeSink final : public RecordSink {
   void EndRecord(uint64_t sequence) override {
     sequences.push_back(sequence);
     records.push_back(open_);
-    // Of the clock's, which no two runs share.
+    // The clock's time differs between two runs.
     RecordLayout::Header(reinterpret_cast<uint8_t*>(records.back().data())).time_ns = 0;
   }
 

@@ -27,7 +27,7 @@ class RolloutTest : public testing::Test {
   void Step(int vector_steps) {
     for (int i = 0; i < vector_steps; ++i) ASSERT_TRUE(rollout().TryStep());
   }
-  // What the environment's key is, as far as its observations say it.
+  // The last digits of the environment's key, which its observations contain.
   float KeyDigits(uint32_t env, uint32_t episode) const {
     return static_cast<float>(
         StreamKey(parts_->config.seed, StreamRole::kTrainEnvironment, env, episode) % 1000);
@@ -137,7 +137,7 @@ class SpreadResetsTest : public RolloutTest {
     }
     return resets;
   }
-  // Of each environment, the lengths of its ended episodes.
+  // Lengths of the ended episodes, by environment.
   std::vector<std::vector<int>> Lengths(int envs) const {
     std::vector<std::vector<int>> lengths(static_cast<size_t>(envs));
     for (size_t i = 0; i < sink_.records.size(); ++i) {
@@ -187,7 +187,7 @@ TEST_F(SpreadResetsTest, FiguresLeaveOutEpisodesThatAreCut) {
   EXPECT_EQ(rollout().episodes().Mean().length, kSteps);
 }
 
-// Of episodes that were to be cut only those that ended early are whole.
+// Among episodes with a cut only those that ended early are whole.
 TEST_F(RolloutTest, FiguresLeaveOutEpisodesThatWereToBeCutAndEndedBefore) {
   Start(2);
   Step(CountingEnvironment::kLength);
@@ -241,7 +241,7 @@ TEST_F(RolloutTest, ARecordNamesTheWeightsThatChoseItsAction) {
   EXPECT_EQ(sink_.Header(2).weights_update, 20u);
 }
 
-// The exploration of an episode follows from its name alone, whoever plays it and whenever.
+// The exploration of an episode depends on its name alone, not on actor or time.
 TEST_F(RolloutTest, TheSameEpisodeHasTheSameActionsWhicheverActorPlaysIt) {
   Start(2);
   Step(1);
@@ -263,7 +263,7 @@ TEST_F(RolloutTest, GoesOnBitForBitFromItsState) {
   const size_t before = sink_.records.size();
   Step(5);
 
-  // The successor's page says where the former one was, as the file does after a restart.
+  // The successor's sequence log continues its predecessor's, as the file does after a restart.
   const TemporaryFolder run;
   FakeSink sink(parts_->spec);
   RolloutParts successor(run.path(), sink, /*envs=*/2, kFirstEnv);
@@ -309,7 +309,7 @@ class WarmUpTest : public RolloutTest {
     config_.actors = 4;
     config_.exploration.random_steps = 10;
     config_.exploration.kind = "gaussian";
-    config_.exploration.sigma = Schedule::Constant(0);  // the policy's own actions are told apart
+    config_.exploration.sigma = Schedule::Constant(0);  // actions of the policy can be recognized
     parts_.emplace(run_.path(), sink_, config_, kFirstEnv);
   }
   // By uniform random actions, as far as the record's numbers say it.

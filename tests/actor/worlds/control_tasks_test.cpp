@@ -18,7 +18,7 @@ double Mass(const World& world, const char* body) {
   return world.model().body_mass[world.BodyId(body)];
 }
 
-// As published, in the digits that are.
+// Published values, with all published digits.
 TEST(ControlTasks, MassesAreThoseOfTheOriginals) {
   const struct {
     const char *task, *body;

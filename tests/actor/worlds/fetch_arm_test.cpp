@@ -16,7 +16,7 @@
 namespace shoal::worlds {
 namespace {
 
-// Of the original environment on the same engine.
+// Values of the original environment on the same engine.
 constexpr std::array<double, 3> kInitialGrip{1.3418550217, 0.7491005081, 0.5347069462};
 
 constexpr std::array<double, 4> kForward{1, 0, 0, 0};

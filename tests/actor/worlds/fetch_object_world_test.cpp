@@ -26,7 +26,7 @@ struct Published {
 
 void PrintTo(const Published& task, std::ostream* out) { *out << task.name; }
 
-// Of the original environments on the same engine.
+// Values of the original environments on the same engine.
 constexpr Published kPublished[] = {{"FetchPush",
                                      {1.3482057674, 0.7489488419, 0.4136182913},
                                      0.4246997495,

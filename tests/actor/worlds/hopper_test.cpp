@@ -43,7 +43,7 @@ TEST(Hopper, TheCustomPairHasTheOldMassesAndDiffersByAKilogramOfTorso) {
     EXPECT_NEAR(inertia[1], 0.09046373126, 1e-10);
     EXPECT_NEAR(inertia[2], 0.009160884178, 1e-10);
   }
-  // What was computed from the torso's mass stays.
+  // Values that the compiler derived from the torso's mass are unchanged.
   const int torso = target.BodyId("torso");
   EXPECT_EQ(source.model().body_invweight0[2 * torso], target.model().body_invweight0[2 * torso]);
 }

@@ -62,7 +62,7 @@ class DrawnScene {
   DrawnScene(const DrawnScene&) = delete;
   DrawnScene& operator=(const DrawnScene&) = delete;
 
-  // What the engine makes of the model.
+  // Lets the engine make its scene of the model.
   void Update() {
     mjvOption option;
     mjv_defaultOption(&option);

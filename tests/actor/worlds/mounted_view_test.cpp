@@ -26,7 +26,7 @@ std::vector<uint8_t> Picture(World* world, const CameraView& camera, const std::
   return frame;
 }
 
-// Of the gripper, whose x axis points down and whose z axis points along the world's x.
+// The gripper's x axis points down, its z axis along the world's x.
 TEST(MountedView, NumbersAreInTheBodysFrame) {
   const auto world = MakeWorld("FetchPush", {});
   Random random(1);

@@ -24,7 +24,7 @@ const std::string kZero = GoldenPath("reference/fetch_Reach_zero.json");
 
 json Golden() { return json::parse(ReadFile(kZero)); }
 
-// What reading this text complains about; empty when it does not.
+// The error of reading this text; empty if there is none.
 std::string Complaint(const std::string& text) {
   const TemporaryFolder folder;
   WriteFileAtomically(folder.path() / "broken.json", text);

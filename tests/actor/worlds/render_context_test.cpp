@@ -53,7 +53,7 @@ double MeanAbsoluteError(const Frame& a, const Frame& b) {
   return sum / static_cast<double>(a.size());
 }
 
-// Where a pinhole camera with these angles sees a point.
+// Pixel at which a pinhole camera with these angles sees a point.
 Pixel Project(const CameraView& camera, const std::array<double, 3>& point) {
   const double azimuth = camera.azimuth_degrees * M_PI / 180;
   const double elevation = camera.elevation_degrees * M_PI / 180;

@@ -28,7 +28,7 @@ Config Pixels() {
   return config;
 }
 
-// Of the observed blocks.
+// Names of the observed blocks.
 std::vector<std::string> BlockNames(const Config& config) {
   std::vector<std::string> names;
   const auto environment = Make(config);

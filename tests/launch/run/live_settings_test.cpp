@@ -38,7 +38,7 @@ TEST(LiveSettings, AChangeNamesBothValuesAndHolds) {
   EXPECT_EQ(settings.config().replay.samples_per_insert, Schedule::Constant(32.5));
 }
 
-// What is set takes the schedule's place; what it said then is the former value.
+// A number replaces the schedule. The old value is the schedule's at that time.
 TEST(LiveSettings, ANumberTakesTheSchedulesPlaceAndAScheduleIsRefused) {
   Config config = Running();
   config.replay.samples_per_insert = Schedule{64, 16, 1000};

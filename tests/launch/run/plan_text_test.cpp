@@ -93,15 +93,15 @@ TEST(PlanText, APolicyThatIsToldOfTheObjectBesidePicturesIsNamed) {
                      {"object", 3, /*observed=*/false},
                      {"achieved_goal", 3, /*observed=*/false},
                      {"desired_goal", 3}};
-  const auto said = HasSubstr("the policy itself is told of the object");
+  const auto said = HasSubstr("the policy gets the object's position");
   EXPECT_THAT(PlanText(run, 1), Not(said));
   run.spec.blocks[1].observed = true;  // observation.proprioception
-  EXPECT_THAT(PlanText(run, 1), HasSubstr("  the policy itself is told of the object beside its "
-                                          "pictures, also at test time: object\n"));
+  EXPECT_THAT(PlanText(run, 1), HasSubstr("  besides its pictures the policy gets the object's "
+                                          "position, also at test time: object\n"));
   run.spec.blocks[1].observed = false;
   run.spec.blocks[2].observed = true;  // observation.goal_mode = both
   EXPECT_THAT(PlanText(run, 1), HasSubstr("also at test time: achieved_goal\n"));
-  run.spec.cameras = {};  // from state nobody thinks otherwise
+  run.spec.cameras = {};  // a policy from state: no need to say so
   run.spec.channels = run.spec.height = run.spec.width = 0;
   run.config.observation.pixels = false;
   EXPECT_THAT(PlanText(run, 0), Not(said));
