@@ -42,6 +42,11 @@ void AddOptions(CLI::App& app, Options* options) {
   app.add_option("--view-width", options->frames.width, "its width in pixels")
       ->needs(frames)
       ->check(CLI::Range(16, 3840));
+  app.add_option("--view-quality", options->frames.quality,
+                 "fast | native | reference; default: native for runs in quality native, else "
+                 "reference")
+      ->needs(frames)
+      ->check(CLI::IsMember({"fast", "native", "reference"}));
   app.add_option("--json", options->json,
                  "file for the result of --evaluate or --describe, in place of standard output");
   app.add_option("--progress", options->progress,

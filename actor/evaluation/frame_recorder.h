@@ -24,8 +24,10 @@ class FrameRecorder final : public EpisodeListener {
     // Camera of the view; empty = the task's for films, else the run's first, else the task's
     // first.
     std::string camera = "";
-    int height = 480, width = 480;      // of the view
-    std::string quality = "reference";  // of the view: fast | native | reference
+    int height = 480, width = 480;  // of the view
+    // Of the view: fast | native | reference. Empty = native for runs in quality native, which need
+    // no OSMesa then; else reference.
+    std::string quality = "";
   };
   // `spec`: of what the policy observes. Throws Error on a file that cannot be written.
   FrameRecorder(const ObservationSpec& spec, const std::filesystem::path& file,

@@ -47,7 +47,11 @@ Config ViewConfig(const RunConfig& run, const FrameRecorder::Options& options) {
   // No policy acts by the view: it shows the goal's marker also where the policy must not see it.
   observation.goal_mode = "none";
   config.replay.hindsight = "none";
-  observation.quality = options.quality;
+  if (!options.quality.empty()) {
+    observation.quality = options.quality;
+  } else if (observation.quality != "native") {
+    observation.quality = "reference";
+  }
   return config;
 }
 

@@ -24,8 +24,7 @@ OsmesaLibrary OpenOsmesa(const char* file) {
   if (library == nullptr) {
     throw RuntimeError(
         "qualities fast and reference are drawn by OSMesa, which cannot be opened ({}); install "
-        "the "
-        "package libosmesa6, or set observation.quality=native",
+        "the package libosmesa6, or choose quality native (observation.quality=native)",
         dlerror());
   }
   OsmesaLibrary found;

@@ -64,12 +64,14 @@ std::vector<CheckLine> CheckMachine(const CheckRequest& request,
   Needs needs;
   const bool preset = look("preset", "presets lie beside the program or in share/shoal", [&] {
     config = LoadPreset(kPreset);
+    config.observation.quality = "native";  // the only one that every machine can draw
     needs = NeedsOf(config);
     return CheckLine{"preset", Verdict::kOk, fmt::format("{}: task {}", kPreset, config.task), ""};
   });
   if (!preset) return lines;
-  look("rendering", "install libosmesa6 (./run build does)",
+  look("rendering", "run the renderer's tests: ./run test -R Pictures",
        [&] { return LookAtPictures(config); });
+  look("opengl", "", [&] { return LookAtOpenGl(config); });
   look("physics", "use Debian's libmujoco2.2.2: another engine has other physics", LookAtPhysics);
   look("dds loopback", "see that UDP passes on the loopback interface and no firewall drops it",
        [&] {

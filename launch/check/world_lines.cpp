@@ -8,6 +8,7 @@
 #include "actor/worlds/tools/replay_reference.h"
 #include "actor/worlds/tools/robot_in_picture.h"
 #include "actor/worlds/world_registry.h"
+#include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/tasks/task_registry.h"
 #include "launch/check/parity_reference.h"
@@ -30,9 +31,7 @@ CheckLine JudgePicture(const std::string& camera, double share) {
         "the robot covers {:.1f} % of camera {}'s picture, expected {:.0f} % "
         "at least",
         100 * share, camera, 100 * kLeastShare);
-    line.advice =
-        "OSMesa draws, but not the scene: install Debian's libosmesa6 and unset MESA_* "
-        "and GALLIUM_* in the environment";
+    line.advice = "run the renderer's tests: ./run test -R Pictures";
   }
   return line;
 }
@@ -48,10 +47,31 @@ CheckLine LookAtPictures(const Config& config) {
     if (line.verdict != Verdict::kOk) return line;
     shares += (shares.empty() ? "" : ", ") + line.finding;
   }
-  return {"rendering", Verdict::kOk,
-          fmt::format("OSMesa at {}x{}; the robot covers of the picture of camera {}",
-                      observation.width, observation.height, shares),
-          ""};
+  return {
+      "rendering", Verdict::kOk,
+      fmt::format("quality {} at {}x{}; share of each camera's picture that the robot covers: {}",
+                  observation.quality, observation.width, observation.height, shares),
+      ""};
+}
+
+CheckLine LookAtOpenGl(Config config) {
+  config.observation.quality = "fast";
+  CheckLine line;
+  try {
+    line = LookAtPictures(config);
+    if (line.verdict != Verdict::kOk) {
+      line.advice =
+          "OSMesa draws, but not the scene: install Debian's libosmesa6 and unset MESA_* "
+          "and GALLIUM_* in the environment, or set observation.quality=native";
+    }
+  } catch (const Error& error) {
+    line.verdict = Verdict::kFail;
+    line.finding = error.what();
+    line.advice = "install libosmesa6, or set observation.quality=native in every run";
+  }
+  line.name = "opengl";
+  if (line.verdict == Verdict::kFail) line.verdict = Verdict::kWarn;
+  return line;
 }
 
 CheckLine LookAtPhysics() {

@@ -14,6 +14,10 @@ CheckLine JudgePicture(const std::string& camera, double share);
 // picture is robot. For tasks of the Fetch robot. Throws Error when nothing can be drawn.
 CheckLine LookAtPictures(const Config& config);
 
+// LookAtPictures in quality fast, which needs OSMesa. Warns where LookAtPictures fails: runs in
+// quality native do without OSMesa.
+CheckLine LookAtOpenGl(Config config);
+
 // Replays the embedded reference; throws Error when that cannot be done.
 CheckLine LookAtPhysics();
 

@@ -130,6 +130,9 @@ std::optional<EvaluationPoint> EvaluateByActor(const EvaluationOrder& order,
     const std::string side = std::to_string(order.frames.side);
     spec.command.insert(spec.command.end(), {"--frames", order.frames.stream.string(),
                                              "--view-height", side, "--view-width", side});
+    if (!order.frames.quality.empty()) {
+      spec.command.insert(spec.command.end(), {"--view-quality", order.frames.quality});
+    }
   }
   const fs::path played = scratch.path() / "progress";
   if (order.progress) spec.command.insert(spec.command.end(), {"--progress", played.string()});

@@ -41,6 +41,7 @@ ObservedWorld DescribeObservations(const Config& config);
 struct ShownFrames {
   std::filesystem::path stream = {};  // file or pipe; empty = nowhere
   int side = 0;                       // height and width of the larger view, pixels
+  std::string quality = {};           // of the larger view; empty = by the run's
 };
 
 struct EvaluationOrder {

@@ -28,8 +28,10 @@ std::string PicturesText(const RunConfig& run, double frame_microseconds) {
   if (!run.config.env.id.empty()) {
     return fmt::format("the environment draws, {} camera(s)", run.spec.cameras.size());
   }
-  return fmt::format("OSMesa ({}) draws a frame, {} camera(s), in {:.0f} us{}",
-                     run.config.observation.quality, run.spec.cameras.size(), frame_microseconds,
+  const std::string& quality = run.config.observation.quality;
+  return fmt::format("{} ({}) draws a frame, {} camera(s), in {:.0f} us{}",
+                     quality == "native" ? "Shoal's renderer" : "OSMesa", quality,
+                     run.spec.cameras.size(), frame_microseconds,
                      run.spec.goal_picture ? ", and a goal picture for each episode" : "");
 }
 

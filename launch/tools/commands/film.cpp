@@ -20,7 +20,7 @@ namespace fs = std::filesystem;
 
 struct FilmOptions {
   CheckpointWords checkpoint;
-  std::string output;
+  std::string output, quality;
   bool across = false, tensorboard = false;
   int episodes = 0;  // 0: kEpisodes, or kEpisodesAcross of each checkpoint
   int64_t seed = 1;
@@ -44,6 +44,7 @@ FilmOrder OrderOf(const FilmOptions& options) {
   } else {
     order.checkpoints = {named.checkpoint};
   }
+  order.quality = options.quality;
   order.output = options.output;
   if (options.output.empty()) {
     order.output =
@@ -107,6 +108,11 @@ void AddFilmCommand(CLI::App& app, Action* chosen) {
   command->add_option("--seed", options->seed, "Names the episodes: equal seeds, equal episodes")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
+  command
+      ->add_option("--quality", options->quality,
+                   "Of the larger view: fast | native | reference; default: native for runs in "
+                   "quality native, else reference")
+      ->check(CLI::IsMember({"fast", "native", "reference"}));
   command->add_option(
       "--output", options->output,
       "File to write, .mp4; default: RUN/videos/CHECKPOINT.mp4, across checkpoints across.mp4");

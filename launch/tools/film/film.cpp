@@ -82,12 +82,13 @@ bool FilmCheckpoint(const FilmOrder& order, const fs::path& checkpoint, const st
     reel->Add(path, label, static_cast<uint32_t>(order.episodes), strip);
   });
   try {
-    const auto played = EvaluateByActor({.run = order.run,
-                                         .checkpoint = checkpoint,
-                                         .episodes = order.episodes,
-                                         .seed = order.seed,
-                                         .frames = {.stream = stream, .side = kFilmView}},
-                                        [&] { return reading.broken() || stop(); });
+    const auto played =
+        EvaluateByActor({.run = order.run,
+                         .checkpoint = checkpoint,
+                         .episodes = order.episodes,
+                         .seed = order.seed,
+                         .frames = {.stream = stream, .side = kFilmView, .quality = order.quality}},
+                        [&] { return reading.broken() || stop(); });
     if (!played && stop()) return false;
   } catch (const Error&) {
     // The side that ended first has the reason: without a reader the actor cannot go on, and

@@ -19,7 +19,8 @@ struct FilmOrder {
   int episodes = 0;                                // of each checkpoint
   int64_t seed = 0;  // of the episodes: those of a final evaluation with this seed
   std::filesystem::path output;
-  bool strips = false;  // makes a strip of each checkpoint's first episode as well
+  std::string quality = {};  // of the larger view: fast | native | reference; empty = by the run's
+  bool strips = false;       // makes a strip of each checkpoint's first episode as well
 };
 
 // Pictures of an episode side by side (film_strip.h).

@@ -104,6 +104,20 @@ TEST_F(FrameRecorderTest, HoldsThePolicysInputsAndALargerViewOfTheSameEpisode) {
   }
 }
 
+// A run in quality native needs no OSMesa, nor does its film.
+TEST_F(FrameRecorderTest, TheViewIsNativeWhereTheRunIs) {
+  const auto view_of = [this](const std::string& run_quality, const std::string& quality) {
+    run_.config.observation.quality = run_quality;
+    FrameRecorder::Options options = Options();
+    options.quality = quality;
+    Record(options);
+    return Read().front().view;
+  };
+  EXPECT_EQ(view_of("native", ""), view_of("fast", "native"));
+  EXPECT_EQ(view_of("fast", ""), view_of("native", "reference"));
+  EXPECT_NE(view_of("native", ""), view_of("fast", ""));
+}
+
 // Set-up of a film: the evaluation's own runner, and the view beside it.
 TEST_F(FrameRecorderTest, WithHindsightTheViewAloneShowsTheGoal) {
   for (const bool hindsight : {false, true}) {

@@ -27,6 +27,24 @@ TEST(WorldLines, TheRobotIsInThePicturesOfTheTask) {
   EXPECT_THAT(line.finding, testing::AllOf(HasSubstr("front"), HasSubstr("side")));
 }
 
+TEST(WorldLines, OpenGlIsLookedAtInQualityFast) {
+  Config config;
+  config.observation.quality = "native";
+  const CheckLine line = LookAtOpenGl(config);
+  EXPECT_EQ(line.name, "opengl");
+  EXPECT_EQ(line.verdict, Verdict::kOk) << line.finding;
+  EXPECT_THAT(line.finding, HasSubstr("quality fast"));
+}
+
+TEST(WorldLines, WhatOpenGlCannotDrawOnlyWarns) {
+  Config config;
+  config.observation.cameras = {"inside"};
+  const CheckLine line = LookAtOpenGl(config);
+  EXPECT_EQ(line.verdict, Verdict::kWarn);
+  EXPECT_THAT(line.finding, HasSubstr("inside"));
+  EXPECT_THAT(line.advice, HasSubstr("observation.quality=native"));
+}
+
 TEST(WorldLines, AnUnknownCameraIsAnError) {
   Config config;
   config.observation.cameras = {"inside"};

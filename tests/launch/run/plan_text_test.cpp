@@ -60,6 +60,9 @@ TEST(PlanText, PicturesSayWhatTheyCost) {
               AllOf(HasSubstr("OSMesa (reference) draws a frame, 2 camera(s), in 1234 us"),
                     HasSubstr("in memory"), HasSubstr("updates as fast as the learner can"),
                     HasSubstr("sac in f32: encoder nature of 82080 parameters, ")));
+  run.config.observation.quality = "native";
+  EXPECT_THAT(PlanText(run, 34.4),
+              HasSubstr("Shoal's renderer (native) draws a frame, 2 camera(s), in 34 us"));
 }
 
 TEST(PlanText, WhatOnlyTrainingIsToldIsSaid) {
