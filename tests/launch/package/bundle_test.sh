@@ -68,6 +68,17 @@ keys="--set env_steps=2000 --set eval.interval=1000 --set eval.episodes=2 --set 
 run "'$bundle/bin/shoal' train --preset fetch-reach-state $keys --set run_name=state" >"$work/state" 2>&1 ||
   { cat "$work/state"; fail "training from state"; }
 run "'$bundle/bin/shoal' eval state --episodes 3" >/dev/null || fail "evaluation"
+# Another host: a second copy of the bundle, in a folder of its own, behind a shell.
+mkdir -p "$target/other host"
+cp -r "$target/$name" "$target/other host/"
+cat >"$target/hosts.json" <<END
+{"schema": "shoal-hosts-1", "servers": {"address": "127.0.0.1", "actors": 1},
+ "hosts": [{"name": "other", "actors": 1, "ssh": ["env", "-i", "PATH=/usr/bin:/bin", "sh", "-c"],
+            "programs": "$place/other host/$name/bin", "folder": "$place/other host/runs"}]}
+END
+run "'$bundle/bin/shoal' train --preset fetch-reach-state $keys --set run_name=hosts --hosts hosts.json" \
+  >"$work/hosts" 2>&1 || { cat "$work/hosts"; fail "training on two hosts"; }
+grep -q "actor x2" "$work/hosts" || { cat "$work/hosts"; fail "no actor on the other host"; }
 if [[ -z $slim ]]; then
   pixels="--preset fetch-reach-fast --set run_name=pixels --set env_steps=8000 --set eval.interval=8000"
   pixels+=" --set eval.episodes=2 --set eval.final_episodes=4"
