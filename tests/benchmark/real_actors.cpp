@@ -7,6 +7,9 @@
 #include <chrono>
 #include <functional>
 #include <memory>
+#include <numeric>
+#include <string_view>
+#include <thread>
 
 #include "actor/acting/action_selector.h"
 #include "actor/worlds/environment.h"
@@ -116,6 +119,11 @@ ManyActorsFigures Measure(ManyActorsOptions options, int actors) {
 struct Pairs {
   std::vector<double> figures, against;
 
+  void Add(double figure, double held_to) {
+    figures.push_back(figure);
+    against.push_back(held_to);
+  }
+
   Row Summary(const std::string& stage, const std::string& of, double target) const {
     std::vector<double> ratios;
     for (size_t i = 0; i < figures.size(); ++i) ratios.push_back(figures[i] / against[i]);
@@ -133,44 +141,92 @@ struct Pairs {
   }
 };
 
-}  // namespace
+// Env steps a second of that many threads which act, step and render and send nothing: what the
+// cores, their caches and memory give when they are busy together.
+double UnsentStepsPerSecond(const RunConfig& run, const std::string& weights, double seconds,
+                            int count) {
+  std::vector<double> each(static_cast<size_t>(count));
+  {
+    std::vector<std::jthread> threads;
+    for (double& rate : each) {
+      threads.emplace_back([&] { rate = 1 / StepSeconds(run, weights, seconds); });
+    }
+  }
+  return std::accumulate(each.begin(), each.end(), 0.0);
+}
 
-std::vector<Row> RealActorRows(const ManyActorsOptions& options, int repetitions) {
-  ManyActorsOptions fast = options, reference = options, sending = options;
-  fast.run = ReachRun("fast");
-  reference.run = ReachRun("reference");
-  fast.weights = reference.weights = FirstWeights(*fast.run);
-  sending.run.reset();
-  sending.steps_per_second = kFlatOut;
-  const int cores = UsableCores();
-  Pairs parts, all, slow;
-  for (int i = 0; i < repetitions; ++i) {
-    const double step = StepSeconds(*fast.run, fast.weights, options.seconds / 2);
-    const double infer = InferSeconds(*fast.run, fast.weights, options.seconds / 2);
-    const double send = 1e-6 * Measure(sending, 1).actor_us_per_transition;
-    const ManyActorsFigures alone = Measure(fast, 1);
+std::string Actors(int count, std::string_view quality) {
+  return fmt::format("{} actor{} of FetchReach with one 84x84 camera, {}", count,
+                     count == 1 ? "" : "s", quality);
+}
+
+// Rows of one quality of pictures, repetition by repetition.
+class QualityRows {
+ public:
+  QualityRows(const ManyActorsOptions& options, const char* quality)
+      : quality_(quality), cores_(UsableCores()), real_(options), sending_(options) {
+    real_.run = ReachRun(quality);
+    real_.weights = FirstWeights(*real_.run);
+    sending_.run.reset();
+    sending_.steps_per_second = kFlatOut;
+  }
+
+  void Repeat() {
+    const double seconds = real_.seconds / 2;
+    const double step = StepSeconds(*real_.run, real_.weights, seconds);
+    const double infer = InferSeconds(*real_.run, real_.weights, seconds);
+    const double send = 1e-6 * Measure(sending_, 1).actor_us_per_transition;
+    const ManyActorsFigures alone = Measure(real_, 1);
     const double one = alone.env_steps_per_second;
     // Less CPU than wall time is waiting; more of it than the parts take is work beside them.
     fmt::print(stderr,
-               "one actor: {:.0f} us an env step, {:.0f} us of CPU a transition; alone: step and "
-               "render {:.0f} us, infer {:.0f} us, send {:.0f} us\n",
-               1e6 / one, alone.actor_us_per_transition, 1e6 * step, 1e6 * infer, 1e6 * send);
-    parts.figures.push_back(one);
-    parts.against.push_back(1 / (step + infer + send));
-    all.figures.push_back(Measure(fast, cores).env_steps_per_second);
-    all.against.push_back(cores * one);
-    slow.figures.push_back(Measure(reference, cores).env_steps_per_second);
-    slow.against.push_back(all.figures.back());
+               "one actor, {}: {:.0f} us an env step, {:.0f} us of CPU a transition; alone: step "
+               "and render {:.0f} us, infer {:.0f} us, send {:.0f} us\n",
+               quality_, 1e6 / one, alone.actor_us_per_transition, 1e6 * step, 1e6 * infer,
+               1e6 * send);
+    parts_.Add(one, 1 / (step + infer + send));
+    all_.Add(Measure(real_, cores_).env_steps_per_second, cores_ * one);
+    unsent_.Add(UnsentStepsPerSecond(*real_.run, real_.weights, seconds, cores_), cores_ / step);
   }
-  const auto actors = [&](int count, const char* quality) {
-    return fmt::format("{} actor{} of FetchReach with one 84x84 camera, {}", count,
-                       count == 1 ? "" : "s", quality);
-  };
-  std::vector<Row> rows{parts.Summary(
-      actors(1, "fast"), "1 / (step + render + infer + send, each alone)", kPartsTarget)};
-  rows.push_back(all.Summary(actors(cores, "fast") + fmt::format(", on {} cores", cores),
-                             fmt::format("{} times one", cores), kCoresTarget));
-  rows.push_back(slow.Summary(actors(cores, "reference") + fmt::format(", on {} cores", cores),
+
+  // Of all cores, in the last repetition.
+  double newest() const { return all_.figures.back(); }
+
+  void AddTo(std::vector<Row>* rows) const {
+    rows->push_back(parts_.Summary(Actors(1, quality_),
+                                   "1 / (step + render + infer + send, each alone)", kPartsTarget));
+    const std::string many = fmt::format("{} times one", cores_);
+    const std::string place = fmt::format(", on {} cores", cores_);
+    rows->push_back(all_.Summary(Actors(cores_, quality_) + place, many, kCoresTarget));
+    rows->push_back(unsent_.Summary(
+        Actors(cores_, quality_) + place + ", step and render alone, nothing sent", many, 0));
+  }
+
+ private:
+  const char* quality_;
+  int cores_;
+  ManyActorsOptions real_, sending_;
+  Pairs parts_, all_, unsent_;
+};
+
+}  // namespace
+
+std::vector<Row> RealActorRows(const ManyActorsOptions& options, int repetitions) {
+  QualityRows fast(options, "fast"), native(options, "native");
+  ManyActorsOptions reference = options;
+  reference.run = ReachRun("reference");
+  reference.weights = FirstWeights(*reference.run);
+  const int cores = UsableCores();
+  Pairs slow;
+  for (int i = 0; i < repetitions; ++i) {
+    fast.Repeat();
+    native.Repeat();
+    slow.Add(Measure(reference, cores).env_steps_per_second, fast.newest());
+  }
+  std::vector<Row> rows;
+  fast.AddTo(&rows);
+  native.AddTo(&rows);
+  rows.push_back(slow.Summary(Actors(cores, "reference") + fmt::format(", on {} cores", cores),
                               "quality fast", 0));
   return rows;
 }

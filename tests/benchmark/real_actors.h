@@ -9,9 +9,10 @@
 
 namespace shoal::bench {
 
-// FetchReach from one 84x84 camera: one actor beside 1 / (step + render + infer + send, each
-// alone), N actors on N cores beside N of one, and N actors of quality `reference`. Of `options`:
-// programs, seconds. Throws Error as MeasureManyActors does.
+// FetchReach from one 84x84 camera, in quality `fast` and in `native`: one actor beside
+// 1 / (step + render + infer + send, each alone), N actors on N cores beside N times one, and N
+// threads that send nothing beside N times one of them; then N actors of quality `reference`. Of
+// `options`: programs, seconds. Throws Error as MeasureManyActors does.
 std::vector<Row> RealActorRows(const ManyActorsOptions& options, int repetitions);
 
 }  // namespace shoal::bench
