@@ -116,7 +116,7 @@ int Evaluate(const EvalOptions& options) {
                     options.episodes, point->episodes));
   }
   Config played = ReadRunConfig(run).config;
-  if (!played.env.id.empty()) {  // Python alone can play it without a policy
+  if (!HasBaselines(played)) {
     output.Write(result);
     return 0;
   }

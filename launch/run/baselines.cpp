@@ -7,6 +7,7 @@
 
 #include "actor/evaluation/random_baseline.h"
 #include "actor/worlds/physics_library.h"
+#include "common/base/check.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/or_null.h"
@@ -48,7 +49,8 @@ std::string FormatFloor(const EvaluationFigures& figures) {
 }  // namespace
 
 bool ShareBaselines(const Config& a, const Config& b) {
-  return a.task == b.task && a.distance_threshold == b.distance_threshold && a.model == b.model &&
+  return a.task == b.task && a.env.id == b.env.id && a.env.kwargs.json == b.env.kwargs.json &&
+         a.distance_threshold == b.distance_threshold && a.model == b.model &&
          a.physics == b.physics && a.action_repeat == b.action_repeat &&
          a.end_on_success == b.end_on_success;
 }
@@ -70,7 +72,10 @@ fs::path BaselineCache::FileOf(const Config& config, const std::string& policy) 
          fmt::format("{}-{}-{:016x}.json", config.task, policy, HashBytes(key.data(), key.size()));
 }
 
+bool HasBaselines(const Config& config) { return config.env.id.empty(); }
+
 std::optional<Baselines> BaselineCache::Find(const Config& config) const {
+  if (!HasBaselines(config)) return std::nullopt;
   std::error_code error;
   if (!config.model.empty() && !fs::is_regular_file(config.model, error)) return std::nullopt;
   const auto noop = ReadIfGood(FileOf(config, kPolicies[0]));
@@ -82,6 +87,7 @@ std::optional<Baselines> BaselineCache::Find(const Config& config) const {
 std::optional<Baselines> BaselineCache::Measure(
     const Config& config, const std::function<bool()>& stop,
     const std::function<void(const std::string&)>& say) const {
+  CHECK(HasBaselines(config)) << config.env.id;
   if (const auto found = Find(config)) return found;
   say(
       fmt::format("measuring what {} earns without a policy: {} episodes each of no-op and random, "

@@ -19,13 +19,16 @@ struct Baselines {
   EvaluationFigures noop{}, random{};
 };
 
-// Whether two configurations have the same baselines: equal in task, threshold, model file,
-// physics, action repeat and whether episodes end on success. Everything else that they say is the
-// policy's.
+// Whether two configurations have the same baselines: equal in task, environment of Python,
+// threshold, model file, physics, action repeat and whether episodes end on success. Everything
+// else that they say is the policy's.
 bool ShareBaselines(const Config& a, const Config& b);
 
 // $XDG_CACHE_HOME/shoal/baselines, or ~/.cache/shoal/baselines; in /tmp where there is no home.
 std::filesystem::path BaselineFolder();
+
+// False for environments of Python, which no program but their actors can play.
+bool HasBaselines(const Config& config);
 
 class BaselineCache {
  public:
@@ -35,11 +38,11 @@ class BaselineCache {
       : folder_(std::move(folder)), episodes_(episodes) {}
 
   // Those of the configuration's task with its threshold, model file (its content), physics, action
-  // repeat and end of episodes, without pictures and randomization; empty where they have not been
-  // measured, or where the model file is gone since.
+  // repeat and end of episodes, without pictures and randomization; empty if they have not been
+  // measured, if the model file no longer exists, or if it has none (HasBaselines).
   std::optional<Baselines> Find(const Config& config) const;
   // The same, measured where they have not been: whole episodes, some seconds to a minute. `say`
-  // gets a line before. Empty when `stop` said so. Throws Error.
+  // gets a line before. Empty when `stop` said so. Throws Error. CHECK: HasBaselines.
   std::optional<Baselines> Measure(const Config& config, const std::function<bool()>& stop,
                                    const std::function<void(const std::string&)>& say) const;
 

@@ -102,6 +102,10 @@ void CheckObservations(const ExperimentPlan& plan) {
 // False when a stop was asked for before the last one.
 bool MeasureBaselines(const StoredExperiment& experiment) {
   for (const JudgedWorld& world : JudgedWorlds(experiment)) {
+    if (!HasBaselines(world.config)) {
+      Say(fmt::format("no baselines of {}: environments of Python have none", world.name));
+      continue;
+    }
     if (!BaselineCache().Measure(world.config, StopRequested, Say)) return false;
   }
   return true;

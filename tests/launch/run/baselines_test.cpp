@@ -73,6 +73,14 @@ TEST_F(BaselinesTest, AModelThatIsGoneHasNone) {
   EXPECT_THROW(Measure(config), Error);
 }
 
+TEST_F(BaselinesTest, AnEnvironmentOfPythonHasNone) {
+  Config config;
+  Measure(config);
+  config.env.id = "module:Fetch";
+  EXPECT_FALSE(HasBaselines(config));
+  EXPECT_FALSE(cache_.Find(config)) << "those of the task of the same name";
+}
+
 TEST_F(BaselinesTest, AStopIsNoError) {
   const Config config;
   EXPECT_FALSE(cache_.Measure(
@@ -92,6 +100,8 @@ TEST(ShareBaselines, IsAboutTheWorldNotThePolicy) {
     return !ShareBaselines(config, changed);
   };
   EXPECT_TRUE(differs([](Config& c) { c.task = "FetchPush"; }));
+  EXPECT_TRUE(differs([](Config& c) { c.env.id = "module:" + c.task; }));
+  EXPECT_TRUE(differs([](Config& c) { c.env.kwargs.json = R"({"wind": 1})"; }));
   EXPECT_TRUE(differs([](Config& c) { c.distance_threshold = 0.1; }));
   EXPECT_TRUE(differs([](Config& c) { c.model = "mine.xml"; }));
   EXPECT_TRUE(differs([](Config& c) { c.physics = "mujoco3"; }));
