@@ -17,8 +17,8 @@ constexpr std::chrono::seconds kSlack{30};
 
 }  // namespace
 
-FaultPlan::FaultPlan(uint64_t seed, std::vector<std::string> processes)
-    : processes_(std::move(processes)), random_(seed) {}
+FaultPlan::FaultPlan(uint64_t seed, std::vector<std::string> processes, bool kills_alone)
+    : processes_(std::move(processes)), kills_alone_(kills_alone), random_(seed) {}
 
 std::string FaultPlan::Victim(SteadyTime now) {
   const launch::RestartLimits limits;
@@ -35,7 +35,8 @@ std::string FaultPlan::Victim(SteadyTime now) {
 Fault FaultPlan::Next(SteadyTime now) {
   Fault fault;
   fault.delay = milliseconds(random_.Below(kLongestDelayMs));
-  fault.kind = random_.Below(2) == 0 ? FaultKind::kKill : FaultKind::kStop;
+  const bool kills = random_.Below(2) == 0 || kills_alone_;
+  fault.kind = kills ? FaultKind::kKill : FaultKind::kStop;
   if (random_.Below(processes_.size() + 1) == 0) {
     fault.process = "coordinator";
     return fault;

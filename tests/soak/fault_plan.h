@@ -26,8 +26,8 @@ struct Fault {
 // the coordinator ends a run: it is resumed.
 class FaultPlan {
  public:
-  // `processes` without the coordinator.
-  FaultPlan(uint64_t seed, std::vector<std::string> processes);
+  // `processes` without the coordinator. `kills_alone`: nothing is stopped.
+  FaultPlan(uint64_t seed, std::vector<std::string> processes, bool kills_alone = false);
 
   Fault Next(SteadyTime now);
 
@@ -35,6 +35,7 @@ class FaultPlan {
   std::string Victim(SteadyTime now);  // of a kill; not the coordinator
 
   const std::vector<std::string> processes_;
+  const bool kills_alone_;
   Random random_;
   std::map<std::string, std::deque<SteadyTime>> kills_;
 };

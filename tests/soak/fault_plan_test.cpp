@@ -47,6 +47,15 @@ TEST(FaultPlan, KillsNoProcessMoreOftenThanARunBears) {
   }
 }
 
+TEST(FaultPlan, KillsAloneStopNothing) {
+  FaultPlan plan(1, kProcesses, /*kills_alone=*/true);
+  for (int i = 0; i < 100; ++i) {
+    const Fault fault = plan.Next(kStart + i * seconds(30));
+    EXPECT_EQ(fault.kind, FaultKind::kKill);
+    EXPECT_EQ(fault.killed_meanwhile, "");
+  }
+}
+
 TEST(FaultPlan, TheSameSeedGivesTheSameFaults) {
   FaultPlan one(3, kProcesses), same(3, kProcesses), other(4, kProcesses);
   int differences = 0;

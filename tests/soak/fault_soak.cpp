@@ -119,8 +119,9 @@ nlohmann::ordered_json SoakFaults(const SoakOptions& options, int faults) {
                       .actors = options.actors,
                       .seed = static_cast<int64_t>(options.seed),
                       .preset = options.preset,
-                      .keys = {}});
-    FaultPlan plan(options.seed, run.ProcessNames());
+                      .environment = options.environment,
+                      .keys = options.keys});
+    FaultPlan plan(options.seed, run.ProcessNames(), options.kills_alone);
     for (int i = 1; i <= faults; ++i) {
       const Fault fault = plan.Next(Now());
       fmt::print("{}/{} {} ... ", i, faults, Describe(fault));
@@ -141,6 +142,7 @@ nlohmann::ordered_json SoakFaults(const SoakOptions& options, int faults) {
                                 {"faults", faults},
                                 {"seed", options.seed},
                                 {"preset", options.preset},
+                                {"environment", options.environment},
                                 {"seconds", meta.at("wall_seconds")},
                                 {"env_steps", meta.at("env_steps")},
                                 {"updates", meta.at("updates")},

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <vector>
 
 namespace shoal::soak {
 
@@ -15,6 +16,9 @@ struct SoakOptions {
   int actors = 2;
   uint64_t seed = 1;
   std::string preset = "fetch-reach-state";
+  std::string environment{};        // as `shoal train --env` takes it; empty = the preset's task
+  std::vector<std::string> keys{};  // further KEY=VALUE
+  bool kills_alone = false;         // no SIGSTOPs
 };
 
 // Strikes `faults` times, prints a line for each, stops the run and checks what it left. Throws

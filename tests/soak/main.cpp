@@ -63,6 +63,11 @@ int Run(int argc, char** argv) {
       ->capture_default_str();
   app.add_option("--preset", options.soak.preset, "of the run, e.g. fetch-reach-her")
       ->capture_default_str();
+  app.add_option("--env", options.soak.environment,
+                 "environment of Python to train on, e.g. Pendulum-v1, by the preset");
+  app.add_option("--set", options.soak.keys, "KEY=VALUE of the run; may be repeated")
+      ->allow_extra_args(false);
+  app.add_flag("--kills-alone", options.soak.kills_alone, "no SIGSTOPs");
   app.add_option("--json", options.json, "file for the result, which standard output gets, too");
   if (const auto exit_code = shoal::ParseCommandLine(&app, argc, argv)) return *exit_code;
   prctl(PR_SET_CHILD_SUBREAPER, 1);  // what a run leaves behind becomes a child of ours

@@ -33,9 +33,11 @@ constexpr double kMoreSteps = 200, kMoreUpdates = 5;
 std::string NameOf(const std::vector<std::string>& command) {
   if (command.empty()) return "";
   const std::string program = fs::path(command[0]).filename();
+  // An actor of an environment of Python is "python -m shoal_rl.actor".
+  const bool python = command.size() > 2 && command[2] == "shoal_rl.actor";
   if (program == "shoal-replay") return "replay-0";
   if (program == "shoal-learner") return "learner-0";
-  if (program != "shoal-actor") return "";
+  if (program != "shoal-actor" && !python) return "";
   for (size_t i = 1; i + 1 < command.size(); ++i) {
     if (command[i] == "--role" && command[i + 1] == "eval") return "eval-0";
     if (command[i] == "--id") return "actor-" + command[i + 1];
@@ -77,6 +79,9 @@ std::vector<std::string> RunUnderTest::FirstArguments() const {
                                 "learner.checkpoint_period=500",
                                 "replay.capacity=20000",
                                 "replay.samples_per_insert=32"};
+  if (!options_.environment.empty()) {
+    arguments.insert(arguments.end(), {"--env", options_.environment});
+  }
   keys.insert(keys.end(), options_.keys.begin(), options_.keys.end());
   for (const std::string& key : keys) {
     arguments.push_back("--set");

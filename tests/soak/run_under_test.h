@@ -27,6 +27,7 @@ struct RunOptions {
   int actors = 2;
   int64_t seed = 1;
   std::string preset = "fetch-reach-state";
+  std::string environment{};      // as `shoal train --env` takes it; empty = the preset's task
   std::vector<std::string> keys;  // further KEY=VALUE
 };
 

@@ -84,7 +84,8 @@ nlohmann::ordered_json SoakSteadily(const SoakOptions& options, double minutes) 
                       .actors = options.actors,
                       .seed = static_cast<int64_t>(options.seed),
                       .preset = options.preset,
-                      .keys = {}});
+                      .environment = options.environment,
+                      .keys = options.keys});
     path = run.path();
     temporary_files = run.temporary_files();
     const SteadyTime start = Now();
