@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// An Environment out of a user's environment: maps actions from [-1, 1] to its bounds, images to
-// frames, other arrays to blocks, and refuses numbers that are not finite.
-//
-//   action[i] = low[i] + (a[i] + 1) / 2 * (high[i] - low[i]), a in [-1, 1]
+// An Environment out of a user's environment: maps actions from [-1, 1] to its bounds
+// (action_mapping.h), images to frames, other arrays to blocks (observation_mapping.h), and refuses
+// numbers that are not finite.
 #pragma once
 
 #include <cstdint>
@@ -11,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "actor/hosted/image_resize.h"
+#include "actor/hosted/observation_mapping.h"
 #include "actor/hosted/raw_environment.h"
 #include "actor/worlds/environment.h"
 #include "common/config/config.h"
@@ -37,21 +36,7 @@ class HostedEnvironment final : public worlds::Environment {
   RawEnvironment& raw() { return *raw_; }
 
  private:
-  struct Image {
-    size_t array = 0;  // of the observation
-    ImageResize resize;
-  };
-  struct Block {
-    size_t array = 0;  // of the observation
-    size_t first = 0;  // of the vector
-    bool bounded = false, warned = false;
-  };
-
-  void ReadNumbers();
-  void ReadBlock(Block* block);
-  void WarnOutside(const tasks::ArraySpace& space, size_t element, float value, Block* block);
   void Observe(worlds::ObservationOut out);
-  void MapAction(std::span<const float> action);
   // NaN without goals.
   double Distance() const;
 
@@ -61,8 +46,7 @@ class HostedEnvironment final : public worlds::Environment {
   const bool end_on_success_;
   const std::unique_ptr<RawEnvironment> raw_;
   const ObservationSpec spec_;
-  std::vector<Image> images_;
-  std::vector<Block> blocks_;
+  ObservationMapping mapping_;
   std::vector<float> vector_;   // (R), of the newest observation
   std::vector<double> action_;  // (A), in the environment's units
   double image_seconds_ = 0;

@@ -16,6 +16,7 @@
 #include "common/base/error.h"
 #include "common/base/one_line.h"
 #include "launch/tools/python/environment_binding.h"
+#include "launch/tools/python/mapping_binding.h"
 #include "launch/tools/python/policy_binding.h"
 
 namespace py = pybind11;
@@ -46,5 +47,6 @@ PYBIND11_MODULE(_native, module) {
   });
   module.attr("__version__") = shoal::BuildVersion();
   shoal::python::BindPolicy(module);
+  shoal::python::BindMapping(module);
   shoal::python::BindEnvironment(module);
 }

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "launch/tools/python/python_environment.h"
 
-#include <fmt/ranges.h>
 #include <pybind11/stl.h>
 
 #include <algorithm>
@@ -20,12 +19,7 @@ namespace py = pybind11;
 namespace shoal::python {
 namespace {
 
-using tasks::ArraySpace;
 using tasks::ElementType;
-
-std::string ShapeText(std::span<const py::ssize_t> shape) {
-  return fmt::format("({}{})", fmt::join(shape, ", "), shape.size() == 1 ? "," : "");
-}
 
 // Writes the traceback of a Python exception to the log and throws Error with its message.
 [[noreturn]] void Fail(ErrorKind kind, const std::string& id, const std::string& call,
@@ -110,12 +104,8 @@ PythonEnvironment::PythonEnvironment(OpenedEnvironment opened, CallWatch& watch)
       action_shape_(py::cast<std::vector<py::ssize_t>>(opened.opened.attr("action_shape"))) {
   const py::list paths = opened.opened.attr("paths");
   CHECK(py::len(paths) == description_.observation.size()) << py::len(paths);
-  const py::module_ numpy = py::module_::import("numpy");
-  contiguous_ = numpy.attr("ascontiguousarray");
   for (size_t i = 0; i < description_.observation.size(); ++i) {
-    const ElementType type = description_.observation[i].type;
-    Leaf leaf{.keys = {}, .type = py::dtype(std::string(tasks::NameOf(type)))};
-    leaf.real = type == ElementType::kFloat32 || type == ElementType::kFloat64;
+    Leaf leaf{.keys = {}, .array = {description_.id, description_.observation[i]}};
     for (const py::handle& key : py::tuple(paths[i])) {
       leaf.keys.push_back(py::reinterpret_borrow<py::object>(key));
     }
@@ -132,42 +122,9 @@ PythonEnvironment::~PythonEnvironment() {
   } catch (py::error_already_set& error) {
     error.discard_as_unraisable("close");  // the process is about to leave
   }
-  for (py::object* object : {&environment_, &reset_, &step_, &contiguous_}) *object = py::object();
+  for (py::object* object : {&environment_, &reset_, &step_}) *object = py::object();
   leaves_.clear();
   held_.clear();
-}
-
-py::array PythonEnvironment::TakeArray(const char* call, size_t i, const py::handle& value) {
-  const ArraySpace& space = description_.observation[i];
-  const Leaf& leaf = leaves_[i];
-  const py::array array = py::array::ensure(value);
-  if (!array) {
-    PyErr_Clear();
-    throw RuntimeError("environment {}: '{}' of {} is no array of numbers", description_.id,
-                       space.name, call);
-  }
-  const std::span<const py::ssize_t> shape(array.shape(), size_t(array.ndim()));
-  const bool one_number = shape.empty() && space.size() == 1;
-  if (!one_number && !std::ranges::equal(shape, space.shape)) {
-    const std::vector<py::ssize_t> expected(space.shape.begin(), space.shape.end());
-    throw RuntimeError(
-        "environment {}: '{}' of {} has the shape {}; expected {}, as its space says",
-        description_.id, space.name, call, ShapeText(shape), ShapeText(expected));
-  }
-  // float32 and float64 stand for each other: many environments declare one and return the other.
-  const char type = array.dtype().char_(), declared = leaf.type.char_();
-  const bool same = type == declared || (type == 'q' && declared == 'l');
-  if (!same && !(leaf.real && (type == 'f' || type == 'd'))) {
-    throw RuntimeError(
-        "environment {}: '{}' of {} has elements of type {}; expected {}, as its "
-        "space says",
-        description_.id, space.name, call, py::cast<std::string>(py::str(array.dtype())),
-        py::cast<std::string>(py::str(py::handle(leaf.type))));
-  }
-  const bool native = array.dtype().byteorder() != '>';
-  constexpr int kPlain = int{py::array::c_style} | int{py::detail::npy_api::NPY_ARRAY_ALIGNED_};
-  if (same && native && (array.flags() & kPlain) == kPlain) return array;
-  return contiguous_(array, leaf.type);
 }
 
 void PythonEnvironment::Take(const char* call, const py::handle& observation) {
@@ -186,7 +143,7 @@ void PythonEnvironment::Take(const char* call, const py::handle& observation) {
       }
       value = py::reinterpret_steal<py::object>(inner);
     }
-    held_[i] = TakeArray(call, i, value);
+    held_[i] = leaves_[i].array.Take(call, value);
     arrays_[i] = held_[i].data();
   }
 }

@@ -18,6 +18,7 @@
 #include "actor/hosted/raw_environment.h"
 #include "common/tasks/environment_description.h"
 #include "launch/tools/python/call_watch.h"
+#include "launch/tools/python/space_array.h"
 
 namespace shoal::python {
 
@@ -59,19 +60,16 @@ class __attribute__((visibility("hidden"))) PythonEnvironment final
  private:
   struct Leaf {
     std::vector<pybind11::object> keys;  // into nested dicts
-    pybind11::dtype type;
-    bool real = false;  // float32 or float64, which may stand for each other
+    SpaceArray array;
   };
 
   // Keeps the arrays of an observation alive and notes where they lie.
   void Take(const char* call, const pybind11::handle& observation);
-  pybind11::array TakeArray(const char* call, size_t leaf, const pybind11::handle& value);
   pybind11::object ActionArray(std::span<const double> action) const;
 
   const tasks::EnvironmentDescription description_;
   CallWatch& watch_;
   pybind11::object environment_, reset_, step_;
-  pybind11::object contiguous_;  // numpy.ascontiguousarray
   std::vector<pybind11::ssize_t> action_shape_;
   std::vector<Leaf> leaves_;
   std::vector<pybind11::array> held_;

@@ -46,6 +46,13 @@ class Point(gymnasium.Env):
         return picture
 
 
+class Short(Point):
+    """Its episodes have 40 steps."""
+
+    def __init__(self, render_mode=None):
+        super().__init__(limit=40)
+
+
 class Picture(Point):
     """The same, seen: the place is a white column, the target a red one; 24 x 32 pixels."""
 

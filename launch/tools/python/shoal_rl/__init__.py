@@ -2,6 +2,7 @@
 """Policies, environments and runs of Shoal.
 
 Policy(path).act(observation)   acts by a checkpoint
+Mapping(path)                   what a policy observes of an environment of yours, and its actions there
 make(task, **keys)              a Gymnasium environment; make_vec(task, n, **keys): n side by side
 tasks()                         names of the tasks there are
 metrics(run), evaluations(run)  what a run has written, as data frames
@@ -62,10 +63,12 @@ def _load():
     except ModuleNotFoundError as error:
         # pip refuses the wheel under another Python, PYTHONPATH and copied folders do not.
         raise ImportError(_why_not_native()) from error
+    from shoal_rl.mapping import Mapping
     from shoal_rl.runs import evaluations, metrics
 
     return {
         "Error": Error,
+        "Mapping": Mapping,
         "Policy": Policy,
         "__version__": __version__,
         "tasks": tasks,
@@ -92,7 +95,7 @@ def __getattr__(name):
 if not _is_actor():
     globals().update(_load())
 
-__all__ = ["Error", "Policy", "__version__", "evaluations", "make", "make_vec", "metrics", "tasks"]
+__all__ = ["Error", "Mapping", "Policy", "__version__", "evaluations", "make", "make_vec", "metrics", "tasks"]
 
 
 def make(task, *, render_mode=None, **keys):

@@ -15,6 +15,7 @@ import pathlib
 import sys
 
 from shoal_rl.goals import NoGoal, find_goal
+from shoal_rl.names import array_name
 
 _GOAL_EPISODES = 20  # that are begun to see goals
 
@@ -144,22 +145,13 @@ def _box(space, name):
     }
 
 
-def _name(keys):
-    """Letters, digits, '_' and the dots between the keys: names of blocks."""
-    letters = [
-        "".join(c if c.isascii() and (c.isalnum() or c == "_") else "_" for c in str(key)) for key in keys
-    ]
-    name = ".".join(letters) or "observation"
-    return name if not name[0].isdigit() else "_" + name
-
-
 def _arrays(space, keys=()):
     kind = _kind(space)
     if kind == "Box":
-        return [(keys, _box(space, _name(keys)))]
+        return [(keys, _box(space, array_name(keys)))]
     if kind == "Dict":
         return [array for key, inner in space.spaces.items() for array in _arrays(inner, (*keys, key))]
-    where = f" '{_name(keys)}'" if keys else ""
+    where = f" '{array_name(keys)}'" if keys else ""
     raise Refused(
         f"the observation{where} is {kind}; expected Box, or Dict of them "
         "(gymnasium.wrappers.FlattenObservation makes a Box of it)"
