@@ -3,7 +3,6 @@
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
-#include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>
 
@@ -11,19 +10,11 @@
 #include "launch/commands/env_tasks.h"
 #include "launch/commands/json_output.h"
 #include "launch/processes/actor_program.h"
+#include "launch/record/environment_mapping.h"
 #include "launch/run/train_options.h"
 
 namespace shoal::launch {
 namespace {
-
-std::string BoundsText(const tasks::ArraySpace& space) {
-  double low = space.Low(0), high = space.High(0);
-  for (int i = 1; i < space.size(); ++i) {
-    low = std::min(low, space.Low(i));
-    high = std::max(high, space.High(i));
-  }
-  return fmt::format("[{:g}, {:g}]", low, high);
-}
 
 std::string ArrayText(const tasks::ArraySpace& space) {
   const std::string shape = fmt::format("{}", fmt::join(space.shape, "x"));

@@ -2,6 +2,7 @@
 #include "launch/commands/env_tasks.h"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -15,10 +16,14 @@
 #include "common/config/config_io.h"
 #include "common/config/run_files.h"
 #include "common/run_folder/run_file_names.h"
+#include "common/tasks/task_registry.h"
 #include "launch/commands/json_output.h"
 #include "launch/processes/actor_program.h"
+#include "launch/record/environment_mapping.h"
 #include "launch/record/run_folder.h"
 #include "launch/record/run_inputs.h"
+#include "launch/run/run_request.h"
+#include "launch/run/train_options.h"
 
 namespace shoal::launch {
 namespace {
@@ -41,13 +46,22 @@ int Describe(const worlds::DescribeRequest& request, const std::string& json) {
   return 0;
 }
 
-// Whose inputs are asked for: a run's, or those that a preset's runs would have.
+// Whose inputs are asked for: a run's, or those that the runs of a preset or of an environment of
+// Python would have.
 struct InputsRequest {
-  std::string run, run_dir = "runs", preset;
+  std::string run, run_dir = "runs", preset, environment;
+  std::vector<std::string> set;  // KEY=VALUE, of an environment
 };
 
 RunConfig ConfigOf(const InputsRequest& request) {
   if (!request.run.empty()) return ReadRunConfig(FindNamed(request.run, RunsIn(request.run_dir)));
+  if (!request.environment.empty()) {
+    TrainOptions options;
+    options.preset = request.preset;
+    options.set = request.set;
+    options.set.push_back("env.id=" + request.environment);
+    return ResolveFresh(options).config;
+  }
   const Config config = LoadPreset(request.preset);
   return {config, DescribeObservations(config).spec};
 }
@@ -55,8 +69,24 @@ RunConfig ConfigOf(const InputsRequest& request) {
 int PrintInputs(const InputsRequest& request, const std::string& json) {
   const JsonOutput output(json);
   const RunConfig run = ConfigOf(request);
-  Show(output, InputsJson(run), DescribeInputs(run));
+  if (run.spec.environment.empty()) {
+    Show(output, InputsJson(run), DescribeInputs(run));
+  } else {
+    Show(output, MappingJson(run), DescribeMapping(run) + DescribeInputs(run));
+  }
   return 0;
+}
+
+// Whether a word that names something to describe is an environment of Python: "module:Name",
+// "file.py:Name", or a name with a version as Gymnasium's have it, "Pendulum-v1", which no task
+// has.
+bool NamesEnvironment(const std::string& word) {
+  if (word.find(':') != std::string::npos) return true;
+  const size_t version = word.rfind("-v");
+  const auto names = tasks::TaskNames();
+  return version != std::string::npos && version + 2 < word.size() &&
+         word.find_first_not_of("0123456789", version + 2) == std::string::npos &&
+         std::ranges::count(names, word) == 0;
 }
 
 int CheckRewards(const worlds::RewardCheckRequest& request, const std::string& json) {
@@ -101,23 +131,36 @@ void AddDescribe(CLI::App& env, Action* chosen) {
   CLI::App* command = env.add_subcommand(
       "describe",
       "A task's observations (shape, unit, meaning, bounds, measured range), what each action axis "
-      "does when moved alone, its reward and cameras. Of a run: inputs of its policy, and "
-      "privileged inputs of training.");
+      "does when moved alone, its reward and cameras. Of an environment of Python: how its spaces "
+      "become frames, blocks and actions. Of a run: inputs of its policy, and privileged inputs of "
+      "training.");
   const auto request = std::make_shared<worlds::DescribeRequest>();
   const auto inputs = std::make_shared<InputsRequest>();
   const auto json = std::make_shared<std::string>();
   // One of three says what is described, and the options of a task go with a task alone.
-  CLI::Option* task = command->add_option("task", request->task, "Task, e.g. FetchReachDense");
+  CLI::Option* task = command->add_option(
+      "task", request->task,
+      "Task, e.g. FetchReachDense, or environment of Python, e.g. Pendulum-v1 (as for env check)");
   CLI::Option* run =
       command->add_option("--run", inputs->run, "Run in place of a task: name or folder");
   run->excludes(task);
   command->add_option("--run-dir", inputs->run_dir, "Folder that holds the runs")
       ->capture_default_str();
   CLI::Option* preset = command->add_option(
-      "--preset", inputs->preset, "Preset in place of a task: what a run of it would get");
-  preset->excludes(task)->excludes(run);
-  command->add_option("--model", request->model, "Another MJCF file for the task")->needs(task);
-  AddJson(command, "shoal-env-1, of a run or a preset shoal-inputs-1", json.get());
+      "--preset", inputs->preset,
+      "Preset in place of a task, or of an environment's runs: what a run of it would get");
+  preset->excludes(run);
+  CLI::Option* set =
+      command
+          ->add_option("--set", inputs->set, "KEY=VALUE of an environment's runs; may be repeated")
+          ->allow_extra_args(false)
+          ->needs(task);
+  CLI::Option* model =
+      command->add_option("--model", request->model, "Another MJCF file for the task")->needs(task);
+  AddJson(command,
+          "shoal-env-1, of a run or a preset shoal-inputs-1, of an environment or its run "
+          "shoal-env-mapping-1",
+          json.get());
   command->add_option("--probe-steps", request->probe_env_steps, "Env steps of one command")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
@@ -130,8 +173,20 @@ void AddDescribe(CLI::App& env, Action* chosen) {
       throw UsageError(
           "env describe: nothing is named; expected a task, --run RUN or --preset NAME");
     }
+    const bool hosted = task->count() > 0 && NamesEnvironment(request->task);
+    if (task->count() > 0 && !hosted && preset->count() + set->count() > 0) {
+      throw UsageError(
+          "env describe: --preset and --set go with an environment of Python, not with "
+          "the task {}",
+          request->task);
+    }
+    if (hosted && model->count() > 0) {
+      throw UsageError("env describe: --model goes with a task of Shoal's, not with environment {}",
+                       request->task);
+    }
+    if (hosted) inputs->environment = request->task;
     *chosen = [=] {
-      return task->count() > 0 ? Describe(*request, *json) : PrintInputs(*inputs, *json);
+      return task->count() > 0 && !hosted ? Describe(*request, *json) : PrintInputs(*inputs, *json);
     };
   });
 }

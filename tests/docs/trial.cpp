@@ -56,7 +56,7 @@ const std::vector<TrialRule>& TrialRules() {
        "Environments.TheWorkedExampleIsTrainedAndFilmed"},
       {"^shoal (film|eval) light\\b", kElsewhere,
        "Environments.TheWorkedExampleIsTrainedAndFilmed"},
-      {"^shoal env check Pendulum", kElsewhere,
+      {"^shoal env (check|describe) Pendulum", kElsewhere,
        "Environments.CheckSaysWhatIsObservedAndWhetherItRepeats"},
       {"^shoal .*gymnasium_robotics:", kElsewhere,
        "Environments.RewardsOfAGoalEnvironmentAreComputedForOtherGoals"},

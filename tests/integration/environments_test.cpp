@@ -30,6 +30,30 @@ class Environments : public testing::Test {
     words.insert(words.begin(), ProgramPath("shoal"));
     return RunCommand(std::move(words), deadline, Surroundings());
   }
+  // Trains `environment` a little, evaluates two episodes of it, and acts on their observations
+  // again, by the checkpoint and Python: what act_again.py says.
+  std::string ActAgain(const std::string& environment, const TrainingRun::Keys& keys) const {
+    TrainingRun::Keys all{{"env.kwargs", json{{"of", environment}}.dump()},
+                          {"env_steps", "400"},
+                          {"replay.min_size", "100"},
+                          {"eval.envs", "1"},
+                          {"eval.interval", "1000000"},
+                          {"learner.precision", "f32"}};
+    for (const auto& [key, value] : keys) all[key] = value;
+    const ProgramResult done = Shoal(Words("recorded:Recorded", all, {"--overwrite"}));
+    EXPECT_EQ(ExitCode(done), 0) << environment << ": " << done.out << done.err;
+    RunningTraining::Environment recording = Surroundings();
+    recording.emplace_back("SHOAL_TEST_RECORD", run_.path().string());
+    const ProgramResult judged = RunCommand(
+        {ProgramPath("shoal"), "eval", run_.path(), "--episodes", "2"}, seconds(60), recording);
+    EXPECT_EQ(ExitCode(judged), 0) << environment << ": " << judged.out << judged.err;
+    const ProgramResult again =
+        RunCommand({SHOAL_TEST_PYTHON, SourcePath("tests/integration/environments/act_again.py"),
+                    run_.path() / "checkpoints" / "best", run_.path() / "moments"},
+                   seconds(60), Surroundings());
+    EXPECT_EQ(ExitCode(again), 0) << environment << ": " << again.out << again.err;
+    return again.out;
+  }
   // `shoal train` of an environment, for some thousand steps.
   std::vector<std::string> Words(const std::string& environment, TrainingRun::Keys keys = {},
                                  const std::vector<std::string>& flags = {}) const {
@@ -138,6 +162,72 @@ TEST_F(Environments, CheckSaysWhatIsObservedAndWhetherItRepeats) {
   EXPECT_THAT(box.out, HasSubstr("WARN  no hindsight: its reward is no threshold")) << box.err;
 }
 
+TEST_F(Environments, DescribeShowsWhatBecomesOfEachArray) {
+  const std::string python = std::string("env.python=") + SHOAL_TEST_PYTHON;
+  const ProgramResult state = Shoal({"env", "describe", "Point-v0", "--set", python});
+  EXPECT_EQ(ExitCode(state), 0) << state.err;
+  EXPECT_THAT(
+      state.out,
+      AllOf(HasSubstr("place: float32 (1) -> block 'place' of 1 numbers in [-10, 10], which the "
+                      "policy sees"),
+            HasSubstr("aims.target: float64 (1) -> block 'aims.target'"),
+            HasSubstr("number 0: -2 + (a + 1) / 2 * 4, in [-2, 2]"),
+            HasSubstr("episodes: at most 40 steps; steps report success"),
+            HasSubstr("rewards: the environment's own\n"), HasSubstr("numbers   place (1), aims")));
+
+  const ProgramResult picture =
+      Shoal({"env", "describe", "point:Picture", "--json", "-", "--set", python, "--set",
+             "observation.height=24", "--set", "observation.grey=true"});
+  EXPECT_EQ(ExitCode(picture), 0) << picture.err;
+  EXPECT_THAT(picture.err, HasSubstr("frame of camera 'observation', 1 x 24 x 84, resized by "
+                                     "averaging over areas, made grey"));
+  const json mapping = json::parse(picture.out);
+  EXPECT_EQ(mapping.at("preset"), "pixels");
+  EXPECT_EQ(mapping.at("observation")[0].at("frame"), json::array({1, 24, 84}));
+
+  const ProgramResult goal =
+      Shoal({"env", "describe", "goals:Reach", "--preset", "fetch-reach-her", "--set", python});
+  EXPECT_EQ(ExitCode(goal), 0) << goal.err;
+  EXPECT_THAT(goal.out, AllOf(HasSubstr("beyond a distance of 0.05, else 0, for other goals"),
+                              HasSubstr("achieved_goal' of 2 numbers in [-inf, inf], recorded")));
+  const ProgramResult refused =
+      Shoal({"env", "describe", "faulty:DiscreteActions", "--set", python});
+  EXPECT_EQ(ExitCode(refused), 2);
+  EXPECT_THAT(refused.err, HasSubstr("the action space is Discrete"));
+}
+
+// The specification's hash covers the environment's spaces.
+TEST_F(Environments, OneThatHasChangedIsRefusedWhenTheRunGoesOn) {
+  const std::filesystem::path file = run_.parent() / "mine.py";
+  const auto write = [&](const std::string& high) {
+    std::ofstream(file) << "import gymnasium, point\n"
+                           "class Mine(point.Point):\n"
+                           "    def __init__(self):\n"
+                           "        super().__init__(limit=40)\n"
+                           "        self.action_space = gymnasium.spaces.Box(-2, "
+                        << high << ", (1,))\n";
+  };
+  write("2");
+  const TrainingRun::Keys keys{{"eval.interval", "1000000"}, {"eval.final_episodes", "0"}};
+  const ProgramResult done = Shoal(Words(file.string() + ":Mine", keys));
+  ASSERT_EQ(ExitCode(done), 0) << done.out << done.err;
+  const ProgramResult described = Shoal({"env", "describe", "--run", run_.path()});
+  EXPECT_THAT(described.out, HasSubstr("number 0: -2 + (a + 1) / 2 * 4, in [-2, 2]"))
+      << described.err;
+
+  write("3");
+  const std::vector<std::string> words{"train", "--resume", run_.path(), "--set", "env_steps=2400"};
+  const ProgramResult refused = Shoal(words);
+  EXPECT_EQ(ExitCode(refused), 1) << refused.out;
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("has changed since the run began: 'action' was"),
+                                 HasSubstr("\"high\":3.0")));
+  EXPECT_EQ(std::ranges::count(refused.err, '\n'), 1) << refused.err;
+
+  write("2");
+  const ProgramResult resumed = Shoal(words);
+  EXPECT_EQ(ExitCode(resumed), 0) << resumed.out << resumed.err;
+}
+
 // The environment may bring another version of MuJoCo.
 TEST_F(Environments, TheActorLoadsNoEngineOfShoals) {
   const ProgramResult done = Shoal(CheckWords("engines:Alone"));
@@ -171,6 +261,18 @@ TEST_F(Environments, PicturesAreTrainedFrom) {
   EXPECT_EQ(spec.at("channels"), 3);
   EXPECT_EQ(spec.at("height"), 24);
   ExpectBalanced(run_.Json("meta.json"));
+}
+
+// A policy outside of its run acts as the evaluation did: dicts, pictures, stacks and the bounds of
+// actions are mapped alike.
+TEST_F(Environments, APolicyActsInPythonAsItWasEvaluated) {
+  EXPECT_EQ(ActAgain("point:Short", {}), "80 equal, 0 different\n");
+  EXPECT_EQ(ActAgain("goals:Reach", {{"replay.hindsight", "future"}}), "40 equal, 0 different\n");
+  EXPECT_EQ(ActAgain("point:Picture", {{"observation.height", "22"},
+                                       {"observation.width", "26"},
+                                       {"observation.grey", "true"},
+                                       {"observation.stack", "3"}}),
+            "60 equal, 0 different\n");
 }
 
 TEST_F(Environments, WhatCannotBeTrainedIsRefusedInOneLineBeforeAnythingStarts) {
