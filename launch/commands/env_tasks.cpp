@@ -77,9 +77,8 @@ int PrintInputs(const InputsRequest& request, const std::string& json) {
   return 0;
 }
 
-// Whether a word that names something to describe is an environment of Python: "module:Name",
-// "file.py:Name", or a name with a version as Gymnasium's have it, "Pendulum-v1", which no task
-// has.
+// Whether a word is the name of an environment of Python: a module or a file and a name behind a
+// colon, or a name with a version, such as "Pendulum-v1", that no task has.
 bool NamesEnvironment(const std::string& word) {
   if (word.find(':') != std::string::npos) return true;
   const size_t version = word.rfind("-v");

@@ -31,7 +31,7 @@ ENVIRONMENTS = {
     "fetch-push": ["gymnasium_robotics:FetchPush-v4", "--preset", "fetch-push-her"],
     "push-t": ["gym_pusht:gym_pusht/PushT-v0"],
 }
-# Where a record that was made may have gone.
+# Places of the account: each record that was made is in one of them.
 WHERE = ("stored", "lost_with_process", "lost_with_replay", "rejected", "after_gap", "discarded")
 PACKAGES = ("gymnasium", "gymnasium-robotics", "mujoco", "Box2D", "gym-pusht", "numpy")
 

@@ -21,11 +21,6 @@ using std::chrono::milliseconds;
 using std::chrono::seconds;
 
 constexpr seconds kStopped{10};
-constexpr seconds kRecovery{60};
-constexpr seconds kRestart{30};  // for a process that is being restarted to be there
-// For processes without a coordinator to leave: the lease, the replay's farewell to actors that
-// still send, a checkpoint, and a moment for a loaded machine.
-constexpr seconds kLeave{60};
 constexpr seconds kEnd{180};
 constexpr milliseconds kPoll{50};
 
@@ -39,28 +34,28 @@ void Pause(RunUnderTest* run, milliseconds span) {
   }
 }
 
-pid_t AwaitProcess(RunUnderTest* run, const std::string& name) {
+pid_t AwaitProcess(RunUnderTest* run, const std::string& name, seconds recovery) {
   const SteadyTime start = Now();
   while (true) {
     if (const pid_t pid = run->Pid(name); pid != 0) return pid;
     run->CheckAlive();
-    if (Now() - start > kRestart) throw Broken(name + " was not restarted");
+    if (Now() - start > recovery / 2) throw Broken(name + " was not restarted");
     std::this_thread::sleep_for(kPoll);
   }
 }
 
-pid_t Send(RunUnderTest* run, const std::string& name, int signal) {
+pid_t Send(RunUnderTest* run, const std::string& name, int signal, seconds recovery) {
   while (true) {  // it may end by itself (a former fault's restart) between the two calls
-    const pid_t pid = AwaitProcess(run, name);
+    const pid_t pid = AwaitProcess(run, name, recovery);
     if (kill(pid, signal) == 0) return pid;
   }
 }
 
 // Stops the process for ten seconds, in which another one may be killed.
-void Stop(RunUnderTest* run, const Fault& fault) {
-  const pid_t pid = Send(run, fault.process, SIGSTOP);
+void Stop(RunUnderTest* run, const Fault& fault, seconds recovery) {
+  const pid_t pid = Send(run, fault.process, SIGSTOP, recovery);
   Pause(run, kStopped / 2);
-  if (!fault.killed_meanwhile.empty()) Send(run, fault.killed_meanwhile, SIGKILL);
+  if (!fault.killed_meanwhile.empty()) Send(run, fault.killed_meanwhile, SIGKILL, recovery);
   Pause(run, kStopped / 2);
   kill(pid, SIGCONT);
   if (HasEnded(pid)) throw Broken(fault.process + " ended while it was stopped");
@@ -84,24 +79,26 @@ std::string Describe(const Fault& fault) {
 }
 
 // Seconds until everything goes on.
-double Strike(RunUnderTest* run, const Fault& fault) {
+double Strike(RunUnderTest* run, const Fault& fault, seconds recovery) {
   Pause(run, fault.delay);
   RunUnderTest::Progress before = run->TakeProgress();
   pid_t killed = 0;
   if (fault.kind == FaultKind::kKill && fault.process == "coordinator") {
-    run->KillCoordinator(kLeave);
+    // Processes without a coordinator leave within the lease, the replay's farewell to actors that
+    // still send, and a checkpoint.
+    run->KillCoordinator(recovery);
     before = run->TakeProgress();
     run->Resume();
   } else if (fault.kind == FaultKind::kKill) {
-    killed = Send(run, fault.process, SIGKILL);
+    killed = Send(run, fault.process, SIGKILL, recovery);
   } else {
-    Stop(run, fault);
+    Stop(run, fault, recovery);
     before = run->TakeProgress();
   }
   const SteadyTime struck = Now();
-  run->AwaitRecovery(fault.process, killed, before, kRecovery);
+  run->AwaitRecovery(fault.process, killed, before, recovery);
   if (!fault.killed_meanwhile.empty()) {
-    run->AwaitRecovery(fault.killed_meanwhile, 0, before, kRecovery);
+    run->AwaitRecovery(fault.killed_meanwhile, 0, before, recovery);
   }
   return SecondsSince(struck);
 }
@@ -126,7 +123,7 @@ nlohmann::ordered_json SoakFaults(const SoakOptions& options, int faults) {
       const Fault fault = plan.Next(Now());
       fmt::print("{}/{} {} ... ", i, faults, Describe(fault));
       std::fflush(stdout);
-      const double recovery = Strike(&run, fault);
+      const double recovery = Strike(&run, fault, seconds(options.recovery));
       fmt::print("went on within {:.1f} s\n", recovery);
       std::fflush(stdout);
       const std::string role = fault.process.substr(0, fault.process.find('-'));

@@ -18,7 +18,9 @@ struct SoakOptions {
   std::string preset = "fetch-reach-state";
   std::string environment{};        // as `shoal train --env` takes it; empty = the preset's task
   std::vector<std::string> keys{};  // further KEY=VALUE
-  bool kills_alone = false;         // no SIGSTOPs
+  // Seconds for everything to go on after a fault. A machine that other work keeps busy needs more.
+  int recovery = 60;
+  bool kills_alone = false;  // no SIGSTOPs
 };
 
 // Strikes `faults` times, prints a line for each, stops the run and checks what it left. Throws

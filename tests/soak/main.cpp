@@ -67,6 +67,10 @@ int Run(int argc, char** argv) {
                  "environment of Python to train on, e.g. Pendulum-v1, by the preset");
   app.add_option("--set", options.soak.keys, "KEY=VALUE of the run; may be repeated")
       ->allow_extra_args(false);
+  app.add_option("--recovery", options.soak.recovery,
+                 "seconds within which everything must go on; more on a busy machine")
+      ->check(CLI::PositiveNumber)
+      ->capture_default_str();
   app.add_flag("--kills-alone", options.soak.kills_alone, "no SIGSTOPs");
   app.add_option("--json", options.json, "file for the result, which standard output gets, too");
   if (const auto exit_code = shoal::ParseCommandLine(&app, argc, argv)) return *exit_code;

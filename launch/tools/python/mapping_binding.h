@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a policy of an environment of Python observes of it, and its actions in the environment's
-// units: the base class of shoal_rl.Mapping.
+// The base class of shoal_rl.Mapping: between an environment of Python and the policy that was
+// trained on it.
 #pragma once
 
 #include <pybind11/pybind11.h>

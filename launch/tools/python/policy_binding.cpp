@@ -15,6 +15,7 @@
 #include "common/base/error.h"
 #include "common/policy/trained_policy.h"
 #include "launch/tools/python/observation_properties.h"
+#include "launch/tools/python/shape_text.h"
 
 namespace py = pybind11;
 
@@ -24,13 +25,6 @@ namespace {
 using Floats = py::array_t<float, py::array::c_style | py::array::forcecast>;
 using Bytes = py::array_t<uint8_t, py::array::c_style>;
 using Shape = std::vector<py::ssize_t>;
-
-// A shape in Python's notation; `batch` puts N in front: "(3,)", "(N, 3)".
-std::string ShapeText(std::span<const py::ssize_t> shape, bool batch = false) {
-  std::string text = batch ? "(N" : "(";
-  for (const py::ssize_t side : shape) text += (text == "(" ? "" : ", ") + std::to_string(side);
-  return text + (shape.size() == 1 && !batch ? ",)" : ")");
-}
 
 // Arrays of an observation while an action is computed.
 struct Arrays {

@@ -1,26 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "launch/tools/python/space_array.h"
 
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "common/base/error.h"
+#include "launch/tools/python/shape_text.h"
 
 namespace py = pybind11;
 
 namespace shoal::python {
-namespace {
-
-std::string ShapeText(std::span<const py::ssize_t> shape) {
-  return fmt::format("({}{})", fmt::join(shape, ", "), shape.size() == 1 ? "," : "");
-}
-
-}  // namespace
-
 SpaceArray::SpaceArray(std::string environment, tasks::ArraySpace space)
     : environment_(std::move(environment)),
       space_(std::move(space)),

@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// Shapes of arrays as Python writes them, for messages.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+#include <span>
+#include <string>
+
+namespace shoal::python {
+
+// "(3,)"; `batch` puts N in front: "(N, 3)".
+std::string ShapeText(std::span<const pybind11::ssize_t> shape, bool batch = false);
+
+}  // namespace shoal::python
