@@ -25,8 +25,8 @@ class FrameRecorder final : public EpisodeListener {
     // first.
     std::string camera = "";
     int height = 480, width = 480;  // of the view
-    // Of the view: fast | native | reference. Empty = native for runs in quality native, which need
-    // no OSMesa then; else reference.
+    // fast | native | reference. Empty = native for runs in quality native, which then need no
+    // OSMesa; else reference.
     std::string quality = "";
   };
   // `spec`: of what the policy observes. Throws Error on a file that cannot be written.

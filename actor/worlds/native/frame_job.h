@@ -163,6 +163,19 @@ struct View {
   float sky_axes[3][3];  // cube coordinates = axes * (X, Y, 1)
 };
 
+// The engine paints the sky on a cylinder about the eye, which hides what is farther away. Around
+// the foot of the sky it draws a band of haze over an endless plane: a cone about the eye that
+// rises from the plane to the height of the eye. Lengths are in radii of the cylinder.
+struct Haze {
+  float inverse_sky;  // 1 / the cylinder's radius, in m
+  bool seen;          // the rest is read only then
+  float axes[3][3];   // the plane's x, y and normal: coordinate = axis * (X, Y, 1)
+  float elevation;    // of the eye above the plane
+  float width;        // difference between the radii of the cylinder and of the cone at the plane
+  float peak;         // share of the way from the eye's height to the plane where it hides all
+  float rgb[3];       // 0..255
+};
+
 // Per pixel, tile after tile.
 struct Tiles {
   float* w;
@@ -194,6 +207,9 @@ struct Kernels {
   void (*blend)(const TileRect&, int tiles_x, float alpha, const Tiles& over, const Tiles&);
   // Colours the pixels without id. Needs view.sky.
   void (*sky)(const View&, const Tiles&);
+  // Puts the sky before what is beyond its cylinder, in colour and depth, then blends the haze.
+  // Needs view.sky.
+  void (*haze)(const View&, const Haze&, const Tiles&);
 };
 
 extern const Kernels kSse2Kernels, kAvx2Kernels, kAvx512Kernels;

@@ -19,18 +19,6 @@ std::string NameOf(const mjModel& model, int object_type, int id) {
   return name == nullptr ? "" : name;
 }
 
-bool HasSky(const mjModel& model) {
-  return std::find(model.tex_type, model.tex_type + model.ntex, mjTEXTURE_SKYBOX) !=
-         model.tex_type + model.ntex;
-}
-
-// The engine draws a band of haze around the foot of the sky, over endless planes.
-bool HasHaze(const mjModel& model, int geom) {
-  const mjtNum* size = model.geom_size + 3 * geom;
-  return model.geom_type[geom] == mjGEOM_PLANE && size[0] == 0 && size[1] == 0 &&
-         GroupIsShown(model.geom_group[geom]);
-}
-
 }  // namespace
 
 std::string RefusalOf(const mjModel& model) {
@@ -39,14 +27,6 @@ std::string RefusalOf(const mjModel& model) {
     if (model.sensor_type[i] != mjSENS_RANGEFINDER) continue;
     return fmt::format("sensor {} ('{}') is a rangefinder, which the engine shows as a line", i,
                        NameOf(model, mjOBJ_SENSOR, i));
-  }
-  if (model.vis.map.haze <= 0 || !HasSky(model)) return "";
-  for (int i = 0; i < model.ngeom; ++i) {
-    if (!HasHaze(model, i)) continue;
-    return fmt::format(
-        "geom {} ('{}') is an endless plane below a sky, where the engine draws haze; give the "
-        "plane a size, or set visual/map/haze=\"0\"",
-        i, NameOf(model, mjOBJ_GEOM, i));
   }
   return "";
 }

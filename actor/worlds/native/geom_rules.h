@@ -16,8 +16,8 @@ namespace shoal::worlds::native {
 // Why the content of this model cannot be drawn; empty = it can.
 std::string RefusalOf(const mjModel_& model);
 
-// Throws Error (kRuntime) on a scene whose flags ask for fog. The flags of shadows, reflections,
-// the sky and haze are not read.
+// Throws Error (kRuntime) on a scene whose flags ask for fog. The flags of shadows, reflections and
+// the sky are not read.
 void CheckFlags(const mjvScene_& scene);
 
 // Whether the engine shows geoms of this group by default.

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #define SHOAL_LANES 16
 #include "actor/worlds/native/shading_kernels.h"
+#include "actor/worlds/native/sky_kernels.h"
 #include "actor/worlds/native/visibility_kernels.h"
 
 namespace shoal::worlds::native {
 
-const Kernels kAvx512Kernels{"avx512", SHOAL_LANES, Clear, See, SeeOver, Shade, Blend, Sky};
+const Kernels kAvx512Kernels{"avx512", SHOAL_LANES, Clear, See,     SeeOver,
+                             Shade,    Blend,       Sky,   DrawHaze};
 
 }  // namespace shoal::worlds::native

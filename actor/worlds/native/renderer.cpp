@@ -12,6 +12,7 @@
 #include "actor/worlds/native/camera_frame.h"
 #include "actor/worlds/native/drawing_order.h"
 #include "actor/worlds/native/geom_rules.h"
+#include "actor/worlds/native/haze_setup.h"
 #include "actor/worlds/native/layer_key.h"
 #include "actor/worlds/native/plane_grids.h"
 #include "actor/worlds/native/shape_setup.h"
@@ -49,6 +50,7 @@ struct Renderer::State {
   std::vector<TextureLevels> textures;
   std::vector<const Texture*> texture_views;
   int sky = -1;  // number of its texture
+  HazeStyle haze;
   PlaneGrids grids;
   TriangleMeshes meshes;
 
@@ -75,7 +77,7 @@ struct Renderer::State {
   StaticLayers::Key key;
 
   State(const mjModel& model, InstructionSet set)
-      : kernels(KernelsOf(set)), grids(model), meshes(model) {}
+      : kernels(KernelsOf(set)), haze(model), grids(model), meshes(model) {}
 
   void NextStamp();
   void Start(const mjvScene& scene, int width, int height);
@@ -89,6 +91,7 @@ struct Renderer::State {
   void DrawTransparent(const mjvScene& scene, const SceneLights& lights);
   void Clear();
   void DrawOpaque(const mjvScene& scene, const SceneLights& lights);
+  void DrawHaze(const mjvScene& scene);
   void SeeEverything(const mjvScene& scene, int width, int height);
 };
 
@@ -279,6 +282,13 @@ void Renderer::State::DrawOpaque(const mjvScene& scene, const SceneLights& light
   if (!build) finish_sky();
 }
 
+void Renderer::State::DrawHaze(const mjvScene& scene) {
+  Haze made;
+  if (view.sky != nullptr && MakeHaze(scene, frame, haze, &made)) {
+    kernels.haze(view, made, picture.tiles());
+  }
+}
+
 // `over` keeps the geom's colours and `rect` their place. False: none of it is
 // in view.
 bool Renderer::State::ShadeOver(const mjvScene& scene, const SceneLights& lights, int number,
@@ -328,6 +338,7 @@ void Renderer::Draw(const mjvScene& scene, int width, int height, std::span<uint
   state.Start(scene, width, height);
   const SceneLights lights(scene, state.frame);
   state.DrawOpaque(scene, lights);
+  state.DrawHaze(scene);
   state.DrawTransparent(scene, lights);
   WritePlanes(state.view, state.picture.tiles().colour, planes);
 }

@@ -162,30 +162,4 @@ void Shade(const View& view, const LightSet& lights, const Surface& s, const Til
   }
 }
 
-// The sky is a cube around the eye; its texture is not lit.
-void Sky(const View& view, const Tiles& tiles) {
-  const float(*axes)[3] = view.sky_axes;
-  const F pixel = Set(view.pixel);
-  for (int row = 0; row < view.tiles_y; ++row) {
-    for (int column = 0; column < view.tiles_x; ++column) {
-      const int64_t tile = (int64_t{row} * view.tiles_x + column) * kTilePixels;
-      for (int i = 0; i < kTilePixels; i += kLanes) {
-        const M bare = Load(tiles.id + tile + i) == Set(int32_t{kNothing});
-        if (!Any(bare)) continue;
-        const F x = Load(view.ray_x + column * kTilePixels + i);
-        const F y = Load(view.ray_y + row * kTilePixels + i);
-        const auto at = [&](int k) {
-          return Set(axes[k][0]) * x + Set(axes[k][1]) * y + Set(axes[k][2]);
-        };
-        const auto right = [&](int k) { return Set(axes[k][0]) * pixel; };
-        const auto down = [&](int k) { return Set(axes[k][1]) * pixel; };
-        const Footprint f{
-            {at(0), at(1), at(2)}, {right(0), right(1), right(2)}, {down(0), down(1), down(2)}};
-        const I colour = Pack(LookUpCube(*view.sky, bare, f));
-        Store(tiles.colour + tile + i, Select(bare, colour, Load(tiles.colour + tile + i)));
-      }
-    }
-  }
-}
-
 }  // namespace
