@@ -189,7 +189,7 @@ class QualityRows {
     unsent_.Add(UnsentStepsPerSecond(*real_.run, real_.weights, seconds, cores_), cores_ / step);
   }
 
-  // Of all cores, in the last repetition.
+  // Env steps a second of actors on all cores, in the last repetition.
   double newest() const { return all_.figures.back(); }
 
   void AddTo(std::vector<Row>* rows) const {
