@@ -10,7 +10,7 @@ namespace shoal {
 namespace {
 
 constexpr AlgorithmKind kKinds[] = {
-    {.name = "sac", .squashed_gaussian = true, .encoder_options = true, .privileged = true},
+    {.name = "sac", .squashed_gaussian = true, .encoder_options = true, .own_section = "sac."},
     {.name = "td3", .own_section = "td3."},
     {.name = "ddpg"},
     {.name = "ppo", .on_policy = true, .own_section = "ppo."},

@@ -18,13 +18,12 @@ struct AlgorithmKind {
   std::string_view name;  // of learner.algorithm
   // From rollouts that go to the learner, by an unsquashed Gaussian; else from a replay.
   bool on_policy = false;
-  // Its policy is a Gaussian that is squashed by tanh, whose entropy a temperature weighs:
-  // learner.*temperature*, learner.target_entropy, network.log_std. Else, off policy,
-  // deterministic.
+  // Its policy is a Gaussian squashed by tanh: takes network.log_std. Otherwise, off policy, the
+  // policy is deterministic.
   bool squashed_gaussian = false;
   bool encoder_options = false;  // takes network.encoders, network.target_encoder
-  bool privileged = false;       // takes learner.critic_blocks, learner.aux, learner.aux_weight
-  std::string_view own_section = "";  // keys that no other algorithm takes: "ppo."
+  // Section of keys that only algorithms with this section take: "ppo."; empty = none.
+  std::string_view own_section = "";
 };
 
 std::span<const AlgorithmKind> AlgorithmKinds();

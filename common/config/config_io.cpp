@@ -2,11 +2,8 @@
 #include "common/config/config_io.h"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <type_traits>
 
 #include "common/base/bounded_json.h"
 #include "common/base/error.h"
@@ -14,6 +11,8 @@
 #include "common/base/one_line.h"
 #include "common/base/random.h"
 #include "common/config/config_keys.h"
+#include "common/config/former_keys.h"
+#include "common/config/key_value.h"
 #include "common/config/meant_key.h"
 #include "common/config/nearest_key.h"
 #include "common/config/value_json.h"
@@ -24,7 +23,6 @@ namespace {
 
 using internal::Key;
 using nlohmann::json;
-using Intervals = std::map<std::string, std::array<double, 2>>;
 
 // Text as JSON, with a replacement character for what is not UTF-8.
 std::string Quoted(const std::string& text) {
@@ -55,128 +53,12 @@ std::string Shown(const json& value) { return Shortened(value.dump(), 200); }
                    internal::Expected(key));
 }
 
-bool IsFileName(const std::string& text) {
-  const auto allowed = [](char c) {
-    return std::isalnum(static_cast<unsigned char>(c)) || c == '.' || c == '_' || c == '-';
-  };
-  return !text.empty() && text.size() <= internal::kLongestFileName && text[0] != '.' &&
-         text[0] != '-' && std::ranges::all_of(text, allowed);
-}
-
-// Does the key's rule allow a value that already has the right type?
-struct Allows {
-  const internal::Rule& rule;
-
-  bool operator()(bool) const { return true; }
-  bool operator()(int64_t value) const {
-    const auto* range = std::get_if<internal::IntegerRange>(&rule);
-    return range == nullptr || (value >= range->low && value <= range->high);
-  }
-  bool operator()(double value) const {
-    const auto* range = std::get_if<internal::RealRange>(&rule);
-    if (range == nullptr) return true;
-    return (range->low_open ? value > range->low : value >= range->low) &&
-           (range->high_open ? value < range->high : value <= range->high);
-  }
-  bool operator()(const std::string& value) const {
-    if (const auto* choices = std::get_if<internal::Choices>(&rule)) {
-      return std::ranges::find(choices->words, value) != choices->words.end();
-    }
-    if (const auto* name = std::get_if<internal::FileName>(&rule)) {
-      return IsFileName(value) || (name->optional && value.empty());
-    }
-    return true;
-  }
-};
-
-// 1e5 is an integer, too; beyond 2^53 a real number does not tell neighbours apart.
-json AsInteger(const json& value) {
-  if (!value.is_number_float()) return value;
-  const double number = value.get<double>();
-  constexpr double kExact = 9007199254740992;
-  if (std::abs(number) > kExact || number != std::trunc(number)) return value;
-  return static_cast<int64_t>(number);
-}
-
-// Reads one JSON value as T; false when it has another type, does not fit T, or breaks the rule.
-template <class T>
-bool Read(const json& value, const internal::Rule& rule, T* out) {
-  const Allows allows{rule};
-  if constexpr (std::is_same_v<T, bool>) {
-    if (!value.is_boolean()) return false;
-    *out = value.get<bool>();
-    return true;
-  } else if constexpr (std::is_integral_v<T>) {
-    const json integer = AsInteger(value);
-    if (!integer.is_number_integer()) return false;
-    const bool too_large = integer.is_number_unsigned() &&
-                           integer.get<uint64_t>() > uint64_t(std::numeric_limits<int64_t>::max());
-    if (too_large || !allows(integer.get<int64_t>())) return false;
-    *out = static_cast<T>(integer.get<int64_t>());
-    return true;
-  } else if constexpr (std::is_floating_point_v<T>) {
-    if (!value.is_number() || !allows(value.get<double>())) return false;
-    *out = value.get<double>();
-    return true;
-  } else if constexpr (std::is_same_v<T, std::string>) {
-    if (!value.is_string() || !allows(value.get_ref<const std::string&>())) return false;
-    *out = value.get<std::string>();
-    return true;
-  } else if constexpr (std::is_same_v<T, StateBlocks>) {
-    return internal::ReadStateBlocks(value, out);
-  } else if constexpr (std::is_same_v<T, KeywordArguments>) {
-    if (!value.is_object()) return false;
-    out->json = value.dump();
-    return true;
-  } else if constexpr (std::is_same_v<T, Schedule>) {
-    double constant = 0;
-    if (Read(value, rule, &constant)) {
-      *out = Schedule::Constant(constant);
-      return true;
-    }
-    if (!value.is_string()) return false;
-    const auto schedule = ParseSchedule(value.get_ref<const std::string&>());
-    if (!schedule || !allows(schedule->start) || !allows(schedule->end)) return false;
-    *out = *schedule;
-    return true;
-  } else if constexpr (std::is_same_v<T, Intervals>) {
-    if (!value.is_object()) return false;
-    Intervals intervals;
-    for (const auto& [name, bounds] : value.items()) {
-      if (!bounds.is_array() || bounds.size() != 2) return false;
-      auto& [low, high] = intervals[name];
-      if (!Read(bounds[0], rule, &low) || !Read(bounds[1], rule, &high) || low > high) return false;
-    }
-    *out = std::move(intervals);
-    return true;
-  } else if constexpr (std::is_same_v<T, std::map<std::string, CustomCamera>>) {
-    return internal::ReadCustomCameras(value, out);
-  } else {
-    if (!value.is_array()) return false;
-    T list;
-    for (const json& element : value) {
-      typename T::value_type item{};
-      if (!Read(element, rule, &item)) return false;
-      list.push_back(item);
-    }
-    *out = std::move(list);
-    return true;
-  }
-}
-
 void Assign(const Key& key, const json& value, const std::string& source, Config* config) {
-  const auto read = [&](auto* slot) { return Read(value, key.rule, slot); };
-  if (!std::visit(read, key.slot(*config))) Refuse(key, value, source);
+  if (!internal::AssignValue(key, value, config)) Refuse(key, value, source);
 }
-
-// Former names of keys, which files of older runs and experiments have, and today's names.
-constexpr std::pair<std::string_view, std::string_view> kFormerNames[] = {
-    {"ppo.normalise_observations", "learner.normalise_vectors"}};
 
 const Key* FindKey(std::string_view path) {
-  const auto former = std::ranges::find(kFormerNames, path, [](auto& name) { return name.first; });
-  if (former != std::end(kFormerNames)) path = former->second;
-  const auto key = std::ranges::find(internal::Keys(), path, &Key::path);
+  const auto key = std::ranges::find(internal::Keys(), PresentName(path), &Key::path);
   return key == internal::Keys().end() ? nullptr : &*key;
 }
 
@@ -203,24 +85,52 @@ std::string HintFor(const std::string& path) {
   throw UsageError("{}: unknown key '{}', {}", source, path, HintFor(path));
 }
 
-void ApplySection(const json& object, const std::string& prefix, const std::string& source,
-                  Config* config) {
-  for (const auto& [name, value] : object.items()) {
-    const std::string path = prefix + name;
-    if (name.find('.') != std::string::npos) {
-      throw UsageError("{}: key '{}': sections are nested objects in JSON, not dotted names",
-                       source, path);
-    }
-    if (const Key* key = FindKey(path)) {
-      Assign(*key, value, source, config);
-    } else if (!IsSection(path)) {
-      RefuseUnknown(path, source);
-    } else if (!value.is_object()) {
-      throw UsageError("{}: {} = {}: expected an object of keys", source, path, Shown(value));
-    } else {
-      ApplySection(value, path + ".", source, config);
+// Applies the keys of one text, which may use former names.
+class KeyApplication {
+ public:
+  // `notes`: a line on stderr for each former name. Borrows `config`.
+  KeyApplication(std::string source, bool notes, Config* config)
+      : source_(std::move(source)), notes_(notes), config_(config) {}
+
+  void ApplySection(const json& object, const std::string& prefix) {
+    for (const auto& [name, value] : object.items()) {
+      const std::string path = prefix + name;
+      if (name.find('.') != std::string::npos) {
+        throw UsageError("{}: key '{}': sections are nested objects in JSON, not dotted names",
+                         source_, path);
+      }
+      if (const Key* key = FindKey(path)) {
+        Take(*key, path);
+        Assign(*key, value, source_, config_);
+      } else if (!IsSection(path)) {
+        RefuseUnknown(path, source_);
+      } else if (!value.is_object()) {
+        throw UsageError("{}: {} = {}: expected an object of keys", source_, path, Shown(value));
+      } else {
+        ApplySection(value, path + ".");
+      }
     }
   }
+
+  // Refuses a key that the text has given before, under this name or another.
+  void Take(const Key& key, const std::string& path) {
+    if (!seen_.insert(key.path).second) {
+      const std::string also = path == key.path ? "" : fmt::format(" (as '{}')", path);
+      throw UsageError("{}: key '{}' given twice{}", source_, key.path, also);
+    }
+    if (notes_) NoteFormerName(path);
+  }
+
+ private:
+  const std::string source_;
+  const bool notes_;
+  Config* const config_;
+  std::set<std::string_view> seen_;
+};
+
+void ApplyObject(const json& object, const std::string& source, bool notes, Config* config) {
+  if (!object.is_object()) throw UsageError("{}: expected one JSON object of keys", source);
+  KeyApplication(source, notes, config).ApplySection(object, "");
 }
 
 // The value of an assignment: JSON where it is JSON, else the text itself, so that
@@ -256,8 +166,11 @@ nlohmann::ordered_json KeysToJson(const Config& config, bool (*wanted)(std::stri
 }  // namespace
 
 void ApplyJson(const json& object, const std::string& source, Config* config) {
-  if (!object.is_object()) throw UsageError("{}: expected one JSON object of keys", source);
-  ApplySection(object, "", source, config);
+  ApplyObject(object, source, /*notes=*/true, config);
+}
+
+void ApplyStoredJson(const json& object, const std::string& source, Config* config) {
+  ApplyObject(object, source, /*notes=*/false, config);
 }
 
 void ApplyFile(const std::string& path, Config* config) {
@@ -267,14 +180,16 @@ void ApplyFile(const std::string& path, Config* config) {
     object.erase("$schema");
   }
   // A run's config.json may be used as a configuration; what describes the run is not a key.
-  if (object.is_object() && object.contains("schema") && object["schema"] == kConfigSchema) {
+  const bool of_a_run =
+      object.is_object() && object.contains("schema") && object["schema"] == kConfigSchema;
+  if (of_a_run) {
     for (const char* name : {"schema", "spec", "spec_hash", "config_hash"}) object.erase(name);
   }
-  ApplyJson(object, path, config);
+  ApplyObject(object, path, /*notes=*/!of_a_run, config);
 }
 
 void ApplyAssignments(const std::vector<std::string>& assignments, Config* config) {
-  std::set<std::string> seen;
+  KeyApplication application("--set", /*notes=*/true, config);
   for (const std::string& assignment : assignments) {
     if (!IsUtf8(assignment)) {
       throw UsageError("--set {}: expected text in UTF-8", Quoted(assignment));
@@ -289,7 +204,7 @@ void ApplyAssignments(const std::vector<std::string>& assignments, Config* confi
       throw UsageError("--set {}: '{}' is a section; set one of its keys", assignment, path);
     }
     if (key == nullptr) RefuseUnknown(path, "--set");
-    if (!seen.insert(path).second) throw UsageError("--set: key '{}' given twice", path);
+    application.Take(*key, path);
     Assign(*key, AssignedValue(*key, assignment.substr(equals + 1)), "--set", config);
   }
 }

@@ -19,8 +19,12 @@ namespace shoal {
 // refused. `source` names the text in errors.
 nlohmann::json ParseStrictJson(std::string_view text, const std::string& source);
 
-// Applies a (nested) JSON object of keys over `config`. `source` names it in errors.
+// Applies a (nested) JSON object of keys over `config`. `source` names it in errors. A former name
+// of a key is taken, with a note on stderr (former_keys.h); both names of one key are refused.
 void ApplyJson(const nlohmann::json& object, const std::string& source, Config* config);
+
+// Does the same without the note, for JSON that Shoal itself has written.
+void ApplyStoredJson(const nlohmann::json& object, const std::string& source, Config* config);
 
 // ApplyJson of a file's content. A run's config.json is accepted too: its spec and hashes are
 // skipped.

@@ -185,8 +185,6 @@ std::vector<Key> LearnerKeys() {
                  "learning rate of the actor; 0 = learner.learning_rate"),
       SHOAL_SAME(learner.critic_learning_rate, (RealRange{0, 1}),
                  "learning rate of critic and encoder; 0 = learner.learning_rate"),
-      SHOAL_SAME(learner.temperature_learning_rate, (RealRange{0, 1}),
-                 "learning rate of the temperature; 0 = learner.learning_rate"),
       SHOAL_SAME(learner.rate_factor, (RealRange{0, 1}),
                  "factor on all learning rates, over the run's env steps"),
       SHOAL_SAME(learner.max_grad_norm, (RealRange{0, 1e6}),
@@ -205,18 +203,6 @@ std::vector<Key> LearnerKeys() {
           learner.mean_penalty, (RealRange{0, 1e6}),
           "td3, ddpg: weight, in the actor's loss, of the mean square of the policy's outputs "
           "before tanh; it keeps actions from saturating for good"),
-      SHOAL_SAME(learner.initial_temperature, (RealRange{0, 100, true}),
-                 "entropy temperature at the start"),
-      SHOAL_SAME(learner.temperature, (Choices{{"auto", "fixed"}}),
-                 "auto = adapted to the target entropy; fixed = stays learner.initial_temperature"),
-      SHOAL_SAME(learner.min_temperature, (RealRange{0, 100}),
-                 "lower bound of an automatic temperature"),
-      SHOAL_SAME(learner.target_entropy, (RealRange{-1000, 1000}),
-                 "target entropy of an automatic temperature, in nats; 0 = "
-                 "learner.target_entropy_per_action times the action size"),
-      SHOAL_SAME(learner.target_entropy_per_action, (RealRange{-100, 100}),
-                 "target entropy per action dimension, in nats, unless learner.target_entropy is "
-                 "set; 0 aims at 0 nats"),
       SHOAL_SAME(learner.normalise_vectors, AnyValue{},
                  "scale vectors by their running mean and deviation, which are stored with the "
                  "policy; clipped at 10"),
@@ -225,21 +211,40 @@ std::vector<Key> LearnerKeys() {
                  "hardly vary are not magnified; 1e-4 = deviations of at least 0.01"),
       SHOAL_SAME(learner.bounded_targets, AnyValue{},
                  "clip target values to the range that rewards of -1 and 0 allow"),
-      SHOAL_SAME(
-          learner.critic_blocks, AnyValue{},
-          "sac: the critic sees these recorded blocks in place of pixels, beside the vectors "
-          "that the policy sees: true (all), false (it sees the pixels) or their names"),
-      SHOAL_SAME(
-          learner.aux, AnyValue{},
-          "sac: quantities that the encoder's features are also trained to predict: recorded "
-          "blocks or differences of two, as \"object\" or \"object-grip\"; [] = none"),
-      SHOAL_SAME(learner.aux_weight, (RealRange{0, 1e6, true}),
-                 "weight of the auxiliary loss (learner.aux)"),
       SHOAL_SAME(learner.weights_period, (IntegerRange{1, 1'000'000}),
                  "updates between weights broadcasts"),
       SHOAL_SAME(learner.request_credits, (IntegerRange{1, 64}), "batches requested ahead"),
       SHOAL_SAME(learner.checkpoint_period, (IntegerRange{1, 1'000'000'000}),
                  "updates between checkpoints"),
+  };
+}
+
+std::vector<Key> SacKeys() {
+  return {
+      SHOAL_KEY("sac.temperature", learner.temperature, (Rule{Choices{{"auto", "fixed"}}}),
+                "auto = adapted to the target entropy; fixed = stays sac.initial_temperature"),
+      SHOAL_KEY("sac.initial_temperature", learner.initial_temperature,
+                (Rule{RealRange{0, 100, true}}), "entropy temperature at the start"),
+      SHOAL_KEY("sac.min_temperature", learner.min_temperature, (Rule{RealRange{0, 100}}),
+                "lower bound of an automatic temperature"),
+      SHOAL_KEY("sac.temperature_learning_rate", learner.temperature_learning_rate,
+                (Rule{RealRange{0, 1}}),
+                "learning rate of the temperature; 0 = learner.learning_rate"),
+      SHOAL_KEY("sac.target_entropy", learner.target_entropy, (Rule{RealRange{-1000, 1000}}),
+                "target entropy of an automatic temperature, in nats; 0 = "
+                "sac.target_entropy_per_action times the action size"),
+      SHOAL_KEY("sac.target_entropy_per_action", learner.target_entropy_per_action,
+                (Rule{RealRange{-100, 100}}),
+                "target entropy per action dimension, in nats, unless sac.target_entropy is "
+                "set; 0 aims at 0 nats"),
+      SHOAL_KEY("sac.critic_blocks", learner.critic_blocks, (Rule{AnyValue{}}),
+                "the critic sees these recorded blocks in place of pixels, beside the vectors "
+                "that the policy sees: true (all), false (it sees the pixels) or their names"),
+      SHOAL_KEY("sac.aux", learner.aux, (Rule{AnyValue{}}),
+                "quantities that the encoder's features are also trained to predict: recorded "
+                "blocks or differences of two, as \"object\" or \"object-grip\"; [] = none"),
+      SHOAL_KEY("sac.aux_weight", learner.aux_weight, (Rule{RealRange{0, 1e6, true}}),
+                "weight of the auxiliary loss (sac.aux)"),
   };
 }
 
@@ -381,9 +386,9 @@ std::vector<Key> TransportKeys() {
 
 std::vector<Key> AllKeys() {
   std::vector<Key> all;
-  for (const auto& section :
-       {RunKeys(), EnvKeys(), ObservationKeys(), RandomizationKeys(), ReplayKeys(), LearnerKeys(),
-        PpoKeys(), Td3Keys(), ExplorationKeys(), NetworkKeys(), EvalKeys(), TransportKeys()}) {
+  for (const auto& section : {RunKeys(), EnvKeys(), ObservationKeys(), RandomizationKeys(),
+                              ReplayKeys(), LearnerKeys(), SacKeys(), PpoKeys(), Td3Keys(),
+                              ExplorationKeys(), NetworkKeys(), EvalKeys(), TransportKeys()}) {
     all.insert(all.end(), section.begin(), section.end());
   }
   return all;

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "common/config/config_keys.h"
+#include "common/config/former_keys.h"
 
 namespace shoal {
 namespace {
@@ -48,15 +49,15 @@ const std::vector<Names>& Table() {
       {"learner.learning_rate", {"lr"}},
       {"learner.actor_learning_rate", {"actor_lr", "policy_lr"}},
       {"learner.critic_learning_rate", {"critic_lr", "q_lr"}},
-      {"learner.temperature_learning_rate", {"alpha_lr"}},
+      {"sac.temperature_learning_rate", {"alpha_lr"}},
       {"learner.discount", {"gamma", "discount_factor"}},
       {"learner.actor_period", {"policy_delay", "policy_frequency", "actor_update_freq"}},
       {"learner.target_period",
        {"target_update_interval", "target_network_frequency", "critic_target_update_freq"}},
-      {"learner.initial_temperature",
+      {"sac.initial_temperature",
        {"ent_coef", "alpha", "entropy_coef"},
-       "with learner.temperature = auto or fixed; on policy it is ppo.entropy_weight"},
-      {"learner.initial_temperature", {"init_temperature", "init_alpha"}},
+       "with sac.temperature = auto or fixed; on policy it is ppo.entropy_weight"},
+      {"sac.initial_temperature", {"init_temperature", "init_alpha"}},
       {"learner.normalise_vectors",
        {"normalize", "normalise", "norm_obs", "normalize_observations"}},
       {"learner.checkpoint_period",
@@ -120,6 +121,8 @@ std::string_view OwnKey(const std::string& word) {
 
 MeantKey FindMeantKey(std::string_view word) {
   const std::string text = Normalised(word);
+  // Applying the key notes its former name.
+  if (PresentName(text) != text) return {.key = text, .note = "", .same = true};
   if (const std::string_view own = OwnKey(text); !own.empty()) {
     return {.key = std::string(own), .note = "", .same = true};
   }

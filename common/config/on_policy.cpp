@@ -23,22 +23,13 @@ constexpr std::string_view kOffPolicyKeys[] = {"replay.",
                                                "lockstep_steps",
                                                "learner.actor_learning_rate",
                                                "learner.critic_learning_rate",
-                                               "learner.temperature_learning_rate",
                                                "learner.reward_scale",
                                                "learner.tau",
                                                "learner.average_rate",
                                                "learner.actor_period",
                                                "learner.target_period",
                                                "learner.mean_penalty",
-                                               "learner.initial_temperature",
-                                               "learner.temperature",
-                                               "learner.min_temperature",
-                                               "learner.target_entropy",
-                                               "learner.target_entropy_per_action",
                                                "learner.bounded_targets",
-                                               "learner.critic_blocks",
-                                               "learner.aux",
-                                               "learner.aux_weight",
                                                "learner.weights_period",
                                                "learner.request_credits",
                                                "network.log_std",
@@ -82,9 +73,10 @@ void RefuseOffPolicyKeys(const Config& config) {
 }
 
 void RefuseKeysOfOthers(const Config& config) {
+  const std::string_view own = AlgorithmKindOf(config).own_section;
   const ordered_json asked = ToJson(config), usual = ToJson(Config());
   for (const AlgorithmKind& other : AlgorithmKinds()) {
-    if (other.own_section.empty() || other.name == config.learner.algorithm) continue;
+    if (other.own_section.empty() || other.own_section == own) continue;
     const std::string key = FirstChanged(other.own_section, asked, usual);
     if (key.empty()) continue;
     throw UsageError("{} belongs to learner.algorithm = {}: expected not to be set beside {}", key,

@@ -32,7 +32,7 @@ int SizeOf(const char* key, const std::string& block, const ObservationSpec& spe
 }
 
 std::vector<std::string> CriticBlocks(const StateBlocks& asked, const ObservationSpec& spec) {
-  for (const std::string& name : asked.names) SizeOf("learner.critic_blocks", name, spec);
+  for (const std::string& name : asked.names) SizeOf("sac.critic_blocks", name, spec);
   std::vector<std::string> critic;
   for (const BlockSpec& block : spec.blocks) {
     const bool named = asked.all || std::ranges::count(asked.names, block.name) > 0;
@@ -41,7 +41,7 @@ std::vector<std::string> CriticBlocks(const StateBlocks& asked, const Observatio
   // Without pixels and without a block more than the policy has, it would judge blindly.
   if (asked && critic.empty()) {
     throw UsageError(
-        "learner.critic_blocks: the policy of {} observes all of {}, which leaves the critic "
+        "sac.critic_blocks: the policy of {} observes all of {}, which leaves the critic "
         "nothing in place of the pixels; expected some of those that it does not observe: {}",
         spec.task,
         asked.all ? "the recorded blocks" : fmt::format("{}", fmt::join(asked.names, ", ")),
@@ -52,7 +52,7 @@ std::vector<std::string> CriticBlocks(const StateBlocks& asked, const Observatio
 
 // A block's own name may have a dash in it; only what is no block is read as a difference.
 AuxLabel LabelOf(const std::string& text, const ObservationSpec& spec) {
-  constexpr const char* kKey = "learner.aux";
+  constexpr const char* kKey = "sac.aux";
   const size_t dash = text.find('-');
   if (spec.Recorded(text) || dash == std::string::npos) {
     return {.block = text, .minus = "", .size = SizeOf(kKey, text, spec)};
@@ -75,7 +75,7 @@ PrivilegedBlocks PrivilegedBlocksOf(const LearnerConfig& learner, const Observat
   if (learner.critic_blocks && spec.goal_picture &&
       std::ranges::count(blocks.critic, "desired_goal") == 0) {
     throw UsageError(
-        "learner.critic_blocks with observation.goal_mode = image: a critic without pixels would "
+        "sac.critic_blocks with observation.goal_mode = image: a critic without pixels would "
         "not see the goal; expected 'desired_goal' among them");
   }
   std::set<std::string> wanted(blocks.critic.begin(), blocks.critic.end());

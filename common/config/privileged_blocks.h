@@ -2,9 +2,9 @@
 // Privileged inputs: blocks of the record that learning uses and that are no part of the policy's
 // observation.
 //
-//   learner.critic_blocks   an asymmetric critic sees them in place of the pixels (Eq. 26 of
+//   sac.critic_blocks   an asymmetric critic sees them in place of the pixels (Eq. 26 of
 //                           docs/algorithm.md)
-//   learner.aux             labels of the auxiliary loss (Eq. 27)
+//   sac.aux             labels of the auxiliary loss (Eq. 27)
 //
 // Source: Pinto et al. 2018, "Asymmetric actor critic for image-based robot learning",
 // arXiv:1710.06542.
@@ -26,8 +26,8 @@ struct AuxLabel {
 };
 
 struct PrivilegedBlocks {
-  std::vector<std::string> critic;  // of learner.critic_blocks, those the policy does not see
-  std::vector<AuxLabel> labels;     // of learner.aux
+  std::vector<std::string> critic;  // of sac.critic_blocks, those the policy does not see
+  std::vector<AuxLabel> labels;     // of sac.aux
   // Both together, in record order, each once: what batches carry (BatchOptions::privileged).
   std::vector<std::string> all;
 };

@@ -100,24 +100,24 @@ void ValidateExploration(const Config& config) {
   }
 }
 
-// The keys of a policy with a deviation, and of its entropy.
+// The keys of a policy with a deviation and of its entropy. Algorithms without section sac have its
+// defaults here.
 void ValidateEntropy(const Config& config) {
   const Config usual;
   const LearnerConfig &learner = config.learner, &none = usual.learner;
   if (learner.temperature == "fixed" && learner.min_temperature > 0) {
-    throw UsageError("learner.min_temperature = {} with learner.temperature = fixed: expected 0",
+    throw UsageError("sac.min_temperature = {} with sac.temperature = fixed: expected 0",
                      learner.min_temperature);
   }
   if (learner.min_temperature > learner.initial_temperature) {
-    throw UsageError(
-        "learner.min_temperature = {}: expected at most learner.initial_temperature = {}",
-        learner.min_temperature, learner.initial_temperature);
+    throw UsageError("sac.min_temperature = {}: expected at most sac.initial_temperature = {}",
+                     learner.min_temperature, learner.initial_temperature);
   }
   const bool per_action = learner.target_entropy_per_action != none.target_entropy_per_action;
   if (learner.target_entropy != none.target_entropy && per_action) {
     throw UsageError(
-        "learner.target_entropy = {}, learner.target_entropy_per_action = {}: both say what the "
-        "temperature aims at; expected one of them unset",
+        "sac.target_entropy = {}, sac.target_entropy_per_action = {}: both set the target of the "
+        "temperature; expected one of them unset",
         learner.target_entropy, learner.target_entropy_per_action);
   }
   if (LearnsDeviation(config) && learner.mean_penalty > 0) {
@@ -126,21 +126,10 @@ void ValidateEntropy(const Config& config) {
         "learner.algorithm = {} is a Gaussian; expected 0",
         learner.mean_penalty, learner.algorithm);
   }
-  if (LearnsDeviation(config)) return;
-  const std::pair<const char*, bool> keys[] = {
-      {"learner.temperature", learner.temperature != none.temperature},
-      {"learner.initial_temperature", learner.initial_temperature != none.initial_temperature},
-      {"learner.min_temperature", learner.min_temperature != none.min_temperature},
-      {"learner.target_entropy", learner.target_entropy != none.target_entropy},
-      {"learner.target_entropy_per_action", per_action},
-      {"learner.temperature_learning_rate",
-       learner.temperature_learning_rate != none.temperature_learning_rate},
-      {"network.log_std", config.network.log_std != usual.network.log_std}};
-  for (const auto& [key, is_set] : keys) {
-    if (is_set) {
-      throw UsageError("{}: the policy of learner.algorithm = {} has no entropy; expected it unset",
-                       key, learner.algorithm);
-    }
+  if (!LearnsDeviation(config) && config.network.log_std != usual.network.log_std) {
+    throw UsageError(
+        "network.log_std: the policy of learner.algorithm = {} has no deviation; expected it unset",
+        learner.algorithm);
   }
 }
 
@@ -178,27 +167,15 @@ void ValidateEncoders(const Config& config) {
 // Privileged inputs. PrivilegedBlocksOf checks whether the task records them.
 void ValidatePrivileged(const Config& config) {
   const LearnerConfig& learner = config.learner;
-  const char* key = learner.critic_blocks                               ? "learner.critic_blocks"
-                    : !learner.aux.empty()                              ? "learner.aux"
-                    : learner.aux_weight != Config().learner.aux_weight ? "learner.aux_weight"
-                                                                        : nullptr;
-  if (key == nullptr) return;
-  if (!AlgorithmKindOf(config).privileged) {
-    throw UsageError("{}: learner.algorithm = {} does not take it; expected it unset, or {}", key,
-                     learner.algorithm,
-                     AlgorithmsThat([](const auto& kind) { return kind.privileged; }));
-  }
   if (!learner.aux.empty() && !config.observation.pixels) {
-    throw UsageError(
-        "learner.aux: nothing is encoded without observation.pixels; expected it unset");
+    throw UsageError("sac.aux: nothing is encoded without observation.pixels; expected it unset");
   }
   if (learner.aux.empty() && learner.aux_weight != Config().learner.aux_weight) {
-    throw UsageError("learner.aux_weight = {}: expected it unset without learner.aux",
-                     learner.aux_weight);
+    throw UsageError("sac.aux_weight = {}: expected it unset without sac.aux", learner.aux_weight);
   }
   if (!learner.critic_blocks) return;
   if (config.network.encoders == "separate" || config.network.target_encoder) {
-    throw UsageError("{}: with learner.critic_blocks the critic has no encoder; expected it unset",
+    throw UsageError("{}: with sac.critic_blocks the critic has no encoder; expected it unset",
                      config.network.target_encoder ? "network.target_encoder" : "network.encoders");
   }
 }

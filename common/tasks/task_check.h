@@ -15,7 +15,7 @@ inline constexpr int kMostActions = 1'024;   // components of an action
 // sense.
 //
 // A block's name becomes an array of exports, a key of files and part of "BLOCK-BLOCK" in
-// learner.aux: letters, digits, underscores and dots, beginning with a letter or an underscore, not
+// sac.aux: letters, digits, underscores and dots, beginning with a letter or an underscore, not
 // ending with a dot, at most 64.
 void CheckDescription(const Task::Description& description);
 

@@ -30,7 +30,7 @@ PolicyInputs PolicyInputsOf(const ObservationSpec& spec);
 // Privileged inputs of learning (common/config/privileged_blocks.h).
 struct PrivilegedInputs {
   std::vector<std::string> critic_blocks{};  // in place of the pixels
-  std::vector<std::string> labels{};         // as learner.aux names them
+  std::vector<std::string> labels{};         // as sac.aux names them
   // By which the replay relabels goals and draws samples, where the policy has to see it in
   // pictures.
   std::vector<std::string> replay_blocks{};

@@ -348,17 +348,16 @@ INSTANTIATE_TEST_SUITE_P(
                 {"exploration.sigma", "squashed_gaussian", "exploration.kind = gaussian | ou"}},
         Refused{"ABlockThatTheCriticCannotSee",
                 "fetch-push-pixels",
-                {"learner.critic_blocks=[\"objekt\"]"},
-                {"learner.critic_blocks", "'objekt'", "expected some of: grip (3), object (3)"}},
-        Refused{
-            "ACriticThatWouldSeeNothing",
-            "fetch-push-pixels",
-            {"learner.critic_blocks=[\"grip\"]"},
-            {"learner.critic_blocks", "observes all of grip", "expected some of", "object (3)"}},
+                {"sac.critic_blocks=[\"objekt\"]"},
+                {"sac.critic_blocks", "'objekt'", "expected some of: grip (3), object (3)"}},
+        Refused{"ACriticThatWouldSeeNothing",
+                "fetch-push-pixels",
+                {"sac.critic_blocks=[\"grip\"]"},
+                {"sac.critic_blocks", "observes all of grip", "expected some of", "object (3)"}},
         Refused{"ABlockThatCannotBeTaught",
                 "fetch-push-pixels",
-                {"learner.aux=[\"object-gripp\"]"},
-                {"learner.aux", "'gripp'", "expected some of: grip (3), object (3)"}}),
+                {"sac.aux=[\"object-gripp\"]"},
+                {"sac.aux", "'gripp'", "expected some of: grip (3), object (3)"}}),
     [](const auto& test) { return test.param.name; });
 
 TEST(BadLimits, FewerOpenFilesThanARunNeedsAreNamed) {

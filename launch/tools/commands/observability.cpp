@@ -48,7 +48,7 @@ void AddObservabilityCommand(CLI::App& env, Action* chosen) {
   command->add_option("task", request->task, "Task, e.g. FetchPush")->required();
   command
       ->add_option("--tell", request->labels,
-                   "Blocks, or differences of two, as learner.aux: object-grip")
+                   "Blocks, or differences of two, as sac.aux: object-grip")
       ->required();
   command->add_option("--cameras", *sets,
                       "Sets of cameras, each as front,side; every camera and pair by default");

@@ -12,6 +12,7 @@
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/config/config_io.h"
+#include "common/config/former_keys.h"
 #include "common/config/shared_data.h"
 #include "common/tasks/task_library.h"
 #include "common/tasks/task_registry.h"
@@ -70,11 +71,20 @@ class Members {
     if (!value->is_string()) Refuse(name, *value, "a string");
     return value->get<std::string>();
   }
+  // Keys by their present names, so that definitions of several versions can be compared.
   ordered_json Keys(const std::string& name) {
     const ordered_json* value = Find(name);
-    if (value == nullptr) return ordered_json::object();
+    ordered_json keys = ordered_json::object();
+    if (value == nullptr) return keys;
     if (!value->is_object()) Refuse(name, *value, "an object {KEY: VALUE}");
-    return *value;
+    for (const auto& [key, setting] : value->items()) {
+      const std::string present(PresentName(key));
+      if (keys.contains(present)) {
+        throw UsageError("{}: {}: key '{}' given twice", source_, name, present);
+      }
+      keys[present] = setting;
+    }
+    return keys;
   }
   [[noreturn]] void Refuse(const std::string& name, const ordered_json& value,
                            const char* expected) const {
@@ -160,6 +170,13 @@ json Nested(const ordered_json& set, const std::string& source) {
   return nested;
 }
 
+// `holder` has keys as its member "set", or none.
+void NoteFormerNames(const ordered_json& holder) {
+  const auto set = holder.find("set");
+  if (set == holder.end()) return;
+  for (const auto& [key, value] : set->items()) NoteFormerName(key);
+}
+
 }  // namespace
 
 Definition ParseDefinition(const ordered_json& object, const std::string& source,
@@ -201,7 +218,11 @@ Definition ParseDefinition(const ordered_json& object, const std::string& source
 Definition ReadDefinition(const fs::path& file) {
   const std::string text = ReadFile(file);
   ParseStrictJson(text, file);  // refuses broken text and duplicate keys
-  return ParseDefinition(ParseBoundedJson<ordered_json>(text), file, file.stem());
+  const auto object = ParseBoundedJson<ordered_json>(text);
+  Definition definition = ParseDefinition(object, file, file.stem());
+  NoteFormerNames(object);
+  for (const ordered_json& arm : object.at("arms")) NoteFormerNames(arm);
+  return definition;
 }
 
 ordered_json ToJson(const Definition& definition) {

@@ -178,7 +178,7 @@ StoredExperiment ReadExperiment(const fs::path& folder) {
   }
   StoredExperiment experiment{.folder = fs::weakly_canonical(folder)};
   experiment.definition = ParseDefinition(object["definition"], path, "");
-  ApplyJson(nlohmann::json(object["base"]), path, &experiment.base);
+  ApplyStoredJson(nlohmann::json(object["base"]), path, &experiment.base);
   if (object.contains("created") && object["created"].is_string()) {
     experiment.created = object["created"].get<std::string>();
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // How well a network of a run's kind tells numbers from frames: an encoder, a trunk and linear
-// functions of it, as learner.aux trains them, by Adam on the mean square; each frame shifted anew.
+// functions of it, as sac.aux trains them, by Adam on the mean square; each frame shifted anew.
 #pragma once
 
 #include <functional>

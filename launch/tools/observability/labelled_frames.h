@@ -26,7 +26,7 @@ struct LabelledFrames {
 };
 
 // `samples` frames of config.task through config.observation's cameras, at the start of episodes
-// and during their first steps of uniform random actions; the labels are those of learner.aux, each
+// and during their first steps of uniform random actions; the labels are those of sac.aux, each
 // as PrivilegedBlocksOf reads it. Throws Error: unknown task, camera or block.
 LabelledFrames CollectLabelledFrames(const Config& config, int samples);
 

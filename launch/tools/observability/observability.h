@@ -16,7 +16,7 @@ struct ObservabilityRequest {
   std::string task;
   // Sets of cameras that are compared; empty: each of the task's cameras alone and each pair.
   std::vector<std::vector<std::string>> cameras;
-  std::vector<std::string> labels;  // as learner.aux
+  std::vector<std::string> labels;  // as sac.aux
   bool goal_hidden = false;         // the goal's marker, as where goals are relabelled
   int width = 84, height = 84;
   std::string quality = "fast", encoder = "compact";

@@ -176,8 +176,9 @@ TEST(ToJson, ListsSectionsInTheOrderOfTheStruct) {
   for (const auto& [name, value] : object.items()) {
     if (value.is_object()) names.push_back(name);
   }
-  EXPECT_THAT(names, ElementsAre("env", "observation", "randomization", "replay", "learner", "ppo",
-                                 "td3", "exploration", "network", "eval", "stop", "transport"));
+  EXPECT_THAT(names,
+              ElementsAre("env", "observation", "randomization", "replay", "learner", "sac", "ppo",
+                          "td3", "exploration", "network", "eval", "stop", "transport"));
 }
 
 TEST(ConfigHash, ChangesWithWhatIsComputedButNotWithNameOrLength) {
@@ -261,12 +262,6 @@ TEST(Validate, RefusesWhatOnPolicyLearningHasNoUseForByName) {
   ApplyAssignments({"td3.target_noise=0.1"}, &config);
   EXPECT_THAT(UsageMessage([&] { Validate(config); }),
               HasSubstr("td3.target_noise belongs to learner.algorithm = td3"));
-}
-
-TEST(ApplyJson, TakesAKeyByItsFormerName) {
-  Config config;
-  ApplyJson(nlohmann::json::parse(R"({"ppo": {"normalise_observations": true}})"), "x", &config);
-  EXPECT_TRUE(config.learner.normalise_vectors);
 }
 
 // A run's config.json lists every key.

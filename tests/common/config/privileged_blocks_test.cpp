@@ -60,13 +60,13 @@ TEST(PrivilegedBlocks, ACriticThatWouldSeeNothingInPlaceOfThePixelsIsRefused) {
   EXPECT_EQ(UsageMessage([] {
               PrivilegedBlocksOf(Asking(StateBlocks({"desired_goal", "grip"})), PushSpec());
             }),
-            "learner.critic_blocks: the policy of FetchPush observes all of desired_goal, grip, "
+            "sac.critic_blocks: the policy of FetchPush observes all of desired_goal, grip, "
             "which leaves the critic nothing in place of the pixels; expected some of those that "
             "it does not observe: object (3), object-like (3), fingers (2)");
   ObservationSpec state = PushSpec();
   for (BlockSpec& block : state.blocks) block.observed = true;
   EXPECT_EQ(UsageMessage([&] { PrivilegedBlocksOf(Asking(true), state); }),
-            "learner.critic_blocks: the policy of FetchPush observes all of the recorded blocks, "
+            "sac.critic_blocks: the policy of FetchPush observes all of the recorded blocks, "
             "which leaves the critic nothing in place of the pixels; expected some of those that "
             "it does not observe: none");
 }
@@ -89,13 +89,13 @@ TEST(PrivilegedBlocks, OthersAreRefusedNamingThoseThereAre) {
               PrivilegedBlocksOf(Asking(StateBlocks(std::vector<std::string>{"objekt"})),
                                  PushSpec());
             }),
-            "learner.critic_blocks: FetchPush records no block 'objekt'; expected some of: grip "
+            "sac.critic_blocks: FetchPush records no block 'objekt'; expected some of: grip "
             "(3), object (3), object-like (3), fingers (2), desired_goal (3)");
   EXPECT_EQ(UsageMessage([] { PrivilegedBlocksOf(Asking(false, {"object-gripp"}), PushSpec()); }),
-            "learner.aux: FetchPush records no block 'gripp'; expected some of: grip (3), object "
+            "sac.aux: FetchPush records no block 'gripp'; expected some of: grip (3), object "
             "(3), object-like (3), fingers (2), desired_goal (3)");
   EXPECT_EQ(UsageMessage([] { PrivilegedBlocksOf(Asking(false, {"object-fingers"}), PushSpec()); }),
-            "learner.aux: 'object-fingers' is of 3 and 2 numbers, expected two blocks of one size");
+            "sac.aux: 'object-fingers' is of 3 and 2 numbers, expected two blocks of one size");
 }
 
 TEST(PrivilegedBlocks, TravelInBatchesAndChangeTheirHash) {

@@ -85,7 +85,7 @@ TEST(Validate, NoiseThatTheExplorationDoesNotAddIsRefused) {
   }
 }
 
-TEST(Validate, APolicyWithoutEntropyTakesNoKeysOfIt) {
+TEST(Validate, APolicyWithoutDeviationTakesNoKeysOfIt) {
   for (const char* algorithm : {"td3", "ddpg"}) {
     const auto refusal = [&](const std::function<void(Config*)>& change) {
       return Refusal([&](Config* config) {
@@ -95,17 +95,17 @@ TEST(Validate, APolicyWithoutEntropyTakesNoKeysOfIt) {
     };
     EXPECT_EQ(refusal([](Config*) {}), "");
     EXPECT_THAT(refusal([](Config* c) { c->learner.initial_temperature = 1; }),
-                HasSubstr("learner.initial_temperature: the policy of learner.algorithm = "));
+                HasSubstr("sac.initial_temperature belongs to learner.algorithm = sac"));
     EXPECT_THAT(refusal([](Config* c) { c->learner.target_entropy = -1; }),
-                HasSubstr("learner.target_entropy"));
+                HasSubstr("sac.target_entropy"));
     EXPECT_THAT(refusal([](Config* c) { c->learner.target_entropy_per_action = 0; }),
-                HasSubstr("learner.target_entropy_per_action"));
+                HasSubstr("sac.target_entropy_per_action"));
     EXPECT_THAT(refusal([](Config* c) { c->learner.temperature = "fixed"; }),
-                HasSubstr("learner.temperature:"));
+                HasSubstr("sac.temperature belongs"));
     EXPECT_THAT(refusal([](Config* c) { c->learner.temperature_learning_rate = 1e-3; }),
-                HasSubstr("learner.temperature_learning_rate"));
+                HasSubstr("sac.temperature_learning_rate"));
     EXPECT_THAT(refusal([](Config* c) { c->network.log_std = "clamped"; }),
-                HasSubstr("network.log_std"));
+                HasSubstr("network.log_std: the policy of learner.algorithm = "));
   }
   EXPECT_EQ(Refusal([](Config* c) { c->learner.initial_temperature = 1; }), "");
 }
@@ -124,12 +124,12 @@ TEST(Validate, OnlyADeterministicPolicyTakesAPenaltyOfItsMean) {
 TEST(Validate, ATemperaturesFloorIsBelowItsStartAndOfOneThatMoves) {
   EXPECT_EQ(Refusal([](Config* c) { c->learner.min_temperature = 0.01; }), "");
   EXPECT_THAT(Refusal([](Config* c) { c->learner.min_temperature = 0.2; }),
-              HasSubstr("learner.min_temperature = 0.2: expected at most"));
+              HasSubstr("sac.min_temperature = 0.2: expected at most"));
   EXPECT_THAT(Refusal([](Config* c) {
                 c->learner.min_temperature = 0.01;
                 c->learner.temperature = "fixed";
               }),
-              HasSubstr("learner.temperature = fixed"));
+              HasSubstr("sac.temperature = fixed"));
 }
 
 TEST(Validate, TheTargetEntropyIsSetInOneWay) {
@@ -139,7 +139,7 @@ TEST(Validate, TheTargetEntropyIsSetInOneWay) {
                 c->learner.target_entropy = -3;
                 c->learner.target_entropy_per_action = 0;
               }),
-              HasSubstr("learner.target_entropy = -3, learner.target_entropy_per_action = 0: "));
+              HasSubstr("sac.target_entropy = -3, sac.target_entropy_per_action = 0: "));
 }
 
 TEST(Validate, KeysOfWhatIsOffAreRefused) {
@@ -192,31 +192,31 @@ TEST(Validate, PrivilegedInputsAreOfSac) {
                   asymmetric(c);
                   c->learner.algorithm = algorithm;
                 }),
-                HasSubstr("learner.critic_blocks: learner.algorithm = "));
+                HasSubstr("sac.critic_blocks belongs to learner.algorithm = sac: expected not"));
   }
   EXPECT_THAT(Refusal([](Config* c) {
                 c->learner.algorithm = "ppo";
                 c->learner.aux = {"object"};
               }),
-              HasSubstr("learner.aux"));
+              HasSubstr("sac.aux"));
   EXPECT_THAT(Refusal([&](Config* c) {
                 asymmetric(c);
                 c->network.encoders = "separate";
               }),
-              HasSubstr("network.encoders: with learner.critic_blocks the critic has no encoder"));
+              HasSubstr("network.encoders: with sac.critic_blocks the critic has no encoder"));
   EXPECT_THAT(Refusal([&](Config* c) {
                 asymmetric(c);
                 c->network.target_encoder = true;
               }),
-              HasSubstr("network.target_encoder: with learner.critic_blocks"));
+              HasSubstr("network.target_encoder: with sac.critic_blocks"));
   EXPECT_THAT(Refusal([&](Config* c) {
                 asymmetric(c);
                 c->observation.pixels = false;
                 c->observation.proprioception = true;
               }),
-              HasSubstr("learner.aux: nothing is encoded without observation.pixels"));
+              HasSubstr("sac.aux: nothing is encoded without observation.pixels"));
   EXPECT_THAT(Refusal([](Config* c) { c->learner.aux_weight = 2; }),
-              HasSubstr("learner.aux_weight = 2: expected it unset without learner.aux"));
+              HasSubstr("sac.aux_weight = 2: expected it unset without sac.aux"));
 }
 
 }  // namespace

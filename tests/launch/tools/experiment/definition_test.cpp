@@ -67,6 +67,29 @@ TEST(Definition, SurvivesItsOwnJson) {
   EXPECT_EQ(definition.name, "named");
 }
 
+// An experiment that an earlier version began goes on with the definition of the present one.
+TEST(Definition, FormerNamesOfKeysAreReadAsThePresentOnes) {
+  ordered_json former = Valid(), present = Valid();
+  former["set"] = {{"learner.initial_temperature", 0.5}};
+  present["set"] = {{"sac.initial_temperature", 0.5}};
+  former["arms"][1]["set"] = {{"learner.temperature", "fixed"}};
+  present["arms"][1]["set"] = {{"sac.temperature", "fixed"}};
+  const Definition definition = ParseDefinition(former, "x.json", "x");
+  EXPECT_EQ(ToJson(definition), ToJson(ParseDefinition(present, "x.json", "x")));
+  EXPECT_EQ(Refusal(former), "");
+
+  const TemporaryFolder folder;
+  WriteFileAtomically(folder.path() / "x.json", former.dump());
+  testing::internal::CaptureStderr();
+  ReadDefinition(folder.path() / "x.json");
+  EXPECT_THAT(testing::internal::GetCapturedStderr(),
+              AllOf(HasSubstr("learner.initial_temperature is called sac.initial_temperature"),
+                    HasSubstr("learner.temperature is called sac.temperature")));
+
+  former["set"]["sac.initial_temperature"] = 1;
+  EXPECT_THAT(Refusal(former), HasSubstr("key 'sac.initial_temperature' given twice"));
+}
+
 TEST(Definition, MistakesAreRefusedByName) {
   EXPECT_EQ(Refusal(Valid()), "");
   struct Case {

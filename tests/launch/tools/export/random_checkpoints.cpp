@@ -6,7 +6,7 @@
 // usage: random-checkpoints FOLDER [TEXT]
 //   FOLDER/ALGORITHM-ENCODER/checkpoints/step_N; ENCODER "state" without pixels, "sb3" of networks
 //   that Stable-Baselines3 has: nature alone of pixels, "sb3-state" of vectors. Of SAC also
-//   "asymmetric" (a critic of blocks), "taught" (learner.aux) and "separate" (an encoder of the
+//   "asymmetric" (a critic of blocks), "taught" (sac.aux) and "separate" (an encoder of the
 //   actor's own). With TEXT those alone whose ALGORITHM-ENCODER has it.
 #include <fmt/core.h>
 

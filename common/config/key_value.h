@@ -1,0 +1,15 @@
+// SPDX-License-Identifier: Apache-2.0
+// A key's value from JSON. Internal to common/config.
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+
+#include "common/config/config_keys.h"
+
+namespace shoal::internal {
+
+// Sets the key's member. Returns false, and changes nothing, if the value has another type, does
+// not fit the member or breaks the key's rule.
+bool AssignValue(const Key& key, const nlohmann::json& value, Config* config);
+
+}  // namespace shoal::internal
