@@ -42,17 +42,12 @@ tasks::Task TaskOf(const RunConfig& run) {
   return tasks::FindTask(run.spec.task, run.config.distance_threshold);
 }
 
-void CheckHindsight(const RunConfig& run) {
+namespace {
+
+// The task has goals, and rewards that can be computed for another goal.
+void CheckTask(const RunConfig& run, const tasks::Task& task) {
   const Config& config = run.config;
   const std::string& kind = config.replay.hindsight;
-  if (kind == "none" && config.replay.movement_share > 0) {
-    throw UsageError(
-        "replay.movement_share = {} with replay.hindsight = none: how far something still moves is "
-        "known of whole episodes; expected future, final or episode, or a share of 0",
-        config.replay.movement_share);
-  }
-  if (kind == "none") return;
-  const tasks::Task& task = tasks::FindTask(run.spec.task);
   if (task.goal_size() == 0) {
     const std::string& why = task.no_goals();
     throw UsageError("replay.hindsight = {}: task {} has no goals{}{}; expected none", kind,
@@ -78,18 +73,24 @@ void CheckHindsight(const RunConfig& run) {
         "goal; expected desired, both or image",
         kind, config.observation.goal_mode);
   }
-  const int64_t steps = task.EnvStepsPerEpisode(repeat);
+}
+
+// The ring holds enough ended episodes for the first batch, beside those under way.
+void CheckCapacity(const RunConfig& run, const tasks::Task& task) {
+  const Config& config = run.config;
+  const std::string& kind = config.replay.hindsight;
+  const int64_t steps = task.EnvStepsPerEpisode(task.ActionRepeat(config.action_repeat));
   const int64_t usable = steps - (config.replay.n_step - 1);  // first steps of n within an episode
   if (usable <= 0) {
     throw UsageError("replay.n_step = {}: an episode of {} has {} steps; expected at most that",
                      config.replay.n_step, task.name(), steps);
   }
-  // Ended episodes enough, and two of every environment: one that just ended, one under way.
+  // Two episodes of every environment are not usable: one that just ended, one under way.
   const int64_t envs = int64_t{config.envs_per_actor} * std::max(1, config.actors);
   const int64_t beside = run.spec.goal_picture ? 2 : 1;  // records of an episode that are no steps
   const int64_t ended = (config.replay.min_size + usable - 1) / usable;
   int64_t sample_records = ended * (steps + beside);
-  // At worst each of them succeeds with its first step.
+  // In the worst case each episode succeeds with its first step.
   if (config.end_on_success) {
     sample_records = std::max(sample_records, config.replay.min_size * (1 + beside));
   }
@@ -107,6 +108,22 @@ void CheckHindsight(const RunConfig& run) {
         "so actor and learner would wait for each other; expected at least {}",
         kind, config.replay.min_size, envs * steps);
   }
+}
+
+}  // namespace
+
+void CheckHindsight(const RunConfig& run) {
+  const ReplayConfig& replay = run.config.replay;
+  if (replay.hindsight == "none") {
+    if (replay.movement_share == 0) return;
+    throw UsageError(
+        "replay.movement_share = {} with replay.hindsight = none: how far something still moves is "
+        "known of whole episodes; expected future, final or episode, or a share of 0",
+        replay.movement_share);
+  }
+  const tasks::Task& task = tasks::FindTask(run.spec.task);
+  CheckTask(run, task);
+  CheckCapacity(run, task);
 }
 
 }  // namespace shoal::replay

@@ -164,7 +164,8 @@ void Run(const std::string& body) {
   if (dds::ParseCdr(cdr, &message)) Use(message);
 }
 
-constexpr void (*kMessages[])(const std::string&) = {
+using MessageReader = void (*)(const std::string& body);
+constexpr MessageReader kMessages[] = {
     Run<CreditsMessage>, Run<SampleRequest>,   Run<MetricsMessage>, Run<ControlMessage>,
     Run<EvalMessage>,    Run<RunViewMessage>,  Run<CommandMessage>, Run<ReplyMessage>,
     Run<ReplayProgress>, Run<LearnerProgress>, Run<BatchSlot>};

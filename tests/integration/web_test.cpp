@@ -39,20 +39,9 @@ json WaitForAnswer(const PageClient& page, const std::string& path, Done done) {
   return {};
 }
 
-TEST(Web, ThePageShowsWhatTopShowsAndSteers) {
-  const TrainingRun run;
-  RunningTraining training(run, run.Command(kLong));
-  ASSERT_TRUE(WaitForView(run, [](const json& view) {
-                const json learner = ProcessOf(view, "learner");
-                return learner.is_object() && learner.value("updates", 0.0) > 50;
-              }).is_object());
-  launch::WebServer server({.run = "",
-                            .run_dir = run.parent().string(),
-                            .secure = "",
-                            .listen = {.address = "127.0.0.1", .port = 0}});
-  const PageClient page(server.port(), server.token());
-
-  // Views of the same moment are equal to the letter. Both are asked for until a moment is common.
+// The page's view and the one of `shoal top`, of the same moment, are equal to the letter. Asks for
+// both until they have a moment in common.
+void ExpectTheViewOfTop(const PageClient& page, const TrainingRun& run) {
   std::map<double, json> seen;
   json equal, top;
   for (int i = 0; i < 50 && equal.is_null(); ++i) {
@@ -69,6 +58,22 @@ TEST(Web, ThePageShowsWhatTopShowsAndSteers) {
   ASSERT_FALSE(equal.is_null()) << "no moment that both showed";
   EXPECT_EQ(equal, top);
   EXPECT_TRUE(ProcessOf(equal, "actor").is_object());
+}
+
+TEST(Web, ThePageShowsWhatTopShowsAndSteers) {
+  const TrainingRun run;
+  RunningTraining training(run, run.Command(kLong));
+  ASSERT_TRUE(WaitForView(run, [](const json& view) {
+                const json learner = ProcessOf(view, "learner");
+                return learner.is_object() && learner.value("updates", 0.0) > 50;
+              }).is_object());
+  launch::WebServer server({.run = "",
+                            .run_dir = run.parent().string(),
+                            .secure = "",
+                            .listen = {.address = "127.0.0.1", .port = 0}});
+  const PageClient page(server.port(), server.token());
+
+  ExpectTheViewOfTop(page, run);
 
   const json curves = WaitForAnswer(page, "/api/runs/run/curves", [](const json& answer) {
     return answer.dump().find("evaluations") != std::string::npos;

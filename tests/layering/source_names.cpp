@@ -5,12 +5,10 @@
 #include <cctype>
 
 #include "tests/layering/source_tokens.h"
+#include "tests/layering/token_groups.h"
 
 namespace shoal {
 namespace {
-
-bool IsOpening(std::string_view text) { return text == "(" || text == "[" || text == "{"; }
-bool IsClosing(std::string_view text) { return text == ")" || text == "]" || text == "}"; }
 
 bool IsMacroLike(std::string_view text) {
   return text.size() > 2 && std::ranges::all_of(text, [](unsigned char c) {
@@ -25,31 +23,6 @@ std::string Joined(const std::vector<SourceToken>& tokens, size_t begin, size_t 
     text += tokens[i].text;
   }
   return text;
-}
-
-// Index behind the bracket that closes the one at `begin`.
-size_t BehindGroup(const std::vector<SourceToken>& tokens, size_t begin) {
-  int depth = 0;
-  for (size_t i = begin; i < tokens.size(); ++i) {
-    if (IsOpening(tokens[i].text)) ++depth;
-    if (IsClosing(tokens[i].text) && --depth == 0) return i + 1;
-  }
-  return tokens.size();
-}
-
-// Index behind the `>` of the `<` at `begin`.
-size_t BehindAngles(const std::vector<SourceToken>& tokens, size_t begin) {
-  int depth = 0;
-  for (size_t i = begin; i < tokens.size(); ++i) {
-    if (IsOpening(tokens[i].text)) {
-      i = BehindGroup(tokens, i) - 1;
-    } else if (tokens[i].text == "<") {
-      ++depth;
-    } else if (tokens[i].text == ">" && --depth == 0) {
-      return i + 1;
-    }
-  }
-  return tokens.size();
 }
 
 // Reads declarations one by one. `tokens` end where the file ends.
@@ -116,7 +89,7 @@ class Reader {
       }
       if (text == "=") has_value = true;
       if (text == "(") has_parameters = true;
-      if (!IsOpening(text)) {
+      if (!IsOpeningBracket(text)) {
         ++i;
         continue;
       }
@@ -241,7 +214,8 @@ class Reader {
         names_.back().is_internal |= is_static || (is_const && !is_function);
       }
       if (is_function) return;
-      while (i < end && Text(i) != ",") i = IsOpening(Text(i)) ? BehindGroup(tokens_, i) : i + 1;
+      while (i < end && Text(i) != ",")
+        i = IsOpeningBracket(Text(i)) ? BehindGroup(tokens_, i) : i + 1;
       while (++i < end && !stops(i)) {
       }
     }

@@ -50,10 +50,56 @@ class ChunkCheck {
   std::atomic<uint64_t> count_{0}, disorder_{0}, gaps_{0}, damaged_{0};
 };
 
-TEST(LocalExchange, ManyWritersAndReadersLoseAndMixNothing) {
-  constexpr uint32_t kActors = 4;
-  constexpr uint64_t kChunks = 250;
+constexpr uint32_t kActors = 4;
+constexpr uint64_t kChunks = 250;
+
+// An actor: sends kChunks chunks and as many reports, and counts the credits that arrive.
+void Send(LocalNetwork& network, uint32_t id, std::atomic<uint64_t>* credits) {
   constexpr size_t kBytes = 100'000;
+  const std::unique_ptr<Hub> hub = network.Join(Role::kActor);
+  Writer<TransitionChunk> chunks(*hub);
+  Writer<ActorMetrics> metrics(*hub);
+  const Reader<CreditsMessage> credit_reader(*hub, [&](const CreditsMessage&) { ++*credits; });
+  std::vector<uint8_t> payload(kBytes);
+  const SteadyTime start = Now();
+  for (uint64_t n = 1; n <= kChunks && Now() - start < kStressDeadline;) {
+    std::memset(payload.data(), static_cast<uint8_t>(n), payload.size());
+    TransitionChunk chunk;
+    chunk.actor = id;
+    chunk.first_sequence = n;
+    chunk.payload = payload;
+    if (chunks.Write(chunk)) ++n;
+    ActorMetrics report;
+    report.id = id;
+    metrics.Write(report);
+  }
+  EXPECT_TRUE(chunks.WaitForAcks(kStressDeadline));
+  EXPECT_TRUE(metrics.WaitForAcks(kStressDeadline));
+}
+
+// Makes and destroys hubs, readers and writers.
+void ComeAndGo(LocalNetwork& network, const std::stop_token& stop) {
+  while (!stop.stop_requested()) {
+    const std::unique_ptr<Hub> hub = network.Join(Role::kLearner);
+    ChunkCheck check;
+    const Writer<CreditsMessage> writer(*hub);
+    std::atomic<bool> alive{true};
+    {
+      const Reader<TransitionChunk> reader(*hub, [&](const TransitionChunk& chunk) {
+        EXPECT_TRUE(alive);
+        check.Add(chunk);
+      });
+      EXPECT_GE(writer.Matched(), 0);
+      EXPECT_GE(reader.Matched(), 0);
+      for (int i = 0; i < 50; ++i) std::this_thread::yield();
+    }
+    alive = false;
+    EXPECT_EQ(check.disorder(), 0u);
+    EXPECT_EQ(check.damaged(), 0u);
+  }
+}
+
+TEST(LocalExchange, ManyWritersAndReadersLoseAndMixNothing) {
   LocalNetwork network;
   const auto replay = network.Join(Role::kReplay), learner = network.Join(Role::kLearner),
              coordinator = network.Join(Role::kCoordinator);
@@ -70,49 +116,9 @@ TEST(LocalExchange, ManyWritersAndReadersLoseAndMixNothing) {
     const Reader<ActorMetrics> metrics(*coordinator, [&](const ActorMetrics&) { ++reports; });
     std::vector<std::jthread> actors;
     for (uint32_t id = 0; id < kActors; ++id) {
-      actors.emplace_back([&, id] {
-        const std::unique_ptr<Hub> hub = network.Join(Role::kActor);
-        Writer<TransitionChunk> chunks(*hub);
-        Writer<ActorMetrics> metrics_writer(*hub);
-        const Reader<CreditsMessage> credit_reader(*hub, [&](const CreditsMessage&) { ++credits; });
-        std::vector<uint8_t> payload(kBytes);
-        const SteadyTime start = Now();
-        for (uint64_t n = 1; n <= kChunks && Now() - start < kStressDeadline;) {
-          std::memset(payload.data(), static_cast<uint8_t>(n), payload.size());
-          TransitionChunk chunk;
-          chunk.actor = id;
-          chunk.first_sequence = n;
-          chunk.payload = payload;
-          if (chunks.Write(chunk)) ++n;
-          ActorMetrics report;
-          report.id = id;
-          metrics_writer.Write(report);
-        }
-        EXPECT_TRUE(chunks.WaitForAcks(kStressDeadline));
-        EXPECT_TRUE(metrics_writer.WaitForAcks(kStressDeadline));
-      });
+      actors.emplace_back([&, id] { Send(network, id, &credits); });
     }
-    // Hubs, readers and writers that come and go meanwhile.
-    std::jthread churn([&](const std::stop_token& stop) {
-      while (!stop.stop_requested()) {
-        const std::unique_ptr<Hub> hub = network.Join(Role::kLearner);
-        ChunkCheck check;
-        const Writer<CreditsMessage> writer(*hub);
-        std::atomic<bool> alive{true};
-        {
-          const Reader<TransitionChunk> reader(*hub, [&](const TransitionChunk& chunk) {
-            EXPECT_TRUE(alive);
-            check.Add(chunk);
-          });
-          EXPECT_GE(writer.Matched(), 0);
-          EXPECT_GE(reader.Matched(), 0);
-          for (int i = 0; i < 50; ++i) std::this_thread::yield();
-        }
-        alive = false;
-        EXPECT_EQ(check.disorder(), 0u);
-        EXPECT_EQ(check.damaged(), 0u);
-      }
-    });
+    const std::jthread churn([&](const std::stop_token& stop) { ComeAndGo(network, stop); });
     actors.clear();
   }
   for (const ChunkCheck* check : {&at_replay, &at_learner}) {

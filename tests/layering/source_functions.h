@@ -1,0 +1,25 @@
+// SPDX-License-Identifier: Apache-2.0
+// The functions that one source file defines, members included, read without a compiler.
+//
+// Knows the C++ that this tree uses. A lambda belongs to the function around it; one at namespace
+// scope, being the value of a variable, is left out.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tests/layering/source_tokens.h"
+
+namespace shoal {
+
+struct SourceFunction {
+  std::string name;  // "Ring::Append"; of a test "TEST(Suite, Name)"
+  int line = 0;      // of the body's opening brace
+  // Lines of the body, with both braces. A table (a braced list without statements) and a raw
+  // string count as one line.
+  int lines = 0;
+};
+
+std::vector<SourceFunction> FunctionsOf(const SourceText& text);
+
+}  // namespace shoal
