@@ -26,6 +26,7 @@ CheckpointStore::CheckpointStore(const fs::path& run_folder, const RunConfig& ru
     : folder_(run_folder / kCheckpointFolder),
       run_(run),
       config_hash_(ConfigHash(run.config)),
+      config_text_(RunConfigText(run)),
       faults_([](const std::string& line) { log::Warning("{}", line); }) {
   MakeFolders(folder_);
   std::error_code ignored;
@@ -90,7 +91,7 @@ void CheckpointStore::WriteKept(const std::set<std::string>& wanted) {
       const Unwritten& next = unwritten_.front();
       WriteCheckpoint(folder_, next.state, next.learner, next.policy, run_, Meta(next.state));
       // A copy of the folder can be evaluated and filmed without its run.
-      WriteRunConfig(folder_ / CheckpointName(next.state.updates), run_);
+      WriteFileAtomically(folder_ / CheckpointName(next.state.updates) / kConfigFile, config_text_);
       unwritten_.pop_front();
     }
     Prune(wanted);

@@ -64,6 +64,7 @@ class CheckpointStore {
   const std::filesystem::path folder_;
   const RunConfig run_;
   const uint64_t config_hash_;
+  const std::string config_text_;
   WriteFaults faults_;
   std::deque<Unwritten> unwritten_;  // oldest first
   SteadyTime tried_{};

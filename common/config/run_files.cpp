@@ -35,14 +35,18 @@ T Member(const json& object, const char* name, const std::filesystem::path& path
 
 }  // namespace
 
-void WriteRunConfig(const std::filesystem::path& run, const RunConfig& config) {
+std::string RunConfigText(const RunConfig& config) {
   nlohmann::ordered_json object;
   object["schema"] = kConfigSchema;
   object.update(ToJson(config.config));
   object["config_hash"] = HexHash(ConfigHash(config.config));
   object["spec"] = ToJson(config.spec);
   object["spec_hash"] = HexHash(config.spec.Hash());
-  WriteFileAtomically(run / kConfigFile, object.dump(2) + "\n");
+  return object.dump(2) + "\n";
+}
+
+void WriteRunConfig(const std::filesystem::path& run, const RunConfig& config) {
+  WriteFileAtomically(run / kConfigFile, RunConfigText(config));
 }
 
 RunConfig ReadRunConfig(const std::filesystem::path& run) {

@@ -12,6 +12,8 @@
 
 namespace shoal {
 
+// The content of config.json.
+std::string RunConfigText(const RunConfig& config);
 void WriteRunConfig(const std::filesystem::path& run, const RunConfig& config);
 // Throws Error on a missing, malformed or inconsistent file (spec and stored hash differ).
 RunConfig ReadRunConfig(const std::filesystem::path& run);

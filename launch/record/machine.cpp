@@ -36,6 +36,18 @@ std::string CpuInfo() {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
+nlohmann::ordered_json LookAtMachine() {
+  const double bytes =
+      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
+  utsname system{};
+  uname(&system);
+  return {{"cpu", CpuName(CpuInfo())},
+          {"cores", UsableCores()},
+          {"memory_gb", std::round(bytes / 1e8) / 10},
+          {"isa", nn::CpuIsa()},
+          {"kernel", system.release}};
+}
+
 }  // namespace
 
 std::string CpuName(std::string_view cpuinfo) {
@@ -47,15 +59,8 @@ std::string CpuName(std::string_view cpuinfo) {
 }
 
 nlohmann::ordered_json DescribeMachine() {
-  const double bytes =
-      static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGESIZE));
-  utsname system{};
-  uname(&system);
-  return {{"cpu", CpuName(CpuInfo())},
-          {"cores", UsableCores()},
-          {"memory_gb", std::round(bytes / 1e8) / 10},
-          {"isa", nn::CpuIsa()},
-          {"kernel", system.release}};
+  static const nlohmann::ordered_json machine = LookAtMachine();
+  return machine;
 }
 
 }  // namespace shoal::launch
