@@ -102,6 +102,7 @@ class ReplayCore {
   void SetGatherers(RunParts run) { gatherers_ = std::move(run); }
 
   void SetDraining(bool draining);
+  bool draining() const { return draining_; }
   // The run's env steps from now on (before: the configured ones): with them stored no actor gets
   // credit any more. Draining and lockstep, which ends by its own rule, know no budget.
   void SetBudget(uint64_t env_steps) { budget_ = env_steps; }

@@ -141,7 +141,7 @@ void ReplayService::Turn() {
   TellProgress(now);
   ApplySettings();
   ChooseGatherers(now);
-  if (report_.Due(now)) Report(control_.state() == RunState::kDraining ? "draining" : "running");
+  if (report_.Due(now)) Report(core_.draining() ? "draining" : "running");
 }
 
 void ReplayService::TellChangedCredits(SteadyTime now) {
