@@ -26,8 +26,7 @@ ObservationSpec MadeUpSpec(const Config& config) {
 Blueprint Make(const std::vector<std::string>& set) {
   launch::TrainOptions options;
   options.run_name = "run";
-  options.set = {"env_steps=400",
-                 "actors=2",
+  options.set = {"actors=2",
                  "envs_per_actor=2",
                  "observation.pixels=false",
                  "observation.goal_mode=both",
@@ -35,7 +34,6 @@ Blueprint Make(const std::vector<std::string>& set) {
                  "learner.threads=1",
                  "learner.batch=4",
                  "network.hidden=[8,8]",
-                 "eval.interval=100",
                  "eval.episodes=2",
                  "eval.final_episodes=0",
                  "stop.success=2"};
@@ -52,14 +50,25 @@ Blueprint Make(const std::vector<std::string>& set) {
 
 std::vector<Blueprint> MakeBlueprints() {
   std::vector<Blueprint> blueprints;
-  std::vector<std::string> off_policy{"learner.checkpoint_period=10", "replay.capacity=1000",
-                                      "replay.min_size=50",           "replay.samples_per_insert=4",
-                                      "replay.shift_pad=0",           "replay.keep=true"};
-  blueprints.push_back(Make(off_policy));
-  off_policy.emplace_back("replay.storage=memory");
-  blueprints.push_back(Make(off_policy));
-  blueprints.push_back(Make({"learner.checkpoint_period=2", "learner.algorithm=ppo",
-                             "ppo.rollout_steps=10", "ppo.epochs=1", "ppo.rollout_deadline=3"}));
+  const std::vector<std::string> off_policy{"learner.checkpoint_period=25", "replay.min_size=50",
+                                            "replay.shift_pad=0", "replay.keep=true"};
+  // The learner sets the pace.
+  std::vector<std::string> file = off_policy;
+  for (const char* set : {"env_steps=400", "eval.interval=100", "replay.capacity=1000",
+                          "replay.samples_per_insert=4"}) {
+    file.emplace_back(set);
+  }
+  // The actors do, and overwrite the oldest records.
+  std::vector<std::string> memory = off_policy;
+  for (const char* set : {"env_steps=1000", "eval.interval=250", "replay.capacity=250",
+                          "replay.samples_per_insert=1", "replay.storage=memory"}) {
+    memory.emplace_back(set);
+  }
+  blueprints.push_back(Make(file));
+  blueprints.push_back(Make(memory));
+  blueprints.push_back(Make({"env_steps=1000", "eval.interval=250", "learner.checkpoint_period=5",
+                             "learner.algorithm=ppo", "ppo.rollout_steps=5", "ppo.epochs=1",
+                             "ppo.rollout_deadline=3"}));
   return blueprints;
 }
 

@@ -16,6 +16,7 @@ using Kind = Fault::Kind;
 
 constexpr int kMostFaults = 6;
 constexpr int kWindow = 25'000;                   // ms in which they begin
+constexpr int kAtOnce = 1000;                     // ms between two that come at once
 constexpr uint64_t kLongest = 9, kFarthest = 20;  // doublings: 51 s, 29 hours
 
 struct Weight {
@@ -151,7 +152,14 @@ std::vector<Fault> DrawFaults(uint64_t seed, const Config& config) {
   Random random(HashWords({seed, 1}));
   std::vector<Fault> faults;
   const size_t count = random.Below(kMostFaults + 1);
-  for (size_t i = 0; i < count; ++i) faults.push_back(DrawFault(config, random));
+  for (size_t i = 0; i < count; ++i) {
+    Fault fault = DrawFault(config, random);
+    // One in three follows another at once: what survives each may not survive both.
+    if (i > 0 && random.Below(3) == 0) {
+      fault.at = faults[random.Below(i)].at + milliseconds(random.Below(kAtOnce));
+    }
+    faults.push_back(std::move(fault));
+  }
   std::ranges::sort(faults, {}, &Fault::at);
   return faults;
 }

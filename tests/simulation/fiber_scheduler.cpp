@@ -2,7 +2,6 @@
 #include "tests/simulation/fiber_scheduler.h"
 
 #include <sys/mman.h>
-#include <ucontext.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -15,6 +14,7 @@
 #include <utility>
 
 #include "common/base/check.h"
+#include "tests/simulation/stack_switch.h"
 
 // The C++ run-time's account of exceptions in flight, which is the thread's: each fiber has its
 // own.
@@ -26,8 +26,6 @@ extern "C" __cxa_eh_globals* __cxa_get_globals() noexcept;
 namespace shoal::simulation {
 namespace {
 
-constexpr size_t kStackBytes = size_t{1} << 20;
-constexpr size_t kGuardBytes = 4096;
 constexpr SteadyTime kNever = SteadyTime::max();
 
 struct ExceptionState {
@@ -38,26 +36,6 @@ struct ExceptionState {
 ExceptionState& CurrentExceptions() {
   return *reinterpret_cast<ExceptionState*>(__cxxabiv1::__cxa_get_globals());
 }
-
-// Untouched pages cost nothing; a page below that cannot be touched makes an overflow a fault.
-class Stack {
- public:
-  Stack()
-      : memory_(static_cast<char*>(mmap(nullptr, kStackBytes, PROT_READ | PROT_WRITE,
-                                        MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0))) {
-    CHECK(memory_ != MAP_FAILED);
-    CHECK(mprotect(memory_, kGuardBytes, PROT_NONE) == 0);
-  }
-  ~Stack() { munmap(memory_, kStackBytes); }
-  Stack(const Stack&) = delete;
-  Stack& operator=(const Stack&) = delete;
-
-  char* begin() const { return memory_ + kGuardBytes; }
-  static constexpr size_t size() { return kStackBytes - kGuardBytes; }
-
- private:
-  char* const memory_;
-};
 
 // The path of an open file; empty for memory without a name.
 std::string PathOf(int descriptor) {
@@ -90,7 +68,7 @@ struct FiberScheduler::Fiber {
   ThreadGroup* group = nullptr;
   std::function<void()> body;
   Stack stack;
-  ucontext_t context{};
+  StackSwitch context{stack, &FiberScheduler::Enter};
   ExceptionState exceptions;
   bool runnable = true;
   SteadyTime wake = kNever;         // when it runs at the latest
@@ -101,7 +79,7 @@ struct FiberScheduler::Fiber {
 };
 
 struct FiberScheduler::Main {
-  ucontext_t context{};
+  StackSwitch context;
   ExceptionState exceptions;
 };
 
@@ -122,11 +100,6 @@ uint64_t FiberScheduler::StartIn(ThreadGroup* group, std::function<void()> body)
   fiber->id = next_id_++;
   fiber->group = group;
   fiber->body = std::move(body);
-  CHECK(getcontext(&fiber->context) == 0);
-  fiber->context.uc_stack.ss_sp = fiber->stack.begin();
-  fiber->context.uc_stack.ss_size = Stack::size();
-  fiber->context.uc_link = nullptr;
-  makecontext(&fiber->context, &FiberScheduler::Enter, 0);
   fibers_.push_back(std::move(fiber));
   return fibers_.back()->id;
 }
@@ -190,7 +163,7 @@ void FiberScheduler::Resume(Fiber* fiber) {
   Scheduler::SetCurrent(this);
   const ThreadGroup::Bound bound(fiber->group);
   main_->exceptions = std::exchange(CurrentExceptions(), fiber->exceptions);
-  CHECK(swapcontext(&main_->context, &fiber->context) == 0);
+  main_->context.SwitchTo(fiber->context);
   fiber->exceptions = std::exchange(CurrentExceptions(), main_->exceptions);
   Scheduler::SetCurrent(outer);
   running_ = nullptr;
@@ -208,7 +181,7 @@ void FiberScheduler::Block(SteadyTime wake) {
   Fiber* fiber = running_;
   CHECK(fiber != nullptr) << "a wait outside of fibers";
   fiber->wake = wake;
-  CHECK(swapcontext(&fiber->context, &main_->context) == 0);
+  fiber->context.SwitchTo(main_->context);
   fiber->wake = kNever;
 }
 

@@ -5,11 +5,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <tuple>
+#include <utility>
 
 #include "common/base/error.h"
 #include "common/base/files.h"
@@ -26,6 +26,7 @@
 #include "replay_server/core/ring.h"
 #include "tests/simulation/fake_environment.h"
 #include "tests/simulation/hash_agent.h"
+#include "tests/simulation/report_oracles.h"
 
 namespace shoal::simulation {
 namespace {
@@ -92,6 +93,14 @@ void Examination::CheckAccount() {
   if (meta_.exit == "budget" && meta_.env_steps < budget) {
     Break(fmt::format("{} env steps of a budget of {}", meta_.env_steps, budget));
   }
+  for (const SessionCounters& session : ReadAccount(run_).sessions) {
+    // A record's predecessor is missing only where records were lost. A learner's successor has
+    // none of those before.
+    if (LearnsOnPolicy(config_)) break;
+    if (session.after_gap == 0 || session.lost > 0 || facts_.cut) continue;
+    Break(fmt::format("actor {} session {}: {} records after a gap, and none lost", session.actor,
+                      session.session, session.after_gap));
+  }
   // The content of a killed memory is gone; on policy, so is what was acknowledged while the
   // account could not be written (learner/rollouts/rollout_source.h).
   const bool remembers =
@@ -150,24 +159,8 @@ void Examination::CheckRing() {
   }
 }
 
-// The replay's reports: the limiter keeps to its band, and a successor counts the run's steps on.
 void Examination::CheckReports() {
-  std::ifstream lines(run_ / kMetricsFile);
-  uint64_t stored = 0;
-  for (std::string line; std::getline(lines, line);) {
-    const auto report = nlohmann::json::parse(line, nullptr, /*allow_exceptions=*/false);
-    if (report.is_discarded() || report.value("role", "") != "replay") continue;
-    if (report.value("state", "") != "running" || !report.contains("limiter_cursor")) continue;
-    const double cursor = report.at("limiter_cursor"), band = report.at("limiter_band");
-    if (std::abs(cursor) > band / 2 + 1e-3) {
-      return Break(fmt::format("the limiter's cursor is {} in a band of {}", cursor, band));
-    }
-    const auto steps = report.at("stored_steps").get<uint64_t>();
-    if (steps < stored && !facts_.cut) {
-      return Break(fmt::format("the replay counts {} env steps after {}", steps, stored));
-    }
-    stored = steps;
-  }
+  for (std::string& line : BrokenInReports(world_, facts_)) Break(std::move(line));
 }
 
 void Examination::CheckFiles() {

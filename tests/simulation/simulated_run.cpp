@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <limits>
 #include <optional>
 
 #include "common/base/check.h"
@@ -53,6 +54,28 @@ bool Any(const std::vector<Fault>& faults, const char* follows) {
 
 bool FailsWrites(const Fault& fault) {
   return fault.kind == Fault::Kind::kFullDisk || fault.kind == Fault::Kind::kFailingDisk;
+}
+
+// A process that leaves or is held up for longer than peers wait for it.
+bool Disturbs(const Fault& fault) {
+  switch (fault.kind) {
+    case Fault::Kind::kPause:
+    case Fault::Kind::kStall:
+    case Fault::Kind::kSlow:
+      return fault.span > link::kLivenessLimit;
+    case Fault::Kind::kClock:
+    case Fault::Kind::kWatch:
+    case Fault::Kind::kSecond:
+      return false;
+    default:
+      return true;
+  }
+}
+
+double OrderlyUntil(const std::vector<Fault>& faults) {
+  const auto first = std::ranges::find_if(faults, Disturbs);
+  return first == faults.end() ? std::numeric_limits<double>::infinity()
+                               : std::chrono::duration<double>(first->at).count();
 }
 
 }  // namespace
@@ -106,6 +129,7 @@ Outcome Simulate(const Blueprint& blueprint, uint64_t seed, const std::vector<Fa
                       .overwritten = Any(faults, kThenOverwrite),
                       .cut = Any(faults, kThenCutRing),
                       .unwritten = std::ranges::any_of(faults, FailsWrites),
+                      .orderly_until = OrderlyUntil(faults),
                       .acknowledged = acknowledged};
     for (std::string& line : BrokenPromises(world, facts)) {
       outcome.violations.push_back(std::move(line));

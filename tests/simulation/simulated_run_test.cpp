@@ -86,8 +86,11 @@ TEST(SimulatedRun, EachKindOfFaultIsMet) {
 }
 
 TEST(SimulatedRun, SeedsThatFoundAFaultOfTheProductKeepWhatIsPromised) {
-  // 1458: a disk that was full at the end of a run; --resume refused the run as finished.
-  for (const uint64_t seed : {uint64_t{1458}}) ExpectGood(seed, FaultsOf(seed));
+  // A disk that was full at the end of a run; --resume refused the run as finished.
+  ExpectGood(1458, {At(3, Kind::kPause, "coordinator", 20), At(24, Kind::kFullDisk, "", 3)});
+  // A replay that drained after its coordinator was gone called itself running.
+  ExpectGood(kFile,
+             {At(9, Kind::kPause, "coordinator", 16), At(10, Kind::kSlow, "coordinator", 45)});
 }
 
 TEST(SimulatedRun, FixedSeedsKeepWhatIsPromised) {

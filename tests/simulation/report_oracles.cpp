@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "tests/simulation/report_oracles.h"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "common/run_folder/run_file_names.h"
+
+namespace shoal::simulation {
+namespace {
+
+using nlohmann::json;
+
+// Calls `look` for each report of the role while it was running.
+void ForEachReport(const std::filesystem::path& run, const std::string& role,
+                   const std::function<void(const json& report)>& look) {
+  std::ifstream lines(run / kMetricsFile);
+  const std::string mark = fmt::format("\"role\":\"{}\"", role);
+  for (std::string line; std::getline(lines, line);) {
+    if (line.find(mark) == std::string::npos) continue;  // parsing costs more
+    const json report = json::parse(line, nullptr, /*allow_exceptions=*/false);
+    if (!report.is_discarded() && report.value("state", "") == "running") look(report);
+  }
+}
+
+double Number(const json& report, const char* name) { return report.at(name).get<double>(); }
+
+// The limiter's cursor, by the counts of steps and samples: the limiter's own one is clamped to the
+// band that it should keep to.
+class CountedCursor {
+ public:
+  explicit CountedCursor(const Config& config)
+      : min_size_(static_cast<double>(config.replay.min_size)) {}
+
+  // One line when the cursor has left the band.
+  std::optional<std::string> Take(const json& report) {
+    const double sampleable = Number(report, "sampleable"), stored = Number(report, "stored_steps");
+    const double rate = Number(report, "limiter_samples_per_insert");
+    const double start = Number(report, "t") - Number(report, "uptime_seconds");
+    // Another server counts from its own beginning, and another rate from where it is set.
+    const bool follows = std::abs(start - start_) < kSameStart && rate == rate_;
+    if (!follows) uncounted_ = stored;
+    if (sampleable < min_size_) uncounted_ = stored + min_size_ - sampleable;
+    const double granted = rate * std::max(0., stored - uncounted_);
+    const double sampled = Number(report, "sampled");
+    cursor_ = follows ? cursor_ + (granted - granted_) - (sampled - sampled_)
+                      : Number(report, "limiter_cursor");
+    granted_ = granted;
+    sampled_ = sampled;
+    rate_ = rate;
+    start_ = start;
+    const double band = Number(report, "limiter_band");
+    if (std::abs(cursor_) <= band / 2 + 1e-3) return std::nullopt;
+    return fmt::format("the limiter's cursor is {} in a band of {}", cursor_, band);
+  }
+
+ private:
+  static constexpr double kSameStart = 0.5;  // s
+
+  const double min_size_;
+  double uncounted_ = 0;  // env steps before which none count
+  double cursor_ = 0, granted_ = 0, sampled_ = 0, rate_ = 0, start_ = 0;
+};
+
+// One line when the learner dropped a rollout that did not come late, while each actor and the
+// learner was one process.
+std::optional<std::string> DroppedRollouts(const World& world, const Facts& facts) {
+  std::optional<std::string> broken;
+  double uptime = 0;
+  ForEachReport(world.folder, "learner", [&](const json& report) {
+    const bool first = Number(report, "uptime_seconds") >= uptime;
+    uptime = first ? Number(report, "uptime_seconds") : facts.orderly_until;
+    if (broken || uptime >= facts.orderly_until || !report.contains("rollouts_dropped")) return;
+    const double dropped = Number(report, "rollouts_dropped");
+    if (dropped == 0 || Number(report, "rollouts_late") > 0) return;
+    broken = fmt::format("{} rollouts were dropped, none of them late", dropped);
+  });
+  return broken;
+}
+
+}  // namespace
+
+std::vector<std::string> BrokenInReports(const World& world, const Facts& facts) {
+  std::vector<std::string> broken;
+  CountedCursor cursor(world.blueprint.run.config);
+  double stored = 0;
+  ForEachReport(world.folder, "replay", [&](const json& report) {
+    if (!broken.empty()) return;
+    if (auto line = cursor.Take(report)) broken.push_back(*std::move(line));
+    const double steps = Number(report, "stored_steps");
+    if (steps < stored && !facts.cut) {
+      broken.push_back(fmt::format("the replay counts {} env steps after {}", steps, stored));
+    }
+    stored = steps;
+  });
+  if (auto line = DroppedRollouts(world, facts)) broken.push_back(*std::move(line));
+  return broken;
+}
+
+}  // namespace shoal::simulation
