@@ -7,8 +7,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "common/base/clock.h"
-
 namespace shoal {
 
 // Each word about credit goes to every actor, so that words are collected for a moment ...
@@ -29,13 +27,5 @@ inline std::chrono::milliseconds CreditSpacing(size_t actors) {
 inline constexpr std::chrono::seconds kFarewell{2};
 // ... but no longer than this.
 inline constexpr std::chrono::seconds kFarewellLimit{20};
-// How far beyond this host's clock that of an actor may be.
-inline constexpr std::chrono::minutes kClockMargin{10};
-
-// No actor session that has begun by now has a higher number.
-inline uint64_t LatestSession() {
-  return static_cast<uint64_t>(
-      std::max<int64_t>(0, WallTimeNs() + std::chrono::nanoseconds(kClockMargin).count()));
-}
 
 }  // namespace shoal

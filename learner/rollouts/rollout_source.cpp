@@ -32,6 +32,7 @@ RolloutSource::RolloutSource(const RunConfig& run, const std::filesystem::path& 
             MaxChunks(run.config.actors)),
       core_(run, learner_session, ReadAccountBefore(folder)),
       updates_(updates),
+      session_clock_(learner_session),
       last_chunk_(Now()),
       problems_(run.spec.Hash(), "learner") {
   {
@@ -97,7 +98,8 @@ void RolloutSource::TakeChunks(std::deque<std::unique_ptr<PooledChunk>> chunks) 
   for (std::unique_ptr<PooledChunk>& pooled : chunks) {
     {
       const MutexLock lock(mutex_);
-      const ChunkResult result = core_.TakeChunk(pooled->chunk, LatestSession());
+      const ChunkResult result =
+          core_.TakeChunk(pooled->chunk, session_clock_.Latest(WallTimeNs()));
       problems_.Note(pooled->chunk, result);
       if (result.fate == ChunkFate::kWrongSpec || result.fate == ChunkFate::kSuperseded) {
         refusals.push_back(core_.RefusalOf(pooled->chunk));

@@ -30,6 +30,7 @@
 #include "common/base/write_faults.h"
 #include "common/intake/chunk_pool.h"
 #include "common/intake/intake_problems.h"
+#include "common/intake/session_clock.h"
 #include "learner/batch_stream.h"
 #include "learner/rollouts/rollout_core.h"
 
@@ -94,6 +95,7 @@ class RolloutSource final : public BatchStream {
   std::optional<SteadyTime> first_ready_ SHOAL_GUARDED_BY(mutex_);
   uint64_t late_rollouts_ SHOAL_GUARDED_BY(mutex_) = 0;
   int absent_said_ SHOAL_GUARDED_BY(mutex_) = 0;
+  SessionClock session_clock_ SHOAL_GUARDED_BY(mutex_);
   SteadyTime last_chunk_ SHOAL_GUARDED_BY(mutex_);
   IntakeProblems problems_ SHOAL_GUARDED_BY(mutex_);
   WriteFaults faults_ SHOAL_GUARDED_BY(mutex_){

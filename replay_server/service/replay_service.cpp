@@ -41,6 +41,7 @@ ReplayService::ReplayService(const std::filesystem::path& folder, const ProcessN
       before_(ReadAccountBefore(folder)),
       core_(run_, folder, NextSession(folder, name.Text(), WallTimeNs()),
             {before_.stored_steps, before_.sessions}, [this] { ReportStarting(); }),
+      session_clock_(core_.replay_session()),
       gatherers_(std::max(1, Settings().replay.threads)),
       most_gatherers_(MostGatherers()),
       control_(Now()),
@@ -184,7 +185,7 @@ ServiceInbox::Arrivals ReplayService::WaitForArrivals(SteadyTime deadline) {
 void ReplayService::Take(ServiceInbox::Arrivals arrivals) {
   const ScopedSeconds timed(seconds_.inserting);
   for (std::unique_ptr<PooledChunk>& pooled : arrivals.chunks) {
-    const ChunkResult result = core_.TakeChunk(pooled->chunk, LatestSession());
+    const ChunkResult result = core_.TakeChunk(pooled->chunk, session_clock_.Latest(WallTimeNs()));
     problems_.Note(pooled->chunk, result);
     report_.NoteQueueAge(SecondsSince(pooled->arrived));
     if (result.fate == ChunkFate::kDealtWith) ages_.OnChunk(pooled->chunk, WallTimeNs());

@@ -14,6 +14,7 @@
 #include "common/base/write_faults.h"
 #include "common/config/run_config.h"
 #include "common/config/sending_window.h"
+#include "common/intake/session_clock.h"
 #include "common/link/hub.h"
 #include "common/link/metrics_writer.h"
 #include "common/link/reader.h"
@@ -104,6 +105,7 @@ class ReplayService {
   MetricsReport starting_report_;
   const RunAccount before_;
   ReplayCore core_;
+  SessionClock session_clock_;
   GatherThreads gatherers_;
   const int most_gatherers_;
   ControlState control_;
