@@ -37,7 +37,8 @@ struct Facts {
   bool overwritten = false;  // another run took the folder
   bool cut = false;          // half of the ring was removed
   bool unwritten = false;    // a disk failed
-  double orderly_until = 0;  // s: no process left or was held up for long before
+  // Wall clock, s. Before, no process left or was held up for long, and no clock jumped.
+  double orderly_until = 0;
   Witness::Acknowledged acknowledged;
 };
 

@@ -72,11 +72,9 @@ class CountedCursor {
 // learner was one process.
 std::optional<std::string> DroppedRollouts(const World& world, const Facts& facts) {
   std::optional<std::string> broken;
-  double uptime = 0;
   ForEachReport(world.folder, "learner", [&](const json& report) {
-    const bool first = Number(report, "uptime_seconds") >= uptime;
-    uptime = first ? Number(report, "uptime_seconds") : facts.orderly_until;
-    if (broken || uptime >= facts.orderly_until || !report.contains("rollouts_dropped")) return;
+    if (broken || !report.contains("rollouts_dropped")) return;
+    if (Number(report, "t") >= facts.orderly_until) return;
     const double dropped = Number(report, "rollouts_dropped");
     if (dropped == 0 || Number(report, "rollouts_late") > 0) return;
     broken = fmt::format("{} rollouts were dropped, none of them late", dropped);

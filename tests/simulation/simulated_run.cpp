@@ -63,7 +63,6 @@ bool Disturbs(const Fault& fault) {
     case Fault::Kind::kStall:
     case Fault::Kind::kSlow:
       return fault.span > link::kLivenessLimit;
-    case Fault::Kind::kClock:
     case Fault::Kind::kWatch:
     case Fault::Kind::kSecond:
       return false;
@@ -74,8 +73,8 @@ bool Disturbs(const Fault& fault) {
 
 double OrderlyUntil(const std::vector<Fault>& faults) {
   const auto first = std::ranges::find_if(faults, Disturbs);
-  return first == faults.end() ? std::numeric_limits<double>::infinity()
-                               : std::chrono::duration<double>(first->at).count();
+  if (first == faults.end()) return std::numeric_limits<double>::infinity();
+  return static_cast<double>(kWallTimeNs) * 1e-9 + std::chrono::duration<double>(first->at).count();
 }
 
 }  // namespace

@@ -88,6 +88,9 @@ TEST(SimulatedRun, EachKindOfFaultIsMet) {
 TEST(SimulatedRun, SeedsThatFoundAFaultOfTheProductKeepWhatIsPromised) {
   // A disk that was full at the end of a run; --resume refused the run as finished.
   ExpectGood(1458, {At(3, Kind::kPause, "coordinator", 20), At(24, Kind::kFullDisk, "", 3)});
+  // The clock was set back between an actor's start and its first record, which was refused until
+  // the clock had caught up.
+  ExpectGood(192871542771512, FaultsOf(192871542771512));
   // A replay that drained after its coordinator was gone called itself running.
   ExpectGood(kFile,
              {At(9, Kind::kPause, "coordinator", 16), At(10, Kind::kSlow, "coordinator", 45)});
