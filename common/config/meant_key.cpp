@@ -45,7 +45,7 @@ const std::vector<Names>& Table() {
       {"replay.hindsight_goals", {"n_sampled_goal"}},
       {"learner.algorithm", {"algo", "alg", "agent"}},
       {"learner.batch", {"batch_size", "minibatch_size"}},
-      {"learner.threads", {"n_threads", "num_threads", "torch_threads"}},
+      {"learner.threads", {"threads", "n_threads", "num_threads", "torch_threads"}},
       {"learner.learning_rate", {"lr"}},
       {"learner.actor_learning_rate", {"actor_lr", "policy_lr"}},
       {"learner.critic_learning_rate", {"critic_lr", "q_lr"}},

@@ -2,7 +2,7 @@
 // The bound on session numbers (common/config/session_number.h) that a receiver of records accepts.
 // A session is the wall clock of its actor at its start, and the newest supersedes the others, so
 // that a number from the far future would shut the true actor out. A clock that is set back does
-// not lower the bound: actors that started before have numbers of the former time.
+// not lower the bound: actors that started before the change have larger numbers.
 #pragma once
 
 #include <algorithm>

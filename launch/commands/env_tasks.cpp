@@ -126,6 +126,24 @@ void AddList(CLI::App& env, Action* chosen) {
   command->callback([=] { *chosen = [=] { return List(*json); }; });
 }
 
+// Refuses what goes only with an environment of Python (`of_environments`) beside a task, and the
+// model of a task beside an environment.
+void CheckOptionsOf(const std::string& name, bool hosted,
+                    const std::vector<const CLI::Option*>& of_environments,
+                    const CLI::Option* model) {
+  const auto is_given = [](const CLI::Option* option) { return option->count() > 0; };
+  if (!hosted && std::ranges::any_of(of_environments, is_given)) {
+    throw UsageError(
+        "env describe: --preset and --set go with an environment of Python, not with "
+        "the task {}",
+        name);
+  }
+  if (hosted && is_given(model)) {
+    throw UsageError("env describe: --model goes with a task of Shoal's, not with environment {}",
+                     name);
+  }
+}
+
 void AddDescribe(CLI::App& env, Action* chosen) {
   CLI::App* command = env.add_subcommand(
       "describe",
@@ -173,16 +191,7 @@ void AddDescribe(CLI::App& env, Action* chosen) {
           "env describe: nothing is named; expected a task, --run RUN or --preset NAME");
     }
     const bool hosted = task->count() > 0 && NamesEnvironment(request->task);
-    if (task->count() > 0 && !hosted && preset->count() + set->count() > 0) {
-      throw UsageError(
-          "env describe: --preset and --set go with an environment of Python, not with "
-          "the task {}",
-          request->task);
-    }
-    if (hosted && model->count() > 0) {
-      throw UsageError("env describe: --model goes with a task of Shoal's, not with environment {}",
-                       request->task);
-    }
+    if (task->count() > 0) CheckOptionsOf(request->task, hosted, {preset, set}, model);
     if (hosted) inputs->environment = request->task;
     *chosen = [=] {
       return task->count() > 0 && !hosted ? Describe(*request, *json) : PrintInputs(*inputs, *json);

@@ -73,7 +73,7 @@ TEST_F(RolloutTest, AnEpisodeIsAResetAndItsSteps) {
 TEST(GoalPictures, AGoalRecordComesBeforeEachResetAndThePolicySeesItsPicture) {
   const TemporaryFolder run;
   const CountingEnvironment like(CountingEnvironment::kLength, 2, /*goal_picture=*/true);
-  const ObservationSpec spec = like.spec();
+  const ObservationSpec& spec = like.spec();
   FakeSink sink(spec);
   const Config config = SmallConfig(/*envs=*/1);
   SequenceLog made(run.path(), /*actor=*/0, /*session=*/10, kFirstEnv, /*envs=*/1);
