@@ -9,6 +9,7 @@
 
 #include "common/base/error.h"
 #include "tests/benchmark/bench_report.h"
+#include "tests/benchmark/host_split.h"
 #include "tests/benchmark/scale_model.h"
 
 namespace shoal::bench {
@@ -17,7 +18,7 @@ namespace {
 using Reader = std::function<std::string(const std::string& file)>;
 
 constexpr std::string_view kBegin = "<!-- bench ", kEnd = "<!-- end of bench -->";
-constexpr std::string_view kScale = "scale of ";
+constexpr std::string_view kScale = "scale of ", kHosts = "hosts of ", kBy = " by ";
 
 // The text up to the next line break, which is taken away, too.
 std::string_view TakeLine(std::string_view* text) {
@@ -70,15 +71,40 @@ std::string Rows(std::string_view order, const Reader& read) {
   return fmt::format("{}\n{}", Source(report, file), MarkdownTable(report));
 }
 
-std::string Scale(std::string_view order, const Reader& read) {
-  std::istringstream files{std::string(order.substr(kScale.size()))};
-  std::vector<Report> reports;
+struct Reports {
+  std::vector<Report> all;
   std::string sources;
+};
+
+Reports ReadReports(std::string_view names, const Reader& read) {
+  std::istringstream files{std::string(names)};
+  Reports reports;
   for (std::string file; files >> file;) {
-    reports.push_back(ParseReport(read(file), file));
-    sources += Source(reports.back(), file);
+    reports.all.push_back(ParseReport(read(file), file));
+    reports.sources += Source(reports.all.back(), file);
   }
-  return fmt::format("{}\n{}", sources, ScaleTables(ReadScaleConstants(reports)));
+  return reports;
+}
+
+std::string Scale(std::string_view order, const Reader& read) {
+  const Reports reports = ReadReports(order.substr(kScale.size()), read);
+  return fmt::format("{}\n{}", reports.sources, ScaleTables(ReadScaleConstants(reports.all)));
+}
+
+// "hosts of FILES by FILE", the last of schema shoal-scaling-1.
+std::string Hosts(std::string_view order, const Reader& read) {
+  const size_t by = order.find(kBy);
+  if (by == std::string_view::npos) throw RuntimeError("'{}' names no file after '{}'", order, kBy);
+  const Reports reports = ReadReports(order.substr(kHosts.size(), by - kHosts.size()), read);
+  const std::string file(order.substr(by + kBy.size()));
+  return fmt::format("{}Learner threads: [file]({}).\n\n{}", reports.sources, file,
+                     HostTable(reports.all, LearnerSpeed(read(file), file)));
+}
+
+std::string Made(std::string_view order, const Reader& read) {
+  if (order.starts_with(kScale)) return Scale(order, read);
+  if (order.starts_with(kHosts)) return Hosts(order, read);
+  return Rows(order, read);
 }
 
 }  // namespace
@@ -97,8 +123,7 @@ std::string RewritePage(std::string_view page, const Reader& read) {
       if (former.starts_with(kBegin)) throw RuntimeError("'{}' has no '{}'", line, kEnd);
     } while (!former.starts_with(kEnd));
     const std::string_view order = OrderOf(line);
-    out += fmt::format("\n{}\n{}\n",
-                       order.starts_with(kScale) ? Scale(order, read) : Rows(order, read), kEnd);
+    out += fmt::format("\n{}\n{}\n", Made(order, read), kEnd);
   }
   return out;
 }

@@ -13,9 +13,9 @@ namespace shoal::bench {
 namespace {
 
 // Workload of the rows: batches of 128 with one camera's frames of (3, 84, 84).
-constexpr double kBatch = 128, kFrameBytes = 3 * 84 * 84;
+constexpr double kFrameBytes = 3 * 84 * 84;
 constexpr double kRecordBytes = kFrameBytes + 120;  // header and action
-constexpr double kBatchBytes = 2 * kBatch * kFrameBytes;
+constexpr double kBatchBytes = 2 * kScaleBatch * kFrameBytes;
 constexpr double kLinkBytes = 10e9 / 8;  // a second, of 10 Gb/s
 constexpr double kSamplesPerInsert[] = {8, 64};
 constexpr int kActors[] = {16, 100, 1000};
@@ -62,7 +62,7 @@ ScaleConstants ReadScaleConstants(std::span<const Report> reports) {
 
 ScaleLoad LoadOf(const ScaleConstants& constants, double transitions_per_second,
                  double samples_per_insert, bool far) {
-  const double batches = transitions_per_second * samples_per_insert / kBatch;
+  const double batches = transitions_per_second * samples_per_insert / kScaleBatch;
   const double handover = far ? constants.handover_far : constants.handover_near;
   return {.replay = transitions_per_second * constants.intake +
                     batches * (constants.gather + kBatchBytes * handover),

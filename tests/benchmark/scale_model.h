@@ -18,6 +18,9 @@
 
 namespace shoal::bench {
 
+// Of the rows: transitions of one batch.
+inline constexpr double kScaleBatch = 128;
+
 // Measured; CPU seconds of one core.
 struct ScaleConstants {
   double actor_rate = 0;                       // transitions/s of one actor on a core of its own
