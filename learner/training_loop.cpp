@@ -6,9 +6,9 @@
 
 #include "common/base/error.h"
 #include "common/base/log.h"
-#include "common/base/saturating_cast.h"
 #include "common/base/sleep.h"
 #include "common/base/stop.h"
+#include "common/config/live_values.h"
 #include "common/config/lockstep.h"
 #include "common/config/on_policy.h"
 #include "common/wire/scoped_seconds.h"
@@ -20,12 +20,6 @@ using std::chrono::milliseconds;
 
 constexpr milliseconds kPoll{100};            // the longest that control is not looked at
 constexpr milliseconds kBlockedAfter{1'000};  // without a batch
-
-// A key that counts from one. On an open network a foreign program may send zero, which is ignored.
-uint64_t CountInForce(const ControlState& control, std::string_view key, uint64_t configured) {
-  const double value = control.SettingOr(key, static_cast<double>(configured));
-  return value < 1 ? configured : SaturatingCast<uint64_t>(value);
-}
 
 }  // namespace
 
@@ -223,29 +217,19 @@ bool TrainingLoop::RatioReached() const {
 }
 
 void TrainingLoop::ApplySettings() {
-  const ControlState& control = parts_.control;
-  budget_ = SaturatingCast<uint64_t>(
-      control.SettingOr("env_steps", static_cast<double>(config_.env_steps)));
-  parts_.batches.SetActors(
-      SaturatingCast<int>(control.SettingOr("actors", static_cast<double>(config_.actors))));
-  weights_.SetPeriod(CountInForce(control, "learner.weights_period",
-                                  static_cast<uint64_t>(config_.learner.weights_period)));
-  evaluations_.SetInterval(
-      CountInForce(control, "eval.interval", static_cast<uint64_t>(config_.eval.interval)),
-      env_steps_);
-  ApplyThreads();
-  // A live setting is a number, which replaces the schedule.
-  const std::optional<double> set = control.Setting("replay.samples_per_insert");
-  const Schedule samples = set ? Schedule::Constant(*set) : config_.replay.samples_per_insert;
-  if (samples == samples_per_insert_) return;
+  const LiveValues values = LiveValuesOf(config_, parts_.control);
+  budget_ = values.env_steps;
+  parts_.batches.SetActors(values.actors);
+  weights_.SetPeriod(values.weights_period);
+  evaluations_.SetInterval(values.eval_interval, env_steps_);
+  ApplyThreads(values.learner_threads.value_or(threads_asked_));
+  if (values.samples_per_insert == samples_per_insert_) return;
   granted_before_ = GrantedSamples(env_steps_);
   granted_from_steps_ = std::max(env_steps_, granted_from_steps_);
-  samples_per_insert_ = samples;
+  samples_per_insert_ = values.samples_per_insert;
 }
 
-void TrainingLoop::ApplyThreads() {
-  const int asked =
-      SaturatingCast<int>(parts_.control.SettingOr("learner.threads", double(threads_asked_)));
+void TrainingLoop::ApplyThreads(int asked) {
   if (asked == threads_asked_ || parts_.resize == nullptr || on_policy_) return;
   threads_asked_ = asked;
   threads_ = parts_.resize(asked);

@@ -97,7 +97,7 @@ class TrainingLoop {
   void GiveAwaitedWeights();
   // Takes over what was changed while the run goes on.
   void ApplySettings();
-  void ApplyThreads();
+  void ApplyThreads(int asked);
   // To the coordinator: what the run is decided by.
   void TellProgress();
   void Report(bool now = false);

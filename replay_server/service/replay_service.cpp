@@ -6,9 +6,9 @@
 #include "common/base/clock.h"
 #include "common/base/error.h"
 #include "common/base/log.h"
-#include "common/base/saturating_cast.h"
 #include "common/base/stop.h"
 #include "common/base/usable_cores.h"
+#include "common/config/live_values.h"
 #include "common/config/run_files.h"
 #include "common/config/session_number.h"
 #include "common/intake/receiver_terms.h"
@@ -105,8 +105,8 @@ SendingWindow ReplayService::Window() const {
 
 size_t ReplayService::MaxChunks() const {
   const size_t known = core_.sessions().newest().size();
-  const double actors = control_.SettingOr("actors", Settings().actors);
-  const size_t sessions = std::max(known, SaturatingCast<size_t>(std::clamp(actors, 1.0, 1e6)));
+  const int actors = LiveValuesOf(Settings(), control_).actors;
+  const size_t sessions = std::max(known, size_t(std::clamp(actors, 1, 1'000'000)));
   return MostChunks(Window(), sessions);
 }
 
@@ -166,15 +166,13 @@ void ReplayService::TellProgress(SteadyTime now, bool at_once) {
 }
 
 void ReplayService::ApplySettings() {
-  const auto budget = SaturatingCast<uint64_t>(
-      control_.SettingOr("env_steps", static_cast<double>(Settings().env_steps)));
-  if (budget != core_.budget()) log::Info("env_steps is now {}", budget);
-  core_.SetBudget(budget);
-  const std::optional<double> set = control_.Setting("replay.samples_per_insert");
-  const Schedule samples = set ? Schedule::Constant(*set) : Settings().replay.samples_per_insert;
-  if (samples == core_.limiter().samples_per_insert()) return;
-  log::Info("replay.samples_per_insert is now {}", samples.At(core_.ring().stored_steps()));
-  core_.SetSamplesPerInsert(samples);
+  const LiveValues values = LiveValuesOf(Settings(), control_);
+  if (values.env_steps != core_.budget()) log::Info("env_steps is now {}", values.env_steps);
+  core_.SetBudget(values.env_steps);
+  if (values.samples_per_insert == core_.limiter().samples_per_insert()) return;
+  log::Info("replay.samples_per_insert is now {}",
+            values.samples_per_insert.At(core_.ring().stored_steps()));
+  core_.SetSamplesPerInsert(values.samples_per_insert);
 }
 
 ServiceInbox::Arrivals ReplayService::WaitForArrivals(SteadyTime deadline) {
