@@ -45,7 +45,6 @@ class MovementSelector final : public Selector {
 
   void Added(uint64_t id) override;
   void Removed(uint64_t id) override;
-  void UpdatePriority(uint64_t, double) override {}
   std::optional<Selection> Draw(Random* random) override;
   uint64_t redraws() const override { return uniform_.redraws(); }
 

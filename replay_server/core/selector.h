@@ -2,9 +2,7 @@
 // Chooses the samples that make up a batch, by the step that each begins with (episode_index.h).
 //
 // The index tells a selector what there is: each sample once when it can be drawn and once when it
-// no longer can. Priorities come from who learned from a sample, by the record ids that travel with
-// batches; a selector without priorities ignores them. Weights that undo a selector's preference
-// are made from the probabilities it draws with.
+// no longer can. The probabilities of its draws allow importance weights.
 //
 // Threads: none inside; one owner.
 #pragma once
@@ -28,9 +26,6 @@ class Selector {
   // The sample that begins with step `id` can be drawn from now on; it can no longer.
   virtual void Added(uint64_t id) = 0;
   virtual void Removed(uint64_t id) = 0;
-  // Sets the priority of a sample, which may be gone; priority >= 0, in units of the selector's
-  // own.
-  virtual void UpdatePriority(uint64_t id, double priority) = 0;
 
   // A sample, or nothing when none was found. `random` alone decides, given the same history.
   virtual std::optional<Selection> Draw(Random* random) = 0;

@@ -20,7 +20,6 @@ class UniformSelector final : public Selector {
 
   void Added(uint64_t) override {}
   void Removed(uint64_t) override {}
-  void UpdatePriority(uint64_t, double) override {}
   std::optional<Selection> Draw(Random* random) override;
   uint64_t redraws() const override { return redraws_; }
 

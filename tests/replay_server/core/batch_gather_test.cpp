@@ -22,7 +22,6 @@ class ListedSelector : public Selector {
   explicit ListedSelector(std::deque<uint64_t> ids) : ids_(std::move(ids)) {}
   void Added(uint64_t) override {}
   void Removed(uint64_t) override {}
-  void UpdatePriority(uint64_t, double) override {}
   std::optional<Selection> Draw(Random*) override {
     if (ids_.empty()) return std::nullopt;
     const uint64_t id = ids_.front();

@@ -62,7 +62,6 @@ class KeptSelector final : public Selector {
     EXPECT_EQ(ids.erase(id), 1u) << id;
     if (other) other->Removed(id);
   }
-  void UpdatePriority(uint64_t, double) override {}
   std::optional<Selection> Draw(Random*) override { return std::nullopt; }
   uint64_t redraws() const override { return 0; }
 

@@ -18,7 +18,6 @@ class BiasedSelector : public Selector {
   explicit BiasedSelector(Selector* inner) : inner_(*inner) {}
   void Added(uint64_t) override {}
   void Removed(uint64_t) override {}
-  void UpdatePriority(uint64_t, double) override {}
   std::optional<Selection> Draw(Random* random) override {
     const auto first = inner_.Draw(random);
     if (random->Below(20) != 0) return first;
