@@ -42,7 +42,7 @@ std::map<int, double> TimesOne(std::string_view text, const std::string& source)
   return times;
 }
 
-// Of the row with most actors: the share of N times one, and N.
+// N and the share of N times one, from the row with most actors.
 std::pair<double, int> KeptByActors(std::span<const Report> reports) {
   std::pair<double, int> kept{0, 0};
   for (const Report& report : reports) {

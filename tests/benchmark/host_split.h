@@ -24,8 +24,8 @@ namespace shoal::bench {
 // Updates a second of so many learner threads, in those of one.
 class LearnerSpeed {
  public:
-  // Of a file of schema shoal-scaling-1: rows of network `compact` and batches of 128, the mean of
-  // their efficiencies for each number of threads. Throws Error naming `source` otherwise.
+  // Reads a file of schema shoal-scaling-1: rows of network `compact` and batches of 128, the mean
+  // of their efficiencies for each number of threads. Throws Error naming `source` otherwise.
   LearnerSpeed(std::string_view text, const std::string& source);
   explicit LearnerSpeed(std::map<int, double> times);
 

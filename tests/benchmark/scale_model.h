@@ -18,7 +18,7 @@
 
 namespace shoal::bench {
 
-// Of the rows: transitions of one batch.
+// Transitions of one batch in these rows.
 inline constexpr double kScaleBatch = 128;
 
 // Measured; CPU seconds of one core.
