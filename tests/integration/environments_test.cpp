@@ -263,6 +263,41 @@ TEST_F(Environments, PicturesAreTrainedFrom) {
   ExpectBalanced(run_.Json("meta.json"));
 }
 
+// The runs of an experiment get what `shoal train` would choose from the spaces: here, that the
+// policy sees both goals.
+TEST_F(Environments, AnExperimentTrainsOnOneToo) {
+  json set{{"env.id", "goals:Reach"}, {"env.python", SHOAL_TEST_PYTHON},
+           {"env_steps", 400},        {"actors", 1},
+           {"eval.episodes", 2},      {"eval.interval", 1000000},
+           {"learner.batch", 32},     {"learner.threads", 1},
+           {"network.hidden", {32}},  {"replay.hindsight", "future"},
+           {"replay.capacity", 5000}, {"replay.min_size", 100}};
+  json definition{{"schema", "shoal-experiment-definition-1"},
+                  {"base", "state"},
+                  {"set", set},
+                  {"arms", {{{"name", "plain"}, {"set", json::object()}}}},
+                  {"seeds", {1}},
+                  {"final_episodes", 2}};
+  const std::filesystem::path file = run_.parent() / "reach.json", out = run_.parent() / "reach";
+  const auto run = [&] {
+    std::ofstream(file) << definition;
+    return Shoal({"experiment", "run", file, "--out", out});
+  };
+  const ProgramResult done = run();
+  ASSERT_EQ(ExitCode(done), 0) << done.out << done.err;
+  EXPECT_THAT(done.err, HasSubstr("no baselines of Reach: environments of Python have none"));
+  const std::filesystem::path trained = out / "runs" / "plain-s1";
+  const json config = json::parse(ReadFile(trained / "config.json"));
+  EXPECT_EQ(config.at("observation").at("goal_mode"), "both");
+  ExpectBalanced(json::parse(ReadFile(trained / "meta.json")));
+
+  std::filesystem::remove_all(out);
+  definition["arms"][0]["set"] = {{"env.id", "goals:Dense"}};
+  const ProgramResult other = run();
+  EXPECT_EQ(ExitCode(other), 2) << other.out;
+  EXPECT_THAT(other.err, HasSubstr("its arms have one environment"));
+}
+
 // A policy outside of its run acts as the evaluation did: dicts, pictures, stacks and the bounds of
 // actions are mapped alike.
 TEST_F(Environments, APolicyActsInPythonAsItWasEvaluated) {

@@ -251,10 +251,13 @@ fs::path FindDefinition(const std::string& file_or_name) {
                    fmt::join(ListDefinitions(), ", "));
 }
 
-Config ResolveBase(const Definition& definition, const std::string& source) {
+Config ResolveBase(const Definition& definition, const std::string& source,
+                   const std::vector<std::string>& defaults) {
   Config base;
+  ApplyAssignments(defaults, &base);
   try {
-    base = LoadPreset(definition.base);
+    ApplyFile(FindPreset(definition.base), &base);
+    base.preset = definition.base;
   } catch (const Error& e) {
     throw UsageError("{}: base: {}", source, e.what());
   }
@@ -282,6 +285,12 @@ Config ArmConfig(const Config& base, const Arm& arm, const std::string& source) 
     Validate(config);
     tasks::LoadTaskLibrary(config.task_library);
     if (config.env.id.empty()) tasks::FindTask(config.task);
+    const EnvConfig &now = config.env, &before = base.env;
+    if (now.id != before.id || now.python != before.python || now.folder != before.folder) {
+      throw UsageError(
+          "env.id, env.python and env.folder: expected them in the experiment's set: its arms have "
+          "one environment");
+    }
   } catch (const Error& e) {
     throw UsageError("{}: {}", where, e.what());
   }

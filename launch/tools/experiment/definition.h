@@ -50,13 +50,16 @@ nlohmann::ordered_json ToJson(const Definition& definition);
 std::filesystem::path FindDefinition(const std::string& file_or_name);
 std::vector<std::string> ListDefinitions();  // sorted
 
-// The preset with the definition's own `set` and final_episodes applied. Throws Error (usage)
-// naming `source` where the preset is unknown or a key is refused.
-Config ResolveBase(const Definition& definition, const std::string& source);
+// The preset with the definition's own `set` and final_episodes applied. `defaults` ("KEY=VALUE")
+// hold for keys that neither sets. Throws Error (usage) naming `source` where the preset is unknown
+// or a key is refused.
+Config ResolveBase(const Definition& definition, const std::string& source,
+                   const std::vector<std::string>& defaults = {});
 
 // The base with the arm's differences; the seed is set for each run. Refuses, by the
 // configuration's own key table, what no run could start with: unknown, ill-typed or out-of-range
-// keys, keys that the experiment itself sets, combinations that make no sense, an unknown task.
+// keys, keys that the experiment itself sets, combinations that make no sense, an unknown task,
+// another environment of Python than the base's.
 // Throws Error (usage) naming `source` and the arm.
 Config ArmConfig(const Config& base, const Arm& arm, const std::string& source);
 

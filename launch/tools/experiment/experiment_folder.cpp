@@ -14,6 +14,8 @@
 #include "common/base/files.h"
 #include "common/config/config_io.h"
 #include "common/run_folder/run_file_names.h"
+#include "launch/processes/actor_program.h"
+#include "launch/run/environment_choice.h"
 
 namespace shoal::launch {
 namespace {
@@ -202,6 +204,26 @@ std::optional<StoredExperiment> ReadIfSame(const fs::path& folder, const Definit
 
 }  // namespace
 
+namespace {
+
+// The base of a new experiment. Of an environment of Python its keys are completed, and what
+// follows from its spaces is taken, as `shoal train` does.
+Config MakeBase(const Definition& definition, const std::string& source) {
+  Config base = ResolveBase(definition, source);
+  if (base.env.id.empty()) return base;
+  if (!definition.transfer.empty()) {
+    throw UsageError("{}: transfer: a policy of environment {} plays that environment alone",
+                     source, base.env.id);
+  }
+  CompleteEnvironmentKeys(&base);
+  base = ResolveBase(definition, source,
+                     DefaultsFor(DescribeEnvironment(base).description).assignments);
+  CompleteEnvironmentKeys(&base);
+  return base;
+}
+
+}  // namespace
+
 ExperimentPlan PlanExperiment(const fs::path& folder, const Definition& definition,
                               const std::string& source) {
   std::error_code error;
@@ -214,7 +236,7 @@ ExperimentPlan PlanExperiment(const fs::path& folder, const Definition& definiti
   } else {
     // Not as one braced value: g++ 12 destroys members that it has not made when one throws.
     plan.experiment.folder = fs::weakly_canonical(fs::absolute(folder));
-    plan.experiment.base = ResolveBase(definition, source);
+    plan.experiment.base = MakeBase(definition, source);
     plan.experiment.created = UtcTimestamp();
   }
   plan.experiment.definition = definition;
