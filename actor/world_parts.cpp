@@ -49,7 +49,7 @@ StepCosts MeasureSteps(worlds::Environment& environment) {
 void AddTasks(const RunConfig& run) {
   if (!run.config.env.id.empty()) {
     throw UsageError(
-        "the run's environment is {}, which Python runs; its actors are started by '{} -m "
+        "the run's environment is {}, which Python runs: its actors are started by '{} -m "
         "shoal_rl.actor', not by shoal-actor",
         run.config.env.id, run.config.env.python);
   }

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "actor/hosted/element_conversion.h"
 #include "actor/worlds/episode_fault.h"
 #include "common/base/check.h"
 #include "common/base/log.h"
@@ -12,38 +13,8 @@ namespace shoal::hosted {
 namespace {
 
 using tasks::ArraySpace;
-using tasks::ElementType;
 using worlds::EpisodeFault;
 using worlds::FaultCause;
-
-template <class T>
-void Convert(const void* array, std::span<float> numbers) {
-  const T* from = static_cast<const T*>(array);
-  for (size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<float>(from[i]);
-}
-
-void ConvertTo(ElementType type, const void* array, std::span<float> numbers) {
-  switch (type) {
-    case ElementType::kFloat32:
-      return Convert<float>(array, numbers);
-    case ElementType::kFloat64:
-      return Convert<double>(array, numbers);
-    case ElementType::kUint8:
-      return Convert<uint8_t>(array, numbers);
-    case ElementType::kUint16:
-      return Convert<uint16_t>(array, numbers);
-    case ElementType::kUint32:
-      return Convert<uint32_t>(array, numbers);
-    case ElementType::kInt8:
-      return Convert<int8_t>(array, numbers);
-    case ElementType::kInt16:
-      return Convert<int16_t>(array, numbers);
-    case ElementType::kInt32:
-      return Convert<int32_t>(array, numbers);
-    case ElementType::kInt64:
-      return Convert<int64_t>(array, numbers);
-  }
-}
 
 bool IsBounded(const ArraySpace& space) {
   const auto finite = [](double bound) { return std::isfinite(bound); };

@@ -12,7 +12,7 @@ void LoadTasks(const std::string& task_library) {
   tasks::LoadTaskLibrary(task_library);
   std::filesystem::path physics = task_library;
   physics.replace_filename(physics.stem().string() + "_physics" + physics.extension().string());
-  tasks::CallEntryPoint(physics.string(), "ShoalRegisterPhysics");
+  tasks::CallEntryPoint(physics.string(), {.function = "ShoalRegisterPhysics"});
 }
 
 }  // namespace shoal::worlds

@@ -23,8 +23,9 @@ namespace {
 using nlohmann::json;
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
-constexpr int kLeastSide = 8;             // pixels of an image
-constexpr size_t kLongestTaskName = 50;   // of a task, before a prefix
+constexpr int kLeastSide = 8;            // pixels of an image
+constexpr size_t kLongestTaskName = 50;  // of a task, before a prefix
+constexpr char kLibrary[] = ".so:";
 constexpr char kWorld[] = "environment";  // physics half: the process that runs the environment
 
 struct TypeRow {
@@ -217,7 +218,9 @@ void EnvironmentDescription::TakeFindings(const EnvironmentDescription& of) {
 std::string TaskNameOf(const std::string& id) {
   const size_t colon = id.rfind(':');
   std::string name = id.substr(colon == std::string::npos ? 0 : colon + 1);
-  if (const size_t file = id.rfind(".py:"); file != std::string::npos) {
+  for (const char* ending : {".py:", kLibrary}) {
+    const size_t file = id.rfind(ending);
+    if (file == std::string::npos) continue;
     const size_t slash = id.rfind('/', file);
     const size_t stem = slash == std::string::npos ? 0 : slash + 1;
     name = fmt::format("{}.{}", id.substr(stem, file - stem), name);
@@ -230,6 +233,11 @@ std::string TaskNameOf(const std::string& id) {
   const std::vector<std::string> names = TaskNames();
   const bool taken = std::ranges::count(names, name) > 0 && FindTask(name).world() != kWorld;
   return name.empty() || taken ? fmt::format("environment.{}", name) : name;
+}
+
+std::string LibraryOf(const std::string& id) {
+  const size_t file = id.rfind(kLibrary);
+  return file == std::string::npos ? "" : id.substr(0, file + std::string(kLibrary).size() - 1);
 }
 
 EnvironmentDescription EnvironmentFromJson(const json& object) {

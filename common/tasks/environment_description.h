@@ -22,43 +22,16 @@
 #include <string>
 #include <vector>
 
+#include "common/tasks/environment_spaces.h"
 #include "common/tasks/task.h"
 
 namespace shoal::tasks {
 
 inline constexpr char kEnvironmentSchema[] = "shoal-environment-1";
-inline constexpr char kAchievedGoal[] = "achieved_goal", kDesiredGoal[] = "desired_goal";
-
-// Types of elements that an environment's arrays may have.
-enum class ElementType {
-  kFloat32,
-  kFloat64,
-  kUint8,
-  kUint16,
-  kUint32,
-  kInt8,
-  kInt16,
-  kInt32,
-  kInt64
-};
 
 // NumPy's name of the type, "float32", and its size.
 const char* NameOf(ElementType type);
 size_t BytesOf(ElementType type);
-
-// One array of an observation, or the action: a Box in Gymnasium's terms.
-struct ArraySpace {
-  std::string name;  // keys of nested Dicts joined by dots: "robot.arm"
-  std::vector<int> shape;
-  ElementType type = ElementType::kFloat32;
-  std::vector<double> low{},
-      high{};  // one number for each element, or one for all; may be infinite
-
-  int size() const;
-  double Low(int element) const;
-  double High(int element) const;
-  bool operator==(const ArraySpace&) const = default;
-};
 
 // How an image is laid out in an array of uint8.
 struct ImageLayout {
@@ -73,33 +46,14 @@ struct ImageLayout {
 // nearly one, such as a stack of frames.
 std::optional<ImageLayout> ImageLayoutOf(const ArraySpace& space);
 
-struct VerifiedGoal {
-  RewardKind reward = RewardKind::kSparse;
-  double threshold = 0;
-
-  bool operator==(const VerifiedGoal&) const = default;
-};
-
-struct EnvironmentDescription {
-  std::string id;         // as the user names it: "Pendulum-v1", "/home/me/my_env.py:MyEnv"
-  std::string task;       // its name within Shoal
-  int episode_steps = 0;  // 0 = no time limit
-  ArraySpace action;
-  std::vector<ArraySpace> observation;
-  bool success = false;                // steps report whether the goal is reached
-  std::optional<VerifiedGoal> goal{};  // of a goal environment whose rewards Shoal can compute
-  std::string no_goal{};               // why `goal` is empty; empty if it has no goals at all
-
-  const ArraySpace* Find(const std::string& name) const;
-  // Takes what only playing or checking the environment shows: success, goal, no_goal.
-  void TakeFindings(const EnvironmentDescription& of);
-  bool operator==(const EnvironmentDescription&) const = default;
-};
-
 // The name within Shoal of the environment that env.id names: "Pendulum-v1", "ALE-Pong-v5",
 // "catch_light.CatchLight" of "./catch_light.py:CatchLight". A name that one of Shoal's tasks has
 // gets a prefix.
 std::string TaskNameOf(const std::string& id);
+
+// The library of an environment in C++: "/home/me/catch_light.so" of
+// "/home/me/catch_light.so:CatchLight"; empty for an environment of Python.
+std::string LibraryOf(const std::string& id);
 
 // Throws Error (kUsage) naming what is missing, ill-typed or cannot be trained on: an action
 // without finite bounds, two blocks of one name.

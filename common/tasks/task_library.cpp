@@ -18,11 +18,11 @@ std::string& FolderBeingLoaded() {
   return folder;
 }
 
-void Call(const std::string& path, const char* entry_point, void (*function)()) {
+void Call(const std::string& path, const EntryPoint& entry_point, void (*function)()) {
   FolderBeingLoaded() = std::filesystem::absolute(path).lexically_normal().parent_path().string();
   const auto failed = [&](const char* what) {
     FolderBeingLoaded().clear();
-    return UsageError("task_library '{}': {}: {}", path, entry_point, what);
+    return UsageError("{} '{}': {}: {}", entry_point.key, path, entry_point.function, what);
   };
   try {
     function();
@@ -39,22 +39,22 @@ void Call(const std::string& path, const char* entry_point, void (*function)()) 
 const std::string& LoadingFolder() { return FolderBeingLoaded(); }
 
 void LoadTaskLibrary(const std::string& path) {
-  if (!path.empty()) CallEntryPoint(path, "ShoalRegisterGoals");
+  if (!path.empty()) CallEntryPoint(path, {.function = "ShoalRegisterGoals"});
 }
 
-void CallEntryPoint(const std::string& path, const char* entry_point) {
+void CallEntryPoint(const std::string& path, const EntryPoint& entry_point) {
   // Without a slash the loader would search the system's folders.
   const std::string file = path.find('/') == std::string::npos ? "./" + path : path;
   // Everything is resolved at once, so that a library of other sources fails here and by name. It
   // stays loaded: tasks live as long as the process.
   void* library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
-  if (library == nullptr) throw UsageError("task_library: cannot load {}", dlerror());
+  if (library == nullptr) throw UsageError("{}: cannot load {}", entry_point.key, dlerror());
   static std::set<void*> called;  // the loader gives one handle for one file, however it is named
   if (!called.insert(library).second) return;
-  void* symbol = dlsym(library, entry_point);
+  void* symbol = dlsym(library, entry_point.function);
   if (symbol == nullptr) {
-    throw UsageError("task_library: '{}' has no entry point {} (docs/own_task.md)", path,
-                     entry_point);
+    throw UsageError("{}: '{}' has no entry point {} ({})", entry_point.key, path,
+                     entry_point.function, entry_point.page);
   }
   Call(path, entry_point, reinterpret_cast<void (*)()>(symbol));
 }

@@ -22,8 +22,16 @@ namespace shoal::tasks {
 // Loads the goal halves of NAME.so; an empty path is none. A library is loaded once.
 void LoadTaskLibrary(const std::string& path);
 
+// The function that a shared object is loaded for, and what messages call the key that names the
+// file and the page about it.
+struct EntryPoint {
+  const char* function;
+  const char* key = "task_library";
+  const char* page = "docs/own_task.md";
+};
+
 // Loads a shared object and calls its entry point, unless it was called before.
-void CallEntryPoint(const std::string& path, const char* entry_point);
+void CallEntryPoint(const std::string& path, const EntryPoint& entry_point);
 
 // While an entry point runs: the absolute folder of its library, where model files may lie beside
 // it. Empty otherwise.

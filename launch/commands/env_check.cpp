@@ -52,8 +52,8 @@ std::string RepeatText(const DescribedEnvironment& described) {
 
 std::string Text(const DescribedEnvironment& described, const Config& config) {
   const tasks::EnvironmentDescription& environment = described.description;
-  std::string text =
-      fmt::format("{}, task {}, run by {}\n", environment.id, environment.task, config.env.python);
+  std::string text = fmt::format("{}, task {}, run by {}\n", environment.id, environment.task,
+                                 config.env.python.empty() ? "shoal-actor" : config.env.python);
   for (const tasks::ArraySpace& space : environment.observation) text += ArrayText(space);
   text += fmt::format("  action: {} numbers in {}, mapped to [-1, 1]\n", environment.action.size(),
                       BoundsText(environment.action));

@@ -5,6 +5,7 @@
 
 #include "common/base/check.h"
 #include "common/base/program_file.h"
+#include "common/tasks/environment_description.h"
 #include "common/wire/process_name.h"
 #include "launch/record/run_folder.h"
 
@@ -25,7 +26,7 @@ ProcessSpec ProgramSpec(const std::string& program, std::vector<std::string> arg
 
 ProcessSpec ActorSpec(const Config& config, std::vector<std::string> arguments) {
   ProcessSpec spec = ProgramSpec("shoal-actor", std::move(arguments), 1);
-  if (config.env.id.empty()) return spec;
+  if (config.env.id.empty() || !tasks::LibraryOf(config.env.id).empty()) return spec;
   const std::vector<std::string> python{config.env.python, "-m", "shoal_rl.actor"};
   spec.command.erase(spec.command.begin());
   spec.command.insert(spec.command.begin(), python.begin(), python.end());

@@ -20,8 +20,8 @@ std::filesystem::path ProgramFolder();
 ProcessSpec ProgramSpec(const std::string& program, std::vector<std::string> arguments,
                         int threads);
 
-// The program of this configuration's actors: shoal-actor or, if env.id names an environment, the
-// interpreter env.python with the package shoal_rl.
+// The program of this configuration's actors: shoal-actor or, if env.id names an environment of
+// Python, the interpreter env.python with the package shoal_rl.
 ProcessSpec ActorSpec(const Config& config, std::vector<std::string> arguments);
 
 // The topology of a run with these hosts. `config` is resolved.

@@ -10,6 +10,7 @@
 #include "actor/hosted/hosted_spec.h"
 #include "common/base/error.h"
 #include "common/base/search_path.h"
+#include "common/tasks/environment_description.h"
 
 namespace shoal::launch {
 namespace {
@@ -45,20 +46,25 @@ std::string ChoosePython(const std::string& asked) {
 void CompleteEnvironmentKeys(Config* config) {
   EnvConfig& env = config->env;
   if (env.id.empty()) return;
-  if (const size_t at = env.id.rfind(kPythonFile); at != std::string::npos) {
-    const std::string file = env.id.substr(0, at + 3), name = env.id.substr(at + 4);
+  const std::string library = tasks::LibraryOf(env.id);
+  if (const size_t at = env.id.rfind(kPythonFile); at != std::string::npos || !library.empty()) {
+    const std::string file = library.empty() ? env.id.substr(0, at + 3) : library;
+    const std::string name = env.id.substr(file.size() + 1);
     if (!fs::exists(file)) throw UsageError("env.id '{}': file '{}' does not exist", env.id, file);
     if (name.empty()) {
-      throw UsageError("env.id '{}': expected the name of a class or a function after the colon",
-                       env.id);
+      throw UsageError("env.id '{}': expected the name of an environment after the colon", env.id);
     }
     env.id = fmt::format("{}:{}", Absolute(file), name);
-  } else if (env.id.ends_with(".py")) {
-    throw UsageError("env.id '{}': expected {}:NAME, a class or a function of the file", env.id,
+  } else if (env.id.ends_with(".py") || env.id.ends_with(".so")) {
+    throw UsageError("env.id '{}': expected {}:NAME, an environment of the file", env.id, env.id);
+  }
+  if (library.empty()) {
+    env.python = ChoosePython(env.python);
+    env.folder = Absolute(env.folder.empty() ? "." : env.folder);
+  } else if (!env.python.empty()) {
+    throw UsageError("env.python: no Python runs the environment {}; expected the key unset",
                      env.id);
   }
-  env.python = ChoosePython(env.python);
-  env.folder = Absolute(env.folder.empty() ? "." : env.folder);
   config->task = tasks::TaskNameOf(env.id);
 }
 

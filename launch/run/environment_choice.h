@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs whose environment Python runs (env.id): the keys that follow from the name, and those that
-// follow from the environment's spaces unless the user sets them.
+// Runs of a user's environment (env.id), in Python or of a library in C++: the keys that follow
+// from the name, and those that follow from the environment's spaces unless the user sets them.
 #pragma once
 
 #include <string>
@@ -11,9 +11,9 @@
 
 namespace shoal::launch {
 
-// Without env.id nothing. Else completes `config`: env.python and env.folder, a file in env.id as
-// an absolute path, and the task's name. Throws Error (kUsage) on a file or an interpreter that
-// does not exist.
+// Without env.id nothing. Else completes `config`: a file in env.id as an absolute path, the task's
+// name, and of an environment of Python env.python and env.folder. Throws Error (kUsage) on a file
+// or an interpreter that does not exist.
 void CompleteEnvironmentKeys(Config* config);
 
 // The settings that a run gets where the user's preset, file and --set do not say them.

@@ -49,10 +49,15 @@ void DivideCores(double step_microseconds, RunRequest* request) {
   request->config.config.learner.threads = split.threads;
 }
 
+// The interpreter, or the program that loads the environment's library.
+std::string RunnerOf(const Config& config) {
+  return config.env.python.empty() ? "shoal-actor" : config.env.python;
+}
+
 void RefuseOtherHosts(const Config& config, const Hosts& hosts) {
   if (hosts.hosts.empty()) return;
   throw UsageError("--hosts: the environment {} is run by {} of this host; expected no other hosts",
-                   config.env.id, config.env.python);
+                   config.env.id, RunnerOf(config));
 }
 
 // Asks the environment of env.id what it observes, and resolves the configuration again with what
@@ -70,7 +75,7 @@ void TakeEnvironment(const TrainOptions& options, RunRequest* request) {
   request->split_limits = LimitsOfSplit(GivenConfig(options, defaults), false, UsableCores());
   DivideCores(described.step_microseconds, request);
   request->environment_note = fmt::format(
-      "  environment {}, run by {}{}\n", run.config.env.id, run.config.env.python,
+      "  environment {}, run by {}{}\n", run.config.env.id, RunnerOf(run.config),
       preset.empty() ? fmt::format("; preset {}, because {}", run.config.preset, defaults.reason)
                      : "");
 }

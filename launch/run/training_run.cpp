@@ -153,7 +153,7 @@ int Train(const TrainOptions& options, Detachment* detachment) {
     return 0;
   }
   if (options.in_process && !request.config.config.env.id.empty()) {
-    throw UsageError("--in-process: not with env.id: Python runs the environment in processes");
+    throw UsageError("--in-process: not with env.id: the environment runs in processes of its own");
   }
   CheckRequest(options, &request);
   // A resumed run had a domain before, so its dry run does not claim one.

@@ -52,6 +52,8 @@ const std::vector<TrialRule>& TrialRules() {
       {"^pip |/bin/pip |^(/usr/bin/)?python3 -m venv", kNotHere, kPyPI},
       {"python tests/comparison/", kNotHere, kPyPI},
 
+      {"^cmake .*(own_environment_cpp|build/catch_light)|^shoal train --env build/catch_light",
+       kElsewhere, "OwnEnvironment.IsBuiltTrainedAndFilmedWithAnInstallation"},
       {"^shoal train --env .*(catch_light|CarRacing|Pendulum)", kElsewhere,
        "Environments.TheWorkedExampleIsTrainedAndFilmed"},
       {"^shoal (film|eval) light\\b", kElsewhere,

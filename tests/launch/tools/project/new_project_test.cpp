@@ -1,14 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// An installation in a folder of its own, and a user's project that is made, built and trained with
-// it from another folder.
+// A user's project that is made, built and trained with an installation, from another folder.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 
 #include "common/base/files.h"
-#include "tests/support/paths.h"
-#include "tests/support/program.h"
+#include "tests/launch/tools/project/installed_shoal.h"
 
 namespace shoal {
 namespace {
@@ -16,39 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-constexpr std::chrono::seconds kLong{400};
-
-// `line` of a shell, in `folder`.
-ProgramResult RunIn(const fs::path& folder, const std::string& line) {
-  return RunCommand({"/bin/sh", "-c", "cd " + folder.string() + " && " + line}, kLong);
-}
-
-void Expect(const ProgramResult& result) {
-  ASSERT_EQ(ExitCode(result), 0) << result.out << result.err;
-}
-
-class NewProject : public testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    folder_ = new TemporaryFolder;
-    const fs::path build = fs::path(ProgramPath("shoal")).parent_path().parent_path();
-    Expect(RunIn(folder_->path(),
-                 "cmake --install " + build.string() + " --prefix " + Prefix().string()));
-  }
-  static void TearDownTestSuite() {
-    delete folder_;
-    folder_ = nullptr;
-  }
-
-  static fs::path Folder() { return folder_->path(); }
-  static fs::path Prefix() { return folder_->path() / "prefix"; }
-  static std::string Shoal() { return (Prefix() / "bin/shoal").string(); }
-
- private:
-  static TemporaryFolder* folder_;
-};
-
-TemporaryFolder* NewProject::folder_ = nullptr;
+class NewProject : public InstalledShoal {};
 
 TEST_F(NewProject, AnInstallationHasItsPartsWhereTheyBelong) {
   for (const char* file :

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+// The parts of an actor whose environments are a user's, in Python or in C++.
+#pragma once
+
+#include <functional>
+#include <memory>
+
+#include "actor/hosted/raw_environment.h"
+#include "actor/program.h"
+#include "common/config/config.h"
+#include "common/tasks/environment_description.h"
+
+namespace shoal::actor {
+
+// An environment and what its spaces say.
+struct OpenedEnvironment {
+  tasks::EnvironmentDescription description;  // without what playing shows
+  std::unique_ptr<hosted::RawEnvironment> raw;
+};
+
+// The use that an environment is opened for.
+enum class Purpose {
+  kPlay,
+  kShow,      // it will be asked for pictures
+  kDescribe,  // the description says whether Shoal can compute its rewards for other goals
+};
+
+// Opens the environment of config.env. Throws Error.
+using EnvironmentOpener = std::function<OpenedEnvironment(const Config&, Purpose)>;
+
+// `shows`: the environments of this process will be asked for pictures.
+ActorParts HostedParts(EnvironmentOpener open, bool shows);
+
+// Environments of a library (actor/hosted/environment_library.h).
+ActorParts LibraryParts(bool shows);
+
+// Shoal's own worlds or environments of a library, as the configuration says.
+ActorParts WorldOrLibraryParts(bool shows);
+
+}  // namespace shoal::actor
