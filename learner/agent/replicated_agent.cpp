@@ -43,7 +43,7 @@ class ReplicatedAgent final : public Agent {
     return agents_[0]->AveragedPolicyTensors();
   }
   nn::TensorMap AllTensors() const override { return agents_[0]->AllTensors(); }
-  // What the first one refuses has changed none.
+  // The first one refuses bad tensors before any has changed.
   void Restore(const nn::TensorMap& tensors, const std::string& source) override {
     for (const auto& agent : agents_) agent->Restore(tensors, source);
   }

@@ -49,7 +49,7 @@ bool IsText(const fs::path& file) {
   static const std::set<std::string> kNames = {"CMakeLists.txt", "run"};
   const std::string path = file.string();
   // The rules, their tests and their page quote what they forbid.
-  return !path.starts_with("tests/docs/language") && path.find("faults-of-language") == path.npos &&
+  return !path.starts_with("tests/docs/language") && path.find("plain-english") == path.npos &&
          (kExtensions.contains(file.extension()) || kNames.contains(file.filename()));
 }
 

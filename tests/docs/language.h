@@ -6,8 +6,7 @@
 //   width      a line of a page beyond 100 columns that could wrap: no table, no code, no lone link
 //   reference  a comment or page that names a source or page which the tree does not have
 //
-// docs/decisions/0021-faults-of-language-only-become-fewer.md says why, and how the faults that are
-// left become fewer.
+// docs/decisions/0021-plain-english-is-tested.md says why.
 #pragma once
 
 #include <filesystem>

@@ -29,7 +29,7 @@ inline constexpr const Figure* kSacFigures[] = {
     &kLearningRate,    &kAuxError, &kQ1Mean,           &kQ1Std,          &kQ2Mean,
     &kQ2Std,           &kQMinMean, &kQMinStd,          &kQMinMin,        &kQMinMax};
 
-// As Algorithm::make_replica.
+// Makes the agent of Algorithm::make_replica.
 std::unique_ptr<Agent> MakeSacAgent(const Config& config, const ObservationSpec& spec,
                                     nn::Precision precision, nn::Replica* replica);
 

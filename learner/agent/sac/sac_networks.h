@@ -75,8 +75,8 @@ class SacNetworks {
   TwinQ ForwardTarget(const float* vector, const float* action);
   TwinQ ForwardCritic(const float* vector, const float* action);
 
-  // Where the loss of learner.aux joins in: of the head that trains the encoder, for the features
-  // of its latest forward pass and before its backward pass. Nothing without it.
+  // True if the head trains the encoder and there are labels (sac.aux): their loss is then added,
+  // for the features of the head's latest forward pass and before its backward pass.
   enum class Head { kCritic, kActor };
   bool Aux(Head head) const { return aux_ && (head == Head::kActor) == ActorTrains(); }
   // Mean square error of the labels: AuxLoss::ForwardBackward. CHECK: there is one.
