@@ -101,10 +101,11 @@ void Examination::CheckAccount() {
     Break(fmt::format("actor {} session {}: {} records after a gap, and none lost", session.actor,
                       session.session, session.after_gap));
   }
-  // The content of a killed memory is gone; on policy, so is what was acknowledged while the
+  // The content of a killed memory is gone. Without a ring, so is what was acknowledged while the
   // account could not be written (learner/rollouts/rollout_source.h).
-  const bool remembers =
-      LearnsOnPolicy(config_) ? !facts_.unwritten : config_.replay.storage == "file";
+  const bool has_ring = !LearnsOnPolicy(config_) && !facts_.lost;
+  const bool remembers = (LearnsOnPolicy(config_) || config_.replay.storage == "file") &&
+                         (has_ring || !facts_.unwritten);
   if (!remembers) return;
   std::map<std::pair<uint32_t, uint64_t>, uint64_t> dealt_with;
   for (const SessionCounters& session : ReadAccount(run_).sessions) {

@@ -36,6 +36,7 @@ struct Facts {
   bool last_clean = true;    // every process left in order in the last session
   bool overwritten = false;  // another run took the folder
   bool cut = false;          // half of the ring was removed
+  bool lost = false;         // the ring was removed
   bool unwritten = false;    // a disk failed
   // Wall clock, s. Before, no process left or was held up for long, and no clock jumped.
   double orderly_until = 0;

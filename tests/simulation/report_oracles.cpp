@@ -43,9 +43,13 @@ class CountedCursor {
     const double sampleable = Number(report, "sampleable"), stored = Number(report, "stored_steps");
     const double rate = Number(report, "limiter_samples_per_insert");
     const double start = Number(report, "t") - Number(report, "uptime_seconds");
-    // Another server counts from its own beginning, and another rate from where it is set.
-    const bool follows = std::abs(start - start_) < kSameStart && rate == rate_;
-    if (!follows) uncounted_ = stored;
+    const bool follows = std::abs(start - start_) < kSameStart;  // else another server
+    if (!follows) {
+      uncounted_ = stored;
+      constant_rate_ = true;
+    }
+    // A lower rate has a narrower band, but credit that was given under the former one stays.
+    constant_rate_ = constant_rate_ && (!follows || rate == rate_);
     if (sampleable < min_size_) uncounted_ = stored + min_size_ - sampleable;
     const double granted = rate * std::max(0., stored - uncounted_);
     const double sampled = Number(report, "sampled");
@@ -56,7 +60,7 @@ class CountedCursor {
     rate_ = rate;
     start_ = start;
     const double band = Number(report, "limiter_band");
-    if (std::abs(cursor_) <= band / 2 + 1e-3) return std::nullopt;
+    if (!constant_rate_ || std::abs(cursor_) <= band / 2 + 1e-3) return std::nullopt;
     return fmt::format("the limiter's cursor is {} in a band of {}", cursor_, band);
   }
 
@@ -64,6 +68,7 @@ class CountedCursor {
   static constexpr double kSameStart = 0.5;  // s
 
   const double min_size_;
+  bool constant_rate_ = true;
   double uncounted_ = 0;  // env steps before which none count
   double cursor_ = 0, granted_ = 0, sampled_ = 0, rate_ = 0, start_ = 0;
 };
@@ -72,9 +77,13 @@ class CountedCursor {
 // learner was one process.
 std::optional<std::string> DroppedRollouts(const World& world, const Facts& facts) {
   std::optional<std::string> broken;
+  bool orderly = true;
+  double last = 0;
   ForEachReport(world.folder, "learner", [&](const json& report) {
-    if (broken || !report.contains("rollouts_dropped")) return;
-    if (Number(report, "t") >= facts.orderly_until) return;
+    const double time = Number(report, "t");
+    orderly = orderly && time < facts.orderly_until && time >= last;  // the clock may jump back
+    last = time;
+    if (broken || !orderly || !report.contains("rollouts_dropped")) return;
     const double dropped = Number(report, "rollouts_dropped");
     if (dropped == 0 || Number(report, "rollouts_late") > 0) return;
     broken = fmt::format("{} rollouts were dropped, none of them late", dropped);
@@ -86,13 +95,16 @@ std::optional<std::string> DroppedRollouts(const World& world, const Facts& fact
 
 std::vector<std::string> BrokenInReports(const World& world, const Facts& facts) {
   std::vector<std::string> broken;
+  // Without a ring, a successor counts on from the account, which a failing disk keeps as it was.
+  const bool memory = world.blueprint.run.config.replay.storage == "memory";
+  const bool forgets = facts.unwritten && (memory || facts.lost);
   CountedCursor cursor(world.blueprint.run.config);
   double stored = 0;
   ForEachReport(world.folder, "replay", [&](const json& report) {
     if (!broken.empty()) return;
     if (auto line = cursor.Take(report)) broken.push_back(*std::move(line));
     const double steps = Number(report, "stored_steps");
-    if (steps < stored && !facts.cut) {
+    if (steps < stored && !facts.cut && !forgets) {
       broken.push_back(fmt::format("the replay counts {} env steps after {}", steps, stored));
     }
     stored = steps;

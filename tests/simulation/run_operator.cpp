@@ -68,6 +68,7 @@ void RunOperator::RunSession(Begin begin) {
   const char* how = begin == Begin::kFresh       ? "shoal train"
                     : begin == Begin::kOverwrite ? "shoal train --overwrite"
                                                  : "shoal train --resume";
+  session_begin_ = static_cast<ptrdiff_t>(world_.story.lines().size());
   world_.story.Add("operator", how);
   std::optional<bool> clean;
   const auto coordinator = world_.processes.StartOther(
@@ -96,22 +97,34 @@ void RunOperator::JudgeExit(const SimulatedProcess& coordinator) {
   const auto says = [this](const char* text) {
     return last_words_.find(text) != std::string::npos;
   };
-  const bool unclean = code == 1 && !last_clean_, interrupted = code == kInterruptedExit;
+  const bool unclean = code == 1 && !last_clean_ && SaidWhoFailed(),
+             interrupted = code == kInterruptedExit;
   finished_ = Ended(meta.exit) &&
               (code == 0 || unclean || interrupted || (code == 2 && says("is finished")));
-  const bool stopped = interrupted || (meta.exit == "interrupted" && code == 0);
+  // A command that failed while it stopped keeps its exit code (docs/failures.md).
+  const bool stopped = interrupted || (meta.exit == "interrupted" && (code == 0 || unclean));
   // The end is noticed up to a second later.
   const bool full = Now() < disk_full_until_ + seconds(1);
   // It says so, and a resumed session writes it.
   const bool unwritten = code == kUnwrittenExit || (unclean && full);
-  // A session may wait for former processes before its first write.
-  const bool began_full = began_on_full_disk_ || (full && says(kConfigFile));
+  // A session may wait for former processes before its first write, or the disk fills up between
+  // its first two.
+  const bool began_full =
+      began_on_full_disk_ || (full && (says(kConfigFile) || says(kClusterFile)));
   const bool troubled = Now() < trouble_until_ || began_full;
   if (finished_ || stopped || unwritten || troubled) return;
   // Another process held the run for a moment, or a paused process has not left it yet.
   if (says("is running") || says("of an earlier session still works")) return;
   world_.story.Violate(fmt::format("a session ended as '{}' with code {}: {} {}", meta.exit, code,
                                    meta.error, last_words_));
+}
+
+bool RunOperator::SaidWhoFailed() const {
+  const auto& lines = world_.story.lines();
+  return std::any_of(lines.begin() + session_begin_, lines.end(), [](const std::string& line) {
+    return line.find(" while stopping") != std::string::npos ||
+           line.find("error: ") != std::string::npos;
+  });
 }
 
 launch::RunMeta RunOperator::TakeMeta() {

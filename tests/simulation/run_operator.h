@@ -38,6 +38,8 @@ class RunOperator {
  private:
   void RunSession(Begin begin);
   void JudgeExit(const SimulatedProcess& coordinator);
+  // Whether the session has named a process that failed, or a file, since it began.
+  bool SaidWhoFailed() const;
   // Reads meta.json, whose env steps never become fewer.
   launch::RunMeta TakeMeta();
   // Does what comes before the next session; returns how that begins.
@@ -60,6 +62,7 @@ class RunOperator {
   SteadyTime trouble_until_{};       // until then a session may end by itself (MayEndSessions)
   SteadyTime disk_full_until_{};     // of the full disk that was the last to end
   int sessions_ = 0, clients_ = 0;
+  ptrdiff_t session_begin_ = 0;    // its first line in the story
   const Fault* killed_ = nullptr;  // what killed the last coordinator
   std::string last_words_;
   uint64_t env_steps_ = 0;  // at the end of the last session

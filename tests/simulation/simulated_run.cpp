@@ -127,6 +127,7 @@ Outcome Simulate(const Blueprint& blueprint, uint64_t seed, const std::vector<Fa
                       .last_clean = person.last_clean(),
                       .overwritten = Any(faults, kThenOverwrite),
                       .cut = Any(faults, kThenCutRing),
+                      .lost = Any(faults, kThenLoseRing),
                       .unwritten = std::ranges::any_of(faults, FailsWrites),
                       .orderly_until = OrderlyUntil(faults),
                       .acknowledged = acknowledged};
