@@ -91,6 +91,10 @@ TEST(SimulatedRun, SeedsThatFoundAFaultOfTheProductKeepWhatIsPromised) {
   // The clock was set back between an actor's start and its first record, which was refused until
   // the clock had caught up.
   ExpectGood(192871542771512, FaultsOf(192871542771512));
+  // The replay died while the run stopped, was not started again, and the run called itself clean.
+  ExpectGood(101768, FaultsOf(101768));
+  // The simulated link took a coordinator for cut off whose predecessor had ended cut off.
+  ExpectGood(100977, FaultsOf(100977));
   // A replay that drained after its coordinator was gone called itself running.
   ExpectGood(kFile,
              {At(9, Kind::kPause, "coordinator", 16), At(10, Kind::kSlow, "coordinator", 45)});

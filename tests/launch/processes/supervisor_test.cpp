@@ -392,6 +392,24 @@ TEST_F(SupervisorTest, RemembersUncleanExpectedExits) {
               ElementsAre(HasSubstr("actor-0: exit code 1: 3 records left")));
 }
 
+TEST_F(SupervisorTest, AProcessThatWaitsForItsRestartWhenTheRunStopsIsAnUncleanExit) {
+  ProcessSpec actor = Fake("actor", 0, "exit 1");
+  actor.expendable = true;
+  const auto died = [this](const char* text) {
+    return PollUntil([&] {
+      return std::ranges::any_of(
+          said_, [&](const std::string& line) { return line.find(text) != std::string::npos; });
+    });
+  };
+  supervisor_.Start(actor);
+  ASSERT_TRUE(died("actor-0: exit code 1"));
+  supervisor_.Start(Fake("replay", 0, "exit 1"));
+  ASSERT_TRUE(died("replay-0: exit code 1"));
+  supervisor_.ExpectExit("");
+  EXPECT_THAT(supervisor_.unclean_exits(),
+              ElementsAre("replay-0: had died, and is not started again while stopping"));
+}
+
 TEST_F(SupervisorTest, KnowsWhoCouldNotWriteAllOfItsResults) {
   supervisor_.Start(Fake("learner", 0, "echo no room; exit 4"));
   supervisor_.ExpectExit("");
