@@ -108,6 +108,7 @@ class LocalHub final : public Hub {
   ~LocalHub() override {
     CHECK(ends_ == 0) << "hub of role " << RoleName(role_) << ": " << ends_
                       << " writers and readers are left";
+    exchange_.Reconnect(this);  // the next hub may have this address
   }
 
   std::map<std::string, uint64_t> Malformed() const override {
