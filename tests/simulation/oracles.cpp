@@ -101,11 +101,13 @@ void Examination::CheckAccount() {
     Break(fmt::format("actor {} session {}: {} records after a gap, and none lost", session.actor,
                       session.session, session.after_gap));
   }
-  // The content of a killed memory is gone. Without a ring, so is what was acknowledged while the
-  // account could not be written (learner/rollouts/rollout_source.h).
-  const bool has_ring = !LearnsOnPolicy(config_) && !facts_.lost;
+  // The content of a killed memory is gone. Without a ring, so is what was acknowledged since the
+  // account was written (learner/rollouts/rollout_source.h). A replay server that is killed while
+  // the run stops has no successor that would count what its ring holds.
+  const bool has_ring = !LearnsOnPolicy(config_) && !facts_.lost && !facts_.cut;
+  const bool counted = facts_.last_clean || !facts_.replay_struck;
   const bool remembers = (LearnsOnPolicy(config_) || config_.replay.storage == "file") &&
-                         (has_ring || !facts_.unwritten);
+                         (has_ring ? counted : !facts_.unwritten && !facts_.replay_struck);
   if (!remembers) return;
   std::map<std::pair<uint32_t, uint64_t>, uint64_t> dealt_with;
   for (const SessionCounters& session : ReadAccount(run_).sessions) {

@@ -32,14 +32,15 @@ class Witness {
 };
 
 struct Facts {
-  bool struck = false;       // there were faults
-  bool last_clean = true;    // every process left in order in the last session
-  bool overwritten = false;  // another run took the folder
-  bool cut = false;          // half of the ring was removed
-  bool lost = false;         // the ring was removed
-  bool unwritten = false;    // a disk failed
-  // Wall clock, s. Before, no process left or was held up for long, and no clock jumped.
-  double orderly_until = 0;
+  bool struck = false;         // there were faults
+  bool last_clean = true;      // every process left in order in the last session
+  bool overwritten = false;    // another run took the folder
+  bool cut = false;            // half of the ring was removed
+  bool lost = false;           // the ring was removed
+  bool unwritten = false;      // a disk failed
+  bool replay_struck = false;  // the replay server was killed, or held up for long
+  // Wall clock, s: between, no process left or was held up for long, and no clock jumped.
+  double orderly_from = 0, orderly_until = 0;
   Witness::Acknowledged acknowledged;
 };
 

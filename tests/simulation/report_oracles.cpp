@@ -78,7 +78,7 @@ class CountedCursor {
 std::optional<std::string> DroppedRollouts(const World& world, const Facts& facts) {
   std::optional<std::string> broken;
   bool orderly = true;
-  double last = 0;
+  double last = facts.orderly_from;
   ForEachReport(world.folder, "learner", [&](const json& report) {
     const double time = Number(report, "t");
     orderly = orderly && time < facts.orderly_until && time >= last;  // the clock may jump back

@@ -71,6 +71,10 @@ bool Disturbs(const Fault& fault) {
   }
 }
 
+bool StrikesReplay(const Fault& fault) {
+  return fault.process == "replay-0" && (fault.kind == Fault::Kind::kKill || Disturbs(fault));
+}
+
 double OrderlyUntil(const std::vector<Fault>& faults) {
   const auto first = std::ranges::find_if(faults, Disturbs);
   if (first == faults.end()) return std::numeric_limits<double>::infinity();
@@ -129,6 +133,8 @@ Outcome Simulate(const Blueprint& blueprint, uint64_t seed, const std::vector<Fa
                       .cut = Any(faults, kThenCutRing),
                       .lost = Any(faults, kThenLoseRing),
                       .unwritten = std::ranges::any_of(faults, FailsWrites),
+                      .replay_struck = std::ranges::any_of(faults, StrikesReplay),
+                      .orderly_from = static_cast<double>(kWallTimeNs) * 1e-9,
                       .orderly_until = OrderlyUntil(faults),
                       .acknowledged = acknowledged};
     for (std::string& line : BrokenPromises(world, facts)) {
