@@ -23,6 +23,7 @@
 #include "common/link/writer.h"
 #include "common/wire/weights_parts.h"
 #include "launch/processes/child_process.h"
+#include "launch/processes/process_plan.h"
 #include "launch/record/accounting.h"
 #include "tests/support/processes.h"
 
@@ -157,7 +158,14 @@ double SecondsOfAll(const std::vector<launch::ChildProcess>& processes) {
 
 launch::ProcessSpec ActorSpec(const ManyActorsOptions& options, int id) {
   std::vector<std::string> arguments{"--id", std::to_string(id)};
-  if (options.run) return Spec(options, "shoal-actor", arguments);
+  if (options.run) {
+    launch::ProcessSpec spec = Spec(options, "shoal-actor", arguments);
+    if (options.run->config.env.id.empty()) return spec;
+    const launch::ProcessSpec python = launch::ActorSpec(options.run->config, {});
+    spec.command.erase(spec.command.begin());
+    spec.command.insert(spec.command.begin(), python.command.begin(), python.command.end());
+    return spec;
+  }
   const int step_us = std::max(1, static_cast<int>(1e6 / options.steps_per_second));
   arguments.insert(arguments.end(), {"--step-us", std::to_string(step_us)});
   return Spec(options, "shoal-fake-actor", arguments);

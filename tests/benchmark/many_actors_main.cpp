@@ -15,6 +15,7 @@
 #include "launch/processes/process_plan.h"
 #include "launch/processes/scratch_folder.h"
 #include "launch/record/machine.h"
+#include "tests/benchmark/hosted_actors.h"
 #include "tests/benchmark/many_actors.h"
 #include "tests/benchmark/paired_timing.h"
 #include "tests/benchmark/real_actors.h"
@@ -125,6 +126,7 @@ int Run(int argc, char** argv) {
   ManyActorsOptions options;
   int repetitions = 3;
   bool real = false, fake = false;
+  std::string python;
   CLI::App app("Measures a replay server under many actor processes, and real actors.",
                "shoal-bench-actors");
   shoal::AddVersion(&app);
@@ -137,13 +139,22 @@ int Run(int argc, char** argv) {
       ->check(CLI::Range(1, 100));
   auto* only_real = app.add_flag("--real", real, "real actors alone");
   app.add_flag("--fake", fake, "actors that cost nothing but time alone")->excludes(only_real);
+  app.add_option("--environments-of", python,
+                 "instead, what Shoal adds to an env step of Python: an interpreter that has the "
+                 "packages shoal_rl and gymnasium")
+      ->excludes(only_real);
   if (const auto exit_code = shoal::ParseCommandLine(&app, argc, argv)) return *exit_code;
   options.programs = shoal::launch::ProgramFolder();
   shoal::InstallStopSignals();  // an interrupted one takes its processes and files with it
 
   nlohmann::ordered_json rows = nlohmann::ordered_json::array();
-  if (!real) MeasureCounts(counts, repetitions, options, &rows);
-  if (!fake) {
+  if (!python.empty()) {
+    for (auto& row : shoal::bench::HostedActorRows(options, python, repetitions)) {
+      rows.push_back(std::move(row));
+    }
+  }
+  if (!real && python.empty()) MeasureCounts(counts, repetitions, options, &rows);
+  if (!fake && python.empty()) {
     for (const Row& row : shoal::bench::RealActorRows(options, repetitions)) {
       rows.push_back(ToJson(row));
       std::cerr << shoal::bench::LineOf(row) << "\n";

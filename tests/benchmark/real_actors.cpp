@@ -5,20 +5,16 @@
 
 #include <algorithm>
 #include <chrono>
-#include <functional>
 #include <memory>
 #include <numeric>
 #include <string_view>
 #include <thread>
 
-#include "actor/acting/action_selector.h"
 #include "actor/worlds/environment.h"
 #include "common/base/clock.h"
 #include "common/base/usable_cores.h"
-#include "common/nn/actor_critic_plan.h"
-#include "common/nn/parameter_set.h"
-#include "common/nn/safetensors.h"
 #include "launch/processes/scratch_folder.h"
+#include "tests/benchmark/acting_cost.h"
 
 namespace shoal::bench {
 namespace {
@@ -36,42 +32,10 @@ RunConfig ReachRun(const char* quality) {
   return run;
 }
 
-// A policy as it starts.
-std::string FirstWeights(const RunConfig& run) {
-  nn::ParameterSet parameters(nn::PolicyParameters(run.config.network, run.spec),
-                              nn::ParameterSet::Use::kInference);
-  parameters.Initialise(1);
-  nn::TensorMap tensors;
-  parameters.Export(&tensors);
-  return nn::WriteSafetensors(tensors, {});
-}
-
-double SecondsPerCall(double seconds, const std::function<void()>& act) {
-  act();
-  const SteadyTime start = Now();
-  int calls = 0;
-  do {
-    act();
-    ++calls;
-  } while (SecondsSince(start) < seconds);
-  return SecondsSince(start) / calls;
-}
-
 struct Played {
   std::unique_ptr<worlds::Environment> environment;
   bool running = false;
 };
-
-std::unique_ptr<actor::ActionSelector> MakeSelector(const RunConfig& run,
-                                                    const std::string& weights) {
-  auto selector =
-      std::make_unique<actor::ActionSelector>(run.config, run.spec, run.config.envs_per_actor);
-  selector->Load({{/*session=*/1, /*update=*/1}, 0, "", weights});
-  for (int e = 0; e < run.config.envs_per_actor; ++e) {
-    selector->BeginEpisode(e, static_cast<uint64_t>(e));
-  }
-  return selector;
-}
 
 // Physics and rendering of an env step, resets included; nothing else. Of as many environments in
 // turn as an actor has: their models and data do not fit a core's caches together. By the actions
@@ -99,13 +63,6 @@ double StepSeconds(const RunConfig& run, const std::string& weights, double seco
     steps += all.size();
   }
   return std::chrono::duration<double>(stepping).count() / static_cast<double>(steps);
-}
-
-// An action of one environment, of all that an actor has at once.
-double InferSeconds(const RunConfig& run, const std::string& weights, double seconds) {
-  const auto selector = MakeSelector(run, weights);
-  return SecondsPerCall(seconds, [&] { selector->Select(actor::Acting::kExplore); }) /
-         run.config.envs_per_actor;
 }
 
 ManyActorsFigures Measure(ManyActorsOptions options, int actors) {
