@@ -273,7 +273,7 @@ void Supervisor::OnExpectedExit(Child& child, const ExitStatus& status) {
 void Supervisor::ExpectExit(std::string_view role) {
   for (Child& child : children_) {
     if (!Is(role, child.spec)) continue;
-    // Without a successor nobody finishes what it was at.
+    // Without a successor its work stays unfinished.
     if (child.restart_at && !child.spec.expendable) {
       unclean_exits_.push_back(
           fmt::format("{}: had died, and is not started again while stopping", child.spec.Name()));

@@ -96,22 +96,6 @@ TEST(CoordinatorKill, AStopThatWaitsSaysSo) {
   EXPECT_NE(ReadFile(spec.output).find("silent for 15 s"), std::string::npos);
 }
 
-TEST(CoordinatorKill, AnOverwriteAtOnceWaitsForTheFormerProcesses) {
-  const TrainingRun run;
-  {
-    RunningTraining training(run, run.Command({{"env_steps", "1000000"}, {"actors", "1"}}));
-    ASSERT_TRUE(training.WaitForSteps(2000)) << training.Output();
-    ASSERT_EQ(kill(training.pid(), SIGKILL), 0);
-    EXPECT_EQ(training.End(seconds(5)), -1);
-  }
-  const ProgramResult fresh =
-      run.Train({{"env_steps", "1100"}, {"eval.final_episodes", "0"}}, {"--overwrite"});
-  ASSERT_EQ(ExitCode(fresh), 0) << fresh.out << fresh.err;
-  EXPECT_NE(fresh.out.find("waiting up to 60 s"), std::string::npos) << fresh.out;
-  EXPECT_LT(run.Json("meta.json").at("accounting").at("stored").get<int64_t>(), 2000)
-      << "of the new run, not of the old one";
-}
-
 TEST(CoordinatorKill, ARunThatIsInterruptedInsteadIsNotEvaluated) {
   const TrainingRun run;
   RunningTraining training(run, run.Command({{"env_steps", "1000000"}, {"actors", "1"}}));

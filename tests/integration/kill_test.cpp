@@ -44,33 +44,5 @@ TEST(Kill, TrainingSurvivesTheDeathOfEachRole) {
   EXPECT_LE(meta.at("accounting").at("lost_with_process").get<int64_t>(), 4 * 24);
 }
 
-// The actors have spent their credit by the word of a replay that knew them; the next one knows
-// no actor, and the records that were acknowledged are gone.
-TEST(Kill, WithTheReplayInMemoryTheRunGoesOnAndTheAccountIsExact) {
-  const TrainingRun run;
-  RunningTraining training(run, run.Command({{"env_steps", "10000000"},
-                                             {"actors", "2"},
-                                             {"replay.storage", "memory"},
-                                             {"eval.interval", "1000000"}}));
-  for (int kill = 0; kill < 2; ++kill) {
-    ASSERT_TRUE(training.WaitForMoreSteps(1000)) << training.Output();
-    KillAndWaitForSuccessor(&training, "replay");
-  }
-  ASSERT_TRUE(training.WaitForMoreSteps(1000)) << training.Output();
-  KillAndWaitForSuccessor(&training, "actor");
-  ASSERT_TRUE(training.WaitForMoreSteps(1000)) << training.Output();
-  training.Interrupt();
-  ASSERT_EQ(training.End(seconds(120)), kInterruptedExit) << training.Output();
-  EXPECT_NE(training.Output().find("replay-0 starts empty, env steps go on from "),
-            std::string::npos);
-  const json meta = run.Json("meta.json");
-  ExpectBalanced(meta);
-  const json& account = meta.at("accounting");
-  EXPECT_GT(account.at("lost_with_replay").get<int64_t>(), 2000) << account.dump();
-  EXPECT_GT(account.at("stored").get<int64_t>(), 2000) << account.dump();
-  EXPECT_LE(account.at("lost_with_process").get<int64_t>(), 4 * 24)
-      << "the killed actor's window alone: " << account.dump();
-}
-
 }  // namespace
 }  // namespace shoal

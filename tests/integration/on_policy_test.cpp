@@ -43,28 +43,6 @@ TEST(OnPolicy, ARunOfWholeRolloutsHasNoReplayAndAnExactAccount) {
       << replay.err;
 }
 
-TEST(OnPolicy, TheDeathOfAnActorAndOfTheLearnerIsSurvivedAndAccountedFor) {
-  const TrainingRun run;
-  RunningTraining training(run, run.OnPolicyCommand({{"env_steps", "10000000"},
-                                                     {"eval.interval", "1000000"},
-                                                     {"ppo.rollout_steps", "512"},
-                                                     {"learner.checkpoint_period", "2"}}));
-  ASSERT_TRUE(WaitForMoreUpdates(&training, 3)) << training.Output();
-  for (const char* role : {"actor", "learner", "actor", "learner"}) {
-    KillAndWaitForSuccessor(&training, role);
-    ASSERT_TRUE(WaitForMoreUpdates(&training, 2)) << role << ": " << training.Output();
-  }
-  training.Interrupt();
-  ASSERT_EQ(training.End(seconds(120)), kInterruptedExit) << training.Output();
-  const json meta = run.Json("meta.json");
-  ExpectBalanced(meta);
-  const json& account = meta.at("accounting");
-  EXPECT_EQ(account.at("rejected"), 0);
-  EXPECT_GT(account.at("discarded").get<int64_t>(), 0) << "of the rollouts that were cut";
-  EXPECT_EQ(account.at("lost_with_replay"), 0) << "nothing acknowledged is lost";
-  EXPECT_GT(account.at("stored").get<int64_t>(), 8 * 4096) << account.dump();
-}
-
 TEST(OnPolicy, AStoppedRunIsResumedAndTheAccountGoesOn) {
   const TrainingRun run;
   RunningTraining training(

@@ -48,7 +48,7 @@ class CountedCursor {
       uncounted_ = stored;
       constant_rate_ = true;
     }
-    // A lower rate has a narrower band, but credit that was given under the former one stays.
+    // A lower rate has a narrower band, but credit that was given before the change stays.
     constant_rate_ = constant_rate_ && (!follows || rate == rate_);
     if (sampleable < min_size_) uncounted_ = stored + min_size_ - sampleable;
     const double granted = rate * std::max(0., stored - uncounted_);
