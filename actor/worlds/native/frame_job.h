@@ -136,6 +136,7 @@ struct Surface {
   bool merged_passes;  // transparent: one sum of all lights
   float exponent;      // of the cosine's square
   int whole_exponent;  // -1 = not a whole number
+  float least_shine;   // squares of cosines below it have no visible power
   PlaneGrid* grid;     // null = lit per pixel
   bool grey_grid;
   float grid_axes[2][4];        // plane coordinates = axes * (p, 1)

@@ -112,8 +112,11 @@ SHOAL_INLINE Colour LightAt(const LightSet& lights, const Surface& s, Vector p, 
       const F half = facing + Dot(n, to_eye);
       const F length = Set(2.0f) + Set(2.0f) * Dot(from.to_light, to_eye);
       const F squared = half * half / Max(length, Set(1e-12f));
-      const F shine = Select(lit & (half > zero), Shine(s, squared), zero);
-      for (int c = 0; c < kChannels; ++c) here[c] = here[c] + Set(colour.specular[c]) * shine;
+      const M shines = lit & (half > zero) & (squared >= Set(s.least_shine));
+      if (Any(shines)) {
+        const F shine = Select(shines, Shine(s, squared), zero);
+        for (int c = 0; c < kChannels; ++c) here[c] = here[c] + Set(colour.specular[c]) * shine;
+      }
     }
     for (int c = 0; c < kChannels; ++c) {
       sum[c] = sum[c] + (light.directional ? here[c] : from.strength * here[c]);

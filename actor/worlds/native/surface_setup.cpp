@@ -94,6 +94,8 @@ void SetMaterial(const mjvGeom& geom, const SurfaceSources& sources, LightColour
   s->merged_passes = transparent;
   s->exponent = static_cast<float>(double{geom.shininess} * kMostExponent);
   s->exponent *= 0.5f;  // kernels have the cosine's square
+  // x^e <= exp(e * (x - 1)), which is below 1e-3 from here on: a quarter of a grey level.
+  s->least_shine = std::max(0.0f, 1 - 7 / std::max(s->exponent, 1.0f));
   s->whole_exponent = -1;
   if (s->exponent >= 0 && s->exponent <= kMostExponent) {
     const auto whole = static_cast<int>(s->exponent);

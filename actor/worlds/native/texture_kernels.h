@@ -136,8 +136,10 @@ SHOAL_INLINE Colour LookUp2d(const Texture& texture, M lanes, const Footprint& f
   const F limit = Set(1e6f);
   const F s = Max(Min(f.at.x, limit), Set(0.0f) - limit);
   const F t = Max(Min(f.at.y, limit), Set(0.0f) - limit);
-  return SampleLevels(lanes, level, weight,
-                      [&](int here) { return Sample2d(texture, here, s, t); });
+  return SampleLevels(
+      lanes, level, weight, [&](int here) __attribute__((always_inline)) {
+        return Sample2d(texture, here, s, t);
+      });
 }
 
 // The face that a direction meets and the axes on it: u = right / major, v =
@@ -181,8 +183,10 @@ SHOAL_INLINE Colour LookUpCube(const Texture& texture, M lanes, const Footprint&
       negative + Select(axes.x, Set(int32_t{0}), Select(axes.y, Set(int32_t{2}), Set(int32_t{4})));
   const F half = Set(0.5f);
   const F at_u = u * half + half, at_v = v * half + half;
-  return SampleLevels(lanes, level, weight,
-                      [&](int here) { return SampleCube(texture, here, face, at_u, at_v); });
+  return SampleLevels(
+      lanes, level, weight, [&](int here) __attribute__((always_inline)) {
+        return SampleCube(texture, here, face, at_u, at_v);
+      });
 }
 
 }  // namespace

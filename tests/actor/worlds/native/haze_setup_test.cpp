@@ -9,7 +9,7 @@
 
 #include "common/base/files.h"
 #include "tests/actor/worlds/native/scene_by_hand.h"
-#include "tests/actor/worlds/native/unshadowed_reference.h"
+#include "tests/actor/worlds/pictures/unshadowed_reference.h"
 #include "tests/support/temporary_folder.h"
 
 namespace shoal::worlds::native {

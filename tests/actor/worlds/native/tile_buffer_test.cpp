@@ -8,7 +8,8 @@ namespace {
 
 // Each pixel's colour says its column and row, through the tables of rays that the kernels use.
 TEST(TileBuffer, PlanesAreInTheOrderOfRowsWhateverTheSize) {
-  for (const auto& [width, height] : {std::array{8, 4}, std::array{5, 7}, std::array{1, 1}}) {
+  for (const auto& [width, height] : {std::array{8, 4}, std::array{5, 7}, std::array{1, 1},
+                                      std::array{16, 4}, std::array{39, 6}}) {
     View view{};
     view.width = width;
     view.height = height;

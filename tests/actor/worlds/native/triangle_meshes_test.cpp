@@ -12,7 +12,7 @@
 
 #include "actor/worlds/model_loading.h"
 #include "tests/actor/worlds/native/scene_by_hand.h"
-#include "tests/actor/worlds/native/unshadowed_reference.h"
+#include "tests/actor/worlds/pictures/unshadowed_reference.h"
 #include "tests/support/temporary_folder.h"
 
 namespace shoal::worlds::native {
