@@ -38,8 +38,8 @@ class NativePainterTest : public testing::Test {
   std::unique_ptr<World> world_ = MakeFetchReach({});
 };
 
-// Of a larger picture every fifth pixel in the middle of five is one of the small picture: the rays
-// are the same, but textures are sharper.
+// Every fifth pixel of the large picture has the ray of a pixel of the small one. Textures are
+// sharper in the large one.
 TEST_F(NativePainterTest, FilmsInFullHdShowWhatSmallPicturesShow) {
   constexpr size_t kWidth = 1920, kHeight = 1080, kShare = 5;
   const std::vector<uint8_t> large = Draw(kWidth, kHeight);
@@ -73,15 +73,16 @@ TEST_F(NativePainterTest, GreyPicturesHaveOneChannelOfEachOutput) {
 
 // Segments and depths have the same edges as what they belong to.
 TEST_F(NativePainterTest, SegmentsAndDepthsAreThoseOfTheScene) {
-  constexpr size_t kPlane = 64 * 64;
+  constexpr size_t kPixelsOf64 = 64 * 64;
   const std::vector<uint8_t> segments = Draw(64, 64, PainterOutput::kSegments);
   const std::vector<uint8_t> depths = Draw(64, 64, PainterOutput::kDepths);
   std::set<int> colours;
-  for (size_t i = 0; i < kPlane; ++i) {
-    const int colour = segments[i] | segments[i + kPlane] << 8 | segments[i + 2 * kPlane] << 16;
+  for (size_t i = 0; i < kPixelsOf64; ++i) {
+    const int colour =
+        segments[i] | segments[i + kPixelsOf64] << 8 | segments[i + 2 * kPixelsOf64] << 16;
     colours.insert(colour);
     ASSERT_EQ(colour == 0, depths[i] == 0) << "sky in one of them, pixel " << i;
-    ASSERT_EQ(depths[i], depths[i + kPlane]);
+    ASSERT_EQ(depths[i], depths[i + kPixelsOf64]);
   }
   EXPECT_GT(colours.size(), 10u);
   EXPECT_EQ(*std::ranges::max_element(depths), 255);

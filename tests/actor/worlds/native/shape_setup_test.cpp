@@ -11,14 +11,14 @@
 namespace shoal::worlds::native {
 namespace {
 
-constexpr int kSide = 40;
+constexpr int kViewSide = 40;
 
 // Looks along +x from the origin.
 class ShapeSetup : public testing::Test {
  protected:
   ShapeSetup() {
-    frame_ = FrameOf(hand_.scene(), kSide, kSide);
-    tables_.Fill(frame_, kSide, kSide, &view_);
+    frame_ = FrameOf(hand_.scene(), kViewSide, kViewSide);
+    tables_.Fill(frame_, kViewSide, kViewSide, &view_);
   }
   bool Make(const mjvGeom& geom) {
     return MakeShape(geom, Place(geom, frame_), frame_, view_, 6, &shape_);

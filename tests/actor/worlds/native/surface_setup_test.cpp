@@ -107,7 +107,7 @@ TEST_F(SurfaceSetup, LightIsLimitedPassByPass) {
   EXPECT_NEAR(Make(/*transparent=*/true)[0].light[0], 1, 1e-6);
 }
 
-// What least_shine leaves out is less than a quarter of a grey level.
+// least_shine leaves out less than a quarter of a grey level.
 TEST_F(SurfaceSetup, InvisibleShineIsLeftOut) {
   mjvGeom& ball = hand_.Add(mjGEOM_SPHERE, {4, 0, 0}, {1, 1, 1});
   ball.specular = 1;

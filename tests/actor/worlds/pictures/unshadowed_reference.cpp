@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "tests/actor/worlds/native/unshadowed_reference.h"
+#include "tests/actor/worlds/pictures/unshadowed_reference.h"
 
 #include <GL/osmesa.h>
 #include <mujoco/mujoco.h>
