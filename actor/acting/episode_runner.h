@@ -70,7 +70,7 @@ class EpisodeRunner {
   const EpisodeFigures& figures() const { return figures_; }
   const worlds::Environment& environment() const { return *environment_; }
 
-  // Told of every Begin and Step from now on; borrowed until another, or nullptr, takes its place.
+  // Called for every Begin and Step from now on. Borrowed until it is replaced; nullptr = none.
   void set_listener(EpisodeListener* listener) { listener_ = listener; }
 
  private:

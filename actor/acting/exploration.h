@@ -49,7 +49,7 @@ class Exploration {
   virtual void SetState(int e, std::span<const double> state) = 0;
 };
 
-// For `envs` environments of an actor whose noise is `factor` times that of the configuration.
+// Makes the exploration of an actor with `envs` environments. `factor` scales the configured noise.
 std::unique_ptr<Exploration> MakeExploration(const Config& config, int envs, int action_size,
                                              double factor);
 

@@ -54,9 +54,8 @@ EpisodeStream EvaluationStream(int64_t seed, uint64_t env_steps, uint64_t update
 
 // The part of eval/*.json that names the source of its numbers.
 struct EvaluationLabel {
-  std::string
-      policy;  // "checkpoint" | "random" | "noop": but the first have no checkpoint, version
-  std::string checkpoint = "";  // folder name
+  std::string policy;           // "checkpoint" | "random" | "noop"
+  std::string checkpoint = "";  // folder name; empty, as version, unless policy = "checkpoint"
   WeightsVersion version = {};
   uint64_t env_steps = 0;
 };
@@ -70,15 +69,15 @@ class Evaluator {
                      const EnvironmentFactory& make = MakeEnvironments);
 
   ActionSelector& selector() { return selector_; }
-  // Tells the listener, borrowed, of every episode from now on. CHECK that there is one
-  // environment, so that episodes come one after the other.
+  // Calls the listener, which is borrowed, for every episode from now on. CHECK: there is one
+  // environment, so that episodes follow one another.
   void Listen(EpisodeListener* listener);
 
   // Plays `episodes` whole episodes, actions by the mean of the policy (or uniform random before
-  // any weights). When `stop`, asked after each step, says so before they are done, returns the
-  // leading episodes that have ended, so that short episodes are not preferred. After each episode
-  // `on_ended` receives the number that have ended. Faulty episodes are logged; no number of them
-  // is an error.
+  // any weights). `stop` is called after each step. If it returns true before all have ended,
+  // returns the leading episodes that have ended, so that short episodes are not preferred. After
+  // each episode `on_ended` receives the number of ended ones. Faulty episodes are logged; they are
+  // no error, however many there are.
   std::vector<EpisodeResult> Play(int episodes, const EpisodeStream& stream,
                                   const std::function<bool()>& stop,
                                   const std::function<void(int ended)>& on_ended = {});

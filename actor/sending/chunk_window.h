@@ -29,7 +29,7 @@ class ChunkWindow final : public RecordSink {
     int record_bytes = 0;
     int chunk_records = 0;        // records per chunk at most
     int chunks = 0;               // >= 3: the replay's window and the open one
-    uint64_t first_records = 0;   // what may be made before the replay's first word
+    uint64_t first_records = 0;   // records that may be made before the first credit
     uint64_t records_before = 0;  // of a session that goes on; all of them stored
   };
   explicit ChunkWindow(const Options& options);
@@ -45,11 +45,11 @@ class ChunkWindow final : public RecordSink {
   std::optional<TransitionChunk> NextToSend() const;
   void MarkSent();
 
-  // The replay's newest word; what it allows may be less than before. Words about other actors and
+  // Takes the replay's newest credit, which may be lower than the last. Credits of other actors and
   // sessions are ignored.
   void OnCredit(const Credit& credit);
-  // Sends everything not stored again, after the word where that begins (nothing was heard for too
-  // long).
+  // Begins a resend of everything that is not stored, for example when no credit has arrived for
+  // too long. A chunk without records comes first, which reports where the resend begins.
   void Rewind();
 
   uint64_t stored() const { return stored_; }

@@ -19,8 +19,8 @@ class ControlWorld : public World {
   // The same with a given state instead of a drawn one.
   void ResetTo(std::span<const double> qpos, std::span<const double> qvel);
 
-  // After it, what depends on positions and velocities is current; what depends on accelerations
-  // (touch) is that of the last engine step. Episodes never terminate.
+  // Afterwards, values that depend on positions and velocities are current; those that depend on
+  // accelerations (touch) are of the last engine step. Episodes never terminate.
   Outcome Step(std::span<const double> action) final;
   std::span<const CameraView> cameras() const final { return cameras_; }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which cameras a task can be seen through: those that its world lists, those that its model names
+// The cameras of a task: those that its world lists, those that its model names
 // (<camera name="overhead">) and those of the configuration.
 #pragma once
 
@@ -32,9 +32,9 @@ CameraView ChooseCamera(const World& world, const ObservationConfig& observation
 // configuration and the task lacks one of them, the task's default camera alone.
 std::vector<std::string> ChooseCameras(const World& world, const ObservationConfig& observation);
 
-// Throws Error (kUsage) when a camera that the world lists cannot be: without a name or with one
-// that is taken, numbers that are not finite, a distance that is not positive, a number of a camera
-// that the model does not have.
+// Throws Error (kUsage) if a camera that the world lists is invalid: no name or one that is taken,
+// numbers that are not finite, a distance that is not positive, or a number of a camera that the
+// model does not have.
 void CheckCameras(const World& world);
 
 }  // namespace shoal::worlds

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The resolved configuration of a run: every key with its default. One struct per section; the
-// JSON key of a member is its dotted path ("learner.batch"). config_keys.cpp lists every key with
-// its range and meaning; docs/configuration.md is made from that list.
+// The resolved configuration of a run: every key with its default. One struct per section; a key is
+// its member's dotted path ("learner.batch"), but for section sac, whose members are in
+// LearnerConfig. config_keys.cpp lists every key; docs/configuration.md is made from that list.
 #pragma once
 
 #include <array>

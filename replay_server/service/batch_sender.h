@@ -57,14 +57,14 @@ class BatchSender {
   uint8_t* FreeBuffer();
   // Sends the batch in the buffer that FreeBuffer() returned.
   void Send(const DrawnBatch& batch, uint8_t* buffer);
-  // Says that a slot is full; once, if the word already waits to be sent.
+  // Sends the message of a filled slot, unless the same message already waits to be sent.
   void Send(const BatchSlot& slot);
   // Batches of other sessions are given up.
   void SetLearnerSession(uint64_t session) { learner_session_ = session; }
 
   uint64_t sent() const { return sent_; }
   uint64_t given_up() const { return given_up_; }
-  // Spent on sending, with the waits for the learner to take it.
+  // Time spent on sending, including waits for the learner.
   double sending_seconds() const { return sending_seconds_; }
 
  private:

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a figure that is looked at again and again grows.
+// The trend of a figure that is sampled repeatedly.
 #pragma once
 
 #include <vector>

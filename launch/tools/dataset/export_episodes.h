@@ -20,12 +20,12 @@ struct EpisodeExport {
 struct ExportedEpisodes {
   uint64_t episodes = 0, steps = 0;
   uint64_t bytes = 0;                     // of the HDF5 file
-  uint64_t overwritten = 0, unended = 0;  // left out: their beginning, their end is not there
+  uint64_t overwritten = 0, unended = 0;  // left out: the beginning or the end is not stored
 };
 
-// Whole episodes alone, in the order in which they ended; a server may be writing to the ring. Both
-// files are there, or an Error is thrown: a ring that is missing, damaged or of another spec,
-// without a whole episode; a metadata.json that belongs to something else; no room.
+// Exports whole episodes only, in the order in which they ended. A server may be writing to the
+// ring. Throws Error if the ring is missing, damaged, of another spec or without a whole episode,
+// if metadata.json belongs to something else, or if the disk is full. Otherwise both files exist.
 ExportedEpisodes ExportEpisodes(const EpisodeExport& asked);
 
 }  // namespace shoal::launch

@@ -39,13 +39,12 @@ struct FilmMade {
 // RUN/videos/NAME.mp4
 std::filesystem::path FilmPath(const std::filesystem::path& run, const std::string& name);
 
-// Throws Error (usage) where a film cannot be called that; and, as CheckWritable, where it could
-// not be written.
+// Throws Error (usage) if a film cannot have this name, or if CheckWritable refuses its place.
 void CheckFilmOutput(const std::filesystem::path& run, const std::filesystem::path& output);
 
-// Plays the episodes by `shoal-actor --evaluate --frames` and writes them down as they come. `say`
-// gets a line per checkpoint. Throws Error; empty when `stop` ended it. The file is there as a
-// whole or not at all.
+// Plays the episodes with `shoal-actor --evaluate --frames` and encodes the frames as they arrive.
+// `say` receives a line per checkpoint. Returns nothing if `stop` ended it; throws Error. The file
+// exists as a whole or not at all.
 std::optional<FilmMade> MakeFilm(const FilmOrder& order, const std::function<bool()>& stop,
                                  const std::function<void(const std::string&)>& say);
 
