@@ -24,6 +24,8 @@ class ActorHead {
   ActorHead(const LayerContext& context, const ActorPlan& plan, const dnnl::memory& features,
             const dnnl::memory& features_gradient);
 
+  int batch() const { return batch_; }                // B
+  int action_size() const { return action_size_; }    // A
   const float* mean() const { return mean_.data(); }  // (B, A), before tanh
   // (B, A); null: Gaussian.
   const float* action() const { return action_.empty() ? nullptr : action_.data(); }

@@ -3,11 +3,17 @@
 
 #include "common/nn/actor_head.h"
 #include "common/nn/features.h"
+#include "common/nn/host_memory.h"
 #include "common/nn/parallel.h"
 
 namespace shoal::nn {
 
 struct ActorModule::Impl {
+  Array Outputs(const float* values) const {
+    const auto size = size_t(head.batch()) * size_t(head.action_size());
+    return values == nullptr ? Array() : HostArray(std::span(values, size));
+  }
+
   ActorHead head;
 };
 
@@ -29,20 +35,22 @@ void ActorModule::Refresh() {
   impl_->head.Refresh();
 }
 
-ActorModule::Output ActorModule::Forward(const float* vector) {
+ActorModule::Output ActorModule::Forward(Array vector) {
   const ThreadScope scope(context_.threads);
-  impl_->head.Forward(vector);
-  return {impl_->head.mean(), impl_->head.log_std(), impl_->head.action()};
+  ActorHead& head = impl_->head;
+  head.Forward(HostValues(vector).data());
+  return {impl_->Outputs(head.mean()), impl_->Outputs(head.log_std()),
+          impl_->Outputs(head.action())};
 }
 
-void ActorModule::Backward(const float* mean_gradient, const float* log_std_gradient) {
+void ActorModule::Backward(Array mean_gradient, Array log_std_gradient) {
   const ThreadScope scope(context_.threads);
-  impl_->head.Backward(mean_gradient, log_std_gradient);
+  impl_->head.Backward(HostValues(mean_gradient).data(), HostValues(log_std_gradient).data());
 }
 
-void ActorModule::BackwardAction(const float* action_gradient, double mean_penalty) {
+void ActorModule::BackwardAction(Array action_gradient, double mean_penalty) {
   const ThreadScope scope(context_.threads);
-  impl_->head.BackwardAction(action_gradient, mean_penalty);
+  impl_->head.BackwardAction(HostValues(action_gradient).data(), mean_penalty);
 }
 
 }  // namespace shoal::nn

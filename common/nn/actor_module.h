@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "common/nn/actor_critic_plan.h"
+#include "common/nn/array.h"
 #include "common/nn/module.h"
 
 namespace shoal::nn {
@@ -20,10 +21,10 @@ class ActorModule final : public Module {
               const ModuleContext& context);
   ~ActorModule() override;
 
-  // All (B, A). mean: before tanh. log_std: null of a deterministic actor. action: tanh(mean) of a
-  // deterministic actor, null of a Gaussian.
+  // All (B, A). mean: before tanh. log_std: none of a deterministic actor. action: tanh(mean) of a
+  // deterministic actor, none of a Gaussian.
   struct Output {
-    const float *mean, *log_std, *action;
+    Array mean, log_std, action;
   };
 
   // The trunk's outputs, for a readout; null without pixels.
@@ -31,13 +32,13 @@ class ActorModule final : public Module {
 
   void Refresh() override;
   // vector (B, V), for the features as they are.
-  Output Forward(const float* vector);
+  Output Forward(Array vector);
   // Gradients of the parameters, for the latest Forward of a Gaussian actor, from dL/dmean and
   // dL/dlog_std (B, A).
-  void Backward(const float* mean_gradient, const float* log_std_gradient);
+  void Backward(Array mean_gradient, Array log_std_gradient);
   // The same of a deterministic actor, from dL/daction (B, A). The loss besides has the term
   // mean_penalty times the mean of the squares of `mean`; 0 leaves it out.
-  void BackwardAction(const float* action_gradient, double mean_penalty);
+  void BackwardAction(Array action_gradient, double mean_penalty);
 
  private:
   struct Impl;

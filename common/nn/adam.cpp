@@ -7,6 +7,7 @@
 
 #include "common/base/check.h"
 #include "common/base/cpu_clones.h"
+#include "common/nn/module.h"
 #include "common/nn/parallel.h"
 #include "common/nn/tensor_words.h"
 
@@ -103,6 +104,10 @@ Adam::Adam(const std::vector<ParameterSet*>& sets, const Options& options, Repli
       max_norm_(options.max_norm) {
   shared_->members.push_back(this);
 }
+
+Adam::Adam(const std::vector<ParameterSet*>& sets, const Options& options,
+           const ModuleContext& context)
+    : Adam(sets, options, context.replica) {}
 
 std::shared_ptr<Adam::Shared> Adam::MakeShared() const {
   auto shared = std::make_shared<Shared>();

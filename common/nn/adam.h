@@ -26,6 +26,8 @@
 
 namespace shoal::nn {
 
+struct ModuleContext;
+
 // Optimiser of parameter sets that are trained by one loss. Borrows them. Of a replica: that of
 // every other one has the same sets and calls the same functions in the same order.
 class Adam {
@@ -38,6 +40,9 @@ class Adam {
 
   // Borrows the replica; null: alone.
   Adam(const std::vector<ParameterSet*>& sets, const Options& options, Replica* replica = nullptr);
+  // Belongs to the replica of `context`, as the modules whose parameters it steps.
+  Adam(const std::vector<ParameterSet*>& sets, const Options& options,
+       const ModuleContext& context);
   Adam(const Adam&) = delete;
   Adam& operator=(const Adam&) = delete;
 

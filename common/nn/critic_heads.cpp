@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "common/base/check.h"
+#include "common/nn/host_memory.h"
 
 namespace shoal::nn {
 
@@ -33,10 +34,10 @@ void CriticHeads::BackwardMlps(QGradients q_gradients, bool parameters) {
   CHECK(q_gradients.size() == mlps_.size()) << q_gradients.size() << " gradients";
   bool first = true;
   for (size_t i = 0; i < mlps_.size(); ++i) {
-    const bool absent = q_gradients[i].empty();
+    const bool absent = !q_gradients[i];
     // Gradients of parameters are overwritten, so one that is no part of the loss passes zeros.
     if (absent && !parameters) continue;
-    mlps_[i].Backward(absent ? zeros_.data() : q_gradients[i].data(),
+    mlps_[i].Backward(absent ? zeros_.data() : HostValues(q_gradients[i]).data(),
                       {.parameters = parameters, .source = true});
     const float* gradient = mlps_[i].input_gradient();
     if (first) {

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "common/nn/array.h"
 #include "common/nn/mlp.h"
 #include "common/nn/observation_trunk.h"
 
@@ -32,8 +33,8 @@ class CriticHeads {
   // The rest, for the latest observation; action (B, A). May be called again with other actions.
   void ForwardAction(const float* action);
 
-  // dL/dq_i (B), one for each Q function; an empty one counts as zeros.
-  using QGradients = std::span<const std::vector<float>>;
+  // dL/dq_i (B), one for each Q function; none counts as zeros.
+  using QGradients = std::span<const Array>;
   // Gradients of all parameters and of the features.
   void Backward(QGradients q_gradients);
   // The gradient of the action (B, A) alone.

@@ -3,6 +3,7 @@
 
 #include "common/nn/critic_heads.h"
 #include "common/nn/features.h"
+#include "common/nn/host_memory.h"
 #include "common/nn/parallel.h"
 
 namespace shoal::nn {
@@ -24,7 +25,9 @@ CriticModule::~CriticModule() = default;
 
 int CriticModule::count() const { return impl_->heads.count(); }
 
-const float* CriticModule::q(int i) const { return impl_->heads.q(i); }
+Array CriticModule::q(int i) const {
+  return HostArray(std::span(impl_->heads.q(i), size_t(context_.batch)));
+}
 
 const Features* CriticModule::trunk_features() const { return impl_->heads.trunk_features(); }
 
@@ -33,14 +36,14 @@ void CriticModule::Refresh() {
   impl_->heads.Refresh();
 }
 
-void CriticModule::ForwardObservation(const float* vector) {
+void CriticModule::ForwardObservation(Array vector) {
   const ThreadScope scope(context_.threads);
-  impl_->heads.ForwardObservation(vector);
+  impl_->heads.ForwardObservation(HostValues(vector).data());
 }
 
-void CriticModule::ForwardAction(const float* action) {
+void CriticModule::ForwardAction(Array action) {
   const ThreadScope scope(context_.threads);
-  impl_->heads.ForwardAction(action);
+  impl_->heads.ForwardAction(HostValues(action).data());
 }
 
 void CriticModule::Backward(Gradients q_gradients) {
@@ -48,9 +51,9 @@ void CriticModule::Backward(Gradients q_gradients) {
   impl_->heads.Backward(q_gradients);
 }
 
-void CriticModule::BackwardAction(Gradients q_gradients, float* action_gradient) {
+void CriticModule::BackwardAction(Gradients q_gradients, Array action_gradient) {
   const ThreadScope scope(context_.threads);
-  impl_->heads.BackwardAction(q_gradients, action_gradient);
+  impl_->heads.BackwardAction(q_gradients, HostValues(action_gradient).data());
 }
 
 }  // namespace shoal::nn

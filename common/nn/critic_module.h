@@ -4,9 +4,9 @@
 
 #include <memory>
 #include <span>
-#include <vector>
 
 #include "common/nn/actor_critic_plan.h"
+#include "common/nn/array.h"
 #include "common/nn/module.h"
 
 namespace shoal::nn {
@@ -23,23 +23,24 @@ class CriticModule final : public Module {
 
   // Q functions.
   int count() const;
-  const float* q(int i) const;  // (B) of the latest ForwardAction
+  Array q(int i) const;  // (B) of the latest ForwardAction
 
   // The trunk's outputs, for a readout; null without pixels.
   const Features* trunk_features() const;
 
   void Refresh() override;
   // The observation's part, for the features as they are; vector (B, V).
-  void ForwardObservation(const float* vector);
-  // The rest, for the latest observation; action (B, A). May be called again with other actions.
-  void ForwardAction(const float* action);
+  void ForwardObservation(Array vector);
+  // The rest, for the latest observation; action (B, A), none where the plan has none. May be
+  // called again with other actions.
+  void ForwardAction(Array action);
 
-  // dL/dq_i (B), one for each Q function; an empty one is no part of the loss.
-  using Gradients = std::span<const std::vector<float>>;
-  // Gradients of all parameters; those of an empty one become 0.
+  // dL/dq_i (B), one for each Q function; none: it is no part of the loss.
+  using Gradients = std::span<const Array>;
+  // Gradients of all parameters; those of a function that is no part of the loss become 0.
   void Backward(Gradients q_gradients);
   // The gradient of the action (B, A) alone.
-  void BackwardAction(Gradients q_gradients, float* action_gradient);
+  void BackwardAction(Gradients q_gradients, Array action_gradient);
 
  private:
   struct Impl;

@@ -3,6 +3,7 @@
 
 #include "common/nn/encoder.h"
 #include "common/nn/features.h"
+#include "common/nn/host_memory.h"
 #include "common/nn/parallel.h"
 
 namespace shoal::nn {
@@ -30,9 +31,9 @@ void EncoderModule::Refresh() {
   impl_->encoder.Refresh();
 }
 
-void EncoderModule::Forward(const uint8_t* frames, Statistics statistics) {
+void EncoderModule::Forward(Frames frames, Statistics statistics) {
   const ThreadScope scope(context_.threads);
-  impl_->encoder.Forward(frames, statistics);
+  impl_->encoder.Forward(HostValues(frames).data(), statistics);
 }
 
 void EncoderModule::Backward() {

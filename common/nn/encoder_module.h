@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 
+#include "common/nn/array.h"
 #include "common/nn/module.h"
 
 namespace shoal::nn {
@@ -23,7 +24,7 @@ class EncoderModule final : public Module {
   // encoder with batch normalisation normalises, others do not mind: kBatch in the pass that
   // Backward and an optimiser's step follow, which moves the running ones along; kRunning in
   // targets and in all passes of a module for inference.
-  void Forward(const uint8_t* frames, Statistics statistics);
+  void Forward(Frames frames, Statistics statistics);
   // Gradients of the parameters, from the gradient of the features that the latest Backward of a
   // head that trains this encoder left. Refers to the latest Forward.
   void Backward();

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "common/nn/features.h"
+#include "common/nn/host_memory.h"
 #include "common/nn/linear.h"
 #include "common/nn/network_plan.h"
 #include "common/nn/parallel.h"
@@ -41,16 +42,16 @@ void ReadoutModule::Refresh() {
   impl_->linear.Refresh();
 }
 
-const float* ReadoutModule::Forward() {
+Array ReadoutModule::Forward() {
   const ThreadScope scope(context_.threads);
   impl_->linear.Forward();
-  return impl_->linear.output();
+  const auto size = size_t(context_.batch) * size_t(impl_->linear.outputs());
+  return HostArray(std::span(impl_->linear.output(), size));
 }
 
-void ReadoutModule::Backward(const float* gradient) {
+void ReadoutModule::Backward(Array gradient) {
   const ThreadScope scope(context_.threads);
-  std::copy_n(gradient, size_t(context_.batch) * size_t(impl_->linear.outputs()),
-              impl_->linear.output_gradient());
+  std::ranges::copy(HostValues(gradient), impl_->linear.output_gradient());
   impl_->linear.Backward({.parameters = true, .source = true});
 }
 

@@ -10,6 +10,7 @@
 #include <memory>
 #include <string>
 
+#include "common/nn/array.h"
 #include "common/nn/module.h"
 
 namespace shoal::nn {
@@ -26,10 +27,10 @@ class ReadoutModule final : public Module {
 
   void Refresh() override;
   // (B, L), for the trunk's outputs as they are.
-  const float* Forward();
+  Array Forward();
   // From dL/dy (B, L): gradients of the parameters, and that of the trunk, which the next Backward
   // of the trunk's module takes up.
-  void Backward(const float* gradient);
+  void Backward(Array gradient);
 
  private:
   struct Impl;

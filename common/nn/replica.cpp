@@ -91,13 +91,12 @@ std::vector<double> Replica::Means(std::initializer_list<double> own) {
   return Posted().means;
 }
 
-void Replica::Post(std::span<const std::span<const float>> arrays,
-                   std::initializer_list<double> means) {
+void Replica::Post(std::span<const std::span<const float>> arrays, std::vector<double> means) {
   next_.arrays.clear();
   for (const std::span<const float> values : arrays) {
     next_.arrays.emplace_back(values.begin(), values.end());
   }
-  next_.means = means;
+  next_.means = std::move(means);
 }
 
 Replica::Whole Replica::Posted() const {

@@ -106,7 +106,7 @@ class Replica {
 
   // Shows arrays of the replica's rows, and means over them, along with the next Sum or Means, so
   // that they need no meeting of their own. Read them by Posted after it and before the one after.
-  void Post(std::span<const std::span<const float>> arrays, std::initializer_list<double> means);
+  void Post(std::span<const std::span<const float>> arrays, std::vector<double> means);
   struct Whole {
     std::vector<std::vector<float>> arrays;  // of the whole batch
     std::vector<double> means;               // over it

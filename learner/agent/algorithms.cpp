@@ -22,22 +22,18 @@ namespace shoal::learner {
 namespace {
 
 constexpr Algorithm kAlgorithms[] = {
-    {.name = "sac",
-     .figures = kSacFigures,
-     .critics = 2,
-     .sb3 = "SAC",
-     .make_replica = MakeSacAgent},
-    {.name = "td3",
-     .figures = kTwinFigures,
-     .critics = 2,
-     .sb3 = "TD3",
-     .make_replica = MakeTd3Agent},
+    {.name = "sac", .figures = kSacFigures, .critics = 2, .sb3 = "SAC", .make = MakeSacAgent},
+    {.name = "td3", .figures = kTwinFigures, .critics = 2, .sb3 = "TD3", .make = MakeTd3Agent},
     {.name = "ddpg",
      .figures = kSingleCriticFigures,
      .critics = 1,
      .sb3 = "DDPG",
-     .make_replica = MakeDdpgAgent},
-    {.name = "ppo", .figures = kPpoFigures, .sb3 = "PPO", .make = MakePpoAgent},
+     .make = MakeDdpgAgent},
+    {.name = "ppo",
+     .figures = kPpoFigures,
+     .sb3 = "PPO",
+     .make = MakePpoAgent,
+     .divides_rows = false},
 };
 
 std::vector<const Figure*> CollectFigures() {
@@ -66,7 +62,7 @@ const Algorithm& FindAlgorithm(std::string_view name) {
 }
 
 int ReplicasOf(const Config& config, const ObservationSpec& spec, int threads) {
-  if (threads == 1 || FindAlgorithm(config.learner.algorithm).make_replica == nullptr) return 1;
+  if (threads == 1 || !FindAlgorithm(config.learner.algorithm).divides_rows) return 1;
   if (NormalisesOverBatch(config.network, spec)) return 1;
   CheckReplicas(config, threads);
   return threads;
@@ -79,7 +75,7 @@ std::string DescribeThreads(const Config& config, const ObservationSpec& spec, i
   if (ReplicasOf(config, spec, threads) > 1) {
     return fmt::format("{} threads, a replica each{}", threads, more);
   }
-  const bool unknown = FindAlgorithm(config.learner.algorithm).make_replica == nullptr;
+  const bool unknown = !FindAlgorithm(config.learner.algorithm).divides_rows;
   return fmt::format("{} threads that share each layer: {}{}", threads,
                      unknown ? config.learner.algorithm + " knows no replicas"
                              : config.network.encoder + " normalises over the batch",
@@ -89,11 +85,8 @@ std::string DescribeThreads(const Config& config, const ObservationSpec& spec, i
 std::unique_ptr<Agent> MakeAgent(const Config& config, const ObservationSpec& spec,
                                  nn::Precision precision) {
   const Algorithm& algorithm = FindAlgorithm(config.learner.algorithm);
-  if (algorithm.make != nullptr) return algorithm.make(config, spec, precision);
-  const MakeReplica make = [&](nn::Replica* replica) {
-    return algorithm.make_replica(config, spec, precision, replica);
-  };
-  return MakeReplicatedAgent(config, ReplicasOf(config, spec, nn::Threads()), make);
+  const MakeReplica make = [&](Engine* engine) { return algorithm.make(config, spec, engine); };
+  return MakeReplicatedAgent(config, precision, ReplicasOf(config, spec, nn::Threads()), make);
 }
 
 std::span<const Figure* const> AllFigures() {

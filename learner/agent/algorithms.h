@@ -11,9 +11,9 @@
 
 #include "common/config/config.h"
 #include "common/nn/precision.h"
-#include "common/nn/replica.h"
 #include "common/spec/observation_spec.h"
 #include "learner/agent/agent.h"
+#include "learner/engine/engine.h"
 
 namespace shoal::learner {
 
@@ -24,16 +24,13 @@ struct Algorithm {
   int critics = 0;  // Q functions that an update moves, each with a target; on policy none
   // Class of Stable-Baselines3 with the same policy network; empty: none.
   std::string_view sb3 = "";
-  // Either of the two. Initialises the networks from config.seed. Throws Error where the
-  // configuration does not fit.
-  //
-  // An agent that knows no replicas: nn::Threads share each pass of its networks.
+  // Computes with the engine, which it borrows. Initialises the networks from config.seed. Throws
+  // Error where the configuration does not fit.
   std::unique_ptr<Agent> (*make)(const Config& config, const ObservationSpec& spec,
-                                 nn::Precision precision) = nullptr;
-  // One of replicas, or the only one: replicated_agent.h. Borrows the replica. Only the first one's
-  // AllTensors and AveragedPolicyTensors are asked for.
-  std::unique_ptr<Agent> (*make_replica)(const Config& config, const ObservationSpec& spec,
-                                         nn::Precision precision, nn::Replica* replica) = nullptr;
+                                 Engine* engine) = nullptr;
+  // Whether several agents, each with an engine and a share of the rows of each batch, are one
+  // agent (replicated_agent.h). Otherwise threads share each pass of its networks.
+  bool divides_rows = true;
 };
 
 std::span<const Algorithm> Algorithms();
@@ -41,7 +38,7 @@ std::span<const Algorithm> Algorithms();
 const Algorithm& FindAlgorithm(std::string_view name);
 
 // In how many replicas (common/nn/replica.h) `threads` threads learn: one a thread; a single one,
-// whose passes they share, where the algorithm knows no replicas or the encoder has batch
+// whose passes they share, where the algorithm does not divide rows or the encoder has batch
 // normalisation, whose statistics are of the whole batch. Throws Error (kUsage) where they cannot
 // share the batch (CheckReplicas), and as MakeAgent.
 int ReplicasOf(const Config& config, const ObservationSpec& spec, int threads);

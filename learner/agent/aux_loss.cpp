@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "learner/agent/aux_loss.h"
 
-#include <cmath>
 #include <string>
 
 #include "common/base/check.h"
@@ -15,29 +14,29 @@ constexpr float kUnit = 0.15f;
 }  // namespace
 
 std::unique_ptr<AuxLoss> AuxLoss::Make(const Config& config, const ObservationSpec& spec,
-                                       const nn::Features* trunk,
-                                       const nn::ModuleContext& context) {
+                                       const nn::Features* trunk, Engine* engine) {
   if (config.learner.aux.empty()) return nullptr;
   CHECK(trunk != nullptr);
-  return std::unique_ptr<AuxLoss>(new AuxLoss(config, spec, *trunk, context));
+  return std::unique_ptr<AuxLoss>(new AuxLoss(config, spec, *trunk, engine));
 }
 
 AuxLoss::AuxLoss(const Config& config, const ObservationSpec& spec, const nn::Features& trunk,
-                 const nn::ModuleContext& context)
-    : labels_(LabelsOf(config.learner, spec)),
-      vector_size_(size_t(spec.VectorSize())),
-      privileged_size_(size_t(PrivilegedSize(config.learner, spec))),
+                 Engine* engine)
+    : engine_(engine),
+      columns_(LabelsOf(config.learner, spec)),
       weight_(float(config.learner.aux_weight)),
-      readout_("aux", int(labels_.size()), trunk, context),
-      gradient_(size_t(context.batch) * labels_.size()) {
+      readout_("aux", int(columns_.size()), trunk, engine->modules()),
+      labels_(engine->NewArray(int(columns_.size()))),
+      gradient_(engine->NewArray(int(columns_.size()))),
+      mean_square_(engine->NewNumber()) {
   readout_.parameters().Initialise(uint64_t(config.seed));
   readout_.Refresh();
 }
 
-std::vector<AuxLoss::Label> AuxLoss::LabelsOf(const LearnerConfig& learner,
-                                              const ObservationSpec& spec) {
+std::vector<LabelColumns> AuxLoss::LabelsOf(const LearnerConfig& learner,
+                                            const ObservationSpec& spec) {
   const PrivilegedBlocks blocks = PrivilegedBlocksOf(learner, spec);
-  const auto column = [&](const std::string& block, int i) -> Column {
+  const auto column = [&](const std::string& block, int i) -> LabelColumns::Column {
     if (const auto range = spec.Observed(block)) return {true, size_t(range->first + i)};
     int first = 0;
     for (const std::string& name : blocks.all) {
@@ -47,36 +46,21 @@ std::vector<AuxLoss::Label> AuxLoss::LabelsOf(const LearnerConfig& learner,
     CHECK(false) << block;
     return {};
   };
-  std::vector<Label> labels;
+  std::vector<LabelColumns> labels;
   for (const AuxLabel& label : blocks.labels) {
     for (int i = 0; i < label.size; ++i) {
-      Label& number = labels.emplace_back(Label{column(label.block, i), std::nullopt});
+      LabelColumns& number = labels.emplace_back(LabelColumns{column(label.block, i), {}});
       if (!label.minus.empty()) number.minus = column(label.minus, i);
     }
   }
   return labels;
 }
 
-float AuxLoss::Value(const BatchView& batch, size_t row, const Column& column) const {
-  return column.observed ? batch.obs_vector[row * vector_size_ + column.at]
-                         : batch.obs_privileged[row * privileged_size_ + column.at];
-}
-
-double AuxLoss::ForwardBackward(const BatchView& batch) {
-  const float* y = readout_.Forward();
-  const float scale = 2 * weight_ / float(gradient_.size());
-  double squares = 0;
-  for (size_t i = 0; i < gradient_.size(); ++i) {
-    const size_t row = i / labels_.size();
-    const Label& label = labels_[i % labels_.size()];
-    float value = Value(batch, row, label.number);
-    if (label.minus) value -= Value(batch, row, *label.minus);
-    const float difference = y[i] - value / kUnit;
-    squares += double(difference) * difference;
-    gradient_[i] = scale * difference;
-  }
-  readout_.Backward(gradient_.data());
-  return double(kUnit) * kUnit * squares / double(gradient_.size());
+void AuxLoss::ForwardBackward(const Transitions& batch) {
+  const Array y = readout_.Forward();
+  engine_->GatherLabels(batch.obs_vector, batch.obs_privileged, columns_, kUnit, labels_);
+  engine_->LabelLoss(y, labels_, weight_, kUnit, gradient_, mean_square_);
+  readout_.Backward(gradient_);
 }
 
 }  // namespace shoal::learner

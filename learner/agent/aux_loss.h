@@ -10,52 +10,43 @@
 // Dimensions: B batch, L labels.
 #pragma once
 
-#include <cstddef>
 #include <memory>
-#include <optional>
 #include <vector>
 
 #include "common/config/config.h"
 #include "common/nn/readout_module.h"
 #include "common/spec/observation_spec.h"
-#include "common/wire/batch_schema.h"
+#include "learner/engine/engine.h"
 
 namespace shoal::learner {
 
 // One thread.
 class AuxLoss {
  public:
-  // Null without learner.aux. `trunk`: of the head that trains the encoder, which it borrows.
+  // Null without learner.aux. Borrows the engine and `trunk`, of the head that trains the encoder.
   static std::unique_ptr<AuxLoss> Make(const Config& config, const ObservationSpec& spec,
-                                       const nn::Features* trunk, const nn::ModuleContext& context);
+                                       const nn::Features* trunk, Engine* engine);
 
   nn::ReadoutModule& readout() { return readout_; }
 
   // For the trunk's outputs as they are; `batch` as it was drawn. Leaves its gradient for the
-  // trunk's next Backward. The mean square of (0.15 y - label), in the labels' unit squared.
-  double ForwardBackward(const BatchView& batch);
+  // trunk's next Backward.
+  void ForwardBackward(const Transitions& batch);
+  // The mean square of (0.15 y - label), in the labels' unit squared, after the next Gather.
+  Number mean_square() const { return mean_square_; }
 
  private:
-  // One number of a row: of obs_vector, or of obs_privileged.
-  struct Column {
-    bool observed;
-    size_t at;
-  };
-  struct Label {
-    Column number;
-    std::optional<Column> minus;
-  };
-
   AuxLoss(const Config& config, const ObservationSpec& spec, const nn::Features& trunk,
-          const nn::ModuleContext& context);
-  static std::vector<Label> LabelsOf(const LearnerConfig& learner, const ObservationSpec& spec);
-  float Value(const BatchView& batch, size_t row, const Column& column) const;
+          Engine* engine);
+  static std::vector<LabelColumns> LabelsOf(const LearnerConfig& learner,
+                                            const ObservationSpec& spec);
 
-  const std::vector<Label> labels_;  // L
-  const size_t vector_size_, privileged_size_;
+  Engine* const engine_;
+  const std::vector<LabelColumns> columns_;  // L
   const float weight_;
   nn::ReadoutModule readout_;
-  std::vector<float> gradient_;  // (B, L)
+  const Array labels_, gradient_;  // (B, L)
+  const Number mean_square_;
 };
 
 }  // namespace shoal::learner

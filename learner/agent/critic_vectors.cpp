@@ -2,7 +2,7 @@
 #include "learner/agent/critic_vectors.h"
 
 #include <algorithm>
-#include <span>
+#include <string>
 
 #include "common/config/privileged_blocks.h"
 
@@ -24,36 +24,29 @@ ObservationSpec CriticSpec(const LearnerConfig& learner, const ObservationSpec& 
   return seen;
 }
 
-CriticVectors::CriticVectors(const LearnerConfig& learner, const ObservationSpec& spec)
-    : vector_size_(spec.VectorSize()) {
+CriticVectors::CriticVectors(const LearnerConfig& learner, const ObservationSpec& spec,
+                             Engine* engine)
+    : engine_(engine) {
   const PrivilegedBlocks blocks = PrivilegedBlocksOf(learner, spec);
+  int first = 0, joined = spec.VectorSize();
   for (const std::string& name : blocks.all) {
     const int size = spec.Recorded(name)->size;
-    if (std::ranges::count(blocks.critic, name) > 0) columns_.push_back({privileged_size_, size});
-    privileged_size_ += size;
-  }
-}
-
-CriticVectors::Vectors CriticVectors::Of(const BatchView& batch) {
-  if (columns_.empty()) return {batch.obs_vector.data(), batch.next_obs_vector.data()};
-  Join(batch.obs_vector, batch.obs_privileged, &obs_);
-  Join(batch.next_obs_vector, batch.next_obs_privileged, &next_obs_);
-  return {obs_.data(), next_obs_.data()};
-}
-
-void CriticVectors::Join(std::span<const float> observed, std::span<const float> privileged,
-                         std::vector<float>* joined) const {
-  joined->clear();
-  const size_t rows = privileged.size() / size_t(privileged_size_);
-  for (size_t b = 0; b < rows; ++b) {
-    const auto own = observed.subspan(b * size_t(vector_size_), size_t(vector_size_));
-    joined->insert(joined->end(), own.begin(), own.end());
-    for (const auto& [first, size] : columns_) {
-      const auto part =
-          privileged.subspan(b * size_t(privileged_size_) + size_t(first), size_t(size));
-      joined->insert(joined->end(), part.begin(), part.end());
+    if (std::ranges::count(blocks.critic, name) > 0) {
+      columns_.push_back({first, size});
+      joined += size;
     }
+    first += size;
   }
+  if (columns_.empty()) return;
+  obs_ = engine->NewArray(joined);
+  next_obs_ = engine->NewArray(joined);
+}
+
+CriticVectors::Vectors CriticVectors::Of(const Transitions& batch) {
+  if (columns_.empty()) return {batch.obs_vector, batch.next_obs_vector};
+  engine_->JoinColumns(batch.obs_vector, batch.obs_privileged, columns_, obs_);
+  engine_->JoinColumns(batch.next_obs_vector, batch.next_obs_privileged, columns_, next_obs_);
+  return {obs_, next_obs_};
 }
 
 }  // namespace shoal::learner

@@ -9,7 +9,7 @@
 
 #include "common/config/config.h"
 #include "common/spec/observation_spec.h"
-#include "common/wire/batch_schema.h"
+#include "learner/engine/engine.h"
 
 namespace shoal::learner {
 
@@ -20,22 +20,19 @@ ObservationSpec CriticSpec(const LearnerConfig& learner, const ObservationSpec& 
 // One thread.
 class CriticVectors {
  public:
-  CriticVectors(const LearnerConfig& learner, const ObservationSpec& spec);
+  // Borrows the engine.
+  CriticVectors(const LearnerConfig& learner, const ObservationSpec& spec, Engine* engine);
 
   // (B, C); the batch's own arrays where nothing is added, else valid until the next call.
   struct Vectors {
-    const float *obs, *next_obs;
+    Array obs, next_obs;
   };
-  Vectors Of(const BatchView& batch);
+  Vectors Of(const Transitions& batch);
 
  private:
-  void Join(std::span<const float> observed, std::span<const float> privileged,
-            std::vector<float>* joined) const;
-
-  const int vector_size_;                        // V
-  int privileged_size_ = 0;                      // P
+  Engine* const engine_;
   std::vector<ObservationSpec::Range> columns_;  // of the privileged vector
-  std::vector<float> obs_, next_obs_;
+  Array obs_, next_obs_;                         // (B, C); none where nothing is added
 };
 
 }  // namespace shoal::learner

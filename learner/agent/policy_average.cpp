@@ -5,10 +5,11 @@
 
 namespace shoal::learner {
 
-PolicyAverage::PolicyAverage(const std::vector<nn::ParameterSet*>& policy, nn::Replica* replica)
-    : policy_(policy), replica_(replica) {
+PolicyAverage::PolicyAverage(const std::vector<nn::ParameterSet*>& policy, Engine* engine)
+    : policy_(policy), engine_(engine) {
   for (const nn::ParameterSet* set : policy_) {
-    averages_.emplace_back(set->specs(), nn::ParameterSet::Use::kInference, replica_);
+    averages_.emplace_back(set->specs(), nn::ParameterSet::Use::kInference,
+                           engine_->modules().replica);
   }
 }
 
@@ -20,7 +21,7 @@ void PolicyAverage::Copy() {
 
 void PolicyAverage::Move(float rate) {
   for (size_t p = 0; p < policy_.size(); ++p) {
-    nn::MoveTowards(rate, *policy_[p], &averages_[p], *replica_);
+    engine_->MoveAverage(rate, *policy_[p], &averages_[p]);
   }
 }
 

@@ -10,23 +10,24 @@
 #include <vector>
 
 #include "common/nn/parameter_set.h"
-#include "common/nn/replica.h"
 #include "common/nn/safetensors.h"
 #include "learner/agent/agent_state.h"
+#include "learner/engine/engine.h"
 
 namespace shoal::learner {
 
 // Not movable. One thread, its replica's.
 class PolicyAverage {
  public:
-  // Borrows sets and replica.
-  PolicyAverage(const std::vector<nn::ParameterSet*>& policy, nn::Replica* replica);
+  // Borrows sets and engine.
+  PolicyAverage(const std::vector<nn::ParameterSet*>& policy, Engine* engine);
   PolicyAverage(const PolicyAverage&) = delete;
   PolicyAverage& operator=(const PolicyAverage&) = delete;
 
   // Becomes the policy.
   void Copy();
-  // average += rate * (policy - average); running statistics are copied whole.
+  // average += rate * (policy - average) if the update's flag is up (Engine::MoveAverage); running
+  // statistics are copied whole.
   void Move(float rate);
 
   // Under the policy's own names.
@@ -36,7 +37,7 @@ class PolicyAverage {
 
  private:
   const std::vector<nn::ParameterSet*> policy_;
-  nn::Replica* const replica_;
+  Engine* const engine_;
   std::deque<nn::ParameterSet> averages_;  // one for each set
 };
 

@@ -9,18 +9,21 @@
 #include "common/base/check.h"
 #include "common/nn/actor_critic_plan.h"
 #include "common/nn/parallel.h"
+#include "common/nn/replica.h"
 #include "common/nn/team.h"
+#include "learner/engine/cpu_engine.h"
 
 namespace shoal::learner {
 namespace {
 
 class ReplicatedAgent final : public Agent {
  public:
-  ReplicatedAgent(const Config& config, int replicas, const MakeReplica& make)
+  ReplicatedAgent(const Config& config, nn::Precision precision, int replicas,
+                  const MakeReplica& make)
       : exchange_(replicas, config.learner.batch, config.replay.copies), team_(replicas) {
     for (int rank = 0; rank < replicas; ++rank) {
       replicas_.push_back(replicas == 1 ? nn::Replica() : nn::Replica(&exchange_, rank));
-      agents_.push_back(MakeOne(rank, make));
+      agents_.push_back(MakeOne(config, precision, rank, make));
     }
   }
 
@@ -50,7 +53,8 @@ class ReplicatedAgent final : public Agent {
 
  private:
   // By the thread that will run it.
-  std::unique_ptr<Agent> MakeOne(int own, const MakeReplica& make) {
+  std::unique_ptr<Agent> MakeOne(const Config& config, nn::Precision precision, int own,
+                                 const MakeReplica& make) {
     std::unique_ptr<Agent> agent;
     std::exception_ptr error;
     team_.Run([&](int rank) {
@@ -58,7 +62,7 @@ class ReplicatedAgent final : public Agent {
       try {
         nn::Replica* replica = &replicas_[size_t(rank)];
         const nn::ThreadScope scope(replica->threads());  // built in the size they run in
-        agent = make(replica);
+        agent = make(&engines_.emplace_back(precision, config.learner.batch, replica));
       } catch (...) {
         error = std::current_exception();
       }
@@ -69,15 +73,16 @@ class ReplicatedAgent final : public Agent {
 
   nn::Exchange exchange_;
   std::deque<nn::Replica> replicas_;
+  std::deque<CpuEngine> engines_;
   std::vector<std::unique_ptr<Agent>> agents_;
   nn::Team team_;
 };
 
 }  // namespace
 
-std::unique_ptr<Agent> MakeReplicatedAgent(const Config& config, int replicas,
-                                           const MakeReplica& make) {
-  return std::make_unique<ReplicatedAgent>(config, replicas, make);
+std::unique_ptr<Agent> MakeReplicatedAgent(const Config& config, nn::Precision precision,
+                                           int replicas, const MakeReplica& make) {
+  return std::make_unique<ReplicatedAgent>(config, precision, replicas, make);
 }
 
 bool NormalisesOverBatch(const NetworkConfig& network, const ObservationSpec& spec) {

@@ -5,24 +5,13 @@
 #include <cmath>
 #include <vector>
 
+#include "learner/engine/losses.h"
+
 namespace shoal::learner {
 namespace {
 
 constexpr double kMinusHalf = -0.5;  // between the two rewards of a sparse task, -1 and 0
 constexpr double kWithin = 0.05;     // m
-
-struct Summary {
-  double mean = 0, deviation = 0, least = 0, most = 0;
-};
-
-Summary Summarise(std::span<const float> values) {
-  double sum = 0, squares = 0;
-  for (const float value : values) sum += value;
-  const double mean = sum / double(values.size());
-  for (const float value : values) squares += (value - mean) * (value - mean);
-  const auto [least, most] = std::ranges::minmax(values);
-  return {mean, std::sqrt(squares / double(values.size())), least, most};
-}
 
 double Share(std::span<const float> values, auto&& counts) {
   return double(std::ranges::count_if(values, counts)) / double(values.size());
@@ -64,27 +53,6 @@ void AddSampleFigures(const BatchView& batch, const ObservationSpec& spec, Updat
   figures->Set(kGoalDistanceMin, distance.least);
   figures->Set(kGoalDistanceMax, distance.most);
   figures->Set(kGoalWithin, Share(distances, [](float value) { return value < kWithin; }));
-}
-
-void AddValueFigures(int batch, std::span<const float* const> q, UpdateFigures* figures) {
-  const auto of = [&](size_t i) { return Summarise({q[i], size_t(batch)}); };
-  const Summary first = of(0);
-  figures->Set(kQ1Mean, first.mean);
-  figures->Set(kQ1Std, first.deviation);
-  if (q.size() > 1) {
-    const Summary second = of(1);
-    figures->Set(kQ2Mean, second.mean);
-    figures->Set(kQ2Std, second.deviation);
-  }
-  std::vector<float> smallest(q[0], q[0] + batch);
-  for (const float* values : q.subspan(1)) {
-    for (size_t b = 0; b < smallest.size(); ++b) smallest[b] = std::min(smallest[b], values[b]);
-  }
-  const Summary least = Summarise(smallest);
-  figures->Set(kQMinMean, least.mean);
-  figures->Set(kQMinStd, least.deviation);
-  figures->Set(kQMinMin, least.least);
-  figures->Set(kQMinMax, least.most);
 }
 
 }  // namespace shoal::learner

@@ -3,8 +3,6 @@
 // TensorBoard shows them below replay/.
 #pragma once
 
-#include <span>
-
 #include "common/spec/observation_spec.h"
 #include "common/wire/batch_schema.h"
 #include "learner/agent/update_figures.h"
@@ -55,7 +53,5 @@ inline constexpr Figure kQMinStd{"q_min_std", "", "its standard deviation", fals
                                  "replay/q_min_std"};
 inline constexpr Figure kQMinMin{"q_min_min", "", "its smallest", false, "replay/q_min_min"};
 inline constexpr Figure kQMinMax{"q_min_max", "", "its largest", false, "replay/q_min_max"};
-// q_i (B) of one Q function or more.
-void AddValueFigures(int batch, std::span<const float* const> q, UpdateFigures* figures);
 
 }  // namespace shoal::learner

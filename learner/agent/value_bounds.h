@@ -3,17 +3,11 @@
 // the reward's scale. A target clipped to them cannot diverge (Eq. 20 of docs/algorithm.md).
 #pragma once
 
-#include <limits>
-
 #include "common/config/config.h"
 #include "common/config/run_config.h"
+#include "learner/engine/losses.h"
 
 namespace shoal::learner {
-
-struct ValueBounds {
-  float low = -std::numeric_limits<float>::infinity();
-  float high = std::numeric_limits<float>::infinity();
-};
 
 // The bounds of learner.bounded_targets; none without that key.
 ValueBounds ValueBoundsOf(const LearnerConfig& learner);

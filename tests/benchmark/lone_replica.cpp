@@ -26,7 +26,8 @@ LoneReplica::LoneReplica(const std::string& encoder, int batch, int replicas)
   for (int rank = 0; rank < replicas; ++rank) {
     replicas_.emplace_back(&exchange_, rank);
     const nn::ThreadScope scope(1);
-    agents_.push_back(learner::MakeSacAgent(config_, PixelSpec(), precision, &replicas_.back()));
+    engines_.emplace_back(precision, batch, &replicas_.back());
+    agents_.push_back(learner::MakeSacAgent(config_, PixelSpec(), &engines_.back()));
   }
   for (int i = 0; i < 2; ++i) {  // what happens once
     nn::Team(replicas).Run([&](int rank) { agents_[size_t(rank)]->Update(noise_.batch); });

@@ -11,6 +11,7 @@
 #include "common/config/config.h"
 #include "common/nn/replica.h"
 #include "learner/agent/agent.h"
+#include "learner/engine/cpu_engine.h"
 #include "tests/benchmark/noise_batch.h"
 
 namespace shoal::bench {
@@ -32,6 +33,7 @@ class LoneReplica {
   const NoiseBatch noise_;
   nn::Exchange exchange_;
   std::deque<nn::Replica> replicas_;
+  std::deque<learner::CpuEngine> engines_;
   std::vector<std::unique_ptr<learner::Agent>> agents_;
 };
 

@@ -52,7 +52,7 @@ const std::set<std::string> kEmptyNames = {"utils", "util",    "helpers", "helpe
 const std::map<std::string, std::vector<std::string>> kRooms = {
     {"actor", {"worlds", "hosted", "acting", "sending", "loop", "evaluation"}},
     {"replay_server", {"core", "service"}},
-    {"learner", {"agent", "batch_stream.h", "rollouts"}},
+    {"learner", {"engine", "agent", "batch_stream.h", "rollouts"}},
     {"launch",
      {"record", "processes", "watch", "run", "check", "commands", "tools/film", "tools/experiment",
       "tools/report", "tools/export", "tools/dataset", "tools/observability", "tools/project",
@@ -75,7 +75,12 @@ const std::vector<Ban> kBans = [] {
         "common/config/run_files.h", "common/run_folder/", "cstdio", "fcntl.h", "filesystem",
         "fstream", "stdio.h", "sys/mman.h", "sys/stat.h", "unistd.h"}) {
     bans.push_back({"learner/agent", files, "an agent is in memory: checkpoints are kept for it"});
+    bans.push_back({"learner/engine", files, "an engine computes"});
   }
+  bans.push_back({"learner/agent",
+                  "common/nn/host_memory.h",
+                  "an algorithm does not look into arrays",
+                  {"learner/agent/ppo/"}});
   bans.push_back({"learner/agent",
                   "common/nn/team.h",
                   "its threads are those of replicas",
@@ -99,7 +104,7 @@ const std::vector<Ban> kBans = [] {
     }
   }
   // Plain classes of one thread, whose results depend on their arguments alone.
-  for (const std::string room : {"replay_server/core", "learner/agent"}) {
+  for (const std::string room : {"replay_server/core", "learner/engine", "learner/agent"}) {
     for (const char* transport : {"common/dds/", "common/link/"}) {
       bans.push_back({room, transport, "no transport here"});
     }

@@ -173,6 +173,32 @@ TEST(Layering, AnAgentKnowsNoTransportClockFileOrThread) {
           start + "11" + room + "common/run_folder/x.h" + files));
 }
 
+TEST(Layering, AnAlgorithmDoesNotLookIntoArrays) {
+  const PlantedTree tree;
+  for (const char* file : {"learner/agent/sac/a.cpp", "learner/agent/a.cpp",
+                           "learner/agent/ppo/a.cpp", "learner/engine/a.cpp"}) {
+    tree.Write(file, "#include \"common/nn/array.h\"\n#include \"common/nn/host_memory.h\"\n");
+  }
+  const std::string why =
+      ":2: learner/agent may not use common/nn/host_memory.h: an algorithm does not look into "
+      "arrays";
+  EXPECT_THAT(tree.Breaches(),
+              ElementsAre("learner/agent/a.cpp" + why, "learner/agent/sac/a.cpp" + why));
+}
+
+TEST(Layering, AnEngineKnowsNoAlgorithmClockOrFile) {
+  const PlantedTree tree;
+  tree.Write("learner/engine/a.cpp",
+             "#include \"learner/agent/x.h\"\n"
+             "#include \"common/base/clock.h\"\n"
+             "#include <fstream>\n");
+  const std::string start = "learner/engine/a.cpp:", room = ": learner/engine may not use ";
+  EXPECT_THAT(tree.Breaches(),
+              ElementsAre(start + "1" + room + "learner/agent/x.h",
+                          start + "2" + room + "common/base/clock.h: no clock here",
+                          start + "3" + room + "fstream: an engine computes"));
+}
+
 TEST(Layering, TheRoomsOfTheLearnerPointOneWay) {
   const PlantedTree tree;
   tree.Write("learner/a.cpp",

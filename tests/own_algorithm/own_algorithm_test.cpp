@@ -7,6 +7,7 @@
 #include "common/config/exploration_kind.h"
 #include "common/config/run_files.h"
 #include "common/nn/policy.h"
+#include "common/nn/precision.h"
 #include "strided_encoder.h"
 #include "tests/learner/agent/agent_fixture.h"
 #include "tests/learner/agent/bar_pictures.h"
@@ -82,6 +83,21 @@ TEST(OwnAlgorithm, AnUpdateThatIsNotFiniteChangesNothing) {
   view.reward[1] = 1e25f;  // its squared error is not
   EXPECT_FALSE(agent->Update(view).finite);
   EXPECT_THAT(Differences(before, agent->AllTensors()), ::testing::IsEmpty());
+}
+
+// It has no line of code for them.
+TEST(OwnAlgorithm, LearnsOnSeveralThreadsAsOnOne) {
+  const auto one = SmallAgent();
+  EXPECT_EQ(ReplicasOf(OwnConfig(), SmallSpec(), 2), 2);
+  nn::SetThreads(2);
+  const auto two = SmallAgent();
+  nn::SetThreads(1);
+  for (uint64_t u = 0; u < 3; ++u) {
+    const UpdateOutcome expected = UpdateWith(one.get(), u), outcome = UpdateWith(two.get(), u);
+    for (const auto& [figure, value] : expected.figures.entries()) {
+      EXPECT_NEAR(Get(outcome, *figure), value, 1e-3 * std::abs(value)) << figure->name;
+    }
+  }
 }
 
 TEST(OwnAlgorithm, LearnsABandit) { EXPECT_LT(BanditError(OwnConfig(Config()), MakeAgent), 0.08); }

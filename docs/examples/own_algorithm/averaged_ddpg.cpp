@@ -1,9 +1,10 @@
 #include "averaged_ddpg.h"
 
+#include <array>
 #include <cmath>
+#include <initializer_list>
 #include <vector>
 
-#include "common/base/check.h"
 #include "common/nn/actor_critic_plan.h"
 #include "common/nn/actor_module.h"
 #include "common/nn/adam.h"
@@ -11,9 +12,8 @@
 #include "common/nn/encoder_module.h"
 #include "common/nn/parallel.h"
 #include "learner/agent/agent_state.h"
-#include "learner/agent/batch_faults.h"
 #include "learner/agent/encoder_and_head.h"
-#include "learner/agent/losses.h"
+#include "learner/agent/figure_sheet.h"
 #include "learner/agent/step_sizes.h"
 
 namespace shoal::learner {
@@ -25,29 +25,40 @@ using Use = nn::Module::Use;
 
 class AveragedDdpgAgent final : public Agent {
  public:
-  AveragedDdpgAgent(const Config& config, const ObservationSpec& spec, nn::Precision precision)
+  AveragedDdpgAgent(const Config& config, const ObservationSpec& spec, Engine* engine)
       : learner_(config.learner),
-        context_(precision, config.learner.batch, nn::Threads()),
-        encoder_(MakeEncoder(config.network, spec, Use::kTraining, context_)),
+        engine_(engine),
+        encoder_(MakeEncoder(config.network, spec, Use::kTraining, engine->modules())),
         actor_(PlanOfActor(config, spec, "actor"), Features(), /*trains_encoder=*/false,
-               Use::kTraining, context_),
+               Use::kTraining, engine->modules()),
         target_actor_(PlanOfActor(config, spec, "target_actor"), Features(),
-                      /*trains_encoder=*/false, Use::kInference, context_),
+                      /*trains_encoder=*/false, Use::kInference, engine->modules()),
         critic_(nn::PlanCritic(config.network, spec, "critic", kCritics), Features(),
-                /*trains_encoder=*/true, Use::kTraining, context_),
+                /*trains_encoder=*/true, Use::kTraining, engine->modules()),
         target_critic_(nn::PlanCritic(config.network, spec, "target", kCritics), Features(),
-                       /*trains_encoder=*/false, Use::kInference, context_),
-        critic_optimiser_(SetsOf(encoder_.get(), &critic_), CriticStep(learner_)),
-        actor_optimiser_({&actor_.parameters()}, ActorStep(learner_)),
-        targets_(size_t(learner_.batch)),
-        q_gradients_(kCritics, targets_),
-        action_gradient_(size_t(learner_.batch) * size_t(spec.action_size)) {
+                       /*trains_encoder=*/false, Use::kInference, engine->modules()),
+        critic_optimiser_(SetsOf(encoder_.get(), &critic_), CriticStep(learner_),
+                          engine->modules()),
+        actor_optimiser_({&actor_.parameters()}, ActorStep(learner_), engine->modules()),
+        next_q_(engine->NewArray(1)),
+        targets_(engine->NewArray(1)),
+        spreads_(engine->NewArray(1)),
+        actors_q_gradients_(kCritics),
+        action_gradient_(engine->NewArray(spec.action_size)),
+        critic_numbers_(NewCriticNumbers(kCritics, engine)),
+        spread_(engine->NewNumber()),
+        critic_squares_(engine->NewNumber()),
+        actor_loss_(engine->NewNumber()),
+        actor_squares_(engine->NewNumber()),
+        saturation_(engine->NewNumber()) {
+    for (int k = 0; k < kCritics; ++k) q_gradients_.push_back(engine->NewArray(1));
+    actors_q_gradients_[0] = engine->NewArray(1);  // the other critics are no part of its loss
     // Parameters start by their names and the seed: nothing depends on the order here.
     const auto seed = uint64_t(config.seed);
     if (encoder_) encoder_->parameters().Initialise(seed);
     actor_.parameters().Initialise(seed);
     critic_.parameters().Initialise(seed);
-    Refresh();
+    for (nn::Module* module : CriticModules()) module->Refresh();
     actor_.Refresh();
     nn::CopyParameters(actor_, &target_actor_);
     nn::CopyParameters(critic_, &target_critic_);
@@ -62,30 +73,25 @@ class AveragedDdpgAgent final : public Agent {
     state_.Add(&updates_, "agent.updates");
   }
 
-  UpdateOutcome Update(const BatchView& batch, const OnStageEnd& on_stage_end) override {
-    CHECK(int(batch.reward.size()) == learner_.batch) << "batch of " << batch.reward.size();
-    const nn::ThreadScope scope(context_.threads);
-    UpdateOutcome outcome{.figures = {}, .finite = AllFinite(batch)};
-    if (!outcome.finite) return outcome;
-    const double rate_factor = learner_.rate_factor.At(batch.stored_steps);
+  UpdateOutcome Update(const BatchView& drawn, const OnStageEnd& on_stage_end) override {
+    const nn::ThreadScope scope(engine_->modules().threads);
+    engine_->Begin(drawn);
+    const Transitions batch = engine_->Take(drawn);
+    const double rate_factor = learner_.rate_factor.At(drawn.stored_steps);
     critic_optimiser_.set_rate_factor(rate_factor);
     actor_optimiser_.set_rate_factor(rate_factor);
     ComputeTargets(batch);
     on_stage_end(UpdateStage::kForward);
-    outcome.finite = UpdateCritic(batch, &outcome.figures);
-    if (!outcome.finite) return outcome;
-    outcome.finite = UpdateActor(batch, &outcome.figures);
-    if (!outcome.finite) {  // an update is whole or not at all
-      critic_optimiser_.Undo();
-      Refresh();
-      return outcome;
-    }
+    UpdateCritic(batch);
+    UpdateActor(batch);
     on_stage_end(UpdateStage::kBackward);
-    nn::MoveTowards(float(learner_.tau), critic_, &target_critic_);
-    nn::MoveTowards(float(learner_.tau), actor_, &target_actor_);
+    engine_->MoveTowards(
+        float(learner_.tau),
+        std::array<nn::Following, 2>{{{&critic_, &target_critic_}, {&actor_, &target_actor_}}});
+    const Engine::Outcome outcome = engine_->End();  // an update is whole or not at all
+    if (outcome.finite) ++updates_;
     on_stage_end(UpdateStage::kOptimiser);
-    ++updates_;
-    return outcome;
+    return {.figures = figures_.Take(*engine_, outcome), .finite = outcome.finite};
   }
 
   uint64_t updates() const override { return updates_; }
@@ -108,82 +114,85 @@ class AveragedDdpgAgent final : public Agent {
     return nn::PlanActor(config.network, spec, nn::ActorOutput::kDeterministic, name);
   }
   const nn::Features* Features() const { return encoder_ ? &encoder_->features() : nullptr; }
-  void Refresh() {
-    if (encoder_) encoder_->Refresh();
-    critic_.Refresh();
+  // The modules that the critic's step changes.
+  std::vector<nn::Module*> CriticModules() {
+    if (!encoder_) return {&critic_};
+    return {encoder_.get(), &critic_};
+  }
+  static std::array<Array, kCritics> Values(const nn::CriticModule& critic) {
+    return {critic.q(0), critic.q(1), critic.q(2)};
   }
 
-  void ComputeTargets(const BatchView& batch) {
-    if (encoder_) encoder_->Forward(batch.next_obs_frames.data(), nn::Statistics::kRunning);
-    const float* vector = batch.next_obs_vector.data();
-    target_critic_.ForwardObservation(vector);
-    target_critic_.ForwardAction(target_actor_.Forward(vector).action);
-    for (size_t b = 0; b < targets_.size(); ++b) {
-      float mean = 0;
-      for (int k = 0; k < kCritics; ++k) mean += target_critic_.q(k)[b] / kCritics;
-      targets_[b] = float(learner_.reward_scale) * batch.reward[b] +
-                    batch.bootstrap[b] * float(learner_.discount) * mean;
-    }
+  void ComputeTargets(const Transitions& batch) {
+    if (encoder_) encoder_->Forward(batch.next_obs_frames, nn::Statistics::kRunning);
+    target_critic_.ForwardObservation(batch.next_obs_vector);
+    target_critic_.ForwardAction(target_actor_.Forward(batch.next_obs_vector).action);
+    // An operation that no engine has: the mean over critics.
+    engine_->OnHost(Values(target_critic_), std::array{next_q_},
+                    [](const auto& q, const auto& mean) {
+                      for (size_t b = 0; b < mean[0].size(); ++b) {
+                        mean[0][b] = 0;
+                        for (const auto& one : q) mean[0][b] += one[b] / kCritics;
+                      }
+                    });
+    engine_->Targets({.reward = batch.reward,
+                      .bootstrap = batch.bootstrap,
+                      .next_q = std::array{next_q_},
+                      .next_log_prob = {},
+                      .temperature = {},
+                      .reward_scale = float(learner_.reward_scale),
+                      .discount = float(learner_.discount),
+                      .bounds = {}},
+                     targets_);
   }
 
-  bool UpdateCritic(const BatchView& batch, UpdateFigures* figures) {
-    if (encoder_) encoder_->Forward(batch.obs_frames.data(), nn::Statistics::kBatch);
-    critic_.ForwardObservation(batch.obs_vector.data());
-    critic_.ForwardAction(batch.action.data());
-    const float* q[kCritics];
-    for (int k = 0; k < kCritics; ++k) q[k] = critic_.q(k);
-    const CriticLoss loss = CriticLossForward(learner_.batch, q, targets_.data());
-    figures->Set(kCriticLoss, loss.loss);
-    figures->Set(kQMean, loss.q_mean);
-    figures->Set(kTargetMean, loss.target_mean);
-    figures->Set(kCriticSpread, Spread(q));
-    for (int k = 0; k < kCritics; ++k) {
-      CriticLossBackward(learner_.batch, q[k], targets_.data(), q_gradients_[size_t(k)].data());
-    }
+  void UpdateCritic(const Transitions& batch) {
+    if (encoder_) encoder_->Forward(batch.obs_frames, nn::Statistics::kBatch);
+    critic_.ForwardObservation(batch.obs_vector);
+    critic_.ForwardAction(batch.action);
+    engine_->CriticLoss(Values(critic_), targets_, q_gradients_, critic_numbers_);
+    engine_->OnHost(Values(critic_), std::array{spreads_}, ComputeSpreads);
+    engine_->Mean(spreads_, spread_);
     critic_.Backward(q_gradients_);
     if (encoder_) encoder_->Backward();
-    const double squares = critic_optimiser_.GatherGradients();
-    figures->Set(kCriticGradNorm, std::sqrt(squares));
-    if (!Usable(loss.loss, squares)) return false;
-    critic_optimiser_.Step();
-    Refresh();
-    return true;
+    engine_->Gather(&critic_optimiser_, critic_squares_);
+    engine_->RequireFinite(critic_numbers_.loss);
+    engine_->Step(&critic_optimiser_, CriticModules(), NextUse::kThisUpdate);
+    figures_.Set(kCriticLoss, critic_numbers_.loss);
+    figures_.Set(kQMean, critic_numbers_.q_mean);
+    figures_.Set(kTargetMean, critic_numbers_.target_mean);
+    figures_.Set(kCriticSpread, spread_);
+    figures_.SetRoot(kCriticGradNorm, critic_squares_);
   }
 
   // The features are still those of obs.
-  bool UpdateActor(const BatchView& batch, UpdateFigures* figures) {
-    const float* vector = batch.obs_vector.data();
-    const auto [mean, log_std, action] = actor_.Forward(vector);
-    critic_.ForwardObservation(vector);
+  void UpdateActor(const Transitions& batch) {
+    const auto [mean, log_std, action] = actor_.Forward(batch.obs_vector);
+    critic_.ForwardObservation(batch.obs_vector);
     critic_.ForwardAction(action);
-    const float loss =
-        DeterministicActorLoss({critic_.q(0), size_t(learner_.batch)},
-                               {mean, action_gradient_.size()}, learner_.mean_penalty);
-    figures->Set(kActorLoss, loss);
-    // An empty gradient: no part of the loss.
-    std::vector<std::vector<float>> gradients(kCritics);
-    gradients[0].assign(size_t(learner_.batch), -1.f / float(learner_.batch));
-    critic_.BackwardAction(gradients, action_gradient_.data());
-    actor_.BackwardAction(action_gradient_.data(), learner_.mean_penalty);
-    if (!Usable(loss, actor_optimiser_.GatherGradients())) return false;
-    actor_optimiser_.Step();
-    actor_.Refresh();
-    return true;
+    engine_->DeterministicActorLoss(critic_.q(0), mean, action, learner_.mean_penalty,
+                                    actors_q_gradients_[0], actor_loss_, saturation_);
+    critic_.BackwardAction(actors_q_gradients_, action_gradient_);
+    actor_.BackwardAction(action_gradient_, learner_.mean_penalty);
+    engine_->Gather(&actor_optimiser_, actor_squares_);
+    engine_->RequireFinite(actor_loss_);
+    engine_->Step(&actor_optimiser_, std::array<nn::Module*, 1>{&actor_}, NextUse::kNextUpdate);
+    figures_.Set(kActorLoss, actor_loss_);
   }
 
-  double Spread(const float* const* q) const {
-    double sum = 0;
-    for (int b = 0; b < learner_.batch; ++b) {
+  // The standard deviation between the critics, of each row.
+  static void ComputeSpreads(std::span<const std::span<const float>> q,
+                             std::span<const std::span<float>> spreads) {
+    for (size_t b = 0; b < spreads[0].size(); ++b) {
       double mean = 0, squares = 0;
-      for (int k = 0; k < kCritics; ++k) mean += double(q[k][b]) / kCritics;
-      for (int k = 0; k < kCritics; ++k) squares += (q[k][b] - mean) * (q[k][b] - mean);
-      sum += std::sqrt(squares / kCritics);
+      for (const auto& one : q) mean += double(one[b]) / kCritics;
+      for (const auto& one : q) squares += (one[b] - mean) * (one[b] - mean);
+      spreads[0][b] = float(std::sqrt(squares / kCritics));
     }
-    return sum / learner_.batch;
   }
 
   const LearnerConfig learner_;
-  const nn::ModuleContext context_;
+  Engine* const engine_;
   const std::unique_ptr<nn::EncoderModule> encoder_;  // null without pixels
   nn::ActorModule actor_, target_actor_;
   nn::CriticModule critic_, target_critic_;
@@ -191,16 +200,20 @@ class AveragedDdpgAgent final : public Agent {
   uint64_t updates_ = 0;
   AgentState state_;
 
-  std::vector<float> targets_;                   // y (B)
-  std::vector<std::vector<float>> q_gradients_;  // (B) for each critic
-  std::vector<float> action_gradient_;           // (B, A)
+  const Array next_q_, targets_, spreads_;  // (b): mean_k Q'_k, y, figures of rows
+  std::vector<Array> q_gradients_;          // (b) for each critic
+  std::vector<Array> actors_q_gradients_;   // the same of the actor's loss
+  const Array action_gradient_;             // (b, A)
+  const CriticNumbers critic_numbers_;
+  const Number spread_, critic_squares_, actor_loss_, actor_squares_, saturation_;
+  FigureSheet figures_;
 };
 
 }  // namespace
 
 std::unique_ptr<Agent> MakeAveragedDdpgAgent(const Config& config, const ObservationSpec& spec,
-                                             nn::Precision precision) {
-  return std::make_unique<AveragedDdpgAgent>(config, spec, precision);
+                                             Engine* engine) {
+  return std::make_unique<AveragedDdpgAgent>(config, spec, engine);
 }
 
 }  // namespace shoal::learner

@@ -11,9 +11,9 @@
 #include <memory>
 
 #include "common/config/config.h"
-#include "common/nn/precision.h"
 #include "common/spec/observation_spec.h"
 #include "learner/agent/agent.h"
+#include "learner/engine/engine.h"
 
 namespace shoal::learner {
 
@@ -24,8 +24,8 @@ inline constexpr Figure kCriticSpread{"critic_spread", "", "standard deviation b
 inline constexpr const Figure* kAveragedDdpgFigures[] = {
     &kCriticLoss, &kQMean, &kTargetMean, &kCriticSpread, &kCriticGradNorm, &kActorLoss};
 
-// Batch, seed, rates, discount and reward scale of `config`.
+// Borrows the engine. Seed, rates, discount and reward scale of `config`.
 std::unique_ptr<Agent> MakeAveragedDdpgAgent(const Config& config, const ObservationSpec& spec,
-                                             nn::Precision precision);
+                                             Engine* engine);
 
 }  // namespace shoal::learner

@@ -11,6 +11,7 @@
 #include "common/nn/actor_module.h"
 #include "common/nn/adam.h"
 #include "common/nn/encoder_module.h"
+#include "common/nn/host_memory.h"
 #include "common/nn/parallel.h"
 #include "common/nn/readout_module.h"
 #include "replay_server/core/random_shift.h"
@@ -37,14 +38,14 @@ class Network {
   }
 
   // (B, labels).
-  const float* Forward(const uint8_t* frames, nn::Statistics statistics) {
-    encoder_.Forward(frames, statistics);
-    head_.Forward(nullptr);
-    return readout_.Forward();
+  std::span<const float> Forward(std::span<const uint8_t> frames, nn::Statistics statistics) {
+    encoder_.Forward(nn::HostArray(frames), statistics);
+    head_.Forward({});
+    return nn::HostValues(readout_.Forward());
   }
-  void Step(const float* gradient) {
-    readout_.Backward(gradient);
-    head_.Backward(zeros_.data(), zeros_.data());
+  void Step(std::span<const float> gradient) {
+    readout_.Backward(nn::HostArray(gradient));
+    head_.Backward(nn::HostArray(zeros_), nn::HostArray(zeros_));
     encoder_.Backward();
     optimiser_.Step();
     Refresh();
@@ -109,14 +110,14 @@ void Train(const Config& config, const LabelledFrames& frames, size_t count,
                           replay::DrawShift(config.replay.shift_pad, &random),
                           shifted.data() + b * frame_bytes);
     }
-    const float* y = network->Forward(shifted.data(), nn::Statistics::kBatch);
+    const std::span<const float> y = network->Forward(shifted, nn::Statistics::kBatch);
     for (size_t i = 0; i < gradient.size(); ++i) {
       const size_t l = i % labels;
       const double label = (frames.values[drawn[i / labels] * labels + l] - standard.mean[l]) /
                            standard.deviation[l];
       gradient[i] = float(2 * (y[i] - label) / double(gradient.size()));
     }
-    network->Step(gradient.data());
+    network->Step(gradient);
   }
 }
 
@@ -142,7 +143,7 @@ RegressionErrors RegressOnFrames(const Config& config, const LabelledFrames& fra
     const size_t count = std::min(batch, frames.size() - first);
     std::copy_n(frames.frame(first), count * size_t(frames.spec.FrameBytes()),
                 batch_frames.begin());
-    const float* y = network.Forward(batch_frames.data(), nn::Statistics::kRunning);
+    const std::span<const float> y = network.Forward(batch_frames, nn::Statistics::kRunning);
     for (size_t i = 0; i < count * labels; ++i) {
       const size_t l = i % labels;
       const double off_mean = frames.values[first * labels + i] - standard.mean[l];

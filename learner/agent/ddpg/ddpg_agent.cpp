@@ -4,8 +4,8 @@
 namespace shoal::learner {
 
 std::unique_ptr<Agent> MakeDdpgAgent(const Config& config, const ObservationSpec& spec,
-                                     nn::Precision precision, nn::Replica* replica) {
-  return MakeDeterministicAgent(config, spec, precision, {.critics = 1}, replica);
+                                     Engine* engine) {
+  return MakeDeterministicAgent(config, spec, {.critics = 1}, engine);
 }
 
 }  // namespace shoal::learner

@@ -1,13 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "learner/agent/deterministic/deterministic_agent.h"
 
-#include <algorithm>
-#include <cmath>
-#include <memory>
-#include <span>
+#include <array>
 #include <vector>
 
-#include "common/base/check.h"
 #include "common/base/random.h"
 #include "common/nn/actor_critic_plan.h"
 #include "common/nn/actor_module.h"
@@ -16,14 +12,12 @@
 #include "common/nn/encoder_module.h"
 #include "common/nn/parallel.h"
 #include "learner/agent/agent_state.h"
-#include "learner/agent/batch_faults.h"
-#include "learner/agent/batch_part.h"
-#include "learner/agent/critic_figures.h"
 #include "learner/agent/encoder_and_head.h"
-#include "learner/agent/losses.h"
+#include "learner/agent/figure_sheet.h"
 #include "learner/agent/policy_average.h"
 #include "learner/agent/sample_figures.h"
 #include "learner/agent/step_sizes.h"
+#include "learner/agent/value_bounds.h"
 #include "learner/agent/vector_standard.h"
 
 namespace shoal::learner {
@@ -37,8 +31,8 @@ nn::ActorPlan PlanActor(const Config& config, const ObservationSpec& spec, const
 
 class DeterministicAgent final : public Agent {
  public:
-  DeterministicAgent(const Config& config, const ObservationSpec& spec, nn::Precision precision,
-                     const DeterministicOptions& options, nn::Replica* replica);
+  DeterministicAgent(const Config& config, const ObservationSpec& spec,
+                     const DeterministicOptions& options, Engine* engine);
 
   UpdateOutcome Update(const BatchView& drawn, const OnStageEnd& on_stage_end) override;
   uint64_t updates() const override { return updates_; }
@@ -50,23 +44,21 @@ class DeterministicAgent final : public Agent {
   }
 
  private:
-  void Encode(std::span<const uint8_t> frames, nn::Statistics statistics) {
-    if (encoder_) encoder_->Forward(frames.data(), statistics);
+  void Encode(Frames frames, nn::Statistics statistics) {
+    if (encoder_) encoder_->Forward(frames, statistics);
   }
-  void ComputeTargets(const BatchView& batch, Random* random, const OnStageEnd& on_stage_end);
-  bool UpdateCritic(const BatchView& batch, const OnStageEnd& on_stage_end, UpdateFigures* figures);
-  void RefreshCritic();  // and the encoder
-  bool UpdateActor(const BatchView& batch, const OnStageEnd& on_stage_end, UpdateFigures* figures);
+  void ComputeTargets(const Transitions& batch, Random* random);
+  void UpdateCritic(const Transitions& batch, const OnStageEnd& on_stage_end);
+  void UpdateActor(const Transitions& batch, const OnStageEnd& on_stage_end);
   void MoveTargetsAndAverage();
+  // The modules that the critic's step changes.
+  std::vector<nn::Module*> CriticModules();
   // Whether the coming update is one in which something of this period moves.
   bool Due(int period) const { return (updates_ + 1) % uint64_t(period) == 0; }
-  std::vector<const float*> Values(const nn::CriticModule& critic) const;
 
   const Config config_;
   const DeterministicOptions options_;
-  nn::Replica* const replica_;
-  const int batch_size_, rows_, action_size_;  // B of the batch, b of this replica, A
-  const nn::ModuleContext context_;
+  Engine* const engine_;
   const std::unique_ptr<nn::EncoderModule> encoder_;  // null without pixels
   const nn::Features* const features_;
   nn::ActorModule actor_, target_actor_;
@@ -77,40 +69,57 @@ class DeterministicAgent final : public Agent {
   uint64_t updates_ = 0;
   AgentState state_;
 
-  std::vector<float> target_action_;             // a' (b, A)
-  std::vector<float> targets_;                   // y (b)
-  std::vector<std::vector<float>> q_gradients_;  // (b) for each critic
-  std::vector<float> action_gradient_;           // (b, A)
+  // Arrays and numbers of an update. Dimensions: b rows of this replica, A actions.
+  const Array target_action_;       // a' (b, A)
+  const Array targets_;             // y (b)
+  std::vector<Array> q_gradients_;  // (b) for each critic
+  std::vector<Array>
+      actors_q_gradients_;       // the same of the actor's loss: of the first critic alone
+  const Array action_gradient_;  // (b, A)
+  const CriticNumbers critic_numbers_;
+  const Number critic_squares_, actor_squares_;  // of gradients
+  const Number actor_loss_, saturation_;
+  FigureSheet figures_;
 };
 
+// Values of all Q functions.
+std::vector<Array> ValuesOf(const nn::CriticModule& critic) {
+  std::vector<Array> q;
+  for (int i = 0; i < critic.count(); ++i) q.push_back(critic.q(i));
+  return q;
+}
+
 DeterministicAgent::DeterministicAgent(const Config& config, const ObservationSpec& spec,
-                                       nn::Precision precision, const DeterministicOptions& options,
-                                       nn::Replica* replica)
+                                       const DeterministicOptions& options, Engine* engine)
     : config_(config),
       options_(options),
-      replica_(replica),
-      batch_size_(config.learner.batch),
-      rows_(replica->RowsOf(batch_size_).count),
-      action_size_(spec.action_size),
-      context_(precision, batch_size_, replica),
-      encoder_(MakeEncoder(config.network, spec, Use::kTraining, context_)),
+      engine_(engine),
+      encoder_(MakeEncoder(config.network, spec, Use::kTraining, engine->modules())),
       features_(encoder_ ? &encoder_->features() : nullptr),
       actor_(PlanActor(config, spec, "actor"), features_, /*trains_encoder=*/false, Use::kTraining,
-             context_),
+             engine->modules()),
       target_actor_(PlanActor(config, spec, "target_actor"), features_, /*trains_encoder=*/false,
-                    Use::kInference, context_),
+                    Use::kInference, engine->modules()),
       critic_(nn::PlanCritic(config.network, spec, "critic", options.critics), features_,
-              /*trains_encoder=*/true, Use::kTraining, context_),
+              /*trains_encoder=*/true, Use::kTraining, engine->modules()),
       target_critic_(nn::PlanCritic(config.network, spec, "target", options.critics), features_,
-                     /*trains_encoder=*/false, Use::kInference, context_),
-      average_(SetsOf(encoder_.get(), &actor_), replica),
-      critic_optimiser_(SetsOf(encoder_.get(), &critic_), CriticStep(config.learner), replica),
-      actor_optimiser_({&actor_.parameters()}, ActorStep(config.learner), replica),
+                     /*trains_encoder=*/false, Use::kInference, engine->modules()),
+      average_(SetsOf(encoder_.get(), &actor_), engine),
+      critic_optimiser_(SetsOf(encoder_.get(), &critic_), CriticStep(config.learner),
+                        engine->modules()),
+      actor_optimiser_({&actor_.parameters()}, ActorStep(config.learner), engine->modules()),
       standard_(config.learner, spec.VectorSize()),
-      target_action_(size_t(rows_) * size_t(action_size_)),
-      targets_(size_t(rows_)),
-      q_gradients_(size_t(options.critics), targets_),
-      action_gradient_(target_action_) {
+      target_action_(engine->NewArray(spec.action_size)),
+      targets_(engine->NewArray(1)),
+      actors_q_gradients_(size_t(options.critics)),
+      action_gradient_(engine->NewArray(spec.action_size)),
+      critic_numbers_(NewCriticNumbers(options.critics, engine)),
+      critic_squares_(engine->NewNumber()),
+      actor_squares_(engine->NewNumber()),
+      actor_loss_(engine->NewNumber()),
+      saturation_(engine->NewNumber()) {
+  for (int i = 0; i < options.critics; ++i) q_gradients_.push_back(engine->NewArray(1));
+  actors_q_gradients_[0] = engine->NewArray(1);
   const auto seed = uint64_t(config.seed);
   if (encoder_) {
     encoder_->parameters().Initialise(seed);
@@ -119,7 +128,7 @@ DeterministicAgent::DeterministicAgent(const Config& config, const ObservationSp
   actor_.parameters().Initialise(seed);
   critic_.parameters().Initialise(seed);
   actor_.Refresh();
-  RefreshCritic();
+  for (nn::Module* module : CriticModules()) module->Refresh();
   nn::CopyParameters(actor_, &target_actor_);
   nn::CopyParameters(critic_, &target_critic_);
   average_.Copy();
@@ -134,131 +143,98 @@ DeterministicAgent::DeterministicAgent(const Config& config, const ObservationSp
   standard_.AddTo(&state_);
 }
 
-void DeterministicAgent::RefreshCritic() {
-  if (encoder_) encoder_->Refresh();
-  critic_.Refresh();
+std::vector<nn::Module*> DeterministicAgent::CriticModules() {
+  if (!encoder_) return {&critic_};
+  return {encoder_.get(), &critic_};
 }
 
-std::vector<const float*> DeterministicAgent::Values(const nn::CriticModule& critic) const {
-  std::vector<const float*> q;
-  q.reserve(size_t(critic.count()));
-  for (int i = 0; i < critic.count(); ++i) q.push_back(critic.q(i));
-  return q;
-}
-
-void DeterministicAgent::ComputeTargets(const BatchView& batch, Random* random,
-                                        const OnStageEnd& on_stage_end) {
-  const float* vector = batch.next_obs_vector.data();
+void DeterministicAgent::ComputeTargets(const Transitions& batch, Random* random) {
   Encode(batch.next_obs_frames, nn::Statistics::kRunning);
-  std::copy_n(target_actor_.Forward(vector).action, target_action_.size(), target_action_.begin());
+  Array action = target_actor_.Forward(batch.next_obs_vector).action;
   if (options_.target_noise > 0) {
-    const std::vector<double> normals = replica_->Normals(batch_size_, action_size_, random);
-    for (size_t i = 0; i < normals.size(); ++i) {
-      const double noise = std::clamp(options_.target_noise * normals[i],
-                                      -options_.target_noise_clip, options_.target_noise_clip);
-      target_action_[i] = float(std::clamp(target_action_[i] + noise, -1.0, 1.0));
-    }
+    engine_->AddClippedNoise(action, options_.target_noise, options_.target_noise_clip, random,
+                             target_action_);
+    action = target_action_;
   }
-  target_critic_.ForwardObservation(vector);
-  target_critic_.ForwardAction(target_action_.data());
-  const TargetRates rates{float(config_.learner.reward_scale), float(config_.learner.discount),
-                          /*temperature=*/0, ValueBoundsOf(config_.learner)};
-  MinTargets(rows_, batch.reward.data(), batch.bootstrap.data(), Values(target_critic_), rates,
-             targets_.data());
-  AverageCopies(rows_, config_.replay.copies, config_.replay.target_shifts, targets_.data());
-  on_stage_end(UpdateStage::kForward);
+  target_critic_.ForwardObservation(batch.next_obs_vector);
+  target_critic_.ForwardAction(action);
+  engine_->Targets({.reward = batch.reward,
+                    .bootstrap = batch.bootstrap,
+                    .next_q = ValuesOf(target_critic_),
+                    .next_log_prob = {},
+                    .temperature = {},
+                    .reward_scale = float(config_.learner.reward_scale),
+                    .discount = float(config_.learner.discount),
+                    .bounds = ValueBoundsOf(config_.learner)},
+                   targets_);
+  engine_->AverageCopies(config_.replay.copies, config_.replay.target_shifts, targets_);
 }
 
-// False where the loss or its gradient is not finite; then no parameter has changed.
-bool DeterministicAgent::UpdateCritic(const BatchView& batch, const OnStageEnd& on_stage_end,
-                                      UpdateFigures* figures) {
+void DeterministicAgent::UpdateCritic(const Transitions& batch, const OnStageEnd& on_stage_end) {
   Encode(batch.obs_frames, nn::Statistics::kBatch);
-  critic_.ForwardObservation(batch.obs_vector.data());
-  critic_.ForwardAction(batch.action.data());
+  critic_.ForwardObservation(batch.obs_vector);
+  critic_.ForwardAction(batch.action);
   on_stage_end(UpdateStage::kForward);
-  for (int i = 0; i < options_.critics; ++i) {
-    CriticLossBackward(rows_, critic_.q(i), targets_.data(), q_gradients_[size_t(i)].data());
-  }
+  engine_->CriticLoss(ValuesOf(critic_), targets_, q_gradients_, critic_numbers_);
   critic_.Backward(q_gradients_);
   if (encoder_) encoder_->Backward();
-  PostCriticValues(replica_, Values(critic_), targets_);
-  const double squares = critic_optimiser_.GatherGradients();
-  const float loss = SetCriticFigures(*replica_, squares, figures);
+  engine_->Gather(&critic_optimiser_, critic_squares_);
+  engine_->RequireFinite(critic_numbers_.loss);
+  figures_.SetCritic(critic_numbers_, critic_squares_);
   on_stage_end(UpdateStage::kBackward);
-  if (!Usable(loss, squares)) return false;
-  critic_optimiser_.Step();
-  RefreshCritic();
-  replica_->Meet();
+  engine_->Step(&critic_optimiser_, CriticModules(), NextUse::kThisUpdate);
   on_stage_end(UpdateStage::kOptimiser);
-  return true;
 }
 
-// The features are still those of obs. False where the loss or its gradient is not finite; then the
-// actor has not changed.
-bool DeterministicAgent::UpdateActor(const BatchView& batch, const OnStageEnd& on_stage_end,
-                                     UpdateFigures* figures) {
-  const float* vector = batch.obs_vector.data();
-  const auto [mean, log_std, action] = actor_.Forward(vector);
-  critic_.ForwardObservation(vector);
+// The features are still those of obs.
+void DeterministicAgent::UpdateActor(const Transitions& batch, const OnStageEnd& on_stage_end) {
+  const auto [mean, log_std, action] = actor_.Forward(batch.obs_vector);
+  critic_.ForwardObservation(batch.obs_vector);
   critic_.ForwardAction(action);
-  const float own_loss = DeterministicActorLoss(
-      {critic_.q(0), size_t(rows_)}, {mean, action_gradient_.size()}, config_.learner.mean_penalty);
-  int64_t saturated = 0;
-  for (size_t i = 0; i < action_gradient_.size(); ++i) saturated += std::abs(action[i]) > 0.99f;
   on_stage_end(UpdateStage::kForward);
-  // The others are no part of the loss.
-  std::vector<std::vector<float>> gradients(size_t(options_.critics));
-  gradients[0].assign(size_t(rows_), -1.f / float(rows_));
-  critic_.BackwardAction(gradients, action_gradient_.data());
-  actor_.BackwardAction(action_gradient_.data(), config_.learner.mean_penalty);
-  replica_->Post({}, {own_loss, double(saturated) / double(action_gradient_.size())});
-  const double squares = actor_optimiser_.GatherGradients();
-  const std::vector<double> means = replica_->Posted().means;
-  const auto loss = float(means[0]);
+  engine_->DeterministicActorLoss(critic_.q(0), mean, action, config_.learner.mean_penalty,
+                                  actors_q_gradients_[0], actor_loss_, saturation_);
+  critic_.BackwardAction(actors_q_gradients_, action_gradient_);
+  actor_.BackwardAction(action_gradient_, config_.learner.mean_penalty);
+  engine_->Gather(&actor_optimiser_, actor_squares_);
+  engine_->RequireFinite(actor_loss_);
+  figures_.Set(kActorLoss, actor_loss_);
+  figures_.SetRoot(kActorGradNorm, actor_squares_);
+  figures_.Set(kActionSaturation, saturation_);
   on_stage_end(UpdateStage::kBackward);
-  figures->Set(kActorLoss, loss);
-  figures->Set(kActorGradNorm, std::sqrt(squares));
-  figures->Set(kActionSaturation, means[1]);
-  if (!Usable(loss, squares)) return false;
-  actor_optimiser_.Step();
-  actor_.Refresh();
+  engine_->Step(&actor_optimiser_, std::array<nn::Module*, 1>{&actor_}, NextUse::kNextUpdate);
   on_stage_end(UpdateStage::kOptimiser);
-  return true;
 }
 
 void DeterministicAgent::MoveTargetsAndAverage() {
   if (Due(config_.learner.target_period)) {
     const nn::Following targets[] = {{&critic_, &target_critic_}, {&actor_, &target_actor_}};
-    nn::MoveTowards(float(config_.learner.tau), targets, replica_);
+    engine_->MoveTowards(float(config_.learner.tau), targets);
   }
   average_.Move(float(config_.learner.average_rate));
 }
 
 UpdateOutcome DeterministicAgent::Update(const BatchView& drawn, const OnStageEnd& on_stage_end) {
-  CHECK(int(drawn.reward.size()) == batch_size_) << "batch of " << drawn.reward.size();
-  const nn::ThreadScope scope(context_.threads);
-  UpdateOutcome outcome{.figures = {}, .finite = AllFinite(drawn)};
-  if (!outcome.finite) return outcome;
-  const BatchView batch = PartOf(standard_.Seen(drawn), replica_->RowsOf(batch_size_));
+  const nn::ThreadScope scope(engine_->modules().threads);
+  engine_->Begin(drawn);
+  const Transitions batch = engine_->Take(standard_.Seen(drawn));
   Random random(StreamKey(uint64_t(config_.seed), StreamRole::kLearnerUpdate, updates_));
   const double rate_factor = config_.learner.rate_factor.At(drawn.stored_steps);
   critic_optimiser_.set_rate_factor(rate_factor);
   actor_optimiser_.set_rate_factor(rate_factor);
-  ComputeTargets(batch, &random, on_stage_end);
-  outcome.finite = UpdateCritic(batch, on_stage_end, &outcome.figures);
-  if (!outcome.finite) return outcome;
-  if (Due(config_.learner.actor_period) && !UpdateActor(batch, on_stage_end, &outcome.figures)) {
-    critic_optimiser_.Undo();
-    RefreshCritic();
-    outcome.finite = false;
-    return outcome;
-  }
+  ComputeTargets(batch, &random);
+  on_stage_end(UpdateStage::kForward);
+  UpdateCritic(batch, on_stage_end);
+  if (Due(config_.learner.actor_period)) UpdateActor(batch, on_stage_end);
   MoveTargetsAndAverage();
-  standard_.Add(drawn);
+  figures_.SetValue(kLearningRate, critic_optimiser_.rate());
+  const Engine::Outcome outcome = engine_->End();
+  if (outcome.finite) {
+    standard_.Add(drawn);
+    ++updates_;
+  }
   on_stage_end(UpdateStage::kOptimiser);
-  ++updates_;
-  outcome.figures.Set(kLearningRate, critic_optimiser_.rate());
-  return outcome;
+  return {.figures = figures_.Take(*engine_, outcome), .finite = outcome.finite};
 }
 
 nn::TensorMap DeterministicAgent::PolicyTensors() const {
@@ -278,10 +254,8 @@ nn::TensorMap DeterministicAgent::AveragedPolicyTensors() const {
 }  // namespace
 
 std::unique_ptr<Agent> MakeDeterministicAgent(const Config& config, const ObservationSpec& spec,
-                                              nn::Precision precision,
-                                              const DeterministicOptions& options,
-                                              nn::Replica* replica) {
-  return std::make_unique<DeterministicAgent>(config, spec, precision, options, replica);
+                                              const DeterministicOptions& options, Engine* engine) {
+  return std::make_unique<DeterministicAgent>(config, spec, options, engine);
 }
 
 }  // namespace shoal::learner

@@ -19,11 +19,10 @@
 #include <span>
 
 #include "common/config/config.h"
-#include "common/nn/precision.h"
-#include "common/nn/replica.h"
 #include "common/spec/observation_spec.h"
 #include "learner/agent/agent.h"
 #include "learner/agent/sample_figures.h"
+#include "learner/engine/engine.h"
 
 namespace shoal::learner {
 
@@ -43,11 +42,8 @@ inline constexpr const Figure* kTwinFigures[] = {
 inline constexpr std::span<const Figure* const> kSingleCriticFigures =
     std::span(kTwinFigures).first(std::size(kTwinFigures) - 2);
 
-// One replica, which it borrows, or the only one. Takes batch, seed, discount, reward scale, rates
-// and periods from `config`.
+// Borrows the engine. Takes seed, discount, reward scale, rates and periods from `config`.
 std::unique_ptr<Agent> MakeDeterministicAgent(const Config& config, const ObservationSpec& spec,
-                                              nn::Precision precision,
-                                              const DeterministicOptions& options,
-                                              nn::Replica* replica);
+                                              const DeterministicOptions& options, Engine* engine);
 
 }  // namespace shoal::learner

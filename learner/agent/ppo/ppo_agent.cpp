@@ -9,24 +9,21 @@
 
 #include "common/base/check.h"
 #include "common/nn/adam.h"
+#include "common/nn/host_memory.h"
 #include "common/nn/parallel.h"
 #include "learner/agent/agent_state.h"
-#include "learner/agent/batch_faults.h"
 #include "learner/agent/ppo/advantages.h"
 #include "learner/agent/ppo/ppo_loss.h"
 #include "learner/agent/ppo/ppo_networks.h"
 #include "learner/agent/ppo/reward_scale.h"
 #include "learner/agent/vector_standard.h"
+#include "learner/engine/batch_faults.h"
 
 namespace shoal::learner {
 namespace {
 
 constexpr double kAdamEpsilon = 1e-5;
 constexpr double kKlMargin = 1.5;  // an update ends beyond so many times target_kl
-
-bool FiniteNumbers(std::span<const float> values) {
-  return std::ranges::all_of(values, [](float x) { return std::isfinite(x); });
-}
 
 // Sums over the minibatches of an update.
 struct Sums {
@@ -37,8 +34,7 @@ struct Sums {
 
 class PpoAgent final : public Agent {
  public:
-  PpoAgent(const Config& config, const ObservationSpec& spec, nn::Precision precision,
-           RowOrder order);
+  PpoAgent(const Config& config, const ObservationSpec& spec, Engine* engine, RowOrder order);
 
   UpdateOutcome Update(const BatchView& batch, const OnStageEnd& on_stage_end) override;
   uint64_t updates() const override { return updates_; }
@@ -95,7 +91,7 @@ class PpoAgent final : public Agent {
   std::vector<float> log_prob_, value_, advantage_, target_;  // (B)
 };
 
-PpoAgent::PpoAgent(const Config& config, const ObservationSpec& spec, nn::Precision precision,
+PpoAgent::PpoAgent(const Config& config, const ObservationSpec& spec, Engine* engine,
                    RowOrder order)
     : config_(config),
       batch_size_(config.learner.batch),
@@ -103,11 +99,13 @@ PpoAgent::PpoAgent(const Config& config, const ObservationSpec& spec, nn::Precis
       vector_size_(spec.VectorSize()),
       frame_bytes_(size_t(spec.InputBytes())),
       order_(std::move(order)),
-      context_(precision, batch_size_, nn::Threads()),
+      context_(engine->modules()),
       networks_(config, spec, context_),
-      optimiser_(networks_.Sets(), {.rate = config.learner.learning_rate,
-                                    .epsilon = kAdamEpsilon,
-                                    .max_norm = config.learner.max_grad_norm}),
+      optimiser_(networks_.Sets(),
+                 {.rate = config.learner.learning_rate,
+                  .epsilon = kAdamEpsilon,
+                  .max_norm = config.learner.max_grad_norm},
+                 context_),
       standard_(config.learner, vector_size_),
       rewards_(config.learner.discount),
       frames_(size_t(batch_size_) * frame_bytes_),
@@ -153,7 +151,7 @@ std::vector<float> PpoAgent::Values(std::span<const uint8_t> frames, std::span<c
   for (size_t at = 0; at < rows.size(); at += size_t(batch_size_)) {
     const auto some = std::span(rows).subspan(at, std::min(rows.size() - at, size_t(batch_size_)));
     GatherInputs(frames, vectors, some);
-    networks_.ForwardValue(frames_.data(), vectors_.data());
+    networks_.ForwardValue(nn::HostArray(frames_), nn::HostArray(vectors_));
     for (size_t b = 0; b < some.size(); ++b) values[size_t(some[b])] = networks_.value()[b];
   }
   return values;
@@ -206,7 +204,7 @@ bool PpoAgent::Minibatch(const BatchView& batch, const Prepared& prepared,
     advantage_[b] = prepared.advantage[row];
     target_[b] = prepared.target[row];
   }
-  networks_.Forward(frames_.data(), vectors_.data());
+  networks_.Forward(nn::HostArray(frames_), nn::HostArray(vectors_));
   const PpoLoss loss =
       PpoLossAndGradients({.batch = batch_size_,
                            .action_size = action_size_,
@@ -239,7 +237,7 @@ bool PpoAgent::Minibatch(const BatchView& batch, const Prepared& prepared,
   networks_.Backward();
   const double squares = optimiser_.GatherGradients();
   on_stage_end(UpdateStage::kBackward);
-  if (!Usable(float(loss.total), squares)) return false;
+  if (!std::isfinite(float(loss.total)) || !FitsMoments(squares)) return false;
   sums->grad_norm += std::sqrt(squares);
   optimiser_.Step();
   networks_.Refresh();
@@ -294,9 +292,7 @@ void PpoAgent::SetFigures(const BatchView& batch, const Prepared& prepared, cons
 UpdateOutcome PpoAgent::Update(const BatchView& batch, const OnStageEnd& on_stage_end) {
   CHECK(int(batch.reward.size()) >= batch_size_) << "rollout of " << batch.reward.size();
   const nn::ThreadScope scope(context_.threads);
-  UpdateOutcome outcome{.figures = {},
-                        .finite = AllFinite(batch) && FiniteNumbers(batch.log_prob) &&
-                                  FiniteNumbers(batch.drawn_action)};
+  UpdateOutcome outcome{.figures = {}, .finite = AllFinite(batch)};
   if (!outcome.finite) return outcome;
   // Minibatches before one that is not finite have changed it all.
   const nn::TensorMap former = AllTensors();
@@ -330,13 +326,13 @@ std::vector<int> ShuffledRows(int rows, Random* random) {
 }
 
 std::unique_ptr<Agent> MakePpoAgent(const Config& config, const ObservationSpec& spec,
-                                    nn::Precision precision) {
-  return MakePpoAgent(config, spec, precision, ShuffledRows);
+                                    Engine* engine) {
+  return MakePpoAgent(config, spec, engine, ShuffledRows);
 }
 
 std::unique_ptr<Agent> MakePpoAgent(const Config& config, const ObservationSpec& spec,
-                                    nn::Precision precision, RowOrder order) {
-  return std::make_unique<PpoAgent>(config, spec, precision, std::move(order));
+                                    Engine* engine, RowOrder order) {
+  return std::make_unique<PpoAgent>(config, spec, engine, std::move(order));
 }
 
 }  // namespace shoal::learner

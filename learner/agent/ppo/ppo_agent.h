@@ -24,9 +24,9 @@
 
 #include "common/base/random.h"
 #include "common/config/config.h"
-#include "common/nn/precision.h"
 #include "common/spec/observation_spec.h"
 #include "learner/agent/agent.h"
+#include "learner/engine/engine.h"
 
 namespace shoal::learner {
 
@@ -59,9 +59,9 @@ std::vector<int> ShuffledRows(int rows, Random* random);
 
 // Throws Error (kUsage) where the configuration does not fit.
 std::unique_ptr<Agent> MakePpoAgent(const Config& config, const ObservationSpec& spec,
-                                    nn::Precision precision);
+                                    Engine* engine);
 // Same as above with a given order of rows, to compare with other programs.
 std::unique_ptr<Agent> MakePpoAgent(const Config& config, const ObservationSpec& spec,
-                                    nn::Precision precision, RowOrder order);
+                                    Engine* engine, RowOrder order);
 
 }  // namespace shoal::learner

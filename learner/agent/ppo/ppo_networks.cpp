@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "common/nn/host_memory.h"
 #include "learner/agent/encoder_and_head.h"
 
 namespace shoal::learner {
@@ -42,15 +43,14 @@ PpoNetworks::Network::Network(const Config& config, const ObservationSpec& spec,
   head.parameters().Initialise(seed);
 }
 
-void PpoNetworks::Network::Forward(const uint8_t* frames, const float* vector,
-                                   nn::Statistics statistics) {
+void PpoNetworks::Network::Forward(nn::Frames frames, nn::Array vector, nn::Statistics statistics) {
   if (encoder) encoder->Forward(frames, statistics);
   head.ForwardObservation(vector);
-  head.ForwardAction(nullptr);  // it reads none
+  head.ForwardAction({});  // it reads none
 }
 
-void PpoNetworks::Network::Backward(std::vector<float> gradient) {
-  const std::vector<float> gradients[] = {std::move(gradient)};
+void PpoNetworks::Network::Backward(const std::vector<float>& gradient) {
+  const nn::Array gradients[] = {nn::HostArray(gradient)};
   head.Backward(gradients);
   if (encoder) encoder->Backward();
 }
@@ -89,15 +89,16 @@ std::span<float> PpoNetworks::log_std_gradient() {
 }
 
 void PpoNetworks::TakeValues(const Network& network, int outputs) {
-  const float* output = network.head.q(0);
+  const float* output = nn::HostValues(network.head.q(0)).data();
   for (int b = 0; b < batch_; ++b) value_[size_t(b)] = output[int64_t{b} * outputs + outputs - 1];
 }
 
-void PpoNetworks::Forward(const uint8_t* frames, const float* vector) {
+void PpoNetworks::Forward(nn::Frames frames, nn::Array vector) {
   actor_.Forward(frames, vector, nn::Statistics::kBatch);
   const int outputs = action_size_ + (own_value_ ? 0 : 1);
+  const float* output = nn::HostValues(actor_.head.q(0)).data();
   for (int b = 0; b < batch_; ++b) {
-    std::copy_n(actor_.head.q(0) + int64_t{b} * outputs, action_size_,
+    std::copy_n(output + int64_t{b} * outputs, action_size_,
                 mean_.data() + int64_t{b} * action_size_);
   }
   if (own_value_) {
@@ -108,7 +109,7 @@ void PpoNetworks::Forward(const uint8_t* frames, const float* vector) {
   }
 }
 
-void PpoNetworks::ForwardValue(const uint8_t* frames, const float* vector) {
+void PpoNetworks::ForwardValue(nn::Frames frames, nn::Array vector) {
   Network& network = own_value_ ? *own_value_ : actor_;
   network.Forward(frames, vector, nn::Statistics::kRunning);
   TakeValues(network, own_value_ ? 1 : action_size_ + 1);
@@ -127,7 +128,7 @@ void PpoNetworks::Backward() {
     both.insert(both.end(), mean, mean + action_size_);
     both.push_back(value_gradient_[size_t(b)]);
   }
-  actor_.Backward(std::move(both));
+  actor_.Backward(both);
 }
 
 std::vector<nn::ParameterSet*> PpoNetworks::Sets() {

@@ -28,10 +28,10 @@ class PpoNetworks {
   // Initialised from config.seed.
   PpoNetworks(const Config& config, const ObservationSpec& spec, const nn::ModuleContext& context);
 
-  // frames (B, K*C, H, W) u8, unread without pixels; vector (B, V), normalised.
-  void Forward(const uint8_t* frames, const float* vector);
+  // frames (B, K*C, H, W), unread without pixels; vector (B, V), normalised.
+  void Forward(nn::Frames frames, nn::Array vector);
   // The value alone; shared networks compute the policy, too.
-  void ForwardValue(const uint8_t* frames, const float* vector);
+  void ForwardValue(nn::Frames frames, nn::Array vector);
   std::span<const float> mean() const { return mean_; }    // (B, A) of the latest Forward
   std::span<const float> value() const { return value_; }  // (B) of the latest of both
   std::span<const float> log_std();                        // (A)
@@ -55,8 +55,8 @@ class PpoNetworks {
   struct Network {
     Network(const Config& config, const ObservationSpec& spec, const nn::ModuleContext& context,
             const std::string& encoder_name, const nn::HeadPlan& plan);
-    void Forward(const uint8_t* frames, const float* vector, nn::Statistics statistics);
-    void Backward(std::vector<float> gradient);
+    void Forward(nn::Frames frames, nn::Array vector, nn::Statistics statistics);
+    void Backward(const std::vector<float>& gradient);
 
     std::unique_ptr<nn::EncoderModule> encoder;  // null without pixels
     nn::CriticModule head;                       // of the observation alone

@@ -17,27 +17,22 @@
 // no encoder; the actor's is trained in 3. Where the encoder is trained, learner.aux joins in (Eq.
 // 27).
 //
-// One of several replicas sees its rows of the batch; 2 and 3 end with gradients and figures of all
-// of it.
+// Nothing between Engine::Begin and End depends on a number that is computed: what moves in an
+// update follows from configuration and counters. 2 and 3 end with gradients and figures of the
+// whole batch.
 #include "learner/agent/sac/sac_agent.h"
 
 #include <array>
-#include <cmath>
-#include <vector>
 
-#include "common/base/check.h"
 #include "common/base/random.h"
 #include "common/config/privileged_blocks.h"
 #include "common/nn/parallel.h"
 #include "learner/agent/agent_state.h"
-#include "learner/agent/batch_faults.h"
-#include "learner/agent/batch_part.h"
-#include "learner/agent/critic_figures.h"
 #include "learner/agent/critic_vectors.h"
-#include "learner/agent/losses.h"
+#include "learner/agent/figure_sheet.h"
 #include "learner/agent/sac/sac_networks.h"
 #include "learner/agent/sample_figures.h"
-#include "learner/agent/squashed_gaussian.h"
+#include "learner/agent/value_bounds.h"
 #include "learner/agent/vector_standard.h"
 
 namespace shoal::learner {
@@ -51,8 +46,7 @@ float TargetEntropy(const LearnerConfig& learner, int action_size) {
 
 class SacAgent final : public Agent {
  public:
-  SacAgent(const Config& config, const ObservationSpec& spec, nn::Precision precision,
-           nn::Replica* replica);
+  SacAgent(const Config& config, const ObservationSpec& spec, Engine* engine);
 
   UpdateOutcome Update(const BatchView& drawn, const OnStageEnd& on_stage_end) override;
   uint64_t updates() const override { return updates_; }
@@ -68,188 +62,172 @@ class SacAgent final : public Agent {
     standard_.ExportTo(&parameters);
     return parameters;
   }
-  // This replica's rows of a batch as they were drawn, and as the networks see them.
+  // A batch as it was drawn, and as the networks see it.
   struct Seen {
-    BatchView drawn;
-    BatchView batch;
+    Transitions drawn;
+    Transitions batch;
     CriticVectors::Vectors of_critic;
   };
-  // Actions of the Gaussian with new noise, into gaussian_.
-  void Draw(const float* mean, const float* log_std, Random* random);
-  void ForwardBackwardAux(const Seen& seen, UpdateFigures* figures);
-  void ComputeTargets(const Seen& seen, float temperature, Random* random,
-                      const OnStageEnd& on_stage_end);
-  bool UpdateCritic(const Seen& seen, const OnStageEnd& on_stage_end, UpdateFigures* figures);
-  bool UpdateActor(const Seen& seen, float temperature, Random* random,
-                   const OnStageEnd& on_stage_end, UpdateFigures* figures);
+  // Whether something of this period moves in the coming update.
+  bool Due(int period) const { return updates_ % uint64_t(period) == 0; }
+  void ForwardBackwardAux(const Seen& seen);
+  void ComputeTargets(const Seen& seen, Random* random);
+  void UpdateCritic(const Seen& seen, const OnStageEnd& on_stage_end);
+  void UpdateActor(const Seen& seen, Random* random, const OnStageEnd& on_stage_end);
 
   const Config config_;
-  nn::Replica* const replica_;
-  const int batch_size_, rows_, action_size_;  // B of the batch, b of this replica, A
+  Engine* const engine_;
   const float target_entropy_;
   const ValueBounds bounds_;
-  const int threads_;
   SacNetworks networks_;
   VectorStandard standard_;
   CriticVectors critic_vectors_;
   uint64_t updates_ = 0;
   AgentState state_;
 
-  SquashedGaussian gaussian_;
-  std::vector<float> targets_;                                             // y (b)
-  std::array<std::vector<float>, 2> q_gradients_;                          // (b)
-  std::vector<float> action_gradient_, mean_gradient_, log_std_gradient_;  // (b, A)
+  // Arrays and numbers of an update. Dimensions: b rows of this replica, A actions.
+  const SquashedSample sample_;
+  const Array targets_;                                             // y (b)
+  const std::array<Array, 2> q_gradients_;                          // (b)
+  const Array action_gradient_, mean_gradient_, log_std_gradient_;  // (b, A)
+  const Number temperature_, next_temperature_;                     // before and after it
+  const CriticNumbers critic_numbers_;
+  const Number critic_squares_, actor_squares_;  // of gradients
+  const Number actor_loss_, entropy_, saturation_, temperature_loss_;
+  FigureSheet figures_;
 };
 
-SacAgent::SacAgent(const Config& config, const ObservationSpec& spec, nn::Precision precision,
-                   nn::Replica* replica)
+SacAgent::SacAgent(const Config& config, const ObservationSpec& spec, Engine* engine)
     : config_(config),
-      replica_(replica),
-      batch_size_(config.learner.batch),
-      rows_(replica->RowsOf(batch_size_).count),
-      action_size_(spec.action_size),
+      engine_(engine),
       target_entropy_(TargetEntropy(config.learner, spec.action_size)),
       bounds_(ValueBoundsOf(config.learner)),
-      threads_(replica->threads()),
-      networks_(config, spec, precision, replica),
+      networks_(config, spec, engine),
       standard_(config.learner, spec.VectorSize(), PrivilegedSize(config.learner, spec)),
-      critic_vectors_(config.learner, spec),
-      gaussian_(rows_, spec.action_size),
-      targets_(size_t(rows_)),
-      q_gradients_{targets_, targets_},
-      action_gradient_(size_t(rows_) * size_t(spec.action_size)),
-      mean_gradient_(action_gradient_),
-      log_std_gradient_(action_gradient_) {
+      critic_vectors_(config.learner, spec, engine),
+      sample_{engine->NewArray(spec.action_size), engine->NewArray(spec.action_size),
+              engine->NewArray(1)},
+      targets_(engine->NewArray(1)),
+      q_gradients_{engine->NewArray(1), engine->NewArray(1)},
+      action_gradient_(engine->NewArray(spec.action_size)),
+      mean_gradient_(engine->NewArray(spec.action_size)),
+      log_std_gradient_(engine->NewArray(spec.action_size)),
+      temperature_(engine->NewNumber()),
+      next_temperature_(engine->NewNumber()),
+      critic_numbers_(NewCriticNumbers(/*critics=*/2, engine)),
+      critic_squares_(engine->NewNumber()),
+      actor_squares_(engine->NewNumber()),
+      actor_loss_(engine->NewNumber()),
+      entropy_(engine->NewNumber()),
+      saturation_(engine->NewNumber()),
+      temperature_loss_(engine->NewNumber()) {
   networks_.AddTo(&state_);
   standard_.AddTo(&state_);
   state_.Add(&updates_, "agent.updates");
 }
 
-void SacAgent::Draw(const float* mean, const float* log_std, Random* random) {
-  const std::vector<double> normals = replica_->Normals(batch_size_, action_size_, random);
-  const std::vector<float> noise(normals.begin(), normals.end());
-  gaussian_.Transform(mean, log_std, noise.data());
+void SacAgent::ForwardBackwardAux(const Seen& seen) {
+  figures_.SetRoot(kAuxError, networks_.ForwardBackwardAux(seen.drawn));
 }
 
-void SacAgent::ForwardBackwardAux(const Seen& seen, UpdateFigures* figures) {
-  const double square = networks_.ForwardBackwardAux(seen.drawn);
-  figures->Set(kAuxError, std::sqrt(replica_->Means({square})[0]));
+void SacAgent::ComputeTargets(const Seen& seen, Random* random) {
+  const Transitions& batch = seen.batch;
+  networks_.EncodeNext(batch.next_obs_frames);
+  const auto [mean, log_std] = networks_.ForwardActor(batch.next_obs_vector);
+  engine_->SampleSquashedGaussian(mean, log_std, random, sample_);
+  const auto next_q = networks_.ForwardTarget(seen.of_critic.next_obs, sample_.action);
+  engine_->Targets({.reward = batch.reward,
+                    .bootstrap = batch.bootstrap,
+                    .next_q = next_q,
+                    .next_log_prob = sample_.log_prob,
+                    .temperature = temperature_,
+                    .reward_scale = float(config_.learner.reward_scale),
+                    .discount = float(config_.learner.discount),
+                    .bounds = bounds_},
+                   targets_);
+  engine_->AverageCopies(config_.replay.copies, config_.replay.target_shifts, targets_);
 }
 
-void SacAgent::ComputeTargets(const Seen& seen, float temperature, Random* random,
-                              const OnStageEnd& on_stage_end) {
-  const BatchView& batch = seen.batch;
-  networks_.EncodeNext(batch.next_obs_frames.data());
-  const auto [mean, log_std] = networks_.ForwardActor(batch.next_obs_vector.data());
-  Draw(mean, log_std, random);
-  const auto [q0, q1] = networks_.ForwardTarget(seen.of_critic.next_obs, gaussian_.action());
-  const TargetInputs inputs{
-      batch.reward.data(), batch.bootstrap.data(), {q0, q1}, gaussian_.log_prob()};
-  const TargetRates rates{float(config_.learner.reward_scale), float(config_.learner.discount),
-                          temperature, bounds_};
-  TdTargets(rows_, inputs, rates, targets_.data());
-  AverageCopies(rows_, config_.replay.copies, config_.replay.target_shifts, targets_.data());
+void SacAgent::UpdateCritic(const Seen& seen, const OnStageEnd& on_stage_end) {
+  networks_.Encode(seen.batch.obs_frames);
+  const auto q = networks_.ForwardCritic(seen.of_critic.obs, seen.batch.action);
   on_stage_end(UpdateStage::kForward);
-}
-
-// False where the loss or its gradient is not finite; then no parameter has changed.
-bool SacAgent::UpdateCritic(const Seen& seen, const OnStageEnd& on_stage_end,
-                            UpdateFigures* figures) {
-  const BatchView& batch = seen.batch;
-  networks_.Encode(batch.obs_frames.data());
-  const auto [q0, q1] = networks_.ForwardCritic(seen.of_critic.obs, batch.action.data());
-  on_stage_end(UpdateStage::kForward);
-  CriticLossBackward(rows_, q0, targets_.data(), q_gradients_[0].data());
-  CriticLossBackward(rows_, q1, targets_.data(), q_gradients_[1].data());
-  if (networks_.Aux(SacNetworks::Head::kCritic)) ForwardBackwardAux(seen, figures);
-  PostCriticValues(replica_, std::array{q0, q1}, targets_);
-  const double squares = networks_.BackwardCritic(q_gradients_);
-  const float loss = SetCriticFigures(*replica_, squares, figures);
+  engine_->CriticLoss(q, targets_, q_gradients_, critic_numbers_);
+  if (networks_.Aux(SacNetworks::Head::kCritic)) ForwardBackwardAux(seen);
+  networks_.BackwardCritic(q_gradients_, critic_squares_);
+  engine_->RequireFinite(critic_numbers_.loss);
+  figures_.SetCritic(critic_numbers_, critic_squares_);
   on_stage_end(UpdateStage::kBackward);
-  if (!Usable(loss, squares)) return false;
   networks_.StepCritic();
   on_stage_end(UpdateStage::kOptimiser);
-  return true;
 }
 
-// After UpdateCritic. False where the loss or its gradient is not finite; then
-// neither actor nor temperature has changed.
-bool SacAgent::UpdateActor(const Seen& seen, float temperature, Random* random,
-                           const OnStageEnd& on_stage_end, UpdateFigures* figures) {
-  networks_.EncodeForActor(seen.batch.obs_frames.data());
-  const auto [mean, log_std] = networks_.ForwardActor(seen.batch.obs_vector.data());
-  Draw(mean, log_std, random);
-  const auto [q0, q1] = networks_.ForwardCritic(seen.of_critic.obs, gaussian_.action());
-  const float own_loss = ActorLossForward(rows_, gaussian_.log_prob(), q0, q1, temperature);
+// After UpdateCritic.
+void SacAgent::UpdateActor(const Seen& seen, Random* random, const OnStageEnd& on_stage_end) {
+  networks_.EncodeForActor(seen.batch.obs_frames);
+  const auto [mean, log_std] = networks_.ForwardActor(seen.batch.obs_vector);
+  engine_->SampleSquashedGaussian(mean, log_std, random, sample_);
+  const auto q = networks_.ForwardCritic(seen.of_critic.obs, sample_.action);
   on_stage_end(UpdateStage::kForward);
-  ActorLossBackward(rows_, q0, q1, q_gradients_[0].data(), q_gradients_[1].data());
-  networks_.BackwardAction(q_gradients_, action_gradient_.data());
-  gaussian_.Backward(action_gradient_.data(), temperature / float(rows_), mean_gradient_.data(),
-                     log_std_gradient_.data());
-  if (networks_.Aux(SacNetworks::Head::kActor)) ForwardBackwardAux(seen, figures);
-  replica_->Post({}, {own_loss, gaussian_.Entropy(), gaussian_.Saturation()});
-  const double squares = networks_.BackwardActor(mean_gradient_.data(), log_std_gradient_.data());
-  const std::vector<double> means = replica_->Posted().means;
+  engine_->EntropyActorLoss(sample_.log_prob, q, temperature_, q_gradients_, actor_loss_);
+  engine_->SquashedGaussianFigures(sample_, entropy_, saturation_);
+  networks_.BackwardAction(q_gradients_, action_gradient_);
+  engine_->SquashedGaussianBackward(sample_, action_gradient_, temperature_, mean_gradient_,
+                                    log_std_gradient_);
+  if (networks_.Aux(SacNetworks::Head::kActor)) ForwardBackwardAux(seen);
+  networks_.BackwardActor(mean_gradient_, log_std_gradient_, actor_squares_);
+  engine_->TemperatureLoss(temperature_, entropy_, target_entropy_, temperature_loss_);
+  engine_->RequireFinite(actor_loss_);
+  engine_->RequireFinite(temperature_loss_);
+  figures_.Set(kActorLoss, actor_loss_);
+  figures_.Set(kTemperatureLoss, temperature_loss_);
+  figures_.Set(kEntropy, entropy_);
+  figures_.Set(kActionSaturation, saturation_);
+  figures_.SetRoot(kActorGradNorm, actor_squares_);
   on_stage_end(UpdateStage::kBackward);
-  const auto loss = float(means[0]), entropy = float(means[1]);
-  const float temperature_loss = TemperatureLoss(temperature, entropy, target_entropy_);
-  figures->Set(kActorLoss, loss);
-  figures->Set(kTemperatureLoss, temperature_loss);
-  figures->Set(kEntropy, entropy);
-  figures->Set(kActionSaturation, means[2]);
-  figures->Set(kActorGradNorm, std::sqrt(squares));
-  if (!Usable(loss, squares) || !std::isfinite(temperature_loss)) return false;
   networks_.StepActor();
   if (config_.learner.temperature == "auto") {
-    networks_.StepTemperature(temperature_loss, config_.learner.min_temperature);
+    networks_.StepTemperature(temperature_loss_, config_.learner.min_temperature);
   }
   on_stage_end(UpdateStage::kOptimiser);
-  return true;
 }
 
 UpdateOutcome SacAgent::Update(const BatchView& drawn, const OnStageEnd& on_stage_end) {
-  CHECK(int(drawn.reward.size()) == batch_size_) << "batch of " << drawn.reward.size();
-  const nn::ThreadScope scope(threads_);
-  UpdateOutcome outcome{.figures = {}, .finite = AllFinite(drawn)};
-  if (!outcome.finite) return outcome;
-  const nn::Replica::Rows rows = replica_->RowsOf(batch_size_);
-  const BatchView batch = PartOf(standard_.Seen(drawn), rows);
-  const Seen seen{PartOf(drawn, rows), batch, critic_vectors_.Of(batch)};
-
+  const nn::ThreadScope scope(engine_->modules().threads);
+  engine_->Begin(drawn);
+  const Transitions batch = engine_->Take(standard_.Seen(drawn));
+  const Seen seen{engine_->Take(drawn), batch, critic_vectors_.Of(batch)};
   Random random(StreamKey(uint64_t(config_.seed), StreamRole::kLearnerUpdate, updates_));
   networks_.SetRateFactor(config_.learner.rate_factor.At(drawn.stored_steps));
-  const float temperature = networks_.Temperature();
-  ComputeTargets(seen, temperature, &random, on_stage_end);
-  outcome.finite = UpdateCritic(seen, on_stage_end, &outcome.figures);
-  if (!outcome.finite) return outcome;
-  if (updates_ % uint64_t(config_.learner.actor_period) == 0 &&
-      !UpdateActor(seen, temperature, &random, on_stage_end, &outcome.figures)) {
-    networks_.UndoStepCritic();
-    outcome.finite = false;
-    return outcome;
-  }
-  if (updates_ % uint64_t(config_.learner.target_period) == 0) {
-    networks_.MoveTarget(float(config_.learner.tau));
-  }
+  networks_.ReadTemperature(temperature_);
+  ComputeTargets(seen, &random);
+  on_stage_end(UpdateStage::kForward);
+  UpdateCritic(seen, on_stage_end);
+  if (Due(config_.learner.actor_period)) UpdateActor(seen, &random, on_stage_end);
+  if (Due(config_.learner.target_period)) networks_.MoveTarget(float(config_.learner.tau));
   networks_.MovePolicyAverage(float(config_.learner.average_rate));
-  standard_.Add(drawn);
+  networks_.ReadTemperature(next_temperature_);
+  figures_.Set(kTemperature, next_temperature_);
+  figures_.SetValue(kLearningRate, networks_.CriticRate());
+  const Engine::Outcome outcome = engine_->End();
+  if (outcome.finite) {
+    standard_.Add(drawn);
+    ++updates_;
+  }
   on_stage_end(UpdateStage::kOptimiser);
-  ++updates_;
-  outcome.figures.Set(kTemperature, networks_.Temperature());
-  outcome.figures.Set(kLearningRate, networks_.CriticRate());
-  return outcome;
+  return {.figures = figures_.Take(*engine_, outcome), .finite = outcome.finite};
 }
 
 void SacAgent::Restore(const nn::TensorMap& tensors, const std::string& source) {
-  const nn::ThreadScope scope(threads_);
+  const nn::ThreadScope scope(engine_->modules().threads);
   state_.Restore(tensors, source);
 }
 
 }  // namespace
 
 std::unique_ptr<Agent> MakeSacAgent(const Config& config, const ObservationSpec& spec,
-                                    nn::Precision precision, nn::Replica* replica) {
-  return std::make_unique<SacAgent>(config, spec, precision, replica);
+                                    Engine* engine) {
+  return std::make_unique<SacAgent>(config, spec, engine);
 }
 
 }  // namespace shoal::learner

@@ -6,11 +6,10 @@
 #include <memory>
 
 #include "common/config/config.h"
-#include "common/nn/precision.h"
-#include "common/nn/replica.h"
 #include "common/spec/observation_spec.h"
 #include "learner/agent/agent.h"
 #include "learner/agent/sample_figures.h"
+#include "learner/engine/engine.h"
 
 namespace shoal::learner {
 
@@ -29,8 +28,8 @@ inline constexpr const Figure* kSacFigures[] = {
     &kLearningRate,    &kAuxError, &kQ1Mean,           &kQ1Std,          &kQ2Mean,
     &kQ2Std,           &kQMinMean, &kQMinStd,          &kQMinMin,        &kQMinMax};
 
-// Makes the agent of Algorithm::make_replica.
+// Makes the agent of Algorithm::make.
 std::unique_ptr<Agent> MakeSacAgent(const Config& config, const ObservationSpec& spec,
-                                    nn::Precision precision, nn::Replica* replica);
+                                    Engine* engine);
 
 }  // namespace shoal::learner

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "learner/agent/sac/sac_networks.h"
 
-#include <algorithm>
 #include <cmath>
 #include <initializer_list>
 
@@ -30,35 +29,40 @@ nn::HeadPlan CriticPlan(const Config& config, const ObservationSpec& spec, const
   return nn::PlanCritic(config.network, CriticSpec(config.learner, spec), name);
 }
 
+std::vector<ParameterSet*> ParametersOf(const std::vector<Module*>& modules) {
+  std::vector<ParameterSet*> sets;
+  for (Module* module : modules) sets.push_back(&module->parameters());
+  return sets;
+}
+
 }  // namespace
 
-SacNetworks::SacNetworks(const Config& config, const ObservationSpec& spec, nn::Precision precision,
-                         nn::Replica* replica)
-    : replica_(replica),
-      context_(precision, config.learner.batch, replica),
+SacNetworks::SacNetworks(const Config& config, const ObservationSpec& spec, Engine* engine)
+    : engine_(engine),
       asymmetric_(bool(config.learner.critic_blocks)),
-      encoder_(MakeEncoder(config.network, spec, Module::Use::kTraining, context_)),
+      encoder_(MakeEncoder(config.network, spec, Module::Use::kTraining, engine->modules())),
       critic_encoder_(Separate(config) ? MakeEncoder(config.network, spec, Module::Use::kTraining,
-                                                     context_, "critic.encoder")
+                                                     engine->modules(), "critic.encoder")
                                        : nullptr),
       target_encoder_(config.network.target_encoder
-                          ? MakeEncoder(config.network, spec, Module::Use::kInference, context_,
-                                        "target.encoder")
+                          ? MakeEncoder(config.network, spec, Module::Use::kInference,
+                                        engine->modules(), "target.encoder")
                           : nullptr),
       critic_(CriticPlan(config, spec, "critic"), FeaturesOf(CriticEncoder()),
-              /*trains_encoder=*/true, Module::Use::kTraining, context_),
+              /*trains_encoder=*/true, Module::Use::kTraining, engine->modules()),
       target_(CriticPlan(config, spec, "target"),
               FeaturesOf(target_encoder_ ? target_encoder_.get() : CriticEncoder()),
-              /*trains_encoder=*/false, Module::Use::kInference, context_),
+              /*trains_encoder=*/false, Module::Use::kInference, engine->modules()),
       actor_(nn::PlanActor(config.network, spec), FeaturesOf(encoder_.get()),
-             /*trains_encoder=*/ActorTrains(), Module::Use::kTraining, context_),
+             /*trains_encoder=*/ActorTrains(), Module::Use::kTraining, engine->modules()),
       aux_(AuxLoss::Make(config, spec,
                          ActorTrains() ? actor_.trunk_features() : critic_.trunk_features(),
-                         context_)),
+                         engine)),
       temperature_({{kLogTemperature, {1}}}, ParameterSet::Use::kTraining),
-      average_(SetsOf(encoder_.get(), &actor_), replica),
-      critic_optimiser_(CriticSets(), CriticStep(config.learner), replica),
-      actor_optimiser_(ActorSets(), ActorStep(config.learner), replica),
+      average_(SetsOf(encoder_.get(), &actor_), engine),
+      critic_optimiser_(ParametersOf(CriticModules()), CriticStep(config.learner),
+                        engine->modules()),
+      actor_optimiser_(ParametersOf(ActorModules()), ActorStep(config.learner), engine->modules()),
       temperature_optimiser_({&temperature_}, {.rate = TemperatureRate(config.learner)}) {
   const auto seed = static_cast<uint64_t>(config.seed);
   for (EncoderModule* encoder : {encoder_.get(), critic_encoder_.get()}) {
@@ -70,8 +74,8 @@ SacNetworks::SacNetworks(const Config& config, const ObservationSpec& spec, nn::
   critic_.parameters().Initialise(seed);
   actor_.parameters().Initialise(seed);
   temperature_.values()[0] = static_cast<float>(std::log(config.learner.initial_temperature));
-  RefreshCritic();
-  actor_.Refresh();
+  for (Module* module : CriticModules()) module->Refresh();
+  for (Module* module : ActorModules()) module->Refresh();
   nn::CopyParameters(critic_, &target_);
   average_.Copy();
 }
@@ -81,77 +85,74 @@ EncoderModule* SacNetworks::CriticEncoder() {
   return critic_encoder_ ? critic_encoder_.get() : encoder_.get();
 }
 
-std::vector<ParameterSet*> SacNetworks::CriticSets() {
-  std::vector<ParameterSet*> sets = SetsOf(CriticEncoder(), &critic_);
-  if (Aux(Head::kCritic)) sets.push_back(&aux_->readout().parameters());
-  return sets;
+std::vector<Module*> SacNetworks::CriticModules() {
+  std::vector<Module*> modules{&critic_};
+  if (CriticEncoder() != nullptr) modules.insert(modules.begin(), CriticEncoder());
+  if (Aux(Head::kCritic)) modules.push_back(&aux_->readout());
+  return modules;
 }
 
-std::vector<ParameterSet*> SacNetworks::ActorSets() {
-  std::vector<ParameterSet*> sets = SetsOf(ActorTrains() ? encoder_.get() : nullptr, &actor_);
-  if (Aux(Head::kActor)) sets.push_back(&aux_->readout().parameters());
-  return sets;
+std::vector<Module*> SacNetworks::ActorModules() {
+  std::vector<Module*> modules{&actor_};
+  if (ActorTrains()) modules.insert(modules.begin(), encoder_.get());
+  if (Aux(Head::kActor)) modules.push_back(&aux_->readout());
+  return modules;
 }
 
-void SacNetworks::EncodeNext(const uint8_t* frames) {
+void SacNetworks::EncodeNext(Frames frames) {
   if (!encoder_) return;
   encoder_->Forward(frames, nn::Statistics::kRunning);
   EncoderModule* of_target = target_encoder_ ? target_encoder_.get() : critic_encoder_.get();
   if (of_target != nullptr) of_target->Forward(frames, nn::Statistics::kRunning);
 }
 
-void SacNetworks::Encode(const uint8_t* frames) {
+void SacNetworks::Encode(Frames frames) {
   if (CriticEncoder() != nullptr) CriticEncoder()->Forward(frames, nn::Statistics::kBatch);
 }
 
-void SacNetworks::EncodeForActor(const uint8_t* frames) {
+void SacNetworks::EncodeForActor(Frames frames) {
   if (!ActorTrains()) return;
   encoder_->Forward(frames, nn::Statistics::kBatch);
   if (critic_encoder_) critic_encoder_->Forward(frames, nn::Statistics::kRunning);
 }
 
-SacNetworks::Gaussian SacNetworks::ForwardActor(const float* vector) {
+SacNetworks::Gaussian SacNetworks::ForwardActor(Array vector) {
   const nn::ActorModule::Output output = actor_.Forward(vector);
   return {output.mean, output.log_std};
 }
 
-SacNetworks::TwinQ SacNetworks::ForwardTarget(const float* vector, const float* action) {
+SacNetworks::TwinQ SacNetworks::ForwardTarget(Array vector, Array action) {
   target_.ForwardObservation(vector);
   target_.ForwardAction(action);
   return {target_.q(0), target_.q(1)};
 }
 
-SacNetworks::TwinQ SacNetworks::ForwardCritic(const float* vector, const float* action) {
+SacNetworks::TwinQ SacNetworks::ForwardCritic(Array vector, Array action) {
   critic_.ForwardObservation(vector);
   critic_.ForwardAction(action);
   return {critic_.q(0), critic_.q(1)};
 }
 
-double SacNetworks::ForwardBackwardAux(const BatchView& drawn) {
+Number SacNetworks::ForwardBackwardAux(const Transitions& drawn) {
   CHECK(aux_);
-  return aux_->ForwardBackward(drawn);
+  aux_->ForwardBackward(drawn);
+  return aux_->mean_square();
 }
 
-double SacNetworks::BackwardCritic(const QGradients& q_gradients) {
+void SacNetworks::BackwardCritic(std::span<const Array> q_gradients, Number squares) {
   critic_.Backward(q_gradients);
   if (CriticEncoder() != nullptr) CriticEncoder()->Backward();
-  return critic_optimiser_.GatherGradients();
+  engine_->Gather(&critic_optimiser_, squares);
 }
 
-void SacNetworks::BackwardAction(const QGradients& q_gradients, float* action_gradient) {
+void SacNetworks::BackwardAction(std::span<const Array> q_gradients, Array action_gradient) {
   critic_.BackwardAction(q_gradients, action_gradient);
 }
 
-double SacNetworks::BackwardActor(const float* mean_gradient, const float* log_std_gradient) {
+void SacNetworks::BackwardActor(Array mean_gradient, Array log_std_gradient, Number squares) {
   actor_.Backward(mean_gradient, log_std_gradient);
   if (ActorTrains()) encoder_->Backward();
-  return actor_optimiser_.GatherGradients();
-}
-
-void SacNetworks::RefreshCritic() {
-  if (CriticEncoder() != nullptr) CriticEncoder()->Refresh();
-  critic_.Refresh();
-  if (Aux(Head::kCritic)) aux_->readout().Refresh();
+  engine_->Gather(&actor_optimiser_, squares);
 }
 
 void SacNetworks::SetRateFactor(double factor) {
@@ -160,37 +161,27 @@ void SacNetworks::SetRateFactor(double factor) {
   }
 }
 
+// The actor's loss uses the critic that this leaves.
 void SacNetworks::StepCritic() {
-  critic_optimiser_.Step();
-  RefreshCritic();
-  replica_->Meet();
-}
-
-void SacNetworks::UndoStepCritic() {
-  critic_optimiser_.Undo();
-  RefreshCritic();
+  engine_->Step(&critic_optimiser_, CriticModules(), NextUse::kThisUpdate);
 }
 
 void SacNetworks::StepActor() {
-  actor_optimiser_.Step();
-  if (ActorTrains()) encoder_->Refresh();
-  actor_.Refresh();
-  if (Aux(Head::kActor)) aux_->readout().Refresh();
+  engine_->Step(&actor_optimiser_, ActorModules(), NextUse::kNextUpdate);
 }
 
-float SacNetworks::Temperature() const { return std::exp(temperature_.values()[0]); }
+void SacNetworks::ReadTemperature(Number temperature) {
+  engine_->Temperature(temperature_, temperature);
+}
 
-void SacNetworks::StepTemperature(float gradient, double least) {
-  temperature_.gradients()[0] = gradient;
-  temperature_optimiser_.Step();
-  float& log_temperature = temperature_.values()[0];
-  log_temperature = std::max(log_temperature, float(std::log(least)));  // of 0: no bound
+void SacNetworks::StepTemperature(Number loss, double least) {
+  engine_->StepTemperature(loss, least, &temperature_, &temperature_optimiser_);
 }
 
 void SacNetworks::MoveTarget(float tau) {
   std::vector<nn::Following> targets{{&critic_, &target_}};
   if (target_encoder_) targets.push_back({CriticEncoder(), target_encoder_.get()});
-  nn::MoveTowards(tau, targets, replica_);
+  engine_->MoveTowards(tau, targets);
 }
 
 nn::TensorMap SacNetworks::PolicyTensors() const {

@@ -4,12 +4,12 @@
 namespace shoal::learner {
 
 std::unique_ptr<Agent> MakeTd3Agent(const Config& config, const ObservationSpec& spec,
-                                    nn::Precision precision, nn::Replica* replica) {
-  return MakeDeterministicAgent(config, spec, precision,
+                                    Engine* engine) {
+  return MakeDeterministicAgent(config, spec,
                                 {.critics = 2,
                                  .target_noise = config.td3.target_noise,
                                  .target_noise_clip = config.td3.target_noise_clip},
-                                replica);
+                                engine);
 }
 
 }  // namespace shoal::learner

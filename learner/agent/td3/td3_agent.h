@@ -9,8 +9,8 @@
 
 namespace shoal::learner {
 
-// See Algorithm::make_replica.
+// See Algorithm::make.
 std::unique_ptr<Agent> MakeTd3Agent(const Config& config, const ObservationSpec& spec,
-                                    nn::Precision precision, nn::Replica* replica);
+                                    Engine* engine);
 
 }  // namespace shoal::learner

@@ -8,6 +8,7 @@
 #include "common/nn/critic_module.h"
 #include "common/nn/encoder_module.h"
 #include "common/nn/features.h"
+#include "common/nn/host_memory.h"
 #include "tests/common/nn/network_fixture.h"
 
 namespace shoal::nn {
@@ -77,16 +78,16 @@ TEST_P(ModulesTest, ADeterministicActorIsTheTanhOfItsMlpAndMayTrainItsOwnEncoder
                     /*trains_encoder=*/true, Use::kTraining, context_);
   Start(&encoder, 1);
   Start(&actor, 2);
-  encoder.Forward(frames_.data(), Statistics::kBatch);
-  const auto [mean, log_std, action] = actor.Forward(ToFloats(vector_).data());
-  EXPECT_EQ(log_std, nullptr);
+  encoder.Forward(HostArray(frames_), Statistics::kBatch);
+  const auto [mean, log_std, action] = actor.Forward(HostArray(ToFloats(vector_)));
+  EXPECT_FALSE(log_std);
   reference::Network network = Reference({&encoder, &actor});
-  EXPECT_LT(RelativeError({mean, kRows * 3}, Raw(network)), 2 * Tolerance(GetParam()));
-  EXPECT_LT(RelativeError({action, kRows * 3}, reference::Tanh(Raw(network))),
+  EXPECT_LT(RelativeError(HostValues(mean), Raw(network)), 2 * Tolerance(GetParam()));
+  EXPECT_LT(RelativeError(HostValues(action), reference::Tanh(Raw(network))),
             2 * Tolerance(GetParam()));
 
   const Values daction = RandomValues(kRows * 3, 6);
-  actor.BackwardAction(ToFloats(daction).data(), 0);
+  actor.BackwardAction(HostArray(ToFloats(daction)), 0);
   encoder.Backward();
   if (GetParam() != Precision::kF32) return;
   const auto loss = [&] { return Dot(daction, reference::Tanh(Raw(network))); };
@@ -107,8 +108,9 @@ TEST_P(ModulesTest, AClampedDeviationHasNoGradientBeyondItsRange) {
   bias[4] = 30;
   bias[5] = -60;
   actor.Refresh();
-  encoder.Forward(frames_.data(), Statistics::kBatch);
-  const float* log_std = actor.Forward(ToFloats(vector_).data()).log_std;
+  encoder.Forward(HostArray(frames_), Statistics::kBatch);
+  const std::span<const float> log_std =
+      HostValues(actor.Forward(HostArray(ToFloats(vector_))).log_std);
   reference::Network network = Reference({&encoder, &actor});
   const auto clamped = [&] {
     Values result;
@@ -118,12 +120,12 @@ TEST_P(ModulesTest, AClampedDeviationHasNoGradientBeyondItsRange) {
     }
     return result;
   };
-  EXPECT_LT(RelativeError({log_std, kRows * 3}, clamped()), 2 * Tolerance(GetParam()));
+  EXPECT_LT(RelativeError(log_std, clamped()), 2 * Tolerance(GetParam()));
   EXPECT_EQ(log_std[1], 2.f);
   EXPECT_EQ(log_std[2], -20.f);
 
   const Values dmean = RandomValues(kRows * 3, 6), dlog_std = RandomValues(kRows * 3, 7);
-  actor.Backward(ToFloats(dmean).data(), ToFloats(dlog_std).data());
+  actor.Backward(HostArray(ToFloats(dmean)), HostArray(ToFloats(dlog_std)));
   EXPECT_EQ(GradientOf(actor.parameters(), "actor.mlp.output.bias")[4], 0.f);
   EXPECT_EQ(GradientOf(actor.parameters(), "actor.mlp.output.bias")[5], 0.f);
   if (GetParam() != Precision::kF32) return;
@@ -145,9 +147,9 @@ TEST_P(ModulesTest, ACriticOfAnyNumberOfFunctionsTrainsTheEncoderByThoseInTheLos
     Start(&encoder, 1);
     Start(&critic, 2);
     ASSERT_EQ(critic.count(), count);
-    encoder.Forward(frames_.data(), Statistics::kBatch);
-    critic.ForwardObservation(ToFloats(vector_).data());
-    critic.ForwardAction(ToFloats(action_).data());
+    encoder.Forward(HostArray(frames_), Statistics::kBatch);
+    critic.ForwardObservation(HostArray(ToFloats(vector_)));
+    critic.ForwardAction(HostArray(ToFloats(action_)));
     reference::Network network = Reference({&encoder, &critic});
     const auto q = [&](int i, const Values& action) {
       const Values features = network.Features(kRows, frames_.data());
@@ -156,15 +158,16 @@ TEST_P(ModulesTest, ACriticOfAnyNumberOfFunctionsTrainsTheEncoderByThoseInTheLos
                          reference::Beside(kRows, observation, action));
     };
     for (int i = 0; i < count; ++i) {
-      EXPECT_LT(RelativeError({critic.q(i), kRows}, q(i, action_)), 2 * Tolerance(GetParam()));
+      EXPECT_LT(RelativeError(HostValues(critic.q(i)), q(i, action_)), 2 * Tolerance(GetParam()));
     }
 
     // The last function alone is in the loss.
     const Values dq = RandomValues(kRows, 6);
-    std::vector<std::vector<float>> gradients(static_cast<size_t>(count));
-    gradients.back() = ToFloats(dq);
-    std::vector<float> daction(kRows * 3);
-    critic.BackwardAction(gradients, daction.data());
+    const std::vector<float> last = ToFloats(dq);
+    std::vector<Array> gradients(static_cast<size_t>(count));
+    gradients.back() = HostArray(last);
+    std::vector<float> daction(kRows * 3, NAN);
+    critic.BackwardAction(gradients, HostArray(daction));
     critic.Backward(gradients);
     encoder.Backward();
     if (GetParam() != Precision::kF32) continue;
@@ -191,7 +194,7 @@ TEST_P(ModulesTest, ATargetFollowsAnyModuleByTheShareAsked) {
   Start(&online, 1);
   CopyParameters(online, &target);
   const auto features = [&](EncoderModule* encoder) {
-    encoder->Forward(frames_.data(), Statistics::kRunning);
+    encoder->Forward(HostArray(frames_), Statistics::kRunning);
     return ReadMemory(encoder->features().values());
   };
   EXPECT_EQ(features(&target), features(&online));

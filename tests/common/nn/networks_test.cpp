@@ -3,6 +3,7 @@
 // differences.
 #include "common/nn/actor_head.h"
 #include "common/nn/critic_heads.h"
+#include "common/nn/host_memory.h"
 #include "tests/common/nn/network_fixture.h"
 
 namespace shoal::nn {
@@ -45,7 +46,8 @@ class NetworksTest : public NetworkTest {
       return Dot(dq1, q.q1) + Dot(dq2, q.q2);
     };
     std::vector<float> daction(action_.size());
-    const std::vector<std::vector<float>> gradients{ToFloats(dq1), ToFloats(dq2)};
+    const std::vector<float> dq1_floats = ToFloats(dq1), dq2_floats = ToFloats(dq2);
+    const Array gradients[] = {HostArray(dq1_floats), HostArray(dq2_floats)};
     critic.BackwardAction(gradients, daction.data());
     for (const float gradient : GradientOf(*parameters_, "critic.q1.output.weight")) {
       ASSERT_EQ(gradient, 0.f);  // the action's gradient alone was asked for

@@ -12,6 +12,7 @@
 #include "common/nn/adam.h"
 #include "common/nn/encoder_module.h"
 #include "common/nn/features.h"
+#include "common/nn/host_memory.h"
 #include "tests/common/nn/network_fixture.h"
 #include "tests/support/paths.h"
 #include "tests/support/shared_numbers.h"
@@ -93,7 +94,7 @@ class TorchvisionTest : public testing::TestWithParam<EncoderCase> {
     for (const double u : SharedUniform(name, size_t(kImages) * channels * height * width)) {
       images.push_back(uint8_t(u * 256));
     }
-    encoder_.Forward(images.data(), statistics);
+    encoder_.Forward(HostArray(images), statistics);
     return ReadMemory(encoder_.features().values());
   }
 

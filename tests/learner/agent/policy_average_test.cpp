@@ -11,6 +11,7 @@
 
 #include "common/base/random.h"
 #include "common/nn/team.h"
+#include "learner/engine/cpu_engine.h"
 
 namespace shoal::learner {
 namespace {
@@ -22,10 +23,12 @@ using nn::ParameterSet;
 class PolicyAverageTest : public testing::TestWithParam<int> {
  protected:
   struct Averaged {
-    explicit Averaged(nn::Replica* replica) : average({&small, &large}, replica) {}
+    explicit Averaged(nn::Replica* replica)
+        : engine(nn::Precision::kF32, GetParam(), replica), average({&small, &large}, &engine) {}
 
     ParameterSet small{{{"encoder.s", {3}}}, ParameterSet::Use::kTraining};
     ParameterSet large{{{"actor.w", {10'007}}}, ParameterSet::Use::kTraining};
+    CpuEngine engine;
     PolicyAverage average;
   };
 

@@ -115,7 +115,7 @@ class PpoAgentTest : public testing::TestWithParam<const char*> {
     config_.learner.normalise_vectors = config_.ppo.normalise_rewards = true;
     spec_.drawn_actions = true;
   }
-  std::unique_ptr<Agent> Make() const { return MakePpoAgent(config_, spec_, nn::Precision::kF32); }
+  std::unique_ptr<Agent> Make() const { return MakeAgent(config_, spec_, nn::Precision::kF32); }
 
   Config config_;
   ObservationSpec spec_ = SmallSpec();
@@ -196,7 +196,7 @@ TEST(PpoAgent, LearnsABandit) {
   config.network.layer_norm = false;
   config.network.activation = "tanh";
   config.ppo.epochs = 8;
-  const auto agent = MakePpoAgent(config, spec, nn::Precision::kF32);
+  const auto agent = MakeAgent(config, spec, nn::Precision::kF32);
   nn::Policy policy(config.network, spec, nn::Precision::kF32, 1);
   Random random(1);
   for (uint64_t u = 0; u < 60; ++u) {

@@ -153,8 +153,8 @@ INSTANTIATE_TEST_SUITE_P(Of, ReplicatedAgentTest, testing::ValuesIn(kCases),
 class Replicas {
  public:
   explicit Replicas(int count, const Config& config = SmallConfig())
-      : whole(MakeReplicatedAgent(config, count, [&](nn::Replica* replica) {
-          auto agent = MakeSacAgent(config, SmallSpec(), Precision::kF32, replica);
+      : whole(MakeReplicatedAgent(config, Precision::kF32, count, [&](Engine* engine) {
+          auto agent = MakeSacAgent(config, SmallSpec(), engine);
           each.push_back(agent.get());
           return agent;
         })) {}

@@ -52,20 +52,5 @@ TEST(SampleFigures, OfARolloutAreNone) {
   EXPECT_TRUE(FiguresOf(rollout.View(), GoalSpec()).empty());
 }
 
-TEST(SampleFigures, SayWhatCriticsExpect) {
-  const std::array<float, 3> q1{1, 2, 3}, q2{3, 2, -5};
-  UpdateFigures twin, single;
-  AddValueFigures(3, std::array{q1.data(), q2.data()}, &twin);
-  EXPECT_EQ(twin.Get(kQ1Mean), 2);
-  EXPECT_EQ(twin.Get(kQ2Mean), 0);
-  EXPECT_NEAR(*twin.Get(kQ2Std), std::sqrt(38.0 / 3), 1e-9);
-  EXPECT_NEAR(*twin.Get(kQMinMean), -2.0 / 3, 1e-9);
-  EXPECT_EQ(twin.Get(kQMinMin), -5);
-  EXPECT_EQ(twin.Get(kQMinMax), 2);
-  AddValueFigures(3, std::array{q1.data()}, &single);
-  EXPECT_FALSE(single.Get(kQ2Mean));
-  EXPECT_EQ(single.Get(kQMinMax), 3);
-}
-
 }  // namespace
 }  // namespace shoal::learner

@@ -11,6 +11,7 @@
 #include "common/base/files.h"
 #include "learner/agent/ppo/advantages.h"
 #include "learner/agent/ppo/ppo_agent.h"
+#include "learner/agent/replicated_agent.h"
 #include "tests/learner/agent/agent_fixture.h"
 #include "tests/support/paths.h"
 #include "tests/support/shared_numbers.h"
@@ -62,13 +63,19 @@ class Sb3PpoTest : public testing::TestWithParam<RecordedPpo> {
     schema_.emplace(spec_, BatchOptions{.batch = kRows, .rollout = true});
     memory_ = AlignedBytes(schema_->total_bytes());
     std::memset(memory_.data(), 0, schema_->total_bytes());
-    agent_ = MakePpoAgent(config_, spec_, nn::Precision::kF32, [this](int, Random*) {
+    agent_ = Make([this](int, Random*) {
       const std::vector<float> rows = Recorded("permutation." + std::to_string(epoch_++));
       // Theirs count row by row of the flattened buffer: environment by environment, as ours.
       return std::vector<int>(rows.begin(), rows.end());
     });
     agent_->Restore(WithTheirWeights(agent_->AllTensors()), "test");
     FillRollout();
+  }
+
+  std::unique_ptr<Agent> Make(const RowOrder& order) const {
+    return MakeReplicatedAgent(config_, nn::Precision::kF32, 1, [&](Engine* engine) {
+      return MakePpoAgent(config_, spec_, engine, order);
+    });
   }
 
   std::vector<float> Recorded(const std::string& name) const { return Floats(recorded_, name); }
@@ -183,9 +190,8 @@ TEST_P(Sb3PpoTest, TwoEpochsEndWithTheirParameters) {
 TEST_P(Sb3PpoTest, GradientsAreTheirs) {
   config_.ppo.epochs = 1;
   const std::vector<float> order = Recorded("permutation.0");
-  agent_ = MakePpoAgent(config_, spec_, nn::Precision::kF32, [&](int, Random*) {
-    return std::vector<int>(order.begin(), order.begin() + kPpoBatch);
-  });
+  agent_ = Make(
+      [&](int, Random*) { return std::vector<int>(order.begin(), order.begin() + kPpoBatch); });
   agent_->Restore(WithTheirWeights(agent_->AllTensors()), "test");
   ASSERT_TRUE(agent_->Update(View()).finite);
   const nn::TensorMap tensors = agent_->AllTensors();

@@ -6,6 +6,7 @@
 
 #include "common/config/config_io.h"
 #include "learner/agent/deterministic/deterministic_agent.h"
+#include "learner/engine/cpu_engine.h"
 #include "tests/learner/agent/sb3_recording.h"
 
 namespace shoal::learner {
@@ -41,8 +42,7 @@ class Sb3UpdatesTest : public testing::TestWithParam<RecordedUpdates> {
       recording_.AddMlp("critic.q" + std::to_string(i + 1), "critic.qf" + std::to_string(i));
       recording_.AddMlp("target.q" + std::to_string(i + 1), "critic_target.qf" + std::to_string(i));
     }
-    agent_ =
-        MakeDeterministicAgent(config_, spec_, nn::Precision::kF32, GetParam().options, &alone_);
+    agent_ = MakeDeterministicAgent(config_, spec_, GetParam().options, &engine_);
     agent_->Restore(recording_.WithTheirWeights(agent_->AllTensors()), "test");
   }
 
@@ -50,6 +50,7 @@ class Sb3UpdatesTest : public testing::TestWithParam<RecordedUpdates> {
   ObservationSpec spec_;
   Config config_;
   nn::Replica alone_;
+  CpuEngine engine_{nn::Precision::kF32, kBatch, &alone_};
   std::unique_ptr<Agent> agent_;
 };
 

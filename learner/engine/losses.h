@@ -1,15 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Losses that algorithms share, and those of SAC, with their gradients with respect to the
-// networks' outputs.
-// Equations are those of docs/algorithm.md. Dimensions: B batch; all arrays (B) f32.
-// Sources: Haarnoja et al. 2018, arXiv:1812.05905; Fujimoto et al. 2018, arXiv:1802.09477.
+// Targets and losses of the CPU's engine, with the gradients of losses with respect to the
+// networks' outputs. Sums are made in double. Equations are those of docs/algorithm.md. Dimensions:
+// B batch, A actions, L labels; arrays are (B) f32 unless said otherwise. Sources: Haarnoja et al.
+// 2018, arXiv:1812.05905; Fujimoto et al. 2018, arXiv:1802.09477.
 #pragma once
 
+#include <limits>
 #include <span>
 
-#include "learner/agent/value_bounds.h"
-
 namespace shoal::learner {
+
+// Bounds of values: Eq. 20. Without numbers none.
+struct ValueBounds {
+  float low = -std::numeric_limits<float>::infinity();
+  float high = std::numeric_limits<float>::infinity();
+};
 
 // Inputs of the targets of one batch.
 struct TargetInputs {
@@ -45,6 +50,12 @@ CriticLoss CriticLossForward(int batch, std::span<const float* const> q, const f
 CriticLoss CriticLossForward(int batch, const float* q0, const float* q1, const float* y);
 void CriticLossBackward(int batch, const float* q, const float* y, float* q_gradient);
 
+// Mean, standard deviation, smallest and largest of an array that is not empty.
+struct Summary {
+  double mean = 0, deviation = 0, least = 0, most = 0;
+};
+Summary Summarise(std::span<const float> values);
+
 // Eq. 7:  L = mean_b (temperature log pi - min_i q_i)
 //   dL/dlogpi = temperature / B;   dL/dq_i = -1 / B for the smaller of the two (q_0 on a tie), else
 //   0
@@ -61,5 +72,13 @@ float DeterministicActorLoss(std::span<const float> q, std::span<const float> me
 // Eq. 8:  L = temperature (entropy - target_entropy) with entropy = -mean_b log pi held fixed;
 //   dL/dlog temperature = L
 float TemperatureLoss(float temperature, float entropy, float target_entropy);
+
+// Eq. 27:  L = weight / (B L) sum_bl (y - label)^2;   dL/dy = 2 weight (y - label) / (B L). y,
+// labels (B, L). Returns the sum of (y - label)^2.
+double LabelLoss(std::span<const float> y, std::span<const float> labels, float weight,
+                 std::span<float> gradient);
+
+// The share of numbers beyond 0.99 either way.
+double SaturatedShare(std::span<const float> actions);
 
 }  // namespace shoal::learner

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "learner/agent/batch_part.h"
+#include "learner/engine/batch_part.h"
 
 #include "common/base/check.h"
 

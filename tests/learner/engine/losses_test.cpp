@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "learner/agent/losses.h"
+#include "learner/engine/losses.h"
 
 #include <gmock/gmock.h>
 
@@ -103,6 +103,36 @@ TEST(ActorLoss, GradientGoesToTheSmallerHeadAlone) {
   const float share = -1.f / 3;
   EXPECT_EQ(std::vector<float>(g0, g0 + 3), (std::vector<float>{share, 0, share}));
   EXPECT_EQ(std::vector<float>(g1, g1 + 3), (std::vector<float>{0, share, 0}));
+}
+
+TEST(LabelLoss, GradientIsTheCentralDifferenceOfTheWeightedMeanSquare) {
+  constexpr size_t kNumbers = 6;
+  constexpr float kWeight = 0.7f;
+  Values y = RandomValues(kNumbers, 1);
+  const Values labels = RandomValues(kNumbers, 2);
+  const auto squares = [&] {
+    double sum = 0;
+    for (size_t i = 0; i < kNumbers; ++i) sum += (y[i] - labels[i]) * (y[i] - labels[i]);
+    return sum;
+  };
+  std::vector<float> gradient(kNumbers, NAN);
+  EXPECT_NEAR(LabelLoss(ToFloats(y), ToFloats(labels), kWeight, gradient), squares(), 1e-6);
+  for (size_t i = 0; i < kNumbers; ++i) {
+    EXPECT_NEAR(gradient[i],
+                CentralDifference(&y[i], [&] { return kWeight * squares() / kNumbers; }), 1e-6);
+  }
+}
+
+TEST(SaturatedShare, CountsBothEnds) {
+  EXPECT_EQ(SaturatedShare(std::vector{0.999f, -0.995f, 0.99f, 0.f}), 0.5);
+}
+
+TEST(Summarise, IsOfAllNumbers) {
+  const Summary summary = Summarise(std::vector{1.f, 2.f, -6.f});
+  EXPECT_EQ(summary.mean, -1);
+  EXPECT_DOUBLE_EQ(summary.deviation, std::sqrt((4 + 9 + 25) / 3.0));
+  EXPECT_EQ(summary.least, -6);
+  EXPECT_EQ(summary.most, 2);
 }
 
 TEST(TemperatureLoss, IsNegativeWhereEntropyIsTooLowSoThatTheTemperatureRises) {

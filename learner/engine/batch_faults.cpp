@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "learner/agent/batch_faults.h"
+#include "learner/engine/batch_faults.h"
 
 #include <algorithm>
 #include <cmath>
@@ -21,11 +21,13 @@ bool AllFinite(const BatchView& batch) {
          AreFinite(std::span<const float>(batch.next_obs_privileged)) &&
          AreFinite(std::span<const float>(batch.action)) &&
          AreFinite(std::span<const float>(batch.reward)) &&
-         AreFinite(std::span<const float>(batch.bootstrap));
+         AreFinite(std::span<const float>(batch.bootstrap)) &&
+         AreFinite(std::span<const float>(batch.drawn_action)) &&
+         AreFinite(std::span<const float>(batch.log_prob));
 }
 
-bool Usable(float loss, double gradient_squares) {
-  return std::isfinite(loss) && gradient_squares < std::numeric_limits<float>::max();
+bool FitsMoments(double gradient_squares) {
+  return gradient_squares < std::numeric_limits<float>::max();
 }
 
 }  // namespace shoal::learner

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "learner/agent/losses.h"
+#include "learner/engine/losses.h"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
 
 namespace shoal::learner {
@@ -55,6 +56,15 @@ CriticLoss CriticLossForward(int batch, const float* q0, const float* q1, const 
   return CriticLossForward(batch, q, y);
 }
 
+Summary Summarise(std::span<const float> values) {
+  double sum = 0, squares = 0;
+  for (const float value : values) sum += value;
+  const double mean = sum / double(values.size());
+  for (const float value : values) squares += (value - mean) * (value - mean);
+  const auto [least, most] = std::ranges::minmax(values);
+  return {mean, std::sqrt(squares / double(values.size())), least, most};
+}
+
 void CriticLossBackward(int batch, const float* q, const float* y, float* q_gradient) {
   for (int b = 0; b < batch; ++b) q_gradient[b] = 2 * (q[b] - y[b]) / float(batch);
 }
@@ -85,6 +95,24 @@ float DeterministicActorLoss(std::span<const float> q, std::span<const float> me
     loss += mean_penalty * squares / double(mean.size());
   }
   return float(loss);
+}
+
+double LabelLoss(std::span<const float> y, std::span<const float> labels, float weight,
+                 std::span<float> gradient) {
+  const float scale = 2 * weight / float(gradient.size());
+  double squares = 0;
+  for (size_t i = 0; i < gradient.size(); ++i) {
+    const float difference = y[i] - labels[i];
+    squares += double(difference) * difference;
+    gradient[i] = scale * difference;
+  }
+  return squares;
+}
+
+double SaturatedShare(std::span<const float> actions) {
+  const auto saturated =
+      std::ranges::count_if(actions, [](float a) { return std::abs(a) > 0.99f; });
+  return double(saturated) / double(actions.size());
 }
 
 float TemperatureLoss(float temperature, float entropy, float target_entropy) {

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+// Arrays of the CPU's engine, which are in host memory: for the engine itself and for tests. An
+// algorithm does not include this.
+#pragma once
+
+#include <span>
+#include <type_traits>
+#include <vector>
+
+#include "common/nn/array.h"
+
+namespace shoal::nn {
+
+struct HostMemory {
+  // A handle of these numbers, which it borrows.
+  template <class T>
+  static ArrayOf<std::remove_const_t<T>> Handle(std::span<T> values) {
+    return {const_cast<std::remove_const_t<T>*>(values.data()), int64_t(values.size())};
+  }
+  template <class T>
+  static std::span<T> Values(const ArrayOf<T>& array) {
+    return {array.data_, size_t(array.size_)};
+  }
+};
+
+// A handle of the numbers of a vector or span. Numbers that are const must not be a destination.
+template <class Values>
+auto HostArray(Values&& values) {
+  return HostMemory::Handle(std::span(values));
+}
+
+template <class T>
+std::span<T> HostValues(const ArrayOf<T>& array) {
+  return HostMemory::Values(array);
+}
+
+}  // namespace shoal::nn

@@ -1,0 +1,285 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "learner/engine/cpu_engine.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ranges>
+
+#include "common/base/check.h"
+#include "common/nn/host_memory.h"
+#include "learner/engine/batch_faults.h"
+#include "learner/engine/batch_part.h"
+
+namespace shoal::learner {
+namespace {
+
+using nn::HostArray;
+using nn::HostValues;
+
+double& Cell(Number number) { return HostValues(number).front(); }
+
+// Null if the array is absent.
+float* Data(Array array) { return HostValues(array).data(); }
+
+std::vector<const float*> DataOf(std::span<const Array> arrays) {
+  std::vector<const float*> data;
+  for (const Array array : arrays) data.push_back(Data(array));
+  return data;
+}
+
+SquashedValues ValuesOf(const SquashedSample& sample) {
+  return {HostValues(sample.scaled_noise), HostValues(sample.action), HostValues(sample.log_prob)};
+}
+
+}  // namespace
+
+CpuEngine::CpuEngine(nn::Precision precision, int batch, nn::Replica* replica)
+    : batch_(batch), replica_(replica), modules_(precision, batch, replica) {}
+
+Array CpuEngine::NewArray(int columns) {
+  return HostArray(arrays_.emplace_back(Rows() * size_t(columns), 0.f));
+}
+
+Number CpuEngine::NewNumber() { return HostArray(std::span(&numbers_.emplace_back(0), 1)); }
+
+void CpuEngine::Begin(const BatchView& drawn) {
+  CHECK(!updating_ && int(drawn.rows()) == batch_) << "batch of " << drawn.rows();
+  updating_ = true;
+  outcome_.finite = outcome_.batch_finite = AllFinite(drawn);
+  taken_.clear();
+  means_.clear();
+  critic_arrays_.clear();
+}
+
+Transitions CpuEngine::Take(const BatchView& batch) {
+  const BatchView own = PartOf(batch, replica_->RowsOf(batch_));
+  return {.obs_frames = HostArray(own.obs_frames),
+          .next_obs_frames = HostArray(own.next_obs_frames),
+          .obs_vector = HostArray(own.obs_vector),
+          .next_obs_vector = HostArray(own.next_obs_vector),
+          .obs_privileged = HostArray(own.obs_privileged),
+          .next_obs_privileged = HostArray(own.next_obs_privileged),
+          .action = HostArray(own.action),
+          .reward = HostArray(own.reward),
+          .bootstrap = HostArray(own.bootstrap)};
+}
+
+Engine::Outcome CpuEngine::End() {
+  CHECK(updating_);
+  updating_ = false;
+  if (outcome_.finite) return outcome_;
+  for (const Taken& step : taken_ | std::views::reverse) {
+    step.optimiser->Undo();
+    for (nn::Module* module : step.changed) module->Refresh();
+  }
+  return outcome_;
+}
+
+double CpuEngine::Read(Number number) const {
+  CHECK(!updating_) << "an update depends on no number that is read";
+  return Cell(number);
+}
+
+void CpuEngine::JoinColumns(Array left, Array right, std::span<const ObservationSpec::Range> ranges,
+                            Array joined) {
+  learner::JoinColumns(Rows(), HostValues(left), HostValues(right), ranges, HostValues(joined));
+}
+
+void CpuEngine::GatherLabels(Array observed, Array privileged,
+                             std::span<const LabelColumns> columns, float unit, Array labels) {
+  learner::GatherLabels(Rows(), HostValues(observed), HostValues(privileged), columns, unit,
+                        HostValues(labels));
+}
+
+void CpuEngine::SampleSquashedGaussian(Array mean, Array log_std, Random* random,
+                                       const SquashedSample& sample) {
+  const int actions = int(mean.size() / modules_.batch);
+  const std::vector<double> normals = replica_->Normals(batch_, actions, random);
+  noise_.assign(normals.begin(), normals.end());
+  SquashGaussian(HostValues(mean), HostValues(log_std), noise_, ValuesOf(sample));
+}
+
+void CpuEngine::SquashedGaussianBackward(const SquashedSample& sample, Array action_gradient,
+                                         Number temperature, Array mean_gradient,
+                                         Array log_std_gradient) {
+  learner::SquashedGaussianBackward(ValuesOf(sample), HostValues(action_gradient),
+                                    float(Cell(temperature)) / float(Rows()),
+                                    HostValues(mean_gradient), HostValues(log_std_gradient));
+}
+
+void CpuEngine::SquashedGaussianFigures(const SquashedSample& sample, Number entropy,
+                                        Number saturation) {
+  AddMean(SquashedEntropy(HostValues(sample.log_prob)), entropy, /*rounds=*/true);
+  AddMean(float(SaturatedShare(HostValues(sample.action))), saturation, /*rounds=*/false);
+}
+
+void CpuEngine::AddClippedNoise(Array action, double sigma, double limit, Random* random,
+                                Array noisy) {
+  const std::span<const float> own = HostValues(action);
+  const std::span<float> result = HostValues(noisy);
+  const std::vector<double> normals = replica_->Normals(batch_, int(own.size() / Rows()), random);
+  for (size_t i = 0; i < normals.size(); ++i) {
+    const double noise = std::clamp(sigma * normals[i], -limit, limit);
+    result[i] = float(std::clamp(own[i] + noise, -1.0, 1.0));
+  }
+}
+
+void CpuEngine::Targets(const TargetTerms& terms, Array y) {
+  const float* reward = Data(terms.reward);
+  const float* bootstrap = Data(terms.bootstrap);
+  TargetRates rates{terms.reward_scale, terms.discount, /*temperature=*/0, terms.bounds};
+  const std::vector<const float*> q = DataOf(terms.next_q);
+  if (!terms.next_log_prob) {
+    return MinTargets(modules_.batch, reward, bootstrap, q, rates, Data(y));
+  }
+  CHECK(q.size() == 2) << q.size() << " target critics";
+  rates.temperature = float(Cell(terms.temperature));
+  TdTargets(modules_.batch, {reward, bootstrap, {q[0], q[1]}, Data(terms.next_log_prob)}, rates,
+            Data(y));
+}
+
+void CpuEngine::AverageCopies(int copies, int shifts, Array y) {
+  learner::AverageCopies(modules_.batch, copies, shifts, Data(y));
+}
+
+void CpuEngine::CriticLoss(std::span<const Array> q, Array y, std::span<const Array> q_gradients,
+                           const CriticNumbers& figures) {
+  CHECK(critic_arrays_.empty() && q.size() == q_gradients.size()) << q.size();
+  for (size_t i = 0; i < q.size(); ++i) {
+    CriticLossBackward(modules_.batch, Data(q[i]), Data(y), Data(q_gradients[i]));
+    critic_arrays_.push_back(HostValues(q[i]));
+  }
+  critic_arrays_.push_back(HostValues(y));
+  critic_figures_ = figures;
+}
+
+void CpuEngine::FinishCriticLoss(const std::vector<std::vector<float>>& whole) {
+  const std::vector<float>& y = whole.back();
+  std::vector<const float*> q;
+  for (size_t i = 0; i + 1 < whole.size(); ++i) q.push_back(whole[i].data());
+  const CriticNumbers& to = critic_figures_;
+  const learner::CriticLoss loss = CriticLossForward(int(y.size()), q, y.data());
+  Cell(to.loss) = loss.loss;
+  Cell(to.q_mean) = loss.q_mean;
+  Cell(to.target_mean) = loss.target_mean;
+  const Summary first = Summarise(whole[0]);
+  Cell(to.q1_mean) = first.mean;
+  Cell(to.q1_std) = first.deviation;
+  std::vector<float> smallest = whole[0];
+  if (q.size() > 1) {
+    const Summary second = Summarise(whole[1]);
+    Cell(to.q2_mean) = second.mean;
+    Cell(to.q2_std) = second.deviation;
+  }
+  for (size_t i = 1; i < q.size(); ++i) {
+    for (size_t b = 0; b < smallest.size(); ++b) smallest[b] = std::min(smallest[b], q[i][b]);
+  }
+  const Summary least = Summarise(smallest);
+  Cell(to.q_min_mean) = least.mean;
+  Cell(to.q_min_std) = least.deviation;
+  Cell(to.q_min_min) = least.least;
+  Cell(to.q_min_max) = least.most;
+}
+
+void CpuEngine::EntropyActorLoss(Array log_prob, std::span<const Array> q, Number temperature,
+                                 std::span<const Array> q_gradients, Number loss) {
+  CHECK(q.size() == 2 && q_gradients.size() == 2) << q.size();
+  const float* q0 = Data(q[0]);
+  const float* q1 = Data(q[1]);
+  AddMean(ActorLossForward(modules_.batch, Data(log_prob), q0, q1, float(Cell(temperature))), loss,
+          /*rounds=*/true);
+  ActorLossBackward(modules_.batch, q0, q1, Data(q_gradients[0]), Data(q_gradients[1]));
+}
+
+void CpuEngine::DeterministicActorLoss(Array q, Array mean, Array action, double mean_penalty,
+                                       Array q_gradient, Number loss, Number saturation) {
+  AddMean(learner::DeterministicActorLoss(HostValues(q), HostValues(mean), mean_penalty), loss,
+          /*rounds=*/true);
+  AddMean(SaturatedShare(HostValues(action)), saturation, /*rounds=*/false);
+  std::ranges::fill(HostValues(q_gradient), -1.f / float(Rows()));
+}
+
+void CpuEngine::LabelLoss(Array y, Array labels, float weight, float unit, Array gradient,
+                          Number mean_square) {
+  const double squares =
+      learner::LabelLoss(HostValues(y), HostValues(labels), weight, HostValues(gradient));
+  AddMean(double(unit) * unit * squares / double(y.size()), mean_square, /*rounds=*/false);
+}
+
+void CpuEngine::Mean(Array values, Number mean) {
+  AddMean(Summarise(HostValues(values)).mean, mean, /*rounds=*/false);
+}
+
+void CpuEngine::OnHost(std::span<const Array> inputs, std::span<const Array> outputs,
+                       const HostOperation& operation) {
+  std::vector<std::span<const float>> in;
+  for (const Array array : inputs) in.push_back(HostValues(array));
+  std::vector<std::span<float>> out;
+  for (const Array array : outputs) out.push_back(HostValues(array));
+  operation(in, out);
+}
+
+void CpuEngine::Temperature(const nn::ParameterSet& log_temperature, Number temperature) {
+  Cell(temperature) = std::exp(log_temperature.values()[0]);
+}
+
+void CpuEngine::TemperatureLoss(Number temperature, Number entropy, float target_entropy,
+                                Number loss) {
+  Cell(loss) =
+      learner::TemperatureLoss(float(Cell(temperature)), float(Cell(entropy)), target_entropy);
+}
+
+void CpuEngine::StepTemperature(Number loss, double least, nn::ParameterSet* log_temperature,
+                                nn::Adam* optimiser) {
+  if (!outcome_.finite) return;
+  log_temperature->gradients()[0] = float(Cell(loss));
+  optimiser->Step();
+  taken_.push_back({optimiser, {}});
+  float& value = log_temperature->values()[0];
+  value = std::max(value, float(std::log(least)));  // of 0: no bound
+}
+
+void CpuEngine::AddMean(double own, Number number, bool rounds) {
+  Cell(number) = own;
+  means_.push_back({number, rounds});
+}
+
+void CpuEngine::RequireFinite(Number number) {
+  outcome_.finite = outcome_.finite && std::isfinite(Cell(number));
+}
+
+void CpuEngine::Gather(nn::Adam* optimiser, Number gradient_squares) {
+  std::vector<double> own;
+  for (const OwnMean& mean : means_) own.push_back(Cell(mean.number));
+  replica_->Post(critic_arrays_, std::move(own));
+  const double squares = optimiser->GatherGradients();
+  const nn::Replica::Whole whole = replica_->Posted();
+  Cell(gradient_squares) = squares;
+  for (size_t i = 0; i < means_.size(); ++i) {
+    const double mean = whole.means[i];
+    Cell(means_[i].number) = means_[i].rounds ? float(mean) : mean;
+  }
+  if (!critic_arrays_.empty()) FinishCriticLoss(whole.arrays);
+  means_.clear();
+  critic_arrays_.clear();
+  outcome_.finite = outcome_.finite && FitsMoments(squares);
+}
+
+void CpuEngine::Step(nn::Adam* optimiser, std::span<nn::Module* const> changed, NextUse next_use) {
+  if (outcome_.finite) {
+    optimiser->Step();
+    taken_.push_back({optimiser, {changed.begin(), changed.end()}});
+    for (nn::Module* module : changed) module->Refresh();
+  }
+  if (next_use == NextUse::kThisUpdate) replica_->Meet();
+}
+
+void CpuEngine::MoveTowards(float tau, std::span<const nn::Following> targets) {
+  if (outcome_.finite) nn::MoveTowards(tau, targets, replica_);
+}
+
+void CpuEngine::MoveAverage(float rate, const nn::ParameterSet& online, nn::ParameterSet* average) {
+  if (outcome_.finite) nn::MoveTowards(rate, online, average, *replica_);
+}
+
+}  // namespace shoal::learner

@@ -1,0 +1,196 @@
+// SPDX-License-Identifier: Apache-2.0
+// Interface of the engines that algorithms compute with: arrays, modules, and the operations
+// between modules. An algorithm composes these and never looks into an array, so it is written once
+// for every engine.
+//
+// An update lies between Begin and End. Its operations, and their order, depend on the
+// configuration and on counters of the host, never on a number that was computed: nothing is read
+// before End. An engine may therefore record the operations of an update once and repeat the
+// recording.
+//
+// Whether the numbers are finite is a flag in the engine's memory: up at Begin, down for the rest
+// of the update once a batch, a loss or a gradient was not finite. While it is down, steps and
+// moves have no effect; End takes back the steps that had one.
+//
+// One of several replicas has b rows of each batch of B rows. Losses and gradients are means over
+// its own rows; Gather makes them those of the whole batch. All replicas call the same functions in
+// the same order.
+//
+// Equations are those of docs/algorithm.md. Dimensions: B, b batch and rows of this replica, A
+// actions, L labels. Arrays are row-major f32; (b, A) and so on are their shapes. An operation
+// overwrites its results, which must not overlap its inputs, and trusts the sizes of its arrays.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "common/base/random.h"
+#include "common/nn/adam.h"
+#include "common/nn/array.h"
+#include "common/nn/module.h"
+#include "common/wire/batch_schema.h"
+#include "learner/engine/columns.h"
+#include "learner/engine/losses.h"
+
+namespace shoal::learner {
+
+using nn::Array;
+using nn::Frames;
+using nn::Number;
+
+// The rows of this replica in a batch, valid as long as the batch; none where the batch has none.
+struct Transitions {
+  Frames obs_frames, next_obs_frames;
+  Array obs_vector, next_obs_vector, obs_privileged, next_obs_privileged;
+  Array action, reward, bootstrap;
+};
+
+// Actions of a Gaussian squashed by tanh, and what their gradients need.
+struct SquashedSample {
+  Array scaled_noise, action;  // (b, A): sigma eps, a
+  Array log_prob;              // (b): log pi(a | o)
+};
+
+// Inputs of the targets of a batch: (b) each.
+struct TargetTerms {
+  Array reward, bootstrap;        // bootstrap: discount^(n-1) (1 - terminated)
+  std::span<const Array> next_q;  // of one or more target critics at (o', a')
+  Array next_log_prob;            // log pi(a' | o'); none: no entropy term
+  Number temperature;             // of that term
+  float reward_scale = 1, discount = 1;
+  ValueBounds bounds;
+};
+
+// Figures of a critic's loss over the whole batch. Of one Q function there is no q2.
+struct CriticNumbers {
+  Number loss, q_mean, target_mean;
+  Number q1_mean, q1_std, q2_mean, q2_std;
+  Number q_min_mean, q_min_std, q_min_min, q_min_max;
+};
+
+// The next use of parameters that a step changes.
+enum class NextUse { kThisUpdate, kNextUpdate };
+
+// One thread.
+class Engine {
+ public:
+  virtual ~Engine() = default;
+
+  // ---- Memory and modules ----
+
+  // The context that modules and optimisers of this engine are built with; its batch is b.
+  virtual const nn::ModuleContext& modules() const = 0;
+  // (b, columns) zeros. They live as long as the engine.
+  virtual Array NewArray(int columns) = 0;
+  virtual Number NewNumber() = 0;
+
+  // ---- An update ----
+
+  // Raises the flag if every float of `drawn`, the whole batch, is finite.
+  virtual void Begin(const BatchView& drawn) = 0;
+  // This replica's rows of the whole batch `batch`, which is borrowed.
+  virtual Transitions Take(const BatchView& batch) = 0;
+  struct Outcome {
+    bool finite = true;        // the flag
+    bool batch_finite = true;  // false: of a batch that was not finite, nothing is worth reading
+  };
+  // Ends the update and reads the flag. If it is down, parameters, moments and statistics are those
+  // of before Begin.
+  virtual Outcome End() = 0;
+  // Not within an update.
+  virtual double Read(Number number) const = 0;
+
+  // ---- Inputs ----
+
+  // joined[b] = [ left[b] | the columns `ranges` of right[b] ]
+  virtual void JoinColumns(Array left, Array right, std::span<const ObservationSpec::Range> ranges,
+                           Array joined) = 0;
+  // labels (b, L): columns of `observed` and `privileged`, or differences of two, divided by
+  // `unit`.
+  virtual void GatherLabels(Array observed, Array privileged, std::span<const LabelColumns> columns,
+                            float unit, Array labels) = 0;
+
+  // ---- Actions ----
+
+  // a = tanh(u), u = mean + exp(log_std) eps, eps ~ N(0, 1) of `random`: squashed_gaussian.h (Eq.
+  // 4). mean, log_std (b, A).
+  virtual void SampleSquashedGaussian(Array mean, Array log_std, Random* random,
+                                      const SquashedSample& sample) = 0;
+  // From dL/da (b, A) and dL/dlog pi = temperature / b: dL/dmean and dL/dlog_std (b, A).
+  virtual void SquashedGaussianBackward(const SquashedSample& sample, Array action_gradient,
+                                        Number temperature, Array mean_gradient,
+                                        Array log_std_gradient) = 0;
+  // Over the whole batch, after the next Gather: -mean log pi, and the share of |a| > 0.99.
+  virtual void SquashedGaussianFigures(const SquashedSample& sample, Number entropy,
+                                       Number saturation) = 0;
+  // noisy = clip(action + clip(sigma eps, -limit, limit), -1, 1), eps ~ N(0, 1) of `random` (Eq.
+  // 18). action (b, A).
+  virtual void AddClippedNoise(Array action, double sigma, double limit, Random* random,
+                               Array noisy) = 0;
+
+  // ---- Targets and losses ----
+
+  // Eq. 5, 18 and 20:
+  //   y = reward_scale r + bootstrap discount (clip(min_i q'_i, bounds) - temperature log pi')
+  virtual void Targets(const TargetTerms& terms, Array y) = 0;
+  // Eq. 15: each `copies` targets in a row become the mean of the first `shifts` of them; 0 = of
+  // all.
+  virtual void AverageCopies(int copies, int shifts, Array y) = 0;
+  // Eq. 6: L = sum_i mean_b (q_i - y)^2. dL/dq_i (b); the figures after the next Gather.
+  virtual void CriticLoss(std::span<const Array> q, Array y, std::span<const Array> q_gradients,
+                          const CriticNumbers& figures) = 0;
+  // Eq. 7: L = mean_b (temperature log pi - min(q_0, q_1)). dL/dq_i (b); L after the next Gather.
+  virtual void EntropyActorLoss(Array log_prob, std::span<const Array> q, Number temperature,
+                                std::span<const Array> q_gradients, Number loss) = 0;
+  // Eq. 19: L = -mean_b q + mean_penalty mean_ba m^2 of the policy's outputs m before tanh (b, A).
+  // dL/dq (b); L and the share of |action| > 0.99 after the next Gather.
+  virtual void DeterministicActorLoss(Array q, Array mean, Array action, double mean_penalty,
+                                      Array q_gradient, Number loss, Number saturation) = 0;
+  // Eq. 27: L = weight / (B L) sum (y - label)^2. dL/dy (b, L); the mean square, times unit^2,
+  // after the next Gather.
+  virtual void LabelLoss(Array y, Array labels, float weight, float unit, Array gradient,
+                         Number mean_square) = 0;
+  // The mean over the whole batch, after the next Gather. values (b).
+  virtual void Mean(Array values, Number mean) = 0;
+
+  // An operation of one algorithm alone, computed on the host: `operation` gets the numbers of
+  // `inputs` and overwrites those of `outputs`. It depends on its arguments alone.
+  using HostOperation = std::function<void(std::span<const std::span<const float>> inputs,
+                                           std::span<const std::span<float>> outputs)>;
+  virtual void OnHost(std::span<const Array> inputs, std::span<const Array> outputs,
+                      const HostOperation& operation) = 0;
+
+  // ---- Temperature ----
+
+  // exp of the only parameter of `log_temperature`.
+  virtual void Temperature(const nn::ParameterSet& log_temperature, Number temperature) = 0;
+  // Eq. 8: L = temperature (entropy - target_entropy), which is dL/dlog temperature as well.
+  virtual void TemperatureLoss(Number temperature, Number entropy, float target_entropy,
+                               Number loss) = 0;
+  // A step of the optimiser with the gradient `loss`; the temperature then is at least `least`.
+  virtual void StepTemperature(Number loss, double least, nn::ParameterSet* log_temperature,
+                               nn::Adam* optimiser) = 0;
+
+  // ---- The flag, steps and moves ----
+
+  // Lowers the flag if the number is not finite.
+  virtual void RequireFinite(Number number) = 0;
+  // Completes the optimiser's gradients and the figures of losses since the last Gather: they are
+  // those of the whole batch from here on. gradient_squares: the sum of the gradients' squares.
+  // Lowers the flag where a step would overflow.
+  virtual void Gather(nn::Adam* optimiser, Number gradient_squares) = 0;
+  // If the flag is up: one step with the gathered gradients; `changed`, the modules that have these
+  // parameters, are refreshed. At most once an update for each optimiser.
+  virtual void Step(nn::Adam* optimiser, std::span<nn::Module* const> changed,
+                    NextUse next_use) = 0;
+  // If the flag is up: targets move by `tau` towards what they follow (Eq. 9). They are used in the
+  // next update.
+  virtual void MoveTowards(float tau, std::span<const nn::Following> targets) = 0;
+  // If the flag is up: the same for an average that no module computes (Eq. 12).
+  virtual void MoveAverage(float rate, const nn::ParameterSet& online,
+                           nn::ParameterSet* average) = 0;
+};
+
+}  // namespace shoal::learner

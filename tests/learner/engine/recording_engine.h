@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+// An engine that keeps the sequence of its operations, with their arrays and options, and has
+// another one compute them.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "learner/engine/engine.h"
+
+namespace shoal::learner {
+
+class RecordingEngine final : public Engine {
+ public:
+  // Borrows the engine.
+  explicit RecordingEngine(Engine* engine) : engine_(engine) {}
+
+  // One line each, since the last call.
+  std::vector<std::string> TakeOperations() { return std::exchange(operations_, {}); }
+
+  const nn::ModuleContext& modules() const override { return engine_->modules(); }
+  Array NewArray(int columns) override { return engine_->NewArray(columns); }
+  Number NewNumber() override { return engine_->NewNumber(); }
+
+  void Begin(const BatchView& drawn) override;
+  Transitions Take(const BatchView& batch) override;
+  Outcome End() override;
+  double Read(Number number) const override { return engine_->Read(number); }
+
+  void JoinColumns(Array left, Array right, std::span<const ObservationSpec::Range> ranges,
+                   Array joined) override;
+  void GatherLabels(Array observed, Array privileged, std::span<const LabelColumns> columns,
+                    float unit, Array labels) override;
+  void SampleSquashedGaussian(Array mean, Array log_std, Random* random,
+                              const SquashedSample& sample) override;
+  void SquashedGaussianBackward(const SquashedSample& sample, Array action_gradient,
+                                Number temperature, Array mean_gradient,
+                                Array log_std_gradient) override;
+  void SquashedGaussianFigures(const SquashedSample& sample, Number entropy,
+                               Number saturation) override;
+  void AddClippedNoise(Array action, double sigma, double limit, Random* random,
+                       Array noisy) override;
+  void Targets(const TargetTerms& terms, Array y) override;
+  void AverageCopies(int copies, int shifts, Array y) override;
+  void CriticLoss(std::span<const Array> q, Array y, std::span<const Array> q_gradients,
+                  const CriticNumbers& figures) override;
+  void EntropyActorLoss(Array log_prob, std::span<const Array> q, Number temperature,
+                        std::span<const Array> q_gradients, Number loss) override;
+  void DeterministicActorLoss(Array q, Array mean, Array action, double mean_penalty,
+                              Array q_gradient, Number loss, Number saturation) override;
+  void LabelLoss(Array y, Array labels, float weight, float unit, Array gradient,
+                 Number mean_square) override;
+  void Mean(Array values, Number mean) override;
+  void OnHost(std::span<const Array> inputs, std::span<const Array> outputs,
+              const HostOperation& operation) override;
+  void Temperature(const nn::ParameterSet& log_temperature, Number temperature) override;
+  void TemperatureLoss(Number temperature, Number entropy, float target_entropy,
+                       Number loss) override;
+  void StepTemperature(Number loss, double least, nn::ParameterSet* log_temperature,
+                       nn::Adam* optimiser) override;
+  void RequireFinite(Number number) override;
+  void Gather(nn::Adam* optimiser, Number gradient_squares) override;
+  void Step(nn::Adam* optimiser, std::span<nn::Module* const> changed, NextUse next_use) override;
+  void MoveTowards(float tau, std::span<const nn::Following> targets) override;
+  void MoveAverage(float rate, const nn::ParameterSet& online, nn::ParameterSet* average) override;
+
+ private:
+  template <class... Arguments>
+  void Keep(const char* operation, const Arguments&... arguments);
+
+  Engine* const engine_;
+  std::vector<std::string> operations_;
+};
+
+}  // namespace shoal::learner
