@@ -95,9 +95,6 @@ TEST(SimulatedRun, SeedsThatFoundAFaultOfTheProductKeepWhatIsPromised) {
   ExpectGood(101768, FaultsOf(101768));
   // The simulated link took a coordinator for cut off whose predecessor had ended cut off.
   ExpectGood(100977, FaultsOf(100977));
-  // A replay that drained after its coordinator was gone called itself running.
-  ExpectGood(kFile,
-             {At(9, Kind::kPause, "coordinator", 16), At(10, Kind::kSlow, "coordinator", 45)});
 }
 
 TEST(SimulatedRun, FixedSeedsKeepWhatIsPromised) {
