@@ -15,7 +15,7 @@ namespace {
 
 std::vector<ParameterSpec> Parameters(const std::string& name, int inputs, int outputs) {
   NetworkPlan plan({inputs});
-  plan.Add(NetworkPlan::Linear{.name = name, .key = "learner.aux", .outputs = outputs});
+  plan.Add(NetworkPlan::Linear{.name = name, .key = "sac.aux", .outputs = outputs});
   return plan.Parameters();
 }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The auxiliary loss of learner.aux: linear functions of the trunk's outputs are to tell recorded
+// The auxiliary loss of sac.aux: linear functions of the trunk's outputs are to tell recorded
 // blocks or differences of two, so that the encoder learns where things are before the critic
 // knows what is worth anything (Eq. 27 of docs/algorithm.md). The policy has no part of it.
 //
@@ -23,7 +23,7 @@ namespace shoal::learner {
 // One thread.
 class AuxLoss {
  public:
-  // Null without learner.aux. Borrows the engine and `trunk`, of the head that trains the encoder.
+  // Null without sac.aux. Borrows the engine and `trunk`, of the head that trains the encoder.
   static std::unique_ptr<AuxLoss> Make(const Config& config, const ObservationSpec& spec,
                                        const nn::Features* trunk, Engine* engine);
 

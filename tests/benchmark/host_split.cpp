@@ -113,7 +113,8 @@ std::string HostTable(std::span<const Report> reports, const LearnerSpeed& speed
   for (const int cores : kCores) {
     for (const double samples : kHostSamples) {
       const HostSplit split = BestSplit(constants, speed, kept, cores, samples);
-      const double idle = cores - split.learner_threads - split.actor_cores - split.replay_cores;
+      const double idle =
+          std::max(0.0, cores - split.learner_threads - split.actor_cores - split.replay_cores);
       text += fmt::format("| {} | {:.0f} | {} | {:.1f} | {:.1f} | {:.1f} | {:.0f} |\n", cores,
                           samples, split.learner_threads, split.actor_cores, split.replay_cores,
                           idle, split.env_steps_per_second);

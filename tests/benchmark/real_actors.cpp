@@ -156,7 +156,7 @@ class QualityRows {
     const std::string place = fmt::format(", on {} cores", cores_);
     rows->push_back(all_.Summary(Actors(cores_, quality_) + place, many, kCoresTarget));
     rows->push_back(unsent_.Summary(
-        Actors(cores_, quality_) + place + ", step and render alone, nothing sent", many, 0));
+        Actors(cores_, quality_) + place + ", as threads that send nothing", many, 0));
   }
 
  private:

@@ -14,7 +14,7 @@
 // 1, those of the batch in 2 and 3. An actor with an encoder of its own (network.encoders) takes
 // that one's features in 3 and trains it, and the critic's heads stand on features of the critic's
 // encoder as 2 has left it. An asymmetric critic (learner.critic_blocks) has vectors of its own and
-// no encoder; the actor's is trained in 3. Where the encoder is trained, learner.aux joins in (Eq.
+// no encoder; the actor's is trained in 3. Where the encoder is trained, sac.aux joins in (Eq.
 // 27).
 //
 // Nothing between Engine::Begin and End depends on a number that is computed: what moves in an

@@ -17,11 +17,11 @@ inline constexpr Figure kTemperatureLoss{
     "temperature_loss", "", "temperature times entropy above the target", false, "ent_coef_loss"};
 
 inline constexpr Figure kAuxError{"aux_error", "m",
-                                  "root mean square error of what learner.aux tells", false, ""};
+                                  "root mean square error of what sac.aux tells", false, ""};
 
 // In the order of an update. Temperature: after it; learning rate: of it; the actor's and those
 // after it only where the update moves the actor; the error where an update trains the encoder and
-// learner.aux is set.
+// sac.aux is set.
 inline constexpr const Figure* kSacFigures[] = {
     &kCriticLoss,      &kQMean,    &kTargetMean,       &kCriticGradNorm, &kActorLoss,
     &kTemperatureLoss, &kEntropy,  &kActionSaturation, &kActorGradNorm,  &kTemperature,

@@ -14,7 +14,7 @@
 // learner.critic_blocks: the critic is asymmetric: it sees no pixels, and encoder.* is the actor's,
 // trained by its loss.
 //
-// learner.aux: aux.*, trained together with the encoder, by a loss of its own beside the other.
+// sac.aux: aux.*, trained together with the encoder, by a loss of its own beside the other.
 //
 // Dimensions: B batch (of several replicas: the rows of this one), A actions, V vector size, K*C
 // channels. A result is valid until the function that returned it is called again.
@@ -125,7 +125,7 @@ class SacNetworks {
   const std::unique_ptr<nn::EncoderModule> target_encoder_;  // null: the critic's
   nn::CriticModule critic_, target_;
   nn::ActorModule actor_;
-  const std::unique_ptr<AuxLoss> aux_;  // null without learner.aux
+  const std::unique_ptr<AuxLoss> aux_;  // null without sac.aux
   nn::ParameterSet temperature_;
   PolicyAverage average_;
   nn::Adam critic_optimiser_, actor_optimiser_, temperature_optimiser_;
