@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <map>
-#include <ranges>
 
 #include "common/base/error.h"
 #include "common/tasks/environment_description.h"
@@ -42,8 +41,10 @@ std::unique_ptr<OwnEnvironment> MakeOwnEnvironment(const std::string& id,
   const std::string name = id.substr(library.size() + 1);
   const auto maker = Makers().find(name);
   if (maker == Makers().end()) {
+    std::vector<std::string> known;
+    for (const auto& [known_name, make] : Makers()) known.push_back(known_name);
     throw UsageError("env.id: '{}' has no environment '{}'; expected {}", library, name,
-                     fmt::join(Makers() | std::views::keys, ", "));
+                     fmt::join(known, ", "));
   }
   std::unique_ptr<OwnEnvironment> environment = maker->second(kwargs);
   if (environment == nullptr) {

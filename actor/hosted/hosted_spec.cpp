@@ -40,7 +40,7 @@ void RefuseWorldKeys(const Config& config) {
 
 std::vector<std::string> ChooseImages(const EnvironmentDescription& environment,
                                       const std::vector<std::string>& asked) {
-  const std::vector<std::string> images = ImagesOf(environment);
+  std::vector<std::string> images = ImagesOf(environment);
   if (images.empty()) {
     throw UsageError(
         "observation.pixels is true, but environment {} observes no image (uint8, HxWxC or CxHxW); "

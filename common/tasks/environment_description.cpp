@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <ranges>
 #include <set>
 #include <utility>
 
@@ -49,9 +48,10 @@ const TypeRow& RowOf(ElementType type) {
 ElementType TypeNamed(const std::string& name, const std::string& array) {
   const auto* const row = std::ranges::find(kTypes, name, &TypeRow::name);
   if (row != std::end(kTypes)) return row->type;
-  const auto known = kTypes | std::views::transform(&TypeRow::name);
+  std::vector<std::string_view> known;
+  for (const TypeRow& type : kTypes) known.push_back(type.name);
   throw UsageError("environment: '{}' has elements of type {}; expected {}", array, name,
-                   fmt::join(known.begin(), known.end(), ", "));
+                   fmt::join(known, ", "));
 }
 
 std::vector<double> BoundsFromJson(const json& bound, double infinite) {

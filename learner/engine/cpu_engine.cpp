@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ranges>
 
 #include "common/base/check.h"
 #include "common/nn/host_memory.h"
@@ -68,10 +67,10 @@ Engine::Outcome CpuEngine::End() {
   CHECK(updating_);
   updating_ = false;
   if (outcome_.finite) return outcome_;
-  for (const Taken& step : taken_ | std::views::reverse) {
+  std::for_each(taken_.rbegin(), taken_.rend(), [](const Taken& step) {
     step.optimiser->Undo();
     for (nn::Module* module : step.changed) module->Refresh();
-  }
+  });
   return outcome_;
 }
 

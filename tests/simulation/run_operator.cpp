@@ -105,8 +105,9 @@ void RunOperator::JudgeExit(const SimulatedProcess& coordinator) {
   const bool stopped = interrupted || (meta.exit == "interrupted" && (code == 0 || unclean));
   // The end is noticed up to a second later.
   const bool full = Now() < disk_full_until_ + seconds(1);
-  // It says so, and a resumed session writes it.
-  const bool unwritten = code == kUnwrittenExit || (unclean && full);
+  // It says so, and a resumed session writes it. An actor that starts while the disk is full cannot
+  // make its counter page, and a run whose actors die six times before one has worked ends by it.
+  const bool unwritten = code == kUnwrittenExit || (code == 1 && SaidWhoFailed() && full);
   // A session may wait for former processes before its first write, or the disk fills up between
   // its first two.
   const bool began_full =
