@@ -95,8 +95,8 @@ TEST(SimulatedRun, SeedsThatFoundAFaultOfTheProductKeepWhatIsPromised) {
   ExpectGood(101768, FaultsOf(101768));
   // The simulated link took a coordinator for cut off whose predecessor had ended cut off.
   ExpectGood(100977, FaultsOf(100977));
-  // The only actor died six times on a full disk before it had worked for ten seconds. The run ended
-  // as its page says; the simulation took that for a fault.
+  // The only actor died six times on a full disk before it had worked for ten seconds. The run
+  // ended as its page says; the simulation took that for a fault.
   ExpectGood(502723, FaultsOf(502723));
 }
 

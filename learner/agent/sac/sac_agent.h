@@ -16,8 +16,8 @@ namespace shoal::learner {
 inline constexpr Figure kTemperatureLoss{
     "temperature_loss", "", "temperature times entropy above the target", false, "ent_coef_loss"};
 
-inline constexpr Figure kAuxError{"aux_error", "m",
-                                  "root mean square error of what sac.aux tells", false, ""};
+inline constexpr Figure kAuxError{"aux_error", "m", "root mean square error of what sac.aux tells",
+                                  false, ""};
 
 // In the order of an update. Temperature: after it; learning rate: of it; the actor's and those
 // after it only where the update moves the actor; the error where an update trains the encoder and
