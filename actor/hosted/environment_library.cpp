@@ -42,6 +42,7 @@ std::unique_ptr<OwnEnvironment> MakeOwnEnvironment(const std::string& id,
   const auto maker = Makers().find(name);
   if (maker == Makers().end()) {
     std::vector<std::string> known;
+    known.reserve(Makers().size());
     for (const auto& [known_name, make] : Makers()) known.push_back(known_name);
     throw UsageError("env.id: '{}' has no environment '{}'; expected {}", library, name,
                      fmt::join(known, ", "));

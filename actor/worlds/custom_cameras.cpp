@@ -26,6 +26,7 @@ CameraView ViewOf(const std::string& name, const CustomCamera& camera) {
 
 std::vector<std::string> NamesOf(const std::vector<CameraView>& cameras) {
   std::vector<std::string> names;
+  names.reserve(cameras.size());
   for (const CameraView& camera : cameras) names.push_back(camera.name);
   return names;
 }

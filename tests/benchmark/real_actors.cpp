@@ -83,6 +83,7 @@ struct Pairs {
 
   Row Summary(const std::string& stage, const std::string& of, double target) const {
     std::vector<double> ratios;
+    ratios.reserve(figures.size());
     for (size_t i = 0; i < figures.size(); ++i) ratios.push_back(figures[i] / against[i]);
     const auto [least, most] = std::ranges::minmax(ratios);
     const double ratio = Median(ratios);
@@ -105,6 +106,7 @@ double UnsentStepsPerSecond(const RunConfig& run, const std::string& weights, do
   std::vector<double> each(static_cast<size_t>(count));
   {
     std::vector<std::jthread> threads;
+    threads.reserve(each.size());
     for (double& rate : each) {
       threads.emplace_back([&] { rate = 1 / StepSeconds(run, weights, seconds); });
     }

@@ -31,6 +31,7 @@ nn::HeadPlan CriticPlan(const Config& config, const ObservationSpec& spec, const
 
 std::vector<ParameterSet*> ParametersOf(const std::vector<Module*>& modules) {
   std::vector<ParameterSet*> sets;
+  sets.reserve(modules.size());
   for (Module* module : modules) sets.push_back(&module->parameters());
   return sets;
 }
