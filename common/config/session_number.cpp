@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "common/config/session_number.h"
 
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <string_view>
 
+#include "common/base/descriptor.h"
+#include "common/base/disk_steps.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "common/base/log.h"
@@ -30,6 +36,27 @@ uint64_t LastSession(const fs::path& file) {
   return last;
 }
 
+// Replaces a text of equal length within the file's own block, which takes no space: a full disk
+// does not prevent it. Returns false if it cannot.
+bool Overwrite(const fs::path& file, const std::string& text) {
+  std::error_code none;
+  if (fs::file_size(file, none) != text.size() || none) return false;
+  const int step = DiskStep(file);
+  if (step != 0 && step != ENOSPC) return false;
+  const Descriptor out = OpenRegular(file, O_WRONLY);
+  const auto size = static_cast<ssize_t>(text.size());
+  return pwrite(out.get(), text.data(), text.size(), 0) == size && fsync(out.get()) == 0;
+}
+
+void Store(const fs::path& file, const std::string& text) {
+  try {
+    MakeFolders(file.parent_path());
+    WriteFileAtomically(file, text);
+  } catch (const Error&) {
+    if (!Overwrite(file, text)) throw;
+  }
+}
+
 }  // namespace
 
 uint64_t NextSession(const fs::path& run, const std::string& process, int64_t wall_time_ns) {
@@ -37,8 +64,7 @@ uint64_t NextSession(const fs::path& run, const std::string& process, int64_t wa
   const auto clock = static_cast<uint64_t>(std::max<int64_t>(1, wall_time_ns));
   const uint64_t session = std::max(clock, LastSession(file) + 1);
   try {
-    MakeFolders(file.parent_path());
-    WriteFileAtomically(file, std::to_string(session) + "\n");
+    Store(file, std::to_string(session) + "\n");
   } catch (const Error& e) {
     // Missed only where the clock is set back before this process has a successor.
     log::Warning("{}; going on with the clock's number", e.what());

@@ -11,8 +11,8 @@
 namespace shoal {
 
 // The next session of `process` ("actor-3"), stored in RUN/sessions/PROCESS. `wall_time_ns` is the
-// time of the clock. Throws Error (usage) if the file is not a number; a file that cannot be
-// written gives a warning.
+// time of the clock. Throws Error (usage) if the file is not a number. A disk that is full does not
+// prevent that a successor's number is stored; a file that cannot be written gives a warning.
 uint64_t NextSession(const std::filesystem::path& run, const std::string& process,
                      int64_t wall_time_ns);
 

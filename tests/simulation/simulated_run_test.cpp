@@ -98,6 +98,9 @@ TEST(SimulatedRun, SeedsThatFoundAFaultOfTheProductKeepWhatIsPromised) {
   // The only actor died six times on a full disk before it had worked for ten seconds. The run
   // ended as its page says; the simulation took that for a fault.
   ExpectGood(502723, FaultsOf(502723));
+  // The replay started on a full disk, so that its session was not stored, and again after the
+  // clock was set back: its peers took it for an older one, and the run stood still.
+  ExpectGood(508165, FaultsOf(508165));
 }
 
 TEST(SimulatedRun, FixedSeedsKeepWhatIsPromised) {

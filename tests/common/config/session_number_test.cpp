@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cerrno>
+
+#include "common/base/disk_steps.h"
 #include "common/base/error.h"
 #include "common/base/files.h"
 #include "tests/support/temporary_folder.h"
@@ -42,6 +45,21 @@ TEST(SessionNumber, ADamagedFileIsRefusedByName) {
       EXPECT_NE(std::string(e.what()).find("sessions/actor-0"), std::string::npos) << e.what();
     }
   }
+}
+
+// A process that starts twice on a full disk after the clock was set back: the second number must
+// exceed the first.
+TEST(SessionNumber, GrowsOnAFullDiskToo) {
+  struct FullDisk final : DiskSteps {
+    FullDisk() { SetCurrent(this); }
+    ~FullDisk() override { SetCurrent(nullptr); }
+    int Before(const std::string&) override { return ENOSPC; }
+  };
+  const TemporaryFolder run;
+  EXPECT_EQ(NextSession(run.path(), "replay-0", 5000), 5000u);
+  const FullDisk full;
+  EXPECT_EQ(NextSession(run.path(), "replay-0", 6000), 6000u);
+  EXPECT_EQ(NextSession(run.path(), "replay-0", 10), 6001u);
 }
 
 TEST(SessionNumber, AFolderThatCannotBeWrittenIsNoReasonNotToStart) {
