@@ -132,10 +132,15 @@ void Examination::CheckEvaluations() {
                       point.mean_return * 10'000 / FakeEnvironment::kEpisodeSteps));
   }
   std::set<std::string> said;
+  bool unwritten = false;  // the disk keeps evaluations from their files
   for (const std::string& line : world_.story.lines()) {
     const bool begins = line.find("operator: shoal train") != std::string::npos;
-    if (begins && line.find("--resume") == std::string::npos) said.clear();
-    // Evaluations that a full disk kept from their files are made again.
+    if (line.find("coordinator: eval: cannot write") != std::string::npos) unwritten = true;
+    if (line.find("coordinator: eval: written again") != std::string::npos) unwritten = false;
+    // Evaluations that a full disk kept from their files, to the end or to the coordinator's death,
+    // are made again.
+    const bool fresh = begins && line.find("--resume") == std::string::npos;
+    if (fresh || (begins && unwritten)) said.clear();
     if (line.find("could not be written to the end") != std::string::npos) said.clear();
     const size_t begin = line.find("coordinator: evaluation at ");
     const size_t end = line.find(" updates: ");

@@ -43,7 +43,10 @@ class CountedCursor {
     const double sampleable = Number(report, "sampleable"), stored = Number(report, "stored_steps");
     const double rate = Number(report, "limiter_samples_per_insert");
     const double start = Number(report, "t") - Number(report, "uptime_seconds");
-    const bool follows = std::abs(start - start_) < kSameStart;  // else another server
+    // Else another server: the clock may be set back so that both seem to have started together.
+    const double uptime = Number(report, "uptime_seconds");
+    const bool follows = std::abs(start - start_) < kSameStart && uptime >= uptime_;
+    uptime_ = uptime;
     if (!follows) {
       uncounted_ = stored;
       constant_rate_ = true;
@@ -70,7 +73,7 @@ class CountedCursor {
   const double min_size_;
   bool constant_rate_ = true;
   double uncounted_ = 0;  // env steps before which none count
-  double cursor_ = 0, granted_ = 0, sampled_ = 0, rate_ = 0, start_ = 0;
+  double cursor_ = 0, granted_ = 0, sampled_ = 0, rate_ = 0, start_ = 0, uptime_ = 0;
 };
 
 // One line when the learner dropped a rollout that did not come late, while each actor and the
