@@ -137,6 +137,7 @@ RunEnd Coordinator::WaitForEnd(const std::function<void()>& on_started) {
     }
     const SteadyTime now = Now();
     if (const auto failure = supervisor_.Poll(now)) Say(decisions_.Fail(*failure));
+    if (supervisor_.Running(RoleName(Role::kLearner)) == 0) decisions_.OnLearnerDeath();
     Say(decisions_.OnStandings(supervisor_.Standing(RoleName(Role::kActor), now),
                                supervisor_.Standing(RoleName(Role::kEval), now), now));
     if (const auto end = decisions_.MustEnd(StopRequested())) return *end;
@@ -162,6 +163,7 @@ void Coordinator::Stop(RunEnd end) {
                .say = [this](const std::string& line) { progress_.Say(line); },
                .settled = [this] { return decisions_.Settled(); }});
   Tick(/*last=*/true);  // for the messages that arrived last
+  Say(decisions_.OnEnded());
   evaluations_.End(Now());
 }
 

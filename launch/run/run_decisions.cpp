@@ -94,6 +94,13 @@ std::optional<std::string> RunDecisions::BeginEnd(RunEnd end) {
   return std::nullopt;
 }
 
+std::optional<std::string> RunDecisions::OnEnded() {
+  if (end_ != RunEnd::kBudget || rule_.BudgetSpent(env_steps())) return std::nullopt;
+  return Fail(fmt::format(
+      "the learner died when the budget was spent: {} of {} env steps are left; --resume goes on",
+      env_steps(), config_.env_steps));
+}
+
 bool RunDecisions::Started(const std::function<bool(const ProcessName&)>& has_reported) const {
   return std::ranges::all_of(topology_.children(), [&](const link::RunProcess& child) {
     const ProcessName name = child.Name();
@@ -111,7 +118,9 @@ std::optional<RunEnd> RunDecisions::MustEnd(bool interrupted) const {
   if (!error_.empty()) return RunEnd::kFailed;
   if (interrupted || stop_commanded_) return RunEnd::kInterrupted;
   if (rule_.TargetReached()) return RunEnd::kTarget;
-  if (rule_.BudgetSpent(env_steps())) return RunEnd::kBudget;
+  // Without a replay the learner counts env steps, and a dead one's may be gone.
+  const bool counted = topology_.Has(link::Role::kReplay) || progress_.learner_lives();
+  if (counted && rule_.BudgetSpent(env_steps())) return RunEnd::kBudget;
   return std::nullopt;
 }
 

@@ -43,6 +43,7 @@ class RunDecisions {
   // Progress of a replay, of the learner.
   std::optional<std::string> OnReplay(const ReplayProgress& progress);
   void OnLearner(const LearnerProgress& progress) { progress_.OnLearner(progress); }
+  void OnLearnerDeath() { progress_.OnLearnerDeath(); }
   // The training actors and the evaluation actor now. Call several times a second
   // (liveness_timer.h).
   std::optional<std::string> OnStandings(const RoleStanding& actors, const RoleStanding& evaluation,
@@ -57,6 +58,9 @@ class RunDecisions {
   Verdict OnEvaluation(const EvaluationPoint& point);
   // Begins the run's end. From now on a process that is down is not missed.
   std::optional<std::string> BeginEnd(RunEnd end);
+  // All processes have ended. A run whose learner died after the budget was spent, and took env
+  // steps with it, has failed.
+  std::optional<std::string> OnEnded();
 
   // ---- Decisions
 

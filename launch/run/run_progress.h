@@ -22,12 +22,17 @@ class RunProgress {
   // records.
   bool OnReplay(const ReplayProgress& progress);
   void OnLearner(const LearnerProgress& progress);
+  // The learner has died. In a run without a replay its successor goes on from a checkpoint with
+  // fewer env steps.
+  void OnLearnerDeath() { died_ = learner_.session; }
 
   // Sum over all replays; in a run without one, the learner's count. 0 before the first report.
   // Never falls: a replay that lost its memory may report less than its predecessor, by the steps
   // of a second.
   uint64_t stored_steps() const;
   std::optional<uint64_t> updates() const;
+  // The learner that reported last has not died since.
+  bool learner_lives() const { return learner_.session > died_; }
   // The learner has done what the stored steps allow.
   bool drained() const { return learner_.drained; }
   // Updates of the parameters it handed out for evaluation last; 0 = none yet.
@@ -39,6 +44,7 @@ class RunProgress {
   std::map<uint32_t, ReplayProgress> replays_;
   uint64_t env_steps_ = 0;  // the most that `replays_` came to
   LearnerProgress learner_;
+  uint64_t died_ = 0;  // newest session of a learner that died
   // By learner session and update, over all sessions.
   std::map<std::pair<uint64_t, uint64_t>, EvaluationRequest> asked_;
 };

@@ -113,20 +113,23 @@ void RunOperator::JudgeExit(const SimulatedProcess& coordinator) {
   const bool began_full =
       began_on_full_disk_ || (full && (says(kConfigFile) || says(kClusterFile)));
   const bool troubled = Now() < trouble_until_ || began_full;
-  if (finished_ || stopped || unwritten || troubled) return;
+  // The learner of a run without a replay was killed after the budget was spent.
+  const bool unspent = code == 1 && Said("env steps are left; --resume goes on");
+  if (finished_ || stopped || unwritten || troubled || unspent) return;
   // Another process held the run for a moment, or a paused process has not left it yet.
   if (says("is running") || says("of an earlier session still works")) return;
   world_.story.Violate(fmt::format("a session ended as '{}' with code {}: {} {}", meta.exit, code,
                                    meta.error, last_words_));
 }
 
-bool RunOperator::SaidWhoFailed() const {
+bool RunOperator::Said(std::string_view text) const {
   const auto& lines = world_.story.lines();
-  return std::any_of(lines.begin() + session_begin_, lines.end(), [](const std::string& line) {
-    return line.find(" while stopping") != std::string::npos ||
-           line.find("error: ") != std::string::npos;
+  return std::any_of(lines.begin() + session_begin_, lines.end(), [text](const std::string& line) {
+    return line.find(text) != std::string::npos;
   });
 }
+
+bool RunOperator::SaidWhoFailed() const { return Said(" while stopping") || Said("error: "); }
 
 launch::RunMeta RunOperator::TakeMeta() {
   launch::RunMeta meta;
@@ -279,7 +282,10 @@ void RunOperator::SendCommand(const std::string& text) {
         link::Writer<CommandMessage> writer(hub);
         const link::Reader<ReplyMessage> reader(hub, [&](const ReplyMessage& message) {
           if (message.client != command.client) return;
-          if (reply) world_.story.Violate(fmt::format("a second reply to {}", name));
+          // A request that was sent again is answered again, and carried out once.
+          const bool same =
+              !reply || (reply->accepted == message.accepted && reply->text == message.text);
+          if (!same) world_.story.Violate(fmt::format("a second reply to {}", name));
           reply = message;
         });
         for (int i = 0; i < kTries && !reply; ++i) {

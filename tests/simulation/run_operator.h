@@ -38,7 +38,9 @@ class RunOperator {
  private:
   void RunSession(Begin begin);
   void JudgeExit(const SimulatedProcess& coordinator);
-  // Whether the session has named a process that failed, or a file, since it began.
+  // Whether the session has said `text` since it began.
+  bool Said(std::string_view text) const;
+  // Whether it has named a process that failed, or a file.
   bool SaidWhoFailed() const;
   // Reads meta.json, whose env steps never become fewer.
   launch::RunMeta TakeMeta();

@@ -101,6 +101,10 @@ TEST(SimulatedRun, SeedsThatFoundAFaultOfTheProductKeepWhatIsPromised) {
   // The replay started on a full disk, so that its session was not stored, and again after the
   // clock was set back: its peers took it for an older one, and the run stood still.
   ExpectGood(508165, FaultsOf(508165));
+  // The learner of a run on policy died as the budget was spent, and the run ended with fewer env
+  // steps, for good.
+  ExpectGood(523385, FaultsOf(523385));
+  ExpectGood(546419, FaultsOf(546419));
 }
 
 TEST(SimulatedRun, FixedSeedsKeepWhatIsPromised) {

@@ -284,6 +284,38 @@ TEST_F(RunDecisionsTest, InLockstepTheTargetIsPlayedToTheEndToo) {
   EXPECT_TRUE(Run().Settled());
 }
 
+// Without a replay a dead learner's successor goes on from a checkpoint, with fewer env steps.
+TEST_F(RunDecisionsTest, ADeadLearnersCountOnPolicyEndsNoRun) {
+  config_.learner.algorithm = "ppo";
+  Run().OnLearner({.session = 1, .env_steps = 1000});
+  EXPECT_EQ(Run().MustEnd(false), RunEnd::kBudget);
+  Run().OnLearnerDeath();
+  EXPECT_FALSE(Run().MustEnd(false));
+  Run().OnLearner({.session = 1, .env_steps = 1000});
+  EXPECT_FALSE(Run().MustEnd(false)) << "a message that came late";
+  Run().OnLearner({.session = 2, .env_steps = 900});
+  EXPECT_FALSE(Run().MustEnd(false));
+  Run().OnLearner({.session = 2, .env_steps = 1020});
+  EXPECT_EQ(Run().MustEnd(false), RunEnd::kBudget);
+}
+
+TEST_F(RunDecisionsTest, WithAReplayTheStoredStepsCountWhateverTheLearnerDoes) {
+  Store(1000);
+  Run().OnLearnerDeath();
+  EXPECT_EQ(Run().MustEnd(false), RunEnd::kBudget);
+}
+
+TEST_F(RunDecisionsTest, ALearnerThatTakesStepsWithItAfterTheEndFailsTheRun) {
+  config_.learner.algorithm = "ppo";
+  Run().OnLearner({.session = 1, .env_steps = 1000});
+  Run().BeginEnd(RunEnd::kBudget);
+  EXPECT_FALSE(Run().OnEnded());
+  EXPECT_EQ(Run().FinalEnd(), RunEnd::kBudget);
+  Run().OnLearner({.session = 2, .env_steps = 900});
+  EXPECT_THAT(Run().OnEnded().value_or(""), HasSubstr("900 of 1000 env steps"));
+  EXPECT_EQ(Run().FinalEnd(), RunEnd::kFailed);
+}
+
 // ---- The run so far
 
 TEST_F(RunDecisionsTest, EnvStepsAndUpdatesNeverFallBelowThoseOfEarlierSessions) {
