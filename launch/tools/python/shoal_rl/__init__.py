@@ -56,7 +56,7 @@ class _KeepCores:
 
 
 def _load():
-    """The names that need the compiled half, which brings MuJoCo and OSMesa into the process."""
+    """The names that need the compiled half, which brings MuJoCo into the process."""
     try:
         with _KeepCores():
             from shoal_rl._native import Error, Policy, __version__, tasks
