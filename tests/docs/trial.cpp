@@ -21,7 +21,7 @@ const std::vector<TrialRule>& TrialRules() {
       {"^\\./run (package|python|docs|bundle)\\b", kNotHere,
        "builds everything once more; a stage of its own"},
       {"^\\./run bench", kNotHere, "measures for minutes"},
-      {"^(taskset -c 0 )?build/release/bin/shoal-(bench|pictures)\\b", kNotHere,
+      {"^(taskset -c [0-9,]+ )?build/release/bin/shoal-(bench|pictures)\\b", kNotHere,
        "measures for minutes"},
       {"^\\./run test\\b", kNotHere, "runs the tests from a test"},
       {"^cmake --install build/release --prefix ~", kElsewhere,
