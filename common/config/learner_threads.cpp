@@ -57,14 +57,4 @@ void CheckReplicas(const Config& config, int replicas) {
       replicas, config.learner.batch, config.replay.copies, groups);
 }
 
-void CheckCores(std::string_view key, int threads, const CoreLimits& limits) {
-  const int cores = UsableCores(limits);
-  if (threads <= cores) return;
-  const std::string why = DescribeLimits(limits);
-  throw UsageError(
-      "{} = {}: this process may use {} core{}{}, expected at most as many threads (--set {}=N; 0 "
-      "takes what suits the cores)",
-      key, threads, cores, cores == 1 ? "" : "s", why.empty() ? "" : ": " + why, key);
-}
-
 }  // namespace shoal

@@ -2,9 +2,6 @@
 // How many threads learn, and whether the batch can be shared among them.
 #pragma once
 
-#include <string_view>
-
-#include "common/base/usable_cores.h"
 #include "common/config/config.h"
 
 namespace shoal {
@@ -22,10 +19,5 @@ int MostThreads(const Config& config);
 // Throws Error (kUsage) unless there is a transition of learner.batch, with its replay.copies, for
 // each of so many replicas.
 void CheckReplicas(const Config& config, int replicas);
-
-// Throws Error (kUsage) unless the `threads` that the key asks for have a core each: threads of one
-// update, or of one batch, wait for each other, so that more of them than cores are slower than one
-// per core. The error says what limits the cores. `limits` are those of the threads' host.
-void CheckCores(std::string_view key, int threads, const CoreLimits& limits);
 
 }  // namespace shoal

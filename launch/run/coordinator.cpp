@@ -15,6 +15,7 @@
 #include "common/base/usable_cores.h"
 #include "common/config/learner_threads.h"
 #include "common/config/on_policy.h"
+#include "common/config/thread_limit.h"
 #include "launch/processes/ordered_stop.h"
 #include "launch/processes/process_plan.h"
 #include "launch/processes/suspension.h"
