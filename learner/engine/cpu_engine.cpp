@@ -124,16 +124,14 @@ void CpuEngine::AddClippedNoise(Array action, double sigma, double limit, Random
 }
 
 void CpuEngine::Targets(const TargetTerms& terms, Array y) {
-  const float* reward = Data(terms.reward);
-  const float* bootstrap = Data(terms.bootstrap);
-  TargetRates rates{terms.reward_scale, terms.discount, /*temperature=*/0, terms.bounds};
+  TargetRates rates{.reward_scale = terms.reward_scale,
+                    .discount = terms.discount,
+                    .temperature = 0,
+                    .bounds = terms.bounds};
+  if (terms.next_log_prob) rates.temperature = float(Cell(terms.temperature));
   const std::vector<const float*> q = DataOf(terms.next_q);
-  if (!terms.next_log_prob) {
-    return MinTargets(modules_.batch, reward, bootstrap, q, rates, Data(y));
-  }
-  CHECK(q.size() == 2) << q.size() << " target critics";
-  rates.temperature = float(Cell(terms.temperature));
-  TdTargets(modules_.batch, {reward, bootstrap, {q[0], q[1]}, Data(terms.next_log_prob)}, rates,
+  TdTargets(modules_.batch,
+            {Data(terms.reward), Data(terms.bootstrap), q, Data(terms.next_log_prob)}, rates,
             Data(y));
 }
 

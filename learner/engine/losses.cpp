@@ -9,20 +9,11 @@ namespace shoal::learner {
 
 void TdTargets(int batch, const TargetInputs& inputs, const TargetRates& rates, float* y) {
   for (int b = 0; b < batch; ++b) {
-    const float smallest = std::min(inputs.next_q[0][b], inputs.next_q[1][b]);
-    const float value = std::clamp(smallest, rates.bounds.low, rates.bounds.high) -
-                        rates.temperature * inputs.next_log_prob[b];
+    float smallest = inputs.next_q[0][b];
+    for (const float* q : inputs.next_q.subspan(1)) smallest = std::min(smallest, q[b]);
+    float value = std::clamp(smallest, rates.bounds.low, rates.bounds.high);
+    if (inputs.next_log_prob != nullptr) value -= rates.temperature * inputs.next_log_prob[b];
     y[b] = rates.reward_scale * inputs.reward[b] + inputs.bootstrap[b] * rates.discount * value;
-  }
-}
-
-void MinTargets(int batch, const float* reward, const float* bootstrap,
-                std::span<const float* const> next_q, const TargetRates& rates, float* y) {
-  for (int b = 0; b < batch; ++b) {
-    float smallest = next_q[0][b];
-    for (const float* q : next_q.subspan(1)) smallest = std::min(smallest, q[b]);
-    const float value = std::clamp(smallest, rates.bounds.low, rates.bounds.high);
-    y[b] = rates.reward_scale * reward[b] + bootstrap[b] * rates.discount * value;
   }
 }
 
@@ -49,11 +40,6 @@ CriticLoss CriticLossForward(int batch, std::span<const float* const> q, const f
     y_sum += y[b];
   }
   return {float(loss / batch), float(q_sum / (double(q.size()) * batch)), float(y_sum / batch)};
-}
-
-CriticLoss CriticLossForward(int batch, const float* q0, const float* q1, const float* y) {
-  const float* const q[] = {q0, q1};
-  return CriticLossForward(batch, q, y);
 }
 
 Summary Summarise(std::span<const float> values) {

@@ -19,24 +19,20 @@ struct ValueBounds {
 // Inputs of the targets of one batch.
 struct TargetInputs {
   const float* reward;
-  const float* bootstrap;      // discount^(n-1) (1 - terminated)
-  const float* next_q[2];      // target heads at (s', a')
-  const float* next_log_prob;  // log pi(a' | s')
+  const float* bootstrap;                // discount^(n-1) (1 - terminated)
+  std::span<const float* const> next_q;  // of one or more target critics at (s', a')
+  const float* next_log_prob = nullptr;  // log pi(a' | s'); null: no entropy term
 };
 
 struct TargetRates {
-  float reward_scale, discount, temperature;
+  float reward_scale, discount;
+  float temperature = 0;  // of the entropy term
   ValueBounds bounds = {};
 };
 
-// Eq. 5:  y = reward_scale r + bootstrap discount (min_i q'_i - temperature log pi'), the smallest
-// cut off at the bounds (Eq. 20)
+// Eq. 5 and 18:  y = reward_scale r + bootstrap discount (min_i q'_i - temperature log pi'), the
+// smallest cut off at the bounds (Eq. 20)
 void TdTargets(int batch, const TargetInputs& inputs, const TargetRates& rates, float* y);
-
-// Eq. 18:  y = reward_scale r + bootstrap discount min_i q'_i, over one or more target critics; no
-// temperature
-void MinTargets(int batch, const float* reward, const float* bootstrap,
-                std::span<const float* const> next_q, const TargetRates& rates, float* y);
 
 // Eq. 15:  each `copies` targets in a row become the mean of the first `shifts` of them, which are
 // of different shifts; 0 = of all. `copies` divides `batch`.
@@ -47,7 +43,6 @@ struct CriticLoss {
   float loss, q_mean, target_mean;  // q_mean over all critics
 };
 CriticLoss CriticLossForward(int batch, std::span<const float* const> q, const float* y);
-CriticLoss CriticLossForward(int batch, const float* q0, const float* q1, const float* y);
 void CriticLossBackward(int batch, const float* q, const float* y, float* q_gradient);
 
 // Mean, standard deviation, smallest and largest of an array that is not empty.

@@ -16,12 +16,14 @@ using nn::reference::Values;
 TEST(TdTargets, TakeTheSmallerHeadLessTheEntropyTermAndNothingAfterATerminal) {
   const float reward[2] = {0.5f, -1.f}, bootstrap[2] = {1.f, 0.f};
   const float q1[2] = {3.f, 100.f}, q2[2] = {4.f, 100.f}, log_prob[2] = {2.f, 50.f};
+  const float* const heads[] = {q1, q2};
+  const float* const swapped[] = {q2, q1};
   float y[2];
-  TdTargets(2, {reward, bootstrap, {q1, q2}, log_prob},
+  TdTargets(2, {reward, bootstrap, heads, log_prob},
             {.reward_scale = 10, .discount = 0.5f, .temperature = 0.25f}, y);
   EXPECT_FLOAT_EQ(y[0], 5.f + 0.5f * (3.f - 0.25f * 2.f));
   EXPECT_FLOAT_EQ(y[1], -10.f);
-  TdTargets(2, {reward, bootstrap, {q2, q1}, log_prob},
+  TdTargets(2, {reward, bootstrap, swapped, log_prob},
             {.reward_scale = 10, .discount = 0.5f, .temperature = 0.25f}, y);
   EXPECT_FLOAT_EQ(y[0], 6.25f);
 }
@@ -31,13 +33,13 @@ TEST(TdTargets, CutTheSmallerHeadOffBeforeTheEntropyTerm) {
   const float q1[3] = {-9.f, 2.f, -3.f}, q2[3] = {-8.f, 3.f, -2.f}, log_prob[3] = {2.f, 2.f, 2.f};
   const TargetRates rates{
       .reward_scale = 2, .discount = 0.5f, .temperature = 0.25f, .bounds = {.low = -4, .high = 0}};
+  const float* const heads[] = {q1, q2};
   float y[3];
-  TdTargets(3, {reward, bootstrap, {q1, q2}, log_prob}, rates, y);
+  TdTargets(3, {reward, bootstrap, heads, log_prob}, rates, y);
   EXPECT_FLOAT_EQ(y[0], -2.f + 0.5f * (-4.f - 0.5f));
   EXPECT_FLOAT_EQ(y[1], -2.f + 0.5f * (0.f - 0.5f));
   EXPECT_FLOAT_EQ(y[2], 0.5f * (-3.f - 0.5f));
-  const float* const heads[] = {q1, q2};
-  MinTargets(3, reward, bootstrap, heads, rates, y);
+  TdTargets(3, {reward, bootstrap, heads}, rates, y);
   EXPECT_FLOAT_EQ(y[0], -2.f + 0.5f * -4.f);
   EXPECT_FLOAT_EQ(y[1], -2.f);
   EXPECT_FLOAT_EQ(y[2], 0.5f * -3.f);
@@ -63,7 +65,8 @@ TEST(AverageCopies, CountsEachShiftOnce) {
 
 TEST(CriticLoss, IsTheSumOverHeadsOfTheMeanSquare) {
   const float q0[2] = {1.f, 2.f}, q1[2] = {0.f, 5.f}, y[2] = {1.f, 4.f};
-  const CriticLoss loss = CriticLossForward(2, q0, q1, y);
+  const float* const q[] = {q0, q1};
+  const CriticLoss loss = CriticLossForward(2, q, y);
   EXPECT_FLOAT_EQ(loss.loss, (0.f + 4.f) / 2 + (1.f + 1.f) / 2);
   EXPECT_FLOAT_EQ(loss.q_mean, 2.f);
   EXPECT_FLOAT_EQ(loss.target_mean, 2.5f);
@@ -80,10 +83,9 @@ TEST(CriticLoss, GradientIsTheCentralDifference) {
     }
     return sum / kSamples;
   };
-  EXPECT_NEAR(
-      CriticLossForward(kSamples, ToFloats(q0).data(), ToFloats(q1).data(), ToFloats(y).data())
-          .loss,
-      loss(), 1e-6);
+  const std::vector<float> first = ToFloats(q0), second = ToFloats(q1);
+  const float* const q[] = {first.data(), second.data()};
+  EXPECT_NEAR(CriticLossForward(kSamples, q, ToFloats(y).data()).loss, loss(), 1e-6);
   std::vector<float> gradient(kSamples);
   CriticLossBackward(kSamples, ToFloats(q0).data(), ToFloats(y).data(), gradient.data());
   for (size_t b = 0; b < kSamples; ++b) {
