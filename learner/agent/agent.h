@@ -3,7 +3,7 @@
 // update of a batch. Loop, checkpoints, weights, reports and guards use algorithms only through it.
 //
 // An agent knows nothing of DDS, clocks or files. Each lives in a folder of its own
-// (learner/agent/ALGORITHM), written against common/nn; algorithms.h lists them.
+// (learner/agent/ALGORITHM) and computes with an Engine; algorithms.h lists them.
 #pragma once
 
 #include <cstdint>

@@ -19,13 +19,13 @@ namespace shoal::learner {
 using MakeReplica = std::function<std::unique_ptr<Agent>(Engine*)>;
 
 // Replicas for the batch and the copies of `config`. All start alike: `make` may depend on nothing
-// but its engine. Each is made and run by a thread of its own, so that its
-// memory lies on the node of that thread. Throws what `make` throws.
+// but its engine. Each is made and run by a thread of its own, so that its memory is on that
+// thread's node. Throws what `make` throws.
 std::unique_ptr<Agent> MakeReplicatedAgent(const Config& config, nn::Precision precision,
                                            int replicas, const MakeReplica& make);
 
-// Whether a run's networks can be replicas: not those with batch normalisation, whose statistics
-// are of the whole batch.
+// Whether the encoder has batch normalisation. Its statistics are of the whole batch, so such
+// networks cannot be replicas.
 bool NormalisesOverBatch(const NetworkConfig& network, const ObservationSpec& spec);
 
 }  // namespace shoal::learner

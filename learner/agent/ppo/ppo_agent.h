@@ -14,8 +14,8 @@
 // Rows that make no whole minibatch (a rollout of fewer environments than usual) are left out of
 // an epoch; which ones differs from epoch to epoch.
 //
-// Sources: Schulman et al. 2017, arXiv:1707.06347; details as ppo.py of Stable-Baselines3, against
-// which tests/learner/agent/ppo holds them.
+// Sources: Schulman et al. 2017, arXiv:1707.06347; details as ppo.py of Stable-Baselines3, with
+// which tests/learner/agent/sb3_ppo_test.cpp compares them.
 #pragma once
 
 #include <functional>

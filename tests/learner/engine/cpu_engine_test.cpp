@@ -12,6 +12,7 @@
 
 #include "common/nn/host_memory.h"
 #include "common/nn/team.h"
+#include "learner/agent/figure_sheet.h"
 #include "tests/common/nn/gradient_check.h"
 #include "tests/learner/agent/agent_fixture.h"
 
@@ -352,12 +353,7 @@ TEST(CpuEngineReplicas, NumbersAfterGatherAreOfTheWholeBatch) {
   team.Run([&](int rank) {
     CpuEngine& engine = engines[size_t(rank)];
     const Number own_mean = engine.NewNumber(), squares = engine.NewNumber();
-    CriticNumbers numbers;
-    for (Number* number :
-         {&numbers.loss, &numbers.q_mean, &numbers.target_mean, &numbers.q1_mean, &numbers.q1_std,
-          &numbers.q_min_mean, &numbers.q_min_std, &numbers.q_min_min, &numbers.q_min_max}) {
-      *number = engine.NewNumber();
-    }
+    const CriticNumbers numbers = NewCriticNumbers(/*critics=*/1, &engine);
     engine.Begin(data.View());
     const Transitions own = engine.Take(data.View());
     const auto values = HostValues(own.reward);
