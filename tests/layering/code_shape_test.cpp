@@ -16,7 +16,6 @@
 #include "tests/layering/source_functions.h"
 #include "tests/layering/source_names.h"
 #include "tests/layering/source_tokens.h"
-#include "tests/layering/token_groups.h"
 #include "tests/support/paths.h"
 
 namespace shoal {

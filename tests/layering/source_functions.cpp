@@ -41,8 +41,7 @@ class FunctionReader {
         while (at_ < tokens_.size() && Text(at_) != "(") ++at_;
       } else if (text == "{") {
         if (OpensScope(begin)) break;
-        TakeBraces(begin, parameters, has_value);
-        if (parameters > 0 && !has_value && Text(at_) != "," && Text(at_) != "{") return;
+        if (TakeBraces(begin, parameters, has_value)) return;
       } else if (IsOpeningBracket(text)) {
         if (text == "(" && parameters == 0) parameters = at_;
         at_ = BehindGroup(tokens_, at_);
@@ -54,15 +53,17 @@ class FunctionReader {
     ++at_;
   }
 
-  // A body, or the value of a variable or a member.
-  void TakeBraces(size_t begin, size_t parameters, bool has_value) {
+  // A body, or the value of a variable or a member; whether it was a body.
+  bool TakeBraces(size_t begin, size_t parameters, bool has_value) {
     const size_t open = at_;
     at_ = BehindGroup(tokens_, open);
     const bool is_body = parameters > 0 && !has_value && Text(at_) != "," && Text(at_) != "{";
-    if (!is_body) return;
-    functions_.push_back({.name = NameOf(begin, parameters),
-                          .line = tokens_[open].line,
-                          .lines = LinesOf(open, at_)});
+    if (is_body) {
+      functions_.push_back({.name = NameOf(begin, parameters),
+                            .line = tokens_[open].line,
+                            .lines = LinesOf(open, at_)});
+    }
+    return is_body;
   }
 
   // Physical lines of a body but for those within tables and texts.
