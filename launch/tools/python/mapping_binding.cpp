@@ -83,16 +83,7 @@ class Mapping {
     }
     std::vector<double> mapped(size_t(space.size()));
     hosted::MapAction(space, {action.data(), size_t(action.size())}, mapped);
-    const std::vector<py::ssize_t> shape(space.shape.begin(), space.shape.end());
-    if (space.type == tasks::ElementType::kFloat64) {
-      py::array_t<double> array(shape);
-      std::ranges::copy(mapped, array.mutable_data());
-      return array;
-    }
-    py::array_t<float> array(shape);
-    std::ranges::transform(mapped, array.mutable_data(),
-                           [](double number) { return static_cast<float>(number); });
-    return array;
+    return ActionArray(space, {space.shape.begin(), space.shape.end()}, mapped);
   }
 
  private:

@@ -4,7 +4,6 @@
 #include <pybind11/stl.h>
 
 #include <algorithm>
-#include <cstring>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
@@ -18,8 +17,6 @@ namespace py = pybind11;
 
 namespace shoal::python {
 namespace {
-
-using tasks::ElementType;
 
 // Writes the traceback of a Python exception to the log and throws Error with its message.
 [[noreturn]] void Fail(ErrorKind kind, const std::string& id, const std::string& call,
@@ -164,23 +161,11 @@ void PythonEnvironment::Reset(uint32_t seed) {
   }
 }
 
-py::object PythonEnvironment::ActionArray(std::span<const double> action) const {
-  if (description_.action.type == ElementType::kFloat64) {
-    py::array_t<double> array(action_shape_);
-    std::ranges::copy(action, array.mutable_data());
-    return array;
-  }
-  py::array_t<float> array(action_shape_);
-  std::ranges::transform(action, array.mutable_data(),
-                         [](double number) { return static_cast<float>(number); });
-  return array;
-}
-
 hosted::RawStep PythonEnvironment::Step(std::span<const double> action) {
   const py::gil_scoped_acquire lock;
   const CallWatch::Call call(watch_, "step");
   try {
-    const py::object result = step_(ActionArray(action));
+    const py::object result = step_(ActionArray(description_.action, action_shape_, action));
     if (!PyTuple_Check(result.ptr()) || PyTuple_GET_SIZE(result.ptr()) != 5) {
       throw RuntimeError(
           "environment {}: step returned no tuple of observation, reward, terminated, truncated "

@@ -65,7 +65,6 @@ class __attribute__((visibility("hidden"))) PythonEnvironment final
 
   // Keeps the arrays of an observation alive and notes where they lie.
   void Take(const char* call, const pybind11::handle& observation);
-  pybind11::object ActionArray(std::span<const double> action) const;
 
   const tasks::EnvironmentDescription description_;
   CallWatch& watch_;

@@ -2,9 +2,7 @@
 #include "launch/tools/python/space_array.h"
 
 #include <algorithm>
-#include <span>
 #include <utility>
-#include <vector>
 
 #include "common/base/error.h"
 #include "launch/tools/python/shape_text.h"
@@ -12,6 +10,7 @@
 namespace py = pybind11;
 
 namespace shoal::python {
+
 SpaceArray::SpaceArray(std::string environment, tasks::ArraySpace space)
     : environment_(std::move(environment)),
       space_(std::move(space)),
@@ -49,6 +48,19 @@ py::array SpaceArray::Take(const char* call, const py::handle& value) const {
   constexpr int kPlain = int{py::array::c_style} | int{py::detail::npy_api::NPY_ARRAY_ALIGNED_};
   if (same && native && (array.flags() & kPlain) == kPlain) return array;
   return contiguous_(array, type_);
+}
+
+py::array ActionArray(const tasks::ArraySpace& space, const std::vector<py::ssize_t>& shape,
+                      std::span<const double> action) {
+  if (space.type == tasks::ElementType::kFloat64) {
+    py::array_t<double> array(shape);
+    std::ranges::copy(action, array.mutable_data());
+    return array;
+  }
+  py::array_t<float> array(shape);
+  std::ranges::transform(action, array.mutable_data(),
+                         [](double number) { return static_cast<float>(number); });
+  return array;
 }
 
 }  // namespace shoal::python

@@ -5,7 +5,9 @@
 
 #include <pybind11/numpy.h>
 
+#include <span>
 #include <string>
+#include <vector>
 
 #include "common/tasks/environment_description.h"
 
@@ -32,5 +34,11 @@ class __attribute__((visibility("hidden"))) SpaceArray {
   const bool real_;                    // float32 or float64
   const pybind11::object contiguous_;  // numpy.ascontiguousarray
 };
+
+// The argument of env.step: `action`, in the environment's units, as an array of the action space's
+// element type (float32 or float64) and of `shape`. Holds Python's lock.
+pybind11::array ActionArray(const tasks::ArraySpace& space,
+                            const std::vector<pybind11::ssize_t>& shape,
+                            std::span<const double> action);
 
 }  // namespace shoal::python
