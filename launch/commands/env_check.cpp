@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// shoal env check: how Shoal sees an environment of Python, and whether it keeps to what it says.
+// shoal env check: how Shoal sees a user's environment, and whether it keeps to what it says.
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
@@ -90,14 +90,14 @@ int CheckEnvironment(const TrainOptions& options, const std::string& json) {
 void AddEnvCheckCommand(CLI::App& env, Action* chosen) {
   CLI::App* command = env.add_subcommand(
       "check",
-      "Make an environment of Python, play it, and say how it is observed, whether it repeats, and "
+      "Make an environment of yours, play it, and say how it is observed, whether it repeats, and "
       "whether hindsight is possible (docs/own_environment.md).");
   const auto environment = std::make_shared<std::string>();
   const auto options = std::make_shared<TrainOptions>();
   const auto json = std::make_shared<std::string>();
   command
       ->add_option("environment", *environment,
-                   "A name that gymnasium.make knows, MODULE:NAME or FILE.py:NAME")
+                   "A name that gymnasium.make knows, MODULE:NAME, FILE.py:NAME or FILE.so:NAME")
       ->required();
   command->add_option("--set", options->set, "KEY=VALUE, such as env.kwargs; may be repeated")
       ->allow_extra_args(false);

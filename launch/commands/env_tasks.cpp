@@ -77,7 +77,7 @@ int PrintInputs(const InputsRequest& request, const std::string& json) {
   return 0;
 }
 
-// Whether a word is the name of an environment of Python: a module or a file and a name behind a
+// Whether a word is the name of a user's environment: a module or a file and a name behind a
 // colon, or a name with a version, such as "Pendulum-v1", that no task has.
 bool NamesEnvironment(const std::string& word) {
   if (word.find(':') != std::string::npos) return true;
@@ -126,7 +126,7 @@ void AddList(CLI::App& env, Action* chosen) {
   command->callback([=] { *chosen = [=] { return List(*json); }; });
 }
 
-// Refuses what goes only with an environment of Python (`of_environments`) beside a task, and the
+// Refuses what goes only with a user's environment (`of_environments`) beside a task, and the
 // model of a task beside an environment.
 void CheckOptionsOf(const std::string& name, bool hosted,
                     const std::vector<const CLI::Option*>& of_environments,
@@ -134,7 +134,7 @@ void CheckOptionsOf(const std::string& name, bool hosted,
   const auto is_given = [](const CLI::Option* option) { return option->count() > 0; };
   if (!hosted && std::ranges::any_of(of_environments, is_given)) {
     throw UsageError(
-        "env describe: --preset and --set go with an environment of Python, not with "
+        "env describe: --preset and --set go with an environment of yours, not with "
         "the task {}",
         name);
   }
@@ -148,7 +148,7 @@ void AddDescribe(CLI::App& env, Action* chosen) {
   CLI::App* command = env.add_subcommand(
       "describe",
       "A task's observations (shape, unit, meaning, bounds, measured range), what each action axis "
-      "does when moved alone, its reward and cameras. Of an environment of Python: how its spaces "
+      "does when moved alone, its reward and cameras. Of an environment of yours: how its spaces "
       "become frames, blocks and actions. Of a run: inputs of its policy, and privileged inputs of "
       "training.");
   const auto request = std::make_shared<worlds::DescribeRequest>();
@@ -157,7 +157,7 @@ void AddDescribe(CLI::App& env, Action* chosen) {
   // One of three says what is described, and the options of a task go with a task alone.
   CLI::Option* task = command->add_option(
       "task", request->task,
-      "Task, e.g. FetchReachDense, or environment of Python, e.g. Pendulum-v1 (as for env check)");
+      "Task, e.g. FetchReachDense, or environment of yours, e.g. Pendulum-v1 (as for env check)");
   CLI::Option* run =
       command->add_option("--run", inputs->run, "Run in place of a task: name or folder");
   run->excludes(task);
