@@ -35,8 +35,8 @@ std::string EnvironmentDifference(const std::string& before, const std::string& 
 std::string SpecMismatch(const RunConfig& run, const ObservationSpec& now) {
   if (!run.spec.environment.empty() && run.spec.environment != now.environment) {
     return fmt::format(
-        "environment {} has changed since the run began: {}; expected the spaces that the run was "
-        "trained with",
+        "environment {} has changed since the run began: {}; expected the environment that the "
+        "run was trained with",
         run.config.env.id, EnvironmentDifference(run.spec.environment, now.environment));
   }
   ObservationSpec same_model = now;

@@ -4,6 +4,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -120,12 +121,26 @@ Hosts ResumedHosts(const TrainOptions& options, const fs::path& run, const Confi
   return hosts;
 }
 
-// The world that the actors observe now. Whether an environment of Python reports success, and its
-// goal, stay what was found when the run began.
+// Whether the replay may go on computing rewards for other goals as it did. A threshold is found
+// from samples at each start.
+bool HasGoalOf(const tasks::EnvironmentDescription& was, const tasks::EnvironmentDescription& now) {
+  constexpr double kTolerance = 1e-5;  // relative
+  if (!was.goal) return true;
+  return now.goal && now.goal->reward == was.goal->reward &&
+         std::abs(now.goal->threshold - was.goal->threshold) <= kTolerance * was.goal->threshold;
+}
+
+// The world that the actors observe now. What playing showed when the run began stays: whether
+// steps report success, and the goal unless its rewards have changed.
 ObservedWorld ObserveEnvironmentAgain(const RunConfig& run) {
   tasks::EnvironmentDescription now = DescribeEnvironment(run.config).description;
-  now.TakeFindings(
-      tasks::EnvironmentFromJson(ParseBoundedJson<nlohmann::json>(run.spec.environment)));
+  const tasks::EnvironmentDescription was =
+      tasks::EnvironmentFromJson(ParseBoundedJson<nlohmann::json>(run.spec.environment));
+  if (HasGoalOf(was, now)) {
+    now.TakeFindings(was);
+  } else {
+    now.success = was.success;
+  }
   return {.spec = hosted::SpecOf(now, run.config)};
 }
 

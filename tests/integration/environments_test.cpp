@@ -228,6 +228,40 @@ TEST_F(Environments, OneThatHasChangedIsRefusedWhenTheRunGoesOn) {
   EXPECT_EQ(ExitCode(resumed), 0) << resumed.out << resumed.err;
 }
 
+// The replay computes rewards by the threshold that was found when the run began.
+TEST_F(Environments, AnotherThresholdIsRefusedWhenTheRunGoesOn) {
+  const std::filesystem::path file = run_.parent() / "mine.py";
+  const auto write = [&](const std::string& reward) {
+    std::ofstream(file) << "import goals, numpy as np\n"
+                           "class Mine(goals.Reach):\n"
+                           "    def compute_reward(self, achieved_goal, desired_goal, info):\n"
+                           "        apart = np.abs(achieved_goal - desired_goal)\n"
+                           "        return -float("
+                        << reward << ")\n";
+  };
+  write("np.linalg.norm(apart) > 0.05");
+  const TrainingRun::Keys keys{{"replay.hindsight", "future"},
+                               {"env_steps", "400"},
+                               {"eval.interval", "1000000"},
+                               {"eval.final_episodes", "0"}};
+  const ProgramResult done = Shoal(Words(file.string() + ":Mine", keys));
+  ASSERT_EQ(ExitCode(done), 0) << done.out << done.err;
+  const std::vector<std::string> words{"train", "--resume", run_.path(), "--set", "env_steps=500"};
+  const std::pair<const char*, const char*> changes[] = {
+      {"np.linalg.norm(apart) > 0.06", "\"threshold\":0.05} and is {"},
+      {"apart.max() > 0.05", "its reward is no threshold"}};
+  for (const auto& [reward, expected] : changes) {
+    write(reward);
+    const ProgramResult refused = Shoal(words);
+    EXPECT_NE(ExitCode(refused), 0) << refused.out;
+    EXPECT_THAT(refused.err, HasSubstr(expected));
+    EXPECT_EQ(std::ranges::count(refused.err, '\n'), 1) << refused.err;
+  }
+  write("np.linalg.norm(apart) > 0.05");
+  const ProgramResult resumed = Shoal(words);
+  EXPECT_EQ(ExitCode(resumed), 0) << resumed.out << resumed.err;
+}
+
 // The environment may bring another version of MuJoCo.
 TEST_F(Environments, TheActorLoadsNoEngineOfShoals) {
   const ProgramResult done = Shoal(CheckWords("engines:Alone"));
