@@ -95,7 +95,7 @@ class Environments : public testing::Test {
     return meta.value("error", "");
   }
 
-  const TrainingRun run_;
+  const TrainingRun run_{};
 };
 
 TEST_F(Environments, OneByNameIsTrainedJudgedAndGoesOn) {

@@ -65,7 +65,7 @@ class ExpendableActors : public testing::Test {
     return meta;
   }
 
-  const TrainingRun run_;
+  const TrainingRun run_{};
   const std::filesystem::path crashes_ = run_.parent() / "crashes";
 };
 

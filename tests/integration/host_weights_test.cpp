@@ -56,7 +56,7 @@ class HostWeightsOfARun : public testing::Test {
     ExpectBalanced(run_.Json("meta.json"));
   }
 
-  const TrainingRun run_;
+  const TrainingRun run_{};
   RunningTraining training_;
 };
 
