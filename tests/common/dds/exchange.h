@@ -9,6 +9,7 @@
 
 #include "tests/common/dds/peer_process.h"
 #include "tests/common/link/example_messages.h"
+#include "tests/common/link/message_text.h"
 
 namespace shoal::dds {
 

@@ -16,7 +16,6 @@
 #include "common/dds/bus.h"
 #include "common/dds/host_network.h"
 #include "tests/common/dds/peer_process.h"
-#include "tests/common/link/example_messages.h"
 
 namespace shoal::dds {
 namespace {

@@ -12,6 +12,7 @@
 
 #include "tests/common/dds/encode_cdr.h"
 #include "tests/common/link/example_messages.h"
+#include "tests/common/link/message_text.h"
 
 namespace shoal::dds {
 namespace {

@@ -4,6 +4,7 @@
 
 #include "tests/common/link/contract_fixture.h"
 #include "tests/common/link/example_messages.h"
+#include "tests/common/link/message_text.h"
 
 namespace shoal::link {
 namespace {

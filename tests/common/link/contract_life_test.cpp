@@ -2,6 +2,7 @@
 // The contract of hub.h: matches, deaths, restarts, threads, memory and acknowledgements.
 #include "tests/common/link/contract_fixture.h"
 #include "tests/common/link/example_messages.h"
+#include "tests/common/link/message_text.h"
 
 namespace shoal::link {
 namespace {

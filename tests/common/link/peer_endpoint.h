@@ -18,6 +18,7 @@
 #include "common/link/reader.h"
 #include "common/link/writer.h"
 #include "tests/common/link/example_messages.h"
+#include "tests/common/link/message_text.h"
 #include "tests/common/link/peer_commands.h"
 
 namespace shoal::link {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "tests/common/link/example_messages.h"
+#include "tests/common/link/message_text.h"
 
 namespace shoal::link {
 namespace {
