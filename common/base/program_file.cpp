@@ -18,7 +18,7 @@ constexpr std::string_view kName = "--argv0";
 
 fs::path Executable() {
   std::error_code error;
-  const fs::path executable = fs::read_symlink("/proc/self/exe", error);
+  fs::path executable = fs::read_symlink("/proc/self/exe", error);
   if (error) throw RuntimeError("cannot read /proc/self/exe: {}", error.message());
   return executable;
 }

@@ -30,8 +30,8 @@ struct StepSize {
 
 SHOAL_CPU_CLONES void AdamRange(const AdamArrays& arrays, int64_t begin, int64_t end,
                                 const StepSize& size) {
-  constexpr float b1 = float(kBeta1), c1 = float(1 - kBeta1);
-  constexpr float b2 = float(kBeta2), c2 = float(1 - kBeta2);
+  constexpr float kB1 = float(kBeta1), kC1 = float(1 - kBeta1);
+  constexpr float kB2 = float(kBeta2), kC2 = float(1 - kBeta2);
   const float rate = size.rate, root_scale = size.root_scale, epsilon = size.epsilon;
   const float* g = arrays.gradient;
   const float* m = arrays.m;
@@ -42,8 +42,8 @@ SHOAL_CPU_CLONES void AdamRange(const AdamArrays& arrays, int64_t begin, int64_t
   float* next_w = arrays.next_value;
 #pragma omp simd
   for (int64_t i = begin; i < end; ++i) {
-    next_m[i] = b1 * m[i] + c1 * g[i];
-    next_v[i] = b2 * v[i] + c2 * g[i] * g[i];
+    next_m[i] = kB1 * m[i] + kC1 * g[i];
+    next_v[i] = kB2 * v[i] + kC2 * g[i] * g[i];
     next_w[i] = w[i] - rate * next_m[i] / (std::sqrt(next_v[i]) * root_scale + epsilon);
   }
 }

@@ -45,18 +45,18 @@ EvaluationPoint PointOf(const ordered_json& object, const std::string& source) {
   if (!summary.checkpoint || !summary.version) {
     throw RuntimeError("{}: expected a checkpoint and its weights_version", source);
   }
-  const EvaluationPoint point{.env_steps = summary.env_steps,
-                              .updates = summary.version->update,
-                              .wall_seconds = summary.wall_seconds,
-                              .success = summary.aggregate.success_rate,
-                              .mean_return = summary.aggregate.return_mean,
-                              .return_std = summary.aggregate.return_std,
-                              .mean_length = summary.aggregate.length_mean,
-                              .final_distance = summary.aggregate.final_distance_mean,
-                              .checkpoint = *summary.checkpoint,
-                              .episodes = summary.aggregate.episodes,
-                              .learner_session = summary.version->session,
-                              .faulty_episodes = summary.aggregate.faulty_episodes};
+  EvaluationPoint point{.env_steps = summary.env_steps,
+                        .updates = summary.version->update,
+                        .wall_seconds = summary.wall_seconds,
+                        .success = summary.aggregate.success_rate,
+                        .mean_return = summary.aggregate.return_mean,
+                        .return_std = summary.aggregate.return_std,
+                        .mean_length = summary.aggregate.length_mean,
+                        .final_distance = summary.aggregate.final_distance_mean,
+                        .checkpoint = *summary.checkpoint,
+                        .episodes = summary.aggregate.episodes,
+                        .learner_session = summary.version->session,
+                        .faulty_episodes = summary.aggregate.faulty_episodes};
   if (!IsPlainName(point.checkpoint)) {
     throw RuntimeError("{}: checkpoint '{}': expected a folder's name without a path", source,
                        point.checkpoint);

@@ -70,7 +70,7 @@ fs::path FindNamed(const std::string& name_or_folder, std::span<const NamedKind>
     if (std::ranges::count(looked_at, text) == 0) looked_at.push_back(std::move(text));
   };
   for (const NamedKind& kind : kinds) {
-    const fs::path path = kind.dir / name_or_folder;
+    fs::path path = kind.dir / name_or_folder;
     if (Has(path, kind.file)) return path;
     nouns.push_back(kind.noun);
     look(path);

@@ -49,6 +49,7 @@ std::vector<EvaluationFigures> ReadAll(const fs::path& run, const std::string& s
   }
   std::ranges::sort(files);
   std::vector<EvaluationFigures> all;
+  all.reserve(files.size());
   for (const fs::path& file : files) all.push_back(ReadEvaluationFigures(file));
   return all;
 }

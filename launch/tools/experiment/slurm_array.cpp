@@ -95,6 +95,7 @@ std::vector<ExperimentRun> StillToBeDone(const StoredExperiment& experiment,
 std::string ArrayScript(const StoredExperiment& experiment, const std::vector<ExperimentRun>& runs,
                         const ArrayTerms& terms, const fs::path& program) {
   std::vector<std::string> names;
+  names.reserve(runs.size());
   for (const ExperimentRun& run : runs) names.push_back(run.name);
   const size_t at_once =
       terms.at_once ? std::min<size_t>(*terms.at_once, runs.size()) : runs.size();

@@ -73,7 +73,7 @@ class GraphWriter {
 
   std::string Add(const std::string& op, std::vector<std::string> inputs,
                   std::map<std::string, OnnxAttribute> attributes = {}) {
-    const std::string output = fmt::format("/{}_{}", op, model_.nodes.size());
+    std::string output = fmt::format("/{}_{}", op, model_.nodes.size());
     model_.nodes.push_back({op, std::move(inputs), output, std::move(attributes)});
     return output;
   }
@@ -260,7 +260,7 @@ std::string AddVector(const std::optional<nn::VectorScale>& scale, const OnnxMod
     if (input.name != kPixelsInput) blocks.push_back(input.name);
   }
   if (blocks.empty()) return "";
-  const std::string vector = graph->Concatenate(blocks);
+  std::string vector = graph->Concatenate(blocks);
   if (!scale) return vector;
   const auto row = [](std::span<const float> values) {
     return OnnxTensor{{int64_t(values.size())}, {values.begin(), values.end()}};

@@ -19,6 +19,7 @@ std::vector<float> OwnActions(const policy::CheckpointPolicy& policy,
   policy::TrainedPolicy trained(policy);
   const auto values = BlocksOf(trained.spec(), observations);
   std::vector<policy::ObservedBlock> blocks;
+  blocks.reserve(values.size());
   for (const auto& [name, block] : values) blocks.push_back({name, block});
   std::vector<float> actions(size_t(observations.count) * size_t(trained.spec().action_size));
   trained.Act({.count = observations.count, .pixels = observations.frames, .blocks = blocks},

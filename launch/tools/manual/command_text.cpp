@@ -24,6 +24,7 @@ std::vector<Word> Split(std::string text, const std::string& separator) {
 
 std::vector<Word> Named(const std::vector<std::string>& names) {
   std::vector<Word> words;
+  words.reserve(names.size());
   for (const std::string& name : names) words.push_back({name, ""});
   return words;
 }

@@ -121,6 +121,7 @@ std::string CompletionScript(Shell shell, const std::vector<CommandText>& progra
                              : shell == Shell::kZsh ? kZshCompletion
                                                     : kFishCompletion;
   std::vector<std::string> names;
+  names.reserve(programs.size());
   for (const CommandText& program : programs) names.push_back(program.name);
   const std::string with_table = Replaced(script, "@TABLE@", Table(shell, AllRows(programs)));
   return Replaced(Replaced(with_table, "@LEVELS@", Levels(shell, programs)), "@PROGRAMS@",
