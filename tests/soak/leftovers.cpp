@@ -43,9 +43,10 @@ std::set<std::string> SharedMemoryObjects() {
   std::error_code error;
   for (fs::directory_iterator it("/dev/shm", error), end; !error && it != end;
        it.increment(error)) {
-    // Files of a fuzzer that runs meanwhile (tests/fuzz), which change all the time.
-    if (it->path().filename().string().starts_with("shoal-fuzz-")) continue;
-    names.insert(it->path().filename());
+    const std::string name = it->path().filename();
+    // Of a fuzzer or a simulation that runs meanwhile; they change all the time.
+    if (name.starts_with("shoal-fuzz-") || name.starts_with("shoal-simulate-")) continue;
+    names.insert(name);
   }
   return names;
 }
