@@ -44,7 +44,7 @@ std::set<std::string> SharedMemoryObjects() {
   for (fs::directory_iterator it("/dev/shm", error), end; !error && it != end;
        it.increment(error)) {
     const std::string name = it->path().filename();
-    // Of a fuzzer or a simulation that runs meanwhile; they change all the time.
+    // A fuzzer or a simulation that runs meanwhile makes these and changes them all the time.
     if (name.starts_with("shoal-fuzz-") || name.starts_with("shoal-simulate-")) continue;
     names.insert(name);
   }
