@@ -7,8 +7,10 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <utility>
 
 #include "common/run_folder/run_file_names.h"
 
@@ -45,14 +47,12 @@ class CountedCursor {
     const double start = Number(report, "t") - Number(report, "uptime_seconds");
     // Else another server: the clock may be set back so that both seem to have started together.
     const double uptime = Number(report, "uptime_seconds");
-    const bool follows = std::abs(start - start_) < kSameStart && uptime >= uptime_;
-    uptime_ = uptime;
-    if (!follows) {
-      uncounted_ = stored;
-      constant_rate_ = true;
-    }
-    // A lower rate has a narrower band, but credit that was given before the change stays.
-    constant_rate_ = constant_rate_ && (!follows || rate == rate_);
+    const double uptime_before = std::exchange(uptime_, uptime);
+    const bool follows = std::abs(start - start_) < kSameStart && uptime >= uptime_before;
+    if (!follows) uncounted_ = stored;
+    // A lower rate has a narrower band, but credit that was given before the change stays, also
+    // where the clock has jumped so that the same server does not seem to follow.
+    constant_rate_ = uptime < uptime_before || (constant_rate_ && rate == rate_);
     if (sampleable < min_size_) uncounted_ = stored + min_size_ - sampleable;
     const double granted = rate * std::max(0., stored - uncounted_);
     const double sampled = Number(report, "sampled");
@@ -73,7 +73,8 @@ class CountedCursor {
   const double min_size_;
   bool constant_rate_ = true;
   double uncounted_ = 0;  // env steps before which none count
-  double cursor_ = 0, granted_ = 0, sampled_ = 0, rate_ = 0, start_ = 0, uptime_ = 0;
+  double cursor_ = 0, granted_ = 0, sampled_ = 0, rate_ = 0, start_ = 0;
+  double uptime_ = std::numeric_limits<double>::infinity();
 };
 
 // One line when the learner dropped a rollout that did not come late, while each actor and the
