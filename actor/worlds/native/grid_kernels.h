@@ -86,7 +86,6 @@ SHOAL_INLINE Colour GridLight(const LightSet& lights, const Surface& s, M lanes,
   const PlaneGrid& grid = *s.grid;
   const GridCell x = FindCell(grid, 0, EvalAxes(s.grid_axes[0], p));
   const GridCell y = FindCell(grid, 1, EvalAxes(s.grid_axes[1], p));
-  const I next = Set(int32_t{1}), stride = Set(int32_t{grid.stride});
   const I origin = Times(y.index, grid.stride) + x.index;
   const bool one_cell = NeedCells(lights, s, lanes, x.index, y.index, origin);
   const F one = Set(1.0f);
@@ -109,12 +108,11 @@ SHOAL_INLINE Colour GridLight(const LightSet& lights, const Surface& s, M lanes,
               Select(low, Set(upper[0]), Set(light[1])));
     }
   } else {
-    const I a = Select(low, origin, origin + stride + next);
-    const I b = Select(low, origin + next, origin + stride);
-    const I d = Select(low, origin + stride, origin + next);
     for (int c = 0; c < count; ++c) {
-      const float* light = grid.light[c];
-      *channels[c] = mix(Gather(light, a), Gather(light, b), Gather(light, d));
+      const Quads corners = GatherQuads(grid.light[c], grid.stride, origin);
+      *channels[c] = mix(Select(low, corners.upper_left, corners.lower_right),
+                         Select(low, corners.upper_right, corners.lower_left),
+                         Select(low, corners.lower_left, corners.upper_right));
     }
   }
   if (count == 1) colour.g = colour.b = colour.r;

@@ -1,65 +1,71 @@
 // SPDX-License-Identifier: Apache-2.0
-// Reads from one address for each lane. Included by the sources of the kernels.
+// Reads from one place in an array for each lane. Included by the sources of the kernels.
 #pragma once
 
 #include "actor/worlds/native/lanes.h"
 
 namespace {
 
-// base[at] of each lane. Lanes must hold indices that exist, used or not.
-SHOAL_INLINE I Gather(const int32_t* base, I at) {
-#if SHOAL_LANES == 16
-  return {_mm512_i32gather_epi32(at.v, base, 4)};
-#elif SHOAL_LANES == 8
-  return {_mm256_i32gather_epi32(base, at.v, 4)};
-#else
-  alignas(16) int32_t index[4];
-  Store(index, at);
-  return {_mm_setr_epi32(base[index[0]], base[index[1]], base[index[2]], base[index[3]])};
-#endif
+// at[0], at[1], at[stride] and at[stride + 1].
+template <typename T>
+SHOAL_INLINE __m128 LoadQuad(const T* at, int stride) {
+  const __m128i upper = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(at));
+  const __m128i lower = _mm_loadl_epi64(reinterpret_cast<const __m128i*>(at + stride));
+  return _mm_castsi128_ps(_mm_unpacklo_epi64(upper, lower));
 }
-SHOAL_INLINE F Gather(const float* base, I at) {
-#if SHOAL_LANES == 16
-  return {_mm512_i32gather_ps(at.v, base, 4)};
-#elif SHOAL_LANES == 8
-  return {_mm256_i32gather_ps(base, at.v, 4)};
+
+// The quads at base + index[0], base + index[4], ... side by side.
+template <typename T>
+SHOAL_INLINE F LoadQuads(const T* base, int stride, const int32_t* index) {
+  const __m128 first = LoadQuad(base + index[0], stride);
+#if SHOAL_LANES == 4
+  return {first};
 #else
-  alignas(16) int32_t index[4];
-  Store(index, at);
-  return {_mm_setr_ps(base[index[0]], base[index[1]], base[index[2]], base[index[3]])};
+  const __m256 low =
+      _mm256_insertf128_ps(_mm256_castps128_ps256(first), LoadQuad(base + index[4], stride), 1);
+#if SHOAL_LANES == 8
+  return {low};
+#else
+  const __m256 high =
+      _mm256_insertf128_ps(_mm256_castps128_ps256(LoadQuad(base + index[8], stride)),
+                           LoadQuad(base + index[12], stride), 1);
+  return {_mm512_insertf32x8(_mm512_castps256_ps512(low), high, 1)};
+#endif
 #endif
 }
 
-// base[at] and base[at + 1] of each lane.
-SHOAL_INLINE void GatherPairs(const int32_t* base, I at, I* first, I* second) {
-#if SHOAL_LANES == 16
-  const __m512i low = _mm512_i32gather_epi64(_mm512_castsi512_si256(at.v), base, 4);
-  const __m512i high = _mm512_i32gather_epi64(_mm512_extracti64x4_epi64(at.v, 1), base, 4);
-  const __m512i even = _mm512_setr_epi32(0, 2, 4, 6, 8, 10, 12, 14, 16, 18, 20, 22, 24, 26, 28, 30);
-  first->v = _mm512_permutex2var_epi32(low, even, high);
-  second->v = _mm512_permutex2var_epi32(low, _mm512_add_epi32(even, _mm512_set1_epi32(1)), high);
-#elif SHOAL_LANES == 8
-  const auto* pairs = reinterpret_cast<const long long*>(base);
-  const __m256 low =
-      _mm256_castsi256_ps(_mm256_i32gather_epi64(pairs, _mm256_castsi256_si128(at.v), 4));
-  const __m256 high =
-      _mm256_castsi256_ps(_mm256_i32gather_epi64(pairs, _mm256_extracti128_si256(at.v, 1), 4));
-  // Lanes 0 1 4 5 | 2 3 6 7, then in order.
-  const __m256 even = _mm256_shuffle_ps(low, high, _MM_SHUFFLE(2, 0, 2, 0));
-  const __m256 odd = _mm256_shuffle_ps(low, high, _MM_SHUFFLE(3, 1, 3, 1));
-  first->v = _mm256_permute4x64_epi64(_mm256_castps_si256(even), _MM_SHUFFLE(3, 1, 2, 0));
-  second->v = _mm256_permute4x64_epi64(_mm256_castps_si256(odd), _MM_SHUFFLE(3, 1, 2, 0));
-#else
-  alignas(16) int32_t index[4];
+SHOAL_INLINE F InterleaveLow(F a, F b) {
+  return {SHOAL_V(_mm_unpacklo_ps, _mm256_unpacklo_ps, _mm512_unpacklo_ps)(a.v, b.v)};
+}
+SHOAL_INLINE F InterleaveHigh(F a, F b) {
+  return {SHOAL_V(_mm_unpackhi_ps, _mm256_unpackhi_ps, _mm512_unpackhi_ps)(a.v, b.v)};
+}
+// (a0 a1 b0 b1) and (a2 a3 b2 b3) of each 128 bits.
+SHOAL_INLINE F FirstHalves(F a, F b) {
+  return {SHOAL_V(_mm_shuffle_ps, _mm256_shuffle_ps, _mm512_shuffle_ps)(a.v, b.v, 0x44)};
+}
+SHOAL_INLINE F SecondHalves(F a, F b) {
+  return {SHOAL_V(_mm_shuffle_ps, _mm256_shuffle_ps, _mm512_shuffle_ps)(a.v, b.v, 0xee)};
+}
+
+struct Quads {
+  F upper_left, upper_right, lower_left, lower_right;
+};
+
+// base[at], base[at + 1], base[at + stride] and base[at + stride + 1] of each lane, as bits of
+// either type. Lanes must hold indices that exist, used or not. Two loads of 64 bits for each lane
+// and a transposition are faster than gather instructions.
+template <typename T>
+SHOAL_INLINE Quads GatherQuads(const T* base, int stride, I at) {
+  static_assert(sizeof(T) == 4);
+  alignas(64) int32_t index[kLanes];
   Store(index, at);
-  const auto pair = [base, &index](int i) {
-    return _mm_loadl_epi64(reinterpret_cast<const __m128i*>(base + index[i]));
-  };
-  const __m128 low = _mm_castsi128_ps(_mm_unpacklo_epi64(pair(0), pair(1)));
-  const __m128 high = _mm_castsi128_ps(_mm_unpacklo_epi64(pair(2), pair(3)));
-  first->v = _mm_castps_si128(_mm_shuffle_ps(low, high, _MM_SHUFFLE(2, 0, 2, 0)));
-  second->v = _mm_castps_si128(_mm_shuffle_ps(low, high, _MM_SHUFFLE(3, 1, 3, 1)));
-#endif
+  const F q0 = LoadQuads(base, stride, index), q1 = LoadQuads(base, stride, index + 1);
+  const F q2 = LoadQuads(base, stride, index + 2), q3 = LoadQuads(base, stride, index + 3);
+  const F upper01 = InterleaveLow(q0, q1), upper23 = InterleaveLow(q2, q3);
+  const F lower01 = InterleaveHigh(q0, q1), lower23 = InterleaveHigh(q2, q3);
+  return {FirstHalves(upper01, upper23), SecondHalves(upper01, upper23),
+          FirstHalves(lower01, lower23), SecondHalves(lower01, lower23)};
 }
 
 }  // namespace

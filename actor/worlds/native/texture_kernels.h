@@ -48,14 +48,12 @@ SHOAL_INLINE Texels Mix(Texels a, Texels b, I weight) {
   return {Lerp16(a.red_blue, b.red_blue, weight), Lerp16(a.green, b.green, weight)};
 }
 
-// The texels at `upper` and `lower` and those on their right.
-SHOAL_INLINE Texels Bilinear(const int32_t* texels, I upper, I lower, F fx, F fy) {
+// The texels at `upper_left`, on its right and below both.
+SHOAL_INLINE Texels Bilinear(const int32_t* texels, int stride, I upper_left, F fx, F fy) {
   const I wx = Weight16(fx), wy = Weight16(fy);
-  I left, right;
-  GatherPairs(texels, upper, &left, &right);
-  const Texels top = Mix(Split(left), Split(right), wx);
-  GatherPairs(texels, lower, &left, &right);
-  return Mix(top, Mix(Split(left), Split(right), wx), wy);
+  const Quads quads = GatherQuads(texels, stride, upper_left);
+  const Texels top = Mix(Split(Bits(quads.upper_left)), Split(Bits(quads.upper_right)), wx);
+  return Mix(top, Mix(Split(Bits(quads.lower_left)), Split(Bits(quads.lower_right)), wx), wy);
 }
 
 SHOAL_INLINE I Times(I a, int b) { return a * Set(int32_t{b}); }
@@ -70,8 +68,7 @@ SHOAL_INLINE Texels Sample2d(const Texture& texture, int level, F s, F t) {
   const F x = scaled(s, width), y = scaled(t, height);
   const I column = Truncate(x), row = Truncate(y);
   const int stride = width + 2;
-  const I upper = Times(row, stride) + column;
-  return Bilinear(texture.level[level], upper, upper + Set(int32_t{stride}), x - ToFloat(column),
+  return Bilinear(texture.level[level], stride, Times(row, stride) + column, x - ToFloat(column),
                   y - ToFloat(row));
 }
 
@@ -84,9 +81,8 @@ SHOAL_INLINE Texels SampleCube(const Texture& texture, int level, I face, F u, F
   };
   const F x = scaled(u), y = scaled(v);
   const I column = Min(Truncate(x), Set(int32_t{size})), row = Min(Truncate(y), Set(int32_t{size}));
-  const I upper = Times(Times(face, stride) + row, stride) + column;
-  return Bilinear(texture.level[level], upper, upper + Set(int32_t{stride}), x - ToFloat(column),
-                  y - ToFloat(row));
+  const I upper_left = Times(Times(face, stride) + row, stride) + column;
+  return Bilinear(texture.level[level], stride, upper_left, x - ToFloat(column), y - ToFloat(row));
 }
 
 // Level and weight of the next one for a footprint of `rho` texels, as llvmpipe
