@@ -2,9 +2,10 @@
 # SPDX-License-Identifier: Apache-2.0
 # bundle_test.sh BUILD [--slim] [--debian SUITE]: makes a bundle of BUILD, unpacks it elsewhere, and
 # uses it there with nothing of this system's libraries: `shoal check`, a training, an evaluation, a
-# training from pixels (slim: in quality native) and (not slim) a film. --debian: in a bare root of that Debian, made by
-# debootstrap, which needs root and a mirror; else in this system, as it is. With XZ_LEVEL=1
-# (make.sh), as CI sets it, the archive may be 1.2 times as large: a full one has 102 MB instead of 85.
+# training from pixels (slim: in quality native), the web page, a plot, manual, completions and (not
+# slim) a film. --debian: in a bare root of that Debian, made by debootstrap, which needs root and a
+# mirror; else in this system, as it is. With XZ_LEVEL=1 (make.sh), as CI sets it, the archive may be
+# 1.2 times as large: a full one has 102 MB instead of 85.
 set -euo pipefail
 build=$(readlink -f "$1")
 shift
@@ -68,6 +69,33 @@ keys="--set env_steps=2000 --set eval.interval=1000 --set eval.episodes=2 --set 
 run "'$bundle/bin/shoal' train --preset fetch-reach-state $keys --set run_name=state" >"$work/state" 2>&1 ||
   { cat "$work/state"; fail "training from state"; }
 run "'$bundle/bin/shoal' eval state --episodes 3" >/dev/null || fail "evaluation"
+# The web page at its address, a plot where gnuplot is installed, manual pages and completions.
+inside "cd '$place'; timeout 60 '$bundle/bin/shoal' web --port 0 >web 2>&1 & echo \$!" >"$work/web.pid"
+for _ in {1..100}; do ! grep -qs "http://" "$target/web" || break; sleep 0.1; done
+port=$(sed -n 's#.*http://127\.0\.0\.1:\([0-9]*\).*#\1#p' "$target/web")
+[[ -n $port ]] || { cat "$target/web"; fail "no address of the web page"; }
+exec 3<>"/dev/tcp/127.0.0.1/$port"
+printf 'GET / HTTP/1.1\r\nHost: 127.0.0.1:%s\r\nConnection: close\r\n\r\n' "$port" >&3
+page=$(cat <&3)
+exec 3>&-
+kill "$(<"$work/web.pid")"
+[[ $page == "HTTP/1.1 200"* && $page == *dygraph* ]] || { head -c 500 <<<"$page"; fail "the web page"; }
+if inside "command -v gnuplot" >/dev/null; then
+  run "'$bundle/bin/shoal' plot state" >/dev/null || fail "a plot"
+  [[ -s $target/curves.png ]] || fail "an empty plot"
+else
+  if run "'$bundle/bin/shoal' plot state" >"$work/plot" 2>&1; then fail "a plot without gnuplot"; fi
+  grep -q gnuplot "$work/plot" || { cat "$work/plot"; fail "no word of gnuplot"; }
+fi
+share=$target/$name/share
+for page in man1/shoal{,-actor,-learner,-replay}.1 man5/shoal-configuration.5; do
+  zgrep -q '^\.TH' "$share/man/$page.gz" || fail "no manual page $page"
+done
+bash -c 'source "$1" && complete -p shoal' completion "$share/bash-completion/completions/shoal" \
+  >/dev/null || fail "no completion of bash"
+for file in zsh/vendor-completions/_shoal fish/vendor_completions.d/shoal.fish; do
+  grep -q eval "$share/$file" || fail "no completion $file"
+done
 # Another host: a second copy of the bundle, in a folder of its own, behind a shell.
 mkdir -p "$target/other host"
 cp -r "$target/$name" "$target/other host/"
