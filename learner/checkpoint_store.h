@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The checkpoints of a run: RUN/checkpoints. Keeps the newest three and those that an evaluation is
-// still waited for; `best`, which is the coordinator's, and everything of another name stay.
+// The checkpoints of a run: RUN/checkpoints. Keeps the newest three and those whose evaluation is
+// pending. Never removes `best`, which belongs to the coordinator, nor a file of another name.
 //
 // One thread, one learner per run.
 #pragma once
@@ -32,13 +32,13 @@ class CheckpointStore {
   // there are checkpoints but none can be used.
   std::optional<Checkpoint> RestoreNewest();
 
-  // Writes one and removes those not kept any more, except the names in `wanted`. Returns its name.
-  // One that cannot be written is reported, kept in memory and written by a later call of this
-  // or of Retry; the earlier checkpoints are then all still there. Of those in memory the newest
-  // kMostUnwritten stay.
+  // Writes a checkpoint, returns its name, and removes those not kept any more, except the names in
+  // `wanted`. A checkpoint that cannot be written is reported, kept in memory and written by a
+  // later call of Write or Retry; until then no earlier checkpoint is removed. At most the newest
+  // kMostUnwritten stay in memory.
   std::string Write(const CheckpointState& state, nn::TensorMap learner, nn::TensorMap policy,
                     const std::set<std::string>& wanted);
-  // Tries again; at most every kRetryPeriod, unless `now`.
+  // Tries to write them again; at most every kRetryPeriod, unless `now`.
   void Retry(const std::set<std::string>& wanted, bool now = false);
   size_t unwritten() const { return unwritten_.size(); }
   // Updates of the newest checkpoint that is not written yet; empty if all are written.

@@ -38,7 +38,7 @@ class WeightsInbox final : public WeightsSource {
   explicit WeightsInbox(uint64_t spec_hash, OnNewest on_newest = {})
       : spec_hash_(spec_hash), on_newest_(std::move(on_newest)) {}
 
-  // Receive thread. Keeps the newest version of which all parts have come; parts of another spec or
+  // Receive thread. Keeps the newest version whose parts have all arrived; parts of another spec or
   // with a wrong CRC are counted and dropped.
   void OnMessage(const WeightsPart& part);
 

@@ -129,14 +129,14 @@ struct CheckpointEvaluation {
   std::string task = "";
   // Destination of frames, if any; the episodes are then played one after the other.
   std::optional<FrameRecorder::Options> frames = {};
-  // Asked to stop: the result of the episodes that were played, with `episodes_asked`, if there are
-  // any.
+  // If asked to stop, the result is that of the episodes played so far, with `episodes_asked`, if
+  // there are any.
   bool partial = false;
-  // Told after each episode how many have ended by then.
+  // Called after each episode with the number of ended ones.
   std::function<void(int ended)> on_ended = {};
 };
 // Plays fresh episodes (final stream of the seed) with the policy of a checkpoint folder of the
-// run. Throws Error when it is asked to stop, but for `partial`.
+// run. Throws Error when it is asked to stop, unless `partial` is set.
 nlohmann::ordered_json EvaluateCheckpoint(
     const std::filesystem::path& run, const std::filesystem::path& checkpoint,
     const CheckpointEvaluation& evaluation,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An Environment out of a user's environment: maps actions from [-1, 1] to its bounds
+// Makes an Environment of a user's environment: maps actions from [-1, 1] to its bounds
 // (action_mapping.h), images to frames, other arrays to blocks (observation_mapping.h), and refuses
 // numbers that are not finite.
 #pragma once

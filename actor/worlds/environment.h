@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One environment of a task, as the actor loop sees it: reset, step, observe. The physics half of a
-// task lives behind it; only this folder knows MuJoCo.
+// One environment of a task, as the actor loop sees it: reset, step, observe. It hides the physics
+// half of the task; only this folder knows MuJoCo.
 #pragma once
 
 #include <cstdint>
@@ -39,8 +39,8 @@ class Environment {
   virtual ~Environment() = default;
   virtual const ObservationSpec& spec() const = 0;
   // Reset and Step throw EpisodeFault (actor/worlds/episode_fault.h) when the simulation's state, a
-  // number of an observation or a reward is not finite: the episode is over, nothing of that step
-  // is to be used, and what `out` had stays. They throw Error (kNonFinite) when an action is not
+  // number of an observation or a reward is not finite: the episode is over, that step has no
+  // result, and `out` keeps its former content. They throw Error (kNonFinite) when an action is not
   // finite.
   //
   // Starts the episode named by the stream key: equal keys give bit-identical episodes for equal
@@ -49,7 +49,7 @@ class Environment {
   // `action` (A), each in [-1, 1], is repeated for the control steps of an env step, or until the
   // episode ends; the observation is taken once, after the last.
   virtual StepResult Step(std::span<const float> action, ObservationOut out) = 0;
-  // Simulated since some moment before the last reset; 0 throughout where it is not known.
+  // Simulated time since a moment before the last reset; always 0 if it is unknown.
   virtual double simulated_seconds() const { return 0; }
   // Seconds spent drawing frames since the construction.
   virtual double render_seconds() const = 0;

@@ -2,8 +2,8 @@
 // SHOAL_CPU_CLONES before a function: the compiler builds it for several generations of x86-64 CPUs
 // and the loader picks one, so that plain loops are as wide as the machine. Not for templates.
 //
-// The choice is made by ifunc resolvers, which run before the thread sanitizer is ready: built with
-// it there is one version only.
+// The choice is made by ifunc resolvers, which run before the thread sanitizer is ready. A build
+// with that sanitizer has the default version only.
 #pragma once
 
 #if defined(__x86_64__) && !defined(__SANITIZE_THREAD__)

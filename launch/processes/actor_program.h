@@ -16,16 +16,16 @@ namespace shoal::launch {
 
 struct ObservedWorld {
   ObservationSpec spec;
-  // The time of drawing a frame, all cameras, on this machine, and of a whole env step with it.
+  // Time to draw a frame (all cameras) on this machine, and of a whole env step with its frame.
   double frame_microseconds = 0, step_microseconds = 0;
 };
 
 struct DescribedEnvironment {
   tasks::EnvironmentDescription description;
-  int steps = 0;                    // that were tried
+  int steps = 0;                    // tried
   double step_microseconds = 0;     // duration of one
-  int repeated_steps = 0;           // that were played again with the same seed and actions
-  std::optional<int> differs_at{};  // the first that was another the second time; 0 = the reset
+  int repeated_steps = 0;           // played again with the same seed and actions
+  std::optional<int> differs_at{};  // first step that differed when repeated; 0 = the reset
 };
 
 // The environment of env.id as its interpreter describes it. Plays one episode of random actions,
@@ -49,17 +49,17 @@ struct EvaluationOrder {
   int episodes = 0;
   int64_t seed = 0;
   std::string task = {};            // to play instead of the run's; empty = the run's
-  std::filesystem::path json = {};  // where the result goes; empty = nowhere
+  std::filesystem::path json = {};  // file for the result; empty = none
   ShownFrames frames = {};
-  bool own_run = false;  // the caller holds the run: temporary files go into its folder
-  bool partial = false;  // stopped, what was played by then counts
-  // Told every few seconds how far it is, "37 of 100 episodes", if it is farther than before.
+  bool own_run = false;  // the caller holds the run: temporary files are written to its folder
+  bool partial = false;  // if stopped, the episodes played so far are the result
+  // Called every few seconds with the progress, "37 of 100 episodes", if it has changed.
   std::function<void(const std::string& line)> progress = {};
 };
 
-// `shoal-actor --evaluate`: fresh episodes of the final stream with a checkpoint. Throws Error when
-// it fails; empty when `stop` ended it, but for `partial` once an episode was played: of fewer
-// episodes, then, the first ones of those that were asked for. `json` must not exist, then.
+// `shoal-actor --evaluate`: plays fresh episodes of the final stream with a checkpoint. Throws
+// Error when it fails. Returns nothing if `stop` ended it; with `partial`, the result of the first
+// episodes, if one was played: `json` must not exist before the call.
 std::optional<EvaluationPoint> EvaluateByActor(const EvaluationOrder& order,
                                                const std::function<bool()>& stop);
 

@@ -2,8 +2,8 @@
 // The processes of a run as threads of this one (shoal train --in-process): the same services over
 // a link in memory, with the same files and logs. For debuggers, and for tests without processes.
 //
-// One run per process: what the engine (MuJoCo's error callbacks), OpenMP (its pool), the renderer
-// and task libraries keep is the process's.
+// One run per process, because MuJoCo's error callbacks, OpenMP's pool, the renderer and task
+// libraries have state that belongs to the process.
 #pragma once
 
 #include <filesystem>
@@ -21,11 +21,11 @@ class InProcessRoles {
   InProcessRoles(const std::filesystem::path& folder, const Config& config);
 
   // Starts threads for the process, which is a replay, a learner, an actor or the evaluation actor.
-  // Its stop signals are requests to its thread group; SIGKILL, of which threads have no like, ends
-  // this whole process with one line, and the run can be resumed. The result borrows this object.
+  // Its stop signals are requests to its thread group. SIGKILL has no equivalent for threads: it
+  // ends this whole process with one line, and the run can be resumed. The result borrows this.
   std::unique_ptr<RunningProcess> Start(const ProcessSpec& spec);
 
-  // The coordinator's place on the link.
+  // The coordinator's endpoint of the link.
   link::Hub& coordinator() { return *coordinator_; }
 
  private:
@@ -36,8 +36,8 @@ class InProcessRoles {
   const std::unique_ptr<link::Hub> coordinator_;
 };
 
-// Prepares this process for --in-process, which OpenMP and the renderer want before they are
-// loaded: starts the program anew, once, with their environment. Call before any thread is made.
+// Prepares this process for --in-process: starts the program anew, once, with the environment
+// variables that OpenMP and the renderer read when they are loaded. Call before any thread is made.
 // Throws Error.
 void PrepareForRolesInProcess();
 

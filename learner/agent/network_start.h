@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // An agent whose networks start from given weights instead of random ones.
 //
-// Taken over are networks (encoder.*, actor.*, critic.*, value.*, their targets and averages) and
-// the running moments of observations. Optimisers, temperature, counters and the scale of rewards
-// start as always: what is learned is another run.
+// The agent takes over networks (encoder.*, actor.*, critic.*, value.*, their targets and averages)
+// and the running moments of observations. Optimisers, temperature, counters and the scale of
+// rewards start as in any new run.
 #pragma once
 
 #include <string>

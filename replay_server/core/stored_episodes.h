@@ -14,16 +14,16 @@ namespace shoal::replay {
 struct StoredEpisodes {
   // Record ids, reset first (goal records are left out); the episode that ended first comes first.
   std::vector<std::vector<uint64_t>> whole;
-  uint64_t overwritten = 0;  // their first records are gone; at most one per environment, as a rule
-  uint64_t unended = 0;      // go on, or were cut: neither terminated nor truncated
+  uint64_t overwritten = 0;  // whose first records are gone; usually at most one per environment
+  uint64_t unended = 0;      // running or cut: neither terminated nor truncated
 };
 
-// Every record of the ring belongs to one of the episodes counted or listed. Of a snapshot, too,
-// that a server is writing to: ask CopyEpisode for the records.
+// Every record of the ring belongs to one of the episodes counted or listed. A server may be
+// writing to the ring meanwhile: ask CopyEpisode for the records.
 StoredEpisodes FindEpisodes(const Ring& ring);
 
-// The records of an episode one after the other, layout().record_bytes() each; nothing where a
-// server has overwritten one of them since.
+// The records of an episode one after the other, layout().record_bytes() each; nothing if a server
+// has overwritten one of them since.
 std::optional<std::vector<uint8_t>> CopyEpisode(const Ring& ring, const std::vector<uint64_t>& ids);
 
 }  // namespace shoal::replay

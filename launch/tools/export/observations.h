@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Observations that two computations of one policy are compared on.
+// Observations on which two computations of one policy are compared.
 #pragma once
 
 #include <cstdint>
@@ -20,9 +20,9 @@ struct ObservationSet {
   std::vector<float> vectors = {};   // (N, V)
 };
 
-// Images of noise, each of a range of brightness of its own. Vectors normal around 0 with deviation
-// 1; where the policy normalises them (`scale`) around what it is used to, a tenth of their numbers
-// 30 times as far away: what is cut off is seen.
+// Images are noise, each in a brightness range of its own. Vectors are normal with mean 0 and
+// deviation 1. If the policy normalises vectors, theirs are the mean and deviation of `scale`, and
+// a tenth of the numbers is 30 times as far from the mean, so that clipping shows.
 ObservationSet RandomObservations(const ObservationSpec& spec,
                                   const std::optional<nn::VectorScale>& scale, int count,
                                   uint64_t seed);

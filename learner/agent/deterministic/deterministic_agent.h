@@ -8,9 +8,9 @@
 //   4. targets of actor and critic follow                                               (Eq. 9)
 //   5. the averaged policy follows encoder and actor                                   (Eq. 12)
 //
-// 3 in every actor_period-th update, 4 in every target_period-th, counted from 1: the critic moves
-// first. As in SAC the encoder is trained by the critic's loss alone and has no target; one with
-// batch normalisation takes running statistics in 1, those of the batch in 2 and 3.
+// Step 3 belongs to every actor_period-th update, step 4 to every target_period-th, counted from 1:
+// the critic moves first. As in SAC, the encoder is trained by the critic's loss alone and has no
+// target. With batch normalisation it uses running statistics in 1, those of the batch in 2 and 3.
 //
 // Sources: Lillicrap et al. 2015, arXiv:1509.02971; Fujimoto et al. 2018, arXiv:1802.09477.
 #pragma once
@@ -32,8 +32,8 @@ struct DeterministicOptions {
   double target_noise = 0, target_noise_clip = 0;
 };
 
-// In the order of an update; the actor's only where the update moves the actor. The last two need a
-// second critic.
+// In the order of an update. The actor's figures exist only if the update moves the actor; the last
+// two need a second critic.
 inline constexpr const Figure* kTwinFigures[] = {
     &kCriticLoss, &kQMean,         &kTargetMean,       &kCriticGradNorm,
     &kActorLoss,  &kActorGradNorm, &kActionSaturation, &kLearningRate,
