@@ -35,7 +35,7 @@ VARIANTS = ["+".join(v) for v in itertools.product(("eager", "compiled"), ("f32"
 UPDATE_TARGET, CONVOLUTIONS_TARGET = 2.5, 0.8
 CONVOLUTIONS = "its convolutions alone"
 SB3_TARGET, SB3_SHARED_TARGET, SB3_F32_TARGET = 4, 10, 1.5
-FAST_TARGET, REFERENCE_TARGET = 10, 1.5
+FAST_TARGET, NATIVE_TARGET, REFERENCE_TARGET = 10, 20, 1.5
 
 
 # --- The peers -------------------------------------------------------------------------------------
@@ -435,12 +435,13 @@ class Peers:
 
         def measure():
             rows = ours(options, "shoal-bench-actors", stage, ["--real"])
-            return {q: r["figure"] for q in ("fast", "reference") for r in rows
-                    if f"{q}, on" in r["stage"]}
+            return {q: r["figure"] for q in ("fast", "native", "reference") for r in rows
+                    if r["stage"].endswith(f"{q}, on {cores} cores")}
 
         pairs = self.in_turn("Gymnasium-Robotics",
                              lambda: Worker(options.python, "environments", cores), measure)
-        for quality, target in (("fast", FAST_TARGET), ("reference", REFERENCE_TARGET)):
+        for quality, target in (("fast", FAST_TARGET), ("native", NATIVE_TARGET),
+                                ("reference", REFERENCE_TARGET)):
             self.add(f"{cores} actors {stage}, {quality}", "env steps/s",
                      f"Gymnasium-Robotics in SubprocVecEnv of {cores}, OSMesa",
                      [(our[quality], their and their * cores) for our, their in pairs], target)
