@@ -2,12 +2,13 @@
 """Env steps per second of PPO, Shoal's beside Stable-Baselines3's. Prints JSON.
 
 usage: ppo_rates.py SHOAL [hopper] [reach] [reach-pixels] [--repetitions N] [--share F]
+                    [--quality Q]
 
 SHOAL is the program; shoal-bench lies beside it. Both sides have the same rollouts, minibatches,
 epochs and networks, those of the presets hopper-ppo, fetch-reach-ppo and fetch-reach-pixels-ppo. From
 pixels theirs is NatureCNN, the customary one, on one 84x84 picture of the original environment by
-OSMesa; ours is the preset's small encoder on two pictures. Each side counts from the end of its first
-update on; no evaluations.
+OSMesa; ours is the preset's small encoder on two pictures, in quality Q if it is given. Each side
+counts from the end of its first update on; no evaluations.
 
 The two sides are measured in turn, N times (3). Theirs is measured in four variants, each in a process
 of its own: SubprocVecEnv or DummyVecEnv, PyTorch with its default number of threads or with one. The
@@ -116,10 +117,12 @@ def rate_of_sb3(kind, variant, share):
 # --- Ours -----------------------------------------------------------------------------------------
 
 
-def rate_of_shoal(program, preset, env_steps):
+def rate_of_shoal(program, preset, env_steps, quality):
     with tempfile.TemporaryDirectory() as folder:
         keys = {"run_dir": folder, "env_steps": env_steps, "eval.interval": 10**8,
                 "eval.final_episodes": 0, "stop.success": 2}
+        if quality:
+            keys["observation.quality"] = quality
         command = [program, "train", "--preset", preset, "--run-name", "run"]
         for key, value in keys.items():
             command += ["--set", f"{key}={value}"]
@@ -147,12 +150,13 @@ def rate_of_physics(program):
 # --- Both in turn ---------------------------------------------------------------------------------
 
 
-def measure(program, kind, repetitions, share):
+def measure(program, kind, repetitions, share, quality):
     preset, env_steps = KINDS[kind][:2]
+    quality = quality if kind == "reach-pixels" else None
     ours, physics, theirs = [], [], {variant: [] for variant in VARIANTS}
     for repetition in range(repetitions):
         before = rate_of_physics(program) if kind == "reach" else None
-        ours.append(rate_of_shoal(program, preset, int(env_steps * share)))
+        ours.append(rate_of_shoal(program, preset, int(env_steps * share), quality))
         if before is not None:
             physics.append((before + rate_of_physics(program)) / 2)
         for variant in VARIANTS:
@@ -170,6 +174,8 @@ def measure(program, kind, repetitions, share):
                         for variant, rates in theirs.items()},
            "ratio": round(statistics.median(ours) / statistics.median(theirs[best]), 2),
            "spread": [round(min(ratios), 2), round(max(ratios), 2)]}
+    if quality:
+        row["quality"] = quality
     if physics:
         row["physics_alone_on_all_cores"] = [round(rate, 1) for rate in physics]
         row["ratio_to_physics_alone"] = round(
@@ -187,11 +193,13 @@ def main():
     parser.add_argument("tasks", nargs="*", metavar="task", help=" | ".join(KINDS))
     parser.add_argument("--repetitions", type=int, default=3)
     parser.add_argument("--share", type=float, default=1)
+    parser.add_argument("--quality", choices=("fast", "native", "reference"),
+                        help="of our pictures; default: the preset's")
     arguments = parser.parse_args()
     if not set(arguments.tasks) <= set(KINDS) or arguments.repetitions < 1:
         parser.error(f"tasks are {', '.join(KINDS)}; --repetitions is at least 1")
     program = arguments.shoal
-    rows = [measure(program, kind, arguments.repetitions, arguments.share)
+    rows = [measure(program, kind, arguments.repetitions, arguments.share, arguments.quality)
             for kind in arguments.tasks or KINDS]
     version = subprocess.run([program, "--version"], capture_output=True, text=True, check=True)
     print(json.dumps({"shoal": version.stdout.strip(), "cores": os.cpu_count(),
