@@ -6,7 +6,6 @@
 #include <sys/prctl.h>
 #include <sys/wait.h>
 
-#include "common/config/run_membership.h"
 #include "common/wire/control_state.h"
 #include "tests/support/processes.h"
 #include "tests/support/running_training.h"
@@ -33,33 +32,29 @@ bool EndedInOrder(pid_t pid) {
   return WIFEXITED(status) || WTERMSIG(status) == SIGHUP;
 }
 
-TEST(CoordinatorKill, ProcessesLeaveInOrderAndResumeGoesOn) {
+TEST(CoordinatorKill, ProcessesLeaveInOrderAndAResumeAtOnceWaitsForThemAndGoesOn) {
   prctl(PR_SET_CHILD_SUBREAPER, 1);  // orphans become ours: their exit codes can be read
   const TrainingRun run;
   const TrainingRun::Keys keys{
       {"env_steps", "1000000"}, {"actors", "2"}, {"eval.interval", "2000"}};
-  uint64_t updates_before = 0;
-  {
-    RunningTraining training(run, run.Command(keys));
-    ASSERT_TRUE(training.WaitForSteps(4000)) << training.Output();
-    updates_before =
-        static_cast<uint64_t>(training.reports().Await("learner").value("updates", 0.0));
-    const std::vector<pid_t> orphans = ChildrenOf(training.pid());
-    EXPECT_EQ(orphans.size(), 5u) << "replay, learner, two actors, evaluation actor";
-    ASSERT_EQ(kill(training.pid(), SIGKILL), 0);
-    EXPECT_EQ(training.End(seconds(5)), -1);
-    for (const pid_t pid : orphans) {
-      const std::vector<std::string> command = CommandLine(pid);
-      ASSERT_TRUE(WaitUntilEnded(pid, kLeave)) << (command.empty() ? "?" : command[0]);
-      EXPECT_TRUE(EndedInOrder(pid)) << (command.empty() ? "?" : command[0]);
-    }
+  RunningTraining training(run, run.Command(keys));
+  ASSERT_TRUE(training.WaitForSteps(4000)) << training.Output();
+  const auto updates_before =
+      static_cast<uint64_t>(training.reports().Await("learner").value("updates", 0.0));
+  const std::vector<pid_t> orphans = ChildrenOf(training.pid());
+  EXPECT_EQ(orphans.size(), 5u) << "replay, learner, two actors, evaluation actor";
+  ASSERT_EQ(kill(training.pid(), SIGKILL), 0);
+  EXPECT_EQ(training.End(seconds(5)), -1);
+  RunningTraining resumed(run, ResumeCommand(run));
+  for (const pid_t pid : orphans) {
+    const std::vector<std::string> command = CommandLine(pid);
+    ASSERT_TRUE(WaitUntilEnded(pid, kLeave)) << (command.empty() ? "?" : command[0]);
+    EXPECT_TRUE(EndedInOrder(pid)) << (command.empty() ? "?" : command[0]);
   }
-  EXPECT_EQ(AnyMember(run.path()), std::nullopt);
   EXPECT_NE(ReadFile(run.path() / "logs" / "replay-0.log").find("coordinator is gone"),
             std::string::npos);
-
-  RunningTraining resumed(run, ResumeCommand(run));
   ASSERT_EQ(resumed.End(seconds(240)), 0) << resumed.Output();
+  EXPECT_NE(resumed.Output().find("waiting up to 60 s"), std::string::npos) << resumed.Output();
   const json meta = run.Json("meta.json");
   ExpectBalanced(meta);
   EXPECT_EQ(meta.at("accounting").at("lost_with_process"), 0) << "everything made was stored";
@@ -106,20 +101,6 @@ TEST(CoordinatorKill, ARunThatIsInterruptedInsteadIsNotEvaluated) {
   EXPECT_NE(training.Output().find("go on with shoal train --resume"), std::string::npos)
       << training.Output();
   EXPECT_EQ(run.Json("meta.json").at("exit"), "interrupted");
-}
-
-TEST(CoordinatorKill, AResumeAtOnceWaitsForTheFormerProcesses) {
-  const TrainingRun run;
-  {
-    RunningTraining training(run, run.Command({{"env_steps", "1000000"}, {"actors", "1"}}));
-    ASSERT_TRUE(training.WaitForSteps(2000)) << training.Output();
-    ASSERT_EQ(kill(training.pid(), SIGKILL), 0);
-    EXPECT_EQ(training.End(seconds(5)), -1);
-  }
-  RunningTraining resumed(run, ResumeCommand(run));
-  ASSERT_EQ(resumed.End(seconds(240)), 0) << resumed.Output();
-  EXPECT_NE(resumed.Output().find("waiting up to 60 s"), std::string::npos) << resumed.Output();
-  ExpectBalanced(run.Json("meta.json"));
 }
 
 }  // namespace

@@ -65,21 +65,6 @@ TEST(InProcess, CtrlCEndsItInOrderAndProcessesGoOn) {
   EXPECT_GE(run.Json("meta.json").at("env_steps").get<int64_t>(), before + 1000);
 }
 
-TEST(InProcess, AKilledRunGoesOnInProcessWithItsLostRecordsCounted) {
-  const TrainingRun run;
-  {
-    RunningTraining training(run, run.Command({{"env_steps", "1000000"}}, {"--in-process"}));
-    ASSERT_TRUE(training.WaitForSteps(1500)) << training.Output();
-    ASSERT_EQ(kill(training.pid(), SIGKILL), 0);
-    ASSERT_EQ(training.End(seconds(10)), -1);
-  }
-  const ProgramResult resumed = RunProgram({"shoal", "train", "--in-process", "--resume",
-                                            run.path().string(), "--set", "env_steps=4000"},
-                                           seconds(120));
-  ASSERT_EQ(ExitCode(resumed), 0) << resumed.out << resumed.err;
-  ExpectBalanced(run.Json("meta.json"));
-}
-
 TEST(InProcess, AnActorThatFailsIsRestartedAndSaysWhy) {
   const TrainingRun run;
   RunningTraining training(

@@ -43,25 +43,6 @@ TEST(OnPolicy, ARunOfWholeRolloutsHasNoReplayAndAnExactAccount) {
       << replay.err;
 }
 
-TEST(OnPolicy, AStoppedRunIsResumedAndTheAccountGoesOn) {
-  const TrainingRun run;
-  RunningTraining training(
-      run, run.OnPolicyCommand({{"env_steps", "12000"}, {"eval.interval", "4000"}}));
-  ASSERT_TRUE(WaitForMoreUpdates(&training, 2)) << training.Output();
-  training.Interrupt();
-  ASSERT_EQ(training.End(seconds(120)), kInterruptedExit) << training.Output();
-  const json before = run.Json("meta.json");
-  ASSERT_LT(before.at("env_steps").get<int64_t>(), 12000) << "ended before it was interrupted";
-  ExpectBalanced(before);
-  RunningTraining resumed(run, {"shoal", "train", "--resume", run.path().string()});
-  ASSERT_EQ(resumed.End(seconds(180)), 0) << resumed.Output();
-  const json meta = run.Json("meta.json");
-  EXPECT_EQ(meta.at("exit"), "budget");
-  EXPECT_GE(meta.at("env_steps").get<int64_t>(), 12000);
-  EXPECT_GT(meta.at("updates").get<int64_t>(), before.at("updates").get<int64_t>());
-  ExpectBalanced(meta);
-}
-
 TEST(OnPolicy, InLockstepTheRunRepeatsBitForBit) {
   const auto learner = [](const std::string& seed) {
     const TrainingRun run;
@@ -118,70 +99,6 @@ TEST(OnPolicy, WithoutAnActorThatHangsUpdatesAreMadeOfTheOtherHalf) {
                        seconds(60))
                    .is_null())
       << "it joins again";
-  training.Interrupt();
-  ASSERT_EQ(training.End(seconds(120)), kInterruptedExit) << training.Output();
-  ExpectBalanced(run.Json("meta.json"));
-}
-
-// Half of the environments make no minibatch: the update waits for the actor that hangs.
-TEST(OnPolicy, AnActorThatHangsIsWaitedForWhereTheOthersMakeNoMinibatch) {
-  const TrainingRun run;
-  RunningTraining training(run, run.OnPolicyCommand({{"env_steps", "10000000"},
-                                                     {"eval.interval", "1000000"},
-                                                     {"actors", "2"},
-                                                     {"envs_per_actor", "1"},
-                                                     {"ppo.rollout_steps", "64"},
-                                                     {"learner.batch", "128"},
-                                                     {"ppo.rollout_deadline", "0.1"}}));
-  ASSERT_TRUE(WaitForMoreUpdates(&training, 2)) << training.Output();
-  const json actor = training.reports().Await("actor");
-  ASSERT_FALSE(actor.is_null());
-  const pid_t victim = actor.at("pid").get<pid_t>();
-  ASSERT_EQ(kill(victim, SIGSTOP), 0);
-  const auto half_is_there = [](const json& r) { return r.at("rollouts_ready") == 1; };
-  const json first = training.reports().WaitFor("learner", half_is_there);
-  ASSERT_FALSE(first.is_null()) << training.Output();
-  const double long_after_the_deadline = first.at("t").get<double>() + 2;
-  const json later = training.reports().WaitFor(
-      "learner", [&](const json& r) { return r.at("t").get<double>() >= long_after_the_deadline; });
-  ASSERT_FALSE(later.is_null()) << training.Output();
-  EXPECT_EQ(Updates(later), Updates(first));
-  EXPECT_TRUE(half_is_there(later)) << later.dump();
-  ASSERT_EQ(kill(victim, SIGCONT), 0);
-  EXPECT_TRUE(WaitForMoreUpdates(&training, 3)) << training.Output();
-  training.Interrupt();
-  ASSERT_EQ(training.End(seconds(120)), kInterruptedExit) << training.Output();
-  const json meta = run.Json("meta.json");
-  ExpectBalanced(meta);
-  EXPECT_EQ(meta.at("restarts"), 0);
-}
-
-TEST(OnPolicy, ARunIsScaledAndSetWhileItGoesOn) {
-  const TrainingRun run;
-  RunningTraining training(
-      run, run.OnPolicyCommand({{"env_steps", "10000000"}, {"eval.interval", "1000000"}}));
-  ASSERT_TRUE(WaitForMoreUpdates(&training, 2)) << training.Output();
-  const std::string folder = run.path().string();
-  const auto order = [&](std::vector<std::string> words) {
-    words.insert(words.begin(), "shoal");
-    words.insert(words.end(), {"--run", folder});
-    return RunProgram(words, seconds(60));
-  };
-  for (const int actors : {3, 1}) {
-    const ProgramResult scaled = order({"scale", "--actors", std::to_string(actors)});
-    ASSERT_EQ(ExitCode(scaled), 0) << scaled.out << scaled.err;
-    const json whole = training.reports().WaitFor("learner", [&](const json& r) {
-      return r.at("rollout_steps") == actors * 4 * 128;  // the mean of a second with one update
-    });
-    EXPECT_FALSE(whole.is_null()) << actors << " actors: " << training.Output();
-  }
-  const ProgramResult set = order({"set", "env_steps=20000000"});
-  EXPECT_EQ(ExitCode(set), 0) << set.out << set.err;
-  const ProgramResult refused = order({"set", "replay.samples_per_insert=3"});
-  EXPECT_NE(ExitCode(refused), 0);
-  EXPECT_NE(refused.err.find("replay.samples_per_insert = 3.0: learner.algorithm = ppo"),
-            std::string::npos)
-      << refused.err;
   training.Interrupt();
   ASSERT_EQ(training.End(seconds(120)), kInterruptedExit) << training.Output();
   ExpectBalanced(run.Json("meta.json"));

@@ -80,24 +80,6 @@ TEST(Resume, WithAFileTheReplayGoesOnWithItsContent) {
   EXPECT_EQ(meta.at("commit"), before.at("commit"));
 }
 
-TEST(Resume, WithMemoryTheReplayIsRefilledAndSaysSo) {
-  const TrainingRun run;
-  const ProgramResult first = run.Train(
-      {{"env_steps", "2500"}, {"replay.storage", "memory"}, {"eval.final_episodes", "0"}});
-  ASSERT_EQ(ExitCode(first), 0) << first.out << first.err;
-  const auto before = run.Json("meta.json");
-  const ProgramResult resumed = Resume(run, "4500");
-  ASSERT_EQ(ExitCode(resumed), 0) << resumed.out << resumed.err;
-  EXPECT_NE(resumed.out.find("what was stored is gone"), std::string::npos) << resumed.out;
-  EXPECT_NE(ReadFile(run.path() / "logs/replay-0.log").find("refilling to"), std::string::npos);
-  const auto meta = run.Json("meta.json");
-  ExpectBalanced(meta);
-  const int64_t steps = meta.at("env_steps").get<int64_t>();
-  EXPECT_GE(steps, 4500);
-  EXPECT_LT(steps, before.at("env_steps").get<int64_t>() + 4500) << "the count went on";
-  EXPECT_GT(meta.at("updates").get<int64_t>(), before.at("updates").get<int64_t>());
-}
-
 TEST(Resume, AFinishedRunStaysAsItIs) {
   const TrainingRun run;
   const ProgramResult first = run.Train({{"env_steps", "1500"}, {"eval.interval", "500"}});

@@ -40,46 +40,6 @@ std::vector<int64_t> EvaluatedSteps(const TrainingRun& run) {
   return steps;
 }
 
-// Removes the ring, as users do to free two gigabytes. The count of env steps is that of the
-// records which were acknowledged, as the actors made them: resets are no steps.
-TEST(RunFiles, WithoutItsRingARunCountsItsEnvStepsOn) {
-  const TrainingRun run;
-  const ProgramResult first = run.Train({{"env_steps", "3000"},
-                                         {"actors", "1"},
-                                         {"eval.interval", "1000"},
-                                         {"eval.final_episodes", "0"},
-                                         {"replay.keep", "true"}});
-  ASSERT_EQ(ExitCode(first), 0) << first.out << first.err;
-  const auto before = run.Json("meta.json");
-  ASSERT_TRUE(fs::remove(run.path() / "replay.ring"));
-  const ProgramResult resumed = Resume(run, "5000");
-  ASSERT_EQ(ExitCode(resumed), 0) << resumed.out << resumed.err;
-  EXPECT_THAT(resumed.out, AllOf(HasSubstr("replay.ring' is not there: the replay starts empty"),
-                                 HasSubstr("env steps go on from " +
-                                           std::to_string(before.at("env_steps").get<int64_t>()))));
-  const auto meta = run.Json("meta.json");
-  ExpectBalanced(meta);
-  const auto& records = meta.at("accounting");
-  EXPECT_EQ(records.at("lost_with_replay"), before.at("accounting").at("stored"));
-  const auto made = records.at("made").get<int64_t>();
-  const auto steps = meta.at("env_steps").get<int64_t>();
-  EXPECT_GE(steps, 5000);
-  EXPECT_LE(steps, made);
-  EXPECT_GT(steps, made * 9 / 10) << "all of the run's records count, but for resets";
-  EXPECT_EQ(run.Json("accounting.json").at("stored_steps"), steps);
-  // The ratio of the first part: 32 samples, or an eighth of a batch, per step beyond min_size.
-  const double per_step = 32.0 / 256;
-  const auto updates = meta.at("updates").get<double>();
-  EXPECT_LT(updates, per_step * static_cast<double>(steps) + 20);
-  EXPECT_GT(updates, before.at("updates").get<double>());
-  const std::vector<int64_t> evaluated = EvaluatedSteps(run);
-  EXPECT_GE(evaluated.back(), 4000);
-  EXPECT_TRUE(std::ranges::any_of(evaluated, [&](int64_t at) { return at > 3500 && at < 4500; }))
-      << "the interval goes on from the run's own steps";
-  const auto replay = ReportReader(run.path()).Last("replay");
-  EXPECT_EQ(replay.at("stored_steps"), steps) << "limiter and budget use the same count";
-}
-
 TEST(RunFiles, AFinishedRunKeepsItsReplayOnlyWhereItIsAskedTo) {
   const TrainingRun run;
   const ProgramResult first =
@@ -312,31 +272,6 @@ TEST(RunFiles, AFullDiskIsSaidOnceAndTrainingGoesOnUntilThereIsRoom) {
   const std::vector<int64_t> evaluated = EvaluatedSteps(run);
   EXPECT_TRUE(std::ranges::any_of(evaluated, [&](int64_t at) { return at > full && at < room; }))
       << "those of the time between " << full << " and " << room << " env steps are there";
-}
-
-TEST(RunFiles, ADiskThatStaysFullIsTheEndsOwnExitCode) {
-  SHOAL_NEEDS(OwnMounts());
-  const RunOnASmallDisk disk;
-  SHOAL_NEEDS(disk.why_not());
-  const TrainingRun& run = disk.run;
-  int64_t checkpoints = 0;
-  {
-    RunningTraining training(run, run.Command(kOnASmallDisk));
-    ASSERT_TRUE(training.WaitForSteps(2500)) << training.Output();
-    const Filler filler(run.parent() / "filler");
-    std::this_thread::sleep_for(seconds(5));
-    checkpoints = std::distance(fs::directory_iterator(run.path() / "checkpoints"), {});
-    training.Interrupt();
-    ASSERT_EQ(training.End(seconds(60)), 4) << training.Output();
-    EXPECT_THAT(training.Output(), AllOf(HasSubstr("error: could not be written to the end: "),
-                                         HasSubstr("learner-0"), HasSubstr("Make room, then")));
-  }
-  EXPECT_GE(checkpoints, 1) << "the last good one stays";
-  const ProgramResult resumed = Resume(run, "6000");
-  ASSERT_EQ(ExitCode(resumed), 0) << resumed.out << resumed.err;
-  const auto meta = run.Json("meta.json");
-  ExpectBalanced(meta);
-  EXPECT_GE(meta.at("env_steps").get<int64_t>(), 6000);
 }
 
 TEST(RunFiles, ARunWhoseFolderIsMovedGoesOnAndSaysWhatItCouldNotWrite) {

@@ -120,6 +120,14 @@ TEST_F(RunCheckTest, WithoutItsRingTheRunSaysSoAndCountsOn) {
   EXPECT_EQ(ReadAccount(run_).sessions, account_.sessions);
 }
 
+TEST_F(RunCheckTest, ARunWhoseReplayWasInMemorySaysThatItIsRefilled) {
+  config_.config.replay.storage = "memory";
+  fs::remove(run_ / kRingFile);
+  EXPECT_THAT(Check().lines,
+              ElementsAre(AllOf(HasSubstr("replay.storage=memory: what was stored is gone"),
+                                HasSubstr("8 sampleable transitions"))));
+}
+
 TEST_F(RunCheckTest, ARingThatCannotBeUsedIsRefusedWithTheRemedy) {
   const auto refused = [&](const std::string& why) {
     return AllOf(HasSubstr(kRingFile), HasSubstr(why), HasSubstr("remove it, and the run goes on"));
