@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "tests/support/running_training.h"
+#include "tests/support/slow_point.h"
 
 namespace shoal {
 namespace {
@@ -21,13 +22,10 @@ class ExpendableActors : public testing::Test {
   ExpendableActors() { MakeFolders(crashes_); }
 
   std::vector<std::string> Command(TrainingRun::Keys keys = {}) const {
-    TrainingRun::Keys all{{"task_library", ProgramPath("crashing_point.so")},
-                          {"task", "CrashingPoint"},
-                          {"observation.pixels", "false"},
-                          {"env_steps", "10000000"},
-                          {"actors", "2"},
-                          {"eval.interval", "10000000"},
-                          {"eval.final_episodes", "0"}};
+    TrainingRun::Keys all = SlowPoint({{"env_steps", "10000000"},
+                                       {"actors", "2"},
+                                       {"eval.interval", "10000000"},
+                                       {"eval.final_episodes", "0"}});
     for (const auto& [key, value] : keys) all[key] = value;
     return run_.Command(all);
   }
@@ -73,8 +71,8 @@ TEST_F(ExpendableActors, OneThatCrashesAgainAndAgainIsTriedOnAndTheRunLearnsFrom
   Crash("actor-1");
   RunningTraining training = Start();
   // Six deaths within a minute would end a run that needs the process.
-  ASSERT_FALSE(WaitFor(&training, "restarts", 7).is_null()) << training.Output();
-  ASSERT_TRUE(training.WaitForMoreSteps(1000)) << training.Output();
+  ASSERT_FALSE(WaitFor(&training, "restarts", 6).is_null()) << training.Output();
+  ASSERT_TRUE(training.WaitForMoreSteps(500)) << training.Output();
   EXPECT_EQ(training.reports().Last("coordinator").value("actors_working", 0.0), 1);
   EXPECT_THAT(training.Output(),
               AllOf(HasSubstr("| actors 1 of 2: actor-1: killed by SIGSEGV (death "),
@@ -88,7 +86,7 @@ TEST_F(ExpendableActors, OneThatCrashesAgainAndAgainIsTriedOnAndTheRunLearnsFrom
   Mend("actor-1");
   ASSERT_FALSE(WaitForWorking(&training, 2).is_null()) << training.Output();
   const json meta = EndInOrder(&training);
-  EXPECT_GE(meta.at("restarts"), 7);
+  EXPECT_GE(meta.at("restarts"), 6);
   EXPECT_THAT(training.Output(), HasSubstr("deaths: actor-1 "));
 }
 
@@ -130,7 +128,7 @@ TEST_F(ExpendableActors, TrainingGoesOnWithoutAnEvaluationActorOnceThereWasAnEva
       seconds(60));
   ASSERT_FALSE(evaluated.is_null()) << training.Output();
   Crash("eval");
-  ASSERT_FALSE(WaitFor(&training, "restarts", 7).is_null()) << training.Output();
+  ASSERT_FALSE(WaitFor(&training, "restarts", 6).is_null()) << training.Output();
   ASSERT_TRUE(training.WaitForMoreSteps(500)) << training.Output();
   EXPECT_THAT(training.Output(), HasSubstr("no evaluation actor: eval-0: killed by SIGSEGV"));
   EndInOrder(&training);

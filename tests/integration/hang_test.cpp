@@ -6,6 +6,7 @@
 
 #include "launch/processes/supervisor.h"
 #include "tests/support/running_training.h"
+#include "tests/support/slow_point.h"
 
 namespace shoal {
 namespace {
@@ -16,7 +17,8 @@ using std::chrono::seconds;
 TEST(Hang, AStoppedProcessOfEachServerIsReplacedWithinTheDocumentedTime) {
   const TrainingRun run;
   RunningTraining training(
-      run, run.Command({{"env_steps", "1000000"}, {"actors", "2"}, {"eval.final_episodes", "0"}}));
+      run, run.Command(SlowPoint(
+               {{"env_steps", "1000000"}, {"actors", "2"}, {"eval.final_episodes", "0"}})));
   ASSERT_TRUE(training.WaitForSteps(1500)) << training.Output();
   // At once, so that the test waits for one silence: a learner and an actor.
   const std::string roles[] = {"learner", "actor"};

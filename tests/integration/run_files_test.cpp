@@ -8,6 +8,7 @@
 
 #include "tests/support/isolation.h"
 #include "tests/support/running_training.h"
+#include "tests/support/slow_point.h"
 
 namespace shoal {
 namespace {
@@ -234,18 +235,18 @@ class RunOnASmallDisk {
   const SmallDisk disk_;
 };
 
-const TrainingRun::Keys kOnASmallDisk{
-    {"env_steps", "1000000"},     {"actors", "1"},
-    {"replay.capacity", "5000"},  {"eval.interval", "1000"},
-    {"eval.final_episodes", "0"}, {"learner.checkpoint_period", "200"}};
-
 TEST(RunFiles, AFullDiskIsSaidOnceAndTrainingGoesOnUntilThereIsRoom) {
   SHOAL_NEEDS(OwnMounts());
   const RunOnASmallDisk disk;
   SHOAL_NEEDS(disk.why_not());
   const TrainingRun& run = disk.run;
-  RunningTraining training(run, run.Command(kOnASmallDisk));
-  ASSERT_TRUE(training.WaitForSteps(2500)) << training.Output();
+  RunningTraining training(run, run.Command(SlowPoint({{"env_steps", "1000000"},
+                                                       {"actors", "1"},
+                                                       {"replay.capacity", "5000"},
+                                                       {"eval.interval", "1000"},
+                                                       {"eval.final_episodes", "0"},
+                                                       {"learner.checkpoint_period", "200"}})));
+  ASSERT_TRUE(training.WaitForSteps(1500)) << training.Output();
   const auto stored = [&] {
     return training.reports().Await("replay").at("stored_steps").get<int64_t>();
   };
@@ -256,7 +257,7 @@ TEST(RunFiles, AFullDiskIsSaidOnceAndTrainingGoesOnUntilThereIsRoom) {
   filler.Remove();
   std::this_thread::sleep_for(seconds(2));  // kept lines are written with the next one
   const int64_t room = stored();
-  ASSERT_TRUE(training.WaitForMoreSteps(1500)) << training.Output();
+  ASSERT_TRUE(training.WaitForMoreSteps(700)) << training.Output();
   std::this_thread::sleep_for(seconds(11));  // a checkpoint is tried again every ten
   training.Interrupt();
   ASSERT_EQ(training.End(seconds(60)), kInterruptedExit) << training.Output();

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // A point on a line. Each step looks for a file CRASH_FOLDER/NAME, where the variable
 // SHOAL_TEST_CRASH_FOLDER names the folder and NAME is the process's: "actor-1", "eval". While the
-// file exists the process crashes as a null pointer does.
+// file exists the process crashes as a null pointer does. A step takes three milliseconds, so that
+// a run that waits for something leaves the processors to others.
 #include <mujoco/mujoco.h>
 
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
+#include <thread>
 
 #include "actor/worlds/model_text.h"
 #include "actor/worlds/world.h"
@@ -57,6 +60,7 @@ class CrashingPoint final : public shoal::worlds::World {
 
   Outcome Step(std::span<const double> action) override {
     if (!crash_file_.empty() && std::filesystem::exists(crash_file_)) std::raise(SIGSEGV);
+    std::this_thread::sleep_for(std::chrono::milliseconds(3));
     data().ctrl[0] = action[0];
     Advance(4);
     return {};
