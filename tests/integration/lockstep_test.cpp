@@ -72,7 +72,7 @@ TEST(Lockstep, RunningStatisticsRepeatAndGoOnBitForBit) {
   const TrainingRun whole;
   ExpectGoesOnBitForBit(whole,
                         TrainingRun::FromPixels({{"actors", "1"},
-                                                 {"env_steps", "256"},
+                                                 {"env_steps", "192"},
                                                  {"learner.batch", "4"},
                                                  {"network.encoder", "resnet18"},
                                                  {"observation.cameras", R"(["front"])"},

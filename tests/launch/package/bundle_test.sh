@@ -108,7 +108,7 @@ run "'$bundle/bin/shoal' train --preset fetch-reach-state $keys --set run_name=h
   >"$work/hosts" 2>&1 || { cat "$work/hosts"; fail "training on two hosts"; }
 grep -q "actor x2" "$work/hosts" || { cat "$work/hosts"; fail "no actor on the other host"; }
 if [[ -z $slim ]]; then
-  pixels="--preset fetch-reach-fast --set run_name=pixels --set env_steps=8000 --set eval.interval=8000"
+  pixels="--preset fetch-reach-fast --set run_name=pixels --set env_steps=3000 --set eval.interval=3000"
   pixels+=" --set eval.episodes=2 --set eval.final_episodes=4"
   # Meanwhile: the libraries that the processes of the run have mapped.
   run "'$bundle/bin/shoal' train $pixels >'$place/pixels' 2>&1 & run=\$!

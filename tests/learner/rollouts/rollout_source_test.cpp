@@ -156,13 +156,13 @@ TEST_F(RolloutSourceTest, RolloutsThatMakeNoMinibatchAreNotHandedOut) {
 }
 
 TEST_F(RolloutSourceTest, LessThanHalfAreWaitedForBeyondTheDeadline) {
-  Make(3, 10);
+  Make(3, 4);
   a_.PlayThree(0, 0);
   source_->OnChunk(a_.Chunk());
   ASSERT_TRUE(WaitUntilTold(0, 4, seconds(20)));
   EXPECT_FALSE(source_->Next(Now() + milliseconds(400)));
-  source_->SetActors(2);  // fewer are waited for at once
-  EXPECT_TRUE(source_->Next(Now() + seconds(20)));
+  source_->SetActors(2);  // half of them are there: they are waited for until the deadline
+  EXPECT_TRUE(source_->Next(Now() + seconds(6))) << "sooner than after three times the deadline";
 }
 
 TEST_F(RolloutSourceTest, LeavesATrueAccount) {
