@@ -39,8 +39,8 @@ struct ShortRun {
 
 void PrintTo(const ShortRun& run, std::ostream* out) { *out << run.name; }
 
-// The three together pass through both precisions, pictures with and without a vector, stacks,
-// several copies and n-step returns.
+// The three together pass through both precisions, pictures of two qualities with and without a
+// vector, stacks, several copies and n-step returns.
 std::vector<ShortRun> Runs() {
   return {{"state_f32",
            "fetch-reach-state",
@@ -61,6 +61,7 @@ std::vector<ShortRun> Runs() {
             {"observation.goal_mode", "both"},
             {"observation.grey", "true"},
             {"observation.proprioception", "true"},
+            {"observation.quality", "fast"},
             {"observation.stack", "2"},
             {"replay.copies", "2"},
             {"replay.min_size", "200"},

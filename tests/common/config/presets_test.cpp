@@ -31,6 +31,23 @@ TEST(Presets, DrqLearnsFromTwoCamerasAlone) {
   EXPECT_FALSE(config.observation.proprioception);
 }
 
+// They then need no OSMesa. Stable-Baselines3's recipe has the original environment's pictures.
+TEST(Presets, FromPixelsTakeQualityNative) {
+  std::vector<std::string> native;
+  for (const std::string& name : ListPresets()) {
+    const ObservationConfig observation = LoadPreset(name).observation;
+    if (!observation.pixels) continue;
+    if (name == "sb3-nature") {
+      EXPECT_EQ(observation.quality, "reference");
+    } else {
+      EXPECT_EQ(observation.quality, "native") << name;
+      native.push_back(name);
+    }
+  }
+  EXPECT_THAT(native, IsSupersetOf({"fetch-reach-drq", "fetch-reach-fast", "fetch-push-pixels",
+                                    "fetch-reach-pixels-ppo", "pixels"}));
+}
+
 TEST(Presets, StateRendersNothing) {
   const Config config = LoadPreset("fetch-reach-state");
   EXPECT_FALSE(config.observation.pixels);

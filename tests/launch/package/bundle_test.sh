@@ -109,7 +109,7 @@ run "'$bundle/bin/shoal' train --preset fetch-reach-state $keys --set run_name=h
 grep -q "actor x2" "$work/hosts" || { cat "$work/hosts"; fail "no actor on the other host"; }
 if [[ -z $slim ]]; then
   pixels="--preset fetch-reach-fast --set run_name=pixels --set env_steps=3000 --set eval.interval=3000"
-  pixels+=" --set eval.episodes=2 --set eval.final_episodes=4"
+  pixels+=" --set eval.episodes=2 --set eval.final_episodes=4 --set observation.quality=fast"
   # Meanwhile: the libraries that the processes of the run have mapped.
   run "'$bundle/bin/shoal' train $pixels >'$place/pixels' 2>&1 & run=\$!
     while kill -0 \$run 2>/dev/null; do
@@ -141,7 +141,7 @@ refused() {  # TEXT COMMAND
   [[ $(wc -l <<<"$said") == 1 && $said == *"$1"* ]] || fail "'$2' said: $said"
 }
 if [[ -n $slim && $osmesa == missing ]]; then
-  refused "quality=native" "cd '$place' && '$bundle/bin/shoal' train $pixels --set run_name=fast"
+  refused "quality=native" "cd '$place' && '$bundle/bin/shoal' train $pixels --set run_name=fast --set observation.quality=fast"
 fi
 mkdir -p "$target/tools"
 printf '#!/bin/sh\necho aarch64\n' >"$target/tools/uname" && chmod +x "$target/tools/uname"
