@@ -8,10 +8,10 @@
 
 #include "common/base/error.h"
 #include "common/base/stop.h"
+#include "launch/client/run_connection.h"
 #include "launch/commands/commands.h"
 #include "launch/commands/target_options.h"
 #include "launch/watch/live_terminal.h"
-#include "launch/watch/run_client.h"
 #include "launch/watch/run_metrics.h"
 #include "launch/watch/terminal_block.h"
 #include "launch/watch/top_table.h"
@@ -125,7 +125,8 @@ int Top(const TopOptions& options) {
   }
   if (options.json && !options.once) throw UsageError("--json goes with --once");
   InstallStopSignals();
-  RunClient client(ResolveTarget(options.target));
+  RunConnection connection(ResolveTarget(options.target));
+  RunClient& client = connection.client();
   const RunViewMessage view = client.FirstView();
   if (options.json) {
     Print({TopJson(view)});

@@ -5,6 +5,7 @@
 
 #include "common/base/error.h"
 #include "common/dds/bus.h"
+#include "common/run_folder/run_file_names.h"
 #include "launch/record/run_folder.h"
 
 namespace shoal::launch {
@@ -12,16 +13,31 @@ namespace {
 
 namespace fs = std::filesystem;
 
+std::string CoordinatorAt(const ClusterAddress& address) {
+  return fmt::format("{}:{}", address.host, dds::OperatePort(address));
+}
+
 RunTarget TargetOfFolder(const fs::path& folder) {
-  RunTarget target{.name = folder.filename().string(),
-                   .folder = folder,
-                   .address = ReadClusterAddress(folder),
-                   .transport = ReadRunConfig(folder).config.transport};
-  return target;
+  std::error_code ignored;
+  if (!fs::exists(folder / kClusterFile, ignored)) {
+    throw RuntimeError("run '{}' is starting and cannot be reached yet: try again",
+                       folder.filename().string());
+  }
+  const ClusterAddress address = ReadClusterAddress(folder);
+  return {.name = folder.filename().string(),
+          .coordinator = CoordinatorAt(address),
+          .folder = folder,
+          .address = address,
+          .transport = ReadRunConfig(folder).config.transport};
 }
 
 RunTarget TargetOfPeer(const std::string& peer) {
-  RunTarget target{.name = peer, .folder = {}, .address = dds::ParsePeer(peer), .transport = {}};
+  const ClusterAddress address = dds::ParsePeer(peer);
+  RunTarget target{.name = peer,
+                   .coordinator = CoordinatorAt(address),
+                   .folder = {},
+                   .address = address,
+                   .transport = {}};
   target.transport.interface = dds::InterfaceTowards(target.address.host);
   return target;
 }

@@ -19,10 +19,11 @@ struct TargetOptions {
 };
 
 struct RunTarget {
-  std::string name;              // for messages: the run's name or the peer
-  std::filesystem::path folder;  // empty when given by peer
-  ClusterAddress address;
-  TransportConfig transport;
+  std::string name;                // for messages: the run's name or the peer
+  std::string coordinator;         // for messages: its HOST:PORT
+  std::filesystem::path folder{};  // empty when given by peer
+  ClusterAddress address{};
+  TransportConfig transport{};
 };
 
 // Folders in `dir` that are runs (have a config.json) or may not be looked into, sorted by name;

@@ -54,9 +54,9 @@ const std::map<std::string, std::vector<std::string>> kRooms = {
     {"replay_server", {"core", "service"}},
     {"learner", {"engine", "agent", "batch_stream.h", "rollouts"}},
     {"launch",
-     {"record", "processes", "watch", "run", "check", "commands", "tools/film", "tools/experiment",
-      "tools/report", "tools/export", "tools/dataset", "tools/observability", "tools/project",
-      "tools/web", "tools/commands", "tools/manual", "tools/python"}},
+     {"record", "processes", "watch", "run", "client", "check", "commands", "tools/film",
+      "tools/experiment", "tools/report", "tools/export", "tools/dataset", "tools/observability",
+      "tools/project", "tools/web", "tools/commands", "tools/manual", "tools/python"}},
 };
 
 // A folder, or one header, that a room may not include; files that begin with a word of `except`
@@ -94,11 +94,15 @@ const std::vector<Ban> kBans = [] {
          "a role knows the link alone (common/link)",
          {"learner/main.cpp", "learner/command_line.", "replay_server/service/command_line."}});
   }
+  bans.push_back({"launch/client",
+                  "common/dds/",
+                  "a client knows the link alone (common/link)",
+                  {"launch/client/run_connection."}});
   // A simulation runs these rooms on its own clock and threads (common/base/scheduler.h).
   for (const char* room :
        {"actor/acting", "actor/sending", "actor/loop", "actor/evaluation", "common/intake",
-        "common/link", "common/wire", "launch/processes", "launch/record", "launch/run",
-        "launch/watch", "learner", "learner/rollouts", "replay_server/service"}) {
+        "common/link", "common/wire", "launch/client", "launch/processes", "launch/record",
+        "launch/run", "launch/watch", "learner", "learner/rollouts", "replay_server/service"}) {
     for (const char* header : {"condition_variable", "mutex", "thread"}) {
       bans.push_back({room, header, "waits and threads are those of common/base (scheduler.h)"});
     }

@@ -126,14 +126,26 @@ TEST(Layering, ARoleKnowsTheLinkAlone) {
                           "replay_server/service/a.cpp:1: replay_server/service" + why));
 }
 
+TEST(Layering, AClientKnowsTheLinkAndItsConnectionAnImplementation) {
+  const PlantedTree tree;
+  for (const char* file : {"launch/client/run_connection.cpp", "launch/client/run_orders.cpp"}) {
+    tree.Write(file, "#include \"common/dds/bus.h\"\n");
+  }
+  EXPECT_THAT(tree.Breaches(),
+              ElementsAre("launch/client/run_orders.cpp:1: launch/client may not use "
+                          "common/dds/bus.h: a client knows the link alone (common/link)"));
+}
+
 TEST(Layering, ASimulationCanRunTheRoles) {
   const PlantedTree tree;
+  tree.Write("launch/client/a.cpp", "#include <thread>\n");
   tree.Write("actor/loop/a.cpp", "#include <thread>\n#include \"common/base/sleep.h\"\n");
   tree.Write("launch/run/a.cpp", "#include <mutex>\n");
   tree.Write("launch/tools/web/a.cpp", "#include <mutex>\n");
   const std::string why = ": waits and threads are those of common/base (scheduler.h)";
   EXPECT_THAT(tree.Breaches(),
               ElementsAre("actor/loop/a.cpp:1: actor/loop may not use thread" + why,
+                          "launch/client/a.cpp:1: launch/client may not use thread" + why,
                           "launch/run/a.cpp:1: launch/run may not use mutex" + why));
 }
 

@@ -17,6 +17,8 @@ using Kind = Fault::Kind;
 constexpr int kMostFaults = 6;
 constexpr int kWindow = 25'000;                   // ms in which they begin
 constexpr int kAtOnce = 1000;                     // ms between two that come at once
+constexpr uint64_t kBusyUsers = 5;                // one seed in so many has further commands
+constexpr uint64_t kMostCommands = 3;             // of these
 constexpr uint64_t kLongest = 9, kFarthest = 20;  // doublings: 51 s, 29 hours
 
 struct Weight {
@@ -26,7 +28,7 @@ struct Weight {
 constexpr Weight kWeights[] = {
     {Kind::kKill, 20},     {Kind::kPause, 12},   {Kind::kStall, 6},       {Kind::kSlow, 4},
     {Kind::kPartition, 4}, {Kind::kFullDisk, 3}, {Kind::kFailingDisk, 3}, {Kind::kClock, 4},
-    {Kind::kCommand, 8},   {Kind::kWatch, 2},    {Kind::kSecond, 3},      {Kind::kInterrupt, 2}};
+    {Kind::kCommand, 8},   {Kind::kAttach, 2},   {Kind::kSecond, 3},      {Kind::kInterrupt, 2}};
 
 Kind DrawKind(Random& random) {
   uint64_t sum = 0;
@@ -110,6 +112,22 @@ Fault DrawFault(const Config& config, Random& random) {
   return fault;
 }
 
+// Commands within a second of other faults, before or after them.
+void AddCommands(uint64_t seed, std::vector<Fault>* faults) {
+  Random random(HashWords({seed, 3}));
+  const size_t others = faults->size();
+  for (uint64_t left = 1 + random.Below(kMostCommands); left > 0; --left) {
+    Fault fault{.kind = Kind::kCommand, .text = DrawCommand(random)};
+    fault.at = milliseconds(random.Below(kWindow));
+    if (others > 0) {
+      fault.at = (*faults)[random.Below(others)].at + milliseconds(random.Below(2 * kAtOnce)) -
+                 milliseconds(kAtOnce);
+    }
+    fault.at = std::max(fault.at, milliseconds(0));
+    faults->push_back(std::move(fault));
+  }
+}
+
 double Seconds(milliseconds span) { return static_cast<double>(span.count()) / 1000; }
 
 std::string What(const Fault& fault) {
@@ -133,9 +151,9 @@ std::string What(const Fault& fault) {
     case Kind::kClock:
       return fmt::format("the wall clock jumps by {:.3f} s", span);
     case Kind::kCommand:
-      return fmt::format("command: {}", fault.text);
-    case Kind::kWatch:
-      return fmt::format("a client watches for {:.3f} s", span);
+      return fmt::format("shoal {}", fault.text);
+    case Kind::kAttach:
+      return fmt::format("shoal attach for {:.3f} s", span);
     case Kind::kSecond:
       return "a second coordinator asks for the run";
     case Kind::kInterrupt:
@@ -160,6 +178,7 @@ std::vector<Fault> DrawFaults(uint64_t seed, const Config& config) {
     }
     faults.push_back(std::move(fault));
   }
+  if (seed % kBusyUsers == 1) AddCommands(seed, &faults);
   std::ranges::sort(faults, {}, &Fault::at);
   return faults;
 }

@@ -21,8 +21,8 @@ struct Fault {
     kFullDisk,     // for `span` nothing can be written
     kFailingDisk,  // for `span` one step in three of a write fails
     kClock,        // the wall clock jumps by `span`, which may be negative
-    kCommand,      // a client sends `text`: "scale 3"
-    kWatch,        // a client watches the run for `span`
+    kCommand,      // a user runs `shoal` with `text`: "scale 3"
+    kAttach,       // `shoal attach`, and Ctrl-C to it after `span`
     kSecond,       // a second coordinator asks for the run
     kInterrupt,    // Ctrl-C
   };

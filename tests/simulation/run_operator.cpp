@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <csignal>
-#include <sstream>
 #include <utility>
 
 #include "common/base/check.h"
@@ -14,8 +13,6 @@
 #include "common/base/stop.h"
 #include "common/base/write_faults.h"
 #include "common/config/run_membership.h"
-#include "common/link/reader.h"
-#include "common/link/writer.h"
 #include "common/run_folder/run_file_names.h"
 #include "launch/record/run_folder.h"
 
@@ -55,7 +52,10 @@ void RunOperator::Work() {
   Begin begin = Begin::kFresh;
   while (sessions_ < kMostSessions) {
     RunSession(begin);
-    if (finished_) return WaitForChildren();
+    if (finished_) {
+      WaitForChildren();
+      return clients_.WaitForAll();
+    }
     begin = Prepare();
   }
   world_.story.Violate(fmt::format("{} sessions have not brought the run to its end", sessions_));
@@ -125,7 +125,7 @@ void RunOperator::JudgeExit(const SimulatedProcess& coordinator) {
 bool RunOperator::Said(std::string_view text) const {
   const auto& lines = world_.story.lines();
   return std::any_of(lines.begin() + session_begin_, lines.end(), [text](const std::string& line) {
-    return line.find(text) != std::string::npos;
+    return line.find(" coordinator: ") != std::string::npos && line.find(text) != std::string::npos;
   });
 }
 
@@ -236,9 +236,9 @@ void RunOperator::Do(const Fault& fault) {
       scheduler_.MoveWallClock(fault.span);
       return;
     case Kind::kCommand:
-      return SendCommand(fault.text);
-    case Kind::kWatch:
-      return Watch(fault.span);
+      return clients_.Begin(fault.text);
+    case Kind::kAttach:
+      return clients_.Attach(fault.span);
     case Kind::kSecond:
       return AskAsSecond();
     case Kind::kInterrupt:
@@ -267,49 +267,9 @@ void RunOperator::KillCoordinator(const Fault& fault, SimulatedProcess& coordina
   world_.processes.OnCoordinatorDeath();
 }
 
-void RunOperator::SendCommand(const std::string& text) {
-  const std::string name = fmt::format("client-{}", ++clients_);
-  CommandMessage command{
-      .client = static_cast<uint64_t>(clients_), .request = 1, .verb = {}, .arguments = {}};
-  std::istringstream words(text);
-  words >> command.verb;
-  for (std::string word; words >> word;) command.arguments.push_back(word);
-  world_.processes.StartOther(
-      name, link::Role::kClient, world_.folder.string() + ".client.log",
-      [this, name, command](link::Hub& hub) {
-        constexpr int kTries = 60;
-        std::optional<ReplyMessage> reply;
-        link::Writer<CommandMessage> writer(hub);
-        const link::Reader<ReplyMessage> reader(hub, [&](const ReplyMessage& message) {
-          if (message.client != command.client) return;
-          // A request that was sent again is answered again, and carried out once.
-          const bool same =
-              !reply || (reply->accepted == message.accepted && reply->text == message.text);
-          if (!same) world_.story.Violate(fmt::format("a second reply to {}", name));
-          reply = message;
-        });
-        for (int i = 0; i < kTries && !reply; ++i) {
-          writer.Write(command);
-          SleepFor(milliseconds(500));
-        }
-        world_.story.Add(name, reply ? reply->text : "no reply");
-        return 0;
-      });
-}
-
-void RunOperator::Watch(milliseconds span) {
-  const std::string name = fmt::format("client-{}", ++clients_);
-  world_.processes.StartOther(
-      name, link::Role::kClient, world_.folder.string() + ".client.log", [span](link::Hub& hub) {
-        const link::Reader<RunViewMessage> reader(hub, [](const RunViewMessage&) {});
-        SleepFor(span);
-        return 0;
-      });
-}
-
 void RunOperator::AskAsSecond() {
   const auto first = world_.processes.Find("coordinator");
-  world_.processes.StartOther(fmt::format("second-{}", ++clients_), link::Role::kClient,
+  world_.processes.StartOther(fmt::format("second-{}", ++rivals_), link::Role::kClient,
                               world_.folder.string() + ".client.log", [this, first](link::Hub&) {
                                 const bool held = launch::IsHeld(world_.folder);
                                 try {

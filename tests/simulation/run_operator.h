@@ -11,6 +11,7 @@
 
 #include "launch/record/run_meta.h"
 #include "tests/simulation/fault.h"
+#include "tests/simulation/simulated_clients.h"
 #include "tests/simulation/simulated_disk.h"
 #include "tests/simulation/train_session.h"
 
@@ -20,7 +21,7 @@ class RunOperator {
  public:
   // Borrows all of them.
   RunOperator(const World& world, FiberScheduler& scheduler, SimulatedDisk& disk)
-      : world_(world), scheduler_(scheduler), disk_(disk) {}
+      : world_(world), scheduler_(scheduler), disk_(disk), clients_(world) {}
 
   // Begins and resumes the run until it has reached its end. Runs in a simulated thread.
   void Work();
@@ -51,19 +52,18 @@ class RunOperator {
   void Do(const Fault& fault);
   void Pause(const Fault& fault, SimulatedProcess& process);
   void KillCoordinator(const Fault& fault, SimulatedProcess& coordinator);
-  void SendCommand(const std::string& text);
-  void Watch(std::chrono::milliseconds span);
   void AskAsSecond();
   void After(std::chrono::milliseconds span, std::function<void()> body);
 
   const World& world_;
   FiberScheduler& scheduler_;
   SimulatedDisk& disk_;
+  SimulatedClients clients_;
   bool finished_ = false, last_clean_ = true;
   bool began_on_full_disk_ = false;  // the session
   SteadyTime trouble_until_{};       // until then a session may end by itself (MayEndSessions)
   SteadyTime disk_full_until_{};     // of the full disk that was the last to end
-  int sessions_ = 0, clients_ = 0;
+  int sessions_ = 0, rivals_ = 0;
   ptrdiff_t session_begin_ = 0;    // its first line in the story
   const Fault* killed_ = nullptr;  // what killed the last coordinator
   std::string last_words_;

@@ -38,8 +38,13 @@ void SimulatedProcess::Start(const std::shared_ptr<SimulatedProcess>& self,
           log::WriteRaw(self->group_.log(), line);
         });
     self->hub_.reset();
-    self->ended_ = launch::ExitStatus{.by_signal = false, .code = code};
+    self->End({.by_signal = false, .code = code});
   });
+}
+
+void SimulatedProcess::End(launch::ExitStatus status) {
+  ended_ = status;
+  ended_at_ = scheduler_.NowOutside();
 }
 
 bool SimulatedProcess::Kill() {
@@ -49,7 +54,7 @@ bool SimulatedProcess::Kill() {
     network_.Abandon(*hub_);
     (void)hub_.release();  // its ends belong to fibers that never run again
   }
-  ended_ = launch::ExitStatus{.by_signal = true, .code = SIGKILL};
+  End({.by_signal = true, .code = SIGKILL});
   return true;
 }
 

@@ -44,10 +44,14 @@ class SimulatedProcess {
   bool outlives_parent() const { return outlives_parent_; }
   ThreadGroup& group() { return group_; }
   const std::optional<launch::ExitStatus>& ended() const { return ended_; }
+  // When it ended; no meaning before.
+  SteadyTime ended_at() const { return ended_at_; }
   // The line of its Error; empty when there was none.
   const std::string& last_words() const { return last_words_; }
 
  private:
+  void End(launch::ExitStatus status);
+
   FiberScheduler& scheduler_;
   link::LocalNetwork& network_;
   const std::string name_;
@@ -55,6 +59,7 @@ class SimulatedProcess {
   ThreadGroup group_;
   std::unique_ptr<link::Hub> hub_;
   std::optional<launch::ExitStatus> ended_;
+  SteadyTime ended_at_{};
   std::string last_words_;
 };
 

@@ -63,7 +63,7 @@ bool Disturbs(const Fault& fault) {
     case Fault::Kind::kStall:
     case Fault::Kind::kSlow:
       return fault.span > link::kLivenessLimit;
-    case Fault::Kind::kWatch:
+    case Fault::Kind::kAttach:
     case Fault::Kind::kSecond:
       return false;
     default:

@@ -81,8 +81,19 @@ TEST(SimulatedRun, EachKindOfFaultIsMet) {
   ExpectGood(kFile, {At(3, Kind::kFullDisk, "", 20)});
   ExpectGood(kFile, {At(1, Kind::kFailingDisk, "learner-0", 20)});
   ExpectGood(kFile, {At(3, Kind::kClock, "", -3600), At(4, Kind::kKill, "actor-0")});
-  ExpectGood(kFile, {At(3, Kind::kCommand, "", 0, "scale 3"), At(5, Kind::kWatch, "", 3)});
+  ExpectGood(kFile, {At(3, Kind::kCommand, "", 0, "scale 3"), At(5, Kind::kAttach, "", 3)});
   ExpectGood(kFile, {At(3, Kind::kSecond, ""), At(6, Kind::kInterrupt, "")});
+}
+
+// The run cannot end meanwhile: one of its processes is paused.
+TEST(SimulatedRun, AStopEndsInTimeIfItsCoordinatorDies) {
+  const ChildRun run =
+      RunInChild(TheBlueprints(), kFile,
+                 {At(3, Kind::kPause, "learner-0", 20), At(4, Kind::kCommand, "", 0, "stop"),
+                  At(5, Kind::kKill, "coordinator", /*span=*/1, kThenResume)});
+  EXPECT_TRUE(run.good) << run.text << run.summary;
+  EXPECT_THAT(run.text, testing::HasSubstr("shoal stop: exit code 1: accepted, but the run's "
+                                           "coordinator has been silent for 15 s"));
 }
 
 TEST(SimulatedRun, SeedsThatFoundAFaultOfTheProductKeepWhatIsPromised) {
@@ -105,6 +116,9 @@ TEST(SimulatedRun, SeedsThatFoundAFaultOfTheProductKeepWhatIsPromised) {
   // steps, for good.
   ExpectGood(523385, FaultsOf(523385));
   ExpectGood(546419, FaultsOf(546419));
+  // A coordinator that was cut off ended with exit code 4. `shoal stop` took the next session for
+  // its run, waited for its end and returned its exit code.
+  ExpectGood(9218, FaultsOf(9218));
 }
 
 TEST(SimulatedRun, FixedSeedsKeepWhatIsPromised) {

@@ -34,12 +34,12 @@ RunClient& LiveRuns::Client(const std::filesystem::path& run, Line& line) {
   try {
     target = ResolveTarget(options);
   } catch (const Error&) {
-    line.client.reset();
+    line.connection.reset();
     line.view.reset();
     throw;
   }
-  if (!line.client) line.client = std::make_unique<RunClient>(target);
-  return *line.client;
+  if (!line.connection) line.connection = std::make_unique<RunConnection>(target);
+  return line.connection->client();
 }
 
 RunViewMessage LiveRuns::View(const std::filesystem::path& run) {
@@ -53,7 +53,7 @@ RunViewMessage LiveRuns::View(const std::filesystem::path& run) {
   }
   if (Now() - line->heard > kSilent || line->view->state == "ended") {
     const bool ended = line->view->state == "ended";
-    line->client.reset();
+    line->connection.reset();
     line->view.reset();
     throw RuntimeError("run '{}': {}", run.filename().string(),
                        ended ? "it has ended" : "its coordinator is silent");

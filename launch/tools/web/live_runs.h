@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "common/base/mutex.h"
-#include "launch/watch/run_client.h"
+#include "launch/client/run_connection.h"
 
 namespace shoal::launch {
 
@@ -39,7 +39,7 @@ class LiveRuns {
  private:
   struct Line {
     Mutex mutex;
-    std::unique_ptr<RunClient> client SHOAL_GUARDED_BY(mutex);
+    std::unique_ptr<RunConnection> connection SHOAL_GUARDED_BY(mutex);
     std::optional<RunViewMessage> view SHOAL_GUARDED_BY(mutex);
     SteadyTime heard SHOAL_GUARDED_BY(mutex){};
     SteadyTime asked{};  // guarded by LiveRuns::mutex_

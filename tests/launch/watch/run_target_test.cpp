@@ -57,6 +57,12 @@ TEST_F(RunTargetTest, NoneSeveralAbsentAndEndedRunsAreRefusedByName) {
   EXPECT_THAT(Refusal("nope", 2), HasSubstr("no run 'nope'"));
 }
 
+TEST_F(RunTargetTest, ARunThatHasNoAddressYetIsStarting) {
+  const RunFolder run = Begin("young");
+  std::filesystem::remove(run.path() / "cluster.json");
+  EXPECT_THAT(Refusal("young", 1), HasSubstr("run 'young' is starting and cannot be reached yet"));
+}
+
 TEST(Peer, TheAddressShownIsTheAddressTaken) {
   const ClusterAddress address{.domain = 12, .tag = "secret", .host = "127.0.0.1"};
   const std::string peer = fmt::format("127.0.0.1:{}", dds::OperatePort(address));

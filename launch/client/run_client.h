@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A program's line to a running run: hears the views that its coordinator shows, sends it commands.
+// A program's line to a running run: receives the views that its coordinator shows and sends it
+// commands, over any link.
 #pragma once
 
 #include <chrono>
@@ -10,7 +11,7 @@
 
 #include "common/base/clock.h"
 #include "common/base/mutex.h"
-#include "common/dds/bus.h"
+#include "common/link/hub.h"
 #include "common/link/reader.h"
 #include "common/link/writer.h"
 #include "launch/watch/run_target.h"
@@ -20,8 +21,9 @@ namespace shoal::launch {
 // One thread.
 class RunClient {
  public:
-  // Joins the run's network. Throws Error.
-  explicit RunClient(const RunTarget& target);
+  // `hub` has the role of a client of the run. `id` names this client among all that the run ever
+  // has; it is not 0. Borrows the hub. Throws Error.
+  RunClient(link::Hub& hub, const RunTarget& target, uint64_t id);
 
   // The next view not returned before, waiting until `deadline` or a stop signal.
   std::optional<RunViewMessage> WaitForView(SteadyTime deadline);
@@ -39,13 +41,12 @@ class RunClient {
   std::optional<ReplyMessage> Ask(const CommandMessage& command);
 
   const RunTarget target_;
-  const uint64_t client_;  // names this client among all
+  const uint64_t id_;
   uint64_t requests_ = 0;
   Mutex mutex_;
   ConditionVariable arrived_;
   std::optional<RunViewMessage> view_ SHOAL_GUARDED_BY(mutex_);
   std::optional<ReplyMessage> reply_ SHOAL_GUARDED_BY(mutex_);
-  dds::Bus bus_;
   link::Writer<CommandMessage> commands_;
   link::Reader<ReplyMessage> replies_;
   link::Reader<RunViewMessage> views_;  // last: its callback uses the rest
@@ -53,5 +54,15 @@ class RunClient {
 
 // The exit code of a run that has ended, from its last view.
 int ExitCodeOf(const RunViewMessage& view);
+
+// Notices that views come from another coordinator than before: the run was resumed.
+class SameCoordinator {
+ public:
+  // False if `view` is the first one of another coordinator than that of the view before.
+  bool Take(const RunViewMessage& view);
+
+ private:
+  double uptime_ = 0;  // s
+};
 
 }  // namespace shoal::launch

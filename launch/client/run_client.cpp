@@ -1,16 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "launch/watch/run_client.h"
-
-#include <unistd.h>
+#include "launch/client/run_client.h"
 
 #include <algorithm>
+#include <string_view>
 #include <utility>
 
 #include "common/base/error.h"
 #include "common/base/interrupted.h"
-#include "common/base/random.h"
 #include "common/base/saturating_cast.h"
 #include "common/base/stop.h"
+#include "common/link/role.h"
 
 namespace shoal::launch {
 namespace {
@@ -22,22 +21,30 @@ void ThrowIfInterrupted() {
   if (StopRequested()) throw Interrupted("before the run's coordinator answered");
 }
 
+std::optional<double> FigureOfCoordinator(const RunViewMessage& view, std::string_view name) {
+  for (const MetricsMessage& process : view.processes) {
+    if (process.role != link::RoleName(link::Role::kCoordinator)) continue;
+    for (size_t i = 0; i < process.names.size() && i < process.values.size(); ++i) {
+      if (process.names[i] == name) return process.values[i];
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
-RunClient::RunClient(const RunTarget& target)
+RunClient::RunClient(link::Hub& hub, const RunTarget& target, uint64_t id)
     : target_(target),
-      client_(HashWords({static_cast<uint64_t>(WallTimeNs()), static_cast<uint64_t>(getpid())}) |
-              1),
-      bus_(target.address, target.transport, dds::Role::kClient),
-      commands_(bus_),
-      replies_(bus_,
+      id_(id),
+      commands_(hub),
+      replies_(hub,
                [this](const ReplyMessage& reply) {
-                 if (reply.client != client_) return;
+                 if (reply.client != id_) return;
                  const MutexLock lock(mutex_);
                  reply_ = reply;
                  arrived_.NotifyAll();
                }),
-      views_(bus_, [this](const RunViewMessage& view) {
+      views_(hub, [this](const RunViewMessage& view) {
         const MutexLock lock(mutex_);
         view_ = view;
         arrived_.NotifyAll();
@@ -55,9 +62,9 @@ RunViewMessage RunClient::FirstView() {
   if (auto view = WaitForView(Now() + kAnswer)) return *std::move(view);
   ThrowIfInterrupted();
   throw RuntimeError(
-      "run '{}': its coordinator at {}:{} did not answer within {} s; it may be paused (Ctrl-Z) "
+      "run '{}': its coordinator at {} did not answer within {} s; it may be paused (Ctrl-Z) "
       "or about to end: see shoal runs",
-      target_.name, target_.address.host, dds::OperatePort(target_.address), kAnswer.count());
+      target_.name, target_.coordinator, kAnswer.count());
 }
 
 std::optional<ReplyMessage> RunClient::Ask(const CommandMessage& command) {
@@ -78,27 +85,26 @@ std::optional<ReplyMessage> RunClient::Ask(const CommandMessage& command) {
 
 ReplyMessage RunClient::Order(const std::string& verb, const std::vector<std::string>& arguments) {
   const auto reply =
-      Ask({.client = client_, .request = ++requests_, .verb = verb, .arguments = arguments});
+      Ask({.client = id_, .request = ++requests_, .verb = verb, .arguments = arguments});
   if (!reply) {
     ThrowIfInterrupted();
     throw RuntimeError(
-        "run '{}': its coordinator at {}:{} did not answer the command within {} s; it may be "
+        "run '{}': its coordinator at {} did not answer the command within {} s; it may be "
         "paused (Ctrl-Z) or about to end: see shoal runs",
-        target_.name, target_.address.host, dds::OperatePort(target_.address), kAnswer.count());
+        target_.name, target_.coordinator, kAnswer.count());
   }
   if (!reply->accepted) throw RuntimeError("refused: {}", reply->text);
   return *reply;
 }
 
 int ExitCodeOf(const RunViewMessage& view) {
-  for (const MetricsMessage& process : view.processes) {
-    for (size_t i = 0; i < process.names.size() && i < process.values.size(); ++i) {
-      if (process.role == "coordinator" && process.names[i] == "exit_code") {
-        return SaturatingCast<int>(process.values[i]);
-      }
-    }
-  }
-  return 1;
+  return SaturatingCast<int>(FigureOfCoordinator(view, "exit_code").value_or(1));
+}
+
+bool SameCoordinator::Take(const RunViewMessage& view) {
+  const double before = uptime_;
+  uptime_ = FigureOfCoordinator(view, "uptime_seconds").value_or(before);
+  return uptime_ >= before;
 }
 
 }  // namespace shoal::launch

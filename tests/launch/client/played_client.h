@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+// A client and the server of a coordinator on one link in memory and on simulated time, so that
+// deadlines of a minute take none.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "common/base/error.h"
+#include "common/base/sleep.h"
+#include "common/base/thread_group.h"
+#include "common/link/local_network.h"
+#include "launch/client/run_client.h"
+#include "launch/run/run_server.h"
+#include "tests/simulation/fiber_scheduler.h"
+#include "tests/support/temporary_folder.h"
+
+namespace shoal::launch {
+
+// How a command ended.
+struct PlayedClient {
+  int code = -1;
+  std::string error;               // of the Error that ended it
+  std::vector<std::string> lines;  // that it said
+  double seconds = -1;             // that it took; below 0 if it has not ended in two hours
+};
+
+// A report with one figure.
+inline MetricsMessage ReportOf(const std::string& role, uint32_t id, const std::string& name,
+                               double value) {
+  MetricsMessage report;
+  report.role = role;
+  report.id = id;
+  report.state = "running";
+  report.names = {name};
+  report.values = {value};
+  return report;
+}
+
+// A coordinator: its views and its replies.
+struct PlayedCoordinator {
+  double uptime = 0;  // s, when it begins
+  bool accepts = true;
+  std::string text = "done";  // of its replies
+  std::string state = "running";
+  std::vector<MetricsMessage> processes{};  // beside its own
+  int commands = 0;                         // that came
+
+  // Serves for `span`.
+  void Serve(RunServer& server, std::chrono::milliseconds span) {
+    const SteadyTime start = Now();
+    while (Now() < start + span) {
+      for (const CommandMessage& command : server.TakeCommands()) {
+        ++commands;
+        server.AddEvent("command: " + command.verb + ": " + text);
+        server.Answer({.client = command.client,
+                       .request = command.request,
+                       .accepted = accepts,
+                       .text = text});
+      }
+      if (server.Due(Now())) server.Show(View(uptime + SecondsSince(start)), Now());
+      SleepFor(std::chrono::milliseconds(50));
+    }
+  }
+
+ private:
+  RunViewMessage View(double seconds) const {
+    RunViewMessage view{.state = state};
+    view.processes = processes;
+    view.processes.push_back(ReportOf("coordinator", 0, "uptime_seconds", seconds));
+    return view;
+  }
+};
+
+// Runs `command` as a client of the coordinator that `coordinator` plays.
+inline PlayedClient PlayClient(
+    const std::function<void(RunServer&)>& coordinator,
+    const std::function<int(RunClient&, const std::function<void(const std::string&)>&)>& command) {
+  const TemporaryFolder folder;
+  PlayedClient played;
+  simulation::FiberScheduler scheduler(/*seed=*/1, /*wall_time_ns=*/0);
+  ThreadGroup group("client", folder.path() / "log");
+  link::LocalNetwork network;
+  scheduler.StartIn(&group, [&] {
+    const auto server_hub = network.Join(link::Role::kCoordinator);
+    const auto client_hub = network.Join(link::Role::kClient);
+    Thread serving([&] {
+      RunServer server(*server_hub, "run");
+      coordinator(server);
+    });
+    {
+      RunClient client(*client_hub, {.name = "run", .coordinator = "here:1"}, /*id=*/7);
+      const SteadyTime start = Now();
+      try {
+        played.code =
+            command(client, [&](const std::string& line) { played.lines.push_back(line); });
+      } catch (const Error& error) {
+        played.code = error.exit_code();
+        played.error = error.what();
+      }
+      played.seconds = SecondsSince(start);
+    }
+    serving.join();
+  });
+  scheduler.RunUntil(SteadyTime() + std::chrono::hours(2));
+  return played;
+}
+
+}  // namespace shoal::launch

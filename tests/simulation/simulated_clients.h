@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+// Users at other terminals: `shoal stop`, `set`, `scale` and `attach` with the product's client,
+// over the simulated link. Each must end in time with one of the documented answers.
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "tests/simulation/train_session.h"
+
+namespace shoal::simulation {
+
+// One command of a user.
+struct ClientCall {
+  std::string verb;
+  std::vector<std::string> arguments{};
+  SteadyTime begun{};
+  SteadyTime heard{};  // the newest view reached it
+  // The coordinator that accepted the order; null before.
+  std::shared_ptr<SimulatedProcess> answerer{};
+  std::string last{};   // its last line, or what its Error says
+  bool failed = false;  // with that Error
+  int code = 0;         // its exit code, once it has ended
+  bool ended = false;
+};
+
+// When the call must have ended, as far as it is known by now.
+SteadyTime DeadlineOf(const ClientCall& call);
+// Whether a call may end like this one.
+bool IsDocumented(const ClientCall& call);
+
+class SimulatedClients {
+ public:
+  // Borrows the world.
+  explicit SimulatedClients(const World& world) : world_(world) {}
+
+  // Begins a command: "scale 3".
+  void Begin(const std::string& words);
+  // Begins `shoal attach`; Ctrl-C ends it after `span`.
+  void Attach(std::chrono::milliseconds span);
+  // Waits for all that have begun. Those that do not end in time are broken promises.
+  void WaitForAll();
+
+ private:
+  std::shared_ptr<SimulatedProcess> Start(const std::string& words);
+  // The body of a client's process; returns the exit code.
+  int Run(const std::string& name, ClientCall* call, uint64_t id, link::Hub& hub);
+  int Carry(const std::string& name, ClientCall* call, uint64_t id, link::Hub& hub);
+  void Judge(const std::string& name, const ClientCall& call);
+
+  const World& world_;
+  std::vector<std::unique_ptr<ClientCall>> calls_;
+};
+
+}  // namespace shoal::simulation
