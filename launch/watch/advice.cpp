@@ -104,7 +104,9 @@ BetterSplit FindBetterSplit(const Bottleneck& figures, const RunResources& resou
   if (!std::isfinite(possible) || costs.env_step <= 0) return {now};
   const Split best =
       BestSplit(costs, {.cores = int(figures.usable), .most_threads = resources.most_threads});
-  return {.split = best, .gain = PaceOf(costs, best)};
+  // The model has each side work without a break. The waits that keep the present pace below the
+  // model's will be in another division, too.
+  return {.split = best, .gain = PaceOf(costs, best) / PaceOf(costs, now)};
 }
 
 std::string AdviseMoreLearning(const Bottleneck& figures, const RunResources& resources) {
