@@ -47,12 +47,13 @@ std::vector<std::string> Names(const Json& row, const char* key) {
   return row.value(key, std::vector<std::string>());
 }
 
-// "FILE" has the aggregate of an evaluation; "FILE#MEMBER" a member with the same figures.
+// "FILE" has the aggregate of an evaluation; "FILE#MEMBER" a member with the same figures, also of
+// a list: "FILE#evaluations/9".
 void AddEvaluation(const fs::path& folder, const std::string& name, SeedFigures* seeds) {
   const size_t hash = name.find('#');
   const Json file = ReadObject(folder / name.substr(0, hash));
-  const Json& figures =
-      file.at(hash == std::string::npos ? std::string("aggregate") : name.substr(hash + 1));
+  const std::string member = hash == std::string::npos ? "aggregate" : name.substr(hash + 1);
+  const Json& figures = file.at(Json::json_pointer("/" + member));
   const auto number = [&](const char* key) -> std::optional<double> {
     if (!figures.contains(key) || figures.at(key).is_null()) return std::nullopt;
     return figures.at(key).get<double>();

@@ -146,6 +146,12 @@ TEST_F(ResultsTableTest, AMemberOfAFileCanBeTheEvaluation) {
   Write("meta.json", Meta(300000, 8743));
   EXPECT_THAT(Line(Row({{"evals", {"a.json#eval400"}}, {"metas", {"meta.json"}}})),
               HasSubstr("**90.0 %** (86.7–92.6) | 300,000 | 2.4 h, 2 cores"));
+  Write(
+      "curve.json",
+      {{"evaluations",
+        {{{"episodes", 50}, {"success_rate", 0.1}}, {{"episodes", 400}, {"success_rate", 0.9}}}}});
+  EXPECT_THAT(Line(Row({{"evals", {"curve.json#evaluations/1"}}, {"metas", {"meta.json"}}})),
+              HasSubstr("**90.0 %** (86.7–92.6)"));
 }
 
 TEST_F(ResultsTableTest, AnArmGivesItsFinishedRunsAndReturns) {
