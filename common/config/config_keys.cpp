@@ -31,8 +31,10 @@ std::vector<Key> RunKeys() {
       SHOAL_SAME(distance_threshold, (RealRange{0, 1000}),
                  "distance in m below which a goal is reached; 0 = the task's own"),
       SHOAL_SAME(env_steps, kSteps, "budget: training stops after this many env steps"),
-      SHOAL_SAME(actors, (IntegerRange{0, kMostActors}),
-                 "actor processes; 0 = one per core the learner leaves, at least 1"),
+      SHOAL_SAME(
+          actors, (IntegerRange{0, kMostActors}),
+          "actor processes; 0 = as the run divides its cores (learner.threads), else one per "
+          "core the learner leaves, at least 1; in lockstep 1"),
       SHOAL_SAME(envs_per_actor, (IntegerRange{1, 256}), "environments stepped by one actor"),
       SHOAL_SAME(lockstep, AnyValue{},
                  "one actor, fixed batches, weights at fixed steps: repeats bit for bit"),
@@ -176,9 +178,11 @@ std::vector<Key> LearnerKeys() {
       SHOAL_SAME(
           learner.threads, (IntegerRange{0, 1024}),
           "threads of the learner, each with a share of the batch's rows (ppo and encoders with "
-          "batch normalisation: with a share of each layer); 0 = at most half the cores this "
-          "process may use, or three quarters with an update for each eighth env step, all with "
-          "one for each; without pixels, but for ppo, 1"),
+          "batch normalisation: with a share of each layer); 0 = as the run divides its cores "
+          "between them and actors, measured while it is young: from pixels, on one host of at "
+          "least four cores, but for ppo and lockstep; else at most half the cores this process "
+          "may use, or three quarters with an update for each eighth env step, all with one for "
+          "each; without pixels, but for ppo, 1"),
       SHOAL_SAME(learner.learning_rate, positive,
                  "learning rate of Adam for actor, critic and temperature"),
       SHOAL_SAME(learner.actor_learning_rate, (RealRange{0, 1}),
