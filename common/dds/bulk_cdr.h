@@ -15,10 +15,10 @@
 
 namespace shoal::dds {
 
-// First byte of every bulk message; others are refused.
-inline constexpr uint8_t kBulkVersion = 1;
-inline constexpr uint8_t kBatchPartVersion = 2;  // 1 had no unsampleable_steps
-inline constexpr uint8_t kWeightsVersion = 2;    // of weights, which 1 sent whole
+// First byte of a bulk message; others are refused.
+constexpr uint8_t BulkVersion(const TransitionChunk*) { return 1; }
+constexpr uint8_t BulkVersion(const BatchPart*) { return 2; }    // 1 had no unsampleable_steps
+constexpr uint8_t BulkVersion(const WeightsPart*) { return 2; }  // 1 sent weights whole
 
 // False when the bytes are truncated, of another version or inconsistent; `message` is then
 // unspecified. The message's payload borrows `cdr`; where `cdr` starts 4 bytes before a multiple of

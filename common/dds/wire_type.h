@@ -1,9 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// For each message of the list the type that idlc generates for it. Internal.
+// For each message of the list, and for structs within messages, the type that idlc generates.
+// Internal.
 #pragma once
 
-#include "common/dds/wire_types.h"
 #include "common/link/topic.h"
+#include "common/wire/messages.h"
+// clang-format off
+#include "shoal.h"
+// clang-format on
 
 namespace shoal::dds {
 
@@ -18,5 +22,22 @@ struct WireType;
   };
 SHOAL_MESSAGES(SHOAL_WIRE_TYPE)
 #undef SHOAL_WIRE_TYPE
+
+template <>
+struct WireType<Credit> {
+  using Wire = shoal_idl_Credit;
+};
+template <>
+struct WireType<EvaluationRequest> {
+  using Wire = shoal_idl_EvaluationRequest;
+};
+template <>
+struct WireType<MetricsMessage> {
+  using Wire = shoal_idl_Metrics;
+};
+template <>
+struct WireType<RunEvent> {
+  using Wire = shoal_idl_RunEvent;
+};
 
 }  // namespace shoal::dds

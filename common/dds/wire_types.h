@@ -1,17 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the plain structs of common/wire to the C structs that idlc generates; the way back is
-// bulk_cdr.h and message_cdr.h. Internal.
-//
-// ToWire borrows: strings and payloads of the result point into the message, so it lives no longer
-// than that.
+// From the plain structs of common/wire to the C structs that idlc generates, field by field as
+// common/wire/message_fields.h lists them; the way back is bulk_cdr.h and message_cdr.h. Internal.
 #pragma once
 
+#include <concepts>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <tuple>
+#include <type_traits>
 #include <vector>
 
-#include "common/wire/messages.h"
-// clang-format off
-#include "shoal.h"
-// clang-format on
+#include "common/base/check.h"
+#include "common/dds/bulk_cdr.h"
+#include "common/dds/wire_type.h"
+#include "common/wire/message_fields.h"
 
 namespace shoal::dds {
 
@@ -19,25 +22,107 @@ namespace shoal::dds {
 // publisher between calls.
 struct WireBuffers {
   std::vector<char*> strings;
-  std::vector<shoal_idl_Credit> credits;
-  std::vector<shoal_idl_Metrics> processes;
-  std::vector<shoal_idl_RunEvent> events;
-  std::vector<shoal_idl_EvaluationRequest> evaluations;
+  std::tuple<std::vector<shoal_idl_Credit>, std::vector<shoal_idl_EvaluationRequest>,
+             std::vector<shoal_idl_Metrics>, std::vector<shoal_idl_RunEvent>>
+      structs;
 };
 
-shoal_idl_TransitionChunk ToWire(const TransitionChunk& message, WireBuffers* buffers);
-shoal_idl_BatchPart ToWire(const BatchPart& message, WireBuffers* buffers);
-shoal_idl_WeightsPart ToWire(const WeightsPart& message, WireBuffers* buffers);
-shoal_idl_Credits ToWire(const CreditsMessage& message, WireBuffers* buffers);
-shoal_idl_SampleRequest ToWire(const SampleRequest& message, WireBuffers* buffers);
-shoal_idl_BatchSlot ToWire(const BatchSlot& message, WireBuffers* buffers);
-shoal_idl_Metrics ToWire(const MetricsMessage& message, WireBuffers* buffers);
-shoal_idl_ReplayProgress ToWire(const ReplayProgress& message, WireBuffers* buffers);
-shoal_idl_LearnerProgress ToWire(const LearnerProgress& message, WireBuffers* buffers);
-shoal_idl_Control ToWire(const ControlMessage& message, WireBuffers* buffers);
-shoal_idl_Eval ToWire(const EvalMessage& message, WireBuffers* buffers);
-shoal_idl_RunView ToWire(const RunViewMessage& message, WireBuffers* buffers);
-shoal_idl_Command ToWire(const CommandMessage& message, WireBuffers* buffers);
-shoal_idl_Reply ToWire(const ReplyMessage& message, WireBuffers* buffers);
+// Any of idlc's sequences of E, which differ in their names alone.
+template <class E>
+struct WireSequence {
+  E* elements;
+  size_t size;
+
+  template <class S>
+  requires std::same_as<decltype(S::_buffer), E*>
+  operator S() const {  // NOLINT(google-explicit-constructor): initialises a field of that type
+    const auto count = static_cast<uint32_t>(size);
+    return {count, count, elements, false};
+  }
+};
+
+// Converts the fields of one message. dds_write reads through the pointers only; the generated C
+// structs know no const.
+class FieldWriter {
+ public:
+  // Borrows the buffers, whose former content it drops.
+  template <HasFields M>
+  FieldWriter(const M& message, WireBuffers* buffers) : buffers_(buffers) {
+    buffers_->strings.clear();
+    buffers_->strings.reserve(StringsIn(message));
+  }
+
+  template <HasFields M>
+  typename WireType<M>::Wire Write(const M& message) {
+    return std::apply(
+        [&](const auto&... field) -> typename WireType<M>::Wire {
+          if constexpr (requires { BulkVersion(&message); }) {
+            return {BulkVersion(&message), Borrow(field)...};
+          } else {
+            return {Borrow(field)...};
+          }
+        },
+        FieldsOf(message));
+  }
+
+ private:
+  // Elements of the sequences of strings, whose pointers must not move.
+  template <HasFields M>
+  static size_t StringsIn(const M& message) {
+    return std::apply([](const auto&... field) { return (StringsIn(field) + ... + size_t{0}); },
+                      FieldsOf(message));
+  }
+  static size_t StringsIn(const std::vector<std::string>& strings) { return strings.size(); }
+  template <HasFields E>
+  static size_t StringsIn(const std::vector<E>& elements) {
+    size_t strings = 0;
+    for (const E& element : elements) strings += StringsIn(element);
+    return strings;
+  }
+  template <class T>
+  static size_t StringsIn(const T&) {
+    return 0;
+  }
+
+  template <class T>
+  requires std::is_arithmetic_v<T> T Borrow(T number) { return number; }
+  template <class T>
+  requires std::is_enum_v<T> std::underlying_type_t<T> Borrow(T word) {
+    return static_cast<std::underlying_type_t<T>>(word);
+  }
+  char* Borrow(const std::string& text) { return const_cast<char*>(text.c_str()); }
+  char* Borrow(const LongText<const std::string>& field) { return Borrow(field.text); }
+  WireSequence<uint8_t> Borrow(std::span<const uint8_t> bytes) {
+    return {const_cast<uint8_t*>(bytes.data()), bytes.size()};
+  }
+  WireSequence<double> Borrow(const std::vector<double>& values) {
+    return {const_cast<double*>(values.data()), values.size()};
+  }
+  WireSequence<char*> Borrow(const std::vector<std::string>& strings) {
+    std::vector<char*>& pointers = buffers_->strings;
+    CHECK(pointers.capacity() - pointers.size() >= strings.size());
+    char** first = pointers.data() + pointers.size();
+    for (const std::string& text : strings) pointers.push_back(Borrow(text));
+    return {first, strings.size()};
+  }
+  // A message has one sequence of a struct.
+  template <HasFields E>
+  WireSequence<typename WireType<E>::Wire> Borrow(const std::vector<E>& elements) {
+    auto& structs = std::get<std::vector<typename WireType<E>::Wire>>(buffers_->structs);
+    structs.clear();
+    structs.reserve(elements.size());
+    for (const E& element : elements) structs.push_back(Write(element));
+    return {structs.data(), structs.size()};
+  }
+
+  WireBuffers* const buffers_;
+};
+
+// Borrows: strings and payloads of the result point into the message and into the buffers, so it
+// lives no longer than these and until the next call.
+template <HasFields M>
+typename WireType<M>::Wire ToWire(const M& message, WireBuffers* buffers) {
+  return FieldWriter(message, buffers).Write(message);
+}
 
 }  // namespace shoal::dds

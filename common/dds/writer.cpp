@@ -2,6 +2,7 @@
 #include "common/base/clock.h"
 #include "common/base/log.h"
 #include "common/dds/bus.h"
+#include "common/dds/wire_types.h"
 // clang-format off
 #include "common/dds/endpoint.h"
 // clang-format on

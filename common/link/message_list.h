@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The list of messages between processes, one line each. Topics, writers, readers and the rights of
-// roles follow from it. A new message needs its struct (common/wire/messages.h), a line here, its
-// key if it keeps the last n per key (topic.h), and for the network its type (shoal.idl), the way
-// there (wire_types.h) and back (message_cdr.h or bulk_cdr.h) in common/dds. docs/wire_format.md
-// gives the reasons.
+// roles follow from it. A new message needs its struct (common/wire/messages.h), the list of its
+// fields (common/wire/message_fields.h), a line here, its key if it keeps the last n per key
+// (topic.h), and for the network its type (shoal.idl) and the check of what was received
+// (message_cdr.h or bulk_cdr.h) in common/dds. docs/wire_format.md gives the reasons.
 //
 //   message           struct, in namespace shoal
 //   type              the network's, generated from shoal.idl

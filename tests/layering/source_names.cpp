@@ -132,6 +132,8 @@ class Reader {
     if (first == "using") return TakeUsing(begin, end);
     if (first == "typedef") {
       Add(std::string(Text(end - 2)), NameKind::kAlias, begin, true, Joined(tokens_, begin, end));
+    } else if (first == "concept") {
+      Add(std::string(Text(begin + 1)), NameKind::kType, begin + 1, true);
     } else if (IsTypeKey(begin)) {
       TakeType(begin, end);
     } else if (IsMacroLike(first) && Text(begin + 1) == "(") {
