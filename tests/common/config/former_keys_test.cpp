@@ -12,6 +12,7 @@
 #include "common/config/meant_key.h"
 #include "common/config/run_files.h"
 #include "tests/support/error_message.h"
+#include "tests/support/paths.h"
 #include "tests/support/temporary_folder.h"
 
 namespace shoal {
@@ -83,6 +84,25 @@ TEST(FormerKeys, OfARunsConfigurationAreReadWithoutANote) {
   testing::internal::CaptureStderr();
   EXPECT_EQ(ToJson(ReadRunConfig(run.path()).config), ToJson(written.config));
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+}
+
+// tests/golden/config/version_0_1.json was written by version 0.1.0: shoal train --preset
+// `fetch-push-pixels` with other values for the keys that have new names.
+TEST(FormerKeys, OfARunOfVersion01KeepTheirValues) {
+  const TemporaryFolder run;
+  std::filesystem::copy_file(GoldenPath("config/version_0_1.json"), run.path() / "config.json");
+  const Config config = ReadRunConfig(run.path()).config;
+  EXPECT_EQ(config.preset, "fetch-push-pixels");
+  EXPECT_EQ(config.learner.temperature, "auto");
+  EXPECT_EQ(config.learner.initial_temperature, 0.25);
+  EXPECT_EQ(config.learner.min_temperature, 0.01);
+  EXPECT_EQ(config.learner.temperature_learning_rate, 1e-4);
+  EXPECT_EQ(config.learner.target_entropy, -3);
+  EXPECT_EQ(config.learner.target_entropy_per_action, -1);
+  EXPECT_TRUE(config.learner.critic_blocks.all);
+  EXPECT_EQ(config.learner.aux, std::vector<std::string>{"object-grip"});
+  EXPECT_EQ(config.learner.aux_weight, 2);
+  EXPECT_TRUE(config.learner.normalise_vectors);
 }
 
 TEST(FormerKeys, BesideThePresentNameAreRefused) {
