@@ -37,9 +37,7 @@ void HostedEnvironment::Observe(worlds::ObservationOut out) {
   CHECK(out.vector.size() == vector_.size()) << out.vector.size();
   CHECK(out.frame.size() == static_cast<size_t>(spec_.FrameBytes())) << out.frame.size();
   std::ranges::copy(vector_, out.vector.begin());
-  if (!mapping_.has_images()) return;
-  const ScopedSeconds timed(image_seconds_);
-  mapping_.ReadFrame(raw_->observation(), out.frame);
+  if (mapping_.has_images()) mapping_.ReadFrame(raw_->observation(), out.frame);
 }
 
 double HostedEnvironment::Distance() const {
@@ -52,12 +50,20 @@ double HostedEnvironment::Distance() const {
 }
 
 float HostedEnvironment::Reset(uint64_t stream_key, worlds::ObservationOut out) {
-  // 31 bits: some environments seed generators that take no more.
-  raw_->Reset(static_cast<uint32_t>(stream_key >> 33));
+  {
+    const ScopedSeconds timed(call_seconds_);
+    // 31 bits: some environments seed generators that take no more.
+    raw_->Reset(static_cast<uint32_t>(stream_key >> 33));
+  }
   steps_ = 0;
   mapping_.ReadVector(raw_->observation(), steps_, vector_);
   Observe(out);
   return static_cast<float>(Distance());
+}
+
+RawStep HostedEnvironment::TimedStep() {
+  const ScopedSeconds timed(call_seconds_);
+  return raw_->Step(action_);
 }
 
 worlds::StepResult HostedEnvironment::Step(std::span<const float> action,
@@ -66,7 +72,7 @@ worlds::StepResult HostedEnvironment::Step(std::span<const float> action,
   worlds::StepResult result;
   double reward = 0;
   for (int i = 0; i < action_repeat_ && !result.terminated && !result.truncated; ++i) {
-    const RawStep step = raw_->Step(action_);
+    const RawStep step = TimedStep();
     ++steps_;
     reward += step.reward;
     result.success = step.success.value_or(false);

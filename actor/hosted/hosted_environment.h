@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -29,14 +30,20 @@ class HostedEnvironment final : public worlds::Environment {
   // of their declared bounds pass, with a warning for the first of each array.
   float Reset(uint64_t stream_key, worlds::ObservationOut out) override;
   worlds::StepResult Step(std::span<const float> action, worlds::ObservationOut out) override;
-  // Seconds spent in converting images.
-  double render_seconds() const override { return image_seconds_; }
+  // The user's code draws what it observes within its step.
+  double render_seconds() const override { return 0; }
+  // Reset and step of the user's code.
+  std::optional<double> user_seconds() const override {
+    return call_seconds_ - raw_->binding_seconds();
+  }
   std::span<const worlds::DrawnMass> drawn_masses() const override { return {}; }
 
   RawEnvironment& raw() { return *raw_; }
 
  private:
   void Observe(worlds::ObservationOut out);
+  // A control step of `action_`.
+  RawStep TimedStep();
   // NaN without goals.
   double Distance() const;
 
@@ -49,8 +56,8 @@ class HostedEnvironment final : public worlds::Environment {
   ObservationMapping mapping_;
   std::vector<float> vector_;   // (R), of the newest observation
   std::vector<double> action_;  // (A), in the environment's units
-  double image_seconds_ = 0;
-  int64_t steps_ = 0;  // control steps since the reset
+  double call_seconds_ = 0;     // in Reset and Step of `raw_`
+  int64_t steps_ = 0;           // control steps since the reset
 };
 
 }  // namespace shoal::hosted

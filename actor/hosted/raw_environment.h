@@ -36,6 +36,8 @@ class RawEnvironment {
   // The arrays of the newest observation in the description's order, each contiguous in C order.
   // Valid until the next Reset or Step.
   virtual std::span<const void* const> observation() const = 0;
+  // Seconds of Reset and Step that converted arguments and results; the rest is the user's code.
+  virtual double binding_seconds() const { return 0; }
   // Draws the present scene. Throws Error if it cannot be drawn.
   virtual RawPicture Render() = 0;
 };

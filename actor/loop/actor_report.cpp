@@ -35,8 +35,13 @@ void ActorReport::AddSending() {
 
 void ActorReport::AddStages() {
   const StageSeconds stages = parts_.rollout.seconds();
-  report_.AddSeconds("physics", stages.physics);
-  report_.AddSeconds("rendering", stages.rendering);
+  if (stages.users) {
+    report_.AddSeconds("user_code", stages.user_code);
+    report_.AddSeconds("conversion", stages.conversion);
+  } else {
+    report_.AddSeconds("physics", stages.physics);
+    report_.AddSeconds("rendering", stages.rendering);
+  }
   report_.AddSeconds("inference", stages.inference);
   report_.AddSeconds("publishing", parts_.sender.publish_seconds());
   report_.AddSeconds("waiting_credit", parts_.loop.blocked_seconds());

@@ -80,9 +80,13 @@ void Rollout::AbandonEpisodes() {
 StageSeconds Rollout::seconds() const {
   StageSeconds seconds;
   for (const Slot& slot : slots_) {
-    seconds.rendering += slot.runner.environment().render_seconds();
+    const worlds::Environment& environment = slot.runner.environment();
+    seconds.rendering += environment.render_seconds();
+    seconds.user_code += environment.user_seconds().value_or(0);
+    seconds.users = seconds.users || environment.user_seconds().has_value();
   }
-  seconds.physics = environment_seconds_ - seconds.rendering;
+  (seconds.users ? seconds.conversion : seconds.physics) =
+      environment_seconds_ - seconds.rendering - seconds.user_code;
   seconds.inference = inference_seconds_;
   return seconds;
 }

@@ -34,8 +34,13 @@ namespace shoal::actor {
 
 // Seconds spent since the start, by stage.
 struct StageSeconds {
+  bool users = false;  // the environments are a user's own
+  // Stages of Shoal's own worlds.
   double physics = 0;  // and all else that an environment does but rendering
   double rendering = 0;
+  // Stages of environments of a user's own.
+  double user_code = 0;   // their reset and step
+  double conversion = 0;  // between their arrays and Shoal's, and all else
   double inference = 0;
 };
 

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -53,6 +54,8 @@ class Environment {
   virtual double simulated_seconds() const { return 0; }
   // Seconds spent drawing frames since the construction.
   virtual double render_seconds() const = 0;
+  // Seconds spent in a user's code since the construction; empty: all of the code is Shoal's.
+  virtual std::optional<double> user_seconds() const { return std::nullopt; }
   // Drawn at the last reset, in the order drawn; empty unless the configuration randomizes.
   virtual std::span<const DrawnMass> drawn_masses() const = 0;
   // The goal of the running episode reached, drawn at its reset: (C, H, W) like a frame, from the

@@ -20,7 +20,8 @@ constexpr double kServers = 1;     // cores of replay server and evaluation wher
 // Times the present progress. Less than this is within what such a prediction misses by.
 constexpr double kWorthAdvising = 1.15;
 
-constexpr std::string_view kActing[] = {"physics", "rendering", "inference"};
+constexpr std::string_view kActing[] = {"physics", "rendering", "user_code", "conversion",
+                                        "inference"};
 constexpr std::string_view kLearning[] = {"forward", "backward", "optimiser", "weights",
                                           "checkpoint"};
 
@@ -61,7 +62,7 @@ std::string AdviseMoreActing(const Bottleneck& figures, const RunResources& reso
   const std::string most = stage == nullptr
                                ? ""
                                : fmt::format(" (which spend {:.0f} % of their time in {})",
-                                             100 * stage->share, stage->stage);
+                                             100 * stage->share, WordsOf(stage->stage));
   return fmt::format("The learner waits for the actors {:.0f} % of the time{}: {}.",
                      100 * figures.samples_blocked, most, MoreActing(figures, resources));
 }

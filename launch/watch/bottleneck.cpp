@@ -70,6 +70,11 @@ Bottleneck FindBottleneck(const RunTotals& totals, const RunResources& resources
   return result;
 }
 
+std::string WordsOf(std::string stage) {
+  std::ranges::replace(stage, '_', ' ');
+  return stage;
+}
+
 double ShareOf(const Bottleneck& figures, std::string_view role, std::string_view stage) {
   for (const ProcessTimes& times : figures.roles) {
     if (times.role != role) continue;
@@ -85,9 +90,7 @@ std::vector<std::string> FormatBottleneck(const Bottleneck& bottleneck) {
   for (const ProcessTimes& times : bottleneck.roles) {
     std::string line = fmt::format("{} x{}:", times.role, times.processes);
     for (const StageShare& share : times.stages) {
-      std::string stage = share.stage;
-      std::ranges::replace(stage, '_', ' ');
-      line += fmt::format(" {} {:.0f} %,", stage, 100 * share.share);
+      line += fmt::format(" {} {:.0f} %,", WordsOf(share.stage), 100 * share.share);
     }
     line += fmt::format(" {:.1f} cores", times.cores);
     lines.push_back(std::move(line));

@@ -52,6 +52,9 @@ struct RunResources {
 // Computes the shares from the totals; roles without counts are empty.
 Bottleneck FindBottleneck(const RunTotals& totals, const RunResources& resources);
 
+// A stage's name as words: "waiting credit".
+std::string WordsOf(std::string stage);
+
 // The share of its time that a role spent in a stage; 0 where it has none.
 double ShareOf(const Bottleneck& figures, std::string_view role, std::string_view stage);
 

@@ -109,8 +109,7 @@ Cell Busiest(const Process& process) {
   for (size_t i = 0; i < process.names.size() && i < process.values.size(); ++i) {
     const std::string_view name = process.names[i];
     if (!name.starts_with(kPrefix) || process.values[i] <= busiest.number.value_or(0)) continue;
-    std::string stage(name.substr(kPrefix.size()));
-    std::ranges::replace(stage, '_', ' ');
+    const std::string stage = WordsOf(std::string(name.substr(kPrefix.size())));
     busiest = {fmt::format("{} {:.0f} %", stage, 100 * process.values[i]), process.values[i]};
   }
   return busiest;

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -64,7 +65,11 @@ class CountingEnvironment final : public worlds::Environment {
   // Whether an episode is faulty at a step, 0 = its reset.
   std::function<bool(uint64_t key, int step)> faulty;
 
+  // Time that it says a user's code took; empty: it is one of Shoal's own.
+  std::optional<double> users_share;
+
   double render_seconds() const override { return 0; }
+  std::optional<double> user_seconds() const override { return users_share; }
   std::span<const worlds::DrawnMass> drawn_masses() const override { return masses_; }
   std::span<const uint8_t> goal_picture() const override { return goal_picture_; }
 

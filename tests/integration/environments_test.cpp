@@ -279,6 +279,30 @@ TEST_F(Environments, RewardsOfAGoalEnvironmentAreComputedForOtherGoals) {
   EXPECT_THAT(refused.err, HasSubstr("no goals that Shoal knows: its reward is no threshold"));
 }
 
+// The user's step and Shoal's share of it: point.Slow takes 2 ms for each.
+TEST_F(Environments, TimeOfTheUsersCodeIsReportedApart) {
+  const ProgramResult done = Shoal(
+      Words("point:Slow",
+            {{"env_steps", "600"}, {"eval.interval", "1000000"}, {"eval.final_episodes", "0"}}));
+  ASSERT_EQ(ExitCode(done), 0) << done.out << done.err;
+  EXPECT_THAT(done.out, AllOf(HasSubstr(" user code "), HasSubstr(" conversion ")));
+  json last;
+  std::istringstream lines(ReadFile(run_.path() / "metrics.jsonl"));
+  for (std::string line; std::getline(lines, line);) {
+    const json report = json::parse(line);
+    if (report.at("role") == "actor") last = report;
+  }
+  const double steps = last.at("env_steps");
+  ASSERT_GE(steps, 600);
+  EXPECT_GE(last.at("seconds_user_code"), 0.002 * steps);
+  EXPECT_GE(last.at("seconds_conversion"), 0.002 * steps);
+  EXPECT_FALSE(last.contains("seconds_physics"));
+  const json shares = run_.Json("bottleneck.json").at("roles").at(0).at("shares");
+  EXPECT_GT(shares.at("user_code"), 0.005);
+  EXPECT_GT(shares.at("conversion"), 0.005);
+  EXPECT_FALSE(shares.contains("physics"));
+}
+
 TEST_F(Environments, PicturesAreTrainedFrom) {
   const ProgramResult done =
       Shoal(Words("point:Picture", {{"env.kwargs", R"({"channels_first": true})"},

@@ -12,6 +12,7 @@
 #include "common/base/check.h"
 #include "common/base/error.h"
 #include "common/base/one_line.h"
+#include "common/wire/scoped_seconds.h"
 
 namespace py = pybind11;
 
@@ -150,6 +151,7 @@ void PythonEnvironment::Reset(uint32_t seed) {
   const CallWatch::Call call(watch_, "reset");
   try {
     const py::object result = reset_(py::arg("seed") = seed);
+    const ScopedSeconds timed(binding_seconds_);
     if (!py::isinstance<py::tuple>(result) || py::len(result) != 2) {
       throw RuntimeError(
           "environment {}: reset returned no pair of observation and info, as Gymnasium 1.x has it",
@@ -161,11 +163,17 @@ void PythonEnvironment::Reset(uint32_t seed) {
   }
 }
 
+py::array PythonEnvironment::ActionOf(std::span<const double> action) {
+  const ScopedSeconds timed(binding_seconds_);
+  return ActionArray(description_.action, action_shape_, action);
+}
+
 hosted::RawStep PythonEnvironment::Step(std::span<const double> action) {
   const py::gil_scoped_acquire lock;
   const CallWatch::Call call(watch_, "step");
   try {
-    const py::object result = step_(ActionArray(description_.action, action_shape_, action));
+    const py::object result = step_(ActionOf(action));
+    const ScopedSeconds timed(binding_seconds_);
     if (!PyTuple_Check(result.ptr()) || PyTuple_GET_SIZE(result.ptr()) != 5) {
       throw RuntimeError(
           "environment {}: step returned no tuple of observation, reward, terminated, truncated "

@@ -55,6 +55,7 @@ class __attribute__((visibility("hidden"))) PythonEnvironment final
   void Reset(uint32_t seed) override;
   hosted::RawStep Step(std::span<const double> action) override;
   std::span<const void* const> observation() const override { return arrays_; }
+  double binding_seconds() const override { return binding_seconds_; }
   hosted::RawPicture Render() override;
 
  private:
@@ -63,6 +64,7 @@ class __attribute__((visibility("hidden"))) PythonEnvironment final
     SpaceArray array;
   };
 
+  pybind11::array ActionOf(std::span<const double> action);
   // Keeps the arrays of an observation alive and notes where they lie.
   void Take(const char* call, const pybind11::handle& observation);
 
@@ -73,6 +75,7 @@ class __attribute__((visibility("hidden"))) PythonEnvironment final
   std::vector<Leaf> leaves_;
   std::vector<pybind11::array> held_;
   std::vector<const void*> arrays_;
+  double binding_seconds_ = 0;
 };
 
 }  // namespace shoal::python

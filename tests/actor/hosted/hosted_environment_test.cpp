@@ -10,7 +10,9 @@
 
 #include "actor/hosted/hosted_spec.h"
 #include "actor/worlds/episode_fault.h"
+#include "common/base/clock.h"
 #include "common/base/error.h"
+#include "common/wire/scoped_seconds.h"
 #include "tests/support/error_message.h"
 
 namespace shoal::hosted {
@@ -30,21 +32,38 @@ struct Script {
   RawStep step{.reward = 0.5};
   std::vector<uint32_t> seeds;
   std::vector<std::vector<double>> actions;
+  double call_seconds = 0;      // that a reset and a step take at least
+  double reading_seconds = 0;   // ... that it takes to read the arrays
+  double binding_seconds = 0;   // of the calls, as it says
+  double called = 0, read = 0;  // seconds that calls and reading took
 };
+
+void Spin(double seconds, double& total) {
+  const ScopedSeconds timed(total);
+  const SteadyTime start = Now();
+  while (SecondsSince(start) < seconds) {
+  }
+}
 
 class FakeRaw final : public RawEnvironment {
  public:
   FakeRaw(Script& script, bool image) : script_(script), image_(image) {}
   void Reset(uint32_t seed) override {
     script_.seeds.push_back(seed);
+    Spin(script_.call_seconds, script_.called);
     Show();
   }
   RawStep Step(std::span<const double> action) override {
     script_.actions.emplace_back(action.begin(), action.end());
+    Spin(script_.call_seconds, script_.called);
     Show();
     return script_.step;
   }
-  std::span<const void* const> observation() const override { return arrays_; }
+  std::span<const void* const> observation() const override {
+    Spin(script_.reading_seconds, script_.read);
+    return arrays_;
+  }
+  double binding_seconds() const override { return script_.binding_seconds; }
   RawPicture Render() override { return {}; }
 
  private:
@@ -178,6 +197,26 @@ TEST_F(HostedEnvironmentTest, RepeatedActionsAddTheirRewards) {
   EXPECT_EQ(script_.actions.size(), 3u);
   script_.step.terminated = true;
   EXPECT_EQ(Step(environment).reward, 0.5F) << "the episode has ended";
+}
+
+// Four calls of the user's code: a reset and three control steps. The arrays are read twice.
+TEST_F(HostedEnvironmentTest, TimeOfTheUsersCodeLeavesOutConversion) {
+  Config config = StateConfig();
+  config.action_repeat = 3;
+  HostedEnvironment environment = Make(config);
+  script_.call_seconds = 0.002;
+  script_.reading_seconds = 0.01;
+  const SteadyTime start = Now();
+  Reset(environment);
+  Step(environment);
+  const double all = SecondsSince(start);
+  const double users = environment.user_seconds().value();
+  EXPECT_GE(script_.called, 4 * 0.002);
+  EXPECT_GE(script_.read, 2 * 0.01);
+  EXPECT_GE(users, script_.called);
+  EXPECT_LE(users, all - script_.read);
+  script_.binding_seconds = 0.001;
+  EXPECT_DOUBLE_EQ(environment.user_seconds().value(), users - 0.001);
 }
 
 TEST_F(HostedEnvironmentTest, ANumberThatIsNotFiniteIsAFaultOfTheEpisode) {

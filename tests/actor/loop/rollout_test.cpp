@@ -348,6 +348,31 @@ TEST_F(WarmUpTest, BeforeAnyWeightsItGoesOnBeyondTheShare) {
   EXPECT_TRUE(Random(6));
 }
 
+TEST_F(RolloutTest, TimeOfAUsersCodeIsNoTimeOfShoals) {
+  Start(2);
+  Step(2);
+  const StageSeconds own = rollout().seconds();
+  EXPECT_FALSE(own.users);
+  EXPECT_GT(own.physics, 0);
+  EXPECT_EQ(own.user_code, 0);
+  EXPECT_EQ(own.conversion, 0);
+
+  std::vector<std::unique_ptr<worlds::Environment>> environments;
+  for (const double seconds : {0.25e-9, 0.5e-9}) {
+    auto environment = std::make_unique<CountingEnvironment>();
+    environment->users_share = seconds;
+    environments.push_back(std::move(environment));
+  }
+  Rollout hosted(Rollout::Options::Of(parts_->config, kFirstEnv), parts_->spec,
+                 std::move(environments), parts_->made, sink_, parts_->selector);
+  ASSERT_TRUE(hosted.TryStep());
+  const StageSeconds users = hosted.seconds();
+  EXPECT_TRUE(users.users);
+  EXPECT_EQ(users.physics, 0);
+  EXPECT_DOUBLE_EQ(users.user_code, 0.75e-9);
+  EXPECT_GT(users.conversion, 0);
+}
+
 TEST_F(RolloutTest, AStateOfOtherEnvironmentsIsRefusedNamingBoth) {
   Start(2);
   RolloutState state = rollout().State();

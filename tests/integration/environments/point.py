@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: Apache-2.0
 """A point on a line that is to come to rest at a place. Cheap, and learned within a minute."""
 
+import time
+
 import gymnasium
 import numpy as np
 from gymnasium import spaces
@@ -67,3 +69,30 @@ class Picture(Point):
         picture[:, int(np.clip(8 * self._target[0] + 16, 0, 31)), 0] = 255
         picture[:, int(np.clip(8 * self._place[0] + 16, 0, 31))] = 255
         return np.ascontiguousarray(picture.transpose(2, 0, 1)) if self._first else picture
+
+
+class Slow(Point):
+    """Its step takes at least 2 ms, and so does reading its observation."""
+
+    def __init__(self, render_mode=None):
+        super().__init__(limit=40)
+
+    def _observation(self):
+        return SlowToRead(super()._observation())
+
+    def step(self, action):
+        _spin(0.002)
+        return super().step(action)
+
+
+class SlowToRead(dict):
+    def __getitem__(self, key):
+        if key == "place":
+            _spin(0.002)
+        return super().__getitem__(key)
+
+
+def _spin(seconds):
+    end = time.perf_counter() + seconds
+    while time.perf_counter() < end:
+        pass

@@ -74,6 +74,15 @@ TEST(Advice, ALearnerHeldByTheLimiterWantsActorsWhileThereAreCores) {
               AllOf(HasSubstr("all 4 cores are busy"), Not(HasSubstr("shoal scale"))));
 }
 
+TEST(Advice, AStageIsNamedInWords) {
+  Bottleneck figures = Balanced();
+  figures.samples_blocked = 0.4;
+  SetShare(&figures, "actor", "user_code", 0.6);
+  EXPECT_THAT(Advise(figures, WithActors(2)), HasSubstr("60 % of their time in user code)"));
+  SetShare(&figures, "actor", "conversion", 0.7);
+  EXPECT_THAT(Advise(figures, WithActors(2)), HasSubstr("70 % of their time in conversion)"));
+}
+
 // Two actors at 15 % of their time are 0.3 cores; with the replay server there are three for the
 // learner, which then wants 0.9 cores of actors. Three threads make 3 / 1.06 times the updates.
 TEST(Advice, ActorsHeldByTheLimiterLeaveTheirCoresToTheLearner) {
