@@ -22,6 +22,8 @@ class CardTest : public testing::Test {
     run_.WriteFinal(0.95, 100);
     MakeFolders(run_.path() / "checkpoints/best");
     WriteFileAtomically(run_.path() / "checkpoints/best/policy.safetensors", "weights");
+    WriteFileAtomically(run_.path() / "checkpoints/best/policy.json", "description");
+    WriteFileAtomically(run_.path() / "checkpoints/best/state.json", "state");
   }
 
   const TemporaryFolder folder_;
@@ -42,6 +44,8 @@ TEST_F(CardTest, HasWhatHubsReadAndWhatPlays) {
   EXPECT_EQ(results.at("mean_reward"), -1.0);
   EXPECT_EQ(results.at("n_eval_episodes"), 100);
   EXPECT_EQ(ReadFile(card_ / "policy.safetensors"), "weights");
+  EXPECT_EQ(ReadFile(card_ / "policy.json"), "description");
+  EXPECT_EQ(ReadFile(card_ / "state.json"), "state");
   EXPECT_EQ(ReadFile(card_ / "config.json"), ReadFile(run_.path() / "config.json"));
   EXPECT_FALSE(fs::exists(card_ / "replay.mp4"));
 }
