@@ -55,6 +55,7 @@ std::vector<CheckLine> CheckMachine(const CheckRequest& request,
     return lines.back().verdict != Verdict::kFail;
   };
   nn::SetThreads(1);
+  look("system", "", [] { return JudgeSystem({"/etc/os-release", "/usr/lib/os-release"}); });
   look("cpu", "use an x86-64 CPU that oneDNN supports", [] {
     return JudgeCpu(nn::CpuIsa(), nn::ToString(nn::ChoosePrecision("auto", /*pixels=*/true)));
   });

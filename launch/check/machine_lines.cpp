@@ -4,11 +4,15 @@
 #include <sys/statvfs.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cmath>
 #include <cstring>
+#include <sstream>
+#include <string_view>
 
 #include "common/base/error.h"
+#include "common/base/files.h"
 #include "common/base/openmp_binding.h"
 #include "replay_server/core/storage_limits.h"
 
@@ -26,6 +30,24 @@ uint64_t FreeBytes(const fs::path& folder) {
                        std::strerror(errno));
   }
   return uint64_t{disk.f_bavail} * disk.f_frsize;
+}
+
+constexpr std::string_view kTriedDebians[] = {"12", "13"};
+
+// The value of NAME=value, NAME="value" or NAME='value' in the text of an os-release file; empty
+// where the name is absent.
+std::string ValueOf(std::string_view name, const std::string& text) {
+  std::istringstream lines(text);
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with(fmt::format("{}=", name))) continue;
+    std::string value = line.substr(name.size() + 1);
+    if (value.size() >= 2 && value.front() == value.back() &&
+        (value.front() == '"' || value.front() == '\'')) {
+      value = value.substr(1, value.size() - 2);
+    }
+    return value;
+  }
+  return "";
 }
 
 }  // namespace
@@ -62,6 +84,24 @@ CheckLine JudgeCores(const CoreLimits& limits) {
         why.empty() ? "" : ": " + why);
   }
   return line;
+}
+
+CheckLine JudgeSystem(const std::vector<fs::path>& release_files) {
+  const auto file = std::ranges::find_if(
+      release_files, [](const fs::path& path) { return access(path.c_str(), R_OK) == 0; });
+  if (file == release_files.end()) {
+    return {"system", Verdict::kOk,
+            "unknown: there is no os-release file (Debian 12 and 13 were tried)", ""};
+  }
+  const std::string text = ReadFile(*file);
+  const std::string name = ValueOf("PRETTY_NAME", text);
+  const bool tried =
+      ValueOf("ID", text) == "debian" &&
+      std::ranges::find(kTriedDebians, ValueOf("VERSION_ID", text)) != std::end(kTriedDebians);
+  return {"system", Verdict::kOk,
+          fmt::format("{}; {}", name.empty() ? "unnamed in " + file->string() : name,
+                      tried ? "tried" : "not tried (Debian 12 and 13 were)"),
+          ""};
 }
 
 fs::path ExistingFolder(const fs::path& path) {

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "common/base/usable_cores.h"
 #include "launch/check/check_line.h"
@@ -15,6 +16,10 @@ namespace shoal::launch {
 CheckLine JudgeCpu(const std::string& isa, const std::string& precision);
 
 CheckLine JudgeCores(const CoreLimits& limits);
+
+// Names the distribution, and says whether building and training were tried on it
+// (docs/install.md). `release_files` are looked for in turn: /etc/os-release, /usr/lib/os-release.
+CheckLine JudgeSystem(const std::vector<std::filesystem::path>& release_files);
 
 // Space that a run of the default preset needs.
 struct Needs {

@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "common/base/error.h"
+#include "common/base/files.h"
 #include "tests/support/temporary_folder.h"
 
 namespace shoal::launch {
@@ -24,6 +25,26 @@ TEST(MachineLines, ACpuWithoutAvx2IsAWarning) {
   EXPECT_EQ(old.verdict, Verdict::kWarn);
   EXPECT_THAT(old.finding, HasSubstr("sse41"));
   EXPECT_THAT(old.advice, HasSubstr("AVX2"));
+}
+
+TEST(MachineLines, TheSystemIsNamedAndWhetherItWasTried) {
+  const TemporaryFolder folder;
+  const auto line = [&](const std::string& text) {
+    WriteFileAtomically(folder.path() / "os-release", text);
+    const CheckLine judged = JudgeSystem({folder.path() / "absent", folder.path() / "os-release"});
+    EXPECT_EQ(judged.verdict, Verdict::kOk);
+    return judged.finding;
+  };
+  EXPECT_EQ(line("PRETTY_NAME=\"Debian GNU/Linux 12 (bookworm)\"\nVERSION_ID=\"12\"\nID=debian\n"),
+            "Debian GNU/Linux 12 (bookworm); tried");
+  EXPECT_EQ(line("ID='debian'\nVERSION_ID=13\nPRETTY_NAME='Debian GNU/Linux 13'\n"),
+            "Debian GNU/Linux 13; tried");
+  EXPECT_EQ(line("ID=debian\nVERSION_ID=\"11\"\nPRETTY_NAME=\"Debian GNU/Linux 11\"\n"),
+            "Debian GNU/Linux 11; not tried (Debian 12 and 13 were)");
+  EXPECT_EQ(line("ID=ubuntu\nVERSION_ID=\"12\"\nPRETTY_NAME=\"Ubuntu 12\"\n"),
+            "Ubuntu 12; not tried (Debian 12 and 13 were)");
+  EXPECT_THAT(line("ID=debian"), AllOf(HasSubstr("unnamed in"), HasSubstr("not tried")));
+  EXPECT_THAT(JudgeSystem({folder.path() / "absent"}).finding, HasSubstr("unknown"));
 }
 
 TEST(MachineLines, CoresAreTheLeastOfAffinityAndQuota) {
