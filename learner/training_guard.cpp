@@ -18,7 +18,7 @@ std::string Shown(std::optional<double> value) {
 }  // namespace
 
 TrainingGuard::TrainingGuard(const Config& config)
-    : initial_temperature_(config.learner.initial_temperature) {}
+    : initial_temperature_(config.sac.initial_temperature) {}
 
 std::vector<std::string> TrainingGuard::Check(const UpdateFigures& mean, int updates,
                                               SteadyTime now) {

@@ -8,7 +8,7 @@
 namespace shoal {
 
 BatchOptions BatchOptionsOf(const RunConfig& run) {
-  std::vector<std::string> privileged = PrivilegedBlocksOf(run.config.learner, run.spec).all;
+  std::vector<std::string> privileged = PrivilegedBlocksOf(run.config, run.spec).all;
   return {.batch = run.config.learner.batch,
           .copies = run.config.replay.copies,
           .target_shifts = run.config.replay.target_shifts,

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The resolved configuration of a run: every key with its default. One struct per section; a key is
-// its member's dotted path ("learner.batch"), but for section sac, whose members are in
-// LearnerConfig. config_keys.cpp lists every key; docs/configuration.md is made from that list.
+// its member's dotted path ("learner.batch"). config_keys.cpp lists every key;
+// docs/configuration.md is made from that list.
 #pragma once
 
 #include <array>
@@ -96,9 +96,8 @@ struct LearnerConfig {
   std::string precision = "auto";  // auto | f32 | bf16
   int threads = 0;                 // 0 = chosen: common/config/learner_threads.h
   double learning_rate = 5e-4;
-  // Rate of the actor, the critic or the temperature alone; 0 = learning_rate.
-  double actor_learning_rate = 0, critic_learning_rate = 0, temperature_learning_rate = 0;
-  Schedule rate_factor = Schedule::Constant(1);  // on all of these
+  double actor_learning_rate = 0, critic_learning_rate = 0;  // 0 = learning_rate
+  Schedule rate_factor = Schedule::Constant(1);              // on all learning rates
   double max_grad_norm = 0;  // of the actor's gradients and of the critic's; 0 = not clipped
   double discount = 0.9;
   double reward_scale = 10;
@@ -107,21 +106,25 @@ struct LearnerConfig {
   int actor_period = 2;         // updates per actor and temperature update
   int target_period = 1;
   double mean_penalty = 0;  // of a deterministic policy: weight of its squared outputs before tanh
-  double initial_temperature = 0.1;
-  std::string temperature = "auto";  // auto | fixed
-  double min_temperature = 0;        // of an automatic one
-  double target_entropy = 0;         // 0 = target_entropy_per_action * (action size)
-  double target_entropy_per_action = -1;
   bool normalise_vectors = false;  // of observations, by running mean and deviation
   double variance_floor = 0;       // smaller variances count as this in normalise_vectors
   bool bounded_targets = false;    // values cut off at what rewards of -1 and 0 allow
-  // Privileged inputs, which acting does not have: common/config/privileged_blocks.h.
+  int weights_period = 20;         // updates between weights broadcasts
+  int request_credits = 3;         // batches asked for ahead
+  int checkpoint_period = 2'000;   // updates between checkpoints
+};
+
+// Entropy temperature, and privileged inputs of learning (common/config/privileged_blocks.h).
+struct SacConfig {
+  std::string temperature = "auto";  // auto | fixed
+  double initial_temperature = 0.1;
+  double min_temperature = 0;            // of an automatic one
+  double temperature_learning_rate = 0;  // 0 = learner.learning_rate
+  double target_entropy = 0;             // 0 = target_entropy_per_action * (action size)
+  double target_entropy_per_action = -1;
   StateBlocks critic_blocks = false;  // that the critic sees in place of pixels; false = pixels
-  std::vector<std::string> aux;   // what the features are trained to tell: BLOCK, or BLOCK-BLOCK
-  double aux_weight = 1;          // of that loss
-  int weights_period = 20;        // updates between weights broadcasts
-  int request_credits = 3;        // batches asked for ahead
-  int checkpoint_period = 2'000;  // updates between checkpoints
+  std::vector<std::string> aux;       // what the features also predict: BLOCK, or BLOCK-BLOCK
+  double aux_weight = 1;              // of that loss
 };
 
 // On-policy learning: rollouts of every environment, learned from together and then forgotten.
@@ -221,6 +224,7 @@ struct Config {
   RandomizationConfig randomization;
   ReplayConfig replay;
   LearnerConfig learner;
+  SacConfig sac;
   PpoConfig ppo;
   Td3Config td3;
   ExplorationConfig exploration;

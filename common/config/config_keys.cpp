@@ -11,47 +11,44 @@ namespace {
 constexpr int64_t kMaxInt64 = std::numeric_limits<int64_t>::max();
 constexpr IntegerRange kSteps{1, 1'000'000'000'000};
 
-// A function from a Config to one of its members, as the table stores it.
-#define SHOAL_KEY(path, member, rule, meaning)                       \
-  Key {                                                              \
-    path, [](Config& c) -> Slot { return &c.member; }, rule, meaning \
+// A key is spelled like its member, which the table stores as a function from a Config.
+#define SHOAL_KEY(member, range, text)                                                         \
+  {                                                                                            \
+    .path = #member, .slot = [](Config& c) -> Slot { return &c.member; }, .rule = Rule{range}, \
+    .meaning = text                                                                            \
   }
-// For keys whose path is spelled like the member.
-#define SHOAL_SAME(member, rule, meaning) SHOAL_KEY(#member, member, (Rule{rule}), meaning)
 
 std::vector<Key> RunKeys() {
   return {
-      SHOAL_SAME(preset, FileName{true}, "preset the configuration started from"),
-      SHOAL_SAME(seed, (IntegerRange{0, kMaxInt64}), "seed of every random stream"),
-      SHOAL_SAME(run_name, FileName{true}, "name of the run's folder; empty = PRESET-sSEED"),
-      SHOAL_SAME(run_dir, AnyValue{}, "folder that holds the runs"),
-      SHOAL_SAME(task, FileName{}, "task to learn"),
-      SHOAL_SAME(task_library, AnyValue{},
-                 "path of a shared object with tasks of one's own; empty = none"),
-      SHOAL_SAME(distance_threshold, (RealRange{0, 1000}),
-                 "distance in m below which a goal is reached; 0 = the task's own"),
-      SHOAL_SAME(env_steps, kSteps, "budget: training stops after this many env steps"),
-      SHOAL_SAME(
-          actors, (IntegerRange{0, kMostActors}),
-          "actor processes; 0 = as the run divides its cores (learner.threads), else one per "
-          "core the learner leaves, at least 1; in lockstep 1"),
-      SHOAL_SAME(envs_per_actor, (IntegerRange{1, 256}), "environments stepped by one actor"),
-      SHOAL_SAME(lockstep, AnyValue{},
-                 "one actor, fixed batches, weights at fixed steps: repeats bit for bit"),
-      SHOAL_SAME(lockstep_steps, (IntegerRange{1, 100'000}),
-                 "vector steps between two weights versions in lockstep"),
-      SHOAL_SAME(model, AnyValue{}, "path of another MJCF file for the task; empty = the built-in"),
-      SHOAL_SAME(physics, (Choices{{"mujoco2", "mujoco3"}}),
-                 "Fetch: how stiffly the arm's orientation is held, as in this version of MuJoCo"),
-      SHOAL_SAME(
-          action_repeat, (IntegerRange{0, 100}),
-          "control steps for which an env step repeats its action, rewards added up; 0 = the "
-          "task's own"),
-      SHOAL_SAME(
+      SHOAL_KEY(preset, FileName{true}, "preset the configuration started from"),
+      SHOAL_KEY(seed, (IntegerRange{0, kMaxInt64}), "seed of every random stream"),
+      SHOAL_KEY(run_name, FileName{true}, "name of the run's folder; empty = PRESET-sSEED"),
+      SHOAL_KEY(run_dir, AnyValue{}, "folder that holds the runs"),
+      SHOAL_KEY(task, FileName{}, "task to learn"),
+      SHOAL_KEY(task_library, AnyValue{},
+                "path of a shared object with tasks of one's own; empty = none"),
+      SHOAL_KEY(distance_threshold, (RealRange{0, 1000}),
+                "distance in m below which a goal is reached; 0 = the task's own"),
+      SHOAL_KEY(env_steps, kSteps, "budget: training stops after this many env steps"),
+      SHOAL_KEY(actors, (IntegerRange{0, kMostActors}),
+                "actor processes; 0 = as the run divides its cores (learner.threads), else one per "
+                "core the learner leaves, at least 1; in lockstep 1"),
+      SHOAL_KEY(envs_per_actor, (IntegerRange{1, 256}), "environments stepped by one actor"),
+      SHOAL_KEY(lockstep, AnyValue{},
+                "one actor, fixed batches, weights at fixed steps: repeats bit for bit"),
+      SHOAL_KEY(lockstep_steps, (IntegerRange{1, 100'000}),
+                "vector steps between two weights versions in lockstep"),
+      SHOAL_KEY(model, AnyValue{}, "path of another MJCF file for the task; empty = the built-in"),
+      SHOAL_KEY(physics, (Choices{{"mujoco2", "mujoco3"}}),
+                "Fetch: how stiffly the arm's orientation is held, as in this version of MuJoCo"),
+      SHOAL_KEY(action_repeat, (IntegerRange{0, 100}),
+                "control steps for which an env step repeats its action, rewards added up; 0 = the "
+                "task's own"),
+      SHOAL_KEY(
           end_on_success, AnyValue{},
           "tasks with goals: an episode ends with the step that reaches its goal, and nothing "
           "is expected after it; in training and evaluation"),
-      SHOAL_SAME(
+      SHOAL_KEY(
           max_faulty_share, (RealRange{0, 1}),
           "share of an actor's last 200 episodes that may be faulty, which end, truncated, where a "
           "number of the simulation is not finite; beyond it the run ends; 0 = the first one ends "
@@ -61,43 +58,43 @@ std::vector<Key> RunKeys() {
 
 std::vector<Key> EnvKeys() {
   return {
-      SHOAL_SAME(env.id, AnyValue{},
-                 "environment written in Python, in place of a task: a name that gymnasium.make "
-                 "knows, MODULE:NAME or FILE.py:NAME (docs/own_environment.md); empty = none"),
-      SHOAL_SAME(env.kwargs, AnyValue{}, "arguments of the environment's constructor"),
-      SHOAL_SAME(env.python, AnyValue{},
-                 "path of the Python interpreter that runs the environment; empty = that of the "
-                 "active virtual environment, else python3"),
-      SHOAL_SAME(env.folder, AnyValue{},
-                 "folder in which MODULE is looked for besides the interpreter's own places; empty "
-                 "= where the run is started"),
-      SHOAL_SAME(env.step_timeout, (RealRange{0, 3600, true}),
-                 "seconds after which a call of reset, step or render that has not returned ends "
-                 "its actor, which is then restarted"),
+      SHOAL_KEY(env.id, AnyValue{},
+                "environment written in Python, in place of a task: a name that gymnasium.make "
+                "knows, MODULE:NAME or FILE.py:NAME (docs/own_environment.md); empty = none"),
+      SHOAL_KEY(env.kwargs, AnyValue{}, "arguments of the environment's constructor"),
+      SHOAL_KEY(env.python, AnyValue{},
+                "path of the Python interpreter that runs the environment; empty = that of the "
+                "active virtual environment, else python3"),
+      SHOAL_KEY(env.folder, AnyValue{},
+                "folder in which MODULE is looked for besides the interpreter's own places; empty "
+                "= where the run is started"),
+      SHOAL_KEY(env.step_timeout, (RealRange{0, 3600, true}),
+                "seconds after which a call of reset, step or render that has not returned ends "
+                "its actor, which is then restarted"),
   };
 }
 
 std::vector<Key> ObservationKeys() {
   return {
-      SHOAL_SAME(observation.pixels, AnyValue{}, "render cameras"),
-      SHOAL_SAME(observation.cameras, AnyValue{},
-                 "cameras, in channel order, of the task, of its model or of "
-                 "observation.custom_cameras; a task that lacks one of the default two is seen "
-                 "through its first camera instead"),
-      SHOAL_SAME(observation.grey, AnyValue{}, "one grey channel per camera instead of RGB"),
-      SHOAL_SAME(observation.height, (IntegerRange{8, 1024}), "image height in pixels"),
-      SHOAL_SAME(observation.width, (IntegerRange{8, 1024}), "image width in pixels"),
-      SHOAL_SAME(observation.stack, (IntegerRange{1, 16}), "frames per observation"),
-      SHOAL_SAME(observation.goal_mode, (Choices{{"none", "desired", "both", "image"}}),
-                 "the goal among the observations: as vectors (both = desired and achieved), or "
-                 "image = a picture of the goal reached beside the frames"),
-      SHOAL_SAME(observation.proprioception, AnyValue{},
-                 "the task's state vector: all of it, nothing, or the blocks named (shoal env "
-                 "describe lists them)"),
-      SHOAL_SAME(observation.quality, (Choices{{"fast", "native", "reference"}}),
-                 "fast = no shadows, reflections, multisampling; native = as fast, drawn by a "
-                 "renderer without OpenGL; reference = the rendering of the originals"),
-      SHOAL_SAME(
+      SHOAL_KEY(observation.pixels, AnyValue{}, "render cameras"),
+      SHOAL_KEY(observation.cameras, AnyValue{},
+                "cameras, in channel order, of the task, of its model or of "
+                "observation.custom_cameras; a task that lacks one of the default two is seen "
+                "through its first camera instead"),
+      SHOAL_KEY(observation.grey, AnyValue{}, "one grey channel per camera instead of RGB"),
+      SHOAL_KEY(observation.height, (IntegerRange{8, 1024}), "image height in pixels"),
+      SHOAL_KEY(observation.width, (IntegerRange{8, 1024}), "image width in pixels"),
+      SHOAL_KEY(observation.stack, (IntegerRange{1, 16}), "frames per observation"),
+      SHOAL_KEY(observation.goal_mode, (Choices{{"none", "desired", "both", "image"}}),
+                "the goal among the observations: as vectors (both = desired and achieved), or "
+                "image = a picture of the goal reached beside the frames"),
+      SHOAL_KEY(observation.proprioception, AnyValue{},
+                "the task's state vector: all of it, nothing, or the blocks named (shoal env "
+                "describe lists them)"),
+      SHOAL_KEY(observation.quality, (Choices{{"fast", "native", "reference"}}),
+                "fast = no shadows, reflections, multisampling; native = as fast, drawn by a "
+                "renderer without OpenGL; reference = the rendering of the originals"),
+      SHOAL_KEY(
           observation.custom_cameras, AnyValue{},
           "cameras of one's own for observation.cameras; in m and degrees, azimuth 0 looks "
           "along +x, negative elevation down; with `body` in that body's frame, moving with it"),
@@ -106,57 +103,57 @@ std::vector<Key> ObservationKeys() {
 
 std::vector<Key> RandomizationKeys() {
   return {
-      SHOAL_SAME(randomization.body_mass, (RealRange{0, 1e6, true}),
-                 "kg, drawn uniformly for each episode, body by body; {} = as modelled"),
+      SHOAL_KEY(randomization.body_mass, (RealRange{0, 1e6, true}),
+                "kg, drawn uniformly for each episode, body by body; {} = as modelled"),
   };
 }
 
 std::vector<Key> ReplayKeys() {
   return {
-      SHOAL_SAME(replay.capacity, (IntegerRange{64, 1'000'000'000}), "records kept"),
-      SHOAL_SAME(replay.min_size, (IntegerRange{1, 1'000'000'000}),
-                 "sampleable transitions before the first batch"),
-      SHOAL_SAME(replay.samples_per_insert, (RealRange{0, 1e6}),
-                 "batch elements sampled per sampleable transition, over the run's env steps; as a "
-                 "number 0 = no limit"),
-      SHOAL_SAME(replay.band, (RealRange{0, 1e12}),
-                 "width of the limiter's band in samples; 0 = computed"),
-      SHOAL_SAME(replay.storage, (Choices{{"file", "memory"}}),
-                 "file = ring in the run folder, survives the process; memory = anonymous"),
-      SHOAL_SAME(replay.keep, AnyValue{},
-                 "keep replay.ring when the run has finished; a run that was interrupted or failed "
-                 "keeps it in any case"),
-      SHOAL_SAME(replay.shift_pad, (IntegerRange{0, 32}), "DrQ random shift in pixels; 0 = none"),
-      SHOAL_SAME(
+      SHOAL_KEY(replay.capacity, (IntegerRange{64, 1'000'000'000}), "records kept"),
+      SHOAL_KEY(replay.min_size, (IntegerRange{1, 1'000'000'000}),
+                "sampleable transitions before the first batch"),
+      SHOAL_KEY(replay.samples_per_insert, (RealRange{0, 1e6}),
+                "batch elements sampled per sampleable transition, over the run's env steps; as a "
+                "number 0 = no limit"),
+      SHOAL_KEY(replay.band, (RealRange{0, 1e12}),
+                "width of the limiter's band in samples; 0 = computed"),
+      SHOAL_KEY(replay.storage, (Choices{{"file", "memory"}}),
+                "file = ring in the run folder, survives the process; memory = anonymous"),
+      SHOAL_KEY(replay.keep, AnyValue{},
+                "keep replay.ring when the run has finished; a run that was interrupted or failed "
+                "keeps it in any case"),
+      SHOAL_KEY(replay.shift_pad, (IntegerRange{0, 32}), "DrQ random shift in pixels; 0 = none"),
+      SHOAL_KEY(
           replay.copies, (IntegerRange{1, 16}),
           "batch elements per drawn transition, each shifted anew, one target for all; DrQ: 2"),
-      SHOAL_SAME(replay.target_shifts, (IntegerRange{0, 16}),
-                 "DrQ's K: different shifts of the next frame among a transition's replay.copies, "
-                 "over which its target is averaged; 0 = as many as copies"),
-      SHOAL_SAME(replay.critic_shifts, (IntegerRange{0, 16}),
-                 "DrQ's M: different shifts of the frame among a transition's replay.copies, over "
-                 "which the critic's loss is averaged; 0 = as many as copies"),
-      SHOAL_SAME(replay.n_step, (IntegerRange{1, 20}),
-                 "steps whose rewards are summed before the next value; all within an episode"),
-      SHOAL_SAME(replay.hindsight, (Choices{{"none", "future", "final", "episode"}}),
-                 "source of the goals that samples get besides their own: achieved by the same "
-                 "episode after the step, at its end, or anywhere; for tasks with goals"),
-      SHOAL_SAME(replay.hindsight_goals, (IntegerRange{0, 1000}),
-                 "N: a share N / (N + 1) of the samples gets another goal"),
-      SHOAL_SAME(replay.movement_share, (RealRange{0, 1}),
-                 "achieved-goal displacement sampling, with hindsight: share of the samples that "
-                 "are drawn in proportion to the movement of the achieved goal in the rest of the "
-                 "episode; the others are drawn uniformly"),
-      SHOAL_SAME(replay.movement, (Choices{{"path", "displacement"}}),
-                 "movement for replay.movement_share: path = sum of the distances of all steps to "
-                 "the episode's end; displacement = distance between the achieved goal before the "
-                 "step and at the episode's end"),
-      SHOAL_SAME(replay.window_chunks, (IntegerRange{2, 1024}),
-                 "chunks an actor may have unacknowledged"),
-      SHOAL_SAME(replay.threads, (IntegerRange{0, 1024}),
-                 "threads of the replay server that copy the frames of a batch, whose bytes do not "
-                 "depend on their number; 0 = one, and up to four while copying takes most of its "
-                 "time and there are four cores for each"),
+      SHOAL_KEY(replay.target_shifts, (IntegerRange{0, 16}),
+                "DrQ's K: different shifts of the next frame among a transition's replay.copies, "
+                "over which its target is averaged; 0 = as many as copies"),
+      SHOAL_KEY(replay.critic_shifts, (IntegerRange{0, 16}),
+                "DrQ's M: different shifts of the frame among a transition's replay.copies, over "
+                "which the critic's loss is averaged; 0 = as many as copies"),
+      SHOAL_KEY(replay.n_step, (IntegerRange{1, 20}),
+                "steps whose rewards are summed before the next value; all within an episode"),
+      SHOAL_KEY(replay.hindsight, (Choices{{"none", "future", "final", "episode"}}),
+                "source of the goals that samples get besides their own: achieved by the same "
+                "episode after the step, at its end, or anywhere; for tasks with goals"),
+      SHOAL_KEY(replay.hindsight_goals, (IntegerRange{0, 1000}),
+                "N: a share N / (N + 1) of the samples gets another goal"),
+      SHOAL_KEY(replay.movement_share, (RealRange{0, 1}),
+                "achieved-goal displacement sampling, with hindsight: share of the samples that "
+                "are drawn in proportion to the movement of the achieved goal in the rest of the "
+                "episode; the others are drawn uniformly"),
+      SHOAL_KEY(replay.movement, (Choices{{"path", "displacement"}}),
+                "movement for replay.movement_share: path = sum of the distances of all steps to "
+                "the episode's end; displacement = distance between the achieved goal before the "
+                "step and at the episode's end"),
+      SHOAL_KEY(replay.window_chunks, (IntegerRange{2, 1024}),
+                "chunks an actor may have unacknowledged"),
+      SHOAL_KEY(replay.threads, (IntegerRange{0, 1024}),
+                "threads of the replay server that copy the frames of a batch, whose bytes do not "
+                "depend on their number; 0 = one, and up to four while copying takes most of its "
+                "time and there are four cores for each"),
   };
 }
 
@@ -169,13 +166,13 @@ Choices AlgorithmChoices() {
 std::vector<Key> LearnerKeys() {
   const RealRange positive{0, 1, true};
   return {
-      SHOAL_SAME(learner.algorithm, AlgorithmChoices(), "learning algorithm: docs/algorithm.md"),
-      SHOAL_SAME(learner.batch, (IntegerRange{1, 65'536}),
-                 "transitions per update; ppo: per minibatch"),
-      SHOAL_SAME(learner.precision, (Choices{{"auto", "f32", "bf16"}}),
-                 "arithmetic of the large products; auto = bf16 with pixels "
-                 "where the CPU has it natively, else f32"),
-      SHOAL_SAME(
+      SHOAL_KEY(learner.algorithm, AlgorithmChoices(), "learning algorithm: docs/algorithm.md"),
+      SHOAL_KEY(learner.batch, (IntegerRange{1, 65'536}),
+                "transitions per update; ppo: per minibatch"),
+      SHOAL_KEY(learner.precision, (Choices{{"auto", "f32", "bf16"}}),
+                "arithmetic of the large products; auto = bf16 with pixels "
+                "where the CPU has it natively, else f32"),
+      SHOAL_KEY(
           learner.threads, (IntegerRange{0, 1024}),
           "threads of the learner, each with a share of the batch's rows (ppo and encoders with "
           "batch normalisation: with a share of each layer); 0 = as the run divides its cores "
@@ -183,209 +180,203 @@ std::vector<Key> LearnerKeys() {
           "least four cores, but for ppo and lockstep; else at most half the cores this process "
           "may use, or three quarters with an update for each eighth env step, all with one for "
           "each; without pixels, but for ppo, 1"),
-      SHOAL_SAME(learner.learning_rate, positive,
-                 "learning rate of Adam for actor, critic and temperature"),
-      SHOAL_SAME(learner.actor_learning_rate, (RealRange{0, 1}),
-                 "learning rate of the actor; 0 = learner.learning_rate"),
-      SHOAL_SAME(learner.critic_learning_rate, (RealRange{0, 1}),
-                 "learning rate of critic and encoder; 0 = learner.learning_rate"),
-      SHOAL_SAME(learner.rate_factor, (RealRange{0, 1}),
-                 "factor on all learning rates, over the run's env steps"),
-      SHOAL_SAME(learner.max_grad_norm, (RealRange{0, 1e6}),
-                 "gradients of the actor, and those of critic and encoder, are scaled down to this "
-                 "Euclidean norm; 0 = never"),
-      SHOAL_SAME(learner.discount, (RealRange{0, 1, false, true}), "discount per env step"),
-      SHOAL_SAME(learner.reward_scale, (RealRange{0, 1e6, true}), "factor on every reward"),
-      SHOAL_SAME(learner.tau, positive, "target heads: target += tau * (online - target)"),
-      SHOAL_SAME(
+      SHOAL_KEY(learner.learning_rate, positive,
+                "learning rate of Adam for actor, critic and temperature"),
+      SHOAL_KEY(learner.actor_learning_rate, (RealRange{0, 1}),
+                "learning rate of the actor; 0 = learner.learning_rate"),
+      SHOAL_KEY(learner.critic_learning_rate, (RealRange{0, 1}),
+                "learning rate of critic and encoder; 0 = learner.learning_rate"),
+      SHOAL_KEY(learner.rate_factor, (RealRange{0, 1}),
+                "factor on all learning rates, over the run's env steps"),
+      SHOAL_KEY(learner.max_grad_norm, (RealRange{0, 1e6}),
+                "gradients of the actor, and those of critic and encoder, are scaled down to this "
+                "Euclidean norm; 0 = never"),
+      SHOAL_KEY(learner.discount, (RealRange{0, 1, false, true}), "discount per env step"),
+      SHOAL_KEY(learner.reward_scale, (RealRange{0, 1e6, true}), "factor on every reward"),
+      SHOAL_KEY(learner.tau, positive, "target heads: target += tau * (online - target)"),
+      SHOAL_KEY(
           learner.average_rate, positive,
           "evaluated policy, per update: average += rate * (policy - average); 1 = no average"),
-      SHOAL_SAME(learner.actor_period, (IntegerRange{1, 1000}),
-                 "updates per actor and temperature update"),
-      SHOAL_SAME(learner.target_period, (IntegerRange{1, 100'000}), "updates per target update"),
-      SHOAL_SAME(
+      SHOAL_KEY(learner.actor_period, (IntegerRange{1, 1000}),
+                "updates per actor and temperature update"),
+      SHOAL_KEY(learner.target_period, (IntegerRange{1, 100'000}), "updates per target update"),
+      SHOAL_KEY(
           learner.mean_penalty, (RealRange{0, 1e6}),
           "td3, ddpg: weight, in the actor's loss, of the mean square of the policy's outputs "
           "before tanh; it keeps actions from saturating for good"),
-      SHOAL_SAME(learner.normalise_vectors, AnyValue{},
-                 "scale vectors by their running mean and deviation, which are stored with the "
-                 "policy; clipped at 10"),
-      SHOAL_SAME(learner.variance_floor, (RealRange{0, 1}),
-                 "for learner.normalise_vectors: lower bound of a variance, so that numbers that "
-                 "hardly vary are not magnified; 1e-4 = deviations of at least 0.01"),
-      SHOAL_SAME(learner.bounded_targets, AnyValue{},
-                 "clip target values to the range that rewards of -1 and 0 allow"),
-      SHOAL_SAME(learner.weights_period, (IntegerRange{1, 1'000'000}),
-                 "updates between weights broadcasts"),
-      SHOAL_SAME(learner.request_credits, (IntegerRange{1, 64}), "batches requested ahead"),
-      SHOAL_SAME(learner.checkpoint_period, (IntegerRange{1, 1'000'000'000}),
-                 "updates between checkpoints"),
+      SHOAL_KEY(learner.normalise_vectors, AnyValue{},
+                "scale vectors by their running mean and deviation, which are stored with the "
+                "policy; clipped at 10"),
+      SHOAL_KEY(learner.variance_floor, (RealRange{0, 1}),
+                "for learner.normalise_vectors: lower bound of a variance, so that numbers that "
+                "hardly vary are not magnified; 1e-4 = deviations of at least 0.01"),
+      SHOAL_KEY(learner.bounded_targets, AnyValue{},
+                "clip target values to the range that rewards of -1 and 0 allow"),
+      SHOAL_KEY(learner.weights_period, (IntegerRange{1, 1'000'000}),
+                "updates between weights broadcasts"),
+      SHOAL_KEY(learner.request_credits, (IntegerRange{1, 64}), "batches requested ahead"),
+      SHOAL_KEY(learner.checkpoint_period, (IntegerRange{1, 1'000'000'000}),
+                "updates between checkpoints"),
   };
 }
 
 std::vector<Key> SacKeys() {
   return {
-      SHOAL_KEY("sac.temperature", learner.temperature, (Rule{Choices{{"auto", "fixed"}}}),
+      SHOAL_KEY(sac.temperature, (Choices{{"auto", "fixed"}}),
                 "auto = adapted to the target entropy; fixed = stays sac.initial_temperature"),
-      SHOAL_KEY("sac.initial_temperature", learner.initial_temperature,
-                (Rule{RealRange{0, 100, true}}), "entropy temperature at the start"),
-      SHOAL_KEY("sac.min_temperature", learner.min_temperature, (Rule{RealRange{0, 100}}),
+      SHOAL_KEY(sac.initial_temperature, (RealRange{0, 100, true}),
+                "entropy temperature at the start"),
+      SHOAL_KEY(sac.min_temperature, (RealRange{0, 100}),
                 "lower bound of an automatic temperature"),
-      SHOAL_KEY("sac.temperature_learning_rate", learner.temperature_learning_rate,
-                (Rule{RealRange{0, 1}}),
+      SHOAL_KEY(sac.temperature_learning_rate, (RealRange{0, 1}),
                 "learning rate of the temperature; 0 = learner.learning_rate"),
-      SHOAL_KEY("sac.target_entropy", learner.target_entropy, (Rule{RealRange{-1000, 1000}}),
+      SHOAL_KEY(sac.target_entropy, (RealRange{-1000, 1000}),
                 "target entropy of an automatic temperature, in nats; 0 = "
                 "sac.target_entropy_per_action times the action size"),
-      SHOAL_KEY("sac.target_entropy_per_action", learner.target_entropy_per_action,
-                (Rule{RealRange{-100, 100}}),
+      SHOAL_KEY(sac.target_entropy_per_action, (RealRange{-100, 100}),
                 "target entropy per action dimension, in nats, unless sac.target_entropy is "
                 "set; 0 aims at 0 nats"),
-      SHOAL_KEY("sac.critic_blocks", learner.critic_blocks, (Rule{AnyValue{}}),
+      SHOAL_KEY(sac.critic_blocks, (AnyValue{}),
                 "the critic sees these recorded blocks in place of pixels, beside the vectors "
                 "that the policy sees: true (all), false (it sees the pixels) or their names"),
-      SHOAL_KEY("sac.aux", learner.aux, (Rule{AnyValue{}}),
+      SHOAL_KEY(sac.aux, (AnyValue{}),
                 "quantities that the encoder's features are also trained to predict: recorded "
                 "blocks or differences of two, as \"object\" or \"object-grip\"; [] = none"),
-      SHOAL_KEY("sac.aux_weight", learner.aux_weight, (Rule{RealRange{0, 1e6, true}}),
+      SHOAL_KEY(sac.aux_weight, (RealRange{0, 1e6, true}),
                 "weight of the auxiliary loss (sac.aux)"),
   };
 }
 
 std::vector<Key> PpoKeys() {
   return {
-      SHOAL_SAME(ppo.rollout_steps, (IntegerRange{1, 1'000'000}),
-                 "env steps of each environment that one update learns from; at least 2, and over "
-                 "all environments a multiple of learner.batch"),
-      SHOAL_SAME(ppo.epochs, (IntegerRange{1, 1000}), "passes over a rollout in one update"),
-      SHOAL_SAME(ppo.clip, (RealRange{0, 10, true}),
-                 "range of the probability ratio in the loss, 1 - clip to 1 + clip, over the run's "
-                 "env steps"),
-      SHOAL_SAME(ppo.value_clip, (RealRange{0, 1e6}),
-                 "largest change of a value from that before the update; 0 = no limit"),
-      SHOAL_SAME(ppo.gae_lambda, (RealRange{0, 1}),
-                 "lambda of generalised advantage estimation: 0 = one step, 1 = the whole rollout"),
-      SHOAL_SAME(ppo.entropy_weight, (RealRange{0, 100}),
-                 "weight of the policy's entropy in the loss"),
-      SHOAL_SAME(ppo.value_weight, (RealRange{0, 1e6}),
-                 "weight of the squared value error in the loss"),
-      SHOAL_SAME(
-          ppo.target_kl, (RealRange{0, 1e6}),
-          "an update ends when the policy has moved by 1.5 times this divergence; 0 = never"),
-      SHOAL_SAME(ppo.normalise_advantages, AnyValue{},
-                 "advantages of a minibatch get mean 0 and deviation 1"),
-      SHOAL_SAME(ppo.normalise_rewards, AnyValue{},
-                 "rewards are divided by the running deviation of discounted returns; cut off at "
-                 "10"),
-      SHOAL_SAME(ppo.networks, (Choices{{"separate", "shared"}}),
-                 "policy and value have networks of their own, or one with two outputs"),
-      SHOAL_SAME(ppo.initial_log_std, (RealRange{-20, 2}),
-                 "log deviation of the policy before the first update"),
-      SHOAL_SAME(ppo.versions_ahead, (IntegerRange{0, 1}),
-                 "0 = an actor awaits the weights that follow its rollout; 1 = it plays the next "
-                 "rollout meanwhile"),
-      SHOAL_SAME(ppo.rollout_deadline, (RealRange{0.1, 60}),
-                 "seconds from the arrival of the first rollout of an update to the update with "
-                 "the rollouts that have arrived: at least half of them, after three times as long "
-                 "any number, and always at least learner.batch steps"),
+      SHOAL_KEY(ppo.rollout_steps, (IntegerRange{1, 1'000'000}),
+                "env steps of each environment that one update learns from; at least 2, and over "
+                "all environments a multiple of learner.batch"),
+      SHOAL_KEY(ppo.epochs, (IntegerRange{1, 1000}), "passes over a rollout in one update"),
+      SHOAL_KEY(ppo.clip, (RealRange{0, 10, true}),
+                "range of the probability ratio in the loss, 1 - clip to 1 + clip, over the run's "
+                "env steps"),
+      SHOAL_KEY(ppo.value_clip, (RealRange{0, 1e6}),
+                "largest change of a value from that before the update; 0 = no limit"),
+      SHOAL_KEY(ppo.gae_lambda, (RealRange{0, 1}),
+                "lambda of generalised advantage estimation: 0 = one step, 1 = the whole rollout"),
+      SHOAL_KEY(ppo.entropy_weight, (RealRange{0, 100}),
+                "weight of the policy's entropy in the loss"),
+      SHOAL_KEY(ppo.value_weight, (RealRange{0, 1e6}),
+                "weight of the squared value error in the loss"),
+      SHOAL_KEY(ppo.target_kl, (RealRange{0, 1e6}),
+                "an update ends when the policy has moved by 1.5 times this divergence; 0 = never"),
+      SHOAL_KEY(ppo.normalise_advantages, AnyValue{},
+                "advantages of a minibatch get mean 0 and deviation 1"),
+      SHOAL_KEY(ppo.normalise_rewards, AnyValue{},
+                "rewards are divided by the running deviation of discounted returns; cut off at "
+                "10"),
+      SHOAL_KEY(ppo.networks, (Choices{{"separate", "shared"}}),
+                "policy and value have networks of their own, or one with two outputs"),
+      SHOAL_KEY(ppo.initial_log_std, (RealRange{-20, 2}),
+                "log deviation of the policy before the first update"),
+      SHOAL_KEY(ppo.versions_ahead, (IntegerRange{0, 1}),
+                "0 = an actor awaits the weights that follow its rollout; 1 = it plays the next "
+                "rollout meanwhile"),
+      SHOAL_KEY(ppo.rollout_deadline, (RealRange{0.1, 60}),
+                "seconds from the arrival of the first rollout of an update to the update with "
+                "the rollouts that have arrived: at least half of them, after three times as long "
+                "any number, and always at least learner.batch steps"),
   };
 }
 
 std::vector<Key> Td3Keys() {
   return {
-      SHOAL_SAME(td3.target_noise, (RealRange{0, 2}),
-                 "standard deviation of the noise on a target's action; 0 = none"),
-      SHOAL_SAME(td3.target_noise_clip, (RealRange{0, 2}), "largest absolute value of that noise"),
+      SHOAL_KEY(td3.target_noise, (RealRange{0, 2}),
+                "standard deviation of the noise on a target's action; 0 = none"),
+      SHOAL_KEY(td3.target_noise_clip, (RealRange{0, 2}), "largest absolute value of that noise"),
   };
 }
 
 std::vector<Key> ExplorationKeys() {
   return {
-      SHOAL_SAME(exploration.kind, (Choices{{"auto", "squashed_gaussian", "gaussian", "ou"}}),
-                 "noise of the training actors; auto = the algorithm's own"),
-      SHOAL_SAME(exploration.sigma, (RealRange{0, 10}),
-                 "deviation of gaussian and ou noise, over the run's env steps"),
-      SHOAL_SAME(exploration.theta, (RealRange{0, 1000}), "ou: pull towards zero per unit of time"),
-      SHOAL_SAME(exploration.dt, (RealRange{0, 1, true}), "ou: units of time per env step"),
-      SHOAL_SAME(exploration.random_steps, (IntegerRange{0, 1'000'000'000'000}),
-                 "env steps of the run, shared by the actors, that are played by uniform random "
-                 "actions; all are before the first weights arrive"),
-      SHOAL_SAME(exploration.spread, (RealRange{1, 100}),
-                 "noise of N actors is multiplied by factors from 1/spread to spread, "
-                 "geometrically even; 1 = all alike"),
+      SHOAL_KEY(exploration.kind, (Choices{{"auto", "squashed_gaussian", "gaussian", "ou"}}),
+                "noise of the training actors; auto = the algorithm's own"),
+      SHOAL_KEY(exploration.sigma, (RealRange{0, 10}),
+                "deviation of gaussian and ou noise, over the run's env steps"),
+      SHOAL_KEY(exploration.theta, (RealRange{0, 1000}), "ou: pull towards zero per unit of time"),
+      SHOAL_KEY(exploration.dt, (RealRange{0, 1, true}), "ou: units of time per env step"),
+      SHOAL_KEY(exploration.random_steps, (IntegerRange{0, 1'000'000'000'000}),
+                "env steps of the run, shared by the actors, that are played by uniform random "
+                "actions; all are before the first weights arrive"),
+      SHOAL_KEY(exploration.spread, (RealRange{1, 100}),
+                "noise of N actors is multiplied by factors from 1/spread to spread, "
+                "geometrically even; 1 = all alike"),
   };
 }
 
 std::vector<Key> NetworkKeys() {
   return {
-      SHOAL_SAME(
+      SHOAL_KEY(
           network.encoder,
           (Choices{{"compact", "drq", "mrq", "nature", "resnet18", "alexnet", "spatial_softmax"}}),
           "network from pixels to a feature map"),
-      SHOAL_SAME(network.encoder_weights, AnyValue{},
-                 "path of a safetensors file that the encoder starts from, with Shoal's or "
-                 "torchvision's names; empty = none"),
-      SHOAL_SAME(network.pool, (IntegerRange{0, 16}),
-                 "compact: average pooling of the images; 0 = 2, 1 = none"),
-      SHOAL_SAME(network.filters, (IntegerRange{1, 4096}),
-                 "compact: channels of each 3x3 convolution; [] = [32,32,32]"),
-      SHOAL_SAME(network.strides, (IntegerRange{1, 8}),
-                 "compact: stride of each convolution; [] = [2,1,2]"),
-      SHOAL_SAME(network.encoders, (Choices{{"shared", "separate"}}),
-                 "sac: shared = one, trained by the critic's loss; separate = the actor has its "
-                 "own, trained by its loss"),
-      SHOAL_SAME(
+      SHOAL_KEY(network.encoder_weights, AnyValue{},
+                "path of a safetensors file that the encoder starts from, with Shoal's or "
+                "torchvision's names; empty = none"),
+      SHOAL_KEY(network.pool, (IntegerRange{0, 16}),
+                "compact: average pooling of the images; 0 = 2, 1 = none"),
+      SHOAL_KEY(network.filters, (IntegerRange{1, 4096}),
+                "compact: channels of each 3x3 convolution; [] = [32,32,32]"),
+      SHOAL_KEY(network.strides, (IntegerRange{1, 8}),
+                "compact: stride of each convolution; [] = [2,1,2]"),
+      SHOAL_KEY(network.encoders, (Choices{{"shared", "separate"}}),
+                "sac: shared = one, trained by the critic's loss; separate = the actor has its "
+                "own, trained by its loss"),
+      SHOAL_KEY(
           network.target_encoder, AnyValue{},
           "sac: the target critic has an encoder of its own, which follows the critic's encoder"),
-      SHOAL_SAME(
-          network.trunk, (Choices{{"auto", "tanh", "relu"}}),
-          "over the feature map: tanh = linear, LayerNorm, tanh; relu = linear, ReLU; auto = "
-          "the encoder's own: relu of nature, else tanh"),
-      SHOAL_SAME(network.features, (IntegerRange{0, 65'536}),
-                 "outputs of the trunk; 0 = the encoder's own: 512 of nature, else 50"),
-      SHOAL_SAME(network.hidden, (IntegerRange{1, 65'536}), "hidden layers of actor and critics"),
-      SHOAL_SAME(network.layer_norm, AnyValue{}, "LayerNorm after each hidden layer"),
-      SHOAL_SAME(network.activation, (Choices{{"relu", "tanh"}}),
-                 "activation of each hidden layer"),
-      SHOAL_SAME(network.log_std, (Choices{{"smooth", "clamped"}}),
-                 "log deviation of a Gaussian policy: smooth = by tanh in [-5, 2]; clamped = "
-                 "clipped to [-20, 2]"),
-      SHOAL_SAME(network.initialisation, (Choices{{"orthogonal", "pytorch"}}),
-                 "initial weights: orthogonal, with biases 0; pytorch = those of PyTorch's layers "
-                 "(uniform) and of torchvision's resnet18 (normal)"),
+      SHOAL_KEY(network.trunk, (Choices{{"auto", "tanh", "relu"}}),
+                "over the feature map: tanh = linear, LayerNorm, tanh; relu = linear, ReLU; auto = "
+                "the encoder's own: relu of nature, else tanh"),
+      SHOAL_KEY(network.features, (IntegerRange{0, 65'536}),
+                "outputs of the trunk; 0 = the encoder's own: 512 of nature, else 50"),
+      SHOAL_KEY(network.hidden, (IntegerRange{1, 65'536}), "hidden layers of actor and critics"),
+      SHOAL_KEY(network.layer_norm, AnyValue{}, "LayerNorm after each hidden layer"),
+      SHOAL_KEY(network.activation, (Choices{{"relu", "tanh"}}), "activation of each hidden layer"),
+      SHOAL_KEY(network.log_std, (Choices{{"smooth", "clamped"}}),
+                "log deviation of a Gaussian policy: smooth = by tanh in [-5, 2]; clamped = "
+                "clipped to [-20, 2]"),
+      SHOAL_KEY(network.initialisation, (Choices{{"orthogonal", "pytorch"}}),
+                "initial weights: orthogonal, with biases 0; pytorch = those of PyTorch's layers "
+                "(uniform) and of torchvision's resnet18 (normal)"),
   };
 }
 
 std::vector<Key> EvalKeys() {
   return {
-      SHOAL_SAME(eval.episodes, (IntegerRange{1, 100'000}), "episodes of one evaluation"),
-      SHOAL_SAME(eval.interval, kSteps, "env steps between evaluations"),
-      SHOAL_SAME(eval.final_episodes, (IntegerRange{0, 100'000}),
-                 "fresh episodes of the evaluation at the end of a run; 0 = none"),
-      SHOAL_SAME(eval.envs, (IntegerRange{1, 256}),
-                 "environments stepped together by the evaluation actor"),
-      SHOAL_SAME(stop.success, (RealRange{0, 2}), "stop at this success rate; above 1 = never"),
-      SHOAL_SAME(stop.evaluations, (IntegerRange{1, 1000}),
-                 "newest evaluations whose episodes, pooled, must reach stop.success"),
-      SHOAL_SAME(stop.without_actors, (IntegerRange{20, 1'000'000}),
-                 "the run ends when no training actor has worked for this many seconds"),
+      SHOAL_KEY(eval.episodes, (IntegerRange{1, 100'000}), "episodes of one evaluation"),
+      SHOAL_KEY(eval.interval, kSteps, "env steps between evaluations"),
+      SHOAL_KEY(eval.final_episodes, (IntegerRange{0, 100'000}),
+                "fresh episodes of the evaluation at the end of a run; 0 = none"),
+      SHOAL_KEY(eval.envs, (IntegerRange{1, 256}),
+                "environments stepped together by the evaluation actor"),
+      SHOAL_KEY(stop.success, (RealRange{0, 2}), "stop at this success rate; above 1 = never"),
+      SHOAL_KEY(stop.evaluations, (IntegerRange{1, 1000}),
+                "newest evaluations whose episodes, pooled, must reach stop.success"),
+      SHOAL_KEY(stop.without_actors, (IntegerRange{20, 1'000'000}),
+                "the run ends when no training actor has worked for this many seconds"),
   };
 }
 
 std::vector<Key> TransportKeys() {
   return {
-      SHOAL_SAME(transport.interface, AnyValue{},
-                 "network interface, by name or address; auto = the one that leads to the servers"),
-      SHOAL_SAME(transport.fragment_bytes, (IntegerRange{1024, 65'000}),
-                 "bytes per datagram; 8000 where peers are behind MTU 1500"),
-      SHOAL_SAME(transport.chunk_records, (IntegerRange{1, 4096}),
-                 "records per chunk at most; fewer where they exceed 1 MiB"),
-      SHOAL_SAME(transport.flush_ms, (IntegerRange{1, 60'000}),
-                 "milliseconds after which a partial chunk is sent"),
+      SHOAL_KEY(transport.interface, AnyValue{},
+                "network interface, by name or address; auto = the one that leads to the servers"),
+      SHOAL_KEY(transport.fragment_bytes, (IntegerRange{1024, 65'000}),
+                "bytes per datagram; 8000 where peers are behind MTU 1500"),
+      SHOAL_KEY(transport.chunk_records, (IntegerRange{1, 4096}),
+                "records per chunk at most; fewer where they exceed 1 MiB"),
+      SHOAL_KEY(transport.flush_ms, (IntegerRange{1, 60'000}),
+                "milliseconds after which a partial chunk is sent"),
   };
 }
 
-#undef SHOAL_SAME
 #undef SHOAL_KEY
 
 std::vector<Key> AllKeys() {

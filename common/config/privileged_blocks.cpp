@@ -69,17 +69,17 @@ AuxLabel LabelOf(const std::string& text, const ObservationSpec& spec) {
 
 }  // namespace
 
-PrivilegedBlocks PrivilegedBlocksOf(const LearnerConfig& learner, const ObservationSpec& spec) {
+PrivilegedBlocks PrivilegedBlocksOf(const Config& config, const ObservationSpec& spec) {
   PrivilegedBlocks blocks;
-  blocks.critic = CriticBlocks(learner.critic_blocks, spec);
-  if (learner.critic_blocks && spec.goal_picture &&
+  blocks.critic = CriticBlocks(config.sac.critic_blocks, spec);
+  if (config.sac.critic_blocks && spec.goal_picture &&
       std::ranges::count(blocks.critic, "desired_goal") == 0) {
     throw UsageError(
         "sac.critic_blocks with observation.goal_mode = image: a critic without pixels would "
         "not see the goal; expected 'desired_goal' among them");
   }
   std::set<std::string> wanted(blocks.critic.begin(), blocks.critic.end());
-  for (const std::string& text : learner.aux) {
+  for (const std::string& text : config.sac.aux) {
     const AuxLabel& label = blocks.labels.emplace_back(LabelOf(text, spec));
     wanted.insert(label.block);
     wanted.insert(label.minus);
@@ -90,8 +90,8 @@ PrivilegedBlocks PrivilegedBlocksOf(const LearnerConfig& learner, const Observat
   return blocks;
 }
 
-int PrivilegedSize(const LearnerConfig& learner, const ObservationSpec& spec) {
-  return BlockPicker::Named(spec, PrivilegedBlocksOf(learner, spec).all).size();
+int PrivilegedSize(const Config& config, const ObservationSpec& spec) {
+  return BlockPicker::Named(spec, PrivilegedBlocksOf(config, spec).all).size();
 }
 
 }  // namespace shoal

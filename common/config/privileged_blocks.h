@@ -35,8 +35,8 @@ struct PrivilegedBlocks {
 // Throws Error (kUsage) naming the key, the block that the record does not have or that does not
 // fit, and the blocks there are; of critic blocks also where the policy observes all that are
 // named.
-PrivilegedBlocks PrivilegedBlocksOf(const LearnerConfig& learner, const ObservationSpec& spec);
+PrivilegedBlocks PrivilegedBlocksOf(const Config& config, const ObservationSpec& spec);
 // P, of all of them. Throws the same.
-int PrivilegedSize(const LearnerConfig& learner, const ObservationSpec& spec);
+int PrivilegedSize(const Config& config, const ObservationSpec& spec);
 
 }  // namespace shoal

@@ -104,32 +104,32 @@ void ValidateExploration(const Config& config) {
 // defaults here.
 void ValidateEntropy(const Config& config) {
   const Config usual;
-  const LearnerConfig &learner = config.learner, &none = usual.learner;
-  if (learner.temperature == "fixed" && learner.min_temperature > 0) {
+  if (config.sac.temperature == "fixed" && config.sac.min_temperature > 0) {
     throw UsageError("sac.min_temperature = {} with sac.temperature = fixed: expected 0",
-                     learner.min_temperature);
+                     config.sac.min_temperature);
   }
-  if (learner.min_temperature > learner.initial_temperature) {
+  if (config.sac.min_temperature > config.sac.initial_temperature) {
     throw UsageError("sac.min_temperature = {}: expected at most sac.initial_temperature = {}",
-                     learner.min_temperature, learner.initial_temperature);
+                     config.sac.min_temperature, config.sac.initial_temperature);
   }
-  const bool per_action = learner.target_entropy_per_action != none.target_entropy_per_action;
-  if (learner.target_entropy != none.target_entropy && per_action) {
+  const bool per_action =
+      config.sac.target_entropy_per_action != usual.sac.target_entropy_per_action;
+  if (config.sac.target_entropy != usual.sac.target_entropy && per_action) {
     throw UsageError(
         "sac.target_entropy = {}, sac.target_entropy_per_action = {}: both set the target of the "
         "temperature; expected one of them unset",
-        learner.target_entropy, learner.target_entropy_per_action);
+        config.sac.target_entropy, config.sac.target_entropy_per_action);
   }
-  if (LearnsDeviation(config) && learner.mean_penalty > 0) {
+  if (LearnsDeviation(config) && config.learner.mean_penalty > 0) {
     throw UsageError(
         "learner.mean_penalty = {}: it belongs to a deterministic policy, and that of "
         "learner.algorithm = {} is a Gaussian; expected 0",
-        learner.mean_penalty, learner.algorithm);
+        config.learner.mean_penalty, config.learner.algorithm);
   }
   if (!LearnsDeviation(config) && config.network.log_std != usual.network.log_std) {
     throw UsageError(
         "network.log_std: the policy of learner.algorithm = {} has no deviation; expected it unset",
-        learner.algorithm);
+        config.learner.algorithm);
   }
 }
 
@@ -166,14 +166,14 @@ void ValidateEncoders(const Config& config) {
 
 // Privileged inputs. PrivilegedBlocksOf checks whether the task records them.
 void ValidatePrivileged(const Config& config) {
-  const LearnerConfig& learner = config.learner;
-  if (!learner.aux.empty() && !config.observation.pixels) {
+  if (!config.sac.aux.empty() && !config.observation.pixels) {
     throw UsageError("sac.aux: nothing is encoded without observation.pixels; expected it unset");
   }
-  if (learner.aux.empty() && learner.aux_weight != Config().learner.aux_weight) {
-    throw UsageError("sac.aux_weight = {}: expected it unset without sac.aux", learner.aux_weight);
+  if (config.sac.aux.empty() && config.sac.aux_weight != Config().sac.aux_weight) {
+    throw UsageError("sac.aux_weight = {}: expected it unset without sac.aux",
+                     config.sac.aux_weight);
   }
-  if (!learner.critic_blocks) return;
+  if (!config.sac.critic_blocks) return;
   if (config.network.encoders == "separate" || config.network.target_encoder) {
     throw UsageError("{}: with sac.critic_blocks the critic has no encoder; expected it unset",
                      config.network.target_encoder ? "network.target_encoder" : "network.encoders");

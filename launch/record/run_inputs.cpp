@@ -43,7 +43,7 @@ std::string PicturesText(const RunConfig& run) {
 
 // Blocks of the record that neither the policy nor learning gets.
 std::vector<std::string> Unused(const RunConfig& run) {
-  std::vector<std::string> told = PrivilegedBlocksOf(run.config.learner, run.spec).all;
+  std::vector<std::string> told = PrivilegedBlocksOf(run.config, run.spec).all;
   for (std::string& name : PrivilegedInputsOf(run.config, run.spec).replay_blocks) {
     told.push_back(std::move(name));
   }
@@ -90,8 +90,8 @@ PolicyInputs PolicyInputsOf(const ObservationSpec& spec) {
 }
 
 PrivilegedInputs PrivilegedInputsOf(const Config& config, const ObservationSpec& spec) {
-  PrivilegedInputs inputs{.critic_blocks = PrivilegedBlocksOf(config.learner, spec).critic,
-                          .labels = config.learner.aux};
+  PrivilegedInputs inputs{.critic_blocks = PrivilegedBlocksOf(config, spec).critic,
+                          .labels = config.sac.aux};
   const auto achieved = std::ranges::find(spec.blocks, "achieved_goal", &BlockSpec::name);
   const bool to_be_seen = spec.HasPixels() && achieved != spec.blocks.end() && !achieved->observed;
   if (to_be_seen && config.replay.hindsight != "none") inputs.replay_blocks = {achieved->name};

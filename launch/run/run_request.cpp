@@ -125,7 +125,7 @@ RunRequest ResolveFresh(const TrainOptions& options) {
     DivideCores(world.step_microseconds, &request);
     request.camera_note = TakeCameras(&request.config);
   }
-  PrivilegedBlocksOf(config.learner, request.config.spec);  // throws if they do not exist
+  PrivilegedBlocksOf(config, request.config.spec);  // throws if they do not exist
   return request;
 }
 

@@ -15,7 +15,7 @@ constexpr float kUnit = 0.15f;
 
 std::unique_ptr<AuxLoss> AuxLoss::Make(const Config& config, const ObservationSpec& spec,
                                        const nn::Features* trunk, Engine* engine) {
-  if (config.learner.aux.empty()) return nullptr;
+  if (config.sac.aux.empty()) return nullptr;
   CHECK(trunk != nullptr);
   return std::unique_ptr<AuxLoss>(new AuxLoss(config, spec, *trunk, engine));
 }
@@ -23,8 +23,8 @@ std::unique_ptr<AuxLoss> AuxLoss::Make(const Config& config, const ObservationSp
 AuxLoss::AuxLoss(const Config& config, const ObservationSpec& spec, const nn::Features& trunk,
                  Engine* engine)
     : engine_(engine),
-      columns_(LabelsOf(config.learner, spec)),
-      weight_(float(config.learner.aux_weight)),
+      columns_(LabelsOf(config, spec)),
+      weight_(float(config.sac.aux_weight)),
       readout_("aux", int(columns_.size()), trunk, engine->modules()),
       labels_(engine->NewArray(int(columns_.size()))),
       gradient_(engine->NewArray(int(columns_.size()))),
@@ -33,9 +33,8 @@ AuxLoss::AuxLoss(const Config& config, const ObservationSpec& spec, const nn::Fe
   readout_.Refresh();
 }
 
-std::vector<LabelColumns> AuxLoss::LabelsOf(const LearnerConfig& learner,
-                                            const ObservationSpec& spec) {
-  const PrivilegedBlocks blocks = PrivilegedBlocksOf(learner, spec);
+std::vector<LabelColumns> AuxLoss::LabelsOf(const Config& config, const ObservationSpec& spec) {
+  const PrivilegedBlocks blocks = PrivilegedBlocksOf(config, spec);
   const auto column = [&](const std::string& block, int i) -> LabelColumns::Column {
     if (const auto range = spec.Observed(block)) return {true, size_t(range->first + i)};
     int first = 0;

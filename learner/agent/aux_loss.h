@@ -38,8 +38,7 @@ class AuxLoss {
  private:
   AuxLoss(const Config& config, const ObservationSpec& spec, const nn::Features& trunk,
           Engine* engine);
-  static std::vector<LabelColumns> LabelsOf(const LearnerConfig& learner,
-                                            const ObservationSpec& spec);
+  static std::vector<LabelColumns> LabelsOf(const Config& config, const ObservationSpec& spec);
 
   Engine* const engine_;
   const std::vector<LabelColumns> columns_;  // L

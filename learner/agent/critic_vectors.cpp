@@ -8,8 +8,8 @@
 
 namespace shoal::learner {
 
-ObservationSpec CriticSpec(const LearnerConfig& learner, const ObservationSpec& spec) {
-  if (!learner.critic_blocks) return spec;
+ObservationSpec CriticSpec(const Config& config, const ObservationSpec& spec) {
+  if (!config.sac.critic_blocks) return spec;
   ObservationSpec seen = spec;
   seen.cameras.clear();
   seen.channels = seen.height = seen.width = 0;
@@ -18,16 +18,15 @@ ObservationSpec CriticSpec(const LearnerConfig& learner, const ObservationSpec& 
   for (const BlockSpec& block : spec.blocks) {
     if (block.observed) seen.blocks.push_back(block);
   }
-  for (const std::string& name : PrivilegedBlocksOf(learner, spec).critic) {
+  for (const std::string& name : PrivilegedBlocksOf(config, spec).critic) {
     seen.blocks.push_back({name, spec.Recorded(name)->size, /*observed=*/true});
   }
   return seen;
 }
 
-CriticVectors::CriticVectors(const LearnerConfig& learner, const ObservationSpec& spec,
-                             Engine* engine)
+CriticVectors::CriticVectors(const Config& config, const ObservationSpec& spec, Engine* engine)
     : engine_(engine) {
-  const PrivilegedBlocks blocks = PrivilegedBlocksOf(learner, spec);
+  const PrivilegedBlocks blocks = PrivilegedBlocksOf(config, spec);
   int first = 0, joined = spec.VectorSize();
   for (const std::string& name : blocks.all) {
     const int size = spec.Recorded(name)->size;

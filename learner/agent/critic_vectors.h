@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Vectors of a batch that a critic sees: those of the policy and, for an asymmetric critic
-// (learner.critic_blocks), privileged blocks beside them.
+// (sac.critic_blocks), privileged blocks beside them.
 //
 //   obs[b] = [ obs_vector[b] | critic's columns of obs_privileged[b] ],   (B, C)
 #pragma once
@@ -15,13 +15,13 @@ namespace shoal::learner {
 
 // The spec that a critic's networks are planned by: `spec` or, of an asymmetric critic, one without
 // pixels whose vector (C) has the privileged blocks at its end.
-ObservationSpec CriticSpec(const LearnerConfig& learner, const ObservationSpec& spec);
+ObservationSpec CriticSpec(const Config& config, const ObservationSpec& spec);
 
 // One thread.
 class CriticVectors {
  public:
   // Borrows the engine.
-  CriticVectors(const LearnerConfig& learner, const ObservationSpec& spec, Engine* engine);
+  CriticVectors(const Config& config, const ObservationSpec& spec, Engine* engine);
 
   // (B, C); the batch's own arrays where nothing is added, else valid until the next call.
   struct Vectors {

@@ -19,8 +19,8 @@ inline nn::Adam::Options ActorStep(const LearnerConfig& learner) {
 inline nn::Adam::Options CriticStep(const LearnerConfig& learner) {
   return {.rate = RateOr(learner.critic_learning_rate, learner), .max_norm = learner.max_grad_norm};
 }
-inline double TemperatureRate(const LearnerConfig& learner) {
-  return RateOr(learner.temperature_learning_rate, learner);
+inline double TemperatureRate(const Config& config) {
+  return RateOr(config.sac.temperature_learning_rate, config.learner);
 }
 
 }  // namespace shoal::learner

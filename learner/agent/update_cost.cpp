@@ -18,7 +18,7 @@ double MultiplyAdds(const nn::LayerPlan& layer) {
   for (const nn::ParameterSpec& parameter : layer.Parameters()) {
     if (parameter.shape.size() < 2) continue;  // a bias, a norm
     double weights = 1;
-    for (const int64_t size : parameter.shape) weights *= static_cast<double>(size);
+    for (const int64_t size : parameter.shape) weights *= double(size);
     count += weights * layer.output.height * layer.output.width;
   }
   return count;
@@ -72,10 +72,10 @@ double OffPolicy(const Config& config, const ObservationSpec& spec, const Encode
       config.network, spec,
       LearnsDeviation(config) ? nn::ActorOutput::kGaussian : nn::ActorOutput::kDeterministic);
   const nn::HeadPlan critics =
-      nn::PlanCritic(config.network, CriticSpec(config.learner, spec), "critic", critic_count);
+      nn::PlanCritic(config.network, CriticSpec(config, spec), "critic", critic_count);
   const double of_actor = MultiplyAdds(actor), of_critics = MultiplyAdds(critics);
   const bool separate = config.network.encoders == "separate";
-  const bool asymmetric = bool(config.learner.critic_blocks);
+  const bool asymmetric = bool(config.sac.critic_blocks);
   const bool actor_trains = separate || asymmetric;
   const int next_encoders = separate || config.network.target_encoder ? 2 : 1;
 

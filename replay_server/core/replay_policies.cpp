@@ -32,9 +32,9 @@ ReplayPolicies MakePolicies(const RunConfig& run, const Ring& ring, const Episod
   if (!Hindsight(run.config)) return policies;
   policies.relabeller = std::make_unique<HindsightRelabeller>(ring, index, GoalOf(config.hindsight),
                                                               config.hindsight_goals);
-  policies.goals = std::make_unique<GoalChange>(
-      run.spec, TaskOf(run), PrivilegedBlocksOf(run.config.learner, run.spec).all,
-      run.config.end_on_success);
+  policies.goals = std::make_unique<GoalChange>(run.spec, TaskOf(run),
+                                                PrivilegedBlocksOf(run.config, run.spec).all,
+                                                run.config.end_on_success);
   if (config.movement_share > 0) {
     policies.selector = std::make_unique<MovementSelector>(
         ring, index, *policies.goals, config.movement_share, MovementOf(config.movement));

@@ -33,7 +33,7 @@ LabelledFrames CollectLabelledFrames(const Config& config, int samples) {
   const auto environment =
       worlds::MakeEnvironment(config, worlds::MakeRenderContext(config.observation));
   const ObservationSpec& spec = environment->spec();
-  const PrivilegedBlocks blocks = PrivilegedBlocksOf(config.learner, spec);
+  const PrivilegedBlocks blocks = PrivilegedBlocksOf(config, spec);
   LabelledFrames collected;
   collected.spec = spec;
   for (BlockSpec& block : collected.spec.blocks) block.observed = false;

@@ -43,7 +43,7 @@ Config ConfigOf(const ObservabilityRequest& request, const std::vector<std::stri
   // Goals are relabelled only if the policy's observation has them: then the marker is hidden.
   if (request.goal_hidden) config.observation.goal_mode = "desired";
   if (request.goal_hidden) config.replay.hindsight = "future";
-  config.learner.aux = request.labels;
+  config.sac.aux = request.labels;
   config.network.encoder = request.encoder;
   return config;
 }
@@ -74,7 +74,7 @@ Observability MeasureObservability(const ObservabilityRequest& request,
     const LabelledFrames frames = CollectLabelledFrames(config, request.samples);
     const RegressionErrors errors = RegressOnFrames(config, frames, request.updates, stop);
     if (stop()) break;
-    const PrivilegedBlocks blocks = PrivilegedBlocksOf(config.learner, frames.spec);
+    const PrivilegedBlocks blocks = PrivilegedBlocksOf(config, frames.spec);
     result.trained = errors.trained;
     result.held_out = errors.held_out;
     result.rows.push_back({.cameras = cameras,

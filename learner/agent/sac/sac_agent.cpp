@@ -13,7 +13,7 @@
 // 3 is the one before this update. An encoder with batch normalisation takes running statistics in
 // 1, those of the batch in 2 and 3. An actor with an encoder of its own (network.encoders) takes
 // that one's features in 3 and trains it, and the critic's heads stand on features of the critic's
-// encoder as 2 has left it. An asymmetric critic (learner.critic_blocks) has vectors of its own and
+// encoder as 2 has left it. An asymmetric critic (sac.critic_blocks) has vectors of its own and
 // no encoder; the actor's is trained in 3. Where the encoder is trained, sac.aux joins in (Eq.
 // 27).
 //
@@ -39,9 +39,9 @@ namespace shoal::learner {
 namespace {
 
 // H of Eq. 8.
-float TargetEntropy(const LearnerConfig& learner, int action_size) {
-  return float(learner.target_entropy != 0 ? learner.target_entropy
-                                           : learner.target_entropy_per_action * action_size);
+float TargetEntropy(const SacConfig& sac, int action_size) {
+  return float(sac.target_entropy != 0 ? sac.target_entropy
+                                       : sac.target_entropy_per_action * action_size);
 }
 
 class SacAgent final : public Agent {
@@ -100,11 +100,11 @@ class SacAgent final : public Agent {
 SacAgent::SacAgent(const Config& config, const ObservationSpec& spec, Engine* engine)
     : config_(config),
       engine_(engine),
-      target_entropy_(TargetEntropy(config.learner, spec.action_size)),
+      target_entropy_(TargetEntropy(config.sac, spec.action_size)),
       bounds_(ValueBoundsOf(config.learner)),
       networks_(config, spec, engine),
-      standard_(config.learner, spec.VectorSize(), PrivilegedSize(config.learner, spec)),
-      critic_vectors_(config.learner, spec, engine),
+      standard_(config.learner, spec.VectorSize(), PrivilegedSize(config, spec)),
+      critic_vectors_(config, spec, engine),
       sample_{engine->NewArray(spec.action_size), engine->NewArray(spec.action_size),
               engine->NewArray(1)},
       targets_(engine->NewArray(1)),
@@ -186,8 +186,8 @@ void SacAgent::UpdateActor(const Seen& seen, Random* random, const OnStageEnd& o
   figures_.SetRoot(kActorGradNorm, actor_squares_);
   on_stage_end(UpdateStage::kBackward);
   networks_.StepActor();
-  if (config_.learner.temperature == "auto") {
-    networks_.StepTemperature(temperature_loss_, config_.learner.min_temperature);
+  if (config_.sac.temperature == "auto") {
+    networks_.StepTemperature(temperature_loss_, config_.sac.min_temperature);
   }
   on_stage_end(UpdateStage::kOptimiser);
 }

@@ -26,7 +26,7 @@ const nn::Features* FeaturesOf(const EncoderModule* encoder) {
 bool Separate(const Config& config) { return config.network.encoders == "separate"; }
 
 nn::HeadPlan CriticPlan(const Config& config, const ObservationSpec& spec, const char* name) {
-  return nn::PlanCritic(config.network, CriticSpec(config.learner, spec), name);
+  return nn::PlanCritic(config.network, CriticSpec(config, spec), name);
 }
 
 std::vector<ParameterSet*> ParametersOf(const std::vector<Module*>& modules) {
@@ -40,7 +40,7 @@ std::vector<ParameterSet*> ParametersOf(const std::vector<Module*>& modules) {
 
 SacNetworks::SacNetworks(const Config& config, const ObservationSpec& spec, Engine* engine)
     : engine_(engine),
-      asymmetric_(bool(config.learner.critic_blocks)),
+      asymmetric_(static_cast<bool>(config.sac.critic_blocks)),
       encoder_(MakeEncoder(config.network, spec, Module::Use::kTraining, engine->modules())),
       critic_encoder_(Separate(config) ? MakeEncoder(config.network, spec, Module::Use::kTraining,
                                                      engine->modules(), "critic.encoder")
@@ -64,7 +64,7 @@ SacNetworks::SacNetworks(const Config& config, const ObservationSpec& spec, Engi
       critic_optimiser_(ParametersOf(CriticModules()), CriticStep(config.learner),
                         engine->modules()),
       actor_optimiser_(ParametersOf(ActorModules()), ActorStep(config.learner), engine->modules()),
-      temperature_optimiser_({&temperature_}, {.rate = TemperatureRate(config.learner)}) {
+      temperature_optimiser_({&temperature_}, {.rate = TemperatureRate(config)}) {
   const auto seed = static_cast<uint64_t>(config.seed);
   for (EncoderModule* encoder : {encoder_.get(), critic_encoder_.get()}) {
     if (encoder == nullptr) continue;
@@ -74,7 +74,7 @@ SacNetworks::SacNetworks(const Config& config, const ObservationSpec& spec, Engi
   if (target_encoder_) nn::CopyParameters(*CriticEncoder(), target_encoder_.get());
   critic_.parameters().Initialise(seed);
   actor_.parameters().Initialise(seed);
-  temperature_.values()[0] = static_cast<float>(std::log(config.learner.initial_temperature));
+  temperature_.values()[0] = static_cast<float>(std::log(config.sac.initial_temperature));
   for (Module* module : CriticModules()) module->Refresh();
   for (Module* module : ActorModules()) module->Refresh();
   nn::CopyParameters(critic_, &target_);

@@ -11,7 +11,7 @@
 // critic.encoder.* instead. network.target_encoder: target.encoder.* follows the critic's encoder,
 // and the target stands on its features.
 //
-// learner.critic_blocks: the critic is asymmetric: it sees no pixels, and encoder.* is the actor's,
+// sac.critic_blocks: the critic is asymmetric: it sees no pixels, and encoder.* is the actor's,
 // trained by its loss.
 //
 // sac.aux: aux.*, trained together with the encoder, by a loss of its own beside the other.

@@ -24,11 +24,11 @@ ObservationSpec PushSpec() {
   return spec;
 }
 
-LearnerConfig Asking(StateBlocks critic, std::vector<std::string> aux = {}) {
-  LearnerConfig learner;
-  learner.critic_blocks = std::move(critic);
-  learner.aux = std::move(aux);
-  return learner;
+Config Asking(StateBlocks critic, std::vector<std::string> aux = {}) {
+  Config config;
+  config.sac.critic_blocks = std::move(critic);
+  config.sac.aux = std::move(aux);
+  return config;
 }
 
 TEST(PrivilegedBlocks, AreThoseThatThePolicyDoesNotSeeInRecordOrder) {
@@ -104,12 +104,12 @@ TEST(PrivilegedBlocks, TravelInBatchesAndChangeTheirHash) {
   run.spec.action_size = 4;
   const uint64_t plain = BatchSchemaOf(run).Hash();
   EXPECT_FALSE(BatchSchemaOf(run).Has("obs_privileged"));
-  run.config.learner.critic_blocks = StateBlocks({"object", "fingers"});
+  run.config.sac.critic_blocks = StateBlocks({"object", "fingers"});
   const BatchSchema schema = BatchSchemaOf(run);
   EXPECT_TRUE(schema.Has("obs_privileged") && schema.Has("next_obs_privileged"));
   EXPECT_NE(schema.Hash(), plain);
   // The same number of numbers, with another meaning.
-  run.config.learner.critic_blocks = StateBlocks({"object-like", "fingers"});
+  run.config.sac.critic_blocks = StateBlocks({"object-like", "fingers"});
   EXPECT_NE(BatchSchemaOf(run).Hash(), schema.Hash());
 }
 

@@ -94,20 +94,20 @@ TEST(Validate, APolicyWithoutDeviationTakesNoKeysOfIt) {
       });
     };
     EXPECT_EQ(refusal([](Config*) {}), "");
-    EXPECT_THAT(refusal([](Config* c) { c->learner.initial_temperature = 1; }),
+    EXPECT_THAT(refusal([](Config* c) { c->sac.initial_temperature = 1; }),
                 HasSubstr("sac.initial_temperature belongs to learner.algorithm = sac"));
-    EXPECT_THAT(refusal([](Config* c) { c->learner.target_entropy = -1; }),
+    EXPECT_THAT(refusal([](Config* c) { c->sac.target_entropy = -1; }),
                 HasSubstr("sac.target_entropy"));
-    EXPECT_THAT(refusal([](Config* c) { c->learner.target_entropy_per_action = 0; }),
+    EXPECT_THAT(refusal([](Config* c) { c->sac.target_entropy_per_action = 0; }),
                 HasSubstr("sac.target_entropy_per_action"));
-    EXPECT_THAT(refusal([](Config* c) { c->learner.temperature = "fixed"; }),
+    EXPECT_THAT(refusal([](Config* c) { c->sac.temperature = "fixed"; }),
                 HasSubstr("sac.temperature belongs"));
-    EXPECT_THAT(refusal([](Config* c) { c->learner.temperature_learning_rate = 1e-3; }),
+    EXPECT_THAT(refusal([](Config* c) { c->sac.temperature_learning_rate = 1e-3; }),
                 HasSubstr("sac.temperature_learning_rate"));
     EXPECT_THAT(refusal([](Config* c) { c->network.log_std = "clamped"; }),
                 HasSubstr("network.log_std: the policy of learner.algorithm = "));
   }
-  EXPECT_EQ(Refusal([](Config* c) { c->learner.initial_temperature = 1; }), "");
+  EXPECT_EQ(Refusal([](Config* c) { c->sac.initial_temperature = 1; }), "");
 }
 
 TEST(Validate, OnlyADeterministicPolicyTakesAPenaltyOfItsMean) {
@@ -122,22 +122,22 @@ TEST(Validate, OnlyADeterministicPolicyTakesAPenaltyOfItsMean) {
 }
 
 TEST(Validate, ATemperaturesFloorIsBelowItsStartAndOfOneThatMoves) {
-  EXPECT_EQ(Refusal([](Config* c) { c->learner.min_temperature = 0.01; }), "");
-  EXPECT_THAT(Refusal([](Config* c) { c->learner.min_temperature = 0.2; }),
+  EXPECT_EQ(Refusal([](Config* c) { c->sac.min_temperature = 0.01; }), "");
+  EXPECT_THAT(Refusal([](Config* c) { c->sac.min_temperature = 0.2; }),
               HasSubstr("sac.min_temperature = 0.2: expected at most"));
   EXPECT_THAT(Refusal([](Config* c) {
-                c->learner.min_temperature = 0.01;
-                c->learner.temperature = "fixed";
+                c->sac.min_temperature = 0.01;
+                c->sac.temperature = "fixed";
               }),
               HasSubstr("sac.temperature = fixed"));
 }
 
 TEST(Validate, TheTargetEntropyIsSetInOneWay) {
-  EXPECT_EQ(Refusal([](Config* c) { c->learner.target_entropy = -3; }), "");
-  EXPECT_EQ(Refusal([](Config* c) { c->learner.target_entropy_per_action = 0; }), "");
+  EXPECT_EQ(Refusal([](Config* c) { c->sac.target_entropy = -3; }), "");
+  EXPECT_EQ(Refusal([](Config* c) { c->sac.target_entropy_per_action = 0; }), "");
   EXPECT_THAT(Refusal([](Config* c) {
-                c->learner.target_entropy = -3;
-                c->learner.target_entropy_per_action = 0;
+                c->sac.target_entropy = -3;
+                c->sac.target_entropy_per_action = 0;
               }),
               HasSubstr("sac.target_entropy = -3, sac.target_entropy_per_action = 0: "));
 }
@@ -183,8 +183,8 @@ TEST(Validate, FurtherEncodersAreOfSacFromPixels) {
 
 TEST(Validate, PrivilegedInputsAreOfSac) {
   const auto asymmetric = [](Config* c) {
-    c->learner.critic_blocks = true;
-    c->learner.aux = {"object"};
+    c->sac.critic_blocks = true;
+    c->sac.aux = {"object"};
   };
   EXPECT_EQ(Refusal(asymmetric), "");
   for (const char* algorithm : {"td3", "ddpg"}) {
@@ -196,7 +196,7 @@ TEST(Validate, PrivilegedInputsAreOfSac) {
   }
   EXPECT_THAT(Refusal([](Config* c) {
                 c->learner.algorithm = "ppo";
-                c->learner.aux = {"object"};
+                c->sac.aux = {"object"};
               }),
               HasSubstr("sac.aux"));
   EXPECT_THAT(Refusal([&](Config* c) {
@@ -215,7 +215,7 @@ TEST(Validate, PrivilegedInputsAreOfSac) {
                 c->observation.proprioception = true;
               }),
               HasSubstr("sac.aux: nothing is encoded without observation.pixels"));
-  EXPECT_THAT(Refusal([](Config* c) { c->learner.aux_weight = 2; }),
+  EXPECT_THAT(Refusal([](Config* c) { c->sac.aux_weight = 2; }),
               HasSubstr("sac.aux_weight = 2: expected it unset without sac.aux"));
 }
 

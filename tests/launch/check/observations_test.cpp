@@ -123,8 +123,8 @@ TEST(ImageGoals, GoWithHindsightAndACriticWithoutPixels) {
   config.replay.capacity = 1000;
   config.replay.hindsight = "future";
   config.learner.batch = 32;
-  config.learner.critic_blocks = true;
-  config.learner.aux = {"object-desired_goal"};
+  config.sac.critic_blocks = true;
+  config.sac.aux = {"object-desired_goal"};
   config.learner.bounded_targets = true;
   config.observation.proprioception = StateBlocks(std::vector<std::string>{"grip"});
   const RunConfig run = RunOf(config);

@@ -28,8 +28,8 @@ RunConfig PushRun() {
                      {"achieved_goal", 3, /*observed=*/false},
                      {"desired_goal", 3}};
   run.config.replay.hindsight = "future";
-  run.config.learner.critic_blocks = StateBlocks(std::vector<std::string>{"object"});
-  run.config.learner.aux = {"object-grip"};
+  run.config.sac.critic_blocks = StateBlocks(std::vector<std::string>{"object"});
+  run.config.sac.aux = {"object-grip"};
   return run;
 }
 
@@ -48,8 +48,8 @@ TEST(RunInputs, SayWhatThePolicyGetsAndWhatTrainingAloneIsTold) {
 // Neither network has the object as an input, but the samples are chosen by it.
 TEST(RunInputs, WhatTheReplayGoesByIsPrivilegedToo) {
   RunConfig run = PushRun();
-  run.config.learner.critic_blocks = false;
-  run.config.learner.aux = {};
+  run.config.sac.critic_blocks = false;
+  run.config.sac.aux = {};
   run.config.replay.movement_share = 0.5;
   EXPECT_THAT(DescribeInputs(run),
               HasSubstr("privileged, in training alone:\n"
@@ -65,8 +65,8 @@ TEST(RunInputs, WhatTheReplayGoesByIsPrivilegedToo) {
 
 TEST(RunInputs, WhatThePolicyIsToldInNumbersIsNotPrivilegedInTheReplay) {
   RunConfig run = PushRun();
-  run.config.learner.critic_blocks = false;
-  run.config.learner.aux = {};
+  run.config.sac.critic_blocks = false;
+  run.config.sac.aux = {};
   run.spec.blocks[3].observed = true;  // observation.goal_mode = both
   EXPECT_THAT(DescribeInputs(run), HasSubstr("privileged, in training alone: nothing\n"));
   run.spec.blocks[3].observed = false;
@@ -92,7 +92,7 @@ TEST(RunInputs, TheGoalsMarkerIsInPicturesUnlessItIsHidden) {
   run.config.replay.hindsight = "none";
   EXPECT_THAT(DescribeInputs(run), HasSubstr("1 frame(s), with the goal's marker\n"));
   run.spec.goal_picture = true;
-  run.config.learner.critic_blocks = false;
+  run.config.sac.critic_blocks = false;
   EXPECT_THAT(
       DescribeInputs(run),
       HasSubstr("1 frame(s) and a picture of the goal reached, the goal's marker hidden\n"));
@@ -108,7 +108,7 @@ TEST(RunInputs, BlocksThatTellOfTheObjectAreNamed) {
               ElementsAre("object", "object_velocity_from_grip", "achieved_goal"));
   RunConfig run = PushRun();
   run.spec = spec;
-  run.config.learner.critic_blocks = false;  // which leaves nothing to a critic of its own
+  run.config.sac.critic_blocks = false;  // which leaves nothing to a critic of its own
   EXPECT_THAT(DescribeInputs(run), HasSubstr("  of these tell of the object: object, "));
   // The achieved goal of a gripper alone reveals only the gripper.
   std::erase_if(spec.blocks,

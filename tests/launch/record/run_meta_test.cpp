@@ -70,8 +70,8 @@ TEST(RunMeta, SaysWhatThePolicySeesAndHowOftenItWasUpdated) {
   meta.policy_inputs = PolicyInputsOf(spec);
   EXPECT_EQ(written().at("policy_inputs").at("object_blocks"), nlohmann::json({"object"}));
   Config config;
-  config.learner.critic_blocks = true;
-  config.learner.aux = {"achieved_goal-desired_goal"};
+  config.sac.critic_blocks = true;
+  config.sac.aux = {"achieved_goal-desired_goal"};
   meta.privileged_inputs = PrivilegedInputsOf(config, spec);
   EXPECT_EQ(written().at("privileged_inputs"),
             nlohmann::json({{"critic_blocks", {"achieved_goal"}},

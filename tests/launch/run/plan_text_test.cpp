@@ -73,8 +73,8 @@ TEST(PlanText, WhatOnlyTrainingIsToldIsSaid) {
   run.spec.action_size = 2;
   run.spec.blocks = {{"grip", 3}, {"object", 3, /*observed=*/false}};
   EXPECT_THAT(PlanText(run, 1), Not(HasSubstr("privileged")));
-  run.config.learner.critic_blocks = true;
-  run.config.learner.aux = {"object-grip"};
+  run.config.sac.critic_blocks = true;
+  run.config.sac.aux = {"object-grip"};
   EXPECT_THAT(PlanText(run, 1),
               HasSubstr("  privileged, in training alone: the critic sees object in place of "
                         "pixels, the encoder is taught object-grip\n"));

@@ -43,7 +43,7 @@ class EachAlgorithm : public testing::TestWithParam<std::string> {
 };
 
 TEST_P(EachAlgorithm, ReportsItsFiguresAndNoOthers) {
-  if (config_.learner.algorithm == "sac") config_.learner.aux = {"goal"};
+  if (config_.learner.algorithm == "sac") config_.sac.aux = {"goal"};
   const auto agent = MakeAgent(config_, SmallSpec(), nn::Precision::kF32);
   std::set<std::string_view> declared, reported;
   for (const Figure* figure : algorithm().figures) {

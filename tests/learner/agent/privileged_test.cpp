@@ -31,7 +31,7 @@ ObservationSpec PushSpec() {
 
 class PrivilegedTest : public testing::Test {
  protected:
-  PrivilegedTest() { config_.learner.aux = {"object-grip", "goal-object"}; }
+  PrivilegedTest() { config_.sac.aux = {"object-grip", "goal-object"}; }
 
   RandomBatch Batch(uint64_t key) const {
     return {spec_, BatchOptions{.batch = config_.learner.batch, .privileged = {"grip", "object"}},
@@ -98,8 +98,8 @@ double AsymmetricActorLoss(const Network& network, const Network& critic, const 
 }
 
 TEST_F(PrivilegedTest, AnAsymmetricCriticLeavesTheEncoderToTheActorAndTheLabels) {
-  config_.learner.critic_blocks = true;
-  config_.learner.aux_weight = 0.7;
+  config_.sac.critic_blocks = true;
+  config_.sac.aux_weight = 0.7;
   const auto agent = Make();
   const nn::TensorMap before = agent->AllTensors();
   const RandomBatch data = Batch(3);
@@ -111,7 +111,7 @@ TEST_F(PrivilegedTest, AnAsymmetricCriticLeavesTheEncoderToTheActorAndTheLabels)
   Random random(StreamKey(uint64_t(config_.seed), StreamRole::kLearnerUpdate, 0));
   Noise(&random);  // of the target
   const Values noise = Noise(&random);
-  const double temperature = config_.learner.initial_temperature;
+  const double temperature = config_.sac.initial_temperature;
   EXPECT_NEAR(Get(stats, kActorLoss),
               AsymmetricActorLoss(network, updated, batch, noise, temperature), 1e-4);
   const double error = 0.15 * std::sqrt(AuxLoss(network, "actor", batch));
@@ -136,7 +136,7 @@ TEST_F(PrivilegedTest, AnAsymmetricCriticLeavesTheEncoderToTheActorAndTheLabels)
 }
 
 TEST_F(PrivilegedTest, WithoutAnActorsUpdateAnAsymmetricCriticMovesAlone) {
-  config_.learner.critic_blocks = StateBlocks(std::vector<std::string>{"object"});
+  config_.sac.critic_blocks = StateBlocks(std::vector<std::string>{"object"});
   config_.learner.actor_period = 2;
   const auto agent = Make();
   ASSERT_TRUE(agent->Update(Batch(1).View()).finite);
@@ -153,7 +153,7 @@ TEST_F(PrivilegedTest, WithoutAnActorsUpdateAnAsymmetricCriticMovesAlone) {
 
 // The policy's own blocks, those named, the action: 2 + 2 + 2 inputs; no trunk, no encoder.
 TEST_F(PrivilegedTest, AnAsymmetricCriticHasNoPixels) {
-  config_.learner.critic_blocks = StateBlocks({"object", "goal"});
+  config_.sac.critic_blocks = StateBlocks({"object", "goal"});
   const nn::TensorMap tensors = Make()->AllTensors();
   EXPECT_EQ(tensors.at("critic.q1.layer0.weight").shape, (std::vector<int64_t>{12, 6}));
   EXPECT_FALSE(tensors.contains("critic.trunk.weight"));
@@ -171,7 +171,7 @@ TEST_F(PrivilegedTest, ASharedEncoderIsTaughtWithTheCritic) {
   const double error = 0.15 * std::sqrt(AuxLoss(network, "critic", data.View()));
   EXPECT_NEAR(Get(stats, kAuxError), error, 1e-4 * error);
   // Beside what the critic's loss does, which is what a run without labels does.
-  config_.learner.aux = {};
+  config_.sac.aux = {};
   const auto plain = Make();
   ASSERT_TRUE(plain->Update(RandomBatch(spec_, config_.learner.batch, 3).View()).finite);
   nn::TensorMap by_labels = after;
@@ -189,7 +189,7 @@ TEST_F(PrivilegedTest, ASharedEncoderIsTaughtWithTheCritic) {
 }
 
 TEST_F(PrivilegedTest, ThePolicyIsThatOfTheSpecAlone) {
-  config_.learner.critic_blocks = true;
+  config_.sac.critic_blocks = true;
   config_.learner.normalise_vectors = true;
   const auto agent = Make();
   ASSERT_TRUE(agent->Update(Batch(1).View()).finite);
@@ -204,7 +204,7 @@ TEST_F(PrivilegedTest, ThePolicyIsThatOfTheSpecAlone) {
 }
 
 TEST_F(PrivilegedTest, ARestoredAgentGoesOnBitForBit) {
-  config_.learner.critic_blocks = true;
+  config_.sac.critic_blocks = true;
   config_.learner.normalise_vectors = true;
   const auto one = Make(), other = Make();
   for (uint64_t u = 0; u < 3; ++u) ASSERT_TRUE(one->Update(Batch(u).View()).finite);
@@ -218,7 +218,7 @@ TEST_F(PrivilegedTest, ARestoredAgentGoesOnBitForBit) {
 // An update is that of a plain agent with the same parameters on vectors and blocks scaled by the
 // moments of the updates before; the auxiliary loss has labels in metres in both.
 TEST_F(PrivilegedTest, TheCriticSeesScaledBlocksAndTheAuxiliaryLossMetres) {
-  config_.learner.critic_blocks = true;
+  config_.sac.critic_blocks = true;
   const auto plain = Make();
   config_.learner.normalise_vectors = true;
   const auto agent = Make();
@@ -250,8 +250,8 @@ TEST_F(PrivilegedTest, TheCriticSeesScaledBlocksAndTheAuxiliaryLossMetres) {
 // Pixels show the position: a bright column at the place that the label names.
 TEST_F(PrivilegedTest, TheEncoderLearnsWhatItIsTaught) {
   for (const bool asymmetric : {false, true}) {
-    config_.learner.critic_blocks = asymmetric;
-    config_.learner.aux = {"object"};
+    config_.sac.critic_blocks = asymmetric;
+    config_.sac.aux = {"object"};
     config_.learner.learning_rate = 3e-3;
     config_.learner.actor_period = 1;
     config_.learner.batch = 32;

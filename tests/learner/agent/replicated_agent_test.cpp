@@ -49,7 +49,7 @@ class ReplicatedAgentTest : public testing::TestWithParam<Case> {
     return MakeAgent(config_, Spec(), Precision::kF32);
   }
   RandomBatch Batch(uint64_t key) const {
-    const bool told = !config_.learner.aux.empty() || config_.learner.critic_blocks;
+    const bool told = !config_.sac.aux.empty() || config_.sac.critic_blocks;
     return {Spec(),
             BatchOptions{.batch = config_.learner.batch,
                          .copies = config_.replay.copies,
@@ -132,8 +132,8 @@ const Case kCases[] = {
      }},
     {"sac_told_more",
      [](Config* config) {
-       config->learner.critic_blocks = true;
-       config->learner.aux = {"object"};
+       config->sac.critic_blocks = true;
+       config->sac.aux = {"object"};
        config->learner.normalise_vectors = true;
      }},
     // Layouts of weights that several replicas write.

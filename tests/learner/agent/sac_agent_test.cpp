@@ -349,38 +349,37 @@ double After(const Config& config, int updates, const Figure& figure) {
 
 TEST(SacAgent, TheTemperatureFollowsIsFixedOrHasAFloor) {
   Config config = SmallConfig();
-  config.learner.temperature_learning_rate = 0.1;
-  config.learner.target_entropy = -100;  // the policy has more
-  const double start = config.learner.initial_temperature;
+  config.sac.temperature_learning_rate = 0.1;
+  config.sac.target_entropy = -100;  // the policy has more
+  const double start = config.sac.initial_temperature;
   const double followed = After(config, 5, kTemperature);
   EXPECT_LT(followed, 0.9 * start) << "the reference for the other cases";
-  config.learner.min_temperature = 0.95 * start;
+  config.sac.min_temperature = 0.95 * start;
   EXPECT_NEAR(After(config, 5, kTemperature), 0.95 * start, 1e-6);
-  config.learner.min_temperature = 0;
-  config.learner.temperature = "fixed";
+  config.sac.min_temperature = 0;
+  config.sac.temperature = "fixed";
   EXPECT_NEAR(After(config, 5, kTemperature), start, 1e-7);
 }
 
 // Eq. 8: L = temperature (entropy - target), before the update's step.
 TEST(SacAgent, TheTargetEntropyIsANumberOrAShareOfEachAction) {
-  const auto target = [](const std::function<void(LearnerConfig*)>& set) {
+  const auto target = [](const std::function<void(SacConfig*)>& set) {
     Config config = SmallConfig();
-    set(&config.learner);
+    set(&config.sac);
     const UpdateOutcome outcome =
         SmallAgent(config)->Update(RandomBatch(SmallSpec(), config.learner.batch, 0).View());
-    return Get(outcome, kEntropy) -
-           Get(outcome, kTemperatureLoss) / config.learner.initial_temperature;
+    return Get(outcome, kEntropy) - Get(outcome, kTemperatureLoss) / config.sac.initial_temperature;
   };
-  EXPECT_NEAR(target([](LearnerConfig*) {}), -2, 1e-4) << "one nat less for each of two actions";
-  EXPECT_NEAR(target([](LearnerConfig* l) { l->target_entropy = -3; }), -3, 1e-4);
-  EXPECT_NEAR(target([](LearnerConfig* l) { l->target_entropy_per_action = -0.5; }), -1, 1e-4);
-  EXPECT_NEAR(target([](LearnerConfig* l) { l->target_entropy_per_action = 0; }), 0, 1e-4);
+  EXPECT_NEAR(target([](SacConfig*) {}), -2, 1e-4) << "one nat less for each of two actions";
+  EXPECT_NEAR(target([](SacConfig* sac) { sac->target_entropy = -3; }), -3, 1e-4);
+  EXPECT_NEAR(target([](SacConfig* sac) { sac->target_entropy_per_action = -0.5; }), -1, 1e-4);
+  EXPECT_NEAR(target([](SacConfig* sac) { sac->target_entropy_per_action = 0; }), 0, 1e-4);
 }
 
 TEST(SacAgent, EachPartHasItsLearningRate) {
-  const auto moved = [](const std::function<void(LearnerConfig*)>& set) {
+  const auto moved = [](const std::function<void(Config*)>& set) {
     Config config = SmallConfig();
-    set(&config.learner);
+    set(&config);
     const auto agent = SmallAgent(config);
     const TensorMap before = agent->AllTensors();
     UpdateTimes(agent.get(), 1);
@@ -395,13 +394,13 @@ TEST(SacAgent, EachPartHasItsLearningRate) {
                       largest("encoder.conv1.bias"), largest("temperature.log")};
   };
   // Adam's first step is the learning rate, whatever the gradient.
-  const auto all = moved([](LearnerConfig* l) { l->learning_rate = 1e-3; });
+  const auto all = moved([](Config* c) { c->learner.learning_rate = 1e-3; });
   for (const float step : all) EXPECT_NEAR(step, 1e-3, 2e-5);
-  const auto own = moved([](LearnerConfig* l) {
-    l->learning_rate = 1e-3;
-    l->actor_learning_rate = 2e-3;
-    l->critic_learning_rate = 3e-3;
-    l->temperature_learning_rate = 4e-3;
+  const auto own = moved([](Config* c) {
+    c->learner.learning_rate = 1e-3;
+    c->learner.actor_learning_rate = 2e-3;
+    c->learner.critic_learning_rate = 3e-3;
+    c->sac.temperature_learning_rate = 4e-3;
   });
   EXPECT_NEAR(own[0], 2e-3, 4e-5);
   EXPECT_NEAR(own[1], 3e-3, 6e-5);

@@ -38,7 +38,7 @@ class RecordedUpdateTest : public testing::TestWithParam<Variant> {
  protected:
   RecordedUpdateTest() {
     config_.learner.rate_factor = Schedule{.start = 1, .end = 1e40, .env_steps = kLargeSteps};
-    config_.learner.aux = {"object"};
+    config_.sac.aux = {"object"};
     GetParam().set(&config_);
     agent_ = FindAlgorithm(config_.learner.algorithm).make(config_, Spec(), &recording_);
   }
@@ -117,7 +117,7 @@ const Variant kVariants[] = {
      }},
     {"sac_asymmetric",
      [](Config* config) {
-       config->learner.critic_blocks = true;
+       config->sac.critic_blocks = true;
        config->learner.normalise_vectors = true;
      }},
     {"td3",
@@ -125,12 +125,12 @@ const Variant kVariants[] = {
        config->learner.algorithm = "td3";
        config->learner.actor_period = 2;
        config->learner.target_period = 2;
-       config->learner.aux.clear();
+       config->sac.aux.clear();
      }},
     {"ddpg",
      [](Config* config) {
        config->learner.algorithm = "ddpg";
-       config->learner.aux.clear();
+       config->sac.aux.clear();
      }},
 };
 

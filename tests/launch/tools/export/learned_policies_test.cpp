@@ -36,13 +36,13 @@ void ExpectItsActions(const RunConfig& run) {
 
 TEST(LearnedPolicies, ACriticThatSeesMoreStaysBehind) {
   RunConfig run = policy::SmallRun("sac", /*pixels=*/true);
-  run.config.learner.critic_blocks = true;
+  run.config.sac.critic_blocks = true;
   ExpectItsActions(run);
 }
 
 TEST(LearnedPolicies, WhatTheEncoderWasTaughtByStaysBehind) {
   RunConfig run = policy::SmallRun("sac", /*pixels=*/true);
-  run.config.learner.aux = {"hidden"};
+  run.config.sac.aux = {"hidden"};
   ExpectItsActions(run);
 }
 

@@ -62,10 +62,10 @@ int Main(const fs::path& folder, const std::string& text) {
     }
   }
   RunConfig run = policy::SmallRun("sac", /*pixels=*/true);
-  run.config.learner.critic_blocks = true;
+  run.config.sac.critic_blocks = true;
   write("sac-asymmetric", run);
   run = policy::SmallRun("sac", /*pixels=*/true);
-  run.config.learner.aux = {"hidden"};
+  run.config.sac.aux = {"hidden"};
   write("sac-taught", run);
   run = policy::SmallRun("sac", /*pixels=*/true);
   run.config.network.encoders = "separate";

@@ -24,7 +24,7 @@ Config PushConfig() {
   config.task = "FetchPush";
   config.observation.width = config.observation.height = 32;
   config.observation.cameras = {"front"};
-  config.learner.aux = {"object-grip", "object"};
+  config.sac.aux = {"object-grip", "object"};
   config.learner.batch = 32;
   return config;
 }
