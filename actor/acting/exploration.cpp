@@ -95,29 +95,30 @@ class OrnsteinUhlenbeck final : public Exploration {
   OrnsteinUhlenbeck(const ExplorationConfig& config, double factor, int envs, int action_size)
       : config_(config),
         factor_(factor),
-        noise_(size_t(envs), std::vector<double>(size_t(action_size), 0.0)) {
+        noise_(static_cast<size_t>(envs),
+               std::vector<double>(static_cast<size_t>(action_size), 0.0)) {
     OnEnvSteps(0);
   }
 
   void OnEnvSteps(uint64_t run_env_steps) override {
     step_deviation_ = factor_ * config_.sigma.At(run_env_steps) * std::sqrt(config_.dt);
   }
-  void BeginEpisode(int e) override { std::ranges::fill(noise_[size_t(e)], 0.0); }
+  void BeginEpisode(int e) override { std::ranges::fill(noise_[static_cast<size_t>(e)], 0.0); }
   void Act(int e, const nn::PolicyOutput& policy, Random& stream,
            std::span<float> action) override {
-    std::vector<double>& x = noise_[size_t(e)];
+    std::vector<double>& x = noise_[static_cast<size_t>(e)];
     for (size_t a = 0; a < action.size(); ++a) {
       x[a] += -config_.theta * config_.dt * x[a] + step_deviation_ * stream.Normal();
       action[a] = Bounded(std::tanh(policy.mean[a]) + static_cast<float>(x[a]));
     }
   }
-  std::vector<double> StateOf(int e) const override { return noise_[size_t(e)]; }
+  std::vector<double> StateOf(int e) const override { return noise_[static_cast<size_t>(e)]; }
   void SetState(int e, std::span<const double> state) override {
-    if (state.size() != noise_[size_t(e)].size()) {
+    if (state.size() != noise_[static_cast<size_t>(e)].size()) {
       throw RuntimeError("the actor's state has {} numbers of its noise, expected {}", state.size(),
-                         noise_[size_t(e)].size());
+                         noise_[static_cast<size_t>(e)].size());
     }
-    noise_[size_t(e)].assign(state.begin(), state.end());
+    noise_[static_cast<size_t>(e)].assign(state.begin(), state.end());
   }
 
  private:

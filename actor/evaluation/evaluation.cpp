@@ -90,10 +90,10 @@ std::vector<std::pair<std::string, size_t>> FailureCounts(
 
 Evaluator::Evaluator(const RunConfig& run, bool noop, const EnvironmentFactory& make)
     : run_(run),
-      noop_(noop ? size_t(run.spec.action_size) : 0),
+      noop_(noop ? static_cast<size_t>(run.spec.action_size) : 0),
       selector_(run.config, run.spec, run.config.eval.envs),
-      frame_(size_t(run.spec.FrameBytes())),
-      vector_(size_t(run.spec.RecordedVectorSize())) {
+      frame_(static_cast<size_t>(run.spec.FrameBytes())),
+      vector_(static_cast<size_t>(run.spec.RecordedVectorSize())) {
   int e = 0;
   for (auto& environment : make(run, run.config.eval.envs)) {
     const EpisodeRunner::PolicyInput input{selector_.FrameStackOf(e), selector_.VectorOf(e)};
@@ -113,7 +113,7 @@ void Evaluator::Listen(EpisodeListener* listener) {
 }
 
 void Evaluator::Begin(int e, const EpisodeStream& stream, Played* played) {
-  Player& player = players_[size_t(e)];
+  Player& player = players_[static_cast<size_t>(e)];
   while (!player.runner.running() && played->begun < static_cast<int>(played->results.size())) {
     player.episode = played->begun++;
     player.begun = false;
@@ -133,7 +133,7 @@ void Evaluator::Begin(int e, const EpisodeStream& stream, Played* played) {
 }
 
 void Evaluator::Step(int e, Played* played) {
-  Player& player = players_[size_t(e)];
+  Player& player = players_[static_cast<size_t>(e)];
   try {
     player.runner.Step(noop_.empty() ? selector_.ActionOf(e) : noop_, {frame_, vector_});
   } catch (const worlds::EpisodeFault& fault) {
@@ -178,7 +178,7 @@ std::vector<EpisodeResult> Evaluator::Play(int episodes, const EpisodeStream& st
     for (int e = 0; e < envs; ++e) Begin(e, stream, &played);
     selector_.Select(Acting::kMean);
     for (int e = 0; e < envs; ++e) {
-      if (players_[size_t(e)].runner.running()) Step(e, &played);
+      if (players_[static_cast<size_t>(e)].runner.running()) Step(e, &played);
     }
     while (on_ended && told < played.done) on_ended(++told);
   }

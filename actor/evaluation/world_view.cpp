@@ -64,7 +64,8 @@ uint32_t StepMicroseconds(worlds::Environment& environment, worlds::ObservationO
   try {
     environment.Reset(0, out);
     const double start = environment.simulated_seconds();
-    environment.Step(std::vector<float>(size_t(environment.spec().action_size), 0.0F), out);
+    environment.Step(std::vector<float>(static_cast<size_t>(environment.spec().action_size), 0.0F),
+                     out);
     return static_cast<uint32_t>(std::lround(1e6 * (environment.simulated_seconds() - start)));
   } catch (const worlds::EpisodeFault&) {
     return 0;

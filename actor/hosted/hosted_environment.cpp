@@ -44,7 +44,8 @@ double HostedEnvironment::Distance() const {
   if (task_.goal_size() == 0) return std::numeric_limits<double>::quiet_NaN();
   const auto goal = [this](const char* name) {
     const ObservationSpec::Range range = *spec_.Recorded(name);
-    return std::span<const float>(vector_).subspan(size_t(range.first), size_t(range.size));
+    return std::span<const float>(vector_).subspan(static_cast<size_t>(range.first),
+                                                   static_cast<size_t>(range.size));
   };
   return task_.Distance(goal(tasks::kAchievedGoal), goal(tasks::kDesiredGoal));
 }

@@ -22,7 +22,7 @@ SHOAL_CPU_CLONES void Divide(const uint32_t* sums, size_t count, uint32_t total,
   // from the next one than the error of the product.
   const double share = 1.0 / total;
   for (size_t x = 0; x < count; ++x) {
-    to[x] = static_cast<uint8_t>((double(sums[x]) + 0.5 * total) * share + 1e-10);
+    to[x] = uint8_t((double(sums[x]) + 0.5 * total) * share + 1e-10);
   }
 }
 
@@ -51,10 +51,9 @@ std::vector<ImageResize::Span> ImageResize::Spans(int from, int to) {
   std::vector<Span> spans;
   for (int64_t i = 0; i < to; ++i) {
     const int64_t low = i * from, high = low + from;
-    Span span{.first = static_cast<int>(low / to), .weights = {}};
+    Span span{.first = int(low / to), .weights = {}};
     for (int64_t k = span.first; k * to < high; ++k) {
-      span.weights.push_back(
-          static_cast<uint32_t>(std::min(high, (k + 1) * to) - std::max(low, k * to)));
+      span.weights.push_back(uint32_t(std::min(high, (k + 1) * to) - std::max(low, k * to)));
     }
     spans.push_back(std::move(span));
   }
@@ -67,7 +66,7 @@ void ImageResize::TakePlane(const uint8_t* image, int channel) {
     std::copy_n(image + size_t(channel) * pixels, pixels, plane_.begin());
     return;
   }
-  const auto step = static_cast<size_t>(layout_.channels);
+  const auto step = size_t(layout_.channels);
   for (size_t i = 0; i < pixels; ++i) plane_[i] = image[i * step + size_t(channel)];
 }
 
@@ -77,7 +76,7 @@ void ImageResize::TakeGrey(const uint8_t* image) {
   for (size_t i = 0; i < pixels; ++i) {
     const uint8_t* pixel = image + i * step;
     const int luma = 77 * pixel[0] + 150 * pixel[next] + 29 * pixel[2 * next];
-    plane_[i] = static_cast<uint8_t>((luma + 128) >> 8);
+    plane_[i] = uint8_t((luma + 128) >> 8);
   }
 }
 
@@ -86,7 +85,7 @@ void ImageResize::Shrink(std::span<uint8_t> plane) {
     std::ranges::copy(plane_, plane.begin());
     return;
   }
-  const auto width = static_cast<size_t>(width_), source = static_cast<size_t>(layout_.width);
+  const auto width = size_t(width_), source = size_t(layout_.width);
   for (size_t y = 0; y < size_t(layout_.height); ++y) {
     const uint8_t* row = plane_.data() + y * source;
     uint32_t* narrowed = narrowed_.data() + y * width;
@@ -99,7 +98,7 @@ void ImageResize::Shrink(std::span<uint8_t> plane) {
       narrowed[x] = sum;
     }
   }
-  const auto total = static_cast<uint32_t>(layout_.height) * static_cast<uint32_t>(layout_.width);
+  const auto total = uint32_t(layout_.height) * uint32_t(layout_.width);
   for (size_t i = 0; i < size_t(height_); ++i) {
     std::ranges::fill(sums_, 0U);
     const Span& span = rows_[i];

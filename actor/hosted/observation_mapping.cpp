@@ -22,9 +22,7 @@ bool IsBounded(const ArraySpace& space) {
 }
 
 // Frames are grey where a camera has one channel.
-bool IsGrey(const ObservationSpec& spec) {
-  return spec.channels == static_cast<int>(spec.cameras.size());
-}
+bool IsGrey(const ObservationSpec& spec) { return spec.channels == int(spec.cameras.size()); }
 
 }  // namespace
 
@@ -72,8 +70,8 @@ void ObservationMapping::CheckNumbers(std::span<const float> numbers, int64_t st
                       id_, i, block->space.name, numbers[i], steps));
     }
     if (!block->bounded || block->warned) continue;
-    const bool inside = numbers[i] >= static_cast<float>(block->space.Low(int(i))) &&
-                        numbers[i] <= static_cast<float>(block->space.High(int(i)));
+    const bool inside = numbers[i] >= float(block->space.Low(int(i))) &&
+                        numbers[i] <= float(block->space.High(int(i)));
     if (!inside) WarnOutside(i, numbers[i], steps, block);
   }
 }

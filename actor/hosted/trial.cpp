@@ -75,7 +75,7 @@ Played Play(RawEnvironment& environment, const tasks::EnvironmentDescription& de
             uint64_t seed, size_t most, SteadyTime end) {
   const GoalRewards rewards(description);
   Random random(seed);
-  environment.Reset(static_cast<uint32_t>(seed & 0x7fffffffU));
+  environment.Reset(uint32_t(seed & 0x7fffffffU));
   Played played{.moments = {HashOf(environment, description)}};
   std::vector<double> action(size_t(description.action.size()));
   while (played.moments.size() < most && Now() < end) {

@@ -39,8 +39,8 @@ Rollout::Rollout(const Options& options, const ObservationSpec& spec,
       faults_(options.max_faulty_share) {
   CHECK(!environments.empty());
   for (size_t e = 0; e < environments.size(); ++e) {
-    const EpisodeRunner::PolicyInput input{selector.FrameStackOf(int(e)),
-                                           selector.VectorOf(int(e))};
+    const EpisodeRunner::PolicyInput input{selector.FrameStackOf(static_cast<int>(e)),
+                                           selector.VectorOf(static_cast<int>(e))};
     slots_.push_back({.runner = EpisodeRunner(std::move(environments[e]), input), .actions = {}});
   }
 }
@@ -48,7 +48,7 @@ Rollout::Rollout(const Options& options, const ObservationSpec& spec,
 bool Rollout::TryStep() {
   if (owed_.empty()) owed_.assign(slots_.size(), true);
   while (const auto owing = static_cast<size_t>(std::ranges::count(owed_, true))) {
-    if (sink_.Room() < size_t(MostRecordsOfStep(goal_pictures_)) * owing) return false;
+    if (sink_.Room() < static_cast<size_t>(MostRecordsOfStep(goal_pictures_)) * owing) return false;
     {
       const ScopedSeconds timed(environment_seconds_);
       BeginEpisodes();
@@ -95,7 +95,7 @@ void Rollout::BeginEpisodes() {
   const auto running = [](const Slot& slot) { return slot.runner.running(); };
   const bool together = std::ranges::none_of(slots_, running);
   for (int e = 0; e < static_cast<int>(slots_.size()); ++e) {
-    if (owed_[size_t(e)] && !running(slots_[size_t(e)]))
+    if (owed_[static_cast<size_t>(e)] && !running(slots_[static_cast<size_t>(e)]))
       BeginEpisode(e, together ? CutAfter(e) : 0);
   }
 }
@@ -107,7 +107,7 @@ int Rollout::CutAfter(int e) const {
 }
 
 void Rollout::ResetRunner(int e, int cut_after, uint8_t* record) {
-  Slot& slot = slots_[size_t(e)];
+  Slot& slot = slots_[static_cast<size_t>(e)];
   // A task that cannot begin at all would be asked for ever where max_faulty_share allows it.
   for (int attempts = 1;; ++attempts) {
     slot.episode = made_.TakeEpisode(static_cast<uint32_t>(e));
@@ -141,21 +141,22 @@ void Rollout::BeginEpisode(int e, int cut_after) {
 }
 
 void Rollout::PublishGoal(int e, uint8_t* record) {
-  const std::span<const uint8_t> picture = slots_[size_t(e)].runner.environment().goal_picture();
-  CHECK(picture.size() == size_t(layout_.frame_bytes())) << picture.size();
+  const std::span<const uint8_t> picture =
+      slots_[static_cast<size_t>(e)].runner.environment().goal_picture();
+  CHECK(picture.size() == static_cast<size_t>(layout_.frame_bytes())) << picture.size();
   std::ranges::copy(picture, layout_.Frame(record).begin());
   FillHeader(e, RecordKind::kGoal, &RecordLayout::Header(record));
   Publish(record);
 }
 
 void Rollout::OnFault(int e, const worlds::EpisodeFault& fault) {
-  const EpisodeRunner& runner = slots_[size_t(e)].runner;
+  const EpisodeRunner& runner = slots_[static_cast<size_t>(e)].runner;
   faults_.Count(fault);
   if (runner.cut_after() == 0 && runner.figures().length > 0) episodes_.Add(runner.figures());
 }
 
 bool Rollout::StepOne(int e) {
-  Slot& slot = slots_[size_t(e)];
+  Slot& slot = slots_[static_cast<size_t>(e)];
   uint8_t* record = sink_.BeginRecord();
   const std::span<const float> action = selector_.ActionOf(e);
   std::copy(action.begin(), action.end(), layout_.Action(record).begin());
@@ -189,12 +190,12 @@ RolloutState Rollout::State() const {
   RolloutState state;
   state.env_steps = env_steps_;
   for (int e = 0; e < static_cast<int>(slots_.size()); ++e) {
-    const Slot& slot = slots_[size_t(e)];
+    const Slot& slot = slots_[static_cast<size_t>(e)];
     state.episodes.push_back(
         {.episode = slot.episode,
          .running = slot.runner.running(),
          .cut_after = slot.runner.running() ? slot.runner.cut_after() : 0,
-         .owes = !owed_.empty() && owed_[size_t(e)],
+         .owes = !owed_.empty() && owed_[static_cast<size_t>(e)],
          .noise = selector_.NoiseOf(e),
          .actions = slot.runner.running() ? slot.actions : std::vector<float>()});
   }
@@ -218,7 +219,7 @@ void Rollout::Restore(const RolloutState& state) {
 }
 
 void Rollout::PlayAgain(int e, const EpisodeState& state) {
-  Slot& slot = slots_[size_t(e)];
+  Slot& slot = slots_[static_cast<size_t>(e)];
   std::vector<uint8_t> memory(static_cast<size_t>(layout_.record_bytes()));
   const worlds::ObservationOut unread{layout_.Frame(memory.data()), layout_.Vector(memory.data())};
   slot.episode = state.episode;
@@ -233,11 +234,12 @@ void Rollout::PlayAgain(int e, const EpisodeState& state) {
 
 uint64_t Rollout::StreamKeyOf(StreamRole role, int e) const {
   const uint64_t env = options_.first_env + static_cast<uint64_t>(e);
-  return StreamKey(static_cast<uint64_t>(options_.seed), role, env, slots_[size_t(e)].episode);
+  return StreamKey(static_cast<uint64_t>(options_.seed), role, env,
+                   slots_[static_cast<size_t>(e)].episode);
 }
 
 void Rollout::FillHeader(int e, RecordKind kind, RecordHeader* header) const {
-  const Slot& slot = slots_[size_t(e)];
+  const Slot& slot = slots_[static_cast<size_t>(e)];
   // A step of the warm-up was chosen by no weights.
   const WeightsVersion version =
       uniform_ && kind == RecordKind::kStep ? WeightsVersion() : selector_.version();

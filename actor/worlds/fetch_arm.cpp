@@ -134,7 +134,7 @@ void FetchArm::MoveTo(const std::array<double, 3>& position, double opening) {
     for (size_t i = 0; i < 3; ++i) {
       const double away = position[i] - grip[i];
       // The weld gives way where the arm is stretched: what lacks is added up.
-      data.mocap_pos[3 * size_t(mocap_) + i] += kPull * away;
+      data.mocap_pos[3 * static_cast<size_t>(mocap_) + i] += kPull * away;
       squared += away * away;
     }
     if (squared < kNearGoal * kNearGoal) break;

@@ -29,9 +29,9 @@ std::string RenderFingerprint(const std::string& model, const std::string& quali
   uint64_t hash =
       HashWords({HashBytes(model.data(), model.size()), HashBytes(quality.data(), quality.size())});
   for (const CameraView& camera : cameras) {
-    for (const double number :
-         {camera.lookat[0], camera.lookat[1], camera.lookat[2], camera.distance,
-          camera.azimuth_degrees, camera.elevation_degrees, double(camera.model_camera)}) {
+    for (const double number : {camera.lookat[0], camera.lookat[1], camera.lookat[2],
+                                camera.distance, camera.azimuth_degrees, camera.elevation_degrees,
+                                static_cast<double>(camera.model_camera)}) {
       hash = HashWords({hash, std::bit_cast<uint64_t>(number)});
     }
   }

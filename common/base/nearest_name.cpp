@@ -28,7 +28,7 @@ int EditDistance(std::string_view a, std::string_view b) {
 std::string NearestName(std::string_view word, std::span<const std::string> names) {
   const auto distance = [&](const std::string& name) { return EditDistance(word, name); };
   const auto nearest = std::ranges::min_element(names, {}, distance);
-  if (nearest == names.end() || distance(*nearest) > int(word.size() / 2)) return "";
+  if (nearest == names.end() || distance(*nearest) > static_cast<int>(word.size() / 2)) return "";
   return *nearest;
 }
 

@@ -66,8 +66,9 @@ template <std::integral T>
 bool Read(const json& value, const Rule& rule, T* out) {
   const json integer = AsInteger(value);
   if (!integer.is_number_integer()) return false;
-  const bool too_large = integer.is_number_unsigned() &&
-                         integer.get<uint64_t>() > uint64_t(std::numeric_limits<int64_t>::max());
+  const bool too_large =
+      integer.is_number_unsigned() &&
+      integer.get<uint64_t>() > static_cast<uint64_t>(std::numeric_limits<int64_t>::max());
   if (too_large || !Allows(rule, integer.get<int64_t>())) return false;
   *out = static_cast<T>(integer.get<int64_t>());
   return true;

@@ -19,8 +19,8 @@ struct Window {
 
 // Output `i` of `outputs` along a side of `inputs`.
 Window WindowOf(int i, int inputs, int outputs) {
-  return {int(int64_t{i} * inputs / outputs),
-          int((int64_t{i + 1} * inputs + outputs - 1) / outputs)};
+  return {static_cast<int>(int64_t{i} * inputs / outputs),
+          static_cast<int>((int64_t{i + 1} * inputs + outputs - 1) / outputs)};
 }
 
 // Calls visit(output index, source index, 1 / size of the window) for every pair in one plane.
@@ -30,7 +30,8 @@ void ForPairs(const MapShape& from, const MapShape& to, const Visit& visit) {
     const Window rows = WindowOf(i, from.height, to.height);
     for (int j = 0; j < to.width; ++j) {
       const Window columns = WindowOf(j, from.width, to.width);
-      const float share = 1.f / float((rows.end - rows.begin) * (columns.end - columns.begin));
+      const float share =
+          1.f / static_cast<float>((rows.end - rows.begin) * (columns.end - columns.begin));
       for (int u = rows.begin; u < rows.end; ++u) {
         for (int v = columns.begin; v < columns.end; ++v) {
           visit(i * to.width + j, u * from.width + v, share);
@@ -86,7 +87,7 @@ AveragePool::AveragePool(const LayerContext& context, const LayerPlan& plan, con
   output_ = MakeMemory(row_major(to_));
   if (!context.training) return;
   output_gradient_ = MakeMemory(row_major(to_));
-  has_source_gradient_ = bool(source_gradient);
+  has_source_gradient_ = static_cast<bool>(source_gradient);
   if (!has_source_gradient_) return;
   source_gradient_ = Relayout::After(row_major(from_), source_gradient, context.scratchpad);
 }

@@ -199,7 +199,7 @@ void PoolFramesToBf16(const uint8_t* in, const FrameShape& shape, int pool, floa
 }
 
 double MeanFrameSpread(const uint8_t* in, int images, int bytes) {
-  std::vector<double> spreads(static_cast<size_t>(images));
+  auto spreads = std::vector<double>(size_t(images));
   ParallelFor(images, [&](int begin, int end) {
     for (int b = begin; b < end; ++b) {
       spreads[size_t(b)] = StandardDeviation(in + int64_t(b) * bytes, bytes);

@@ -42,7 +42,7 @@ const TensorView& Fitting(const ParameterSpec& parameter, const TensorViews& ten
     throw RuntimeError("{}: tensor {} is {}, expected F32 or BF16", source, name, tensor.dtype);
   }
   const size_t element = tensor.dtype == "BF16" ? sizeof(uint16_t) : sizeof(float);
-  const size_t bytes = static_cast<size_t>(Count(parameter)) * element;
+  const size_t bytes = size_t(Count(parameter)) * element;
   if (tensor.data.size() != bytes) {
     throw RuntimeError("{}: tensor {} has {} bytes, expected {}", source, name, tensor.data.size(),
                        bytes);
@@ -89,11 +89,11 @@ PlainValues PlainOf(const TensorView& tensor) {
 
 void Widen(const PlainValues& from, int64_t count, float* to) {
   if (!from.bf16) {
-    std::memcpy(to, from.data, static_cast<size_t>(count) * sizeof(float));
+    std::memcpy(to, from.data, size_t(count) * sizeof(float));
   } else if (from.aligned) {
     Bf16ToFloats(reinterpret_cast<const uint16_t*>(from.data), count, to);
   } else {
-    std::vector<uint16_t> aligned(static_cast<size_t>(count));
+    auto aligned = std::vector<uint16_t>(size_t(count));
     std::memcpy(aligned.data(), from.data, aligned.size() * sizeof(uint16_t));
     Bf16ToFloats(aligned.data(), count, to);
   }

@@ -146,7 +146,8 @@ PolicyOutput Policy::Forward(int batch, const uint8_t* frames, const float* vect
   SizedNetwork& network = impl_->built->ForBatch(batch);
   if (network.encoder) network.encoder->Forward(frames, Statistics::kRunning);
   if (impl_->scale) {
-    impl_->scaled.resize(size_t(batch) * size_t(impl_->spec.VectorSize()));
+    impl_->scaled.resize(static_cast<size_t>(batch) *
+                         static_cast<size_t>(impl_->spec.VectorSize()));
     impl_->scale->Apply(vector, impl_->scaled);
     vector = impl_->scaled.data();
   }

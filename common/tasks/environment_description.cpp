@@ -41,7 +41,7 @@ constexpr TypeRow kTypes[] = {
 
 const TypeRow& RowOf(ElementType type) {
   const auto* const row = std::ranges::find(kTypes, type, &TypeRow::type);
-  CHECK(row != std::end(kTypes)) << static_cast<int>(type);
+  CHECK(row != std::end(kTypes)) << int(type);
   return *row;
 }
 

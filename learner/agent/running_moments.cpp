@@ -17,7 +17,7 @@ void RunningMoments::Add(std::span<const float> rows) {
   CHECK(rows.size() % width == 0) << rows.size();
   const size_t n = rows.size() / width;
   if (n == 0) return;
-  const auto added = static_cast<double>(n);
+  const auto added = double(n);
   for (size_t j = 0; j < width; ++j) {
     double mean = 0, squares = 0;
     for (size_t i = 0; i < n; ++i) mean += double{rows[i * width + j]} / added;

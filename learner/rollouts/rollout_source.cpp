@@ -192,8 +192,8 @@ void RolloutSource::SetActors(int actors) {
 BatchCounters RolloutSource::counters() const {
   const MutexLock lock(mutex_);
   const RolloutCounters& counters = core_.counters();
-  return {.rollouts = BatchCounters::Rollouts{.expected = uint64_t(core_.Expected()),
-                                              .ready = uint64_t(core_.Ready()),
+  return {.rollouts = BatchCounters::Rollouts{.expected = static_cast<uint64_t>(core_.Expected()),
+                                              .ready = static_cast<uint64_t>(core_.Ready()),
                                               .late = late_rollouts_,
                                               .dropped = counters.dropped_rollouts,
                                               .records = counters.intake.records,

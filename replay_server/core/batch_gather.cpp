@@ -111,7 +111,7 @@ void BatchGather::GatherVectors(const BatchPlan::Element& element, uint64_t last
   const RecordLayout& layout = ring_.layout();
   const auto gather = [&](uint64_t id, std::span<float> vectors, std::span<float> privileged) {
     const auto part = [row](std::span<float> all, int size) {
-      return all.subspan(row * size_t(size), size_t(size));
+      return all.subspan(row * static_cast<size_t>(size), static_cast<size_t>(size));
     };
     const std::span<const float> recorded = layout.Vector(ring_.Record(id));
     const auto seen = part(vectors, observed_.size()), known = part(privileged, privileged_.size());
@@ -126,9 +126,9 @@ void BatchGather::GatherVectors(const BatchPlan::Element& element, uint64_t last
 void BatchGather::Gather(const BatchPlan& plan, const BatchView& out, const RunParts& run) const {
   const RecordLayout& layout = ring_.layout();
   const size_t batch = plan.elements.size();
-  CHECK(out.obs_privileged.size() == batch * size_t(privileged_.size()));
+  CHECK(out.obs_privileged.size() == batch * static_cast<size_t>(privileged_.size()));
   CHECK(out.reward.size() == batch && out.obs_frames.size() == batch * InputBytes() &&
-        out.obs_vector.size() == batch * size_t(observed_.size()) &&
+        out.obs_vector.size() == batch * static_cast<size_t>(observed_.size()) &&
         out.action.size() == batch * static_cast<size_t>(layout.action_size()))
       << "a batch of " << out.reward.size() << " for a plan of " << batch;
   if (run == nullptr) return GatherElements(plan, 0, batch, out);
@@ -141,7 +141,7 @@ void BatchGather::Gather(const BatchPlan& plan, const BatchView& out, const RunP
 
 size_t BatchGather::InputBytes() const {
   return static_cast<size_t>(ring_.layout().frame_bytes()) *
-         size_t(stack_ + (goal_pictures_ ? 1 : 0));
+         static_cast<size_t>(stack_ + (goal_pictures_ ? 1 : 0));
 }
 
 void BatchGather::GatherElements(const BatchPlan& plan, size_t begin, size_t end,

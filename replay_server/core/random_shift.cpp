@@ -70,9 +70,9 @@ void FillBorder(const uint8_t* in, int height, int width, Shift shift, uint8_t* 
 }  // namespace
 
 Shift DrawShift(int pad, Random* random) {
-  const uint64_t choices = 2 * static_cast<uint64_t>(pad) + 1;
-  const int dx = static_cast<int>(random->Below(choices)) - pad;
-  const int dy = static_cast<int>(random->Below(choices)) - pad;
+  const uint64_t choices = 2 * uint64_t(pad) + 1;
+  const int dx = int(random->Below(choices)) - pad;
+  const int dy = int(random->Below(choices)) - pad;
   return {dx, dy};
 }
 

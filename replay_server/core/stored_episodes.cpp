@@ -46,7 +46,8 @@ std::optional<std::vector<uint8_t>> CopyEpisode(const Ring& ring,
   const auto bytes = static_cast<size_t>(ring.layout().record_bytes());
   std::vector<uint8_t> records(ids.size() * bytes);
   for (size_t i = 0; i < ids.size(); ++i) {
-    std::copy_n(ring.Record(ids[i]), bytes, records.begin() + std::ptrdiff_t(i * bytes));
+    std::copy_n(ring.Record(ids[i]), bytes,
+                records.begin() + static_cast<std::ptrdiff_t>(i * bytes));
   }
   // Looked at after the copy: what is whole now was whole then.
   const bool whole = std::ranges::all_of(ids, [&](uint64_t id) { return ring.Intact(id); });

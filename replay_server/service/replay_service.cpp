@@ -106,7 +106,7 @@ SendingWindow ReplayService::Window() const {
 size_t ReplayService::MaxChunks() const {
   const size_t known = core_.sessions().newest().size();
   const int actors = LiveValuesOf(Settings(), control_).actors;
-  const size_t sessions = std::max(known, size_t(std::clamp(actors, 1, 1'000'000)));
+  const size_t sessions = std::max(known, static_cast<size_t>(std::clamp(actors, 1, 1'000'000)));
   return MostChunks(Window(), sessions);
 }
 

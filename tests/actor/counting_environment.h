@@ -43,7 +43,8 @@ class CountingEnvironment final : public worlds::Environment {
     ThrowIfFaulty(0);
     masses_ = {{"leg", static_cast<double>(key_ % 1000)}};
     if (spec_.goal_picture) {
-      goal_picture_.assign(size_t(spec_.FrameBytes()), static_cast<uint8_t>(200 + key_ % 10));
+      goal_picture_.assign(static_cast<size_t>(spec_.FrameBytes()),
+                           static_cast<uint8_t>(200 + key_ % 10));
     }
     Observe(out);
     return 100;
@@ -82,7 +83,8 @@ class CountingEnvironment final : public worlds::Environment {
   }
 
   void Observe(worlds::ObservationOut out) const {
-    std::ranges::fill(out.frame, static_cast<uint8_t>(10 * (key_ % 10) + uint64_t(step_)));
+    std::ranges::fill(out.frame,
+                      static_cast<uint8_t>(10 * (key_ % 10) + static_cast<uint64_t>(step_)));
     out.vector[0] = static_cast<float>(key_ % 1000);
     out.vector[1] = static_cast<float>(step_);
   }

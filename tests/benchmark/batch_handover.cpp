@@ -145,7 +145,7 @@ HandoverFigures MeasureHandover(const HandoverOptions& options) {
   HandoverFigures figures;
   figures.learner_seconds = learner_word.Read();
   figures.replay_seconds = replay_word.Read();
-  figures.gigabytes = options.batches * double(BatchSchemaOf(run).total_bytes()) / 1e9;
+  figures.gigabytes = options.batches * static_cast<double>(BatchSchemaOf(run).total_bytes()) / 1e9;
   kill(replay, SIGKILL);
   for (const pid_t child : {replay, learner}) waitpid(child, nullptr, 0);
   return figures;

@@ -114,7 +114,8 @@ void MeasureCounts(const std::vector<int>& counts, int repetitions, ManyActorsOp
     }
   }
   const auto sixteen = std::ranges::find(counts, 16);
-  const Repetitions& few = all[sixteen == counts.end() ? 0 : size_t(sixteen - counts.begin())];
+  const Repetitions& few =
+      all[sixteen == counts.end() ? 0 : static_cast<size_t>(sixteen - counts.begin())];
   for (const Repetitions& of : all) {
     rows->push_back(WithDetails(CostRow(of, few), of));
     rows->push_back(FoundRow(of));

@@ -128,7 +128,7 @@ double IndependentShare(const std::string& network, int batch, int threads, doub
   config.network.encoder = network;
   config.learner.batch = batch;
   const NoiseBatch noise(config, PixelSpec());
-  std::vector<std::unique_ptr<learner::Agent>> agents(static_cast<size_t>(threads));
+  auto agents = std::vector<std::unique_ptr<learner::Agent>>(size_t(threads));
   const nn::Precision precision = nn::ChoosePrecision("auto", /*pixels=*/true);
   nn::SetThreads(1);
   std::vector<double> rates(agents.size());

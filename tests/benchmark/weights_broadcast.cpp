@@ -215,7 +215,8 @@ BroadcastFigures MeasureBroadcast(const BroadcastOptions& options) {
   const Processes::Cpu settled = processes.CpuNow();
   std::this_thread::sleep_for(std::chrono::duration<double>(options.seconds));
   const Processes::Cpu before = processes.CpuNow();
-  const int versions = std::max(1, int(std::lround(options.seconds * options.versions_per_second)));
+  const int versions =
+      std::max(1, static_cast<int>(std::lround(options.seconds * options.versions_per_second)));
   orders.Write(versions);
   const int last = done.Read(std::chrono::duration_cast<milliseconds>(
       kDeadline + std::chrono::duration<double>(options.seconds)));
@@ -230,7 +231,7 @@ BroadcastFigures MeasureBroadcast(const BroadcastOptions& options) {
   return {.learner = sending.learner - idle.learner,
           .actors = sending.actors - idle.actors,
           .idle = idle.learner + idle.actors,
-          .taken = double(loaded) / (double(versions) * options.actors),
+          .taken = static_cast<double>(loaded) / (static_cast<double>(versions) * options.actors),
           .version_bytes = version_bytes};
 }
 

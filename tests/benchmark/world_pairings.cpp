@@ -27,7 +27,7 @@ void ShrinkByArea(std::span<const uint8_t> in, int channels, int from, int to,
         for (int y = first(i); y <= last(i); ++y) {
           for (int x = first(j); x <= last(j); ++x, ++count) sum += plane[y * from + x];
         }
-        *pixel++ = static_cast<uint8_t>(sum / count);
+        *pixel++ = uint8_t(sum / count);
       }
     }
   }

@@ -72,10 +72,10 @@ std::vector<std::string> MisspelledNames(const std::string& file, std::string_vi
 }
 
 bool IsArithmeticType(std::string_view text) {
-  static constexpr std::array kTypes = {"bool",     "char",    "double",  "float",    "int",
-                                        "int16_t",  "int32_t", "int64_t", "int8_t",   "long",
-                                        "short",    "size_t",  "ssize_t", "uint16_t", "uint32_t",
-                                        "uint64_t", "uint8_t", "unsigned"};
+  static constexpr std::array kTypes = {"bool",     "char",    "double",   "float",    "int",
+                                        "int16_t",  "int32_t", "int64_t",  "int8_t",   "long",
+                                        "short",    "size_t",  "ssize_t",  "uint16_t", "uint32_t",
+                                        "uint64_t", "uint8_t", "unsigned", "ptrdiff_t"};
   return std::ranges::find(kTypes, text) != kTypes.end();
 }
 
@@ -97,6 +97,66 @@ std::vector<std::string> CStyleCasts(const std::string& file, std::string_view t
                                  tokens[i + 1].text, behind, tokens[i + 1].text));
   }
   return faults;
+}
+
+// Spellings of casts of numbers: T(x) and static_cast<T>(x). T{x} is checked by the compiler.
+struct Casts {
+  int as_function = 0, as_static_cast = 0;
+};
+
+// Position of the bracket that closes the one at `open`.
+size_t ClosingBracket(const std::vector<SourceToken>& tokens, size_t open) {
+  int depth = 0;
+  for (size_t i = open; i < tokens.size(); ++i) {
+    if (tokens[i].text == "(") ++depth;
+    if (tokens[i].text == ")" && --depth == 0) return i;
+  }
+  return tokens.size();
+}
+
+// At `i`, int(x): neither int() nor the type of a function, as in std::function<int(bool)>, nor a
+// declarator.
+bool IsFunctionalCast(const std::vector<SourceToken>& tokens, size_t i) {
+  if (i + 2 >= tokens.size() || !IsArithmeticType(tokens[i].text)) return false;
+  if (tokens[i + 1].text != "(" || tokens[i + 2].text == ")") return false;
+  // Behind a name: long int(...), operator bool(...).
+  if (i > 0 && tokens[i - 1].IsIdentifier()) {
+    static constexpr std::array kBeforeValues = {"case", "else", "return"};
+    if (std::ranges::find(kBeforeValues, tokens[i - 1].text) == kBeforeValues.end()) return false;
+  }
+  const size_t close = ClosingBracket(tokens, i + 1);
+  const std::string_view behind =
+      close + 1 < tokens.size() ? std::string_view(tokens[close + 1].text) : std::string_view();
+  // int (*f)(), int (&array)[2]
+  if (behind == "(" || behind == "[") return false;
+  const bool is_type = i > 0 && tokens[i - 1].text == "<" && behind == ">";
+  return !is_type;
+}
+
+Casts CastsOf(std::string_view text) {
+  Casts casts;
+  const std::vector<SourceToken> tokens = ReadSource(text).tokens;
+  for (size_t i = 0; i < tokens.size(); ++i) {
+    casts.as_function += IsFunctionalCast(tokens, i) ? 1 : 0;
+    if (tokens[i].text != "static_cast") continue;
+    const bool is_qualified = i + 5 < tokens.size() && tokens[i + 2].text == "std";
+    const size_t type = i + (is_qualified ? 4 : 2);
+    // static_cast<unsigned char>(x) has no other spelling.
+    casts.as_static_cast += type + 1 < tokens.size() && IsArithmeticType(tokens[type].text) &&
+                                    tokens[type + 1].text == ">"
+                                ? 1
+                                : 0;
+  }
+  return casts;
+}
+
+std::vector<std::string> MixedCasts(const std::string& file, std::string_view text) {
+  const Casts casts = CastsOf(text);
+  if (casts.as_function == 0 || casts.as_static_cast == 0) return {};
+  return {
+      fmt::format("{}: {} casts of numbers as T(x), {} as static_cast<T>(x): expected one "
+                  "spelling in a file",
+                  file, casts.as_function, casts.as_static_cast)};
 }
 
 using Rule = std::vector<std::string> (*)(const std::string& file, std::string_view text);
@@ -128,6 +188,10 @@ TEST(CodeShape, NamesAreSpelledByTheirKind) {
 }
 
 TEST(CodeShape, NumbersAreNotCastAsInC) { EXPECT_THAT(FaultsOfTheTree(CStyleCasts), IsEmpty()); }
+
+TEST(CodeShape, AFileSpellsCastsOfNumbersInOneWay) {
+  EXPECT_THAT(FaultsOfTheTree(MixedCasts), IsEmpty());
+}
 
 // A body of `lines` lines, with its braces.
 std::string Body(int lines) {
@@ -166,6 +230,7 @@ TEST(CodeShape, NamesOfEachKindAreFound) {
                   "#define Bad(x) x\n#define GOOD 1\nextern \"C\" int their_name();\n"
                   "namespace shoal {\nint bad_function();\nint Good();\nclass bad_type;\n"
                   "struct Good2 { int member_; };\nconst int BAD = 1;\nconstexpr int kGood = 1;\n"
+                  "template <class T>\nconcept Good3 = true;\n"
                   "int good_variable = 2;\nbool operator==(Good2 a, Good2 b);\n}\n"),
               ElementsAre("a.cpp:5: bad_function: expected CamelCase",
                           "a.cpp:7: bad_type: expected CamelCase",
@@ -181,6 +246,22 @@ TEST(CodeShape, CastsOfCAreFoundAndParametersWithoutANameAreNot) {
               ElementsAre("a.cpp:1: (int) b: expected static_cast<int>",
                           "a.cpp:2: (float) (: expected static_cast<float>",
                           "a.cpp:3: (size_t) -: expected static_cast<size_t>"));
+}
+
+TEST(CodeShape, BothSpellingsOfACastInOneFileAreFound) {
+  EXPECT_THAT(MixedCasts("a.cpp", "auto a = int(b);\nauto c = static_cast<std::size_t>(d);\n"),
+              ElementsAre("a.cpp: 1 casts of numbers as T(x), 1 as static_cast<T>(x): expected one "
+                          "spelling in a file"));
+  EXPECT_THAT(MixedCasts("a.cpp", "if (a < float(b)) return std::ptrdiff_t(c);\n"), IsEmpty());
+  EXPECT_THAT(MixedCasts("a.cpp",
+                         "auto a = static_cast<int>(b);\nstd::function<int(bool)> c;\n"
+                         "explicit operator bool() const;\nint (*f)(bool), (&g)[2];\nauto d = "
+                         "size_t{3} + int();\n"),
+              IsEmpty());
+  EXPECT_THAT(MixedCasts("a.cpp",
+                         "auto a = int(b);\nauto c = static_cast<unsigned char>(d);\n"
+                         "auto e = static_cast<Kind>(f);\n"),
+              IsEmpty());
 }
 
 }  // namespace

@@ -14,7 +14,7 @@ namespace shoal {
 // Numbers in [0, 1), exact in double: splitmix64 of fnv1a(name) + index.
 inline std::vector<double> SharedUniform(const std::string& name, size_t count) {
   uint64_t first = 0xcbf29ce484222325;
-  for (const char c : name) first = (first ^ static_cast<uint8_t>(c)) * 0x100000001b3;
+  for (const char c : name) first = (first ^ uint8_t(c)) * 0x100000001b3;
   std::vector<double> numbers;
   for (size_t i = 0; i < count; ++i) {
     uint64_t x = (first + i) * 0x9e3779b97f4a7c15;

@@ -59,7 +59,8 @@ class CatchLight final : public shoal::hosted::OwnEnvironment {
     const int column = std::clamp(static_cast<int>(96 + 40 * place), 4, 187);
     for (int y = 20; y < 44; ++y) {
       for (int x = column - 4; x < column + 4; ++x) {
-        std::ranges::copy(colour, &picture->pixels[size_t(3 * (y * picture->width + x))]);
+        std::ranges::copy(colour,
+                          &picture->pixels[static_cast<size_t>(3 * (y * picture->width + x))]);
       }
     }
   }

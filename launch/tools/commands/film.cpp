@@ -60,8 +60,8 @@ FilmOrder OrderOf(const FilmOptions& options) {
 void WriteStrips(const fs::path& run, const std::vector<CheckpointStrip>& strips) {
   tensorboard::EventWriter events(run / kTensorBoardFolder / "film");
   for (const CheckpointStrip& strip : strips) {
-    events.Image("film/episode", int64_t(strip.env_steps), strip.image.width, strip.image.height,
-                 strip.image.png);
+    events.Image("film/episode", static_cast<int64_t>(strip.env_steps), strip.image.width,
+                 strip.image.height, strip.image.png);
   }
   events.Flush();
   fmt::print("{}\n", events.path().string());

@@ -35,7 +35,7 @@ class Episode {
   }
   std::vector<uint8_t> Frames() const {
     std::vector<uint8_t> frames;
-    frames.reserve(count_ * static_cast<size_t>(layout_.frame_bytes()));
+    frames.reserve(count_ * size_t(layout_.frame_bytes()));
     for (uint64_t i = 0; i < count_; ++i) {
       const auto frame = layout_.Frame(At(i));
       frames.insert(frames.end(), frame.begin(), frame.end());
@@ -66,7 +66,7 @@ class Episode {
   }
 
  private:
-  size_t RecordBytes() const { return static_cast<size_t>(layout_.record_bytes()); }
+  size_t RecordBytes() const { return size_t(layout_.record_bytes()); }
   const uint8_t* At(uint64_t i) const { return records_.data() + i * RecordBytes(); }
 
   const RecordLayout layout_;
@@ -111,8 +111,8 @@ void WriteEpisode(const ObservationSpec& spec, std::span<const uint8_t> records,
     file->Write(group + "/infos/distance", {observations}, distances);
     file->WriteFlags(group + "/infos/is_success", episode.Flags(kSuccess, 0));
   }
-  file->SetAttribute(group, "id", static_cast<int64_t>(number));
-  file->SetAttribute(group, "total_steps", static_cast<int64_t>(steps));
+  file->SetAttribute(group, "id", int64_t(number));
+  file->SetAttribute(group, "total_steps", int64_t(steps));
   file->SetAttribute(group, "env", episode.Header(0).env);
   file->SetAttribute(group, "episode", episode.Header(0).episode);
 }

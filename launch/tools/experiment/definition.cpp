@@ -41,7 +41,7 @@ bool IsFileName(const std::string& text) {
 std::optional<int64_t> NaturalNumber(const ordered_json& value) {
   if (!value.is_number_integer()) return std::nullopt;
   if (value.is_number_unsigned() &&
-      value.get<uint64_t>() > uint64_t(std::numeric_limits<int64_t>::max())) {
+      value.get<uint64_t>() > static_cast<uint64_t>(std::numeric_limits<int64_t>::max())) {
     return std::nullopt;
   }
   const auto number = value.get<int64_t>();

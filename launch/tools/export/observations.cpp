@@ -36,7 +36,7 @@ fs::path RunOf(const fs::path& checkpoint) {
 ObservationSet RandomObservations(const ObservationSpec& spec,
                                   const std::optional<nn::VectorScale>& scale, int count,
                                   uint64_t seed) {
-  Random random(HashWords({seed, static_cast<uint64_t>(count)}));
+  Random random(HashWords({seed, uint64_t(count)}));
   ObservationSet result{.count = count};
   for (int n = 0; n < count && spec.HasPixels(); ++n) {
     const uint64_t low = random.Below(256), levels = random.Below(256 - low) + 1;

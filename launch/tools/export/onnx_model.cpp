@@ -42,14 +42,14 @@ void Write(const OnnxNode& node, onnx::proto::Node* out) {
 void Write(const OnnxPort& port, onnx::proto::ValueInfo* out) {
   out->set_name(port.name);
   auto* type = out->mutable_type()->mutable_tensor_type();
-  type->set_elem_type(static_cast<int>(port.type));
+  type->set_elem_type(int(port.type));
   type->mutable_shape()->add_dim()->set_dim_param(kBatch);
   for (const int64_t size : port.shape) type->mutable_shape()->add_dim()->set_dim_value(size);
 }
 
 void Write(const std::string& name, const OnnxTensor& tensor, onnx::proto::Tensor* out) {
   out->set_name(name);
-  out->set_data_type(static_cast<int>(OnnxPort::Type::kF32));
+  out->set_data_type(int(OnnxPort::Type::kF32));
   for (const int64_t size : tensor.shape) out->add_dims(size);
   out->set_raw_data(tensor.values.data(), tensor.values.size() * sizeof(float));
 }
@@ -123,7 +123,7 @@ class Reader {
       Expect(size > 0 && uint64_t(size) <= most / count, in.name(), "as many bytes as its shape");
       count *= uint64_t(size);
     }
-    Expect(in.data_type() == static_cast<int>(OnnxPort::Type::kF32), in.name(), "f32");
+    Expect(in.data_type() == int(OnnxPort::Type::kF32), in.name(), "f32");
     Expect(count * sizeof(float) == most, in.name(), "as many bytes as its shape");
     tensor.values.resize(count);
     std::memcpy(tensor.values.data(), in.raw_data().data(), most);

@@ -36,7 +36,7 @@ OnnxTensor MapValues(const OnnxTensor& x, const Function& function) {
 
 // Inputs are f32 here whatever the file says of them.
 OnnxTensor Cast(const OnnxNode& node, OnnxArguments in) {
-  Expect(Get<int64_t>(node, "to") == static_cast<int64_t>(OnnxPort::Type::kF32), node, "f32");
+  Expect(Get<int64_t>(node, "to") == int64_t(OnnxPort::Type::kF32), node, "f32");
   return *in[0];
 }
 

@@ -140,7 +140,7 @@ class GraphWriter {
   }
 
   std::string AddPixels(const LayerPlan& layer, const std::string& source) {
-    std::string value = Add("Cast", {source}, {{"to", static_cast<int64_t>(OnnxPort::Type::kF32)}});
+    std::string value = Add("Cast", {source}, {{"to", int64_t(OnnxPort::Type::kF32)}});
     if (layer.kernel > 1) {
       const std::vector<int64_t> side(2, layer.kernel);
       value = Add("AveragePool", {value}, {{"kernel_shape", side}, {"strides", side}});

@@ -183,7 +183,7 @@ void Mp4Writer::Add(std::span<const uint8_t> pixels, int stride) {
   const uint8_t* const planes[] = {pixels.data()};
   const int strides[] = {stride};
   sws_scale(encoder.scaler.get(), planes, strides, 0, frame->height, frame->data, frame->linesize);
-  frame->pts = static_cast<int64_t>(encoder.frames++);
+  frame->pts = int64_t(encoder.frames++);
   encoder.Send(frame);
 }
 

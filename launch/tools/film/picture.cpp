@@ -26,7 +26,7 @@ using RedGreenBlue = std::array<uint8_t, 3>;
 
 // Number of pictures of the policy's input: each camera's newest, then each camera's goal.
 int PicturesOf(const ObservationSpec& spec) {
-  return static_cast<int>(spec.cameras.size()) * (spec.goal_picture ? 2 : 1);
+  return int(spec.cameras.size()) * (spec.goal_picture ? 2 : 1);
 }
 
 }  // namespace
@@ -92,7 +92,7 @@ FilmPicture::~FilmPicture() = default;
 
 std::span<const uint8_t> FilmPicture::pixels() const {
   return {cairo_image_surface_get_data(canvas_->surface),
-          static_cast<size_t>(stride()) * static_cast<size_t>(layout_.height)};
+          size_t(stride()) * size_t(layout_.height)};
 }
 
 int FilmPicture::stride() const { return cairo_image_surface_get_stride(canvas_->surface); }
@@ -185,8 +185,8 @@ void FilmPicture::DrawWords(const FilmText& text) {
 
 void FilmPicture::Draw(const FilmText& text, std::span<const uint8_t> input,
                        std::span<const uint8_t> view) {
-  const size_t frame = static_cast<size_t>(spec_.FrameBytes());
-  CHECK(input.size() == static_cast<size_t>(spec_.InputBytes())) << input.size();
+  const size_t frame = size_t(spec_.FrameBytes());
+  CHECK(input.size() == size_t(spec_.InputBytes())) << input.size();
   CHECK(view.size() == size_t{3} * kFilmView * kFilmView) << view.size();
   canvas_->Use(kPaper);
   cairo_paint(canvas_->context);

@@ -20,7 +20,7 @@ SpaceArray::SpaceArray(std::string environment, tasks::ArraySpace space)
       contiguous_(py::module_::import("numpy").attr("ascontiguousarray")) {}
 
 void SpaceArray::CheckShape(const char* call, const py::array& array) const {
-  const std::span<const py::ssize_t> shape(array.shape(), size_t(array.ndim()));
+  const std::span<const py::ssize_t> shape(array.shape(), static_cast<size_t>(array.ndim()));
   const bool one_number = shape.empty() && space_.size() == 1;
   if (one_number || std::ranges::equal(shape, space_.shape)) return;
   const std::vector<py::ssize_t> expected(space_.shape.begin(), space_.shape.end());

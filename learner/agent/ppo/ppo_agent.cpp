@@ -147,7 +147,7 @@ void PpoAgent::GatherInputs(std::span<const uint8_t> frames, std::span<const flo
 
 std::vector<float> PpoAgent::Values(std::span<const uint8_t> frames, std::span<const float> vectors,
                                     const std::vector<int>& rows, int count) {
-  std::vector<float> values(static_cast<size_t>(count));
+  auto values = std::vector<float>(size_t(count));
   for (size_t at = 0; at < rows.size(); at += size_t(batch_size_)) {
     const auto some = std::span(rows).subspan(at, std::min(rows.size() - at, size_t(batch_size_)));
     GatherInputs(frames, vectors, some);
@@ -272,7 +272,7 @@ void PpoAgent::SetFigures(const BatchView& batch, const Prepared& prepared, cons
     entropy += double{log_std} + 1.4189385332046727;  // log(2 pi e) / 2
   }
   for (const uint64_t update : batch.weights_update) {
-    lag += static_cast<double>(updates_ - std::min(update, updates_)) / prepared.rows;
+    lag += double(updates_ - std::min(update, updates_)) / prepared.rows;
   }
   figures->Set(kActorLoss, sums.policy / seen);
   figures->Set(kValueLoss, sums.value / seen);
@@ -319,7 +319,7 @@ UpdateOutcome PpoAgent::Update(const BatchView& batch, const OnStageEnd& on_stag
 }  // namespace
 
 std::vector<int> ShuffledRows(int rows, Random* random) {
-  std::vector<int> order(static_cast<size_t>(rows));
+  auto order = std::vector<int>(size_t(rows));
   std::iota(order.begin(), order.end(), 0);
   for (size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random->Below(i)]);
   return order;

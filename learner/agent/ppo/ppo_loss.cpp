@@ -44,7 +44,7 @@ void AddLogProbGradient(const PpoLossInputs& in, size_t b, double gradient, cons
     const size_t at = b * size_t(in.action_size) + j;
     const double inverse = std::exp(-double{in.log_std[j]});
     const double z = (double{in.drawn_action[at]} - double{in.mean[at]}) * inverse;
-    out.mean[at] = static_cast<float>(gradient * z * inverse);
+    out.mean[at] = float(gradient * z * inverse);
     (*log_std)[j] += gradient * (z * z - 1);
   }
 }
@@ -56,7 +56,7 @@ double ValueError(const PpoLossInputs& in, size_t b, float* gradient) {
   const double value =
       clipped ? old + std::clamp(moved, -in.value_clip, in.value_clip) : double{in.value[b]};
   const double error = double{in.target[b]} - value;
-  *gradient = clipped ? 0.f : static_cast<float>(-2 * in.value_weight * error / in.batch);
+  *gradient = clipped ? 0.f : float(-2 * in.value_weight * error / in.batch);
   return error * error;
 }
 
@@ -80,8 +80,7 @@ PpoLoss PpoLossAndGradients(const PpoLossInputs& in, const PpoGradients& out) {
     loss.value += ValueError(in, b, &out.value[b]) / in.batch;
   }
   for (const float log_std : in.log_std) loss.entropy += double{log_std} + 0.5 + kHalfLogTwoPi;
-  std::ranges::transform(log_std_gradient, out.log_std.begin(),
-                         [](double g) { return static_cast<float>(g); });
+  std::ranges::transform(log_std_gradient, out.log_std.begin(), [](double g) { return float(g); });
   loss.total = loss.policy + in.value_weight * loss.value - in.entropy_weight * loss.entropy;
   return loss;
 }

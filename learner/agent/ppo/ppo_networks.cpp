@@ -25,8 +25,8 @@ nn::HeadPlan PlanActorHead(const Config& config, const ObservationSpec& spec) {
 
 // The first `rows` rows of a tensor.
 void KeepRows(int64_t rows, nn::NamedTensor* tensor) {
-  const auto former = static_cast<size_t>(tensor->shape[0]);
-  tensor->data.resize(tensor->data.size() / former * static_cast<size_t>(rows));
+  const auto former = size_t(tensor->shape[0]);
+  tensor->data.resize(tensor->data.size() / former * size_t(rows));
   tensor->shape[0] = rows;
 }
 

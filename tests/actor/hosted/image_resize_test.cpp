@@ -33,7 +33,7 @@ std::vector<uint8_t> Naive(const std::vector<uint8_t>& image, int from_h, int fr
         }
       }
       sum *= double(to_h) * to_w / (double(from_h) * from_w);
-      out.push_back(static_cast<uint8_t>(std::floor(sum + 0.5 + 1e-9)));
+      out.push_back(uint8_t(std::floor(sum + 0.5 + 1e-9)));
     }
   }
   return out;
@@ -59,7 +59,7 @@ TEST(ImageResize, IsItsDefinitionOnOddSizes) {
   const int sizes[][4] = {{48, 48, 42, 42}, {13, 29, 8, 11}, {9, 8, 20, 24}, {42, 32, 17, 13}};
   for (const auto& [from_h, from_w, to_h, to_w] : sizes) {
     std::vector<uint8_t> image(size_t(from_h) * size_t(from_w));
-    for (uint8_t& pixel : image) pixel = static_cast<uint8_t>(random());
+    for (uint8_t& pixel : image) pixel = uint8_t(random());
     EXPECT_EQ(Apply({.height = from_h, .width = from_w, .channels = 1}, false, to_h, to_w, image),
               Naive(image, from_h, from_w, to_h, to_w))
         << from_h << "x" << from_w << " to " << to_h << "x" << to_w;

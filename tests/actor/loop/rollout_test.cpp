@@ -103,9 +103,10 @@ TEST(GoalPictures, AGoalRecordComesBeforeEachResetAndThePolicySeesItsPicture) {
               testing::ElementsAreArray(sink.layout().Vector(sink.Bytes(1))))
       << "all but the picture is the reset's";
   const auto input = selector.FrameStackOf(0);
-  ASSERT_EQ(input.size(), size_t(spec.InputBytes()));
-  EXPECT_THAT(input.last(size_t(spec.FrameBytes())), Each(sink.layout().Frame(sink.Bytes(5))[0]));
-  EXPECT_THAT(input.first(size_t(2 * spec.FrameBytes())), Each(testing::Lt(200)));
+  ASSERT_EQ(input.size(), static_cast<size_t>(spec.InputBytes()));
+  EXPECT_THAT(input.last(static_cast<size_t>(spec.FrameBytes())),
+              Each(sink.layout().Frame(sink.Bytes(5))[0]));
+  EXPECT_THAT(input.first(static_cast<size_t>(2 * spec.FrameBytes())), Each(testing::Lt(200)));
 }
 
 TEST_F(RolloutTest, TheFiguresOfEndedEpisodesAreLogged) {
@@ -133,7 +134,8 @@ class SpreadResetsTest : public RolloutTest {
     std::vector<int> resets;
     for (size_t i = before; i < sink_.records.size(); ++i) {
       const RecordHeader& header = sink_.Header(i);
-      if (header.kind == RecordKind::kReset) resets.push_back(int(header.env - kFirstEnv));
+      if (header.kind == RecordKind::kReset)
+        resets.push_back(static_cast<int>(header.env - kFirstEnv));
     }
     return resets;
   }

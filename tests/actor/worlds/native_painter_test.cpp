@@ -53,7 +53,7 @@ TEST_F(NativePainterTest, FilmsInFullHdShowWhatSmallPicturesShow) {
                       column * kShare + kShare / 2;
     difference += std::abs(int{large[at]} - int{small[i]});
   }
-  EXPECT_LT(difference / static_cast<double>(small.size()), 0.5);
+  EXPECT_LT(difference / double(small.size()), 0.5);
   EXPECT_GT(*std::ranges::max_element(large), 100) << "a black picture";
 }
 

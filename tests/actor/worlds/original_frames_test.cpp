@@ -44,8 +44,8 @@ class OriginalFrames : public testing::TestWithParam<Original> {
         ReadStateReference(GoldenPath("reference/") + GetParam().reference + ".json");
     const auto world = MakeWorld(GetParam().world, {});
     if (reference.target) dynamic_cast<ReacherEasy&>(*world).PlaceTarget(*reference.target);
-    const auto& qpos =
-        step == 0 ? reference.reset.qpos : reference.steps.at(size_t(step) - 1).after.qpos;
+    const auto& qpos = step == 0 ? reference.reset.qpos
+                                 : reference.steps.at(static_cast<size_t>(step) - 1).after.qpos;
     std::copy(qpos.begin(), qpos.end(), world->data().qpos);
     mj_forward(&world->model(), &world->data());
 

@@ -168,8 +168,9 @@ TEST(RenderContext, TheSkyIsGreenTheTableWhiteAndTheTopRowIsTheTop) {
   }
   const Pixel table = Project(FindCamera(world, "gymnasium"), {1.45, 0.5, 0.4});
   const Pixel floor = Project(FindCamera(world, "gymnasium"), {1.6, 0.2, 0});
-  EXPECT_EQ(colour(int(table.y), int(table.x)), (std::array<int, 3>{255, 255, 255}));
-  EXPECT_NEAR(colour(int(floor.y), int(floor.x))[0], 61, 4);
+  EXPECT_EQ(colour(static_cast<int>(table.y), static_cast<int>(table.x)),
+            (std::array<int, 3>{255, 255, 255}));
+  EXPECT_NEAR(colour(static_cast<int>(floor.y), static_cast<int>(floor.x))[0], 61, 4);
 }
 
 TEST(RenderContext, GreyIsOneChannelOfTheSamePicture) {

@@ -38,7 +38,7 @@ class SphereScene {
     std::memset(&geom, 0, sizeof(geom));
     geom.type = mjGEOM_SPHERE;
     geom.objtype = mjOBJ_GEOM;
-    geom.objid = static_cast<int>(geoms_.size()) - 1;
+    geom.objid = int(geoms_.size()) - 1;
     geom.pos[0] = x;
     geom.pos[1] = y;
     geom.pos[2] = z;
@@ -52,7 +52,7 @@ class SphereScene {
   std::vector<int> Seen() {
     std::vector<mjvGeom> geoms = geoms_;
     scene_.geoms = geoms.data();
-    scene_.ngeom = static_cast<int>(geoms.size());
+    scene_.ngeom = int(geoms.size());
     RemoveUnseenGeoms(&scene_, kAspect);
     std::vector<int> ids;
     ids.reserve(scene_.ngeom);

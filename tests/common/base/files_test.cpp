@@ -156,7 +156,7 @@ TEST(Files, OpenRegularMakesAndAppends) {
   const auto path = folder.path() / "x";
   for (const char* word : {"one ", "two"}) {
     const Descriptor file = OpenRegular(path, O_WRONLY | O_CREAT | O_APPEND);
-    ASSERT_EQ(write(file.get(), word, std::strlen(word)), ssize_t(std::strlen(word)));
+    ASSERT_EQ(write(file.get(), word, std::strlen(word)), static_cast<ssize_t>(std::strlen(word)));
   }
   EXPECT_EQ(ReadFile(path), "one two");
   EXPECT_THROW(OpenRegular(folder.path(), O_RDONLY), Error);

@@ -18,9 +18,10 @@ struct RowsCase {
 class LayerNormTest : public testing::TestWithParam<RowsCase> {
  protected:
   const int rows_ = GetParam().rows, columns_ = GetParam().columns;
-  const size_t size_ = size_t(rows_ * columns_);
-  const Values x_ = RandomValues(size_, 1), weight_ = RandomValues(size_t(columns_), 2);
-  const Values bias_ = RandomValues(size_t(columns_), 3), dy_ = RandomValues(size_, 4);
+  const size_t size_ = static_cast<size_t>(rows_ * columns_);
+  const Values x_ = RandomValues(size_, 1),
+               weight_ = RandomValues(static_cast<size_t>(columns_), 2);
+  const Values bias_ = RandomValues(static_cast<size_t>(columns_), 3), dy_ = RandomValues(size_, 4);
 };
 
 TEST_P(LayerNormTest, ForwardAndBackwardAgreeWithTheReference) {
@@ -89,11 +90,11 @@ TEST(Relu, GradientPassesWhereTheOutputIsPositive) {
 
 TEST(Tanh, AgreesWithTheLibraryAndItsGradientWithCentralDifferences) {
   std::vector<float> x, y(201), dx(201), ones(201, 1.f);
-  for (int i = -100; i <= 100; ++i) x.push_back(float(i) * 0.1f);
+  for (int i = -100; i <= 100; ++i) x.push_back(static_cast<float>(i) * 0.1f);
   TanhForward(201, x.data(), y.data());
   TanhBackward(201, y.data(), ones.data(), dx.data());
   for (size_t i = 0; i < x.size(); ++i) {
-    EXPECT_NEAR(y[i], std::tanh(double(x[i])), 1e-6);
+    EXPECT_NEAR(y[i], std::tanh(static_cast<double>(x[i])), 1e-6);
     double value = x[i];
     EXPECT_NEAR(dx[i], CentralDifference(&value, [&] { return std::tanh(value); }), 2e-6);
   }

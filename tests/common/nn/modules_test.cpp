@@ -164,7 +164,7 @@ TEST_P(ModulesTest, ACriticOfAnyNumberOfFunctionsTrainsTheEncoderByThoseInTheLos
     // The last function alone is in the loss.
     const Values dq = RandomValues(kRows, 6);
     const std::vector<float> last = ToFloats(dq);
-    std::vector<Array> gradients(static_cast<size_t>(count));
+    auto gradients = std::vector<Array>(size_t(count));
     gradients.back() = HostArray(last);
     std::vector<float> daction(kRows * 3, NAN);
     critic.BackwardAction(gradients, HostArray(daction));

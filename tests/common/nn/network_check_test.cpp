@@ -33,7 +33,8 @@ TEST(PolicySize, IsAtLeastThatOfTheFileAndNearIt) {
   for (const ParameterSpec& parameter : PolicyParameters(network, Pixels())) {
     int64_t bytes = 4;
     for (const int64_t extent : parameter.shape) bytes *= extent;
-    tensors[parameter.name] = {"F32", parameter.shape, std::vector<uint8_t>(size_t(bytes))};
+    tensors[parameter.name] = {"F32", parameter.shape,
+                               std::vector<uint8_t>(static_cast<size_t>(bytes))};
   }
   const auto file = static_cast<int64_t>(WriteSafetensors(tensors, {{"format", "shoal"}}).size());
   EXPECT_GE(PolicyBytes(network, Pixels()), file);

@@ -16,7 +16,7 @@ TEST(ParallelFor, VisitsEveryIndexOnceForAnySizeAndNumberOfThreads) {
   for (const int threads : {1, 2, 5}) {
     const ThreadScope scope(threads);
     for (const int n : {0, 1, 2, 3, 7, 100}) {
-      std::vector<int> visits(static_cast<size_t>(n));
+      auto visits = std::vector<int>(size_t(n));
       std::atomic<int> ranges = 0;
       ParallelFor(n, [&](int begin, int end) {
         ++ranges;

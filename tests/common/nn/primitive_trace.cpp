@@ -71,16 +71,16 @@ PrimitiveTrace::PrimitiveTrace(const std::function<void()>& work) {
 void PrimitiveTrace::Run(Part part) const {
   for (const Execution& execution : executions_) {
     if (part == Part::kConvolutions && !execution.convolution) continue;
-    const dnnl_status_t status = __real_dnnl_primitive_execute(
-        execution.primitive, execution.stream, static_cast<int>(execution.arguments.size()),
-        execution.arguments.data());
+    const dnnl_status_t status =
+        __real_dnnl_primitive_execute(execution.primitive, execution.stream,
+                                      int(execution.arguments.size()), execution.arguments.data());
     CHECK(status == dnnl_success) << "oneDNN status " << int(status);
   }
 }
 
 size_t PrimitiveTrace::Count(Part part) const {
   if (part == Part::kAll) return executions_.size();
-  return static_cast<size_t>(std::ranges::count_if(executions_, &Execution::convolution));
+  return size_t(std::ranges::count_if(executions_, &Execution::convolution));
 }
 
 double PrimitiveTrace::ConvolutionOperations() const {

@@ -95,7 +95,7 @@ TEST_P(ReplicaTest, ArraysSumsAndMeansAreThoseOfTheWholeBatchForAll) {
   const int count = GetParam();
   std::vector<float> whole;
   for (int row = 0; row < kRows; ++row) whole.push_back(float(row));
-  std::vector<int> right(static_cast<size_t>(count));
+  auto right = std::vector<int>(size_t(count));
   for (int round = 0; round < 50; ++round) {
     Run([&](Replica* replica) {
       const Replica::Rows rows = replica->RowsOf(kRows);

@@ -38,7 +38,7 @@ TEST(Barrier, OfOneHoldsNobodyUp) {
 TEST(Team, RunsEveryRankOnceOnTheSameThreadEachTime) {
   for (const int ranks : {1, 2, 4}) {
     Team team(ranks);
-    std::vector<std::thread::id> first(static_cast<size_t>(ranks));
+    auto first = std::vector<std::thread::id>(size_t(ranks));
     std::vector<int> runs(first.size());
     for (int i = 0; i < 20; ++i) {
       team.Run([&](int rank) {

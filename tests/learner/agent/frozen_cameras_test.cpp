@@ -35,7 +35,7 @@ std::vector<uint8_t> Stacks(bool first_frozen, bool second_frozen, int pad = kPa
   for (int i = 0; i < kStacks; ++i) {
     for (size_t byte = 0; byte < raw.size(); ++byte) {
       const bool frozen = byte % frame < camera ? first_frozen : second_frozen;
-      if (i == 0 || !frozen) raw[byte] = static_cast<uint8_t>(random.Next());
+      if (i == 0 || !frozen) raw[byte] = uint8_t(random.Next());
     }
     replay::ShiftPlanes(raw.data(), spec.stack * spec.channels, spec.height, spec.width,
                         replay::DrawShift(pad, &random), stacks.data() + size_t(i) * raw.size());

@@ -227,7 +227,7 @@ TEST_F(RolloutCoreTest, UpdatesStopWaitingForAnEnvironmentThatSendsNothingUntilI
   for (uint64_t update = 0; update < 3; ++update) {
     EXPECT_EQ(core_->Expected(), 2) << update;
     for (uint32_t i = 1; i <= 3; ++i) {
-      a_.Step(0, 0, static_cast<uint32_t>(3 * update) + i, 1, {100, update});
+      a_.Step(0, 0, uint32_t(3 * update) + i, 1, {100, update});
     }
     core_->TakeChunk(a_.Chunk());
     ASSERT_EQ(core_->Ready(), 1);

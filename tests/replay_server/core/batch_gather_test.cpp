@@ -49,7 +49,7 @@ class BatchGatherTest : public testing::Test {
 
   BatchView Gather(const BatchPlan& plan, const NStep& n_step = {},
                    std::vector<std::string> privileged = {}) {
-    schema_.emplace(spec_, BatchOptions{.batch = static_cast<int>(plan.elements.size()),
+    schema_.emplace(spec_, BatchOptions{.batch = int(plan.elements.size()),
                                         .privileged = std::move(privileged)});
     memory_ = AlignedBytes(schema_->total_bytes());
     std::fill_n(memory_.data(), schema_->total_bytes(), uint8_t{0});  // between the arrays, too

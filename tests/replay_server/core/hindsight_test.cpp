@@ -171,7 +171,8 @@ TEST_F(HindsightTest, WhereEpisodesEndOnSuccessTheStepThatReachesTheGoalEndsTheS
         const bool ends = end_on_success && reached();
         ended += ends ? 1 : 0;
         const double discount = run_.config.learner.discount;
-        ASSERT_FLOAT_EQ(view->bootstrap[b], ends ? 0 : float(std::pow(discount, steps - 1)));
+        ASSERT_FLOAT_EQ(view->bootstrap[b],
+                        ends ? 0 : static_cast<float>(std::pow(discount, steps - 1)));
         ASSERT_EQ(view->next_obs_vector[b * 6], ring.layout().Vector(ring.Record(last))[0]);
       }
     }

@@ -40,7 +40,7 @@ TEST_F(PeekTest, PaintsEveryElementBesideARunningServer) {
   // 4 columns of 5 pixels, 2 cameras x 4 rows of 3 pixels, 2 pixels around each.
   EXPECT_EQ(peek.width, 4 * 7 + 2);
   EXPECT_EQ(peek.height, 8 * 5 + 2);
-  ASSERT_EQ(peek.rgb.size(), static_cast<size_t>(peek.width * peek.height * 3));
+  ASSERT_EQ(peek.rgb.size(), size_t(peek.width * peek.height * 3));
   ASSERT_EQ(peek.captions.size(), 4u);
   EXPECT_THAT(peek.captions[0], HasSubstr("episode 10"));
 }

@@ -24,8 +24,7 @@ std::vector<uint8_t> Grey(uint8_t value) {
 }
 
 size_t CountFiles(const fs::path& folder) {
-  return static_cast<size_t>(
-      std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+  return size_t(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
 }
 
 class Mp4WriterTest : public testing::Test {

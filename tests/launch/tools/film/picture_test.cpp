@@ -45,7 +45,7 @@ TEST(FilmPicture, ShowsTheNewestFramePixelByPixelWhereItsCameraIs) {
   for (size_t i = 0; i < 36; ++i) input[36 + i] = static_cast<uint8_t>(100 + i);
   picture.Draw(Text(), input, kView);
   for (int camera = 0; camera < 2; ++camera) {
-    const Box& box = picture.layout().cameras[size_t(camera)];
+    const Box& box = picture.layout().cameras[static_cast<size_t>(camera)];
     ASSERT_EQ(box.width % 3, 0);
     const int factor = box.width / 3;
     ASSERT_GT(factor, 10);
