@@ -93,15 +93,15 @@ TEST(FormerKeys, OfARunOfVersion01KeepTheirValues) {
   std::filesystem::copy_file(GoldenPath("config/version_0_1.json"), run.path() / "config.json");
   const Config config = ReadRunConfig(run.path()).config;
   EXPECT_EQ(config.preset, "fetch-push-pixels");
-  EXPECT_EQ(config.learner.temperature, "auto");
-  EXPECT_EQ(config.learner.initial_temperature, 0.25);
-  EXPECT_EQ(config.learner.min_temperature, 0.01);
-  EXPECT_EQ(config.learner.temperature_learning_rate, 1e-4);
-  EXPECT_EQ(config.learner.target_entropy, -3);
-  EXPECT_EQ(config.learner.target_entropy_per_action, -1);
-  EXPECT_TRUE(config.learner.critic_blocks.all);
-  EXPECT_EQ(config.learner.aux, std::vector<std::string>{"object-grip"});
-  EXPECT_EQ(config.learner.aux_weight, 2);
+  EXPECT_EQ(config.sac.temperature, "auto");
+  EXPECT_EQ(config.sac.initial_temperature, 0.25);
+  EXPECT_EQ(config.sac.min_temperature, 0.01);
+  EXPECT_EQ(config.sac.temperature_learning_rate, 1e-4);
+  EXPECT_EQ(config.sac.target_entropy, -3);
+  EXPECT_EQ(config.sac.target_entropy_per_action, -1);
+  EXPECT_TRUE(config.sac.critic_blocks.all);
+  EXPECT_EQ(config.sac.aux, std::vector<std::string>{"object-grip"});
+  EXPECT_EQ(config.sac.aux_weight, 2);
   EXPECT_TRUE(config.learner.normalise_vectors);
 }
 
