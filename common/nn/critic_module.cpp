@@ -10,6 +10,7 @@ namespace shoal::nn {
 
 struct CriticModule::Impl {
   CriticHeads heads;
+  size_t outputs;  // of each function, a row
 };
 
 CriticModule::CriticModule(const HeadPlan& plan, const Features* features, bool trains_encoder,
@@ -17,8 +18,9 @@ CriticModule::CriticModule(const HeadPlan& plan, const Features* features, bool 
     : Module(plan.Parameters(), use, context) {
   const ThreadScope scope(context.threads);
   const FeatureSource source = ToFeatureSource(features, trains_encoder);
-  impl_ = std::make_unique<Impl>(Impl{CriticHeads(ToLayerContext(&parameters_, use, context), plan,
-                                                  source.values, source.gradient)});
+  impl_ = std::make_unique<Impl>(Impl{
+      CriticHeads(ToLayerContext(&parameters_, use, context), plan, source.values, source.gradient),
+      size_t(plan.mlps[0].output().channels)});
 }
 
 CriticModule::~CriticModule() = default;
@@ -26,7 +28,7 @@ CriticModule::~CriticModule() = default;
 int CriticModule::count() const { return impl_->heads.count(); }
 
 Array CriticModule::q(int i) const {
-  return HostArray(std::span(impl_->heads.q(i), size_t(context_.batch)));
+  return HostArray(std::span(impl_->heads.q(i), size_t(context_.batch) * impl_->outputs));
 }
 
 const Features* CriticModule::trunk_features() const { return impl_->heads.trunk_features(); }

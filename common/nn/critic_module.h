@@ -23,7 +23,8 @@ class CriticModule final : public Module {
 
   // Q functions.
   int count() const;
-  Array q(int i) const;  // (B) of the latest ForwardAction
+  // (B) of the latest ForwardAction; of a plan with several outputs (B, outputs).
+  Array q(int i) const;
 
   // The trunk's outputs, for a readout; null without pixels.
   const Features* trunk_features() const;
@@ -35,7 +36,7 @@ class CriticModule final : public Module {
   // called again with other actions.
   void ForwardAction(Array action);
 
-  // dL/dq_i (B), one for each Q function; none: it is no part of the loss.
+  // dL/dq_i, as q(i), one for each Q function; none: it is no part of the loss.
   using Gradients = std::span<const Array>;
   // Gradients of all parameters; those of a function that is no part of the loss become 0.
   void Backward(Gradients q_gradients);
