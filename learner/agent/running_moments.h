@@ -1,39 +1,47 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mean and variance of all vectors seen so far, taken over batch by batch.
-//
-// Source: Chan et al. 1983, "Algorithms for computing the sample variance".
+// Moments (learner/engine/moments.h) as tensors of an agent's state, and moments that the host
+// keeps.
 #pragma once
 
-#include <cstdint>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "common/nn/safetensors.h"
+#include "learner/engine/moments.h"
 
 namespace shoal::learner {
+
+// Tensor `name` of these moments, bit for bit (U64).
+void ExportMoments(std::span<const double> moments, const std::string& name,
+                   nn::TensorMap* tensors);
+// Throws Error naming the tensor that is missing or not the moments of `width` numbers.
+std::vector<double> ImportMoments(size_t width, const std::string& name,
+                                  const nn::TensorMap& tensors, const std::string& source);
 
 // Mean and variance of vectors of V numbers. One thread.
 class RunningMoments {
  public:
-  explicit RunningMoments(int size);
+  explicit RunningMoments(int size) : moments_(MomentsSize(size_t(size))) {}
 
   // rows (N, V).
-  void Add(std::span<const float> rows);
+  void Add(std::span<const float> rows) { AddToMoments(rows, moments_); }
 
-  double count() const { return count_; }
+  double count() const { return moments_[0]; }
   // (V) f32: 0 and 1 before any vector.
-  std::vector<float> Mean() const;
-  std::vector<float> Variance() const;
+  std::vector<float> Mean() const { return MeanOf(moments_); }
+  std::vector<float> Variance() const { return VarianceOf(moments_); }
 
-  // Exports tensor `name` of 1 + 2V doubles, bit for bit (U64).
-  void Export(const std::string& name, nn::TensorMap* tensors) const;
-  // Throws Error naming the tensor that is missing or of another shape; nothing has changed then.
-  void Import(const nn::TensorMap& tensors, const std::string& name, const std::string& source);
+  void Export(const std::string& name, nn::TensorMap* tensors) const {
+    ExportMoments(moments_, name, tensors);
+  }
+  // Throws Error; nothing has changed then.
+  void Import(const nn::TensorMap& tensors, const std::string& name, const std::string& source) {
+    moments_ = ImportMoments(moments_.size() / 2, name, tensors, source);
+  }
 
  private:
-  double count_ = 0;
-  std::vector<double> mean_, squares_;  // (V): mean; sum of squared distances from it
+  std::vector<double> moments_;
 };
 
 }  // namespace shoal::learner

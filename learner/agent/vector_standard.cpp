@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "learner/agent/vector_standard.h"
 
-#include <algorithm>
 #include <cstring>
+#include <vector>
 
 #include "common/nn/actor_critic_plan.h"
-#include "common/nn/vector_scale.h"
+#include "learner/agent/running_moments.h"
 
 namespace shoal::learner {
 namespace {
@@ -19,56 +19,59 @@ nn::NamedTensor Vector(const std::vector<float>& values) {
 
 }  // namespace
 
-VectorStandard::VectorStandard(const LearnerConfig& learner, int vector_size, int privileged_size)
-    : variance_floor_(float(learner.variance_floor)) {
-  const bool on = learner.normalise_vectors;
-  if (on && vector_size > 0) observed_.emplace(Part{RunningMoments(vector_size), {}, {}});
-  if (on && privileged_size > 0) privileged_.emplace(Part{RunningMoments(privileged_size), {}, {}});
+VectorStandard::VectorStandard(const LearnerConfig& learner, Engine* engine, int vector_size,
+                               int privileged_size)
+    : engine_(engine), variance_floor_(float(learner.variance_floor)) {
+  if (!learner.normalise_vectors) return;
+  if (vector_size > 0) observed_ = MakePart(vector_size);
+  if (privileged_size > 0) privileged_ = MakePart(privileged_size);
 }
 
-std::vector<float> VectorStandard::Variance(const Part& part) const {
-  std::vector<float> variance = part.moments.Variance();
-  for (float& v : variance) v = std::max(v, variance_floor_);
-  return variance;
+VectorStandard::Part VectorStandard::MakePart(int size) const {
+  return {engine_->NewMoments(size), engine_->NewArray(size), engine_->NewArray(size)};
 }
 
-BatchView VectorStandard::Seen(const BatchView& batch) {
-  const auto scale = [this](Part& part, std::span<float>* obs, std::span<float>* next_obs) {
-    const nn::VectorScale moved(part.moments.Mean(), Variance(part));
-    const auto apply = [&](std::span<float>* x, std::vector<float>* y) {
-      y->resize(x->size());
-      moved.Apply(x->data(), *y);
-      *x = *y;
-    };
-    apply(obs, &part.obs);
-    apply(next_obs, &part.next_obs);
+Transitions VectorStandard::Seen(const Transitions& batch) {
+  const auto scale = [this](const Part& part, Array* obs, Array* next_obs) {
+    engine_->Standardise(*obs, part.moments, variance_floor_, part.obs);
+    *obs = part.obs;
+    if (!*next_obs) return;  // a rollout's minibatch has none
+    engine_->Standardise(*next_obs, part.moments, variance_floor_, part.next_obs);
+    *next_obs = part.next_obs;
   };
-  BatchView seen = batch;
+  Transitions seen = batch;
   if (observed_) scale(*observed_, &seen.obs_vector, &seen.next_obs_vector);
   if (privileged_) scale(*privileged_, &seen.obs_privileged, &seen.next_obs_privileged);
   return seen;
 }
 
 void VectorStandard::Add(const BatchView& batch) {
-  if (observed_) observed_->moments.Add(batch.obs_vector);
-  if (privileged_) privileged_->moments.Add(batch.obs_privileged);
+  if (observed_) engine_->AddToMoments(batch.obs_vector, observed_->moments);
+  if (privileged_) engine_->AddToMoments(batch.obs_privileged, privileged_->moments);
 }
 
 void VectorStandard::ExportTo(nn::TensorMap* policy) const {
   if (!observed_) return;
-  (*policy)[nn::kObservationMean] = Vector(observed_->moments.Mean());
-  (*policy)[nn::kObservationVariance] = Vector(Variance(*observed_));
+  const std::vector<double> moments = engine_->ReadMoments(observed_->moments);
+  (*policy)[nn::kObservationMean] = Vector(MeanOf(moments));
+  (*policy)[nn::kObservationVariance] = Vector(VarianceOf(moments, variance_floor_));
 }
 
 void VectorStandard::AddTo(AgentState* state) {
-  const auto add = [state](RunningMoments* moments, const std::string& name) {
-    state->Add([=](nn::TensorMap* tensors) { moments->Export(name, tensors); },
-               [=](const nn::TensorMap& tensors, const std::string& source) {
-                 moments->Import(tensors, name, source);
-               });
-  };
-  if (observed_) add(&observed_->moments, "observation.moments");
-  if (privileged_) add(&privileged_->moments, "privileged.moments");
+  if (observed_) AddTo(state, *observed_, "observation.moments");
+  if (privileged_) AddTo(state, *privileged_, "privileged.moments");
+}
+
+void VectorStandard::AddTo(AgentState* state, const Part& part, const std::string& name) const {
+  const Moments moments = part.moments;
+  const auto width = size_t(moments.size()) / 2;
+  state->Add(
+      [=, engine = engine_](nn::TensorMap* tensors) {
+        ExportMoments(engine->ReadMoments(moments), name, tensors);
+      },
+      [=, engine = engine_](const nn::TensorMap& tensors, const std::string& source) {
+        engine->SetMoments(moments, ImportMoments(width, name, tensors, source));
+      });
 }
 
 }  // namespace shoal::learner

@@ -5,29 +5,31 @@
 // (common/nn/vector_scale.h). Those of privileged blocks stay with the learner. A variance below
 // learner.variance_floor counts as the floor, also in the policy's tensors.
 //
-// Dimensions: B batch, V vector size, P privileged size.
+// Dimensions: b rows of this replica, V vector size, P privileged size.
 #pragma once
 
 #include <optional>
-#include <vector>
+#include <string>
 
 #include "common/config/config.h"
 #include "common/nn/safetensors.h"
 #include "common/wire/batch_schema.h"
 #include "learner/agent/agent_state.h"
-#include "learner/agent/running_moments.h"
+#include "learner/engine/engine.h"
 
 namespace shoal::learner {
 
 // One thread.
 class VectorStandard {
  public:
-  // Without learner.normalise_vectors, or without vectors, they stay as they are.
-  VectorStandard(const LearnerConfig& learner, int vector_size, int privileged_size = 0);
+  // Borrows the engine. Without learner.normalise_vectors, or without vectors, they stay as they
+  // are.
+  VectorStandard(const LearnerConfig& learner, Engine* engine, int vector_size,
+                 int privileged_size = 0);
 
   // The batch with vectors as networks see them; valid until the next call.
-  BatchView Seen(const BatchView& batch);
-  // Takes the vectors of a batch, as they came, into the moments.
+  Transitions Seen(const Transitions& batch);
+  // Takes the vectors of a whole batch, as they came, into the moments.
   void Add(const BatchView& batch);
 
   // Into a policy's tensors.
@@ -37,13 +39,14 @@ class VectorStandard {
 
  private:
   struct Part {
-    RunningMoments moments;
-    std::vector<float> obs, next_obs;  // (B, V) or (B, P), scaled
+    Moments moments;
+    Array obs, next_obs;  // (b, V) or (b, P), scaled
   };
 
-  // (V) or (P): no value below the floor.
-  std::vector<float> Variance(const Part& part) const;
+  Part MakePart(int size) const;
+  void AddTo(AgentState* state, const Part& part, const std::string& name) const;
 
+  Engine* const engine_;
   const float variance_floor_;
   // Nothing: they stay as they are.
   std::optional<Part> observed_, privileged_;

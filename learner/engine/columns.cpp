@@ -21,6 +21,17 @@ void JoinColumns(size_t rows, std::span<const float> left, std::span<const float
   CHECK(out == joined.end()) << joined.size() << " numbers in " << rows << " rows";
 }
 
+void SplitColumns(size_t rows, std::span<const float> joined, std::span<float> left,
+                  std::span<float> right) {
+  CHECK(joined.size() == left.size() + right.size()) << joined.size();
+  const size_t left_width = left.size() / rows, right_width = right.size() / rows;
+  for (size_t b = 0; b < rows; ++b) {
+    const auto row = joined.subspan(b * (left_width + right_width), left_width + right_width);
+    std::ranges::copy(row.first(left_width), left.subspan(b * left_width).begin());
+    std::ranges::copy(row.last(right_width), right.subspan(b * right_width).begin());
+  }
+}
+
 void GatherLabels(size_t rows, std::span<const float> observed, std::span<const float> privileged,
                   std::span<const LabelColumns> columns, float unit, std::span<float> labels) {
   CHECK(labels.size() == rows * columns.size()) << labels.size();

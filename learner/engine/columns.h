@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Columns of the vectors of a batch: put side by side, or taken as labels.
+// Columns of the vectors of a batch: put side by side, divided, or taken as labels.
 // Dimensions: b rows, L labels.
 #pragma once
 
@@ -24,6 +24,10 @@ struct LabelColumns {
 // joined[b] = [ left[b] | the columns `ranges` of right[b] ]
 void JoinColumns(size_t rows, std::span<const float> left, std::span<const float> right,
                  std::span<const ObservationSpec::Range> ranges, std::span<float> joined);
+
+// Divides the columns of joined[b] = [ left[b] | right[b] ].
+void SplitColumns(size_t rows, std::span<const float> joined, std::span<float> left,
+                  std::span<float> right);
 
 // labels[b, l] = (number - minus) / unit
 void GatherLabels(size_t rows, std::span<const float> observed, std::span<const float> privileged,

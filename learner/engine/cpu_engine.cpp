@@ -6,8 +6,11 @@
 
 #include "common/base/check.h"
 #include "common/nn/host_memory.h"
+#include "common/nn/vector_scale.h"
 #include "learner/engine/batch_faults.h"
 #include "learner/engine/batch_part.h"
+#include "learner/engine/clipped_policy_loss.h"
+#include "learner/engine/moments.h"
 
 namespace shoal::learner {
 namespace {
@@ -41,10 +44,29 @@ Array CpuEngine::NewArray(int columns) {
 
 Number CpuEngine::NewNumber() { return HostArray(std::span(&numbers_.emplace_back(0), 1)); }
 
+Moments CpuEngine::NewMoments(int width) {
+  return HostArray(moments_.emplace_back(MomentsSize(size_t(width)), 0.0));
+}
+
+void CpuEngine::Set(Number number, double value) {
+  CHECK(!updating_);
+  Cell(number) = value;
+}
+
+void CpuEngine::Put(std::span<const float> values, Array array) {
+  CHECK(!updating_ && values.size() % size_t(batch_) == 0) << values.size();
+  const nn::Replica::Rows rows = replica_->RowsOf(batch_);
+  const size_t columns = values.size() / size_t(batch_);
+  std::ranges::copy(values.subspan(size_t(rows.begin) * columns, size_t(rows.count) * columns),
+                    HostValues(array).begin());
+}
+
 void CpuEngine::Begin(const BatchView& drawn) {
   CHECK(!updating_ && int(drawn.rows()) == batch_) << "batch of " << drawn.rows();
   updating_ = true;
+  outcome_ = {};
   outcome_.finite = outcome_.batch_finite = AllFinite(drawn);
+  overflows_ = false;
   taken_.clear();
   means_.clear();
   critic_arrays_.clear();
@@ -60,7 +82,9 @@ Transitions CpuEngine::Take(const BatchView& batch) {
           .next_obs_privileged = HostArray(own.next_obs_privileged),
           .action = HostArray(own.action),
           .reward = HostArray(own.reward),
-          .bootstrap = HostArray(own.bootstrap)};
+          .bootstrap = HostArray(own.bootstrap),
+          .drawn_action = HostArray(own.drawn_action),
+          .log_prob = HostArray(own.log_prob)};
 }
 
 Engine::Outcome CpuEngine::End() {
@@ -79,15 +103,46 @@ double CpuEngine::Read(Number number) const {
   return Cell(number);
 }
 
+std::vector<float> CpuEngine::ReadRows(Array array) const {
+  CHECK(!updating_) << "an update depends on no array that is read";
+  const std::span<const float> values = HostValues(array);
+  return {values.begin(), values.end()};
+}
+
+std::vector<double> CpuEngine::ReadMoments(Moments moments) const {
+  CHECK(!updating_);
+  const std::span<const double> values = HostValues(moments);
+  return {values.begin(), values.end()};
+}
+
+void CpuEngine::SetMoments(Moments moments, std::span<const double> values) {
+  CHECK(!updating_ && int64_t(values.size()) == moments.size()) << values.size();
+  std::ranges::copy(values, HostValues(moments).begin());
+}
+
 void CpuEngine::JoinColumns(Array left, Array right, std::span<const ObservationSpec::Range> ranges,
                             Array joined) {
   learner::JoinColumns(Rows(), HostValues(left), HostValues(right), ranges, HostValues(joined));
+}
+
+void CpuEngine::SplitColumns(Array joined, Array left, Array right) {
+  learner::SplitColumns(Rows(), HostValues(joined), HostValues(left), HostValues(right));
 }
 
 void CpuEngine::GatherLabels(Array observed, Array privileged,
                              std::span<const LabelColumns> columns, float unit, Array labels) {
   learner::GatherLabels(Rows(), HostValues(observed), HostValues(privileged), columns, unit,
                         HostValues(labels));
+}
+
+void CpuEngine::Standardise(Array x, Moments moments, float variance_floor, Array y) {
+  const std::span<const double> values = HostValues(moments);
+  const nn::VectorScale scale(MeanOf(values), VarianceOf(values, variance_floor));
+  scale.Apply(Data(x), HostValues(y));
+}
+
+void CpuEngine::AddToMoments(std::span<const float> vectors, Moments moments) {
+  if (!updating_ || Moves()) learner::AddToMoments(vectors, HostValues(moments));
 }
 
 void CpuEngine::SampleSquashedGaussian(Array mean, Array log_std, Random* random,
@@ -203,6 +258,44 @@ void CpuEngine::LabelLoss(Array y, Array labels, float weight, float unit, Array
   AddMean(double(unit) * unit * squares / double(y.size()), mean_square, /*rounds=*/false);
 }
 
+void CpuEngine::ClippedPolicyLoss(const ClippedPolicyTerms& terms, nn::ParameterSet* log_std,
+                                  Array mean_gradient, Array value_gradient,
+                                  const ClippedPolicyNumbers& figures) {
+  const size_t actions = HostValues(terms.mean).size() / Rows();
+  const learner::ClippedPolicyLoss loss =
+      ClippedPolicyLossAndGradients({.batch = modules_.batch,
+                                     .action_size = int(actions),
+                                     .mean = HostValues(terms.mean),
+                                     .log_std = {log_std->values(), actions},
+                                     .value = HostValues(terms.value),
+                                     .drawn_action = HostValues(terms.drawn_action),
+                                     .old_log_prob = HostValues(terms.old_log_prob),
+                                     .old_value = HostValues(terms.old_value),
+                                     .advantage = HostValues(terms.advantage),
+                                     .target = HostValues(terms.target),
+                                     .clip = Cell(terms.clip),
+                                     .value_clip = terms.value_clip,
+                                     .value_weight = terms.value_weight,
+                                     .entropy_weight = terms.entropy_weight,
+                                     .normalise_advantages = terms.normalise_advantages},
+                                    {.mean = HostValues(mean_gradient),
+                                     .log_std = {log_std->gradients(), actions},
+                                     .value = HostValues(value_gradient)});
+  AddMean(loss.policy, figures.policy, /*rounds=*/false);
+  AddMean(loss.value, figures.value, /*rounds=*/false);
+  AddMean(loss.approx_kl, figures.approx_kl, /*rounds=*/false);
+  AddMean(loss.clip_fraction, figures.clip_fraction, /*rounds=*/false);
+  AddMean(loss.total, figures.total, /*rounds=*/false);
+  AddMean(loss.total, figures.rounded_total, /*rounds=*/true);
+}
+
+void CpuEngine::GaussianFigures(const nn::ParameterSet& log_std, Number deviation, Number entropy) {
+  const auto actions = size_t(log_std.specs()[0].shape[0]);
+  const GaussianSpread spread = SpreadOf({log_std.values(), actions});
+  Cell(deviation) = spread.deviation;
+  Cell(entropy) = spread.entropy;
+}
+
 void CpuEngine::Mean(Array values, Number mean) {
   AddMean(Summarise(HostValues(values)).mean, mean, /*rounds=*/false);
 }
@@ -228,7 +321,7 @@ void CpuEngine::TemperatureLoss(Number temperature, Number entropy, float target
 
 void CpuEngine::StepTemperature(Number loss, double least, nn::ParameterSet* log_temperature,
                                 nn::Adam* optimiser) {
-  if (!outcome_.finite) return;
+  if (!Moves()) return;
   log_temperature->gradients()[0] = float(Cell(loss));
   optimiser->Step();
   taken_.push_back({optimiser, {}});
@@ -242,7 +335,12 @@ void CpuEngine::AddMean(double own, Number number, bool rounds) {
 }
 
 void CpuEngine::RequireFinite(Number number) {
+  if (outcome_.held) return;
   outcome_.finite = outcome_.finite && std::isfinite(Cell(number));
+}
+
+void CpuEngine::SetRateFactor(Number factor, nn::Adam* optimiser) {
+  optimiser->set_rate_factor(Cell(factor));
 }
 
 void CpuEngine::Gather(nn::Adam* optimiser, Number gradient_squares) {
@@ -259,11 +357,16 @@ void CpuEngine::Gather(nn::Adam* optimiser, Number gradient_squares) {
   if (!critic_arrays_.empty()) FinishCriticLoss(whole.arrays);
   means_.clear();
   critic_arrays_.clear();
-  outcome_.finite = outcome_.finite && FitsMoments(squares);
+  overflows_ = !FitsMoments(squares);
+}
+
+void CpuEngine::HoldSteps(Number number, double limit) {
+  outcome_.held = outcome_.held || Cell(number) > limit;
 }
 
 void CpuEngine::Step(nn::Adam* optimiser, std::span<nn::Module* const> changed, NextUse next_use) {
-  if (outcome_.finite) {
+  if (!outcome_.held) outcome_.finite = outcome_.finite && !overflows_;
+  if (Moves()) {
     optimiser->Step();
     taken_.push_back({optimiser, {changed.begin(), changed.end()}});
     for (nn::Module* module : changed) module->Refresh();
@@ -272,11 +375,11 @@ void CpuEngine::Step(nn::Adam* optimiser, std::span<nn::Module* const> changed, 
 }
 
 void CpuEngine::MoveTowards(float tau, std::span<const nn::Following> targets) {
-  if (outcome_.finite) nn::MoveTowards(tau, targets, replica_);
+  if (Moves()) nn::MoveTowards(tau, targets, replica_);
 }
 
 void CpuEngine::MoveAverage(float rate, const nn::ParameterSet& online, nn::ParameterSet* average) {
-  if (outcome_.finite) nn::MoveTowards(rate, online, average, *replica_);
+  if (Moves()) nn::MoveTowards(rate, online, average, *replica_);
 }
 
 }  // namespace shoal::learner

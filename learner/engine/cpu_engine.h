@@ -28,16 +28,26 @@ class CpuEngine final : public Engine {
   const nn::ModuleContext& modules() const override { return modules_; }
   Array NewArray(int columns) override;
   Number NewNumber() override;
+  Moments NewMoments(int width) override;
+  void Set(Number number, double value) override;
+  void Put(std::span<const float> values, Array array) override;
 
   void Begin(const BatchView& drawn) override;
   Transitions Take(const BatchView& batch) override;
   Outcome End() override;
   double Read(Number number) const override;
+  std::vector<float> ReadRows(Array array) const override;
+  std::vector<double> ReadMoments(Moments moments) const override;
+  void SetMoments(Moments moments, std::span<const double> values) override;
 
   void JoinColumns(Array left, Array right, std::span<const ObservationSpec::Range> ranges,
                    Array joined) override;
+  void SplitColumns(Array joined, Array left, Array right) override;
   void GatherLabels(Array observed, Array privileged, std::span<const LabelColumns> columns,
                     float unit, Array labels) override;
+
+  void Standardise(Array x, Moments moments, float variance_floor, Array y) override;
+  void AddToMoments(std::span<const float> vectors, Moments moments) override;
 
   void SampleSquashedGaussian(Array mean, Array log_std, Random* random,
                               const SquashedSample& sample) override;
@@ -59,6 +69,10 @@ class CpuEngine final : public Engine {
                               Array q_gradient, Number loss, Number saturation) override;
   void LabelLoss(Array y, Array labels, float weight, float unit, Array gradient,
                  Number mean_square) override;
+  void ClippedPolicyLoss(const ClippedPolicyTerms& terms, nn::ParameterSet* log_std,
+                         Array mean_gradient, Array value_gradient,
+                         const ClippedPolicyNumbers& figures) override;
+  void GaussianFigures(const nn::ParameterSet& log_std, Number deviation, Number entropy) override;
   void Mean(Array values, Number mean) override;
   void OnHost(std::span<const Array> inputs, std::span<const Array> outputs,
               const HostOperation& operation) override;
@@ -70,7 +84,9 @@ class CpuEngine final : public Engine {
                        nn::Adam* optimiser) override;
 
   void RequireFinite(Number number) override;
+  void SetRateFactor(Number factor, nn::Adam* optimiser) override;
   void Gather(nn::Adam* optimiser, Number gradient_squares) override;
+  void HoldSteps(Number number, double limit) override;
   void Step(nn::Adam* optimiser, std::span<nn::Module* const> changed, NextUse next_use) override;
   void MoveTowards(float tau, std::span<const nn::Following> targets) override;
   void MoveAverage(float rate, const nn::ParameterSet& online, nn::ParameterSet* average) override;
@@ -88,6 +104,8 @@ class CpuEngine final : public Engine {
   };
 
   size_t Rows() const { return size_t(modules_.batch); }
+  // Whether steps and moves have an effect.
+  bool Moves() const { return outcome_.finite && !outcome_.held; }
   // Keeps a mean over the replica's rows for the next Gather.
   void AddMean(double own, Number number, bool rounds);
   void FinishCriticLoss(const std::vector<std::vector<float>>& whole);
@@ -97,9 +115,11 @@ class CpuEngine final : public Engine {
   const nn::ModuleContext modules_;
   std::deque<std::vector<float>> arrays_;
   std::deque<double> numbers_;
+  std::deque<std::vector<double>> moments_;
 
   bool updating_ = false;
-  Outcome outcome_;  // of the present update so far
+  Outcome outcome_;         // of the present update so far
+  bool overflows_ = false;  // the gradients that were gathered last
   std::vector<Taken> taken_;
 
   // Since the last Gather.

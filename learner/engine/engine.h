@@ -5,8 +5,9 @@
 //
 // An update lies between Begin and End. Its operations, and their order, depend on the
 // configuration and on counters of the host, never on a number that was computed: nothing is read
-// before End. An engine may therefore record the operations of an update once and repeat the
-// recording.
+// before End. What changes from update to update besides batch and draws is in the engine's memory:
+// the host gives rates of schedules by Set. An engine may therefore record the operations of an
+// update once and repeat the recording.
 //
 // Whether the numbers are finite is a flag in the engine's memory: up at Begin, down for the rest
 // of the update once a batch, a loss or a gradient was not finite. While it is down, steps and
@@ -32,43 +33,9 @@
 #include "common/nn/module.h"
 #include "common/wire/batch_schema.h"
 #include "learner/engine/columns.h"
-#include "learner/engine/losses.h"
+#include "learner/engine/operands.h"
 
 namespace shoal::learner {
-
-using nn::Array;
-using nn::Frames;
-using nn::Number;
-
-// The rows of this replica in a batch, valid as long as the batch; none where the batch has none.
-struct Transitions {
-  Frames obs_frames, next_obs_frames;
-  Array obs_vector, next_obs_vector, obs_privileged, next_obs_privileged;
-  Array action, reward, bootstrap;
-};
-
-// Actions of a Gaussian squashed by tanh, and what their gradients need.
-struct SquashedSample {
-  Array scaled_noise, action;  // (b, A): sigma eps, a
-  Array log_prob;              // (b): log pi(a | o)
-};
-
-// Inputs of the targets of a batch: (b) each.
-struct TargetTerms {
-  Array reward, bootstrap;        // bootstrap: discount^(n-1) (1 - terminated)
-  std::span<const Array> next_q;  // of one or more target critics at (o', a')
-  Array next_log_prob;            // log pi(a' | o'); none: no entropy term
-  Number temperature;             // of that term
-  float reward_scale = 1, discount = 1;
-  ValueBounds bounds;
-};
-
-// Figures of a critic's loss over the whole batch. Of one Q function there is no q2.
-struct CriticNumbers {
-  Number loss, q_mean, target_mean;
-  Number q1_mean, q1_std, q2_mean, q2_std;
-  Number q_min_mean, q_min_std, q_min_min, q_min_max;
-};
 
 // The next use of parameters that a step changes.
 enum class NextUse { kThisUpdate, kNextUpdate };
@@ -85,6 +52,13 @@ class Engine {
   // (b, columns) zeros. They live as long as the engine.
   virtual Array NewArray(int columns) = 0;
   virtual Number NewNumber() = 0;
+  // Moments (moments.h) of vectors of `width` numbers: of none so far.
+  virtual Moments NewMoments(int width) = 0;
+  // Sets a number that the host gives to its operations from here on, for example the rate of a
+  // schedule: the operations themselves stay the same. Not within an update.
+  virtual void Set(Number number, double value) = 0;
+  // Copies this replica's rows of `values` (B, columns) to the array. Not within an update.
+  virtual void Put(std::span<const float> values, Array array) = 0;
 
   // ---- An update ----
 
@@ -95,22 +69,37 @@ class Engine {
   struct Outcome {
     bool finite = true;        // the flag
     bool batch_finite = true;  // false: of a batch that was not finite, nothing is worth reading
+    bool held = false;         // HoldSteps has held the steps back
   };
   // Ends the update and reads the flag. If it is down, parameters, moments and statistics are those
   // of before Begin.
   virtual Outcome End() = 0;
   // Not within an update.
   virtual double Read(Number number) const = 0;
+  // This replica's rows. Not within an update.
+  virtual std::vector<float> ReadRows(Array array) const = 0;
+  // Not within an update.
+  virtual std::vector<double> ReadMoments(Moments moments) const = 0;
+  virtual void SetMoments(Moments moments, std::span<const double> values) = 0;
 
   // ---- Inputs ----
 
   // joined[b] = [ left[b] | the columns `ranges` of right[b] ]
   virtual void JoinColumns(Array left, Array right, std::span<const ObservationSpec::Range> ranges,
                            Array joined) = 0;
+  // Divides the columns of joined[b] = [ left[b] | right[b] ].
+  virtual void SplitColumns(Array joined, Array left, Array right) = 0;
   // labels (b, L): columns of `observed` and `privileged`, or differences of two, divided by
   // `unit`.
   virtual void GatherLabels(Array observed, Array privileged, std::span<const LabelColumns> columns,
                             float unit, Array labels) = 0;
+
+  // y = clip((x - mean) / sqrt(variance + 1e-8), -10, 10) by these moments; variances below the
+  // floor become the floor. x, y (b, V).
+  virtual void Standardise(Array x, Moments moments, float variance_floor, Array y) = 0;
+  // If the flag is up: takes vectors (N, V) of the host, those of all replicas, into the moments.
+  // The last operation of an update that has these moments, or outside of one.
+  virtual void AddToMoments(std::span<const float> vectors, Moments moments) = 0;
 
   // ---- Actions ----
 
@@ -152,6 +141,15 @@ class Engine {
   // after the next Gather.
   virtual void LabelLoss(Array y, Array labels, float weight, float unit, Array gradient,
                          Number mean_square) = 0;
+  // Eq. 22 and 24: clipped_policy_loss.h. dL/dmean (b, A), dL/dvalue (b) and the gradient of
+  // `log_std` (A); the figures after the next Gather.
+  virtual void ClippedPolicyLoss(const ClippedPolicyTerms& terms, nn::ParameterSet* log_std,
+                                 Array mean_gradient, Array value_gradient,
+                                 const ClippedPolicyNumbers& figures) = 0;
+  // Of a Gaussian whose log deviations are the parameters `log_std` (A): the mean of its
+  // deviations, and its entropy.
+  virtual void GaussianFigures(const nn::ParameterSet& log_std, Number deviation,
+                               Number entropy) = 0;
   // The mean over the whole batch, after the next Gather. values (b).
   virtual void Mean(Array values, Number mean) = 0;
 
@@ -175,14 +173,19 @@ class Engine {
 
   // ---- The flag, steps and moves ----
 
-  // Lowers the flag if the number is not finite.
+  // Lowers the flag if the number is not finite, unless steps are held.
   virtual void RequireFinite(Number number) = 0;
+  // The steps of this optimiser from here on have `factor` times its rate.
+  virtual void SetRateFactor(Number factor, nn::Adam* optimiser) = 0;
   // Completes the optimiser's gradients and the figures of losses since the last Gather: they are
   // those of the whole batch from here on. gradient_squares: the sum of the gradients' squares.
-  // Lowers the flag where a step would overflow.
   virtual void Gather(nn::Adam* optimiser, Number gradient_squares) = 0;
-  // If the flag is up: one step with the gathered gradients; `changed`, the modules that have these
-  // parameters, are refreshed. At most once an update for each optimiser.
+  // Steps and moves of this update have no effect from here on if number > limit. The flag is not
+  // lowered.
+  virtual void HoldSteps(Number number, double limit) = 0;
+  // Lowers the flag if the step would overflow. If the flag is up: one step with the gathered
+  // gradients; `changed`, the modules that have these parameters, are refreshed. At most once an
+  // update for each optimiser.
   virtual void Step(nn::Adam* optimiser, std::span<nn::Module* const> changed,
                     NextUse next_use) = 0;
   // If the flag is up: targets move by `tau` towards what they follow (Eq. 9). They are used in the

@@ -77,10 +77,8 @@ const std::vector<Ban> kBans = [] {
     bans.push_back({"learner/agent", files, "an agent is in memory: checkpoints are kept for it"});
     bans.push_back({"learner/engine", files, "an engine computes"});
   }
-  bans.push_back({"learner/agent",
-                  "common/nn/host_memory.h",
-                  "an algorithm does not look into arrays",
-                  {"learner/agent/ppo/"}});
+  bans.push_back(
+      {"learner/agent", "common/nn/host_memory.h", "an algorithm does not look into arrays"});
   bans.push_back({"learner/agent",
                   "common/nn/team.h",
                   "its threads are those of replicas",

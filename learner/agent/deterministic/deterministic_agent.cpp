@@ -76,6 +76,7 @@ class DeterministicAgent final : public Agent {
   std::vector<Array>
       actors_q_gradients_;       // the same of the actor's loss: of the first critic alone
   const Array action_gradient_;  // (b, A)
+  const Number rate_factor_;     // of the optimisers
   const CriticNumbers critic_numbers_;
   const Number critic_squares_, actor_squares_;  // of gradients
   const Number actor_loss_, saturation_;
@@ -108,11 +109,12 @@ DeterministicAgent::DeterministicAgent(const Config& config, const ObservationSp
       critic_optimiser_(SetsOf(encoder_.get(), &critic_), CriticStep(config.learner),
                         engine->modules()),
       actor_optimiser_({&actor_.parameters()}, ActorStep(config.learner), engine->modules()),
-      standard_(config.learner, spec.VectorSize()),
+      standard_(config.learner, engine, spec.VectorSize()),
       target_action_(engine->NewArray(spec.action_size)),
       targets_(engine->NewArray(1)),
       actors_q_gradients_(size_t(options.critics)),
       action_gradient_(engine->NewArray(spec.action_size)),
+      rate_factor_(engine->NewNumber()),
       critic_numbers_(NewCriticNumbers(options.critics, engine)),
       critic_squares_(engine->NewNumber()),
       actor_squares_(engine->NewNumber()),
@@ -216,23 +218,22 @@ void DeterministicAgent::MoveTargetsAndAverage() {
 
 UpdateOutcome DeterministicAgent::Update(const BatchView& drawn, const OnStageEnd& on_stage_end) {
   const nn::ThreadScope scope(engine_->modules().threads);
-  engine_->Begin(drawn);
-  const Transitions batch = engine_->Take(standard_.Seen(drawn));
-  Random random(StreamKey(uint64_t(config_.seed), StreamRole::kLearnerUpdate, updates_));
   const double rate_factor = config_.learner.rate_factor.At(drawn.stored_steps);
-  critic_optimiser_.set_rate_factor(rate_factor);
-  actor_optimiser_.set_rate_factor(rate_factor);
+  engine_->Set(rate_factor_, rate_factor);
+  engine_->Begin(drawn);
+  const Transitions batch = standard_.Seen(engine_->Take(drawn));
+  Random random(StreamKey(uint64_t(config_.seed), StreamRole::kLearnerUpdate, updates_));
+  engine_->SetRateFactor(rate_factor_, &critic_optimiser_);
+  engine_->SetRateFactor(rate_factor_, &actor_optimiser_);
   ComputeTargets(batch, &random);
   on_stage_end(UpdateStage::kForward);
   UpdateCritic(batch, on_stage_end);
   if (Due(config_.learner.actor_period)) UpdateActor(batch, on_stage_end);
   MoveTargetsAndAverage();
-  figures_.SetValue(kLearningRate, critic_optimiser_.rate());
+  figures_.SetValue(kLearningRate, CriticStep(config_.learner).rate * rate_factor);
+  standard_.Add(drawn);
   const Engine::Outcome outcome = engine_->End();
-  if (outcome.finite) {
-    standard_.Add(drawn);
-    ++updates_;
-  }
+  if (outcome.finite) ++updates_;
   on_stage_end(UpdateStage::kOptimiser);
   return {.figures = figures_.Take(*engine_, outcome), .finite = outcome.finite};
 }

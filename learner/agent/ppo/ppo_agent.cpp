@@ -3,17 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <numeric>
 #include <utility>
 
 #include "common/base/check.h"
 #include "common/nn/adam.h"
-#include "common/nn/host_memory.h"
 #include "common/nn/parallel.h"
 #include "learner/agent/agent_state.h"
 #include "learner/agent/ppo/advantages.h"
-#include "learner/agent/ppo/ppo_loss.h"
+#include "learner/agent/ppo/minibatch.h"
 #include "learner/agent/ppo/ppo_networks.h"
 #include "learner/agent/ppo/reward_scale.h"
 #include "learner/agent/vector_standard.h"
@@ -59,62 +57,65 @@ class PpoAgent final : public Agent {
   // V of these rows of observations; the other rows of the result stay 0.
   std::vector<float> Values(std::span<const uint8_t> frames, std::span<const float> vectors,
                             const std::vector<int>& rows, int count);
-  // Copies rows into the minibatch's inputs; the rest of the minibatch keeps what it held.
-  void GatherInputs(std::span<const uint8_t> frames, std::span<const float> vectors,
-                    std::span<const int> rows);
-  // False: not finite. Sets `over` when the policy has moved too far.
-  bool Minibatch(const BatchView& batch, const Prepared& prepared, std::span<const int> rows,
-                 const OnStageEnd& on_stage_end, Sums* sums, bool* over);
+  // Begins an update of the engine with these rows, as the networks see them.
+  Transitions TakeRows(const BatchView& batch, const Prepared& prepared, std::span<const int> rows);
+  // The operations of that update; ends it.
+  Engine::Outcome LearnFrom(const Transitions& rows, const OnStageEnd& on_stage_end);
+  void AddTo(Sums* sums, const Engine::Outcome& outcome) const;
+  // False: not finite.
   bool Epochs(const BatchView& batch, const Prepared& prepared, const OnStageEnd& on_stage_end,
               Sums* sums);
   void SetFigures(const BatchView& batch, const Prepared& prepared, const Sums& sums,
-                  UpdateFigures* figures);
+                  UpdateFigures* figures) const;
   uint64_t StepsWith(int rows) const { return env_steps_ + uint64_t(rows); }
 
   const Config config_;
-  const int batch_size_, action_size_, vector_size_;  // B, A, V
-  const size_t frame_bytes_;                          // of a stack
+  const int batch_size_;  // B
   const RowOrder order_;
-  const nn::ModuleContext context_;
+  Engine* const engine_;
   PpoNetworks networks_;
   nn::Adam optimiser_;
   VectorStandard standard_;
   RewardScale rewards_;
+  Minibatch minibatch_;
   uint64_t updates_ = 0;
   uint64_t env_steps_ = 0;  // learned from: the time of schedules
-  double clip_ = 0;
   AgentState state_;
 
-  // A minibatch's rows.
-  std::vector<uint8_t> frames_;                               // (B, K*C, H, W)
-  std::vector<float> vectors_, drawn_;                        // (B, V), (B, A)
-  std::vector<float> log_prob_, value_, advantage_, target_;  // (B)
+  // Arrays and numbers of a minibatch. Dimensions: b rows of this replica, A actions.
+  const Array old_value_, advantage_, target_;  // (b)
+  const Array mean_gradient_, value_gradient_;  // (b, A), (b)
+  const Number rate_factor_, clip_, gradient_squares_, deviation_, entropy_;
+  const ClippedPolicyNumbers numbers_;
 };
 
 PpoAgent::PpoAgent(const Config& config, const ObservationSpec& spec, Engine* engine,
                    RowOrder order)
     : config_(config),
       batch_size_(config.learner.batch),
-      action_size_(spec.action_size),
-      vector_size_(spec.VectorSize()),
-      frame_bytes_(size_t(spec.InputBytes())),
       order_(std::move(order)),
-      context_(engine->modules()),
-      networks_(config, spec, context_),
+      engine_(engine),
+      networks_(config, spec, engine),
       optimiser_(networks_.Sets(),
                  {.rate = config.learner.learning_rate,
                   .epsilon = kAdamEpsilon,
                   .max_norm = config.learner.max_grad_norm},
-                 context_),
-      standard_(config.learner, vector_size_),
+                 engine->modules()),
+      standard_(config.learner, engine, spec.VectorSize()),
       rewards_(config.learner.discount),
-      frames_(size_t(batch_size_) * frame_bytes_),
-      vectors_(size_t(batch_size_) * size_t(vector_size_)),
-      drawn_(size_t(batch_size_) * size_t(action_size_)),
-      log_prob_(size_t(batch_size_)),
-      value_(log_prob_),
-      advantage_(log_prob_),
-      target_(log_prob_) {
+      minibatch_(spec, config.learner.batch),
+      old_value_(engine->NewArray(1)),
+      advantage_(engine->NewArray(1)),
+      target_(engine->NewArray(1)),
+      mean_gradient_(engine->NewArray(spec.action_size)),
+      value_gradient_(engine->NewArray(1)),
+      rate_factor_(engine->NewNumber()),
+      clip_(engine->NewNumber()),
+      gradient_squares_(engine->NewNumber()),
+      deviation_(engine->NewNumber()),
+      entropy_(engine->NewNumber()),
+      numbers_{engine->NewNumber(), engine->NewNumber(), engine->NewNumber(),
+               engine->NewNumber(), engine->NewNumber(), engine->NewNumber()} {
   networks_.AddTo(&state_);
   state_.Add(&optimiser_, "ppo");
   state_.Add(&updates_, "agent.updates");
@@ -132,27 +133,16 @@ nn::TensorMap PpoAgent::PolicyTensors() const {
   return policy;
 }
 
-void PpoAgent::GatherInputs(std::span<const uint8_t> frames, std::span<const float> vectors,
-                            std::span<const int> rows) {
-  const auto width = size_t(vector_size_);
-  for (size_t b = 0; b < rows.size(); ++b) {
-    const auto row = size_t(rows[b]);
-    if (frame_bytes_ > 0) {
-      std::memcpy(frames_.data() + b * frame_bytes_, frames.data() + row * frame_bytes_,
-                  frame_bytes_);
-    }
-    std::copy_n(vectors.data() + row * width, width, vectors_.data() + b * width);
-  }
-}
-
 std::vector<float> PpoAgent::Values(std::span<const uint8_t> frames, std::span<const float> vectors,
                                     const std::vector<int>& rows, int count) {
   auto values = std::vector<float>(size_t(count));
   for (size_t at = 0; at < rows.size(); at += size_t(batch_size_)) {
     const auto some = std::span(rows).subspan(at, std::min(rows.size() - at, size_t(batch_size_)));
-    GatherInputs(frames, vectors, some);
-    networks_.ForwardValue(nn::HostArray(frames_), nn::HostArray(vectors_));
-    for (size_t b = 0; b < some.size(); ++b) values[size_t(some[b])] = networks_.value()[b];
+    minibatch_.TakeObservations(frames, vectors, some);
+    const Transitions batch = standard_.Seen(engine_->Take(minibatch_.View()));
+    networks_.ForwardValue(batch.obs_frames, batch.obs_vector);
+    const std::vector<float> read = engine_->ReadRows(networks_.value());
+    for (size_t b = 0; b < some.size(); ++b) values[size_t(some[b])] = read[b];
   }
   return values;
 }
@@ -191,59 +181,63 @@ PpoAgent::Prepared PpoAgent::Prepare(const BatchView& batch) {
   return prepared;
 }
 
-bool PpoAgent::Minibatch(const BatchView& batch, const Prepared& prepared,
-                         std::span<const int> rows, const OnStageEnd& on_stage_end, Sums* sums,
-                         bool* over) {
-  GatherInputs(batch.obs_frames, batch.obs_vector, rows);
-  const auto actions = size_t(action_size_);
-  for (size_t b = 0; b < rows.size(); ++b) {
-    const auto row = size_t(rows[b]);
-    std::copy_n(batch.drawn_action.data() + row * actions, actions, drawn_.data() + b * actions);
-    log_prob_[b] = batch.log_prob[row];
-    value_[b] = prepared.value[row];
-    advantage_[b] = prepared.advantage[row];
-    target_[b] = prepared.target[row];
-  }
-  networks_.Forward(nn::HostArray(frames_), nn::HostArray(vectors_));
-  const PpoLoss loss =
-      PpoLossAndGradients({.batch = batch_size_,
-                           .action_size = action_size_,
-                           .mean = networks_.mean(),
-                           .log_std = networks_.log_std(),
-                           .value = networks_.value(),
-                           .drawn_action = drawn_,
-                           .old_log_prob = log_prob_,
-                           .old_value = value_,
-                           .advantage = advantage_,
-                           .target = target_,
-                           .clip = clip_,
-                           .value_clip = config_.ppo.value_clip,
-                           .value_weight = config_.ppo.value_weight,
-                           .entropy_weight = config_.ppo.entropy_weight,
-                           .normalise_advantages = config_.ppo.normalise_advantages},
-                          {.mean = networks_.mean_gradient(),
-                           .log_std = networks_.log_std_gradient(),
-                           .value = networks_.value_gradient()});
+Transitions PpoAgent::TakeRows(const BatchView& batch, const Prepared& prepared,
+                               std::span<const int> rows) {
+  minibatch_.Take(batch, rows);
+  const auto put = [&](const std::vector<float>& values, Array array) {
+    std::vector<float> gathered;
+    gathered.reserve(rows.size());
+    for (const int row : rows) gathered.push_back(values[size_t(row)]);
+    engine_->Put(gathered, array);
+  };
+  put(prepared.value, old_value_);
+  put(prepared.advantage, advantage_);
+  put(prepared.target, target_);
+  engine_->Begin(minibatch_.View());
+  return standard_.Seen(engine_->Take(minibatch_.View()));
+}
+
+Engine::Outcome PpoAgent::LearnFrom(const Transitions& rows, const OnStageEnd& on_stage_end) {
+  engine_->SetRateFactor(rate_factor_, &optimiser_);
+  networks_.Forward(rows.obs_frames, rows.obs_vector);
+  engine_->ClippedPolicyLoss({.mean = networks_.mean(),
+                              .value = networks_.value(),
+                              .drawn_action = rows.drawn_action,
+                              .old_log_prob = rows.log_prob,
+                              .old_value = old_value_,
+                              .advantage = advantage_,
+                              .target = target_,
+                              .clip = clip_,
+                              .value_clip = config_.ppo.value_clip,
+                              .value_weight = config_.ppo.value_weight,
+                              .entropy_weight = config_.ppo.entropy_weight,
+                              .normalise_advantages = config_.ppo.normalise_advantages},
+                             networks_.log_std(), mean_gradient_, value_gradient_, numbers_);
   on_stage_end(UpdateStage::kForward);
-  ++sums->minibatches;
-  sums->policy += loss.policy;
-  sums->value += loss.value;
-  sums->approx_kl += loss.approx_kl;
-  sums->clip_fraction += loss.clip_fraction;
-  if (!std::isfinite(loss.total)) return false;
-  const double target_kl = config_.ppo.target_kl;
-  *over = target_kl > 0 && loss.approx_kl > kKlMargin * target_kl;
-  if (*over) return true;
-  networks_.Backward();
-  const double squares = optimiser_.GatherGradients();
+  networks_.Backward(mean_gradient_, value_gradient_);
+  engine_->Gather(&optimiser_, gradient_squares_);
+  engine_->RequireFinite(numbers_.total);
+  if (config_.ppo.target_kl > 0) {
+    engine_->HoldSteps(numbers_.approx_kl, kKlMargin * config_.ppo.target_kl);
+  }
+  engine_->RequireFinite(numbers_.rounded_total);
   on_stage_end(UpdateStage::kBackward);
-  if (!std::isfinite(float(loss.total)) || !FitsMoments(squares)) return false;
-  sums->grad_norm += std::sqrt(squares);
-  optimiser_.Step();
-  networks_.Refresh();
-  ++sums->steps;
+  engine_->Step(&optimiser_, networks_.Modules(), NextUse::kNextUpdate);
+  engine_->GaussianFigures(*networks_.log_std(), deviation_, entropy_);
+  const Engine::Outcome outcome = engine_->End();
   on_stage_end(UpdateStage::kOptimiser);
-  return true;
+  return outcome;
+}
+
+void PpoAgent::AddTo(Sums* sums, const Engine::Outcome& outcome) const {
+  ++sums->minibatches;
+  sums->policy += engine_->Read(numbers_.policy);
+  sums->value += engine_->Read(numbers_.value);
+  sums->approx_kl += engine_->Read(numbers_.approx_kl);
+  sums->clip_fraction += engine_->Read(numbers_.clip_fraction);
+  if (!outcome.finite || outcome.held) return;
+  sums->grad_norm += std::sqrt(engine_->Read(gradient_squares_));
+  ++sums->steps;
 }
 
 bool PpoAgent::Epochs(const BatchView& batch, const Prepared& prepared,
@@ -254,35 +248,32 @@ bool PpoAgent::Epochs(const BatchView& batch, const Prepared& prepared,
     const std::vector<int> rows = order_(prepared.rows, &random);
     const auto size = size_t(batch_size_);
     for (size_t at = 0; at + size <= rows.size() && !over; at += size) {
-      if (!Minibatch(batch, prepared, std::span(rows).subspan(at, size), on_stage_end, sums,
-                     &over)) {
-        return false;
-      }
+      const Transitions some = TakeRows(batch, prepared, std::span(rows).subspan(at, size));
+      const Engine::Outcome outcome = LearnFrom(some, on_stage_end);
+      AddTo(sums, outcome);
+      if (!outcome.finite) return false;
+      over = outcome.held;
     }
   }
   return true;
 }
 
 void PpoAgent::SetFigures(const BatchView& batch, const Prepared& prepared, const Sums& sums,
-                          UpdateFigures* figures) {
+                          UpdateFigures* figures) const {
   const double seen = std::max(1, sums.minibatches), steps = std::max(1, sums.steps);
-  double deviation = 0, entropy = 0, lag = 0;
-  for (const float log_std : networks_.log_std()) {
-    deviation += std::exp(double{log_std}) / action_size_;
-    entropy += double{log_std} + 1.4189385332046727;  // log(2 pi e) / 2
-  }
+  double lag = 0;
   for (const uint64_t update : batch.weights_update) {
     lag += double(updates_ - std::min(update, updates_)) / prepared.rows;
   }
   figures->Set(kActorLoss, sums.policy / seen);
   figures->Set(kValueLoss, sums.value / seen);
-  figures->Set(kEntropy, entropy);
+  figures->Set(kEntropy, engine_->Read(entropy_));
   figures->Set(kApproxKl, sums.approx_kl / seen);
   figures->Set(kClipFraction, sums.clip_fraction / seen);
   figures->Set(kGradNorm, sums.grad_norm / steps);
-  figures->Set(kDeviation, deviation);
-  figures->Set(kClipRange, clip_);
-  figures->Set(kLearningRate, optimiser_.rate());
+  figures->Set(kDeviation, engine_->Read(deviation_));
+  figures->Set(kClipRange, engine_->Read(clip_));
+  figures->Set(kLearningRate, config_.learner.learning_rate * engine_->Read(rate_factor_));
   figures->Set(kMinibatches, sums.steps);
   figures->Set(kRolloutSteps, prepared.rows);
   figures->Set(kRolloutLag, lag);
@@ -291,19 +282,18 @@ void PpoAgent::SetFigures(const BatchView& batch, const Prepared& prepared, cons
 
 UpdateOutcome PpoAgent::Update(const BatchView& batch, const OnStageEnd& on_stage_end) {
   CHECK(int(batch.reward.size()) >= batch_size_) << "rollout of " << batch.reward.size();
-  const nn::ThreadScope scope(context_.threads);
+  const nn::ThreadScope scope(engine_->modules().threads);
   UpdateOutcome outcome{.figures = {}, .finite = AllFinite(batch)};
   if (!outcome.finite) return outcome;
   // Minibatches before one that is not finite have changed it all.
   const nn::TensorMap former = AllTensors();
   const int rows = int(batch.reward.size());
-  clip_ = config_.ppo.clip.At(StepsWith(rows));
-  optimiser_.set_rate_factor(config_.learner.rate_factor.At(StepsWith(rows)));
-  const BatchView seen = standard_.Seen(batch);
-  const Prepared prepared = Prepare(seen);
+  engine_->Set(clip_, config_.ppo.clip.At(StepsWith(rows)));
+  engine_->Set(rate_factor_, config_.learner.rate_factor.At(StepsWith(rows)));
+  const Prepared prepared = Prepare(batch);
   on_stage_end(UpdateStage::kForward);
   Sums sums;
-  outcome.finite = Epochs(seen, prepared, on_stage_end, &sums);
+  outcome.finite = Epochs(batch, prepared, on_stage_end, &sums);
   SetFigures(batch, prepared, sums, &outcome.figures);
   if (!outcome.finite) {
     Restore(former, "former state");

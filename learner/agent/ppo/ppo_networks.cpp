@@ -2,9 +2,9 @@
 #include "learner/agent/ppo/ppo_networks.h"
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 
-#include "common/nn/host_memory.h"
 #include "learner/agent/encoder_and_head.h"
 
 namespace shoal::learner {
@@ -43,33 +43,27 @@ PpoNetworks::Network::Network(const Config& config, const ObservationSpec& spec,
   head.parameters().Initialise(seed);
 }
 
-void PpoNetworks::Network::Forward(nn::Frames frames, nn::Array vector, nn::Statistics statistics) {
+void PpoNetworks::Network::Forward(Frames frames, Array vector, nn::Statistics statistics) {
   if (encoder) encoder->Forward(frames, statistics);
   head.ForwardObservation(vector);
   head.ForwardAction({});  // it reads none
 }
 
-void PpoNetworks::Network::Backward(const std::vector<float>& gradient) {
-  const nn::Array gradients[] = {nn::HostArray(gradient)};
-  head.Backward(gradients);
+void PpoNetworks::Network::Backward(Array gradient) {
+  head.Backward(std::array{gradient});
   if (encoder) encoder->Backward();
 }
 
-PpoNetworks::PpoNetworks(const Config& config, const ObservationSpec& spec,
-                         const nn::ModuleContext& context)
-    : batch_(context.batch),
+PpoNetworks::PpoNetworks(const Config& config, const ObservationSpec& spec, Engine* engine)
+    : engine_(engine),
       action_size_(spec.action_size),
-      actor_(config, spec, context, "encoder", PlanActorHead(config, spec)),
+      actor_(config, spec, engine->modules(), "encoder", PlanActorHead(config, spec)),
       own_value_(Shared(config)
                      ? nullptr
                      : std::make_unique<Network>(
-                           config, spec, context, "value.encoder",
+                           config, spec, engine->modules(), "value.encoder",
                            nn::PlanObservationHead(config.network, spec, "value", 1, kValueGain))),
-      log_std_({{"actor.log_std", {spec.action_size}}}, Use::kTraining),
-      mean_(size_t(batch_) * size_t(action_size_)),
-      value_(size_t(batch_)),
-      mean_gradient_(mean_.size()),
-      value_gradient_(value_.size()) {
+      log_std_({{"actor.log_std", {spec.action_size}}}, Use::kTraining) {
   std::fill_n(log_std_.Find("actor.log_std").value(), action_size_,
               float(config.ppo.initial_log_std));
   if (Shared(config) && config.network.initialisation == "orthogonal") {
@@ -77,58 +71,40 @@ PpoNetworks::PpoNetworks(const Config& config, const ObservationSpec& spec,
     const int64_t policy_weights = action_size_ * weight.shape()[1];
     std::for_each_n(weight.value(), policy_weights, [](float& w) { w *= float(kPolicyGain); });
   }
-  Refresh();
+  for (nn::Module* module : Modules()) module->Refresh();
+  if (own_value_) return;
+  shared_mean_ = engine->NewArray(action_size_);
+  shared_value_ = engine->NewArray(1);
+  shared_gradient_ = engine->NewArray(action_size_ + 1);
 }
 
-std::span<const float> PpoNetworks::log_std() {
-  return {log_std_.Find("actor.log_std").value(), size_t(action_size_)};
-}
+Array PpoNetworks::mean() const { return own_value_ ? actor_.head.q(0) : shared_mean_; }
 
-std::span<float> PpoNetworks::log_std_gradient() {
-  return {log_std_.Find("actor.log_std").gradient(), size_t(action_size_)};
-}
+Array PpoNetworks::value() const { return own_value_ ? own_value_->head.q(0) : shared_value_; }
 
-void PpoNetworks::TakeValues(const Network& network, int outputs) {
-  const float* output = nn::HostValues(network.head.q(0)).data();
-  for (int b = 0; b < batch_; ++b) value_[size_t(b)] = output[int64_t{b} * outputs + outputs - 1];
-}
-
-void PpoNetworks::Forward(nn::Frames frames, nn::Array vector) {
+void PpoNetworks::Forward(Frames frames, Array vector) {
   actor_.Forward(frames, vector, nn::Statistics::kBatch);
-  const int outputs = action_size_ + (own_value_ ? 0 : 1);
-  const float* output = nn::HostValues(actor_.head.q(0)).data();
-  for (int b = 0; b < batch_; ++b) {
-    std::copy_n(output + int64_t{b} * outputs, action_size_,
-                mean_.data() + int64_t{b} * action_size_);
-  }
   if (own_value_) {
     own_value_->Forward(frames, vector, nn::Statistics::kBatch);
-    TakeValues(*own_value_, 1);
   } else {
-    TakeValues(actor_, outputs);
+    SplitShared();
   }
 }
 
-void PpoNetworks::ForwardValue(nn::Frames frames, nn::Array vector) {
-  Network& network = own_value_ ? *own_value_ : actor_;
-  network.Forward(frames, vector, nn::Statistics::kRunning);
-  TakeValues(network, own_value_ ? 1 : action_size_ + 1);
+void PpoNetworks::ForwardValue(Frames frames, Array vector) {
+  (own_value_ ? *own_value_ : actor_).Forward(frames, vector, nn::Statistics::kRunning);
+  if (!own_value_) SplitShared();
 }
 
-void PpoNetworks::Backward() {
+void PpoNetworks::Backward(Array mean_gradient, Array value_gradient) {
   if (own_value_) {
-    actor_.Backward(mean_gradient_);
-    own_value_->Backward(value_gradient_);
+    actor_.Backward(mean_gradient);
+    own_value_->Backward(value_gradient);
     return;
   }
-  std::vector<float> both;
-  both.reserve(mean_gradient_.size() + value_gradient_.size());
-  for (int b = 0; b < batch_; ++b) {
-    const float* mean = mean_gradient_.data() + int64_t{b} * action_size_;
-    both.insert(both.end(), mean, mean + action_size_);
-    both.push_back(value_gradient_[size_t(b)]);
-  }
-  actor_.Backward(both);
+  const ObservationSpec::Range all[] = {{0, 1}};
+  engine_->JoinColumns(mean_gradient, value_gradient, all, shared_gradient_);
+  actor_.Backward(shared_gradient_);
 }
 
 std::vector<nn::ParameterSet*> PpoNetworks::Sets() {
@@ -141,12 +117,14 @@ std::vector<nn::ParameterSet*> PpoNetworks::Sets() {
   return sets;
 }
 
-void PpoNetworks::Refresh() {
+std::vector<nn::Module*> PpoNetworks::Modules() {
+  std::vector<nn::Module*> modules;
   for (Network* network : {&actor_, own_value_.get()}) {
     if (network == nullptr) continue;
-    if (network->encoder) network->encoder->Refresh();
-    network->head.Refresh();
+    if (network->encoder) modules.push_back(network->encoder.get());
+    modules.push_back(&network->head);
   }
+  return modules;
 }
 
 void PpoNetworks::AddTo(AgentState* state) {

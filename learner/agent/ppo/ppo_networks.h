@@ -9,7 +9,7 @@
 #pragma once
 
 #include <memory>
-#include <span>
+#include <string>
 #include <vector>
 
 #include "common/config/config.h"
@@ -19,33 +19,31 @@
 #include "common/nn/safetensors.h"
 #include "common/spec/observation_spec.h"
 #include "learner/agent/agent_state.h"
+#include "learner/engine/engine.h"
 
 namespace shoal::learner {
 
-// One thread, under a ThreadScope of the context's threads.
+// One thread, under a ThreadScope of the engine's threads. Borrows the engine.
 class PpoNetworks {
  public:
   // Initialised from config.seed.
-  PpoNetworks(const Config& config, const ObservationSpec& spec, const nn::ModuleContext& context);
+  PpoNetworks(const Config& config, const ObservationSpec& spec, Engine* engine);
 
-  // frames (B, K*C, H, W), unread without pixels; vector (B, V), normalised.
-  void Forward(nn::Frames frames, nn::Array vector);
+  // Frames (B, K*C, H, W), unread without pixels; vector (B, V), normalised.
+  void Forward(Frames frames, Array vector);
   // The value alone; shared networks compute the policy, too.
-  void ForwardValue(nn::Frames frames, nn::Array vector);
-  std::span<const float> mean() const { return mean_; }    // (B, A) of the latest Forward
-  std::span<const float> value() const { return value_; }  // (B) of the latest of both
-  std::span<const float> log_std();                        // (A)
+  void ForwardValue(Frames frames, Array vector);
+  Array mean() const;                                // (B, A) of the latest Forward
+  Array value() const;                               // (B) of the latest of both
+  nn::ParameterSet* log_std() { return &log_std_; }  // (A)
 
-  // Destination of the loss's gradients: (B, A), (A), (B).
-  std::span<float> mean_gradient() { return mean_gradient_; }
-  std::span<float> log_std_gradient();
-  std::span<float> value_gradient() { return value_gradient_; }
-  // Gradients of all parameters from these, for the latest Forward.
-  void Backward();
+  // Gradients of all parameters but the log deviation from those of mean (B, A) and value (B), for
+  // the latest Forward.
+  void Backward(Array mean_gradient, Array value_gradient);
 
-  // Parameter sets that one optimiser steps; call Refresh after each step.
+  // Parameter sets that one optimiser steps, and the modules that a step changes.
   std::vector<nn::ParameterSet*> Sets();
-  void Refresh();
+  std::vector<nn::Module*> Modules();
   void AddTo(AgentState* state);
   // Encoder and actor as nn::Policy loads them.
   nn::TensorMap PolicyTensors() const;
@@ -55,21 +53,23 @@ class PpoNetworks {
   struct Network {
     Network(const Config& config, const ObservationSpec& spec, const nn::ModuleContext& context,
             const std::string& encoder_name, const nn::HeadPlan& plan);
-    void Forward(nn::Frames frames, nn::Array vector, nn::Statistics statistics);
-    void Backward(const std::vector<float>& gradient);
+    void Forward(Frames frames, Array vector, nn::Statistics statistics);
+    void Backward(Array gradient);
 
     std::unique_ptr<nn::EncoderModule> encoder;  // null without pixels
     nn::CriticModule head;                       // of the observation alone
   };
 
-  void TakeValues(const Network& network, int outputs);
+  // The columns of a shared network's outputs.
+  void SplitShared() { engine_->SplitColumns(actor_.head.q(0), shared_mean_, shared_value_); }
 
-  const int batch_, action_size_;
+  Engine* const engine_;
+  const int action_size_;
   Network actor_;
   std::unique_ptr<Network> own_value_;  // null: shared
   nn::ParameterSet log_std_;
-  std::vector<float> mean_, value_;                    // (B, A), (B)
-  std::vector<float> mean_gradient_, value_gradient_;  // (B, A), (B)
+  // Of a shared network alone: (B, A), (B), (B, A + 1).
+  Array shared_mean_, shared_value_, shared_gradient_;
 };
 
 }  // namespace shoal::learner

@@ -32,6 +32,7 @@
 #include "learner/agent/figure_sheet.h"
 #include "learner/agent/sac/sac_networks.h"
 #include "learner/agent/sample_figures.h"
+#include "learner/agent/step_sizes.h"
 #include "learner/agent/value_bounds.h"
 #include "learner/agent/vector_standard.h"
 
@@ -90,6 +91,7 @@ class SacAgent final : public Agent {
   const Array targets_;                                             // y (b)
   const std::array<Array, 2> q_gradients_;                          // (b)
   const Array action_gradient_, mean_gradient_, log_std_gradient_;  // (b, A)
+  const Number rate_factor_;                                        // of the optimisers
   const Number temperature_, next_temperature_;                     // before and after it
   const CriticNumbers critic_numbers_;
   const Number critic_squares_, actor_squares_;  // of gradients
@@ -103,7 +105,7 @@ SacAgent::SacAgent(const Config& config, const ObservationSpec& spec, Engine* en
       target_entropy_(TargetEntropy(config.sac, spec.action_size)),
       bounds_(ValueBoundsOf(config.learner)),
       networks_(config, spec, engine),
-      standard_(config.learner, spec.VectorSize(), PrivilegedSize(config, spec)),
+      standard_(config.learner, engine, spec.VectorSize(), PrivilegedSize(config, spec)),
       critic_vectors_(config, spec, engine),
       sample_{engine->NewArray(spec.action_size), engine->NewArray(spec.action_size),
               engine->NewArray(1)},
@@ -112,6 +114,7 @@ SacAgent::SacAgent(const Config& config, const ObservationSpec& spec, Engine* en
       action_gradient_(engine->NewArray(spec.action_size)),
       mean_gradient_(engine->NewArray(spec.action_size)),
       log_std_gradient_(engine->NewArray(spec.action_size)),
+      rate_factor_(engine->NewNumber()),
       temperature_(engine->NewNumber()),
       next_temperature_(engine->NewNumber()),
       critic_numbers_(NewCriticNumbers(/*critics=*/2, engine)),
@@ -194,11 +197,13 @@ void SacAgent::UpdateActor(const Seen& seen, Random* random, const OnStageEnd& o
 
 UpdateOutcome SacAgent::Update(const BatchView& drawn, const OnStageEnd& on_stage_end) {
   const nn::ThreadScope scope(engine_->modules().threads);
+  const double rate_factor = config_.learner.rate_factor.At(drawn.stored_steps);
+  engine_->Set(rate_factor_, rate_factor);
   engine_->Begin(drawn);
-  const Transitions batch = engine_->Take(standard_.Seen(drawn));
-  const Seen seen{engine_->Take(drawn), batch, critic_vectors_.Of(batch)};
+  const Transitions as_drawn = engine_->Take(drawn), batch = standard_.Seen(as_drawn);
+  const Seen seen{as_drawn, batch, critic_vectors_.Of(batch)};
   Random random(StreamKey(uint64_t(config_.seed), StreamRole::kLearnerUpdate, updates_));
-  networks_.SetRateFactor(config_.learner.rate_factor.At(drawn.stored_steps));
+  networks_.SetRateFactor(rate_factor_);
   networks_.ReadTemperature(temperature_);
   ComputeTargets(seen, &random);
   on_stage_end(UpdateStage::kForward);
@@ -208,12 +213,10 @@ UpdateOutcome SacAgent::Update(const BatchView& drawn, const OnStageEnd& on_stag
   networks_.MovePolicyAverage(float(config_.learner.average_rate));
   networks_.ReadTemperature(next_temperature_);
   figures_.Set(kTemperature, next_temperature_);
-  figures_.SetValue(kLearningRate, networks_.CriticRate());
+  figures_.SetValue(kLearningRate, CriticStep(config_.learner).rate * rate_factor);
+  standard_.Add(drawn);
   const Engine::Outcome outcome = engine_->End();
-  if (outcome.finite) {
-    standard_.Add(drawn);
-    ++updates_;
-  }
+  if (outcome.finite) ++updates_;
   on_stage_end(UpdateStage::kOptimiser);
   return {.figures = figures_.Take(*engine_, outcome), .finite = outcome.finite};
 }

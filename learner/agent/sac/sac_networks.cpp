@@ -156,9 +156,9 @@ void SacNetworks::BackwardActor(Array mean_gradient, Array log_std_gradient, Num
   engine_->Gather(&actor_optimiser_, squares);
 }
 
-void SacNetworks::SetRateFactor(double factor) {
+void SacNetworks::SetRateFactor(Number factor) {
   for (nn::Adam* optimiser : {&critic_optimiser_, &actor_optimiser_, &temperature_optimiser_}) {
-    optimiser->set_rate_factor(factor);
+    engine_->SetRateFactor(factor, optimiser);
   }
 }
 

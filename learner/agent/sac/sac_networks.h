@@ -87,8 +87,7 @@ class SacNetworks {
   void BackwardActor(Array mean_gradient, Array log_std_gradient, Number squares);
 
   // On the learning rates of all parts, for the steps from now on.
-  void SetRateFactor(double factor);
-  double CriticRate() const { return critic_optimiser_.rate(); }
+  void SetRateFactor(Number factor);
   // One optimiser step with the latest gradients, as Engine::Step. Features stay those of before.
   void StepCritic();
   void StepActor();

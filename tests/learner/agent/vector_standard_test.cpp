@@ -5,24 +5,12 @@
 
 #include "common/nn/actor_critic_plan.h"
 #include "common/nn/vector_scale.h"
+#include "learner/agent/running_moments.h"
+#include "learner/engine/cpu_engine.h"
 #include "tests/learner/agent/agent_fixture.h"
 
 namespace shoal::learner {
 namespace {
-
-TEST(RunningMoments, OfTwoBatchesAreThoseOfAllNumbers) {
-  RunningMoments moments(2);
-  moments.Add(std::vector<float>{1, 10, 2, 20});
-  moments.Add(std::vector<float>{6, 60});
-  EXPECT_EQ(moments.Mean(), (std::vector<float>{3, 30}));
-  EXPECT_NEAR(moments.Variance()[0], 14.0 / 3, 1e-6);
-  nn::TensorMap tensors;
-  moments.Export("m", &tensors);
-  RunningMoments other(2);
-  other.Import(tensors, "m", "test");
-  EXPECT_EQ(other.Variance(), moments.Variance());
-  EXPECT_EQ(other.count(), 3);
-}
 
 TEST(VectorStandard, AVarianceBelowTheFloorCountsAsTheFloor) {
   const ObservationSpec spec = SmallSpec();
@@ -42,12 +30,15 @@ TEST(VectorStandard, AVarianceBelowTheFloorCountsAsTheFloor) {
     LearnerConfig learner;
     learner.normalise_vectors = true;
     learner.variance_floor = floor;
-    VectorStandard standard(learner, 2);
+    nn::Replica alone;
+    CpuEngine engine(nn::Precision::kF32, 6, &alone);
+    VectorStandard standard(learner, &engine, 2);
     standard.Add(view);
     nn::TensorMap policy;
     standard.ExportTo(&policy);
-    const BatchView seen = standard.Seen(view);
-    return std::pair(Floats(policy, nn::kObservationVariance), seen.next_obs_vector[0]);
+    const Transitions seen = standard.Seen(engine.Take(view));
+    return std::pair(Floats(policy, nn::kObservationVariance),
+                     engine.ReadRows(seen.next_obs_vector)[0]);
   };
   const auto [variance, seen] = look(0);
   EXPECT_EQ(variance, moments.Variance());

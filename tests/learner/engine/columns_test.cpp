@@ -27,6 +27,13 @@ TEST(JoinColumns, RefusesAnArrayOfAnotherWidth) {
   EXPECT_DEATH(JoinColumns(2, kLeft, kRight, ranges, joined), "10 numbers in 2 rows");
 }
 
+TEST(SplitColumns, DividesEveryRow) {
+  std::vector<float> left(2, NAN), right(6, NAN);
+  SplitColumns(2, kRight, left, right);
+  EXPECT_THAT(left, ElementsAre(10, 20));
+  EXPECT_THAT(right, ElementsAre(11, 12, 13, 21, 22, 23));
+}
+
 TEST(GatherLabels, AreColumnsAndDifferencesInTheirUnit) {
   const LabelColumns columns[] = {{.number = {false, 2}, .minus = {}},
                                   {.number = {false, 1}, .minus = {{true, 1}}}};

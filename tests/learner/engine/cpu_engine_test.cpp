@@ -257,6 +257,7 @@ class FlagTest : public CpuEngineTest {
     std::ranges::fill(Of(set_.values()), 1.f);
     std::ranges::fill(Of(set_.gradients()), 2.f);
   }
+  using CpuEngineTest::Of;
   static std::span<float> Of(float* values) { return {values, 3}; }
   std::vector<float> Weights() { return {set_.values(), set_.values() + 3}; }
   void Step() {
@@ -325,9 +326,69 @@ TEST_F(FlagTest, IsUpAgainInTheNextUpdate) {
   EXPECT_NE(Weights(), before_);
 }
 
-TEST_F(FlagTest, NothingIsReadWithinAnUpdate) {
+TEST_F(FlagTest, HeldStepsMoveNothingAndTheFlagStaysUp) {
+  set_.gradients()[1] = 1e25f;  // unused, so that it does no harm
+  ParameterSet average({{"w", {3}}}, ParameterSet::Use::kInference);
+  engine_.Begin(data_.View());
+  engine_.HoldSteps(Holding(2), 1.5);
+  engine_.HoldSteps(Holding(1), 1.5);
+  engine_.RequireFinite(Holding(NAN));
+  Step();
+  engine_.MoveAverage(0.5f, set_, &average);
+  const Engine::Outcome outcome = engine_.End();
+  EXPECT_TRUE(outcome.finite);
+  EXPECT_TRUE(outcome.held);
+  EXPECT_EQ(Weights(), before_);
+  EXPECT_EQ(average.values()[0], 0);
+  std::ranges::fill(Of(set_.gradients()), 2.f);
+  engine_.Begin(data_.View());
+  engine_.HoldSteps(Holding(1.5), 1.5);
+  Step();
+  EXPECT_FALSE(engine_.End().held);
+  EXPECT_NE(Weights(), before_);
+}
+
+TEST_F(FlagTest, AStepHasTheRateThatItsNumberHoldsThen) {
+  const Number factor = engine_.NewNumber();
+  const auto moved = [&](double value) {
+    const float former = Weights()[0];
+    engine_.Set(factor, value);
+    engine_.Begin(data_.View());
+    engine_.SetRateFactor(factor, &adam_);
+    Step();
+    engine_.End();
+    return former - Weights()[0];
+  };
+  // Steps of Adam with equal gradients are of the rate's size.
+  EXPECT_NEAR(moved(1), 0.1, 1e-5);
+  EXPECT_NEAR(moved(0.5), 0.05, 1e-5);
+}
+
+TEST_F(FlagTest, MomentsTakeTheVectorsOfFiniteUpdatesAlone) {
+  const Moments moments = engine_.NewMoments(1);
+  const auto add = [&](double checked) {
+    engine_.Begin(data_.View());
+    engine_.RequireFinite(Holding(checked));
+    engine_.AddToMoments(std::vector<float>{1, 3}, moments);
+    engine_.End();
+    return engine_.ReadMoments(moments);
+  };
+  EXPECT_THAT(add(NAN), Each(0));
+  EXPECT_THAT(add(1), ElementsAre(2, 2, 2));
+  const Array x = Filled(1, 1), y = Poisoned(1);
+  engine_.Standardise(x, moments, /*variance_floor=*/4, y);
+  for (size_t b = 0; b < kBatch; ++b) EXPECT_NEAR(Of(y)[b], (Of(x)[b] - 2) / 2, kTolerance);
+  engine_.SetMoments(moments, std::vector<double>{5, 6, 7});
+  EXPECT_THAT(engine_.ReadMoments(moments), ElementsAre(5, 6, 7));
+}
+
+TEST_F(FlagTest, NothingIsReadOrSetWithinAnUpdate) {
+  const Array array = engine_.NewArray(1);
   engine_.Begin(data_.View());
   EXPECT_DEATH((void)engine_.Read(squares_), "depends on no number that is read");
+  EXPECT_DEATH((void)engine_.ReadRows(array), "depends on no array that is read");
+  EXPECT_DEATH(engine_.Set(squares_, 1), "updating_");
+  EXPECT_DEATH(engine_.Put(std::vector<float>(kBatch), array), "updating_");
   engine_.End();
 }
 
@@ -356,13 +417,15 @@ TEST(CpuEngineReplicas, NumbersAfterGatherAreOfTheWholeBatch) {
     const CriticNumbers numbers = NewCriticNumbers(/*critics=*/1, &engine);
     engine.Begin(data.View());
     const Transitions own = engine.Take(data.View());
-    const auto values = HostValues(own.reward);
-    rewards[size_t(rank)] = {values.begin(), values.end()};
     engine.Mean(own.reward, own_mean);
     const Array q[] = {own.reward}, gradients[] = {engine.NewArray(1)};
     engine.CriticLoss(q, own.bootstrap, gradients, numbers);
     engine.Gather(&adams[size_t(rank)], squares);
     engine.End();
+    const Array put = engine.NewArray(1);
+    engine.Put(data.View().reward, put);
+    rewards[size_t(rank)] = engine.ReadRows(put);
+    EXPECT_EQ(rewards[size_t(rank)], engine.ReadRows(own.reward));
     mean[size_t(rank)] = engine.Read(own_mean);
     loss[size_t(rank)] = engine.Read(numbers.loss);
   });

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <iterator>
 #include <string>
 #include <vector>
 
@@ -134,8 +135,102 @@ const Variant kVariants[] = {
      }},
 };
 
+// Rates follow a schedule from update to update, and steps are counted: both are in the engine's
+// memory, so no number that the host gives to an operation changes.
+TEST_P(RecordedUpdateTest, EachOneIsTheOneAPeriodBefore) {
+  config_.learner.rate_factor = Schedule{.start = 1, .end = 0.5, .env_steps = kLargeSteps};
+  agent_ = FindAlgorithm(config_.learner.algorithm).make(config_, Spec(), &recording_);
+  const auto period = size_t(config_.learner.actor_period);
+  std::vector<Recording> recordings;
+  std::vector<nn::TensorMap> states;
+  for (uint64_t update = 0; update < 6; ++update) {
+    recordings.push_back(Record(100 * update, [](BatchView) {}));
+    ASSERT_TRUE(recordings.back().finite);
+    states.push_back(agent_->AllTensors());
+  }
+  for (size_t update = period; update < recordings.size(); ++update) {
+    EXPECT_EQ(recordings[update].operations, recordings[update - period].operations) << update;
+    EXPECT_THAT(Differences(states[update], states[update - period], "critic."),
+                testing::Not(testing::IsEmpty()));
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Of, RecordedUpdateTest, testing::ValuesIn(kVariants),
                          [](const auto& test) { return test.param.name; });
+
+// On policy an update of a rollout is a sequence of updates of the engine: one for each minibatch.
+class RecordedMinibatchTest : public testing::TestWithParam<const char*> {
+ protected:
+  RecordedMinibatchTest() {
+    config_.learner.algorithm = "ppo";
+    config_.learner.normalise_vectors = true;
+    config_.learner.rate_factor = Schedule{.start = 1, .end = 0.5, .env_steps = 100};
+    config_.ppo.networks = GetParam();
+    config_.ppo.clip = Schedule{.start = 0.2, .end = 0.1, .env_steps = 100};
+    config_.ppo.target_kl = 1e-2;
+    config_.learner.learning_rate = 3e-3;
+    config_.ppo.epochs = 3;
+  }
+
+  // The operations from each Begin to its End.
+  struct Recording {
+    std::vector<std::vector<std::string>> minibatches;
+    bool finite = false;
+    double steps = 0;
+  };
+  Recording Record(Agent* agent, const BatchView& rollout) {
+    recording_.TakeOperations();
+    const UpdateOutcome outcome = agent->Update(rollout);
+    Recording result{.minibatches = {},
+                     .finite = outcome.finite,
+                     .steps = outcome.figures.Get(*FindFigure("minibatches")).value_or(-1)};
+    bool within = false;
+    for (const std::string& operation : recording_.TakeOperations()) {
+      if (operation.starts_with("Begin")) {
+        within = true;
+        result.minibatches.emplace_back();
+      }
+      if (within) result.minibatches.back().push_back(operation);
+      within = within && operation != "End";
+    }
+    return result;
+  }
+
+  Config config_ = SmallConfig();
+  nn::Replica alone_;
+  CpuEngine engine_{nn::Precision::kF32, config_.learner.batch, &alone_};
+  RecordingEngine recording_{&engine_};
+};
+
+TEST_P(RecordedMinibatchTest, ItsOperationsDoNotDependOnNumbers) {
+  const auto agent = FindAlgorithm("ppo").make(config_, SmallSpec(), &recording_);
+  const BatchOptions options{.batch = 12, .rollout = true};
+  std::vector<std::vector<std::string>> all;
+  bool held = false, stepped = false;
+  const auto record = [&](uint64_t key, float log_prob) {
+    const RandomBatch rollout(SmallSpec(), options, key);
+    const BatchView view = rollout.View();
+    for (size_t b = 0; b < view.rows(); ++b) {
+      const std::span<const float> u = view.drawn_action.subspan(2 * b, 2);
+      // As of an untrained policy, whose means are about 0 and deviations 1.
+      view.log_prob[b] = log_prob - 1.837877f - (u[0] * u[0] + u[1] * u[1]) / 2;
+    }
+    Recording recording = Record(agent.get(), rollout.View());
+    std::ranges::copy(recording.minibatches, std::back_inserter(all));
+    held = held || recording.steps < double(recording.minibatches.size());
+    stepped = stepped || recording.steps > 0;
+    return recording.finite;
+  };
+  for (uint64_t update = 0; update < 4; ++update) ASSERT_TRUE(record(update, 0));
+  ASSERT_TRUE(held && stepped) << "choose another target_kl";
+  ASSERT_FALSE(record(9, -3e38f)) << "a loss";
+  ASSERT_TRUE(record(10, 0));
+  ASSERT_GE(all.size(), 6u);
+  ASSERT_GT(all[0].size(), 8u);
+  EXPECT_THAT(all, testing::Each(all[0]));
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, RecordedMinibatchTest, testing::Values("separate", "shared"));
 
 }  // namespace
 }  // namespace shoal::learner

@@ -64,11 +64,26 @@ void RecordingEngine::JoinColumns(Array left, Array right,
   engine_->JoinColumns(left, right, ranges, joined);
 }
 
+void RecordingEngine::SplitColumns(Array joined, Array left, Array right) {
+  Keep("SplitColumns", joined, left, right);
+  engine_->SplitColumns(joined, left, right);
+}
+
 void RecordingEngine::GatherLabels(Array observed, Array privileged,
                                    std::span<const LabelColumns> columns, float unit,
                                    Array labels) {
   Keep("GatherLabels", observed, privileged, columns.size(), unit, labels);
   engine_->GatherLabels(observed, privileged, columns, unit, labels);
+}
+
+void RecordingEngine::Standardise(Array x, Moments moments, float variance_floor, Array y) {
+  Keep("Standardise", x, moments, variance_floor, y);
+  engine_->Standardise(x, moments, variance_floor, y);
+}
+
+void RecordingEngine::AddToMoments(std::span<const float> vectors, Moments moments) {
+  Keep("AddToMoments", vectors.size(), moments);
+  engine_->AddToMoments(vectors, moments);
 }
 
 void RecordingEngine::SampleSquashedGaussian(Array mean, Array log_std, Random* random,
@@ -134,6 +149,22 @@ void RecordingEngine::LabelLoss(Array y, Array labels, float weight, float unit,
   engine_->LabelLoss(y, labels, weight, unit, gradient, mean_square);
 }
 
+void RecordingEngine::ClippedPolicyLoss(const ClippedPolicyTerms& terms, nn::ParameterSet* log_std,
+                                        Array mean_gradient, Array value_gradient,
+                                        const ClippedPolicyNumbers& figures) {
+  Keep("ClippedPolicyLoss", terms.mean, terms.value, terms.drawn_action, terms.old_log_prob,
+       terms.old_value, terms.advantage, terms.target, terms.clip, terms.value_clip,
+       terms.value_weight, terms.entropy_weight, int(terms.normalise_advantages), log_std,
+       mean_gradient, value_gradient, figures.total);
+  engine_->ClippedPolicyLoss(terms, log_std, mean_gradient, value_gradient, figures);
+}
+
+void RecordingEngine::GaussianFigures(const nn::ParameterSet& log_std, Number deviation,
+                                      Number entropy) {
+  Keep("GaussianFigures", &log_std, deviation, entropy);
+  engine_->GaussianFigures(log_std, deviation, entropy);
+}
+
 void RecordingEngine::Mean(Array values, Number mean) {
   Keep("Mean", values, mean);
   engine_->Mean(values, mean);
@@ -167,9 +198,19 @@ void RecordingEngine::RequireFinite(Number number) {
   engine_->RequireFinite(number);
 }
 
+void RecordingEngine::SetRateFactor(Number factor, nn::Adam* optimiser) {
+  Keep("SetRateFactor", factor, optimiser);
+  engine_->SetRateFactor(factor, optimiser);
+}
+
 void RecordingEngine::Gather(nn::Adam* optimiser, Number gradient_squares) {
   Keep("Gather", optimiser, gradient_squares);
   engine_->Gather(optimiser, gradient_squares);
+}
+
+void RecordingEngine::HoldSteps(Number number, double limit) {
+  Keep("HoldSteps", number, limit);
+  engine_->HoldSteps(number, limit);
 }
 
 void RecordingEngine::Step(nn::Adam* optimiser, std::span<nn::Module* const> changed,

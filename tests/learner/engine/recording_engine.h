@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An engine that keeps the sequence of its operations, with their arrays and options, and has
-// another one compute them.
+// An engine that keeps the sequence of its operations, with their arrays and every number that the
+// host gives to them, and has another one compute them.
 #pragma once
 
 #include <string>
@@ -22,16 +22,29 @@ class RecordingEngine final : public Engine {
   const nn::ModuleContext& modules() const override { return engine_->modules(); }
   Array NewArray(int columns) override { return engine_->NewArray(columns); }
   Number NewNumber() override { return engine_->NewNumber(); }
+  Moments NewMoments(int width) override { return engine_->NewMoments(width); }
+  void Set(Number number, double value) override { engine_->Set(number, value); }
+  void Put(std::span<const float> values, Array array) override { engine_->Put(values, array); }
 
   void Begin(const BatchView& drawn) override;
   Transitions Take(const BatchView& batch) override;
   Outcome End() override;
   double Read(Number number) const override { return engine_->Read(number); }
+  std::vector<float> ReadRows(Array array) const override { return engine_->ReadRows(array); }
+  std::vector<double> ReadMoments(Moments moments) const override {
+    return engine_->ReadMoments(moments);
+  }
+  void SetMoments(Moments moments, std::span<const double> values) override {
+    engine_->SetMoments(moments, values);
+  }
 
   void JoinColumns(Array left, Array right, std::span<const ObservationSpec::Range> ranges,
                    Array joined) override;
+  void SplitColumns(Array joined, Array left, Array right) override;
   void GatherLabels(Array observed, Array privileged, std::span<const LabelColumns> columns,
                     float unit, Array labels) override;
+  void Standardise(Array x, Moments moments, float variance_floor, Array y) override;
+  void AddToMoments(std::span<const float> vectors, Moments moments) override;
   void SampleSquashedGaussian(Array mean, Array log_std, Random* random,
                               const SquashedSample& sample) override;
   void SquashedGaussianBackward(const SquashedSample& sample, Array action_gradient,
@@ -51,6 +64,10 @@ class RecordingEngine final : public Engine {
                               Array q_gradient, Number loss, Number saturation) override;
   void LabelLoss(Array y, Array labels, float weight, float unit, Array gradient,
                  Number mean_square) override;
+  void ClippedPolicyLoss(const ClippedPolicyTerms& terms, nn::ParameterSet* log_std,
+                         Array mean_gradient, Array value_gradient,
+                         const ClippedPolicyNumbers& figures) override;
+  void GaussianFigures(const nn::ParameterSet& log_std, Number deviation, Number entropy) override;
   void Mean(Array values, Number mean) override;
   void OnHost(std::span<const Array> inputs, std::span<const Array> outputs,
               const HostOperation& operation) override;
@@ -60,7 +77,9 @@ class RecordingEngine final : public Engine {
   void StepTemperature(Number loss, double least, nn::ParameterSet* log_temperature,
                        nn::Adam* optimiser) override;
   void RequireFinite(Number number) override;
+  void SetRateFactor(Number factor, nn::Adam* optimiser) override;
   void Gather(nn::Adam* optimiser, Number gradient_squares) override;
+  void HoldSteps(Number number, double limit) override;
   void Step(nn::Adam* optimiser, std::span<nn::Module* const> changed, NextUse next_use) override;
   void MoveTowards(float tau, std::span<const nn::Following> targets) override;
   void MoveAverage(float rate, const nn::ParameterSet& online, nn::ParameterSet* average) override;

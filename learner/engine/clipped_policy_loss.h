@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The loss of a minibatch and its gradients with respect to the networks' outputs.
+// The clipped loss of a minibatch of policy and values, and its gradients with respect to the
+// networks' outputs: an operation of the CPU's engine. Equations are those of docs/algorithm.md.
 //
 //   log pi(u|s) = sum_j -((u_j - mean_j) / sigma_j)^2 / 2 - log sigma_j - log(2 pi) / 2     Eq. 22
 //   rho = exp(log pi - log pi_old)
@@ -17,7 +18,7 @@
 
 namespace shoal::learner {
 
-struct PpoLossInputs {
+struct ClippedPolicyInputs {
   int batch = 0, action_size = 0;       // B, A
   std::span<const float> mean;          // (B, A)
   std::span<const float> log_std;       // (A)
@@ -32,7 +33,7 @@ struct PpoLossInputs {
   bool normalise_advantages = true;
 };
 
-struct PpoLoss {
+struct ClippedPolicyLoss {
   double policy = 0, value = 0, entropy = 0;  // without their weights
   double approx_kl = 0;                       // mean of rho - 1 - log rho
   double clip_fraction = 0;                   // share of |rho - 1| > clip
@@ -40,10 +41,17 @@ struct PpoLoss {
 };
 
 // Gradients (B, A), (A), (B); overwritten.
-struct PpoGradients {
+struct ClippedPolicyGradients {
   std::span<float> mean, log_std, value;
 };
 
-PpoLoss PpoLossAndGradients(const PpoLossInputs& inputs, const PpoGradients& gradients);
+ClippedPolicyLoss ClippedPolicyLossAndGradients(const ClippedPolicyInputs& inputs,
+                                                const ClippedPolicyGradients& gradients);
+
+// A Gaussian with these log deviations (A): the mean of its deviations, and its entropy.
+struct GaussianSpread {
+  double deviation = 0, entropy = 0;
+};
+GaussianSpread SpreadOf(std::span<const float> log_std);
 
 }  // namespace shoal::learner

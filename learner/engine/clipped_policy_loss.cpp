@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "learner/agent/ppo/ppo_loss.h"
+#include "learner/engine/clipped_policy_loss.h"
 
 #include <algorithm>
 #include <cmath>
@@ -14,7 +14,7 @@ constexpr double kHalfLogTwoPi = 0.91893853320467274;
 constexpr double kEpsilon = 1e-8;
 
 // A of the minibatch, normalised by its sample deviation.
-std::vector<double> AdvantagesOf(const PpoLossInputs& in) {
+std::vector<double> AdvantagesOf(const ClippedPolicyInputs& in) {
   std::vector<double> advantages(in.advantage.begin(), in.advantage.end());
   if (!in.normalise_advantages || in.batch < 2) return advantages;
   double mean = 0, squares = 0;
@@ -25,7 +25,7 @@ std::vector<double> AdvantagesOf(const PpoLossInputs& in) {
   return advantages;
 }
 
-double LogProb(const PpoLossInputs& in, size_t b) {
+double LogProb(const ClippedPolicyInputs& in, size_t b) {
   double sum = 0;
   for (size_t j = 0; j < size_t(in.action_size); ++j) {
     const size_t at = b * size_t(in.action_size) + j;
@@ -38,8 +38,8 @@ double LogProb(const PpoLossInputs& in, size_t b) {
 
 // From dL/dlog pi of one element: z = (u - mean) / sigma,
 //   dlog pi/dmean = z / sigma,   dlog pi/dlog sigma = z^2 - 1
-void AddLogProbGradient(const PpoLossInputs& in, size_t b, double gradient, const PpoGradients& out,
-                        std::vector<double>* log_std) {
+void AddLogProbGradient(const ClippedPolicyInputs& in, size_t b, double gradient,
+                        const ClippedPolicyGradients& out, std::vector<double>* log_std) {
   for (size_t j = 0; j < size_t(in.action_size); ++j) {
     const size_t at = b * size_t(in.action_size) + j;
     const double inverse = std::exp(-double{in.log_std[j]});
@@ -50,7 +50,7 @@ void AddLogProbGradient(const PpoLossInputs& in, size_t b, double gradient, cons
 }
 
 // The squared error of one value and its gradient.
-double ValueError(const PpoLossInputs& in, size_t b, float* gradient) {
+double ValueError(const ClippedPolicyInputs& in, size_t b, float* gradient) {
   const double old = in.old_value[b], moved = double{in.value[b]} - old;
   const bool clipped = in.value_clip > 0 && std::abs(moved) > in.value_clip;
   const double value =
@@ -62,11 +62,12 @@ double ValueError(const PpoLossInputs& in, size_t b, float* gradient) {
 
 }  // namespace
 
-PpoLoss PpoLossAndGradients(const PpoLossInputs& in, const PpoGradients& out) {
+ClippedPolicyLoss ClippedPolicyLossAndGradients(const ClippedPolicyInputs& in,
+                                                const ClippedPolicyGradients& out) {
   CHECK(in.value.size() == size_t(in.batch) && in.log_std.size() == size_t(in.action_size));
   const std::vector<double> advantages = AdvantagesOf(in);
   std::vector<double> log_std_gradient(in.log_std.size(), -in.entropy_weight);
-  PpoLoss loss;
+  ClippedPolicyLoss loss;
   for (size_t b = 0; b < size_t(in.batch); ++b) {
     const double log_ratio = LogProb(in, b) - double{in.old_log_prob[b]};
     const double ratio = std::exp(log_ratio), advantage = advantages[b];
@@ -83,6 +84,15 @@ PpoLoss PpoLossAndGradients(const PpoLossInputs& in, const PpoGradients& out) {
   std::ranges::transform(log_std_gradient, out.log_std.begin(), [](double g) { return float(g); });
   loss.total = loss.policy + in.value_weight * loss.value - in.entropy_weight * loss.entropy;
   return loss;
+}
+
+GaussianSpread SpreadOf(std::span<const float> log_std) {
+  GaussianSpread spread;
+  for (const float value : log_std) {
+    spread.deviation += std::exp(double{value}) / double(log_std.size());
+    spread.entropy += double{value} + 1.4189385332046727;  // log(2 pi e) / 2
+  }
+  return spread;
 }
 
 }  // namespace shoal::learner

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+// Rows of a rollout, put side by side as a batch of the networks' size. They are gathered on the
+// host: a minibatch is an input of the engine, as a batch of the replay server is.
+//
+// Dimensions: N rows of the rollout, B of the minibatch.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "common/spec/observation_spec.h"
+#include "common/wire/batch_schema.h"
+
+namespace shoal::learner {
+
+class Minibatch {
+ public:
+  Minibatch(const ObservationSpec& spec, int batch);
+
+  // Copies the observations of these rows, at most B; the rest of the minibatch stays as it is.
+  // frames (N, K*C, H, W), vectors (N, V).
+  void TakeObservations(std::span<const uint8_t> frames, std::span<const float> vectors,
+                        std::span<const int> rows);
+  // Copies B rows of the rollout: observations, rewards, drawn actions, log-probabilities.
+  void Take(const BatchView& rollout, std::span<const int> rows);
+
+  // Valid until the next change. Arrays that are not taken are empty.
+  BatchView View();
+
+ private:
+  const size_t batch_, frame_bytes_, vector_size_, action_size_;
+  std::vector<uint8_t> frames_;           // (B, K*C, H, W)
+  std::vector<float> vectors_, drawn_;    // (B, V), (B, A)
+  std::vector<float> reward_, log_prob_;  // (B)
+};
+
+}  // namespace shoal::learner

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+// Operands of an engine's operations (engine.h): handles of arrays that belong together.
+// Dimensions: b rows of this replica, A actions.
+#pragma once
+
+#include <span>
+
+#include "common/nn/array.h"
+#include "learner/engine/losses.h"
+
+namespace shoal::learner {
+
+using nn::Array;
+using nn::Frames;
+using nn::Number;
+using Moments = nn::ArrayOf<double>;  // moments.h
+
+// The rows of this replica in a batch, valid as long as the batch; none where the batch has none.
+struct Transitions {
+  Frames obs_frames, next_obs_frames;
+  Array obs_vector, next_obs_vector, obs_privileged, next_obs_privileged;
+  Array action, reward, bootstrap;
+  Array drawn_action, log_prob;  // of a rollout
+};
+
+// Actions of a Gaussian squashed by tanh, and what their gradients need.
+struct SquashedSample {
+  Array scaled_noise, action;  // (b, A): sigma eps, a
+  Array log_prob;              // (b): log pi(a | o)
+};
+
+// Inputs of the targets of a batch: (b) each.
+struct TargetTerms {
+  Array reward, bootstrap;        // bootstrap: discount^(n-1) (1 - terminated)
+  std::span<const Array> next_q;  // of one or more target critics at (o', a')
+  Array next_log_prob;            // log pi(a' | o'); none: no entropy term
+  Number temperature;             // of that term
+  float reward_scale = 1, discount = 1;
+  ValueBounds bounds;
+};
+
+// Figures of a critic's loss over the whole batch. Of one Q function there is no q2.
+struct CriticNumbers {
+  Number loss, q_mean, target_mean;
+  Number q1_mean, q1_std, q2_mean, q2_std;
+  Number q_min_mean, q_min_std, q_min_min, q_min_max;
+};
+
+// Inputs of the clipped loss of a policy whose log deviation is a parameter, and of its values:
+// (b), of actions (b, A).
+struct ClippedPolicyTerms {
+  Array mean, value;                   // of the networks
+  Array drawn_action, old_log_prob;    // of the policy that acted
+  Array old_value, advantage, target;  // of before the update
+  Number clip;                         // of the ratio
+  double value_clip = 0;               // 0: none
+  double value_weight = 0.5, entropy_weight = 0;
+  bool normalise_advantages = true;
+};
+
+// Figures of that loss over the whole batch: without their weights, and their weighted sum.
+struct ClippedPolicyNumbers {
+  Number policy, value, total;
+  Number rounded_total;  // to f32, in which steps are made
+  Number approx_kl, clip_fraction;
+};
+
+}  // namespace shoal::learner
