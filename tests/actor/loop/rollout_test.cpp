@@ -360,9 +360,9 @@ TEST_F(RolloutTest, TimeOfAUsersCodeIsNoTimeOfShoals) {
   EXPECT_EQ(own.conversion, 0);
 
   std::vector<std::unique_ptr<worlds::Environment>> environments;
-  for (const double seconds : {0.25e-9, 0.5e-9}) {
+  for (const double share : {0.25e-9, 0.5e-9}) {
     auto environment = std::make_unique<CountingEnvironment>();
-    environment->users_share = seconds;
+    environment->users_share = share;
     environments.push_back(std::move(environment));
   }
   Rollout hosted(Rollout::Options::Of(parts_->config, kFirstEnv), parts_->spec,
