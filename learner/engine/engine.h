@@ -146,8 +146,8 @@ class Engine {
   virtual void ClippedPolicyLoss(const ClippedPolicyTerms& terms, nn::ParameterSet* log_std,
                                  Array mean_gradient, Array value_gradient,
                                  const ClippedPolicyNumbers& figures) = 0;
-  // Of a Gaussian whose log deviations are the parameters `log_std` (A): the mean of its
-  // deviations, and its entropy.
+  // The mean deviation and the entropy of a Gaussian whose log deviations are the parameters
+  // `log_std` (A).
   virtual void GaussianFigures(const nn::ParameterSet& log_std, Number deviation,
                                Number entropy) = 0;
   // The mean over the whole batch, after the next Gather. values (b).

@@ -80,10 +80,7 @@ TEST(InProcess, AnActorThatFailsIsRestartedAndSaysWhy) {
   scale.command = {ProgramPath("shoal"), "scale", "--run", run.path().string(), "2"};
   scale.output = run.parent() / "scale.log";
   const launch::ChildProcess again(scale);
-  const SteadyTime deadline = Now() + seconds(30);
-  while (training.Output().find("actor-1: exit code") == std::string::npos && Now() < deadline) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(50));
-  }
+  ASSERT_TRUE(training.WaitForOutput("actor-1: exit code")) << training.Output();
   ASSERT_TRUE(training.WaitForMoreSteps(200)) << training.Output();
   training.Interrupt();
   ASSERT_EQ(training.End(seconds(60)), kInterruptedExit) << training.Output();

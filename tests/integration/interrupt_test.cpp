@@ -177,12 +177,7 @@ TEST(Interrupt, TheProgramsOfARunDieByTheSignalThatEndsThem) {
   for (const char* role : {"actor", "eval"}) {
     const auto pid = ProcessOf(view, role).at("pid").get<pid_t>();
     ASSERT_EQ(kill(pid, SIGTERM), 0);
-    EXPECT_TRUE(WaitUntilTrue(
-        [&] {
-          return training.Output().find(fmt::format("{}-0: killed by SIGTERM", role)) !=
-                 std::string::npos;
-        },
-        seconds(30)))
+    EXPECT_TRUE(training.WaitForOutput(fmt::format("{}-0: killed by SIGTERM", role)))
         << training.Output();
   }
   training.Interrupt();

@@ -59,6 +59,16 @@ class RunningTraining {
   }
 
   std::string Output() const { return ReadFile(OutputFile(run_)); }
+  // Waits until the run has printed the text. False when it did not in time.
+  bool WaitForOutput(const std::string& text,
+                     std::chrono::seconds deadline = std::chrono::seconds(60)) const {
+    const SteadyTime end = Now() + deadline;
+    while (Output().find(text) == std::string::npos) {
+      if (Now() >= end) return false;
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+    return true;
+  }
 
  private:
   static ReportReader ReportsFromNowOn(const TrainingRun& run) {

@@ -68,7 +68,7 @@ class PpoNetworks {
   Network actor_;
   std::unique_ptr<Network> own_value_;  // null: shared
   nn::ParameterSet log_std_;
-  // Of a shared network alone: (B, A), (B), (B, A + 1).
+  // Only a shared network has these: (B, A), (B), (B, A + 1).
   Array shared_mean_, shared_value_, shared_gradient_;
 };
 

@@ -212,7 +212,7 @@ TEST_P(RecordedMinibatchTest, ItsOperationsDoNotDependOnNumbers) {
     const BatchView view = rollout.View();
     for (size_t b = 0; b < view.rows(); ++b) {
       const std::span<const float> u = view.drawn_action.subspan(2 * b, 2);
-      // As of an untrained policy, whose means are about 0 and deviations 1.
+      // An untrained policy has means of about 0 and deviations of 1.
       view.log_prob[b] = log_prob - 1.837877f - (u[0] * u[0] + u[1] * u[1]) / 2;
     }
     Recording recording = Record(agent.get(), rollout.View());
