@@ -124,8 +124,8 @@ TEST(SimulatedRun, SeedsThatFoundAFaultOfTheProductKeepWhatIsPromised) {
 TEST(SimulatedRun, FixedSeedsKeepWhatIsPromised) {
   uint64_t seed = 0;
   RunInChildren(
-      TheBlueprints(), UsableCores(), /*with_story=*/false, [&] { return seed < 800 ? ++seed : 0; },
-      FaultsOf,
+      TheBlueprints(), UsableCores(), /*with_story=*/false,
+      [&] { return seed < 2000 ? ++seed : 0; }, FaultsOf,
       [](const ChildRun& run) {
         EXPECT_TRUE(run.good) << run.text << run.summary << "\n  shoal-simulate --seed " << run.seed
                               << " --trace";
