@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The source of a learner's batches, over the link: drawn by a replay, or rollouts of the actors
-// themselves.
+// The source of a learner's batches over the link: batches drawn by a replay, or rollouts sent by
+// the actors.
 #pragma once
 
 #include <cstdint>
@@ -21,8 +21,8 @@ class BatchFeed {
   virtual void DrainAfterCoordinatorLoss() {}
 };
 
-// The feed that the run's algorithm needs: of a replay, or of rollouts. `updates`: done before.
-// Borrows the hub. Throws Error.
+// Makes the feed that the run's algorithm needs, of a replay or of rollouts. `updates`: number of
+// updates done before. Borrows the hub. Throws Error.
 std::unique_ptr<BatchFeed> MakeFeed(const std::filesystem::path& folder, const RunConfig& run,
                                     uint64_t learner_session, uint64_t updates, link::Hub& hub);
 

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Batches pulled from the replay: keeps learner.request_credits requests outstanding and sends one
-// again when nothing of its answer has arrived for a while (the replay has restarted, or its
-// limiter holds it back: sending it again is harmless). Knows nothing of DDS: requests go out
-// through `send`, parts come in through OnPart, words of batches in shared memory through OnSlot.
+// Batches pulled from the replay: keeps learner.request_credits requests outstanding. A request is
+// sent again if no part of its answer has arrived for a while: the replay has restarted, or its
+// limiter withholds the batch, in which case a repeat is harmless. Independent of DDS: `send` sends
+// requests, OnPart receives parts, and OnSlot receives messages about batches in shared memory.
 //
-// A batch in shared memory is read where it lies; the requests after it say that it is read no
-// more. Memory that cannot be used is logged and refused in every further request: the replay then
-// sends parts.
+// A batch in shared memory is read without a copy; later requests release its slot. Memory that
+// cannot be used is logged and refused in every further request; the replay then sends parts.
 //
-// Threads: OnPart and OnSlot from receive threads; everything else from one other. `send` is called
-// without a lock held. Memory: request_credits + 1 batches, touched when parts come.
+// Threads: receive threads call OnPart and OnSlot; one other thread calls the rest. `send` is
+// called without a lock held. Memory: request_credits + 1 batches, whose pages are used only if
+// parts arrive.
 #pragma once
 
 #include <chrono>
@@ -28,11 +28,11 @@ namespace shoal::learner {
 
 class BatchSource final : public BatchStream {
  public:
-  // Sends a request; false: not sent, to be tried again.
+  // Sends a request. Returns false if it was not sent; BatchSource tries again.
   using Send = std::function<bool(const SampleRequest&)>;
 
-  // `first_request` is the number of the next update, so that a learner that resumed asks for what
-  // comes next. In lockstep requests wait for their phase and end with the run's last update.
+  // `first_request` is the number of the next update, so that a resumed learner continues with the
+  // right request. In lockstep, requests wait for their phase and end with the run's last update.
   BatchSource(const RunConfig& run, uint64_t learner_session, uint64_t first_request, Send send,
               std::chrono::milliseconds resend_after = kResendAfter);
 
@@ -48,25 +48,25 @@ class BatchSource final : public BatchStream {
   struct Outstanding {
     uint64_t request = 0;
     bool sent = false;       // at least once
-    SteadyTime next_send{};  // when it is due to be sent (again); max() once its batch is whole
+    SteadyTime next_send{};  // time of the next sending; max() once its batch is complete
   };
 
   SampleRequest MakeRequest(uint64_t request) const SHOAL_REQUIRES(mutex_);
   Outstanding* Find(uint64_t request) SHOAL_REQUIRES(mutex_);
   bool Whole(uint64_t request) SHOAL_REQUIRES(mutex_);
-  // Expects further requests while credits and buffers last, and sends what is due.
+  // Adds requests while credits and buffers are available, and sends the requests that are due.
   void SendDue() SHOAL_EXCLUDES(mutex_);
   void Extend() SHOAL_REQUIRES(mutex_);
   std::vector<SampleRequest> TakeDue() SHOAL_REQUIRES(mutex_);
   void TryAgain(const std::vector<uint64_t>& unsent) SHOAL_REQUIRES(mutex_);
   std::optional<Batch> TakeFirst() SHOAL_REQUIRES(mutex_);
   std::optional<Batch> FindBatch(uint64_t request) SHOAL_REQUIRES(mutex_);
-  // Nothing when its memory cannot be used: it is asked for again.
+  // Returns nothing if the memory cannot be used; the batch is then requested again.
   std::optional<Batch> OpenSlot(uint64_t request) SHOAL_REQUIRES(mutex_);
   void SayWay(bool shared) SHOAL_REQUIRES(mutex_);
   void SayRefusal(const char* why) SHOAL_REQUIRES(mutex_);
   void ReleaseHandedOut() SHOAL_REQUIRES(mutex_);
-  // When the next request is due to be sent again.
+  // Time at which the next request is due to be sent again.
   SteadyTime NextDue() const SHOAL_REQUIRES(mutex_);
   void RefuseOtherSpec() const SHOAL_REQUIRES(mutex_);
 
@@ -87,7 +87,7 @@ class BatchSource final : public BatchStream {
   // Request whose batch the caller holds; 0 = none.
   uint64_t handed_out_ SHOAL_GUARDED_BY(mutex_) = 0;
   uint64_t released_ SHOAL_GUARDED_BY(mutex_) = 0;         // highest request handed out before
-  std::optional<bool> shared_ SHOAL_GUARDED_BY(mutex_);    // how batches come, as was said last
+  std::optional<bool> shared_ SHOAL_GUARDED_BY(mutex_);    // batches are in shared memory; logged
   uint64_t other_spec_hash_ SHOAL_GUARDED_BY(mutex_) = 0;  // of a refused part; 0 = none
   std::optional<SteadyTime> refusal_said_ SHOAL_GUARDED_BY(mutex_);
   BatchCounters counters_ SHOAL_GUARDED_BY(mutex_);

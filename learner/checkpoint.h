@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A checkpoint as the learner sees it: its files (common/checkpoint) with the tensors in them.
+// A checkpoint for the learner: its files (common/checkpoint) and the tensors in the files.
 #pragma once
 
 #include <cstdint>
@@ -17,11 +17,11 @@ namespace shoal::learner {
 struct Checkpoint {
   CheckpointState state;
   nn::TensorMap tensors;    // of learner.safetensors
-  std::string description;  // policy.json; empty: it has none
+  std::string description;  // policy.json; empty if there is none
   std::filesystem::path folder;
 };
 
-// See WriteCheckpointFiles. `described`: the policy's description, for policy.json.
+// See WriteCheckpointFiles. `described`: the policy's description, written to policy.json.
 void WriteCheckpoint(const std::filesystem::path& parent, const CheckpointState& state,
                      const nn::TensorMap& learner, const nn::TensorMap& policy,
                      const RunConfig& described, const nlohmann::ordered_json& meta);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The checkpoints of a run: RUN/checkpoints. Keeps the newest three and those whose evaluation is
-// pending. Never removes `best`, which belongs to the coordinator, nor a file of another name.
+// The checkpoints of a run: RUN/checkpoints. Keeps the newest three checkpoints and those whose
+// evaluation is pending. Never removes `best`, which belongs to the coordinator, or files with
+// other names.
 //
 // One thread, one learner per run.
 #pragma once
@@ -21,24 +22,24 @@ namespace shoal::learner {
 
 class CheckpointStore {
  public:
-  // Makes the folder and removes what a killed learner left half-written. Throws Error.
+  // Makes the folder and removes incomplete files of a killed learner. Throws Error.
   CheckpointStore(const std::filesystem::path& run_folder, const RunConfig& run);
 
   // Hash of the configuration with every default; the state's config_hash.
   uint64_t config_hash() const { return config_hash_; }
 
-  // The newest checkpoint that is whole; none in a new run. Newer broken ones are set aside as
-  // refused_NAME with a warning that says why. Throws Error, naming the newest one's fault, when
-  // there are checkpoints but none can be used.
+  // Returns the newest valid checkpoint; none in a new run. Newer broken checkpoints are renamed to
+  // refused_NAME, with a warning that gives the reason. If there are checkpoints but none is valid,
+  // throws Error that names the fault of the newest.
   std::optional<Checkpoint> RestoreNewest();
 
-  // Writes a checkpoint, returns its name, and removes those not kept any more, except the names in
-  // `wanted`. A checkpoint that cannot be written is reported, kept in memory and written by a
-  // later call of Write or Retry; until then no earlier checkpoint is removed. At most the newest
-  // kMostUnwritten stay in memory.
+  // Writes a checkpoint, returns its name, and removes old checkpoints, except those in `wanted`. A
+  // checkpoint that cannot be written is reported, kept in memory and written by a later call of
+  // Write or Retry; until then no earlier checkpoint is removed. At most the newest kMostUnwritten
+  // stay in memory.
   std::string Write(const CheckpointState& state, nn::TensorMap learner, nn::TensorMap policy,
                     const std::set<std::string>& wanted);
-  // Tries to write them again; at most every kRetryPeriod, unless `now`.
+  // Tries again to write the checkpoints in memory; at most every kRetryPeriod, unless `now`.
   void Retry(const std::set<std::string>& wanted, bool now = false);
   size_t unwritten() const { return unwritten_.size(); }
   // Updates of the newest checkpoint that is not written yet; empty if all are written.

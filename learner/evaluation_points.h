@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Says when the run has reached an evaluation point, a multiple of eval.interval env steps, and
-// hands the evaluation actor the F32 parameters of the checkpoint made there.
+// Detects evaluation points, which are multiples of eval.interval env steps, and sends the F32
+// parameters of the checkpoint made there to the evaluation actor.
 #pragma once
 
 #include <cstdint>
@@ -17,24 +17,25 @@ namespace shoal::learner {
 // Borrows agent and sink. One thread.
 class EvaluationPoints {
  public:
-  // `env_steps`: stored when a former learner of the run stopped; points up to there are behind.
+  // `env_steps`: env steps stored when the previous learner of the run stopped; points up to this
+  // number are already done.
   EvaluationPoints(const RunConfig& run, uint64_t session, uint64_t env_steps, const Agent& agent,
                    LearnerSink& sink);
 
-  // True once per multiple of the interval that `env_steps` has come to or passed since the last
-  // call; several passed at once are one point.
+  // Returns true if `env_steps` has reached or passed a multiple of the interval since the last
+  // call. Several multiples passed at once count as one point.
   bool Reached(uint64_t env_steps);
 
   // Replaces eval.interval; the next point is its first multiple beyond `env_steps`.
   void SetInterval(uint64_t interval, uint64_t env_steps);
   uint64_t interval() const { return interval_; }
 
-  // Hands out the agent's parameters, which are those of `checkpoint`. What the transport does not
-  // take at once is sent by Retry; a newer point takes the place of an unsent one.
+  // Sends the agent's parameters, which must be those of `checkpoint`. If the transport does not
+  // accept them, Retry sends them later; a newer point replaces an unsent one.
   void Send(const std::string& checkpoint, uint64_t env_steps);
   void Retry();
 
-  // Updates of the point handed out last; 0 = none yet.
+  // Updates of the point sent last; 0 = none yet.
   uint64_t last_updates() const { return last_updates_; }
   uint64_t overtaken() const { return overtaken_; }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The sink over the link.
+// Learner sink that sends over the link.
 #pragma once
 
 #include "common/link/hub.h"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The learner of a run, put together: networks, batches and weights over the link, checkpoints.
+// The complete learner of a run: networks, batches and weights over the link, and checkpoints.
 #pragma once
 
 #include <cstdint>
@@ -24,17 +24,19 @@
 
 namespace shoal::learner {
 
-// Members are in construction order: readers, which end first, write to what is above them.
+// Members are in construction order. Readers are last and end first, because they write to the
+// members above them.
 class LearnerProgram {
  public:
-  // The learner `name` of the run in `folder`. Restores the newest checkpoint, or starts fresh. Its
-  // networks use `threads` threads. `make`: the run's agent; tests bring a cheaper one. One thread
-  // constructs and runs it. Borrows the hub. Throws Error.
+  // Makes the learner `name` of the run in `folder`. Restores the newest checkpoint, or starts
+  // without one. Its networks use `threads` threads. `make` makes the run's agent; tests pass a
+  // cheaper agent. The same thread must construct and run the program. Borrows the hub. Throws
+  // Error.
   LearnerProgram(const std::filesystem::path& folder, const ProcessName& name, const RunConfig& run,
                  int threads, link::Hub& hub, const AgentFactory& make = learner::MakeAgent);
 
-  // Trains until an order to stop (0; kUnwrittenExit where the last checkpoint could not be
-  // written) or the coordinator is gone (1). Throws Error.
+  // Trains until the run stops and returns the exit code: 0 after a stop request, kUnwrittenExit if
+  // the last checkpoint could not be written, 1 if the coordinator was lost. Throws Error.
   int Run();
 
  private:
@@ -42,7 +44,7 @@ class LearnerProgram {
 
   void StartFresh();
 
-  // Gives the agent so many threads, unless they do not fit, and returns how many it has.
+  // Changes the agent's number of threads, if possible, and returns the resulting number.
   int Resize(int threads);
 
   const std::filesystem::path folder_;

@@ -1,18 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // The learner's report of itself, once a second: metrics and warnings.
 //
-// Metrics (role "learner"), means over the last interval with updates in it unless said
-// otherwise:
+// Metrics (role "learner"); means over the last interval that had updates, unless stated otherwise:
 //   updates, env_steps, warnings, and counters of weights, checkpoints, batches: totals
 //   updates_per_second
-//   the figures of the updates         as the algorithm names them (agent/update_figures.h)
+//   the figures of the updates         named by the algorithm (agent/update_figures.h)
 //   data_age_updates_p50, _p90, _p99  updates since the weights that chose the actions
-//   seconds_STAGE, share_STAGE        where the learner's time went
-//   eval_interval, budget_env_steps   in force
-//   samples_per_insert, weights_period   the same, with a replay
-//   threads                           of the agent, in force
-//   eval_updates                      updates of the last evaluation point handed out
-//   drained                           1 once draining is over
+//   seconds_STAGE, share_STAGE        use of the learner's time
+//   eval_interval, budget_env_steps   current values
+//   samples_per_insert, weights_period   current values, with a replay
+//   threads                           current threads of the agent
+//   eval_updates                      updates of the last evaluation point sent
+//   drained                           1 after the end of draining
 #pragma once
 
 #include <array>
@@ -31,9 +30,9 @@ namespace shoal::learner {
 
 // Use of the learner's time since its start, in seconds.
 struct LearnerSeconds {
-  double waiting = 0;              // for batches
+  double waiting = 0;              // waiting for batches
   std::array<double, 3> update{};  // by UpdateStage
-  double weights = 0;              // publishing them
+  double weights = 0;              // publishing weights
   double checkpoint = 0;           // writing and syncing
 };
 
@@ -47,7 +46,7 @@ struct LearnerFigures {
   bool drained = false;
   double samples_per_insert = 0, eval_interval = 0, weights_period = 0;
   double budget = 0;  // env steps
-  int threads = 1;    // of the agent
+  int threads = 1;    // threads of the agent
   LearnerSeconds seconds;
   BatchCounters batches;
 };
@@ -73,7 +72,7 @@ class LearnerReport {
   TrainingGuard guard_;
   MetricsReport report_;
   UpdateWindow window_;
-  UpdateFigures latest_;       // of each figure the mean of the last interval that had it
+  UpdateFigures latest_;       // each figure's mean over the last interval that had it
   uint64_t updates_made_ = 0;  // by this process
   QuantileWindow data_ages_;
   Quantiles data_age_;  // of the last interval with updates

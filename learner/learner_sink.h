@@ -11,12 +11,12 @@ class LearnerSink {
  public:
   virtual ~LearnerSink() = default;
 
-  // Weights for acting. False: not sent; send newer ones later.
+  // Weights for acting. Returns false if they were not sent; send newer weights later.
   virtual bool Publish(const WeightsMessage& weights) = 0;
-  // Whether every reader has the weights published last. A writer that does not wait for this
-  // starves slow readers, which then get nothing but ever newer beginnings.
+  // Whether every reader has received the weights published last. A writer that does not wait for
+  // this starves slow readers, which then receive only the beginnings of ever newer weights.
   virtual bool WeightsArrived() = 0;
-  // Weights for an evaluation. False: not sent; send them again.
+  // Weights for an evaluation. Returns false if they were not sent; send the same weights again.
   virtual bool Publish(const EvalWeightsMessage& weights) = 0;
   virtual void Publish(const MetricsMessage& report) = 0;
   virtual void Publish(const LearnerProgress& progress) = 0;

@@ -4,10 +4,10 @@
 
 namespace shoal::learner {
 
-// Starts the program anew, once, with OMP_WAIT_POLICY=passive and OMP_NUM_THREADS=`threads` when
-// OMP_WAIT_POLICY is not set (the launcher sets both): spinning OpenMP threads would take the cores
-// from actors. Returns when there is nothing to do. Call before any thread is made. Throws Error
-// when the program cannot be started anew.
+// Restarts the program once with OMP_WAIT_POLICY=passive and OMP_NUM_THREADS=`threads` if
+// OMP_WAIT_POLICY is not set (the launcher sets both), because spinning OpenMP threads would take
+// cores from actors. Otherwise returns at once. Call it before any thread is created. Throws Error
+// if the program cannot be restarted.
 void EnsurePassiveOpenMp(int threads, char** argv);
 
 }  // namespace shoal::learner

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which checkpoints an evaluation is still waited for, or may just be being kept as the best: they
-// are not removed. An evaluation says that the ones before it were done or passed over.
+// Checkpoints that must not be removed, because their evaluation is pending or the coordinator may
+// be copying them as the best. Evaluations arrive in order: an evaluation of one checkpoint means
+// that earlier ones were evaluated or skipped.
 #pragma once
 
 #include <cstdint>
@@ -15,11 +16,11 @@ namespace shoal::learner {
 // Threads: any.
 class PendingEvaluations {
  public:
-  // A checkpoint was handed to the evaluation actor. Beyond kMost the oldest is let go, so that
-  // without an evaluation actor the disk does not fill.
+  // A checkpoint was handed to the evaluation actor. Beyond kMost the oldest is dropped, so that
+  // the disk does not fill without an evaluation actor.
   void Add(uint64_t updates, const std::string& checkpoint);
-  // An evaluation of the checkpoint with `updates` has arrived. It stays itself, as the coordinator
-  // may be copying it, until a later one arrives.
+  // An evaluation of the checkpoint with `updates` has arrived. The checkpoint itself stays until a
+  // later evaluation arrives, because the coordinator may be copying the checkpoint.
   void OnEvaluated(uint64_t updates);
   std::set<std::string> Names() const;
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Batches in the replay's shared memory: maps each request id to the slot that holds its batch, and
-// the slots' memory into this process. Memory of a replay that has ended stays readable while a
-// batch in it is awaited or handed out.
+// Batches in the replay's shared memory. Finds the slot of each request id, and maps the slots'
+// memory into this process. The memory of a replay that has ended stays readable while it holds an
+// awaited or handed-out batch.
 //
 // Threads: none inside; one owner.
 #pragma once
@@ -22,14 +22,14 @@ class SlotBatches {
   enum class Verdict {
     kTaken,
     kStartedOver,  // taken in place of another answer to the request
-    kDuplicate,    // said before
-    kRefused,      // in memory that was refused
+    kDuplicate,    // repeated message
+    kRefused,      // slot in refused memory
   };
 
   SlotBatches(uint64_t learner_session, uint64_t batch_bytes)
       : learner_session_(learner_session), batch_bytes_(batch_bytes) {}
 
-  // A word of this session, for a request whose batch is waited for.
+  // Adds a slot message of this session, for a request whose batch is awaited.
   Verdict Add(const BatchSlot& slot);
   bool Has(uint64_t request) const { return words_.contains(request); }
   uint64_t stored_records(uint64_t request) const { return words_.at(request).stored_records; }
@@ -38,20 +38,21 @@ class SlotBatches {
     return words_.at(request).unsampleable_steps;
   }
 
-  // The batch of a request that it has; to be read, until Release. Opens the memory when it is
-  // needed first. Throws Error when that cannot be or the slot does not hold the batch.
+  // Returns the batch of a request whose slot is known; it may be read until Release. Maps the
+  // memory on first use. Throws Error if the memory cannot be mapped or the slot does not hold the
+  // batch.
   uint8_t* Open(uint64_t request);
-  // After that: no batch is taken from this memory any more. The requests that had one there, to be
-  // sent again.
+  // Refuses the memory that holds the batch of `request`: from now on no batch is read from this
+  // memory. Returns the requests whose batches were there, which must be sent again.
   std::vector<uint64_t> Refuse(uint64_t request);
-  // SlotAddress::token[0] of what was refused last; 0 = nothing.
+  // SlotAddress::token[0] of the memory refused last; 0 = none.
   uint64_t refused_token() const { return refused_token_; }
 
-  // The batch, if there is one, is not read any more.
+  // Ends the use of the request's batch, if there is one.
   void Release(uint64_t request);
 
  private:
-  // Unmaps what no word means any more but the newest.
+  // Unmaps memories that no slot message refers to, except the newest.
   void Forget();
 
   const uint64_t learner_session_, batch_bytes_;

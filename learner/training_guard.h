@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Watches an agent's figures for training that runs but does not learn, and says so with numbers.
-// Pure: the caller gives the figures and the time, and logs what comes back.
+// Watches an agent's figures for training that runs but does not learn, and returns warnings with
+// numbers. Pure: the caller passes figures and time, and logs the warnings.
 //
 //   all-equal frames      mean pixel deviation within a frame below kMinSpread grey levels
 //   frozen cameras        the frames compared in every batch show one picture
@@ -10,8 +10,8 @@
 //   more
 //                         than kRiseFactor times the smallest such mean
 //
-// Each kind is repeated at most once per kRepeat. Flat success is the coordinator's to see
-// (launch/run/flat_score.h).
+// Each kind of warning is repeated at most once per kRepeat. The coordinator detects a flat success
+// rate (launch/run/flat_score.h).
 #pragma once
 
 #include <array>
@@ -30,8 +30,8 @@ class TrainingGuard {
  public:
   explicit TrainingGuard(const Config& config);
 
-  // Means over `updates` > 0 updates since the last call; what rests on a figure that is absent is
-  // not looked at. Returns the warnings that are due.
+  // `mean`: means over the `updates` > 0 updates since the last call. Checks that need an absent
+  // figure are skipped. Returns the warnings that are due.
   std::vector<std::string> Check(const UpdateFigures& mean, int updates, SteadyTime now);
 
   uint64_t warnings() const { return warnings_; }
@@ -61,7 +61,7 @@ class TrainingGuard {
   int rises_ = 0;  // in a row, up to last_loss_
 };
 
-// The line that ends a run whose update was not finite.
+// Text of the error that ends a run after an update that was not finite.
 std::string DescribeNonFinite(const UpdateFigures& figures, uint64_t updates);
 
 }  // namespace shoal::learner

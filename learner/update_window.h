@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The updates of one report interval: means of their figures and the age of the data they used.
+// The updates of one report interval: means of their figures, and the age of their data.
 #pragma once
 
 #include <cstdint>
@@ -18,8 +18,8 @@ class UpdateWindow {
   void Clear() { *this = UpdateWindow(); }
 
   int updates() const { return updates_; }
-  // Mean of each figure over those of the window's updates that had it, in the order of first
-  // appearance; a figure that no update had is absent.
+  // Mean of each figure over the window's updates that have the figure, in the order of first
+  // appearance. A figure that no update has is absent.
   UpdateFigures Mean() const;
 
  private:
@@ -34,9 +34,9 @@ class UpdateWindow {
 };
 
 // Adds the age of a batch's data: how many updates ago the weights that chose each action were
-// made. A random action counts as chosen by the untrained policy, update 0. `weights_update` (B) of
-// the batch; `updates`: done now. Values beyond it (of a learner that was ahead before it
-// restarted) count as 0.
+// made. A random action counts as chosen by the untrained policy, update 0. `weights_update` (B):
+// array of the batch; `updates`: updates done so far. Weights newer than `updates` (from a learner
+// that was ahead before it restarted) give the age 0.
 void AddDataAges(std::span<const uint64_t> weights_update, uint64_t updates,
                  QuantileWindow* window);
 

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // Sends the policy's parameters to the actors: at the first update, then every
-// learner.weights_period; in lockstep at the end of each phase; on policy after each update. BF16
-// if the precision is bf16, else F32. On policy always F32: the actors' log-probabilities are the
-// denominator of the ratio that the learner forms with its unrounded parameters (Eq. 24).
+// learner.weights_period updates; in lockstep at the end of each phase; on policy after each
+// update. The type is BF16 if the precision is bf16, else F32. On policy the type is always F32,
+// because the actors' log-probabilities are the denominator of a ratio whose numerator the learner
+// computes with unrounded parameters (Eq. 24).
 //
-// Weights that are due while readers still lack the last ones wait for them, at most kPatience, so
-// that slow readers are not starved; not in lockstep or on policy, where actors wait for exactly
-// these.
+// If readers have not yet received the last weights, the next weights are delayed by at most
+// kPatience, so that slow readers are not starved. There is no delay in lockstep and on policy,
+// where actors wait for the next weights.
 #pragma once
 
 #include <chrono>
@@ -32,7 +33,7 @@ class WeightsSender {
   // Sends at once: after a restart, so that actors need not wait.
   void Send(uint64_t env_steps);
 
-  // Sends again what the transport did not take: where actors wait for exactly that.
+  // Sends weights again that the transport did not accept, if actors wait for them.
   void Retry(uint64_t env_steps) {
     if (due_) Send(env_steps);
   }
@@ -42,27 +43,27 @@ class WeightsSender {
   uint64_t period() const { return period_; }
 
   uint64_t sent() const { return sent_; }
-  // Tries that the transport did not take; newer weights follow.
+  // Attempts that the transport did not accept; newer weights follow.
   uint64_t unsent() const { return unsent_; }
 
   static constexpr std::chrono::milliseconds kPatience{500};
 
  private:
-  // Weights are copied three times: out of the agent, into these bytes, by the transport; never
-  // more than two of them are there at once.
+  // Weights are copied three times: out of the agent, into these bytes, and by the transport. At
+  // most two copies exist at once.
   std::string Serialised() const;
   bool Due(uint64_t updates);
 
   const Config config_;
   const uint64_t spec_hash_, session_;
-  const bool rounds_;  // to BF16
+  const bool rounds_;  // whether to round to BF16
   const Agent& agent_;
   LearnerSink& sink_;
-  const bool awaited_;  // by actors that do not step meanwhile
+  const bool awaited_;  // actors do not step until the weights arrive
   uint64_t period_;
   bool due_ = false;
   SteadyTime last_sent_{};
-  int64_t phase_ = 0;  // lockstep: the first one whose end is not reached
+  int64_t phase_ = 0;  // lockstep: the first unfinished phase
   uint64_t sent_ = 0, unsent_ = 0;
 };
 

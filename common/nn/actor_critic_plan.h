@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Plans of encoder, actor and critic as the configuration asks for them: the one place that knows
-// the names of parameters. Checkpoints, weights on the wire and layers use these names.
+// Plans of the encoder, actor and critic that a configuration describes. All names of parameters
+// are defined here. Checkpoints, weights on the wire and layers use these names.
 //
 // Dimensions: F trunk outputs, V vector size, A actions, H_i hidden units.
 //
@@ -8,11 +8,11 @@
 //   HEAD.trunk.{weight, bias, norm.weight, norm.bias}                only with pixels
 //   MLP.layer{i}.{weight (H_i, H_{i-1}), bias, norm.weight, norm.bias}
 //   MLP.output.{weight (outputs, H), bias (outputs)}
-//   HEAD.log_std (A)                                                 of an unsquashed actor
+//   HEAD.log_std (A)                                                 unsquashed actor only
 //
-// HEAD: an actor or a critic, with MLP HEAD.mlp of an actor, HEAD.q1, HEAD.q2, ... of a critic. A
-// policy is the encoder "encoder" and the actor "actor". norm of the trunk: where the trunk has a
-// LayerNorm; norm of an MLP's layer only with network.layer_norm.
+// HEAD is an actor or a critic. MLP is HEAD.mlp in an actor and HEAD.q1, HEAD.q2, ... in a critic.
+// A policy consists of the encoder "encoder" and the actor "actor". The trunk has norm.* if it has
+// a LayerNorm; the layers of an MLP have norm.* if network.layer_norm is set.
 #pragma once
 
 #include <cstdint>
@@ -25,9 +25,10 @@
 
 namespace shoal::nn {
 
-// From stacks of frames (K*C, H, W) to a feature map. Throws Error (kUsage) where network.encoder
-// does not exist or does not fit the images, naming what would fit, and where keys of the compact
-// encoder are set beside another. No layers without pixels.
+// Plan of the encoder, which maps stacks of frames (K*C, H, W) to a feature map. The plan has no
+// layers if the observation has no pixels. Throws Error (kUsage) if network.encoder does not exist,
+// if the encoder does not fit the images (the error names what would fit), or if keys of the
+// compact encoder are set beside another encoder.
 NetworkPlan PlanEncoder(const NetworkConfig& network, const ObservationSpec& spec,
                         const std::string& name = "encoder");
 
@@ -45,7 +46,7 @@ struct HeadPlan {
 enum class ActorOutput {
   kGaussian,       // 2A: mean, raw log deviation
   kDeterministic,  // A
-  kUnsquashed,     // A: mean of a Gaussian that no tanh follows; its log deviation is a parameter
+  kUnsquashed,     // A: mean of a Gaussian without tanh; its log deviation is a parameter
 };
 // How the raw log deviation is bounded.
 enum class LogStd {
@@ -56,27 +57,29 @@ struct ActorPlan : HeadPlan {
   ActorOutput output = ActorOutput::kGaussian;
   LogStd log_std = LogStd::kSmooth;
   int action_size = 0;
-  std::string name = {};  // of the head
+  std::string name = {};  // name of the head
 
   std::vector<ParameterSpec> Parameters() const;
 };
 ActorPlan PlanActor(const NetworkConfig& network, const ObservationSpec& spec,
                     ActorOutput output = ActorOutput::kGaussian, const std::string& name = "actor");
-// `name`: "critic", "target". Q functions `name`.q1 to `name`.q`count` of observation and action.
+// Plan of `count` Q functions of observation and action, with MLPs `name`.q1, `name`.q2, ...
+// `name`: for example "critic" or "target".
 HeadPlan PlanCritic(const NetworkConfig& network, const ObservationSpec& spec,
                     const std::string& name, int count = 2);
 
-// `outputs` functions of the observation alone, one MLP `name`.mlp of weights with the gains that
-// on-policy learning starts from: sqrt(2) in hidden layers, `output_gain` in the last one.
+// Plan of one MLP `name`.mlp that computes `outputs` functions of the observation alone. Its
+// weights start orthogonal, with gain sqrt(2) in hidden layers and `output_gain` in the last layer,
+// as is usual in on-policy learning.
 HeadPlan PlanObservationHead(const NetworkConfig& network, const ObservationSpec& spec,
                              const std::string& name, int outputs, double output_gain);
 
-// Tensors (V) that a policy has beside its parameters if its observation is normalised: mean and
-// variance of the observations that its network was trained with.
+// Names of two tensors (V) that a policy has beside its parameters if its observation is
+// normalised: the mean and variance of the observations in training.
 inline constexpr char kObservationMean[] = "observation.mean";
 inline constexpr char kObservationVariance[] = "observation.variance";
 
-// Parameters of the encoder and the Gaussian actor.
+// Parameters of the encoder and the Gaussian actor of a configuration.
 std::vector<ParameterSpec> PolicyParameters(const NetworkConfig& network,
                                             const ObservationSpec& spec);
 

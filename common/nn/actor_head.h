@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The policy above the encoder: trunk and MLP to a Gaussian over actions before tanh, or to the
-// action itself (Eq. 4 of docs/algorithm.md).
+// The layers of the policy above the encoder. A trunk and an MLP compute a Gaussian over actions
+// before tanh, or the action itself (Eq. 4 of docs/algorithm.md).
 //
 //   Gaussian        (mean, r) = MLP(trunk(features), vector)
 //                   log_std = -5 + 3.5 (tanh(r) + 1), in [-5, 2]     LogStd::kSmooth
@@ -20,16 +20,17 @@ namespace shoal::nn {
 
 class ActorHead {
  public:
-  // features_gradient: the encoder's, or empty: then the encoder is another loss's to train.
+  // features_gradient: gradient memory of the encoder; empty if this head does not train the
+  // encoder.
   ActorHead(const LayerContext& context, const ActorPlan& plan, const dnnl::memory& features,
             const dnnl::memory& features_gradient);
 
   int batch() const { return batch_; }                // B
   int action_size() const { return action_size_; }    // A
   const float* mean() const { return mean_.data(); }  // (B, A), before tanh
-  // (B, A); null: Gaussian.
+  // Action (B, A); null for a Gaussian policy.
   const float* action() const { return action_.empty() ? nullptr : action_.data(); }
-  // (B, A); null: deterministic.
+  // Log deviation (B, A); null for a deterministic policy.
   const float* log_std() const { return log_std_.empty() ? nullptr : log_std_.data(); }
 
   // See ObservationTrunk::features.
@@ -45,13 +46,13 @@ class ActorHead {
 
  private:
   void ForwardLogStd();
-  // From output_gradient_.
+  // Reads output_gradient_.
   void BackwardMlp();
 
   ObservationTrunk trunk_;
   Mlp mlp_;
   const bool gaussian_;           // mean and log deviation are outputs of the MLP
-  const Parameter free_log_std_;  // of an unsquashed one
+  const Parameter free_log_std_;  // unsquashed policy only
   const LogStd log_std_kind_;
   int batch_, action_size_;
   std::vector<float> mean_;             // (B, A)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An actor: features and vector to a Gaussian over actions before tanh, or to one action (Eq. 4 of
-// docs/algorithm.md).
+// An actor computes a Gaussian over actions before tanh, or one action, from features and vector
+// (Eq. 4 of docs/algorithm.md).
 #pragma once
 
 #include <memory>
@@ -15,14 +15,14 @@ class Features;
 
 class ActorModule final : public Module {
  public:
-  // `features`: borrowed; null without pixels. trains_encoder: Backward leaves the gradient of the
-  // features to their encoder.
+  // `features`: borrowed; null without pixels. trains_encoder: whether Backward writes the gradient
+  // of the features for their encoder.
   ActorModule(const ActorPlan& plan, const Features* features, bool trains_encoder, Use use,
               const ModuleContext& context);
   ~ActorModule() override;
 
-  // All (B, A). mean: before tanh. log_std: none of a deterministic actor. action: tanh(mean) of a
-  // deterministic actor, none of a Gaussian.
+  // All arrays are (B, A). mean: before tanh. log_std: empty for a deterministic actor. action:
+  // tanh(mean) of a deterministic actor, empty for a Gaussian actor.
   struct Output {
     Array mean, log_std, action;
   };
@@ -31,13 +31,13 @@ class ActorModule final : public Module {
   const Features* trunk_features() const;
 
   void Refresh() override;
-  // vector (B, V), for the features as they are.
+  // Reads the current features and vector (B, V).
   Output Forward(Array vector);
   // Gradients of the parameters, for the latest Forward of a Gaussian actor, from dL/dmean and
   // dL/dlog_std (B, A).
   void Backward(Array mean_gradient, Array log_std_gradient);
-  // The same of a deterministic actor, from dL/daction (B, A). The loss besides has the term
-  // mean_penalty times the mean of the squares of `mean`; 0 leaves it out.
+  // The same for a deterministic actor, from dL/daction (B, A). The loss also includes mean_penalty
+  // times the mean square of `mean`.
   void BackwardAction(Array action_gradient, double mean_penalty);
 
  private:

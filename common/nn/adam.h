@@ -28,8 +28,8 @@ namespace shoal::nn {
 
 struct ModuleContext;
 
-// Optimiser of parameter sets that are trained by one loss. Borrows them. Of a replica: that of
-// every other one has the same sets and calls the same functions in the same order.
+// Optimiser of parameter sets that are trained by one loss. Borrows the sets. With replicas, each
+// replica has an optimiser with the same sets, and all call the same functions in the same order.
 class Adam {
  public:
   struct Options {
@@ -40,32 +40,33 @@ class Adam {
 
   // Borrows the replica; null: alone.
   Adam(const std::vector<ParameterSet*>& sets, const Options& options, Replica* replica = nullptr);
-  // Belongs to the replica of `context`, as the modules whose parameters it steps.
+  // Uses the replica of `context`, which must also be the replica of the trained modules.
   Adam(const std::vector<ParameterSet*>& sets, const Options& options,
        const ModuleContext& context);
   Adam(const Adam&) = delete;
   Adam& operator=(const Adam&) = delete;
 
-  // For the steps from now on: factor * Options::rate.
+  // Sets the rate of all following steps to factor * Options::rate.
   void set_rate_factor(double factor) { rate_factor_ = factor; }
   double rate() const { return rate_ * rate_factor_; }
 
-  // Averages the gradients over replicas, each of them in its own share (the rest stays its own),
-  // and returns the sum of the squares of all. Call it once for each backward pass, even if no step
-  // follows; a Step calls it if no call has been made since the last Step. Without a limit of the
-  // norm this
-  // computes the step as well, so that the replicas meet once for both; Step then applies it.
+  // Averages the gradients over replicas and returns the sum of their squares. Each replica
+  // averages its own share; its other gradients do not change. Call it once for each backward pass,
+  // even if no step follows. Step calls it if there was no call since the last Step. If the norm is
+  // not limited, this function also computes the step, so that the replicas meet only once; Step
+  // then applies the step.
   double GatherGradients();
-  // Applies the sets' gradients, clipped by max_norm / (norm + 1e-6) if the norm is limited, and
-  // the statistics that the forward passes of these gradients measured.
+  // Applies the sets' gradients, and the statistics that their forward passes measured. If the norm
+  // is limited, larger gradients are multiplied by max_norm / (norm + 1e-6).
   void Step();
-  // Takes the last Step back exactly; at most once after each, and before the next GatherGradients.
+  // Undoes the last Step exactly. Allowed at most once after each Step, and before the next
+  // GatherGradients.
   void Undo();
   uint64_t steps() const { return steps_; }
 
-  // Tensors "adam.m.NAME", "adam.v.NAME" of every parameter and "adam.steps.`group`".
+  // Writes tensors "adam.m.NAME" and "adam.v.NAME" for every parameter, and "adam.steps.`group`".
   void Export(const std::string& group, TensorMap* tensors) const;
-  // Throws Error; nothing has changed then.
+  // Reads what Export wrote. On an error it throws Error and changes nothing.
   void Import(const TensorMap& tensors, const std::string& group, const std::string& source);
 
  private:
@@ -93,8 +94,8 @@ class Adam {
   Replica alone_;
   Replica* const replica_;
   const std::shared_ptr<Shared> shared_;
-  size_t current_ = 0;             // of the two arrays of moments
-  std::optional<double> squares_;  // of the gradients that were gathered for the next step
+  size_t current_ = 0;             // index of the current moments
+  std::optional<double> squares_;  // sum of squares of the gathered gradients
 
   double rate_, epsilon_, max_norm_;
   double rate_factor_ = 1;

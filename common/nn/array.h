@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Handles of arrays, as an algorithm passes them between modules and operations. The numbers are in
+// Handles of arrays, which an algorithm passes between modules and operations. The numbers are in
 // the memory of the engine that computes with them.
 //
-// A handle says how many numbers there are and nothing of what they are: only the engine looks
-// inside (common/nn/host_memory.h for the engine of the CPU), so the numbers may be in the
-// memory of a card. A handle is copied like a pointer and owns nothing.
+// A handle gives the number of values, but no access to them. Only the engine reads the values
+// (common/nn/host_memory.h for the engine of the CPU), so they may be in the memory of a GPU. A
+// handle is copied like a pointer and owns nothing.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +18,7 @@ class ArrayOf {
 
   explicit operator bool() const { return data_ != nullptr; }
   int64_t size() const { return size_; }
-  // Whether both are the same numbers, not equal ones.
+  // Whether both handles refer to the same memory; the values are not compared.
   bool operator==(const ArrayOf&) const = default;
 
  private:

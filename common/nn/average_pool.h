@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Average pooling to a map of a given size, whatever the size of its source: PyTorch's
+// Average pooling to a map of a given size from a source of any size, as PyTorch's
 // AdaptiveAvgPool2d.
 //
 //   y[b, c, i, j] = mean of x[b, c, u, v] over floor(i H/h) <= u < ceil((i+1) H/h), v likewise
 //
-// Windows overlap where h is no divisor of H; a source smaller than the output is repeated.
+// Windows overlap if h does not divide H; a source smaller than the output is repeated.
 // Shapes: source (B, C, H, W), output (B, C, h, w) row-major, in the compute type; sums are f32.
 #pragma once
 
@@ -14,7 +14,7 @@ namespace shoal::nn {
 
 class AveragePool final : public MapLayer {
  public:
-  // source_gradient: of the source's description, overwritten; may be empty.
+  // source_gradient: has the source's description and is overwritten; may be empty.
   AveragePool(const LayerContext& context, const LayerPlan& plan, const dnnl::memory& source,
               const dnnl::memory& source_gradient);
 

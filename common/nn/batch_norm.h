@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Batch normalisation of a map's channels, then a skip connection and ReLU where the plan has them.
+// Batch normalisation of a map's channels, then a skip connection and ReLU if the plan has them.
 //
 //   y[b, c, i, j] = max(0, weight_c (x[b, c, i, j] - mean_c) / sqrt(var_c + 1e-5) + bias_c
 //                          + skip[b, c, i, j])
@@ -9,8 +9,8 @@
 //                          running_var'  = 0.9 running_var  + 0.1 var n / (n - 1)
 //   Statistics::kRunning   mean_c, var_c = running_mean_c, running_var_c
 //
-// The running statistics of the latest kBatch pass count from the optimiser's next step on, as the
-// gradients do: an update that is given up leaves them as they were.
+// The optimiser's next step applies the running statistics of the latest kBatch pass together with
+// the gradients. An update without a step does not change the statistics.
 //
 // Source: Ioffe and Szegedy 2015, arXiv:1502.03167; constants as PyTorch's BatchNorm2d.
 // Shapes: x, skip, y (B, C, h, w) in the compute type; everything per channel f32.
@@ -29,8 +29,8 @@ struct MapSource {
 
 class BatchNorm final : public MapLayer {
  public:
-  // `plan`: the convolution whose output `source` is. Gradients have their source's description and
-  // are overwritten. skip: empty without one.
+  // `plan`: the convolution that writes `source`. Each gradient has the description of its values
+  // and is overwritten. skip: empty if there is no skip connection.
   BatchNorm(const LayerContext& context, const LayerPlan& plan, const MapSource& source,
             const MapSource& skip);
 
@@ -43,11 +43,11 @@ class BatchNorm final : public MapLayer {
   void BuildTraining(const LayerContext& context, const MapSource& source, const MapSource& skip);
   void MeasureRunning();
 
-  bool relu_, measured_ = false;  // measured: the latest Forward was of kBatch
+  bool relu_, measured_ = false;  // measured: the latest Forward was kBatch
   int64_t count_;                 // n
   Parameter weight_, bias_, running_mean_, running_variance_;
   dnnl::memory weight_values_, bias_values_, running_mean_values_, running_variance_values_;
-  dnnl::memory mean_, variance_;  // of the batch
+  dnnl::memory mean_, variance_;  // statistics of the batch
   Relayout skip_;                 // in the output's layout
   Op by_running_, by_batch_, backward_;
   Op skip_gradient_;

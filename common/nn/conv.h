@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Convolution, then ReLU where the plan has it and no batch normalisation comes before it.
+// Convolution, then ReLU if the plan has one and no batch normalisation precedes it.
 //
 //   y[b, n, i, j] = max(0, bias[n] + sum_{c,u,v} weight[n, c, u, v] x[b, c, i*s+u-p, j*s+v-p])
 //
 // with x = 0 outside of its map.
 //
-// Dimensions: B batch, C channels in, N filters, (H, W) in, (h, w) out, s stride, p padding; all
-// but B are the plan's.
-// oneDNN chooses the layouts in memory; neighbouring layers share them where it can.
+// Dimensions: B batch, C channels in, N filters, (H, W) in, (h, w) out, s stride, p padding; the
+// plan defines all of them except B. oneDNN chooses the layouts in memory; neighbouring layers
+// share them where it can.
 #pragma once
 
 #include "common/nn/laid_out_weight.h"
@@ -17,8 +17,8 @@ namespace shoal::nn {
 
 class Conv final : public MapLayer {
  public:
-  // source (B, C, H, W) in the compute type. `source_gradient` has the source's description; empty:
-  // never asked for.
+  // source (B, C, H, W) in the compute type. `source_gradient` has the source's description; it is
+  // empty if the gradient is not needed.
   Conv(const LayerContext& context, const LayerPlan& plan, const dnnl::memory& source,
        const dnnl::memory& source_gradient);
 

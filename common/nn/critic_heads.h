@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The critic above the encoder: one trunk, one or more Q functions.
+// The layers of the critic above the encoder: one trunk, and one or more Q functions.
 //
 //   q_i(s, a) = MLP_i([ trunk(features) | vector | a ]),  i = 1, 2, ...
 //
@@ -17,7 +17,8 @@ namespace shoal::nn {
 
 class CriticHeads {
  public:
-  // features_gradient: the encoder's, or empty.
+  // features_gradient: gradient memory of the encoder; empty if this critic does not train the
+  // encoder.
   CriticHeads(const LayerContext& context, const HeadPlan& plan, const dnnl::memory& features,
               const dnnl::memory& features_gradient);
 
@@ -28,16 +29,17 @@ class CriticHeads {
   const Features* trunk_features() const { return trunk_.features(); }
 
   void Refresh();
-  // The observation's part; vector (B, V).
+  // Computes the part that depends on the observation alone. vector: (B, V).
   void ForwardObservation(const float* vector);
-  // The rest, for the latest observation; action (B, A). May be called again with other actions.
+  // Computes the Q functions of the latest observation and of action (B, A). May be called again
+  // with other actions.
   void ForwardAction(const float* action);
 
-  // dL/dq_i (B), one for each Q function; none counts as zeros.
+  // dL/dq_i (B), one for each Q function; an empty array counts as zeros.
   using QGradients = std::span<const Array>;
-  // Gradients of all parameters and of the features.
+  // Computes the gradients of all parameters and of the features.
   void Backward(QGradients q_gradients);
-  // The gradient of the action (B, A) alone.
+  // Computes only the gradient of the action (B, A).
   void BackwardAction(QGradients q_gradients, float* action_gradient);
 
  private:

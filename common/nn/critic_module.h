@@ -15,32 +15,35 @@ class Features;
 
 class CriticModule final : public Module {
  public:
-  // `plan` of PlanCritic. `features`: borrowed; null without pixels. trains_encoder: Backward
-  // leaves the gradient of the features to their encoder.
+  // `plan`: from PlanCritic. `features`: borrowed; null without pixels. trains_encoder: whether
+  // Backward writes the gradient of the features for their encoder.
   CriticModule(const HeadPlan& plan, const Features* features, bool trains_encoder, Use use,
                const ModuleContext& context);
   ~CriticModule() override;
 
-  // Q functions.
+  // Number of Q functions.
   int count() const;
-  // (B) of the latest ForwardAction; of a plan with several outputs (B, outputs).
+  // Result (B) of the latest ForwardAction; (B, outputs) if the plan has several outputs.
   Array q(int i) const;
 
   // The trunk's outputs, for a readout; null without pixels.
   const Features* trunk_features() const;
 
   void Refresh() override;
-  // The observation's part, for the features as they are; vector (B, V).
+  // Computes the part that depends on the observation alone, from the current features and vector
+  // (B, V).
   void ForwardObservation(Array vector);
-  // The rest, for the latest observation; action (B, A), none where the plan has none. May be
-  // called again with other actions.
+  // Computes the Q functions of the latest observation and of action (B, A), which is empty if the
+  // plan has no action. May be called again with other actions.
   void ForwardAction(Array action);
 
-  // dL/dq_i, as q(i), one for each Q function; none: it is no part of the loss.
+  // dL/dq_i, of the shape of q(i), one for each Q function; empty if the loss does not use that
+  // function.
   using Gradients = std::span<const Array>;
-  // Gradients of all parameters; those of a function that is no part of the loss become 0.
+  // Computes the gradients of all parameters. The gradients of a function that the loss does not
+  // use become 0.
   void Backward(Gradients q_gradients);
-  // The gradient of the action (B, A) alone.
+  // Computes only the gradient of the action (B, A).
   void BackwardAction(Gradients q_gradients, Array action_gradient);
 
  private:

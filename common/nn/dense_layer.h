@@ -14,8 +14,8 @@ namespace shoal::nn {
 
 class DenseLayer {
  public:
-  // A linear layer of a plan. source and source_gradient as Linear's. `output_precision` is the
-  // type in which the next layer reads output().
+  // `plan`: a linear layer. source and source_gradient: see Linear. `output_precision` is the type
+  // in which the next layer reads output().
   DenseLayer(const LayerContext& context, const LayerPlan& plan, const dnnl::memory& source,
              const dnnl::memory& source_gradient, Precision output_precision);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Frames to feature map: the layers of an encoder's plan (Eq. 2 of docs/algorithm.md).
+// The layers of an encoder's plan, which map frames to a feature map (Eq. 2 of docs/algorithm.md).
 #pragma once
 
 #include <cstdint>
@@ -14,36 +14,37 @@ namespace shoal::nn {
 
 class Encoder {
  public:
-  // The plan begins with its pixels; convolutions and pools follow.
+  // The plan begins with a pixels layer; convolutions and pools follow.
   Encoder(const LayerContext& context, const NetworkPlan& plan);
 
   // (B, N*h*w) row-major in the compute type; overwritten by every Forward.
   const dnnl::memory& features() const { return features_; }
-  // dL/dfeatures, filled before Backward. Empty in inference.
+  // dL/dfeatures, which the caller writes before Backward. Empty in inference.
   const dnnl::memory& features_gradient() const { return features_gradient_; }
 
   void Refresh();
-  // frames (B, K*C, H, W) u8. statistics: kRunning in inference.
+  // frames (B, K*C, H, W) u8. statistics: must be kRunning in inference.
   void Forward(const uint8_t* frames, Statistics statistics);
   // Backward pass of the latest Forward. With batch normalisation in the plan, its statistics must
   // have been kBatch.
   void Backward();
 
  private:
-  // A layer, and what follows its backward pass where its source has other readers: its share of
-  // the source's gradient is added to what they left there.
+  // One layer of the plan. If other layers read the same source, `shared` says how the gradients
+  // are summed: after the backward pass, this layer's share is added to the source's gradient.
   struct Stage {
     std::unique_ptr<MapLayer> layer;
-    MapSource shared = {};  // values: the share; gradient: what it is added to
+    MapSource shared = {};  // values: the share; gradient: the sum
   };
 
   void Build(const LayerContext& context, const NetworkPlan& plan);
-  // Memory in which layer `reader` finds the output of layer `read` and writes its gradient.
+  // Memory from which layer `reader` reads the output of layer `read`, and to which it writes the
+  // gradient of that output.
   MapSource SourceOf(const NetworkPlan& plan, int reader, int read, MapSource* shared);
   void BuildFeatures(const LayerContext& context);
 
   int planes_, height_, width_, pool_;
-  float shift_;         // of the scaled pixels
+  float shift_;         // added to the scaled pixels
   dnnl::memory input_;  // output of the pixels' layer, row-major in the compute type
   std::vector<Stage> stages_;
   std::vector<MapSource> outputs_;  // of each layer of the plan

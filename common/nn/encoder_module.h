@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An encoder: stacks of frames to features, which heads read where they lie.
+// An encoder computes features from stacks of frames. Heads read the features without a copy.
 #pragma once
 
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace shoal::nn {
 
-// Opaque: what heads are built on. Belongs to its encoder.
+// Opaque input of heads. The encoder owns it.
 class Features;
 
 class EncoderModule final : public Module {
@@ -20,13 +20,13 @@ class EncoderModule final : public Module {
 
   const Features& features() const;
   void Refresh() override;
-  // frames (B, K*C, H, W) u8. The features stay until the next call. `statistics` says by what an
-  // encoder with batch normalisation normalises, others do not mind: kBatch in the pass that
-  // Backward and an optimiser's step follow, which moves the running ones along; kRunning in
-  // targets and in all passes of a module for inference.
+  // frames (B, K*C, H, W) u8. The features stay valid until the next call. `statistics` selects the
+  // statistics of an encoder with batch normalisation; other encoders ignore it. Use kBatch in a
+  // pass that Backward and an optimiser's step follow; that step also updates the running
+  // statistics. Use kRunning in targets and in all passes of a module for inference.
   void Forward(Frames frames, Statistics statistics);
-  // Gradients of the parameters, from the gradient of the features that the latest Backward of a
-  // head that trains this encoder left. Refers to the latest Forward.
+  // Computes the gradients of the parameters for the latest Forward. The gradient of the features
+  // must have been written by the Backward of a head that trains this encoder.
   void Backward();
 
  private:

@@ -2,9 +2,9 @@
 // The file of network.encoder_weights: safetensors that an encoder starts from.
 //
 // Tensors have Shoal's names, encoder.NAME, as in a checkpoint's policy.safetensors. If no name in
-// the file begins like that, NAME alone is used, which for resnet18 and alexnet is torchvision's.
-// Tensors of no encoder are ignored: other networks of a policy, and torchvision's fc.*,
-// classifier.* and *.num_batches_tracked.
+// the file begins with "encoder.", NAME alone is used; for resnet18 and alexnet, NAME is
+// torchvision's. Tensors outside of the encoder are ignored: other networks of a policy, and
+// torchvision's fc.*, classifier.* and *.num_batches_tracked.
 #pragma once
 
 #include "common/config/config.h"
@@ -13,9 +13,9 @@
 
 namespace shoal::nn {
 
-// The encoder's tensors, F32, as encoder.NAME; empty where the key is. Throws Error (kUsage) naming
-// the file and a tensor that is missing, of another shape or type, not finite or none of this
-// encoder's.
+// Returns the encoder's tensors, F32, named encoder.NAME; empty if the key is empty. Throws Error
+// (kUsage) that names the file and the tensor if a tensor is missing, has another shape or type, is
+// not finite or does not belong to this encoder.
 TensorMap ReadEncoderWeights(const NetworkConfig& network, const ObservationSpec& spec);
 
 }  // namespace shoal::nn

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Output of an encoder for the heads above it, in the form that its engine computes with. Opaque
-// outside of common/nn.
+// Output of an encoder for the heads above it, in the memory of its engine. Opaque outside of
+// common/nn.
 #pragma once
 
 #include "common/nn/layer_context.h"
@@ -32,7 +32,7 @@ inline FeatureSource ToFeatureSource(const Features* features, bool trains_encod
   return {features->values(), trains_encoder ? features->gradient() : dnnl::memory()};
 }
 
-// The context that the layers of a module are built with.
+// Returns the context with which the layers of a module are built.
 inline LayerContext ToLayerContext(ParameterSet* parameters, Module::Use use,
                                    const ModuleContext& context) {
   return {.parameters = parameters,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// From uint8 frames to the network's input: average pooling, scaling to a range of 1 and conversion
-// in one pass.
+// Converts uint8 frames to the network's input: average pooling, scaling to a range of 1 and
+// conversion in one pass.
 //
 //   x[p, i, j] = mean over the pool x pool window at (i*pool, j*pool) of in[p] / 255 + shift
 //

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Arrays of the CPU's engine, which are in host memory: for the engine itself and for tests. An
-// algorithm does not include this.
+// Arrays of the CPU's engine, which are in host memory. Only that engine and tests include this
+// header; algorithms do not.
 #pragma once
 
 #include <span>
@@ -12,7 +12,7 @@
 namespace shoal::nn {
 
 struct HostMemory {
-  // A handle of these numbers, which it borrows.
+  // Returns a handle that borrows `values`.
   template <class T>
   static ArrayOf<std::remove_const_t<T>> Handle(std::span<T> values) {
     return {const_cast<std::remove_const_t<T>*>(values.data()), int64_t(values.size())};
@@ -23,7 +23,8 @@ struct HostMemory {
   }
 };
 
-// A handle of the numbers of a vector or span. Numbers that are const must not be a destination.
+// Returns a handle that borrows the numbers of a vector or span. A handle of const numbers must not
+// be a destination.
 template <class Values>
 auto HostArray(Values&& values) {
   return HostMemory::Handle(std::span(values));

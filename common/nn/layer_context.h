@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Context that every layer of one network is built with.
+// Context with which every layer of one network is built.
 #pragma once
 
 #include <memory>
@@ -11,18 +11,18 @@
 namespace shoal::nn {
 
 // Layers follow one pattern. Construction builds the primitives for one batch size and looks the
-// parameters up by name. Refresh() takes over the parameters' present values and must follow every
-// change of them. Forward() reads the source, keeps what its gradient needs and overwrites the
-// output. Backward() refers to the latest Forward(). A layer is used by one thread at a time, under
-// a ThreadScope of the size it was built in.
+// parameters up by name. Refresh() copies the parameters' current values and must follow every
+// change of the parameters. Forward() reads the source, stores the values that the gradient needs
+// and overwrites the output. Backward() refers to the latest Forward(). A layer is used by one
+// thread at a time, under a ThreadScope of the size in which the layer was built.
 struct LayerContext {
   ParameterSet* parameters;  // borrowed; outlives the layers
   Precision precision;
   int batch;
   bool training;  // false: Forward only
   std::shared_ptr<Scratchpad> scratchpad;
-  // Gradients of weights are computed row-major, as the set keeps them, in place of the layout that
-  // the primitive prefers: see Linear.
+  // If true, gradients of weights are computed row-major, the layout of the parameter set, and not
+  // in the layout that the primitive prefers: see Linear.
   bool plain_gradients = false;
 };
 

@@ -17,8 +17,8 @@ namespace shoal::nn {
 class Linear {
  public:
   // Parameters `name`.weight (O, I) and `name`.bias (O). source: (B, I)
-  // row-major; the products are computed in its type. `source_gradient` is where Backward puts
-  // dL/dx, (B, I); empty: never asked for.
+  // row-major; the products are computed in its type. `source_gradient`: memory to which Backward
+  // writes dL/dx, (B, I); empty if the gradient is not needed.
   Linear(const LayerContext& context, const std::string& name, const dnnl::memory& source,
          const dnnl::memory& source_gradient);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Element by element over whole maps of one layout, f32 or bf16. What a layout fills up with zeros
-// stays zero. NaN stays NaN. Splits the work over the current ThreadScope.
+// Elementwise operations on whole maps of one layout, f32 or bf16. Padding zeros of a layout stay
+// zero. NaN stays NaN. The work is split over the current ThreadScope.
 #pragma once
 
 #include "common/nn/op.h"

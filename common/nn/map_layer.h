@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One layer of an encoder: maps in, maps out. A layer is built on the memory that it reads and owns
-// what it writes.
+// One layer of an encoder, from maps to maps. A layer borrows the memory that it reads and owns the
+// memory that it writes.
 #pragma once
 
 #include "common/nn/layer_context.h"
@@ -16,13 +16,13 @@ class MapLayer {
 
   // (B, C, h, w) in the compute type.
   const dnnl::memory& output() const { return output_; }
-  // dL/doutput with the output's description: filled before Backward, which may overwrite it. Empty
-  // in inference.
+  // dL/doutput, with the output's description. The reader of the output writes it before Backward,
+  // which may overwrite it. Empty in inference.
   const dnnl::memory& output_gradient() const { return output_gradient_; }
 
   virtual void Refresh() {}
   virtual void Forward(Statistics statistics) = 0;
-  // Gradients of the parameters, and of the source where it was asked for.
+  // Computes the gradients of the parameters, and of the source if the layer has memory for it.
   virtual void Backward() = 0;
 
  protected:

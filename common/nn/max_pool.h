@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Max pooling; its gradient goes to the largest value of a window, the first of equal ones.
+// Max pooling. The gradient is added at the largest value of a window; of equal values, at the
+// first.
 //
-//   y[b, c, i, j] = max_{u,v} x[b, c, i*s+u-p, j*s+v-p]   over what lies within the map
+//   y[b, c, i, j] = max_{u,v} x[b, c, i*s+u-p, j*s+v-p]   over the pixels within the map
 #pragma once
 
 #include "common/nn/map_layer.h"
@@ -10,7 +11,8 @@ namespace shoal::nn {
 
 class MaxPool final : public MapLayer {
  public:
-  // source (B, C, H, W); source_gradient: of the source's description, overwritten; may be empty.
+  // source (B, C, H, W); source_gradient: has the source's description and is overwritten; may be
+  // empty.
   MaxPool(const LayerContext& context, const LayerPlan& plan, const dnnl::memory& source,
           const dnnl::memory& source_gradient);
 
@@ -18,7 +20,7 @@ class MaxPool final : public MapLayer {
   void Backward() override;
 
  private:
-  dnnl::memory winners_;  // where in its window each maximum lies, as oneDNN notes it
+  dnnl::memory winners_;  // position of each maximum in its window, in oneDNN's format
   Op forward_, backward_;
   bool has_source_gradient_ = false;
 };

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Multi-layer perceptron: hidden layers (linear, LayerNorm where configured, ReLU), linear output.
-// The first layer is computed in the type of its input, the inner ones in the network's precision,
-// the output layer in f32.
+// Multi-layer perceptron: hidden layers (linear, LayerNorm if configured, ReLU) and a linear
+// output. The first layer is computed in the type of its input, the inner layers in the network's
+// precision, and the output layer in f32.
 #pragma once
 
 #include <memory>
@@ -16,8 +16,8 @@ namespace shoal::nn {
 
 class Mlp {
  public:
-  // The plan's last layer is the output. Reads `input`, which it borrows and whose owner commits
-  // it.
+  // The plan's last layer is the output. Borrows `input`; its owner calls Rows::Commit before
+  // Forward.
   Mlp(const LayerContext& context, const NetworkPlan& plan, const Rows& input);
 
   int outputs() const { return output_->outputs(); }

@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A safetensors file of others under our names: what `shoal train --init-from` starts networks
-// from.
+// Reads a safetensors file of another program under Shoal's names, for `shoal train --init-from`.
 //
-// A name map is a JSON object from our names to those of the file: a string, or a list of strings,
-// whose tensors are put together along their first dimension:
+// A name map is a JSON object from Shoal's names to names in the file. A value is a string, or a
+// list of strings whose tensors are concatenated along their first dimension:
 //
 //   {"actor.mlp.layer0.weight": "actor.latent_pi.0.weight",
 //    "actor.mlp.output.weight": ["actor.mu.weight", "actor.log_std.weight"]}
@@ -15,9 +14,9 @@
 
 namespace shoal::nn {
 
-// The file's tensors; with a map (not empty) those that it names, by our names. Throws Error
-// (usage) naming the file and what does not fit: a tensor that is missing, tensors that do not go
-// together.
+// Returns the file's tensors. If `map_file` is not empty, returns only the tensors in the map,
+// under Shoal's names. Throws Error (kUsage) that names the file and the fault: a tensor is
+// missing, or tensors cannot be concatenated.
 TensorMap ReadNamedWeights(const std::string& file, const std::string& map_file);
 
 }  // namespace shoal::nn

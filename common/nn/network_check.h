@@ -10,13 +10,13 @@
 
 namespace shoal::nn {
 
-// Bytes of the policy's F32 parameters (encoder and actor) as safetensors, at most; a few hundred
-// bytes per tensor above the exact size.
+// Upper bound for the bytes of the policy's F32 parameters (encoder and actor) as safetensors. The
+// bound exceeds the exact size by a few hundred bytes per tensor.
 int64_t PolicyBytes(const NetworkConfig& network, const ObservationSpec& spec);
 
-// Throws Error (kUsage) naming the key at fault where
-//   - the encoder does not exist, does not fit the images or has keys of another beside it,
-//   - batch statistics would be of a single value,
+// Throws Error (kUsage) that names the key at fault if
+//   - the encoder does not exist, does not fit the images, or keys of another encoder are set,
+//   - batch statistics would be computed from a single value,
 //   - an array of one layer for a batch has more numbers than 32 bits count,
 //   - the policy's parameters exceed `most_bytes`.
 void CheckNetwork(const NetworkConfig& network, const ObservationSpec& spec, int batch,

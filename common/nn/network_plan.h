@@ -1,20 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// A network as a value: its layers in order, each with geometry, normalisation, activation and the
-// way its parameters start. Shapes are computed here and nowhere else; parameters, layers, the size
-// of a policy and the checks of the configuration follow from the plan.
+// Description of a network: its layers in order, each with geometry, normalisation, activation and
+// initialisation. Shapes are computed only here. Parameters, layers, the size of a policy and the
+// checks of the configuration are derived from the plan.
 //
 // Dimensions: C channels, (H, W) of a map, N filters, O outputs, k kernel, s stride, p padding.
 //
 //   pixels        (C, H, W) u8 -> (C, H/k, W/k)           mean over k x k, scaled to a range of 1
 //   convolution   (C, H, W) -> (N, (H + 2p - k)/s + 1, ...)     weight (N, C, k, k), bias (N)
 //   max pool      (C, H, W) -> (C, (H + 2p - k)/s + 1, ...)     largest of k x k
-//   average pool  (C, H, W) -> (C, h, w) whatever H and W are
-//   spatial softmax  (C, H, W) -> (C, 1, 2)   where each channel is large: spatial_softmax.h
+//   average pool  (C, H, W) -> (C, h, w)                    for any H and W
+//   spatial softmax  (C, H, W) -> (C, 1, 2)   position of each channel's peak: spatial_softmax.h
 //   linear        all numbers of its input in row-major order -> (O)     weight (O, I), bias (O)
 //
-// then LayerNorm over a linear layer's outputs (norm.weight, norm.bias), or batch normalisation of
-// a convolution's channels (weight, bias, running_mean, running_var, all (N)) and the output of an
-// earlier layer added to it; then the activation: where the layer has them.
+// A linear layer may be followed by LayerNorm over its outputs (norm.weight, norm.bias). A
+// convolution may be followed by batch normalisation of its channels (weight, bias, running_mean,
+// running_var, all (N)), to which the output of an earlier layer may be added. The activation comes
+// last.
 #pragma once
 
 #include <cstdint>
@@ -24,8 +25,8 @@
 
 namespace shoal::nn {
 
-// How a parameter starts: a constant, orthogonal rows or columns of length `scale`, uniform in
-// [-scale, scale], or normal of deviation `scale`.
+// Initial value of a parameter: a constant, orthogonal rows or columns of length `scale`, uniform
+// in [-scale, scale], or normal with deviation `scale`.
 struct Start {
   enum class Kind { kZeros, kOnes, kOrthogonal, kUniform, kNormal };
   Kind kind = Kind::kZeros;
@@ -36,17 +37,18 @@ struct ParameterSpec {
   std::string name;
   std::vector<int64_t> shape;
   Start start = {};
-  // Measured by forward passes, trained by no loss: copied where parameters are averaged.
+  // True for a running statistic, which forward passes measure and no loss trains. Moving averages
+  // of parameters copy it.
   bool statistic = false;
 };
 
 // Endings of the names of batch normalisation's running averages. No other name ends so.
 inline constexpr std::string_view kRunningMean = ".running_mean", kRunningVariance = ".running_var";
 
-// kOrthogonal: weights orthogonal of the layer's gain, biases 0 (Saxe et al. 2013,
-// arXiv:1312.6120). kPyTorch: what PyTorch's layers do by themselves, weights and biases uniform
-// within 1 / sqrt(inputs of one output). kKaiming: weights normal of variance 2 / (N k^2), biases 0
-// (He et al. 2015, arXiv:1502.01852, of the outputs). Norms start at 1 and 0 in all.
+// kOrthogonal: orthogonal weights with the layer's gain, biases 0 (Saxe et al. 2013,
+// arXiv:1312.6120). kPyTorch: the default of PyTorch's layers, weights and biases uniform within 1
+// / sqrt(inputs of one output). kKaiming: normal weights with variance 2 / (N k^2), biases 0 (He et
+// al. 2015, arXiv:1502.01852, fan-out). The weights of norms always start at 1, their biases at 0.
 enum class Initialisation { kOrthogonal, kPyTorch, kKaiming };
 
 enum class Activation { kNone, kRelu, kTanh };
@@ -61,28 +63,28 @@ struct MapShape {
 // Range of scaled pixels: [-0.5, 0.5] or [0, 1].
 enum class PixelRange { kCentred, kUnit };
 
-// In the place of a layer's index: the one before; none.
+// Values in place of a layer's index: the layer before; no layer.
 inline constexpr int kPreviousLayer = -1, kNoLayer = -1;
 
 struct LayerPlan {
   enum class Kind { kPixels, kConvolution, kMaxPool, kAveragePool, kSpatialSoftmax, kLinear };
 
   Kind kind = Kind::kLinear;
-  std::string name;       // of its parameters: NAME.weight, NAME.bias, NAME.norm.*
-  std::string key;        // the configuration key that says how large it is
+  std::string name;       // prefix of its parameters: NAME.weight, NAME.bias, NAME.norm.*
+  std::string key;        // configuration key that sets its size
   MapShape input = {};    // linear: (I, 1, 1)
   MapShape output = {};   // linear: (O, 1, 1)
   int source = kNoLayer;  // the layer that it reads; none: the network's input
   int kernel = 1, stride = 1, padding = 0;
-  double sharpness = 1;                     // of a spatial softmax
-  PixelRange range = PixelRange::kCentred;  // of pixels
+  double sharpness = 1;                     // spatial softmax only
+  PixelRange range = PixelRange::kCentred;  // pixels only
   bool bias = true;
   bool layer_norm = false;
-  std::string batch_norm = {};  // of its parameters: BATCH_NORM.weight, ...; empty: none
-  int skip = kNoLayer;          // the layer whose output is added behind batch normalisation
+  std::string batch_norm = {};  // prefix of its parameters: BATCH_NORM.weight, ...; empty: none
+  int skip = kNoLayer;          // layer whose output is added after batch normalisation
   Activation activation = Activation::kNone;
   Initialisation initialisation = Initialisation::kOrthogonal;
-  double gain = 1;  // of an orthogonal weight
+  double gain = 1;  // scale of an orthogonal weight
 
   std::vector<ParameterSpec> Parameters() const;
 };
@@ -92,9 +94,9 @@ class NetworkPlan {
   NetworkPlan() = default;
   explicit NetworkPlan(const MapShape& input) : input_(input) {}
 
-  // Each appends a layer that reads the output of the last one, or of `source`, and returns its
-  // index. Throws Error (kUsage) where a map is too small for it, or its input too large to be
-  // counted.
+  // Each function appends a layer and returns its index. The layer reads the output of the last
+  // layer, or of `source`. Throws Error (kUsage) if a map is too small for the layer, or if the
+  // size of the layer's input overflows.
   int AddPixels(int pool, const std::string& key, PixelRange range = PixelRange::kCentred);
   struct Convolution {
     std::string name, key;
@@ -102,9 +104,9 @@ class NetworkPlan {
     Activation activation = Activation::kRelu;
     Initialisation initialisation = Initialisation::kOrthogonal;
     bool bias = true;
-    std::string batch_norm = {};  // as LayerPlan's; without a bias
+    std::string batch_norm = {};  // see LayerPlan; needs bias = false
     int source = kPreviousLayer;
-    int skip = kNoLayer;  // of the same shape; only with batch normalisation
+    int skip = kNoLayer;  // layer of the same shape; needs batch normalisation
   };
   int Add(const Convolution& convolution);
   struct MaxPool {
@@ -114,7 +116,7 @@ class NetworkPlan {
   int Add(const MaxPool& pool);
   struct AveragePool {
     std::string name, key;
-    int height, width;  // of its output
+    int height, width;  // size of the output
   };
   int Add(const AveragePool& pool);
   struct SpatialSoftmax {
@@ -145,7 +147,7 @@ class NetworkPlan {
   std::vector<LayerPlan> layers_;
 };
 
-// `more` behind `parameters`.
+// Appends `more` to `parameters`.
 void Append(const std::vector<ParameterSpec>& more, std::vector<ParameterSpec>* parameters);
 
 }  // namespace shoal::nn

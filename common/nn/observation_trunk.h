@@ -3,11 +3,11 @@
 //
 //   input[b] = [ trunk(features[b]) | vector[b] | extra columns ]
 //
-// Without pixels there is no trunk: input[b] = [ vector[b] | extra columns ].
+// There is no trunk without pixels: input[b] = [ vector[b] | extra columns ].
 //
-// The input is f32 in every precision, and so is the first layer of the MLP that reads it: between
-// 1 and 2 neighbouring bf16 are 0.0078 apart, and a position of 1.34 m has to be known better. The
-// layer is small: it costs less than 1 % of an update from pixels.
+// The input is f32 in every precision, and so is the first layer of the MLP that reads it:
+// neighbouring bf16 between 1 and 2 differ by 0.0078, which is too coarse for a position of, say,
+// 1.34 m. The layer is small: it costs less than 1 % of an update from pixels.
 #pragma once
 
 #include <optional>
@@ -23,13 +23,13 @@ namespace shoal::nn {
 
 class ObservationTrunk {
  public:
-  // features: the encoder's, empty without pixels. features_gradient: where Backward puts
-  // dL/dfeatures; empty: never asked for. The extra columns are left to the caller.
+  // features: output of the encoder; empty without pixels. features_gradient: memory to which
+  // Backward writes dL/dfeatures; empty if it is not needed. The caller writes the extra columns.
   ObservationTrunk(const LayerContext& context, const HeadPlan& plan, const dnnl::memory& features,
                    const dnnl::memory& features_gradient);
 
-  // The trunk's outputs (B, F) f32, for a readout (readout_module.h), which may leave a gradient
-  // there before Backward, in training. Null without pixels.
+  // The trunk's outputs (B, F) f32, for a readout (readout_module.h). In training, the readout may
+  // write their gradient before Backward. Null without pixels.
   const Features* features() const { return own_features_ ? &*own_features_ : nullptr; }
 
   // (B, F + V + extra) f32.
@@ -40,8 +40,8 @@ class ObservationTrunk {
   void Refresh();
   // vector (B, V); unread when V = 0.
   void Forward(const float* vector);
-  // dL/dinput (B, F + V + extra), the sum over everybody who read the input. What a readout left is
-  // added to it, once.
+  // input_gradient: dL/dinput (B, F + V + extra), summed over all readers of the input. The
+  // gradient that a readout wrote is added once.
   void Backward(const float* input_gradient);
 
  private:

@@ -31,16 +31,16 @@ dnnl::memory::desc AnyLayout(const dnnl::memory::dims& dims, dnnl::memory::data_
 // Zeroed memory, owned by the handle.
 dnnl::memory MakeMemory(const dnnl::memory::desc& desc);
 
-// Attributes every primitive here is built with: we own its scratch memory, because oneDNN's own is
-// per thread and a network may be built by one thread and run by another.
+// Attributes with which every primitive is built. Scratch memory is ours, because oneDNN's own is
+// per thread, and one thread may build a network that another thread runs.
 dnnl::primitive_attr Attributes();
 
-// Scratch memory that the operations of one network share: they run one after another.
+// Scratch memory that the operations of one network share, because they run one after another.
 class Scratchpad {
  public:
   // Called while a network is built.
   void Reserve(const dnnl::memory::desc& desc);
-  // Called by the first run; the memory stays.
+  // Called by the first run, which allocates the memory.
   void* Data();
 
  private:
@@ -48,8 +48,9 @@ class Scratchpad {
   dnnl::memory memory_;
 };
 
-// One primitive with its arguments, of which empty ones are left out. Movable; the memories are
-// shared handles. Run() from one thread at a time, under a ThreadScope of the size it was built in.
+// One primitive with its arguments; empty arguments are left out. Movable; the memories are shared
+// handles. One thread at a time calls Run(), under a ThreadScope of the size in which the operation
+// was built.
 class Op {
  public:
   Op() = default;
@@ -61,7 +62,7 @@ class Op {
   static bool CanReorder(const dnnl::memory& from, const dnnl::memory& to);
   static Op Reorder(const dnnl::memory& from, const dnnl::memory& to,
                     std::shared_ptr<Scratchpad> scratchpad);
-  // The same for parts of the memories, which these descriptions say.
+  // The same for the parts of the memories that `from_part` and `to_part` describe.
   static Op ReorderPart(const dnnl::memory& from, const dnnl::memory::desc& from_part,
                         const dnnl::memory& to, const dnnl::memory::desc& to_part,
                         std::shared_ptr<Scratchpad> scratchpad);
@@ -76,25 +77,25 @@ class Op {
   dnnl::primitive primitive_;
   std::vector<dnnl::memory> memories_;
   std::vector<dnnl_exec_arg_t> arguments_;
-  dnnl::memory scratch_;  // empty where the primitive needs none
+  dnnl::memory scratch_;  // empty if the primitive needs none
   std::shared_ptr<Scratchpad> scratchpad_;
 };
 
-// A memory in the layout one primitive asks for, beside the layout everybody else uses. Where the
-// two agree it is the same memory and Run does nothing.
+// A memory in the layout that one primitive requires, beside the memory that all other code uses.
+// If both layouts agree, both are the same memory and Run does nothing.
 class Relayout {
  public:
   Relayout() = default;
-  // Run() brings `source` into the layout `wanted`, before a primitive that reads memory().
+  // Run() converts `source` to the layout `wanted`, before a primitive that reads memory().
   static Relayout Before(const dnnl::memory& source, const dnnl::memory::desc& wanted,
                          std::shared_ptr<Scratchpad> scratchpad);
-  // The same, into memory of its own even where the two agree.
+  // The same, but always into a copy, even if the layouts agree.
   static Relayout Copying(const dnnl::memory& source, const dnnl::memory::desc& wanted,
                           std::shared_ptr<Scratchpad> scratchpad);
-  // The same, into `target`, which is in the wanted layout.
+  // The same, into `target`, which has the wanted layout.
   static Relayout Into(const dnnl::memory& source, const dnnl::memory& target,
                        std::shared_ptr<Scratchpad> scratchpad);
-  // Run() brings memory(), written by a primitive in the layout `produced`, to `target`.
+  // Run() copies memory(), which a primitive wrote in the layout `produced`, to `target`.
   static Relayout After(const dnnl::memory::desc& produced, const dnnl::memory& target,
                         std::shared_ptr<Scratchpad> scratchpad);
 

@@ -3,7 +3,7 @@
 //
 //   Q R = G,  G (m, n) ~ N(0, 1),  W = gain * Q diag(sign R)
 //
-// uniform over matrices with orthonormal columns (rows where W is wider than tall).
+// W / gain is uniform over matrices with orthonormal columns (rows if W is wider than tall).
 // Source: Saxe et al. 2013, arXiv:1312.6120; signs: Mezzadri 2006, arXiv:math-ph/0609050.
 #pragma once
 

@@ -8,11 +8,12 @@
 
 namespace shoal::nn {
 
-// Threads that networks use which the calling thread builds from now on; 1 until SetThreads.
+// Number of threads of networks that the calling thread builds from now on; 1 before SetThreads.
 int Threads();
 
-// The pool's size for the calling thread while this lives: a network is built and run under the
-// size it was built with, because its primitives partition their work when built.
+// Sets the pool's size for the calling thread during this object's lifetime. A network must be run
+// with the size with which it was built, because its primitives partition their work when they are
+// built.
 class ThreadScope {
  public:
   explicit ThreadScope(int threads);
@@ -29,7 +30,8 @@ class ThreadScope {
 // must not throw.
 void ParallelFor(int n, const std::function<void(int begin, int end)>& body);
 
-// The same over an array of n values, in blocks that are worth a thread: body(first, count).
+// The same over an array of n values, in blocks large enough to be worth a thread: body(first,
+// count).
 template <class Body>
 void ParallelForValues(int64_t n, const Body& body) {
   constexpr int64_t kBlock = 1 << 14;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parameters that are trained together, in one array, so that an optimiser step is one pass; behind
-// them the running statistics that belong to them.
+// Parameters that are trained together, in one array, so that an optimiser step is one pass. Their
+// running statistics follow them in the array.
 #pragma once
 
 #include <array>
@@ -23,10 +23,10 @@ class SharedLayouts;  // laid_out_weight.h
 struct PlainValues {
   const uint8_t* data = nullptr;
   bool bf16 = false;    // else f32
-  bool aligned = true;  // to its type
+  bool aligned = true;  // address is a multiple of the type's size
 };
 
-// `count` numbers, to f32, which is exact.
+// Converts `count` numbers to f32, exactly.
 void Widen(const PlainValues& from, int64_t count, float* to);
 
 // One parameter of a set: row-major f32, unless it is borrowed. Borrows the set; copies refer to
@@ -38,19 +38,22 @@ class Parameter {
       : set_(set), offset_(offset), spec_(spec) {}
 
   const std::vector<int64_t>& shape() const { return spec_->shape; }
-  // Its numbers are in the tensors that were loaded last, not in the set.
+  // Whether its numbers are in the tensors that were loaded last, not in the set.
   bool borrowed() const;
-  // Moves with every optimiser step: fetch it when it is needed. Not of a borrowed one.
+  // Address of the values, row-major. Every optimiser step changes the address, so do not store it.
+  // Not for a borrowed parameter.
   float* value() const;
-  // Values of any parameter, also of a borrowed one, whose address changes with every load.
+  // Values of any parameter, borrowed or not. The address of borrowed values changes with every
+  // load.
   PlainValues plain() const;
-  // Destination of an optimiser's step. The forward pass that measures a statistic writes the
-  // statistic's next value here. Moves like value().
+  // Destination of an optimiser's step. A forward pass that measures a statistic writes its next
+  // value here. The address changes like that of value().
   float* next_value() const;
-  // Stays. Null in a set without gradients, and of a statistic.
+  // Address of the gradient, which never changes. Null for a statistic and in a set without
+  // gradients.
   float* gradient() const;
 
-  // First float in the set's arrays.
+  // Index of its first float in the set's arrays.
   int64_t offset() const { return offset_; }
   const ParameterSet& set() const { return *set_; }
 
@@ -60,26 +63,26 @@ class Parameter {
   const ParameterSpec* spec_ = nullptr;
 };
 
-// Owns gradients, values and a second array of values, into which an optimiser writes: exchanging
-// the two applies its step, exchanging them again takes it back. Statistics lie behind what is
-// trained: forward passes write them into the second array, so that a step and its undoing take
-// them along. Not movable: layers borrow it.
+// Owns gradients, values and a second array of values, into which an optimiser writes. Exchanging
+// the two arrays applies the step; exchanging them again undoes the step. Statistics follow the
+// trained parameters. Forward passes write statistics into the second array, so a step applies them
+// and an undo reverts them. Not movable, because layers borrow the set.
 //
-// Each parameter starts at a multiple of 16 floats; the gaps hold zeros in all arrays. Those of
-// several dimensions have no place in a set that borrows them.
+// Each parameter starts at a multiple of 16 floats; the gaps hold zeros in all arrays. A set for
+// borrowing has no room for parameters of several dimensions.
 //
-// Replicas: the two arrays of values exist once, each replica's set refers to them. Which of the
-// two holds the values is a property of each set, so that every replica exchanges its own. A
-// replica writes only its share of the values, and all replicas meet before one reads them.
+// Replicas: the two arrays of values exist once, and each replica's set refers to them. Each set
+// stores which of the two holds the values, so every replica exchanges its own arrays. A replica
+// writes only its share of the values, and all replicas meet before one reads them.
 class ParameterSet {
  public:
   enum class Use {
     kTraining,
     kInference,  // no gradients, no second array
-    kBorrowing,  // the same, for layers alone: values come by Borrow, and are not exported
+    kBorrowing,  // the same; Borrow sets the values, which only layers read and Export does not
   };
 
-  // `replica`: borrowed while this constructs; null: alone.
+  // `replica`: borrowed during construction; null without replicas.
   ParameterSet(std::vector<ParameterSpec> specs, Use use, Replica* replica = nullptr);
   ParameterSet(const ParameterSet&) = delete;
   ParameterSet& operator=(const ParameterSet&) = delete;
@@ -89,13 +92,13 @@ class ParameterSet {
 
   const std::vector<ParameterSpec>& specs() const { return specs_; }
   bool Has(std::string_view name) const;
-  // CHECKs that there is one.
+  // Returns the parameter `name`. CHECKs that it exists.
   Parameter Find(std::string_view name);
   // Offset of the first parameter whose name starts with `prefix`; size() if there is none.
   int64_t OffsetOf(std::string_view prefix) const;
 
   int64_t size() const { return size_; }  // floats, gaps included
-  // Without statistics: what gradients and optimisers have arrays of.
+  // Floats without statistics: the size of the arrays of gradients and optimisers.
   int64_t trained_size() const { return trained_size_; }
   const float* values() const { return shared_->arrays[current_].data(); }
   float* values() { return shared_->arrays[current_].data(); }
@@ -103,22 +106,23 @@ class ParameterSet {
   const float* gradients() const { return gradients_.data(); }
   float* gradients() { return gradients_.data(); }
   void Exchange() { current_ = 1 - current_; }
-  // Layouts of this set's weights that replicas share; null: alone.
+  // Layouts of this set's weights that replicas share; null without replicas.
   SharedLayouts* layouts() const { return shared_->layouts.get(); }
-  int rank() const { return rank_; }  // of its replica
+  int rank() const { return rank_; }  // rank of its replica
 
-  // An array of this set's values to named tensors and back. `prefix` goes before each name.
+  // Writes an array of this set's values as named tensors; `prefix` precedes each name.
   void Export(const float* array, const std::string& prefix, TensorMap* tensors) const;
-  // The values under their own names.
+  // Exports the values under their own names.
   void Export(TensorMap* tensors) const { Export(values(), "", tensors); }
-  // Takes F32 and BF16. Throws Error naming a missing tensor or a wrong type or shape; `array` is
-  // then as it was.
+  // Reads F32 and BF16 tensors. Throws Error that names a missing tensor or a wrong type or shape;
+  // `array` does not change then.
   void Import(const TensorViews& tensors, const std::string& prefix, const std::string& source,
               float* array) const;
-  // Takes and throws what Import does, for kBorrowing: values of one dimension are copied, the
-  // others stay in `tensors`, whose bytes outlive the set or the next call.
+  // Does the same as Import for kBorrowing, with the same errors. Parameters of one dimension are
+  // copied; the others stay in `tensors`, whose bytes must live until the next call or the end of
+  // the set.
   void Borrow(const TensorViews& tensors, const std::string& source);
-  // The same for an array of what is trained alone (Adam's moments).
+  // The same for an array without statistics (Adam's moments).
   void ExportTrained(const float* array, const std::string& prefix, TensorMap* tensors) const;
   void ImportTrained(const TensorViews& tensors, const std::string& prefix,
                      const std::string& source, float* array) const;
@@ -132,7 +136,7 @@ class ParameterSet {
                    const std::string& source, float* array) const;
   // State that exists once for all replicas.
   struct Shared {
-    std::array<std::vector<float>, 2> arrays;  // values, and where a step writes
+    std::array<std::vector<float>, 2> arrays;  // values, and destination of a step
     std::shared_ptr<SharedLayouts> layouts;
   };
   std::shared_ptr<Shared> MakeShared(const Replica& replica) const;
@@ -141,12 +145,12 @@ class ParameterSet {
 
   const Use use_;
   std::vector<ParameterSpec> specs_;  // statistics last
-  size_t trained_ = 0;                // specs that are no statistics
+  size_t trained_ = 0;                // specs that are not statistics
   int64_t size_ = 0, trained_size_ = 0;
   std::vector<int64_t> offsets_;
   const int rank_;
   std::shared_ptr<Shared> shared_;
-  size_t current_ = 0;  // of the two arrays
+  size_t current_ = 0;  // index of the array with the values
   std::vector<float> gradients_;
   std::vector<PlainValues> borrowed_;  // one for each spec; empty unless kBorrowing
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text of a policy's network: one line per layer with everything that its result depends on except
+// Text of a policy's network: one line per layer, with everything that determines its result except
 // the parameters. Equal lines mean equal networks; the text leaves out how parameters start. It is
 // stored beside a policy's parameters, so that a program whose network of the same name computes
 // something else detects this before it acts.
@@ -17,7 +17,7 @@ namespace shoal::nn {
 // relu"
 std::string PlanLine(const LayerPlan& layer);
 
-// The encoder's layers, the trunk's, the MLP's, and what becomes of its outputs.
+// Lines of the encoder's layers, the trunk, the MLP and the use of the MLP's outputs.
 std::vector<std::string> PlanLines(const NetworkPlan& encoder, const ActorPlan& actor);
 
 // "gaussian", "deterministic", "unsquashed"

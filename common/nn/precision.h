@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which arithmetic the networks' large products use.
+// Arithmetic of the networks' large products.
 #pragma once
 
 #include <string>
@@ -8,14 +8,14 @@ namespace shoal::nn {
 
 enum class Precision { kF32, kBf16 };
 
-// "auto" -> bf16 for networks that see pixels where the CPU has it natively, else f32: without
-// pixels bf16 is faster, too, but is asked for, as it rounds hidden layers. "bf16" on a CPU without
-// it throws Error.
+// Returns the precision for the configured word `asked`. "auto" is bf16 for networks with pixels on
+// a CPU with native bf16, else f32. Without pixels bf16 is faster too, but it rounds hidden layers,
+// so it must be configured explicitly. Throws Error for "bf16" on a CPU without bf16.
 Precision ChoosePrecision(const std::string& asked, bool pixels);
 const char* ToString(Precision precision);
-// Sets the threads that networks use which the calling thread builds from now on.
+// Sets the number of threads of networks that the calling thread builds from now on.
 void SetThreads(int threads);
-// The instruction set that oneDNN found, e.g. "avx512_core_bf16", for meta.json.
+// The instruction set that oneDNN detected, e.g. "avx512_core_bf16", for meta.json.
 std::string CpuIsa();
 
 }  // namespace shoal::nn

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// One spelling for declarations that differ between oneDNN 2 and 3. Debian 12 has 2.6, Debian 13
-// has 3.7.
+// Wrappers for declarations that differ between oneDNN 2 and 3. Debian 12 has 2.6, Debian 13 has
+// 3.7.
 //
-// 2 first describes an operation, then asks an engine for a primitive that does it; 3 does both in
-// one constructor. 3 also wants the dilation of a pooling's window (none here) and each map of a
-// normalisation (equal here). Primitives are for CpuEngine(). Only sources of common/nn and its
-// tests include this header.
+// oneDNN 2 first describes an operation, then asks an engine for a primitive; oneDNN 3 does both in
+// one constructor. oneDNN 3 also needs the dilation of a pooling window (none here) and the
+// description of each map of a normalisation (all equal here). Primitives are for CpuEngine(). Only
+// sources of common/nn and its tests include this header.
 #pragma once
 
 #include <dnnl.hpp>
@@ -41,7 +41,7 @@ typename Operation::primitive_desc DescribeForward(const dnnl::primitive_attr& a
 #endif
 }
 
-// forward: the description of the operation whose gradient it is.
+// forward: the description of the forward operation.
 template <class Operation, class Forward, class... What>
 typename Operation::primitive_desc DescribeBackward(const Forward& forward, const What&... what) {
 #if DNNL_VERSION_MAJOR >= 3
@@ -89,7 +89,7 @@ inline dnnl::pooling_backward::primitive_desc DescribePoolingBackward(
 #endif
 }
 
-// map: the description of source and output alike.
+// map: the description of both source and output.
 inline dnnl::batch_normalization_forward::primitive_desc DescribeNormalization(
     dnnl::prop_kind kind, const dnnl::memory::desc& map, float epsilon,
     dnnl::normalization_flags flags) {
@@ -101,7 +101,7 @@ inline dnnl::batch_normalization_forward::primitive_desc DescribeNormalization(
 #endif
 }
 
-// map: the description of source, output and the gradients of both alike.
+// map: the description of source, output and their gradients.
 inline dnnl::batch_normalization_backward::primitive_desc DescribeNormalizationBackward(
     const dnnl::batch_normalization_forward::primitive_desc& forward, const dnnl::memory::desc& map,
     float epsilon, dnnl::normalization_flags flags) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// A readout: linear functions of a trunk's outputs, which tell something that the trunk and the
-// encoder below it are trained to know (Eq. 27 of docs/algorithm.md). No part of a policy.
+// A readout predicts auxiliary labels as linear functions of a trunk's outputs. Its loss trains the
+// trunk and the encoder below the trunk (Eq. 27 of docs/algorithm.md). A policy does not contain
+// readouts.
 //
 //   y[b] = weight trunk[b] + bias          names READOUT.weight (L, F), READOUT.bias (L)
 //
@@ -19,17 +20,17 @@ class Features;
 
 class ReadoutModule final : public Module {
  public:
-  // Reads the trunk of a module for training (trunk_features of ActorModule or CriticModule), which
-  // it borrows. A trunk has at most one readout.
+  // `trunk`: trunk_features of an ActorModule or CriticModule for training; borrowed. A trunk has
+  // at most one readout.
   ReadoutModule(const std::string& name, int outputs, const Features& trunk,
                 const ModuleContext& context);
   ~ReadoutModule() override;
 
   void Refresh() override;
-  // (B, L), for the trunk's outputs as they are.
+  // Returns y (B, L) for the trunk's current outputs.
   Array Forward();
-  // From dL/dy (B, L): gradients of the parameters, and that of the trunk, which the next Backward
-  // of the trunk's module takes up.
+  // Computes the gradients of the parameters and of the trunk's outputs from dL/dy (B, L). The next
+  // Backward of the trunk's module uses the latter gradient.
   void Backward(Array gradient);
 
  private:

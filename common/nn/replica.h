@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// Learning in replicas: N threads, each with networks of its own for a share of the batch. The
+// Learning in replicas: N threads, each of which has its own networks for a share of the batch. The
 // values of the parameters, and the layouts of the weights that the primitives read, exist once for
 // all replicas (parameter_set.h, laid_out_weight.h); gradients and activations belong to a replica.
 // Work over parameters (optimiser steps, moving averages, layouts) is divided among the replicas.
 //
-// Code of a replica reads as if it were alone: losses and their gradients are means over its own
-// rows. Values of the whole batch (figures, whether all is finite) pass through one of the
-// functions below. All replicas call the same functions in the same order. Sums are made in the
-// order of ranks: results depend on N, not on timing.
+// Code of a replica is written as for a single replica: losses and their gradients are means over
+// its own rows. Values of the whole batch (figures, or whether all numbers are finite) are computed
+// by the functions below. All replicas call the same functions in the same order. Sums follow the
+// order of ranks, so results depend on N, not on timing.
 //
 // Dimensions: B batch; b_r rows of replica r, about B/N.
 #pragma once
@@ -32,7 +32,7 @@ class Exchange {
   Exchange(int replicas, int rows, int copies = 1);
 
   int replicas() const { return int(first_rows_.size()) - 1; }
-  // Whether replicas may assume free cores when they wait. While none of them works.
+  // Sets whether waiting replicas may assume free cores. Call it while no replica works.
   void SetPatient(bool patient) { barrier_.SetPatient(patient); }
   // If false, replicas do not wait for each other, and each reads its own arrays and numbers in
   // place of the others'. This measures the cost of one replica by itself; its results are useless.
@@ -44,22 +44,23 @@ class Exchange {
 
   // The arrays and numbers that a replica shows to the others.
   struct Offer {
-    double number = 0;                       // of Sum
-    std::vector<std::vector<float>> arrays;  // of Post
+    double number = 0;                       // argument of Sum
+    std::vector<std::vector<float>> arrays;  // arguments of Post
     std::vector<double> means;
   };
 
-  const std::vector<int> first_rows_;  // by rank, and B behind them
+  const std::vector<int> first_rows_;  // by rank, then B
   Barrier barrier_;
   bool meets_ = true;
-  // By turn and rank. Two turns are enough: a replica may make its next offer while others still
-  // read the last one, but the offer after that has to pass the barrier of the next one first.
+  // Offers by turn and rank. Two turns are enough. A replica may make its next offer while others
+  // still read the last offer, but it can make no further offer before all have passed the next
+  // barrier.
   std::array<std::vector<Offer>, 2> offers_;
   std::vector<std::shared_ptr<void>> shared_;  // in the order of Replica::Shared
 };
 
-// Used by one thread: the one that runs this replica. Alone, every function returns its argument
-// bit for bit.
+// One of N replicas; only its own thread uses it. With a single replica, every function returns its
+// argument bit for bit.
 class Replica {
  public:
   Replica() = default;  // alone
@@ -67,7 +68,7 @@ class Replica {
 
   int rank() const { return rank_; }
   int count() const { return count_; }  // N
-  // Threads of its networks' passes: one if there are several replicas, else those of nn::Threads.
+  // Threads of its networks' passes: 1 if there are several replicas, else nn::Threads().
   int threads() const;
 
   // The rows [begin, begin + count) of a batch that this replica learns from. CHECKs that the batch
@@ -76,18 +77,18 @@ class Replica {
     int begin, count;
   };
   Rows RowsOf(int batch) const;
-  // b_r / B: the weight of the replica's means in those of the batch.
+  // b_r / B: the weight of the means of replica `rank` in the means of the batch.
   double WeightOf(int rank) const;
 
-  // The part of an array of so many floats, a multiple of 16, that this replica works on if all
-  // divide the work: a multiple of 16, too. Alone: all.
+  // This replica's part of an array of `floats` floats, if replicas divide the work. `floats` and
+  // the bounds of the part are multiples of 16. A single replica has the whole array.
   struct Share {
     int64_t begin, end;
   };
   Share ShareOf(int64_t floats) const;
 
-  // One object for all replicas: the k-th call of each returns the same one. The first caller makes
-  // it; replicas are built one after another.
+  // Returns one object for all replicas: the k-th call of each replica returns the same object,
+  // which the first caller makes. Replicas are built one after another.
   template <class T, class Make>
   std::shared_ptr<T> Shared(const Make& make) {
     if (exchange_ == nullptr) return make();
@@ -97,15 +98,17 @@ class Replica {
 
   int objects_shared() const { return int(shared_); }  // so far
 
-  // Waits until all replicas have called it. Afterwards each reads what the others wrote before.
+  // Waits until all replicas have called Meet. Afterwards each replica sees everything that the
+  // others wrote before.
   void Meet();
   // The mean over the batch of each number, from means over the replicas' rows.
   std::vector<double> Means(std::initializer_list<double> own);
   // The sum over replicas.
   double Sum(double own);
 
-  // Shows arrays of the replica's rows, and means over them, along with the next Sum or Means, so
-  // that they need no meeting of their own. Read them by Posted after it and before the one after.
+  // Sends arrays of the replica's rows, and means over these rows, together with the next Sum or
+  // Means, which saves a meeting. Posted returns them after that call, until the following Sum or
+  // Means.
   void Post(std::span<const std::span<const float>> arrays, std::vector<double> means);
   struct Whole {
     std::vector<std::vector<float>> arrays;  // of the whole batch
@@ -113,20 +116,20 @@ class Replica {
   };
   Whole Posted() const;
 
-  // Standard normals for the rows of this replica, `per_row` each, of those drawn for all B: each
-  // row has the numbers that it would have with one replica, and the stream ends where it would.
+  // Draws `per_row` standard normals for each of the B rows and returns those of this replica's
+  // rows. Each row gets the same numbers as with one replica, and `random` ends in the same state.
   std::vector<double> Normals(int batch, int per_row, Random* random) const;
 
  private:
-  // Shows `next_` and waits until all have shown theirs, which are returned by rank and stay until
-  // the next call but one.
+  // Publishes `next_`, waits for the offers of all replicas and returns them by rank. They stay
+  // valid until the second call after this one.
   std::span<const Exchange::Offer> Show();
   std::span<const Exchange::Offer> Shown() const;  // latest
 
   Exchange* exchange_ = nullptr;
   int rank_ = 0, count_ = 1;
   size_t turn_ = 0, shared_ = 0;
-  Exchange::Offer next_;   // to be shown
+  Exchange::Offer next_;   // next to be shown
   Exchange::Offer alone_;  // shown last, without an exchange
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A (B, N) array of f32, with a copy in the type of the large products.
+// A (B, N) array of f32, with a copy in the compute type of large products.
 #pragma once
 
 #include "common/nn/op.h"
@@ -9,7 +9,7 @@ namespace shoal::nn {
 
 class Rows {
  public:
-  // Throws UsageError when an int does not hold size().
+  // Throws UsageError if size() overflows an int.
   Rows(int batch, int columns, Precision precision);
 
   int batch() const { return batch_; }
@@ -20,7 +20,7 @@ class Rows {
 
   // Copies (B, count) into columns first .. first + count - 1.
   void SetColumns(int first, int count, const float* source);
-  // Rounds the values into the copy; nothing to do where the copy is f32.
+  // Rounds the values into the copy. Does nothing if the compute type is f32.
   void Commit();
 
   const dnnl::memory& f32() const { return f32_; }

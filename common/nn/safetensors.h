@@ -13,7 +13,7 @@
 namespace shoal::nn {
 
 struct NamedTensor {
-  std::string dtype;  // "F32", "BF16", "U64"; "I64" of PyTorch's counters; "U8"
+  std::string dtype;  // "F32", "BF16", "U64", "U8"; "I64" for PyTorch's counters
   std::vector<int64_t> shape;
   std::vector<uint8_t> data;
 };
@@ -34,7 +34,7 @@ class TensorViews {
   TensorViews() = default;
   TensorViews(const TensorMap& tensors);
 
-  // Null where there is none of this name.
+  // Null if there is no tensor of this name.
   const TensorView* Find(const std::string& name) const;
   const std::map<std::string, TensorView>& all() const& { return views_; }
 
@@ -48,13 +48,13 @@ class TensorViews {
 std::string WriteSafetensors(const TensorMap& tensors,
                              const std::map<std::string, std::string>& metadata);
 
-// `source` names the bytes in errors. Throws Error on anything but a well-formed file.
+// `source` names the bytes in errors. Throws Error if the file is not well-formed.
 TensorMap ReadSafetensors(std::string_view bytes, const std::string& source);
-// The same, as strict, without a copy of the data: the views point into `bytes`.
+// The same, with the same checks, but without a copy of the data: the views point into `bytes`.
 TensorViews ReadSafetensorsViews(std::string_view bytes, const std::string& source);
 
-// Every F32 tensor rounded to BF16 (nearest even), for the wire, but running statistics, those of
-// observation.* too: a mean far from zero would lose what the deviation around it is measured in.
+// Rounds F32 tensors to BF16 (nearest even), for messages. Running statistics, including
+// observation.*, stay F32: if a mean is large compared with its deviation, BF16 is too coarse.
 TensorMap ToBf16(TensorMap tensors);
 
 }  // namespace shoal::nn

@@ -8,9 +8,9 @@
 //   y[b, c, 1] = sum_{i,j} p[b, c, i, j] (2 i / (H-1) - 1)                    down
 //
 // A side of one pixel has the coordinate 0.
-// Shapes: source (B, C, H, W), output (B, C, 1, 2) row-major, in the compute type; within, all is
-// f32. The map is read twice forward and once backward, where p is computed anew: that is cheaper
-// than to keep it.
+// Shapes: source (B, C, H, W), output (B, C, 1, 2) row-major, in the compute type; all internal
+// values are f32. The forward pass reads the map twice, the backward pass once. The backward pass
+// computes p again, which is cheaper than storing p.
 #pragma once
 
 #include <vector>
@@ -21,7 +21,7 @@ namespace shoal::nn {
 
 class SpatialSoftmax final : public MapLayer {
  public:
-  // source_gradient: of the source's description, overwritten; may be empty.
+  // source_gradient: has the source's description and is overwritten; may be empty.
   SpatialSoftmax(const LayerContext& context, const LayerPlan& plan, const dnnl::memory& source,
                  const dnnl::memory& source_gradient);
 
@@ -29,7 +29,7 @@ class SpatialSoftmax final : public MapLayer {
   void Backward() override;
 
  private:
-  // In the compute type, as float or as the bits of a bf16.
+  // T: float, or uint16_t for the bits of a bf16.
   template <class T>
   void ForwardMaps();
   template <class T>

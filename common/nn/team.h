@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Threads that do one thing side by side, each its part of it, and meet on the way.
+// A team of threads that work on parts of one task, and a barrier at which they wait for each
+// other.
 #pragma once
 
 #include <atomic>
@@ -10,31 +11,31 @@
 
 namespace shoal::nn {
 
-// Barrier: each of `parties` threads waits for the last of them. Afterwards each reads everything
-// that the others wrote before.
+// Barrier: each of `parties` threads waits until the last one arrives. Afterwards each thread sees
+// everything that the others wrote before.
 //
-// A waiting thread spins for 200 us, about the time between the ends of equal parts that run at
-// once; then it sleeps and leaves its core to others: on a busy machine the thread that it waits
-// for may need this very core. A patient barrier assumes free cores and spins for up to 2 ms,
-// because a thread that sleeps takes tens of microseconds to come back, and all others wait for it.
+// A waiting thread spins for 200 us, about the time by which equal parts of a task differ. Then it
+// sleeps and frees its core, because on a busy machine the awaited thread may need this core. A
+// patient barrier assumes free cores and spins for up to 2 ms, because a thread that sleeps takes
+// tens of microseconds to come back, and all others wait for it.
 class Barrier {
  public:
   explicit Barrier(int parties, bool patient = false) : parties_(parties), patient_(patient) {}
 
   void ArriveAndWait();
-  // For those who arrive from now on.
+  // Applies to threads that arrive from now on.
   void SetPatient(bool patient) { patient_.store(patient, std::memory_order_relaxed); }
 
  private:
-  // Lines of their own: those who wait read `round_` while others arrive.
+  // Separate cache lines, because waiting threads read `round_` while others arrive.
   alignas(64) std::atomic<int> arrived_{0};
   alignas(64) std::atomic<uint32_t> round_{0};
   const int parties_;
   std::atomic<bool> patient_;
 };
 
-// N ranks: the caller of Run is the first, threads of the team the others. Between runs these
-// sleep.
+// Runs a function on N ranks. The caller of Run is the first rank; the team's threads are the
+// others and sleep between runs.
 class Team {
  public:
   explicit Team(int ranks);
@@ -42,17 +43,18 @@ class Team {
   Team(const Team&) = delete;
   Team& operator=(const Team&) = delete;
 
-  // body(rank) for every rank at once; returns when all are done. The body must not throw. From one
-  // thread at a time, the same in every run where the body builds or runs networks.
+  // Runs body(rank) for every rank at once and returns when all are done. The body must not throw.
+  // Only one thread at a time may call Run; if the body builds or runs networks, it must always be
+  // the same thread.
   void Run(const std::function<void(int rank)>& body);
 
-  // Whether ranks lately lost their cores to other threads while they worked: more often than every
-  // second run, averaged over about ten runs.
+  // Whether ranks recently lost their cores to other threads while they worked: more than 0.5 times
+  // per run, averaged over about ten runs.
   bool crowded() const { return losses_ > 0.5; }
 
  private:
   struct alignas(64) Losses {
-    int64_t count = 0;  // of the latest run
+    int64_t count = 0;  // losses in the latest run
   };
 
   void Serve(int rank);
@@ -60,8 +62,8 @@ class Team {
 
   Barrier start_, end_;
   std::vector<Losses> losses_of_rank_;
-  double losses_ = 0;                               // of a run, averaged
-  const std::function<void(int)>* body_ = nullptr;  // null: the end
+  double losses_ = 0;                               // per run, averaged
+  const std::function<void(int)>* body_ = nullptr;  // null: the threads end
   std::vector<std::thread> threads_;                // last: they use the others
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole numbers, or the bits of doubles, among tensors: U64 of shape {n}; a counter is one of them.
+// Tensors of integers or of the bits of doubles: U64 of shape {n}; a counter has n = 1.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +12,8 @@
 namespace shoal::nn {
 
 NamedTensor WordsTensor(const std::vector<uint64_t>& words);
-// `count`: how many there must be. Throws Error naming a missing or ill-shaped tensor.
+// `count`: the required number of words; empty for any number. Throws Error that names a missing or
+// ill-shaped tensor.
 std::vector<uint64_t> ReadWords(const TensorMap& tensors, const std::string& name,
                                 std::optional<size_t> count, const std::string& source);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Observations of a policy at about mean 0 and deviation 1.
+// Scales the observations of a policy to about mean 0 and deviation 1.
 //
 //   y_j = clip((x_j - mean_j) / sqrt(variance_j + 1e-8), -10, 10)
 //
@@ -21,7 +21,7 @@ class VectorScale {
   // mean, variance (V).
   VectorScale(std::span<const float> mean, std::span<const float> variance);
 
-  // x (B, V) to y (B, V), which says how many; they may be the same.
+  // Scales x (B, V) into y (B, V); the size of y gives B. y may be x.
   void Apply(const float* x, std::span<float> y) const;
 
   // (V): y = clip((x - mean) * factor, -kLimit, kLimit).
@@ -33,8 +33,8 @@ class VectorScale {
   std::vector<float> mean_, factor_;  // (V)
 };
 
-// The scale among a policy's tensors (kObservationMean, kObservationVariance); empty if there is
-// none. Throws Error naming a missing tensor or a wrong type or shape.
+// Reads the scale from a policy's tensors (kObservationMean, kObservationVariance); empty if there
+// is none. Throws Error naming a missing tensor or a wrong type or shape.
 std::optional<VectorScale> ReadVectorScale(const TensorViews& tensors, int vector_size,
                                            const std::string& source);
 

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Interface of an algorithm to the learner's loop: networks, targets and optimisers behind one
-// update of a batch. Loop, checkpoints, weights, reports and guards use algorithms only through it.
+// Interface of an algorithm to the learner's loop. It hides networks, targets and optimisers behind
+// one update of a batch. Loop, checkpoints, weights, reports and guards use algorithms only through
+// this interface.
 //
-// An agent knows nothing of DDS, clocks or files. Each lives in a folder of its own
-// (learner/agent/ALGORITHM) and computes with an Engine; algorithms.h lists them.
+// An agent does not depend on DDS, clocks or files. Each algorithm has its own folder
+// (learner/agent/ALGORITHM) and computes with an Engine; algorithms.h lists the algorithms.
 #pragma once
 
 #include <cstdint>
@@ -16,18 +17,19 @@
 
 namespace shoal::learner {
 
-// Stages of an update, for its time. kOptimiser includes targets and averages, which follow it.
+// Stages of an update, for time measurements. kOptimiser includes the targets and averages that
+// follow the step.
 enum class UpdateStage { kForward, kBackward, kOptimiser };
 
-// Called whenever a stage ends: the time since the last call, or since the update's beginning,
-// belongs to it. A stage may end several times in one update.
+// Called whenever a stage ends. The time since the last call, or since the update's beginning,
+// belongs to that stage. A stage may end several times in one update.
 using OnStageEnd = std::function<void(UpdateStage)>;
 
 struct UpdateOutcome {
-  // Figures that an update does not compute (the actor's, where it leaves the actor alone) are
-  // absent.
+  // Figures that an update does not compute are absent (for example, the actor's figures if the
+  // update does not train the actor).
   UpdateFigures figures;
-  // False: the batch, a loss or a gradient is not finite; nothing has changed.
+  // False if the batch, a loss or a gradient is not finite; the agent is then unchanged.
   bool finite = true;
 };
 
@@ -39,13 +41,13 @@ class Agent {
   UpdateOutcome Update(const BatchView& batch) {
     return Update(batch, [](UpdateStage) {});
   }
-  // Depends on the agent's state and the batch alone: random draws of update u come from the stream
-  // (seed, kLearnerUpdate, u). CHECKs the batch's size.
+  // Performs one update. It depends only on the agent's state and the batch: random draws of update
+  // u come from the stream (seed, kLearnerUpdate, u). CHECKs the batch's size.
   virtual UpdateOutcome Update(const BatchView& batch, const OnStageEnd& on_stage_end) = 0;
   // Number of updates done, including those before a checkpoint.
   virtual uint64_t updates() const = 0;
 
-  // F32 parameters an actor needs (names as nn::Policy loads them).
+  // F32 parameters that an actor needs, with the names that nn::Policy::Load reads.
   virtual nn::TensorMap PolicyTensors() const = 0;
   // The same, averaged over the latest updates: the policy that is evaluated and stored in
   // checkpoints.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The state of an agent in a checkpoint: one list from which it is written and read.
+// The state of an agent in a checkpoint. One list of entries defines both writing and reading.
 #pragma once
 
 #include <cstdint>
@@ -14,24 +14,25 @@
 
 namespace shoal::learner {
 
-// Borrows what is added, which has to outlive it. One thread.
+// Borrows the added objects, which must outlive the state. One thread.
 class AgentState {
  public:
-  // Parameters under their own names; the module is refreshed when they were read.
+  // Adds parameters under their own names. Restore refreshes the module.
   void Add(nn::Module* module);
-  // Parameters of no module (an average, a temperature): as PREFIX.NAME, or as NAME without a
-  // prefix.
+  // Adds parameters outside of any module (an average, a temperature): as PREFIX.NAME, or as NAME
+  // if the prefix is empty.
   void Add(nn::ParameterSet* set, const std::string& prefix);
-  // Moments and steps; `group` names the counter of steps.
+  // Adds an optimiser's moments and its counter of steps, which `group` names.
   void Add(nn::Adam* optimiser, const std::string& group);
   void Add(uint64_t* counter, const std::string& name);
-  // Anything else: what writes it, and what reads it back, throwing Error as Restore does.
+  // Adds any other state by a function that writes it and a function that reads it. Like Restore,
+  // the latter throws Error.
   using Write = std::function<void(nn::TensorMap*)>;
   using Read = std::function<void(const nn::TensorMap&, const std::string& source)>;
   void Add(Write write, Read read) { parts_.push_back({std::move(write), std::move(read)}); }
 
   nn::TensorMap Export() const;
-  // Throws Error naming a missing tensor or a wrong shape; then nothing has changed.
+  // Throws Error that names a missing tensor or a wrong shape, and then changes nothing.
   void Restore(const nn::TensorMap& tensors, const std::string& source);
 
  private:

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// The auxiliary loss of sac.aux: linear functions of the trunk's outputs are to tell recorded
-// blocks or differences of two, so that the encoder learns where things are before the critic
-// knows what is worth anything (Eq. 27 of docs/algorithm.md). The policy has no part of it.
+// The auxiliary loss of sac.aux (Eq. 27 of docs/algorithm.md). It trains linear functions of the
+// trunk's outputs to predict recorded blocks, or differences of two blocks, so that the encoder
+// learns the positions of objects before the critic's values are useful. The policy does not
+// contain these functions.
 //
 //   L = w / (B L) sum_(b,l) (y_(b,l) - label_(b,l) / 0.15)^2
 //
-// Labels are positions in m as a rule: 0.15 m is what they vary by.
+// Labels are usually positions in m, and 0.15 m is their typical variation.
 //
 // Dimensions: B batch, L labels.
 #pragma once
@@ -23,14 +24,15 @@ namespace shoal::learner {
 // One thread.
 class AuxLoss {
  public:
-  // Null without sac.aux. Borrows the engine and `trunk`, of the head that trains the encoder.
+  // Makes the loss; null without sac.aux. Borrows the engine and `trunk`, the trunk of the head
+  // that trains the encoder.
   static std::unique_ptr<AuxLoss> Make(const Config& config, const ObservationSpec& spec,
                                        const nn::Features* trunk, Engine* engine);
 
   nn::ReadoutModule& readout() { return readout_; }
 
-  // For the trunk's outputs as they are; `batch` as it was drawn. Leaves its gradient for the
-  // trunk's next Backward.
+  // Computes the loss for the trunk's current outputs, and writes its gradient for the trunk's next
+  // Backward. `batch`: before any normalisation.
   void ForwardBackward(const Transitions& batch);
   // The mean square of (0.15 y - label), in the labels' unit squared, after the next Gather.
   Number mean_square() const { return mean_square_; }

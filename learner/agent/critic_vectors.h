@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vectors of a batch that a critic sees: those of the policy and, for an asymmetric critic
-// (sac.critic_blocks), privileged blocks beside them.
+// Input vectors of a critic: the vectors of the policy and, for an asymmetric critic
+// (sac.critic_blocks), privileged blocks.
 //
 //   obs[b] = [ obs_vector[b] | critic's columns of obs_privileged[b] ],   (B, C)
 #pragma once
@@ -13,8 +13,8 @@
 
 namespace shoal::learner {
 
-// The spec that a critic's networks are planned by: `spec` or, of an asymmetric critic, one without
-// pixels whose vector (C) has the privileged blocks at its end.
+// Returns the observation spec of a critic's networks. This is `spec` or, for an asymmetric critic,
+// a spec without pixels whose vector (C) ends with the privileged blocks.
 ObservationSpec CriticSpec(const Config& config, const ObservationSpec& spec);
 
 // One thread.
@@ -23,7 +23,8 @@ class CriticVectors {
   // Borrows the engine.
   CriticVectors(const Config& config, const ObservationSpec& spec, Engine* engine);
 
-  // (B, C); the batch's own arrays where nothing is added, else valid until the next call.
+  // Arrays (B, C): the batch's own arrays if no block is added, else arrays that are valid until
+  // the next call.
   struct Vectors {
     Array obs, next_obs;
   };
@@ -31,8 +32,8 @@ class CriticVectors {
 
  private:
   Engine* const engine_;
-  std::vector<ObservationSpec::Range> columns_;  // of the privileged vector
-  Array obs_, next_obs_;                         // (B, C); none where nothing is added
+  std::vector<ObservationSpec::Range> columns_;  // columns of the privileged vector
+  Array obs_, next_obs_;                         // (B, C); empty if no block is added
 };
 
 }  // namespace shoal::learner

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Building block of the algorithms' networks: an encoder, if there are pixels, and a head above it.
+// Building block of the algorithms' networks: an encoder, if there are pixels, and a head above the
+// encoder.
 #pragma once
 
 #include <memory>
@@ -12,7 +13,7 @@
 
 namespace shoal::learner {
 
-// Null without pixels. `name` as nn::PlanEncoder's.
+// Makes an encoder; null without pixels. `name`: see nn::PlanEncoder.
 std::unique_ptr<nn::EncoderModule> MakeEncoder(const NetworkConfig& network,
                                                const ObservationSpec& spec, nn::Module::Use use,
                                                const nn::ModuleContext& context,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An agent whose encoder starts from given weights instead of random ones.
+// Starts an agent's encoder from given weights instead of random weights.
 #pragma once
 
 #include "common/nn/safetensors.h"
@@ -7,9 +7,9 @@
 
 namespace shoal::learner {
 
-// `weights`: encoder.NAME, all of them, as nn::ReadEncoderWeights gives them. They become the
-// agent's encoder.NAME and whatever copies of it there are, PREFIX.encoder.NAME; optimisers stay at
-// their beginning. CHECKs that the agent has each. Before the first update.
+// Copies `weights`, the complete result of nn::ReadEncoderWeights, to the agent's encoder.NAME and
+// to all copies PREFIX.encoder.NAME. Optimisers do not change. Call it before the first update.
+// CHECKs that the agent has each tensor.
 void StartEncoder(const nn::TensorMap& weights, Agent* agent);
 
 }  // namespace shoal::learner

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The figures of an update while it is computed: which number of the engine each one is. They are
-// read when the update has ended.
+// The figures of an update while it is computed. The sheet maps each figure to a number of the
+// engine, and reads the numbers when the update has ended.
 #pragma once
 
 #include <span>
@@ -14,20 +14,23 @@ namespace shoal::learner {
 // One thread.
 class FigureSheet {
  public:
-  // In the order in which the update reports them; each at most once in an update.
+  // Sets a figure. Call it in the order in which the update reports its figures, and at most once
+  // per figure and update.
   void Set(const Figure& figure, Number number) { entries_.push_back({&figure, number}); }
-  // The square root of the number: the norm of a gradient from the sum of its squares.
+  // Sets a figure to the square root of a number: the norm of a gradient from the sum of its
+  // squares.
   void SetRoot(const Figure& figure, Number squares) {
     entries_.push_back({&figure, squares, /*root=*/true});
   }
-  // A value that the host gave to the update.
+  // Sets a figure to a value of the host.
   void SetValue(const Figure& figure, double value) {
     entries_.push_back({&figure, {}, false, value});
   }
-  // The figures of a critic's loss: from the loss to the values of its Q functions.
+  // Sets the figures of a critic's loss, from the loss to the values of its Q functions.
   void SetCritic(const CriticNumbers& numbers, Number gradient_squares);
 
-  // Reads what was set since the last call, after Engine::End; none of a batch that was not finite.
+  // Reads the figures that were set since the last call. Call it after Engine::End. Returns no
+  // figures if the batch was not finite.
   UpdateFigures Take(const Engine& engine, const Engine::Outcome& outcome);
 
  private:
@@ -41,7 +44,7 @@ class FigureSheet {
   std::vector<Entry> entries_;
 };
 
-// For the loss of so many Q functions.
+// Makes the numbers for the loss of `critics` Q functions.
 CriticNumbers NewCriticNumbers(int critics, Engine* engine);
 
 }  // namespace shoal::learner

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Figures of the pictures of a batch, by camera, for every algorithm.
+// Figures of the images of a batch, by camera, for every algorithm.
 #pragma once
 
 #include "common/spec/observation_spec.h"
@@ -15,8 +15,8 @@ inline constexpr Figure kFrozenCameras{
     "frozen_cameras", "", "that show one picture throughout a batch; with pixels", false, ""};
 inline constexpr const Figure* kFrameFigures[] = {&kFrameSpread, &kFrozenCameras};
 
-// Appends both; nothing without pixels. A batch is a random sample, so its first frames stand for
-// all. `shift_pad`: the largest random shift of its frames.
+// Appends both figures; appends none without pixels. A batch is a random sample, so its first
+// frames represent all. `shift_pad`: the largest random shift of its frames.
 void AddFrameFigures(const BatchView& batch, const ObservationSpec& spec, int shift_pad,
                      UpdateFigures* figures);
 

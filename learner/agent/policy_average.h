@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The moving average of a policy's parameters (Eq. 12 of docs/algorithm.md), which no network is
-// computed with.
+// The moving average of a policy's parameters (Eq. 12 of docs/algorithm.md). No network in the
+// learner computes with this average.
 //
 // Replicas share its values, and each updates a share of them. The values are read only after the
 // update has ended for all replicas.
@@ -24,13 +24,13 @@ class PolicyAverage {
   PolicyAverage(const PolicyAverage&) = delete;
   PolicyAverage& operator=(const PolicyAverage&) = delete;
 
-  // Becomes the policy.
+  // Sets the average to the policy.
   void Copy();
-  // average += rate * (policy - average) if the update's flag is up (Engine::MoveAverage); running
+  // average += rate * (policy - average) if the update's flag is set (Engine::MoveAverage); running
   // statistics are copied whole.
   void Move(float rate);
 
-  // Under the policy's own names.
+  // Returns the average under the policy's own names.
   nn::TensorMap Tensors() const;
   // Adds its tensors under the names "average.NAME".
   void AddTo(AgentState* state);

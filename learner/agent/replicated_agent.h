@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// An agent of N replicas (common/nn/replica.h), each with an engine of the CPU, that looks like one
-// agent from outside: its tensors are those of the first replica and do not depend on N.
+// One agent that consists of N replicas (common/nn/replica.h), each with its own CPU engine. The
+// agent's tensors are those of the first replica, and their names and shapes do not depend on N.
 #pragma once
 
 #include <functional>
@@ -14,18 +14,18 @@
 
 namespace shoal::learner {
 
-// Makes the agent of one replica, which is given whole batches and learns from its engine's rows of
-// them. Borrows the engine.
+// Makes the agent of one replica. This agent receives whole batches and learns from its engine's
+// rows. Borrows the engine.
 using MakeReplica = std::function<std::unique_ptr<Agent>(Engine*)>;
 
-// Replicas for the batch and the copies of `config`. All start alike: `make` may depend on nothing
-// but its engine. Each is made and run by a thread of its own, so that its memory is on that
-// thread's node. Throws what `make` throws.
+// Makes replicas for the batch size and the number of copies in `config`. All replicas must start
+// equal, so `make` must depend on nothing but its engine. Each replica is made and run by its own
+// thread, so that its memory is on that thread's NUMA node. Throws the errors of `make`.
 std::unique_ptr<Agent> MakeReplicatedAgent(const Config& config, nn::Precision precision,
                                            int replicas, const MakeReplica& make);
 
-// Whether the encoder has batch normalisation. Its statistics are of the whole batch, so such
-// networks cannot be replicas.
+// Whether the encoder has batch normalisation. Such networks cannot be replicated, because their
+// statistics need the whole batch.
 bool NormalisesOverBatch(const NetworkConfig& network, const ObservationSpec& spec);
 
 }  // namespace shoal::learner

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// An agent whose number of threads may change between two updates. It is then made anew and takes
-// over the tensors of its predecessor, as from a checkpoint, which belongs to no number of threads.
+// An agent whose number of threads may change between two updates. A change makes a new agent and
+// restores the tensors of the old one, as from a checkpoint; tensors do not depend on the number of
+// threads.
 #pragma once
 
 #include <functional>
@@ -13,14 +14,14 @@ namespace shoal::learner {
 
 class ResizableAgent final : public Agent {
  public:
-  // Makes the agent for so many threads; may throw Error.
+  // Makes the agent for `threads` threads; may throw Error.
   using Make = std::function<std::unique_ptr<Agent>(int threads)>;
 
   ResizableAgent(Make make, int threads)
       : make_(std::move(make)), threads_(threads), agent_(make_(threads)) {}
 
-  // Between updates. Takes as long as making an agent. Throws what `make` throws; then nothing has
-  // changed.
+  // Changes the number of threads. Call it between updates. Takes as long as making an agent.
+  // Throws the errors of `make`; the agent is then unchanged.
   void Resize(int threads);
   int threads() const { return threads_; }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Moments (learner/engine/moments.h) as tensors of an agent's state, and moments that the host
-// keeps.
+// Stores moments (learner/engine/moments.h) as tensors of an agent's state, and keeps moments on
+// the host.
 #pragma once
 
 #include <span>
@@ -12,10 +12,11 @@
 
 namespace shoal::learner {
 
-// Tensor `name` of these moments, bit for bit (U64).
+// Writes the moments, bit for bit, as tensor `name` (U64).
 void ExportMoments(std::span<const double> moments, const std::string& name,
                    nn::TensorMap* tensors);
-// Throws Error naming the tensor that is missing or not the moments of `width` numbers.
+// Reads tensor `name`. Throws Error that names the tensor if it is missing or does not hold the
+// moments of `width` numbers.
 std::vector<double> ImportMoments(size_t width, const std::string& name,
                                   const nn::TensorMap& tensors, const std::string& source);
 
@@ -35,7 +36,7 @@ class RunningMoments {
   void Export(const std::string& name, nn::TensorMap* tensors) const {
     ExportMoments(moments_, name, tensors);
   }
-  // Throws Error; nothing has changed then.
+  // On an error, throws Error and changes nothing.
   void Import(const nn::TensorMap& tensors, const std::string& name, const std::string& source) {
     moments_ = ImportMoments(moments_.size() / 2, name, tensors, source);
   }

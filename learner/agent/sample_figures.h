@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Figures of the transitions of a batch, for every algorithm, and of the critics' values of them:
-// TensorBoard shows them below replay/.
+// Figures of a batch's transitions and of the critics' values for these transitions, for every
+// algorithm. TensorBoard shows the figures below replay/.
 #pragma once
 
 #include "common/spec/observation_spec.h"
@@ -37,7 +37,7 @@ inline constexpr const Figure* kSampleFigures[] = {
     &kRewardAboveMinusHalf, &kGoalDistanceMean, &kGoalDistanceStd, &kGoalDistanceMin,
     &kGoalDistanceMax,      &kGoalWithin};
 
-// Appends those that the batch, as it was drawn, has; nothing of a rollout.
+// Appends the figures that exist for the unnormalised batch `batch`; appends none for a rollout.
 void AddSampleFigures(const BatchView& batch, const ObservationSpec& spec, UpdateFigures* figures);
 
 // Figures of the Q functions before an update, at the sampled actions.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far the optimisers of an agent step: learning rates of its parts, clipping of their
+// Step sizes of an agent's optimisers: the learning rates of its parts, and the clipping of
 // gradients.
 #pragma once
 
@@ -15,7 +15,7 @@ inline double RateOr(double own, const LearnerConfig& learner) {
 inline nn::Adam::Options ActorStep(const LearnerConfig& learner) {
   return {.rate = RateOr(learner.actor_learning_rate, learner), .max_norm = learner.max_grad_norm};
 }
-// The step of the critic and of the encoder.
+// Options of the optimiser of the critic and of the encoder.
 inline nn::Adam::Options CriticStep(const LearnerConfig& learner) {
   return {.rate = RateOr(learner.critic_learning_rate, learner), .max_norm = learner.max_grad_norm};
 }

@@ -11,18 +11,20 @@ namespace shoal::learner {
 
 struct UpdateCost {
   int64_t encoder_parameters = 0;  // 0 without pixels
-  // Floating-point operations of the matrix products, 2 a multiply-add; a backward pass is twice a
-  // forward pass, less the gradients that are never computed: of the pixels and, in a step of the
-  // actor, of features that it does not train. Activations, norms and optimisers are left out.
+  // Floating-point operations of the matrix products; a multiply-add counts as 2. A backward pass
+  // costs twice a forward pass, minus the gradients that are never computed: gradients of pixels
+  // and, in a step of the actor, of features that the actor does not train. Activations, norms and
+  // optimisers are not counted.
   //
-  // Off policy, on average over updates with and without a step of the actor: encoder on
-  // observations and next observations, critics on both (targets on the next), actor likewise, and
-  // once back through the critics. On policy, of a whole rollout of all actors: values once, policy
-  // and values forward and backward in each epoch.
+  // Off policy, the number is an average over updates with and without a step of the actor. It
+  // includes the encoder and the actor on observations and next observations, the critics on
+  // observations, the targets on next observations, and one backward pass through the critics for
+  // the action's gradient. On policy, the number is that of a whole rollout of all actors: values
+  // once, then policy and values forward and backward in each epoch.
   double flop = 0;
 };
 
-// Throws Error where the networks do not fit.
+// Throws Error if the networks do not fit the configuration.
 UpdateCost CostOfUpdate(const Config& config, const ObservationSpec& spec);
 
 }  // namespace shoal::learner

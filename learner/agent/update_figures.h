@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // Figures of an update: an ordered list of names and values.
 //
-// A figure is declared once, with its meaning: by the algorithm that alone computes it, in the
-// algorithm's folder, or here where several do. Metrics, TensorBoard, Prometheus, the progress
-// display and the documentation take name and meaning from there (AllFigures in algorithms.h). A
+// Each figure is declared once, with its meaning: in an algorithm's folder if only this algorithm
+// computes the figure, otherwise here. Metrics, TensorBoard, Prometheus, the progress display and
+// the documentation use the name and meaning of the declaration (AllFigures in algorithms.h). A
 // figure that was not computed is absent, never 0.
 #pragma once
 
@@ -19,8 +19,9 @@ struct Figure {
   std::string_view unit;     // empty: a plain number
   std::string_view meaning;  // one line
   bool headline = false;     // the progress display shows it
-  // The figure's tag in TensorBoard: with a slash the whole tag, without one train/KNOWN_AS, empty
-  // train/NAME. Figures that other programs have made known keep the tag that people look for.
+  // The figure's tag in TensorBoard. A text with a slash is the whole tag; a text without one gives
+  // train/KNOWN_AS; an empty text gives train/NAME. Figures that are well known from other programs
+  // have the tag of those programs.
   std::string_view known_as;
 
   std::string Tag() const;
@@ -33,7 +34,7 @@ class UpdateFigures {
     double value;
   };
 
-  // Appends the figure, which must live as long as the program does and not be in the list yet.
+  // Appends the figure, which must live until the program ends and must not be in the list yet.
   void Set(const Figure& figure, double value);
   // Replaces or appends.
   void Replace(const Figure& figure, double value);
@@ -48,7 +49,7 @@ class UpdateFigures {
   std::vector<Entry> entries_;
 };
 
-// Figures of more than one algorithm. All are means over the batch of an update.
+// Figures that several algorithms compute. All are means over the batch of an update.
 inline constexpr Figure kCriticLoss{.name = "critic_loss",
                                     .unit = "",
                                     .meaning = "squared error of all Q, summed over the critics",

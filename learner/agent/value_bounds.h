@@ -9,10 +9,10 @@
 
 namespace shoal::learner {
 
-// The bounds of learner.bounded_targets; none without that key.
+// Returns the bounds of learner.bounded_targets; no bounds without this key.
 ValueBounds ValueBoundsOf(const LearnerConfig& learner);
 
-// Throws Error (usage) where learner.bounded_targets is set and rewards are not -1 and 0, or values
+// Throws Error (kUsage) if learner.bounded_targets is set, but rewards are not -1 and 0 or values
 // have no bound.
 void CheckValueBounds(const RunConfig& run);
 

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Vectors as an algorithm's networks see them with learner.normalise_vectors: at about mean 0 and
-// deviation 1, by the moments of all vectors of earlier updates. Those of the observation belong to
-// the policy: actors and evaluations scale by those that came with their weights
-// (common/nn/vector_scale.h). Those of privileged blocks stay with the learner. A variance below
-// learner.variance_floor counts as the floor, also in the policy's tensors.
+// Normalises vectors for an algorithm's networks if learner.normalise_vectors is set: to about mean
+// 0 and deviation 1, by the moments of all vectors of earlier updates. The moments of observations
+// belong to the policy: actors and evaluations scale by the moments that were sent with their
+// weights (common/nn/vector_scale.h). The moments of privileged blocks stay in the learner. A
+// variance below learner.variance_floor counts as the floor, also in the policy's tensors.
 //
 // Dimensions: b rows of this replica, V vector size, P privileged size.
 #pragma once
@@ -22,19 +22,19 @@ namespace shoal::learner {
 // One thread.
 class VectorStandard {
  public:
-  // Borrows the engine. Without learner.normalise_vectors, or without vectors, they stay as they
-  // are.
+  // Borrows the engine. Without learner.normalise_vectors, or without vectors, this object changes
+  // nothing.
   VectorStandard(const LearnerConfig& learner, Engine* engine, int vector_size,
                  int privileged_size = 0);
 
-  // The batch with vectors as networks see them; valid until the next call.
+  // Returns the batch with normalised vectors; valid until the next call.
   Transitions Seen(const Transitions& batch);
-  // Takes the vectors of a whole batch, as they came, into the moments.
+  // Adds the unscaled vectors of a whole batch to the moments.
   void Add(const BatchView& batch);
 
-  // Into a policy's tensors.
+  // Adds mean and variance to a policy's tensors.
   void ExportTo(nn::TensorMap* policy) const;
-  // `state` borrows the moments, where there are any.
+  // `state` borrows the moments, if there are any.
   void AddTo(AgentState* state);
 
  private:
@@ -48,7 +48,7 @@ class VectorStandard {
 
   Engine* const engine_;
   const float variance_floor_;
-  // Nothing: they stay as they are.
+  // Empty: these vectors are not normalised.
   std::optional<Part> observed_, privileged_;
 };
 

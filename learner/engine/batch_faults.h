@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers with which an update must not be applied.
+// Checks for numbers with which an update must not be applied.
 #pragma once
 
 #include "common/wire/batch_schema.h"

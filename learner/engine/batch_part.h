@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The rows of a batch that one of several replicas learns from.
+// The rows of a batch from which one of several replicas learns.
 #pragma once
 
 #include "common/nn/replica.h"
@@ -7,8 +7,8 @@
 
 namespace shoal::learner {
 
-// Rows `rows` of every array, by member as by name. Borrows what `batch` borrows. CHECKs that the
-// batch has them.
+// Returns rows `rows` of every array, both as members and by name. Borrows the memory that `batch`
+// borrows. CHECKs that the batch has these rows.
 BatchView PartOf(const BatchView& batch, const nn::Replica::Rows& rows);
 
 }  // namespace shoal::learner

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // The clipped loss of a minibatch of policy and values, and its gradients with respect to the
-// networks' outputs: an operation of the CPU's engine. Equations are those of docs/algorithm.md.
+// networks' outputs: an operation of the CPU's engine. Equations are numbered in docs/algorithm.md.
 //
 //   log pi(u|s) = sum_j -((u_j - mean_j) / sigma_j)^2 / 2 - log sigma_j - log(2 pi) / 2     Eq. 22
 //   rho = exp(log pi - log pi_old)
 //   L = -mean_b min(rho A, clip(rho, 1 - c, 1 + c) A)                                       Eq. 24
 //     + w_v mean_b (R - V)^2 - w_e H,          H = sum_j log sigma_j + log(2 pi e) / 2
 //
-// If there is a value clip c_v, V is V_old + clip(V - V_old, -c_v, c_v). On request, A is first
-// normalised over a minibatch of more than one row, to mean 0 and deviation 1. A clipped term has
-// gradient 0.
-// Source: Schulman et al. 2017, arXiv:1707.06347; as in ppo.py of Stable-Baselines3.
+// If there is a value clip c_v, V is V_old + clip(V - V_old, -c_v, c_v). If requested, A is first
+// normalised over the minibatch to mean 0 and deviation 1; a minibatch of one row is not
+// normalised. A clipped term has gradient 0.
+// Source: Schulman et al. 2017, arXiv:1707.06347; computed as in ppo.py of Stable-Baselines3.
 // Dimensions: B minibatch, A actions.
 #pragma once
 
@@ -48,7 +48,7 @@ struct ClippedPolicyGradients {
 ClippedPolicyLoss ClippedPolicyLossAndGradients(const ClippedPolicyInputs& inputs,
                                                 const ClippedPolicyGradients& gradients);
 
-// A Gaussian with these log deviations (A): the mean of its deviations, and its entropy.
+// Mean deviation and entropy of a Gaussian with log deviations (A).
 struct GaussianSpread {
   double deviation = 0, entropy = 0;
 };

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Columns of the vectors of a batch: put side by side, divided, or taken as labels.
+// Columns of the vectors of a batch: joined, split, or gathered as labels.
 // Dimensions: b rows, L labels.
 #pragma once
 
@@ -11,7 +11,8 @@
 
 namespace shoal::learner {
 
-// One label of a row: a number of the observed vector or of the privileged one, less another one.
+// One label of a row: a number of the observed or the privileged vector, minus another such number
+// if there is one.
 struct LabelColumns {
   struct Column {
     bool observed;  // else privileged
@@ -25,7 +26,7 @@ struct LabelColumns {
 void JoinColumns(size_t rows, std::span<const float> left, std::span<const float> right,
                  std::span<const ObservationSpec::Range> ranges, std::span<float> joined);
 
-// Divides the columns of joined[b] = [ left[b] | right[b] ].
+// Splits the columns of joined[b] = [ left[b] | right[b] ].
 void SplitColumns(size_t rows, std::span<const float> joined, std::span<float> left,
                   std::span<float> right);
 

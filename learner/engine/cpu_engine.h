@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The engine of the CPU: arrays in host memory, modules on oneDNN, operations as plain loops.
 //
-// One for each replica (common/nn/replica.h). Means over the whole batch, and the arrays that
-// figures of the whole batch need, pass between replicas along with the gradients: an update has no
-// further meeting for them.
+// Each replica (common/nn/replica.h) has its own engine. Replicas exchange means over the whole
+// batch, and the arrays that figures of the whole batch need, together with the gradients, so an
+// update needs no additional synchronisation.
 #pragma once
 
 #include <deque>
@@ -20,7 +20,7 @@ namespace shoal::learner {
 // Not movable. Used by the thread of its replica.
 class CpuEngine final : public Engine {
  public:
-  // The replica's rows of batches of `batch` rows. Borrows the replica.
+  // Computes with the replica's rows of batches of `batch` rows. Borrows the replica.
   CpuEngine(nn::Precision precision, int batch, nn::Replica* replica);
   CpuEngine(const CpuEngine&) = delete;
   CpuEngine& operator=(const CpuEngine&) = delete;
@@ -92,12 +92,12 @@ class CpuEngine final : public Engine {
   void MoveAverage(float rate, const nn::ParameterSet& online, nn::ParameterSet* average) override;
 
  private:
-  // A mean over this replica's rows that becomes one over the batch.
+  // A mean over this replica's rows, which Gather turns into the mean over the batch.
   struct OwnMean {
     Number number;
-    bool rounds;  // to f32
+    bool rounds;  // whether to round to f32
   };
-  // A step of this update, to be taken back.
+  // A step of this update that End may undo.
   struct Taken {
     nn::Adam* optimiser;
     std::vector<nn::Module*> changed;
@@ -118,7 +118,7 @@ class CpuEngine final : public Engine {
   std::deque<std::vector<double>> moments_;
 
   bool updating_ = false;
-  Outcome outcome_;         // of the present update so far
+  Outcome outcome_;         // of the current update so far
   bool overflows_ = false;  // the gradients that were gathered last
   std::vector<Taken> taken_;
 

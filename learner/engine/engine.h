@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
-// Interface of the engines that algorithms compute with: arrays, modules, and the operations
-// between modules. An algorithm composes these and never looks into an array, so it is written once
-// for every engine.
+// Interface of the engines with which algorithms compute: arrays, modules, and the operations
+// between modules. An algorithm combines operations and never reads an array itself, so one version
+// of it works with every engine.
 //
-// An update lies between Begin and End. Its operations, and their order, depend on the
-// configuration and on counters of the host, never on a number that was computed: nothing is read
-// before End. What changes from update to update besides batch and draws is in the engine's memory:
-// the host gives rates of schedules by Set. An engine may therefore record the operations of an
-// update once and repeat the recording.
+// An update begins with Begin and ends with End. Its operations and their order depend on the
+// configuration and on counters of the host, never on computed numbers, because nothing is read
+// before End. Besides batch and random draws, all values that change from update to update are in
+// the engine's memory; the host sets rates of schedules by Set. An engine may therefore record the
+// operations of an update once and replay the recording.
 //
-// Whether the numbers are finite is a flag in the engine's memory: up at Begin, down for the rest
-// of the update once a batch, a loss or a gradient was not finite. While it is down, steps and
-// moves have no effect; End takes back the steps that had one.
+// A flag in the engine's memory says whether all numbers are finite. Begin sets the flag; a batch,
+// a loss or a gradient that is not finite clears it for the rest of the update. While the flag is
+// cleared, steps and moves have no effect; End undoes the steps made before.
 //
-// One of several replicas has b rows of each batch of B rows. Losses and gradients are means over
-// its own rows; Gather makes them those of the whole batch. All replicas call the same functions in
-// the same order.
+// Each of several replicas has b rows of each batch of B rows. Losses and gradients are means over
+// the replica's rows; Gather turns them into means over the whole batch. All replicas call the same
+// functions in the same order.
 //
-// Equations are those of docs/algorithm.md. Dimensions: B, b batch and rows of this replica, A
-// actions, L labels. Arrays are row-major f32; (b, A) and so on are their shapes. An operation
+// Equations are numbered in docs/algorithm.md. Dimensions: B rows of the batch, b rows of this
+// replica, A actions, L labels. Arrays are row-major f32; (b, A) and so on are shapes. An operation
 // overwrites its results, which must not overlap its inputs, and trusts the sizes of its arrays.
 #pragma once
 
@@ -47,36 +47,37 @@ class Engine {
 
   // ---- Memory and modules ----
 
-  // The context that modules and optimisers of this engine are built with; its batch is b.
+  // Context with which modules and optimisers of this engine are built; its batch is b.
   virtual const nn::ModuleContext& modules() const = 0;
-  // (b, columns) zeros. They live as long as the engine.
+  // Makes an array of zeros (b, columns), which lives as long as the engine.
   virtual Array NewArray(int columns) = 0;
   virtual Number NewNumber() = 0;
-  // Moments (moments.h) of vectors of `width` numbers: of none so far.
+  // Makes moments (moments.h) of vectors of `width` numbers, without any vector so far.
   virtual Moments NewMoments(int width) = 0;
-  // Sets a number that the host gives to its operations from here on, for example the rate of a
-  // schedule: the operations themselves stay the same. Not within an update.
+  // Sets a number that later operations read, for example the rate of a schedule. The operations
+  // themselves stay the same. Not within an update.
   virtual void Set(Number number, double value) = 0;
   // Copies this replica's rows of `values` (B, columns) to the array. Not within an update.
   virtual void Put(std::span<const float> values, Array array) = 0;
 
   // ---- An update ----
 
-  // Raises the flag if every float of `drawn`, the whole batch, is finite.
+  // Begins an update. Sets the flag if every float of `drawn`, the whole batch, is finite, else
+  // clears it.
   virtual void Begin(const BatchView& drawn) = 0;
-  // This replica's rows of the whole batch `batch`, which is borrowed.
+  // Returns this replica's rows of the whole batch `batch`, which is borrowed.
   virtual Transitions Take(const BatchView& batch) = 0;
   struct Outcome {
     bool finite = true;        // the flag
-    bool batch_finite = true;  // false: of a batch that was not finite, nothing is worth reading
-    bool held = false;         // HoldSteps has held the steps back
+    bool batch_finite = true;  // false: all results of this update are useless
+    bool held = false;         // HoldSteps has disabled the steps
   };
-  // Ends the update and reads the flag. If it is down, parameters, moments and statistics are those
-  // of before Begin.
+  // Ends the update and reads the flag. If the flag is cleared, parameters, moments and statistics
+  // are the same as before Begin.
   virtual Outcome End() = 0;
   // Not within an update.
   virtual double Read(Number number) const = 0;
-  // This replica's rows. Not within an update.
+  // Reads this replica's rows. Not within an update.
   virtual std::vector<float> ReadRows(Array array) const = 0;
   // Not within an update.
   virtual std::vector<double> ReadMoments(Moments moments) const = 0;
@@ -87,18 +88,18 @@ class Engine {
   // joined[b] = [ left[b] | the columns `ranges` of right[b] ]
   virtual void JoinColumns(Array left, Array right, std::span<const ObservationSpec::Range> ranges,
                            Array joined) = 0;
-  // Divides the columns of joined[b] = [ left[b] | right[b] ].
+  // Splits the columns of joined[b] = [ left[b] | right[b] ].
   virtual void SplitColumns(Array joined, Array left, Array right) = 0;
-  // labels (b, L): columns of `observed` and `privileged`, or differences of two, divided by
-  // `unit`.
+  // labels (b, L): columns of `observed` and `privileged`, or differences of two columns, divided
+  // by `unit`.
   virtual void GatherLabels(Array observed, Array privileged, std::span<const LabelColumns> columns,
                             float unit, Array labels) = 0;
 
-  // y = clip((x - mean) / sqrt(variance + 1e-8), -10, 10) by these moments; variances below the
-  // floor become the floor. x, y (b, V).
+  // y = clip((x - mean) / sqrt(variance + 1e-8), -10, 10) with mean and variance of `moments`;
+  // variances below the floor become the floor. x, y (b, V).
   virtual void Standardise(Array x, Moments moments, float variance_floor, Array y) = 0;
-  // If the flag is up: takes vectors (N, V) of the host, those of all replicas, into the moments.
-  // The last operation of an update that has these moments, or outside of one.
+  // If the flag is set: adds vectors (N, V) of the host, those of all replicas, to the moments.
+  // Within an update, this must be the last operation that uses these moments.
   virtual void AddToMoments(std::span<const float> vectors, Moments moments) = 0;
 
   // ---- Actions ----
@@ -107,11 +108,12 @@ class Engine {
   // 4). mean, log_std (b, A).
   virtual void SampleSquashedGaussian(Array mean, Array log_std, Random* random,
                                       const SquashedSample& sample) = 0;
-  // From dL/da (b, A) and dL/dlog pi = temperature / b: dL/dmean and dL/dlog_std (b, A).
+  // Computes dL/dmean and dL/dlog_std (b, A) from dL/da (b, A) and dL/dlog pi = temperature / b.
   virtual void SquashedGaussianBackward(const SquashedSample& sample, Array action_gradient,
                                         Number temperature, Array mean_gradient,
                                         Array log_std_gradient) = 0;
-  // Over the whole batch, after the next Gather: -mean log pi, and the share of |a| > 0.99.
+  // Computes the entropy -mean log pi, and the share of |a| > 0.99, over the whole batch; available
+  // after the next Gather.
   virtual void SquashedGaussianFigures(const SquashedSample& sample, Number entropy,
                                        Number saturation) = 0;
   // noisy = clip(action + clip(sigma eps, -limit, limit), -1, 1), eps ~ N(0, 1) of `random` (Eq.
@@ -124,25 +126,28 @@ class Engine {
   // Eq. 5, 18 and 20:
   //   y = reward_scale r + bootstrap discount (clip(min_i q'_i, bounds) - temperature log pi')
   virtual void Targets(const TargetTerms& terms, Array y) = 0;
-  // Eq. 15: each `copies` targets in a row become the mean of the first `shifts` of them; 0 = of
-  // all.
+  // Eq. 15: replaces each group of `copies` consecutive targets by the mean of its first `shifts`
+  // targets; 0 = of all.
   virtual void AverageCopies(int copies, int shifts, Array y) = 0;
-  // Eq. 6: L = sum_i mean_b (q_i - y)^2. dL/dq_i (b); the figures after the next Gather.
+  // Eq. 6: L = sum_i mean_b (q_i - y)^2. Computes dL/dq_i (b); the figures are available after the
+  // next Gather.
   virtual void CriticLoss(std::span<const Array> q, Array y, std::span<const Array> q_gradients,
                           const CriticNumbers& figures) = 0;
-  // Eq. 7: L = mean_b (temperature log pi - min(q_0, q_1)). dL/dq_i (b); L after the next Gather.
+  // Eq. 7: L = mean_b (temperature log pi - min(q_0, q_1)). Computes dL/dq_i (b); L is available
+  // after the next Gather.
   virtual void EntropyActorLoss(Array log_prob, std::span<const Array> q, Number temperature,
                                 std::span<const Array> q_gradients, Number loss) = 0;
-  // Eq. 19: L = -mean_b q + mean_penalty mean_ba m^2 of the policy's outputs m before tanh (b, A).
-  // dL/dq (b); L and the share of |action| > 0.99 after the next Gather.
+  // Eq. 19: L = -mean_b q + mean_penalty mean_ba m^2, where m (b, A) are the policy's outputs
+  // before tanh. Computes dL/dq (b); L and the share of |action| > 0.99 are available after the
+  // next Gather.
   virtual void DeterministicActorLoss(Array q, Array mean, Array action, double mean_penalty,
                                       Array q_gradient, Number loss, Number saturation) = 0;
-  // Eq. 27: L = weight / (B L) sum (y - label)^2. dL/dy (b, L); the mean square, times unit^2,
-  // after the next Gather.
+  // Eq. 27: L = weight / (B L) sum (y - label)^2. Computes dL/dy (b, L); the mean square, times
+  // unit^2, is available after the next Gather.
   virtual void LabelLoss(Array y, Array labels, float weight, float unit, Array gradient,
                          Number mean_square) = 0;
-  // Eq. 22 and 24: clipped_policy_loss.h. dL/dmean (b, A), dL/dvalue (b) and the gradient of
-  // `log_std` (A); the figures after the next Gather.
+  // Eq. 22 and 24: clipped_policy_loss.h. Computes dL/dmean (b, A), dL/dvalue (b) and the gradient
+  // of `log_std` (A); the figures are available after the next Gather.
   virtual void ClippedPolicyLoss(const ClippedPolicyTerms& terms, nn::ParameterSet* log_std,
                                  Array mean_gradient, Array value_gradient,
                                  const ClippedPolicyNumbers& figures) = 0;
@@ -150,11 +155,11 @@ class Engine {
   // `log_std` (A).
   virtual void GaussianFigures(const nn::ParameterSet& log_std, Number deviation,
                                Number entropy) = 0;
-  // The mean over the whole batch, after the next Gather. values (b).
+  // Computes the mean of values (b) over the whole batch; available after the next Gather.
   virtual void Mean(Array values, Number mean) = 0;
 
-  // An operation of one algorithm alone, computed on the host: `operation` gets the numbers of
-  // `inputs` and overwrites those of `outputs`. It depends on its arguments alone.
+  // Runs an operation that only one algorithm needs, on the host. `operation` reads the numbers of
+  // `inputs` and overwrites the numbers of `outputs`; it must depend on its arguments alone.
   using HostOperation = std::function<void(std::span<const std::span<const float>> inputs,
                                            std::span<const std::span<float>> outputs)>;
   virtual void OnHost(std::span<const Array> inputs, std::span<const Array> outputs,
@@ -167,31 +172,31 @@ class Engine {
   // Eq. 8: L = temperature (entropy - target_entropy), which is dL/dlog temperature as well.
   virtual void TemperatureLoss(Number temperature, Number entropy, float target_entropy,
                                Number loss) = 0;
-  // A step of the optimiser with the gradient `loss`; the temperature then is at least `least`.
+  // One optimiser step with the gradient `loss`. Afterwards the temperature is at least `least`.
   virtual void StepTemperature(Number loss, double least, nn::ParameterSet* log_temperature,
                                nn::Adam* optimiser) = 0;
 
   // ---- The flag, steps and moves ----
 
-  // Lowers the flag if the number is not finite, unless steps are held.
+  // Clears the flag if the number is not finite, unless HoldSteps has disabled the steps.
   virtual void RequireFinite(Number number) = 0;
-  // The steps of this optimiser from here on have `factor` times its rate.
+  // Sets the rate of the optimiser's following steps to `factor` times its configured rate.
   virtual void SetRateFactor(Number factor, nn::Adam* optimiser) = 0;
-  // Completes the optimiser's gradients and the figures of losses since the last Gather: they are
-  // those of the whole batch from here on. gradient_squares: the sum of the gradients' squares.
+  // Turns the optimiser's gradients, and the figures of losses since the last Gather, into means
+  // over the whole batch. gradient_squares: the sum of the gradients' squares.
   virtual void Gather(nn::Adam* optimiser, Number gradient_squares) = 0;
-  // Steps and moves of this update have no effect from here on if number > limit. The flag is not
-  // lowered.
+  // If number > limit, the following steps and moves of this update have no effect. The flag does
+  // not change.
   virtual void HoldSteps(Number number, double limit) = 0;
-  // Lowers the flag if the step would overflow. If the flag is up: one step with the gathered
-  // gradients; `changed`, the modules that have these parameters, are refreshed. At most once an
-  // update for each optimiser.
+  // Clears the flag if the step would overflow. If the flag is set: makes one step with the
+  // gathered gradients and refreshes `changed`, the modules that have these parameters. At most
+  // once per update for each optimiser.
   virtual void Step(nn::Adam* optimiser, std::span<nn::Module* const> changed,
                     NextUse next_use) = 0;
-  // If the flag is up: targets move by `tau` towards what they follow (Eq. 9). They are used in the
-  // next update.
+  // If the flag is set: moves each target by `tau` towards its online module (Eq. 9). The next
+  // update uses the targets.
   virtual void MoveTowards(float tau, std::span<const nn::Following> targets) = 0;
-  // If the flag is up: the same for an average that no module computes (Eq. 12).
+  // If the flag is set: the same for an average that belongs to no module (Eq. 12).
   virtual void MoveAverage(float rate, const nn::ParameterSet& online,
                            nn::ParameterSet* average) = 0;
 };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Targets and losses of the CPU's engine, with the gradients of losses with respect to the
-// networks' outputs. Sums are made in double. Equations are those of docs/algorithm.md. Dimensions:
-// B batch, A actions, L labels; arrays are (B) f32 unless said otherwise. Sources: Haarnoja et al.
-// 2018, arXiv:1812.05905; Fujimoto et al. 2018, arXiv:1802.09477.
+// networks' outputs. Sums are computed in double. Equations are numbered in docs/algorithm.md.
+// Dimensions: B batch, A actions, L labels; arrays are (B) f32 unless said otherwise. Sources:
+// Haarnoja et al. 2018, arXiv:1812.05905; Fujimoto et al. 2018, arXiv:1802.09477.
 #pragma once
 
 #include <limits>
@@ -10,7 +10,7 @@
 
 namespace shoal::learner {
 
-// Bounds of values: Eq. 20. Without numbers none.
+// Bounds of values (Eq. 20). An empty bound does not limit.
 struct ValueBounds {
   float low = -std::numeric_limits<float>::infinity();
   float high = std::numeric_limits<float>::infinity();
@@ -20,22 +20,22 @@ struct ValueBounds {
 struct TargetInputs {
   const float* reward;
   const float* bootstrap;                // discount^(n-1) (1 - terminated)
-  std::span<const float* const> next_q;  // of one or more target critics at (s', a')
+  std::span<const float* const> next_q;  // one or more target critics at (s', a')
   const float* next_log_prob = nullptr;  // log pi(a' | s'); null: no entropy term
 };
 
 struct TargetRates {
   float reward_scale, discount;
-  float temperature = 0;  // of the entropy term
+  float temperature = 0;  // weight of the entropy term
   ValueBounds bounds = {};
 };
 
-// Eq. 5 and 18:  y = reward_scale r + bootstrap discount (min_i q'_i - temperature log pi'), the
-// smallest cut off at the bounds (Eq. 20)
+// Eq. 5 and 18:  y = reward_scale r + bootstrap discount (min_i q'_i - temperature log pi'), with
+// the minimum clipped to the bounds (Eq. 20).
 void TdTargets(int batch, const TargetInputs& inputs, const TargetRates& rates, float* y);
 
-// Eq. 15:  each `copies` targets in a row become the mean of the first `shifts` of them, which are
-// of different shifts; 0 = of all. `copies` divides `batch`.
+// Eq. 15:  replaces each group of `copies` consecutive targets by the mean of its first `shifts`
+// targets, which have different shifts; 0 = of all targets. `copies` divides `batch`.
 void AverageCopies(int batch, int copies, int shifts, float* y);
 
 // Eq. 6:  L = sum_i mean_b (q_i - y)^2;   dL/dq_i = 2 (q_i - y) / B
@@ -73,7 +73,7 @@ float TemperatureLoss(float temperature, float entropy, float target_entropy);
 double LabelLoss(std::span<const float> y, std::span<const float> labels, float weight,
                  std::span<float> gradient);
 
-// The share of numbers beyond 0.99 either way.
+// The share of numbers with an absolute value above 0.99.
 double SaturatedShare(std::span<const float> actions);
 
 }  // namespace shoal::learner

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mean and variance of all vectors seen so far, taken over batch by batch.
+// Mean and variance of all vectors so far, updated batch by batch.
 //
 // The moments of vectors of V numbers are 1 + 2V numbers: the count of vectors, their mean (V), and
 // the sums of squared distances from it (V). Zeros before any vector.

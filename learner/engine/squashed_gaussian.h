@@ -8,14 +8,14 @@
 //
 // The last term is ln(1 - a_j^2), written so that it stays exact where a_j rounds to 1.
 // Source: Haarnoja et al. 2018, arXiv:1801.01290, appendix C.
-// Dimensions: B batch, A actions. Arrays (B, A) but log_prob (B).
+// Dimensions: B batch, A actions. Arrays are (B, A), except log_prob (B).
 #pragma once
 
 #include <span>
 
 namespace shoal::learner {
 
-// A sample, and what its gradients need.
+// A sample, and the values that its gradients need.
 struct SquashedValues {
   std::span<float> scaled_noise, action;  // sigma eps, a
   std::span<float> log_prob;              // (B)

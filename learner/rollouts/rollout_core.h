@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rollouts put together from records, without threads, clocks and network: chunks in, credits out;
-// whole rollouts of one environment each, and batches of them.
+// Assembles rollouts from records, without threads, clocks and network. Takes chunks, returns
+// credits, and makes batches of complete rollouts, each of one environment.
 //
-// A rollout is `ppo.rollout_steps` steps of one environment, one after another, by one version of
-// the weights, over episodes' ends. Of each environment the observation that its next step starts
-// from is known, once it was reset: a step is of use where it goes on from there. Rollouts are for
-// the update that follows the version they were played by, or, with ppo.versions_ahead = 1, for the
-// one after that; older ones are dropped. Newer ones are kept: weights go out before the update's
-// checkpoint is written, and by the time that the next rollouts are awaited they may have come.
+// A rollout is `ppo.rollout_steps` consecutive steps of one environment with one version of the
+// weights; it may span episodes. After an environment's reset, the observation before its next step
+// is known; a step is used only if it continues from that observation. A rollout is used for the
+// update that follows its version or, with ppo.versions_ahead = 1, for the update after that; older
+// rollouts are dropped. Newer rollouts are kept: weights are sent before the update's checkpoint is
+// written, so rollouts with these weights may arrive before they are awaited.
 //
-// Accounting. A record is dealt with when it came, whatever becomes of it. It counts as discarded
-// until an update is made of it, and so do those of rollouts that are dropped, never completed, or
-// lost with this process: what the account says at any instant is true if the process ends there.
+// Accounting: a record is accounted for when it arrives. It counts as discarded until an update
+// uses it. Records of rollouts that are dropped, never completed, or lost with this process
+// therefore stay discarded, so the account is correct whenever the process ends.
 //
 // Threads: none inside; one owner.
 #pragma once
@@ -35,21 +35,22 @@
 
 namespace shoal::learner {
 
-// Since construction.
+// Counters since construction.
 struct RolloutCounters {
   IntakeCounters intake;
-  uint64_t dropped_rollouts = 0;  // whole and begun ones that no update was made of
+  uint64_t dropped_rollouts = 0;  // complete and incomplete rollouts that no update used
 };
 
-// The window of unacknowledged records of an actor of the run.
+// Size of the window of unacknowledged records of one actor.
 SendingWindow WindowOf(const RunConfig& run);
 
 class RolloutCore final : private RecordTaker {
  public:
-  // The limit of a replay.
+  // The same limit as in the replay.
   static constexpr size_t kMostSessions = 4096;
 
-  // `receiver_session`: this process's. `before`: what a former learner of the run left.
+  // `receiver_session`: session of this process. `before`: the account of the run's previous
+  // learner.
   RolloutCore(const RunConfig& run, uint64_t receiver_session, const RunAccount& before);
   RolloutCore(const RolloutCore&) = delete;
   RolloutCore& operator=(const RolloutCore&) = delete;
@@ -57,31 +58,32 @@ class RolloutCore final : private RecordTaker {
   // See ChunkIntake.
   ChunkResult TakeChunk(const TransitionChunk& chunk,
                         uint64_t latest_session = std::numeric_limits<uint64_t>::max());
-  // Words to actors; `changed_only`: those that differ from what was taken last.
+  // Returns credits for actors; with `changed_only`, only those that changed since the last call.
   std::vector<Credit> TakeCredits(bool changed_only);
-  // The word to an actor whose chunk was refused.
+  // Returns the credit for an actor whose chunk was refused.
   Credit RefusalOf(const TransitionChunk& chunk) const;
 
-  // The weights whose update is next. Drops rollouts that are too old for it.
+  // Sets the weights of the next update. Drops rollouts that are too old for this update.
   void Await(const WeightsVersion& version);
-  // How many actors the next update waits for; more only from the next Await on.
+  // Sets the number of actors for which the next update waits. An increase takes effect at the next
+  // Await.
   void SetActors(int actors);
 
-  // Environments whose rollouts the next update waits for: those of the run's actors but the absent
-  // ones. Absent is an environment of which nothing came while the last kAbsentAfter updates were
-  // made without it, until a record of it comes.
+  // Number of environments whose rollouts the next update waits for: all environments of the run's
+  // actors, except the absent ones. An environment is absent if none of its records arrived during
+  // the last kAbsentAfter updates, which were made without it; the next record ends the absence.
   int Expected() const { return Environments() - Absent(); }
   int Absent() const;
   // Environments that have a rollout for the next update.
   int Ready() const;
   static constexpr int kAbsentAfter = 3;
-  // The schema of a batch of the rollouts that are ready: at least one.
+  // Schema of a batch of the ready rollouts; there must be at least one.
   BatchSchema ReadySchema() const;
-  // Fills `data`, of ReadySchema(), aligned to 64, and takes the rollouts off, in the order of
-  // environments: an update is made of them.
+  // Copies the ready rollouts, in the order of environments, to `data` (laid out by ReadySchema(),
+  // aligned to 64). Removes them and counts their records as used.
   void TakeReady(const BatchSchema& schema, uint8_t* data);
 
-  // For the whole run: step records taken, and records that updates used.
+  // Totals of the whole run: step records taken, and records that updates used.
   uint64_t stored_steps() const { return stored_steps_; }
   uint64_t used_records() const { return used_records_; }
   const SessionLedger& sessions() const { return sessions_; }
@@ -93,11 +95,11 @@ class RolloutCore final : private RecordTaker {
   }
 
  private:
-  // Records of one environment by one version of the weights, in the order of steps.
+  // Records of one environment with one version of the weights, in the order of steps.
   struct Rollout {
     WeightsVersion version;
     int session = 0;                             // index of the actor session
-    uint64_t records = 0;                        // resets too
+    uint64_t records = 0;                        // records, resets included
     int rows = 0;                                // steps
     std::vector<uint8_t> frames;                 // (rows, K*C, H, W)
     std::vector<float> vectors, actions, drawn;  // (rows, V), (rows, A) twice
@@ -117,7 +119,7 @@ class RolloutCore final : private RecordTaker {
     std::vector<float> vector;   // (V)
     Rollout building;
     std::deque<Rollout> whole;  // oldest first
-    int missed = 0;             // updates made without it since its last record
+    int missed = 0;             // updates made without this environment since its last record
   };
 
   bool Take(const SessionCounters& session, const uint8_t* record) override;
@@ -146,7 +148,7 @@ class RolloutCore final : private RecordTaker {
   ChunkIntake intake_;
   CreditBook credits_;
   std::map<uint32_t, Lane> lanes_;  // by environment
-  std::vector<Rollout> spare_;      // memory of former ones
+  std::vector<Rollout> spare_;      // memory of earlier rollouts, for reuse
   WeightsVersion awaited_;
   int actors_ = 1, expected_actors_ = 1;
   uint64_t stored_steps_ = 0, used_records_ = 0;

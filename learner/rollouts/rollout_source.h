@@ -1,19 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rollouts pulled from actors, as batches of the training loop: a thread of its own takes chunks,
-// keeps the account and acknowledges, while the loop learns.
+// Batches of rollouts from actors, for the training loop. A separate thread takes chunks, keeps the
+// account and acknowledges records while the loop learns.
 //
-// RUN/accounting.json says what is acknowledged before it is: a learner that is killed leaves a
-// true account, and its successor goes on from it. While that file cannot be written (a full disk)
-// training goes on, and the account is true again with the next one that is written. Knows nothing
-// of DDS: chunks come in through OnChunk, words go out through `send`.
+// Records are written to RUN/accounting.json before they are acknowledged. A killed learner
+// therefore leaves a correct account, from which the next learner continues. If the file cannot be
+// written (a full disk), training continues, and the next successful write corrects the account.
+// Independent of DDS: OnChunk receives chunks, `send` sends credits.
 //
 // A batch is complete when every environment that the update waits for has its rollout. Once
-// ppo.rollout_deadline has passed since the first rollout was there, at least half of them suffice,
-// and after three times as long any number. A batch holds at least one minibatch (learner.batch).
-// Updates stop waiting for environments that send nothing any more (RolloutCore::Expected).
+// ppo.rollout_deadline has passed since the first rollout, half of the environments suffice; after
+// three times the deadline, any number suffices. A batch holds at least one minibatch
+// (learner.batch). Updates do not wait for environments that have stopped sending
+// (RolloutCore::Expected).
 //
-// Threads: OnChunk from receive threads; Next, SetActors, counters from one other. Memory: two
-// rollouts of every environment, more with ppo.versions_ahead.
+// Threads: receive threads call OnChunk; one other thread calls Next, SetActors and counters.
+// Memory: two rollouts of every environment, more with ppo.versions_ahead.
 #pragma once
 
 #include <chrono>
@@ -40,30 +41,31 @@ class RolloutSource final : public BatchStream {
  public:
   using Send = std::function<void(const CreditsMessage&)>;
 
-  // `learner_session`, `updates`: of the weights that the first rollouts are played by. Throws
-  // Error when the run's account cannot be read.
+  // `learner_session`, `updates`: version of the weights for the first rollouts. Throws Error if
+  // the run's account cannot be read.
   RolloutSource(const RunConfig& run, const std::filesystem::path& folder, uint64_t learner_session,
                 uint64_t updates, Send send);
-  // The last account is written.
+  // Writes the last account.
   ~RolloutSource() override;
   RolloutSource(const RolloutSource&) = delete;
   RolloutSource& operator=(const RolloutSource&) = delete;
 
   void OnChunk(const TransitionChunk& chunk);
 
-  // Precondition: the update of the previous batch, if any, is done. Actors wait for its weights.
+  // Precondition: the update of the previous batch, if any, is done; actors wait for the weights of
+  // this update.
   std::optional<Batch> Next(SteadyTime deadline) override;
   BatchCounters counters() const override;
   // Sets the run's number of actors; a higher number takes effect with the next update.
   void SetActors(int actors) override;
 
-  // When the coordinator is gone: acknowledges what actors still send, until nothing has come for
-  // kFarewell, kFarewellLimit at most.
+  // Keeps acknowledging records after the coordinator is lost, until no chunk has arrived for
+  // kFarewell, but at most for kFarewellLimit.
   void DrainAfterCoordinatorLoss();
 
  private:
   void Serve();
-  // Chunks that have arrived since the last call; waits for them a moment.
+  // Returns the chunks that arrived since the last call; waits briefly if there are none.
   std::deque<std::unique_ptr<PooledChunk>> Arrivals() SHOAL_EXCLUDES(inbox_mutex_);
   void TakeChunks(std::deque<std::unique_ptr<PooledChunk>> chunks) SHOAL_EXCLUDES(mutex_);
   // Writes the account, then acknowledges.
@@ -71,7 +73,7 @@ class RolloutSource final : public BatchStream {
   void WriteAccount() SHOAL_REQUIRES(mutex_);
   bool Complete(SteadyTime now) SHOAL_REQUIRES(mutex_);
   Batch HandOut() SHOAL_REQUIRES(mutex_);
-  // Says when more environments are not waited for any more.
+  // Logs when updates stop waiting for more environments.
   void SayAbsent() SHOAL_REQUIRES(mutex_);
   size_t MaxChunks(int actors) const;
 
@@ -90,7 +92,7 @@ class RolloutSource final : public BatchStream {
   mutable Mutex mutex_;
   ConditionVariable changed_;
   RolloutCore core_ SHOAL_GUARDED_BY(mutex_);
-  uint64_t updates_ SHOAL_GUARDED_BY(mutex_);  // of the awaited weights
+  uint64_t updates_ SHOAL_GUARDED_BY(mutex_);  // update of the awaited weights
   bool handed_out_ SHOAL_GUARDED_BY(mutex_) = false;
   std::optional<SteadyTime> first_ready_ SHOAL_GUARDED_BY(mutex_);
   uint64_t late_rollouts_ SHOAL_GUARDED_BY(mutex_) = 0;
@@ -101,7 +103,7 @@ class RolloutSource final : public BatchStream {
   WriteFaults faults_ SHOAL_GUARDED_BY(mutex_){
       [](const std::string& line) { log::Warning("{}", line); }};
 
-  // Schema of the batch that is handed out; used by the loop's thread.
+  // Schema of the handed-out batch; used by the loop's thread.
   std::optional<BatchSchema> schema_;
   AlignedBytes memory_;
   uint64_t memory_bytes_ = 0;

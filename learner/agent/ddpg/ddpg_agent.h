@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// DDPG: one critic, targets as the target actor gives them (Lillicrap et al. 2015,
-// arXiv:1509.02971). Everything else: deterministic/deterministic_agent.h.
+// DDPG: one critic, and targets from the target actor's action without noise (Lillicrap et al.
+// 2015, arXiv:1509.02971). The rest is in deterministic/deterministic_agent.h.
 #pragma once
 
 #include <memory>

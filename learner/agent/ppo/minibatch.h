@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rows of a rollout, put side by side as a batch of the networks' size. They are gathered on the
-// host: a minibatch is an input of the engine, as a batch of the replay server is.
+// Rows of a rollout, gathered into a batch of the networks' size. The host gathers the rows,
+// because a minibatch is an input of the engine, like a batch of the replay server.
 //
-// Dimensions: N rows of the rollout, B of the minibatch.
+// Dimensions: N rows of the rollout, B rows of the minibatch.
 #pragma once
 
 #include <cstddef>
@@ -19,7 +19,7 @@ class Minibatch {
  public:
   Minibatch(const ObservationSpec& spec, int batch);
 
-  // Copies the observations of these rows, at most B; the rest of the minibatch stays as it is.
+  // Copies the observations of these rows, at most B; the rest of the minibatch does not change.
   // frames (N, K*C, H, W), vectors (N, V).
   void TakeObservations(std::span<const uint8_t> frames, std::span<const float> vectors,
                         std::span<const int> rows);

@@ -2,20 +2,21 @@
 // Proximal policy optimisation: one update learns from a whole rollout, in several passes over it
 // by minibatches. Equations are numbered in docs/algorithm.md.
 //
-//   1. rewards      divided by the running deviation of returns, where asked for
-//   2. values       of every observation, before the update
-//   3. advantages   and their targets                                          (Eq. 23)
-//   4. epochs       the rows in another order each time, learner.batch at a time: loss (Eq. 22,
-//                   24), gradients cut to learner.max_grad_norm, one step of Adam with eps 1e-5;
-//                   ended early when the policy has moved by 1.5 ppo.target_kl
-//   5. observations of the rollout join the statistics that normalise them, for the policy that
-//                   follows: this one's log-probabilities were made with the old ones
+//   1. rewards      divided by the running deviation of returns, if configured
+//   2. values       computed for every observation, before the update
+//   3. advantages   and value targets                                          (Eq. 23)
+//   4. epochs       minibatches of learner.batch rows, in a new order in each epoch: loss (Eq. 22,
+//                   24), gradients clipped to learner.max_grad_norm, one step of Adam with
+//                   eps 1e-5; the epochs end early once the policy has moved by
+//                   1.5 ppo.target_kl
+//   5. observations of the rollout are added to the normalisation statistics, for the next policy:
+//                   this policy's log-probabilities were computed with the old statistics
 //
-// Rows that make no whole minibatch (a rollout of fewer environments than usual) are left out of
-// an epoch; which ones differs from epoch to epoch.
+// If the rows do not fill whole minibatches (a rollout of fewer environments than usual), an epoch
+// leaves out the remaining rows. Which rows are left out differs between epochs.
 //
-// Sources: Schulman et al. 2017, arXiv:1707.06347; details as ppo.py of Stable-Baselines3, with
-// which tests/learner/agent/sb3_ppo_test.cpp compares them.
+// Sources: Schulman et al. 2017, arXiv:1707.06347; details follow ppo.py of Stable-Baselines3;
+// tests/learner/agent/sb3_ppo_test.cpp compares both.
 #pragma once
 
 #include <functional>
@@ -57,7 +58,7 @@ inline constexpr const Figure* kPpoFigures[] = {
 using RowOrder = std::function<std::vector<int>(int rows, Random* random)>;
 std::vector<int> ShuffledRows(int rows, Random* random);
 
-// Throws Error (kUsage) where the configuration does not fit.
+// Throws Error (kUsage) if the configuration does not fit.
 std::unique_ptr<Agent> MakePpoAgent(const Config& config, const ObservationSpec& spec,
                                     Engine* engine);
 // Same as above with a given order of rows, to compare with other programs.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The policy and the value function of PPO: two networks, each with an encoder of its own where
-// there are pixels, or one with both as outputs (ppo.networks).
+// The policy and the value function of PPO: two networks, each with its own encoder if there are
+// pixels, or one network with both outputs (ppo.networks).
 //
 //   separate   encoder -> actor: mean (A);   value.encoder -> value: V
 //   shared     encoder -> actor: mean (A), V
@@ -31,25 +31,25 @@ class PpoNetworks {
 
   // Frames (B, K*C, H, W), unread without pixels; vector (B, V), normalised.
   void Forward(Frames frames, Array vector);
-  // The value alone; shared networks compute the policy, too.
+  // Computes the value alone; shared networks also compute the policy.
   void ForwardValue(Frames frames, Array vector);
   Array mean() const;                                // (B, A) of the latest Forward
-  Array value() const;                               // (B) of the latest of both
+  Array value() const;                               // (B) of the latest Forward or ForwardValue
   nn::ParameterSet* log_std() { return &log_std_; }  // (A)
 
-  // Gradients of all parameters but the log deviation from those of mean (B, A) and value (B), for
-  // the latest Forward.
+  // Computes the gradients of all parameters except the log deviation, from the gradients of mean
+  // (B, A) and value (B), for the latest Forward.
   void Backward(Array mean_gradient, Array value_gradient);
 
   // Parameter sets that one optimiser steps, and the modules that a step changes.
   std::vector<nn::ParameterSet*> Sets();
   std::vector<nn::Module*> Modules();
   void AddTo(AgentState* state);
-  // Encoder and actor as nn::Policy loads them.
+  // Encoder and actor, with the names that nn::Policy::Load reads.
   nn::TensorMap PolicyTensors() const;
 
  private:
-  // An encoder, where there are pixels, and what stands above it.
+  // An encoder, if there are pixels, and the head above it.
   struct Network {
     Network(const Config& config, const ObservationSpec& spec, const nn::ModuleContext& context,
             const std::string& encoder_name, const nn::HeadPlan& plan);
@@ -57,10 +57,10 @@ class PpoNetworks {
     void Backward(Array gradient);
 
     std::unique_ptr<nn::EncoderModule> encoder;  // null without pixels
-    nn::CriticModule head;                       // of the observation alone
+    nn::CriticModule head;                       // function of the observation alone
   };
 
-  // The columns of a shared network's outputs.
+  // Splits the columns of a shared network's outputs.
   void SplitShared() { engine_->SplitColumns(actor_.head.q(0), shared_mean_, shared_value_); }
 
   Engine* const engine_;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rewards at about the deviation of the discounted returns that they add up to.
+// Scales rewards by the running deviation of their discounted returns.
 //
 // Source: VecNormalize of Stable-Baselines3, common/vec_env/vec_normalize.py.
 #pragma once
@@ -21,12 +21,13 @@ class RewardScale {
  public:
   explicit RewardScale(double discount) : discount_(discount) {}
 
-  // Takes the rewards (N) of a rollout over and scales them. `ends` (N): 1 where an episode ended;
-  // `env` (N): whose steps they are. Returns go on from rollout to rollout.
+  // Adds the rewards (N) of a rollout to the statistics and returns them scaled. `ends` (N): 1 if
+  // an episode ended in this step; `env` (N): the environment of each step. The returns G continue
+  // from rollout to rollout.
   std::vector<float> Scale(std::span<const float> reward, std::span<const float> ends,
                            std::span<const uint64_t> env);
 
-  // Tensors "reward.moments", "reward.envs", "reward.returns".
+  // Writes tensors "reward.moments", "reward.envs", "reward.returns".
   void Export(nn::TensorMap* tensors) const;
   void Import(const nn::TensorMap& tensors, const std::string& source);
 

@@ -19,9 +19,10 @@ inline constexpr Figure kTemperatureLoss{
 inline constexpr Figure kAuxError{"aux_error", "m", "root mean square error of what sac.aux tells",
                                   false, ""};
 
-// In the order of an update. Temperature: after it; learning rate: of it; the actor's and those
-// after it only where the update moves the actor; the error where an update trains the encoder and
-// sac.aux is set.
+// Figures in the order of an update. The temperature is the value after the update, the learning
+// rate the value in the update. The figures of the actor, and those after them, exist only if the
+// update trains the actor. The label error exists only if the update trains the encoder and sac.aux
+// is set.
 inline constexpr const Figure* kSacFigures[] = {
     &kCriticLoss,      &kQMean,    &kTargetMean,       &kCriticGradNorm, &kActorLoss,
     &kTemperatureLoss, &kEntropy,  &kActionSaturation, &kActorGradNorm,  &kTemperature,

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which networks SAC trains, and what follows them. Names are those of its tensors:
+// The networks that SAC trains, with their targets and averages. Names are prefixes of tensors:
 //
 //   encoder.*, critic.*    trained by the critic's loss, one optimiser
 //   actor.*                trained by the actor's loss on the same features, detached
@@ -7,17 +7,17 @@
 //   average.*              moving average of encoder.* and actor.*
 //   temperature.log        one number
 //
-// network.encoders = separate: encoder.* is the actor's, trained by its loss; the critic has
-// critic.encoder.* instead. network.target_encoder: target.encoder.* follows the critic's encoder,
-// and the target stands on its features.
+// network.encoders = separate: the actor's loss trains encoder.* for the actor; the critic has its
+// own critic.encoder.*. network.target_encoder: target.encoder.* follows the critic's encoder, and
+// the target reads the features of target.encoder.*.
 //
-// sac.critic_blocks: the critic is asymmetric: it sees no pixels, and encoder.* is the actor's,
-// trained by its loss.
+// sac.critic_blocks: the critic is asymmetric. Its input has no pixels, and the actor's loss trains
+// encoder.*.
 //
-// sac.aux: aux.*, trained together with the encoder, by a loss of its own beside the other.
+// sac.aux: aux.* is trained together with the encoder, by an additional loss.
 //
-// Dimensions: B batch (of several replicas: the rows of this one), A actions, V vector size, K*C
-// channels. A result is valid until the function that returned it is called again.
+// Dimensions: B batch (with several replicas, the rows of this replica), A actions, V vector size,
+// K*C channels. A result is valid until the function that returned it is called again.
 #pragma once
 
 #include <array>
@@ -42,25 +42,27 @@ namespace shoal::learner {
 // Not movable. One thread; passes over parameters use the current nn::ThreadScope.
 class SacNetworks {
  public:
-  // Seed, learning rates, clipping and initial temperature of `config`. Borrows the engine.
+  // `config` gives seed, learning rates, clipping and initial temperature. Borrows the engine.
   SacNetworks(const Config& config, const ObservationSpec& spec, Engine* engine);
   SacNetworks(const SacNetworks&) = delete;
   SacNetworks& operator=(const SacNetworks&) = delete;
 
-  // frames (B, K*C, H, W). The features stay until the next call and are what the heads below see.
-  // Without pixels these do nothing.
+  // The encoding functions take frames (B, K*C, H, W). The heads below read the features, which
+  // stay valid until the next call. Without pixels these functions do nothing.
   //
-  // For actor and target, by running statistics.
+  // Encodes next observations for actor and target, with running statistics.
   void EncodeNext(Frames frames);
-  // For critic and, of shared encoders, actor; by the batch's statistics. Nothing of an asymmetric
-  // critic.
+  // Encodes observations for the critic and, if the encoder is shared, for the actor, with the
+  // batch's statistics. Does nothing for an asymmetric critic.
   void Encode(Frames frames);
-  // For the actor's loss, after the critic's step, the frames of the latest Encode. An encoder of
-  // the actor's own: by the batch's statistics; then the critic's, if any, anew by running ones. A
-  // shared one's features stay those of before the step.
+  // Encodes the frames of the latest Encode for the actor's loss, after the critic's step. A
+  // separate encoder of the actor uses the batch's statistics; then the critic's encoder, if any,
+  // encodes again with running statistics. A shared encoder keeps its features from before the
+  // step.
   void EncodeForActor(Frames frames);
 
-  // vector (B, V) of the actor; of critic and target theirs (critic_vectors.h); action (B, A).
+  // The forward functions take action (B, A) and a vector: the actor's (B, V), or the vector of
+  // critic and target (critic_vectors.h).
   struct Gaussian {
     Array mean, log_std;  // (B, A), before tanh
   };
@@ -69,56 +71,58 @@ class SacNetworks {
   TwinQ ForwardTarget(Array vector, Array action);
   TwinQ ForwardCritic(Array vector, Array action);
 
-  // True if the head trains the encoder and there are labels (sac.aux): their loss is then added,
-  // for the features of the head's latest forward pass and before its backward pass.
+  // True if the head trains the encoder and there are labels (sac.aux). Then ForwardBackwardAux
+  // must run between the forward and the backward pass of this head.
   enum class Head { kCritic, kActor };
   bool Aux(Head head) const { return aux_ && (head == Head::kActor) == ActorTrains(); }
-  // `drawn` as it was drawn. Returns the mean square error of the labels: AuxLoss::mean_square.
-  // CHECK: there is one.
+  // Adds the auxiliary loss. `drawn`: the batch before any normalisation. Returns
+  // AuxLoss::mean_square, the mean square error of the labels. CHECKs that sac.aux is set.
   Number ForwardBackwardAux(const Transitions& drawn);
 
-  // Gradients of critic and its encoder from dL/dq_i (B) of the latest ForwardCritic, which has to
-  // be of the latest Encode. They are gathered: `squares` as Engine::Gather's.
+  // Computes the gradients of the critic and its encoder from dL/dq_i (B) of the latest
+  // ForwardCritic, which must follow the latest Encode. Also gathers the gradients; `squares`: see
+  // Engine::Gather.
   void BackwardCritic(std::span<const Array> q_gradients, Number squares);
-  // dL/daction (B, A) of the latest ForwardCritic alone.
+  // Computes only dL/daction (B, A) of the latest ForwardCritic.
   void BackwardAction(std::span<const Array> q_gradients, Array action_gradient);
-  // Gradients of the actor, and of an encoder of its own, from dL/dmean, dL/dlog_std (B, A) of the
-  // latest ForwardActor; gathered.
+  // Computes and gathers the gradients of the actor, and of the encoder if the actor trains it,
+  // from dL/dmean and dL/dlog_std (B, A) of the latest ForwardActor.
   void BackwardActor(Array mean_gradient, Array log_std_gradient, Number squares);
 
-  // On the learning rates of all parts, for the steps from now on.
+  // Sets a factor on the learning rates of all parts, for the following steps.
   void SetRateFactor(Number factor);
-  // One optimiser step with the latest gradients, as Engine::Step. Features stay those of before.
+  // One optimiser step with the latest gradients: see Engine::Step. Features do not change.
   void StepCritic();
   void StepActor();
-  // The temperature as it is.
+  // Writes the current temperature to the number.
   void ReadTemperature(Number temperature);
-  // One step of the temperature: Engine::StepTemperature.
+  // Makes one step of the temperature: see Engine::StepTemperature.
   void StepTemperature(Number loss, double least);
-  // target += tau * (critic - target), a target encoder included (Eq. 9).
+  // target += tau * (critic - target), including a target encoder (Eq. 9).
   void MoveTarget(float tau);
-  // average += rate * (policy - average), encoder and actor (Eq. 12).
+  // average += rate * (policy - average), for encoder and actor (Eq. 12).
   void MovePolicyAverage(float rate) { average_.Move(rate); }
 
-  // encoder.* and actor.*, F32: the newest ones, and their moving average (PolicyAverage::Tensors).
+  // encoder.* and actor.*, F32: the newest values, and their moving average
+  // (PolicyAverage::Tensors).
   nn::TensorMap PolicyTensors() const;
   nn::TensorMap AveragedPolicyTensors() const { return average_.Tensors(); }
   // Parameters, targets, averages and optimisers; `state` borrows them.
   void AddTo(AgentState* state);
 
  private:
-  // Whether the actor's loss trains the policy's encoder; else the critic's does.
+  // Whether the actor's loss trains the policy's encoder; if not, the critic's loss does.
   bool ActorTrains() const { return encoder_ && (asymmetric_ || critic_encoder_); }
   nn::EncoderModule* CriticEncoder();  // null without pixels
   std::vector<nn::ParameterSet*> CriticSets();
   std::vector<nn::ParameterSet*> ActorSets();
-  // The modules that the critic's step changes, and those that the actor's does.
+  // The modules that a step of the critic, or of the actor, changes.
   std::vector<nn::Module*> CriticModules();
   std::vector<nn::Module*> ActorModules();
 
   Engine* const engine_;
-  const bool asymmetric_;  // the critic sees no pixels
-  // Null without pixels: the policy's, which is the critic's, too, unless that has its own.
+  const bool asymmetric_;  // the critic has no pixels as input
+  // Encoder of the policy, and of the critic if critic_encoder_ is null. Null without pixels.
   const std::unique_ptr<nn::EncoderModule> encoder_;
   const std::unique_ptr<nn::EncoderModule> critic_encoder_;  // null: encoder_
   const std::unique_ptr<nn::EncoderModule> target_encoder_;  // null: the critic's

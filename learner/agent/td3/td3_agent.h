@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// TD3: two critics, smoothed targets, an actor that moves less often than they do (Fujimoto et al.
-// 2018, arXiv:1802.09477). Everything else: deterministic/deterministic_agent.h.
+// TD3: two critics, smoothed targets, and an actor that is updated less often than the critics
+// (Fujimoto et al. 2018, arXiv:1802.09477). The rest is in deterministic/deterministic_agent.h.
 #pragma once
 
 #include <memory>
