@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Memory of a batch's arrays, which begin at multiples of 64 bytes (common/wire/batch_schema.h).
+// Memory for a batch's arrays, which begin at multiples of 64 bytes (common/wire/batch_schema.h).
 #pragma once
 
 #include <cstdint>
@@ -10,12 +10,12 @@
 
 namespace shoal {
 
-// Owns its bytes, which start out undefined. Move-only.
+// Owns its bytes, whose initial values are undefined. Move-only.
 class AlignedBytes {
  public:
   static constexpr uint64_t kAlignment = 64;
 
-  AlignedBytes() = default;  // none
+  AlignedBytes() = default;  // no bytes
   // Throws Error when there is no memory.
   explicit AlignedBytes(uint64_t bytes)
       // aligned_alloc takes whole multiples of the alignment.

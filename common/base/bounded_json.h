@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// JSON that came from outside: files and messages. The library parses any depth, but copies,
-// compares and writes a value by recursion, so that a text nested some 100,000 deep ends a program
-// by its stack. Nothing of ours is nested more than ten deep.
+// Parses JSON from files and messages with a bound on its depth. The JSON library parses any depth,
+// but it copies, compares and writes a value by recursion. A text that is nested about 100,000 deep
+// therefore overflows the stack. Shoal's own JSON is nested at most ten deep.
 //
-// Every parse of the product goes through here, or through ParseStrictJson (common/config), which
-// asks JsonTooDeep first.
+// All code of the product parses JSON with ParseBoundedJson or with ParseStrictJson
+// (common/config), which calls JsonTooDeep first.
 #pragma once
 
 #include <string_view>
@@ -17,8 +17,8 @@ inline constexpr int kMaxJsonDepth = 64;
 // be valid JSON. One pass, no memory.
 bool JsonTooDeep(std::string_view text);
 
-// `Json` is nlohmann::json or ordered_json. A discarded value (is_discarded()) where the text is
-// not JSON or too deep.
+// Parses `text`; `Json` is nlohmann::json or ordered_json. Returns a discarded value
+// (is_discarded()) if the text is not JSON or is nested too deep.
 template <class Json>
 Json ParseBoundedJson(std::string_view text) {
   if (JsonTooDeep(text)) return Json(Json::value_t::discarded);

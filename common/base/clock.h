@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Clocks, simulated in a simulation (scheduler.h). Deadlines use the steady clock; records and
-// files carry wall time.
+// Clocks; a simulation replaces them (scheduler.h). Deadlines use the steady clock. Records and
+// files use wall time.
 #pragma once
 
 #include <chrono>
@@ -21,7 +21,7 @@ inline double SecondsSince(SteadyTime start) {
   return std::chrono::duration<double>(Now() - start).count();
 }
 
-// Nanoseconds since 1970 (UTC), from the wall clock: may jump.
+// Nanoseconds since 1970 (UTC), from the wall clock, which may jump.
 inline int64_t WallTimeNs() {
   if (Scheduler* scheduler = Scheduler::Current()) return scheduler->WallTimeNs();
   return std::chrono::duration_cast<std::chrono::nanoseconds>(

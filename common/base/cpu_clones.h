@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// SHOAL_CPU_CLONES before a function: the compiler builds it for several generations of x86-64 CPUs
-// and the loader picks one, so that plain loops are as wide as the machine. Not for templates.
+// SHOAL_CPU_CLONES before a function makes the compiler build the function for several generations
+// of x86-64 CPUs. The loader selects one version, so that plain loops use the widest vectors of the
+// machine. Templates cannot use this macro.
 //
 // The choice is made by ifunc resolvers, which run before the thread sanitizer is ready. A build
 // with that sanitizer has the default version only.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// CRC-32 (IEEE 802.3, that of zlib) of bytes, for weights on the wire and files.
+// CRC-32 (IEEE 802.3, as in zlib) of bytes, for weights in messages and for files.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The seam for simulated disks. The code that writes the files of a run asks DiskStep before each
-// step that changes the disk: creating a file, writing half of it, fsync, rename. In the product
-// the answer is always 0, at the cost of one load.
+// Interface for simulated disks. The code that writes the files of a run calls DiskStep before each
+// step that changes the disk: creating a file, writing half of it, fsync, rename. In the product,
+// DiskStep always returns 0, at the cost of one load.
 #pragma once
 
 #include <string>
@@ -16,7 +16,7 @@ class DiskSteps {
   // run, so that a process can be killed between two steps.
   virtual int Before(const std::string& path) = 0;
 
-  // The instance of the program; nullptr outside of simulations.
+  // The program's instance; nullptr outside simulations.
   static DiskSteps* Current() { return current_; }
   static void SetCurrent(DiskSteps* steps) { current_ = steps; }
 

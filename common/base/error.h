@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one exception type. Thrown only for what the outside world can cause at start-up or at a
-// boundary: files, configuration, DDS, child processes, malformed messages. Caught once per process
-// (see main_guard.h), where it becomes one line on stderr and the exit code.
+// The only exception type. It is thrown only for failures that come from outside the program, at
+// start-up or at a boundary: files, configuration, DDS, child processes, malformed messages. Each
+// process catches it once (main_guard.h), prints one line on stderr and returns the exit code.
 //
-// Bugs are CHECK (check.h); normal absence is a value (std::optional, an enum). The data path does
-// not throw.
+// A bug fails a CHECK (check.h). Normal absence is a value (std::optional, an enum). The data path
+// does not throw.
 #pragma once
 
 #include <fmt/core.h>
@@ -15,9 +15,9 @@
 
 namespace shoal {
 
-// Exit codes of every program: 0 clean, 1 run-time failure, 2 bad usage (arguments, configuration),
-// 3 a number that is not finite (simulation, weights, losses). After 2 and 3 the same start would
-// fail again.
+// Exit codes of every program: 0 success, 1 run-time failure, 2 bad usage (arguments,
+// configuration), 3 a number that is not finite (simulation, weights, losses). After an exit with 2
+// or 3, the same command would fail again.
 enum class ErrorKind { kRuntime = 1, kUsage = 2, kNonFinite = 3 };
 
 class Error : public std::runtime_error {

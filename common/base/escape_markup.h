@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text as it may stand in XML and HTML, in elements and in quoted attributes.
+// Escapes text for XML and HTML, in elements and in quoted attributes.
 #pragma once
 
 #include <string>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A lock on a file, which ends with its holder: at destruction, or with the process.
+// A lock on a file. The lock ends when its FileLock is destroyed or the process ends.
 #pragma once
 
 #include <chrono>
@@ -15,16 +15,17 @@ enum class Holding {
   kWithOthers,  // excludes a holder of kAlone
 };
 
-// Locks of the open file (F_OFD_SETLK): they also hold between two openings within one process, are
-// not lost when another descriptor of the file is closed, can be asked for without being taken, and
-// reach the other hosts of a network file system that has locks.
+// Uses locks of the open file description (F_OFD_SETLK). These locks exclude two openings of the
+// file within one process, survive the closing of another descriptor of the file, and can be
+// queried without being taken. On a network file system with locks, they apply to all hosts.
 class FileLock {
  public:
-  // Makes the file if it does not exist (its permissions as the umask allows). Empty if another
-  // process holds the lock. Throws Error naming the file if it cannot be written or is no file.
+  // Takes the lock, and creates the file if it does not exist (permissions follow the umask).
+  // Returns empty if another holder has the lock. Throws Error naming the file if the file cannot
+  // be written or is not a regular file.
   static std::optional<FileLock> Take(const std::filesystem::path& file,
                                       Holding holding = Holding::kAlone);
-  // Asks again until the deadline.
+  // Tries to take the lock until the deadline.
   static std::optional<FileLock> Take(const std::filesystem::path& file, Holding holding,
                                       std::chrono::milliseconds deadline);
 
@@ -34,7 +35,7 @@ class FileLock {
   Descriptor file_;
 };
 
-// Whether anybody holds a lock of the file; false without the file.
+// Whether any process holds a lock on the file; false if the file does not exist.
 bool IsLocked(const std::filesystem::path& file);
 
 }  // namespace shoal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// This host's name, as it calls itself; "unknown" where it does not.
+// The name of this host; "unknown" if the system gives none.
 #pragma once
 
 #include <string>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Limits the lines of a kind that a log takes, so that a sender outside cannot fill a disk: the
-// first kLines of each kSpan. The next line reports the number of lines that were left out.
+// Limits the log lines of one kind, so that a foreign sender cannot fill the disk. The log takes
+// the first kLines lines of each kSpan. The next line reports the number of lines that were left
+// out.
 #pragma once
 
 #include <chrono>
@@ -11,13 +12,14 @@
 
 namespace shoal {
 
-// Threads: none inside; one owner, or a lock.
+// Not thread-safe; use it from one owner or under a lock.
 class LineBudget {
  public:
   static constexpr int kLines = 20;
   static constexpr std::chrono::seconds kSpan{60};
 
-  // For one more line: how many were left out before it, or nothing when it is to be left out, too.
+  // Asks to log one more line. Returns the number of lines left out before this one, or empty if
+  // this line must be left out too.
   std::optional<uint64_t> Take(SteadyTime now) {
     if (!begin_ || now - *begin_ >= kSpan) {
       begin_ = now;

@@ -13,7 +13,7 @@
 
 namespace shoal {
 
-// Not thread-safe. Look several times a second, else silence is counted short.
+// Not thread-safe. Call Look several times a second; otherwise the timer counts too little silence.
 class LivenessTimer {
  public:
   explicit LivenessTimer(SteadyTime start) : looked_(start) {}
@@ -22,7 +22,7 @@ class LivenessTimer {
     silent_ = SteadyTime::duration::zero();
     looked_ = now;
   }
-  // LivenessTimer up to `now`.
+  // Silence of the other process up to `now`.
   SteadyTime::duration Look(SteadyTime now) {
     silent_ +=
         std::clamp<SteadyTime::duration>(now - looked_, SteadyTime::duration::zero(), kMostPerLook);

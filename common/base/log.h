@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Logging: one line per event to stderr and, when asked, to a file. Thread-safe.
+// Logging: one line per event to stderr and optionally to a file. Thread-safe.
 #pragma once
 
 #include <fmt/core.h>
@@ -10,18 +10,19 @@
 
 namespace shoal::log {
 
-// Call once at start. `name` (role and id, e.g. "actor-3") starts each line; `file` empty = none.
-// A file that cannot be opened throws Error.
+// Call once at start. Each line begins with `name` (role and id, e.g. "actor-3"). If `file` is
+// empty, no file is written. Throws Error if the file cannot be opened.
 void Start(const std::string& name, const std::string& file);
 
 // A log of its own for the threads of a group (thread_group.h).
 class File;
-// Appends to `file` alone. Throws Error where it cannot be opened.
+// Opens a log that appends to `file` only. Throws Error if the file cannot be opened.
 std::shared_ptr<File> OpenFile(const std::string& name, const std::string& file);
-// One line as it is, without time and name.
+// Writes one line unchanged, without time and name.
 void WriteRaw(File& log, const std::string& line);
 
-// Into the log of the calling thread's group, else into the process's.
+// Write into the log of the calling thread's group or, if the thread has no group, into the
+// process's log.
 void WriteInfo(const std::string& line);
 void WriteWarning(const std::string& line);
 void WriteError(const std::string& line);

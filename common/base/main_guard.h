@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The frame of every main: exceptions end here. Runs `body`, maps its result to an exit code and an
-// Error to one line on stderr.
+// The outermost function of every main: it runs `body`, catches exceptions, maps the result to an
+// exit code and prints an Error as one line on stderr.
 //
-// A program that a stop signal (stop.h) ended in order dies by that signal: its default action is
-// restored and it is raised. Shells, make and xargs end a loop of commands only if the command died
-// by SIGINT; an exit code of 130 is an ordinary failure to them.
+// If a stop signal (stop.h) ended the program in order, the program dies by the same signal: the
+// signal's default action is restored and the signal is raised. Shells, make and xargs end a loop
+// of commands only if the command died by SIGINT; they treat an exit code of 130 as an ordinary
+// failure.
 #pragma once
 
 #include <functional>
@@ -18,8 +19,8 @@ namespace shoal {
 // Failures keep their exit codes.
 int GuardMain(const char* program, const std::function<int()>& body);
 
-// The same for a program that runs as threads of another process: the line goes to `say`, and stop
-// signals are the process's own.
+// Does the same for a program that runs as threads of another process. The error line is passed to
+// `say`; stop signals are left to the process.
 int GuardBody(const std::string& program, const std::function<int()>& body,
               const std::function<void(const std::string& line)>& say);
 

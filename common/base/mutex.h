@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// A mutex, a scoped lock and a condition variable that clang's -Wthread-safety understands: what a
-// mutex guards is written at the member, and the clang preset refuses to build a use without the
-// lock. Thin over the standard ones, whose Debian build carries no annotations.
+// A mutex, a scoped lock and a condition variable with annotations for clang's -Wthread-safety. An
+// annotation at each member names the mutex that guards it, and the clang preset refuses to build a
+// use without the lock. The classes are thin wrappers, because the standard ones in Debian have no
+// annotations.
 //
 // The attributes: https://clang.llvm.org/docs/ThreadSafetyAnalysis.html
 #pragma once
@@ -18,7 +19,7 @@
 #define SHOAL_THREAD_ATTRIBUTE(x)
 #endif
 
-// A member that may be touched only while `mutex` is held.
+// A member that may be read or written only while `mutex` is held.
 #define SHOAL_GUARDED_BY(mutex) SHOAL_THREAD_ATTRIBUTE(guarded_by(mutex))
 // A function to be called with, or without, these mutexes held.
 #define SHOAL_REQUIRES(...) SHOAL_THREAD_ATTRIBUTE(requires_capability(__VA_ARGS__))
@@ -44,7 +45,7 @@ class SHOAL_THREAD_ATTRIBUTE(capability("mutex")) Mutex {
  private:
   friend class ConditionVariable;
   std::mutex mutex_;
-  bool held_ = false;  // in a simulation
+  bool held_ = false;  // used in simulations only
 };
 
 // Holds the mutex for a scope.
@@ -62,18 +63,19 @@ class SHOAL_THREAD_ATTRIBUTE(scoped_lockable) MutexLock {
   Mutex& mutex_;
 };
 
-// To be waited on in a loop that looks at the condition: a wait may end for no reason. (A predicate
-// would be a lambda, and the analysis does not carry locks into lambdas.)
+// Wait in a loop that checks the condition, because a wait may end without a notification. (There
+// is no overload with a predicate: a predicate is a lambda, and the analysis does not carry locks
+// into lambdas.)
 class ConditionVariable {
  public:
-  // Gives up the mutex while it waits. False when the deadline has passed.
+  // Releases the mutex while it waits. Returns false when the deadline has passed.
   bool WaitUntil(Mutex& mutex, SteadyTime deadline) SHOAL_REQUIRES(mutex) {
     if (Scheduler* scheduler = Scheduler::Current()) {
       return scheduler->Wait(this, &mutex.held_, deadline);
     }
     std::unique_lock lock(mutex.mutex_, std::adopt_lock);
     const bool in_time = arrived_.wait_until(lock, deadline) == std::cv_status::no_timeout;
-    lock.release();  // the caller goes on holding it
+    lock.release();  // the caller still holds the mutex
     return in_time;
   }
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Spelling help for names that are typed.
+// Suggestions for misspelt names.
 #pragma once
 
 #include <span>
@@ -8,14 +8,14 @@
 
 namespace shoal {
 
-// Edits (insert, delete, replace one character) that turn `a` into `b`.
+// Least number of edits (insert, delete or replace one character) that turn `a` into `b`.
 int EditDistance(std::string_view a, std::string_view b);
 
-// Empty where more than half of `word` would have to change: that is another word, not a misspelt
-// one.
+// The name nearest to `word`. Empty if more than half of `word` would have to change, because then
+// `word` is another word rather than a misspelt name.
 std::string NearestName(std::string_view word, std::span<const std::string> names);
 
-// "; nearest is 'NAME'" for the end of a refusal; empty without one.
+// "; nearest is 'NAME'" for the end of an error message; empty if NearestName finds no name.
 std::string NearestHint(std::string_view word, std::span<const std::string> names);
 
 }  // namespace shoal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Text from outside as a part of one line.
+// Turns text from outside into a part of one line.
 #pragma once
 
 #include <string>
@@ -7,7 +7,8 @@
 
 namespace shoal {
 
-// Line breaks and tabs become blanks, other control characters (a terminal would obey them) '?'.
+// Replaces line breaks and tabs by blanks, and other control characters by '?', because a terminal
+// would obey them.
 inline std::string OneLine(std::string_view text) {
   std::string line(text);
   for (char& c : line) {
@@ -17,7 +18,8 @@ inline std::string OneLine(std::string_view text) {
   return line;
 }
 
-// The first `most` bytes, without a character cut in two, and how much was left out.
+// The first `most` bytes, without a partial UTF-8 character, and a note of the number of bytes left
+// out. Shorter texts are unchanged.
 inline std::string Shortened(std::string_view text, size_t most) {
   if (text.size() <= most) return std::string(text);
   while (most > 0 && (static_cast<unsigned char>(text[most]) & 0xc0) == 0x80) --most;

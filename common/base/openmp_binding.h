@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenMP variables that bind threads to cores: Shoal's programs ignore them.
+// Makes Shoal's programs ignore the OpenMP variables that bind threads to cores.
 //
 // Clusters export OMP_PROC_BIND, OMP_PLACES, GOMP_CPU_AFFINITY or KMP_AFFINITY for every program.
-// libgomp reads them when it is loaded and binds the first thread to one core before main. All
-// threads and child processes inherit that mask, so a whole run would share one core. Each program
-// therefore removes the variables from its environment before any library is initialised, and keeps
-// the affinity mask that it was started with (openmp_binding_start.cpp).
+// libgomp reads these variables when it is loaded and binds the first thread to one core before
+// main. All threads and child processes inherit that mask, so a whole run would share one core.
+// Each program therefore removes the variables from its environment before any library is
+// initialised, and keeps the affinity mask that it was started with (openmp_binding_start.cpp).
 //
 // Libraries of Shoal in a user's process (the Python module, libshoal-policy) remove nothing.
 #pragma once

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A pipe whose ends close themselves, and at the start of another program.
+// A pipe whose ends are closed by their destructors and when the process executes another program.
 #pragma once
 
 #include <fcntl.h>
@@ -15,7 +15,7 @@
 namespace shoal {
 
 struct Pipe {
-  // Throws Error when the system gives none.
+  // Throws Error when the system cannot create a pipe.
   Pipe() {
     std::array<int, 2> ends{};
     if (pipe2(ends.data(), O_CLOEXEC) != 0) throw RuntimeError("pipe: {}", std::strerror(errno));

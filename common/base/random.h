@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counter-keyed random streams: a stream is named by what it is for, never by who draws from it, so
-// results do not depend on how environments are spread over processes.
+// Random streams, each with a key. The key depends on the stream's purpose and not on the process
+// that draws from the stream, so results do not depend on the distribution of environments over
+// processes.
 //
 // Generator: xoshiro256++ (Blackman and Vigna 2019, arXiv:1805.01407), seeded by splitmix64.
 #pragma once
@@ -11,7 +12,7 @@
 
 namespace shoal {
 
-// Roles keep streams of different purposes apart. Values are stored in files: never renumber.
+// Streams with different roles are different. Values are stored in files, so never renumber them.
 enum class StreamRole : uint64_t {
   kTrainEnvironment = 1,
   kEvalEnvironment = 2,
@@ -44,9 +45,9 @@ class Random {
   double Uniform(double low, double high) { return low + (high - low) * Uniform(); }
   // Uniform in {0, ..., n-1}, n > 0; unbiased (Lemire's rejection).
   uint64_t Below(uint64_t n);
-  // Standard normal by Box-Muller; both values of a pair are drawn at once, none is kept.
+  // Standard normal by Box-Muller. Each call draws two uniform numbers and keeps nothing.
   double Normal();
-  // Leaves the stream where Normal would, at a tenth of its cost.
+  // Advances the stream as Normal does, at a tenth of its cost.
   void SkipNormal() {
     Next();
     Next();

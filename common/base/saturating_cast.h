@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Numbers from outside as integers.
+// Converts numbers from outside to integers.
 #pragma once
 
 #include <cmath>
@@ -8,13 +8,14 @@
 
 namespace shoal {
 
-// Towards zero; what does not fit becomes the nearest that does, NaN becomes 0.
+// Rounds towards zero. A value out of range becomes the nearest limit; NaN becomes 0.
 template <class Integer>
 Integer SaturatingCast(double value) {
   static_assert(std::is_integral_v<Integer>);
   using Limits = std::numeric_limits<Integer>;
   if (std::isnan(value)) return 0;
-  // The largest integer may be no double: 2^63 or 2^64 then stand for it, and do not fit.
+  // The largest integer may not be representable as a double. The comparison therefore uses the
+  // power of two above it, which is out of range.
   if (value >= std::ldexp(1.0, Limits::digits)) return Limits::max();
   if (value <= static_cast<double>(Limits::min())) return Limits::min();
   return static_cast<Integer>(value);

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The seam for simulated time and threads. Every clock, lock, wait, sleep and thread of a role goes
-// through clock.h, mutex.h, sleep.h and thread_group.h; these ask Current() first. In a product
-// process there is none, and they use the operating system.
+// Interface for simulated time and threads. The code of a role uses clocks, locks, waits, sleeps
+// and threads only through clock.h, mutex.h, sleep.h and thread_group.h, which check Current()
+// first. Without a scheduler, as in the product, these headers use the operating system.
 //
-// A scheduler runs one thread at a time on a single thread of the operating system and switches
-// only in the calls below: what a simulated thread does between two of them is atomic.
+// A scheduler runs all simulated threads on a single thread of the operating system. It switches
+// threads only in the calls below, so a simulated thread is atomic between two calls.
 #pragma once
 
 #include <cstdint>
@@ -22,11 +22,11 @@ class Scheduler {
   virtual int64_t WallTimeNs() = 0;  // since 1970; may jump
   virtual void SleepUntil(SteadyTime time) = 0;
 
-  // Lets other threads run while `*held`, then sets it.
+  // Lets other threads run while `*held` is true, then sets `*held`.
   virtual void Lock(bool* held) = 0;
   virtual void Unlock(bool* held) = 0;
-  // Waits for a Notify of `condition` while `*held` is given up. False when the deadline came
-  // first.
+  // Waits for a Notify of `condition`; `*held` is false meanwhile. Returns false when the deadline
+  // came first.
   virtual bool Wait(const void* condition, bool* held, SteadyTime deadline) = 0;
   virtual void Notify(const void* condition, bool all) = 0;
 
@@ -35,12 +35,12 @@ class Scheduler {
   virtual bool Ended(uint64_t thread) = 0;
   virtual void Join(uint64_t thread) = 0;
 
-  // The calling thread's process owns the descriptor, and does no more (common/base/descriptor.h):
-  // a simulated kill closes those that it owns.
+  // Tell the scheduler that the calling thread's process has opened, or closed, the descriptor
+  // (common/base/descriptor.h). A simulated kill closes the descriptors of the killed process.
   virtual void OnOpened(int descriptor) = 0;
   virtual void OnClosed(int descriptor) = 0;
 
-  // The calling thread's; nullptr outside of simulations.
+  // The calling thread's scheduler; nullptr outside simulations.
   static Scheduler* Current() { return current_; }
   static void SetCurrent(Scheduler* scheduler) { current_ = scheduler; }
 

@@ -15,7 +15,7 @@ class SharedBytes {
   SharedBytes() = default;
   SharedBytes(std::string bytes)
       : SharedBytes(std::make_shared<const std::string>(std::move(bytes))) {}
-  // `bytes` are there as long as `owner` is.
+  // `bytes` must stay valid as long as `owner` lives.
   SharedBytes(std::shared_ptr<const void> owner, std::string_view bytes)
       : owner_(std::move(owner)), bytes_(bytes) {}
 

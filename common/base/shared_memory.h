@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Memory that processes of one user on one host share. It has no name in any file system: once its
-// maker and all processes that have it mapped have ended, for whatever reason, it is freed. It
-// cannot collide with memory of another run, and the size of /dev/shm does not matter.
+// Memory that processes of one user on one host share. The memory has no name in any file system.
+// The kernel frees the memory when its maker and all processes that map the memory have ended, for
+// whatever reason. It cannot collide with memory of another run, and the size of /dev/shm does not
+// matter.
 //
-// A reader finds it by the maker's process number and descriptor, through /proc, while the maker
-// lives; a mapping stays valid afterwards. The kernel admits only the maker's user and root.
+// While the maker lives, a reader opens the memory through /proc by the maker's process number and
+// descriptor. A mapping stays valid afterwards. The kernel admits only the maker's user and root.
 // The size is sealed, so that no access can fail later.
 #pragma once
 
@@ -20,17 +21,18 @@ namespace shoal {
 
 class SharedMemory {
  public:
-  // `bytes` of zeros, taken from the system at once. `label` shows in /proc/PID/maps. Throws Error
-  // with the reason: a limit on files' sizes, no memory, a kernel without memfd_create. A control
-  // group with too little room kills instead: the caller asks before.
+  // Makes memory of `bytes` zeros, all allocated at once. `label` appears in /proc/PID/maps. Throws
+  // Error with the reason: a limit on the size of files, no memory, a kernel without memfd_create.
+  // If the memory limit of a control group is too small, the kernel kills the process; the caller
+  // must check the limit before.
   static SharedMemory Make(const std::string& label, uint64_t bytes);
-  // Memory with the concatenated `pieces`, sealed against changes. Others can Open it as long as
-  // the descriptor is kept. It is written without being mapped, which costs about half of Make and
-  // a copy into it. Throws Error as Make does.
+  // Makes memory with the concatenated `pieces`, sealed against changes. Other processes can Open
+  // the memory while the descriptor is open. The pieces are written without a mapping, at about
+  // half the cost of Make and a copy. Throws Error as Make does.
   static Descriptor MakeOf(const std::string& label,
                            std::initializer_list<std::string_view> pieces);
-  // That of a process on this host, for reading. Throws Error: nothing there, not ours to read,
-  // not made here, of another size.
+  // Maps, for reading, the memory of a process on this host. Throws Error if there is no such
+  // memory, the caller may not read it, it was not made by this class, or it has another size.
   static SharedMemory Open(int32_t pid, int32_t descriptor, uint64_t bytes);
 
   SharedMemory(SharedMemory&& other) noexcept
@@ -40,7 +42,8 @@ class SharedMemory {
   SharedMemory& operator=(SharedMemory&&) = delete;
   ~SharedMemory();
 
-  // Aligned to a page. A write to what was opened ends the process (SIGSEGV).
+  // The mapping, aligned to a page. If the memory was mapped by Open, a write ends the process
+  // (SIGSEGV).
   uint8_t* data() const { return data_; }
   uint64_t bytes() const { return bytes_; }
   int descriptor() const { return descriptor_.get(); }

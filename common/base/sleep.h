@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The only way to sleep in a role's code: it obeys a simulation's clock (scheduler.h).
+// Sleeps on the clock of the simulation, if there is one (scheduler.h). The code of a role must not
+// sleep in another way.
 #pragma once
 
 #include <thread>

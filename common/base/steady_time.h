@@ -5,7 +5,7 @@
 
 namespace shoal {
 
-// A point on the clock of deadlines.
+// A point in time of the steady clock, which deadlines use.
 using SteadyTime = std::chrono::steady_clock::time_point;
 
 }  // namespace shoal

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// One process-wide request to stop, set by SIGINT / SIGTERM / SIGHUP (the terminal's or the
-// parent's end). Polled by every loop; never un-set. A thread of a group (thread_group.h) polls its
-// group's request instead: signals are for the threads of no group.
+// The process-wide request to stop, set by SIGINT, SIGTERM or SIGHUP (the end of the terminal or of
+// the parent). Every loop polls the request, which is never reset. A thread of a group
+// (thread_group.h) polls its group's request instead; signals affect threads without a group only.
 #pragma once
 
 #include <atomic>
@@ -15,14 +15,14 @@ void InstallStopSignals();
 // Async-signal-safe.
 void RequestStop();
 bool StopRequested();
-// Number of stop requests except by SIGHUP: a second Ctrl-C means "now".
+// Number of stop requests, without SIGHUP. Two or more mean "stop now" (a second Ctrl-C).
 int StopRequests();
 // The first stop signal that arrived; 0 without one, also after RequestStop.
 int StopSignal();
 
-// Value of a main's body that a stop request ended in order. GuardMain (main_guard.h) then ends the
-// process by the signal; 130, which is what a shell reports for SIGINT, is the exit code where the
-// request was no signal.
+// Return value of a main's body that a stop request ended in order. GuardMain (main_guard.h) then
+// ends the process by the stop signal. If the request was not a signal, the exit code is 130, which
+// shells report for SIGINT.
 inline constexpr int kInterruptedExit = 130;
 
 }  // namespace shoal

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Stops a process at the end of its standard input. A remote shell closes that input when its
-// client dies; neither a signal nor the death of a parent would show it.
+// Stops a process at the end of its standard input. If the client of a remote shell dies, the shell
+// closes the process's input. The process receives no signal then, and its parent stays alive.
 #pragma once
 
 #include <thread>
@@ -9,11 +9,11 @@
 
 namespace shoal {
 
-// Reads standard input, and discards it, on a thread of its own; calls RequestStop (stop.h) at its
-// end. One per process.
+// Reads and discards standard input on its own thread, and calls RequestStop (stop.h) at the end of
+// the input. One per process.
 class StopWithInput {
  public:
-  // Throws Error when the system gives no pipe.
+  // Throws Error when the system cannot create a pipe.
   StopWithInput();
   ~StopWithInput();
   StopWithInput(const StopWithInput&) = delete;

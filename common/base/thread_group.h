@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The threads of one role where several roles of a run share a process (shoal train --in-process).
-// A group has its own request to stop and its own log; in a process of its own a role has no group
-// and uses the process's (stop.h, log.h).
+// The threads of one role, if several roles of a run share a process (shoal train --in-process). A
+// group has its own stop request and its own log. A role with its own process has no group; it uses
+// the stop request and the log of the process (stop.h, log.h).
 #pragma once
 
 #include <pthread.h>
@@ -21,24 +21,24 @@ namespace shoal {
 
 class ThreadGroup {
  public:
-  // `name` (as "actor-3") starts the lines of the log, which are appended to `log_file`. Throws
-  // Error where that cannot be opened.
+  // Each line of the log begins with `name` (such as "actor-3") and is appended to `log_file`.
+  // Throws Error if the file cannot be opened.
   ThreadGroup(const std::string& name, const std::string& log_file)
       : log_(log::OpenFile(name, log_file)) {}
   ThreadGroup(const ThreadGroup&) = delete;
   ThreadGroup& operator=(const ThreadGroup&) = delete;
 
-  // Any thread. What a stop signal is to a process.
+  // Requests that the group stops, as a stop signal does for a process. Any thread.
   void RequestStop() { stop_requests_.fetch_add(1, std::memory_order_relaxed); }
   int StopRequests() const { return stop_requests_.load(std::memory_order_relaxed); }
   log::File& log() { return *log_; }
-  // Processor time of the members, also of those that have ended.
+  // Processor time of the members, including members that have ended.
   double CpuSeconds() const;
 
-  // The group of the calling thread; nullptr for none.
+  // The group of the calling thread; nullptr if it has none.
   static ThreadGroup* Current();
 
-  // For a scheduler of simulated threads: what Current() is for a scope.
+  // Sets Current() for a scope, without membership. For a scheduler of simulated threads.
   class Bound {
    public:
     explicit Bound(ThreadGroup* group);
@@ -74,8 +74,8 @@ class ThreadGroup {
   const std::shared_ptr<log::File> log_;
 };
 
-// A std::thread that belongs to the group of the thread that makes it. Every thread of a role is
-// one of these.
+// A std::thread that belongs to the group of the thread that creates it. Every thread of a role is
+// a Thread.
 class Thread {
  public:
   Thread() = default;
@@ -99,7 +99,7 @@ class Thread {
 
  private:
   std::thread thread_;
-  uint64_t simulated_ = 0;  // in a simulation
+  uint64_t simulated_ = 0;  // number of the thread in a simulation; else 0
 };
 
 }  // namespace shoal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How many cores this process may use.
+// Number of cores that this process may use.
 #pragma once
 
 #include <filesystem>
@@ -8,21 +8,21 @@
 namespace shoal {
 
 struct CoreLimits {
-  int online = 0;    // of the machine
-  int affinity = 0;  // this process may run on
-  double quota = 0;  // CPUs' worth of time that the cgroups grant; infinite without a limit
+  int online = 0;    // online cores of the machine
+  int affinity = 0;  // cores in the affinity mask of this process
+  double quota = 0;  // processor time that the cgroups grant, in CPUs; infinite without a limit
 };
 
-// Reads the cgroups below `root` ("/" but for tests).
+// Reads the cgroups below `root`, which is "/" except in tests.
 CoreLimits ReadCoreLimits(const std::filesystem::path& root = "/");
 
-// The affinity, cut to the quota (rounded up). At least 1.
+// The smaller of the affinity and the quota (rounded up). At least 1.
 int UsableCores(const CoreLimits& limits);
 int UsableCores();
 
 // Why the process may not use all online cores, or "" if it may: "1 of 8 by its CPU affinity mask
-// (set by taskset, a scheduler or the program that started it)". Names OpenMP variables that this
-// program ignores but by which the program that started it may have been bound.
+// (set by taskset, a scheduler or the program that started it)". Also names OpenMP variables that
+// this program ignores, because they may have bound the program that started it.
 std::string DescribeLimits(const CoreLimits& limits);
 
 }  // namespace shoal

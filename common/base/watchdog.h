@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Ends the process when something that cannot be interrupted takes too long: a hang becomes a line
-// in the log and an exit that the supervisor sees.
+// Ends the process when an operation that cannot be interrupted takes too long. A hang then becomes
+// a line in the log and an exit that the supervisor detects.
 #pragma once
 
 #include <chrono>
@@ -11,8 +11,8 @@
 
 namespace shoal {
 
-// While it lives longer than `limit`: logs "WHAT took longer than N ms: leaving at once" and calls
-// _exit(1), so no destructor runs and nothing buffered is written. A thread of its own.
+// If the object lives longer than `limit`, its thread logs "WHAT took longer than N ms: leaving at
+// once" and calls _exit(1). No destructor runs, and buffered output is lost.
 class Watchdog {
  public:
   Watchdog(std::string what, std::chrono::milliseconds limit);
@@ -28,7 +28,7 @@ class Watchdog {
   Mutex mutex_;
   ConditionVariable changed_;
   bool done_ SHOAL_GUARDED_BY(mutex_) = false;
-  std::thread thread_;  // last: starts when everything else is there
+  std::thread thread_;  // last member: starts when all others are initialised
 };
 
 }  // namespace shoal

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Files that could not be written and will be tried again: a full disk, a quota, a disk that became
-// read-only, a folder that was moved. A long-running process continues without them and reports
-// each once. The caller decides what to write again, and when.
+// Files that could not be written because, for example, the disk is full or read-only, a quota is
+// used up, or a folder was moved. A long-running process continues without these files and reports
+// each of them once. The caller decides what to write again, and when.
 #pragma once
 
 #include <functional>
@@ -11,7 +11,7 @@
 
 namespace shoal {
 
-// Exit code of a program that did its work in order, but could not write all of its results.
+// Exit code of a program that completed its work but could not write all its results.
 inline constexpr int kUnwrittenExit = 4;
 
 // One thread.
@@ -23,11 +23,11 @@ class WriteFaults {
                        std::set<std::string> failing = {})
       : say_(std::move(say)), failing_(std::move(failing)) {}
 
-  // Runs `write`. False when it threw Error. `what` names the file, or the kind of file, in lines
-  // and in failing().
+  // Runs `write`. Returns false when `write` threw Error. `what` names the file, or the kind of
+  // file, in the lines and in failing().
   bool Try(const std::string& what, const std::function<void()>& write);
 
-  // Those whose last attempt failed.
+  // The files whose last attempt failed.
   const std::set<std::string>& failing() const { return failing_; }
 
  private:

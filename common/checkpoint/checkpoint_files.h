@@ -3,14 +3,15 @@
 //
 //   learner.safetensors  everything an exact resume needs
 //   policy.safetensors   what an actor needs, F32
-//   policy.json          what is to be known to act by it (common/policy/policy_description.h);
+//   policy.json          description of the policy (common/policy/policy_description.h);
 //                        checkpoints of former versions have none
 //   state.json           schema shoal-checkpoint-1: counters, session, hashes, precision,
 //                        algorithm, size and CRC-32 of these files, and a CRC-32 of itself
-//   .meta.json           schema shoal-checkpoint-meta-1: where it comes from, for people and tools
+//   .meta.json           schema shoal-checkpoint-meta-1: origin of the checkpoint, for people and
+//                        tools
 //
-// It appears whole or not at all: written as a folder of another name, every file synced, renamed,
-// the parent folder synced.
+// A checkpoint appears whole or not at all: the writer makes a folder of another name, syncs every
+// file, renames the folder, and syncs the parent folder.
 #pragma once
 
 #include <cstdint>
@@ -31,9 +32,9 @@ inline constexpr char kCheckpointMetaSchema[] = "shoal-checkpoint-meta-1";
 
 struct CheckpointState {
   uint64_t updates = 0;
-  uint64_t env_steps = 0;         // stored in the replay when the last batch was drawn
-  uint64_t request = 0;           // of that batch
-  uint64_t learner_session = 0;   // that wrote it
+  uint64_t env_steps = 0;         // env steps stored when the last batch was drawn
+  uint64_t request = 0;           // request number of the last batch
+  uint64_t learner_session = 0;   // session of the learner that wrote the checkpoint
   uint64_t config_hash = 0;       // of the run's resolved configuration
   uint64_t spec_hash = 0;         // of the observation spec
   std::string precision;          // "f32" | "bf16": of the products; parameters are F32 either way
@@ -50,12 +51,12 @@ struct CheckpointFiles {
 
 // "step_000002000"
 std::string CheckpointName(uint64_t updates);
-// The number of updates in such a name; none for any other name.
+// The number of updates in the name of a checkpoint; empty for any other name.
 std::optional<uint64_t> CheckpointUpdates(const std::string& name);
 
-// Writes PARENT/step_UPDATES, in place of one of that name. `meta` becomes .meta.json. Throws Error
-// naming the file (disk full, not writable); then nothing is left behind and a former checkpoint of
-// the name is untouched.
+// Writes PARENT/step_UPDATES and replaces a former checkpoint of this name. `meta` becomes
+// .meta.json. Throws Error naming the file (disk full, not writable). After an error, no partial
+// checkpoint remains, and a former checkpoint of this name is unchanged.
 void WriteCheckpointFiles(const std::filesystem::path& parent, const CheckpointFiles& files,
                           const nlohmann::ordered_json& meta);
 
@@ -64,7 +65,7 @@ void WriteCheckpointFiles(const std::filesystem::path& parent, const CheckpointF
 // observation spec.
 CheckpointFiles ReadCheckpointFiles(const std::filesystem::path& folder);
 CheckpointFiles ReadCheckpointFiles(const std::filesystem::path& folder, uint64_t spec_hash);
-// The same without `learner`, which need not be there: what acting takes.
+// Reads the files that acting needs. `learner` stays empty, and its file need not exist.
 CheckpointFiles ReadPolicyFiles(const std::filesystem::path& folder);
 
 }  // namespace shoal

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Properties of an algorithm that a run needs outside of learning: which keys fit, whether there is
-// a replay, how actors explore. learner/agent/algorithms.cpp has the list that learning uses.
+// Properties of an algorithm that a run needs outside learning: the keys that fit, whether the run
+// has a replay, and how actors explore. learner/agent/algorithms.cpp has the list that learning
+// uses.
 //
-// A further algorithm is a line in both lists. The choices of learner.algorithm follow from the
-// list here.
+// A new algorithm needs a line in both lists. This list defines the choices of learner.algorithm.
 #pragma once
 
 #include <span>
@@ -16,10 +16,11 @@ namespace shoal {
 
 struct AlgorithmKind {
   std::string_view name;  // of learner.algorithm
-  // From rollouts that go to the learner, by an unsquashed Gaussian; else from a replay.
+  // True: the algorithm learns from rollouts that actors send to the learner, and its policy is an
+  // unsquashed Gaussian. False: the algorithm learns from a replay.
   bool on_policy = false;
-  // Its policy is a Gaussian squashed by tanh: takes network.log_std. Otherwise, off policy, the
-  // policy is deterministic.
+  // True: the policy is a Gaussian squashed by tanh and uses network.log_std. False for an
+  // off-policy algorithm: the policy is deterministic.
   bool squashed_gaussian = false;
   bool encoder_options = false;  // takes network.encoders, network.target_encoder
   // Section of keys that only algorithms with this section take: "ppo."; empty = none.
@@ -27,10 +28,10 @@ struct AlgorithmKind {
 };
 
 std::span<const AlgorithmKind> AlgorithmKinds();
-// The run's. CHECK: there is one, which the key's choices see to.
+// The algorithm of the run. CHECKs that the algorithm exists; the choices of the key ensure it.
 const AlgorithmKind& AlgorithmKindOf(const Config& config);
 
-// Those of which `fits` is true, for messages: "sac | td3 | ddpg".
+// Names of the algorithms for which `fits` is true, for messages: "sac | td3 | ddpg".
 std::string AlgorithmsThat(bool (*fits)(const AlgorithmKind& kind));
 
 }  // namespace shoal

@@ -8,7 +8,7 @@
 
 namespace shoal {
 
-// Throws Error as PrivilegedBlocksOf.
+// Throws Error as PrivilegedBlocksOf does.
 BatchOptions BatchOptionsOf(const RunConfig& run);
 BatchSchema BatchSchemaOf(const RunConfig& run);
 

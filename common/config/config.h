@@ -15,14 +15,14 @@
 
 namespace shoal {
 
-// A camera of the user's: looks at `lookat` from `distance`; azimuth 0 looks along +x, 90 along +y,
-// negative elevation looks down.
+// A user-defined camera, which looks at the point `lookat` from `distance`. Azimuth 0 looks along
+// +x, 90 along +y; a negative elevation looks down.
 struct CustomCamera {
   std::array<double, 3> lookat{};  // m
   double distance = 1;             // m
   double azimuth = 0;              // degrees
   double elevation = 0;            // degrees
-  std::string body = {};           // whose frame the numbers are in; empty = the world's
+  std::string body = {};           // body whose frame the numbers use; empty = the world's frame
 
   bool operator==(const CustomCamera&) const = default;
 };
@@ -30,11 +30,11 @@ struct CustomCamera {
 // Some of a task's blocks: all, none, or those named.
 struct StateBlocks {
   bool all = false;
-  std::vector<std::string> names{};  // unless all
+  std::vector<std::string> names{};  // the named blocks, if not `all`
 
   StateBlocks(bool every) : all(every) {}  // NOLINT(google-explicit-constructor): true | false
   explicit StateBlocks(std::vector<std::string> some) : names(std::move(some)) {}
-  // Any.
+  // Whether any block is selected.
   explicit operator bool() const { return all || !names.empty(); }
 };
 
@@ -50,7 +50,7 @@ struct ObservationConfig {
   std::map<std::string, CustomCamera> custom_cameras;  // by name, beside the task's own
 };
 
-// An object of JSON: arguments of a user's function, by name.
+// Named arguments of a user's function, as a JSON object.
 struct KeywordArguments {
   std::string json = "{}";
 };
@@ -58,10 +58,10 @@ struct KeywordArguments {
 // An environment that is not one of Shoal's worlds, run by Python in the actors.
 struct EnvConfig {
   std::string id;            // "Pendulum-v1", "module:Name", "/folder/file.py:Name"; empty = none
-  KeywordArguments kwargs;   // of the environment's constructor
+  KeywordArguments kwargs;   // arguments of the environment's constructor
   std::string python;        // path of the interpreter; empty = chosen when the run starts
-  std::string folder;        // where modules are looked for; empty = where the run is started
-  double step_timeout = 20;  // s, of one call of reset, step or render
+  std::string folder;        // search folder for modules; empty = the folder of the run's start
+  double step_timeout = 20;  // s, for one call of reset, step or render
 };
 
 // Physical quantities drawn anew for every episode, uniformly in [low, high].
@@ -79,15 +79,15 @@ struct ReplayConfig {
   bool keep = false;               // the file stays when the run has finished
   int shift_pad = 4;               // DrQ shift in pixels, 0 = none
   int copies = 1;                  // batch elements per drawn transition, each shifted anew
-  int target_shifts = 0;           // K: of them, with a next frame of their own; 0 = all
-  int critic_shifts = 0;           // M: of them, with a frame of their own; 0 = all
+  int target_shifts = 0;           // K: copies with their own shift of the next frame; 0 = all
+  int critic_shifts = 0;           // M: copies with their own shift of the frame; 0 = all
   int n_step = 1;                  // steps whose rewards are summed before the next value
-  std::string hindsight = "none";  // none | future | final | episode: goals of an episode's own
+  std::string hindsight = "none";  // none | future | final | episode: source of hindsight goals
   int hindsight_goals = 4;         // N: a share N / (N + 1) of the samples is relabelled
-  double movement_share = 0;       // of the samples, drawn by how far what is achieved still moves
-  std::string movement = "path";   // path | displacement: what that distance is
+  double movement_share = 0;       // share of samples drawn by remaining motion of achieved goals
+  std::string movement = "path";   // path | displacement: measure of the remaining motion
   int window_chunks = 4;           // chunks an actor may have unacknowledged
-  int threads = 0;                 // that copy a batch's frames; 0 = as many as its rate needs
+  int threads = 0;                 // threads that copy a batch's frames; 0 = as the rate requires
 };
 
 struct LearnerConfig {
@@ -98,17 +98,17 @@ struct LearnerConfig {
   double learning_rate = 5e-4;
   double actor_learning_rate = 0, critic_learning_rate = 0;  // 0 = learning_rate
   Schedule rate_factor = Schedule::Constant(1);              // on all learning rates
-  double max_grad_norm = 0;  // of the actor's gradients and of the critic's; 0 = not clipped
+  double max_grad_norm = 0;  // for the actor's gradients and for the critic's; 0 = not clipped
   double discount = 0.9;
   double reward_scale = 10;
   double tau = 0.01;            // target heads: target += tau * (online - target)
   double average_rate = 0.005;  // evaluated policy: average += rate * (policy - average); 1 = none
   int actor_period = 2;         // updates per actor and temperature update
   int target_period = 1;
-  double mean_penalty = 0;  // of a deterministic policy: weight of its squared outputs before tanh
-  bool normalise_vectors = false;  // of observations, by running mean and deviation
-  double variance_floor = 0;       // smaller variances count as this in normalise_vectors
-  bool bounded_targets = false;    // values cut off at what rewards of -1 and 0 allow
+  double mean_penalty = 0;  // deterministic policy: weight of its squared outputs before tanh
+  bool normalise_vectors = false;  // observed vectors, by running mean and deviation
+  double variance_floor = 0;       // least variance that normalise_vectors uses
+  bool bounded_targets = false;    // targets clipped to the range that rewards of -1 and 0 allow
   int weights_period = 20;         // updates between weights broadcasts
   int request_credits = 3;         // batches asked for ahead
   int checkpoint_period = 2'000;   // updates between checkpoints
@@ -118,38 +118,38 @@ struct LearnerConfig {
 struct SacConfig {
   std::string temperature = "auto";  // auto | fixed
   double initial_temperature = 0.1;
-  double min_temperature = 0;            // of an automatic one
+  double min_temperature = 0;            // bound of an automatic temperature
   double temperature_learning_rate = 0;  // 0 = learner.learning_rate
   double target_entropy = 0;             // 0 = target_entropy_per_action * (action size)
   double target_entropy_per_action = -1;
-  StateBlocks critic_blocks = false;  // that the critic sees in place of pixels; false = pixels
-  std::vector<std::string> aux;       // what the features also predict: BLOCK, or BLOCK-BLOCK
-  double aux_weight = 1;              // of that loss
+  StateBlocks critic_blocks = false;  // the critic's inputs in place of pixels; false = pixels
+  std::vector<std::string> aux;       // auxiliary regression targets: BLOCK, or BLOCK-BLOCK
+  double aux_weight = 1;              // weight of the auxiliary loss
 };
 
-// On-policy learning: rollouts of every environment, learned from together and then forgotten.
+// On-policy learning: each update uses one rollout of every environment and then discards it.
 struct PpoConfig {
   int rollout_steps = 1024;                 // T, of each environment, by one version of the weights
   int epochs = 10;                          // passes over a rollout in one update
   Schedule clip = Schedule::Constant(0.2);  // of the probability ratio, around 1
-  double value_clip = 0;                    // of a value's change; 0 = none
+  double value_clip = 0;                    // bound on a value's change; 0 = none
   double gae_lambda = 0.95;                 // weight of later steps' advantages
   double entropy_weight = 0;                // of the policy's entropy in the loss
   double value_weight = 0.5;                // of the squared value error in the loss
-  double target_kl = 0;                     // an update ends beyond 1.5 of it; 0 = never
+  double target_kl = 0;                     // an update ends early beyond 1.5 * this; 0 = never
   bool normalise_advantages = true;         // in each minibatch
   bool normalise_rewards = false;           // by the running deviation of returns
   std::string networks = "separate";        // separate | shared: of policy and value
   double initial_log_std = 0;               // of the policy, before the first update
   int versions_ahead = 0;                   // rollouts begun before the awaited weights
-  double rollout_deadline = 30;             // s, for those that are late
+  double rollout_deadline = 30;             // s, to wait for late rollouts
 };
 
 // Noise on a target's action, in units of the action's range of -1 to 1; the source's values
 // (Fujimoto et al. 2018, arXiv:1802.09477, table 3).
 struct Td3Config {
   double target_noise = 0.2;       // standard deviation; 0 = none
-  double target_noise_clip = 0.5;  // it is cut off at
+  double target_noise_clip = 0.5;  // bound of the noise
 };
 
 // Noise that training actors add to their policy's actions (actor/acting/exploration.h).
@@ -159,15 +159,15 @@ struct ExplorationConfig {
   double theta = 0.15;                       // ou: pull towards zero, per unit of time
   double dt = 0.01;                          // ou: units of time per env step
   int64_t random_steps = 0;                  // env steps of the run by uniform random actions
-  double spread = 1;  // actors' own factors of the noise: 1 / spread .. spread
+  double spread = 1;  // each actor scales the noise by its own factor in 1 / spread .. spread
 };
 
 struct NetworkConfig {
-  std::string encoder = "compact";  // of pixels: the kinds of common/nn/encoders/encoder_kind.h
+  std::string encoder = "compact";  // for pixels: a kind of common/nn/encoders/encoder_kind.h
   std::string encoder_weights;      // safetensors file that the encoder starts from; empty = none
   std::string encoders = "shared";  // shared | separate: of actor and critic
-  bool target_encoder = false;      // the target critic has one of its own, which follows
-  // Keys of the compact encoder alone; 0 and [] = its own values.
+  bool target_encoder = false;      // the target critic has its own, which follows the critic's
+  // Keys of the compact encoder only; 0 and [] = the encoder's own values.
   int pool = 0;  // average pooling of the input, 1 = none
   std::vector<int> filters, strides;
   std::string trunk = "auto";                 // auto = the encoder's own | tanh | relu
@@ -193,9 +193,9 @@ struct StopConfig {
 };
 
 struct TransportConfig {
-  std::string interface = "lo";  // name or address; auto = the one towards the servers
-  int fragment_bytes = 65'000;   // 8000 where peers are behind MTU 1500
-  int chunk_records = 24;        // records per chunk at most; fewer where they exceed 1 MiB
+  std::string interface = "lo";  // name or address; auto = the interface towards the servers
+  int fragment_bytes = 65'000;   // use 8000 if peers are behind MTU 1500
+  int chunk_records = 24;        // most records per chunk; fewer if they exceed 1 MiB
   int flush_ms = 100;            // a partial chunk is sent after this long
 };
 
@@ -207,18 +207,18 @@ struct Config {
   std::string run_name;  // empty = PRESET-sSEED
   std::string run_dir = "runs";
   std::string task = "FetchReachDense";
-  std::string task_library;       // shared object with tasks of one's own; empty = none
-  double distance_threshold = 0;  // of success and sparse reward, m; 0 = the task's own
+  std::string task_library;       // shared object with the user's tasks; empty = none
+  double distance_threshold = 0;  // for success and sparse reward, m; 0 = the task's own
   int64_t env_steps = 100'000;    // budget
   int actors = 0;                 // 0 = one per core the learner leaves, at least 1
   int envs_per_actor = 4;
   bool lockstep = false;
   int lockstep_steps = 8;           // vector steps between weights in lockstep
   std::string model;                // path of another MJCF file for the task; empty = our own
-  std::string physics = "mujoco2";  // mujoco2 | mujoco3: whose version of the Fetch weld
+  std::string physics = "mujoco2";  // mujoco2 | mujoco3: MuJoCo version of the Fetch weld
   int action_repeat = 0;            // control steps per env step; 0 = the task's own
   bool end_on_success = false;      // an episode ends, terminated, with the step that succeeds
-  double max_faulty_share = 0.05;   // of an actor's last 200 episodes; more end the run
+  double max_faulty_share = 0.05;   // share of an actor's last 200 episodes; more end the run
   EnvConfig env;
   ObservationConfig observation;
   RandomizationConfig randomization;

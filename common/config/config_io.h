@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Configuration from presets, files and --set; to JSON; checks.
+// Reads the configuration from presets, files and --set, writes it as JSON, and checks it.
 //
 // Every unknown, duplicate, ill-typed or out-of-range key is refused with Error (kUsage) naming the
 // key, the value and what was expected.
@@ -15,19 +15,20 @@
 
 namespace shoal {
 
-// Parses strict JSON text: duplicate keys and a nesting beyond kMaxJsonDepth are
-// refused. `source` names the text in errors.
+// Parses strict JSON text: refuses duplicate keys and a nesting beyond kMaxJsonDepth. `source`
+// names the text in errors.
 nlohmann::json ParseStrictJson(std::string_view text, const std::string& source);
 
-// Applies a (nested) JSON object of keys over `config`. `source` names it in errors. A former name
-// of a key is taken, with a note on stderr (former_keys.h); both names of one key are refused.
+// Applies a (nested) JSON object of keys to `config`. `source` names the object in errors. A former
+// name of a key is accepted, with a note on stderr (former_keys.h). Both names of one key together
+// are refused.
 void ApplyJson(const nlohmann::json& object, const std::string& source, Config* config);
 
 // Does the same without the note, for JSON that Shoal itself has written.
 void ApplyStoredJson(const nlohmann::json& object, const std::string& source, Config* config);
 
-// ApplyJson of a file's content. A run's config.json is accepted too: its spec and hashes are
-// skipped.
+// Applies a file's content as ApplyJson does. A run's config.json is accepted too; its spec and
+// hashes are skipped.
 void ApplyFile(const std::string& path, Config* config);
 
 // Applies one "learner.batch=256" (value as JSON; a bare word is a string). A key given twice in
@@ -48,8 +49,8 @@ uint64_t ConfigHash(const Config& config);
 // Markdown table of every key: default, range, meaning. Source of docs/configuration.md.
 std::string DescribeKeys();
 
-// The file of a preset, found as shared_data.h says: a project's own, beside the program or
-// installed. Throws Error (kUsage) listing the presets there are.
+// The file of a preset, found as shared_data.h says: in the project, beside the program or in the
+// installation. Throws Error (kUsage) listing the existing presets.
 std::string FindPreset(const std::string& name);
 std::vector<std::string> ListPresets();  // sorted
 // Defaults with the preset applied; config.preset is its name.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one table of configuration keys. Parsing, printing, --set and the documentation all walk it,
-// so a key exists everywhere or nowhere. Internal to common/config.
+// The one table of configuration keys. Parsing, printing, --set and the documentation all use this
+// table, so all of them have the same keys. Internal to common/config.
 #pragma once
 
 #include <array>
@@ -26,8 +26,8 @@ using Slot =
 struct IntegerRange {
   int64_t low, high;
 };
-// Bounds of a real number, of both ends of a schedule or of each interval of a map; `high` is
-// included, `low` unless open.
+// Bounds of a real number, of both ends of a schedule or of each interval of a map. Each bound is
+// included unless it is open.
 struct RealRange {
   double low, high;
   bool low_open = false, high_open = false;
@@ -35,11 +35,11 @@ struct RealRange {
 struct Choices {
   std::vector<std::string_view> words;
 };
-// At most this long: file systems take 255 bytes, and names of files beside a run's folder end in
-// more.
+// Longest file name of a key. File systems allow 255 bytes; the names of files beside a run's
+// folder append a suffix.
 inline constexpr size_t kLongestFileName = 200;
-// Letters, digits, '.', '_', '-'; not starting with '.' or '-': usable as a file name. May be empty
-// where `optional`.
+// A text that is usable as a file name: letters, digits, '.', '_' and '-', not starting with '.' or
+// '-'. May be empty if `optional`.
 struct FileName {
   bool optional = false;
 };

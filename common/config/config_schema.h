@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The configuration as a JSON Schema (2020-12), for editors and for programs that write presets:
-// types, ranges, choices, defaults and meanings, from the table that the parser walks.
+// types, ranges, choices, defaults and meanings, from the table that the parser uses.
 //
 // The schema has the rules of single keys. The parser alone checks low <= high of an interval, the
 // two ends of a schedule, and rules across keys (Validate).

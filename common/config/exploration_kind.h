@@ -11,12 +11,12 @@ namespace shoal {
 // kPolicy: the unsquashed Gaussian of an on-policy algorithm.
 enum class ExplorationKind { kSquashedGaussian, kGaussian, kOrnsteinUhlenbeck, kPolicy };
 
-// Whether the run's algorithm learns a Gaussian policy that is squashed by tanh; that of on-policy
-// algorithms is not squashed, the others' are deterministic.
+// Whether the run's algorithm learns a Gaussian policy that is squashed by tanh. The policy of an
+// on-policy algorithm is an unsquashed Gaussian; all other policies are deterministic.
 bool LearnsDeviation(const Config& config);
 
-// The kind of exploration.kind. `auto` depends on the run's algorithm: a stochastic policy explores
-// by its own Gaussian, a deterministic one by Gaussian noise.
+// The kind that exploration.kind selects. `auto` depends on the run's algorithm: a stochastic
+// policy explores by its own Gaussian, a deterministic policy by Gaussian noise.
 ExplorationKind ExplorationKindOf(const Config& config);
 
 // The word for exploration.kind; "policy" for kPolicy, which no key names.

@@ -13,10 +13,10 @@ struct KeyDescription {
   std::string default_value;            // JSON
   std::string takes;                    // "sac | td3 | ddpg | ppo", "an integer in 1..65536"
   std::string_view meaning;             // one line, with the unit
-  std::vector<std::string_view> words;  // choices, or true and false; empty where others fit
+  std::vector<std::string_view> words;  // choices, or true and false; empty for other types
 };
 
-// In the order of the configuration.
+// All keys, in the order of the configuration.
 std::vector<KeyDescription> DescribeEachKey();
 
 }  // namespace shoal

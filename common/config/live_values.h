@@ -21,8 +21,8 @@ struct LiveValues {
   bool operator==(const LiveValues&) const = default;
 };
 
-// Changes out of a key's range, which a foreign program on an open network may send, are ignored or
-// brought to the nearest value.
+// The values of a run now. A foreign program on an open network may send changes out of a key's
+// range; such changes are ignored or replaced by the nearest valid value.
 LiveValues LiveValuesOf(const Config& config, const ControlState& control);
 
 }  // namespace shoal

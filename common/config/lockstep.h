@@ -10,9 +10,8 @@
 // Phase 0 has no updates: its end only fixes the content of the ring when learning starts.
 //
 // Both sides must obey these rules for a run to be exact:
-// - A vector step makes E step records. An episode's reset record is made at the start of the
-// vector
-//   step that follows the episode's end, never behind the last step of a phase.
+// - A vector step makes E step records. The reset record of an episode is made at the start of the
+//   vector step that follows the former episode's end, never after the last step of a phase.
 // - The actor sends everything before it waits.
 // - The replay serves a request once SampleRequest::after_steps step records are stored. Request u
 //   belongs to update u.
@@ -27,18 +26,18 @@ namespace shoal {
 // Vector steps the actor has done since the run's start when phase `phase` >= 0 ends.
 int64_t LockstepVectorStepsAtPhaseEnd(const Config& config, int64_t phase);
 
-// Updates the learner has done when phase `phase` ends: floor(phase * r), with
-// r = s * L * E / B updates per phase (1 without a limit), s the mean of samples_per_insert over
-// the env steps from the end of phase 0 to that of this one. Rounded over the whole run and not per
-// phase, so that samples per insert is kept for any L, E and B.
+// Updates the learner has done when phase `phase` ends: floor(phase * r), with r = s * L * E / B
+// updates per phase (r = 1 without a limit). s is the mean of samples_per_insert over the env steps
+// from the end of phase 0 to the end of this phase. The number is rounded over the whole run and
+// not per phase, so that samples_per_insert is exact for any L, E and B.
 uint64_t LockstepUpdatesAtPhaseEnd(const Config& config, int64_t phase);
 
 // Step records that must be stored before the batch of update `update` >= 1 is drawn.
 uint64_t LockstepStepsBeforeUpdate(const Config& config, uint64_t update);
 
-// End of a run, in env steps and in updates: that of the first phase at whose end config.env_steps
-// steps are stored. No process drains before it, and the learner requests no batch beyond it, so
-// that the end of a run does not depend on timing.
+// End of a run, in env steps and in updates: the end of the first phase after which at least
+// config.env_steps steps are stored. No process drains before this point, and the learner requests
+// no batch beyond it, so that the end of a run does not depend on timing.
 uint64_t LockstepEnvSteps(const Config& config);
 uint64_t LockstepLastUpdate(const Config& config);
 

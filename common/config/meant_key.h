@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keys under the names that other programs give them (Stable-Baselines3, rl-zoo3, CleanRL, DrQ-v2):
-// one table, for options of `shoal train`, for --set and for the refusal of unknown keys.
+// Finds keys by the names that other programs use (Stable-Baselines3, rl-zoo3, CleanRL, DrQ-v2).
+// Options of `shoal train`, --set and the errors for unknown keys use the same table.
 #pragma once
 
 #include <string>
@@ -9,15 +9,15 @@
 namespace shoal {
 
 struct MeantKey {
-  std::string key{};   // path of the key; empty where no single key is meant
-  std::string note{};  // what to do instead, or what differs; a part of a sentence, may be empty
-  // The key has the meaning and the unit of the word, so that its value may be taken as it is.
+  std::string key{};   // path of the key; empty if the word means no single key
+  std::string note{};  // advice, or a difference in meaning; a part of a sentence, may be empty
+  // The key has the same meaning and unit as the word, so that the value can be used unchanged.
   bool same = false;
 };
 
-// The key that `word` means: its own path ("learner.batch"), the last word of one path alone
-// ("batch"), or another program's name for it ("batch_size"). '-' counts as '_'. Without key and
-// note: none is known.
+// The key that `word` means. `word` is the key's path ("learner.batch"), the last word of exactly
+// one path ("batch"), or another program's name for the key ("batch_size"). '-' counts as '_'. If
+// no key is known, key and note are empty.
 MeantKey FindMeantKey(std::string_view word);
 
 }  // namespace shoal

@@ -8,8 +8,8 @@
 namespace shoal::internal {
 
 // The known key or section nearest to `path`: by its whole path, or by its last word when `path`
-// has no section ("batch" -> "learner.batch"). Empty where more than half of `path` would have to
-// change: that is another word, not a misspelt one.
+// has no section ("batch" -> "learner.batch"). Empty if more than half of `path` would have to
+// change, because then `path` is another word rather than a misspelt key.
 std::string NearestKey(std::string_view path);
 
 }  // namespace shoal::internal

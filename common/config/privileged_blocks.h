@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Privileged inputs: blocks of the record that learning uses and that are no part of the policy's
-// observation.
+// Privileged inputs: blocks of the record that learning uses but the policy does not observe.
 //
 //   sac.critic_blocks   an asymmetric critic sees them in place of the pixels (Eq. 26 of
 //                           docs/algorithm.md)
@@ -21,22 +20,22 @@ namespace shoal {
 // A label of the auxiliary loss: a block, or the difference of two of equal size.
 struct AuxLabel {
   std::string block;
-  std::string minus;  // empty: nothing is taken off
+  std::string minus;  // block that is subtracted; empty = none
   int size = 0;
 };
 
 struct PrivilegedBlocks {
-  std::vector<std::string> critic;  // of sac.critic_blocks, those the policy does not see
-  std::vector<AuxLabel> labels;     // of sac.aux
-  // Both together, in record order, each once: what batches carry (BatchOptions::privileged).
+  std::vector<std::string> critic;  // blocks of sac.critic_blocks that the policy does not observe
+  std::vector<AuxLabel> labels;     // labels of sac.aux
+  // The blocks of both, in record order, each once. Batches carry them (BatchOptions::privileged).
   std::vector<std::string> all;
 };
 
-// Throws Error (kUsage) naming the key, the block that the record does not have or that does not
-// fit, and the blocks there are; of critic blocks also where the policy observes all that are
-// named.
+// The privileged inputs of a run. Throws Error (kUsage) if the record lacks a block or a block does
+// not fit; the error names the key, the block and the existing blocks. Also throws if the policy
+// observes all named critic blocks.
 PrivilegedBlocks PrivilegedBlocksOf(const Config& config, const ObservationSpec& spec);
-// P, of all of them. Throws the same.
+// P: number of floats of all privileged blocks. Throws the same errors.
 int PrivilegedSize(const Config& config, const ObservationSpec& spec);
 
 }  // namespace shoal

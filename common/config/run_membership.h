@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Membership of processes in a run, held by the kernel: each process holds a shared lock on
-// RUN/.members, which is released when it ends for whatever reason. Two coordinators cannot run one
-// run (RunFolder). With this lock the second one detects processes that a killed first one has left
-// behind and that still store their records.
+// Membership of processes in a run. Each process holds a shared lock on RUN/.members; the kernel
+// releases the lock when the process ends, for whatever reason. RunFolder prevents two coordinators
+// in one run. If a coordinator was killed, the next one uses this lock to detect processes of the
+// first one that still store records.
 #pragma once
 
 #include <sys/types.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A number that may change while a run goes on: constant, or linear from `start` at 0 env steps of
-// the run to `end` at `env_steps`, and `end` from then on.
+// A number that may change during a run. It is constant, or linear from `start` at 0 env steps of
+// the run to `end` at `env_steps`, and equal to `end` afterwards.
 //
 // A configuration spells it as a JSON number or as the text "linear(START,END,ENV_STEPS)".
 #pragma once
@@ -15,7 +15,7 @@ namespace shoal {
 
 struct Schedule {
   double start = 0, end = 0;
-  int64_t env_steps = 0;  // 0 = constant: `start`, and `end` is equal
+  int64_t env_steps = 0;  // 0 = constant, with `start` equal to `end`
 
   static Schedule Constant(double value) { return {value, value, 0}; }
   bool constant() const { return env_steps == 0; }
@@ -24,15 +24,16 @@ struct Schedule {
   double Least() const { return std::min(start, end); }
   double Most() const { return std::max(start, end); }
 
-  // Mean over the env steps from `from` to `to` >= `from`, At(from) where they are equal:
+  // Mean over the env steps from `from` to `to` >= `from`; At(from) if both are equal:
   //
   //   mean = integral of At(x) dx from `from` to `to`  /  (to - from)
   //        = ((t - f) (At(f) + At(t)) / 2  +  (to - from - (t - f)) end) / (to - from)
   //   f = min(from, env_steps),  t = min(to, env_steps)
   //
-  // A constant's is `start`, to the bit. Else exact but for rounding.
+  // The mean of a constant is exactly `start`; other means are exact except for rounding.
   double Mean(uint64_t from, uint64_t to) const;
-  // The integral itself, Mean * (to - from): of a number per env step, what these steps come to.
+  // The integral, Mean * (to - from). If the schedule is a number per env step, this is the total
+  // for these steps.
   double Integral(uint64_t from, uint64_t to) const {
     return Mean(from, to) * static_cast<double>(to - from);
   }
@@ -43,10 +44,11 @@ struct Schedule {
 // Numbers in JSON's spelling, blanks only behind commas, 1 <= ENV_STEPS <= 10^12; nothing for any
 // other text.
 std::optional<Schedule> ParseSchedule(std::string_view text);
-// ParseSchedule's inverse; CHECK that it is not constant.
+// Inverse of ParseSchedule. CHECKs that the schedule is not constant.
 std::string ScheduleText(const Schedule& schedule);
 
-// A constant as a number, else its text; found by nlohmann's library, for json and ordered_json.
+// Writes a constant as a number and other schedules as text. nlohmann's library finds this
+// function, for json and ordered_json.
 template <class Json>
 void to_json(Json& out, const Schedule& schedule) {
   out = schedule.constant() ? Json(schedule.start) : Json(ScheduleText(schedule));

@@ -2,11 +2,10 @@
 // The window of unacknowledged records of an actor and the size of its chunks. Actors and replay
 // compute both from the configuration and must agree.
 //
-//   per chunk  transport.chunk_records, fewer (but one) where they exceed kChunkBytes together
-//   chunks     as many of these as replay.window_chunks chunks of transport.chunk_records hold
-//   least      records that an actor needs credit for to make progress: its oldest chunk, and a
-//   reset
-//              and a step of each of its environments, with the goal record before the reset
+//   per chunk  transport.chunk_records, or fewer (at least one) so that a chunk fits kChunkBytes
+//   chunks     chunks for replay.window_chunks * transport.chunk_records records
+//   least      records for which an actor needs credit to make progress: its oldest chunk, and a
+//              reset and a step of each of its environments, with the goal record before the reset
 #pragma once
 
 #include <cstddef>
@@ -27,8 +26,8 @@ struct SendingWindow {
   int64_t records() const { return int64_t{chunk_records} * chunks; }
 };
 
-// Records that an environment may make in one step: a reset and a step, and a goal record before
-// them where the policy sees goal pictures.
+// Most records that an environment makes in one step: a reset and a step and, if the policy sees
+// goal pictures, a goal record before them.
 constexpr int MostRecordsOfStep(bool goal_pictures) { return goal_pictures ? 3 : 2; }
 
 // `record_bytes` > 0: RecordLayout::record_bytes().
@@ -41,8 +40,9 @@ inline uint64_t ChunkBytes(const SendingWindow& window, int record_bytes) {
   return static_cast<uint64_t>(window.chunk_records) * static_cast<uint64_t>(record_bytes);
 }
 
-// Chunks on their way to a receiver at once: each of so many actor sessions, and one more, may have
-// its window under way, in full chunks and one part of one, twice when it sends again.
+// Most chunks that are in transit to a receiver at once. Each actor session, and one spare session,
+// may have its whole window in transit: full chunks and one partial chunk, twice if the actor
+// resends them.
 inline size_t MostChunks(const SendingWindow& window, size_t sessions) {
   return (sessions + 1) * 2 * static_cast<size_t>(window.chunks + 1);
 }

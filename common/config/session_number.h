@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The number of a process's session: wall-clock nanoseconds at its start, but always above those of
-// its predecessors in the run. Peers take the higher number for the newer process, so a clock that
-// was set back must not make a restarted process look like an old one.
+// The number of a process's session: wall-clock nanoseconds at its start, but always above the
+// numbers of its predecessors in the run. Peers treat the process with the higher number as newer.
+// After the clock was set back, a restarted process must therefore not get a lower number.
 #pragma once
 
 #include <cstdint>
@@ -11,8 +11,8 @@
 namespace shoal {
 
 // The next session of `process` ("actor-3"), stored in RUN/sessions/PROCESS. `wall_time_ns` is the
-// time of the clock. Throws Error (usage) if the file is not a number. A disk that is full does not
-// prevent that a successor's number is stored; a file that cannot be written gives a warning.
+// present wall time. Throws Error (usage) if the file does not hold a number. The next number can
+// be stored even if the disk is full. If the file cannot be written, logs a warning.
 uint64_t NextSession(const std::filesystem::path& run, const std::string& process,
                      int64_t wall_time_ns);
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// Presets and experiments: JSON files, one for each name, in a folder of their kind.
+// Presets and experiments: JSON files, one for each name, with one folder for each kind.
 //
-// The search takes the first match of
-//   PROJECT/KIND              when the working folder is a project of the user's (shoal new)
-//   PROGRAM/KIND              beside the program: a copy of a few files, without an installation
-//   PROGRAM/../share/shoal/KIND   an installation; a build folder, too, has this
+// The search uses the first of these folders that has the file:
+//   PROJECT/KIND                  the working folder, if it is a user's project (shoal new)
+//   PROGRAM/KIND                  beside the program: a copy of some files without installation
+//   PROGRAM/../share/shoal/KIND   an installation or a build folder
 #pragma once
 
 #include <filesystem>
@@ -14,15 +14,15 @@
 
 namespace shoal {
 
-// Its presence makes the working folder a project.
+// If the working folder contains this file, it is a project.
 inline constexpr char kProjectFile[] = "shoal-project.json";
 
-// `kind`: "presets" or "experiments". Whether or not they exist.
+// The folders that the search uses, existing or not. `kind`: "presets" or "experiments".
 std::vector<std::filesystem::path> SharedDataFolders(const std::string& kind);
-// Names of what there is, sorted.
+// Names of all presets, or of all experiments, sorted.
 std::vector<std::string> ListSharedData(const std::string& kind);
-// The file of that name; nothing where there is none. A name with '/' is never found: nothing
-// outside the folders is reached.
+// The file with this name; empty if there is none. A name with '/' is never found, so that the
+// search cannot leave the folders.
 std::optional<std::filesystem::path> FindSharedData(const std::string& kind,
                                                     const std::string& name);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The reason why a run cannot be resumed: its actors would observe something else than its
-// config.json says.
+// The reason why a run cannot be resumed: its actors would observe something else than the spec in
+// its config.json.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@
 
 namespace shoal {
 
-// One line for an error. Where only the model's fingerprint differs it names the model file, or the
-// task library, that was changed since the run began; else both observations.
+// One line for an error. If only the model's fingerprint differs, the line names the model file or
+// task library that was changed since the run began; otherwise, the line describes both specs.
 std::string SpecMismatch(const RunConfig& run, const ObservationSpec& now);
 
 }  // namespace shoal

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Keys that ask for threads, against the cores of their host.
+// Checks keys that set a number of threads against the cores of the host.
 #pragma once
 
 #include <string_view>
@@ -8,9 +8,9 @@
 
 namespace shoal {
 
-// Throws Error (kUsage) unless the `threads` that the key asks for have a core each: threads of one
-// update, or of one batch, wait for each other, so that more of them than cores are slower than one
-// per core. The error says what limits the cores. `limits` are those of the threads' host.
+// Throws Error (kUsage) if the key sets more `threads` than there are usable cores. Threads of one
+// update or one batch wait for each other, so more threads than cores are slower than one per core.
+// The error names the limit on the cores. `limits` must describe the threads' host.
 void CheckCores(std::string_view key, int threads, const CoreLimits& limits);
 
 }  // namespace shoal

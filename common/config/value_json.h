@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Values of keys that are more than a number, a text or a list, in JSON. Internal to common/config.
+// Converts values of compound types (cameras, blocks, arguments) to and from JSON. Internal to
+// common/config.
 #pragma once
 
 #include <map>
@@ -11,7 +12,7 @@
 
 namespace shoal {
 
-// Found by nlohmann's library, for json and ordered_json.
+// nlohmann's library finds the to_json functions, for json and ordered_json.
 template <class Json>
 void to_json(Json& out, const CustomCamera& camera) {
   out = Json{{"lookat", camera.lookat},
@@ -37,11 +38,11 @@ void to_json(Json& out, const KeywordArguments& arguments) {
 
 namespace internal {
 
-// true, false, or a list of at least one name, each once. False when it is none of these.
+// Reads true, false, or a list of at least one name, each once. Returns false for any other value.
 bool ReadStateBlocks(const nlohmann::json& value, StateBlocks* blocks);
 
-// An object of cameras by name. False when it is none, a name is empty, one of the four numbers is
-// missing, ill-typed or out of range, `body` is there and no name, or there is another key.
+// Reads an object of cameras by name. Returns false if the value is not an object, a name is empty,
+// a number is missing, ill-typed or out of range, `body` is not a name, or a key is unknown.
 bool ReadCustomCameras(const nlohmann::json& value, std::map<std::string, CustomCamera>* cameras);
 
 }  // namespace internal

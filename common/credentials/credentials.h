@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files with which the processes of secured runs prove who they are (DDS Security 1.1).
+// The files that authenticate the processes of secured runs (DDS Security 1.1).
 //
-// A folder, open to its owner alone (0700, files 0600), holds
+// A folder that only its owner can read (0700, files 0600) contains:
 //
-//   ca.pem, ca.key            the certificate authority of the folder; ca.key makes nothing but the
-//                             files here and need not stay
-//   governance.p7s            what every domain demands: everybody authenticated, all data
-//   encrypted ROLE.pem, ROLE.key        certificate (CN=shoal-ROLE) and private key of a role
-//   ROLE.p7s                  topics that the role may write and read
+//   ca.pem, ca.key       certificate authority; ca.key signs only the files of this folder and may
+//                        be removed afterwards
+//   governance.p7s       rules of every domain: all processes authenticated, all data encrypted
+//   ROLE.pem, ROLE.key   certificate (CN=shoal-ROLE) and private key of a role
+//   ROLE.p7s             topics that the role may write and read
 //
-// A process needs ca.pem, governance.p7s and the three files of its role, no other key.
+// A process needs ca.pem, governance.p7s and the three files of its role.
 #pragma once
 
 #include <array>
@@ -30,7 +30,7 @@ struct Validity {
   std::time_t from = 0, until = 0;  // seconds since 1970
 };
 
-// From a day ago, for clocks that differ, to `days` from now.
+// Validity from one day ago, to allow for clocks that differ, to `days` from now.
 Validity ValidForDays(int days);
 
 // Creates the folder with everything in it, or nothing. Throws Error: usage when it exists.
@@ -41,13 +41,13 @@ void CreateCredentials(const std::filesystem::path& folder, std::span<const Role
 std::array<std::filesystem::path, 5> CredentialFiles(const std::filesystem::path& folder,
                                                      const std::string& role);
 
-// Throws Error, in one line naming the file, when one of the role's files is missing or unreadable,
-// a certificate is not valid at `now`, another authority than ca.pem made it, the key is not its
-// own, or a signed document was altered or is another authority's.
+// Checks the files of a role. Throws Error, in one line naming the file, when a file is missing or
+// unreadable; a certificate is not valid at `now` or not signed by ca.pem; the key does not belong
+// to the certificate; or a signed document was altered or has another signer.
 void CheckCredentials(const std::filesystem::path& folder, const std::string& role,
                       std::time_t now);
-// Throws Error naming file and topic when the role's credentials do not permit one of the topics,
-// as those made by a version that did not have it.
+// Throws Error naming file and topic when the role's credentials do not permit one of the topics.
+// For example, an older version that made the credentials did not have the topic.
 void CheckRights(const std::filesystem::path& folder, const RoleRights& rights);
 
 }  // namespace shoal

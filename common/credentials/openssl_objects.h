@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// OpenSSL's objects, owned. Internal to common/credentials.
+// Owning pointers to OpenSSL's objects. Internal to common/credentials.
 #pragma once
 
 #include <openssl/bio.h>
@@ -27,11 +27,11 @@ inline void FreeList(STACK_OF(X509) * list) { sk_X509_free(list); }
 using Key = std::unique_ptr<EVP_PKEY, Free<EVP_PKEY_free>>;
 using Certificate = std::unique_ptr<X509, Free<X509_free>>;
 using Signed = std::unique_ptr<PKCS7, Free<PKCS7_free>>;
-// The list alone: the certificates in it are others'.
+// Owns the list but not the certificates in the list.
 using Signers = std::unique_ptr<STACK_OF(X509), Free<FreeList>>;
 using Buffer = std::unique_ptr<BIO, Free<BIO_free_all>>;
 
-// The oldest error that OpenSSL keeps for this thread, as text; clears them all.
+// The oldest error in OpenSSL's queue of this thread, as text. Clears the queue.
 std::string OpensslReason();
 // Throws Error with OpenSSL's reason when `good` is false: "cannot WHAT: REASON".
 void Require(bool good, std::string_view what);
@@ -39,7 +39,7 @@ void Require(bool good, std::string_view what);
 Buffer MakeBuffer(std::string_view content = "");
 std::string Content(const Buffer& buffer);
 
-// The PEM file's. Throws Error naming it.
+// Read a certificate, or a private key, from a PEM file. Throw Error naming the file.
 Certificate ReadCertificate(const std::filesystem::path& file);
 Key ReadKey(const std::filesystem::path& file);
 

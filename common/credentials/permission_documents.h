@@ -9,11 +9,11 @@
 
 namespace shoal::credentials {
 
-// Every domain: only authenticated participants with permissions join; discovery, liveliness and
-// all topics' data are encrypted, and readers and writers need permission.
+// The rules of every domain: only authenticated participants with permissions may join; discovery,
+// liveliness and the data of all topics are encrypted; readers and writers need permission.
 std::string GovernanceDocument();
 
-// The rights of the holder of a certificate with CN=`subject`; everything else is denied.
+// Grants `rights` to the holder of a certificate with CN=`subject`; all other access is denied.
 std::string PermissionsDocument(const RoleRights& rights, const std::string& subject,
                                 const Validity& validity);
 

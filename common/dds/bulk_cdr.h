@@ -20,9 +20,9 @@ constexpr uint8_t BulkVersion(const TransitionChunk*) { return 1; }
 constexpr uint8_t BulkVersion(const BatchPart*) { return 2; }    // 1 had no unsampleable_steps
 constexpr uint8_t BulkVersion(const WeightsPart*) { return 2; }  // 1 sent weights whole
 
-// False when the bytes are truncated, of another version or inconsistent; `message` is then
-// unspecified. The message's payload borrows `cdr`; where `cdr` starts 4 bytes before a multiple of
-// 8, as Cyclone's buffers do, payloads are aligned to 8.
+// Returns false when the bytes are truncated, of another version or inconsistent; `message` is then
+// unspecified. The message's payload borrows `cdr`. Payloads are aligned to 8 if `cdr` starts 4
+// bytes before a multiple of 8, which holds for Cyclone's buffers.
 bool ParseCdr(std::span<const uint8_t> cdr, TransitionChunk* message);
 bool ParseCdr(std::span<const uint8_t> cdr, BatchPart* message);
 bool ParseCdr(std::span<const uint8_t> cdr, WeightsPart* message);

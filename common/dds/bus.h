@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// One process's place on the run's DDS domains: star discovery, unicast, no multicast.
+// Connects one process to the DDS domains of its run: star discovery, unicast, no multicast.
 //
-// Coordinator, learner and replay sit at fixed participant indices (0, 1, 2); actors have none and
-// know the servers as peers. The transitions, weights, metrics and control topics live in domain D,
-// the batch topics in D+1, so that a slow batch reader cannot block the rest; learner and replay
-// join D+1. So does the coordinator, there without the run's tag, so that it and these two do not
-// see each other: it shows the run to, and takes orders from, clients that know nothing but its
-// address.
+// Coordinator, learner and replay have fixed participant indices (0, 1, 2). Actors have no fixed
+// index; the servers are their configured peers. Domain D carries the topics of transitions,
+// weights, metrics and control. Domain D+1 carries the batch topics, so that a slow batch reader
+// cannot block the other topics; learner and replay join both domains. The coordinator joins D+1
+// for its clients, which know only its address. It joins D+1 without the run's tag, so that it does
+// not discover the learner and the replay there.
 #pragma once
 
 #include <cstdint>
@@ -32,10 +32,11 @@ void TuneMalloc();
 // The link between processes (common/link/hub.h has the contract).
 class Bus final : public link::Hub {
  public:
-  // Joins the run's domains that the role has to do with. At most one Bus per domain and process.
-  // Throws Error naming the port when another process holds the role's index, the interface when it
-  // does not exist, the host when it does not resolve. transport.interface "auto" is the interface
-  // by which the kernel reaches the address's host.
+  // Joins the domains of the run that the role uses. A process has at most one Bus per domain.
+  // Throws Error naming the port when another process holds the role's index, the interface when
+  // the interface does not exist, or the host when the host name does not resolve. If
+  // transport.interface is "auto", the Bus uses the interface by which the kernel reaches the
+  // address's host.
   //
   // The environment variable SHOAL_DDS_XML names a file that replaces the built-in Cyclone DDS
   // configuration; docs/wire_format.md lists the placeholders it may use.
@@ -62,19 +63,19 @@ class Bus final : public link::Hub {
   std::unique_ptr<Impl> impl_;
 };
 
-// A free even domain in 2..98, claimed by joining as its coordinator. Starts at a random one and
-// tries the next while one of the run's fixed ports is taken. `address` gets the domain and, when
-// its tag is empty, a tag that no other run has; its host is where the other processes look for
-// this one. Throws Error when none is free.
+// Claims a free even domain in 2..98 by joining it as its coordinator. The search starts at a
+// random domain and tries the next one while one of the run's fixed ports is taken. `address`
+// receives the domain and, when its tag is empty, a tag that no other run has. The other processes
+// look for this one at the host in `address`. Throws Error when no domain is free.
 std::unique_ptr<Bus> ClaimDomain(const TransportConfig& transport, ClusterAddress* address);
 
 // UDP port at which clients find the coordinator of a run.
 int OperatePort(const ClusterAddress& address);
-// The address of a run whose coordinator is found at "HOST:PORT", for clients: without a tag.
-// Throws Error (kUsage) when it is not of that form or no coordinator uses the port.
+// The address, without a tag, at which a client reaches the coordinator at `peer`, "HOST:PORT".
+// Throws Error (kUsage) when `peer` does not have this form or no coordinator can use the port.
 ClusterAddress ParsePeer(const std::string& peer);
-// The interface of this host, by its address, from which `host` is reached. Throws Error when the
-// name does not resolve or there is no way.
+// IP address of the interface of this host that leads to `host`. Throws Error when the name does
+// not resolve or no route exists.
 std::string InterfaceTowards(const std::string& host);
 
 }  // namespace shoal::dds

@@ -14,7 +14,7 @@
 
 namespace shoal::dds {
 
-// A fixed port of the role is held by another process: ClaimDomain goes on to the next domain.
+// Another process holds a fixed port of the role. ClaimDomain then tries the next domain.
 class PortTakenError : public Error {
  public:
   explicit PortTakenError(const Error& error) : Error(error) {}
@@ -26,7 +26,7 @@ struct Bus::Impl {
   Entity batch_domain, batch_participant;      // learner and replay
   Entity operate_domain, operate_participant;  // coordinator and clients
 
-  // The counter of a topic's malformed messages: its readers' and the bus's.
+  // The counter of a topic's malformed messages, shared by the bus and the topic's readers.
   std::shared_ptr<std::atomic<uint64_t>> MalformedCounter(const std::string& topic) {
     const MutexLock lock(mutex);
     auto& counter = malformed[topic];

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Takes serialised CDR apart, every step bounds-checked: the bytes come from the network. Internal.
+// Reads values from serialised CDR. Every step is bounds-checked, because the bytes come from the
+// network. Internal.
 #pragma once
 
 #include <algorithm>
@@ -46,7 +47,7 @@ class CdrReader {
     return Take(size, 1);
   }
 
-  // Without what follows a NUL; the bytes end with one.
+  // The string up to its first NUL. Fails unless the last byte is NUL.
   std::string_view ReadString() {
     if (Absent()) return {};
     const std::span<const uint8_t> bytes = ReadBytes();
@@ -70,8 +71,8 @@ class CdrReader {
     return values;
   }
 
-  // A struct to which fields may be added: those that an older sender left out read as zero, those
-  // that a newer one added are skipped.
+  // Reads a struct to which later versions may add fields. Fields that an older sender left out
+  // read as zero; fields that a newer sender added are skipped.
   template <class ReadFields>
   void ReadAppendable(ReadFields read_fields) {
     ReadScope(/*may_lack=*/true, read_fields);
@@ -93,8 +94,8 @@ class CdrReader {
   static constexpr size_t kHeaderBytes = 4;
   static constexpr size_t kMaxPadding = 3;
 
-  // Reads a size, then by `read` a part that must fit into it. Afterwards the position is the end
-  // of that size.
+  // Reads a size, then calls `read` for a part that must fit into this size. Afterwards the
+  // position is the end of the part, however much `read` has used.
   template <class ReadPart>
   void ReadScope(bool may_lack, ReadPart read) {
     const std::span<const uint8_t> part = Take(Read<uint32_t>(), 1);
@@ -126,7 +127,7 @@ class CdrReader {
   std::span<const uint8_t> body_;
   size_t position_ = 0;
   size_t end_ = std::numeric_limits<size_t>::max();  // of the innermost scope
-  bool may_lack_ = false;                            // fields at the end of that scope
+  bool may_lack_ = false;                            // the innermost scope may end early
   bool ok_ = false;
 };
 

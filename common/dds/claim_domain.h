@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which domains a run may claim. Internal; the claim itself is ClaimDomain in bus.h.
+// Tells which domains a run may claim. Internal; ClaimDomain in bus.h makes the claim.
 #pragma once
 
 namespace shoal::dds {
 
-// Whether all fixed ports of a run in the even domain and the odd one above can be had. The
-// coordinator's come first and end the search when taken, so that a living run's other processes
-// are never disturbed by the question.
+// Whether all fixed ports of a run are free in the even `domain` and in the odd one above. The
+// coordinator's ports are checked first, and the check stops at the first port that is taken. The
+// check therefore never binds a port of the other processes of a living run.
 bool RunPortsFree(int domain);
 
 }  // namespace shoal::dds

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Cyclone DDS's own log lines, led into ours.
+// Sends the log lines of Cyclone DDS to Shoal's log.
 #pragma once
 
 #include <string>
@@ -10,8 +10,8 @@ namespace shoal::dds {
 // called again.
 void RouteDdsLog();
 
-// While it lives, errors that Cyclone reports on this thread are kept instead of logged, so that
-// they become part of an exception's message.
+// Collects, during its lifetime, the errors that Cyclone reports on this thread. They are not
+// logged, so that an exception's message can contain them.
 class DdsErrorCapture {
  public:
   DdsErrorCapture();

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The Cyclone DDS configuration of one process in one domain, as XML.
 //
-// It is a template with placeholders. The built-in one can be replaced as a whole by the file that
-// the environment variable SHOAL_DDS_XML names:
+// The XML is made from a template with placeholders. The environment variable SHOAL_DDS_XML may
+// name a file that replaces the whole built-in template. The placeholders are:
 //
 //   @INTERFACE@       name="lo" or address="10.0.0.3", an attribute of NetworkInterface
 //   @FRAGMENT_BYTES@  transport.fragment_bytes
@@ -36,8 +36,8 @@ std::string_view BuiltInTemplate();
 // The built-in template or the content of the file in SHOAL_DDS_XML; throws Error naming that file.
 std::string DomainTemplate();
 
-// Fills the placeholders. Throws Error (kUsage) naming a placeholder that does not exist, or when a
-// secured run's has no @SECURITY@; Error when the credentials do not serve.
+// Fills the placeholders. Throws Error (kUsage) naming an unknown placeholder, or when the run is
+// secured and the template has no @SECURITY@. Throws Error when the credentials are not valid.
 std::string RenderDomainXml(std::string_view xml_template, const ClusterAddress& address,
                             const TransportConfig& transport, Role role, Plane plane);
 

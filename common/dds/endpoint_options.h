@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The options that every program of a run takes to find its endpoint.
+// Command-line options with which a program of a run finds its endpoint.
 #pragma once
 
 #include "common/dds/run_endpoint.h"
@@ -10,8 +10,8 @@ class App;
 
 namespace shoal::dds {
 
-// --peer, --interface and --secure; `options` is filled when `app` parses and has to live until
-// then.
+// Adds --peer, --interface and --secure. `app` fills `options` when it parses, so `options` must
+// live until then.
 void AddEndpointOptions(CLI::App* app, EndpointOptions* options);
 
 }  // namespace shoal::dds

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Owner of one DDS entity. Internal: include dds headers last, they redefine `restrict` in C++.
+// Owner of one DDS entity. Internal. Include the dds headers last, because they redefine `restrict`
+// in C++.
 #pragma once
 
 #include <chrono>
@@ -18,7 +19,7 @@ namespace shoal::dds {
 class Entity {
  public:
   Entity() = default;
-  // Takes what a dds_create_* call returned; throws Error naming `what` when that is a failure.
+  // Takes the return value of a dds_create_* call. Throws Error naming `what` if the call failed.
   Entity(dds_entity_t handle, const std::string& what) : handle_(handle) {
     if (handle < 0) throw RuntimeError("DDS cannot create {}: {}", what, dds_strretcode(-handle));
   }
@@ -34,8 +35,8 @@ class Entity {
 
   dds_entity_t get() const { return handle_; }
   explicit operator bool() const { return handle_ > 0; }
-  // Known to hang now and then when a peer goes away at the same moment; a process that only wanted
-  // to leave then leaves without it.
+  // Deletes the entity. dds_delete occasionally hangs when a peer leaves at the same moment; the
+  // watchdog then ends the process.
   void Reset() {
     if (handle_ > 0) {
       const Watchdog watchdog("deleting a DDS entity", kDeleteLimit);

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Questions about this host's network, asked before DDS is, for errors that name the culprit.
+// Checks of this host's network. They run before DDS starts, so that an error names the port,
+// interface or host that is wrong.
 #pragma once
 
 #include <cstdint>
@@ -7,12 +8,12 @@
 
 namespace shoal::dds {
 
-// UDP port of `index` in `domain`: 7400 + 250*domain + 10 + 2*index. Discovery uses it, data the
-// odd one above.
+// UDP port of `index` in `domain`: 7400 + 250*domain + 10 + 2*index. Discovery uses this port, and
+// data uses the odd port above.
 constexpr int DiscoveryPort(int domain, int index) { return 7400 + 250 * domain + 10 + 2 * index; }
 
-// Whether the UDP port is free on this host. Binds it for an instant. Throws Error if the system
-// refuses for another reason.
+// Whether the UDP port is free on this host. The check binds the port for an instant. Throws Error
+// if the system refuses to bind for another reason.
 bool UdpPortFree(int port);
 // Whether an interface has that name.
 bool InterfaceExists(const std::string& name);

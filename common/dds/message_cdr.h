@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Parses the messages that are not bulk from serialised CDR. Not left to the DDS library: 0.10.2
-// reads past the end of a sample whose numbers of eight bytes are cut short
-// (docs/decisions/0006-messages-are-parsed-here.md).
+// Parses the messages that are not bulk from serialised CDR. The DDS library does not parse them,
+// because its version 0.10.2 reads past the end of a sample that ends within a number of eight
+// bytes (docs/decisions/0006-messages-are-parsed-here.md).
 //
 //   0x00 0x09 (delimited CDR 2, little-endian) | 2 bytes options | body
 #pragma once
@@ -13,9 +13,9 @@
 
 namespace shoal::dds {
 
-// False when the bytes are truncated or make no sense; `message` is then unspecified. A field that
-// an older sender left out at the end of a struct is zero or empty. Texts but an evaluation's JSON
-// hold no control characters (OneLine).
+// Returns false when the bytes are truncated or inconsistent; `message` is then unspecified. If an
+// older sender left out a field at the end of a struct, the field is zero or empty. All texts
+// except an evaluation's JSON are passed through OneLine, so they contain no control characters.
 bool ParseCdr(std::span<const uint8_t> cdr, CreditsMessage* message);
 bool ParseCdr(std::span<const uint8_t> cdr, SampleRequest* message);
 bool ParseCdr(std::span<const uint8_t> cdr, BatchSlot* message);

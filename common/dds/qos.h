@@ -13,7 +13,7 @@ namespace shoal::dds {
 
 using QosHandle = std::unique_ptr<dds_qos_t, decltype(&dds_delete_qos)>;
 
-// For topic, writer and reader alike.
+// The settings apply to the topic, its writers and its readers.
 QosHandle MakeQos(const link::TopicSettings& settings);
 
 }  // namespace shoal::dds

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which role writes and reads which topic: what secured runs permit (common/credentials).
+// The topics that each role may write and read in a secured run (common/credentials).
 #pragma once
 
 #include <vector>
@@ -8,7 +8,7 @@
 
 namespace shoal::dds {
 
-// All roles, by RoleName.
+// The rights of all roles; RoleRights::role is the RoleName.
 std::vector<RoleRights> AllRoleRights();
 
 }  // namespace shoal::dds

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The endpoint at which a process meets its run. Options of the command line replace parts of what
-// the run folder says, for processes on other hosts or started by hand.
+// The addresses with which a process joins its run. For processes on other hosts, or started by
+// hand, options of the command line replace parts of the run folder's settings.
 #pragma once
 
 #include <filesystem>
@@ -12,11 +12,11 @@
 namespace shoal::dds {
 
 struct EndpointOptions {
-  // HOST, or HOST:PORT as the run shows it when it starts, instead of cluster.json's host and
-  // domain; empty = as cluster.json says.
+  // Replaces cluster.json's host and domain: HOST, or the HOST:PORT that the run prints when it
+  // starts. Empty: cluster.json's values are used.
   std::string peer;
-  std::string interface;    // instead of config.json's transport.interface; empty = as that says
-  std::string secure = "";  // instead of cluster.json's folder of credentials; empty = as that says
+  std::string interface;    // replaces config.json's transport.interface; empty: not replaced
+  std::string secure = "";  // replaces cluster.json's folder of credentials; empty: not replaced
 };
 
 // Addresses of the run's servers, and the interface of this host that leads to them.

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The part of a DDS configuration that turns DDS Security on. Internal to common/dds.
+// The part of a DDS configuration that enables DDS Security. Internal to common/dds.
 #pragma once
 
 #include <filesystem>
@@ -9,8 +9,9 @@
 
 namespace shoal::dds {
 
-// The <Security> element for a role with the credentials in `folder` (common/credentials); empty
-// without a folder. Throws Error when they do not serve, or when Cyclone's plugins are not there.
+// The <Security> element for a role with the credentials in `folder` (common/credentials). Returns
+// an empty string if `folder` is empty. Throws Error when the credentials are not valid or
+// Cyclone's security plugins are missing.
 std::string SecurityElement(const std::filesystem::path& folder, Role role);
 
 }  // namespace shoal::dds

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// For each message of the list, and for structs within messages, the type that idlc generates.
+// Maps each message of the list, and each struct within a message, to the type that idlc generates.
 // Internal.
 #pragma once
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// From the plain structs of common/wire to the C structs that idlc generates, field by field as
-// common/wire/message_fields.h lists them; the way back is bulk_cdr.h and message_cdr.h. Internal.
+// Converts the plain structs of common/wire to the C structs that idlc generates, field by field in
+// the order of common/wire/message_fields.h. bulk_cdr.h and message_cdr.h parse received messages.
+// Internal.
 #pragma once
 
 #include <concepts>
@@ -18,8 +19,8 @@
 
 namespace shoal::dds {
 
-// Memory of sequences whose elements are not laid out as the message has them; kept by the
-// publisher between calls.
+// Memory for sequences whose elements have another layout on the wire than in the message. The
+// publisher keeps the buffers between calls.
 struct WireBuffers {
   std::vector<char*> strings;
   std::tuple<std::vector<shoal_idl_Credit>, std::vector<shoal_idl_EvaluationRequest>,
@@ -27,7 +28,8 @@ struct WireBuffers {
       structs;
 };
 
-// Any of idlc's sequences of E, which differ in their names alone.
+// Converts to each of idlc's sequence types with elements E; these types differ only in their
+// names.
 template <class E>
 struct WireSequence {
   E* elements;
@@ -41,11 +43,11 @@ struct WireSequence {
   }
 };
 
-// Converts the fields of one message. dds_write reads through the pointers only; the generated C
-// structs know no const.
+// Converts the fields of one message. The generated C structs have no const pointers, but dds_write
+// only reads through the pointers.
 class FieldWriter {
  public:
-  // Borrows the buffers, whose former content it drops.
+  // Borrows the buffers and drops their former content.
   template <HasFields M>
   FieldWriter(const M& message, WireBuffers* buffers) : buffers_(buffers) {
     buffers_->strings.clear();
@@ -66,7 +68,8 @@ class FieldWriter {
   }
 
  private:
-  // Elements of the sequences of strings, whose pointers must not move.
+  // Number of elements in all sequences of strings. The pointers are reserved at once, because they
+  // must not move.
   template <HasFields M>
   static size_t StringsIn(const M& message) {
     return std::apply([](const auto&... field) { return (StringsIn(field) + ... + size_t{0}); },
@@ -105,7 +108,7 @@ class FieldWriter {
     for (const std::string& text : strings) pointers.push_back(Borrow(text));
     return {first, strings.size()};
   }
-  // A message has one sequence of a struct.
+  // A message has at most one sequence of each struct.
   template <HasFields E>
   WireSequence<typename WireType<E>::Wire> Borrow(const std::vector<E>& elements) {
     auto& structs = std::get<std::vector<typename WireType<E>::Wire>>(buffers_->structs);
@@ -118,8 +121,8 @@ class FieldWriter {
   WireBuffers* const buffers_;
 };
 
-// Borrows: strings and payloads of the result point into the message and into the buffers, so it
-// lives no longer than these and until the next call.
+// Strings and payloads of the result point into the message and the buffers. The result is valid
+// while both live, until the next call with the same buffers.
 template <HasFields M>
 typename WireType<M>::Wire ToWire(const M& message, WireBuffers* buffers) {
   return FieldWriter(message, buffers).Write(message);

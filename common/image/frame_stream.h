@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Episodes as one process shows them to another, step by step: what a policy saw and did, what it
-// earned, and a larger view of the scene. `shoal-actor --evaluate ... --frames FILE` writes such a
-// stream into a file or a pipe.
+// A stream of episodes from one process to another, step by step: the policy's input, its action,
+// the reward, and a larger view of the scene. `shoal-actor --evaluate ... --frames FILE` writes
+// such a stream into a file or a pipe.
 //
 //   FrameStreamHeader (40 bytes) | record | record | ...
 //   record: FrameRecordHeader (16 bytes) | action (A) f32 | input (K*C, H, W) u8
@@ -53,7 +53,7 @@ class FrameStreamWriter {
   // The magic of `header` is filled in. Opening a pipe waits for its reader.
   FrameStreamWriter(const std::filesystem::path& path, FrameStreamHeader header);
 
-  // CHECK on parts of other sizes than the header says. Each record is handed on at once.
+  // Writes and flushes a record. CHECKs that the sizes match the header.
   void Write(const FrameRecordHeader& record, std::span<const float> action,
              std::span<const uint8_t> input, std::span<const uint8_t> view);
 
@@ -74,11 +74,11 @@ struct ShownFrame {
 // Owns the file. One thread.
 class FrameStreamReader {
  public:
-  // Refuses what is no stream of this version, and sizes that no writer has.
+  // Throws Error if the file is not a stream of this version or its header has invalid sizes.
   explicit FrameStreamReader(const std::filesystem::path& path);
 
   const FrameStreamHeader& header() const { return header_; }
-  // Nothing at the stream's end; a record that ends half-way is an error.
+  // The next record; empty at the end of the stream. Throws Error if a record is incomplete.
   std::optional<ShownFrame> Next();
 
  private:

@@ -13,8 +13,8 @@ namespace shoal::image {
 inline constexpr int kCellWidth = 6, kCellHeight = 9;
 
 // Writes one line of printable ASCII ('?' for anything else), its top left at (x, y), into an
-// interleaved image (height, width, 3), row 0 = top. What lies outside the image is left out. CHECK
-// on a pixel count that does not fit.
+// interleaved image (height, width, 3), row 0 = top. Pixels outside the image are left out. CHECKs
+// the pixel count.
 void DrawText(std::string_view text, int x, int y, std::array<uint8_t, 3> colour, int width,
               int height, std::span<uint8_t> rgb);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Buffers for chunks on their way from DDS receive threads to the thread that deals with them,
-// reused, their number bounded.
+// Pool of buffers for chunks between the receive threads of DDS and the thread that handles the
+// chunks. Buffers are reused, and their number is bounded.
 #pragma once
 
 #include <cstddef>
@@ -26,8 +26,8 @@ class ChunkPool {
   // At most `max_chunks` chunks of up to `chunk_bytes`, allocated when first needed.
   ChunkPool(uint64_t spec_hash, uint64_t chunk_bytes, size_t max_chunks);
 
-  // A copy of the chunk; null, and a drop counted, when no buffer is free. The payload of a chunk
-  // of another spec or larger than chunk_bytes is left out.
+  // Returns a copy of the chunk. If no buffer is free, counts a drop and returns null. The payload
+  // is not copied if the chunk has another spec or is larger than chunk_bytes.
   std::unique_ptr<PooledChunk> Copy(const TransitionChunk& chunk);
   // Gives a buffer back.
   void Release(std::unique_ptr<PooledChunk> chunk);
@@ -35,7 +35,7 @@ class ChunkPool {
   uint64_t Dropped() const;
 
  private:
-  // A free buffer, or nullptr and a drop counted.
+  // Returns a free buffer. If there is none, counts a drop and returns null.
   std::unique_ptr<PooledChunk> TakeBuffer();
 
   const uint64_t spec_hash_;
@@ -43,7 +43,7 @@ class ChunkPool {
   mutable Mutex mutex_;
   std::vector<std::unique_ptr<PooledChunk>> free_ SHOAL_GUARDED_BY(mutex_);
   size_t max_chunks_ SHOAL_GUARDED_BY(mutex_);
-  size_t chunks_ SHOAL_GUARDED_BY(mutex_) = 0;  // buffers there are, wherever they are
+  size_t chunks_ SHOAL_GUARDED_BY(mutex_) = 0;  // all buffers, free or in use
   uint64_t dropped_ SHOAL_GUARDED_BY(mutex_) = 0;
 };
 

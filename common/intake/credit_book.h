@@ -1,15 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // Credits of the actors: the newest session of each actor, its window, and the credit last sent.
 //
-//   allowed = stored + window, raised while inserts may go on, never lowered by the limiter
-//   allowed <= stored + share of the budget, and lowered for it
+//   allowed = stored + window, raised while the limiter permits inserts, never lowered by it
+//   allowed <= stored + share of the budget, and lowered to this bound
 //
-// The budget is one of env steps, a credit one of records, resets among them: a share of so many
-// records cannot overspend it. Each session has an equal share, but not less than it needs to make
-// one more step and to send its oldest chunk, so that the others end a run without those who hang;
-// hence a budget is overspent by less than `least_records` per session.
+// The budget counts env steps, and a credit counts records, which include resets. A share of the
+// budget, used as a number of records, therefore cannot overspend the budget. Each session has an
+// equal share, but at least the records for one more step and for its oldest chunk, so that the
+// other actors can finish a run if some actors hang. Hence a budget is overspent by less than
+// `least_records` per session.
 //
-// Threads: none inside; one owner.
+// Threads: starts none; not thread-safe, one owner.
 #pragma once
 
 #include <cstdint>
@@ -24,14 +25,14 @@ namespace shoal {
 
 class CreditBook {
  public:
-  // Borrows the ledger. `receiver_session`: of the process that writes the credits.
+  // Borrows the ledger. `receiver_session`: session of the process that writes the credits.
   CreditBook(const SessionLedger& sessions, uint64_t spec_hash, uint64_t receiver_session,
              uint64_t window_records, uint64_t least_records);
 
-  // Takes over new sessions and newly dealt-with records; raises windows if `may_insert`.
-  // `steps_left`: of the budget; empty where there is none.
+  // Adds new sessions, takes the stored counts from the ledger, and raises windows if `may_insert`.
+  // `steps_left`: env steps left in the budget; empty if there is no budget.
   void Refresh(bool may_insert, std::optional<uint64_t> steps_left);
-  // Credits of newest sessions; `changed_only`: those that differ from what was taken last.
+  // Credits of the newest sessions. `changed_only`: only credits that changed since the last Take.
   std::vector<Credit> Take(bool changed_only);
 
   // Whether credits should be sent now: an actor has at most half of its window left by the credit
@@ -40,7 +41,7 @@ class CreditBook {
 
   // Actor sessions with a window.
   int sessions() const { return static_cast<int>(accounts_.size()); }
-  // Some session has less than its window.
+  // Whether some session has less than its window.
   bool Withholding() const;
 
  private:
@@ -51,7 +52,7 @@ class CreditBook {
     bool changed = true, told = false;
   };
 
-  // Records that a session may have allowed and not stored, for the budget's sake.
+  // Records of a session that may be allowed and not yet stored, within the budget.
   uint64_t Share(std::optional<uint64_t> steps_left) const;
 
   const SessionLedger& sessions_;

@@ -15,7 +15,7 @@ struct IntakeCounters {
   uint64_t table_full_chunks = 0, future_chunks = 0;
 
   void Count(const ChunkResult& result);
-  // Those of which nothing is taken and that need not come again.
+  // Chunks of which no record is taken and that the actor need not send again.
   uint64_t refused_chunks() const {
     return superseded_chunks + wrong_spec_chunks + malformed_chunks + table_full_chunks +
            future_chunks;

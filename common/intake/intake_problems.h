@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Log of the records that a receiver refused or lost: once per interval one line for each kind,
-// with a count and an example.
+// Log of the records that a receiver refused or lost. Once per interval it prints one line for each
+// kind of problem, with a count and an example.
 #pragma once
 
 #include <chrono>
@@ -13,18 +13,19 @@
 
 namespace shoal {
 
-// Threads: none inside; one owner.
+// Not thread-safe; one owner.
 class IntakeProblems {
  public:
   static constexpr std::chrono::seconds kInterval{10};
 
-  // `receiver`: what its lines call the process, "replay server".
+  // `receiver`: name of the process in the log lines, such as "replay server".
   IntakeProblems(uint64_t spec_hash, std::string receiver)
       : spec_hash_(spec_hash), receiver_(std::move(receiver)) {}
 
   // Remembers the example that the next line will name.
   void Note(const TransitionChunk& chunk, const ChunkResult& result);
-  // Logs what has grown since the last line, at most once per interval: false in between.
+  // Logs the counts that have grown since the last report, at most once per interval. Returns
+  // false, without a line, if the interval has not passed.
   bool Report(SteadyTime now, const IntakeCounters& counters, uint64_t dropped_chunks);
 
  private:

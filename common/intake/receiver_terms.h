@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The terms on which a receiver of records, replay server or learner, serves its actors.
+// Intervals and time limits of a receiver of records (replay server or learner).
 #pragma once
 
 #include <algorithm>
@@ -9,12 +9,13 @@
 
 namespace shoal {
 
-// Each word about credit goes to every actor, so that words are collected for a moment ...
+// Least time between messages of changed credits. Every actor receives each message, so changes are
+// collected for this time.
 inline constexpr std::chrono::milliseconds kCreditSpacing{20};
-// ... and between repetitions of every credit.
+// Time between repetitions of all credits.
 inline constexpr std::chrono::seconds kCreditInterval{1};
-// Beyond this number of actors the interval grows with it: at most 1,600 credits a second are sent,
-// for any number of actors.
+// Beyond this number of actors, the interval grows with the number of actors, so that at most 1,600
+// credits a second are sent.
 inline constexpr int64_t kClosestActors = 32;
 
 inline std::chrono::milliseconds CreditSpacing(size_t actors) {
@@ -23,9 +24,9 @@ inline std::chrono::milliseconds CreditSpacing(size_t actors) {
                   std::chrono::milliseconds(kCreditInterval) / 2);
 }
 
-// After the coordinator is lost, a receiver stays until nothing has arrived for this time, ...
+// After the coordinator is lost, a receiver continues until nothing has arrived for this time.
 inline constexpr std::chrono::seconds kFarewell{2};
-// ... but no longer than this.
+// Longest time for which a receiver continues after the coordinator is lost.
 inline constexpr std::chrono::seconds kFarewellLimit{20};
 
 }  // namespace shoal

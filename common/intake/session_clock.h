@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // The bound on session numbers (common/config/session_number.h) that a receiver of records accepts.
-// A session is the wall clock of its actor at its start, and the newest supersedes the others, so
-// that a number from the far future would shut the true actor out. A clock that is set back does
-// not lower the bound: actors that started before the change have larger numbers.
+// A session number is the wall clock of its actor at its start, and the newest session supersedes
+// the others. A number from the far future would therefore exclude the true actor. If the clock is
+// set back, the bound does not fall, because actors that started before have larger numbers.
 #pragma once
 
 #include <algorithm>
@@ -11,23 +11,23 @@
 
 namespace shoal {
 
-// How far beyond this host's clock that of an actor may be.
+// Accepted lead of an actor's clock over this host's clock.
 inline constexpr std::chrono::minutes kClockMargin{10};
 
-// One owner.
+// Not thread-safe; one owner.
 class SessionClock {
  public:
-  // `own_session`: the receiver's, which is never below those of its predecessors.
+  // `own_session`: the receiver's session, which is never below those of its predecessors.
   explicit SessionClock(uint64_t own_session) : highest_(own_session) {}
 
-  // No session that has begun by now has a higher number.
+  // Highest number that a session begun by now may have.
   uint64_t Latest(int64_t wall_time_ns) {
     highest_ = std::max(highest_, static_cast<uint64_t>(std::max<int64_t>(0, wall_time_ns)));
     return highest_ + static_cast<uint64_t>(std::chrono::nanoseconds(kClockMargin).count());
   }
 
  private:
-  uint64_t highest_;  // of the own session and of the clock at each look
+  uint64_t highest_;  // maximum of the receiver's session and of all clock readings so far
 };
 
 }  // namespace shoal

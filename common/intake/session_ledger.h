@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Accounting per actor session: the outcome of every record that an actor sent, for either
-// receiver.
+// Account of each actor session: the outcome of every record that the actor sent. Both receivers,
+// replay and learner, use it.
 #pragma once
 
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace shoal {
 
-// In memory. One owner.
+// Kept in memory. Not thread-safe; one owner.
 class SessionLedger {
  public:
   explicit SessionLedger(size_t most_sessions) : most_sessions_(most_sessions) {}
@@ -31,13 +31,13 @@ class SessionLedger {
 
   // Adds a session with counters of zero; nothing when the ledger is full.
   std::optional<int> Add(uint32_t actor, uint64_t session);
-  // Replaces a session's counters. CHECK: they are of that session.
+  // Replaces a session's counters. CHECKs that the new counters belong to this session.
   void Update(int i, const SessionCounters& counters);
 
   uint64_t TotalStored() const;
 
  protected:
-  // Takes over a session that was kept somewhere.
+  // Adds a session that a derived class has read from storage.
   void Load(const SessionCounters& counters);
 
  private:

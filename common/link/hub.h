@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-// The place of one process (or of one role's threads) on its run's link: writers and readers of the
-// messages of message_list.h are made here. common/dds connects processes, local_network.h the
-// threads of one process. The code of a role knows this header, writer.h, reader.h and no more.
+// Endpoint of one process (or of one role's threads) on the link of its run. It makes writers and
+// readers of the messages of message_list.h. common/dds connects processes; local_network.h
+// connects the threads of one process. The code of a role includes this header, writer.h and
+// reader.h only.
 //
-// The contract, which tests/common/link checks for each implementation:
+// tests/common/link checks the following contract for each implementation:
 //
 // - Reliable. A sample that Write accepted reaches every reader that was matched at that moment, in
 //   the order of the writer's calls, exactly once. Exceptions: the topic keeps the last n and n
@@ -16,13 +17,14 @@
 //   (UnreadBytesBound, role.h); then Write blocks, at most max_blocking, and returns false: the
 //   sample was not sent to anybody, and the caller keeps it and tries again. If nothing is unread,
 //   a single sample may be larger than the bound.
-// - Late joiners. With late_joiners a reader first gets the last n samples per key of each living
-//   writer, whenever it joins; without, it gets what is written after the match.
-// - Matching. A writer and a reader of one topic match when both are known to each other; until
-//   then a sample of a topic without late joiners goes past the reader. Matched() counts.
-// - Liveness. An end that is destroyed is unmatched soon. The peers of a process that died without
-//   a word are unmatched after at most kLivenessLimit; until then its unread samples count against
-//   the writer's bound.
+// - Late joiners. If the topic has late_joiners, a reader first gets the last n samples per key of
+//   each living writer, whenever it joins. Otherwise, it gets the samples written after the match.
+// - Matching. A writer and a reader of one topic match when they have discovered each other. Until
+//   then, the reader misses the samples of a topic without late joiners. Matched() is the number of
+//   matched peers.
+// - Liveness. An end that is destroyed is unmatched soon. If a process dies without closing its
+//   ends, its peers unmatch them after at most kLivenessLimit. Until then, samples that it has not
+//   read count against the writer's bound.
 // - Restart. A new writer of a restarted process has no history but its own. A reader may get late
 //   samples of a predecessor up to kLivenessLimit after its end: messages carry the session of
 //   their sender, and the receivers take the newest.
@@ -33,7 +35,8 @@
 //   time.
 // - Memory. A message's payload is borrowed: Write copies it before it returns, and a callback's
 //   message is valid during the call.
-// - Damage. What cannot be read, or makes no sense, is counted by topic and not delivered.
+// - Damage. Samples that cannot be parsed, or are inconsistent, are counted by topic and not
+//   delivered.
 #pragma once
 
 #include <chrono>
@@ -55,7 +58,7 @@ inline constexpr std::chrono::seconds kLivenessLimit{5};
 // below 1 MB.
 inline constexpr uint64_t kMaxPayloadBytes = 63'000'000;
 
-// The implementation of a Writer<M> (writer.h), whose functions are the same.
+// The implementation of a Writer<M>; writer.h describes the functions.
 template <class M>
 class WriterEnd {
  public:
@@ -73,7 +76,7 @@ class ReaderEnd {
   virtual uint64_t Malformed() const = 0;
 };
 
-// Chooses among the overloads below.
+// Tag that selects one of the overloads below.
 template <class M>
 struct MessageType {};
 
@@ -82,12 +85,12 @@ class Hub {
   // Writers and readers of the hub must be gone.
   virtual ~Hub() = default;
 
-  // Samples that could not be read, by topic, since the hub was made: every topic that a reader of
-  // the hub read at some time. Any thread.
+  // Number of samples that could not be read since the hub was made, by topic. Contains every topic
+  // for which the hub has made a reader. Any thread.
   virtual std::map<std::string, uint64_t> Malformed() const = 0;
 
-  // For Writer<M> and Reader<M>. Throw Error when the implementation refuses. The hub's role must
-  // join the topic's plane.
+  // Only Writer<M> and Reader<M> call these functions. They throw Error when the implementation
+  // cannot make the end. The hub's role must join the topic's plane.
 #define SHOAL_LINK_ENDS(message, ...)                                               \
   virtual std::unique_ptr<WriterEnd<message>> MakeWriter(MessageType<message>) = 0; \
   virtual std::unique_ptr<ReaderEnd> MakeReader(MessageType<message>,               \

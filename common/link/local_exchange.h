@@ -1,17 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Matches the writers and readers of one process by topic and hands samples from one to the other.
-// Knows no message types. Internal to common/link: local_network.h makes hubs of it.
+// Matches the writers and readers of one process by topic and passes samples from writers to
+// readers. Does not depend on message types. Internal to common/link: local_network.h builds its
+// hubs on this class.
 //
 //   Put:      the writer's history (late_joiners) and the queue of each matched reader get the
 //             sample; the reader's receiver learns that the reader is ready
 //   receiver: a thread that takes the oldest sample of a ready reader and calls the reader back
 //
-// A reader's queue holds the last n per writer and key, or all, where the writer's bound of unread
-// bytes limits it. A receiver calls its ready readers in turn, one sample each: a busy topic does
-// not shut out the others.
+// A reader's queue holds the last n samples per writer and key, or all samples, limited by the
+// writer's bound of unread bytes. A receiver calls its ready readers in turn, one sample each, so
+// that a busy topic does not starve the others.
 //
-// One mutex guards everything here, and the samples' counts; no callback runs and no payload is
-// copied or freed while it is held.
+// One mutex guards all members and the samples' counts. While a thread holds the mutex, no callback
+// runs and no payload is copied or freed.
 #pragma once
 
 #include <chrono>
@@ -37,16 +38,16 @@ class LocalExchange {
   class Writer;
   class Reader;
   class Receiver;
-  // Chooses one of `count` ready readers, as a number below it.
+  // Chooses one of `count` ready readers: returns a number below `count`.
   using Choice = std::function<size_t(size_t count)>;
 
-  // Without a choice a receiver calls its ready readers in turn.
+  // If `choose` is null, a receiver calls its ready readers in turn.
   explicit LocalExchange(Choice choose = nullptr) : choose_(std::move(choose)) {}
 
-  // The exchange's part of a writer. It and its samples know each other by `unread`.
+  // The exchange's part of a writer. The writer and its samples share `unread`.
   class Writer {
    public:
-    // `hub`: whose it is, for Abandon.
+    // `hub`: the hub that owns the writer, for Abandon.
     Writer(const void* hub, const TopicSettings& settings, uint64_t unread_bytes_bound)
         : hub_(hub),
           settings_(settings),
@@ -62,7 +63,7 @@ class LocalExchange {
     const TopicSettings settings_;
     const uint64_t bound_;
     const std::shared_ptr<Unread> unread_;
-    SampleQueue history_;  // with late_joiners
+    SampleQueue history_;  // used with late_joiners only
   };
 
   // The exchange's part of a reader, which calls `deliver` on the receiver's thread.
@@ -83,20 +84,20 @@ class LocalExchange {
     Receiver& receiver_;
     const std::function<void(const StoredSample&)> deliver_;
     SampleQueue queue_;
-    bool called_ = false;  // `deliver` runs
+    bool called_ = false;  // `deliver` is running
     ConditionVariable returned_;
   };
 
   // The readers that a thread in ServeReaders calls back.
   class Receiver {
     friend class LocalExchange;
-    std::deque<Reader*> ready_;  // those with samples, but for the one that is called; each once
+    std::deque<Reader*> ready_;  // readers with samples, except the one being called; each once
     bool stopping_ = false;
     ConditionVariable changed_;
   };
 
-  // Matches the end with those of the other side, until Remove. A reader first gets the history of
-  // the topic's writers. Add and Remove are not for callbacks.
+  // Matches the end with the ends of the other side, until Remove. A reader first gets the history
+  // of the topic's writers. Callbacks must not call Add or Remove.
   void Add(Writer& writer);
   void Add(Reader& reader);
   // Samples of the writer that readers have not read yet still reach them.
@@ -104,25 +105,27 @@ class LocalExchange {
   // Waits for a running callback; none starts afterwards.
   void Remove(Reader& reader);
 
-  // Unmatches all ends of a hub. Its readers drop their samples; those of its writers still reach
-  // other readers. Remove may follow.
+  // Unmatches all ends of a hub. The hub's readers drop their samples; samples of the hub's writers
+  // still reach other readers. Remove may follow.
   void Abandon(const void* hub);
-  // Unmatches the ends of a hub until Reconnect, those that it makes meanwhile included. Its
-  // readers drop their samples; its writers go on filling their histories.
+  // Unmatches the ends of a hub until Reconnect, including ends that the hub makes meanwhile. The
+  // hub's readers drop their samples; its writers continue to fill their histories.
   void Disconnect(const void* hub);
-  // Matches the ends of a hub again, as new ones: a reader on either side gets the histories of the
-  // writers on the other.
+  // Matches the ends of a hub again, as if they were new: a reader on either side gets the
+  // histories of the writers on the other side.
   void Reconnect(const void* hub);
 
-  // Waits until the writer may have `bytes` more unread: at most max_blocking, then false. With
-  // keep_last > 0 it does not wait. A sample above the bound has room when nothing is unread.
+  // Waits until the writer may have `bytes` more unread. Returns false after max_blocking. If
+  // keep_last > 0, it returns true at once. A sample above the bound has room when nothing is
+  // unread.
   bool WaitForRoom(Writer& writer, uint64_t bytes);
-  // The sample is one of the writer's.
+  // Passes on a sample, which must be the writer's own.
   void Put(Writer& writer, const SharedSample& sample);
-  // Waits until all readers have finished reading the writer's samples. False at the deadline.
+  // Waits until all readers have finished reading the writer's samples. Returns false at the
+  // deadline.
   bool WaitUntilRead(Writer& writer, SteadyTime deadline);
 
-  // Matched ends of the other side.
+  // Number of matched ends of the other side.
   int Matched(const Writer& writer) const;
   int Matched(const Reader& reader) const;
 
@@ -152,9 +155,10 @@ class LocalExchange {
     for (const End* end : ends) count += Connected(end->hub_) ? 1 : 0;
     return count;
   }
-  // One of the sample's readers has finished with it.
+  // Records that one of the sample's readers has finished reading.
   static void CountRead(StoredSample& sample);
-  // The next reader to call, and its oldest sample; null when the receiver is stopped.
+  // Waits for the next reader to call; `sample` receives its oldest sample. Returns null when the
+  // receiver is stopped.
   Reader* WaitForReady(Receiver& receiver, SharedSample* sample) SHOAL_EXCLUDES(mutex_);
   void FinishCall(Reader& reader, StoredSample& sample) SHOAL_EXCLUDES(mutex_);
 

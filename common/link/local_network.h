@@ -6,11 +6,11 @@
 //   its readers; payloads start at a multiple of 64 bytes.
 // - Callbacks run on the receive threads of the reader's hub, one per plane, and never on the
 //   writing thread. The readers of a plane take turns, one sample each.
-// - A writer's bound of unread bytes is UnreadBytesBound of its role (role.h); a sample above it is
-//   taken when nothing else is unread. Unread is a sample until each matched reader's callback has
-//   returned; WaitForAcks waits for the same.
-// - What a writer had written when it was destroyed still reaches its readers.
-// - A process that dies takes all its roles with it: liveness is lost by Abandon alone.
+// - A writer's bound of unread bytes is UnreadBytesBound of its role (role.h). A sample above the
+//   bound is accepted when nothing else is unread. A sample is unread until each matched reader's
+//   callback has returned; WaitForAcks waits for the same event.
+// - Samples written before a writer is destroyed still reach its readers.
+// - If the process dies, all its roles end. Therefore only Abandon ends the liveness of one role.
 #pragma once
 
 #include <atomic>
@@ -22,28 +22,29 @@
 
 namespace shoal::link {
 
-// Connects the hubs of one run. Owns what they share. Any thread.
+// Connects the hubs of one run and owns their shared state. Any thread.
 class LocalNetwork {
  public:
-  // `choose`: which of several topics that have samples for a receive thread it reads next, for
-  // simulations; null: they take turns.
+  // `choose`: selects, in simulations, the topic that a receive thread reads next, if several
+  // topics have samples. Null: the topics take turns.
   explicit LocalNetwork(LocalExchange::Choice choose = nullptr) : exchange_(std::move(choose)) {}
   // The hubs must be gone.
   ~LocalNetwork();
   LocalNetwork(const LocalNetwork&) = delete;
   LocalNetwork& operator=(const LocalNetwork&) = delete;
 
-  // A hub for an instance of the role; one that is restarted joins anew. The hub borrows the
+  // Makes a hub for one instance of the role. A restarted instance joins again. The hub borrows the
   // network.
   std::unique_ptr<Hub> Join(Role role);
 
-  // Does what the death of the hub's process would do, for tests and simulations: its writers and
-  // readers are unmatched, and its readers are not called back any more. They may only be
-  // destroyed.
+  // Simulates the death of the hub's process, for tests and simulations. The hub's writers and
+  // readers are unmatched, and its readers receive no more callbacks. The only operation that the
+  // hub's ends then permit is destruction.
   void Abandon(const Hub& hub);
-  // Does what a partition longer than kLivenessLimit does to the hub's process, and its end: its
-  // writers and readers are unmatched, then matched again as new ones. In between their samples are
-  // lost, but for the history of topics with late joiners, which is then sent again.
+  // Simulate the start and the end of a network partition longer than kLivenessLimit. Disconnect
+  // unmatches the hub's writers and readers; Reconnect matches them again as if they were new.
+  // Samples in between are lost, except the history of topics with late joiners, which is sent
+  // again after Reconnect.
   void Disconnect(const Hub& hub);
   void Reconnect(const Hub& hub);
 

@@ -1,19 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // The list of messages between processes, one line each. Topics, writers, readers and the rights of
-// roles follow from it. A new message needs its struct (common/wire/messages.h), the list of its
-// fields (common/wire/message_fields.h), a line here, its key if it keeps the last n per key
-// (topic.h), and for the network its type (shoal.idl) and the check of what was received
-// (message_cdr.h or bulk_cdr.h) in common/dds. docs/wire_format.md gives the reasons.
+// roles are derived from this list. A new message needs:
+//
+// - its struct (common/wire/messages.h) and the list of its fields (common/wire/message_fields.h);
+// - a line in this list, and a key if the topic keeps the last n samples per key (topic.h);
+// - for the network, its type (common/dds/shoal.idl) and its parser (message_cdr.h or bulk_cdr.h).
+//
+// docs/wire_format.md gives the reasons for the values. The columns are:
 //
 //   message           struct, in namespace shoal
-//   type              the network's, generated from shoal.idl
-//   topic             its name; one message, one topic
+//   type              type on the network, generated from shoal.idl
+//   topic             name of the topic; each message has one topic
 //   plane             role.h
-//   kept              the last n per key are kept and older ones overwritten, so that a write never
-//                     waits; 0: all are kept until every reader has them, and a write waits
-//   late, now         whether a late joiner receives the kept ones
-//   bulk, small       a @final type in plain CDR; else @appendable
-//   ms                a write waits at most
+//   kept              n: the last n samples per key are kept, and a write never waits;
+//                     0: all samples are kept until every reader has them, and a write may wait
+//   late, now         whether a late joiner receives the kept samples
+//   bulk, small       bulk: a @final type in plain CDR; small: an @appendable type
+//   ms                longest wait of a write, in milliseconds
 //   writers, readers  roles
 #pragma once
 

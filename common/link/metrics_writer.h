@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A process's reports, with what its hub counts: malformed_TOPIC, the messages that this process
-// could not read.
+// Sends the reports of a process. Adds the hub's counters to each report: malformed_TOPIC, the
+// number of messages of a topic that this process could not read.
 #pragma once
 
 #include <chrono>
@@ -13,15 +13,15 @@ namespace shoal::link {
 // Appends malformed_TOPIC for each topic that a reader of the hub reads.
 void AddMalformed(const Hub& hub, MetricsMessage* report);
 
-// M: the reports of the process's role (ActorMetrics and others).
+// M: the report message of the process's role (ActorMetrics and others).
 template <class M>
 class MetricsWriter {
  public:
   // Borrows the hub. Throws Error.
   explicit MetricsWriter(Hub& hub) : hub_(hub), writer_(hub) {}
 
-  // Does what Writer::Write does. A report that is not sent is no loss: the next one holds the same
-  // totals.
+  // Sends the report as Writer::Write does. If a report is not sent, no count is lost, because the
+  // next report contains the totals.
   bool Write(const MetricsMessage& report) {
     M message;
     static_cast<MetricsMessage&>(message) = report;

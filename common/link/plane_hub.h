@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A hub made of two: the coordinator of a run in one process meets its roles in memory and its
-// clients on the network.
+// A hub that consists of two hubs. The coordinator of a run in one process connects to the roles in
+// memory and to its clients on the network.
 #pragma once
 
 #include <functional>
@@ -16,7 +16,7 @@ namespace shoal::link {
 
 class PlaneHub final : public Hub {
  public:
-  // `operate` carries the plane of that name, `rest` the others. Borrows both.
+  // `operate` carries Plane::kOperate; `rest` carries the other planes. Borrows both.
   PlaneHub(Hub& rest, Hub& operate) : rest_(rest), operate_(operate) {}
 
   std::map<std::string, uint64_t> Malformed() const override {

@@ -21,11 +21,11 @@ class Reader {
     CHECK(on_message != nullptr) << Topic<M>::kSettings.name;
     end_ = hub.MakeReader(MessageType<M>(), std::move(on_message));
   }
-  // After the destructor's return no callback runs. Not to be destroyed in the callback.
+  // When the destructor has returned, no callback runs. A callback must not destroy its reader.
 
-  // Matched writers now.
+  // Number of writers matched now.
   int Matched() const { return end_->Matched(); }
-  // Samples that could not be read.
+  // Number of samples that could not be read.
   uint64_t Malformed() const { return end_->Malformed(); }
 
  private:

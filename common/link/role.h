@@ -15,9 +15,9 @@ enum class Role { kCoordinator, kLearner, kReplay, kActor, kEval, kClient };
 inline constexpr Role kRoles[] = {Role::kCoordinator, Role::kLearner, Role::kReplay,
                                   Role::kActor,       Role::kEval,    Role::kClient};
 
-// A slow reader of one plane does not delay the others. kMain: records, weights, metrics, control.
-// kBatch: requests and batches between learner and replay. kOperate: between coordinator and
-// clients.
+// A slow reader of one plane does not delay the other planes. kMain: records, weights, metrics and
+// control. kBatch: requests and batches between learner and replay. kOperate: messages between
+// coordinator and clients.
 enum class Plane { kMain, kBatch, kOperate };
 
 // "coordinator", "learner", "replay", "actor", "eval", "client".
@@ -39,7 +39,7 @@ constexpr const char* RoleName(Role role) {
   return "?";
 }
 
-// The role of that name.
+// The role with this name; empty if there is none.
 constexpr std::optional<Role> FindRole(std::string_view name) {
   for (const Role role : kRoles) {
     if (name == RoleName(role)) return role;
@@ -48,7 +48,8 @@ constexpr std::optional<Role> FindRole(std::string_view name) {
 }
 
 // Bytes that a writer of the role may have unread before a write waits (hub.h, "History"). Servers
-// have few bulk writers, which may fill a pipe; many actors share one receiver's buffers.
+// have few bulk writers, so their bound is large. Many actors share the buffers of one receiver, so
+// the bound of an actor is small.
 constexpr uint64_t UnreadBytesBound(Role role) {
   switch (role) {
     case Role::kCoordinator:

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// The processes of a run and who writes to whom, as one value. The process plan, the fixed ports,
-// the account of the records, the messages that the coordinator accepts and the displays derive
-// from it.
+// The processes of a run, and which process writes to which, as one value. The following are
+// derived from the topology: the process plan, the fixed ports, the account of the records, the
+// messages that the coordinator accepts, and the displays.
 //
-// Today each run has one learner and, unless it learns on policy, one replay. A second one is one
-// more entry of Servers() and the routing between the servers. Code that is written for exactly one
-// asks for it with OnlyLearner() or OnlyReplay().
+// Today each run has one learner and, unless it learns on policy, one replay. A second learner or
+// replay needs one more entry of Servers() and the routing between the servers. Code that supports
+// exactly one learner or replay calls OnlyLearner() or OnlyReplay().
 #pragma once
 
 #include <cstdint>
@@ -24,14 +24,14 @@ namespace shoal::link {
 struct RunProcess {
   Role role = Role::kCoordinator;
   uint32_t index = 0;  // within the role, from 0
-  uint32_t host = 0;   // 0: the coordinator's; n: the nth of the run's other hosts
+  uint32_t host = 0;   // 0: the coordinator's host; n: the nth of the run's other hosts
 
   ProcessName Name() const { return {RoleName(role), index}; }
   friend bool operator==(const RunProcess&, const RunProcess&) = default;
 };
 
-// The servers that a run can have, in the order of their fixed ports. A run reserves the port of
-// each of them, also of those that it does not start.
+// The servers that a run can have, in the order of their fixed ports. A run reserves the ports of
+// all these servers, even if it does not start all of them.
 std::span<const RunProcess> Servers();
 
 // Position in Servers(); empty for a process without a fixed port.
@@ -39,8 +39,8 @@ std::optional<int> FixedPort(Role role, uint32_t index);
 
 class RunTopology {
  public:
-  // `config` is resolved. `actors_elsewhere` has the number of actors on each other host: they have
-  // the highest indices, in the order of the hosts. config.actors counts all actors.
+  // `config` must be resolved; config.actors counts all actors. `actors_elsewhere` has the number
+  // of actors on each other host. These actors have the highest indices, in the order of the hosts.
   explicit RunTopology(const Config& config, std::span<const int> actors_elsewhere = {});
 
   // The processes that the coordinator starts, in starting order.
@@ -49,17 +49,16 @@ class RunTopology {
   std::vector<RunProcess> Of(Role role) const;
   bool Has(Role role) const { return !Of(role).empty(); }
 
-  // The run's one learner, and its one replay: for code that does not choose among several. The run
-  // must have exactly one.
+  // The run's only learner, and its only replay. The run must have exactly one.
   RunProcess OnlyLearner() const;
   RunProcess OnlyReplay() const;
 
   // The training actors of a host.
   std::vector<RunProcess> ActorsOn(uint32_t host) const;
 
-  // The children that write the topic of M, and those that read it. They follow from the rights of
-  // the roles. Records and credits pass between the actors and one role only: the replays, or the
-  // learners of a run without one.
+  // The children that write the topic of M, and the children that read it, according to the rights
+  // of the roles. Actors exchange records and credits with one role only: the replays or, in a run
+  // without a replay, the learners.
   template <class M>
   std::vector<RunProcess> WritersOf() const {
     return WritersOf(Topic<M>::kSettings.name);
@@ -68,11 +67,11 @@ class RunTopology {
   std::vector<RunProcess> ReadersOf() const {
     return ReadersOf(Topic<M>::kSettings.name);
   }
-  // The readers of the actors' records: they acknowledge them and keep the account.
+  // The readers of the actors' records. They acknowledge the records and keep the account.
   std::vector<RunProcess> RecordReceivers() const { return ReadersOf<TransitionChunk>(); }
 
-  // Whether the topic of M can have a writer of this name, now or later: `shoal scale` starts
-  // actors.
+  // Whether the topic of M can have a writer with this role and index, now or after `shoal scale`
+  // has started more actors.
   template <class M>
   bool CanWrite(std::string_view role, uint32_t index) const {
     return CanWrite(Topic<M>::kSettings.name, role, index);

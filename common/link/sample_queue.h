@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// Samples in the order in which they were written: those that a reader has not taken yet, or those
-// that a writer keeps for late joiners. keep_last = n keeps the last n of each writer and key.
+// Queue of samples in the order in which they were written: the samples that a reader has not taken
+// yet, or the samples that a writer keeps for late joiners. If keep_last = n > 0, the queue keeps
+// the last n samples of each writer and key.
 //
-// Threads: none; the exchange's mutex guards it. Cost: O(log keys) for each call.
+// Threads: the exchange's mutex guards the queue. Cost: O(log keys) for each call.
 #pragma once
 
 #include <cstdint>
@@ -20,8 +21,8 @@ class SampleQueue {
   // 0: keeps all.
   explicit SampleQueue(int32_t keep_last) : keep_last_(keep_last) {}
 
-  // Appends the sample. Returns the one that it pushes out: the oldest of its writer and key, if
-  // keep_last of them were here; else null.
+  // Appends the sample. If the queue already held keep_last samples of the same writer and key,
+  // removes and returns the oldest of them; otherwise returns null.
   SharedSample Push(SharedSample sample);
   // Removes and returns the oldest sample; null when there is none.
   SharedSample Pop();
@@ -40,7 +41,8 @@ class SampleQueue {
 
   const int32_t keep_last_;
   Samples samples_;
-  // For keep_last > 0: where the samples of a writer and key are, the oldest first; never empty.
+  // If keep_last > 0: positions of each writer's and key's samples, the oldest first. No entry is
+  // empty.
   std::map<WriterAndKey, std::deque<Samples::iterator>> places_;
 };
 

@@ -14,8 +14,9 @@
 
 namespace shoal::link {
 
-// Samples of one writer that some reader has not finished reading. Its samples share it, so that it
-// may outlive the writer. The exchange's mutex guards it (local_exchange.h).
+// Counts of one writer's samples that some reader has not finished reading. The writer's samples
+// share this object, so that it may outlive the writer. The exchange's mutex guards the counts
+// (local_exchange.h).
 struct Unread {
   uint64_t samples = 0;
   uint64_t bytes = 0;
@@ -29,12 +30,13 @@ class StoredSample {
   StoredSample& operator=(const StoredSample&) = delete;
 
   const Key& key() const { return key_; }
-  // Counted against the writer's bound.
+  // Bytes that count against the writer's bound.
   uint64_t bytes() const { return bytes_; }
-  // The same object for all samples of a writer, and for no other's.
+  // All samples of a writer share one object; samples of different writers never do.
   Unread& unread() const { return *unread_; }
 
-  // Readers that have not finished reading it. The exchange's mutex guards it.
+  // Number of readers that have not finished reading the sample. The exchange's mutex guards this
+  // number.
   int unread_by = 0;
 
  protected:
@@ -75,7 +77,7 @@ class StoredMessage final : public StoredSample {
   }
 
  private:
-  AlignedBytes payload_;  // none without a payload
+  AlignedBytes payload_;  // empty if M has no payload
   M message_;             // its payload is payload_
 };
 

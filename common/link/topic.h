@@ -19,17 +19,17 @@ struct TopicSettings {
   const char* name;
   Plane plane;
   // 0: every sample is kept until all readers have it, and a write blocks at most max_blocking.
-  // n: the last n per key are kept, older ones are overwritten, and a write never blocks.
+  // n: the last n samples per key are kept, older ones are overwritten, and a write never blocks.
   int32_t keep_last;
-  bool late_joiners;  // receive the last keep_last samples per key
-  bool bulk;          // a @final type in plain CDR; else @appendable (docs/wire_format.md)
+  bool late_joiners;  // late joiners receive the last keep_last samples per key
+  bool bulk;          // true: a @final type in plain CDR; else @appendable (docs/wire_format.md)
   std::chrono::milliseconds max_blocking;
 };
 
 template <class M>
 struct Topic;
 
-// The words of the list.
+// Values of the words that message_list.h uses.
 namespace words {
 inline constexpr bool late = true, now = false;
 inline constexpr bool bulk = true, small = false;
@@ -51,7 +51,7 @@ struct TopicRights {
 };
 std::vector<TopicRights> AllTopicRights();
 
-// A message's key: with keep_last = n, a topic keeps the last n samples of each key of a writer.
+// A message's key. If keep_last = n > 0, a topic keeps the last n samples of each key of a writer.
 using Key = std::pair<std::string, uint64_t>;
 
 template <class M>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A typed writer. M is a message of common/wire/messages.h; topic, plane and quality of service
-// follow from M (message_list.h), its behaviour from the contract in hub.h.
+// A typed writer. M is a message of common/wire/messages.h. message_list.h defines the topic, the
+// plane and the quality of service of M; the contract in hub.h defines the writer's behaviour.
 #pragma once
 
 #include <chrono>
@@ -18,8 +18,9 @@ class Writer {
   // Borrows the hub. Throws Error.
   explicit Writer(Hub& hub) : end_(hub.MakeWriter(MessageType<M>())) {}
 
-  // Copies and sends the message. Blocks at most the topic's max_blocking; false when it was not
-  // sent within it: keep it and try again. Any thread; one at a time per writer.
+  // Copies and sends the message. Blocks at most for the topic's max_blocking. Returns false when
+  // the message was not sent in this time; the caller then keeps the message and tries again. Any
+  // thread, but one at a time per writer.
   bool Write(const M& message) {
     if constexpr (requires { message.payload; }) {
       CHECK(message.payload.size() <= kMaxPayloadBytes)
@@ -27,10 +28,11 @@ class Writer {
     }
     return end_->Write(message);
   }
-  // Matched readers now.
+  // Number of readers matched now.
   int Matched() const { return end_->Matched(); }
-  // Waits until every sample has arrived at all matched readers, for the exit of a process; the
-  // callback of the last one may still run. False at the deadline; 0 asks without waiting.
+  // Waits until every sample has arrived at all matched readers; a process calls it before it
+  // exits. The callback of the last sample may still run. Returns false at the deadline. A deadline
+  // of 0 checks without waiting.
   bool WaitForAcks(std::chrono::milliseconds deadline) { return end_->WaitForAcks(deadline); }
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A checkpoint's policy as values: what it observes, its network and its parameters. For acting
-// (trained_policy.h) and for export to other formats.
+// A checkpoint's policy as values: its observation, its network and its parameters. Acting
+// (trained_policy.h) and the export to other formats use these values.
 #pragma once
 
 #include <filesystem>
@@ -19,13 +19,13 @@ struct CheckpointPolicy {
   CheckpointState state;
 };
 
-// `folder`: a checkpoint, wherever it lies. learner.safetensors is not read and need not be there.
-// Throws Error in one line naming the file and what was expected: missing, damaged or altered
-// files, another or a newer version, a network that this program does not have.
+// Reads the checkpoint in `folder`, which may be anywhere. learner.safetensors is not read and need
+// not exist. Throws Error, in one line with the file and the expectation, for missing, damaged or
+// altered files, another or a newer version, or a network that this program does not support.
 //
-// Checkpoints of versions that wrote no policy.json are read in their run's folder
-// (RUN/checkpoints/NAME or RUN/checkpoints/candidates/NAME), whose config.json says what is
-// missing; elsewhere they are refused.
+// Old versions wrote no policy.json. Their checkpoints are read only within their run's folder
+// (RUN/checkpoints/NAME or RUN/checkpoints/candidates/NAME), because config.json of the run has the
+// missing values.
 CheckpointPolicy ReadCheckpointPolicy(const std::filesystem::path& folder);
 
 }  // namespace shoal::policy

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
-// policy.json of a checkpoint, schema shoal-policy-1: everything but parameters that acting by its
-// policy takes, so that the folder is complete in itself.
+// policy.json of a checkpoint, schema shoal-policy-1: everything except parameters that acting by
+// the policy needs, so that the checkpoint's folder is self-contained.
 //
 //   version      of the Shoal that wrote it
 //   algorithm    learner.algorithm
-//   output       gaussian | deterministic | unsquashed: what the actor's last layer says
+//   output       gaussian | deterministic | unsquashed: meaning of the actor's last layer
 //   network      the configuration keys network.*
 //   spec         the observation spec, spec_hash its hash
 //   layers       what the network computes, a line per layer (common/nn/plan_text.h)
 //
-// Parameters and running normalisation are in policy.safetensors. `layers` follows from what stands
-// above it; a program that makes other layers of it refuses the checkpoint.
+// Parameters and running normalisation are in policy.safetensors. `layers` is derived from the
+// members above. If a program derives other layers, it refuses the checkpoint.
 #pragma once
 
 #include <string>

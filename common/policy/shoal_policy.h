@@ -40,32 +40,32 @@ typedef enum shoal_policy_status {
 
 typedef struct shoal_policy shoal_policy;
 
-/* What went wrong in this thread's latest call that failed; "" before any. Valid until this
+/* Message of this thread's latest call that failed; "" before any failure. Valid until this
  * thread's next call that fails. */
 SHOAL_POLICY_API const char* shoal_policy_error(void);
 
-/* Of the library: "0.1.0". */
+/* Version of the library: "0.1.0". */
 SHOAL_POLICY_API const char* shoal_policy_version(void);
 
-/* Loads a checkpoint folder, wherever it lies: state.json, policy.json and policy.safetensors of it
- * are read and verified. On success *policy is to be freed, otherwise it is NULL. The first action
- * takes no longer than later ones. */
+/* Loads a checkpoint folder from any place: reads and verifies its state.json, policy.json and
+ * policy.safetensors. On success, the caller must free *policy; otherwise *policy is NULL. The
+ * first action takes no longer than later ones. */
 SHOAL_POLICY_API shoal_policy_status shoal_policy_load(const char* checkpoint,
                                                        shoal_policy** policy);
 
 /* NULL is allowed. */
 SHOAL_POLICY_API void shoal_policy_free(shoal_policy* policy);
 
-/* The following ask a loaded policy, not NULL. */
+/* The functions below need a loaded policy, not NULL. */
 
-/* What the policy was trained for and by: "FetchReachDense", "sac". */
+/* Task and algorithm of the policy's training: "FetchReachDense", "sac". */
 SHOAL_POLICY_API const char* shoal_policy_task(const shoal_policy* policy);
 SHOAL_POLICY_API const char* shoal_policy_algorithm(const shoal_policy* policy);
 
 /* A. */
 SHOAL_POLICY_API size_t shoal_policy_action_size(const shoal_policy* policy);
 
-/* Of the pixels of one observation; all 0 for a policy without pixels. */
+/* Shape of the pixels of one observation; all 0 for a policy without pixels. */
 typedef struct shoal_policy_shape {
   size_t stack;    /* K */
   size_t channels; /* C of one frame */
@@ -73,16 +73,16 @@ typedef struct shoal_policy_shape {
 } shoal_policy_shape;
 SHOAL_POLICY_API shoal_policy_shape shoal_policy_pixels(const shoal_policy* policy);
 
-/* G: 1 for a policy that sees a picture of its goal reached, which is one more frame behind the
+/* G: 1 for a policy that observes a picture of its reached goal, which is one more frame after the
  * stack; else 0. */
 SHOAL_POLICY_API size_t shoal_policy_goal_pictures(const shoal_policy* policy);
 
-/* The cameras in the order of a frame's channels. NULL from `index` = their count on. */
+/* The cameras in the order of a frame's channels. The name is NULL if `index` >= the count. */
 SHOAL_POLICY_API size_t shoal_policy_camera_count(const shoal_policy* policy);
 SHOAL_POLICY_API const char* shoal_policy_camera_name(const shoal_policy* policy, size_t index);
 
-/* The blocks of numbers that the policy observes beside the pixels: "grip", "desired_goal", and how
- * many numbers each has. NULL and 0 from `index` = their count on. */
+/* The blocks of numbers that the policy observes besides the pixels ("grip", "desired_goal"), and
+ * the size of each. Name and size are NULL and 0 if `index` >= the count. */
 SHOAL_POLICY_API size_t shoal_policy_block_count(const shoal_policy* policy);
 SHOAL_POLICY_API const char* shoal_policy_block_name(const shoal_policy* policy, size_t index);
 SHOAL_POLICY_API size_t shoal_policy_block_size(const shoal_policy* policy, size_t index);
@@ -96,19 +96,19 @@ typedef struct shoal_policy_block {
 
 typedef struct shoal_policy_observations {
   size_t count; /* N, at least 1 */
-  /* (N, (K+G)*C, H, W), 0..255, row 0 = top, RGB. Of a stack the oldest frame comes first; at an
-   * episode's start the first frame stands K times; the goal's comes last. NULL and 0 for a policy
-   * without pixels. */
+  /* (N, (K+G)*C, H, W), 0..255, row 0 = top, RGB. The frames of a stack are in order, oldest first;
+   * at an episode's start, the first frame is repeated K times; the goal's frame is last. NULL and
+   * 0 for a policy without pixels. */
   const uint8_t* pixels;
   size_t pixel_count; /* bytes in `pixels` */
-  /* Each block that the policy observes, in any order, and no other. */
+  /* All blocks that the policy observes, in any order, and no other blocks. */
   const shoal_policy_block* blocks;
   size_t block_count;
 } shoal_policy_observations;
 
 /* Writes actions (N, A), each number in [-1, 1]; `action_count`: the floats that `actions` has room
- * for, N*A. An action is the same to f32's last digits whatever else is in the batch. Nothing is to
- * be played where this fails: `actions` may be partly written. */
+ * for, N*A. Other observations of the batch change an action by f32's last digits at most. If this
+ * function fails, do not use `actions`, which may be partly written. */
 SHOAL_POLICY_API shoal_policy_status shoal_policy_act(shoal_policy* policy,
                                                       const shoal_policy_observations* observations,
                                                       float* actions, size_t action_count);

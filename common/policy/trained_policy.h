@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Acts by a checkpoint's policy, without exploration: the action of a batch of observations is what
-// an evaluation actor would play.
+// Acts by a checkpoint's policy, without exploration: computes the actions that an evaluation actor
+// would take for a batch of observations.
 //
 // Dimensions: N observations of a batch, K frames of a stack, C channels of a frame (all cameras),
 // I = K*C, or (K+1)*C with a goal picture, H, W, A actions. Arrays are row-major.
@@ -27,21 +27,22 @@ struct ObservedBlock {
 // N observations, borrowed for a call.
 struct Observations {
   int count = 0;  // N
-  // (N, I, H, W), row 0 = top; of a stack the oldest frame first, at an episode's start the first
-  // frame K times; a goal picture comes last. Unread by a policy without pixels.
+  // (N, I, H, W), row 0 = top. The frames of a stack are in order, oldest first; at an episode's
+  // start, the first frame is repeated K times. A goal picture is last. A policy without pixels
+  // ignores this member.
   std::span<const uint8_t> pixels = {};
-  // Each block that the policy observes, in any order, and no other.
+  // All blocks that the policy observes, in any order, and no other blocks.
   std::span<const ObservedBlock> blocks = {};
 };
 
 // One thread at a time; objects are independent of each other. Computes on the calling thread.
 class TrainedPolicy {
  public:
-  // Parameters that do not fit the description are refused with Error. Builds the network for one
-  // observation; those for batches are built when they are first asked for.
+  // Builds the network for one observation. Networks for batches are built when they are first
+  // needed. Throws Error if the parameters do not fit the description.
   explicit TrainedPolicy(const CheckpointPolicy& policy,
                          nn::Precision precision = nn::Precision::kF32);
-  // Reads and throws as ReadCheckpointPolicy.
+  // Reads the checkpoint as ReadCheckpointPolicy does, and throws the same errors.
   explicit TrainedPolicy(const std::filesystem::path& checkpoint,
                          nn::Precision precision = nn::Precision::kF32);
 
@@ -49,9 +50,8 @@ class TrainedPolicy {
   const ObservationSpec& spec() const { return description_.spec; }
 
   // Writes actions (N, A), each in [-1, 1]. An action is the same to f32's last digits whatever N.
-  // Throws Error in one line: kUsage naming an array of another size than expected, a block that is
-  // missing, unknown or given twice; kNonFinite naming a block with a number that is not finite,
-  // or where the policy's output is not.
+  // Throws Error in one line. kUsage: an array has the wrong size, or a block is missing, unknown
+  // or given twice. kNonFinite: a block or the policy's output has a number that is not finite.
   void Act(const Observations& observations, std::span<float> actions);
 
  private:

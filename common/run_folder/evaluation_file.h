@@ -1,24 +1,29 @@
 // SPDX-License-Identifier: Apache-2.0
-// eval/*.json of a run (schema shoal-eval-1): one evaluation of a policy, episode by episode.
-// Written by who plays it; the coordinator adds wall_seconds to those of a run as they arrive. Read
-// by the coordinator when a run goes on, by reports and experiments.
+// eval/*.json of a run (schema shoal-eval-1): one evaluation of a policy, episode by episode. The
+// process that plays the episodes makes the file; the coordinator adds wall_seconds to evaluations
+// of its run. The coordinator of a resumed run, reports and experiments read the files.
 //
 //   {schema, task, policy, checkpoint, weights_version: {session, update}, env_steps,
-//   deterministic,
-//    cameras, seeds: [seed], stream: {role, group},
-//    episodes: [{seed, success, return, length, final_distance, action_smoothness, desired_goal,
-//                achieved_goal, failure, fault, body_mass: {body: kg}}],
+//    deterministic, cameras, seeds: [seed], stream: {role, group},
+//    episodes: [{seed, success, return, length, final_distance, action_smoothness,
+//                desired_goal, achieved_goal, failure, fault, body_mass: {body: kg}}],
 //    aggregate: {episodes, success_rate, return_mean, return_std, length_mean,
-//    final_distance_mean, faulty_episodes}, commit, created, end_on_success, failures: {cause:
-//    episodes}, episodes_asked, trained_task, wall_seconds}
+//                final_distance_mean, faulty_episodes},
+//    commit, created, end_on_success, failures: {cause: episodes}, episodes_asked,
+//    trained_task, wall_seconds}
 //
-// Null is what a task does not have (success, distances) and, of a policy without parameters,
-// checkpoint and weights_version. desired_goal to failure, and failures, are there where the task
-// has causes of failure; `failure` is null for a success. body_mass is there for randomized
-// episodes, `fault` (diverged, observation, reward) for a faulty episode, which failed because a
-// number of the simulation was not finite, faulty_episodes where there is one, end_on_success where
-// it is so, episodes_asked where fewer were played, trained_task where another task was played than
-// the run's.
+// Success and distances are null if the task has none. checkpoint and weights_version are null for
+// a policy without parameters. The following members are optional:
+//
+//   desired_goal, achieved_goal, failure, failures   if the task has causes of failure; `failure`
+//                     is null for a success
+//   body_mass         for randomized episodes
+//   fault             (diverged, observation, reward) for a faulty episode, which failed because a
+//                     number of the simulation was not finite
+//   faulty_episodes   if at least one episode was faulty
+//   end_on_success    if true
+//   episodes_asked    if fewer episodes were played than requested
+//   trained_task      if the evaluation's task is not the task of the run
 #pragma once
 
 #include <cstddef>
@@ -36,9 +41,9 @@ struct EvaluatedEpisode {
   std::optional<bool> success{};
   double episode_return = 0;
   int64_t length = 0;         // env steps
-  double final_distance = 0;  // m; not finite: the task has none
+  double final_distance = 0;  // m; not finite if the task has no distance
   double action_smoothness = 0;
-  // For tasks that have causes of failure: the goal, and the achieved goal at the end, in m.
+  // The goal, and the achieved goal at the end, in m; for tasks that have causes of failure.
   struct Goal {
     std::vector<double> desired, achieved;
     std::string failure{};  // empty = none
@@ -54,25 +59,25 @@ struct EvaluationAggregate {
   double return_mean = 0;
   std::optional<double> return_std{};           // files of early versions have none
   double length_mean = 0;                       // env steps
-  std::optional<double> final_distance_mean{};  // m; of the episodes that have one
-  size_t faulty_episodes = 0;                   // of the episodes; they have failed
+  std::optional<double> final_distance_mean{};  // m; over the episodes that have a distance
+  size_t faulty_episodes = 0;                   // counted in `episodes`, as failed
 };
 
-// "  3 of 50 episodes ended at a number that is not finite and count as failed\n"; empty where
-// there is none.
+// "  3 of 50 episodes ended at a number that is not finite and count as failed\n"; empty if no
+// episode was faulty.
 std::string FaultyEpisodesText(const EvaluationAggregate& aggregate);
 
 // The part of an evaluation that programs read.
 struct EvaluationSummary {
   std::string task{};
-  // For the policy of a checkpoint only: the folder's name, and the version of its parameters.
+  // The folder's name, and the version of the parameters; for the policy of a checkpoint only.
   struct Version {
     uint64_t session = 0, update = 0;
   };
   std::optional<std::string> checkpoint{};
   std::optional<Version> version{};
   uint64_t env_steps = 0;
-  double wall_seconds = 0;  // since the run's start; 0 = not said
+  double wall_seconds = 0;  // since the run's start; 0 = unknown
   EvaluationAggregate aggregate{};
 };
 
@@ -87,7 +92,8 @@ struct EvaluationFile {
   std::vector<EvaluatedEpisode> episodes{};
   std::string commit{}, created{};
   bool end_on_success = false;
-  // By cause, in the order in which they are asked; none for a task without causes.
+  // Failed episodes by cause, in the order in which causes are checked; empty for a task without
+  // causes.
   std::optional<std::vector<std::pair<std::string, size_t>>> failures{};
   std::optional<int> episodes_asked{};
   std::optional<std::string> trained_task{};
@@ -95,11 +101,12 @@ struct EvaluationFile {
 
 nlohmann::ordered_json ToJson(const EvaluationFile& file);
 
-// The object of a text; `source` names it in errors. Throws Error unless it is one of this schema.
+// Parses `text`; `source` names the text in errors. Throws Error unless it is an object of this
+// schema.
 nlohmann::ordered_json ParseEvaluationObject(const std::string& text, const std::string& source);
 
-// Throws Error naming `source` and the member: missing or of another type. Whether the figures can
-// be is not looked at.
+// Throws Error naming `source` and the member if a member is missing or has another type. Does not
+// check whether the figures are plausible.
 EvaluationSummary SummaryOf(const nlohmann::ordered_json& evaluation, const std::string& source);
 
 void SetWallSeconds(double wall_seconds, nlohmann::ordered_json* evaluation);

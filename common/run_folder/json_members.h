@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Members of a JSON object of a run's file. What is missing or of another type is an Error that
-// names the file and the member: "'eval/final.json': 'aggregate.return_mean': expected a number".
+// Reads members of a JSON object of a run's file. If a member is missing or has another type,
+// throws Error naming the file and the member:
+// "'eval/final.json': 'aggregate.return_mean': expected a number".
 #pragma once
 
 #include <cstdint>
@@ -23,7 +24,7 @@ inline nlohmann::ordered_json ParseSchemaObject(const std::string& text, const s
   return object;
 }
 
-// Borrows the object. "...IfAny": nothing where the member is absent or null.
+// Borrows the object. The functions "...IfAny" return empty if the member is absent or null.
 class JsonMembers {
  public:
   // `path`: the object's place in the file, "" or "aggregate.".

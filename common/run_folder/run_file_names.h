@@ -7,8 +7,8 @@
 
 namespace shoal {
 
-// The run as it was resolved: every key, observation spec, hashes. Written when the run is made,
-// read by each of its processes. A folder with this file is a run.
+// The resolved configuration of the run: every key, observation spec, hashes. Written when the run
+// is created, read by each of its processes. A folder with this file is a run.
 inline constexpr char kConfigFile[] = "config.json";
 inline constexpr char kConfigSchema[] = "shoal-config-1";
 
@@ -50,11 +50,13 @@ inline constexpr char kRingFile[] = "replay.ring";
 // coordinator.
 inline constexpr char kUpdatePageFile[] = "learner.page";
 
-// Locked: by the coordinator as long as the run goes on, and by each process of it here.
+// Lock files: the coordinator locks .lock during the run, and each process of the run on this host
+// locks .members.
 inline constexpr char kRunLockFile[] = ".lock";
 inline constexpr char kMembersFile[] = ".members";
 
-// Checkpoints, newest and kept; in it the best and what may still become it.
+// Checkpoints: the newest ones and those that are kept, the best one, and the candidates for the
+// best one.
 inline constexpr char kCheckpointFolder[] = "checkpoints";
 inline constexpr char kBestCheckpoint[] = "best";
 inline constexpr char kCandidateFolder[] = "candidates";

@@ -30,7 +30,7 @@ class UpdatePage {
   UpdatePage(const UpdatePage&) = delete;
   UpdatePage& operator=(const UpdatePage&) = delete;
 
-  // After each update.
+  // Call after each update.
   void SetDone(uint64_t updates);
   uint64_t lost() const { return content_->lost; }
 
@@ -38,7 +38,7 @@ class UpdatePage {
   UpdatePageContent* content_ = nullptr;
 };
 
-// In place of a damaged page: what else is known.
+// Replaces a damaged page by counts from other sources.
 void RebuildUpdatePage(const std::filesystem::path& run, uint64_t done, uint64_t lost);
 
 // Updates lost in a run so far; 0 before the first learner. Throws Error when the file is no

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The last K frames of one environment, oldest first, as the network wants them: (K*C, H, W) uint8.
-// At an episode's start the first frame is repeated.
+// The last K frames of one environment, oldest first, in the layout of the network's input:
+// (K*C, H, W) uint8. At the start of an episode, the first frame is repeated.
 #pragma once
 
 #include <cstdint>

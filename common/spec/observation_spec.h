@@ -36,14 +36,14 @@ struct ObservationSpec {
   int stack = 1;                  // K frames per observation, composed when sampling
   std::vector<BlockSpec> blocks;  // in record order
   int action_size = 0;            // A, each in [-1, 1]
-  // Records carry the action as it was drawn, before it was clipped to [-1, 1], too, and their
-  // header its log-probability: what on-policy learning needs.
+  // Whether records also carry the drawn action, before it was clipped to [-1, 1], and its
+  // log-probability in their header. On-policy learning needs both.
   bool drawn_actions = false;
-  // A picture of the episode's goal reached, (C, H, W) like a frame, follows the stack in what the
-  // policy sees (observation.goal_mode = image).
+  // Whether a picture of the episode's reached goal, (C, H, W) like a frame, follows the stack in
+  // the policy's input (observation.goal_mode = image).
   bool goal_picture = false;
-  // JSON of an environment that is not one of Shoal's worlds, as the process that runs it describes
-  // it (common/tasks/environment_description.h); empty = one of Shoal's.
+  // Description of a user's environment, as JSON (common/tasks/environment_description.h). The
+  // process that runs the environment writes it. Empty for one of Shoal's worlds.
   std::string environment;
   std::string model_fingerprint;  // hash of the compiled physics model and render settings, hex
 
@@ -86,17 +86,17 @@ class BlockPicker {
  public:
   // The policy's vector (V).
   static BlockPicker Observed(const ObservationSpec& spec);
-  // Those of these names. CHECK: the spec has each.
+  // The blocks with these names. CHECKs that the spec has each block.
   static BlockPicker Named(const ObservationSpec& spec, std::span<const std::string> names);
 
-  int size() const { return size_; }  // of what is picked
-  // CHECK on other sizes than those of the spec. May not overlap.
+  int size() const { return size_; }  // floats of the picked blocks
+  // CHECKs that both sizes match. The memory must not overlap.
   void Copy(std::span<const float> recorded, std::span<float> picked) const;
 
  private:
   BlockPicker(const ObservationSpec& spec, const std::function<bool(const BlockSpec&)>& wanted);
 
-  std::vector<ObservationSpec::Range> ranges_;  // of the record's vector; neighbours are one
+  std::vector<ObservationSpec::Range> ranges_;  // in the record's vector; neighbours are merged
   int recorded_size_, size_ = 0;
 };
 

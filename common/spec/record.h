@@ -56,7 +56,7 @@ class RecordLayout {
   int action_size() const { return action_size_; }
   int vector_size() const { return vector_size_; }  // R
   int frame_bytes() const { return frame_bytes_; }
-  // Everything before the frame.
+  // Bytes before the frame.
   int prefix_bytes() const { return frame_offset_; }
   // Size of one record, a multiple of 8.
   int record_bytes() const { return record_bytes_; }
@@ -97,7 +97,7 @@ class RecordLayout {
   int drawn_offset_, vector_offset_, frame_offset_, record_bytes_;
 };
 
-// The fault of a record from outside, or nullptr: version, kind, index/kind agreement,
+// The fault of a received record, or nullptr. Checks version, kind, index/kind agreement,
 // unknown flags, non-finite reward or log-probability, action outside [-1, 1], non-finite drawn
 // action or vector.
 const char* RecordFault(const RecordLayout& layout, const uint8_t* record);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The description of an environment that is not one of Shoal's worlds: its observation, its action
-// and how its episodes end. As JSON: environment_description.h.
+// and how its episodes end. environment_description.h converts the description to and from JSON.
 #pragma once
 
 #include <optional>
@@ -59,7 +59,8 @@ struct EnvironmentDescription {
   std::string no_goal{};               // why `goal` is empty; empty if it has no goals at all
 
   const ArraySpace* Find(const std::string& name) const;
-  // Takes what only playing or checking the environment shows: success, goal, no_goal.
+  // Copies the members that are known only after playing or checking the environment: success,
+  // goal, no_goal.
   void TakeFindings(const EnvironmentDescription& of);
   bool operator==(const EnvironmentDescription&) const = default;
 };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// The goal half of a task: what an observation consists of, what earns reward, when a goal is
-// reached, how long an episode lasts. Pure data and arithmetic, no physics: the actor computes step
-// rewards with it, and the replay can recompute them for other goals. The physics half of the same
-// name lives in actor/worlds.
+// The goal half of a task: the parts of an observation, the reward, when a goal is reached, and the
+// length of an episode. The goal half is pure data and arithmetic, without physics: the actor
+// computes the rewards of steps with it, and the replay can recompute rewards for other goals. The
+// physics half of the same name is in actor/worlds.
 //
 // A task without goals (goal_size() == 0) describes its observation, its action and its episodes
 // only: reward and termination come from the physics half, and success and distance have no
@@ -26,7 +26,7 @@ struct Component {
   std::string name;          // "grip_x"
   std::string unit = "";     // "m"; empty = dimensionless
   std::string meaning = "";  // one line, for people
-  // In `unit`, both ends included; infinite where the task sets none.
+  // Bounds in `unit`, both included; infinite if the task sets no bounds.
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
 };
@@ -60,12 +60,13 @@ class Task {
     Block desired_goal;              // the same G components
     RewardKind reward = RewardKind::kSparse;
     double distance_threshold = 0;  // m
-    std::string physics_reward;     // without goals: what the physics half pays for, for people
-    bool reports_success = false;   // without goals: steps say whether they succeed
-    std::string no_goals;           // why Shoal knows no goals, for people; empty: there are none
+    std::string physics_reward;     // without goals: the physics half's reward in words
+    bool reports_success = false;   // without goals: steps report whether they succeed
+    std::string no_goals;           // reason why Shoal knows no goals; empty: the task has none
   };
 
-  // Throws Error (kUsage), in one line, when the description cannot be: common/tasks/task_check.h.
+  // Throws Error (kUsage), in one line, when the description is invalid
+  // (common/tasks/task_check.h).
   explicit Task(Description description);
 
   // The same task with another distance (m) below which a goal is reached. Throws Error (kUsage)
@@ -76,7 +77,7 @@ class Task {
   const std::string& world() const { return description_.world; }
   int episode_length() const { return description_.episode_length; }
   int action_repeat() const { return description_.action_repeat; }
-  // That of a run that asks for `asked`; 0 = the task's own.
+  // The action repeat of a run that requests `asked`; 0 requests the task's own.
   int ActionRepeat(int asked) const { return asked > 0 ? asked : action_repeat(); }
   // Env steps after which an episode is truncated: ceil(episode_length / repeat). The last of them
   // may hold fewer control steps.
@@ -85,12 +86,13 @@ class Task {
   int action_size() const { return static_cast<int>(description_.action.size()); }
   // The state vector in one piece, as published, under the name "observation".
   const Block& observation() const { return observation_; }
-  // The same, block by block: what records name and a policy may see one by one.
+  // The state vector block by block. Records name the blocks, and a policy may observe some of
+  // them.
   const std::vector<Block>& state_blocks() const { return description_.observation; }
   const Block& achieved_goal() const { return description_.achieved_goal; }
   const Block& desired_goal() const { return description_.desired_goal; }
   int goal_size() const { return description_.desired_goal.size(); }
-  // Does an episode succeed or fail? Most tasks without goals only have a return.
+  // Whether an episode succeeds or fails. Most tasks without goals only have a return.
   bool has_success() const { return goal_size() > 0 || description_.reports_success; }
   RewardKind reward_kind() const { return description_.reward; }
   double distance_threshold() const { return description_.distance_threshold; }

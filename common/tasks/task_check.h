@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Mistakes in a task's description that would otherwise surface far from their cause.
+// Checks a task's description for mistakes that would otherwise cause errors elsewhere.
 #pragma once
 
 #include "common/tasks/task.h"

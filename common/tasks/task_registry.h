@@ -10,19 +10,20 @@
 
 namespace shoal::tasks {
 
-// Lives as long as the process. Throws Error (kUsage) listing the tasks there are.
+// The task with this name; valid as long as the process runs. Throws Error (kUsage) listing the
+// known tasks.
 const Task& FindTask(const std::string& name);
 
 // The same task with this distance_threshold (m) in place of its own, unless that is 0. Throws
 // Error (kUsage) also when the task has no goals.
 Task FindTask(const std::string& name, double distance_threshold);
 
-// In the order of registration.
+// The names of all tasks, in the order of registration.
 std::vector<std::string> TaskNames();
 
-// Adds a task; tasks found before stay where they are. At the start of a program, before threads.
-// Throws Error (kUsage) when there is one of that name, or when it has no action or no physics
-// half.
+// Adds a task; references to other tasks stay valid. Call at the start of a program, before
+// threads. Throws Error (kUsage) when the name is taken, or when the task has no action or no
+// physics half.
 void AddTask(Task task);
 
 }  // namespace shoal::tasks

@@ -37,11 +37,11 @@ class EventWriter {
   void Text(const std::string& tag, const std::string& markdown);
   // An RGB image of `width` x `height` pixels as a PNG file's bytes, for the images tab.
   void Image(const std::string& tag, int64_t step, int width, int height, const std::string& png);
-  // Begins what the hparams tab shows as one line: the settings by name.
+  // Begins one line of the hparams tab, with the settings by name.
   void BeginSession(const std::map<std::string, HyperParameter>& settings);
   void EndSession(bool success);
-  // Throws Error when the file cannot be written now; a later call goes on where this one failed.
-  // Events beyond kMostPending bytes are dropped meanwhile.
+  // Writes the pending events. Throws Error when the file cannot be written now; a later call
+  // continues where this call failed. Meanwhile, events beyond kMostPending bytes are dropped.
   void Flush();
 
   static constexpr size_t kMostPending = 32 * 1024 * 1024;

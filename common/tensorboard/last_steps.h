@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How far the curves in a folder of event files go, so that a resumed run adds no step twice.
+// Finds the last step of each curve in a folder of event files, so that a resumed run adds no step
+// twice.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Layout of a batch: named arrays, each with a type and a shape, one after another, each starting
-// at a multiple of 64 bytes. Learner and replay make the schema from the same observation spec and
-// options. Every request carries its hash, so that neither misreads the other's batches.
+// Layout of a batch: named arrays, each with a type and a shape, one after another. Each array
+// starts at a multiple of 64 bytes. Learner and replay make the schema from the same observation
+// spec and options. Every request carries the schema's hash, so that the learner never misreads a
+// batch with another layout.
 //
 //   obs_frames       (B, K*C, H, W) u8   shifted (DrQ), frames of a stack oldest first
 //   next_obs_frames  (B, K*C, H, W) u8   shifted with offsets of their own
@@ -16,8 +17,9 @@
 //   weights_update   (B) u64             of the policy that chose the action; for policy lag
 //   id               (B) u64             of the record the sample begins with
 //
-// Arrays of a rollout (on policy). Its rows are one environment's steps in order, then the next
-// one's. Nothing is shifted, and next_obs_* are filled in only where `continues` is 0:
+// Arrays of a rollout (on policy). The rows are the steps of one environment in order, then the
+// steps of the next environment. Frames are not shifted, and next_obs_* are filled in only if
+// `continues` is 0:
 //
 //   drawn_action     (B, A) f32          before it was clipped to the action
 //   log_prob         (B) f32             of the drawn action under the policy that chose it
@@ -25,10 +27,11 @@
 //   continues        (B) f32             1: the next row's observation is this one's next, else 0
 //   id               (B) u64             number of the environment
 //
-// K*C channels: stack K, frame channels C; P floats of BatchOptions::privileged. What a spec or the
-// options do not have (pixels, vectors, privileged blocks) has no array. An algorithm or a way of
-// sampling that needs more (importance weights, elements that are sequences, with their length as
-// the first dimension) adds an option and its arrays. Rows are the first dimension of all arrays.
+// K*C channels: K frames of a stack, C channels of a frame. P: floats of BatchOptions::privileged.
+// If the spec or the options lack pixels, vectors or privileged blocks, the batch has no array for
+// them. A new algorithm or sampler may need more arrays, such as importance weights or sequences
+// (whose length is the first dimension of an element); it adds an option and its arrays. Rows are
+// the first dimension of all arrays.
 #pragma once
 
 #include <cstddef>
@@ -47,21 +50,22 @@ enum class ArrayType : uint8_t { kU8, kF32, kU64 };
 struct BatchArray {
   std::string name;
   ArrayType type = ArrayType::kF32;
-  std::vector<int> shape{};  // of one element; empty = one number
+  std::vector<int> shape{};  // shape of one row; empty = one number
 
   bool operator==(const BatchArray&) const = default;
 };
 
-// Options that decide, beside the spec, which arrays a batch has and what their numbers mean.
+// Options that, together with the spec, define the arrays of a batch and the meaning of their
+// numbers.
 struct BatchOptions {
   int batch = 1;          // B
-  int copies = 1;         // elements in a row of one transition
-  int target_shifts = 0;  // of these, the first with a next_obs of their own; 0 = all
-  int critic_shifts = 0;  // the same of obs
+  int copies = 1;         // consecutive elements made from one transition
+  int target_shifts = 0;  // number of copies with their own shift of next_obs; 0 = all
+  int critic_shifts = 0;  // number of copies with their own shift of obs; 0 = all
   int n_step = 1;         // n
-  double discount = 1;    // of the steps summed
-  bool rollout = false;   // steps in order, with what on-policy learning needs
-  // Blocks of the record, none of them observed, that learning sees besides; in any order.
+  double discount = 1;    // discount between the n summed steps
+  bool rollout = false;   // rows are steps in order, with the arrays of a rollout
+  // Privileged inputs: blocks of the record that the policy does not observe; in any order.
   std::vector<std::string> privileged{};
 };
 
@@ -78,21 +82,21 @@ class BatchSchema {
   // Size of all arrays together, with the padding between them; a multiple of 64.
   uint64_t total_bytes() const { return total_bytes_; }
 
-  // Equal for equal arrays and options, and for them only.
+  // Two schemas have the same hash exactly if their arrays and options are equal.
   uint64_t Hash() const;
   // "batch 128, copies 1, n_step 1, discount 0.9: obs_frames u8 6x84x84, ..., id u64", for
   // messages.
   std::string Summary() const;
 
-  // An array of the batch at `data`, which holds total_bytes(), aligned to 64, and is borrowed. T
-  // is uint8_t, float or uint64_t. CHECK: there is such an array, and it is of that type.
+  // An array of the batch at `data`, which must hold total_bytes() aligned to 64. Borrows `data`. T
+  // is uint8_t, float or uint64_t. CHECKs that the array exists and has this type.
   template <class T>
   std::span<T> Array(std::string_view name, uint8_t* data) const;
   BatchView View(uint8_t* data, uint64_t stored_steps = 0) const;
 
  private:
   void Add(const std::string& name, ArrayType type, std::vector<int> shape = {});
-  // Its position; arrays_.size() when there is none.
+  // Position of the array; arrays_.size() when there is none.
   size_t Find(std::string_view name) const;
 
   BatchOptions options_;
@@ -101,19 +105,19 @@ class BatchSchema {
   uint64_t total_bytes_ = 0;
 };
 
-// The arrays that most algorithms use, by member; empty where the batch has none. All rows of a
-// batch, or of a part of it. Borrows schema and memory.
+// The arrays that most algorithms use, as members; a member is empty if the batch lacks the array.
+// The view covers all rows of a batch or a part of them. Borrows schema and memory.
 struct BatchView {
   std::span<uint8_t> obs_frames, next_obs_frames;
   std::span<float> obs_vector, next_obs_vector, action, reward, bootstrap;
   std::span<float> obs_privileged, next_obs_privileged;
   std::span<uint64_t> weights_update, id;
   std::span<float> drawn_action, log_prob, ends, continues;  // of a rollout
-  uint64_t stored_steps = 0;  // the run's env steps when it was drawn; the time of schedules
+  uint64_t stored_steps = 0;  // the run's env steps when the batch was drawn, for schedules
 
   size_t rows() const { return reward.size(); }
 
-  // These rows of any array by its name, as the batch holds it: see BatchSchema::Array.
+  // The view's rows of any array by its name (see BatchSchema::Array).
   template <class T>
   std::span<T> Array(std::string_view name) const {
     const std::span<T> all = schema->Array<T>(name, data);
@@ -123,10 +127,10 @@ struct BatchView {
 
   const BatchSchema* schema = nullptr;
   uint8_t* data = nullptr;
-  size_t first_row = 0;  // in the batch at `data`
+  size_t first_row = 0;  // first row of the view within the batch at `data`
 };
 
-// Calls visit(name, member) for each array of `view`, which is a BatchView or const.
+// Calls visit(name, member) for each array of `view`. View is BatchView or const BatchView.
 template <class View, class Visit>
 void VisitArrays(View& view, Visit visit) {
   visit("obs_frames", view.obs_frames);

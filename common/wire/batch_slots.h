@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whole batches in shared memory (common/base/shared_memory.h): the replay writes them into slots,
-// the learner reads them in place. Messages report full slots (BatchSlot) and free ones
-// (SampleRequest::released).
+// Whole batches in shared memory (common/base/shared_memory.h). The replay writes batches into
+// slots, and the learner reads the batches in place. Messages report full slots (BatchSlot) and
+// released slots (SampleRequest::released).
 //
 //   offset  bytes
 //   0       8       magic "SHOALSL1"
@@ -9,14 +9,15 @@
 //   24      8       learner session that the slots are for
 //   32      8       bytes of a slot
 //   40      4       slots, n
-//   64      8 n     per slot: the request whose whole batch it has; 0 = none
+//   64      8 n     per slot: the request whose whole batch is in the slot; 0 = none
 //   then    slots, each at a multiple of 4096
 //
-// Slots belong to one learner session, which releases them in the order of its requests; another
-// session gets other memory. So a slot is written again only after its reader has released it.
-// Slots of a reader that has ended are freed with the memory.
+// Slots belong to one learner session, which releases them in the order of its requests. Another
+// session gets other memory. A slot is therefore written again only after its reader has released
+// it. When a reader has ended, its slots are freed with the memory.
 //
-// Errors: what a process cannot know beforehand throws Error; both sides fall back to BatchPart.
+// Errors: if the memory cannot be made or opened, the call throws Error, and both sides fall back
+// to BatchPart.
 // Threads: one at a time per object.
 #pragma once
 
@@ -37,8 +38,8 @@ class SlotWriter {
   static uint64_t MemoryBytes(uint64_t batch_bytes, uint32_t slots);
 
   const SlotAddress& address() const { return address_; }
-  // Memory of a free slot, batch_bytes aligned to 4096; nullptr while all hold batches. It stays
-  // free until Fill().
+  // Memory of a free slot: batch_bytes, aligned to 4096. Returns nullptr while all slots hold
+  // batches. The slot counts as free until Fill().
   uint8_t* FreeSlot();
   // Marks the slot that FreeSlot() returned last as full with the batch of `request`, which must
   // not be held yet. Returns the message for the learner.
@@ -48,7 +49,7 @@ class SlotWriter {
   std::optional<BatchSlot> Held(uint64_t request) const;
   // Frees the slots of requests up to `released`.
   void Release(uint64_t released);
-  // Slots that hold a batch.
+  // Number of slots that hold a batch.
   uint32_t held() const;
 
  private:
@@ -65,15 +66,15 @@ class SlotWriter {
   std::optional<uint32_t> writing_;  // handed out by FreeSlot
 };
 
-// The learner's side of what a BatchSlot names. Its memory stays mapped while it lives.
+// The learner's side of the slots at a BatchSlot's address. Maps the memory during its lifetime.
 class SlotReader {
  public:
-  // Throws Error when what lies there is not the slots of this session that the address means.
+  // Throws Error when the memory at the address does not hold the slots of this session.
   SlotReader(const SlotAddress& address, uint64_t learner_session, uint64_t batch_bytes);
 
   const SlotAddress& address() const { return address_; }
-  // The batch of the request, to be read until it is released. Throws Error when the slot does not
-  // hold it.
+  // The batch of the request; valid until the learner releases the request. Throws Error when the
+  // slot holds another batch.
   uint8_t* Batch(uint32_t slot, uint64_t request) const;
 
  private:

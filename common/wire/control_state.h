@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The coordinator's last request, and whether the coordinator still runs. Written by a receive
-// thread of the link, read by the process's loop.
+// The coordinator's last request, and whether the coordinator still runs. A receive thread of the
+// link writes it, and the loop of the process reads it.
 #pragma once
 
 #include <chrono>
@@ -18,24 +18,25 @@ namespace shoal {
 
 class ControlState {
  public:
-  // `start`: when waiting for the first heartbeat began.
+  // `start`: time from which the process waits for the first heartbeat.
   explicit ControlState(SteadyTime start) : liveness_(start) {}
 
-  // Any thread. Older epochs than the newest seen are ignored.
+  // Takes a message; ignores epochs older than the newest one seen. Any thread.
   void OnMessage(const ControlMessage& message, SteadyTime now);
 
   RunState state() const;
-  // The present value of a configuration key, where it was changed in this run.
+  // The present value of a configuration key if it was changed in this run; else empty.
   std::optional<double> Setting(std::string_view key) const;
-  // The same, else `configured`.
+  // The present value of the key if it was changed in this run; else `configured`.
   double SettingOr(std::string_view key, double configured) const {
     return Setting(key).value_or(configured);
   }
-  // No heartbeat for kLease (kFirstLease before the first one): the coordinator is gone. To be
-  // asked several times a second: time in which this process itself did not run is not counted.
+  // Whether the coordinator is lost: no heartbeat arrived for kLease (kFirstLease before the first
+  // one). Call it several times a second, because time in which this process did not run is not
+  // counted.
   bool CoordinatorLost(SteadyTime now);
 
-  // Longer than a coordinator stopped for ten seconds needs to be heard again.
+  // Long enough for a coordinator that was stopped for ten seconds to send a heartbeat again.
   static constexpr std::chrono::seconds kLease{15};
   static constexpr std::chrono::seconds kFirstLease{30};
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fields of each message, listed once, in the order in which they travel (common/dds/shoal.idl).
-// What writes, reads or prints whole messages derives from these lists.
+// The fields of each message, listed once, in the order of the wire format (common/dds/shoal.idl).
+// Code that writes, reads or prints whole messages uses these lists.
 #pragma once
 
 #include <concepts>
@@ -11,11 +11,12 @@
 
 namespace shoal {
 
-// M is `Message` or a message with the same fields, const or not.
+// True if M, const or not, is `Message` or derived from it, with the same fields.
 template <class M, class Message>
 concept FieldsAsIn = std::derived_from<std::remove_const_t<M>, Message>;
 
-// A text of several lines, such as JSON. All other texts are shown to users and have one line.
+// A text that may have several lines, such as JSON. All other texts have one line, because they are
+// shown to users.
 template <class S>
 struct LongText {
   S& text;
@@ -116,7 +117,7 @@ auto FieldsOf(M& m) {
   return std::tie(m.client, m.request, m.accepted, m.text, m.key, m.from, m.to);
 }
 
-// A message, or a struct of which a message has several.
+// A message, or a struct that is an element of a message's list.
 template <class M>
 concept HasFields = requires(M& message) {
   FieldsOf(message);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages between processes, as plain structs. common/link carries them; this file knows no
-// transport. docs/wire_format.md gives topics, QoS and byte layout.
+// Messages between processes, as plain structs. common/link carries the messages; this file does
+// not depend on a transport. docs/wire_format.md gives topics, QoS and byte layout.
 //
 // Bulk messages borrow their payload: on reception it is valid only during the callback.
 #pragma once
@@ -12,7 +12,8 @@
 
 namespace shoal {
 
-// A newer learner session wins whatever its update number; session 0 = no weights yet.
+// Version of the weights. Weights of a newer learner session are newer, whatever the update number.
+// Session 0: no weights yet.
 struct WeightsVersion {
   uint64_t session = 0;  // wall-clock ns at the learner's start: later starts are larger
   uint64_t update = 0;   // gradient updates done
@@ -23,7 +24,7 @@ struct WeightsVersion {
   }
 };
 
-// Bytes of a batch or of weights that travel as one message: below 1 MB with its header.
+// Most bytes of a batch or of weights in one message, so that it stays below 1 MB with its header.
 inline constexpr uint64_t kBulkPartBytes = 960 * 1024;
 
 // actor -> the receiver of its records: the replay, or the learner of a run on policy. `count`
@@ -40,17 +41,17 @@ struct TransitionChunk {
 
 // Credit of the receiver for one actor session: flow control and acknowledgement in one.
 struct Credit {
-  uint64_t replay_session = 0;  // of the receiver: when it changes, resend what is not stored
+  uint64_t replay_session = 0;  // the receiver's: on a change, the actor resends unstored records
   uint32_t actor = 0;
   uint64_t session = 0;
-  uint64_t stored = 0;         // highest sequence up to which every record was handled
+  uint64_t stored = 0;         // every record up to this sequence was handled
   uint64_t allowed = 0;        // highest sequence that may be sent
-  uint64_t spec_hash = 0;      // the receiver's: an actor with another one stops, naming both
-  uint64_t superseded_by = 0;  // the actor's newer session, where there is one: this one ends
+  uint64_t spec_hash = 0;      // the receiver's: an actor with another hash stops, naming both
+  uint64_t superseded_by = 0;  // newer session of the same actor: this session ends; 0 = none
 };
 
-// receiver -> all actors: the credits that have changed. One message, as every actor receives each
-// message.
+// receiver -> all actors: the credits that have changed. One message carries all of them, because
+// every actor receives each message.
 struct CreditsMessage {
   std::vector<Credit> credits;
 };
@@ -62,27 +63,27 @@ struct SampleRequest {
   uint64_t learner_session = 0;
   uint64_t request = 0;  // from 1; keys the sampler's random stream
   uint32_t batch = 0;    // B
-  // Served only when this many step records are stored (lockstep); 0 = at once.
+  // The replay serves the request once this many step records are stored (lockstep); 0 = at once.
   uint64_t after_steps = 0;
-  uint64_t schema_hash = 0;  // of the batch: common/wire/batch_schema.h
-  // The learner has released the batches of its requests up to this one; < request.
+  uint64_t schema_hash = 0;  // BatchSchema::Hash of the batch (common/wire/batch_schema.h)
+  // The learner has released the batches of all requests up to this number; < request.
   uint64_t released = 0;
-  // Whether the answer may be a BatchSlot; else it consists of parts.
+  // Whether the answer may be a BatchSlot; else the answer consists of parts.
   bool takes_slots = false;
   uint64_t refused_token = 0;  // SlotAddress::token[0] of slots that cannot be opened; 0 = none
 };
 
-// replay -> learner: part of one batch as common/wire/batch_schema.h lays it out.
+// replay -> learner: part of one batch in the layout of common/wire/batch_schema.h.
 struct BatchPart {
   uint64_t spec_hash = 0;
   uint64_t learner_session = 0;
   uint64_t request = 0;
   uint32_t part = 0, parts = 0;
   uint64_t offset = 0, total_bytes = 0;
-  uint64_t stored_records = 0;  // in the replay when the batch was drawn, over the whole run
-  uint64_t stored_steps = 0;    // of these the step records: the run's env steps
-  // Steps stored since this replay's start that no sample can begin with: the n - 1 before a time
-  // limit, and steps that wait for a later record.
+  uint64_t stored_records = 0;  // records stored over the whole run when the batch was drawn
+  uint64_t stored_steps = 0;    // step records among stored_records: the run's env steps
+  // Steps stored since this replay's start with which no sample can begin: the n - 1 steps before a
+  // time limit, and steps that wait for a later record.
   uint64_t unsampleable_steps = 0;
   std::span<const uint8_t> payload;
 };
@@ -91,9 +92,9 @@ struct BatchPart {
 // bytes identifies it (common/wire/batch_slots.h).
 struct SlotAddress {
   int32_t pid = 0;
-  int32_t descriptor = 0;      // of that process
+  int32_t descriptor = 0;      // file descriptor in the process `pid`
   uint64_t token[2] = {0, 0};  // random
-  uint64_t bytes = 0;          // of all
+  uint64_t bytes = 0;          // size of the whole memory
   bool operator==(const SlotAddress&) const = default;
 };
 
@@ -112,14 +113,14 @@ struct BatchSlot {
 struct WeightsMessage {
   uint64_t spec_hash = 0;
   WeightsVersion version;
-  uint64_t env_steps = 0;  // stored when the version was made
+  uint64_t env_steps = 0;  // env steps stored when the version was made
   std::string checkpoint;  // name of the checkpoint folder with the same parameters; may be empty
   std::span<const uint8_t> payload;
 };
 // The F32 parameters of a checkpoint to evaluate.
 struct EvalWeightsMessage : WeightsMessage {};
 
-// learner -> actors: a piece of a version, as it travels (common/wire/weights_parts.h).
+// learner -> actors: one part of a version (common/wire/weights_parts.h).
 struct WeightsPart {
   uint32_t part = 0;  // from 0
   uint64_t spec_hash = 0;
@@ -130,11 +131,11 @@ struct WeightsPart {
   std::string checkpoint;
   std::span<const uint8_t> payload;
 };
-// learner -> evaluation actor. A type of its own so that the stream of training weights cannot
-// overwrite it.
+// learner -> evaluation actor. A separate type has a separate topic, so that training weights
+// cannot overwrite the evaluation weights.
 struct EvalWeightsPart : WeightsPart {};
 
-// every process -> coordinator, 1 Hz. Names are those of metrics.jsonl.
+// every process -> coordinator, 1 Hz. metrics.jsonl uses the same names.
 struct MetricsMessage {
   std::string role;  // "actor" | "eval" | "replay" | "learner" | "coordinator"
   uint32_t id = 0;
@@ -147,41 +148,40 @@ struct MetricsMessage {
   std::vector<double> values;
 };
 
-// The same by sender: each role has a topic of its own, so that in a secured run no other role can
-// send for it.
+// The same message, one type for each sending role. Each role has its own topic, so that in a
+// secured run no other role can send in its place.
 struct ActorMetrics : MetricsMessage {};
 struct EvalMetrics : MetricsMessage {};
 struct ReplayMetrics : MetricsMessage {};
 struct LearnerMetrics : MetricsMessage {};
 
-// Figures that decide about a run, as opposed to figures that are only shown. The newest message of
-// the newest session is valid.
-//
-// replay -> coordinator, when something was stored.
+// replay -> coordinator, when records were stored. The coordinator decides by the figures of the
+// progress messages, whereas metrics are only shown. The newest message of the newest session is
+// valid.
 struct ReplayProgress {
   uint32_t replay = 0;   // number of the replay server
-  uint64_t session = 0;  // its start
-  // Over the whole run; the steps are its env steps.
+  uint64_t session = 0;  // session of the replay server
+  // Totals of the whole run; stored_steps are the run's env steps.
   uint64_t stored_steps = 0, stored_records = 0;
 };
 
-// Parameters that were handed to the evaluation actor.
+// Parameters that the learner has sent to the evaluation actor.
 struct EvaluationRequest {
   uint64_t update = 0, env_steps = 0;
-  std::string checkpoint;  // name of its folder
+  std::string checkpoint;  // name of the checkpoint's folder
 };
 
-// learner -> coordinator.
+// learner -> coordinator. The newest message of the newest session is valid.
 struct LearnerProgress {
   static constexpr size_t kMostEvaluations = 32;
 
   uint64_t session = 0;
   uint64_t updates = 0, env_steps = 0;
-  bool drained = false;  // it has done all updates that the stored steps allow
-  std::vector<EvaluationRequest> evaluations{};  // of this session, the last ones, oldest first
+  bool drained = false;  // the learner has done all updates that the stored steps allow
+  std::vector<EvaluationRequest> evaluations{};  // the last ones of this session, oldest first
 };
 
-// coordinator -> all. The newest one is valid; `epoch` grows.
+// coordinator -> all. The message with the highest `epoch` is valid.
 enum class RunState : uint32_t {
   kRunning = 1,
   kDraining = 2,  // actors stop stepping, send their records, wait until these are stored, exit
@@ -191,8 +191,8 @@ struct ControlMessage {
   uint64_t epoch = 0;
   RunState state = RunState::kRunning;
   double time = 0;  // heartbeat: published at least once a second
-  // Configuration keys changed during the run, with their present values; the other keys have the
-  // values of config.json. Equally long.
+  // Configuration keys changed during the run, and their present values; both lists have the same
+  // length. All other keys have the values of config.json.
   std::vector<std::string> setting_names{};
   std::vector<double> setting_values{};
 };
@@ -220,11 +220,12 @@ struct RunViewMessage {
   std::string state{};  // "running" | "draining" | "stopping" | "evaluating" | "ended"
   uint64_t env_steps = 0, updates = 0;
   std::vector<MetricsMessage> processes{};  // by role and id
-  std::vector<RunEvent> events{};           // the last ones, oldest first
-  std::string trouble{};  // which actors do not work and why, as a line; empty when all do
+  std::vector<RunEvent> events{};           // the last events, oldest first
+  std::string trouble{};  // one line: which actors do not work, and why; empty if all work
 };
 
-// client -> coordinator: an order. Resent unchanged until its reply arrives; carried out once.
+// client -> coordinator: a command. The client resends the command unchanged until the reply
+// arrives; the coordinator executes it once.
 struct CommandMessage {
   uint64_t client = 0;   // names the sender
   uint64_t request = 0;  // from 1, per client
@@ -232,7 +233,7 @@ struct CommandMessage {
   std::vector<std::string> arguments{};
 };
 
-// coordinator -> that client.
+// coordinator -> the client that sent the command.
 struct ReplyMessage {
   uint64_t client = 0, request = 0;
   bool accepted = false;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The one table of metrics: what each is called, who reports it, in what unit and what it means.
-// The figures of updates are their algorithm's to name; launch/watch/run_metrics.h has both.
+// The one table of metrics: name, reporting role, unit and meaning of each. Each algorithm names
+// the figures of its updates; launch/watch/run_metrics.h combines both lists.
 #pragma once
 
 #include <span>
@@ -10,8 +10,8 @@
 namespace shoal {
 
 enum class MetricKind {
-  kGauge,      // a value now, or over the last interval
-  kCounter,    // grows from 0 at the process's start
+  kGauge,      // present value, or value over the last interval
+  kCounter,    // total since the process's start
   kQuantiles,  // NAME_p50, NAME_p90 and NAME_p99 over the last interval
   kPerTopic,   // NAME_TOPIC for each topic that the process reads, a counter
   kStage,      // seconds_NAME, a counter, and share_NAME, the share of the last interval
@@ -26,11 +26,11 @@ struct Metric {
   std::string_view meaning;
 };
 
-// All but the figures of updates, by role, then as reported.
+// All metrics except the figures of updates, ordered by role, then in the order of the reports.
 std::span<const Metric> ProcessMetrics();
 
-// The one of `metrics` that a reported name ("share_physics", "policy_lag_p90") belongs to;
-// nullptr: none of this role has the name.
+// The metric of `role` among `metrics` to which a reported name ("share_physics",
+// "policy_lag_p90") belongs; nullptr if there is none.
 const Metric* FindMetric(std::span<const Metric> metrics, std::string_view role,
                          std::string_view reported);
 

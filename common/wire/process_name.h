@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The name of a process of a run, everywhere: in reports, logs, RUN/sessions, the supervisor. Which
-// processes a run has is in common/link/run_topology.h.
+// The name of a process of a run, as used in reports, logs, RUN/sessions and the supervisor.
+// common/link/run_topology.h lists the processes of a run.
 #pragma once
 
 #include <fmt/format.h>
@@ -12,7 +12,7 @@
 namespace shoal {
 
 struct ProcessName {
-  std::string_view role;  // borrowed; of the functions below, forever
+  std::string_view role;  // borrowed; string literals in the functions below
   uint32_t index = 0;     // within the role, from 0
 
   // "replay-0"

@@ -12,20 +12,20 @@ struct Quantiles {
   double p50 = 0, p90 = 0, p99 = 0;
 };
 
-// Keeps every value up to kMost; beyond that every second one, then every fourth, and so on, evenly
-// over the interval. One thread.
+// Keeps all values up to kMost. Beyond kMost values, keeps every second value, then every fourth,
+// and so on, evenly over the interval. One thread.
 class QuantileWindow {
  public:
   static constexpr size_t kMost = 4096;
 
   void Add(double value);
-  // Nearest rank over what was added since the last Take; empty when nothing was.
+  // Nearest-rank quantiles of the values added since the last Take; empty if there are none.
   std::optional<Quantiles> Take();
 
  private:
   std::vector<double> kept_;
   size_t stride_ = 1;   // one of this many values is kept
-  size_t skipped_ = 0;  // since the last kept one
+  size_t skipped_ = 0;  // values since the last kept one
 };
 
 }  // namespace shoal

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-// Adds the seconds of its scope to a total.
+// Adds the duration of its scope, in seconds, to a total.
 #pragma once
 
 #include "common/base/clock.h"
 
 namespace shoal {
 
-// Borrows the total, which one thread writes.
+// Borrows the total; only one thread may write the total.
 class ScopedSeconds {
  public:
   explicit ScopedSeconds(double& total) : total_(total), start_(Now()) {}
