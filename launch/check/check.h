@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `shoal check`: can this machine train?
+// `shoal check`: tests whether this machine can train.
 #pragma once
 
 #include <filesystem>
@@ -11,11 +11,11 @@
 namespace shoal::launch {
 
 struct CheckRequest {
-  std::filesystem::path run_dir = "runs";  // where runs will lie; need not be there
+  std::filesystem::path run_dir = "runs";  // folder for runs; need not exist
 };
 
-// Looks at one thing after another and hands each line over as soon as it is known; also returns
-// them all. Takes well under a minute. A failed look is a FAIL line, never an exception.
+// Runs the checks one after another, passes each line to `show` as soon as it is known, and returns
+// all lines. Takes well under a minute. A check that fails gives a FAIL line, never an exception.
 std::vector<CheckLine> CheckMachine(const CheckRequest& request,
                                     const std::function<void(const CheckLine&)>& show);
 

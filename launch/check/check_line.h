@@ -11,7 +11,7 @@ namespace shoal::launch {
 
 enum class Verdict {
   kOk,
-  kWarn,  // training works, worse than it could
+  kWarn,  // training works, but not as well as possible
   kFail,  // training does not work
 };
 // "OK", "WARN", "FAIL"
@@ -21,17 +21,18 @@ struct CheckLine {
   std::string name;  // "cpu"
   Verdict verdict = Verdict::kOk;
   std::string finding;  // with figures and units
-  std::string advice;   // what to do; empty when OK
+  std::string advice;   // what to do; empty if OK
 };
 
-// The line that `look` returns; what it throws becomes a FAIL named `name`, with `advice`.
+// Returns the line of `look`. If `look` throws, returns a FAIL line with `name` and `advice`.
 CheckLine Guarded(const std::string& name, const std::string& advice,
                   const std::function<CheckLine()>& look);
 
-// The worst of all; OK when there is none.
+// The worst verdict of all lines; OK if there are none.
 Verdict Worst(const std::vector<CheckLine>& lines);
 
-// "OK    cpu           avx512_core_bf16, precision bf16", with the advice below where there is one.
+// "OK    cpu           avx512_core_bf16, precision bf16", followed by a line with the advice, if
+// any.
 std::string ToText(const CheckLine& line);
 // Schema shoal-check-1: {schema, verdict, seconds, checks: [...], machine, commit, created}.
 nlohmann::ordered_json ToJson(const std::vector<CheckLine>& lines, double seconds,

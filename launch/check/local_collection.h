@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Actor and replay of a run in one process, without DDS: environments play random actions, records
-// go through the actor's chunk window into a replay core, batches come out as the learner gets
-// them.
+// Actor and replay of a run in one process, without DDS. Environments play random actions, their
+// records pass through the actor's chunk window into a replay core, and batches have the learner's
+// format.
 #pragma once
 
 #include <cstdint>
@@ -22,14 +22,14 @@ namespace shoal::launch {
 class LocalCollection {
  public:
   // `folder` gets the actor's page of made records and, with replay.storage = file, the ring.
-  // Throws Error: an environment that is not the run's, no room for the ring.
+  // Throws Error if the environment does not match the run, or if there is no space for the ring.
   LocalCollection(const RunConfig& run, const std::filesystem::path& folder);
 
-  // Plays at least `env_steps` more and stores them. Throws Error when the replay does not take a
-  // record, saying why.
+  // Plays and stores at least `env_steps` more steps. Throws Error with the reason if the replay
+  // refuses a record.
   void Collect(uint64_t env_steps);
 
-  // Draws the next batch. Valid until the next call. Throws Error when the replay gives none.
+  // Draws the next batch. Valid until the next call. Throws Error if the replay returns no batch.
   BatchView Draw();
 
   const replay::ReplayCore& core() const { return core_; }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How fast DDS moves megabyte chunks between two processes of this machine, through common/dds and
-// with the credits of a run.
+// Measures how fast DDS transfers 1 MB chunks between two processes of this machine, through
+// common/dds and with the credits of a run.
 #pragma once
 
 #include <chrono>
@@ -13,7 +13,7 @@
 namespace shoal::launch {
 
 struct LoopbackRate {
-  uint64_t chunks = 0;  // that arrived, in order
+  uint64_t chunks = 0;  // chunks that arrived in order
   uint64_t bytes = 0;
   double seconds = 0;  // from the first chunk to the last acknowledgement
 
@@ -23,8 +23,8 @@ struct LoopbackRate {
 };
 
 // Starts a second process of this program (RunLoopbackPeer), sends chunks of 1 MB for `duration`,
-// at most four unacknowledged, and says what arrived. Throws Error when the two do not find each
-// other or a chunk is not acknowledged in time.
+// at most four unacknowledged, and returns the counts of the arrived chunks. Throws Error if the
+// two processes do not discover each other, or if a chunk is not acknowledged in time.
 LoopbackRate MeasureLoopback(const TransportConfig& transport, std::chrono::milliseconds duration);
 
 // The other side: acknowledges chunks until it receives a stop request. `folder` holds

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A recorded trajectory of the original FetchReach, embedded: the first 12 steps of the sequence
-// random0 (format vrl-ref-1), so that parity can be checked where no reference files are.
+// random0 (format vrl-ref-1), so that parity can be checked without reference files.
 #pragma once
 
 #include <string_view>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Does learning work here? A few updates on batches of real frames, then a checkpoint that is
-// written, read again and compared.
+// Tests learning on this machine: makes a few updates on batches of real frames, then writes a
+// checkpoint, reads it again and compares.
 #pragma once
 
 #include <cstdint>
@@ -15,15 +15,15 @@ struct TrainingProbe {
   uint64_t env_steps = 0, updates = 0;
   double env_steps_per_second = 0;  // of one thread, with rendering and storing
   double updates_per_second = 0;    // of one thread
-  bool finite = false;              // every update was
-  bool moved = false;               // the policy's parameters are not those of the start
+  bool finite = false;              // all figures of all updates were finite
+  bool moved = false;               // the policy's parameters have changed
   uint64_t checkpoint_bytes = 0;
   bool restored = false;   // an agent restored from the checkpoint has the same tensors, bit by bit
-  bool continued = false;  // and does the next update bit by bit as the first one does
+  bool continued = false;  // its next update equals that of the first agent bit by bit
 };
 
-// Trains `config` for `updates` updates with everything in this process; its files go to `folder`.
-// Throws Error: no rendering, no room, a checkpoint that cannot be written or read.
+// Trains `config` for `updates` updates in this process and writes files to `folder`. Throws Error
+// if rendering fails, space is missing, or the checkpoint cannot be written or read.
 TrainingProbe ProbeTraining(const Config& config, const std::filesystem::path& folder, int updates);
 
 CheckLine JudgeTraining(const TrainingProbe& probe);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Rendering and physics.
+// Lines of `shoal check` about rendering and physics.
 #pragma once
 
 #include "common/config/config.h"
@@ -7,18 +7,19 @@
 
 namespace shoal::launch {
 
-// `share`: of the camera's pixels that show the robot, 0..1.
+// `share`: share of the camera's pixels that show the robot, 0..1.
 CheckLine JudgePicture(const std::string& camera, double share);
 
-// Draws each of the configuration's cameras at its size: the first that fails, or how much of each
-// picture is robot. For tasks of the Fetch robot. Throws Error when nothing can be drawn.
+// Draws a picture of each of the configuration's cameras in its size. Reports the first camera that
+// fails, or the share of robot pixels of each picture. Only for tasks of the Fetch robot. Throws
+// Error if drawing is impossible.
 CheckLine LookAtPictures(const Config& config);
 
-// LookAtPictures in quality fast, which needs OSMesa. Warns where LookAtPictures fails: runs in
-// quality native do without OSMesa.
+// LookAtPictures in quality fast, which needs OSMesa. Returns WARN where LookAtPictures returns
+// FAIL, because runs in quality native do not need OSMesa.
 CheckLine LookAtOpenGl(Config config);
 
-// Replays the embedded reference; throws Error when that cannot be done.
+// Replays the embedded reference. Throws Error if the replay is impossible.
 CheckLine LookAtPhysics();
 
 }  // namespace shoal::launch

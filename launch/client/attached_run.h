@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `shoal attach`: the progress of a running run, far from its coordinator.
+// `shoal attach`: the progress of a running run, in another process than its coordinator.
 #pragma once
 
 #include <chrono>
@@ -9,7 +9,7 @@
 
 namespace shoal::launch {
 
-// Without a view for so long the run's coordinator is gone.
+// If no view arrives for so long, the coordinator counts as dead.
 inline constexpr std::chrono::seconds kAttachedSilence{15};
 
 // Shows progress and events until the run ends, and returns its exit code; 0 after a stop signal.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A program's line to a running run: receives the views that its coordinator shows and sends it
-// commands, over any link.
+// A program's connection to a running run: receives the coordinator's views and sends commands to
+// the coordinator, over any link.
 #pragma once
 
 #include <chrono>
@@ -21,8 +21,8 @@ namespace shoal::launch {
 // One thread.
 class RunClient {
  public:
-  // `hub` has the role of a client of the run. `id` names this client among all that the run ever
-  // has; it is not 0. Borrows the hub. Throws Error.
+  // `hub` has the role of a client of the run. `id` identifies this client among all clients of the
+  // run, past and future; not 0. Borrows the hub. Throws Error.
   RunClient(link::Hub& hub, const RunTarget& target, uint64_t id);
 
   // The next view not returned before, waiting until `deadline` or a stop signal.
@@ -30,8 +30,8 @@ class RunClient {
   // The first view. Throws Error naming the run when the coordinator does not answer in time.
   RunViewMessage FirstView();
 
-  // Sends a command and returns what the coordinator did. Throws Error: refused, with its reason,
-  // or no answer in time.
+  // Sends a command and returns the coordinator's reply. Throws Error if the coordinator refuses
+  // the command (with the reason) or does not answer in time.
   ReplyMessage Order(const std::string& verb, const std::vector<std::string>& arguments);
 
   static constexpr std::chrono::seconds kAnswer{5};
@@ -55,10 +55,10 @@ class RunClient {
 // The exit code of a run that has ended, from its last view.
 int ExitCodeOf(const RunViewMessage& view);
 
-// Notices that views come from another coordinator than before: the run was resumed.
+// Detects views of a new coordinator, which show that the run was resumed.
 class SameCoordinator {
  public:
-  // False if `view` is the first one of another coordinator than that of the view before.
+  // Returns false if `view` is the first view of a new coordinator.
   bool Take(const RunViewMessage& view);
 
  private:

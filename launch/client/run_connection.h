@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A client of a run in another process: a place on the run's network, and what uses it.
+// A client of a run in another process: a participant of the run's network and a RunClient on it.
 #pragma once
 
 #include "common/dds/bus.h"

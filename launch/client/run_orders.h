@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Orders to a running run, and the wait for what they do: shoal set, scale, stop.
+// Orders to a running run, and the wait for their effects: shoal set, scale, stop.
 #pragma once
 
 #include <chrono>
@@ -16,23 +16,24 @@ namespace shoal::launch {
 inline constexpr std::chrono::seconds kInForce{10};    // for processes to use a changed value
 inline constexpr std::chrono::seconds kScaled{60};     // for actors to start, or to flush and leave
 inline constexpr std::chrono::seconds kStopped{3600};  // for a run in its last evaluation
-inline constexpr std::chrono::seconds kLeaves{10};     // for a coordinator that has said all
-// Without a view for so long the coordinator is gone: as long as its processes wait for it.
+inline constexpr std::chrono::seconds kLeaves{10};  // for a coordinator to exit after its last view
+// If no view arrives for so long, the coordinator counts as dead. The run's processes use the same
+// timeout.
 inline constexpr std::chrono::seconds kCoordinatorSilence{15};
 
 // Gets each line that the command prints.
 using Say = std::function<void(const std::string& line)>;
 
-// Each sends its order, waits for the effect and returns the command's exit code. A stop signal
-// ends the wait, not the order. Throw Error: the order was refused or not answered, the coordinator
-// is silent, or the effect does not come in time.
+// Each function sends its order, waits for the effect and returns the command's exit code. A stop
+// signal ends the wait but does not cancel the order. The functions throw Error if the order was
+// refused or not answered, if the coordinator is silent, or if the effect is not seen in time.
 //
 // Returns when every process that uses a value reports it.
 int SetKeys(RunClient& client, const std::vector<std::string>& assignments, const Say& say);
-// Returns when so many actors report.
+// Returns when this number of actors reports.
 int ScaleActors(RunClient& client, int actors, const Say& say);
-// Returns the run's exit code when it has ended and no process holds `folder`; an empty folder is
-// not looked at.
+// Returns the run's exit code when it has ended and no process holds `folder`; an empty path is not
+// checked.
 int StopRun(RunClient& client, const std::filesystem::path& folder, const Say& say);
 
 }  // namespace shoal::launch

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The command line of `shoal`, whole: what main parses and what the manual is made from.
+// The complete command line of `shoal`, which main parses and from which the manual is made.
 #pragma once
 
 #include <memory>
@@ -8,10 +8,10 @@
 
 namespace shoal::launch {
 
-// Parsing stores what to do in `*chosen`, which must outlive the command line.
+// Parsing stores the action of the given command in `*chosen`, which must outlive the command line.
 std::unique_ptr<CLI::App> MakeCommandLine(Action* chosen);
 
-// Parses the command line and runs the command it names; the exit code. Throws Error.
+// Parses the command line, runs its command and returns the exit code. Throws Error.
 int RunCommandLine(int argc, char** argv);
 
 }  // namespace shoal::launch

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The commands that every build of `shoal` has, one file each. A command adds itself to the command
 // line. When the user gives the command, it stores its action in `*chosen`; main runs the action,
-// whose value is the exit code.
+// which returns the exit code.
 #pragma once
 
 #include <functional>

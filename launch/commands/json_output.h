@@ -10,15 +10,16 @@ namespace shoal::launch {
 
 class JsonOutput {
  public:
-  // For whom the file is: the run's user alone, or others as the umask says (common/base/files.h).
+  // Who may read the file: only the user, or others as the umask permits (common/base/files.h).
   enum class Readers { kUser, kOthers };
 
-  // `file` is empty where no JSON is asked for. Throws Error when it could not be written.
+  // `file` is empty if no JSON is requested. Throws Error if the file cannot be written.
   explicit JsonOutput(std::string file, Readers readers = Readers::kUser);
 
   // Stream for the command's text.
   std::FILE* text() const { return OnStdout() ? stderr : stdout; }
-  // Writes the file now, which Write replaces later; nothing on standard output.
+  // Writes a first version of the file, which Write replaces later. Writes nothing to standard
+  // output.
   void WriteEarly(const std::string& json) const;
   void Write(const std::string& json) const;
 

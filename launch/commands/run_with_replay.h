@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The configuration of a run that has a replay.
+// Reads the configuration of a run that has a replay.
 #pragma once
 
 #include <filesystem>
@@ -8,7 +8,8 @@
 
 namespace shoal::launch {
 
-// Throws Error: usage, if the run's algorithm learns from rollouts; as ReadRunConfig.
+// Throws Error (usage) if the run's algorithm learns from rollouts, and the errors of
+// ReadRunConfig.
 RunConfig ReadRunWithReplay(const std::filesystem::path& run);
 
 }  // namespace shoal::launch

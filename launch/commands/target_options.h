@@ -15,21 +15,22 @@ class Option;
 
 namespace shoal::launch {
 
-// How every command takes a run: as an argument or with --run, by name or folder; and --run-dir,
-// where names are looked for. What is borrowed must live as long as the command line.
+// Adds the options by which every command accepts a run: an argument or --run with a name or
+// folder, and --run-dir, the folder of named runs. The strings are borrowed and must live as long
+// as the command line.
 CLI::Option* AddRunOption(CLI::App& command, std::string* run, std::string* run_dir,
                           const std::string& meaning = "Run: name or folder");
 
-// A running run: AddRunOption, --peer and --secure.
+// Adds the options for a running run: those of AddRunOption, --peer and --secure.
 void AddTargetOptions(CLI::App& command, TargetOptions* options);
-// For a command that has further arguments besides the run: only --run names the run.
+// The same for a command with further arguments besides the run: only --run names the run.
 void AddNamedTargetOptions(CLI::App& command, TargetOptions* options);
 
-// A checkpoint: a run or a folder as the argument, --checkpoint and --run-dir. The command's
-// option --checkpoint.
+// Adds the options for a checkpoint: a run or a folder as the argument, --checkpoint and --run-dir.
+// Returns the option --checkpoint.
 CLI::Option* AddCheckpointOptions(CLI::App& command, CheckpointWords* words);
 
-// Refuses a file whose name does not end in .png: what is written there is PNG.
+// Refuses a file name that does not end in .png, because the command writes PNG.
 void ExpectPng(CLI::Option* option);
 
 }  // namespace shoal::launch

@@ -22,8 +22,8 @@ inline const std::vector<std::vector<std::string>> kToolCommands = {
 // adds nothing.
 void AddToolCommands(CLI::App& app, Action* chosen);
 
-// Without the tools, throws Error (usage), naming SHOAL_TOOLS, if a command line that starts with
-// `words` calls a tool. With the tools, does nothing.
+// Throws Error (usage) that names SHOAL_TOOLS if the build lacks the tools and a command line that
+// starts with `words` calls one. Does nothing if the build has the tools.
 void CheckToolsAreBuilt(const std::vector<std::string>& words);
 
 }  // namespace shoal::launch

@@ -22,33 +22,33 @@ struct ObservedWorld {
 
 struct DescribedEnvironment {
   tasks::EnvironmentDescription description;
-  int steps = 0;                    // tried
+  int steps = 0;                    // number of steps played
   double step_microseconds = 0;     // duration of one
-  int repeated_steps = 0;           // played again with the same seed and actions
+  int repeated_steps = 0;           // steps repeated with the same seed and actions
   std::optional<int> differs_at{};  // first step that differed when repeated; 0 = the reset
 };
 
-// The environment of env.id as its interpreter describes it. Plays one episode of random actions,
-// or its first seconds. Throws Error, with the actor's exit code, when it cannot be made or does
-// not keep to its spaces.
+// Describes the environment of env.id, in its interpreter. Plays one episode of random actions, or
+// its first seconds. Throws Error, with the actor's exit code, if the environment cannot be created
+// or violates its spaces.
 DescribedEnvironment DescribeEnvironment(const Config& config);
 
-// `shoal-actor --describe`: what actors of this configuration observe. Its error becomes ours, with
-// its exit code.
+// `shoal-actor --describe`: the observations of this configuration's actors. Throws the program's
+// error, with its exit code.
 ObservedWorld DescribeObservations(const Config& config);
 
 // Destination of an evaluation's frames (common/image/frame_stream.h).
 struct ShownFrames {
   std::filesystem::path stream = {};  // file or pipe; empty = nowhere
   int side = 0;                       // height and width of the larger view, pixels
-  std::string quality = {};           // of the larger view; empty = by the run's
+  std::string quality = {};           // of the larger view; empty = the run's
 };
 
 struct EvaluationOrder {
   std::filesystem::path run, checkpoint;
   int episodes = 0;
   int64_t seed = 0;
-  std::string task = {};            // to play instead of the run's; empty = the run's
+  std::string task = {};            // empty = the run's task
   std::filesystem::path json = {};  // file for the result; empty = none
   ShownFrames frames = {};
   bool own_run = false;  // the caller holds the run: temporary files are written to its folder
@@ -58,8 +58,9 @@ struct EvaluationOrder {
 };
 
 // `shoal-actor --evaluate`: plays fresh episodes of the final stream with a checkpoint. Throws
-// Error when it fails. Returns nothing if `stop` ended it; with `partial`, the result of the first
-// episodes, if one was played: `json` must not exist before the call.
+// Error if the program fails. If `stop` ended the program, returns nothing or, with `partial` and
+// at least one episode played, the result of the episodes so far. `json` must not exist before the
+// call.
 std::optional<EvaluationPoint> EvaluateByActor(const EvaluationOrder& order,
                                                const std::function<bool()>& stop);
 

@@ -23,14 +23,14 @@ struct ProcessSpec {
   int id = 0;                                                    // within the role
   std::vector<std::string> command;                              // [0] is the program's path
   std::vector<std::pair<std::string, std::string>> environment;  // added to our own
-  std::filesystem::path input;   // stdin is read from it; empty = /dev/null
+  std::filesystem::path input;   // file for stdin; empty = /dev/null
   std::filesystem::path output;  // stdout and stderr are appended to it
-  std::filesystem::path errors;  // stderr, where apart; empty = output
+  std::filesystem::path errors;  // file for stderr; empty = output
   bool outlives_parent = false;  // gets no SIGHUP when this process dies
-  bool holds_input = false;      // stdin is a pipe that closes when this process lets go of it
+  bool holds_input = false;      // stdin is a pipe, which this process keeps open
   bool elsewhere = false;        // a remote shell: its exit code 255 is a lost connection
-  bool expendable = false;       // the run goes on without it (supervisor.h)
-  std::vector<int> cores = {};   // CPUs it may run on; empty = those that we may
+  bool expendable = false;       // the run continues without the process (supervisor.h)
+  std::vector<int> cores = {};   // allowed CPUs; empty = those of this process
 
   std::string Name() const {
     return ProcessName{.role = role, .index = static_cast<uint32_t>(id)}.Text();
@@ -49,11 +49,11 @@ struct ExitStatus {
   std::string Describe() const;
 };
 
-// Owns the child: one that still runs at destruction is killed and reaped, which
-// is waited for five seconds at most. Children get SIGHUP
-// when this process dies, have a process group of their own (Ctrl-C on the terminal does not reach
-// them) and read from /dev/null unless told otherwise. Create and use on one thread that lives as
-// long as the child: the kernel ties the death signal to it.
+// Owns the child. The destructor kills and reaps a running child, and waits at most five seconds
+// for its end. Children get SIGHUP when this process dies, and have a process group of their own
+// (Ctrl-C on the terminal does not reach them). Without `input` they read from /dev/null. Create
+// and use the object on one thread that lives as long as the child, because the kernel ties the
+// death signal to this thread.
 class ChildProcess {
  public:
   // Throws Error naming the program or the file that could not be opened.
@@ -63,9 +63,9 @@ class ChildProcess {
   ChildProcess& operator=(ChildProcess&& other) noexcept;
 
   pid_t pid() const { return pid_; }
-  // Its end, once it has ended; does not wait.
+  // The exit status, once the child has ended; does not wait.
   std::optional<ExitStatus> Poll();
-  // Nothing happens once it has ended.
+  // Does nothing once the child has ended.
   void Signal(int signal);
 
  private:
@@ -76,8 +76,8 @@ class ChildProcess {
   std::optional<ExitStatus> ended_;
 };
 
-// Runs a program to its end. SIGTERM, then SIGKILL, after `deadline` or when `stop` says so (asked
-// about ten times a second); empty when that happened.
+// Runs a program to its end. After `deadline`, or when `stop` returns true (called about ten times
+// a second), sends SIGTERM, then SIGKILL, and returns empty.
 std::optional<ExitStatus> RunToEnd(const ProcessSpec& spec, std::chrono::seconds deadline,
                                    const std::function<bool()>& stop);
 
@@ -86,7 +86,7 @@ std::optional<ExitStatus> RunToEnd(const ProcessSpec& spec, std::chrono::seconds
 Error ProgramError(const std::string& program, const ExitStatus& status,
                    const std::filesystem::path& errors);
 
-// The last line of a file that is not blank, for messages; empty when there is none.
+// The last non-blank line of a file, for messages; empty if there is none.
 std::string LastLine(const std::filesystem::path& file);
 
 }  // namespace shoal::launch

@@ -9,13 +9,13 @@
 
 namespace shoal::launch {
 
-// Forks this process before it has threads: the child continues in a session of its own, the parent
-// waits until the child reports that it has started.
+// Forks this process, which must not have threads yet. The child continues in a session of its own;
+// the parent waits until the child reports its start.
 class Detachment {
  public:
-  // Returns in the child, and in the parent once the child has started or ended, or at the
-  // deadline, which leaves the child alone. Until then the parent forwards SIGINT and SIGTERM to
-  // the child. Throws Error.
+  // Returns in the child. Returns in the parent once the child has started or ended, or at the
+  // deadline, when the child continues. Until then the parent forwards SIGINT and SIGTERM to the
+  // child. Throws Error.
   explicit Detachment(std::chrono::seconds deadline = kStartDeadline);
   Detachment(const Detachment&) = delete;
   Detachment& operator=(const Detachment&) = delete;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// `shoal film` as a child process. The run that starts it needs none of the libraries of films.
+// `shoal film` as a child process. The process that starts the command does not need the film
+// libraries.
 #pragma once
 
 #include <cstdint>
@@ -12,12 +13,12 @@ namespace shoal::launch {
 struct FilmCommand {
   std::filesystem::path checkpoint;  // RUN/checkpoints/NAME
   int episodes = 0;
-  int64_t seed = 0;              // names the episodes, as that of a final evaluation does
+  int64_t seed = 0;              // chooses the episodes, like the seed of a final evaluation
   std::filesystem::path output;  // .mp4
 };
 
 // False if `stop` ended it; then there is no film. `say` gets each line that the command reports.
-// Throws Error if it fails or takes longer than its episodes allow.
+// Throws Error if the command fails or exceeds the time limit for its episodes.
 bool FilmByCommand(const FilmCommand& command, const std::function<bool()>& stop,
                    const std::function<void(const std::string& line)>& say);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The hosts of a run (schema shoal-hosts-1), as `shoal train --hosts FILE` reads them and the run
-// folder keeps them in hosts.json. docs/cluster.md explains each key.
+// The hosts of a run (schema shoal-hosts-1): the file that `shoal train --hosts FILE` reads, and
+// hosts.json in the run folder. docs/cluster.md explains each key.
 #pragma once
 
 #include <filesystem>
@@ -9,23 +9,23 @@
 
 namespace shoal::launch {
 
-// A machine that runs training actors for us.
+// Another machine, which runs training actors of the run.
 struct RemoteHost {
   std::string name;                // unique; names the host in messages
   int actors = 1;                  // at least 1
-  std::vector<std::string> ssh;    // command that takes one more word, a shell command line
+  std::vector<std::string> ssh;    // command; a shell command line is added as its last word
   std::filesystem::path programs;  // folder of shoal-actor there; absolute
   std::filesystem::path folder;    // folder for run folders there; relative = to the login's
   std::string interface = "auto";  // as transport.interface
-  bool shared = false;             // sees our run folder under the same path: nothing is copied
-  std::filesystem::path secure;    // the actors' credentials there, once pushed; empty = as here
-  std::filesystem::path run;       // the run's folder there, once a run has one
+  bool shared = false;  // has this host's run folder under the same path: nothing is copied
+  std::filesystem::path secure;  // the actors' credentials there, once pushed; empty = as here
+  std::filesystem::path run;     // the run's folder there, once created
 };
 
 struct Hosts {
-  std::string address;    // under which every host reaches coordinator, learner and replay
+  std::string address;    // at which every host reaches coordinator, learner and replay
   std::string interface;  // of this host; empty = transport.interface
-  int actors_here = -1;   // -1 = as the key `actors` says
+  int actors_here = -1;   // -1 = the value of the key `actors`
   std::vector<RemoteHost> hosts;
 
   int RemoteActors() const;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The order in which a run ends: actors flush until everything is stored and leave; then learner,
-// replay and evaluation actor finish what they are at, write what they must and leave.
+// Stops a run's processes in order. The actors send their records until all are stored, and exit.
+// Then learner, replay and evaluation actor finish their work, write their files and exit.
 #pragma once
 
 #include <chrono>
@@ -23,11 +23,12 @@ struct StopHooks {
   std::function<void()> tick;              // called every 50 ms meanwhile (heartbeat)
   std::function<bool()> at_once;           // true: skip to SIGTERM, short
   std::function<void(const std::string&)> say;
-  // Once the actors have left, the others go on until this is true (the last evaluation has come).
+  // Once the actors have left, the other processes continue until this returns true (the last
+  // evaluation has arrived).
   std::function<bool()> settled = [] { return true; };
 };
 
-// Returns when no process is left: after the sum of the deadlines at most.
+// Returns when no process is left, at the latest after the sum of the deadlines.
 void StopInOrder(Supervisor& supervisor, const StopDeadlines& deadlines, const StopHooks& hooks);
 
 }  // namespace shoal::launch

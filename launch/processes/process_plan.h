@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which programs a run consists of and how each is started.
+// The programs of a run, and the way in which each is started.
 #pragma once
 
 #include <filesystem>
@@ -15,8 +15,8 @@ namespace shoal::launch {
 // The folder of this program, which also has the other programs.
 std::filesystem::path ProgramFolder();
 
-// PROGRAM of that folder with arguments and the environment every program of ours runs in:
-// `threads` for its computations, no spinning OpenMP threads, no render threads.
+// Describes the start of `program` of ProgramFolder() with arguments and the environment of every
+// Shoal program: `threads` threads for computation, no spinning OpenMP threads, no render threads.
 ProcessSpec ProgramSpec(const std::string& program, std::vector<std::string> arguments,
                         int threads);
 
@@ -27,8 +27,8 @@ ProcessSpec ActorSpec(const Config& config, std::vector<std::string> arguments);
 // The topology of a run with these hosts. `config` is resolved.
 link::RunTopology TopologyOf(const Config& config, const std::vector<RemoteHost>& hosts);
 
-// How the children of a topology are started, in its order. `config` is resolved (learner.threads
-// above 0). `hosts` are those of the topology, with their run folders.
+// Describes the start of the children of a topology, in the topology's order. `config` is resolved
+// (learner.threads above 0). `hosts` are the topology's hosts, with their run folders.
 std::vector<ProcessSpec> PlanProcesses(const link::RunTopology& topology, const Config& config,
                                        const std::filesystem::path& run,
                                        const std::vector<RemoteHost>& hosts = {});

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Operations on another host, all of them by its ssh command: find the program, copy the files that
-// an actor needs, run an actor, fetch its files. No shared file system is needed.
+// Operations on another host through its ssh command: find the program, copy the files that an
+// actor needs, run an actor, fetch the actor's files. No shared file system is needed.
 #pragma once
 
 #include <filesystem>
@@ -19,8 +19,8 @@ using StopQuestion = std::function<bool()>;
 // Words as one command line of a POSIX shell.
 std::string ShellLine(const std::vector<std::string>& words);
 
-// Runs shoal-actor --version there. Throws Error naming the host: not reached, not there, or of
-// another version.
+// Runs shoal-actor --version there. Throws Error naming the host if the host is not reached, or if
+// the program is missing or has another version.
 void CheckHost(const RemoteHost& host, const StopQuestion& stop);
 
 // Actors `first` .. `first` + host.actors - 1 of a run.
@@ -31,8 +31,8 @@ struct ActorRange {
 
 // Copies config.json, cluster.json, the DDS configuration of SHOAL_DDS_XML, the credentials of an
 // actor where the run is secured and the counter pages of these actors to host->run, which becomes
-// absolute. A page that is there already stays. Nothing is done for a host that shares our run
-// folder. Throws Error naming the host.
+// absolute. An existing page on the host is not overwritten. Does nothing for a host that shares
+// the run folder. Throws Error naming the host.
 void PushRun(const std::filesystem::path& run, const ActorRange& actors, RemoteHost* host,
              const StopQuestion& stop);
 
@@ -40,7 +40,8 @@ void PushRun(const std::filesystem::path& run, const ActorRange& actors, RemoteH
 void FetchSequenceLogs(const RemoteHost& host, const ActorRange& actors,
                        const std::filesystem::path& run, const StopQuestion& stop);
 
-// Training actor `id` there, as a child of ours: it stops when its input is closed.
+// Training actor `id` on the host, as a child process here. The actor stops when its input is
+// closed.
 ProcessSpec RemoteActor(const RemoteHost& host, int id, const std::filesystem::path& run);
 
 }  // namespace shoal::launch

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// When an expendable process is restarted. Unlike RestartPolicy it never gives up: it waits longer
-// from death to death. Pure: the caller supplies the times.
+// Decides when an expendable process is restarted. Unlike RestartPolicy, the backoff never gives
+// up: the delay grows with each death. Pure: the caller supplies the times.
 #pragma once
 
 #include <chrono>
@@ -11,8 +11,8 @@ namespace shoal::launch {
 struct BackoffLimits {
   std::chrono::milliseconds first_delay{200};  // doubles with each death within `window`
   std::chrono::milliseconds longest_delay{60'000};
-  std::chrono::seconds window{60};    // of work, not of time: waiting for a restart is none
-  std::chrono::seconds healthy{600};  // after so much work at a stretch deaths are counted anew
+  std::chrono::seconds window{60};    // of working time; waiting for a restart does not count
+  std::chrono::seconds healthy{600};  // uninterrupted work that resets the count
 };
 
 class RestartBackoff {
@@ -25,12 +25,12 @@ class RestartBackoff {
 
   explicit RestartBackoff(const BackoffLimits& limits) : limits_(limits) {}
 
-  // The process died after it had worked for `worked` (0: it never came to work).
+  // The process died after it had worked for `worked` (0: it died before it worked).
   Restart OnDeath(std::chrono::milliseconds worked);
 
  private:
   BackoffLimits limits_;
-  std::chrono::milliseconds work_{};              // of all its lives
+  std::chrono::milliseconds work_{};              // working time of all its sessions
   std::deque<std::chrono::milliseconds> recent_;  // deaths within the window: `work_` at each
   int deaths_ = 0;
 };

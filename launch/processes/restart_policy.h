@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether and when a process that died is started again. Pure: the caller brings the time.
+// Decides whether and when a process that died is started again. Pure: the caller supplies the
+// time.
 #pragma once
 
 #include <chrono>
@@ -21,8 +22,7 @@ class RestartPolicy {
  public:
   explicit RestartPolicy(const RestartLimits& limits) : limits_(limits) {}
 
-  // The process died at `now`: how long to wait before the next start; empty when it died too
-  // often.
+  // The process died at `now`. Returns the delay before the next start; empty if it died too often.
   std::optional<std::chrono::milliseconds> OnDeath(SteadyTime now);
 
  private:

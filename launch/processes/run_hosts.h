@@ -12,24 +12,27 @@
 
 namespace shoal::launch {
 
-// Counts the hosts' actors into config->actors, which said those of this host, and makes the
-// servers reachable from them. Throws Error (usage) when the sum is no valid number of actors.
+// Adds the hosts' actors to config->actors, which held the number of this host, and makes the
+// servers reachable from the hosts. Throws Error (usage) if the sum is not a valid number of
+// actors.
 void ApplyHosts(const Hosts& hosts, Config* config);
 
 // A resumed run keeps its number of actors: throws Error (usage) unless `hosts` fits it.
 void CheckResumedHosts(const Hosts& hosts, const Config& config);
 
-// CheckHost for each of them.
+// Calls CheckHost for each host.
 void CheckHosts(const Hosts& hosts, const StopQuestion& stop);
 
-// Brings the run, whose config.json and cluster.json are written, to each host and stores in RUN's
-// hosts.json where it lies there; `tag` keeps runs of one name apart. Pages that an earlier session
-// of the run left there are fetched first; what cannot be is said. Throws Error naming the host.
+// Copies the run, whose config.json and cluster.json must exist, to each host, and stores its path
+// there in RUN/hosts.json. `tag` distinguishes runs of one name. First fetches the counter pages
+// that an earlier session of the run left on the host; `say` gets a line for each failure. Throws
+// Error naming the host.
 void PushToHosts(const std::filesystem::path& run, const Config& config, const std::string& tag,
                  Hosts* hosts, const std::function<void(const std::string&)>& say,
                  const StopQuestion& stop);
 
-// FetchSequenceLogs of each host; a failure is said and goes on with the next one.
+// Calls FetchSequenceLogs for each host. `say` gets a line for each failure, and the next host
+// follows.
 void FetchFromHosts(const std::filesystem::path& run, const Config& config, const Hosts& hosts,
                     const std::function<void(const std::string&)>& say, const StopQuestion& stop);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// One process of a run that was started, whatever it runs as: a child process, or threads of this
-// process (launch/run/in_process_roles.h).
+// One started process of a run: a child process, or threads of this process
+// (launch/run/in_process_roles.h).
 #pragma once
 
 #include <sys/types.h>
@@ -13,15 +13,15 @@
 
 namespace shoal::launch {
 
-// One thread. Destruction ends what still runs.
+// One thread. The destructor ends a process that still runs.
 class RunningProcess {
  public:
   virtual ~RunningProcess() = default;
   // The pid that its reports carry.
   virtual pid_t pid() const = 0;
-  // Its end, once it has ended; does not wait.
+  // The exit status, once the process has ended; does not wait.
   virtual std::optional<ExitStatus> Poll() = 0;
-  // Nothing happens once it has ended.
+  // Does nothing once the process has ended.
   virtual void Signal(int signal) = 0;
 };
 

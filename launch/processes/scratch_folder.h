@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A folder that is removed together with its owner, and everything in it. A process that is killed
-// cannot remove its folders: the next one that makes a scratch folder in the same parent does.
+// A folder that the destructor of this object removes, with its content. If a process is killed,
+// its folders are removed by the next process that makes a scratch folder in the same parent.
 #pragma once
 
 #include <filesystem>
@@ -13,12 +13,12 @@ namespace shoal::launch {
 
 class ScratchFolder {
  public:
-  // Made in `parent`, where folders of killed processes of this user are removed first. Throws
-  // Error naming the folder when it cannot be made.
+  // Creates the folder in `parent`, after removing the folders of killed processes of this user.
+  // Throws Error naming the folder if it cannot be created.
   explicit ScratchFolder(
       const std::filesystem::path& parent = std::filesystem::temp_directory_path());
-  // RUN/.scratch.tmp-PID, one of a process at a time: where its owner is killed, it goes with the
-  // run's other unfinished files (run_leftovers.h). Throws Error.
+  // RUN/.scratch.tmp-PID; a process may have one at a time. If its owner is killed, the folder is
+  // removed with the run's other unfinished files (run_leftovers.h). Throws Error.
   static ScratchFolder WithinRun(const std::filesystem::path& run);
   ~ScratchFolder();
   ScratchFolder(const ScratchFolder&) = delete;
@@ -31,7 +31,7 @@ class ScratchFolder {
   ScratchFolder(std::filesystem::path path, Made) : path_(std::move(path)) {}
 
   std::filesystem::path path_;
-  std::optional<FileLock> owner_;  // of PATH/.owner: free as soon as the process is gone
+  std::optional<FileLock> owner_;  // lock of PATH/.owner; released when the process ends
 };
 
 }  // namespace shoal::launch

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Supervises a run's processes: starts them, restarts those that die, and reports the reasons. A
-// process that runs but does not report any more (stopped, deadlocked, thrashing) is killed and
-// counts as dead from then on.
+// process that runs but no longer reports (stopped, deadlocked, thrashing) is killed and counts as
+// dead.
 //
 // A process that the run needs is restarted within RestartLimits; the run fails beyond them. An
 // expendable process is restarted at growing intervals (RestartBackoff) for as long as the run
@@ -24,21 +24,22 @@
 
 namespace shoal::launch {
 
-// Liveness timeouts after which a running process is taken for hung. They are ten times the silence
-// of a process that was stopped for a moment or starved by its machine; starting up takes longer.
+// Liveness timeouts after which a running process counts as hung. The timeouts are ten times the
+// silence of a process that was stopped for a moment or starved by its machine; a start takes
+// longer.
 struct HangLimits {
   std::chrono::seconds start{120};  // before its first report
   std::chrono::seconds report{30};  // since its last one
 };
 
-// An expendable process that has died and does not work again yet.
+// An expendable process that has died and does not yet work again.
 struct DownProcess {
   std::string name;    // "actor-1"
   std::string reason;  // of its last death: "exit code 1: no way to host ..."
   int deaths = 0;      // in a row
-  std::optional<std::chrono::seconds> restart_in;  // empty while it is being tried
-  // Why restarts seem to be in vain: it died more often than RestartLimits allow, or refused its
-  // configuration. Empty otherwise.
+  std::optional<std::chrono::seconds> restart_in;  // empty during a restart
+  // Why restarts seem to be in vain: the process died more often than RestartLimits allow, or
+  // refused its configuration. Empty otherwise.
   std::string hopeless;
 };
 
@@ -46,11 +47,11 @@ struct DownProcess {
 struct RoleStanding {
   int processes = 0;
   int working = 0;                // have reported for kSettled since their last start
-  std::vector<DownProcess> down;  // those that never died are neither working nor down at first
+  std::vector<DownProcess> down;  // a process in its first start is neither working nor down
 };
 
-// Knows nothing of DDS. One thread, which must live as long as the children (child_process.h).
-// Destruction kills what still runs.
+// Independent of DDS. One thread, which must live as long as the children (child_process.h). The
+// destructor kills processes that still run.
 class Supervisor {
  public:
   // `say` gets one line for each death and restart, with the reason of the exit (exit_reason.h).
@@ -61,11 +62,11 @@ class Supervisor {
   // Starts the process. If a retired predecessor still runs, starts it after the predecessor's end.
   // Throws Error if it cannot be started.
   void Start(const ProcessSpec& spec);
-  // Ends one process for good: SIGTERM, and SIGKILL when it has not left after kRetire.
+  // Ends one process without a restart: SIGTERM, and SIGKILL if it still runs after kRetire.
   void Retire(std::string_view role, int id, SteadyTime now);
 
   // Notes a report of the process. Reports of a predecessor (another pid) do not count, except on
-  // other hosts, where our child is the remote shell and the reported pid is unknown here.
+  // other hosts: there the child is the remote shell, and the reported pid is unknown here.
   void Heard(std::string_view role, int id, pid_t pid, SteadyTime now);
 
   // Kills hung processes, reaps dead ones and restarts those that are due. If the run cannot
@@ -82,7 +83,7 @@ class Supervisor {
   // The role's expendable processes; empty when it has none.
   RoleStanding Standing(std::string_view role, SteadyTime now) const;
 
-  // The running process's; 0 when there is none.
+  // Pid of the running process; 0 if none runs.
   pid_t Pid(std::string_view role, int id) const;
 
   int restarts() const { return restarts_; }
@@ -91,7 +92,7 @@ class Supervisor {
   // host)", the most frequent ones first. Empty when there was none.
   std::string DescribeDeaths() const;
 
-  // Time that a retired actor needs to send its records, and more.
+  // Longer than a retired actor needs to send its records.
   static constexpr std::chrono::seconds kRetire{40};
 
   // A restarted process counts as working after it has reported for so long.
@@ -112,14 +113,14 @@ class Supervisor {
     uintmax_t output_before = 0;            // bytes in its output when `process` was started
     LivenessTimer liveness;                 // of `process`
     std::optional<SteadyTime> heard_since;  // first report of `process`
-    bool hung = false;                      // and killed for it
+    bool hung = false;                      // stopped reporting and was killed
     std::optional<SteadyTime> restart_at;
     RestartBackoff backoff{BackoffLimits()};  // of an expendable process
     DownProcess down;                         // of an expendable process that has died
     int deaths = 0;                           // of an expendable process, over the whole run
     bool exit_expected = false;
-    std::optional<SteadyTime> leave_by;    // retired: SIGKILL then
-    std::optional<ProcessSpec> successor;  // to be started once it has left
+    std::optional<SteadyTime> leave_by;    // retired: time of SIGKILL
+    std::optional<ProcessSpec> successor;  // is started after the exit
     int signalled = 0;                     // the last signal sent by Signal or Retire
   };
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // Ctrl-Z on a command whose children have process groups of their own: the terminal signals only
 // this process, which forwards the signal. Children stop and continue together with it (`fg`,
-// `bg`). Each counts silence only while it runs (liveness_timer.h), so that they do not take each
-// other for dead.
+// `bg`). The liveness timer of each process advances only while the process runs
+// (liveness_timer.h), so no process counts another as dead.
 #pragma once
 
 #include <sys/types.h>
@@ -12,20 +12,21 @@
 namespace shoal::launch {
 
 // From now on SIGTSTP stops the running children (ChildProcess), then this process; SIGCONT
-// continues all. A SIGTSTP that is ignored, as under nohup, stays ignored.
+// continues all. If SIGTSTP was ignored, as under nohup, it stays ignored.
 void SuspendWithChildren();
-// From now on SIGTSTP stops no process and is counted: processes on other hosts would not stop.
+// From now on SIGTSTP is counted and stops no process, because processes on other hosts would not
+// stop.
 void RefuseSuspension();
 
-// Number of times that this process was suspended, and that it refused to be.
+// Number of suspensions of this process, and number of refused suspensions.
 int Suspensions();
 int RefusedSuspensions();
 
 // A clock that stands still while this process is suspended by SIGTSTP.
 SteadyTime AwakeNow();
 
-// Children that are stopped and continued with this process; at most 1024, others are ignored. Any
-// thread.
+// Adds or removes a child that is stopped and continued with this process. At most 1024 children;
+// further ones are ignored. Any thread.
 void AddSuspended(pid_t child);
 void RemoveSuspended(pid_t child);
 

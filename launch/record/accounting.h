@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Account of all records: those that the actors made against those that the replay handled.
+// Account of all records: compares the records that the actors made with those that the replay
+// handled.
 //
 //   made = stored + lost_with_process + lost_with_replay + rejected + after_gap + discarded,
 //   exactly;
 //   duplicates and resends are counted apart. Sequences of a session are 1 .. made; the replay
 //   handled 1 .. highest of them.
-//   - lost_with_process: records that an actor's death kept from the replay, made - highest.
-//   - lost_with_replay: records that were stored and are gone, with the memory of a replay server
-//   that
-//     died or with a replay file that was removed. If the file exists, such a loss is a fault.
+//   - lost_with_process: records that never reached the replay because their actor died:
+//     made - highest.
+//   - lost_with_replay: records that were stored and then lost, because a replay server in memory
+//     died or a replay file was removed. If the file exists, such a loss is a fault.
 //   - stored, without a replay: records that updates used.
 //   - discarded: only without a replay. Records of rollouts that were not finished or not used.
 //   The sessions' count of stored records is compared with the ring's own count.
@@ -24,22 +25,23 @@
 
 namespace shoal::launch {
 
-// One actor session, by its own count (actor/sending/sequence_log.h).
+// Count of one actor session, made by the actor (actor/sending/sequence_log.h).
 struct MadeRecords {
   uint32_t actor = 0;
   uint64_t session = 0;
   uint64_t made = 0;
-  bool known = true;  // false: the page was lost, and `made` is what the replay had seen
+  bool known = true;  // false: the page was lost; `made` is the replay's count
 };
 
 struct Accounting {
   uint64_t made = 0, stored = 0, lost_with_process = 0, lost_with_replay = 0;
   uint64_t rejected = 0, after_gap = 0, discarded = 0;
   uint64_t duplicates = 0, resends = 0;
-  // Sessions of actors that were started by hand, whose host cannot be reached, or whose page was
-  // lost. The records that the replay received count as made; the number beyond them is unknown.
+  // Sessions without a page: actors started by hand, actors on a host that cannot be reached, and
+  // lost pages. The records that the replay received count as made; the number of further records
+  // is unknown.
   uint64_t sessions_without_page = 0;
-  std::vector<std::string> faults;  // one line for each thing that does not balance
+  std::vector<std::string> faults;  // one line for each imbalance
 
   bool Balances() const { return faults.empty(); }
   // "made 120 = stored 117 + lost with a process 2 + lost with a replay 1 + rejected 0 + after a
@@ -50,11 +52,11 @@ struct Accounting {
 struct AccountTerms {
   uint64_t resends = 0;
   uint32_t own_actors = 0;      // sessions of actors below must have a page
-  bool outlives_replay = true;  // what is stored is in a file
+  bool outlives_replay = true;  // stored records are in a file
 };
 
-// `seen`: by the replay's count, or by the learner's in a run without one; each session's counts
-// add up (ReadAccount).
+// `seen`: the replay's count, or the learner's count in a run without a replay. The counts of each
+// session add up (ReadAccount).
 Accounting Account(std::span<const MadeRecords> made, const RunAccount& seen,
                    const AccountTerms& terms);
 

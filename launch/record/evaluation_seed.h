@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which fresh episodes `shoal eval` plays when no seed is named.
+// Seeds of the fresh episodes of `shoal eval` when the user gives no seed.
 #pragma once
 
 #include <cstdint>
@@ -7,14 +7,14 @@
 
 namespace shoal::launch {
 
-// Kept for the last word on a recipe: nothing is chosen by its episodes. One stream a task, since
-// the episodes of a seed are the task's. docs/experiments.md ("Which episodes an evaluation
-// plays").
+// Reserved for the final evaluation of a recipe: no choice may depend on its episodes. A seed gives
+// one stream of episodes per task, whatever the run. docs/experiments.md ("Which episodes an
+// evaluation plays").
 constexpr int64_t kReservedEvaluationSeed = 20'261'126;
 
-// A seed of the run's own, from its config.json: another run, seed or recipe plays other episodes,
-// the same run always the same ones. Seeds begin at 10^9, above those that users choose. Throws
-// Error: no config.json.
+// A seed for this run, computed from its config.json. The same run always plays the same episodes;
+// another run, seed or recipe plays others. These seeds begin at 10^9, above the seeds that users
+// choose. Throws Error if config.json does not exist.
 int64_t OwnEvaluationSeed(const std::filesystem::path& run);
 
 }  // namespace shoal::launch

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// eval/*.json of a run: written as evaluations arrive, read back when a run goes on.
+// Writes eval/*.json of a run when evaluations arrive, and reads these files when the run is
+// resumed.
 #pragma once
 
 #include <deque>
@@ -14,33 +15,33 @@
 
 namespace shoal::launch {
 
-// Reads the figures of a shoal-eval-1 object; `source` names the text. Throws Error on anything
-// else, and where the figures cannot be: a success rate outside of 0..1, a return that is not
-// finite, no episodes.
+// Reads the figures of a shoal-eval-1 object; `source` names the text. Throws Error for other text,
+// and for impossible figures: a success rate outside of 0..1, a return that is not finite, no
+// episodes.
 EvaluationPoint ParseEvaluation(const std::string& json, const std::string& source);
 
-// The figures of a message, whose own fields must say what its JSON says. Throws Error.
+// The figures of a message. Throws Error, also if the fields of the message differ from its JSON.
 EvaluationPoint ParseEvaluation(const EvalMessage& message);
 
-// An evaluation as a run keeps it.
+// An evaluation in the form that a run stores.
 struct EvaluationRecord {
   EvaluationPoint point;
   std::string name;  // in eval/: STEPS_UPDATES.json
   std::string text;  // the message's JSON, with `wall_seconds` added
 };
-// Throws Error when the message is not an evaluation.
+// Throws Error if the message is not an evaluation.
 EvaluationRecord RecordOf(const EvalMessage& message, double wall_seconds);
 
 // Writes evaluations into a run's folder. Files that cannot be written are kept in memory, up to
 // kMostKept of them, for Retry. One thread.
 class EvaluationStore {
  public:
-  // Borrows `faults`, which reports and counts them as eval.
+  // Borrows `faults`, which reports and counts failed writes under the name eval.
   EvaluationStore(std::filesystem::path run, WriteFaults* faults)
       : run_(std::move(run)), faults_(*faults) {}
 
   void Write(EvaluationRecord record);
-  // Writes what is kept, oldest first.
+  // Writes the kept evaluations, oldest first.
   void Retry();
 
   static constexpr size_t kMostKept = 1000;

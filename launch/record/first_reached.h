@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// When a run's evaluations have reached a success rate: the one rule of the stop rule, meta.json's
-// first_success, n_to_target of experiments and the env steps to a target that `compare` prints.
-// Pure.
+// Decides when a run's evaluations have reached a success rate. The stop rule, first_success in
+// meta.json, n_to_target of experiments and the env steps to a target in `compare` all use this
+// rule. Pure.
 #pragma once
 
 #include <cstddef>
@@ -12,12 +12,12 @@ namespace shoal::launch {
 
 // The success of one evaluation.
 struct EvaluatedSuccess {
-  std::optional<double> rate{};  // 0..1; empty where the task has none: never reached
+  std::optional<double> rate{};  // 0..1; empty if the task has none: never reached
   size_t episodes = 0;
 };
 
-// Whether the episodes of all these evaluations, pooled, have success of at least `target`. False
-// without episodes.
+// Whether the pooled episodes of all these evaluations have a success rate of at least `target`.
+// False without episodes.
 bool ReachTogether(std::span<const EvaluatedSuccess> evaluations, double target);
 
 // Index of the first evaluation of the first `in_a_row` (at least 1) that reach `target` together,

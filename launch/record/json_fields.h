@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fields of the files of runs that may be absent, null, or of an older build.
+// Fields in files of runs that may be missing or null, or written by an older build.
 #pragma once
 
 #include <nlohmann/json.hpp>

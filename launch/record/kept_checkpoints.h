@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// Checkpoints that outlive the learner's own pruning: that of the best evaluation, and of those
-// that later ones may make the best.
+// Checkpoints that a run keeps when the learner prunes its own: the checkpoint of the best
+// evaluation, and those of evaluations that may become the best.
 //
 //   RUN/checkpoints/best                   the best one
 //   RUN/checkpoints/candidates/step_N      each of them
 //
-// Files are linked where the file system can, so that a candidate takes no room of its own.
+// Files are hard links if the file system supports them, so a candidate needs no extra space.
 #pragma once
 
 #include <filesystem>
@@ -14,10 +14,11 @@
 
 namespace shoal::launch {
 
-// Makes checkpoints/best that of `best`, one of the candidates, and checkpoints/candidates exactly
-// these, each from checkpoints/NAME where it is not a candidate yet; a reader finds the old best or
-// the new one, whole. Throws Error when one is gone, cut short or altered, or the disk is full; the
-// old best is then still there, unless it was another candidate that could not be kept.
+// Makes checkpoints/best the checkpoint `best`, which is one of the candidates, and makes
+// checkpoints/candidates hold exactly `candidates`. Candidates that are new or rewritten are taken
+// from checkpoints/NAME. A reader finds either the old best or the new one, complete. Throws Error
+// if a checkpoint is missing, truncated or altered, or the disk is full. In this case the old best
+// remains, unless only another candidate could not be kept.
 void KeepCheckpoints(const std::filesystem::path& run, const std::vector<std::string>& candidates,
                      const std::string& best);
 

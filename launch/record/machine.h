@@ -8,8 +8,8 @@
 
 namespace shoal::launch {
 
-// {cpu, cores, memory_gb, isa, kernel}: cores that this process may use; isa is what the network
-// code found.
+// {cpu, cores, memory_gb, isa, kernel}: cores: number that this process may use; isa: instruction
+// set that the network code uses.
 nlohmann::ordered_json DescribeMachine();
 
 // Name of the first processor in the text of /proc/cpuinfo: "NAME (family F, model M)", because

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// metrics.jsonl: {t, role, id, host, pid, state, NAME: value, ...} per line. A line per process and
-// second for the first minutes; then each process gets one as often as keeps the file within its
-// hourly budget, whatever the number of processes. The first report of a process and its last words
-// (state "stopping") are always written. Figures have six significant digits, counts all of theirs.
+// metrics.jsonl: {t, role, id, host, pid, state, NAME: value, ...} per line. In the first minutes,
+// each process gets one line per second. Later, lines are less frequent, so that the file stays
+// within its hourly budget for any number of processes. The first report of a process and its last
+// one (state "stopping") are always written. Figures have six significant digits; counts are
+// written in full.
 #pragma once
 
 #include <chrono>
@@ -18,14 +19,14 @@
 namespace shoal::launch {
 
 struct MetricsLogLimits {
-  uint64_t burst_bytes = 1'500'000;     // every report is written until here
-  uint64_t bytes_per_hour = 3'000'000;  // beyond
-  uint64_t most_bytes = 256'000'000;    // nothing is written beyond this
-  size_t kept_bytes = 4'000'000;        // of lines that wait for room on the disk
+  uint64_t burst_bytes = 1'500'000;     // up to this size every report is written
+  uint64_t bytes_per_hour = 3'000'000;  // above burst_bytes
+  uint64_t most_bytes = 256'000'000;    // largest size of the file
+  size_t kept_bytes = 4'000'000;        // lines that wait for space on the disk
 };
 
-// Appends to the file, so that a resumed run goes on in it. Lines that cannot be written are kept,
-// the newest kept_bytes of them. One thread.
+// Appends to the file, so that a resumed run continues it. Keeps the newest kept_bytes of the lines
+// that cannot be written. One thread.
 class MetricsLog {
  public:
   // Throws Error when the file cannot be opened.
@@ -33,7 +34,7 @@ class MetricsLog {
 
   // Adds a line for the next Flush. Figures that are not finite are written as null.
   void Write(const MetricsMessage& message);
-  // Throws Error when the file cannot be written now; a later call goes on where this one failed.
+  // Throws Error if the file cannot be written; a later call continues where this one failed.
   void Flush();
   // The file has reached its size limit.
   bool full() const { return full_; }
@@ -47,8 +48,8 @@ class MetricsLog {
   const MetricsLogLimits limits_;
   uint64_t bytes_ = 0, left_out_ = 0;
   bool full_ = false;
-  std::string kept_;    // lines for the file; of the first one a part may be there already
-  bool begun_ = false;  // so it is: the file ends within a line
+  std::string kept_;    // lines for the file; part of the first may be written
+  bool begun_ = false;  // part of a line is written: the file ends within a line
   struct Last {         // line of a process
     double time = 0;
     int32_t pid = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A run's folder: named, created or re-opened, and held against a second coordinator.
+// Finds, creates, re-opens and locks the folder of a run. The lock excludes a second coordinator.
 #pragma once
 
 #include <filesystem>
@@ -12,8 +12,8 @@
 
 namespace shoal::launch {
 
-// Folders that commands take by name: what they are called in messages, where they lie, and the
-// file that tells one of them from any other folder.
+// A kind of folder that commands accept by name: its noun in messages, its parent folder, and the
+// file that identifies a folder of this kind.
 struct NamedKind {
   std::string noun{};  // "run"
   std::filesystem::path dir{};
@@ -21,22 +21,22 @@ struct NamedKind {
 };
 NamedKind RunsIn(const std::filesystem::path& dir);
 
-// Which folder RUN or EXPERIMENT on a command line means: the one of that name within a kind's
-// `dir`, by the order of the kinds, else the path itself. Throws Error: usage naming every folder
-// that was looked at; run-time where one of them may not be read.
+// Finds the folder of RUN or EXPERIMENT on a command line: the folder of this name in the `dir` of
+// the first kind that has one, else the path itself. Throws Error: a usage error with every
+// searched folder, or a run-time error if one of them may not be read.
 std::filesystem::path FindNamed(const std::string& name_or_folder,
                                 std::span<const NamedKind> kinds);
 inline std::filesystem::path FindNamed(const std::string& name_or_folder, const NamedKind& kind) {
   return FindNamed(name_or_folder, std::span(&kind, 1));
 }
 
-// Whether the folder holds a run: one whose configuration has been written.
+// Whether the folder holds a run, that is, has a config.json.
 bool IsRun(const std::filesystem::path& folder);
-// Whether the folder may not be looked into: another user's run, as a rule.
+// Whether this user may not read the folder, usually because it is another user's run.
 bool IsForbidden(const std::filesystem::path& folder);
 
-// Holds an exclusive lock on the run until destruction (or death of the process and of those it
-// forked without exec).
+// Holds an exclusive lock on the run until destruction, or until this process and its forks without
+// exec have ended.
 class RunFolder {
  public:
   // Creates DIR/NAME. A given name whose folder exists is refused (usage error) unless `overwrite`,
@@ -45,8 +45,8 @@ class RunFolder {
                           bool overwrite);
   // Creates DIR/BASE, or DIR/BASE-2, DIR/BASE-3, ...: the first that does not exist.
   static RunFolder CreateNumbered(const std::filesystem::path& dir, const std::string& base);
-  // Opens an existing run for going on. `run` is its name within `dir`, or its path. Throws Error
-  // when there is none or when it is running.
+  // Opens an existing run to continue it. `run` is its name within `dir`, or its path. Throws Error
+  // if the run does not exist or is running.
   static RunFolder Reopen(const std::filesystem::path& dir, const std::string& run);
 
   const std::filesystem::path& path() const { return path_; }
@@ -59,15 +59,16 @@ class RunFolder {
   std::optional<FileLock> lock_;
 };
 
-// Whether a coordinator holds the run in this folder: asks, without holding it. On another host's
-// disk this works where the file system passes locks on (NFS does).
+// Whether a coordinator holds the lock of the run in this folder; does not take the lock. On
+// another host's disk this works if the file system forwards locks, as NFS does.
 bool IsHeld(const std::filesystem::path& run);
 
 // logs/PROCESS.log of a run.
 std::filesystem::path LogFile(const std::filesystem::path& run, const std::string& process);
-// The newest of checkpoints/ by its name; empty path when there is none.
+// The newest checkpoint in checkpoints/, by name; an empty path if there is none.
 std::filesystem::path NewestCheckpoint(const std::filesystem::path& run);
-// The checkpoint a run is judged by: the best evaluated one, else the newest; empty without any.
+// The checkpoint a run is judged by: the best evaluated one, else the newest; empty if there is
+// none.
 std::filesystem::path JudgedCheckpoint(const std::filesystem::path& run);
 // videos/*.mp4 of a run, by name.
 std::vector<std::filesystem::path> FilmsOf(const std::filesystem::path& run);

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Inputs of a run's policy, in training and at test time alike, and the privileged inputs that
-// learning has besides: for the run's first lines, for meta.json and for `shoal env describe
-// --run`.
+// Inputs of a run's policy, the same in training and at test time, and the privileged inputs of
+// learning. Used for the run's first lines, for meta.json and for `shoal env describe --run`.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>
@@ -23,16 +22,16 @@ struct PolicyInputs {
   std::vector<std::string> cameras{};  // empty: no pixels
   bool goal_picture = false;           // of each camera, beside its frames
 };
-// An object's blocks are known by their names: those that begin with "object", and `achieved_goal`
-// where one of those is recorded, for then the object is what has to get to the goal.
+// The blocks of an object are found by name: all that begin with "object" and, if one of these is
+// recorded, `achieved_goal`, because then the goal concerns the object.
 PolicyInputs PolicyInputsOf(const ObservationSpec& spec);
 
 // Privileged inputs of learning (common/config/privileged_blocks.h).
 struct PrivilegedInputs {
   std::vector<std::string> critic_blocks{};  // in place of the pixels
   std::vector<std::string> labels{};         // as sac.aux names them
-  // By which the replay relabels goals and draws samples, where the policy has to see it in
-  // pictures.
+  // Blocks with which the replay relabels goals and draws samples, if the policy gets only pictures
+  // of them.
   std::vector<std::string> replay_blocks{};
 };
 // Throws Error (usage) as PrivilegedBlocksOf.
@@ -46,7 +45,7 @@ nlohmann::ordered_json ToJson(const PrivilegedInputs& inputs);
 // empty if the replay uses no privileged block.
 std::string HindsightText(const RunConfig& run);
 
-// All of it for people: lines, each ended.
+// All inputs as text for people; each line has its newline.
 std::string DescribeInputs(const RunConfig& run);
 // The same for programs, schema shoal-inputs-1.
 nlohmann::ordered_json InputsJson(const RunConfig& run);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// meta.json of a run (shoal-run-1): what ran where, how far it came, how it ended.
+// meta.json of a run (shoal-run-1): builds, inputs, progress, results and end of the run.
 #pragma once
 
 #include <filesystem>
@@ -17,12 +17,12 @@
 namespace shoal::launch {
 
 struct RunMeta {
-  std::vector<std::string> commits;  // builds that took part before this one, the first one first
+  std::vector<std::string> commits;  // earlier builds of the run, oldest first
   PolicyInputs policy_inputs;
   PrivilegedInputs privileged_inputs;
   std::string started, finished;  // UTC; finished is empty while running
   uint64_t env_steps = 0, updates = 0;
-  uint64_t updates_lost = 0;  // with learners that died (common/run_folder/update_page.h)
+  uint64_t updates_lost = 0;  // lost with learners that died (common/run_folder/update_page.h)
   double wall_seconds = 0;    // over all sessions of a resumed run
   double target = 0;
   std::optional<EvaluationPoint> first_success;
@@ -30,14 +30,14 @@ struct RunMeta {
   std::optional<double> final_success;  // of the evaluation at the end
   std::optional<double> final_return;   // its mean return
   std::optional<Accounting> accounting;
-  std::vector<SettingChange> changes;  // of keys, while the run went on
+  std::vector<SettingChange> changes;  // changes of keys during the run
   int restarts = 0;
   uint64_t resends = 0;  // records that actors sent again
   // Episodes of the training actors that ended at a number that is not finite, by cause
   // (actor/worlds/episode_fault.h).
   std::map<std::string, uint64_t> faulty_episodes;
   std::string exit = "running";  // then "target", "budget", "interrupted" or "failed"
-  std::string error;             // why, where failed
+  std::string error;             // reason of a failure
 };
 
 // Writes meta.json. `updates_per_env_step` is the ratio so far, null before the first env step.
@@ -45,13 +45,14 @@ struct RunMeta {
 void WriteRunMeta(const std::filesystem::path& run, const Config& config, const RunMeta& meta);
 
 // "while training: success >= 98 % over 2 evaluations in a row, first from 60012 env steps, 5400
-// updates, 98 s on", and that the final evaluation is lower where it is: the two are of different
-// episodes. That it was never reached where it was not; empty without success or evaluations.
+// updates, 98 s on", plus a remark if the final evaluation is lower, because the two use different
+// episodes. If the target was never reached, the text says this. Empty without success or
+// evaluations.
 std::string FormatFirstSuccess(const RunMeta& meta, int evaluations);
 
 // Reads the state that a resumed run continues: commits, started, wall_seconds, the counters, the
-// changes, the way it ended and the result of its final evaluation. Defaults if the file is
-// missing. Throws Error on a broken file.
+// changes, the run's end and the result of its final evaluation. Defaults if the file is missing.
+// Throws Error on a broken file.
 RunMeta ReadRunMeta(const std::filesystem::path& run);
 
 }  // namespace shoal::launch

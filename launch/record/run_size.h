@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much room a run takes on the disk.
+// The size of a run on the disk.
 #pragma once
 
 #include <cstdint>
@@ -9,8 +9,8 @@
 namespace shoal::launch {
 
 struct RunSize {
-  uint64_t total = 0;   // bytes on the disk, each file once, whatever the number of its names
-  uint64_t replay = 0;  // of these in the replay's ring
+  uint64_t total = 0;   // bytes on the disk; hard-linked files count once
+  uint64_t replay = 0;  // part of `total` in the replay's ring
 };
 // Files that cannot be read count as 0 bytes.
 RunSize SizeOfRun(const std::filesystem::path& run);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A configuration key that was changed while a run went on.
+// A configuration key that was changed during a run.
 #pragma once
 
 #include <cstdint>
@@ -7,7 +7,7 @@
 
 namespace shoal::launch {
 
-// One change, as meta.json keeps it.
+// One change, as stored in meta.json.
 struct SettingChange {
   std::string time;  // UTC
   uint64_t env_steps = 0, updates = 0;

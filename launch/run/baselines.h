@@ -20,14 +20,15 @@ struct Baselines {
 };
 
 // Whether two configurations have the same baselines: equal in task, environment of Python,
-// threshold, model file, physics, action repeat and whether episodes end on success. Everything
-// else that they say is the policy's.
+// threshold, model file, physics, action repeat and whether episodes end on success. All other keys
+// concern the policy.
 bool ShareBaselines(const Config& a, const Config& b);
 
-// $XDG_CACHE_HOME/shoal/baselines, or ~/.cache/shoal/baselines; in /tmp where there is no home.
+// $XDG_CACHE_HOME/shoal/baselines, or ~/.cache/shoal/baselines; in /tmp if there is no home
+// directory.
 std::filesystem::path BaselineFolder();
 
-// False for environments of Python, which no program but their actors can play.
+// False for environments of Python, which only their actors can play.
 bool HasBaselines(const Config& config);
 
 class BaselineCache {
@@ -37,12 +38,14 @@ class BaselineCache {
   explicit BaselineCache(std::filesystem::path folder = BaselineFolder(), int episodes = kEpisodes)
       : folder_(std::move(folder)), episodes_(episodes) {}
 
-  // Those of the configuration's task with its threshold, model file (its content), physics, action
-  // repeat and end of episodes, without pictures and randomization; empty if they have not been
-  // measured, if the model file no longer exists, or if it has none (HasBaselines).
+  // Baselines of the configuration's task with its threshold, model file (its content), physics,
+  // action repeat and end of episodes, without pictures and randomization. Empty if the baselines
+  // have not been measured, if the model file no longer exists, or if the configuration has no
+  // baselines (HasBaselines).
   std::optional<Baselines> Find(const Config& config) const;
-  // The same, measured where they have not been: whole episodes, some seconds to a minute. `say`
-  // gets a line before. Empty when `stop` said so. Throws Error. CHECK: HasBaselines.
+  // The same; measures baselines that are not stored yet. Measuring plays whole episodes and takes
+  // from some seconds to a minute; `say` gets a line before. Empty if `stop` returned true. Throws
+  // Error. CHECK: HasBaselines.
   std::optional<Baselines> Measure(const Config& config, const std::function<bool()>& stop,
                                    const std::function<void(const std::string&)>& say) const;
 
@@ -54,10 +57,10 @@ class BaselineCache {
 };
 
 // {noop: {task, success, episodes, return_mean, return_std, final_distance_mean}, random: {...}};
-// {} without.
+// {} without baselines.
 nlohmann::ordered_json ToJson(const std::optional<Baselines>& baselines);
 
-// "without a policy: no-op 6.8 %, random 4.0 % (400 episodes each)", returns where the task has no
+// "without a policy: no-op 6.8 %, random 4.0 % (400 episodes each)", or returns if the task has no
 // success.
 std::string FormatBaselines(const Baselines& baselines);
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which evaluation a run's best checkpoint is of. Pure.
+// Chooses the evaluation whose checkpoint is the run's best. Pure.
 #pragma once
 
 #include <vector>
@@ -8,26 +8,27 @@
 
 namespace shoal::launch {
 
-// The highest return among the evaluations whose success is the highest, or less by no more than
-// chance (docs/algorithm.md, Eq. 13): an early policy that once reached 50 of 50 goals by luck must
-// not stay the best before later ones that come nearer to every goal. Where the task has no success
-// of its own, the highest return. Does not depend on the order of evaluations but where two are
-// equal: the first one counts.
+// The best evaluation has the highest return among those whose success rate equals the highest rate
+// within chance (docs/algorithm.md, Eq. 13). So an early policy that once reached 50 of 50 goals by
+// luck does not stay the best when later policies get closer to every goal. If the task has no
+// success of its own, the evaluation with the highest return is the best. The order of evaluations
+// matters only for equal ones: the first is chosen.
 class BestEvaluation {
  public:
   void OnEvaluation(const EvaluationPoint& point);
 
   // Null before the first evaluation.
   const EvaluationPoint* best() const;
-  // Those that are the best or may become it when a later evaluation raises what counts as success:
-  // no other has both as much success and as high a return. Few.
+  // The evaluations that are the best, or may become the best when a later evaluation raises the
+  // highest success rate: no other evaluation has both as high a success rate and as high a return.
+  // The list is short.
   const std::vector<EvaluationPoint>& candidates() const { return candidates_; }
-  // The last one is the best.
+  // Whether the last evaluation is the best.
   bool newest_is_best() const { return newest_is_best_; }
 
  private:
   std::vector<EvaluationPoint> candidates_;  // in the order of evaluation
-  double least_success_ = 0;                 // that chance does not tell from the highest
+  double least_success_ = 0;                 // lowest rate within chance of the highest one
   bool newest_is_best_ = false;
 };
 

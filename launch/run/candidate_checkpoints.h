@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which checkpoints a run keeps beyond the learner's own pruning: those of the evaluations that are
-// the best or may become it (best_evaluation.h). Pure.
+// Chooses the checkpoints that a run keeps after the learner has pruned its own: the checkpoints of
+// the evaluations that are the best or may become the best (best_evaluation.h). Pure.
 #pragma once
 
 #include <functional>
@@ -21,20 +21,21 @@ struct CheckpointChoice {
 
 class CandidateCheckpoints {
  public:
-  // `unwritten`: how many checkpoints the learner has not been able to write, by its last report.
-  // Returns a line when it begins to fail and when it has written them. `log`: the learner's.
+  // `unwritten`: number of checkpoints that the learner could not write, from its last report.
+  // Returns a line when the learner begins to fail, and when it has written its checkpoints. `log`:
+  // the learner's log.
   std::optional<std::string> OnUnwritten(double unwritten, const std::string& learner,
                                          const std::string& log);
 
   // `candidates`: BestEvaluation::candidates(). `exists` says whether a checkpoint of that name was
-  // written. While the learner cannot write, the choice takes for granted that it will. Empty when
-  // an evaluation names no checkpoint: there is nothing to keep.
+  // written. While the learner cannot write, missing checkpoints are not left out, because the
+  // learner will write them later. Returns nothing if an evaluation names no checkpoint.
   std::optional<CheckpointChoice> Choose(std::vector<EvaluationPoint> candidates,
                                          const std::function<bool(const std::string&)>& exists);
 
  private:
   bool learner_fails_ = false;
-  std::set<std::string> gone_;  // checkpoints that were never written: said once each
+  std::set<std::string> gone_;  // checkpoints never written; one line for each
 };
 
 }  // namespace shoal::launch

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Carries out the commands of users (stop, set, scale) and makes the replies. Knows no transport.
+// Executes the commands of users (stop, set, scale) and makes the replies. Independent of the
+// transport.
 #pragma once
 
 #include <cstdint>
@@ -20,19 +21,20 @@ class CommandHandler {
     std::function<uint64_t()> env_steps;       // of the run so far
     std::function<void()> stop;                // ends the run in order
     std::function<void(int, int)> scale;       // actors: from, to; may throw Error
-    std::function<void(SettingChange)> note;   // a change was made: record it, tell the processes
+    std::function<void(SettingChange)> note;   // records a change and sends it to the processes
     std::function<void(const Config&)> check;  // of new settings on this machine; throws Error
   };
 
   CommandHandler(LiveSettings& settings, Effects effects)
       : settings_(settings), effects_(std::move(effects)) {}
 
-  // "stop", "set KEY=VALUE...", "scale N". The reply says what was done, or why not: of several
-  // assignments all are made or none; its key and values are those of the last one.
+  // "stop", "set KEY=VALUE...", "scale N". The reply contains the effect or the reason of a
+  // refusal. Either all of several assignments are made or none; key and values in the reply are
+  // those of the last one.
   ReplyMessage Handle(const CommandMessage& command);
 
  private:
-  // Fills in what was done.
+  // Writes the effect into the reply.
   void Execute(const CommandMessage& command, ReplyMessage* reply);
   void Set(const std::vector<std::string>& assignments, ReplyMessage* reply);
 

@@ -25,7 +25,8 @@ class ControlSender {
   void Order(RunState state);
   void Order(const LiveSettings& settings);
 
-  // Sends the order if it is new or kPeriod old. What could not be sent is sent by the next call.
+  // Sends the order if it is new or kPeriod old. An order that could not be sent is sent by the
+  // next call.
   void Beat(SteadyTime now);
 
   static constexpr std::chrono::milliseconds kPeriod{300};

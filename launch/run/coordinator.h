@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The coordinator of a run: starts its processes, keeps them alive, receives their messages, writes
-// the run's record, shows its progress and stops the processes in order. run_decisions.h decides
-// when.
+// The coordinator of a run: starts its processes, restarts dead ones, receives their messages,
+// writes the run's record, shows its progress and stops the processes in order. The decisions are
+// in run_decisions.h.
 #pragma once
 
 #include <cstdint>
@@ -40,7 +40,7 @@ struct RunResult {
   RunMeta meta;
   bool clean = true;                // every process left by itself with code 0, or kUnwrittenExit
   std::string deaths;               // Supervisor::DescribeDeaths
-  std::set<std::string> unwritten;  // files, or processes, that could not write what they have
+  std::set<std::string> unwritten;  // files or processes with unwritten results
   Bottleneck bottleneck;
 };
 
@@ -48,24 +48,24 @@ class Coordinator {
  public:
   struct Parts {
     std::filesystem::path run;      // the folder: holds config.json and cluster.json
-    const Config& config;           // as config.json has it
-    const RunMeta& before;          // a fresh one, or the resumed run's
-    std::vector<RemoteHost> hosts;  // have the run (run_hosts.h)
+    const Config& config;           // content of config.json
+    const RunMeta& before;          // empty, or that of the resumed run
+    std::vector<RemoteHost> hosts;  // have a copy of the run (run_hosts.h)
     link::Hub& hub;                 // of the role coordinator
     RunServer& server;
     Progress& progress;
     ProcessStarter start = StartChild;  // starts a process of the run
-    // Within which the run divides the cores by what it measures; empty: it keeps its numbers.
+    // Limits within which the run divides the cores by its measurements; empty: the numbers stay.
     std::optional<SplitLimits> split_limits = {};
   };
 
   // Borrows hub, server and progress. Throws Error.
   explicit Coordinator(const Parts& parts);
 
-  // Until the target, the budget, Ctrl-C, `shoal stop` or a failure; no process is left when it
-  // returns. Call on the thread that lives longest (child_process.h). Throws Error when a process
-  // cannot be started. `on_started` is called once, when every process has reported for the first
-  // time; may be null.
+  // Runs until the target, the budget, Ctrl-C, `shoal stop` or a failure. When the call returns, no
+  // process is left. Call on the thread that lives longest (child_process.h). Throws Error when a
+  // process cannot be started. `on_started` is called once, when every process has reported for the
+  // first time; may be null.
   RunResult Run(const std::function<void()>& on_started);
 
  private:
@@ -76,13 +76,13 @@ class Coordinator {
   void Stop(RunEnd end);
   RunResult Result();
 
-  // One turn of the loop: heartbeat, messages, files, display. An Error in it fails the run.
+  // One turn of the loop: heartbeat, messages, files, display. An Error in a turn fails the run.
   void Tick(bool last = false);
   void SaySuspensions();
   void TakeMessages(SteadyTime now);
   void TakeEvaluation(const EvalMessage& message);
   void TakeCommands();
-  // Once a second: moves actors and learner threads where that makes the run faster.
+  // Once a second: changes the numbers of actors and learner threads if the run gets faster.
   void DivideCores();
   void Divide(const Split& to);
   void WriteFiles(SteadyTime now);
@@ -111,10 +111,10 @@ class Coordinator {
   Progress& progress_;
   RunMeta before_;  // the earlier sessions, and the changes of this one
   LiveSettings settings_;
-  const link::RunTopology topology_;  // as started; `shoal scale` may have changed the actors since
+  const link::RunTopology topology_;  // at the start; `shoal scale` may change the actors
   CommandHandler handler_;
   RunDecisions decisions_;
-  std::optional<CoreSplit> split_;  // empty: the numbers were chosen
+  std::optional<CoreSplit> split_;  // empty: the user chose the numbers
   EvaluationIntake evaluations_;
   RunRecord record_;
   RunWatch watch_;
@@ -125,7 +125,7 @@ class Coordinator {
   const SteadyTime start_;  // by AwakeNow()
   const int usable_cores_;
   std::optional<SteadyTime> meta_written_;
-  bool meta_due_ = false;  // something happened that it records
+  bool meta_due_ = false;  // an event for meta.json has happened
   int suspensions_said_, refusals_said_;
 };
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Divides the cores of a host between actors and learner threads while a run is young: measures
-// what an env step and an update cost, moves to the division that these costs promise most of,
-// measures again, and ends with the best division that it has measured. Pure: counts and times in,
-// moves out.
+// Divides the cores of a host between actors and learner threads while a run is young: measures the
+// costs of an env step and an update, moves to the division that is fastest by these costs,
+// measures again, and ends with the fastest measured division. Pure: counts and times in, moves
+// out.
 #pragma once
 
 #include <optional>
@@ -17,8 +17,8 @@ namespace shoal::launch {
 // The counts of a run's processes so far.
 struct SplitCounts {
   double env_steps = 0, updates = 0;
-  double actor_seconds = 0, actors_waited = 0;     // of all actors; waited for the learner
-  double learner_seconds = 0, learner_waited = 0;  // waited for batches
+  double actor_seconds = 0, actors_waited = 0;     // of all actors; time waiting for the learner
+  double learner_seconds = 0, learner_waited = 0;  // time waiting for batches
   double servers_cpu_seconds = 0;                  // of replay server and evaluation
 };
 SplitCounts CountsOf(const MetricsView& view);
@@ -32,33 +32,34 @@ class CoreSplit {
     Split to;
     std::string line;  // for people
   };
-  // Call about once a second with the seconds of the run, pauses left out. `updates_per_env_step`:
-  // that are asked for now. The caller makes the move.
+  // Call about once a second with the seconds of the run without pauses. `updates_per_env_step`:
+  // the present target. The caller makes the move.
   std::optional<Move> Look(double seconds, const SplitCounts& counts, double updates_per_env_step);
-  // Keeps still from now on: the numbers are decided elsewhere.
+  // Proposes no more moves. Call when the user chooses the numbers.
   void Stop() { done_ = true; }
   bool done() const { return done_; }
 
-  // A division is measured for at least so long, so many updates, once the processes that a move
-  // concerns have started.
+  // Seconds before a measurement, in which the processes of a move start; least seconds and least
+  // updates of a measurement.
   static constexpr double kSettling = 2, kMeasured = 3;
   static constexpr double kLeastUpdates = 10;
-  // After the first update; a measurement that is not finished by then is given up.
+  // Seconds after the first update; a measurement that is unfinished by then is abandoned.
   static constexpr double kLast = 20;
   static constexpr size_t kMostMoves = 3;
-  // Factors of the env steps/s measured best so far: to be worth a move; to be worth the way back.
+  // Factors relative to the best env steps/s so far: the least expected gain of a move, and the
+  // least gain of a move back to the best division.
   static constexpr double kGain = 1.08, kLoss = 1.05;
 
  private:
   struct Trial {
     Split split;
-    double pace = 0;            // env steps/s, as the updates allow them
+    double pace = 0;            // env steps/s, as far as the updates allow
     double update_seconds = 0;  // while the learner did not wait
   };
 
   std::optional<Move> Decide(const SplitCounts& counts, double updates_per_env_step, bool may_try);
-  // The share that each further thread adds to an update, by the latest two trials of different
-  // numbers.
+  // The share that each further thread adds to an update, from the latest two trials with different
+  // numbers of threads.
   double FurtherThread() const;
   bool Tried(const Split& split) const;
 

@@ -11,14 +11,14 @@
 
 namespace shoal::launch {
 
-// Without env.id nothing. Else completes `config`: a file in env.id as an absolute path, the task's
-// name, and of an environment of Python env.python and env.folder. Throws Error (kUsage) on a file
-// or an interpreter that does not exist.
+// Does nothing without env.id. Else completes `config`: makes a file in env.id an absolute path,
+// and sets the task's name and, for an environment of Python, env.python and env.folder. Throws
+// Error (kUsage) if a file or an interpreter does not exist.
 void CompleteEnvironmentKeys(Config* config);
 
-// The settings that a run gets where the user's preset, file and --set do not say them.
+// The settings of a run that the user's preset, file and --set do not contain.
 struct EnvironmentDefaults {
-  std::string preset;                    // "state" or "pixels"; only where none is named
+  std::string preset;                    // "state" or "pixels"; used only if the user names none
   std::vector<std::string> assignments;  // "observation.grey=true"
   std::string reason;                    // of the preset, for people
 };

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which evaluations count: each one once, in the order of the parameters they are of. The transport
-// delivers what it keeps again to a reader that it takes for new (after a pause longer than its
-// lease), and a restarted evaluation actor plays the newest parameters again; a run that counted
-// those would stop for one evaluation told twice. Pure.
+// Counts each evaluation once, in the order of the evaluated parameters. Duplicates are possible:
+// the transport delivers its kept messages again to a reader that seems new (after a pause longer
+// than its lease), and a restarted evaluation actor plays the newest parameters again. A run that
+// counted duplicates could stop because of one evaluation. Pure.
 #pragma once
 
 #include <cstdint>
@@ -16,9 +16,10 @@ namespace shoal::launch {
 
 class EvaluationFilter {
  public:
-  // True when the point counts: its parameters are newer than those of every point before, and no
-  // point before had its env steps and updates (a resumed learner may hand out the checkpoint that
-  // its predecessor had evaluated). False: it was counted already, or overtaken.
+  // Returns true if the point counts: its parameters are newer than those of every earlier point,
+  // and no earlier point had the same env steps and updates (a resumed learner may request an
+  // evaluation of a checkpoint that has been evaluated). Returns false for a duplicate or an
+  // overtaken point.
   bool Accept(const EvaluationPoint& point);
 
   // Points that did not count.

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which of the evaluations that come a run counts: those that can be, of parameters that the
-// learner handed out, each once. The rest is refused or left out, counted and said; nothing that is
-// sent can end the run. Pure.
+// Chooses the received evaluations that a run counts: valid ones of parameters that the learner
+// handed out, each once. Other evaluations are refused or left out, counted and reported. No
+// message can end the run. Pure.
 #pragma once
 
 #include <chrono>
@@ -30,8 +30,8 @@ class EvaluationIntake {
   void Recall(const EvaluationPoint& point) { filter_.Accept(point); }
 
   // Takes the messages received since the last call and returns those that count, in order of
-  // arrival. An evaluation may arrive before the learner's message that announces it: it waits for
-  // up to kWait.
+  // arrival. An evaluation may arrive before the learner's message that announces it: the
+  // evaluation waits for up to kWait.
   std::vector<EvalMessage> Take(std::vector<EvalMessage> messages, SteadyTime now);
 
   // The run is over: refuses the evaluations that still wait.
@@ -50,7 +50,7 @@ class EvaluationIntake {
     SteadyTime arrived;
   };
 
-  // Its figures. Throws Error where they cannot be.
+  // Figures of the message. Throws Error if the figures are impossible.
   EvaluationPoint Figures(const EvalMessage& message) const;
   void Refuse(const std::string& why, SteadyTime now);
 

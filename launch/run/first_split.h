@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The division of the cores that a run starts with, expected from what is known before it runs, and
-// whether the run may move it afterwards (core_split.h).
+// The first division of the cores, from costs expected before the run, and whether the run may
+// change the division later (core_split.h).
 #pragma once
 
 #include <optional>
@@ -10,16 +10,15 @@
 
 namespace shoal::launch {
 
-// The costs that an env step and an update are going to have on this machine: the one measured
-// (`step_microseconds`, pictures included), the other from its arithmetic and what a core of this
-// kind computes. Empty without the measurement. Throws Error where the CPU lacks the asked
-// precision.
+// Expected costs of an env step and an update on this machine. The cost of an env step is measured
+// (`step_microseconds`, pictures included). The cost of an update is computed from its arithmetic
+// and the speed of a core of this kind. Empty without the measurement. Throws Error if the CPU
+// lacks the requested precision.
 std::optional<CoreCosts> ExpectedCosts(const RunConfig& run, double step_microseconds);
 
-// Within which the run may divide `cores`; empty if it keeps its numbers: both were given
-// (`given`: the configuration before 0 was filled in), in lockstep, on policy, without pixels or a
-// limiter, with actors on other hosts, and on fewer than kLeastCores, which leave nothing to
-// divide.
+// Limits within which the run may divide `cores`. Empty if the run keeps its numbers: if both are
+// given (`given`: the configuration with 0 for unset numbers), in lockstep, on policy, without
+// pixels, without a limiter, with actors on other hosts, or with fewer than kLeastCores cores.
 std::optional<SplitLimits> LimitsOfSplit(const Config& given, bool other_hosts, int cores);
 
 inline constexpr int kLeastCores = 4;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A run whose evaluations do not get better: "runs but does not learn", seen from outside. Pure.
+// Detects a run whose evaluations do not improve: the run works but does not learn. Pure.
 #pragma once
 
 #include <deque>
@@ -11,13 +11,13 @@
 namespace shoal::launch {
 
 // Looks at the newest kWindow evaluations. A figure has risen when its mean over the newer half
-// exceeds that over the older half by more than two standard errors of their difference. Flat is a
-// run whose return has not risen, nor its success where the task has one, and whose newest success
-// is below the target.
+// exceeds that over the older half by more than two standard errors of their difference. A run is
+// flat if neither its return nor its success (if the task has one) has risen, and its newest
+// success is below the target.
 class FlatScore {
  public:
-  // In the order of evaluation; `target` as StopRule::target(). One line with the figures the first
-  // time that the run is flat, then never again.
+  // Call in the order of evaluation. `target`: StopRule::target(). Returns one line with the
+  // figures the first time that the run is flat, and nothing later.
   std::optional<std::string> OnEvaluation(const EvaluationPoint& point, double target);
 
   static constexpr size_t kWindow = 10;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The configuration keys that may be changed while a run goes on: their present values, and what
-// has been changed. Pure.
+// The configuration keys that may be changed during a run: their present values, and the changes.
+// Pure.
 #pragma once
 
 #include <cstdint>
@@ -15,7 +15,7 @@
 
 namespace shoal::launch {
 
-// A process of `role` reports the value that it uses as `metric`.
+// A process of `role` reports its present value of a key as `metric`.
 struct SettingUse {
   std::string_view role, metric;
 };

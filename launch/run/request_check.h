@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The checks of a run before anything of it is made or started: each refuses with one line what a
-// process of the run would otherwise find later.
+// The checks of a run before its folder is created and its processes are started. Each check
+// refuses, with one line, an error that a process of the run would otherwise find later.
 #pragma once
 
 #include <string>
@@ -10,15 +10,16 @@
 
 namespace shoal::launch {
 
-// This process may open few files: the DDS library would fail without a reason. Throws Error.
+// Throws Error if this process may open only few files: the DDS library would fail without a
+// reason.
 void CheckOpenFiles();
 
-// The network, the weights that a fresh run starts from (read into the request), the replay's
+// Checks the network, the initial weights of a fresh run (read into the request), the replay's
 // storage and the other hosts. Throws Error.
 void CheckRequest(const TrainOptions& options, RunRequest* request);
 
-// The credentials of every process that a secured run starts; `secure` is their folder, empty for a
-// run that is not secured. Throws Error.
+// Checks the credentials of every process that a secured run starts. `secure`: their folder; empty
+// for a run that is not secured. Throws Error.
 void CheckRunCredentials(const std::string& secure);
 
 }  // namespace shoal::launch

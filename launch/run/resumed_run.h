@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// `shoal train --resume`: the request of a run that goes on from its folder.
+// `shoal train --resume`: the request of a run that continues from its folder.
 #pragma once
 
 #include <filesystem>
@@ -12,10 +12,10 @@
 
 namespace shoal::launch {
 
-// Holds and examines the run's folder, and prints what of it is missing or rebuilt. With
+// Locks and examines the run's folder, and prints missing and rebuilt files. With
 // --print-config only the configuration and the hosts are resolved; with --dry-run nothing is
-// repaired. `describe` asks the task what its actors observe; simulations have no task. Throws
-// Error.
+// repaired. `describe` returns the observations of the actors' task; simulations have no task.
+// Throws Error.
 RunRequest ResolveResumed(
     const TrainOptions& options,
     const std::function<ObservedWorld(const Config&)>& describe = DescribeObservations);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Finds missing and damaged files of a run before it is resumed and any process is started. Counts,
-// and what other files imply, are rebuilt; a line says so and names what is no longer known. Other
-// damage refuses the run with one line that names the file and the remedy.
+// and data that other files imply, are rebuilt; a line reports the rebuilt file and names the lost
+// data. Other damage refuses the run with one line that names the file and the remedy.
 #pragma once
 
 #include <filesystem>
@@ -14,23 +14,23 @@
 
 namespace shoal::launch {
 
-// Throws Error (usage) naming anything in the run's folder that is no file, folder or link to one:
-// a process that opened a FIFO would wait for its other end.
+// Throws Error (usage) if the run's folder contains anything but files, folders and links to them,
+// and names it. A process that opens a FIFO would wait for the other end.
 void CheckKindsOfFiles(const std::filesystem::path& run);
 
-// Runs `read`; its Error becomes one of usage, with the remedy behind it.
+// Runs `read`. An Error of `read` is thrown again as a usage error, with the remedy appended.
 void Refusing(const std::string& remedy, const std::function<void()>& read);
 
-// meta.json. Where it is missing, how far the run came is taken from its account and its newest
-// checkpoint, and `lines` gets a line. Throws Error (usage) when it is damaged.
+// Reads meta.json. If the file is missing, the counts are taken from the run's account and newest
+// checkpoint, and `lines` gets a line. Throws Error (usage) if the file is damaged.
 RunMeta ReadMetaToGoOn(const std::filesystem::path& run, std::vector<std::string>* lines);
 
 struct RunCheck {
   std::vector<std::string> lines{};              // for people
-  std::vector<std::function<void()>> repairs{};  // to be carried out once the run goes on
+  std::vector<std::function<void()>> repairs{};  // to be called once the run continues
 };
-// Everything else that the processes of the run will read. `own_actors`: actors below this number
-// run on this host. Nothing is changed. Throws Error (usage).
+// Checks all other files that the processes of the run will read. `own_actors`: actors below this
+// number run on this host. Changes no file. Throws Error (usage).
 RunCheck CheckRunFiles(const std::filesystem::path& run, const RunConfig& config,
                        const RunMeta& meta, uint32_t own_actors);
 

@@ -33,12 +33,12 @@ class RunDecisions {
   RunDecisions(const Config& config, link::RunTopology topology, const RunMeta& before,
                SteadyTime start);
 
-  // ---- What happened. A returned line is for people, and due once.
+  // ---- Events. A returned line is for people; print each once.
 
   // New values of live keys.
   void Change(const Config& config);
   void OnStopCommand() { stop_commanded_ = true; }
-  // The run cannot go on. Only the first reason counts.
+  // The run cannot continue. Only the first reason counts.
   std::optional<std::string> Fail(const std::string& why);
   // Progress of a replay, of the learner.
   std::optional<std::string> OnReplay(const ReplayProgress& progress);
@@ -56,28 +56,30 @@ class RunDecisions {
   };
   // An evaluation of this session, in the order of arrival.
   Verdict OnEvaluation(const EvaluationPoint& point);
-  // Begins the run's end. From now on a process that is down is not missed.
+  // Begins the run's end. From now on a dead process does not fail the run.
   std::optional<std::string> BeginEnd(RunEnd end);
-  // All processes have ended. A run whose learner died after the budget was spent, and took env
-  // steps with it, has failed.
+  // All processes have ended. The run has failed if its learner died after the budget was used up
+  // and lost env steps.
   std::optional<std::string> OnEnded();
 
   // ---- Decisions
 
-  // Whether every process of the run has reported. A process that is not wanted any more, or that
-  // is down while other actors work, does not count.
+  // Whether every process of the run has reported. A process that was retired, or that is dead
+  // while other actors work, does not count.
   bool Started(const std::function<bool(const ProcessName&)>& has_reported) const;
   // Whether live keys may still change.
   bool TakesCommands() const { return !end_ && !stop_commanded_; }
-  // Why the run must end now; empty while it goes on. `interrupted`: a stop signal arrived.
+  // Why the run must end now; empty while the run continues. `interrupted`: a stop signal arrived.
   std::optional<RunEnd> MustEnd(bool interrupted) const;
-  // Whether the actors can store what they have: with a replay, only while one runs.
+  // Whether the actors can store their remaining records: with a replay, only while a replay server
+  // runs.
   bool CanDrain(int running_replays) const;
-  // Whether the learner may stop, once the actors have left. If the budget ended the run (in
-  // lockstep, which must end the same way each time, also if the target did), the learner first
-  // finishes what the stored steps allow, and the last evaluation arrives.
+  // Whether the learner may stop, once the actors have left. If the budget ended the run, the
+  // learner first makes the updates that the stored steps allow, and the last evaluation arrives.
+  // In lockstep the same applies if the target ended the run, because the run must end the same way
+  // each time.
   bool Settled() const;
-  // The end that BeginEnd got; empty before.
+  // The argument of BeginEnd; empty before.
   std::optional<RunEnd> end() const { return end_; }
   // The end for the record: a failure after BeginEnd counts as well.
   RunEnd FinalEnd() const;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The end of a run, once its processes have left: the account of its records, a last evaluation on
+// The end of a run, once its processes have left: the account of its records, a final evaluation on
 // fresh episodes, meta.json and the summary.
 #pragma once
 
@@ -11,10 +11,10 @@
 
 namespace shoal::launch {
 
-// Evaluates the run unless it was interrupted; `film` asks for a film of it as well. Removes the
-// ring of a finished run, unless replay.keep. Prints the summary and returns the run's exit code: 1
-// when it failed, a process left with an error, the records do not balance, or there is no film
-// that was asked for; else kUnwrittenExit when something of it could not be written.
+// Evaluates the run unless it was interrupted, and makes a film if `film` is true. Removes the ring
+// of a finished run, unless replay.keep is set. Prints the summary and returns the run's exit code:
+// 1 if the run failed, a process exited with an error, the records do not balance, or a requested
+// film is missing; else kUnwrittenExit if a result could not be written.
 int EndRun(const std::filesystem::path& run, const Config& config,
            const link::RunTopology& topology, RunResult result, bool film, RunServer& server,
            Progress& progress);

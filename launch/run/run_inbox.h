@@ -16,9 +16,9 @@
 
 namespace shoal::launch {
 
-// Messages arrive on threads of the hub; one thread takes them. Messages of processes that the run
-// cannot have are refused and counted. Members are in construction order: readers end before the
-// inboxes that they fill.
+// Messages arrive on threads of the hub; one thread takes them. Messages of processes that are not
+// in the run's topology are refused and counted. Members are in construction order: readers end
+// before the inboxes that they fill.
 class RunInbox {
  public:
   RunInbox(link::Hub& hub, const link::RunTopology& topology);
@@ -29,9 +29,9 @@ class RunInbox {
   std::vector<ReplayProgress> TakeReplayProgress() { return replay_words_.TakeAll(); }
   std::vector<LearnerProgress> TakeLearnerProgress() { return learner_words_.TakeAll(); }
 
-  // Messages that arrived faster than they were taken.
+  // Number of messages that arrived while an inbox was full.
   uint64_t dropped() const;
-  // Reports and progress of processes that the run cannot have.
+  // Number of refused reports and progress messages.
   uint64_t refused() const { return refused_; }
 
  private:

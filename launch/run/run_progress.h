@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The progress of a run, from the typed messages of replay and learner: budget, draining and end
-// are decided by it, and it knows which evaluations were requested. Reports (MetricsMessage) are
+// The progress of a run, from the typed messages of replay and learner, and the list of requested
+// evaluations. Budget, draining and end are decided by this progress; reports (MetricsMessage) are
 // for display and files only. Pure.
 #pragma once
 
@@ -22,30 +22,30 @@ class RunProgress {
   // records.
   bool OnReplay(const ReplayProgress& progress);
   void OnLearner(const LearnerProgress& progress);
-  // The learner has died. In a run without a replay its successor goes on from a checkpoint with
+  // The learner has died. In a run without a replay, the successor continues from a checkpoint with
   // fewer env steps.
   void OnLearnerDeath() { died_ = learner_.session; }
 
   // Sum over all replays; in a run without one, the learner's count. 0 before the first report.
-  // Never falls: a replay that lost its memory may report less than its predecessor, by the steps
-  // of a second.
+  // Never falls, although a replay that lost its memory may report fewer steps than its predecessor
+  // (about one second's).
   uint64_t stored_steps() const;
   std::optional<uint64_t> updates() const;
-  // The learner that reported last has not died since.
+  // Whether the learner that reported last is alive.
   bool learner_lives() const { return learner_.session > died_; }
-  // The learner has done what the stored steps allow.
+  // Whether the learner has made all updates that the stored steps allow.
   bool drained() const { return learner_.drained; }
-  // Updates of the parameters it handed out for evaluation last; 0 = none yet.
+  // Update count of the parameters that the learner last handed out for evaluation; 0 = none yet.
   uint64_t evaluation_due() const;
-  // The learner has handed out these parameters for evaluation.
+  // Whether the learner has handed out these parameters for evaluation.
   bool AskedFor(const EvaluationPoint& point) const;
 
  private:
   std::map<uint32_t, ReplayProgress> replays_;
-  uint64_t env_steps_ = 0;  // the most that `replays_` came to
+  uint64_t env_steps_ = 0;  // largest sum over `replays_`
   LearnerProgress learner_;
   uint64_t died_ = 0;  // newest session of a learner that died
-  // By learner session and update, over all sessions.
+  // Requested evaluations of all sessions, keyed by learner session and update.
   std::map<std::pair<uint64_t, uint64_t>, EvaluationRequest> asked_;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// The files that a coordinator writes while its run goes on: meta.json, evaluations, TensorBoard
-// events, and the checkpoints that outlive the learner's own pruning. Files that cannot be written
-// are reported once and tried again.
+// The files that a coordinator writes during a run: meta.json, evaluations, TensorBoard events, and
+// the checkpoints kept beyond the learner's pruning. A file that cannot be written is reported once
+// and tried again.
 #pragma once
 
 #include <filesystem>
@@ -34,12 +34,12 @@ class RunRecord {
   void WriteEvaluation(EvaluationRecord record) { evaluations_.Write(std::move(record)); }
   void FlushScalars();
 
-  // How many checkpoints the learner has not been able to write.
+  // `unwritten`: number of checkpoints that the learner could not write.
   void OnUnwrittenCheckpoints(double unwritten, const std::string& learner);
-  // Keeps the checkpoints of these evaluations, in place of those that were kept before.
+  // Keeps the checkpoints of these evaluations and removes the other kept ones.
   void KeepCheckpointsOf(const std::vector<EvaluationPoint>& candidates);
 
-  // Tries again what could not be written.
+  // Tries again to write the files that could not be written.
   void Retry();
 
  private:

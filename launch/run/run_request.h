@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A run that `shoal train` is about to start: the value that a fresh run and a resumed one fill in
-// their own ways, and that is then checked and started in one way (training_run.cpp).
+// A run that `shoal train` is about to start. A fresh run and a resumed run fill this value in
+// different ways; training_run.cpp checks and starts both in the same way.
 #pragma once
 
 #include <filesystem>
@@ -21,14 +21,14 @@ struct RunRequest {
   RunConfig config;
   Hosts hosts{};
   RunMeta meta{};
-  // A resumed run's, held from the beginning. A fresh run gets its own last (TakeFolder), so that a
-  // refusal leaves nothing behind.
+  // The folder of a resumed run, locked from the beginning. The folder of a fresh run is created
+  // last (TakeFolder), so that a refused run leaves no folder.
   std::optional<RunFolder> folder{};
-  double frame_microseconds = 0;              // to draw a frame, all cameras
-  std::optional<SplitLimits> split_limits{};  // within which the run divides the cores anew
+  double frame_microseconds = 0;              // time to draw a frame, all cameras
+  std::optional<SplitLimits> split_limits{};  // limits for dividing the cores again
   std::string camera_note{};                  // one line; empty unless the task chose the cameras
   std::string environment_note{};             // one line; empty unless env.id names an environment
-  nn::TensorMap initial_weights{};            // --init-from, by our names; empty without
+  nn::TensorMap initial_weights{};  // --init-from, by Shoal's names; empty without the option
 
   bool resumed() const { return folder.has_value(); }
 };
@@ -36,12 +36,14 @@ struct RunRequest {
 // Resolves a fresh run. With --print-config only the configuration is resolved. Throws Error.
 RunRequest ResolveFresh(const TrainOptions& options);
 
-// The folder to start in, with the initial weights in it: creates that of a fresh run, and gives
-// away that of a resumed one. Completes `request->config` and `request->meta`. Throws Error.
+// Returns the run's folder, which holds the initial weights: creates the folder of a fresh run, or
+// moves that of a resumed run out of the request. Completes `request->config` and `request->meta`.
+// Throws Error.
 RunFolder TakeFolder(const TrainOptions& options, RunRequest* request);
 
 // Waits until the processes of an earlier session have left the run. After their coordinator was
-// killed, they write into its folder until they notice. Prints what it waits for. Throws Error.
+// killed, they write into its folder until they notice. Prints the processes that it waits for.
+// Throws Error.
 void WaitUntilUnused(const std::filesystem::path& run);
 
 }  // namespace shoal::launch

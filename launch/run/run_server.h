@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The run's side of watching and steering (docs/monitoring.md): publishes a view of the whole run
+// The run's server for watching and control (docs/monitoring.md): publishes a view of the whole run
 // once a second, receives commands and sends the replies.
 #pragma once
 
@@ -23,34 +23,35 @@ class RunServer {
   // Borrows the coordinator's hub. `on_view` gets every view that is shown; may be null.
   RunServer(link::Hub& hub, const std::string& run,
             std::function<void(const RunViewMessage&)> on_view = nullptr);
-  // Gives watchers a moment to get the last view.
+  // Waits a moment so that watchers receive the last view.
   ~RunServer();
   RunServer(const RunServer&) = delete;
   RunServer& operator=(const RunServer&) = delete;
 
-  // A line for people; watchers get the last kEvents.
+  // Adds a line for people; watchers receive the last kEvents lines.
   void AddEvent(const std::string& text);
 
   // Whether the next view is due.
   bool Due(SteadyTime now) const { return !shown_ || now - *shown_ >= kPeriod; }
   // Shows `view`, with name, time and events filled in.
   void Show(RunViewMessage view, SteadyTime now);
-  // Shows the figures of the last view again, when due, in another state: no process is left.
+  // Publishes the coordinator's figures of the last view again, when due, in another state. Call
+  // when no other process is left.
   void ShowAgain(const std::string& state, SteadyTime now);
   // The last view: state "ended", with the coordinator's figure `exit_code`.
   void ShowEnd(int exit_code);
 
-  // Commands that came; each one once: one that comes again is answered again as it was.
+  // Returns the received commands, each once. A repeated command gets its former reply again.
   std::vector<CommandMessage> TakeCommands();
   void Answer(const ReplyMessage& reply);
 
   static constexpr std::chrono::seconds kPeriod{1};
   static constexpr size_t kEvents = 50;
-  static constexpr size_t kClients = 64;  // whose last reply is remembered
+  static constexpr size_t kClients = 64;  // clients whose last reply is stored
   static constexpr size_t kCommands = 100;
 
  private:
-  // The others have left.
+  // Removes the reports of all other processes, which have left.
   void OnlyCoordinator(const std::string& state);
   void Publish(SteadyTime now);
 

@@ -34,7 +34,7 @@ class RunWatch {
   // The newest report of each process.
   const MetricsView& view() const { return view_; }
 
-  // Adds a report to the view and the file. If the file cannot be written, says so once.
+  // Adds a report to the view and the file. If the file cannot be written, reports this once.
   void OnReport(const MetricsMessage& report, SteadyTime now);
   // Samples the run for the recent rates. Call it once a second; `seconds` and `env_steps` count
   // from the run's start.

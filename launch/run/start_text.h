@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The lines that a run begins with: what it consists of, what it will cost, where to watch it.
+// The first lines of a run: its parts, its cost, and how to watch the run.
 #pragma once
 
 #include <filesystem>
@@ -10,7 +10,8 @@
 
 namespace shoal::launch {
 
-// Each line ended. `address` is claimed. Throws Error where the CPU lacks the asked precision.
+// Each line has its newline. `address` is already reserved. Throws Error if the CPU lacks the
+// requested precision.
 std::string StartText(const RunRequest& request, const std::filesystem::path& run,
                       const ClusterAddress& address);
 

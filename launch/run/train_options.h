@@ -18,12 +18,12 @@ struct TrainOptions {
   std::string hosts;             // file of other hosts; empty = none, or those of the resumed run
   std::string secure;            // folder of credentials; empty = none, or the resumed run's
   std::string init_from, name_map;  // safetensors and JSON file (common/nn/named_weights.h)
-  std::string resume;               // run to go on with: its path or its name
+  std::string resume;               // run to continue: its path or its name
   bool overwrite = false, lockstep = false;
   bool print_config = false, dry_run = false;
-  bool film = false;        // of the judged checkpoint, once the run has been judged
+  bool film = false;        // film the judged checkpoint at the end
   bool in_process = false;  // all roles as threads of this process
-  bool detach = false;      // return once the run has started; it goes on in the background
+  bool detach = false;      // return once the run has started in the background
   std::string prometheus;   // PORT or ADDRESS:PORT to serve metrics at; empty = none
 };
 
@@ -38,7 +38,7 @@ Config ResolveConfig(const TrainOptions& options, int cores,
 // learner.precision, replay.keep and learner.threads (0: filled in for `cores`) may be set. Throws
 // Error (usage) for other keys or options.
 void ApplyResumeOptions(const TrainOptions& options, int cores, Config* config);
-// Whether KEY=VALUE is one of those that are no settings of a running run.
+// Whether KEY=VALUE is a setting for another machine, which no running run accepts.
 bool SetsForMachine(const std::string& assignment);
 
 }  // namespace shoal::launch

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whether a run can go on with the expendable processes that work, and what it says of the others
-// (docs/failures.md). Pure: the caller supplies standings and times.
+// Decides whether a run can continue with its working expendable processes, and describes the
+// others (docs/failures.md). Pure: the caller supplies standings and times.
 #pragma once
 
 #include <chrono>
@@ -18,7 +18,7 @@ class WorkingActors {
  public:
   explicit WorkingActors(SteadyTime start) : without_(start) {}
 
-  // Returns why the run must end, or nothing while it can go on. It must end
+  // Returns why the run must end, or nothing while the run can continue. The run must end
   // - as soon as restarts of all actors seem to be in vain, unless one worked before: the
   //   configuration is wrong;
   // - when no actor has worked for `patience`.
@@ -26,12 +26,12 @@ class WorkingActors {
                                   SteadyTime now);
 
  private:
-  bool ever_ = false;      // one worked
-  LivenessTimer without_;  // a working actor
+  bool ever_ = false;      // an actor has worked
+  LivenessTimer without_;  // time without a working actor
 };
 
-// Why a run must end whose evaluation actor has not delivered an evaluation since the run was
-// started or resumed: its restarts seem to be in vain. Nothing while it can go on.
+// Returns why a run must end if its evaluation actor has not delivered an evaluation since the
+// start or resumption, and restarts seem to be in vain. Returns nothing while the run can continue.
 std::optional<std::string> MissingEvaluations(const RoleStanding& evaluation, bool delivered);
 
 // One line that says which actors do not work and why: "actors 1 of 2: actor-1: exit code 1: no way

@@ -1,14 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the cores of a host are best divided between the actors and the threads of the learner, by
-// what an env step and an update cost. Pure.
+// Computes the best division of a host's cores between actors and learner threads from the costs of
+// an env step and an update. Pure.
 //
 //   u(N) = N / (c (1 + w (N - 1)))            updates/s of N threads
 //   pace(A, N) = min(A / a, u(N) / p)         env steps/s
 //   N + pace (a + s) <= cores
 //
-// a: an env step, in seconds of an actor; c: an update, in seconds of one thread; w: what each
-// further thread adds to that; p: updates per env step; s: what replay server and evaluation take
-// per env step, in seconds of a core.
+// a: seconds of one actor per env step; c: seconds of one thread per update; w: share of c that
+// each further thread adds; p: updates per env step; s: core seconds of replay server and
+// evaluation per env step.
 #pragma once
 
 #include <optional>
@@ -32,17 +32,18 @@ struct CoreCosts {
 
 struct SplitLimits {
   int cores = 1;
-  int most_threads = 1;             // that have rows of a batch
-  std::optional<int> actors = {};   // given: stays
-  std::optional<int> threads = {};  // given: stays
+  int most_threads = 1;             // threads that have rows of a batch
+  std::optional<int> actors = {};   // if given, the number is fixed
+  std::optional<int> threads = {};  // if given, the number is fixed
 };
 
 double UpdatesPerSecond(const CoreCosts& costs, int threads);
 // Env steps/s.
 double PaceOf(const CoreCosts& costs, const Split& split);
-// The fastest division in which the threads have cores of their own. More threads must gain kWorth
-// each. Actors beyond those that keep the learner busy (and kHeadroom) are left out. Nothing fits
-// where there are too few cores: then one thread, and one actor, unless their numbers are given.
+// Returns the fastest division in which each learner thread has a core of its own. Each further
+// thread must multiply the pace by kWorth. The number of actors is limited to kHeadroom times the
+// number that keeps the learner busy. If there are too few cores, the result is one thread and one
+// actor, unless their numbers are given.
 Split BestSplit(const CoreCosts& costs, const SplitLimits& limits);
 
 inline constexpr double kWorth = 1.01, kHeadroom = 1.15;

@@ -12,7 +12,7 @@
 
 namespace shoal::launch {
 
-// In none of the named stages.
+// Time outside of the named stages.
 inline constexpr std::string_view kOtherStage = "other";
 
 struct StageShare {
@@ -23,39 +23,39 @@ struct StageShare {
 struct ProcessTimes {
   std::string role;  // all processes of the role together
   int processes = 0;
-  double seconds = 0;                // they ran, summed over processes
-  double cores = 0;                  // processors used on average over the run, all together
+  double seconds = 0;                // run time, summed over processes
+  double cores = 0;                  // processors used on average, summed over processes
   std::vector<StageShare> stages{};  // largest first
 };
 
 struct Bottleneck {
-  double seconds = 0;          // the run's time that was looked at
+  double seconds = 0;          // length of the measured interval
   double inserts_blocked = 0;  // share of time in which the limiter held actors back
-  double samples_blocked = 0;  // ... the learner
-  bool limited = true;         // there is a limiter: the run has a replay
+  double samples_blocked = 0;  // the same for the learner
+  bool limited = true;         // the run has a replay, and so a limiter
   std::vector<ProcessTimes> roles{};
   double cores = 0;      // processors used by all processes
-  double usable = 0;     // processors there are
-  std::string advice{};  // one sentence; empty: too early for one (advice.h)
+  double usable = 0;     // processors available
+  std::string advice{};  // one sentence; empty if it is too early (advice.h)
 };
 
 // Resources that a run may use.
 struct RunResources {
   double usable_cores = 0;        // of the coordinator's host
-  int actors = 0;                 // asked for
-  bool actors_elsewhere = false;  // on other hosts: it has those that were named at its start
-  int learner_threads = 0;        // 0: not known
-  int most_threads = 0;           // that have rows of a batch; 0: not known
+  int actors = 0;                 // requested number
+  bool actors_elsewhere = false;  // on other hosts; the number is fixed at the start
+  int learner_threads = 0;        // 0: unknown
+  int most_threads = 0;           // threads that have rows of a batch; 0: unknown
   bool may_play_ahead = false;    // on policy with ppo.versions_ahead = 0
 };
 
 // Computes the shares from the totals; roles without counts are empty.
 Bottleneck FindBottleneck(const RunTotals& totals, const RunResources& resources);
 
-// A stage's name as words: "waiting credit".
+// Name of a stage in words: "waiting credit".
 std::string WordsOf(std::string stage);
 
-// The share of its time that a role spent in a stage; 0 where it has none.
+// The share of a role's time in a stage; 0 if the role has no such stage.
 double ShareOf(const Bottleneck& figures, std::string_view role, std::string_view stage);
 
 // The report, a line per role and the advice.

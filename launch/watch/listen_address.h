@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// An IPv4 address and a port of this host that a page is served at.
+// An IPv4 address and a port of this host, on which a page is served.
 #pragma once
 
 #include <cstdint>
@@ -15,12 +15,12 @@ struct ListenAddress {
   bool Loopback() const;     // only this host reaches it: 127.0.0.0/8
 };
 
-// Whether the text is an IPv4 address, of four numbers.
+// Whether the text is an IPv4 address of four numbers.
 bool IsAddress(const std::string& text);
 
-// Throws Error with the system's reason if the address cannot be listened on: the port is taken, or
-// the address is none of this host. `who`: the option or program that needs it. Libraries of
-// servers report that they failed, but no reason.
+// Throws Error with the system's reason if this process cannot listen on the address: the port is
+// taken, or the address does not belong to this host. `who`: the option or program that needs the
+// address. Server libraries report a failure without its reason.
 void CheckCanListen(const ListenAddress& listen, const std::string& who);
 
 }  // namespace shoal::launch

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A screen of lines that is drawn again and again, and keys as they are pressed.
+// A screen of lines that is redrawn, and keyboard input without Enter.
 #pragma once
 
 #include <termios.h>
@@ -11,21 +11,22 @@
 
 namespace shoal::launch {
 
-// While it lives the terminal shows its alternate screen, which has no history: what a change of
-// size makes of the lines is gone with the next drawing. Keys come without Enter and are not
-// echoed; Ctrl-\ does nothing and Ctrl-Z is a key (kSuspendKey). Its end, which stop signals must
-// lead to (common/base/stop.h), puts the terminal back as it was. One thread.
+// While the object exists, the terminal shows its alternate screen, which has no history: lines
+// that a change of size has wrapped disappear with the next drawing. Keys are read without Enter
+// and are not echoed; Ctrl-\ does nothing and Ctrl-Z is a key (kSuspendKey). The destructor
+// restores the terminal; stop signals must lead to it (common/base/stop.h). One thread.
 class LiveTerminal {
  public:
-  // Stdout is a terminal; keys are read when stdin is one too.
+  // Stdout must be a terminal; keys are read if stdin is a terminal too.
   LiveTerminal();
   ~LiveTerminal();
   LiveTerminal(const LiveTerminal&) = delete;
   LiveTerminal& operator=(const LiveTerminal&) = delete;
 
-  // Replaces what was drawn before. Lines that the terminal has no row for are left out.
+  // Replaces what was drawn before. Lines below the last row of the terminal are left out.
   void Draw(const std::vector<std::string>& lines);
-  // The next key, waiting at most this long; none at a stop signal or without a terminal on stdin.
+  // Waits at most `most` for the next key. Returns none at a stop signal or without a terminal on
+  // stdin.
   std::optional<char> WaitForKey(std::chrono::milliseconds most);
   // Handles Ctrl-Z: restores the terminal and stops this process until it is continued.
   void Suspend();
@@ -36,7 +37,7 @@ class LiveTerminal {
   void Enter();
   void Leave();
 
-  std::optional<termios> before_;  // what stdin was; empty when it is no terminal
+  std::optional<termios> before_;  // former settings of stdin; empty if stdin is no terminal
 };
 
 }  // namespace shoal::launch

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The newest figures of every process of a run, and what their counters have come to.
+// The newest figures of every process of a run, and the totals of their counters.
 #pragma once
 
 #include <cstdint>
@@ -16,15 +16,17 @@
 
 namespace shoal::launch {
 
-// One thread. Holds one report per process id and one final value per counter of dead ones.
+// One thread. Holds one report per process id, and one final value per counter of the dead
+// processes.
 class MetricsView {
  public:
-  // Reports of one process come in the order they were made; their wall-clock times say nothing
-  // about it, because that clock may be set back. A report with another host or process number, or
-  // with a shorter uptime, is of a successor.
+  // Expects the reports of one process in the order in which they were made. Their wall-clock times
+  // are not compared, because that clock may be set back. A report with another host or process
+  // number, or with a shorter uptime, belongs to a successor.
   void OnMessage(const MetricsMessage& message, SteadyTime now);
 
-  // The figure in the newest report of the process; empty when it has none.
+  // The figure in the newest report of the process; empty if the report does not contain the
+  // figure.
   std::optional<double> Get(const ProcessName& process, std::string_view name) const;
   // The largest value, and the mean, over the newest reports of the role's processes; empty when
   // none has the figure.
@@ -32,23 +34,23 @@ class MetricsView {
   std::optional<double> Average(std::string_view role, std::string_view name) const;
   // Sum over the role's processes that reported within kFresh; empty when none has the figure.
   std::optional<double> Sum(std::string_view role, std::string_view name, SteadyTime now) const;
-  // Mean over them, weighted by the figure `weight`.
+  // Mean over the same processes, weighted by the figure `weight`.
   std::optional<double> Mean(std::string_view role, std::string_view name, std::string_view weight,
                              SteadyTime now) const;
-  // A counter of the role over the whole run: restarted processes begin again at 0, so the last
-  // values of their predecessors are added.
+  // A counter of the role over the whole run. Restarted processes count from 0, so the last values
+  // of their predecessors are added.
   double Total(std::string_view role, std::string_view name) const;
 
-  // The newest report of every process, by role and id. Those not heard for kFresh are "silent",
-  // those not heard for
-  // kForget, or that had said that they stop, are left out.
+  // The newest report of every process, by role and id. A process without a report for kFresh has
+  // the state "silent". A process is left out if it has not reported for kForget, or if it is
+  // silent and its last state was "stopping".
   std::vector<MetricsMessage> Reports(SteadyTime now) const;
 
   // Seconds that the role's processes have run, restarted and ended ones included.
   double Seconds(std::string_view role) const { return Total(role, "uptime_seconds"); }
   // Processes of the role that ever reported, by id.
   int Processes(std::string_view role) const;
-  // The role's process `id` has reported.
+  // Whether the role's process `id` has reported.
   bool Heard(std::string_view role, uint32_t id) const;
 
   static constexpr std::chrono::seconds kFresh{5};

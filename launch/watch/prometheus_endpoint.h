@@ -16,14 +16,15 @@ namespace shoal::launch {
 // Serves on threads of its own until destruction.
 class PrometheusEndpoint {
  public:
-  // `where`: "PORT", on 127.0.0.1, or "ADDRESS:PORT". Throws Error: not of that form, or it cannot
-  // be listened on (taken, not an address of this host).
+  // `where`: "ADDRESS:PORT", or "PORT" for 127.0.0.1. Throws Error if the text has another form, or
+  // if the program cannot listen there (the port is taken, or the address does not belong to this
+  // host).
   explicit PrometheusEndpoint(const std::string& where);
   ~PrometheusEndpoint();
   PrometheusEndpoint(const PrometheusEndpoint&) = delete;
   PrometheusEndpoint& operator=(const PrometheusEndpoint&) = delete;
 
-  // Throws what the constructor would, without listening.
+  // Throws the errors of the constructor, without listening.
   static void Check(const std::string& where);
   // "http://127.0.0.1:9464/metrics"
   std::string Url() const;

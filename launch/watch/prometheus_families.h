@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// From a run's view to what Prometheus's client library serialises. Pure.
+// Converts a run's view to the metric families that Prometheus's client library serialises. Pure.
 #pragma once
 
 #include <prometheus/metric_family.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// How fast a count has grown lately, for people: the rate of the last second alone jumps between 0
-// and a chunk's worth where records come in chunks.
+// Recent growth of a count per second, for display. Records arrive in chunks, so a one-second rate
+// would jump between 0 and a whole chunk.
 #pragma once
 
 #include <deque>
@@ -12,14 +12,14 @@ namespace shoal::launch {
 class RecentRate {
  public:
   static constexpr double kWindowSeconds = 30;
-  static constexpr double kLeastSeconds = 3;  // for a rate to mean anything
+  static constexpr double kLeastSeconds = 3;  // shortest interval for a rate
 
   explicit RecentRate(double window_seconds = kWindowSeconds, double least_seconds = kLeastSeconds)
       : window_seconds_(window_seconds), least_seconds_(least_seconds) {}
 
-  // The count at a time; times grow. Afterwards the growth per second over the window, empty while
-  // too little of it is known. A count that has become smaller, as that of a learner that went on
-  // from a checkpoint, begins anew.
+  // Adds the count at a time; times must grow. Returns the growth per second over the window; empty
+  // until least_seconds are covered. If the count has become smaller (a learner that continues from
+  // a checkpoint), the window starts again.
   std::optional<double> Add(double seconds, double count);
 
  private:

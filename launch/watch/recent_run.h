@@ -11,7 +11,7 @@
 
 namespace shoal::launch {
 
-// How far a run was at a moment.
+// Counts of a run at one moment.
 struct RunMoment {
   double seconds = 0;  // of the run so far; never falls
   double env_steps = 0;
@@ -23,20 +23,20 @@ class RecentRun {
  public:
   // Call it about once a second.
   void Add(const RunMoment& moment, RunTotals totals);
-  // Drops all figures and starts again kSettling later. For a change after which earlier figures
-  // predict nothing, such as a pause.
+  // Drops all figures and starts again kSettling later. Call it after a change that makes earlier
+  // figures useless, such as a pause.
   void Forget(double seconds);
 
-  // Per second, over the last half minute; empty while too little of it is known.
+  // Per second, over the last 30 s; empty until RecentRate::kLeastSeconds are covered.
   std::optional<double> env_steps_per_second() const { return env_steps_per_second_; }
   std::optional<double> updates_per_second() const { return updates_per_second_; }
-  // At the pace of the last two minutes. Unknown before the first update and in the first seconds
-  // after it: without updates a run goes many times faster.
+  // Remaining time at the pace of the last two minutes. Unknown before the first update and in the
+  // first seconds after that update: without updates a run is many times faster.
   std::optional<double> SecondsLeft(double env_steps, double budget) const;
-  // Over the last half minute, or what is known of it.
+  // Counts of the last 30 s, or of the known part of that interval.
   RunTotals Totals() const;
 
-  static constexpr double kSettling = 3;  // seconds: the reports that span a pause have come
+  static constexpr double kSettling = 3;  // seconds, until reports that span a pause have arrived
 
  private:
   struct Counted {
@@ -47,9 +47,9 @@ class RecentRun {
   RecentRate env_steps_, updates_;
   RecentRate pace_{120, 10};  // env steps, since the first update
   std::optional<double> env_steps_per_second_, updates_per_second_, steady_pace_;
-  bool learned_ = false;  // there has been an update
+  bool learned_ = false;  // the learner has made an update
   std::deque<Counted> counted_;
-  double from_ = 0;  // moments before are not taken
+  double from_ = 0;  // earlier moments are ignored
 };
 
 }  // namespace shoal::launch

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which reported figures make up the progress display, in the coordinator and far from it.
+// Chooses the reported figures of the progress display, for the coordinator and for other programs.
 #pragma once
 
 #include "common/config/config.h"
@@ -14,17 +14,18 @@ namespace shoal::launch {
 // Fills the figures that processes report; the others keep their defaults.
 ProgressFigures CollectFigures(const MetricsView& view, SteadyTime now);
 
-// Replaces rates of the last second by those of late, and adds who was held back (`lately`: of
-// recent.Totals()) and the time left of `figures->budget`.
+// Replaces the one-second rates by 30-second rates. Adds the shares of time in which the limiter
+// held back actors and learner (`lately`: computed from recent.Totals()), and the time left until
+// `figures->budget`.
 void AddLately(const RecentRun& recent, const Bottleneck& lately, ProgressFigures* figures);
 
-// Adds what the coordinator alone knows to its own report.
+// Adds the figures that only the coordinator has to its own report.
 void AddRunFigures(const ProgressFigures& figures, MetricsReport* report);
-// Adds what is asked of the run, with the present values.
+// Adds budget, stop rule and resources of the run, with their present values.
 void AddOrders(const Config& config, const RunResources& resources, MetricsReport* report);
-// Adds where the time has gone lately to the coordinator's report in a view.
+// Adds the recent shares of time to the coordinator's report in a view.
 void AddShares(const Bottleneck& lately, MetricsMessage* report);
-// One sentence: what to do about it, from a view; or what the run is at when it ends.
+// One sentence from a view: advice on speed or, while the run ends, its present stage.
 std::string AdviceOfView(const RunViewMessage& view);
 // The figures of a view, in the form of the run's own progress display.
 ProgressFigures FiguresOfView(const RunViewMessage& view, SteadyTime now);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every run of a folder with how it stands: what `shoal runs` shows.
+// Every run of a folder with its status, as `shoal runs` shows them.
 #pragma once
 
 #include <filesystem>
@@ -12,11 +12,11 @@
 namespace shoal::launch {
 
 enum class RunStatus {
-  kRunning,      // its coordinator holds it
+  kRunning,      // its coordinator holds the lock
   kFinished,     // reached its target or spent its budget
-  kInterrupted,  // was stopped; --resume goes on
+  kInterrupted,  // was stopped; --resume continues it
   kFailed,
-  kDead,        // its coordinator ended without a word, if only in the last evaluation; --resume
+  kDead,        // its coordinator was killed; --resume continues it
   kUnreadable,  // a broken meta.json or config.json, or another user's run
 };
 const char* ToString(RunStatus status);
@@ -30,19 +30,18 @@ struct RunListing {
   std::string name;
   RunStatus status = RunStatus::kDead;
   std::string preset, task, started;
-  std::string problem;  // why it failed, or what cannot be read
-  std::string peer;     // HOST:PORT for --peer while it runs, else empty
+  std::string problem;  // reason of the failure, or the unreadable file
+  std::string peer;     // HOST:PORT for --peer while the run lasts, else empty
   uint64_t env_steps = 0, updates = 0;
   double wall_seconds = 0;
   RunScore best, final;
-  std::optional<RunSize> size;  // on the disk, where it was asked for
+  std::optional<RunSize> size;  // on the disk; empty unless requested
 };
 
-// Status of the run in a folder. Never throws because of its content: a broken run is listed as
-// such.
+// Status of the run in a folder. Never throws because of the folder's content: a broken run gets
+// the status kUnreadable.
 RunListing RunStatusOf(const std::filesystem::path& run);
-// By name, with their sizes. Never throws for what is in the folder: a broken run is listed as
-// such.
+// The runs sorted by name, with their sizes. Never throws because of the folder's content.
 std::vector<RunListing> ListRunStatus(const std::filesystem::path& dir);
 
 // A table with one row per run; a problem is on a line of its own below its run.

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Every metric that a run can report: what its processes report of themselves
-// (common/wire/metric_names.h) and the figures of the updates, as the algorithms name them
+// Every metric that a run can report: the metrics of its processes (common/wire/metric_names.h) and
+// the figures of the updates, under the names that the algorithms give them
 // (learner/agent/algorithms.h). docs/monitoring.md and the help texts of the Prometheus endpoint
-// are made from it.
+// are made from this list.
 #pragma once
 
 #include <span>
@@ -11,7 +11,7 @@
 
 namespace shoal::launch {
 
-// By role, then as reported; the updates' figures last.
+// Sorted by role, then in the order of the report; the figures of the updates are last.
 std::span<const Metric> RunMetrics();
 
 }  // namespace shoal::launch

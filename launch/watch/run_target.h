@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Which running run a command is about: by name, by address, or the only one there is.
+// Finds the running run that a command is for: by name, by address, or the only one that runs.
 #pragma once
 
 #include <filesystem>
@@ -15,7 +15,7 @@ struct TargetOptions {
   std::string run;   // name within run_dir, or path of the folder
   std::string peer;  // HOST:PORT of the coordinator's side for clients
   std::string run_dir = "runs";
-  std::string secure = {};  // folder of credentials; empty = as the run's cluster.json says
+  std::string secure = {};  // folder of credentials; empty = the one in the run's cluster.json
 };
 
 struct RunTarget {
@@ -26,8 +26,8 @@ struct RunTarget {
   TransportConfig transport{};
 };
 
-// Folders in `dir` that are runs (have a config.json) or may not be looked into, sorted by name;
-// empty when there is no `dir`. Throws Error when `dir` may not be read.
+// Folders in `dir` that are runs (have a config.json) or that this user may not read, sorted by
+// name; empty if `dir` does not exist. Throws Error if this user may not read `dir`.
 std::vector<std::filesystem::path> ListRuns(const std::filesystem::path& dir);
 
 // Throws Error: both run and peer given, no such run, not running, none or several running.

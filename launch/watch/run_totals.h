@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Counters of a run's processes, summed by role. The difference of two moments gives the use of the
-// time between them. Pure.
+// Counters of a run's processes, summed by role. The difference between two moments shows how the
+// time between them was used. Pure.
 #pragma once
 
 #include <functional>
@@ -17,19 +17,19 @@ inline constexpr std::string_view kCountedRoles[] = {"actor", "replay", "learner
 // All processes of a role together, ended ones included.
 struct RoleTotals {
   int processes = 0;                                    // that have reported so far
-  double seconds = 0;                                   // they ran
-  double cpu_seconds = 0;                               // processor time they took
+  double seconds = 0;                                   // run time
+  double cpu_seconds = 0;                               // processor time
   std::map<std::string, double, std::less<>> stages{};  // seconds spent in each
-  // Seconds in which the limiter held actors back and the learner; of the replay.
+  // Seconds in which the limiter held back the actors, and the learner; only for the replay.
   double inserts_blocked = 0, samples_blocked = 0;
 };
 
 using RunTotals = std::map<std::string, RoleTotals, std::less<>>;
 
-// Since the processes' starts. Roles that have not reported are absent.
+// Totals since the processes' starts. Roles that have not reported are absent.
 RunTotals TotalsOf(const MetricsView& view);
 
-// From `before` to `now`. Roles that have not run meanwhile are absent.
+// Difference of `now` and `before`. Roles that have not run between the two are absent.
 RunTotals Since(const RunTotals& before, const RunTotals& now);
 
 }  // namespace shoal::launch

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The run's TensorBoard scalars, x = env steps: training, rollouts and evaluations. The coordinator
-// is the only process that writes them, so that TensorBoard has one file to follow per start of the
-// run; what the learner has to say comes with its reports.
+// is the only process that writes them, so that TensorBoard follows one file per start of the run.
+// The figures of the learner arrive in its reports.
 #pragma once
 
 #include <cstdint>
@@ -18,24 +18,25 @@
 
 namespace shoal::launch {
 
-// Writes to a new file in RUN/tensorboard. A tag gets each step once, over all starts of the run:
-// points at a step that it has reached already are left out. One thread.
+// Writes to a new file in RUN/tensorboard. Each tag gets each step once, over all starts of the
+// run: a point is left out if its tag already has a point at this step or a later one. One thread.
 class ScalarLog {
  public:
   explicit ScalarLog(const std::filesystem::path& run);  // throws Error
 
-  // Writes what was added since the last call. Throws Error when that cannot be; it is kept then.
+  // Writes the points added since the last call. Throws Error if writing fails; the points are then
+  // kept for the next call.
   void Flush() { writer_.Flush(); }
 
   // Writes all keys for TensorBoard's text tab and hparams tab.
   void WriteConfig(const Config& config);
-  // How it ended, for the hparams tab.
+  // Writes the run's end for the hparams tab.
   void WriteEnd(bool success);
 
   // eval/mean_reward, eval/mean_ep_length, eval/success_rate.
   void WriteEvaluation(const EvaluationPoint& point);
-  // rollout/ep_rew_mean, rollout/success_rate, rollout/ep_len_mean; every 5 s, from
-  // the first finished episode on.
+  // rollout/ep_rew_mean, rollout/success_rate, rollout/ep_len_mean; every 5 s, starting with the
+  // first finished episode.
   void WriteRollouts(const MetricsView& view, const ProgressFigures& figures, SteadyTime now);
   // Writes each figure of the updates under its tag (learner/agent/update_figures.h),
   // train/n_updates and time/fps, the mean since this session's first update. A report of the
@@ -44,7 +45,7 @@ class ScalarLog {
   void WriteTraining(const MetricsMessage& report, SteadyTime now);
 
  private:
-  // Since when and from how many env steps time/fps counts.
+  // Time and env steps at which the count for time/fps begins.
   struct Start {
     SteadyTime time;
     double env_steps = 0;

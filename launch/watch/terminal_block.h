@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Lines on the terminal that are drawn again and again in place.
+// Lines that are redrawn in place on the terminal.
 #pragma once
 
 #include <cstddef>
@@ -17,41 +17,43 @@ struct TerminalSize {
 // Size of the terminal on stdout; 80 x 24 if it is unknown.
 TerminalSize SizeOfTerminal();
 
-// Whether stdout is a terminal on which lines can be drawn in place: TERM=dumb cannot, such as that
-// of an editor or of a build server that only says that it is a terminal.
+// Whether stdout is a terminal on which lines can be drawn in place. A terminal with TERM=dumb, as
+// in an editor or on a build server, cannot draw in place.
 bool DrawsInPlace();
 
-// Whether the terminal on stdout is this process's to draw on: not while a shell has it in the
-// background, with its prompt in the foreground.
+// Whether this process may draw on the terminal of stdout. False while a shell runs this process in
+// the background.
 bool InForeground();
 
-// Columns that a text of UTF-8 takes, a column per character.
+// Number of columns of a UTF-8 text: one per character.
 size_t ColumnsOf(std::string_view text);
-// The first `columns` of it, in whole characters.
+// The first `columns` columns of the text, in whole characters.
 std::string CutToColumns(std::string text, size_t columns);
 
-// The text in lines of at most `columns`, broken at spaces where there are any. The first line
-// keeps its leading spaces, the others begin two further in; with `hanging` false, at the left.
+// The text in lines of at most `columns`, broken at spaces if there are any. The first line keeps
+// its leading spaces. The other lines are indented two columns further; if `hanging` is false, they
+// are not indented.
 std::vector<std::string> WrapToColumns(std::string_view text, size_t columns, bool hanging = true);
 
-// A line for people as stdout takes it: wrapped where it is a terminal, else whole.
+// A line of text for stdout: wrapped if stdout is a terminal, else whole.
 std::vector<std::string> LinesOnTerminal(const std::string& line);
 
-// Terminal rows that lines of these columns take on a terminal that wraps at `terminal_columns`.
+// Number of terminal rows of lines with these columns if the terminal wraps at `terminal_columns`.
 int RowsOf(const std::vector<size_t>& line_columns, int terminal_columns);
 
 // One thread.
 class TerminalBlock {
  public:
-  // Replaces what was drawn before. Lines that the terminal has no row for are left out.
+  // Replaces what was drawn before. Lines below the last row of the terminal are left out.
   void Draw(const std::vector<std::string>& lines);
-  // Leaves the cursor at the start of an empty line. What the terminal echoed below the block, as
-  // the ^C of Ctrl-C, goes with it; so do the rows that a terminal has made of lines by wrapping
-  // them when it became narrower. One that cuts lines instead (xterm) loses as many rows above.
+  // Erases the block and leaves the cursor at the start of an empty line. Also erases text that the
+  // terminal echoed below the block, such as the ^C of Ctrl-C. If the terminal became narrower, the
+  // rows that wrapping has added are erased too. A terminal that cuts lines instead of wrapping
+  // them (xterm) loses as many rows above the block.
   void Erase();
-  // The block stays as the last thing on the terminal, without what was echoed below it.
+  // Keeps the block as the last lines on the terminal and erases text echoed below the block.
   void Leave();
-  // The block stays where it is, and the next one is drawn at the cursor: other output is below it.
+  // Keeps the block in place. The next block is drawn at the cursor, below other output.
   void Forget() { drawn_.clear(); }
 
  private:

@@ -9,7 +9,7 @@
 
 namespace shoal::launch {
 
-// How the rows are sorted. Column 0 is the order of roles; numbers sort from the largest down.
+// Sort order of the rows. Column 0 is the order of roles; numbers are sorted from the largest down.
 struct TopOrder {
   int column = 0;
   bool reversed = false;
@@ -21,14 +21,14 @@ std::string TopColumnName(int column);
 // Description of each column, one line of at most 79 characters each.
 std::vector<std::string> DescribeTopColumns();
 
-// The widths that columns have had while a table is watched: they only grow, so that what is shown
-// once stays where it is.
+// The widths that columns have had while a table is watched: widths only grow, so that columns do
+// not move.
 using TopWidths = std::vector<size_t>;
 
 // The run as one line, advice, a heading, then one row per process; each at most `width` characters
-// (0 = no limit): text goes on in further lines, the least important columns are left out. The
-// column that the rows are sorted by is marked with a *. `widths`: of the tables before, empty for
-// the first; may be null.
+// (0 = no limit): longer text is wrapped, and the least important columns are left out. The column
+// that the rows are sorted by is marked with a *. `widths`: widths of the earlier tables, empty for
+// the first one; may be null.
 std::vector<std::string> FormatTop(const RunViewMessage& view, const TopOrder& order, int width,
                                    TopWidths* widths = nullptr);
 // The whole run as one plain line.
